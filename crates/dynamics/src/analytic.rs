@@ -17,8 +17,8 @@ pub use jet::Jet;
 /// exponential.
 ///
 /// # Example
-/// The same function gives the response at a frequency, and a disc that contains the response at
-/// every frequency of an interval.
+/// One function, evaluated over either type, gives the response at a frequency or a disc that
+/// contains the response at every frequency of an interval.
 /// ```
 /// use num_complex::Complex64;
 /// use phea_dynamics::analytic::{Analytic, Disc};
@@ -39,9 +39,9 @@ pub trait Analytic:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// The product with a real number.
+    /// Product with a real number.
     fn scaled(self, factor: f64) -> Self;
-    /// e to this power.
+    /// Exponential: e to this power.
     fn exponential(self) -> Self;
     /// (1 - e^(-z))/z, which is 1 at zero.
     fn mean_of_decay(self) -> Self;
@@ -49,7 +49,7 @@ pub trait Analytic:
 
 /// Below this magnitude (1 - e^(-z))/z is computed from its series.
 const SMALL: f64 = 0.5;
-/// Terms of the series: the first omitted term is less than 0.5^15/16! of the value.
+/// Number of terms of the series: the first omitted term is less than 0.5^15/16! of the value.
 const TERMS: i32 = 15;
 
 /// 1 - z/2 (1 - z/3 (1 - z/4 (...)))
@@ -58,7 +58,7 @@ fn series<A: Analytic>(z: A) -> A {
     (2..=TERMS + 1).rev().fold(one, |sum, term| one - (z * sum).scaled(1.0 / f64::from(term)))
 }
 
-/// The derivative of the series: -1/2 + z/3 - z^2/8 + ...
+/// Derivative of the series: -1/2 + z/3 - z^2/8 + ...
 fn slope_of_series<A: Analytic>(z: A) -> A {
     // (-1)^k k z^(k - 1)/(k + 1)!
     let mut factor = 1.0;

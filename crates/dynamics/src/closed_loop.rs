@@ -1,11 +1,11 @@
-//! The closed loops around a plant whose magnitudes specifications limit.
+//! Closed loops around a plant, whose magnitudes specifications limit.
 
 use num_complex::Complex64;
 
 /// A closed loop, with S = 1/(1+L) and L = P G H.
 ///
 /// ```text
-/// X = A G^a F^f S,    A one of P H, 1, P, Pd, and a and f 0 or 1
+/// X = A G^a F^f S,    A one of P H, 1, P, Pd, a and f 0 or 1
 /// ```
 ///
 /// # Example
@@ -39,7 +39,7 @@ pub enum ClosedLoop {
     Tracking,
 }
 
-/// The factor A that the plant contributes to a closed loop in addition to S.
+/// Factor A that the plant contributes to a closed loop in addition to S.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlantPath {
     /// P H
@@ -76,12 +76,12 @@ impl ClosedLoop {
         }
     }
 
-    /// Whether G is a factor: a = 1.
+    /// True if G is a factor: a = 1.
     pub fn has_feedback(self) -> bool {
         matches!(self, ClosedLoop::RobustStability | ClosedLoop::ControlEffort | ClosedLoop::Tracking)
     }
 
-    /// Whether F is a factor: f = 1.
+    /// True if F is a factor: f = 1.
     pub fn has_prefilter(self) -> bool {
         self == ClosedLoop::Tracking
     }

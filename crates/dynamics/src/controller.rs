@@ -1,7 +1,7 @@
-//! A controller as one value: its elements, its timing, and its limits.
+//! A controller as a single value: its elements, its timing, and its limits.
 //!
-//! Loop shaping edits the elements, verification takes the responses, simulation and generated code
-//! take the sample step of [`SampledController`]: four users of one value.
+//! Loop shaping edits the elements, verification uses the responses, simulation and generated code
+//! use the sample step of [`SampledController`]: all four use one value.
 
 mod converter;
 mod element;
@@ -26,29 +26,30 @@ pub use virtual_impedance::VirtualImpedance;
 
 use crate::linear::Discretization;
 
-/// When the controller acts.
+/// Timing of the controller.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Timing {
     /// Sample time in s; absent for a continuous controller.
     pub sample_time_s: Option<f64>,
     /// Computation and transport delay of the loop in s.
     pub delay_s: f64,
-    /// How continuous elements become sampled ones.
+    /// Method by which continuous elements are discretised.
     pub discretization: Discretization,
-    /// Whether the prefilter acts on the reference before it is sampled, in continuous time.
+    /// True if the prefilter acts on the reference before it is sampled, in continuous time.
     pub continuous_prefilter: bool,
-    /// Gain of the feed-forward of a disturbance's rate, sampled and delayed as the command is: K
-    /// in U = G (F R - Y) + K H_v s D. Zero without feed-forward.
+    /// Gain of the feed-forward of a disturbance's rate, sampled and delayed like the command: K in
+    /// U = G (F R - Y) + K H_v s D. Zero without feed-forward.
     pub rate_feed_forward: f64,
-    /// H_v: filter and dead time of the sensor of that rate, before the samples.
+    /// Sensor H_v of that rate, its filter and dead time, before the sampler.
     pub rate_sensor: RateSensor,
-    /// H of a second signal that is fed back, sampled and delayed as the command is: U = G (F R -
-    /// Y) - H P. A continuous loop has it in its plant.
+    /// Transfer function H of a second signal that is fed back, sampled and delayed like the
+    /// command: U = G (F R - Y) - H P. In a continuous loop it is part of the plant.
     pub inner_feedback: InnerFeedback,
 }
 
 impl Timing {
-    /// When the prefilter acts: with the controller, or in continuous time before its samples.
+    /// Timing of the prefilter: sampled with the controller, or in continuous time before the
+    /// sampler.
     pub fn of_prefilter(&self) -> Timing {
         match self.continuous_prefilter {
             true => Timing { sample_time_s: None, ..*self },
@@ -57,29 +58,29 @@ impl Timing {
     }
 }
 
-/// The behaviour of the integral part while the command is limited.
+/// Behaviour of the integral part while the command is limited.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AntiWindup {
-    /// It goes on integrating.
+    /// The integral part continues to integrate.
     #[default]
     None,
     /// The recursion continues from the limited command, so that the state is the one that would
-    /// have given it.
+    /// have produced this command.
     BackCalculation,
     /// The state is held while the command is limited and the error drives it further out.
     Clamping,
 }
 
-/// What is minimised or maximised among the controllers that satisfy every specification.
+/// Quantity that is minimised or maximised among the controllers that satisfy every specification.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Objective {
-    /// lim s^r G(s), r the relative degree; in a sampled loop that of the elements before they are
-    /// sampled, which by Tustin's rule is |G| at pi/T without its r zeros there.
+    /// lim s^r G(s), r the relative degree; in a sampled loop, the limit of the elements before
+    /// sampling; by Tustin's rule it is |G| at pi/T without its r zeros there.
     #[default]
     LeastHighFrequencyGain,
-    /// The gain crossover of the nominal loop.
+    /// Gain crossover frequency of the nominal loop.
     LeastBandwidth,
-    /// The least margin of all specifications.
+    /// Smallest margin over all specifications.
     BestWorstMargin,
 }
 
@@ -102,14 +103,14 @@ pub enum Objective {
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Controller {
-    /// G, acting on the error.
+    /// Feedback compensator G, acting on the error.
     pub feedback: Compensator,
-    /// F, acting on the reference.
+    /// Prefilter F, acting on the reference.
     pub prefilter: Compensator,
-    /// When it acts.
+    /// Timing.
     pub timing: Timing,
-    /// Largest magnitude of the command, in its own unit (V); absent: unlimited.
+    /// Largest magnitude of the command, in its own unit (V); unlimited if absent.
     pub command_limit: Option<f64>,
-    /// The behaviour of the integral part at the limit.
+    /// Behaviour of the integral part at the limit.
     pub anti_windup: AntiWindup,
 }

@@ -1,4 +1,4 @@
-//! Recorded expressions: a model equation run once with [`Recorded`] numbers becomes data.
+//! Recorded expressions: a model equation is run once with [`Recorded`] numbers and becomes data.
 //!
 //! An [`Expression`] is a list of operations over named parameters with one or more results. It is
 //! evaluated over any [`Scalar`] (numbers, dual numbers, intervals), printed, and turned into code,
@@ -16,8 +16,8 @@ pub use recording::Recorded;
 
 use crate::scalar::{Interval, Scalar};
 
-/// Operations over named parameters, in an order in which each uses only earlier ones, and the
-/// results they give.
+/// Operations over named parameters, in an order in which each uses only earlier ones, and their
+/// results.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {
     parameters: Vec<String>,
@@ -26,8 +26,7 @@ pub struct Expression {
 }
 
 impl Expression {
-    /// Runs `equations` once on the named parameters and keeps what it did, as far as a result
-    /// needs it.
+    /// Runs `equations` once on the named parameters and keeps the operations that a result needs.
     ///
     /// # Example
     /// ```
@@ -54,13 +53,13 @@ impl Expression {
         &self.nodes
     }
 
-    /// Where the results stand among the operations.
+    /// Positions of the results among the operations.
     pub fn results(&self) -> &[NodeIndex] {
         &self.results
     }
 
-    /// Operations that were recorded elsewhere; `None` where one refers to itself or to a later
-    /// one, to a parameter that does not exist, or where a result does not exist.
+    /// Expression of operations recorded elsewhere; `None` if one refers to itself, to a later
+    /// operation or to a parameter that does not exist, or if a result does not exist.
     ///
     /// # Example
     /// ```
@@ -83,7 +82,7 @@ impl Expression {
         (refers_back && found).then_some(Expression { parameters, nodes, results })
     }
 
-    /// The same operations as far as the first results need them, and these results alone.
+    /// Expression of the first results only, with the operations that they need.
     ///
     /// # Example
     /// ```
@@ -98,7 +97,7 @@ impl Expression {
         Expression { parameters: self.parameters.clone(), nodes, results }
     }
 
-    /// Whether any result is computed from the parameter with this index.
+    /// True if any result is computed from the parameter with this index.
     ///
     /// # Example
     /// ```
@@ -111,7 +110,7 @@ impl Expression {
     }
 
     /// Intervals that hold every result while the parameters run through theirs. An operation on
-    /// twice the same number is known as such: a square is not negative, x - x is zero.
+    /// two equal operands is recognised: a square is not negative, x - x is zero.
     ///
     /// # Example
     /// ```
@@ -136,14 +135,14 @@ impl Expression {
         self.results.iter().map(|&index| values[index]).collect()
     }
 
-    /// All results for these values of the parameters. A missing value counts as NaN, a surplus one
-    /// is not used.
+    /// All results for these values of the parameters. A missing value counts as NaN; a surplus one
+    /// is ignored.
     pub fn evaluate<S: Scalar>(&self, parameters: &[S]) -> Vec<S> {
         let values = self.values(parameters);
         self.results.iter().map(|&index| values[index]).collect()
     }
 
-    /// The value of every operation.
+    /// Values of all operations.
     fn values<S: Scalar>(&self, parameters: &[S]) -> Vec<S> {
         let mut values = vec![S::from(0.0); self.nodes.len()];
         for (index, node) in self.nodes.iter().enumerate() {
@@ -152,9 +151,9 @@ impl Expression {
         values
     }
 
-    /// The first result for these numbers, as [`Expression::evaluate`] gives it; NaN if there is
-    /// none. Compiled here, so that searches that spend their time in it are fast in test builds
-    /// too.
+    /// First result for these numbers, as [`Expression::evaluate`] returns it; NaN if there is
+    /// none. Compiled here so that searches, which spend most of their time in it, are fast in test
+    /// builds too.
     ///
     /// # Example
     /// ```

@@ -1,4 +1,4 @@
-//! Frequency responses and what is read off them: unwrapped phase, margins, passivity.
+//! Frequency responses and their characteristics: unwrapped phase, margins, passivity.
 //!
 //! # Example
 //! A loop that becomes unstable at twice its gain:
@@ -55,8 +55,8 @@ pub struct FrequencyResponse {
 }
 
 impl FrequencyResponse {
-    /// The response of a transfer function. Its phase is the sum of the phases of its factors, so
-    /// it is continuous however far apart the frequencies are ([`TransferFunction::phase_rad`]).
+    /// Response of a transfer function. Its phase is the sum of the phases of its factors, so it is
+    /// continuous at any spacing of the frequencies ([`TransferFunction::phase_rad`]).
     pub fn of(system: &TransferFunction, frequencies_rad_per_s: &[f64]) -> Self {
         FrequencyResponse {
             frequencies_rad_per_s: frequencies_rad_per_s.to_vec(),

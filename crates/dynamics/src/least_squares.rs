@@ -4,11 +4,11 @@
 //! minimise  sum rho(r_i(x))    with  lower <= x <= upper,     rho(r) = r^2/2 for |r| <= k,  k|r| - k^2/2 beyond
 //! ```
 //!
-//! A damped Gauss-Newton method (Levenberg 1944, Marquardt 1963) on the normal equations, with
-//! psi = rho' (Huber 1964) for the residuals and psi' for their curvature. A variable at a bound
-//! that the step would leave is held for that step. Where it takes long, as in a curved valley,
-//! each step bends with the second derivative of the residuals along it (Transtrum and Sethna
-//! 2012). The caller scales the variables to order one and the residuals to their noise.
+//! A damped Gauss-Newton method (Levenberg 1944, Marquardt 1963) on the normal equations, with psi
+//! = rho' (Huber 1964) for the residuals and psi' for their curvature. A variable at a bound that
+//! the step would leave is held for that step. After many evaluations, as in a curved valley, each
+//! step bends with the second derivative of the residuals along it (Transtrum and Sethna 2012). The
+//! caller scales the variables to order one and the residuals to their noise.
 
 mod uncertainty;
 
@@ -22,28 +22,28 @@ use crate::watch::Stopped;
 /// Residuals, and their derivatives row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linearised {
-    /// r_i.
+    /// Residuals r_i.
     pub residuals: Vec<f64>,
-    /// dr_i/dx_j, the row of each residual after that of the one before.
+    /// Derivatives dr_i/dx_j, one row for each residual.
     pub jacobian: Vec<f64>,
 }
 
-/// Bounds, loss and how long is searched.
+/// Bounds, loss and limits of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// k of the loss; infinite for plain squares.
+    /// Constant k of the loss; infinite for plain squares.
     pub robust_beyond: f64,
-    /// Evaluations after which the search ends.
+    /// Number of evaluations after which the search ends.
     pub maximum_evaluations: usize,
-    /// Relative decrease of the sum below which it has converged.
+    /// Relative decrease of the sum below which the search has converged.
     pub tolerance: f64,
-    /// Damping of the first step: small where the start is near the minimum, so that a long valley
+    /// Damping of the first step: small if the start is near the minimum, so that a long valley
     /// does not take many steps.
     pub first_damping: f64,
 }
 
 impl Default for Settings {
-    /// 1.345 has 95 % of the efficiency of plain squares where the noise is normal (Huber 1981).
+    /// 1.345 has 95 % of the efficiency of plain squares for normal noise (Huber 1981).
     fn default() -> Settings {
         Settings {
             robust_beyond: 1.345,
@@ -54,48 +54,50 @@ impl Default for Settings {
     }
 }
 
-/// Damping below which a step is as good as that of Gauss and Newton.
+/// Damping below which a step is as good as a Gauss-Newton step.
 const FULL_STEP: f64 = 1e-3;
 
-/// Evaluations after which steps bend: where few are enough, none is spent on it.
+/// Number of evaluations after which steps bend: if few evaluations suffice, none is spent on
+/// bending.
 const STRAIGHT: usize = 40;
 
-/// Share of a step at which the second derivative along it is taken.
+/// Fraction of a step at which the second derivative along it is taken.
 const PROBE: f64 = 0.1;
 
-/// Largest bend over a step: beyond it the series of which both are the first terms is not a guide.
+/// Largest bend over a step: beyond it, the series is not a guide, since only its first two terms
+/// are known.
 const MOST_BEND: f64 = 0.375;
 
-/// How a search ended.
+/// Reason for the end of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
-    /// No step decreases the sum any more.
+    /// No step decreases the sum further.
     Converged,
-    /// It was still decreasing.
+    /// The sum was still decreasing.
     OutOfEvaluations,
-    /// The start itself cannot be evaluated.
+    /// The start cannot be evaluated.
     NoStart,
 }
 
-/// Where a search ended.
+/// Result of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Minimum {
-    /// x.
+    /// Variables x.
     pub variables: Vec<f64>,
-    /// The sum.
+    /// Sum of the losses.
     pub cost: f64,
-    /// Residuals there, with derivatives.
+    /// Residuals at the minimum, with derivatives.
     pub linearised: Linearised,
-    /// Evaluations that were made.
+    /// Number of evaluations.
     pub evaluations: usize,
-    /// How it ended.
+    /// Reason for the end of the search.
     pub ending: Ending,
 }
 
-/// Residuals at a point; `None` where the model does not exist there.
+/// Residuals at a point; `None` if the model does not exist there.
 pub type Evaluate<'a> = &'a mut dyn FnMut(&[f64]) -> Result<Option<Linearised>, Stopped>;
 
-/// The loss of a residual, rho.
+/// Loss rho of a residual.
 ///
 /// # Example
 /// ```
@@ -107,18 +109,18 @@ pub fn loss(residual: f64, beyond: f64) -> f64 {
     if magnitude <= beyond { residual * residual / 2.0 } else { beyond * (magnitude - beyond / 2.0) }
 }
 
-/// Rounds in which the likeliest scale is found.
+/// Number of rounds in which the likeliest scale is found.
 const SCALE_ROUNDS: usize = 30;
 
-/// The contribution of residuals to the negative logarithm of a likelihood, at their likeliest
-/// scale s, which is at least `least`. A constant is left out.
+/// Contribution of residuals to the negative logarithm of a likelihood, at their likeliest scale s,
+/// which is at least `least`. A constant is omitted.
 ///
 /// ```text
 /// n ln s + sum rho(r/s)        s^2 = sum psi(r/s) r s/n
 /// ```
 ///
 /// # Example
-/// The scale of plain squares is the root mean square, and half of each residual's loss is left.
+/// The scale of plain squares is the root mean square, and half of each residual's loss remains.
 /// ```
 /// use phea_dynamics::least_squares::negative_log_likelihood;
 /// let found = negative_log_likelihood(&[3.0, -3.0, 3.0], 0.0, f64::INFINITY);
@@ -138,7 +140,7 @@ pub fn negative_log_likelihood(residuals: &[f64], least: f64, beyond: f64) -> f6
     count * portable::ln(scale) + residuals.iter().map(|residual| loss(residual / scale, beyond)).sum::<f64>()
 }
 
-/// Its derivative over the residual, psi(r)/r.
+/// Derivative of the loss over the residual, psi(r)/r.
 fn weight(residual: f64, beyond: f64) -> f64 {
     let magnitude = residual.abs();
     if magnitude <= beyond { 1.0 } else { beyond / magnitude }
@@ -147,10 +149,10 @@ fn weight(residual: f64, beyond: f64) -> f64 {
 /// Searches from a start, which is moved into the bounds `[lower, upper]` of each variable.
 ///
 /// # Errors
-/// [`Stopped`] if `evaluate` asks for it.
+/// [`Stopped`] if `evaluate` stops the search.
 ///
 /// # Example
-/// A line through points of which one is wrong.
+/// A line through points with one outlier:
 /// ```
 /// use phea_dynamics::least_squares::{Linearised, Settings, minimise};
 /// let points = [(0.0, 1.0), (1.0, 3.0), (2.0, 5.0), (3.0, 700.0), (4.0, 9.0)];
@@ -183,7 +185,7 @@ pub fn minimise(
     let mut best = Minimum { variables, cost, linearised, evaluations, ending: Ending::OutOfEvaluations };
     let mut damping = settings.first_damping;
     let mut curvature = CurvatureWeight::OfLoss;
-    // steps in a row that changed next to nothing
+    // consecutive steps with a negligible change
     let mut idle = 0;
     while evaluations < settings.maximum_evaluations && idle < 3 {
         let Some(mut step) = step(&best, bounds, damping, (curvature, settings.robust_beyond)) else {
@@ -208,8 +210,7 @@ pub fn minimise(
             continue;
         };
         let changed = best.cost - cost > settings.tolerance * best.cost;
-        // a step that next to nothing damped and that changed next to nothing will not be followed
-        // by another
+        // after a nearly undamped step with a negligible change, there will be no further step
         let is_full = damping <= FULL_STEP;
         idle = if changed { 0 } else { idle + if is_full { 3 } else { 1 } };
         best = Minimum { variables: tried, cost, linearised, ..best };
@@ -219,12 +220,12 @@ pub fn minimise(
     Ok(Minimum { evaluations, ending, ..best })
 }
 
-/// The weight of a residual in the curvature of the sum.
+/// Weight of a residual in the curvature of the sum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum CurvatureWeight {
-    /// psi': Newton's method where residuals are linear, good near the minimum.
+    /// Weight psi': Newton's method for linear residuals, good near the minimum.
     OfLoss,
-    /// psi/r: shorter steps, good where most residuals are beyond the bend of the loss.
+    /// Weight psi/r: shorter steps, good if most residuals are beyond the bend of the loss.
     Weighted,
 }
 
@@ -239,18 +240,18 @@ impl CurvatureWeight {
     }
 }
 
-/// A damped step, and the equations that it solves.
+/// Damped step, and the equations that it solves.
 struct DampedStep {
     along: DVector<f64>,
     normal: Cholesky<f64, Dyn>,
-    /// What each residual weighs in them, and which variables are held.
+    /// Weights of the residuals in the equations, and the variables that are held.
     weights: Vec<f64>,
     held: Vec<bool>,
 }
 
 impl DampedStep {
-    /// Adds half of the acceleration along the step, from the residuals after a part p of it;
-    /// nothing where that is not a small share of the step, or beyond the bounds.
+    /// Adds half of the acceleration along the step, from the residuals after a part p of it; adds
+    /// nothing if that is not a small fraction of the step, or is beyond the bounds.
     ///
     /// ```text
     /// step + a/2        (normal) a = -sum h j r'',    r'' = 2/p ((r(x + p step) - r)/p - j step)
@@ -289,7 +290,7 @@ impl DampedStep {
     }
 }
 
-/// The damped step, or none where every variable is held by its bound.
+/// Damped step; `None` if every variable is held by its bound.
 ///
 /// ```text
 /// (sum h j j' + damping diag(sum psi/r j j')) step = -sum psi j        h = psi' or psi/r
@@ -319,7 +320,7 @@ fn step(
         return None;
     }
     for index in 0..count {
-        // a variable on which nothing depends does not move
+        // a variable without influence does not move
         normal[(index, index)] += damping * weighted[index] + 1e-14 * largest;
     }
     let normal = normal.cholesky()?;
@@ -328,7 +329,7 @@ fn step(
     Some(DampedStep { along, normal, weights: weights.collect(), held })
 }
 
-/// What a step follows from.
+/// Terms of the equations of a step.
 struct StepEquations {
     /// Sum of h j j'.
     normal: DMatrix<f64>,

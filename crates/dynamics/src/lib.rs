@@ -1,6 +1,6 @@
-//! Systems without a fluid: the scalar every model equation is written over, recorded expressions,
-//! linear systems, their frequency and time responses, controllers, the closed loops around a
-//! plant, and the uncertain plant that robust design works on.
+//! Systems without a fluid: the scalar type of all model equations, recorded expressions, linear
+//! systems, their frequency and time responses, controllers, the closed loops around a plant, and
+//! the uncertain plant for robust design.
 //!
 //! ```text
 //! parameters -> Expression -> UncertainPlant -> PlantMember                    the family
@@ -9,12 +9,12 @@
 //! System + InputSchedule + SimulationSettings -> simulate -> Trajectory, Outcome
 //! Plant -> Sensed -> CommandedPlant -> System                                  the closed loop
 //! f, ends, start -> x, f(x)                                                    the minimum of one variable
-//! residuals, derivatives -> Minimum -> Uncertainty                             what data determine
+//! residuals, derivatives -> Minimum -> Uncertainty                             variables determined by data
 //! recorded signals -> Blocks -> SpectralPoint                                  measured frequency responses
 //! ```
 //!
-//! SI units inside, angles in radians, frequencies in rad/s, polynomials with the highest power
-//! first.
+//! Quantities are in SI units, angles in radians, frequencies in rad/s, polynomials with the
+//! highest power first.
 
 pub mod analytic;
 pub mod closed_loop;

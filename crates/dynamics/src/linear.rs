@@ -1,14 +1,14 @@
 //! Linear time-invariant systems, continuous or sampled: factored transfer functions, polynomials
 //! and state space.
 //!
-//! Hydraulic systems spread their roots over many decades (a load-holding pole at 0.01 rad/s and a
+//! The roots of hydraulic systems spread over many decades (a load-holding pole at 0.01 rad/s and a
 //! mechanical resonance at 3000 rad/s and an oil column at 1e6), where the coefficients of a
-//! polynomial no longer say where its roots are. So a [`TransferFunction`] keeps gain, zeros and
-//! poles, and is evaluated from them; [`Polynomial`]s are for text and for other tools; a
-//! [`StateSpace`] is solved, never expanded.
+//! polynomial no longer determine its roots. So a [`TransferFunction`] keeps gain, zeros and poles,
+//! and is evaluated from them; [`Polynomial`]s are for text and for other tools; a [`StateSpace`]
+//! is solved, never expanded.
 //!
 //! # Example
-//! A loop closed from factors, and its poles:
+//! A closed loop from factors, and its poles:
 //! ```
 //! use num_complex::Complex64;
 //! use phea_dynamics::linear::TransferFunction;
@@ -54,7 +54,7 @@ pub use state_space::StateSpace;
 pub(crate) use structure::irreducible_blocks;
 pub use transfer_function::TransferFunction;
 
-/// Whether a system lives in continuous time (its variable is s) or in samples (its variable is z).
+/// Time domain of a system: continuous (variable s) or sampled (variable z).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TimeDomain {
     /// Continuous time: the imaginary axis is s = jw.
@@ -66,43 +66,43 @@ pub enum TimeDomain {
     },
 }
 
-/// Samples of dead time that may become states of a sampled system.
+/// Largest number of samples of dead time that may become states of a sampled system.
 const MAXIMUM_DELAY_STATES: f64 = 200.0;
 
-/// Why a linear system cannot be built or computed.
+/// Error for a linear system that cannot be built or computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LinearError {
-    /// A number of the input is infinite or not a number.
+    /// A number of the input that is infinite or NaN.
     #[error("{what} is not a finite number")]
     NotFinite {
         /// Name of the number.
         what: LinearNumber,
     },
-    /// A polynomial that is zero everywhere is given where roots or a denominator are needed.
+    /// A zero polynomial where roots or a denominator are needed.
     #[error("the polynomial is zero everywhere")]
     ZeroPolynomial,
-    /// Values at which an uncertain plant has no plant.
+    /// Values for which an uncertain plant has no plant.
     #[error("there is no plant with these parameters")]
     NoPlant,
     /// A complex zero or pole without its conjugate: the system would not be real.
     #[error("the root {root} has no conjugate partner")]
     MissingConjugate {
-        /// The root that stands alone.
+        /// Root without a conjugate.
         root: Complex64,
     },
-    /// The iteration for the roots of a polynomial stopped without an answer.
+    /// The iteration for the roots of a polynomial did not converge.
     #[error("the roots of a polynomial of degree {degree} did not converge")]
     RootsNotConverged {
         /// Degree of the polynomial.
         degree: usize,
     },
-    /// The iteration for the eigenvalues of a matrix stopped without an answer.
+    /// The iteration for the eigenvalues of a matrix did not converge.
     #[error("the eigenvalues of a matrix of order {order} did not converge")]
     EigenvaluesNotConverged {
         /// Order of the matrix.
         order: usize,
     },
-    /// The zeros of a sampled plant that were found do not give its response.
+    /// The computed zeros of a sampled plant do not reproduce its response.
     #[error(
         "the zeros of a sampled plant of order {order} could not be found to the accuracy of its response"
     )]
@@ -110,14 +110,14 @@ pub enum LinearError {
         /// Order of the sampled plant.
         order: usize,
     },
-    /// A matrix does not have the shape that the others ask for.
+    /// A matrix whose shape does not fit the others.
     #[error("{matrix} is {} by {}, expected {} by {}", found.0, found.1, expected.0, expected.1)]
     Shape {
         /// Name of the matrix.
         matrix: &'static str,
-        /// Rows and columns it has.
+        /// Rows and columns of the matrix.
         found: (usize, usize),
-        /// Rows and columns it should have.
+        /// Rows and columns that are required.
         expected: (usize, usize),
     },
     /// An input or output number that the system does not have.
@@ -125,18 +125,19 @@ pub enum LinearError {
     NoSuchPort {
         /// `"input"` or `"output"`.
         port: &'static str,
-        /// The number asked for, counted from zero.
+        /// Number requested, counted from zero.
         index: usize,
-        /// How many there are.
+        /// Number of inputs or outputs.
         count: usize,
     },
-    /// Two systems in different time domains, or with different sample times, cannot be joined.
+    /// Two systems in different time domains, or with different sample times, that cannot be
+    /// connected.
     #[error("the systems live in different time domains")]
     DomainMismatch,
-    /// The operation needs the other time domain.
+    /// An operation that needs the other time domain.
     #[error("{operation} needs a {needed} system")]
     WrongDomain {
-        /// Operation that was requested.
+        /// Requested operation.
         operation: LinearOperation,
         /// `"continuous"` or `"sampled"`.
         needed: &'static str,
@@ -164,7 +165,7 @@ pub enum LinearError {
         /// The sample time, s.
         sample_time_s: f64,
     },
-    /// A dead time of this many samples would need too many states.
+    /// A dead time of so many samples that it would need too many states.
     #[error(
         "a dead time of {samples} samples is too long to become states; at most {MAXIMUM_DELAY_STATES} may"
     )]
@@ -172,14 +173,14 @@ pub enum LinearError {
         /// Dead time in samples.
         samples: f64,
     },
-    /// The result would not be a rational function: dead time inside a sum or a loop, or in a state
-    /// space.
+    /// A result that would not be a rational function: dead time inside a sum or a loop, or in a
+    /// state space.
     #[error("{operation} with dead time is not a rational function")]
     NotRational {
-        /// Operation that was requested.
+        /// Requested operation.
         operation: LinearOperation,
     },
-    /// Tustin's map takes this real root to infinity: the sample time does not fit the system.
+    /// A real root that Tustin's map takes to infinity: the sample time does not fit the system.
     #[error("a root at {root_rad_per_s} rad/s has no image at this sample time")]
     NoImage {
         /// The root, equal to 2/T, rad/s.
@@ -202,9 +203,9 @@ pub enum LinearError {
     /// A frequency outside the range in which the operation has a meaning.
     #[error("the frequency {frequency_rad_per_s} rad/s is outside the range of {operation}")]
     Frequency {
-        /// The frequency, rad/s.
+        /// Frequency, rad/s.
         frequency_rad_per_s: f64,
-        /// Operation that was requested.
+        /// Requested operation.
         operation: LinearOperation,
     },
 }

@@ -2,23 +2,23 @@
 //!
 //! A point of a function is (x, f(x)); an f(x) that is NaN counts as infinite.
 
-/// The parts of an interval divided by the golden section, (3 - sqrt(5))/2 and (sqrt(5) - 1)/2 of
-/// it.
+/// Fractions of an interval divided by the golden section, (3 - sqrt(5))/2 and (sqrt(5) - 1)/2.
 const SMALLER_PART: f64 = 0.381_966_011_250_105_1;
 const LARGER_PART: f64 = 0.618_033_988_749_895;
 const STEPS_MAXIMUM: usize = 80;
 
-/// The local minimum between two ends, from a point of the function between them, by Brent's
-/// method: parabolas through the last points, golden sections where these fail.
+/// Local minimum between two ends, from a point of the function between them, by Brent's method:
+/// parabolas through the last points, golden sections if these fail.
 ///
 /// ```text
 /// x <- x + (p d3 - q d2)/(2 (p - q)),   d2 = x2 - x,   d3 = x3 - x,   p = (f(x2) - f(x)) d3,   q = (f(x3) - f(x)) d2
 /// ```
 ///
-/// Its x is within twice the tolerance of a local minimum, at most 80 values of f later; where f
-/// rises to both sides of its least value, of that one. It is never worse than the start. f is
-/// evaluated at most a tolerance beyond the ends. Near the minimum f is flat: a tolerance below
-/// sqrt(2 e/f''), e being the rounding error of f, gains nothing. Source: Brent 1973, chapter 5.
+/// The returned x is within twice the tolerance of a local minimum, found with at most 80 values of
+/// f; if f rises on both sides of its least value, it is the global one. The result is never worse
+/// than the start. f is evaluated at most a tolerance beyond the ends. Near the minimum f is flat:
+/// a tolerance below sqrt(2 e/f''), e being the rounding error of f, gains nothing. Source: Brent
+/// 1973, chapter 5.
 ///
 /// # Example
 /// x - ln x is least at 1, where it is 1:
@@ -72,7 +72,7 @@ pub fn between(
     best
 }
 
-/// From the best point to the vertex of the parabola through three.
+/// Step from the best point to the vertex of the parabola through three points.
 fn parabola(best: (f64, f64), second: (f64, f64), third: (f64, f64)) -> Option<f64> {
     let (x, y) = (second.0 - best.0, third.0 - best.0);
     let (p, q) = ((second.1 - best.1) * y, (third.1 - best.1) * x);
@@ -81,8 +81,8 @@ fn parabola(best: (f64, f64), second: (f64, f64), third: (f64, f64)) -> Option<f
     (offset.is_finite() && curvature != 0.0).then_some(offset)
 }
 
-/// The local minimum downhill from a point: in steps that double until the function rises or an end
-/// is met, then [`between`] the last ones.
+/// Local minimum downhill from a point: steps that double until the function rises or reaches an
+/// end, then [`between`] the last points.
 ///
 /// # Example
 /// From 0 the sine falls to -pi/2:
@@ -121,14 +121,14 @@ pub fn downhill(
     between(f, [behind.0.min(ahead.0), behind.0.max(ahead.0)], here, tolerance)
 }
 
-/// The x between two ends at which a function is least that falls and then rises, by the golden
+/// Point x between two ends at which a function that falls and then rises is least, by the golden
 /// section.
 ///
 /// ```text
 /// |x - x*| <= (high - low)/2 * 0.618^steps
 /// ```
 ///
-/// It takes two values of f for each step, and none to begin with; [`between`] takes fewer, where a
+/// Each step takes two values of f, and no starting point is needed; [`between`] takes fewer if a
 /// point of the function is known.
 ///
 /// # Example
@@ -164,8 +164,8 @@ mod tests {
         assert!((found.0 - 0.3).abs() < 1e-7);
     }
 
-    /// The vertex of a parabola within the ends, and the end nearer to one beyond them, from either
-    /// end.
+    /// The result is the vertex of a parabola within the ends, or the nearer end if the vertex is
+    /// beyond them, from either end.
     #[test]
     fn the_least_is_the_vertex_or_an_end() {
         for (vertex, least) in [(0.3, 0.3), (-2.0, -1.0), (5.0, 4.0)] {
@@ -175,7 +175,7 @@ mod tests {
                 assert!((found.0 - least).abs() < 2e-6, "{vertex} from {start}: {found:?}");
             }
             let found = golden_section([-1.0, 4.0], 30, |x| (x - vertex) * (x - vertex));
-            // half of 5 times 0.618 to the power of 30, and as much again
+            // half of 5 times 0.618 to the power of 30, with a factor of two
             assert!((found - least).abs() < 2.7e-6, "{vertex}: {found}");
         }
     }

@@ -1,12 +1,12 @@
-//! Lists in the order of numbers.
+//! Sorting of lists by numbers.
 //!
-//! The standard library compiles a sort anew for every closure that compares. Here everything is
-//! sorted by numbers, and these are sorted in one place.
+//! The standard library compiles a sort anew for every closure that compares. Here all lists are
+//! sorted by numbers, and numbers are sorted in one place.
 
-/// Sorts items by a number, the least first; those of equal numbers stay in order.
+/// Sorts items by a number, the least first; items with equal numbers stay in order.
 ///
-/// The order is that of [`f64::total_cmp`], so that a negated number reverses it exactly. The
-/// number of each item is computed once.
+/// Numbers compare by [`f64::total_cmp`], so that a negated number reverses it exactly. The number
+/// of each item is computed once.
 ///
 /// # Example
 /// ```
@@ -25,8 +25,8 @@ pub fn sort_by_number<T>(items: &mut [T], number: impl FnMut(&T) -> f64) {
     }
 }
 
-/// Pairs of places whose items, exchanged one pair after the other, are in the order of these
-/// numbers.
+/// Pairs of positions; exchanging the items of one pair after another puts them in the order of
+/// these numbers.
 fn exchanges(numbers: Vec<f64>) -> Vec<(usize, usize)> {
     let mut order: Vec<(f64, usize)> = numbers.into_iter().zip(0..).collect();
     order.sort_by(|one, other| one.0.total_cmp(&other.0));
@@ -58,7 +58,7 @@ pub fn sort_numbers(numbers: &mut [f64]) {
     numbers.sort_by(f64::total_cmp);
 }
 
-/// The middle of some numbers, the upper one of an even count; NaN of none.
+/// Median of some numbers, the upper one for an even count; NaN if there are none.
 ///
 /// # Example
 /// ```
@@ -72,7 +72,7 @@ pub fn median(mut numbers: Vec<f64>) -> f64 {
     numbers.get(numbers.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-/// The least and the greatest of numbers, NaN left out; of none, infinity and minus infinity.
+/// Least and greatest of numbers, NaN ignored; infinity and minus infinity if there are none.
 ///
 /// # Example
 /// ```
@@ -86,7 +86,7 @@ pub fn ends(numbers: impl IntoIterator<Item = f64>) -> [f64; 2] {
     numbers.into_iter().fold(none, |[least, most], number| [least.min(number), most.max(number)])
 }
 
-/// These numbers, the least first and each once.
+/// Distinct numbers, the least first.
 ///
 /// # Example
 /// ```

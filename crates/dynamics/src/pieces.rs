@@ -1,23 +1,23 @@
-//! Independent pieces of a long procedure, which its caller may work on side by side.
+//! Independent pieces of a long procedure, which its caller may run in parallel.
 
 use crate::watch::{Stopped, Watch, part};
 
-/// A piece of work that needs no result of another piece of the same procedure. It writes its
-/// result where it borrowed the place for it, and stops where its watch answers `false`.
+/// Piece of work that needs no result of another piece of its procedure. It writes its result to a
+/// place that it borrows, and stops if its watch returns `false`.
 pub type WorkPiece<'a> = Box<dyn FnOnce(Watch<'_>) -> Result<(), Stopped> + Send + 'a>;
 
-/// The owner of the threads. What a procedure returns does not depend on it.
+/// Owner of the threads. The result of a procedure does not depend on it.
 #[derive(Clone, Copy, Debug)]
 pub struct Workers {
-    /// Number of pieces that are worked on at once, at least 1.
+    /// Number of pieces that run at once, at least 1.
     pub at_once: usize,
-    /// Works on all pieces, each with a watch of its own, and reports the progress of the stage;
-    /// [`Stopped`] where the watch or a piece stopped.
+    /// Runs all pieces, each with its own watch, and reports the progress of the stage; [`Stopped`]
+    /// if the watch or a piece stopped.
     pub work: fn(Vec<WorkPiece<'_>>, &'static str, Watch<'_>) -> Result<(), Stopped>,
 }
 
 impl Workers {
-    /// The calling thread, which works on one piece after the other.
+    /// Workers without further threads: the calling thread runs one piece after another.
     ///
     /// # Example
     /// ```
@@ -38,10 +38,10 @@ impl Workers {
     /// ```
     pub const CALLER: Workers = Workers { at_once: 1, work: one_by_one };
 
-    /// Works on all pieces.
+    /// Runs all pieces.
     ///
     /// # Errors
-    /// [`Stopped`] where the watch answers `false`.
+    /// [`Stopped`] if the watch returns `false`.
     pub fn work(
         self,
         pieces: Vec<WorkPiece<'_>>,

@@ -1,7 +1,7 @@
-//! Transcendental functions with the same bits on every machine.
+//! Transcendental functions that are bit-identical on every machine.
 //!
 //! The platform's mathematical library differs between operating systems and versions; `libm` is
-//! one implementation in Rust, used natively and in WebAssembly alike. The lint
+//! one implementation in Rust, used both natively and in WebAssembly. The lint
 //! `clippy::disallowed_methods` keeps the methods of `f64` out. (`sqrt`, `abs` and the four
 //! operations are exact by IEEE 754 and need no substitute.)
 
@@ -12,7 +12,7 @@ pub use libm::{
     sinh, tan, tanh,
 };
 
-/// The nearest number of this many significant digits.
+/// Nearest number with this many significant digits.
 ///
 /// # Example
 /// ```

@@ -2,7 +2,7 @@
 
 use crate::portable;
 
-/// The next number of SplitMix64, its upper 53 bits as a share in [0, 1).
+/// Next number of SplitMix64, its upper 53 bits as a fraction in [0, 1).
 ///
 /// Source: Steele, Lea and Flood (2014).
 ///
@@ -17,8 +17,8 @@ pub fn share(state: &mut u64) -> f64 {
     (mixed(*state) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// Where the random numbers of the experiment with this index begin: they follow from seed and
-/// index alone, whatever other experiments there are.
+/// Initial state of the random numbers of the experiment with this index: it depends on seed and
+/// index only, not on other experiments.
 ///
 /// # Example
 /// ```
@@ -33,7 +33,8 @@ pub fn stream(seed: u64, index: u64) -> u64 {
 
 const INCREMENT: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// Every bit of the result depends on every bit of the number, and no two numbers give one result.
+/// Every bit of the result depends on every bit of the number, and different numbers give different
+/// results.
 fn mixed(number: u64) -> u64 {
     let mut z = number;
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -41,10 +42,10 @@ fn mixed(number: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// The next number of a normal distribution with mean zero and standard deviation one.
+/// Next number of a normal distribution with mean zero and standard deviation one.
 ///
 /// ```text
-/// n = sqrt(-2 ln(1 - s_1)) cos(2 pi s_2)           s_1, s_2 shares
+/// n = sqrt(-2 ln(1 - s_1)) cos(2 pi s_2)           s_1, s_2 uniform in [0, 1)
 /// ```
 ///
 /// Source: Box and Muller (1958).
@@ -71,8 +72,8 @@ mod tests {
         assert!(mean(3).abs() < 4.0 * error && (mean(4) - 3.0).abs() < 10.0 * error);
     }
 
-    /// The first numbers of SplitMix64 from seed 1234567, as its reference implementation prints
-    /// them.
+    /// The first numbers of SplitMix64 from seed 1234567, as printed by its reference
+    /// implementation.
     #[test]
     fn the_generator_is_the_published_one() {
         // ORIGIN: paper, Steele, Lea and Flood (2014): outputs of the reference implementation for

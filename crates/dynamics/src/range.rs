@@ -1,4 +1,4 @@
-//! Ranges in which a method needs its numbers.
+//! Ranges that a method requires of its numbers.
 
 /// Range that a number must be in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -18,28 +18,28 @@ pub enum RequiredRange {
     /// Numbers other than zero.
     #[error("different from zero")]
     NotZero,
-    /// Fractions without both ends.
+    /// Fractions, both ends excluded.
     #[error("above 0 and below 1")]
     BetweenZeroAndOne,
     /// Finite numbers above one.
     #[error("above 1 and finite")]
     AboveOne,
-    /// Percentages without both ends.
+    /// Percentages, both ends excluded.
     #[error("between 0 and 100")]
     BetweenZeroAndHundred,
-    /// Percentages without the upper end.
+    /// Percentages, the upper end excluded.
     #[error("from 0 up to but not 100")]
     BelowHundred,
     /// Angles in rad up to half a turn.
     #[error("above 0 and at most pi")]
     UpToPi,
-    /// Numbers that can be divided by.
+    /// Numbers with a finite inverse.
     #[error("large enough that its inverse is finite")]
     FiniteInverse,
     /// Ends of a band.
     #[error("zero or positive, and increasing")]
     IncreasingFromZero,
-    /// Extents of a sine response.
+    /// Durations of a sine response.
     #[error("at least one period and two windows, of a positive frequency")]
     OnePeriodAndTwoWindows,
 }

@@ -1,8 +1,8 @@
-//! The number that model equations are written over.
+//! Number type of the model equations.
 //!
 //! A model equation is one generic function over [`Scalar`] and never branches on a value: a choice
-//! between two formulas is [`Scalar::less_than`] followed by [`Scalar::select`]. So the same text
-//! serves plain numbers (simulation), [`Lanes`] (ensembles), [`Dual`] numbers (exact Jacobians),
+//! between two formulas is [`Scalar::less_than`] followed by [`Scalar::select`]. So one text serves
+//! plain numbers (simulation), [`Lanes`] (ensembles), [`Dual`] numbers (exact Jacobians),
 //! [`Dependence`] (their pattern) and [`crate::expression::Recorded`] expressions (uncertain
 //! plants, generated code) and [`Interval`]s, whose comparison is not a `bool`.
 //!
@@ -39,7 +39,7 @@ pub use parameters::Parameters;
 
 use crate::portable;
 
-/// A number with the operations that model equations may use, and no others.
+/// Number with the operations that model equations may use, and no others.
 pub trait Scalar:
     Copy
     + Debug
@@ -50,8 +50,8 @@ pub trait Scalar:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// The outcome of a comparison: `bool` for one number, one flag a lane for lanes, three-valued
-    /// for intervals.
+    /// Result of a comparison: `bool` for one number, one flag per lane for lanes, three-valued for
+    /// intervals.
     type Mask: Copy;
 
     /// Square root.
@@ -62,39 +62,39 @@ pub trait Scalar:
     fn ln(self) -> Self;
     /// Magnitude |x|; its derivative at zero is taken as zero.
     fn abs(self) -> Self;
-    /// Whether `self < other`.
+    /// Mask of `self < other`.
     fn less_than(self, other: Self) -> Self::Mask;
-    /// `if_true` where the mask holds, `if_false` elsewhere. Both are evaluated.
+    /// `if_true` if the mask holds, `if_false` elsewhere. Both are evaluated.
     fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self;
 
-    /// The larger of two numbers.
+    /// Larger of two numbers.
     #[inline(always)]
     fn maximum(self, other: Self) -> Self {
         Self::select(self.less_than(other), other, self)
     }
 
-    /// The smaller of two numbers.
+    /// Smaller of two numbers.
     #[inline(always)]
     fn minimum(self, other: Self) -> Self {
         Self::select(other.less_than(self), other, self)
     }
 
-    /// The product with a plain number.
+    /// Product with a plain number.
     #[inline(always)]
     fn times(self, factor: f64) -> Self {
         self * Self::from(factor)
     }
 
-    /// x², cheaper and more exact than a power.
+    /// Square x², cheaper and more exact than a power.
     #[inline(always)]
     fn squared(self) -> Self {
         self * self
     }
 
-    /// A function of few numbers.
+    /// Function of few numbers.
     ///
-    /// The same as the function itself, but for [`Dual`] numbers: these take its derivatives with
-    /// respect to its own variables and bring them to theirs once, by the chain rule.
+    /// Equal to the function itself; but [`Dual`] numbers compute its derivatives with respect to
+    /// its own variables and convert them to theirs once, by the chain rule.
     ///
     /// ```text
     /// dy_m/dx = sum over k of (df_m/du_k) (du_k/dx)
@@ -111,11 +111,11 @@ pub trait Scalar:
     }
 }
 
-/// A function of K numbers with M results, its parameters of type P: a part of a model that knows
-/// few of its variables.
+/// Function of K numbers with M results, its parameters of type P: a part of a model that depends
+/// on few of its variables.
 ///
 /// # Example
-/// An orifice between two of many pressures
+/// An orifice between two of many pressures:
 /// ```
 /// use phea_dynamics::scalar::{Dual, LocalFunction, Scalar};
 /// struct Orifice {
@@ -134,7 +134,7 @@ pub trait Scalar:
 /// assert_eq!(flow.gradient(), &[0.0, 0.0, 1.0 / 3.0]);
 /// ```
 pub trait LocalFunction<P, const K: usize, const M: usize> {
-    /// The results over any scalar; `constant` makes one of a parameter.
+    /// Results over any scalar; `constant` converts a parameter.
     fn at<T: Scalar>(&self, variables: [T; K], constant: impl Fn(P) -> T + Copy) -> [T; M];
 }
 

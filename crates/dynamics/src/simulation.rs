@@ -1,7 +1,7 @@
 //! Nonlinear systems in time: equations written once over [`Scalar`], an L-stable method with error
-//! control, inputs that are known functions of time, delays, samples and events.
+//! control, known functions of time as inputs, delays, samples and events.
 //!
-//! Time enters a system through its inputs alone. The solver knows each input and its slope at any
+//! Time enters a system only through its inputs. The solver knows each input and its slope at any
 //! time, and the times at which they break, so that no step ever crosses a break and every restart
 //! is exact.
 
@@ -61,7 +61,7 @@ pub use vector::{Vectorized, can_drive};
 
 use crate::scalar::{LANES, Lanes, Scalar};
 
-/// A system of ordinary differential equations.
+/// System of ordinary differential equations.
 ///
 /// ```text
 /// dy/dt = f(y, w)            y states, w inputs; both in SI units
@@ -77,24 +77,24 @@ pub trait System<S: Scalar> {
     /// Number of inputs, delayed waves included.
     fn inputs(&self) -> usize;
 
-    /// Typical magnitude of each state, in its unit: the error is relative to it where the state
-    /// itself is smaller.
+    /// Typical magnitude of each state, in its unit: if the state is smaller, its error is relative
+    /// to this magnitude.
     fn scales(&self) -> Vec<S>;
 
     /// Rates of all states, per second.
     fn rates<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], rates: &mut [T]);
 
-    /// How long each delayed wave travels, in s. The last inputs are these waves as they arrive, in
-    /// this order.
+    /// Travel times of the delayed waves, s. The last inputs are these waves on arrival, in this
+    /// order.
     ///
-    /// What leaves at a break of the course arrives as a break, at which a step ends, through up to
-    /// twelve delays. A jump that has passed more delays than that is smeared over the step in
-    /// which it arrives.
+    /// A wave that leaves at a break of the input schedule arrives as a break, at which a step
+    /// ends, through up to twelve delays. A jump that has passed more delays is smeared over the
+    /// step in which it arrives.
     fn delays(&self) -> Vec<S> {
         Vec::new()
     }
 
-    /// What is sent into each delay.
+    /// Waves sent into the delays.
     fn outgoing<T: Scalar + From<S>>(&self, _state: &[T], _inputs: &[T], _waves: &mut [T]) {}
 
     /// Number of indicators.
@@ -102,9 +102,9 @@ pub trait System<S: Scalar> {
         0
     }
 
-    /// Where friction acts. Its falling slope may feed an oscillation from one step to the next;
-    /// all else in the Jacobian is assumed to change slowly, over tens of steps. With `None`,
-    /// nothing is assumed, and the modes are computed at every step.
+    /// States on which friction acts. Its falling slope may feed an oscillation from one step to
+    /// the next; all other parts of the Jacobian are assumed to change slowly, over tens of steps.
+    /// With `None`, nothing is assumed, and the modes are computed at every step.
     fn sliding(&self) -> Option<Sliding> {
         None
     }
@@ -121,21 +121,21 @@ pub trait System<S: Scalar> {
         0
     }
 
-    /// Quantities that change their sign where a derivative of the rates jumps: where a motion with
-    /// friction reverses, where a stop is touched. The error of a step that crosses such a place is
-    /// looked at there, and a step that fails by it ends there. A kink that is not listed costs
+    /// Quantities that change their sign where a derivative of the rates jumps: when a motion with
+    /// friction reverses, or a stop is touched. The error of a step that crosses such a point is
+    /// checked there, and a step that fails this check ends there. A kink that is not listed costs
     /// accuracy: the error estimate of a step may not see it.
     fn mark<T: Scalar + From<S>>(&self, _state: &[T], _inputs: &[T], _marks: &mut [T]) {}
 }
 
-/// A plant that a controller commands.
+/// Plant that a controller commands.
 ///
 /// ```text
-/// dy/dt = f(y, u, w),        F = h(y, w)          u the command, w other inputs, F what the controller measures
+/// dy/dt = f(y, u, w),        F = h(y, w)          u the command, w other inputs, F the measurement of the controller
 /// ```
 ///
-/// It is no [`System`] with one input more: what it measures, sends and indicates does not depend
-/// on the command, which a controller computes from its measurement.
+/// Unlike a [`System`] with one more input, its measurement, waves and indicators do not depend on
+/// the command, which a controller computes from the measurement.
 pub trait Plant<S: Scalar> {
     /// Number of states.
     fn states(&self) -> usize;
@@ -149,16 +149,16 @@ pub trait Plant<S: Scalar> {
     /// Typical magnitude of the command, in its unit.
     fn command_scale(&self) -> S;
 
-    /// Typical magnitude of what is measured, in its unit.
+    /// Typical magnitude of the measurement, in its unit.
     fn measurement_scale(&self) -> S;
 
     /// Rates of all states, per second.
     fn rates<T: Scalar + From<S>>(&self, state: &[T], command: T, inputs: &[T], rates: &mut [T]);
 
-    /// What the controller measures.
+    /// Measurement for the controller.
     fn measurement<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> T;
 
-    /// What a feed-forward would compensate: the velocity of a load, in m/s.
+    /// Disturbance that a feed-forward would compensate: the velocity of a load, in m/s.
     fn disturbance<T: Scalar + From<S>>(&self, _state: &[T], _inputs: &[T]) -> T {
         T::from(0.0)
     }
@@ -168,7 +168,7 @@ pub trait Plant<S: Scalar> {
         S::from(1.0)
     }
 
-    /// A second signal that a controller feeds back: the pressure of a load, in Pa.
+    /// Second signal that a controller feeds back: the pressure of a load, in Pa.
     fn inner_measurement<T: Scalar + From<S>>(&self, _state: &[T], _inputs: &[T]) -> T {
         T::from(0.0)
     }
@@ -178,7 +178,7 @@ pub trait Plant<S: Scalar> {
         S::from(1.0)
     }
 
-    /// What a virtual impedance acts on: the position of a load, in m.
+    /// Position of a load, in m, on which a virtual impedance acts.
     fn position<T: Scalar + From<S>>(&self, _state: &[T], _inputs: &[T]) -> T {
         T::from(0.0)
     }
@@ -188,37 +188,37 @@ pub trait Plant<S: Scalar> {
         S::from(1.0)
     }
 
-    /// As [`System::delays`].
+    /// Travel times as in [`System::delays`].
     fn delays(&self) -> Vec<S> {
         Vec::new()
     }
 
-    /// As [`System::outgoing`].
+    /// Waves as in [`System::outgoing`].
     fn outgoing<T: Scalar + From<S>>(&self, _state: &[T], _inputs: &[T], _waves: &mut [T]) {}
 
-    /// As [`System::sliding`].
+    /// Friction as in [`System::sliding`].
     fn sliding(&self) -> Option<Sliding> {
         None
     }
 
-    /// As [`System::indicators`].
+    /// Number as in [`System::indicators`].
     fn indicators(&self) -> usize {
         0
     }
 
-    /// As [`System::indicate`].
+    /// Indicators as in [`System::indicate`].
     fn indicate<T: Scalar + From<S>>(&self, _state: &[T], _inputs: &[T], _indicators: &mut [T]) {}
 
-    /// As [`System::kinks`].
+    /// Number as in [`System::kinks`].
     fn kinks(&self) -> usize {
         0
     }
 
-    /// As [`System::mark`].
+    /// Quantities as in [`System::mark`].
     fn mark<T: Scalar + From<S>>(&self, _state: &[T], _inputs: &[T], _marks: &mut [T]) {}
 }
 
-/// A scalar that is one or several numbers side by side.
+/// Scalar of one number or several parallel numbers.
 ///
 /// # Example
 /// ```
@@ -230,13 +230,13 @@ pub trait Plant<S: Scalar> {
 /// assert_eq!(lanes, Lanes([1.0, 5.0, 3.0, 4.0]));
 /// ```
 pub trait Lane: Scalar + Vectorized {
-    /// How many numbers.
+    /// Number of lanes.
     const COUNT: usize;
 
-    /// The number in one lane. A lane beyond the last is the last.
+    /// Number in one lane. An index beyond the last lane means the last lane.
     fn lane(&self, index: usize) -> f64;
 
-    /// Puts a number into one lane. A lane beyond the last is the last.
+    /// Sets the number in one lane. An index beyond the last lane means the last lane.
     fn set_lane(&mut self, index: usize, value: f64);
 }
 

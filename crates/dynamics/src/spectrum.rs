@@ -1,5 +1,5 @@
-//! Frequency responses from recorded signals: the discrete Fourier transform, and what blocks of
-//! two signals say of the response from one to the other.
+//! Frequency responses from recorded signals: the discrete Fourier transform, and the response
+//! between two signals estimated from blocks.
 //!
 //! ```text
 //! periodic input:   whole periods -> transforms -> response at the excited lines, variance from period to period

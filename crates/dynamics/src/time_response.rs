@@ -37,23 +37,23 @@ pub use step_metrics::{Settling, StepBaseline, StepMetrics, step_metrics};
 use crate::linear::LinearError;
 use crate::range::RequiredRange;
 
-/// Why a response in time, or a number read off one, does not exist.
+/// Error for a response in time, or a characteristic of one, that does not exist.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TimeResponseError {
-    /// The linear system refuses.
+    /// Error of the linear system.
     #[error(transparent)]
     Linear(#[from] LinearError),
-    /// Two lists that belong together differ in length.
+    /// Two lists that belong together but differ in length.
     #[error("{what}: {found} where {expected} are needed")]
     Count {
         /// Name of the count.
         what: ResponseCount,
-        /// How many there are.
+        /// Number found.
         found: usize,
-        /// How many there should be.
+        /// Number required.
         expected: usize,
     },
-    /// Times that fall, are negative where they must not be, or are not finite.
+    /// Times that decrease, are negative where they must not be, or are not finite.
     #[error("time number {index} ({time_s} s) is out of order")]
     TimeOrder {
         /// Position in the list, from zero.
@@ -71,7 +71,7 @@ pub enum TimeResponseError {
         /// Range of the number.
         expected: RequiredRange,
     },
-    /// The baseline has no step: its initial and final value are equal.
+    /// Baseline without a step: its initial and final values are equal.
     #[error("initial and final value are equal ({value}): there is no step to measure")]
     NoStep {
         /// Both values.

@@ -1,10 +1,10 @@
-//! The bridge from any plant to robust design: a rational function of s whose coefficients are
-//! recorded expressions of named, bounded parameters, or where waves travel, a response for every
-//! value of them.
+//! Interface of any plant to robust design: a rational function of s whose coefficients are
+//! recorded expressions of named, bounded parameters; or, for a plant with waves, a response for
+//! every value of the parameters.
 //!
-//! Whatever the plant is made of (valve, hose and cylinder, or a formula in a file), robust design
-//! sees only this value: it can evaluate a plant at any point of the parameter box, over numbers,
-//! dual numbers or intervals, and so search and prove between the grid points.
+//! Robust design sees only this value, for any physical plant (valve, hose and cylinder, or a
+//! formula in a file): it can evaluate a plant at any point of the parameter box, over numbers,
+//! dual numbers or intervals, and so search and verify between the grid points.
 
 mod followed;
 mod numerators;
@@ -24,12 +24,12 @@ use crate::portable;
 use crate::scalar::{Interval, Scalar};
 use crate::uncertain_plant::responding::{RespondingPlant, RespondingPlants};
 
-/// One uncertain parameter: `minimum <= nominal <= maximum`, in SI units.
+/// Uncertain parameter: `minimum <= nominal <= maximum`, in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UncertainParameter {
-    /// Name, as it stands in the project file.
+    /// Name in the project file.
     pub name: String,
-    /// The value of plant 0.
+    /// Value for plant 0.
     pub nominal: f64,
     /// Lower end of the box.
     pub minimum: f64,
@@ -37,32 +37,32 @@ pub struct UncertainParameter {
     pub maximum: f64,
 }
 
-/// How the points of a parameter are spread over its range.
+/// Spacing of the points of a parameter over its range.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Spacing {
-    /// Evenly.
+    /// Equal distances.
     #[default]
     Linear,
-    /// By a constant factor; needs a positive lower bound.
+    /// Equal ratios; needs a positive lower bound.
     Logarithmic,
 }
 
-/// One member of an uncertain plant: command to force, load motion to force, dead time of the loop.
+/// Member of an uncertain plant: command to force, load motion to force, dead time of the loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlantCoefficients<S> {
-    /// From the command to the controlled output, P(s).
+    /// Path from the command to the controlled output, P(s).
     pub command: RationalCoefficients<S>,
-    /// From the disturbance (for an actuator: load position, Pd = F_e/X_L) to the output, where the
-    /// plant has one.
+    /// Path from the disturbance (for an actuator: load position, Pd = F_e/X_L) to the output, if
+    /// the plant has one.
     pub disturbance: Option<RationalCoefficients<S>>,
     /// Dead time in the command path, s.
     pub dead_time_s: S,
-    /// The rate that a controller may feed forward, where the command moves it too (for an
-    /// actuator: velocity of a load that yields); `None` where it is that of the disturbance, s.
+    /// The rate that a controller may feed forward, if the command moves it too (for an actuator:
+    /// velocity of a load that yields); `None` if it is the derivative s of the disturbance.
     pub rate: Option<RateNumerators<S>>,
 }
 
-/// Why an uncertain plant cannot be built.
+/// Error for an uncertain plant that cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum UncertainPlantError {
     /// A parameter's bounds do not enclose its nominal value, or are not finite.
@@ -70,11 +70,11 @@ pub enum UncertainPlantError {
     Bounds {
         /// Name of the parameter.
         name: String,
-        /// Its lower bound.
+        /// Lower bound.
         minimum: f64,
-        /// Its nominal value.
+        /// Nominal value.
         nominal: f64,
-        /// Its upper bound.
+        /// Upper bound.
         maximum: f64,
     },
     /// Two parameters share a name.
@@ -85,7 +85,7 @@ pub enum UncertainPlantError {
     Empty(&'static str),
 }
 
-/// One member of an uncertain plant.
+/// Member of an uncertain plant.
 #[derive(Clone, Debug)]
 pub enum PlantMember {
     /// A quotient of polynomials with dead time.
@@ -94,11 +94,11 @@ pub enum PlantMember {
     Responding(Arc<dyn RespondingPlant>),
 }
 
-/// A plant over a box of named parameters: rational with dead time, or known by its responses.
+/// Plant over a box of named parameters: rational with dead time, or known by its responses.
 ///
 /// ```text
 /// P(s, p) = (n_0(p) s^k + ... + n_k(p)) / (d_0(p) s^m + ... + d_m(p)) e^(-s T(p)),     p in the box
-/// P(jw, p) = what a [`RespondingPlant`] says                                           p in the box
+/// P(jw, p) = response of a [`RespondingPlant`]                                           p in the box
 /// ```
 ///
 /// # Example
@@ -125,20 +125,20 @@ pub struct UncertainPlant {
     equations: PlantEquations,
 }
 
-/// What a plant is made of.
+/// Equations of a plant.
 #[derive(Clone, Debug)]
 enum PlantEquations {
     Rational(RecordedPlant),
     Responding(Arc<dyn RespondingPlants>),
 }
 
-/// Recorded coefficients: command numerator, command denominator, the same of the disturbance path,
-/// dead time, numerators of the rate.
+/// Recorded coefficients: command numerator, command denominator, then both of the disturbance
+/// path, dead time, numerators of the rate.
 #[derive(Clone, Debug, PartialEq)]
 struct RecordedPlant {
     coefficients: Arc<Expression>,
-    /// The same coefficients by other operations, which polynomials follow; absent where those of
-    /// `coefficients` do.
+    /// Coefficients by other operations, as tracked by polynomials; absent if the polynomials track
+    /// `coefficients`.
     followed: Option<Arc<Expression>>,
     command: (usize, usize),
     disturbance: Option<(usize, usize)>,
@@ -146,7 +146,7 @@ struct RecordedPlant {
 }
 
 impl PartialEq for UncertainPlant {
-    /// Plants without polynomials are equal where they are the same.
+    /// Plants without polynomials are equal if they are the same object.
     fn eq(&self, other: &UncertainPlant) -> bool {
         self.parameters == other.parameters
             && match (&self.equations, &other.equations) {
@@ -163,7 +163,7 @@ impl UncertainPlant {
     /// Records the plant's coefficients as expressions of its parameters.
     ///
     /// # Errors
-    /// A parameter whose bounds do not enclose its nominal value or is listed twice; an empty
+    /// Parameter whose bounds do not enclose its nominal value or that is listed twice; an empty
     /// polynomial.
     pub fn record<F>(
         parameters: Vec<UncertainParameter>,
@@ -175,10 +175,10 @@ impl UncertainPlant {
         UncertainPlant::recorded_by(parameters, &mut equations)
     }
 
-    /// A plant without polynomials.
+    /// Plant without polynomials.
     ///
     /// # Errors
-    /// A parameter whose bounds do not enclose its nominal value or is listed twice.
+    /// Parameter whose bounds do not enclose its nominal value or that is listed twice.
     pub fn responding(
         parameters: Vec<UncertainParameter>,
         plants: Arc<dyn RespondingPlants>,
@@ -187,12 +187,12 @@ impl UncertainPlant {
         Ok(UncertainPlant { parameters, equations: PlantEquations::Responding(plants) })
     }
 
-    /// The parameters, in the order in which values are taken.
+    /// Parameters, in the order of their values.
     pub fn parameters(&self) -> &[UncertainParameter] {
         &self.parameters
     }
 
-    /// Whether it has polynomials.
+    /// True if it has polynomials.
     pub fn is_rational(&self) -> bool {
         matches!(self.equations, PlantEquations::Rational(_))
     }
@@ -227,18 +227,18 @@ impl UncertainPlant {
         }
     }
 
-    /// The recorded coefficients: command numerator, command denominator, the same of the
-    /// disturbance path, dead time, numerators of the rate. `None` of a plant without polynomials.
+    /// Recorded coefficients: command numerator, command denominator, then both of the disturbance
+    /// path, dead time, numerators of the rate. `None` for a plant without polynomials.
     pub fn expression(&self) -> Option<&Expression> {
         self.recorded().map(|recorded| &*recorded.coefficients)
     }
 
-    /// The nominal values, plant 0 of every family.
+    /// Nominal values, plant 0 of every family.
     pub fn nominal(&self) -> Vec<f64> {
         self.parameters.iter().map(|parameter| parameter.nominal).collect()
     }
 
-    /// The same plant with other nominal values, each brought within its bounds.
+    /// Plant with other nominal values, each limited to its bounds.
     ///
     /// # Example
     /// ```
@@ -262,8 +262,8 @@ impl UncertainPlant {
         other
     }
 
-    /// The member at these parameter values; `None` where no plant exists. A rational plant exists
-    /// for all values.
+    /// Member at these parameter values; `None` if no plant exists. A rational plant exists for all
+    /// values.
     pub fn member(&self, values: &[f64]) -> Option<PlantMember> {
         match &self.equations {
             PlantEquations::Rational(recorded) => Some(PlantMember::Rational(recorded.at(values))),
@@ -271,7 +271,7 @@ impl UncertainPlant {
         }
     }
 
-    /// The same member, with what the memo remembers of those before.
+    /// Member at these parameter values, using stored results of earlier members.
     ///
     /// # Example
     /// ```
@@ -298,14 +298,13 @@ impl UncertainPlant {
         }
     }
 
-    /// The member at these parameter values, over any scalar; `None` of a plant without
-    /// polynomials.
+    /// Member at these parameter values, over any scalar; `None` for a plant without polynomials.
     pub fn coefficients<S: Scalar>(&self, values: &[S]) -> Option<PlantCoefficients<S>> {
         self.recorded().map(|recorded| recorded.at(values))
     }
 
-    /// Intervals that hold the coefficients of every member while the parameters run through
-    /// theirs; `None` of a plant without polynomials.
+    /// Intervals that contain the coefficients of every member while the parameters vary over
+    /// theirs; `None` for a plant without polynomials.
     ///
     /// # Example
     /// ```
@@ -326,7 +325,7 @@ impl UncertainPlant {
         self.recorded().map(|recorded| recorded.sorted(recorded.coefficients.enclosures(parameters)))
     }
 
-    /// P(j w) of the member at these parameter values, dead time included; `None` where there is no
+    /// P(j w) of the member at these parameter values, dead time included; `None` if there is no
     /// plant.
     pub fn response(&self, values: &[f64], frequency_rad_per_s: f64) -> Option<Complex64> {
         Some(match self.member(values)? {
@@ -360,7 +359,7 @@ impl RecordedPlant {
 }
 
 impl PlantMember {
-    /// The plant itself, or the rational one that it tends to towards zero frequency.
+    /// The plant itself, or the rational one to which it tends towards zero frequency.
     pub fn slow(&self) -> PlantCoefficients<f64> {
         match self {
             PlantMember::Rational(plant) => plant.clone(),

@@ -1,26 +1,26 @@
-//! How far a long procedure is, and whether it goes on.
+//! Progress of a long procedure, and its cancellation.
 
-/// How far a long procedure is.
+/// Progress of a long procedure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// What is being done.
+    /// Current stage.
     pub stage: &'static str,
-    /// Share of it that is done, 0 to 1.
+    /// Completed fraction, 0 to 1.
     pub share: f64,
 }
 
-/// Told the progress of a long procedure from time to time; it stops where the answer is `false`.
+/// Progress callback; return `false` to cancel.
 pub type Watch<'a> = &'a mut dyn FnMut(Progress) -> bool;
 
-/// The watch stopped the procedure.
+/// Error of a procedure that its watch stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("stopped")]
 pub struct Stopped;
 
-/// Tells the watch how far the procedure is: `done` steps of `all`.
+/// Reports progress to the watch: `done` steps of `all`.
 ///
 /// # Errors
-/// [`Stopped`] where the watch answers `false`.
+/// [`Stopped`] if the watch returns `false`.
 ///
 /// # Example
 /// ```
@@ -42,8 +42,8 @@ pub fn tell(watch: Watch<'_>, stage: &'static str, done: usize, all: usize) -> R
     if watch(Progress { stage, share }) { Ok(()) } else { Err(Stopped) }
 }
 
-/// The watch of a part of a procedure, which takes it from one share of the whole to another; the
-/// stage is that of the whole.
+/// Watch of a part of a procedure, which covers a given interval of the whole; the stage is that of
+/// the whole.
 pub fn part<'a>(
     watch: Watch<'a>,
     stage: &'static str,
@@ -52,13 +52,13 @@ pub fn part<'a>(
     move |progress| watch(Progress { stage, share: from + (to - from) * progress.share })
 }
 
-/// The watch of a part of a procedure, which takes it from one share of the whole to another and
-/// names its own stages.
+/// Watch of a part of a procedure, which covers a given interval of the whole and names its own
+/// stages.
 pub fn within<'a>(watch: Watch<'a>, [from, to]: [f64; 2]) -> impl FnMut(Progress) -> bool + use<'a> {
     move |progress| watch(Progress { share: from + (to - from) * progress.share, ..progress })
 }
 
-/// A watch whose share never falls, since the number of steps of a search is only estimated.
+/// Watch whose fraction never decreases, since the number of steps of a search is only estimated.
 ///
 /// # Example
 /// ```
@@ -83,7 +83,7 @@ pub fn rising<'a>(watch: Watch<'a>) -> impl FnMut(Progress) -> bool + use<'a> {
     }
 }
 
-/// A watch that lets everything go on.
+/// Watch that never cancels.
 pub fn unwatched(_: Progress) -> bool {
     true
 }

@@ -1,5 +1,5 @@
-//! Systems, controllers and simulation from outside: closed forms, limits, conservation and
-//! published numbers.
+//! Systems, controllers and simulation through the public interface: closed forms, limits,
+//! conservation and published numbers.
 #![cfg(test)]
 
 mod controller;

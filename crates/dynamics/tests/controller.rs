@@ -1,4 +1,4 @@
-//! The sampled controller against what it must do: follow its transfer function, and come off its
+//! Requirements of the sampled controller: it follows its transfer function, and recovers from its
 //! limit.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
@@ -31,8 +31,8 @@ fn measured_response(sampled: &SampledController, period: usize, settle: usize) 
     amplitude
 }
 
-/// The difference equations, run, agree with the sampled transfer function: independent of how
-/// sections were made.
+/// Response of the difference equations compared with the sampled transfer function, independent of
+/// the construction of the sections.
 #[test]
 fn the_running_controller_has_the_response_of_its_transfer_function() {
     let shaped = vec![
@@ -67,7 +67,7 @@ fn a_sampled_compensator_is_taken_as_it_is_and_refused_at_another_sample_time() 
     let controller = controller(vec![Element::General(function)], Discretization::Tustin);
     let sampled = controller.sampled(0.01).unwrap();
     let mut state = sampled.at_rest();
-    // ORIGIN: analytic, 0.5/(z - 0.5) answers a step with 0, 1/2, 3/4, 7/8
+    // ORIGIN: analytic, 0.5/(z - 0.5) responds to a step with 0, 1/2, 3/4, 7/8
     let answers = [1.0; 4].map(|reference| sampled.step(&mut state, reference, 0.0).command);
     assert_eq!(answers, [0.0, 0.5, 0.75, 0.875]);
     assert!(controller.sampled(0.02).is_err());
@@ -80,7 +80,8 @@ fn an_improper_compensator_cannot_run() {
     assert!(controller(vec![Element::General(advance)], Discretization::Tustin).sampled(0.01).is_err());
 }
 
-/// Samples an integrating controller needs to come off its limit after the error has changed sign.
+/// Samples that an integrating controller needs to leave its limit after the error has changed
+/// sign.
 fn samples_to_unwind(anti_windup: AntiWindup) -> usize {
     let elements = vec![Element::ProportionalIntegral { proportional_gain: 0.1, integral_gain: 1.0 }];
     let limited =

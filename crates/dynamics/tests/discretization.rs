@@ -1,4 +1,4 @@
-//! Sampled systems against closed forms, and against the continuous ones they stand for.
+//! Sampled systems compared with closed forms, and with the continuous systems that they represent.
 #![cfg(test)]
 
 use nalgebra::DMatrix;

@@ -277,7 +277,7 @@ fn networks_of_passive_elements_are_passive() {
 
 #[test]
 fn each_condition_of_passivity_fails_alone() {
-    // 1: an unstable pole alone. Re (s - 4)/(s - 1) = (4 + w^2)/(1 + w^2) on the axis
+    // 1: a single unstable pole. Re (s - 4)/(s - 1) = (4 + w^2)/(1 + w^2) on the axis
     let unstable = passivity(&rational(&[1.0, -4.0], &[1.0, -1.0])).unwrap();
     assert!(unstable.bands.is_empty());
     assert_eq!(unstable.right_half_plane_poles, [c(1.0, 0.0)]);

@@ -1,4 +1,5 @@
-//! Plants whose poles spread far beyond a sample, held and sampled, at points of the unit circle.
+//! Plants with poles far faster and slower than a sample, held and sampled, at points of the unit
+//! circle.
 #![cfg(test)]
 
 use num_complex::Complex64;
@@ -10,7 +11,7 @@ const fn c(re: f64, im: f64) -> Complex64 {
     Complex64::new(re, im)
 }
 
-/// e^(j angle)
+/// Point e^(j angle).
 fn on_circle(angle: f64) -> Complex64 {
     c(cos(angle), sin(angle))
 }
@@ -97,7 +98,7 @@ fn what_dies_within_a_sample_leaves_the_rest_exact() {
     }
 }
 
-/// A pole that grows by exp(1000) within a sample is reported, as soon as it is met.
+/// A pole that grows by exp(1000) within a sample is reported before it is used.
 #[test]
 fn growth_beyond_the_range_of_numbers_is_refused() {
     let plant = TransferFunction::from_factors(1.0, vec![], vec![c(1e5, 0.0), c(0.0, 0.0)]).unwrap();
@@ -105,8 +106,7 @@ fn growth_beyond_the_range_of_numbers_is_refused() {
     assert!(matches!(refused, Err(LinearError::NotFinite { .. })), "{refused:?}");
 }
 
-/// The modes give the response that the factors of the sampled plant give, and that of sixty
-/// digits.
+/// Modes give the response of the sampled plant's factors, and the one computed with sixty digits.
 #[test]
 fn modes_give_the_response_of_the_sampled_plant() {
     for (gain, zeros, poles, sample_time_s, dead_time_s, truths) in CASES {
@@ -124,8 +124,8 @@ fn modes_give_the_response_of_the_sampled_plant() {
     }
 }
 
-/// Random plants of up to ten poles, integrators, feedthrough, resonances and any dead time among
-/// them: the modes agree with the factors everywhere on the circle, or are refused.
+/// Random plants of up to ten poles, integrators, feedthrough, resonances and any dead time : the
+/// modes agree with the factors everywhere on the circle, or are rejected.
 #[test]
 fn modes_agree_with_the_factors_of_random_plants() {
     let mut state = 7;
@@ -161,7 +161,7 @@ fn modes_agree_with_the_factors_of_random_plants() {
                 refused += 1;
                 continue;
             };
-            // next to a zero of the plant on the circle the factors themselves are rounded
+            // near a zero of the plant on the circle the factors themselves are rounded
             let nearest = sampled.zeros().iter().map(|zero| {
                 let z = on_circle(frequency * sample_time_s);
                 magnitude(z - zero)
@@ -178,7 +178,7 @@ fn modes_agree_with_the_factors_of_random_plants() {
     assert!(compared > 8000 && refused < 300, "{compared} compared, {refused} refused, worst {worst}");
 }
 
-/// Poles that are equal have no modes of their own.
+/// Equal poles have no separate modes.
 #[test]
 fn equal_poles_have_no_modes() {
     let plant = TransferFunction::from_factors(1.0, vec![], vec![c(-3.0, 0.0), c(-3.0, 0.0)]).unwrap();

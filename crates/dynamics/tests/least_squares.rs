@@ -1,4 +1,4 @@
-//! Least squares where the minimum is known.
+//! Least squares with known minima.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -20,7 +20,7 @@ fn searched(
 }
 
 /// A valley along y = e^x whose walls are 10^4 times as steep as its floor: straight steps leave it
-/// at once, and would take thousands of evaluations.
+/// at once and would need thousands of evaluations.
 #[test]
 fn a_curved_valley_is_followed_to_its_end() {
     let settings = Settings { robust_beyond: f64::INFINITY, maximum_evaluations: 500, ..Settings::default() };
@@ -33,7 +33,7 @@ fn a_curved_valley_is_followed_to_its_end() {
     assert!(off.iter().all(|one| one.abs() < 1e-6), "{:?}", found.variables);
 }
 
-/// The same valley with a bound on its way: the end is where the valley meets it.
+/// The valley with a bound across it: the end is where the valley meets the bound.
 #[test]
 fn a_valley_that_meets_a_bound_ends_there() {
     let settings = Settings { robust_beyond: f64::INFINITY, maximum_evaluations: 500, ..Settings::default() };
@@ -43,6 +43,6 @@ fn a_valley_that_meets_a_bound_ends_there() {
     });
     assert_eq!((found.ending, found.variables[0]), (Ending::Converged, -2.0));
     assert!((found.variables[1] - exp(-2.0)).abs() < 1e-9, "{:?}", found.variables);
-    // half of the square of 2, the way that the bound keeps it from
+    // half of the square of 2, the distance that the bound adds
     assert!((found.cost - 2.0).abs() < 1e-9, "{}", found.cost);
 }

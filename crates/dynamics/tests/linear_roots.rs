@@ -83,7 +83,7 @@ fn random_sets_over_nine_decades() {
         let count = 2 + (seeded.next() * 5.0).floor() as usize;
         let mut truth = Vec::new();
         for slot in 0..count {
-            // slots are disjoint in magnitude, so that conditioning comes from the spread alone
+            // slots are disjoint in magnitude, so that conditioning comes only from the spread
             let size = pow(10.0, -3.0 + 9.0 * (slot as f64 + 0.7 * seeded.next()) / count as f64);
             if seeded.next() < 0.5 {
                 truth.push(real(if seeded.next() < 0.8 { -size } else { size }));
@@ -183,7 +183,7 @@ fn degenerate_polynomials() {
 
 #[test]
 fn random_coefficients_over_twenty_decades() {
-    // an answer is one whose residual is at the rounding level of the coefficients
+    // a result whose residual is at the rounding level of the coefficients
     let mut seeded = Seeded(7);
     for _ in 0..2000 {
         let degree = (seeded.next() * 14.0).floor() as usize;
@@ -219,8 +219,8 @@ fn algebra() {
     assert_eq!(p.product(&q).evaluate(Complex64::new(0.0, 2.0)), Complex64::new(-8.0, 0.0));
 }
 
-/// Roots from points near them are those from nowhere, wherever they are found: of random
-/// polynomials with an integrator or none, whose coefficients change by up to a tenth.
+/// Roots from nearby points equal roots from unknown starts, if they are found: for random
+/// polynomials with or without an integrator, whose coefficients change by up to a tenth.
 #[test]
 fn roots_from_near_are_those_from_nowhere() {
     let mut seeded = Seeded(11);

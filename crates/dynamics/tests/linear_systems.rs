@@ -1,4 +1,4 @@
-//! Transfer functions and state space: the same system in two forms, joined in two ways, badly
+//! Transfer functions and state space: one system in two forms, connected in two ways, badly
 //! scaled.
 #![cfg(test)]
 
@@ -112,7 +112,7 @@ fn joining_factors_joins_responses() {
         for w in FREQUENCIES {
             let (a, b) = (p.at_frequency(w), h.at_frequency(w));
             assert!(relative(series.at_frequency(w), a * b) < 1e-13);
-            // cancellation in the sum itself is not the factors' fault
+            // cancellation in the sum itself is not an error of the factors
             let lost = (magnitude(a) + magnitude(b)) / magnitude(a + b);
             assert!(relative(parallel.at_frequency(w), a + b) < 1e-12 * lost);
             let lost = (1.0 + magnitude(a * b)) / magnitude(one + a * b);

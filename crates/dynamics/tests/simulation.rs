@@ -1,4 +1,4 @@
-//! Systems driven in time, against closed forms, published solutions and independent methods.
+//! Simulated systems compared with closed forms, published solutions and independent methods.
 #![cfg(test)]
 
 mod carried;

@@ -36,7 +36,7 @@ fn every_kind() -> Vec<(&'static str, Profile)> {
     ]
 }
 
-/// The derivatives of every piece are those of its values, beyond its ends as well.
+/// Derivatives of every piece agree with its values, beyond its ends as well.
 #[test]
 fn derivatives_are_central_differences() {
     let step = 1e-5;
@@ -62,7 +62,7 @@ fn a_smooth_step_starts_and_ends_at_rest() {
     let rise = motion.piece(3.0);
     let [start, end] = [rise.at(3.0), rise.at(3.1)];
     assert_eq!((start.value, start.rate, start.acceleration), (0.0, 0.0, 0.0));
-    // t - 3 is rounded: what is left at the end is rounding
+    // t - 3 is rounded: the remainder at the end is rounding
     assert!((end.value - 5e-3).abs() < 1e-15 && end.rate.abs() < 1e-13 && end.acceleration.abs() < 1e-10);
     assert_eq!((motion.value(3.1), motion.rate(3.1), motion.acceleration(3.1)), (5e-3, 0.0, 0.0));
     assert_eq!((motion.value(2.0), motion.value(1e6)), (0.0, 5e-3));
@@ -169,7 +169,7 @@ fn a_sum_is_the_sum_of_its_parts() {
     let shortest = every.iter().filter_map(Profile::longest_step).reduce(f64::min);
     assert_eq!(sum.longest_step(), shortest);
     assert_eq!(Profile::sum(&[]), Profile::constant(0.0));
-    // steps that add up stand still between their breaks
+    // a sum of steps is constant between their breaks
     let steps = [(1.0, 3.0), (2.0, 1.0)].map(|step| Profile::steps(0.0, &[step]).unwrap());
     assert_eq!(Profile::sum(&steps), Profile::steps(0.0, &[(1.0, 3.0), (2.0, 4.0)]).unwrap());
 }
@@ -185,7 +185,7 @@ fn a_multisine_of_one_is_a_sine_and_equal_amplitudes_have_the_phases_of_the_clos
         // ORIGIN: analytic, -pi k (k - 1)/N
         assert!((phase + std::f64::consts::PI * k * (k - 1.0) / 10.0).abs() < 1e-12);
     }
-    // of unequal amplitudes by the double sum itself
+    // for unequal amplitudes, by the double sum itself
     let amplitudes: [f64; 4] = [1.0, 2.0, 0.5, 3.0];
     let power: f64 = amplitudes.iter().map(|a| a * a).sum();
     for (k, phase) in schroeder_phases(&amplitudes).iter().enumerate() {

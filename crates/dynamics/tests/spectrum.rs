@@ -51,13 +51,13 @@ fn the_transform_keeps_the_power() {
     }
 }
 
-/// 1/(0.02 s + 1).
+/// Lag 1/(0.02 s + 1).
 fn first_order() -> TransferFunction {
     TransferFunction::from_polynomials(&Polynomial::new(vec![1.0]), &Polynomial::new(vec![0.02, 1.0]))
         .unwrap()
 }
 
-/// A multisine of lines 1, 3, 7, 15, 31 and what a system makes of it when it has come to rest.
+/// A multisine of lines 1, 3, 7, 15, 31 and the steady-state response of a system to it.
 fn multisine(repeats: usize) -> [Vec<f64>; 2] {
     let system = first_order();
     let lines = [1_usize, 3, 7, 15, 31];
@@ -135,8 +135,8 @@ fn a_gain_without_noise_has_a_coherence_of_one_for_any_input() {
     }
 }
 
-/// A window sees what a system still does of the time before it: for a system that forgets within
-/// tau, the share of the power is (tau/T)^2 for a window of length T.
+/// A window includes the response of the system to the time before it: for a system that forgets
+/// within tau, the fraction of the power is (tau/T)^2 for a window of length T.
 #[test]
 fn leakage_of_random_input_falls_with_the_square_of_the_segment() {
     let (input, decay) = (noise(11, 200_000), 0.8);
@@ -153,7 +153,7 @@ fn leakage_of_random_input_falls_with_the_square_of_the_segment() {
     assert!((ratio / 16.0 - 1.0).abs() < 0.1, "{ratio}");
 }
 
-/// White noise seen through a Hann window: neighbouring segments share 1/36 of their power.
+/// White noise with a Hann window: neighbouring segments have 1/36 of their power in common.
 #[test]
 fn overlapping_segments_count_as_welch_says() {
     let signal = noise(5, 64 * 101);
@@ -163,8 +163,8 @@ fn overlapping_segments_count_as_welch_says() {
     assert!((blocks.independent() - 100.0 / (1.0 + 2.0 / 36.0 * 0.99)).abs() < 1e-9);
 }
 
-/// Discs around 40 responses per repetition hold the truth as often as they should: over 40
-/// repetitions with noise in the output, 95 % of them, within what chance allows.
+/// Discs around 40 responses per repetition contain the truth as often as they should: over 40
+/// repetitions with noise in the output, 95 % of them, within chance.
 #[test]
 fn discs_of_periods_hold_the_truth_in_95_of_100_cases() {
     let [clean_input, clean_output] = multisine(6);
@@ -209,7 +209,7 @@ fn discs_of_segments_hold_the_truth_in_95_of_100_cases() {
     assert!((179..=198).contains(&held), "{held} of 200");
 }
 
-/// Without any relation the squared coherence exceeds its threshold in one case of twenty.
+/// Squared coherence of unrelated signals exceeds its threshold in one case out of twenty.
 #[test]
 fn signals_without_relation_are_coherent_in_5_of_100_cases() {
     let blocks = segments([&noise(21, 256 * 200), &noise(22, 256 * 200)], STEP, 256 * 20).unwrap();
@@ -228,7 +228,7 @@ fn records_too_short_for_two_blocks_have_none() {
     assert!(segments([&signal, &signal], STEP, 80).is_none());
 }
 
-/// A sweep from 2 to 100 Hz, which no two parts of the record share.
+/// A sweep from 2 to 100 Hz, of which no two parts of the record are alike.
 fn sweep(count: usize) -> Vec<f64> {
     let span = count as f64 * STEP;
     let phase = |time: f64| 2.0 * PI * (2.0 + 98.0 / (2.0 * span) * time) * time;
@@ -249,7 +249,7 @@ fn lines_of_noise_do_not_pass_as_excited() {
     assert!(passed < 3, "{passed}");
 }
 
-/// The record of a single sweep has one realisation, and its discs hold.
+/// A record of a single sweep has one realisation, and its discs are valid.
 #[test]
 fn discs_of_a_single_sweep_hold_the_truth_in_95_of_100_cases() {
     let (decay, input) = (0.8, sweep(4000));
@@ -273,8 +273,8 @@ fn discs_of_a_single_sweep_hold_the_truth_in_95_of_100_cases() {
     assert!(all > 600 && apart < 3.1, "{held} of {all}");
 }
 
-/// A loop u = k (r - y) around the plant, with noise in its output that is twice what the reference
-/// moves: from the input the response tends to -1/k, from the reference to the plant.
+/// A loop u = k (r - y) around the plant, with output noise twice as large as the effect of the
+/// reference: from the input the response tends to -1/k, from the reference to the plant.
 #[test]
 fn a_reference_shows_the_plant_in_a_closed_loop() {
     let (decay, gain, count) = (0.8, 3.0, 40_000);
@@ -301,17 +301,18 @@ fn a_reference_shows_the_plant_in_a_closed_loop() {
     assert!(2 * fooled > points.len(), "{fooled} of {}", points.len());
 }
 
-/// There is no response where the reference does not move the input: it would be that of the noise.
+/// No response is returned if the reference does not move the input: it would be a response to
+/// noise.
 #[test]
 fn a_reference_that_moves_nothing_excites_nothing() {
     let [reference, input, output] = [41, 42, 43].map(|seed| noise(seed, 20_000));
     let points = local_polynomials(&reference, [&input, &output], STEP);
-    // ORIGIN: analytic, one of 10,000 points by chance
+    // ORIGIN: analytic, one out of 10,000 points by chance
     assert!(points.len() > 100 && points.iter().filter(|point| point.excitation > 0.0).count() <= 1);
 }
 
-/// u = c (r - y) around the plant, with coloured noise in the output; the controller answers in the
-/// same row, or a row later.
+/// Loop u = c (r - y) around the plant, with coloured noise in the output; the controller acts in
+/// the same row, or a row later.
 fn closed_loop(seed: u64, noisy: f64, late: usize) -> [Vec<f64>; 2] {
     let (references, noises) = (noise(seed, 4000), noise(seed + 1, 4000));
     let (mut state, mut colour, mut reference) = (0.0, 0.0, 0.0);
@@ -339,7 +340,7 @@ fn feedback_is_seen_where_noise_returns() {
     }
 }
 
-/// An output that follows the input of its own row is feedback where no plant could be as fast.
+/// An output that follows the input of its own row indicates feedback if no plant could be as fast.
 #[test]
 fn an_input_that_is_held_cannot_act_within_its_row() {
     for seed in 0..4 {
@@ -354,7 +355,7 @@ fn an_input_that_is_held_cannot_act_within_its_row() {
     }
 }
 
-/// The same input and output as in the closed loop, but with noise of its own: nothing returns.
+/// Input and output as in the closed loop, but with independent noise: nothing returns.
 #[test]
 fn an_open_loop_has_no_feedback_whatever_its_input_is() {
     for seed in 0..20 {
@@ -376,7 +377,7 @@ fn an_open_loop_has_no_feedback_whatever_its_input_is() {
     }
 }
 
-/// y + y^3/10 of odd lines: what is not linear falls on odd lines, an offset drift on neither.
+/// Nonlinearity y + y^3/10 on odd lines: it produces odd lines, an offset drift produces neither.
 #[test]
 fn distortion_is_found_at_the_lines_that_are_not_excited() {
     let [input, clean] = multisine(6);

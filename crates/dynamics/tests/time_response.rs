@@ -1,5 +1,5 @@
-//! Responses in time against closed forms, step metrics, second-order specifications and their
-//! inverse.
+//! Responses in time compared with closed forms, step metrics, second-order specifications and
+//! their inverse.
 #![cfg(test)]
 
 use nalgebra::{DMatrix, DVector};
@@ -190,7 +190,7 @@ fn baselines_and_falling_steps() {
     close(metrics.overshoot_percent, 10.0, 1e-14);
     assert_eq!((metrics.peak_value, metrics.peak_time_s), (0.7, 2.0));
     close(metrics.settling.time_s().unwrap(), 2.8, 1e-14);
-    // the same samples against another final value never settle
+    // these samples never settle to another final value
     let elsewhere = StepBaseline { final_value: 0.5, ..baseline };
     let metrics = step_metrics(&times, &values, elsewhere, 2.0).unwrap();
     assert!(
@@ -315,8 +315,8 @@ fn the_tracking_bounds_as_printed_are_not_what_they_claim() {
     assert!((lower.settling.time_s().unwrap() - 0.356).abs() < 5e-4);
 }
 
-/// Sample by sample, and by the poles of the closed loop: P with its sensor has other dynamics than
-/// P, and the controller passes a jump at once.
+/// Sampled recursion compared with the closed-loop poles: P with its sensor has other dynamics than
+/// P, and the controller has direct feedthrough.
 #[test]
 fn a_sampled_loop_by_samples_is_that_by_its_poles() {
     let domain = TimeDomain::Discrete { sample_time_s: 0.02 };
@@ -339,8 +339,8 @@ fn a_sampled_loop_by_samples_is_that_by_its_poles() {
     assert!(sampled_loop_step(&sensor, &sensor, &sensor, &other, 3).is_err());
 }
 
-/// Dead time of the sensor or of the plant: the loop is the same, the output later by that of the
-/// plant; and a quarter of the error for half the step.
+/// Dead time of the sensor or of the plant: the loop is identical, the output is later by the dead
+/// time of the plant; and a quarter of the error for half the step.
 #[test]
 fn dead_time_may_be_moved_around_the_loop() {
     let (delay_s, steps) = (0.2, 2000);

@@ -1,47 +1,47 @@
-//! An axis: a title, a range and the map from values to the fraction of its length.
+//! Axis: a title, a range and the map from values to the fraction of its length.
 
 use phea_dynamics::portable::log10;
 
 use super::ticks::{self, Tick, TickSteps};
 
-/// How values map to lengths.
+/// Map from values to lengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scale {
-    /// In proportion.
+    /// Linear scale.
     Linear,
-    /// By the logarithm; only positive values have a place.
+    /// Logarithmic scale, for positive values only.
     Logarithmic,
-    /// sign(v) log10(1 + |v|/limit): logarithmic far from zero on both sides, linear well inside
-    /// `limit`.
+    /// Signed logarithmic scale sign(v) log10(1 + |v|/limit): logarithmic far from zero on both
+    /// sides, linear well inside `limit`.
     SignedLogarithmic {
-        /// Positive value where the scale changes its nature.
+        /// Positive value at which the scale changes from linear to logarithmic.
         limit: f64,
     },
 }
 
-/// An axis.
+/// Axis of a figure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// Quantity and unit, with markup.
     pub title: String,
-    /// Map.
+    /// Scale.
     pub scale: Scale,
     /// Lower end.
     pub minimum: f64,
     /// Upper end.
     pub maximum: f64,
-    /// Which steps count as round on a linear axis.
+    /// Round steps of a linear axis.
     pub steps: TickSteps,
 }
 
 impl Axis {
-    /// A linear axis with exactly these ends (made distinct and finite where they are not).
+    /// Linear axis with exactly these ends (made distinct and finite if they are not).
     pub fn linear(title: impl Into<String>, minimum: f64, maximum: f64) -> Self {
         let (minimum, maximum) = distinct(minimum, maximum);
         Axis { title: title.into(), scale: Scale::Linear, minimum, maximum, steps: TickSteps::Decimal }
     }
 
-    /// A logarithmic axis with exactly these ends (made positive and distinct where they are not).
+    /// Logarithmic axis with exactly these ends (made positive and distinct if they are not).
     pub fn logarithmic(title: impl Into<String>, minimum: f64, maximum: f64) -> Self {
         let usable = |v: f64| v > 1e-300 && v < 1e300;
         let (minimum, maximum) = match (usable(minimum), usable(maximum)) {
@@ -54,17 +54,17 @@ impl Axis {
         Axis { title: title.into(), scale: Scale::Logarithmic, minimum, maximum, steps: TickSteps::Decimal }
     }
 
-    /// A linear axis that holds the finite values and ends on round numbers.
+    /// Linear axis that covers the finite values and ends on round numbers.
     pub fn fit_linear(title: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Self {
         Self::fit_steps(title, values, TickSteps::Decimal)
     }
 
-    /// Like [`Axis::fit_linear`], in degrees.
+    /// Linear axis as [`Axis::fit_linear`], in degrees.
     pub fn fit_angle(title: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Self {
         Self::fit_steps(title, values, TickSteps::Angle)
     }
 
-    /// Like [`Axis::fit_linear`], in decibels.
+    /// Linear axis as [`Axis::fit_linear`], in decibels.
     pub fn fit_decibel(title: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Self {
         Self::fit_steps(title, values, TickSteps::Decibel)
     }
@@ -78,7 +78,7 @@ impl Axis {
         Axis { steps, ..Self::linear(title, minimum, maximum) }
     }
 
-    /// A logarithmic axis that holds the positive finite values and ends on 1, 2 or 5 times a power
+    /// Logarithmic axis that covers the positive finite values and ends on 1, 2 or 5 times a power
     /// of ten.
     pub fn fit_logarithmic(title: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Self {
         let usable = values.into_iter().filter(|v| v.is_finite() && *v > 1e-300 && *v < 1e300);
@@ -95,7 +95,7 @@ impl Axis {
         Self::logarithmic(title, round(low, false), round(high, true))
     }
 
-    /// A signed logarithmic axis that holds the finite values; `limit` is the magnitude below which
+    /// Signed logarithmic axis that covers the finite values; `limit` is the magnitude below which
     /// it is linear.
     pub fn fit_signed_logarithmic(
         title: impl Into<String>,
@@ -105,7 +105,7 @@ impl Axis {
         let limit = if limit > 1e-300 && limit < 1e250 { limit } else { 1.0 };
         let (low, high) =
             extent(values.into_iter().filter(|v| v.is_finite() && v.abs() < 1e250).chain([0.0]));
-        // More than thirty decades on a side would neither be legible nor stay within a double.
+        // more than thirty decades on a side would neither be legible nor stay within a double
         let limit = limit.max(1e-30 * low.abs().max(high.abs()));
         let grown = |v: f64| if v.abs() > limit { 2.0 * v } else { v.signum() * 2.0 * limit };
         let minimum = if low < 0.0 { grown(low) } else { -limit };
@@ -114,8 +114,8 @@ impl Axis {
         Axis { title: title.into(), scale, minimum, maximum, steps: TickSteps::Decimal }
     }
 
-    /// Where a value lies: 0 at the lower end, 1 at the upper; not a number where the scale has no
-    /// place for it.
+    /// Position of a value: 0 at the lower end, 1 at the upper; NaN for a value outside the domain
+    /// of the scale.
     pub fn fraction(&self, value: f64) -> f64 {
         let (low, high, at) = (self.mapped(self.minimum), self.mapped(self.maximum), self.mapped(value));
         (at - low) / (high - low)
@@ -130,7 +130,7 @@ impl Axis {
         }
     }
 
-    /// The exponent that tick labels are divided by, a multiple of three.
+    /// Exponent by which tick labels are divided, a multiple of three.
     pub fn exponent(&self) -> i32 {
         match self.scale {
             Scale::Linear => ticks::engineering_exponent(self.minimum, self.maximum),
@@ -138,7 +138,7 @@ impl Axis {
         }
     }
 
-    /// Title, with the power of ten where the labels are divided by one.
+    /// Title, with the power of ten by which the labels are divided.
     pub(crate) fn full_title(&self) -> String {
         match self.exponent() {
             0 => self.title.clone(),
@@ -146,7 +146,7 @@ impl Axis {
         }
     }
 
-    /// Ticks, at most about `count` intervals between labels.
+    /// Ticks, with at most about `count` intervals between labels.
     pub fn ticks(&self, count: usize) -> Vec<Tick> {
         match self.scale {
             Scale::Linear => ticks::linear(self.minimum, self.maximum, count, self.steps, self.exponent()),
@@ -158,7 +158,7 @@ impl Axis {
     }
 }
 
-/// Smallest and largest value; NaN for none.
+/// Smallest and largest value; NaN if there are none.
 pub fn extent(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
     values.into_iter().fold((f64::NAN, f64::NAN), |(low, high), v| (low.min(v), high.max(v)))
 }

@@ -13,19 +13,19 @@ use super::series::series_stroke;
 use super::ticks::plain;
 use super::{Figure, FrequencyMark, Words};
 
-/// A frequency response.
+/// Frequency response of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrequencySeries {
     /// Name of the model.
     pub name: String,
     /// Frequencies, rad/s, rising.
     pub frequencies_rad_per_s: Vec<f64>,
-    /// Response at each, in SI units of the quantity.
+    /// Response at each frequency, in SI units of the quantity.
     pub response: Vec<Complex64>,
 }
 
 impl FrequencySeries {
-    /// A response at these frequencies.
+    /// Series of a response at these frequencies.
     pub fn new(
         name: impl Into<String>,
         frequencies_rad_per_s: &[f64],
@@ -39,13 +39,13 @@ impl FrequencySeries {
     }
 }
 
-/// Magnitude and phase of one quantity in several models, and the size of each one's difference
-/// from the first where both have the same frequencies.
+/// Magnitude and phase of one quantity for several models, and the magnitude of each one's
+/// difference from the first if both have equal frequencies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodeDiagram {
-    /// The quantity, such as `F_e/U_C`.
+    /// Quantity, such as `F_e/U_C`.
     pub quantity: String,
-    /// Its unit, such as `N/V`: 0 dB is one of it.
+    /// Unit, such as `N/V`, which is 0 dB.
     pub unit: String,
     /// Models, the reference first.
     pub series: Vec<FrequencySeries>,
@@ -71,7 +71,7 @@ impl BodeDiagram {
     }
 }
 
-/// An axis that holds the frequencies of all series.
+/// Axis that covers the frequencies of all series.
 pub(super) fn frequency_axis<'s>(series: impl IntoIterator<Item = &'s FrequencySeries>) -> Axis {
     let frequencies = series.into_iter().flat_map(|one| one.frequencies_rad_per_s.iter().copied());
     Axis::fit_logarithmic("Frequency (rad/s)", frequencies)
@@ -85,7 +85,7 @@ pub(super) fn level_title(quantity: &str, unit: &str) -> String {
     }
 }
 
-/// Adds an upright line at each frequency to every panel, its label to the first.
+/// Adds a vertical line at each frequency to every panel, with its label in the first.
 pub(super) fn mark_frequencies(panels: &mut [Panel], marks: &[FrequencyMark]) {
     let stroke = Stroke::solid(Role::Muted, 1.2).dashed(Dash::Dashed);
     for (index, panel) in panels.iter_mut().enumerate() {
@@ -107,7 +107,7 @@ pub(super) struct BodeCurve {
 }
 
 /// Magnitude and unwrapped phase of each response; the phase starts within half a turn of `start`,
-/// or of the first one.
+/// or of the first response.
 pub(super) fn curves(series: &[FrequencySeries], start: Option<f64>) -> Vec<BodeCurve> {
     let mut result: Vec<BodeCurve> = Vec::with_capacity(series.len());
     for (index, one) in series.iter().enumerate() {
@@ -122,7 +122,7 @@ pub(super) fn curves(series: &[FrequencySeries], start: Option<f64>) -> Vec<Bode
     result
 }
 
-/// A magnitude in dB.
+/// Magnitude in dB.
 pub(super) fn decibel(response: Complex64) -> f64 {
     20.0 * log10(magnitude(response))
 }
@@ -132,7 +132,7 @@ pub(super) fn decibels(response: &[Complex64]) -> Vec<f64> {
     response.iter().map(|value| decibel(*value)).collect()
 }
 
-/// Phase in degrees without jumps of a turn, its first value nearest to `start` (or in (-180,
+/// Phase in degrees without jumps of a full turn, its first value nearest to `start` (or in (-180,
 /// 180]).
 pub(crate) fn unwrapped_degrees(response: &[Complex64], start: Option<f64>) -> Vec<f64> {
     let mut previous = start.filter(|v| v.is_finite());
@@ -152,11 +152,11 @@ pub(crate) fn unwrapped_degrees(response: &[Complex64], start: Option<f64>) -> V
         .collect()
 }
 
-/// A difference in dB or degrees below which models agree to within rounding.
+/// Difference in dB or degrees below which models agree within rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Panels of |difference| in dB and degrees: models that agree to 1e-4 dB and models that part by
-/// 40 dB in one picture; none where all agree to within rounding.
+/// Panels of |difference| in dB and degrees: models that agree to 1e-4 dB and models that differ by
+/// 40 dB in one picture; none if all agree within rounding.
 fn difference_panels(curves: &[BodeCurve]) -> Vec<Panel> {
     let differences = differences(curves);
     let both = |curve: &BodeCurve| [curve.decibels.as_slice(), &curve.degrees].concat();
@@ -174,7 +174,7 @@ fn difference_panels(curves: &[BodeCurve]) -> Vec<Panel> {
     ]
 }
 
-/// Each later curve minus the first, its size, where both have the same frequencies.
+/// Magnitude of the difference of each later curve from the first, if both have equal frequencies.
 fn differences(curves: &[BodeCurve]) -> Vec<BodeCurve> {
     let Some((first, others)) = curves.split_first() else { return Vec::new() };
     let minus = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).collect();
@@ -190,7 +190,7 @@ fn differences(curves: &[BodeCurve]) -> Vec<BodeCurve> {
         .collect()
 }
 
-/// What all curves have of one kind.
+/// Values of one kind of all curves.
 pub(super) fn all<'a>(
     curves: &'a [BodeCurve],
     of: impl Fn(&BodeCurve) -> &Vec<f64> + 'a,
@@ -198,7 +198,7 @@ pub(super) fn all<'a>(
     curves.iter().flat_map(move |curve| of(curve).clone())
 }
 
-/// The curves in a panel.
+/// Panel of the curves.
 pub(super) fn panel(
     y: Axis,
     height: f64,

@@ -1,13 +1,13 @@
-//! Cutting lines and polygons at a frame.
+//! Clipping of lines and polygons at a frame.
 //!
 //! A polyline is cut segment by segment (Liang and Barsky 1984): a segment that leaves the frame
-//! ends on its border, the next one that enters starts a new run, and a point that is not a number
-//! ends the run. Nothing is ever moved onto the border, so nothing smears along the frame. A
-//! polygon is cut side by side (Sutherland and Hodgman 1974).
+//! ends on its border, the next one that enters starts a new run, and a NaN point ends the run. No
+//! point is ever moved onto the border, so no line runs along the frame. A polygon is cut side by
+//! side (Sutherland and Hodgman 1974).
 
 use super::scene::{Point, Rectangle, point};
 
-/// The part of the segment inside the frame, or `None`.
+/// Part of the segment inside the frame, or `None`.
 ///
 /// # Example
 /// ```
@@ -18,7 +18,7 @@ use super::scene::{Point, Rectangle, point};
 /// assert_eq!(segment(point(-1.0, 2.0), point(2.0, 2.0), &frame), None);
 /// ```
 pub fn segment(from: Point, to: Point, frame: &Rectangle) -> Option<(Point, Point)> {
-    // Most segments of a picture lie beyond one side of a label.
+    // most segments of a picture are beyond one side of a label
     let beyond_across = from.x.max(to.x) < frame.left || frame.right < from.x.min(to.x);
     let beyond_upright = from.y.max(to.y) < frame.top || frame.bottom < from.y.min(to.y);
     if beyond_across || beyond_upright {
@@ -28,7 +28,7 @@ pub fn segment(from: Point, to: Point, frame: &Rectangle) -> Option<(Point, Poin
     if !(dx.is_finite() && dy.is_finite() && from.x.is_finite() && from.y.is_finite()) {
         return None;
     }
-    // Distance to each side, positive inside, at both ends.
+    // distance to each side, positive inside, at both ends
     let sides = [
         (from.x - frame.left, to.x - frame.left),
         (frame.right - from.x, frame.right - to.x),
@@ -54,7 +54,7 @@ pub fn segment(from: Point, to: Point, frame: &Rectangle) -> Option<(Point, Poin
         } else {
             (to.x - place.left * dx, to.y - place.left * dy)
         };
-        // Rounding may step over the border by an ulp; the answer lies on it.
+        // rounding may exceed the border by an ulp; the result is on it
         point(x.clamp(frame.left, frame.right), y.clamp(frame.top, frame.bottom))
     };
     let start = if frame.contains_point(from) { from } else { at(enter) };
@@ -62,8 +62,8 @@ pub fn segment(from: Point, to: Point, frame: &Rectangle) -> Option<(Point, Poin
     Some((start, end))
 }
 
-/// A place along a segment by the parts done and left: both, because one of them alone is lost to
-/// rounding when an end is very far away.
+/// Position along a segment by the fractions before and after it: both, because one of them is lost
+/// to rounding if an end is very far away.
 #[derive(Clone, Copy)]
 struct SegmentFraction {
     done: f64,
@@ -76,7 +76,7 @@ impl SegmentFraction {
     }
 }
 
-/// The runs of a polyline inside the frame, each of two points or more.
+/// Runs of a polyline inside the frame, each of two points or more.
 pub fn polyline(points: &[Point], frame: &Rectangle) -> Vec<Vec<Point>> {
     let mut runs: Vec<Vec<Point>> = Vec::new();
     let mut current: Vec<Point> = Vec::new();
@@ -106,7 +106,7 @@ fn finish(current: &mut Vec<Point>, runs: &mut Vec<Vec<Point>>) {
     }
 }
 
-/// The polygon inside the frame; empty when they do not meet or a corner is not a number.
+/// Polygon inside the frame; empty if they do not intersect or a corner is NaN.
 pub fn polygon(corners: &[Point], frame: &Rectangle) -> Vec<Point> {
     if corners.iter().any(|p| !(p.x.is_finite() && p.y.is_finite())) {
         return Vec::new();
@@ -124,7 +124,7 @@ pub fn polygon(corners: &[Point], frame: &Rectangle) -> Vec<Point> {
     result
 }
 
-/// Keeps what has a depth of zero or more.
+/// Keeps the parts with a depth of zero or more.
 fn cut(corners: &[Point], depth: impl Fn(&Point) -> f64, frame: &Rectangle) -> Vec<Point> {
     let mut result = Vec::with_capacity(corners.len() + 2);
     let Some(mut previous) = corners.last() else { return result };
@@ -134,7 +134,7 @@ fn cut(corners: &[Point], depth: impl Fn(&Point) -> f64, frame: &Rectangle) -> V
             let t = before / (before - after);
             let mut crossing =
                 point(previous.x + t * (corner.x - previous.x), previous.y + t * (corner.y - previous.y));
-            // Rounding may leave the crossing an ulp outside its own side.
+            // rounding may leave the crossing an ulp outside its own side
             if depth(&crossing) < 0.0 {
                 crossing = point(
                     crossing.x.clamp(frame.left, frame.right),

@@ -1,22 +1,22 @@
 //! Colours by role, for a light and a dark page.
 //!
 //! A scene names roles; a theme gives each role its colour. On a page the style sheet
-//! ([`style_sheet`]) sets one custom property a role, so that the reader's preference chooses the
+//! ([`style_sheet`]) sets one custom property per role, so that the reader's preference chooses the
 //! theme and print is always light; a standalone file carries the resolved light colours.
 //!
-//! Promises, asserted by tests: text has a contrast of 4.5 or more against the background of its
+//! Guarantees, asserted by tests: text has a contrast of 4.5 or more against the background of its
 //! theme, lines and series 3 or more. Grid lines and surfaces are decoration: visible, and well
-//! below the data. The eight series start from the hues of Okabe and Ito (2008), moved until every
-//! pair stays apart for normal, protanope, deuteranope and tritanope sight (simulated after
-//! Machado, Oliveira and Fernandes 2009, distance in Oklab). Dash patterns and markers carry the
-//! same distinction into a grey print. The eight steps of the ramp, for curves that have an order,
-//! change their hue and grow lighter in equal steps, so neighbours stay apart for all of these and
-//! in grey.
+//! below the data. The eight series start from the hues of Okabe and Ito (2008), adjusted until
+//! every pair is distinguishable for normal, protanope, deuteranope and tritanope sight (simulated
+//! after Machado, Oliveira and Fernandes 2009, distance in Oklab). Dash patterns and markers carry
+//! the same distinction into a grey print. The eight steps of the ramp, for curves that have an
+//! order, change their hue and grow lighter in equal steps, so neighbours are distinguishable for
+//! all of these and in grey.
 
-/// What a colour is for.
+/// Purpose of a colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
-    /// The page.
+    /// Page background.
     Background,
     /// Interior of blocks and components.
     Surface,
@@ -24,22 +24,22 @@ pub enum Role {
     Axis,
     /// Grid lines.
     Grid,
-    /// Grid lines between those with a number.
+    /// Grid lines between those with a label.
     MinorGrid,
     /// Ordinary text.
     Text,
-    /// Text and lines of less weight.
+    /// Text and lines of less emphasis.
     Muted,
     /// Data series, counted from 0; the colours repeat after eight.
     Series(u8),
     /// Members of an ordered set such as frequencies, counted from 0, dark to light; the colours
     /// repeat after eight.
     Ramp(u8),
-    /// The design value, the operating point: what the reader should find first.
+    /// Design value, operating point: the first thing to find in a figure.
     Accent,
     /// Accepted.
     Good,
-    /// To be noticed.
+    /// Warning.
     Warning,
     /// Rejected or violated.
     Bad,
@@ -60,7 +60,7 @@ pub const SERIES_COUNT: u8 = 8;
 /// Number of steps of the ramp.
 pub const RAMP_COUNT: u8 = 8;
 
-/// Every role once, in a fixed order.
+/// All roles, in a fixed order.
 pub const ROLES: [Role; 27] = [
     Role::Background,
     Role::Surface,
@@ -171,8 +171,8 @@ impl Role {
     }
 }
 
-/// Colour of member `index` of an ordered set of `count`: spread over the ramp, repeated where
-/// there are more members than steps.
+/// Colour of member `index` of an ordered set of `count`: spread over the ramp, repeated if there
+/// are more members than steps.
 ///
 /// # Example
 /// ```
@@ -191,8 +191,8 @@ pub const fn series_role(index: usize) -> Role {
     Role::Series((index % SERIES_COUNT as usize) as u8)
 }
 
-/// The style sheet for figures on a page: custom properties `--figure-ROLE` on the root element,
-/// one class a role for strokes (`s-ROLE`) and one for interiors (`f-ROLE`). Dark follows the
+/// Style sheet for figures on a page: custom properties `--figure-ROLE` on the root element, one
+/// class per role for strokes (`s-ROLE`) and one for interiors (`f-ROLE`). Dark follows the
 /// reader's preference on screens; print is light.
 ///
 /// # Example

@@ -9,16 +9,16 @@ use super::series::series_stroke;
 use super::ticks::plain;
 use super::{Figure, Words};
 
-/// How a curve is drawn.
+/// Style of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CurveStyle {
-    /// A line, in the colour and dash of a series.
+    /// Line in the colour and dash pattern of a series.
     Line(usize),
-    /// A small dot for each point, in the colour of a series.
+    /// Small dot for each point, in the colour of a series.
     Dots(usize),
-    /// What is commanded: a thin line without a colour of its own.
+    /// Commanded value: a thin line without a colour of its own.
     Reference,
-    /// What the others should not cross.
+    /// Limit of the other curves.
     Limit,
 }
 
@@ -32,28 +32,28 @@ impl CurveStyle {
     }
 }
 
-/// A curve in the units of its axes.
+/// Curve in the units of its axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// (x, y).
+    /// Points (x, y).
     pub points: Vec<(f64, f64)>,
-    /// How it is drawn.
+    /// Style.
     pub style: CurveStyle,
 }
 
 impl Curve {
-    /// A line.
+    /// Curve as a line.
     pub fn line(points: impl IntoIterator<Item = (f64, f64)>, series: usize) -> Curve {
         Curve { points: points.into_iter().collect(), style: CurveStyle::Line(series) }
     }
 
-    /// A dot for each point.
+    /// Curve as dots.
     pub fn dots(points: impl IntoIterator<Item = (f64, f64)>, series: usize) -> Curve {
         Curve { points: points.into_iter().collect(), style: CurveStyle::Dots(series) }
     }
 }
 
-/// The band that a response must stay in from some time on.
+/// Band in which a response must remain from some time on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SettlingBand {
     /// Final value, in the unit of the panel.
@@ -62,7 +62,7 @@ pub struct SettlingBand {
     pub percent: f64,
 }
 
-/// What the upright axis of a panel shows.
+/// Range of the vertical axis of a panel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum CurveRange {
     /// All curves.
@@ -70,38 +70,38 @@ pub enum CurveRange {
     Fitted,
     /// All curves and zero.
     WithZero,
-    /// From one value to another.
+    /// Given range.
     Between([f64; 2]),
 }
 
-/// One pair of axes.
+/// Pair of axes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CurvePanel {
-    /// Title of the upright axis, with its unit.
+    /// Title of the vertical axis, with its unit.
     pub title: String,
     /// Height of the frame in view box units.
     pub height: f64,
-    /// Back to front.
+    /// Curves, back to front.
     pub curves: Vec<Curve>,
-    /// What the upright axis shows.
+    /// Range of the vertical axis.
     pub range: CurveRange,
-    /// Values of x that are marked, with a word in this panel.
+    /// Marked values of x, with a word in this panel.
     pub marked: Vec<(f64, String)>,
-    /// Whether zero is marked, as for residuals.
+    /// True if zero is marked, as for residuals.
     pub zero_line: bool,
-    /// Where a response has to settle.
+    /// Settling band of a response.
     pub settling_band: Option<SettlingBand>,
-    /// What its curves are called, where this panel says so.
+    /// Names of its curves, if given in this panel.
     pub named: Vec<(String, CurveStyle)>,
 }
 
 impl CurvePanel {
-    /// Curves on a pair of axes that shows all of them.
+    /// Panel of curves with an axis that covers all of them.
     pub fn new(title: impl Into<String>, height: f64, curves: Vec<Curve>) -> CurvePanel {
         CurvePanel { title: title.into(), height, curves, ..CurvePanel::default() }
     }
 
-    /// With zero marked.
+    /// Panel with zero marked.
     pub fn with_zero_line(self) -> CurvePanel {
         CurvePanel { zero_line: true, ..self }
     }
@@ -132,7 +132,7 @@ impl CurvePanel {
     }
 }
 
-/// A name with a sample of its curve.
+/// Legend entry of a name with a sample of its curve.
 fn entry((text, style): &(String, CurveStyle)) -> LegendEntry {
     match style {
         CurveStyle::Dots(series) => {
@@ -148,16 +148,16 @@ fn band(settling: &SettlingBand) -> Mark {
     Mark::band(AxisDirection::Y, [settling.level - half, settling.level + half], SETTLED)
 }
 
-/// Curves over one quantity.
+/// Chart of curves over one quantity.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CurveChart {
-    /// Title of the lying axis, with its unit.
+    /// Title of the horizontal axis, with its unit.
     pub x_title: String,
-    /// Its ends; points beyond are left out.
+    /// Ends of the horizontal axis; points beyond are omitted.
     pub x_range: [f64; 2],
-    /// Top to bottom.
+    /// Panels, top to bottom.
     pub panels: Vec<CurvePanel>,
-    /// What each style stands for.
+    /// Names of the styles.
     pub legend: Vec<(String, CurveStyle)>,
 }
 

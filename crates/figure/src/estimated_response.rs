@@ -1,5 +1,5 @@
-//! A frequency response estimated from records: magnitude and phase with the band that holds the
-//! truth with 95 % confidence, and the coherence.
+//! Frequency response estimated from records: magnitude and phase with the band that contains the
+//! true response with 95 % confidence, and the coherence.
 
 use phea_dynamics::portable::{asin, log10, magnitude};
 
@@ -13,29 +13,29 @@ use super::plot::{AxisDirection, Mark, Marker, MarkerStyle};
 use super::scene::Fill;
 use super::{Figure, Words};
 
-/// An estimated response with its models.
+/// Estimated response with its models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EstimatedResponse {
-    /// The quantity, such as `force/command`.
+    /// Quantity, such as `force/command`.
     pub quantity: String,
-    /// Its unit, such as `N/V`: 0 dB is one of it.
+    /// Unit, such as `N/V`, which is 0 dB.
     pub unit: String,
-    /// The response at each frequency.
+    /// Response at each frequency.
     pub estimate: FrequencySeries,
-    /// Radius of the disc of 95 % around each.
+    /// Radius of the 95 % disc around each response.
     pub radii: Vec<f64>,
-    /// Squared coherence at each.
+    /// Squared coherence at each frequency.
     pub coherence: Vec<f64>,
-    /// Squared coherence that a point must have.
+    /// Squared coherence required of a point.
     pub least_coherence: f64,
-    /// Models to compare with.
+    /// Models for comparison.
     pub models: Vec<FrequencySeries>,
 }
 
 const POINTS: MarkerStyle = MarkerStyle { marker: Marker::Circle, role: Role::Text, radius: 1.8 };
 const CONFIDENCE: Fill = Fill { role: Role::Muted, opacity: 0.3 };
 
-/// Least share of the magnitude that is left of it at the lower edge of a band.
+/// Least fraction of the magnitude at the lower edge of a band.
 const LEAST: f64 = 0.03;
 
 impl EstimatedResponse {
@@ -49,7 +49,7 @@ impl EstimatedResponse {
             let edge = asin(share.min(1.0)).to_degrees();
             [-edge, edge]
         });
-        // on the turn of the estimate
+        // on the same turn as the estimate
         let curves = curves(&self.models, degrees.first().copied());
         let edges = |band: &[[f64; 2]]| band.as_flattened().to_vec().into_iter();
         let title = level_title(&self.quantity, &self.unit);
@@ -87,8 +87,7 @@ impl EstimatedResponse {
         words.with_plot(x, panels, legend)
     }
 
-    /// Both edges around each value, which lie apart by what the share of the radius in the
-    /// magnitude makes of them.
+    /// Band around each value, from the ratio of the radius to the magnitude.
     fn band(&self, values: &[f64], of: impl Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
         let sizes = self.estimate.response.iter().map(|value| magnitude(*value));
         let shares = sizes.zip(&self.radii).map(|(size, radius)| radius / size);

@@ -1,4 +1,4 @@
-//! A closed-loop magnitude of a family against its limits, over frequency.
+//! Closed-loop magnitude of a family and its limits, over frequency.
 
 use phea_dynamics::portable::log10;
 
@@ -10,61 +10,61 @@ use super::plot::{AxisDirection, Mark, Marker, MarkerStyle, Panel};
 use super::scene::{Dash, Fill, Stroke};
 use super::{Figure, Words};
 
-/// A magnitude over frequency.
+/// Magnitude over frequency.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MagnitudeCurve {
-    /// rad/s, rising.
+    /// Frequencies, rad/s, rising.
     pub frequencies_rad_per_s: Vec<f64>,
-    /// Magnitude at each, a plain ratio in SI units.
+    /// Magnitude at each frequency, a plain ratio in SI units.
     pub magnitudes: Vec<f64>,
 }
 
-/// A point worth words: a violation, or the least margin.
+/// Annotated point: a violation, or the least margin.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MagnitudeMark {
-    /// rad/s
+    /// Frequency, rad/s.
     pub frequency_rad_per_s: f64,
-    /// Magnitude of the closed loop there, in SI units.
+    /// Magnitude of the closed loop at this point, in SI units.
     pub magnitude: f64,
-    /// Such as `19.2 dB over at 1304 rad/s`.
+    /// Text, such as `19.2 dB over at 1304 rad/s`.
     pub text: String,
-    /// Whether it violates the limit.
+    /// True if it violates the limit.
     pub is_violation: bool,
 }
 
-/// The extremes of a family within a loop.
+/// Extremes of a family within a loop.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FamilyEnvelope {
-    /// Which loop; empty where there is one.
+    /// Name of the loop; empty if there is only one.
     pub name: String,
-    /// The greatest magnitude of the family.
+    /// Greatest magnitude of the family.
     pub greatest: MagnitudeCurve,
-    /// The least, where there is a lower limit.
+    /// Least magnitude, if there is a lower limit.
     pub least: Option<MagnitudeCurve>,
 }
 
-/// The magnitudes of a closed loop, of the whole family, and their limits.
+/// Magnitudes of a closed loop for the whole family, and their limits.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FamilyMagnitude {
-    /// The closed loop, such as `|L/(1+L)|`.
+    /// Closed loop, such as `|L/(1+L)|`.
     pub quantity: String,
-    /// The greatest magnitude allowed, over the band where it holds.
+    /// Greatest allowed magnitude, over the band in which it applies.
     pub upper_limit: Option<MagnitudeCurve>,
-    /// The least magnitude allowed.
+    /// Least allowed magnitude.
     pub lower_limit: Option<MagnitudeCurve>,
-    /// The family within the loop, and within others to compare it with.
+    /// Family within the loop, and within others for comparison.
     pub envelopes: Vec<FamilyEnvelope>,
     /// Some members.
     pub members: Vec<MagnitudeCurve>,
-    /// Frequencies to mark on the axis, rad/s.
+    /// Marked frequencies, rad/s.
     pub design_frequencies_rad_per_s: Vec<f64>,
-    /// Up to this much beyond a limit is not shown as violated, dB.
+    /// Excess over a limit up to which it is not shown as violated, dB.
     pub tolerance_db: f64,
-    /// Points worth words.
+    /// Annotated points.
     pub marks: Vec<MagnitudeMark>,
 }
 
-/// How far below limits and marks a magnitude is still shown, dB.
+/// Depth below limits and marks down to which a magnitude is shown, dB.
 const DEPTH_DB: f64 = 30.0;
 
 impl FamilyEnvelope {
@@ -107,7 +107,8 @@ impl FamilyMagnitude {
         curves.chain(marks).chain(&self.design_frequencies_rad_per_s).copied().collect()
     }
 
-    /// Holds limits and marks, the family above them, and of it below them no more than 30 dB.
+    /// Axis that covers limits and marks, the family above them, and no more than 30 dB of the
+    /// family below them.
     fn magnitude_axis(&self) -> Axis {
         let finite = |value: &f64| value.is_finite();
         let of = |curve: &MagnitudeCurve| points(curve).into_iter().map(|point| point.1).filter(finite);
@@ -120,8 +121,8 @@ impl FamilyMagnitude {
         decibel_axis(&format!("{} (dB)", self.quantity), wanted.iter().copied().chain(family))
     }
 
-    /// The family between its greatest and least magnitude, what lies beyond a limit, and faintly
-    /// the frequencies where it does.
+    /// Area between the greatest and least magnitude of the family, areas beyond a limit, and
+    /// faintly their frequencies.
     fn areas(&self) -> Vec<Mark> {
         let mut marks = Vec::new();
         for (index, FamilyEnvelope { greatest, least, .. }) in self.behind_first() {
@@ -138,13 +139,13 @@ impl FamilyMagnitude {
         marks
     }
 
-    /// The envelopes with their places, the first one last: it lies on top.
+    /// Envelopes with their indices, the first one last, which draws it on top.
     fn behind_first(&self) -> impl Iterator<Item = (usize, &FamilyEnvelope)> {
         let all = || self.envelopes.iter().enumerate();
         all().skip(1).chain(all().take(1))
     }
 
-    /// What lies beyond a limit by more than the tolerance, of every loop.
+    /// Areas beyond a limit by more than the tolerance, for every loop.
     fn violated(&self) -> Vec<Vec<(f64, f64)>> {
         let moved = |curve: &MagnitudeCurve, by: f64| -> Vec<(f64, f64)> {
             points(curve).into_iter().map(|(frequency, value)| (frequency, value + by)).collect()
@@ -166,7 +167,7 @@ impl FamilyMagnitude {
             let strokes = envelope_strokes(index);
             let both = envelope.curves().zip(strokes).map(|(curve, stroke)| line(curve, stroke));
             let mut both: Vec<Mark> = both.collect();
-            // of another loop the greatest lies on top
+            // for another loop the greatest magnitude is on top
             if index > 0 {
                 both.reverse();
             }
@@ -234,13 +235,13 @@ fn envelope_strokes(index: usize) -> [Stroke; 2] {
     [stroke(2.2, dashes[0]), stroke(2.0, dashes[1])]
 }
 
-/// (rad/s, dB)
+/// Points (rad/s, dB).
 fn points(curve: &MagnitudeCurve) -> Vec<(f64, f64)> {
     let values = curve.magnitudes.iter().map(|magnitude| 20.0 * log10(*magnitude));
     curve.frequencies_rad_per_s.iter().copied().zip(values).collect()
 }
 
-/// The areas where the first curve lies above the second, straight in dB over log frequency between
+/// Areas in which the first curve is above the second, linear in dB over log frequency between
 /// points.
 pub(super) fn excess(above: &[(f64, f64)], below: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
     let mut frequencies: Vec<f64> = above.iter().chain(below).map(|point| point.0).collect();
@@ -276,14 +277,14 @@ pub(super) fn excess(above: &[(f64, f64)], below: &[(f64, f64)]) -> Vec<Vec<(f64
     areas
 }
 
-/// Along the upper edge and back along the lower.
+/// Corners along the upper edge and back along the lower.
 fn closed(upper: &mut Vec<(f64, f64)>, lower: &mut Vec<(f64, f64)>) -> Option<Vec<(f64, f64)>> {
     let mut around = std::mem::take(upper);
     around.extend(std::mem::take(lower).into_iter().rev());
     (around.len() > 2).then_some(around)
 }
 
-/// The value at a frequency, `None` outside the curve or next to a point without a value.
+/// Value at a frequency; `None` outside the curve or next to a point without a value.
 fn between(curve: &[(f64, f64)], frequency: f64) -> Option<f64> {
     let next = curve.partition_point(|point| point.0 < frequency);
     let &(high, above) = curve.get(next)?;

@@ -13,31 +13,31 @@ use super::series::series_dash;
 use super::{Figure, Words};
 use phea_quantity::DisplayUnit;
 
-/// Step responses of a family; values are parts of the step.
+/// Step responses of a family; values are fractions of the step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FamilySteps {
-    /// What is plotted, such as `Force, part of the step`.
+    /// Plotted quantity, such as `Force, part of the step`.
     pub quantity: String,
-    /// Between the step responses of the limits.
+    /// Band between the step responses of the limits.
     pub band: Option<TimeBand>,
     /// Members.
     pub members: Vec<TimeSeries>,
-    /// The nominal plant.
+    /// Nominal plant.
     pub nominal: Option<TimeSeries>,
-    /// Members to distinguish, such as the worst.
+    /// Members to highlight, such as the worst.
     pub named: Vec<TimeSeries>,
 }
 
-/// Up to this end times are shown in milliseconds, s.
+/// Largest end time that is shown in milliseconds, s.
 const SHORT_S: f64 = 0.5;
-/// Values that the axis makes room for; a response that leaves them, such as an unstable one, is
+/// Range of values that the axis may cover; a response that leaves it, such as an unstable one, is
 /// cut at the frame.
 const VALUES: std::ops::RangeInclusive<f64> = -0.5..=2.5;
 
 impl FamilySteps {
-    /// Draws the figure. The band reaches from what the lower limit's response will still fall to,
-    /// to what the upper limit's will still rise to: where the upper one swings below its final
-    /// value it does not cut the band.
+    /// Draws the figure. The band extends from the lowest future value of the lower limit's
+    /// response to the highest future value of the upper limit's: an undershoot of the upper limit
+    /// does not cut the band.
     pub fn draw(&self, words: &Words) -> Figure {
         let times = self.shown().flat_map(|series| series.times_s.iter().copied());
         let (start, end) = extent(times.filter(|time| time.is_finite()));

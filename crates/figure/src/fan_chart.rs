@@ -1,4 +1,5 @@
-//! What many runs do over time: bands that hold a share of them, their median, and single ones.
+//! Distribution of many runs over time: bands that contain a fraction of them, their median, and
+//! single runs.
 
 use super::axis::Axis;
 use super::colour::Role;
@@ -19,35 +20,35 @@ pub struct TimeSeries {
     pub values: Vec<f64>,
 }
 
-/// A band between two curves.
+/// Band between two curves.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TimeBand {
-    /// What it holds.
+    /// Name, its content.
     pub name: String,
-    /// Its lower edge.
+    /// Lower edge.
     pub lower: TimeSeries,
-    /// Its upper edge.
+    /// Upper edge.
     pub upper: TimeSeries,
 }
 
-/// Many runs by their shares at each time.
+/// Many runs by their quantiles at each time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FanChart {
-    /// What is plotted, such as `Force F_e`.
+    /// Plotted quantity, such as `Force F_e`.
     pub quantity: String,
-    /// Its unit.
+    /// Unit of the quantity.
     pub unit: DisplayUnit,
     /// Bands, the widest first.
     pub bands: Vec<TimeBand>,
-    /// The curve in the middle.
+    /// Middle curve.
     pub middle: TimeSeries,
-    /// A run apart from the others.
+    /// Single highlighted run.
     pub single: Option<TimeSeries>,
-    /// What is commanded, where a force is.
+    /// Reference, if a force is plotted.
     pub reference: Option<TimeSeries>,
-    /// Instants to mark, s, with their words.
+    /// Marked instants, s, with their texts.
     pub events: Vec<(f64, String)>,
-    /// From and to, s.
+    /// Start and end, s.
     pub span_s: [f64; 2],
 }
 
@@ -104,7 +105,7 @@ fn reference_stroke() -> Stroke {
     Stroke::solid(Role::Muted, 1.4)
 }
 
-/// The part of a curve in a span, in display units.
+/// Part of a curve in a time span, in display units.
 fn within(series: &TimeSeries, unit: DisplayUnit, [start, end]: [f64; 2]) -> Vec<(f64, f64)> {
     let points = series.times_s.iter().zip(&series.values).map(|(time, value)| (*time, unit.of(*value)));
     points.filter(|(time, value)| *time >= start && *time <= end && value.is_finite()).collect()

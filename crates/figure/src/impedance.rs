@@ -14,35 +14,35 @@ use super::scene::{Dash, Fill, Stroke};
 use super::series::series_stroke;
 use super::{Figure, FrequencyMark, Words};
 
-/// A straight line of the diagram: |Z| = coefficient * frequency^exponent.
+/// Asymptote of the diagram: |Z| = coefficient * frequency^exponent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AsymptoteLine {
-    /// What dominates, such as `damper (A^2 + f_v K_c)/K_c`.
+    /// Dominating element, such as `damper (A^2 + f_v K_c)/K_c`.
     pub label: String,
     /// |Z| at 1 rad/s, N.s/m.
     pub coefficient: f64,
-    /// 1 for a mass, 0 for a damper, -1 for a spring.
+    /// Exponent: 1 for a mass, 0 for a damper, -1 for a spring.
     pub exponent: i32,
-    /// Where it is drawn, rad/s.
+    /// Lower end of the line, rad/s.
     pub from_rad_per_s: f64,
-    /// Where it ends, rad/s.
+    /// Upper end of the line, rad/s.
     pub to_rad_per_s: f64,
 }
 
-/// Impedances with their straight lines and bands.
+/// Impedances with their asymptotes and bands.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImpedanceDiagram {
     /// How the load moves.
     pub motion: MotionKind,
     /// Impedances in N.s/m, such as open and closed loop.
     pub series: Vec<FrequencySeries>,
-    /// Straight lines.
+    /// Asymptotes.
     pub asymptotes: Vec<AsymptoteLine>,
-    /// Frequencies where one regime hands over to the next.
+    /// Corner frequencies between regimes.
     pub corners: Vec<FrequencyMark>,
     /// Bands in rad/s where Re Z < 0.
     pub non_passive_bands_rad_per_s: Vec<(f64, f64)>,
-    /// Adds the phase: passive between -90 and 90 degrees.
+    /// True to add the phase: passive between -90 and 90 degrees.
     pub with_phase: bool,
 }
 
@@ -101,7 +101,7 @@ impl ImpedanceDiagram {
 
     fn phase_panel(&self) -> Panel {
         // Re Z >= 0 bounds the phase of a passive impedance, so each curve starts from its
-        // principal value.
+        // principal value
         let degrees = |response: &[Complex64]| unwrapped_degrees(response, None);
         let (low, high) = extent(self.series.iter().flat_map(|s| degrees(&s.response)));
         let mut marks = self.bands("");

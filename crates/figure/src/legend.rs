@@ -1,4 +1,4 @@
-//! The legend: below the axes, where it can cover no data.
+//! Legend below the axes, where it covers no data.
 
 use super::LABEL_SIZE;
 use super::marker::{MarkerStyle, draw_marker};
@@ -7,14 +7,14 @@ use super::series::series_stroke;
 use super::typeset;
 
 const SWATCH: f64 = 30.0;
-/// For a marker alone.
+/// Width of the sample of a marker without a line.
 const NARROW: f64 = 14.0;
 const GAP: f64 = 7.0;
 const BETWEEN: f64 = 20.0;
 /// Height of a row.
 pub const ROW: f64 = 19.0;
 
-/// What an entry shows: any of a line, a marker and an area.
+/// Legend entry with any of a line, a marker and an area.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LegendEntry {
     /// Name, with markup.
@@ -28,7 +28,7 @@ pub struct LegendEntry {
 }
 
 impl LegendEntry {
-    /// An entry for a line.
+    /// Entry for a line.
     pub fn line(text: impl Into<String>, stroke: Stroke) -> Self {
         LegendEntry { text: text.into(), stroke: Some(stroke), marker: None, fill: None }
     }
@@ -39,17 +39,17 @@ impl LegendEntry {
         names.into_iter().enumerate().map(entry).collect()
     }
 
-    /// Words about the whole figure, without a sample.
+    /// Note on the whole figure, without a sample.
     pub fn note(text: impl Into<String>) -> Self {
         LegendEntry { text: text.into(), stroke: None, marker: None, fill: None }
     }
 
-    /// An entry for a marker.
+    /// Entry for a marker.
     pub fn marker(text: impl Into<String>, marker: MarkerStyle) -> Self {
         LegendEntry { text: text.into(), stroke: None, marker: Some(marker), fill: None }
     }
 
-    /// An entry for an area.
+    /// Entry for an area.
     pub fn area(text: impl Into<String>, fill: Fill) -> Self {
         LegendEntry { text: text.into(), stroke: None, marker: None, fill: Some(fill) }
     }
@@ -83,12 +83,12 @@ fn rows(entries: &[LegendEntry], width: f64) -> Vec<Vec<(f64, String, &LegendEnt
     result
 }
 
-/// Height the legend needs at a width.
+/// Height of the legend at a given width.
 pub fn height(entries: &[LegendEntry], width: f64) -> f64 {
     ROW * rows(entries, width).len() as f64
 }
 
-/// Draws the legend with its upper left corner at the given place.
+/// Draws the legend with its upper left corner at the given position.
 pub fn draw(scene: &mut Scene, entries: &[LegendEntry], left: f64, top: f64, width: f64) {
     for (index, row) in rows(entries, width).into_iter().enumerate() {
         let middle = top + ROW * (index as f64 + 0.5);

@@ -1,15 +1,15 @@
-//! Pictures as plain values: numbers in, a scene of primitives out, SVG text and PNG bytes from it.
+//! Figures as plain values: numbers in, a scene of primitives out, SVG text and PNG bytes from it.
 //!
 //! ```text
 //! numbers -> chart (BodeDiagram, Nomograph, ...) -> Figure { scene } -> to_svg_inline | to_svg_standalone | to_png
 //! ```
 //!
 //! The layer is our own because one small list of primitives with roles for colours serves axes,
-//! the circuit diagram, the nomograph and control charts alike, and lets one SVG follow a light or
-//! dark page. The plotting libraries that were examined resolve every colour when they draw:
-//! plotters 0.3 passes RGB values to its back ends; the themes of kuva 0.6 stop at axes and text,
-//! its clip paths are numbered by a counter of the process, so the same figure drawn twice differs,
-//! and the circuit diagram and the nomograph would have stayed our own drawing in either.
+//! the circuit diagram, the nomograph and control charts, and lets one SVG follow a light or dark
+//! page. The plotting libraries that were examined resolve every colour when they draw: plotters
+//! 0.3 passes RGB values to its back ends; the themes of kuva 0.6 stop at axes and text, its clip
+//! paths are numbered by a counter of the process, so the same figure drawn twice differs, and the
+//! circuit diagram and the nomograph would have been separate drawings in either.
 //!
 //! Sizes: the view box is [`WIDTH`] units wide. Shown 680 px wide a unit is 1.21 px and the text of
 //! axes (13 units) is 16 px; printed 85 mm wide a unit is 0.152 mm and that text is 5.6 pt, the
@@ -90,30 +90,30 @@ pub(crate) const LABEL_SIZE: f64 = 13.0;
 /// Smallest font size.
 pub const SMALL_SIZE: f64 = 12.0;
 
-/// Why a figure could not become a PNG.
+/// Error for a figure that cannot become a PNG.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FigureError {
-    /// The picture would have no pixel or more than forty million.
+    /// A picture without pixels or with more than forty million.
     #[error("a scale of {scale} gives no drawable picture from {width} x {height} units")]
     ScaleOutOfRange {
-        /// Pixels to a unit.
+        /// Pixels per unit.
         scale: f64,
         /// Width of the view box.
         width: f64,
         /// Height of the view box.
         height: f64,
     },
-    /// The rasteriser refused the SVG text.
+    /// SVG text that the rasteriser rejected.
     #[error("the picture could not be drawn: {0}")]
     Raster(String),
 }
 
-/// A frequency worth marking, such as a resonance.
+/// Marked frequency, such as a resonance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrequencyMark {
-    /// What it is; its value is added.
+    /// Label, to which the value is added.
     pub label: String,
-    /// Where, rad/s.
+    /// Frequency, rad/s.
     pub frequency_rad_per_s: f64,
 }
 
@@ -124,32 +124,32 @@ pub struct Words {
     pub name: String,
     /// Short title.
     pub title: String,
-    /// What to see in it, in a sentence or two.
+    /// Interpretation of the figure, in a sentence or two.
     pub caption: String,
 }
 
 impl Words {
-    /// From name, title and caption.
+    /// Words from name, title and caption.
     pub fn new(name: impl Into<String>, title: impl Into<String>, caption: impl Into<String>) -> Self {
         Words { name: name.into(), title: title.into(), caption: caption.into() }
     }
 
-    /// The figure that shows a scene.
+    /// Figure of a scene.
     fn with_scene(&self, scene: Scene) -> Figure {
         let Words { name, title, caption } = self.clone();
         Figure { name, title, caption, scene }
     }
 
-    /// The figure that shows panels on one x axis, with their legend.
+    /// Figure of panels on one x axis, with their legend.
     fn with_plot(&self, x: Axis, panels: Vec<Panel>, legend: Vec<LegendEntry>) -> Figure {
         self.with_scene(Plot { x, panels, legend, equal_aspect: false }.draw())
     }
 }
 
-/// What a procedure decided about a candidate.
+/// Verdict of a procedure on a candidate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CandidateVerdict {
-    /// Meets everything.
+    /// All requirements are satisfied.
     Accepted,
     /// Usable, with a reservation.
     Warned,
@@ -158,7 +158,7 @@ pub enum CandidateVerdict {
 }
 
 impl CandidateVerdict {
-    /// Its marker: shape and colour both identify it.
+    /// Marker of the verdict: shape and colour both identify it.
     pub const fn marker(self) -> plot::MarkerStyle {
         match self {
             CandidateVerdict::Accepted => {
@@ -173,12 +173,12 @@ impl CandidateVerdict {
         }
     }
 
-    /// Its colour.
+    /// Colour of the verdict.
     pub const fn role(self) -> colour::Role {
         self.marker().role
     }
 
-    /// Its name for legends.
+    /// Name for legends.
     pub const fn label(self) -> &'static str {
         match self {
             CandidateVerdict::Accepted => "accepted",
@@ -187,21 +187,21 @@ impl CandidateVerdict {
         }
     }
 
-    /// All of them, best first.
+    /// All verdicts, best first.
     pub const ALL: [CandidateVerdict; 3] =
         [CandidateVerdict::Accepted, CandidateVerdict::Warned, CandidateVerdict::Rejected];
 }
 
-/// A picture with its title and caption.
+/// Picture with its title and caption.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
     /// Name of files and of the anchor on a page, unique in a report.
     pub name: String,
     /// Short title.
     pub title: String,
-    /// What to see in it, in a sentence or two.
+    /// Interpretation of the figure, in a sentence or two.
     pub caption: String,
-    /// The picture.
+    /// Picture.
     pub scene: Scene,
 }
 
@@ -221,11 +221,11 @@ impl Figure {
         self.write(SvgDestination::File(theme))
     }
 
-    /// PNG bytes in light colours, `scale` pixels to a unit of the view box (2 gives 1120 pixels of
-    /// width).
+    /// PNG bytes in light colours, with `scale` pixels per unit of the view box (2 gives 1120
+    /// pixels of width).
     ///
     /// # Errors
-    /// A scale that gives no pixel, or more than forty million.
+    /// Scale that gives no pixel, or more than forty million.
     pub fn to_png(&self, scale: f64) -> Result<Vec<u8>, FigureError> {
         png::render(&self.to_svg_standalone(), self.scene.width, self.scene.height, scale)
     }

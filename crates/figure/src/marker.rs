@@ -3,7 +3,7 @@
 use super::colour::Role;
 use super::scene::{Fill, Item, PathStep, Point, Scene, Shape, Stroke, point, run};
 
-/// Form of a marker.
+/// Shape of a marker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Marker {
     /// Filled circle.
@@ -26,18 +26,18 @@ pub enum Marker {
     Plus,
 }
 
-/// A marker with colour and size.
+/// Marker with colour and size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MarkerStyle {
-    /// Form.
+    /// Shape.
     pub marker: Marker,
     /// Colour by role.
     pub role: Role,
-    /// Half its width.
+    /// Half width.
     pub radius: f64,
 }
 
-/// Draws a marker, with a tooltip where there is one.
+/// Draws a marker, with a tooltip if there is one.
 pub(crate) fn draw_marker(scene: &mut Scene, at: Point, style: MarkerStyle, note: Option<&str>) {
     let r = style.radius;
     let by = |dx: f64, dy: f64| point(at.x + dx * r, at.y + dy * r);

@@ -1,4 +1,4 @@
-//! A measured frequency response on the curves of its models: magnitude, phase, difference from the
+//! Measured frequency response on the curves of its models: magnitude, phase, difference from the
 //! first model, distortion.
 
 use num_complex::Complex64;
@@ -11,20 +11,20 @@ use super::legend::LegendEntry;
 use super::plot::{AxisDirection, Mark, Marker, MarkerStyle};
 use super::{Figure, Words};
 
-/// A measured response on its models.
+/// Measured response and its models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredResponse {
-    /// The quantity, such as `F_e/U_C`.
+    /// Quantity, such as `F_e/U_C`.
     pub quantity: String,
-    /// Its unit, such as `N/V`: 0 dB is one of it.
+    /// Unit, such as `N/V`, which is 0 dB.
     pub unit: String,
-    /// Models, the first of which the measured points are compared with.
+    /// Models, of which the first is compared with the measured points.
     pub models: Vec<FrequencySeries>,
     /// Measured points.
     pub measured: FrequencySeries,
-    /// The first model at the measured points.
+    /// First model at the measured points.
     pub model: Vec<Complex64>,
-    /// Harmonics over the fundamental at each.
+    /// Ratio of harmonics to the fundamental at each point, percent.
     pub distortion_percent: Vec<f64>,
 }
 
@@ -70,8 +70,8 @@ impl MeasuredResponse {
         words.with_plot(x, panels, legend)
     }
 
-    /// The phase of each measured point: that of the first model's curve at its frequency, on the
-    /// same turn, and what it differs by.
+    /// Phase of each measured point: that of the first model's curve at its frequency, on its turn,
+    /// plus the difference.
     fn near_first(&self, curves: &[BodeCurve], angles: &[f64]) -> Vec<f64> {
         let Some(curve) = curves.first() else { return angles.to_vec() };
         let at = self.measured.frequencies_rad_per_s.iter().zip(&self.model).zip(angles);

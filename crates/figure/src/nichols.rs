@@ -1,5 +1,5 @@
 //! Nichols chart: the open loop by phase and magnitude, with bounds, templates, contours of |T| and
-//! what violates them.
+//! violations.
 
 mod boundary;
 mod chart;
@@ -17,41 +17,41 @@ use super::plot::Panel;
 use super::{Figure, Words};
 use chart::PlacedChart;
 
-/// Contours of |T| that a chart usually shows, dB.
+/// Usual contours of |T| in a chart, dB.
 pub const USUAL_CONTOURS_DB: [f64; 10] = [6.0, 3.0, 1.0, 0.5, 0.0, -1.0, -3.0, -6.0, -12.0, -20.0];
 
 /// Bounds of one specification, or of several together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoundGroup<'a> {
-    /// Such as `|T| <= 1.2`.
+    /// Name, such as `|T| <= 1.2`.
     pub name: String,
-    /// One for each frequency.
+    /// Bounds, one for each frequency.
     pub bounds: &'a [Bound],
 }
 
-/// A plant or frequency that violates something.
+/// Plant and frequency of a violation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OpenLoopViolation {
-    /// rad/s
+    /// Frequency, rad/s.
     pub frequency_rad_per_s: f64,
-    /// L of the plant there.
+    /// Open loop L of the plant.
     pub open_loop: Complex64,
-    /// Such as `|T| 19.2 dB over at 1304 rad/s`.
+    /// Text, such as `|T| 19.2 dB over at 1304 rad/s`.
     pub text: String,
 }
 
-/// The open loop by phase and magnitude, with the limits that it must satisfy.
+/// Open loop by phase and magnitude, with the limits that it must satisfy.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NicholsChart<'a> {
-    /// Open loops; the first is the one at which templates and the words of marks are put.
+    /// Open loops; templates and the texts of marks are placed at the first.
     pub loops: Vec<FrequencySeries>,
-    /// Frequencies to mark on the loops, rad/s.
+    /// Marked frequencies on the loops, rad/s.
     pub design_frequencies_rad_per_s: Vec<f64>,
-    /// Bounds; groups are distinguished by their dashes, frequencies by colour.
+    /// Bounds; groups are distinguished by dash patterns, frequencies by colour.
     pub bounds: Vec<BoundGroup<'a>>,
-    /// Templates, drawn where the nominal loop is.
+    /// Templates, drawn at the nominal loop.
     pub templates: &'a [Template],
-    /// What violates a specification.
+    /// Violations of specifications.
     pub violations: Vec<OpenLoopViolation>,
     /// Contours of |T|, dB.
     pub contours_db: Vec<f64>,

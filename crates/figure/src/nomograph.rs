@@ -4,7 +4,7 @@
 //! v = 4 q / (pi d^2)
 //! ```
 //!
-//! A bore is a straight line; the design flow is an upright line, and where they cross lies the
+//! A bore is a straight line; the design flow is a vertical line; their intersection gives the
 //! velocity in that bore.
 
 use std::f64::consts::PI;
@@ -18,18 +18,18 @@ use super::ticks::plain;
 use super::{CandidateVerdict, Figure, Words};
 use phea_quantity::DisplayUnit;
 
-/// A commercial bore.
+/// Commercial bore.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NomographBore {
     /// Inner diameter, m.
     pub bore_m: f64,
-    /// Further name, such as the dash size; may be empty.
+    /// Additional name, such as the dash size; may be empty.
     pub label: String,
-    /// What the procedure decided.
+    /// Verdict of the procedure.
     pub verdict: CandidateVerdict,
 }
 
-/// Commercial bores over the flow, with the velocities that are acceptable.
+/// Commercial bores over the flow, with the acceptable velocities.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nomograph {
     /// Commercial bores.
@@ -91,8 +91,8 @@ impl Nomograph {
         words.with_plot(x, panels, legend)
     }
 
-    /// The exact bores at which the design flow runs at the limits of the range, and the feasible
-    /// stretch of the flow line.
+    /// Exact bores at which the velocity of the design flow is at the limits of the range, and the
+    /// feasible part of the flow line.
     fn limits(&self, marks: &mut Vec<Mark>, x: &Axis) {
         let (slowest, fastest) = self.velocity_range_m_per_s;
         let flow = DisplayUnit::LITRE_PER_MINUTE.of(self.design_flow_m3_per_s);
@@ -134,7 +134,7 @@ fn limit_stroke() -> Stroke {
     Stroke::solid(Role::Good, 1.3).dashed(Dash::Dashed)
 }
 
-/// A bore's line over the whole axis.
+/// Line of a bore over the whole axis.
 fn line_of(bore_m: f64, x: &Axis) -> Vec<(f64, f64)> {
     let unit = DisplayUnit::LITRE_PER_MINUTE;
     [x.minimum, x.maximum].map(|flow| (flow, velocity(flow * unit.in_si, bore_m))).to_vec()
@@ -149,7 +149,7 @@ fn bore_line(bore: &NomographBore, x: &Axis) -> Mark {
     Mark::Line { points: line_of(bore.bore_m, x), stroke }
 }
 
-/// The bore's name where its line ends on the right.
+/// Name of the bore at the right end of its line.
 fn bore_label(bore: &NomographBore, x: &Axis) -> Mark {
     let diameter = plain(DisplayUnit::MILLIMETRE.of(bore.bore_m));
     let text = match bore.label.as_str() {

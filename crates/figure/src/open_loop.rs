@@ -1,4 +1,4 @@
-//! A frequency response as a curve of phase and magnitude.
+//! Frequency response as a curve of phase and magnitude.
 
 use num_complex::Complex64;
 use phea_dynamics::portable::{argument, log10};
@@ -7,10 +7,10 @@ use super::axis::{Axis, extent};
 use super::bode::{FrequencySeries, decibel, unwrapped_degrees};
 use super::ticks::TickSteps;
 
-/// A response with its phase unwrapped, most of it between -360 and 0 degrees.
+/// Response with unwrapped phase, mostly between -360 and 0 degrees.
 pub(super) struct UnwrappedResponse {
     frequencies: Vec<f64>,
-    /// (phase in degrees, magnitude in dB)
+    /// Points (phase in degrees, magnitude in dB).
     pub(super) points: Vec<(f64, f64)>,
 }
 
@@ -20,7 +20,7 @@ pub(super) fn phase_near(response: Complex64, near: f64) -> f64 {
     principal + 360.0 * ((near - principal) / 360.0).round()
 }
 
-/// An axis that holds the finite values with a little room, its ends on multiples of 10 dB.
+/// Axis that covers the finite values with a small margin, its ends on multiples of 10 dB.
 pub(super) fn decibel_axis(title: &str, values: impl IntoIterator<Item = f64>) -> Axis {
     const ROOM: f64 = 2.0;
     let (low, high) = extent(values.into_iter().filter(|v| v.is_finite()));
@@ -35,7 +35,7 @@ impl UnwrappedResponse {
             let shifted = degrees.iter().map(|phase| phase + 360.0 * f64::from(turns));
             shifted.filter(|phase| (-360.0..=0.0).contains(phase)).count()
         };
-        // The turn with most points, the least shift among equals.
+        // turn with most points, the least shift among equals
         let turns = [0, -1, 1].into_iter().rev().max_by_key(|turns| inside(*turns)).unwrap_or(0);
         let points = degrees
             .iter()
@@ -45,8 +45,8 @@ impl UnwrappedResponse {
         UnwrappedResponse { frequencies: series.frequencies_rad_per_s.clone(), points }
     }
 
-    /// Phase and magnitude at a frequency, between neighbours by the logarithm of frequency; `None`
-    /// where it does not reach.
+    /// Phase and magnitude at a frequency, interpolated by the logarithm of frequency; `None`
+    /// outside its range.
     pub(super) fn at(&self, frequency: f64) -> Option<(f64, f64)> {
         let next = self.frequencies.iter().position(|other| *other >= frequency)?;
         let (high, above) = (*self.frequencies.get(next)?, *self.points.get(next)?);

@@ -1,4 +1,4 @@
-//! Fronts of Pareto: alternatives over a swept number, by two or three of their columns.
+//! Pareto fronts: alternatives over a swept number, by two or three of their columns.
 
 use super::axis::{Axis, extent};
 use super::colour::{Role, series_role};
@@ -8,47 +8,47 @@ use super::series::series_stroke;
 use super::{Figure, Words};
 use phea_quantity::DisplayUnit;
 
-/// Where a point stands among the others.
+/// Rank of a point among the others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrontPlace {
-    /// No other point is as good in everything and better in something.
+    /// No other point is as good in all columns and better in one.
     OnFront,
-    /// Another one is.
+    /// Another point dominates it.
     Dominated,
-    /// It is not to be had: a specification is violated, or the machine contradicts the verdict.
+    /// Infeasible: a specification is violated, or the machine contradicts the verdict.
     NotToBeHad,
 }
 
-/// A point of an alternative.
+/// Point of an alternative.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParetoPoint {
-    /// A value for each column, SI.
+    /// Value for each column, SI.
     pub values: Vec<f64>,
-    /// The swept number, for its tooltip.
+    /// Swept number, for its tooltip.
     pub label: String,
-    /// Among the others.
+    /// Rank among the others.
     pub place: FrontPlace,
 }
 
-/// An alternative.
+/// Alternative.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParetoCurve {
-    /// Its name.
+    /// Name of the alternative.
     pub name: String,
-    /// In the order of the swept number.
+    /// Points in the order of the swept number.
     pub points: Vec<ParetoPoint>,
 }
 
 /// Alternatives by their columns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParetoFront {
-    /// Two or three columns: what is drawn, and its unit. The first lies along x.
+    /// Two or three columns: quantity and unit. The first is on the x axis.
     pub columns: Vec<(String, DisplayUnit)>,
-    /// The alternatives.
+    /// Alternatives.
     pub curves: Vec<ParetoCurve>,
 }
 
-/// Room beyond the outermost points, as a share of what they span.
+/// Margin beyond the outermost points, as a fraction of their range.
 const ROOM: f64 = 0.03;
 
 impl ParetoFront {

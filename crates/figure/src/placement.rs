@@ -1,40 +1,40 @@
-//! Where labels go: the first free place among candidates, away from curves if possible.
+//! Placement of labels: the first free position among candidates, away from curves if possible.
 
 use phea_dynamics::portable::hypot;
 
 use super::scene::{Point, Rectangle};
 
-/// Width of a letter, roughly.
+/// Approximate width of a letter.
 const LETTER: f64 = 8.0;
 /// Least distance between two texts.
 const APART: f64 = 1.5;
 /// Distance below which two texts are read as one.
 const CROWDED: f64 = 6.0;
 
-/// A place for a label, with the line that leads to its point where one is needed.
+/// Position of a label, with a leader line to its point if one is needed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Led {
-    /// What the text names.
+    /// Point that the text names.
     pub point: Point,
-    /// The text.
+    /// Bounds of the text.
     pub bounds: Rectangle,
-    /// From the point to the text.
+    /// Leader line from the point to the text.
     pub line: Option<(Point, Point)>,
 }
 
-/// True when two pieces cross within both.
+/// True if two pieces cross within both.
 fn cross(a: Point, b: Point, c: Point, d: Point) -> bool {
     let side = |p: Point, q: Point, r: Point| (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
     side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
 }
 
-/// From a point to the nearest edge of a text.
+/// Distance from a point to the nearest edge of a text.
 fn distance(point: Point, bounds: &Rectangle) -> f64 {
     let nearest = (point.x.clamp(bounds.left, bounds.right), point.y.clamp(bounds.top, bounds.bottom));
     hypot(point.x - nearest.0, point.y - nearest.1)
 }
 
-/// A piece of a curve.
+/// Piece of a curve.
 #[derive(Clone, Copy, Debug)]
 struct CurvePiece {
     from: Point,
@@ -42,42 +42,42 @@ struct CurvePiece {
     width: f64,
 }
 
-/// What is taken already.
+/// Occupied areas of a figure.
 #[derive(Clone, Debug, Default)]
 pub struct Occupancy {
     texts: Vec<Rectangle>,
     segments: Vec<CurvePiece>,
-    /// Solid things a label must not hide, markers above all.
+    /// Solid objects that a label must not hide, markers above all.
     obstacles: Vec<Rectangle>,
-    /// Lines from points to their labels.
+    /// Leader lines from points to their labels.
     leads: Vec<(Point, Point)>,
 }
 
 impl Occupancy {
-    /// A text that nothing may overlap.
+    /// Adds a text that no label may overlap.
     pub fn add_text(&mut self, bounds: Rectangle) {
         self.texts.push(bounds);
     }
 
-    /// A thing to keep away from.
+    /// Adds an object that labels should avoid.
     pub(crate) fn add_obstacle(&mut self, bounds: Rectangle) {
         self.obstacles.push(bounds);
     }
 
-    /// A curve of some width to keep away from.
+    /// Adds a curve of some width that labels should avoid.
     pub(crate) fn add_polyline(&mut self, points: &[Point], width: f64) {
         let piece = |pair: &[Point]| Some(CurvePiece { from: *pair.first()?, to: *pair.get(1)?, width });
         self.segments.extend(points.windows(2).filter_map(piece));
     }
 
-    /// A line from a point to its label, which no other such label or line may cross.
+    /// Adds a leader line, which no other label or leader line may cross.
     pub(crate) fn add_lead(&mut self, from: Point, to: Point) {
         self.leads.push((from, to));
     }
 
-    /// The index of the best candidate inside `frame`: free of texts, then with the least of curves
-    /// and markers beneath it and of texts close to it, then the earliest. `None` when every
-    /// candidate leaves the frame or covers a text.
+    /// Index of the best candidate inside `frame`: free of texts, then with the least curves and
+    /// markers beneath it and texts close to it, then the earliest. `None` if every candidate
+    /// leaves the frame or covers a text.
     pub fn choose(&self, candidates: &[Rectangle], frame: &Rectangle) -> Option<usize> {
         let mut best: Option<(usize, f64)> = None;
         for (index, candidate) in candidates.iter().enumerate() {
@@ -96,9 +96,9 @@ impl Occupancy {
         best.map(|(index, _)| index)
     }
 
-    /// Like [`Occupancy::choose`] for labels that may be led to their point by a line: a line
-    /// crosses no text and no other such line, and its length counts against a place as much as the
-    /// curves that label and line lie upon.
+    /// Best candidate as in [`Occupancy::choose`], for labels that may have a leader line to their
+    /// point: the line crosses no text and no other leader line, and its length is penalised like
+    /// the curves under label and line.
     pub(crate) fn choose_led(&self, candidates: &[Led], frame: &Rectangle) -> Option<usize> {
         let mut best: Option<(usize, f64)> = None;
         for (index, Led { point, bounds, line }) in candidates.iter().enumerate() {
@@ -124,7 +124,7 @@ impl Occupancy {
         best.map(|(index, _)| index)
     }
 
-    /// The penalty of a label that lies nearer to other markers than to the point it names.
+    /// Penalty of a label that is nearer to other markers than to its point.
     fn ambiguity(&self, point: Point, bounds: &Rectangle) -> f64 {
         const COST: f64 = 6.0;
         let own = distance(point, bounds);
@@ -136,15 +136,15 @@ impl Occupancy {
         COST * self.obstacles.iter().filter(nearer).count() as f64
     }
 
-    /// A line's length in letters, and the strokes that it crosses.
+    /// Cost of a leader line: its length in letters, and the strokes that it crosses.
     fn lead_cost(&self, from: Point, to: Point) -> f64 {
         let crossed = self.segments.iter().filter(|piece| cross(from, to, piece.from, piece.to));
         hypot(to.x - from.x, to.y - from.y) / LETTER + crossed.map(|piece| 2.0 * piece.width).sum::<f64>()
     }
 
-    /// What lies beneath a label, namely markers and curves by their length in letters and their
-    /// width, and the texts close to it. A label that touches a curve at all is hard to read, so
-    /// that a short line to a free place costs less.
+    /// Weight of the objects beneath a label (markers and curves by their length in letters and
+    /// their width), and of the texts close to it. A label that touches a curve at all is hard to
+    /// read, so that a short line to a free position costs less.
     fn weight(&self, bounds: &Rectangle) -> f64 {
         const MARKER: f64 = 20.0;
         const TOUCHED: f64 = 6.0;

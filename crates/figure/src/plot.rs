@@ -1,4 +1,4 @@
-//! Axes with panels that share x: curves, bands, reference lines, markers and labels that do not
+//! Axes with panels on one x axis: curves, bands, reference lines, markers and labels that do not
 //! overlap.
 
 mod labels;
@@ -12,49 +12,49 @@ use super::colour::Role;
 use super::legend::LegendEntry;
 use super::scene::{Dash, Fill, Scene, Stroke};
 
-/// What a panel shows, in data coordinates, drawn in the order given.
+/// Content of a panel, in data coordinates, drawn in the order given.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mark {
-    /// A curve; points out of range or not a number interrupt it.
+    /// Curve; points out of range or NaN interrupt it.
     Line {
-        /// (x, y).
+        /// Points (x, y).
         points: Vec<(f64, f64)>,
         /// Line.
         stroke: Stroke,
     },
-    /// Short strokes on the right-hand side of a line, seen along it: the side that is forbidden.
+    /// Short strokes on the right-hand side of a line, seen along it: the forbidden side.
     Fringe {
-        /// (x, y).
+        /// Points (x, y).
         points: Vec<(f64, f64)>,
         /// Strokes.
         stroke: Stroke,
     },
-    /// Small dots; of several that would lie upon each other one is drawn.
+    /// Small dots; of several that would overlap one is drawn.
     Dots {
-        /// (x, y).
+        /// Points (x, y).
         points: Vec<(f64, f64)>,
         /// Colour.
         role: Role,
         /// Radius.
         radius: f64,
     },
-    /// A closed area, cut at the frame.
+    /// Closed area, cut at the frame.
     Area {
-        /// (x, y) around it.
+        /// Corners (x, y).
         corners: Vec<(f64, f64)>,
         /// Interior.
         fill: Fill,
     },
-    /// Markers; those out of range are not drawn.
+    /// Markers; those out of range are omitted.
     Markers {
-        /// (x, y) and a tooltip.
+        /// Points (x, y), each with a tooltip.
         points: Vec<(f64, f64, String)>,
-        /// Form, colour, size.
+        /// Shape, colour and size.
         style: MarkerStyle,
     },
-    /// A band across the panel.
+    /// Band across the panel.
     Band {
-        /// The axis that `from` and `to` belong to.
+        /// Axis to which `from` and `to` refer.
         direction: AxisDirection,
         /// Lower end.
         from: f64,
@@ -64,22 +64,22 @@ pub enum Mark {
         fill: Fill,
         /// Diagonal lines, for prints without colour.
         hatched: bool,
-        /// Text inside; empty for none.
+        /// Text inside; may be empty.
         label: String,
     },
-    /// A straight line across the panel.
+    /// Straight line across the panel.
     Reference {
-        /// The axis that `at` belongs to.
+        /// Axis to which `at` refers.
         direction: AxisDirection,
-        /// Where.
+        /// Value.
         at: f64,
         /// Line.
         stroke: Stroke,
-        /// Text next to it; empty for no text.
+        /// Text next to it; may be empty.
         label: String,
     },
-    /// A text outside the frame on the right, level with a value of y: the name of a line that ends
-    /// there.
+    /// Text outside the frame on the right, at the height of a value of y: the name of a line that
+    /// ends there.
     EdgeLabel {
         /// Value of y.
         at: f64,
@@ -88,30 +88,30 @@ pub enum Mark {
         /// Colour.
         role: Role,
     },
-    /// A text that belongs to a point, connected to it by a thin line where it is not next to it.
+    /// Text of a point, connected to it by a thin line unless it is adjacent.
     Callout {
-        /// (x, y) of the point, or of several to choose from.
+        /// Point (x, y), or several candidates.
         at: Vec<(f64, f64)>,
         /// Text with markup.
         text: String,
         /// Colour.
         role: Role,
     },
-    /// A text near a point.
+    /// Text near a point.
     Label {
-        /// (x, y) of the point, or of several to choose from, the best first.
+        /// Point (x, y), or several candidates, the best first.
         at: Vec<(f64, f64)>,
         /// Text with markup.
         text: String,
         /// Colour.
         role: Role,
-        /// The side tried first.
+        /// Preferred side.
         side: PointSide,
     },
 }
 
 impl Mark {
-    /// A straight line across the panel, with a text next to it.
+    /// Straight line across the panel, with a text next to it.
     pub(crate) fn reference(
         direction: AxisDirection,
         at: f64,
@@ -121,23 +121,23 @@ impl Mark {
         Mark::Reference { direction, at, stroke, label: label.into() }
     }
 
-    /// A thin dotted one.
+    /// Thin dotted line.
     pub(crate) fn dotted(direction: AxisDirection, at: f64, label: impl Into<String>) -> Mark {
         Mark::reference(direction, at, Stroke::solid(Role::Muted, 1.2).dashed(Dash::Dotted), label)
     }
 
-    /// A band across the panel without a text.
+    /// Band across the panel without a text.
     pub(crate) const fn band(direction: AxisDirection, [from, to]: [f64; 2], fill: Fill) -> Mark {
         Mark::Band { direction, from, to, fill, hatched: false, label: String::new() }
     }
 }
 
-/// Which axis a value belongs to.
+/// Axis of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AxisDirection {
-    /// A value of x: the mark is upright.
+    /// Value of x: the mark is vertical.
     X,
-    /// A value of y: the mark lies.
+    /// Value of y: the mark is horizontal.
     Y,
 }
 
@@ -152,26 +152,25 @@ pub enum PointSide {
     Left,
     /// To the right.
     Right,
-    /// On the point itself, interrupting what lies below.
+    /// On the point itself, interrupting the objects below.
     On,
 }
 
-/// One pair of axes; x belongs to the plot.
+/// Pair of axes; x belongs to the plot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
-    /// The upright axis.
+    /// Vertical axis.
     pub y: Axis,
     /// Height of the frame in view box units.
     pub height: f64,
-    /// Back to front.
+    /// Marks, back to front.
     pub marks: Vec<Mark>,
-    /// What its curves are called, in a row above the frame; empty where the legend of the plot
-    /// says it.
+    /// Names of its curves, in a row above the frame; empty if the legend of the plot has them.
     pub names: Vec<LegendEntry>,
 }
 
 impl Panel {
-    /// A panel whose curves the legend of the plot names.
+    /// Panel whose curves are named in the legend of the plot.
     pub const fn new(y: Axis, height: f64, marks: Vec<Mark>) -> Panel {
         Panel { y, height, marks, names: vec![] }
     }
@@ -180,21 +179,22 @@ impl Panel {
 /// Panels below each other on one x axis, with a legend at the bottom.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plot {
-    /// The lying axis.
+    /// Horizontal axis.
     pub x: Axis,
-    /// Top to bottom.
+    /// Panels, top to bottom.
     pub panels: Vec<Panel>,
-    /// Entries in order; none, no legend.
+    /// Legend entries in order; empty for no legend.
     pub legend: Vec<LegendEntry>,
-    /// One unit of x is as long as one of y (linear axes, one panel): the shorter axis is extended.
+    /// True if one unit of x is as long as one of y (linear axes, one panel): the shorter axis is
+    /// extended.
     pub equal_aspect: bool,
 }
 
 impl Plot {
     /// Draws the plot in the usual width.
     ///
-    /// A label that finds no free place is left out, so that nothing overlaps: whatever a figure
-    /// labels must also be in a table of the report.
+    /// A label without a free position is omitted, so that nothing overlaps: any labelled value
+    /// must also be in a table of the report.
     pub fn draw(&self) -> Scene {
         if self.equal_aspect { layout::draw(&layout::with_equal_aspect(self)) } else { layout::draw(self) }
     }

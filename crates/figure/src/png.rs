@@ -1,6 +1,6 @@
 //! A standalone SVG as PNG bytes.
 //!
-//! The only font is the embedded one: neither the fonts nor the settings of the machine take part.
+//! The only font is the embedded one: the fonts and settings of the computer have no effect.
 
 use std::sync::{Arc, OnceLock};
 
@@ -21,7 +21,7 @@ pub fn render(svg: &str, width: f64, height: f64, scale: f64) -> Result<Vec<u8>,
         return Err(FigureError::ScaleOutOfRange { scale, width, height });
     }
     let tree = Tree::from_str(svg, options()).map_err(|error| FigureError::Raster(error.to_string()))?;
-    // Both are whole numbers between 1 and 4e7.
+    // both are whole numbers between 1 and 4e7
     let mut pixmap = Pixmap::new(columns as u32, rows as u32).ok_or(FigureError::ScaleOutOfRange {
         scale,
         width,

@@ -26,7 +26,7 @@ pub struct PoleSeries {
 /// Scale of both axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PoleMapScale {
-    /// In proportion, the same on both axes.
+    /// Linear, with equal scales on both axes.
     Linear,
     /// Signed logarithmic on both axes: shows poles at -0.3 and -1000 rad/s together.
     SignedLogarithmic,
@@ -35,13 +35,13 @@ pub enum PoleMapScale {
 /// The poles and zeros of models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoleMap {
-    /// Models; each has its own form of pole marker.
+    /// Models; each has its own shape of pole marker.
     pub series: Vec<PoleSeries>,
     /// Scale.
     pub scale: PoleMapScale,
-    /// Damping ratios to draw, between 0 and 1.
+    /// Damping ratios drawn, between 0 and 1.
     pub damping_ratios: Vec<f64>,
-    /// Natural frequencies to draw, rad/s.
+    /// Natural frequencies drawn, rad/s.
     pub natural_frequencies_rad_per_s: Vec<f64>,
 }
 
@@ -78,7 +78,7 @@ impl PoleMap {
         match self.scale {
             PoleMapScale::Linear => {
                 let y = Axis::fit_linear(im, all().flat_map(|z| [z.im, -z.im]));
-                // A strip of the unstable half plane stays in sight.
+                // a strip of the unstable half plane remains visible
                 let strip = 0.2 * y.maximum;
                 let x = Axis::fit_linear(re, all().map(|z| z.re).chain([0.0]));
                 let (minimum, maximum) = (x.minimum.min(-1.4 * y.maximum), x.maximum.max(strip));
@@ -90,7 +90,7 @@ impl PoleMap {
                 let largest = parts().fold(0.0, f64::max);
                 let smallest = parts().fold(f64::INFINITY, f64::min).max(largest * 1e-7);
                 let limit = if smallest.is_finite() { decimal_power(floor_log10(smallest)) } else { 1.0 };
-                // The same extent up and down, so that a real pole lies on the middle line.
+                // equal extent up and down, so that a real pole is on the middle line
                 (
                     Axis::fit_signed_logarithmic(re, all().map(|z| z.re), limit),
                     Axis::fit_signed_logarithmic(im, all().flat_map(|z| [z.im, -z.im]), limit),
@@ -100,7 +100,7 @@ impl PoleMap {
     }
 
     /// Lines of constant damping ratio and constant natural frequency in the left half plane,
-    /// labelled where they end.
+    /// labelled at their ends.
     fn grid(&self, marks: &mut Vec<Mark>, x: &Axis, y: &Axis) {
         let reach = x.minimum.abs().max(y.maximum.abs());
         let least = match x.scale {
@@ -143,7 +143,7 @@ fn unstable_fill() -> Fill {
     Fill { role: Role::Bad, opacity: 0.1 }
 }
 
-/// Forms that stay visible when models share a pole.
+/// Marker shapes that stay visible when models have a common pole.
 fn pole_style(index: usize) -> MarkerStyle {
     let (marker, radius) = match index % 4 {
         0 => (Marker::Cross, 5.0),
@@ -173,7 +173,7 @@ fn roots(marks: &mut Vec<Mark>, roots: &[Complex64], style: MarkerStyle, what: &
     marks.push(Mark::Markers { points, style });
 }
 
-/// Where along a line its label may stand, as parts of the way to the frame.
+/// Positions of a label along a line, as fractions of the distance to the frame.
 const PLACES: [f64; 7] = [0.85, 0.7, 0.55, 0.4, 0.25, 0.12, 0.06];
 
 fn grid_stroke() -> Stroke {

@@ -1,5 +1,4 @@
-//! The band that closed loops leave for the magnitude of their prefilters, with the prefilters in
-//! it.
+//! Band that closed loops allow for the magnitude of their prefilters, with the prefilters in it.
 
 use super::axis::{Axis, extent};
 use super::colour::{Role, series_role};
@@ -9,32 +8,32 @@ use super::plot::{Mark, Panel};
 use super::scene::{Dash, Fill, Stroke};
 use super::{Figure, Words};
 
-/// The band at one frequency, and the prefilter there.
+/// Band at one frequency, and the prefilter there.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PrefilterPoint {
-    /// rad/s
+    /// Frequency, rad/s.
     pub frequency_rad_per_s: f64,
-    /// lower/min|T|, dB; minus infinity if there is no lower limit.
+    /// Lower limit over min|T|, dB; minus infinity if there is no lower limit.
     pub least_db: f64,
-    /// upper/max|T|, dB
+    /// Upper limit over max|T|, dB.
     pub greatest_db: f64,
     /// |F|, dB; `None` without one.
     pub prefilter_db: Option<f64>,
 }
 
-/// A loop with its prefilter.
+/// Loop with its prefilter.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PrefilterPanel {
-    /// Which loop.
+    /// Name of the loop.
     pub name: String,
-    /// Over frequency, rising.
+    /// Points, over rising frequency.
     pub points: Vec<PrefilterPoint>,
 }
 
-/// Below the highest magnitude that is shown no more than this is, dB.
+/// Depth below the highest magnitude down to which magnitudes are shown, dB.
 const DEPTH_DB: f64 = 60.0;
 
-/// Draws a panel for each loop, all with the same axes. Where the smallest magnitude is above the
+/// Draws a panel for each loop, all with equal axes. If the smallest magnitude is above the
 /// largest, no prefilter satisfies the limits.
 pub fn prefilter_band(words: &Words, panels: &[PrefilterPanel]) -> Figure {
     let all = || panels.iter().flat_map(|panel| &panel.points);

@@ -1,17 +1,17 @@
-//! A picture as a list of primitives that name roles for their colours.
+//! Picture as a list of primitives that name roles for their colours.
 //!
 //! Coordinates are those of the view box: x to the right, y down. Geometry that leaves its frame is
 //! cut before it enters a scene ([`clip`](crate::clip)), so no clip paths and no identifiers are
-//! needed, and several figures can share one page.
+//! needed, and several figures can be on one page.
 
 use super::colour::Role;
 
-/// A point of the view box.
+/// Point of the view box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// To the right.
+    /// Coordinate to the right.
     pub x: f64,
-    /// Down.
+    /// Coordinate downwards.
     pub y: f64,
 }
 
@@ -20,7 +20,7 @@ pub const fn point(x: f64, y: f64) -> Point {
     Point { x, y }
 }
 
-/// A rectangle with its sides along the axes; `left <= right` and `top <= bottom`.
+/// Rectangle with its sides along the axes; `left <= right` and `top <= bottom`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rectangle {
     /// Smallest x.
@@ -34,7 +34,7 @@ pub struct Rectangle {
 }
 
 impl Rectangle {
-    /// From two opposite corners in any order.
+    /// Rectangle from two opposite corners in any order.
     pub(crate) fn from_corners(a: Point, b: Point) -> Self {
         Rectangle { left: a.x.min(b.x), top: a.y.min(b.y), right: a.x.max(b.x), bottom: a.y.max(b.y) }
     }
@@ -54,7 +54,7 @@ impl Rectangle {
         point(0.5 * (self.left + self.right), 0.5 * (self.top + self.bottom))
     }
 
-    /// Grown by `margin` on each side (shrunk by a negative one).
+    /// Rectangle enlarged by `margin` on each side (reduced by a negative one).
     pub fn grown(&self, margin: f64) -> Self {
         Rectangle {
             left: self.left - margin,
@@ -64,7 +64,7 @@ impl Rectangle {
         }
     }
 
-    /// True when the interiors meet.
+    /// True if the interiors intersect.
     pub fn overlaps(&self, other: &Rectangle) -> bool {
         self.left < other.right
             && other.left < self.right
@@ -72,7 +72,7 @@ impl Rectangle {
             && other.top < self.bottom
     }
 
-    /// True when `other` lies inside or on the border.
+    /// True if `other` is inside or on the border.
     pub fn contains(&self, other: &Rectangle) -> bool {
         self.left <= other.left
             && self.top <= other.top
@@ -80,7 +80,7 @@ impl Rectangle {
             && self.bottom >= other.bottom
     }
 
-    /// True when the point lies inside or on the border.
+    /// True if the point is inside or on the border.
     pub fn contains_point(&self, p: Point) -> bool {
         p.x >= self.left && p.x <= self.right && p.y >= self.top && p.y <= self.bottom
     }
@@ -123,7 +123,7 @@ impl Dash {
     }
 }
 
-/// How an outline is drawn.
+/// Style of an outline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
     /// Colour by role.
@@ -140,18 +140,18 @@ impl Stroke {
         Stroke { role, width, dash: Dash::Solid }
     }
 
-    /// The same line with another dash pattern.
+    /// Stroke with another dash pattern.
     pub const fn dashed(self, dash: Dash) -> Self {
         Stroke { dash, ..self }
     }
 }
 
-/// How an interior is filled.
+/// Style of an interior.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fill {
     /// Colour by role.
     pub role: Role,
-    /// 1 covers, less lets the background through.
+    /// Opacity: 1 covers, less lets the background through.
     pub opacity: f64,
 }
 
@@ -161,81 +161,81 @@ impl Fill {
         Fill { role, opacity: 1.0 }
     }
 
-    /// A tint for areas behind curves and text.
+    /// Tint for areas behind curves and text.
     pub(crate) const fn tint(role: Role) -> Self {
         Fill { role, opacity: 0.14 }
     }
 }
 
-/// One step of a path.
+/// Step of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PathStep {
-    /// Begin a new run.
+    /// Beginning of a new run.
     Move(Point),
-    /// Straight to.
+    /// Straight line to a point.
     Line(Point),
     /// Cubic Bezier curve with two control points.
     Curve(Point, Point, Point),
-    /// Straight back to the beginning of the run.
+    /// Straight line back to the beginning of the run.
     Close,
 }
 
-/// The geometry of a primitive.
+/// Geometry of a primitive.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// Runs of straight and curved pieces.
     Path(Vec<PathStep>),
-    /// A rectangle, its corners rounded by a radius.
+    /// Rectangle, with a corner radius.
     Rectangle(Rectangle, f64),
-    /// Centre and radius.
+    /// Circle by centre and radius.
     Circle(Point, f64),
 }
 
-/// Where a text is held horizontally (before rotation).
+/// Horizontal anchor of a text (before rotation).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// Its beginning.
+    /// Beginning of the text.
     Start,
-    /// Its middle.
+    /// Middle of the text.
     Middle,
-    /// Its end.
+    /// End of the text.
     End,
 }
 
-/// Where a text is held vertically (before rotation).
+/// Vertical anchor of a text (before rotation).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Baseline {
-    /// The line the letters stand on.
+    /// Baseline of the letters.
     Letters,
     /// Half the height of a capital.
     Middle,
-    /// The top of a capital.
+    /// Top of a capital.
     Top,
 }
 
-/// A line of text; [`typeset`](crate::typeset) explains its markup.
+/// Line of text; [`typeset`](crate::typeset) explains its markup.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Text {
-    /// The point that anchor and baseline refer to.
+    /// Point to which anchor and baseline refer.
     pub position: Point,
     /// Text with sub- and superscripts, such as `K_H (10^6 N/m)`.
     pub content: String,
     /// Font size in view box units.
     pub size: f64,
-    /// Horizontal hold.
+    /// Horizontal anchor.
     pub anchor: Anchor,
-    /// Vertical hold.
+    /// Vertical anchor.
     pub baseline: Baseline,
     /// Clockwise rotation about the position, degrees.
     pub rotation_degrees: f64,
     /// Colour by role.
     pub role: Role,
-    /// Outlined by the background, to stay legible over lines.
+    /// True for a background outline, which keeps the text legible over lines.
     pub halo: bool,
 }
 
 impl Text {
-    /// Text in the ordinary colour, held at its start on the line of its letters.
+    /// Text in the ordinary colour, anchored at its start on the baseline of its letters.
     pub fn new(position: Point, content: impl Into<String>, size: f64) -> Self {
         Text {
             position,
@@ -249,31 +249,31 @@ impl Text {
         }
     }
 
-    /// With another hold.
+    /// Text with other anchors.
     pub fn held(self, anchor: Anchor, baseline: Baseline) -> Self {
         Text { anchor, baseline, ..self }
     }
 
-    /// With another colour.
+    /// Text with another colour.
     pub fn coloured(self, role: Role) -> Self {
         Text { role, ..self }
     }
 
-    /// With an outline of the background.
+    /// Text with a background outline.
     pub(crate) fn with_halo(self) -> Self {
         Text { halo: true, ..self }
     }
 
-    /// Rotated clockwise about its position.
+    /// Text rotated clockwise about its position.
     pub fn rotated(self, degrees: f64) -> Self {
         Text { rotation_degrees: degrees, ..self }
     }
 }
 
-/// A primitive with its paint.
+/// Primitive with its paint.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Item {
-    /// A shape; `note` is shown by a browser when the pointer rests on it.
+    /// Shape; a browser shows `note` when the pointer is on it.
     Drawing {
         /// Geometry.
         shape: Shape,
@@ -284,23 +284,23 @@ pub enum Item {
         /// Text of a tooltip, without markup.
         note: Option<String>,
     },
-    /// A text.
+    /// Text.
     Text(Text),
 }
 
-/// A picture: the size of its view box and its items from back to front.
+/// Picture: the size of its view box and its items from back to front.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// Width of the view box.
     pub width: f64,
     /// Height of the view box.
     pub height: f64,
-    /// Back to front.
+    /// Items, back to front.
     pub items: Vec<Item>,
 }
 
 impl Scene {
-    /// An empty picture.
+    /// Empty picture.
     pub fn new(width: f64, height: f64) -> Self {
         Scene { width, height, items: Vec::new() }
     }
@@ -342,7 +342,7 @@ impl Scene {
         }
     }
 
-    /// The texts from back to front.
+    /// Texts from back to front.
     pub fn texts(&self) -> impl Iterator<Item = &Text> {
         self.items.iter().filter_map(|item| match item {
             Item::Text(text) => Some(text),

@@ -1,11 +1,11 @@
-//! The line and the marker of each series: by its index, colour, dash pattern and form together.
+//! Line and marker of each series: by its index, colour, dash pattern and shape together.
 
 use super::colour::{SERIES_COUNT, series_role};
 use super::marker::{Marker, MarkerStyle};
 use super::scene::{Dash, Stroke};
 
-/// Line of the series with this index: colour and dash pattern together. Where the colours are used
-/// up they come again with other patterns, so that the first 64 lines differ.
+/// Line of the series with this index: colour and dash pattern together. After the last colour they
+/// repeat with other patterns, so that the first 64 lines differ.
 ///
 /// # Example
 /// ```

@@ -1,15 +1,15 @@
-//! Fewer points for the same curve: a response of a thousand samples becomes a path of a hundred
+//! Reduction of points of a curve: a response of a thousand samples becomes a path of a hundred
 //! corners.
 
 use phea_dynamics::portable::hypot;
 
 use super::scene::Point;
 
-/// How far a left-out point may lie from the drawn line, in view box units: a twelfth of a pixel at
-/// twice the size.
+/// Largest distance of an omitted point from the drawn line, in view box units: a twelfth of a
+/// pixel at twice the size.
 pub const TOLERANCE: f64 = 0.04;
 
-/// The directions from an anchor that pass every point since within the tolerance.
+/// Directions from an anchor that pass every point since within the tolerance.
 struct Cone {
     anchor: Point,
     /// Bounding directions, clockwise and counter-clockwise; `None` until a point is far enough to
@@ -23,7 +23,7 @@ impl Cone {
         Cone { anchor, bounds: None, farthest: 0.0 }
     }
 
-    /// Narrows the cone by a point; false when the point lies outside or the curve turns back.
+    /// Narrows the cone by a point; returns false if the point is outside or the curve reverses.
     fn admits(&mut self, p: Point) -> bool {
         let (dx, dy) = (p.x - self.anchor.x, p.y - self.anchor.y);
         let distance = hypot(dx, dy);
@@ -55,7 +55,7 @@ impl Cone {
     }
 }
 
-/// The corners of a polyline that its form needs; both ends stay.
+/// Corners of a polyline that define its shape; both ends stay.
 ///
 /// # Example
 /// ```

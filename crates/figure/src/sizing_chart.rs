@@ -14,7 +14,7 @@ use phea_quantity::DisplayUnit;
 /// length.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SizingCurve {
-    /// Hose and stiffness model.
+    /// Name of hose and stiffness model.
     pub name: String,
     /// Lengths of one line, m, rising.
     pub lengths_m: Vec<f64>,
@@ -24,10 +24,10 @@ pub struct SizingCurve {
     pub gain_v_per_n: Vec<f64>,
 }
 
-/// A candidate on the chart.
+/// Candidate on the chart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SizingCandidate {
-    /// Short name; empty for none.
+    /// Short name; may be empty.
     pub label: String,
     /// Length, m.
     pub length_m: f64,
@@ -35,11 +35,11 @@ pub struct SizingCandidate {
     pub stiffness_n_per_m: f64,
     /// Gain, V/N.
     pub gain_v_per_n: f64,
-    /// What the procedure decided.
+    /// Verdict of the procedure.
     pub verdict: CandidateVerdict,
 }
 
-/// Stiffness and gain over the length, with what was examined.
+/// Stiffness and gain over the length, with the examined candidates.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SizingChart {
     /// Curves.
@@ -50,7 +50,7 @@ pub struct SizingChart {
     pub length_range_m: Option<(f64, f64)>,
     /// Smallest acceptable proportional gain, V/N.
     pub minimum_gain_v_per_n: Option<f64>,
-    /// The gain at which the stiffness asked for becomes infinite, V/N.
+    /// Gain at which the requested stiffness becomes infinite, V/N.
     pub pole_gain_v_per_n: Option<f64>,
 }
 

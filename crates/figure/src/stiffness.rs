@@ -1,4 +1,4 @@
-//! Hydraulic stiffness, Ledezma (2019), Figure 6.4: one curve a model or design, with its band,
+//! Hydraulic stiffness, Ledezma (2019), Figure 6.4: one curve per model or design, with its band,
 //! over the stroke; of a rig with gas also over the force that is held at standstill.
 
 use super::axis::{Axis, extent};
@@ -11,50 +11,50 @@ use super::ticks::plain;
 use super::{Figure, Words};
 use phea_quantity::{DisplayUnit, Units};
 
-/// What stiffness is drawn over.
+/// Abscissa of the stiffness.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StiffnessOver {
-    /// The piston's position, m; each curve shows where it is softest.
+    /// Position of the piston, m; each curve shows its softest position.
     #[default]
     Stroke,
-    /// The hydraulic force, N; the first curve shows where it is softest.
+    /// Hydraulic force, N; the first curve shows its softest force.
     Force,
 }
 
-/// A curve of stiffness; all vectors have one value for each place.
+/// Curve of stiffness; all vectors have one value for each place.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StiffnessCurve {
-    /// Model, setting or design.
+    /// Name of the model, setting or design.
     pub name: String,
     /// Positions or forces, rising.
     pub places: Vec<f64>,
-    /// Stiffness there, N/m; not a number where there is none.
+    /// Stiffness at each place, N/m; NaN if there is none.
     pub stiffness_n_per_m: Vec<f64>,
-    /// Lowest stiffness within the tolerance of the hose's stiffening, N/m; empty for none.
+    /// Lowest stiffness within the tolerance of the hose's stiffening, N/m; may be empty.
     pub minimum_n_per_m: Vec<f64>,
-    /// Highest, N/m; empty for none.
+    /// Highest stiffness, N/m; may be empty.
     pub maximum_n_per_m: Vec<f64>,
 }
 
 /// Hydraulic stiffness over the stroke or the force.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StiffnessDiagram {
-    /// What it is drawn over.
+    /// Abscissa.
     pub over: StiffnessOver,
-    /// Curves; the first is the one the design rests on.
+    /// Curves; the first is the basis of the design.
     pub curves: Vec<StiffnessCurve>,
     /// Position or force of the linear model.
     pub operating_point: Option<f64>,
-    /// What the bands mean, such as `stiffening 4 to 5`.
+    /// Meaning of the bands, such as `stiffening 4 to 5`.
     pub band_label: String,
-    /// The units of positions and forces, with how the rig moves: of one that turns, positions are
+    /// Units of positions and forces, with the motion of the rig: for one that turns, positions are
     /// in rad, forces in N m and stiffnesses in N m/rad.
     pub units: Units,
 }
 
 impl StiffnessDiagram {
-    /// Draws the diagram: linear from zero, or logarithmic when the curves lie more than a factor
-    /// of twelve apart.
+    /// Draws the diagram: linear from zero, or logarithmic if the curves differ by more than a
+    /// factor of twelve.
     pub fn draw(&self, words: &Words) -> Figure {
         let motion = self.units.motion;
         let (place, title) = match self.over {
@@ -126,7 +126,7 @@ fn band_fill(index: usize) -> Fill {
     Fill { role: series_role(index), opacity: 0.18 }
 }
 
-/// The lowest point of a line with its value.
+/// Lowest point of a line with its value.
 fn softest(line: &[(f64, f64)], index: usize, unit: DisplayUnit) -> Option<[Mark; 2]> {
     let finite = line.iter().copied().filter(|p| p.1.is_finite());
     let (x, y) = finite.reduce(|a, b| if b.1 < a.1 { b } else { a })?;

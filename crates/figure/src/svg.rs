@@ -1,29 +1,30 @@
-//! A scene as SVG text.
+//! Scene as SVG text.
 //!
-//! Numbers have two decimals at most, so the text is the same on every machine. Colours are written
-//! as attributes resolved for a theme; on a page the classes of the style sheet override them.
+//! Numbers have two decimals at most, so the text is identical on every computer. Colours are
+//! written as attributes resolved for a theme; on a page the classes of the style sheet override
+//! them.
 
 use super::colour::{Role, Theme};
 use super::scene::{Anchor, Item, PathStep, Point, Scene, Shape, Stroke, Text};
 use super::typeset::{FONT_FAMILY, drop_to_letters, pieces};
 
-/// Where the text goes.
+/// Destination of the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SvgDestination {
-    /// Into a page that carries the style sheet.
+    /// Page that includes the style sheet.
     Page,
-    /// Into a file of its own.
+    /// Separate file.
     File(Theme),
 }
 
-/// The names a reader or a screen reader needs.
+/// Names for readers and screen readers.
 #[derive(Clone, Copy, Debug)]
 pub struct SvgNames<'a> {
-    /// Identifier, unique on a page; letters, digits and hyphens survive.
+    /// Identifier, unique on a page; only letters, digits and hyphens are kept.
     pub identifier: &'a str,
     /// Short title.
     pub title: &'a str,
-    /// What the picture shows.
+    /// Description of the picture.
     pub description: &'a str,
 }
 
@@ -60,7 +61,7 @@ struct SvgWriter {
 }
 
 impl SvgWriter {
-    /// The attribute with the resolved colour.
+    /// Attribute with the resolved colour.
     fn paint(&self, attribute: &str, role: Role) -> String {
         let theme = match self.destination {
             SvgDestination::Page => Theme::Light,
@@ -155,14 +156,14 @@ impl SvgWriter {
             out.push_str(&format!(">{spans}</text>\n"));
         };
         letter(text.halo.then_some(Role::Background), "");
-        // the halo of one piece lies over the piece before it
+        // the halo of one piece covers the piece before it
         if text.halo && spans.contains("<tspan") {
             letter(None, " aria-hidden=\"true\"");
         }
     }
 }
 
-/// The pieces of a line; a change of level is a relative move, since browsers disagree on
+/// Pieces of a line; a change of level is a relative move, since browsers disagree on
 /// `baseline-shift`.
 fn spans(text: &Text) -> String {
     let mut result = String::new();
@@ -192,7 +193,7 @@ fn element(shape: &Shape) -> &'static str {
     }
 }
 
-/// The opening of the element, or `None` where a number is not finite or nothing would be drawn.
+/// Opening of the element; `None` if a number is not finite or nothing would be drawn.
 fn geometry(shape: &Shape) -> Option<String> {
     match shape {
         Shape::Path(steps) => {
@@ -251,7 +252,7 @@ fn path_data(steps: &[PathStep]) -> Option<String> {
     (steps.len() > 1).then_some(data)
 }
 
-/// A finite number with two decimals at most, without a negative zero; anything else as 0.
+/// Finite number with two decimals at most, without a negative zero; any other number as 0.
 pub fn number(value: f64) -> String {
     if !value.is_finite() {
         return "0".to_string();
@@ -261,7 +262,7 @@ pub fn number(value: f64) -> String {
     if short == "-0" { "0".to_string() } else { short.to_string() }
 }
 
-/// Text for XML: markup characters as entities, characters that XML forbids left out.
+/// Text for XML: markup characters as entities, characters that XML forbids omitted.
 pub fn escaped(text: &str) -> String {
     let mut result = String::with_capacity(text.len());
     for letter in text.chars() {
@@ -278,7 +279,7 @@ pub fn escaped(text: &str) -> String {
     result
 }
 
-/// A name usable as an identifier.
+/// Name usable as an identifier.
 fn slug(name: &str) -> String {
     let body: String =
         name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' }).collect();

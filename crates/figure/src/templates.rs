@@ -1,4 +1,4 @@
-//! Templates: where the plants of a family lie at a frequency, by phase and magnitude.
+//! Templates: responses of the plants of a family at a frequency, by phase and magnitude.
 
 use num_complex::Complex64;
 use phea_qft::template::Template;
@@ -61,11 +61,11 @@ pub fn templates(words: &Words, templates: &[Template]) -> Figure {
     words.with_plot(x, panels, legend)
 }
 
-/// Between a template and the frame, degrees.
+/// Margin between a template and the frame, degrees.
 const ROOM: f64 = 2.0;
 const OUTLINE: f64 = 1.2;
 
-/// The nominal plant.
+/// Marker of the nominal plant.
 const NOMINAL: MarkerStyle = MarkerStyle { marker: Marker::Diamond, role: Role::Text, radius: 4.0 };
 
 /// Phase within (-360, 0] degrees and magnitude in dB.
@@ -74,7 +74,7 @@ fn home(response: Complex64) -> (f64, f64) {
     (if phase > 0.0 { phase - 360.0 } else { phase }, decibel(response))
 }
 
-/// A template with its nominal plant at a given place of a chart.
+/// Template with its nominal plant at a given position of a chart.
 pub(super) struct PlacedTemplate {
     name: String,
     role: Role,
@@ -84,7 +84,7 @@ pub(super) struct PlacedTemplate {
 }
 
 impl PlacedTemplate {
-    /// The template moved so that its nominal plant comes to (degrees, dB).
+    /// Template moved so that its nominal plant is at (degrees, dB).
     pub(super) fn new(template: &Template, nominal: (f64, f64), role: Role) -> PlacedTemplate {
         let relative = |response: &Complex64| *response / template.nominal;
         let plants = template.points.iter().map(|plant| {
@@ -109,13 +109,13 @@ impl PlacedTemplate {
         }
     }
 
-    /// Every place that it takes.
+    /// All positions of the template.
     pub(super) fn extent(&self) -> impl Iterator<Item = (f64, f64)> {
         let all = self.plants.iter().chain(self.outlines.iter().flatten()).copied();
         all.chain([self.nominal]).filter(|(phase, magnitude)| phase.is_finite() && magnitude.is_finite())
     }
 
-    /// Regions, outlines and plants.
+    /// Marks of regions, outlines and plants.
     pub(super) fn marks(&self) -> Vec<Mark> {
         let mut marks = Vec::new();
         for outline in &self.outlines {
@@ -127,7 +127,7 @@ impl PlacedTemplate {
         marks
     }
 
-    /// The nominal plant, with a tooltip.
+    /// Mark of the nominal plant, with a tooltip.
     fn nominal_mark(&self) -> Mark {
         let note = format!("nominal plant at {}", self.name);
         Mark::Markers {
@@ -136,7 +136,7 @@ impl PlacedTemplate {
         }
     }
 
-    /// The frequency, as a label at the nominal plant.
+    /// Label of the frequency at the nominal plant.
     fn label(&self) -> Mark {
         Mark::Callout { at: vec![self.nominal], text: self.name.clone(), role: Role::Text }
     }

@@ -1,28 +1,28 @@
 //! Ticks: round values that cover an axis, and their labels.
 
-/// A tick; one without label is a minor one.
+/// Tick; one without a label is a minor tick.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
-    /// Where, in the unit of the axis.
+    /// Value, in the unit of the axis.
     pub value: f64,
     /// Number at the tick.
     pub label: Option<String>,
 }
 
-/// Which steps count as round.
+/// Set of round steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TickSteps {
-    /// 1, 2, 5 times a power of ten.
+    /// Steps of 1, 2, 5 times a power of ten.
     Decimal,
-    /// 15, 30, 45, 90, 180, 360 degrees.
+    /// Steps of 15, 30, 45, 90, 180, 360 degrees.
     Angle,
-    /// 10, 20, 40, 60, 80, 100 decibels: 20 to a factor of ten.
+    /// Steps of 10, 20, 40, 60, 80, 100 decibels: 20 for a factor of ten.
     Decibel,
-    /// This step whatever the room: a chart with customary numbers.
+    /// Fixed step, for a chart with customary numbers.
     Every(u16),
 }
 
-/// The smallest round step that divides `span` into at most `count` intervals.
+/// Smallest round step that divides `span` into at most `count` intervals.
 ///
 /// # Example
 /// ```
@@ -57,7 +57,7 @@ pub fn round_step(span: f64, count: usize, steps: TickSteps) -> f64 {
 }
 
 /// Ticks of a linear axis from `minimum` to `maximum`, at most `count` intervals, labels divided by
-/// 10^`exponent`. Where that leaves a single one, which shows no scale, the steps are finer.
+/// 10^`exponent`. If only one remained, which would show no scale, the steps are finer.
 ///
 /// # Example
 /// ```
@@ -87,7 +87,7 @@ pub fn linear(minimum: f64, maximum: f64, count: usize, steps: TickSteps, expone
 }
 
 /// Ticks of a logarithmic axis: decades with labels, at most `count` of them, and 2 to 9 between
-/// them as minor ones. Where that leaves room, 2 and 5 get labels as well.
+/// them as minor ones. If space remains, 2 and 5 have labels as well.
 pub fn logarithmic(minimum: f64, maximum: f64, count: usize) -> Vec<Tick> {
     let (low, high) = (floor_log10(minimum), floor_log10(maximum));
     let decades = (high - low).max(1) as usize;
@@ -152,7 +152,7 @@ fn power_label(exponent: i32) -> String {
     }
 }
 
-/// 10^n, the correctly rounded double for |n| <= 22 and within an ulp or two elsewhere.
+/// Power 10^n, the correctly rounded double for |n| <= 22 and within an ulp or two elsewhere.
 pub fn decimal_power(exponent: i32) -> f64 {
     format!("1e{exponent}").parse().unwrap_or(f64::NAN)
 }
@@ -162,12 +162,13 @@ pub fn floor_log10(value: f64) -> i32 {
     if !(value.is_finite() && value > 0.0) {
         return 0;
     }
-    // The exponent of the shortest decimal form: exact, no logarithm whose last bit could lie.
+    // the exponent of the shortest decimal form: exact, without a logarithm whose last bit could be
+    // wrong
     let text = format!("{value:e}");
     text.split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0)
 }
 
-/// The exponent, a multiple of three, that labels of an axis are divided by: 0 while they stay
+/// Exponent, a multiple of three, by which labels of an axis are divided: 0 while they are
 /// readable.
 pub(crate) fn engineering_exponent(minimum: f64, maximum: f64) -> i32 {
     let largest = minimum.abs().max(maximum.abs());
@@ -176,11 +177,11 @@ pub(crate) fn engineering_exponent(minimum: f64, maximum: f64) -> i32 {
 }
 
 fn decimals_of(step: f64) -> usize {
-    // A step such as 0.25 would need one more; steps are 1, 2, 5 or whole degrees.
+    // a step such as 0.25 would need one more; steps are 1, 2, 5 or whole degrees
     usize::try_from(-floor_log10(step * (1.0 + 1e-9))).unwrap_or(0).min(12)
 }
 
-/// A number with fixed decimals and a real minus sign, without a negative zero.
+/// Number with fixed decimals and a real minus sign, without a negative zero.
 ///
 /// # Example
 /// ```
@@ -196,8 +197,8 @@ pub fn decimal(value: f64, decimals: usize) -> String {
     }
 }
 
-/// A number with three significant digits for an annotation: fixed decimals from 0.001 to 99999,
-/// else `a×10^n`.
+/// Number with three significant digits for an annotation: fixed decimals from 0.001 to 99999,
+/// otherwise `a×10^n`.
 ///
 /// # Example
 /// ```

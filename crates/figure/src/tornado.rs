@@ -1,4 +1,4 @@
-//! Sensitivity bars: how far a result moves when one parameter goes to its ends, the widest on top.
+//! Sensitivity bars: the change of a result when one parameter is at its ends, the widest on top.
 
 use super::axis::Axis;
 use super::colour::Role;
@@ -8,14 +8,14 @@ use super::ticks::plain;
 use super::{Figure, LABEL_SIZE, SMALL_SIZE, TITLE_SIZE, WIDTH, Words, typeset};
 use phea_quantity::DisplayUnit;
 
-/// One parameter's effect.
+/// Effect of one parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TornadoBar {
     /// Parameter, such as `β_0`.
     pub parameter: String,
-    /// Its low setting in words, such as `1.3 GPa`.
+    /// Text of its low setting, such as `1.3 GPa`.
     pub low_setting: String,
-    /// Its high setting in words.
+    /// Text of its high setting.
     pub high_setting: String,
     /// Result at the low setting, SI.
     pub low_value: f64,
@@ -23,12 +23,12 @@ pub struct TornadoBar {
     pub high_value: f64,
 }
 
-/// How far a result moves with each parameter.
+/// Change of a result with each parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tornado {
-    /// The result, such as `Hydraulic stiffness K_H`.
+    /// Result, such as `Hydraulic stiffness K_H`.
     pub quantity: String,
-    /// Its unit.
+    /// Unit of the result.
     pub unit: DisplayUnit,
     /// Result at the nominal settings, SI.
     pub nominal: f64,
@@ -41,7 +41,7 @@ const BAR: f64 = 18.0;
 const TOP: f64 = 26.0;
 
 impl Tornado {
-    /// Draws the bars; a bar whose values are not finite is left out.
+    /// Draws the bars; a bar whose values are not finite is omitted.
     pub fn draw(&self, words: &Words) -> Figure {
         let mut bars: Vec<&TornadoBar> =
             self.bars.iter().filter(|bar| is_drawable(bar, self.nominal)).collect();
@@ -68,7 +68,7 @@ impl Tornado {
         words.with_scene(scene)
     }
 
-    /// An axis with room for the labels at the ends of the longest bars.
+    /// Axis with space for the labels at the ends of the longest bars.
     fn axis(&self, bars: &[&TornadoBar], frame: Rectangle) -> Axis {
         let (mut low, mut high) = (self.nominal, self.nominal);
         let (mut before, mut after) = (12.0_f64, 12.0_f64);
@@ -95,7 +95,7 @@ impl Tornado {
         let one_sided = (bar.low_value - self.nominal) * (bar.high_value - self.nominal) >= 0.0;
         for (value, high, words) in ends(bar, self.nominal) {
             let x = place(axis, frame, self.unit.of(value));
-            // Two ends on one side of the nominal value share the row, one above the other.
+            // two ends on one side of the nominal value are in one row, one above the other
             let (from, to) = match (one_sided, high) {
                 (false, _) => (middle - 0.5 * BAR, middle + 0.5 * BAR),
                 (true, false) => (middle - 0.5 * BAR, middle),
@@ -128,7 +128,7 @@ impl Tornado {
     }
 }
 
-/// Finite, and not so large that differences overflow.
+/// True if the values are finite, and not so large that differences overflow.
 fn is_drawable(bar: &TornadoBar, nominal: f64) -> bool {
     [bar.low_value, bar.high_value, nominal].iter().all(|value| value.abs() < 1e200)
 }
@@ -171,7 +171,7 @@ fn scale(scene: &mut Scene, axis: &Axis, frame: Rectangle) {
     );
 }
 
-/// Where a bar ends and the label at its end: one text for both ends when they lie on one side.
+/// End of a bar and the label there: one text for both ends if they are on one side.
 fn ends(bar: &TornadoBar, nominal: f64) -> Vec<(f64, bool, String)> {
     let low = (bar.low_value, false, bar.low_setting.clone());
     let high = (bar.high_value, true, bar.high_setting.clone());

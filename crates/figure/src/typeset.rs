@@ -1,11 +1,11 @@
 //! Text with sub- and superscripts, and its size by the metrics of the embedded font.
 //!
-//! Markup is small so that names given by users pass unchanged:
+//! Markup is minimal so that names given by users pass unchanged:
 //! - `_` after a single letter that begins a word starts a subscript of letters, digits and primes:
-//!   `K_H`, `x_p`, `omega_n` stays as it is, and so does `eaton_synflex_3130_08`;
+//!   `K_H`, `x_p`, `omega_n` is unchanged, and so is `eaton_synflex_3130_08`;
 //! - `^` starts a superscript of a sign and digits: `10^-3`, `m^3`; a hyphen there is set as a
 //!   minus sign;
-//! - braces hold anything: `V_{A,0}`, `e^{-sT}`.
+//! - braces contain any text: `V_{A,0}`, `e^{-sT}`.
 
 use std::sync::OnceLock;
 
@@ -18,8 +18,8 @@ use super::scene::{Anchor, Baseline, Point, Rectangle, Text, point};
 /// The embedded font, a subset of DejaVu Sans 2.37; its licence is in the same folder.
 pub const FONT: &[u8] = include_bytes!("../fonts/DejaVuSans.ttf");
 
-/// Families a browser tries: the embedded font where the page or the machine has it, then faces
-/// about as wide.
+/// Font families for a browser: the embedded font if the page or the computer has it, then faces of
+/// similar width.
 pub(crate) const FONT_FAMILY: &str = "'DejaVu Sans',Verdana,Geneva,'Segoe UI',sans-serif";
 
 /// Height of a capital, in font sizes.
@@ -31,10 +31,10 @@ pub(crate) const SCRIPT_SIZE: f64 = 0.74;
 const RAISED: f64 = 0.36;
 const LOWERED: f64 = 0.2;
 
-/// Height of a piece of text against its line.
+/// Height of a piece of text relative to its line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Level {
-    /// On the line.
+    /// Ordinary text on the line.
     Line,
     /// Below.
     Subscript,
@@ -61,7 +61,7 @@ impl Level {
     }
 }
 
-/// The pieces of a marked-up line.
+/// Pieces of a marked-up line.
 ///
 /// # Example
 /// ```
@@ -80,8 +80,8 @@ pub fn pieces(content: &str) -> Vec<(String, Level)> {
     pieces
 }
 
-/// The pieces of an equation, which has no names of users: `_` and `^` take the next word with its
-/// sign, or what stands in parentheses, after any letter.
+/// Pieces of an equation, which has no names given by users: `_` and `^` take the next word with
+/// its sign, or a text in parentheses, after any letter.
 ///
 /// # Example
 /// ```
@@ -99,7 +99,7 @@ pub fn pieces_of_equation(equation: &str) -> Vec<(String, Level)> {
     })
 }
 
-/// Letters that `_` or `^` takes, of those behind it, where no brace follows.
+/// Number of letters that `_` or `^` takes from those after it, without a brace.
 type ScriptLength = fn(level: Level, before: &[char], rest: &[char]) -> usize;
 
 fn split(content: &str, length: ScriptLength) -> Vec<(String, Level)> {
@@ -121,7 +121,8 @@ fn split(content: &str, length: ScriptLength) -> Vec<(String, Level)> {
     result
 }
 
-/// A sub- or superscript that starts at `index`: its level, its text and where the line goes on.
+/// Sub- or superscript that starts at `index`: its level, its text and the index at which the line
+/// continues.
 fn script_at(letters: &[char], index: usize, length: ScriptLength) -> Option<(Level, String, usize)> {
     let level = match letters.get(index)? {
         '_' => Level::Subscript,
@@ -155,7 +156,7 @@ fn length_in_label(level: Level, before: &[char], rest: &[char]) -> usize {
     }
 }
 
-/// True when exactly one letter stands between the beginning of a word and the end.
+/// True if exactly one letter is between the beginning of a word and the end.
 fn is_symbol(before: &[char]) -> bool {
     let mut back = before.iter().rev();
     back.next().is_some_and(|c| c.is_alphabetic())
@@ -171,7 +172,7 @@ pub fn width(content: &str, size: f64) -> f64 {
     total * size
 }
 
-/// The line cut to fit `limit`, with an ellipsis where something is missing.
+/// Line cut to fit `limit`, with an ellipsis if text is missing.
 pub fn fitted(content: &str, size: f64, limit: f64) -> String {
     if width(content, size) <= limit {
         return content.to_string();
@@ -186,10 +187,10 @@ pub fn fitted(content: &str, size: f64, limit: f64) -> String {
     String::new()
 }
 
-/// The title of an axis and its size, made to fit `limit`: down to [`SMALL_SIZE`], and then with
-/// fewer words before its unit.
+/// Title of an axis and its size, made to fit `limit`: down to [`SMALL_SIZE`], and then with fewer
+/// words before its unit.
 pub fn fitted_title(content: &str, size: f64, limit: f64) -> (String, f64) {
-    // less than fits to the last bit
+    // slightly less than the limit, to the last bit
     let fitting = 0.99 * size * limit / width(content, size);
     if fitting >= SMALL_SIZE {
         return (content.to_string(), size.min(fitting));
@@ -203,7 +204,7 @@ pub fn fitted_title(content: &str, size: f64, limit: f64) -> (String, f64) {
     (title, SMALL_SIZE)
 }
 
-/// Advance of a letter in font sizes; a letter the font lacks counts as one.
+/// Advance of a letter in font sizes; a letter missing in the font counts as one.
 fn advance(letter: char) -> f64 {
     // by code point, up to the last of the font
     static ADVANCES: OnceLock<Vec<f64>> = OnceLock::new();
@@ -222,7 +223,7 @@ fn advance(letter: char) -> f64 {
     table.get(letter as usize).copied().unwrap_or(1.0)
 }
 
-/// Downward shift from the held point to the line of the letters, in view box units.
+/// Downward shift from the anchor point to the baseline of the letters, in view box units.
 pub(crate) fn drop_to_letters(text: &Text) -> f64 {
     match text.baseline {
         Baseline::Letters => 0.0,
@@ -232,7 +233,7 @@ pub(crate) fn drop_to_letters(text: &Text) -> f64 {
 }
 
 impl Text {
-    /// The smallest upright rectangle that holds the drawn text.
+    /// Smallest axis-parallel rectangle that contains the drawn text.
     pub fn bounds(&self) -> Rectangle {
         let width = width(&self.content, self.size);
         let left = match self.anchor {

@@ -1,4 +1,4 @@
-//! Figures from outside: what is drawn, and that it can be read.
+//! Figures through the public interface: their content, and legibility.
 #![cfg(test)]
 
 mod circuit;

@@ -1,11 +1,11 @@
-//! The hydraulic circuit: what it shows is what the rig has.
+//! The hydraulic circuit: its symbols agree with the parts of the rig.
 
 use crate::gallery;
 use crate::legibility::check;
 use phea_figure::scene::{Item, PathStep, Point, Rectangle, Shape};
 use phea_figure::*;
 
-/// The circuit of the example rig with something else.
+/// Circuit of the example rig with a change.
 fn circuit(change: impl Fn(&mut Schematic)) -> Figure {
     let mut schematic = gallery::circuit_of_hoses();
     change(&mut schematic);
@@ -26,7 +26,7 @@ fn rectangles(figure: &Figure) -> Vec<Rectangle> {
     figure.scene.items.iter().filter_map(of).collect()
 }
 
-/// The cylinder, which is larger than anything else.
+/// Cylinder, the largest object.
 fn body(figure: &Figure) -> Rectangle {
     let area = |of: &Rectangle| of.width() * of.height();
     rectangles(figure).into_iter().max_by(|one, other| area(one).total_cmp(&area(other))).unwrap()
@@ -40,7 +40,7 @@ fn circles(figure: &Figure) -> Vec<Point> {
     figure.scene.items.iter().filter_map(of).collect()
 }
 
-/// The corners of closed triangles.
+/// Corners of closed triangles.
 fn triangles(figure: &Figure) -> Vec<[Point; 3]> {
     let of = |item: &Item| match item {
         Item::Drawing { shape: Shape::Path(steps), .. } => match steps.as_slice() {
@@ -69,8 +69,8 @@ fn a_motor_has_its_own_symbols() {
     }
 }
 
-/// Each further stage is a sleeve of two walls inside the one before it, up to as many as can be
-/// distinguished.
+/// Each further stage is a sleeve of two walls inside the previous one, up to the number that can
+/// be distinguished.
 #[test]
 fn stages_lie_one_in_another() {
     let with = |stages: usize| circuit(|schematic| schematic.further_stages = stages);
@@ -80,7 +80,7 @@ fn stages_lie_one_in_another() {
         let shown = stages.min(phea_figure::schematic::STAGES);
         assert_eq!(all.len(), piston + 2 * shown);
         let body = body(&with(stages));
-        // walls are thinner than anything else in the cylinder
+        // walls are thinner than any other part of the cylinder
         let walls: Vec<_> = all.iter().filter(|wall| body.contains(wall) && wall.height() < 6.0).collect();
         let halves: Vec<f64> = walls.iter().map(|wall| (wall.centre().y - body.centre().y).abs()).collect();
         assert_eq!(halves.len(), 2 * shown);
@@ -91,8 +91,7 @@ fn stages_lie_one_in_another() {
     }
 }
 
-/// The rod's end lies between joint and load, on the axis of the rod, and below them stand the
-/// words.
+/// The rod's end is between joint and load, on the axis of the rod, with the text below them.
 #[test]
 fn a_linkage_is_a_lever_about_a_joint() {
     let words = ["four-bar", "arm r", "49.8 mm"];
@@ -116,8 +115,8 @@ fn a_linkage_is_a_lever_about_a_joint() {
     assert!(circles(&circuit(|_| {})).iter().all(|circle| circle.x < 450.0), "no lever without a linkage");
 }
 
-/// One triangle more is the head of an arrow through the gas; a valve has two of its own, which
-/// meet in one point between the chamber's port and the gas.
+/// An additional triangle is the head of an arrow through the gas; a valve has two of its own,
+/// which meet in one point between the chamber's port and the gas.
 #[test]
 fn an_arrow_goes_through_what_is_adjusted() {
     let with = |kind: Option<AccumulatorSymbol>| circuit(|schematic| schematic.line_a.accumulator = kind);

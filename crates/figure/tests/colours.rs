@@ -1,4 +1,4 @@
-//! Contrast and colour blindness: what the palette promises.
+//! Contrast and colour blindness: guarantees of the palette.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -110,9 +110,9 @@ fn seen_distance(a: Role, b: Role, theme: Theme, matrix: &[Rgb; 3]) -> f64 {
     p.iter().zip(q).map(|(x, y)| (x - y) * (x - y)).sum::<f64>().sqrt()
 }
 
-/// Distance in Oklab (black to white is 1) below which two series could be taken for each other.
+/// Distance in Oklab (black to white is 1) below which two series could be confused.
 const APART: f64 = 0.08;
-/// The same for the first four, which most figures make do with.
+/// Distance for the first four series, which suffice for most figures.
 const FIRST_APART: f64 = 0.12;
 
 #[test]

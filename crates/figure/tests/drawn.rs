@@ -1,4 +1,4 @@
-//! The concrete figures with numbers of the example rig: well formed, legible, the same every time.
+//! Concrete figures with numbers of the example rig: well formed, legible, and reproducible.
 
 use crate::gallery;
 use crate::legibility::check;
@@ -62,15 +62,15 @@ fn texts<'a>(group: &'a usvg::Group, found: &mut Vec<&'a usvg::Text>) {
 
 #[test]
 fn text_is_as_wide_as_the_rasteriser_sets_it() {
-    // Two independent ways: our sum of advances, and the shaping of the rasteriser with the
-    // embedded font alone.
+    // two independent ways: our sum of advances, and the shaping of the rasteriser with the
+    // embedded font only
     let mut options = usvg::Options::default();
     options.fontdb_mut().load_font_data(phea_figure::typeset::FONT.to_vec());
     for figure in gallery::all() {
         let tree = usvg::Tree::from_str(&figure.to_svg_standalone(), &options).unwrap();
         let mut set = Vec::new();
         texts(tree.root(), &mut set);
-        // a text of several pieces is drawn again over the halo that it has
+        // a text of several pieces is drawn again over its halo
         let times = |text: &Text| if text.halo && text.content.contains(['_', '^']) { 2 } else { 1 };
         let drawn = || figure.scene.texts().flat_map(|text| std::iter::repeat_n(text, times(text)));
         assert_eq!(set.len(), drawn().count(), "{}: a text got lost", figure.name);
@@ -130,7 +130,7 @@ fn poles_tell_their_value() {
     assert!(svg.contains("pole at \u{2212}11.6 + 2938j rad/s"));
 }
 
-/// The names of a panel's curves are above its own frame and below the frame before it, each once.
+/// Names of a panel's curves are above its own frame and below the frame before it, each once.
 #[test]
 fn names_of_curves_are_at_their_own_panel() {
     let line = |value: f64, series| Curve::line([(0.0, value), (1.0, value + 1.0)], series);

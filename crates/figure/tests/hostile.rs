@@ -1,5 +1,4 @@
-//! Figures from numbers and words that make no sense: no panic, and every rule of legibility still
-//! holds.
+//! Figures from meaningless numbers and words: no panic, and every rule of legibility still holds.
 
 use crate::legibility::check;
 use num_complex::Complex64;
@@ -20,7 +19,7 @@ impl Random {
         (self.unit() * count as f64) as usize
     }
 
-    /// Over many decades, of either sign, sometimes no number at all.
+    /// Number over many decades, of either sign, sometimes NaN.
     fn number(&mut self) -> f64 {
         const STRANGE: [f64; 9] =
             [0.0, -0.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e308, -1e308, 1e-320, 5e-324];
@@ -86,7 +85,7 @@ impl Random {
         Complex64::new(self.number(), self.number())
     }
 
-    /// Gains that may be negative, infinite or in the wrong order, at phases that may be anything.
+    /// Gains that may be negative, infinite or in the wrong order, at arbitrary phases.
     fn bound(&mut self) -> Bound {
         let phases = self.below(9);
         let phase = |r: &mut Random| if r.unit() < 0.1 { r.number() } else { -7.0 * r.unit() };

@@ -1,10 +1,11 @@
-//! What holds for every figure, whatever it shows.
+//! Rules for every figure, for any content.
 
 use phea_figure::scene::{Item, PathStep, Point, Rectangle, Shape};
 use phea_figure::{Figure, SMALL_SIZE};
 use resvg::usvg::roxmltree;
 
-/// Well formed, finite, inside its box, no text upon another, no text too small.
+/// Checks that the figure is well formed, finite and inside its box, without overlapping or too
+/// small texts.
 pub(crate) fn check(figure: &Figure) {
     let name = &figure.name;
     let scene = &figure.scene;

@@ -1,4 +1,4 @@
-//! What a Nichols chart shows of loops that leave it, and where its labels are.
+//! A Nichols chart of loops that leave it, and the positions of its labels.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -24,7 +24,7 @@ fn frame_of(figure: &Figure) -> Rectangle {
     found.unwrap()
 }
 
-/// Runs of points of everything that is drawn with strokes of a width.
+/// Runs of points of all objects drawn with strokes of a width.
 fn runs(figure: &Figure, width: f64) -> Vec<Vec<Point>> {
     let mut runs: Vec<Vec<Point>> = Vec::new();
     for item in &figure.scene.items {
@@ -46,7 +46,7 @@ fn runs(figure: &Figure, width: f64) -> Vec<Vec<Point>> {
 const LOOP_WIDTH: f64 = 2.4;
 
 /// A loop that comes from -470 degrees far above 0 dB, passes 0 dB between -150 and -120 degrees,
-/// and turns on to -600 degrees far below.
+/// and continues to -600 degrees far below.
 fn far_turning_loop() -> FrequencySeries {
     let corners = [(-470.0, 80.0), (-150.0, 40.0), (-120.0, -15.0), (-600.0, -60.0)];
     let counts = [100, 400, 100];
@@ -63,12 +63,12 @@ fn far_turning_loop() -> FrequencySeries {
     }
 }
 
-/// What is far from 0 dB does not widen the axis: the loop is cut at the frame, which it leaves on
-/// the left above, and below too where the chart reaches that far down. A design frequency there
-/// widens it to a whole turn.
+/// Points far from 0 dB do not widen the axis: the loop is cut at the frame, which it leaves on the
+/// left above, and below too if the chart extends that far down. A design frequency there widens it
+/// to a whole turn.
 #[test]
 fn a_loop_far_from_0_db_leaves_the_frame() {
-    // The mark at 41 rad/s is at -342 degrees, that at 11 rad/s at -438 degrees.
+    // the mark at 41 rad/s is at -342 degrees, that at 11 rad/s at -438 degrees
     let cases = [(vec![], "\u{2212}270", 2), (vec![41.0], "\u{2212}360", 1), (vec![11.0], "\u{2212}360", 1)];
     for (marks, leftmost, ends) in cases {
         let chart = NicholsChart {
@@ -79,7 +79,7 @@ fn a_loop_far_from_0_db_leaves_the_frame() {
         let figure = drawn(&chart);
         assert_eq!(figure.scene.texts().next().unwrap().content, leftmost);
         let (frame, runs) = (frame_of(&figure), runs(&figure, LOOP_WIDTH));
-        // Below the frame is the legend.
+        // below the frame is the legend
         let points: Vec<Point> = runs.into_iter().flatten().filter(|p| p.y <= frame.bottom).collect();
         let outside = points.iter().filter(|p| !frame.contains_point(**p));
         assert_eq!(outside.count(), 0);
@@ -88,7 +88,7 @@ fn a_loop_far_from_0_db_leaves_the_frame() {
     }
 }
 
-/// Three loops next to each other: there is room on both sides of them, and no label is on a loop.
+/// Labels of three adjacent loops, with space on both sides, are not on a loop.
 #[test]
 fn labels_stay_off_loops_where_room_exists() {
     let upright = |phase: f64| FrequencySeries {
@@ -112,7 +112,7 @@ fn labels_stay_off_loops_where_room_exists() {
     }
 }
 
-/// The earliest place is left for one that is not close to another text.
+/// The earliest position is rejected in favour of one that is not close to another text.
 #[test]
 fn labels_keep_away_from_each_other() {
     let frame = Rectangle { left: 0.0, top: 0.0, right: 300.0, bottom: 40.0 };

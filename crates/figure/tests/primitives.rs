@@ -1,4 +1,4 @@
-//! Cutting, ticks, text and numbers of the drawing layer.
+//! Clipping, ticks, text and numbers of the drawing layer.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -10,7 +10,7 @@ use phea_figure::ticks::{Tick, decimal_power, floor_log10};
 use phea_figure::typeset::{Level, fitted, fitted_title, pieces, width};
 use phea_figure::{clip, simplify};
 
-/// A linear congruential generator (Knuth's MMIX constants); the tests need no better one.
+/// Linear congruential generator (Knuth's MMIX constants), sufficient for the tests.
 struct Random(u64);
 
 impl Random {
@@ -23,7 +23,7 @@ impl Random {
         low + (high - low) * self.unit()
     }
 
-    /// Mostly ordinary, now and then not a number, infinite or huge.
+    /// Mostly ordinary numbers, occasionally NaN, infinite or huge.
     fn wild(&mut self) -> f64 {
         match (self.unit() * 40.0) as u32 {
             0 => f64::NAN,
@@ -37,7 +37,7 @@ impl Random {
 
 const FRAME: Rectangle = Rectangle { left: -100.0, top: -70.0, right: 110.0, bottom: 90.0 };
 
-/// True when the point lies on the segment between two others, to rounding: measured from the
+/// True if the point is on the segment between two others, within rounding: measured from the
 /// nearer end, since the other may be very far away.
 fn lies_on(p: Point, a: Point, b: Point) -> bool {
     let away = |q: Point| hypot(p.x - q.x, p.y - q.y);
@@ -58,8 +58,8 @@ fn a_cut_polyline_stays_in_the_frame_and_on_the_curve() {
             assert!(run.len() > 1);
             for pair in run.windows(2) {
                 assert!(FRAME.contains_point(pair[0]) && FRAME.contains_point(pair[1]), "{run:?}");
-                // Both ends and the middle lie on one piece of the curve: nothing runs along the
-                // frame.
+                // both ends and the middle are on one piece of the curve: no line runs along the
+                // frame
                 let middle = point(0.5 * (pair[0].x + pair[1].x), 0.5 * (pair[0].y + pair[1].y));
                 let on_curve = points.windows(2).any(|piece| {
                     piece[0].y.is_finite()
@@ -113,7 +113,7 @@ fn a_cut_polygon_has_the_area_of_the_intersection() {
     }
 }
 
-/// The value a label stands for.
+/// Value that a label represents.
 fn read(label: &str, exponent: i32) -> f64 {
     let plain = label.replace('\u{2212}', "-");
     let power = |text: &str| decimal_power(text.parse().unwrap());
@@ -291,8 +291,8 @@ fn distance(p: Point, a: Point, b: Point) -> f64 {
     hypot(p.x - a.x - t * dx, p.y - a.y - t * dy)
 }
 
-/// What is too long for its panel becomes smaller and loses words, and neither its unit nor the
-/// power of ten.
+/// A title that is too long for its panel becomes smaller and loses words, but neither its unit nor
+/// the power of ten.
 #[test]
 fn the_title_of_an_axis_keeps_its_unit() {
     for (title, limit) in [

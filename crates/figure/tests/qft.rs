@@ -1,5 +1,5 @@
-//! What the figures of the robust method promise: contours that are contours, edges that enclose
-//! what is forbidden.
+//! Guarantees of the figures of the robust method: exact contours, and edges that enclose the
+//! forbidden region.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -47,7 +47,7 @@ fn every(step_deg: f64) -> Vec<f64> {
     (0..=(360.0 / step_deg) as usize).map(|i| i as f64 * step_deg - 360.0).collect()
 }
 
-/// Twice the area to the left, in degrees times dB: negative when what is enclosed lies to the
+/// Twice the area to the left, in degrees times dB: negative if the enclosed region is to the
 /// right.
 fn area(edge: &Boundary) -> f64 {
     edge.points.windows(2).map(|pair| pair[0].0 * pair[1].1 - pair[1].0 * pair[0].1).sum()
@@ -91,7 +91,7 @@ fn an_open_bound_has_one_edge_with_the_forbidden_side_below() {
     assert!(visible.iter().all(|edge| !edge.closed && edge.points.windows(2).all(|p| p[1].0 > p[0].0)));
 }
 
-/// A ring: an island with an allowed hole, which spans split and join around.
+/// A ring: an island with an allowed hole, around which spans split and join.
 #[test]
 fn a_hole_is_an_edge_of_its_own() {
     let circle = |phase: f64, radius: f64| {
@@ -107,15 +107,16 @@ fn a_hole_is_an_edge_of_its_own() {
     let edges = boundaries(&bound(&every(4.0), ring));
     let areas: Vec<f64> = edges.iter().map(area).collect();
     assert!(edges.len() == 2 && edges.iter().all(|edge| edge.closed), "{areas:?}");
-    // Twice the area of an ellipse with half axes r degrees and r/10 dB; polygons fall short of it.
+    // twice the area of an ellipse with half axes r degrees and r/10 dB; polygons have slightly
+    // less
     let ellipse = |radius: f64| 2.0 * std::f64::consts::PI * radius * radius / 10.0;
     for (found, truth) in areas.iter().zip([-ellipse(100.0), ellipse(40.0)]) {
         assert!((found / truth - 1.0).abs() < 0.02, "{found} against {truth}");
     }
 }
 
-/// Whatever the spans, every one of their ends lies on exactly one edge, and an edge is closed or
-/// begins and ends at the outermost phases.
+/// Every end of any spans is on exactly one edge, and an edge is closed or begins and ends at the
+/// outermost phases.
 #[test]
 fn every_end_lies_on_one_edge() {
     let mut state = 7_u64;
@@ -147,7 +148,7 @@ fn every_end_lies_on_one_edge() {
     }
 }
 
-/// Labels that find no room are left out: on these charts every one must find it.
+/// Labels without space are omitted: on these charts every label must find space.
 #[test]
 fn every_frequency_and_every_violation_has_its_words() {
     let texts = |name: &str| -> Vec<String> {
@@ -204,7 +205,7 @@ fn magnitudes(frequencies: &[f64], magnitudes: &[f64]) -> MagnitudeCurve {
     MagnitudeCurve { frequencies_rad_per_s: frequencies.to_vec(), magnitudes: magnitudes.to_vec() }
 }
 
-/// A magnitude equal to the frequency crosses a limit of 1 at 1 rad/s, halfway between 0.1 and 10
+/// A magnitude equal to its frequency crosses a limit of 1 at 1 rad/s, halfway between 0.1 and 10
 /// rad/s; as the least of a family it misses a lower limit of 1 below there. A tolerance moves the
 /// crossing.
 #[test]
@@ -225,7 +226,7 @@ fn violated_areas_begin_where_the_limit_is_crossed() {
         }],
         ..FamilyMagnitude::default()
     };
-    // Twice the limit is reached at 2 rad/s.
+    // twice the limit is reached at 2 rad/s
     let tolerant = FamilyMagnitude { tolerance_db: 20.0 * log10(2.0), ..upper.clone() };
     let two = 0.5 * (1.0 + log10(2.0));
     for (chart, parts) in [(upper, (0.5, 1.0)), (lower, (0.0, 0.5)), (tolerant, (two, 1.0))] {
@@ -239,7 +240,7 @@ fn violated_areas_begin_where_the_limit_is_crossed() {
     }
 }
 
-/// What another loop violates is painted too, next to what the first satisfies.
+/// Violations of another loop are painted too, next to the parts that the first loop satisfies.
 #[test]
 fn the_other_loop_is_judged_by_the_same_limit() {
     let (one, rising) =
@@ -283,8 +284,7 @@ fn the_band_of_a_prefilter_ends_where_its_edges_cross() {
     assert!(texts.iter().any(|text| text.starts_with("nothing left")), "{texts:?}");
 }
 
-/// Every loop has its own form of marks, and what violates is crossed out where its own loop is, on
-/// its own turn.
+/// Every loop has its own shape of marks, and a violation is crossed out on its own loop and turn.
 #[test]
 fn a_violation_lies_on_the_loop_that_it_belongs_to() {
     let w = vec![1.0, 10.0];
@@ -304,7 +304,7 @@ fn a_violation_lies_on_the_loop_that_it_belongs_to() {
         ..NicholsChart::default()
     };
     let figure = chart.draw(&Words::new("n", "n", "n"));
-    // middle of the corners of everything that is drawn with this note
+    // middle of the corners of all objects drawn with this note
     let place = |note: &str| {
         let found = figure.scene.items.iter().find_map(|item| match item {
             Item::Drawing { shape: Shape::Path(steps), note: Some(found), .. } if found == note => {
@@ -329,8 +329,7 @@ fn a_violation_lies_on_the_loop_that_it_belongs_to() {
     assert_eq!(circles.count(), 2, "the first loop keeps its circles");
 }
 
-/// The chart of a loop that turns three times is wide enough for what can be seen of it, and no
-/// wider.
+/// The chart of a loop that makes three turns is wide enough for its visible part, and no wider.
 #[test]
 fn the_phase_axis_follows_the_loop() {
     let response = |turns: f64| -> FrequencySeries {

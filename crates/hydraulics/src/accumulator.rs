@@ -1,4 +1,4 @@
-//! A gas-charged accumulator: at the supply, or at the line of a chamber.
+//! Gas-charged accumulator at the supply, or at the line of a chamber.
 
 mod adjustment;
 mod bladder;
@@ -17,7 +17,7 @@ use phea_dynamics::scalar::{LocalFunction, Parameters, Scalar};
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
-/// A gas-charged accumulator. Units: m3, Pa gauge, 1.
+/// Gas-charged accumulator. Units: m3, Pa gauge, 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accumulator<S = f64> {
     /// Volume V_0 of the gas at its precharge, in m3.
@@ -48,7 +48,7 @@ impl Accumulator {
 
 phea_dynamics::parameters! { Accumulator { gas_volume, precharge_pressure, polytropic_exponent } }
 
-/// Its compliance, of the pressure.
+/// Compliance as a function of the pressure.
 impl<S: Scalar> LocalFunction<S, 1, 1> for Accumulator<S> {
     #[inline(always)]
     fn at<T: Scalar>(&self, [pressure]: [T; 1], constant: impl Fn(S) -> T + Copy) -> [T; 1] {
@@ -56,16 +56,16 @@ impl<S: Scalar> LocalFunction<S, 1, 1> for Accumulator<S> {
     }
 }
 
-/// Over this share of the precharge, absolute, to both sides of it the bladder lifts.
+/// Fraction of the absolute precharge, to both sides of it, over which the bladder lifts.
 const LIFTING: f64 = 0.01;
 
-/// The bladder at a pressure.
+/// State of the bladder at a pressure.
 struct Lifted<S> {
-    /// w, from 0 on the shell to 1.
+    /// Fraction w, from 0 on the shell to 1.
     share: S,
-    /// P_0 in Pa.
+    /// Absolute precharge P_0, Pa.
     precharge: S,
-    /// P of the gas in Pa.
+    /// Absolute gas pressure P, Pa.
     absolute: S,
 }
 
@@ -84,8 +84,8 @@ impl<S: Scalar> Accumulator<S> {
     /// P = P_0 + s,   s = d w^2,   C = V_0/(n P) (P_0/P)^(1/n) w,   w = (p - p_0 + d)/(2 d) from 0 to 1,   d = P_0/100
     /// ```
     ///
-    /// Above, nothing of this is left in C and V. A jump of C would be one of the rates, over which
-    /// an implicit method does not always come.
+    /// Above 1.01 P_0 the bladder has no effect on C and V. A jump of C would be a jump of the
+    /// rates, at which an implicit method may fail.
     ///
     /// # Example
     /// ```
@@ -101,8 +101,8 @@ impl<S: Scalar> Accumulator<S> {
         share * gas / (self.polytropic_exponent * absolute)
     }
 
-    /// The same gas at another temperature: its precharge is that in the unchanged volume. Absolute
-    /// temperatures in K, at which the precharge is stated and at which it works.
+    /// Gas at another temperature: its precharge is the pressure in the unchanged volume. Absolute
+    /// temperatures at which the precharge is stated and at which the gas works, K.
     ///
     /// ```text
     /// P_0 = P_c T/T_c,     absolute
@@ -122,13 +122,13 @@ impl<S: Scalar> Accumulator<S> {
         Accumulator { precharge_pressure: absolute - atmosphere, ..*self }
     }
 
-    /// The lowest pressure in Pa gauge at which the bladder is off the shell, 1.01 P_0.
+    /// Lowest pressure at which the bladder is off the shell, 1.01 P_0, Pa gauge.
     pub fn least_pressure(&self) -> S {
         let [_, lifted] = self.lifting_pressures();
         lifted
     }
 
-    /// The pressures in Pa gauge between which the bladder lifts, 0.99 and 1.01 P_0.
+    /// Pressures between which the bladder lifts, 0.99 and 1.01 P_0, Pa gauge.
     pub fn lifting_pressures(&self) -> [S; 2] {
         let precharge = self.precharge_pressure + S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
         let band = precharge * S::from(LIFTING);
@@ -145,13 +145,13 @@ impl<S: Scalar> Accumulator<S> {
         Lifted { share, precharge, absolute: precharge + compressed }
     }
 
-    /// ln(P/P_0)/n, by which the logarithm of the gas volume has fallen; zero below the precharge.
+    /// Reduction ln(P/P_0)/n of the logarithm of the gas volume; zero below the precharge.
     fn squeeze(&self, pressure: S) -> S {
         let Lifted { precharge, absolute, .. } = self.lifted(pressure);
         (absolute / precharge).ln() / self.polytropic_exponent
     }
 
-    /// Volume V_0 - V of the oil it holds, in m3.
+    /// Oil volume V_0 - V in the accumulator, m3.
     ///
     /// ```text
     /// V = V_0 (P_0/P)^(1/n)
@@ -160,14 +160,14 @@ impl<S: Scalar> Accumulator<S> {
         self.gas_volume * (S::from(1.0) - (-self.squeeze(pressure)).exp())
     }
 
-    /// Energy supplied to it at gauge pressure since the bladder filled the shell, in J.
+    /// Energy supplied to the accumulator at gauge pressure since the bladder filled the shell, J.
     ///
     /// ```text
     /// integral of p dV = P_0 V_0 ((P/P_0)^((n-1)/n) - 1)/(n - 1) - p_atm (V_0 - V)
     /// ```
     ///
     /// For n = 1 the quotient is ln(P/P_0). While the bladder lifts, the pressure of the oil is
-    /// less than that of the gas by d (1 - w)^2, which takes from this
+    /// less than that of the gas by d (1 - w)^2, which reduces the energy by
     ///
     /// ```text
     /// 2 d^2 V_0/(n P_0) integral from 0 to w of (1 - x)^2 x (1 + x^2 d/P_0)^-(1 + 1/n) dx
@@ -182,7 +182,7 @@ impl<S: Scalar> Accumulator<S> {
             - self.lifting_energy(pressure)
     }
 
-    /// By the binomial series, whose terms fall by a hundred each.
+    /// Binomial series, whose terms decrease by a hundred each.
     fn lifting_energy(&self, pressure: S) -> S {
         const TERMS: u32 = 6;
         let Lifted { share, precharge, .. } = self.lifted(pressure);
@@ -202,7 +202,7 @@ impl<S: Scalar> Accumulator<S> {
     }
 }
 
-/// (exp(z) - 1)/z, from its series where the difference would lose digits.
+/// Quotient (exp(z) - 1)/z, from its series if the difference would lose digits.
 fn exponential_quotient<S: Scalar>(z: S) -> S {
     let one = S::from(1.0);
     let series = one
@@ -221,8 +221,8 @@ mod tests {
         Accumulator { gas_volume: 1e-3, precharge_pressure: 40e5, polytropic_exponent }
     }
 
-    /// Its oil grows by its compliance and its energy by the pressure times that, below the
-    /// precharge not at all; either side of where the quotient turns into its series.
+    /// Its oil grows by the compliance and its energy by pressure times the oil, below the
+    /// precharge not at all; on either side of the transition from the quotient to its series.
     #[test]
     fn gas_takes_what_flows_in() {
         for index in [1.0, 1.0 + 1e-9, 1.02, 1.03, 1.4] {
@@ -247,7 +247,8 @@ mod tests {
         }
     }
 
-    /// Where all of the gas is in use, and from the shell on less the work of lifting the bladder.
+    /// Slow gas follows the logarithm once all of it is in use; from the shell on, the energy is
+    /// less by the work of lifting the bladder.
     #[test]
     fn slow_gas_takes_the_logarithm() {
         let atmosphere = ATMOSPHERIC_PRESSURE_ABSOLUTE;

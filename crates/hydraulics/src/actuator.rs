@@ -1,4 +1,4 @@
-//! The actuator: valve, lines, cylinder, friction and force sensor assembled, and refused if any is
+//! Actuator: valve, lines, cylinder, friction and force sensor assembled, and rejected if any is
 //! impossible.
 
 use phea_dynamics::scalar::Scalar;
@@ -16,8 +16,7 @@ use crate::series::SeriesElement;
 use crate::servovalve::{Servovalve, Supply};
 use crate::stiffness::{ChamberCompliance, StiffnessModel, chamber_compliance};
 
-/// The components of an actuator, not yet checked: each lies here and nowhere else, over any
-/// scalar.
+/// Components of an actuator, not yet checked, over any scalar. No other type stores them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Components<S = f64> {
     /// The fluid throughout.
@@ -32,33 +31,33 @@ pub struct Components<S = f64> {
     pub line_b: Line<S>,
     /// Accumulators at chambers A and B: each has the pressure of its chamber.
     pub accumulators: [Option<Accumulator<S>>; 2],
-    /// Necks of these accumulators; of a side without one they have no effect.
+    /// Necks of these accumulators; without effect on a side without an accumulator.
     pub necks: [Option<Neck<S>>; 2],
-    /// Thermal time constants in s of their gas, which then has a polytropic exponent of 1; of a
-    /// side without an accumulator they have no effect.
+    /// Thermal time constants of their gas, s; such gas has a polytropic exponent of 1. Without
+    /// effect on a side without an accumulator.
     pub thermal_time_constants: [Option<S>; 2],
-    /// What of these accumulators is adjusted in operation, about the gas above, which is that at
-    /// rest; of a side without an accumulator it has no effect.
+    /// Adjustments of these accumulators in operation, relative to the gas above, which is that at
+    /// rest; without effect on a side without an accumulator.
     pub adjustments: [Option<Adjustment<S>>; 2],
-    /// A valve between the chambers, at the cylinder.
+    /// Valve between the chambers, at the cylinder.
     pub cross_port: Option<CrossPort<S>>,
     /// The cylinder.
     pub cylinder: Cylinder<S>,
-    /// Its friction.
+    /// Friction of the cylinder.
     pub friction: Friction<S>,
-    /// The sensor between rod and load.
+    /// Sensor between rod and load.
     pub force_sensor: ForceSensor<S>,
-    /// The spring between sensor and load; `None` where the sensor pushes on the load itself.
+    /// Spring between sensor and load; `None` if the sensor acts directly on the load.
     pub series: Option<SeriesElement<S>>,
-    /// The linkage between rod and a load that turns; `None` where the load moves with the rod.
+    /// Linkage between rod and a load that turns; `None` if the load moves with the rod.
     pub linkage: Option<Linkage<S>>,
-    /// Which modulus the chambers have.
+    /// Bulk modulus used for the chambers.
     pub stiffness_model: StiffnessModel,
 }
 
 impl<S: Scalar> Components<S> {
     /// Compliance of both chambers with their lines and accumulators, at chamber pressures in Pa
-    /// (they matter with entrained air and with accumulators alone).
+    /// (relevant only with entrained air or with accumulators).
     pub fn chamber_compliance(&self, pressures: [S; 2], member: StiffeningMember) -> ChamberCompliance<S> {
         let Components { fluid, line_a, line_b, cylinder, stiffness_model, .. } = self;
         let moduli = pressures.map(|pressure| fluid.modulus_at(pressure));
@@ -66,39 +65,39 @@ impl<S: Scalar> Components<S> {
         oil.with_gas(self.gas_compliance(pressures))
     }
 
-    /// Compliance of the gas at either chamber in m3/Pa, at chamber pressures in Pa; `None` where
-    /// there is no accumulator, or none that a valve lets take part.
+    /// Compliance of the gas at either chamber in m3/Pa, at chamber pressures in Pa; `None` without
+    /// an accumulator, or if a shut valve excludes it.
     pub fn gas_compliance(&self, pressures: [S; 2]) -> [Option<S>; 2] {
         [0, 1].map(|side| Some(self.gas_in_use(side)?.compliance(pressures[side])))
     }
 
-    /// The gas at a chamber, unless a valve is shut before it at rest.
+    /// Gas at a chamber, unless a valve before it is shut at rest.
     fn gas_in_use(&self, side: usize) -> Option<&Accumulator<S>> {
         self.accumulators[side].as_ref().filter(|_| !self.gas_valve(side).is_some_and(|valve| valve.shut))
     }
 
-    /// The valve between a chamber and its gas.
+    /// Valve between a chamber and its gas.
     pub fn gas_valve(&self, side: usize) -> Option<&GasValve<S>> {
         self.adjustments[side].as_ref()?.valve()
     }
 
-    /// The adjustments of accumulators that are there.
+    /// Adjustments of the accumulators that are present.
     pub(crate) fn adjustments_in_use(&self) -> [Option<Adjustment<S>>; 2] {
         [0, 1].map(|side| self.accumulators[side].and(self.adjustments[side]))
     }
 
-    /// The necks of accumulators that are there.
+    /// Necks of the accumulators that are present.
     pub(crate) fn necks_in_use(&self) -> [Option<Neck<S>>; 2] {
         [0, 1].map(|side| self.accumulators[side].and(self.necks[side]))
     }
 
-    /// The thermal time constants of accumulators that are there.
+    /// Thermal time constants of the accumulators that are present.
     pub(crate) fn thermal_time_constants_in_use(&self) -> [Option<S>; 2] {
         [0, 1].map(|side| self.accumulators[side].and(self.thermal_time_constants[side]))
     }
 
-    /// The gas at either chamber that lies behind a neck or a valve or exchanges heat, at chamber
-    /// pressures in Pa; behind a valve that is shut there is none.
+    /// Gas at either chamber that is behind a neck or a valve or exchanges heat, at chamber
+    /// pressures in Pa; `None` behind a shut valve.
     pub fn gas_branches(&self, pressures: [S; 2]) -> [Option<GasBranch<S>>; 2] {
         [0, 1].map(|side| {
             let (gas, pressure) = (*self.gas_in_use(side)?, pressures[side]);
@@ -115,8 +114,8 @@ impl<S: Scalar> Components<S> {
         })
     }
 
-    /// Compliance in m3/Pa of the gas of these branches at rest, without the oil of their necks;
-    /// zero where there is none.
+    /// Compliance of the gas of these branches at rest, without the oil of their necks, m3/Pa; zero
+    /// without a branch.
     pub fn branch_compliance(&self, pressures: [S; 2]) -> [S; 2] {
         let gas = self.gas_compliance(pressures);
         [0, 1].map(|side| {
@@ -127,13 +126,13 @@ impl<S: Scalar> Components<S> {
         })
     }
 
-    /// What flows from chamber to chamber at rest; `None` where nothing does.
+    /// Flow from chamber to chamber at rest; `None` without such flow.
     pub(crate) fn cross_flow(&self) -> Option<CrossFlow<S>> {
         CrossFlow::of(self.cylinder.internal_leakage, self.cross_port.as_ref())
     }
 
-    /// Its conductance in m3/(s Pa) at chamber pressures in Pa, and the dynamic pressure feedback
-    /// of a valve between the chambers.
+    /// Conductance between the chambers in m3/(s Pa) at chamber pressures in Pa, and the dynamic
+    /// pressure feedback of a valve between the chambers.
     pub fn cross_admittance(&self, [pressure_a, pressure_b]: [S; 2]) -> (S, Option<DynamicFeedback<S>>) {
         let steady = self.cross_flow().map_or(S::from(0.0), |flow| flow.slope(pressure_a - pressure_b));
         (steady, self.cross_port.as_ref().and_then(DynamicFeedback::of))
@@ -173,25 +172,25 @@ fn adjustment_problems(
     problems.into_vec()
 }
 
-/// Why components do not make an actuator: every impossible parameter.
+/// Error for components that do not make an actuator: every impossible parameter.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}", problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
 pub struct ActuatorError {
-    /// All of them, in the order of the components.
+    /// All impossible parameters, in the order of the components.
     pub problems: Vec<ParameterError>,
 }
 
-/// An actuator whose components are all possible.
+/// Actuator whose components are all possible.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Actuator(Components);
 
 impl Actuator {
-    /// Assembles the components as they are; nothing is repaired.
+    /// Assembles the components unchanged; nothing is repaired.
     ///
     /// # Errors
     /// Every parameter outside physics, by its path (`valve.flow_coefficients.supply_to_a`), with
-    /// the requirement. A line and dead volumes of zero on one side are rejected too: with the
-    /// piston at that end the chamber would have no volume.
+    /// the requirement. A line and dead volumes of zero on one side are rejected too: a chamber
+    /// with the piston at its end would have no volume.
     pub fn new(components: Components) -> Result<Actuator, ActuatorError> {
         let Components { fluid, supply, valve, line_a, line_b, cylinder, friction, force_sensor, .. } =
             components;
@@ -244,14 +243,14 @@ impl Actuator {
         &self.0
     }
 
-    /// Pressure in Pa at which the fluid's modulus is taken when no operating point is given:
-    /// midway between supply and tank, the pressure in the chambers of an idle symmetric actuator.
+    /// Pressure in Pa at which the fluid's modulus is evaluated without an operating point: midway
+    /// between supply and tank, the pressure in the chambers of an idle symmetric actuator.
     pub fn mean_pressure(&self) -> f64 {
         0.5 * (self.0.supply.pressure + self.0.supply.tank_pressure)
     }
 
     /// Compliance of both chambers with their lines and accumulators, at chamber pressures in Pa
-    /// (they matter with entrained air and with accumulators alone).
+    /// (relevant only with entrained air or with accumulators).
     pub fn chamber_compliance(&self, pressures: [f64; 2], member: StiffeningMember) -> ChamberCompliance {
         self.0.chamber_compliance(pressures, member)
     }

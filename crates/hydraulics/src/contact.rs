@@ -1,10 +1,10 @@
-//! A surface that is pressed into: an end stop, a wall.
+//! Surface that is pressed into: an end stop, a wall.
 
 use phea_dynamics::scalar::Scalar;
 
 use crate::parameter::{ParameterError, Problems};
 
-/// A surface that pushes back and never pulls. Units: N/m, s/m.
+/// Surface that pushes back and never pulls. Units: N/m, s/m.
 ///
 /// ```text
 /// F = K d+ (1 + c d')+                    d penetration, d' its rate, + the positive part
@@ -13,7 +13,7 @@ use crate::parameter::{ParameterError, Problems};
 /// Source: Hunt and Crossley (1975), "Coefficient of restitution interpreted as damping in
 /// vibroimpact", Journal of Applied Mechanics 42(2), with a flat contact (exponent 1). The damping
 /// grows with the penetration, so that the force has no jump at touch; its coefficient of
-/// restitution is 1 - 2 c v/3 for slow impacts at v. It takes energy whatever moves.
+/// restitution is 1 - 2 c v/3 for slow impacts at v. It absorbs energy in any motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact<S = f64> {
     /// Stiffness K in N/m.

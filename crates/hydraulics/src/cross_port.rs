@@ -1,4 +1,4 @@
-//! A valve between the chambers: a restrictor, alone or in series with a capacity (dynamic pressure
+//! Valve between the chambers: a restrictor, with or without a capacity in series (dynamic pressure
 //! feedback).
 //!
 //! ```text
@@ -8,38 +8,38 @@
 //! ```
 //!
 //! q is positive from chamber A to chamber B. The capacity is a piston between two springs, or any
-//! other part that takes oil on one side and gives as much on the other: at rest its pressure
-//! difference p_cp is that of the chambers, and nothing flows. Source: Merritt, Hydraulic Control
-//! Systems (1967), which damps a lightly damped load this way.
+//! other part that takes oil on one side and returns an equal volume on the other: at rest its
+//! pressure difference p_cp is that of the chambers, and nothing flows. Source: Merritt, Hydraulic
+//! Control Systems (1967), which uses it to damp a lightly damped load.
 
 use phea_dynamics::scalar::Scalar;
 
 use crate::orifice::{flow, regular_root_slope};
 use crate::parameter::{ParameterError, Problems};
 
-/// A valve between the chambers.
+/// Valve between the chambers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CrossPort<S = f64> {
-    /// What the oil passes through.
+    /// Restrictor that the oil passes through.
     pub restrictor: Restrictor<S>,
-    /// Capacity C_cp in series with it, in m3/Pa; `None` where the restrictor joins the chambers by
-    /// itself.
+    /// Capacity C_cp in series with the restrictor, m3/Pa; `None` if the restrictor joins the
+    /// chambers directly.
     pub capacity: Option<S>,
 }
 
-/// A restriction of the flow.
+/// Restriction of the flow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Restrictor<S = f64> {
-    /// In proportion to the drop.
+    /// Laminar: flow proportional to the drop.
     Laminar {
-        /// Conductance G_cp in m3/(s Pa).
+        /// Conductance G_cp, m3/(s Pa).
         conductance: S,
     },
-    /// A sharp edge, [`flow`].
+    /// Sharp edge, [`flow`].
     Orifice {
-        /// Flow coefficient K_cp in m3/(s Pa^0.5).
+        /// Flow coefficient K_cp, m3/(s Pa^0.5).
         flow_coefficient: S,
-        /// Drop in Pa below which the square root is made regular.
+        /// Pressure drop below which the square root is regularised, Pa.
         transition_pressure: S,
     },
 }
@@ -70,7 +70,7 @@ phea_dynamics::parameters! {
 }
 
 impl<S: Scalar> Restrictor<S> {
-    /// Flow in m3/s along a drop in Pa.
+    /// Flow for a drop in Pa, m3/s.
     ///
     /// # Example
     /// ```
@@ -90,8 +90,8 @@ impl<S: Scalar> Restrictor<S> {
         }
     }
 
-    /// Slope of the flow over the drop, in m3/(s Pa). Without a drop that of an orifice is
-    /// K_cp/sqrt(dp_t): the transition pressure dp_t alone bounds it.
+    /// Slope of the flow over the drop, m3/(s Pa). At zero drop that of an orifice is
+    /// K_cp/sqrt(dp_t): only the transition pressure dp_t bounds it.
     ///
     /// # Example
     /// ```
@@ -110,21 +110,21 @@ impl<S: Scalar> Restrictor<S> {
     }
 }
 
-/// What flows from chamber A to chamber B at rest: leakage across the piston, and a valve between
-/// the chambers that no capacity closes.
+/// Flow from chamber A to chamber B at rest: leakage across the piston, and a valve between the
+/// chambers without a capacity in series.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CrossFlow<S = f64> {
-    /// Conductance of the leakage and of a laminar valve, in m3/(s Pa).
+    /// Conductance of the leakage and of a laminar valve, m3/(s Pa).
     pub conductance: S,
-    /// A valve that is not laminar.
+    /// Valve that is not laminar.
     pub orifice: Option<Restrictor<S>>,
 }
 
 impl<S: Scalar> CrossFlow<S> {
-    /// Of this leakage and this valve; `None` where nothing flows at rest.
+    /// Cross flow of this leakage and this valve; `None` without flow at rest.
     ///
     /// # Example
-    /// A laminar valve is more leakage, and one with a capacity none.
+    /// A laminar valve counts as leakage, and one with a capacity does not:
     /// ```
     /// use phea_hydraulics::cross_port::{CrossFlow, CrossPort, Restrictor};
     /// let laminar = CrossPort { restrictor: Restrictor::Laminar { conductance: 3e-12 }, capacity: None };
@@ -146,35 +146,35 @@ impl<S: Scalar> CrossFlow<S> {
         }
     }
 
-    /// Flow in m3/s at a drop p_A - p_B in Pa.
+    /// Flow at a drop p_A - p_B in Pa, m3/s.
     pub fn flow(&self, drop: S) -> S {
         let laminar = self.conductance * drop;
         self.orifice.map_or(laminar, |orifice| laminar + orifice.flow(drop))
     }
 
-    /// Its slope over the drop, in m3/(s Pa).
+    /// Slope of the flow over the drop, m3/(s Pa).
     pub fn slope(&self, drop: S) -> S {
         self.orifice.map_or(self.conductance, |orifice| self.conductance + orifice.conductance(drop))
     }
 }
 
-/// A restrictor in series with a capacity, for small motions: dynamic pressure feedback.
+/// Restrictor in series with a capacity, for small motions: dynamic pressure feedback.
 ///
 /// ```text
 /// q = g C_cp s/(C_cp s + g) (p_A - p_B)
 /// ```
 ///
-/// Slower than g/C_cp it is the capacity between the chambers, faster the conductance.
+/// Below g/C_cp it is the capacity between the chambers, above it the conductance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DynamicFeedback<S = f64> {
-    /// Conductance g of the restrictor without a drop, in m3/(s Pa).
+    /// Conductance g of the restrictor at zero drop, m3/(s Pa).
     pub conductance: S,
-    /// Capacity C_cp in m3/Pa.
+    /// Capacity C_cp, m3/Pa.
     pub capacity: S,
 }
 
 impl<S: Scalar> DynamicFeedback<S> {
-    /// Of a valve between the chambers; `None` where it has no capacity.
+    /// Dynamic feedback of a valve between the chambers; `None` without a capacity.
     ///
     /// # Example
     /// ```
@@ -187,13 +187,13 @@ impl<S: Scalar> DynamicFeedback<S> {
         Some(DynamicFeedback { conductance: port.restrictor.conductance(S::from(0.0)), capacity })
     }
 
-    /// Where it turns from the capacity into the conductance, g/C_cp, in rad/s.
+    /// Corner frequency g/C_cp between the capacity and the conductance, rad/s.
     pub fn corner(&self) -> S {
         self.conductance / self.capacity
     }
 }
 
-/// Flow coefficient in m3/(s Pa^0.5) of a round orifice of a diameter in m.
+/// Flow coefficient of a round orifice of a diameter in m, m3/(s Pa^0.5).
 ///
 /// ```text
 /// K = C_d (pi d^2/4) sqrt(2/rho)

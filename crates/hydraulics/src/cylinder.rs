@@ -1,5 +1,5 @@
-//! The cylinder, or the motor in its place: areas, stroke, moving mass and chamber volumes,
-//! symmetric or not.
+//! Cylinder, or the motor in its place: areas, stroke, moving mass and chamber volumes, symmetric
+//! or not.
 
 use phea_dynamics::scalar::{Parameters, Scalar};
 
@@ -8,41 +8,40 @@ use crate::parameter::{ParameterError, Problems};
 use crate::servovalve::Supply;
 use crate::stroke::ActuatorStroke;
 
-/// A double-acting cylinder. Units: m2, m, kg, m3.
+/// Double-acting cylinder. Units: m2, m, kg, m3.
 ///
 /// The piston position x runs from 0 at the A end to the stroke at the B end, so chamber A grows
 /// with x.
 ///
-/// A hydraulic motor has the same equations: both areas are its displacement in m3/rad, x is its
+/// A hydraulic motor has these equations too: both areas are its displacement in m3/rad, x is its
 /// angle in rad, the mass its inertia in kg m2, every force a torque in N m and every stiffness one
-/// in N m/rad. A vane actuator has a stroke in rad; a motor that turns on has none.
+/// in N m/rad. A vane actuator has a stroke in rad; a motor that rotates without limit has none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder<S = f64> {
-    /// Piston area on the A side, A_A, in m2; of a telescopic piston that of its first stage.
+    /// Piston area on the A side, A_A, m2; of the first stage of a telescopic piston.
     pub area_a: S,
-    /// Piston area on the B side, A_B, in m2; likewise.
+    /// Piston area on the B side, A_B, m2; of the first stage of a telescopic piston.
     pub area_b: S,
-    /// ActuatorStroke L in m, or none.
+    /// Stroke L in m, or none.
     pub stroke: ActuatorStroke<S>,
-    /// Mass of piston, rods and everything fixed to them up to the force sensor, M, in kg.
+    /// Mass M of piston, rods and everything fixed to them up to the force sensor, kg.
     pub moving_mass: S,
-    /// Volume of chamber A that the piston never sweeps, without the line, in m3.
+    /// Volume of chamber A that the piston never sweeps, without the line, m3.
     pub dead_volume_a: S,
-    /// Volume of chamber B that the piston never sweeps, without the line, in m3.
+    /// Volume of chamber B that the piston never sweeps, without the line, m3.
     pub dead_volume_b: S,
-    /// Laminar leakage across the piston per pressure difference, in m3/(s Pa); if absent, the
-    /// piston does not leak.
+    /// Laminar leakage across the piston per pressure difference, m3/(s Pa); if absent, the piston
+    /// does not leak.
     pub internal_leakage: Option<S>,
-    /// Laminar leakage of each chamber to the tank per pressure above it, in m3/(s Pa), as of a
-    /// motor through its case; if absent, nothing leaks outwards.
+    /// Laminar leakage of each chamber to the tank per pressure above tank pressure, m3/(s Pa), as
+    /// of a motor through its case; if absent, nothing leaks to the tank.
     pub external_leakage: Option<S>,
-    /// Contact at both ends of the stroke. If absent, reaching an end is reported, but nothing
-    /// stops the piston.
+    /// Contact at both ends of the stroke. If absent, the ends are only reported.
     pub end_stops: Option<Contact<S>>,
 }
 
 impl Cylinder {
-    /// A_A and A_B of every stage in m2, the first one first; one pair of a piston that is not
+    /// Areas A_A and A_B of every stage, the first one first, m2; one pair for a piston that is not
     /// telescopic.
     pub fn areas_of_stages(&self) -> impl Iterator<Item = [f64; 2]> {
         let further = self.stroke.telescope().into_iter().flat_map(|telescope| telescope.stages);
@@ -50,8 +49,8 @@ impl Cylinder {
         std::iter::once([1.0; 2]).chain(further.flatten().map(|stage| stage.ratios)).map(of)
     }
 
-    /// The forces in N that the supply gives the piston as it retracts and as it extends, the
-    /// greatest of all stages:
+    /// Largest forces that the supply gives the piston as it retracts and as it extends, over all
+    /// stages, N:
     ///
     /// ```text
     /// F_min = A_A p_T - A_B p_S          F_max = A_A p_S - A_B p_T
@@ -63,12 +62,12 @@ impl Cylinder {
         })
     }
 
-    /// The greatest A_A and the greatest A_B of all stages, in m2.
+    /// Largest A_A and largest A_B of all stages, m2.
     pub fn greatest_areas(&self) -> [f64; 2] {
         self.areas_of_stages().fold([0.0; 2], |[a, b], [own_a, own_b]| [own_a.max(a), own_b.max(b)])
     }
 
-    /// The invalid parameters of this cylinder; empty if all are valid.
+    /// Invalid parameters of this cylinder; empty if all are valid.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.positive("area_a", self.area_a);
@@ -95,15 +94,14 @@ impl Cylinder {
 }
 
 impl<S: Scalar> Cylinder<S> {
-    /// A_A and A_B in m2 at a position in m.
+    /// Areas A_A and A_B at a position in m, m2.
     #[inline(always)]
     pub fn areas_at(&self, x: S) -> [S; 2] {
         self.stroke.areas([self.area_a, self.area_b], x)
     }
 
-    /// What the slopes of the areas of a telescopic piston make of two pressures in Pa: a stiffness
-    /// of the piston in N/m, which is negative where a growing area pushes it on; `None` for any
-    /// other.
+    /// Stiffness of a telescopic piston in N/m from the slopes of its areas at two pressures in Pa;
+    /// negative if a growing area pushes it onward; `None` for any other piston.
     ///
     /// ```text
     /// k_A = p_B dA_B/dx - p_A dA_A/dx
@@ -121,7 +119,7 @@ phea_dynamics::parameters! {
     }
 }
 
-/// Area between piston and rod in m2, from their diameters in m.
+/// Area between piston and rod, from their diameters in m, m2.
 ///
 /// ```text
 /// A = pi/4 (D_p - D_r) (D_p + D_r)
@@ -136,14 +134,14 @@ pub fn annulus_area<S: Scalar>(piston: S, rod: S) -> S {
     S::from(std::f64::consts::FRAC_PI_4) * (piston - rod) * (piston + rod)
 }
 
-/// Swept and dead volumes of both chambers at piston position `x`, in m3, lines not included.
+/// Swept and dead volumes of both chambers at piston position `x`, without lines, m3.
 ///
 /// ```text
 /// V_A = V_A0 + A_A x        V_B = V_B0 + A_B (L - x)                  thesis (4.27), (4.28)
 /// ```
 ///
-/// A telescopic piston sweeps the integral of its areas. Without a stroke both are the dead volumes
-/// alone.
+/// A telescopic piston sweeps the integral of its areas. Without a stroke both are only the dead
+/// volumes.
 ///
 /// # Example
 /// ```

@@ -1,4 +1,4 @@
-//! The hydraulic fluid and the air entrained in it.
+//! Hydraulic fluid and the air entrained in it.
 
 use phea_dynamics::scalar::Scalar;
 
@@ -9,20 +9,20 @@ use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 /// absolute pressures.
 pub const ATMOSPHERIC_PRESSURE_ABSOLUTE: f64 = 101_325.0;
 
-/// A hydraulic fluid. Units: Pa, kg/m3, m2/s.
+/// Hydraulic fluid. Units: Pa, kg/m3, m2/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fluid<S = f64> {
-    /// Bulk modulus of the fluid free of air, beta_0, in Pa.
+    /// Bulk modulus beta_0 of the fluid free of air, Pa.
     pub bulk_modulus: S,
-    /// Density in kg/m3.
+    /// Density, kg/m3.
     pub density: S,
-    /// Kinematic viscosity in m2/s.
+    /// Kinematic viscosity, m2/s.
     pub kinematic_viscosity: S,
-    /// Bubbles, absent by default.
+    /// Air bubbles, absent by default.
     pub entrained_air: Option<EntrainedAir<S>>,
 }
 
-/// Free air carried as bubbles (air in solution does not soften the fluid and does not count).
+/// Free air carried as bubbles (dissolved air does not soften the fluid and does not count).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EntrainedAir<S = f64> {
     /// Volume of air over volume of the mixture at atmospheric pressure, in [0, 1).
@@ -32,7 +32,7 @@ pub struct EntrainedAir<S = f64> {
 }
 
 impl Fluid {
-    /// The invalid parameters of this fluid; empty if all are valid.
+    /// Invalid parameters of this fluid; empty if all are valid.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.positive("bulk_modulus", self.bulk_modulus);
@@ -59,8 +59,8 @@ impl Fluid {
 }
 
 impl<S: Scalar> Fluid<S> {
-    /// Bulk modulus in Pa at a gauge pressure: the fluid's own without air,
-    /// [`bulk_modulus_with_air`] with.
+    /// Bulk modulus at a gauge pressure in Pa: that of the fluid without air,
+    /// [`bulk_modulus_with_air`] with air.
     ///
     /// # Example
     /// ```
@@ -97,7 +97,7 @@ impl<S: Scalar> Fluid<S> {
 /// Fluid Power 12(3). `pressure_absolute` must be positive.
 ///
 /// # Example
-/// At atmospheric pressure, springs in series by volume:
+/// At atmospheric pressure the moduli combine like springs in series, by volume:
 /// ```
 /// use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE as P0, bulk_modulus_with_air};
 /// let mixture = bulk_modulus_with_air(1.45e9, 0.02, 1.4, P0);

@@ -1,5 +1,5 @@
-//! Friction of the piston and rods: viscous, Stribeck or LuGre, and the one slope a linear model
-//! can keep of it.
+//! Friction of the piston and rods: viscous, Stribeck or LuGre, and the one slope that a linear
+//! model uses.
 
 mod lugre;
 mod moving;
@@ -16,23 +16,23 @@ pub use tested::{
 
 use crate::parameter::{ParameterError, Problems};
 
-/// A friction force that opposes the motion. Units: N, N s/m.
+/// Friction force that opposes the motion. Units: N, N s/m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Friction<S = f64> {
-    /// F = f_v v.
+    /// Viscous force F = f_v v.
     Viscous {
-        /// Viscous coefficient f_v in N s/m.
+        /// Viscous coefficient f_v, N s/m.
         viscous: S,
     },
-    /// The steady curve alone, a jump at zero velocity included.
+    /// Steady curve, including its jump at zero velocity.
     Stribeck(Stribeck<S>),
-    /// Bristles: the steady curve with a spring-like start.
+    /// Bristles: the steady curve with a spring-like beginning.
     LuGre(LuGre<S>),
 }
 
 impl<S: Copy> Friction<S> {
-    /// Viscous coefficient f_v in N s/m: the slope of the curve where it no longer falls, for
-    /// positive velocity.
+    /// Viscous coefficient f_v: the slope of the curve beyond its falling part, for positive
+    /// velocity, N s/m.
     pub fn viscous(&self) -> S {
         match self {
             Friction::Viscous { viscous } => *viscous,
@@ -43,7 +43,7 @@ impl<S: Copy> Friction<S> {
 }
 
 impl Friction {
-    /// Viscous coefficients in N s/m for positive and for negative velocity.
+    /// Viscous coefficients for positive and for negative velocity, N s/m.
     pub fn viscous_by_direction(&self) -> [f64; 2] {
         match self {
             Friction::Viscous { viscous } => [*viscous; 2],

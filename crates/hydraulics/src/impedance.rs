@@ -1,7 +1,7 @@
 //! Driving-point impedance: the resistance to a load that moves the actuator.
 //!
 //! ```text
-//! Z(s) = -F_e/(s X_L)                          passive: Re Z(jw) >= 0 (thesis 2.2, with the sign that makes it so)
+//! Z(s) = -F_e/(s X_L)                          passive: Re Z(jw) >= 0 (thesis 2.2, with this sign)
 //! open loop      Z = K_S (b_4 s^4 + ... + b_0)/D(s)                        second half of thesis (6.7)
 //! closed loop    Z = K_S (b_4 s^4 + ... + b_0)/(D(s) + G(s) c_0)           second half of thesis (6.8)
 //! ```
@@ -17,13 +17,14 @@ use phea_dynamics::linear::{LinearError, TransferFunction};
 
 use crate::linear::LinearModel;
 
-/// Driving-point impedance Z = -F_e/(s X_L) in N s/m with the valve's command held still.
+/// Driving-point impedance Z = -F_e/(s X_L) at a constant valve command, N s/m.
 ///
 /// # Errors
-/// A load path without the zero at the origin that makes Z finite there.
+/// Load path without the zero at the origin that makes Z finite there.
 ///
 /// # Example
-/// A slow load feels the damper A_u^2/K_c of the valve's leakage, and the viscous friction.
+/// The impedance to a slow load is the damper A_u^2/K_c of the valve's leakage plus the viscous
+/// friction:
 /// ```
 /// use phea_hydraulics::impedance::open_loop_impedance;
 /// use phea_hydraulics::linear::linear_model;
@@ -46,21 +47,20 @@ pub fn open_loop_impedance(model: &LinearModel) -> Result<TransferFunction, Line
     TransferFunction::from_factors(-motion.gain(), zeros, poles)
 }
 
-/// Driving-point impedance in N s/m with the force fed back through a controller G in V/N, U_C = G
-/// (F_ref - F_e).
+/// Driving-point impedance with the force fed back through a controller G in V/N, U_C = G (F_ref -
+/// F_e), N s/m.
 ///
 /// ```text
 /// Z = Z_open/(1 + G P)                                                 thesis (6.8)
 /// ```
 ///
-/// P and Z_open share their poles, which are those of the open loop and cancel exactly.
+/// P and Z_open have common poles, those of the open loop, which cancel exactly.
 ///
 /// # Errors
-/// A controller that is sampled or has dead time: the impedance is then not a rational
-/// function.
+/// Controller that is sampled or has dead time: the impedance is then not a rational function.
 ///
 /// # Example
-/// A gain G divides what a slow load feels by 1 + G P(0).
+/// A gain G divides the resistance to a slow load by 1 + G P(0):
 /// ```
 /// use phea_dynamics::linear::TransferFunction;
 /// use phea_hydraulics::impedance::{closed_loop_impedance, open_loop_impedance};
@@ -82,12 +82,11 @@ pub fn closed_loop_impedance(
     let closed = forward.feedback(&TransferFunction::gain_only(1.0))?;
     let mut zeros = open.zeros().to_vec();
     zeros.extend_from_slice(controller.poles());
-    // 1/(1 + G P) has leading coefficient 1 unless G P is not strictly proper.
+    // 1/(1 + G P) has leading coefficient 1 unless G P is not strictly proper
     let sensitivity_gain = if forward.gain() == 0.0 { 1.0 } else { closed.gain() / forward.gain() };
     let mut poles = closed.poles().to_vec();
     for &pole in open.poles() {
-        // Poles that the load path alone has (a plant whose two paths do not share their
-        // denominator) stay.
+        // poles of the load path only (of a plant whose two paths have different denominators) stay
         if !model.command.poles().contains(&pole) {
             poles.push(pole);
         }
@@ -95,8 +94,8 @@ pub fn closed_loop_impedance(
     TransferFunction::from_factors(open.gain() * sensitivity_gain, zeros, poles)
 }
 
-/// Force per load position in N/m of an impedance: -s Z; with the loop closed, second half of
-/// thesis (6.8) times s.
+/// Force per load position of an impedance, -s Z, N/m; with the loop closed, second half of thesis
+/// (6.8) times s.
 ///
 /// # Errors
 /// Factors that are not finite.
@@ -106,18 +105,18 @@ pub fn load_motion_of(impedance: &TransferFunction) -> Result<TransferFunction, 
     Ok(product.without_common_factors(0.0))
 }
 
-/// Force in N that remains long after the load has stepped by `step` in m: zero by Proposition 6.2.
+/// Force that remains long after the load has stepped by `step` in m, N: zero by Proposition 6.2.
 ///
 /// ```text
 /// F_e(inf) = lim s (F_e/X_L) x_L0/s = (F_e/X_L)(0) x_L0                thesis (6.9) to (6.11)
 /// ```
 ///
 /// `None` when the path is unstable and there is no final value. The proposition needs leakage or
-/// feedback: with K_c = 0 and the command held still the denominator vanishes at the origin as
-/// well, and K_eq x_L0 stays.
+/// feedback: with K_c = 0 and a constant command the denominator vanishes at the origin as well,
+/// and K_eq x_L0 stays.
 ///
 /// # Example
-/// The leakage of the valve lets go of the force, although its command is held still.
+/// Leakage of the valve releases the force, although its command is constant.
 /// ```
 /// use phea_hydraulics::impedance::final_force_after_load_step;
 /// use phea_hydraulics::linear::linear_model;

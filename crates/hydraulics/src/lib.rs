@@ -1,5 +1,5 @@
-//! The actuator as physics: servovalve, lines, cylinder, friction and force sensor, the equilibrium
-//! they settle at, and the linear models of the force they put on a load.
+//! Physics of the actuator: servovalve, lines, cylinder, friction and force sensor, their
+//! equilibrium, and the linear models of the force on a load.
 //!
 //! ```text
 //! Components -> Actuator -> OperatingPoint -> LinearParameters -> LinearPlant -> LinearModel

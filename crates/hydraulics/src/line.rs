@@ -1,5 +1,4 @@
-//! The line between a valve port and a cylinder chamber: hose, pipe or plain volume, and its
-//! dynamics.
+//! Line between a valve port and a cylinder chamber: hose, pipe or plain volume, and its dynamics.
 //!
 //! [`Line`] describes it, [`LineModel`] and [`DynamicLine`] are the models that a machine computes:
 //! capacities with or without inertances ([`Segments`]), a wall that creeps
@@ -45,40 +44,40 @@ use phea_dynamics::scalar::Scalar;
 
 use crate::parameter::{ParameterError, Problems};
 
-/// A line between one valve port and its chamber. Units: m, m3, Pa.
+/// Line between one valve port and its chamber. Units: m, m3, Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Line<S = f64> {
-    /// A hose of this length.
+    /// Hose of a given length.
     Hose {
-        /// The hose.
+        /// Hose.
         hose: Hose<S>,
-        /// Length L_ho in m.
+        /// Length L_ho, m.
         length: S,
     },
-    /// A pipe of this length.
+    /// Pipe of a given length.
     Pipe {
-        /// The pipe.
+        /// Pipe.
         pipe: Pipe<S>,
-        /// Length in m.
+        /// Length, m.
         length: S,
     },
-    /// Any capacity whose effective modulus (fluid and wall together) is known.
+    /// Capacity with a known effective modulus (fluid and wall together).
     Volume {
-        /// Volume in m3.
+        /// Volume, m3.
         volume: S,
-        /// Effective bulk modulus in Pa.
+        /// Effective bulk modulus, Pa.
         effective_bulk_modulus: S,
     },
 }
 
-/// Which member of a hose's stiffening interval to calculate with.
+/// Member of a hose's stiffening interval used in a calculation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StiffeningMember {
-    /// The softest: smallest r_beta.
+    /// Softest member: smallest r_beta.
     Minimum,
-    /// The nominal r_beta.
+    /// Nominal r_beta.
     Nominal,
-    /// The stiffest: largest r_beta.
+    /// Stiffest member: largest r_beta.
     Maximum,
 }
 
@@ -106,8 +105,8 @@ impl Line {
 }
 
 impl<S: Scalar> Line<S> {
-    /// The line as it stands at the operating pressure: a hose with the bore that it has there,
-    /// [`Hose::filled`]. Pipes and plain volumes stay as they are.
+    /// Line at the operating pressure: a hose with its bore there, [`Hose::filled`]. Pipes and
+    /// plain volumes are unchanged.
     pub fn filled(&self) -> Line<S> {
         match *self {
             Line::Hose { hose, length } => Line::Hose { hose: hose.filled(), length },
@@ -115,7 +114,7 @@ impl<S: Scalar> Line<S> {
         }
     }
 
-    /// Volume of the fluid in the unexpanded line, V_ho, in m3.
+    /// Volume V_ho of the fluid in the unexpanded line, m3.
     pub fn volume(&self) -> S {
         match *self {
             Line::Hose { hose, length } => S::from(FRAC_PI_4) * hose.bore * hose.bore * length,
@@ -124,9 +123,9 @@ impl<S: Scalar> Line<S> {
         }
     }
 
-    /// Effective bulk modulus beta_e of fluid and wall together, in Pa, for a fluid of this
-    /// modulus: thesis (6.20), a hose's wall with the modulus of thesis (6.24). That of the oil a
-    /// hose holds is `filled().effective_modulus(..)`.
+    /// Effective bulk modulus beta_e in Pa of fluid and wall together, for a fluid of this modulus:
+    /// thesis (6.20), a hose's wall with the modulus of thesis (6.24). The modulus referred to the
+    /// oil in a hose is `filled().effective_modulus(..)`.
     ///
     /// # Example
     /// ```
@@ -152,8 +151,8 @@ impl<S: Scalar> Line<S> {
         }
     }
 
-    /// Compliance dV/dp in m3/Pa: the volume that the line takes up per pascal; for a hose by its
-    /// data sheet.
+    /// Compliance dV/dp: the volume that the line takes up per pascal; for a hose by its data
+    /// sheet, m3/Pa.
     ///
     /// ```text
     /// dV/dp = V/beta_e          hose: epsilon L/r_beta + (A_ho + E(p)) L/beta_0         p the operating pressure
@@ -167,14 +166,14 @@ impl<S: Scalar> Line<S> {
         }
     }
 
-    /// Compliance of the line in the thesis' model, V_ho/beta_e in m3/Pa: the unexpanded volume
-    /// over the modulus of 6.20.
+    /// Compliance of the line in the thesis' model, V_ho/beta_e: the unexpanded volume over the
+    /// modulus of 6.20, m3/Pa.
     pub fn compliance_of_unexpanded(&self, fluid_modulus: S, member: StiffeningMember) -> S {
         self.volume() / self.effective_modulus(fluid_modulus, member)
     }
 }
 
-/// Modulus of two compliances that share a volume, in Pa.
+/// Modulus of two compliances with a common volume, Pa.
 ///
 /// ```text
 /// beta_e = beta_0 beta_ho / (beta_0 + beta_ho)                         thesis (6.20), Merritt (1967)

@@ -4,8 +4,8 @@
 //! F_e = (c_0 U_C - K_S (b_4 s^4 + ... + b_0) s X_L) / (a_5 s^5 + ... + a_0)     thesis (6.7)
 //! ```
 //!
-//! It holds for a symmetric cylinder at mid stroke with equal edges and viscous friction, exactly;
-//! elsewhere it is a reduction of [`crate::two_pressure`] whose cost
+//! The model is exact for a symmetric cylinder at mid stroke with equal edges and viscous friction;
+//! elsewhere it is a reduction of [`crate::two_pressure`] whose error
 //! [`crate::two_pressure::reduction`] measures.
 
 mod decomposed;
@@ -33,28 +33,28 @@ use polynomial::{scaled, shifted};
 /// Parameters of the fifth-order model. Units: m2, kg, N s/m, m3/(s V), m3/(s Pa), N/m, rad/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearParameters<S = f64> {
-    /// Useful piston area A_u in m2.
+    /// Useful piston area A_u, m2.
     pub useful_area: S,
-    /// Moving mass M in kg.
+    /// Moving mass M, kg.
     pub moving_mass: S,
-    /// Viscous friction f_v in N s/m.
+    /// Viscous friction f_v, N s/m.
     pub viscous_friction: S,
-    /// Flow gain K_qU in m3/(s V).
+    /// Flow gain K_qU, m3/(s V).
     pub flow_gain: S,
-    /// Flow-pressure coefficient K_c in m3/(s Pa).
+    /// Flow-pressure coefficient K_c, m3/(s Pa).
     pub flow_pressure_coefficient: S,
-    /// Hydraulic stiffness K_H in N/m.
+    /// Hydraulic stiffness K_H, N/m.
     pub hydraulic_stiffness: S,
-    /// Stiffness of force sensor and environment K_S in N/m.
+    /// Stiffness of force sensor and environment K_S, N/m.
     pub sensor_stiffness: S,
-    /// Natural frequency of the spool w_nv in rad/s.
+    /// Natural frequency of the spool w_nv, rad/s.
     pub valve_natural_frequency: S,
     /// Damping ratio of the spool xi_v.
     pub valve_damping_ratio: S,
 }
 
 impl<S: Scalar> LinearParameters<S> {
-    /// Equivalent stiffness in N/m: both springs in series.
+    /// Equivalent stiffness of both springs in series, N/m.
     ///
     /// ```text
     /// K_eq = K_H K_S/(K_H + K_S)                                           thesis (6.12)
@@ -65,7 +65,7 @@ impl<S: Scalar> LinearParameters<S> {
 }
 
 impl LinearParameters {
-    /// Impossible ones among these parameters; empty if there are none.
+    /// Impossible parameters; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.positive("useful_area", self.useful_area);
@@ -84,14 +84,14 @@ impl LinearParameters {
 /// Force per command and force per load position. Units: N/V, N/m.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearModel {
-    /// P = F_e/U_C.
+    /// Command path P = F_e/U_C.
     pub command: TransferFunction,
-    /// Pd = F_e/X_L; it has a zero at the origin.
+    /// Load path Pd = F_e/X_L; it has a zero at the origin.
     pub load_position: TransferFunction,
 }
 
-/// Both halves of the fifth-order model, thesis (6.7), with coefficients over any scalar: numbers,
-/// or recorded expressions for an uncertain plant. The disturbance is F_e/X_L.
+/// Both paths of the fifth-order model, thesis (6.7), with coefficients over any scalar: numbers,
+/// or recorded expressions for an uncertain plant. The disturbance path is F_e/X_L.
 ///
 /// ```text
 /// a_0 = w^2 K_c K_H K_S
@@ -179,7 +179,7 @@ pub fn linear_model_coefficients<S: Scalar>(parameters: &LinearParameters<S>) ->
     }
 }
 
-/// The fifth-order model, thesis (6.7), as factored transfer functions.
+/// Fifth-order model, thesis (6.7), as factored transfer functions.
 ///
 /// # Errors
 /// Parameters whose coefficients are not finite or whose denominator vanishes.
@@ -187,7 +187,7 @@ pub fn linear_model(parameters: &LinearParameters) -> Result<LinearModel, Linear
     transfer_functions(&linear_model_coefficients(parameters))
 }
 
-/// Factored transfer functions of a plant with both paths; a plant without a load path has it zero.
+/// Factored transfer functions of a plant with both paths; without a load path that path is zero.
 ///
 /// # Errors
 /// Coefficients that are not finite, or a denominator that vanishes.

@@ -1,13 +1,13 @@
-//! A linkage between the rod and a load that turns about a joint: x_L = g(theta).
+//! Linkage between the rod and a load that turns about a joint: x_L = g(theta).
 //!
 //! ```text
 //! tau = F_L g'(theta),     v_L = g'(theta) omega                 so that F_L v_L = tau omega
 //! ```
 //!
-//! The lever arm g' is in m, or m/rad. x_L is the end of the force sensor on the load's side, in
-//! the coordinate of the piston; it grows with the angle theta of the joint, and so does the torque
-//! with which the rod pushes. A triangle, a four-bar and a table are reduced to one polynomial over
-//! the stroke, which machine and plant evaluate alike.
+//! The lever arm g' is in m, or m/rad. The position x_L is that of the end of the force sensor on
+//! the load's side, in the coordinate of the piston; it grows with the angle theta of the joint,
+//! and so does the torque with which the rod pushes. A triangle, a four-bar and a table are reduced
+//! to one polynomial over the stroke, which both machine and plant evaluate.
 
 mod chebyshev;
 mod geometry;
@@ -21,147 +21,148 @@ use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 use chebyshev::ChebyshevSeries;
 use geometry::{rising_root, through_table, where_it_is};
 
-/// How far beyond either end of the stroke the polynomial is that of the linkage, as a share of it:
-/// end stops yield, and so does the force sensor.
+/// Margin beyond either end of the stroke over which the polynomial represents the linkage, as a
+/// fraction of the stroke: end stops yield, and so does the force sensor.
 const BEYOND: f64 = 0.01;
-/// At how many positions a linkage is examined.
+/// Number of positions at which a linkage is examined.
 const EXAMINED: usize = 401;
-/// The polynomial's largest error, as a share of the stroke.
+/// Largest error of the polynomial, as a fraction of the stroke.
 const LARGEST_ERROR: f64 = 1e-6;
-/// The shortest lever arm, as a share of the longest.
+/// Shortest lever arm, as a fraction of the longest.
 const SHORTEST_ARM: f64 = 0.02;
-/// Newton steps to the angle from the polynomial that guesses it.
+/// Newton steps to the angle from the polynomial that estimates it.
 const STEPS: usize = 2;
 
-/// A cylinder between two pivots at either side of a joint. Units: m, rad.
+/// Cylinder between two pivots on either side of a joint. Units: m, rad.
 ///
 /// ```text
 /// l = l_0 + x,     cos(phi) = (a^2 + b^2 - l^2)/(2 a b),     theta = phi - phi_0
 /// ```
 ///
-/// phi is the angle at the joint between both pivots; phi_0 shifts the zero of theta.
+/// Angle phi is at the joint between both pivots; phi_0 shifts the zero of theta.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PivotTriangle {
-    /// a, from the joint to the pivot of the cylinder's body.
+    /// Distance a from the joint to the pivot of the cylinder's body.
     pub cylinder_pivot: f64,
-    /// b, from the joint to the pivot of the rod.
+    /// Distance b from the joint to the pivot of the rod.
     pub rod_pivot: f64,
-    /// l_0, from pivot to pivot at x = 0.
+    /// Distance l_0 from pivot to pivot at x = 0.
     pub retracted_length: f64,
 }
 
-/// A cylinder that turns the input link of a four-bar by a triangle about its joint. Units: m, rad.
+/// Cylinder that turns the input link of a four-bar linkage by a triangle about its joint. Units:
+/// m, rad.
 ///
 /// ```text
 /// alpha = phi + alpha_0,   A = r (cos alpha, sin alpha),   D = (d, 0),   e = |A - D|
 /// cos(beta) = (e^2 + o^2 - c^2)/(2 e o),   psi = arg(A - D) -+ beta         - open, + crossed
 /// ```
 ///
-/// alpha is the angle of the input link from the fixed link, psi that of the output link, counted
-/// alike; theta is psi or -psi, whichever grows with x.
+/// Angle alpha is that of the input link from the fixed link, psi that of the output link, counted
+/// in the same sense; theta is psi or -psi, whichever grows with x.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FourBar {
-    /// The triangle about the joint of the input link.
+    /// Triangle about the joint of the input link.
     pub triangle: PivotTriangle,
-    /// alpha_0, in rad.
+    /// Angle alpha_0, rad.
     pub input_angle: f64,
-    /// d, from joint to joint.
+    /// Length d from joint to joint.
     pub fixed_link: f64,
-    /// r
+    /// Length r.
     pub input_link: f64,
-    /// c
+    /// Length c.
     pub coupler: f64,
-    /// o
+    /// Length o.
     pub output_link: f64,
-    /// Whether coupler and fixed link cross.
+    /// True if coupler and fixed link cross.
     pub crossed: bool,
 }
 
-/// Angles measured over the stroke. Units: m, rad. Both lists increase.
+/// Measured angles over the stroke. Units: m, rad. Both lists increase.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinkageTable {
-    /// x of each row.
+    /// Extension x of each row.
     pub extensions: Vec<f64>,
-    /// theta of each row.
+    /// Angle theta of each row.
     pub angles: Vec<f64>,
-    /// How far the polynomial may be from a row, in m.
+    /// Largest distance of the polynomial from a row, m.
     pub tolerance: f64,
 }
 
-/// What a linkage is made of.
+/// Geometry of a linkage.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LinkageGeometry {
-    /// One joint.
+    /// Single joint.
     Triangle(PivotTriangle),
     /// Four joints in addition to those of the cylinder.
     FourBar(FourBar),
-    /// Not known: measured.
+    /// Measured table of an unknown geometry.
     Table(LinkageTable),
 }
 
-/// g and what helps to invert it.
+/// Function g and data for its inversion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Linkage<S = f64> {
-    /// g(theta) in m.
+    /// Extension g(theta), m.
     extension: ChebyshevSeries<S>,
-    /// theta(x) in rad, near enough for Newton's steps.
+    /// Angle theta(x), close enough for Newton's steps, rad.
     guess: ChebyshevSeries<S>,
-    /// Weight of the load; `None` for one that gravity does not turn.
+    /// Weight of the load; `None` if gravity exerts no torque.
     weight: Option<LinkedWeight<S>>,
 }
 
-/// The load's end of the rod at one angle. Units: m, m/rad, m/rad2.
+/// Load end of the rod at one angle. Units: m, m/rad, m/rad2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RodEnd<S = f64> {
-    /// x_L = g
+    /// Position x_L = g.
     pub position: S,
-    /// g', the lever arm.
+    /// Lever arm g'.
     pub lever_arm: S,
-    /// g''
+    /// Slope g'' of the lever arm.
     pub lever_slope: S,
 }
 
-/// Why there is no such linkage. Positions are those of the piston in m.
+/// Error for a linkage that does not exist. Positions are those of the piston in m.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum LinkageError {
-    /// No triangle has these sides.
+    /// Sides that form no triangle.
     #[error("the triangle of cylinder and joint does not close at {position} m")]
     NoTriangle {
-        /// Where, first.
+        /// First such position.
         position: f64,
-        /// From pivot to pivot there.
+        /// Distance from pivot to pivot there.
         length: f64,
-        /// The least and the greatest of the possible lengths.
+        /// Least and greatest of the possible lengths.
         possible: [f64; 2],
     },
-    /// The links of a four-bar do not meet.
+    /// Links of a four-bar linkage that do not meet.
     #[error("coupler and output link do not meet at {position} m")]
     NoFourBar {
-        /// Where, first.
+        /// First such position.
         position: f64,
     },
-    /// The joint turns back, or its lever arm all but vanishes or grows beyond bounds.
+    /// A joint that reverses, or whose lever arm nearly vanishes or grows beyond bounds.
     #[error("the linkage is at a dead point at {position} m")]
     DeadPoint {
-        /// Where.
+        /// Position of the dead point.
         position: f64,
     },
-    /// The lever arm changes too much for one polynomial.
+    /// A lever arm that changes too much for one polynomial.
     #[error("no polynomial follows the linkage over its stroke: {error} m are left")]
     NotSmooth {
-        /// The largest error of the polynomial in m.
+        /// Largest error of the polynomial, m.
         error: f64,
     },
     /// A table of fewer than two rows.
     #[error("a table of {rows} rows describes no linkage")]
     FewRows {
-        /// How many.
+        /// Number of rows.
         rows: usize,
     },
     /// A row of a table that does not increase.
     #[error("row {row} of the table does not increase")]
     TableOrder {
-        /// Counted from 1.
+        /// Index of the row, counted from 1.
         row: usize,
     },
     /// A table that is not smooth enough.
@@ -169,39 +170,39 @@ pub enum LinkageError {
         "the table is not smooth: a polynomial of degree {degree} leaves {residual} m, {tolerance} m are permitted"
     )]
     TableRough {
-        /// What the highest degree leaves, in m.
+        /// Residual of the highest degree, m.
         residual: f64,
-        /// What is permitted, in m.
+        /// Permitted residual, m.
         tolerance: f64,
-        /// The highest degree for these rows.
+        /// Highest degree for these rows.
         degree: usize,
     },
-    /// A table that does not reach both ends of the stroke.
+    /// A table that does not cover both ends of the stroke.
     #[error("the table extends from {from} m to {to} m and not over the stroke")]
     TableShort {
-        /// Its first extension.
+        /// First extension.
         from: f64,
-        /// Its last extension.
+        /// Last extension.
         to: f64,
     },
 }
 
-/// A linkage as it was reduced to polynomials.
+/// Linkage after its reduction to polynomials.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReducedLinkage {
     /// The linkage.
     pub linkage: Linkage,
-    /// The polynomial's largest error in m; of a table, its largest distance from a row.
+    /// Largest error of the polynomial, m; for a table, its largest distance from a row.
     pub residual: f64,
 }
 
 impl LinkageGeometry {
-    /// The linkage over a stroke in m, at which theta is the angle of the geometry less
-    /// `angle_offset` in rad.
+    /// Reduced linkage over a stroke in m; theta is the angle of the geometry less `angle_offset`
+    /// in rad.
     ///
     /// # Errors
-    /// A linkage that does not close, or comes to a dead point, within the stroke or a hundredth of
-    /// it beyond; a table that is too short or too rough.
+    /// Linkage that does not close, or reaches a dead point, within the stroke or a hundredth of it
+    /// beyond; a table that is too short or too rough.
     ///
     /// # Example
     /// A right angle between both arms: a cylinder of 5 with arms of 3 and 4, whose lever arm is
@@ -231,12 +232,12 @@ impl LinkageGeometry {
         let closed = |position: f64| self.closed(table.as_ref().map(|(series, _)| series), position);
         let seen = positions.iter().map(|position| closed(*position)).collect::<Result<Vec<f64>, _>>()?;
         let middle = seen[EXAMINED / 2];
-        // only the argument of a four-bar's link jumps by a turn
+        // only the argument of a four-bar's link jumps by a full turn
         let jumps = matches!(self, LinkageGeometry::FourBar(_));
         let unwrapped = |angle: f64| if jumps { middle + wrapped(angle - middle) } else { angle };
         let turns = unwrapped(seen[EXAMINED - 1]) - unwrapped(seen[0]);
         let sense = if turns < 0.0 { -1.0 } else { 1.0 };
-        // of a four-bar the middle of the stroke is within half a turn of zero
+        // for a four-bar linkage the middle of the stroke is within half a turn of zero
         let own = sense * middle - angle_offset;
         let zero = if jumps { angle_offset + own - wrapped(own) } else { angle_offset };
         let angle = |position: f64| Ok(sense * unwrapped(closed(position)?) - zero);
@@ -261,7 +262,7 @@ impl LinkageGeometry {
         }
     }
 
-    /// The angle of the geometry at a position in m, in rad; of a table by its polynomial.
+    /// Angle of the geometry at a position in m, rad; for a table by its polynomial.
     fn closed(&self, table: Option<&ChebyshevSeries>, position: f64) -> Result<f64, LinkageError> {
         let dead = LinkageError::DeadPoint { position };
         match (self, table) {
@@ -285,13 +286,13 @@ impl PivotTriangle {
     }
 }
 
-/// An angle within half a turn.
+/// Angle within half a turn.
 fn wrapped(angle: f64) -> f64 {
     let turn = 2.0 * std::f64::consts::PI;
     angle - turn * (angle / turn).round()
 }
 
-/// Refuses rows that do not increase, or do not reach over the stroke.
+/// Rejects rows that do not increase, or do not cover the stroke.
 fn check_rows(table: &LinkageTable, stroke: f64) -> Result<(), LinkageError> {
     let rows = table.angles.len().min(table.extensions.len());
     let rising = |values: &[f64], row: usize| values[row] > values[row - 1];
@@ -311,7 +312,7 @@ fn check_rows(table: &LinkageTable, stroke: f64) -> Result<(), LinkageError> {
 }
 
 impl Linkage {
-    /// The largest error in m over these positions, of which none may be a dead point.
+    /// Largest error in m over these positions, none of which may be a dead point.
     fn examined(
         &self,
         positions: &[f64],
@@ -334,7 +335,8 @@ impl Linkage {
         Ok(worst)
     }
 
-    /// Not finite numbers in place of a linkage that does not exist; empty if there are none.
+    /// Numbers that are not finite, in place of a linkage that does not exist; empty if there are
+    /// none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         let first = self.extension.coefficients[0];
@@ -344,7 +346,7 @@ impl Linkage {
 }
 
 impl<S: Scalar> Linkage<S> {
-    /// In place of a linkage that does not exist: [`Linkage::problems`] refuses it.
+    /// Placeholder for a linkage that does not exist: [`Linkage::problems`] rejects it.
     pub fn impossible() -> Linkage<S> {
         let none = S::from(f64::NAN);
         let series =
@@ -352,10 +354,10 @@ impl<S: Scalar> Linkage<S> {
         Linkage { extension: series, guess: series, weight: None }
     }
 
-    /// Where the load's end of the rod is at an angle in rad, and the lever arm there.
+    /// Position of the load's end of the rod at an angle in rad, and the lever arm there.
     ///
     /// # Example
-    /// A table that is a straight line has the same lever arm everywhere.
+    /// A table that is a straight line has a constant lever arm:
     /// ```
     /// use phea_hydraulics::linkage::{LinkageGeometry, LinkageTable};
     /// let table = LinkageTable { extensions: vec![0.0, 0.1], angles: vec![-1.0, 1.0], tolerance: 1e-6 };
@@ -370,16 +372,16 @@ impl<S: Scalar> Linkage<S> {
         RodEnd { position, lever_arm, lever_slope }
     }
 
-    /// The same as a part of a machine of many states.
+    /// Position and lever arm as in [`Linkage::end`], as part of a machine of many states.
     ///
-    /// Apart, so that machines without a linkage do not carry its code along.
+    /// Separate function, so that machines without a linkage do not contain its code.
     #[inline(never)]
     pub(crate) fn end_of<T: Scalar + From<S>>(&self, angle: T) -> RodEnd<T> {
         let [position, lever_arm, lever_slope] = T::local(&self.extension, [angle]);
         RodEnd { position, lever_arm, lever_slope }
     }
 
-    /// The angle in rad at which the load's end of the rod is at a position in m: the inverse of
+    /// Angle in rad at which the load's end of the rod is at a position in m: the inverse of
     /// [`Linkage::end`], by Newton's steps.
     ///
     /// ```text
@@ -394,7 +396,7 @@ impl<S: Scalar> Linkage<S> {
         angle
     }
 
-    /// The lever arm in m in the middle of the range of angles.
+    /// Lever arm in the middle of the range of angles, m.
     pub(crate) fn typical_arm(&self) -> S {
         self.end(self.extension.middle).lever_arm
     }

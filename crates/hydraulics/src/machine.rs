@@ -1,5 +1,4 @@
-//! The nonlinear model: the whole of the actuator in motion, as a [`Plant`] that a controller
-//! commands.
+//! Nonlinear model: the whole actuator in motion, as a [`Plant`] that a controller commands.
 //!
 //! ```text
 //! spool          dU/dt, dr/dt, ...                              thesis (4.1) with saturation: SpoolImperfection
@@ -23,7 +22,7 @@
 //!
 //! q_A and q_B are the flows of the four edges into the chambers, through the lines if these have
 //! dynamics of their own. Nothing is clamped: a chamber below vapour pressure, a piston beyond its
-//! stroke or in its stop, a load at its wall are indicators whose change of sign an integrator
+//! stroke or in its stop, and a load at its wall are indicators whose change of sign an integrator
 //! reports.
 
 mod adjusted;
@@ -69,14 +68,13 @@ use equations::constant;
 use signals::ground_of;
 use state::Layout;
 
-/// An actuator with its load and its power unit, in motion. Parameters are numbers, or lanes of
-/// them.
+/// Actuator with its load and its power unit, in motion. Parameters are numbers, or lanes of them.
 ///
 /// Its inputs are the position in m and the velocity in m/s of the load's ground ([`LoadModel`]; in
-/// rad and rad/s behind a linkage), the force from outside in N (N m) where it has one
-/// ([`MachineOptions::external_force`]), by how much the setting of its accumulators has moved and
-/// its rate in 1/s where it moves ([`MachineOptions::moving_setting`]), and then the waves that
-/// arrive from line A and line B; its states are named by [`MachineState`].
+/// rad and rad/s behind a linkage), the external force in N (N m) if there is one
+/// ([`MachineOptions::external_force`]), the change of the setting of its accumulators and its rate
+/// in 1/s if it moves ([`MachineOptions::moving_setting`]), and then the waves that arrive from
+/// line A and line B; its states are named by [`MachineState`].
 ///
 /// # Example
 /// A machine at rest stays at rest.
@@ -110,7 +108,7 @@ pub struct Machine<S = f64> {
     necks: [Option<Neck<S>>; 2],
     thermal_time_constants: [Option<S>; 2],
     gas_pressure_limits: [Option<S>; 2],
-    /// Of gas that is added and taken only where its setting moves.
+    /// Adjustment of gas that is added and removed, only if its setting moves.
     adjustments: [Option<Adjustment<S>>; 2],
     moving_setting: bool,
     cross_port: Option<CrossPort<S>>,
@@ -121,7 +119,7 @@ pub struct Machine<S = f64> {
     linkage: Option<Linkage<S>>,
     load: LoadModel<S>,
     velocity_gain: S,
-    /// phi of the pressure signal p_A - phi p_B.
+    /// Factor phi of the pressure signal p_A - phi p_B.
     pressure_ratio: S,
     external_force: bool,
     vapour_pressure: S,
@@ -129,13 +127,12 @@ pub struct Machine<S = f64> {
 }
 
 impl Machine {
-    /// The machine of an actuator with these options.
+    /// Machine of an actuator with these options.
     ///
     /// # Errors
-    /// Options outside physics, all at once; a static friction curve without the velocity that
-    /// smooths its jump; end stops so soft, or dead volumes so small, that the supply pressure
-    /// would press the piston through a chamber's last fluid; a force from outside on a load that
-    /// does not yield.
+    /// All impossible options; a static friction curve without the velocity that smooths its jump;
+    /// end stops so soft, or dead volumes so small, that the supply pressure would press the piston
+    /// through the last fluid of a chamber; an external force on a load that does not yield.
     pub fn new(actuator: &Actuator, options: &MachineOptions) -> Result<Machine, MachineError> {
         let problems = options.problems();
         if !problems.is_empty() {
@@ -187,19 +184,19 @@ impl Machine {
         Ok(machine)
     }
 
-    /// Whether its inputs hold a force from outside.
+    /// True if its inputs include an external force.
     pub fn has_external_force(&self) -> bool {
         self.external_force
     }
 
-    /// Whether accumulators at its chambers are adjusted: by a valve, or by gas that is added and
-    /// taken as it runs.
+    /// True if accumulators at its chambers are adjusted in operation: by a valve, or by gas that
+    /// is added and removed.
     pub fn has_adjustment(&self) -> bool {
         self.layout.is_adjusted()
     }
 
-    /// Places of the pressures of gas behind valves that are shut, after their setting has moved by
-    /// `change`: they stand still at any value.
+    /// Indices of the pressures of gas behind shut valves, after their setting has moved by
+    /// `change`: they are constant at any value.
     pub fn shut_gas(&self, change: f64) -> Vec<usize> {
         let settings: [f64; 2] = self.settings([change, 0.0]);
         let shut = [0, 1].map(|side| {
@@ -208,48 +205,48 @@ impl Machine {
         self.layout.gas_places(shut)
     }
 
-    /// The lines to chambers A and B.
+    /// Lines to chambers A and B.
     pub fn lines(&self) -> &[DynamicLine; 2] {
         &self.lines
     }
 
-    /// Whether its inputs hold the setting of its accumulators.
+    /// True if its inputs include the setting of its accumulators.
     pub fn has_moving_setting(&self) -> bool {
         self.moving_setting
     }
 
-    /// Whether a spring or a transmission lies between force sensor and load.
+    /// True if a spring or a transmission connects force sensor and load.
     pub fn has_series_element(&self) -> bool {
         self.series.is_some()
     }
 
-    /// Whether it is a transmission.
+    /// True if a transmission connects force sensor and load.
     pub fn has_transmission(&self) -> bool {
         matches!(self.series, Some(MovingSeries::Oil(_)))
     }
 
-    /// Whether the load turns behind a linkage.
+    /// True if the load turns behind a linkage.
     pub fn has_linkage(&self) -> bool {
         self.linkage.is_some()
     }
 
-    /// Whether the gas at chambers A and B has a pressure of its own, behind a neck or a valve.
+    /// True if the gas at chambers A and B has a pressure of its own, behind a neck or a valve.
     pub fn has_gas_pressure(&self) -> [bool; 2] {
         self.layout.behind()
     }
 
-    /// Whether the gas at chambers A and B exchanges heat.
+    /// True if the gas at chambers A and B exchanges heat.
     pub fn has_heated_gas(&self) -> [bool; 2] {
         self.thermal_time_constants.map(|time| time.is_some())
     }
 
-    /// Whether anything stops the piston at the ends of its stroke.
+    /// True if end stops hold the piston at the ends of its stroke.
     pub fn has_end_stops(&self) -> bool {
         self.cylinder.end_stops.is_some()
     }
 
-    /// Refuses end stops into which the supply pressure presses the piston further than its
-    /// chambers reach.
+    /// Rejects end stops into which the supply pressure presses the piston further than its
+    /// chambers allow.
     fn check_ends(&self) -> Result<(), MachineError> {
         let Some(contact) = self.cylinder.end_stops else {
             return Ok(());
@@ -258,7 +255,7 @@ impl Machine {
         let Some(stroke) = self.cylinder.stroke.length() else { return Ok(()) };
         let ([_, area_b], [area_a, _]) = (self.cylinder.areas_at(0.0), self.cylinder.areas_at(stroke));
         let state = MachineState { pressure_a: pressure, pressure_b: pressure, ..MachineState::zero() };
-        // At the A end chamber B presses, and the other way round.
+        // at the A end chamber B presses, and vice versa
         for (end, away, pressing) in [(0.0, -1.0, area_b), (stroke, 1.0, area_a)] {
             let penetration = pressure * pressing / contact.stiffness;
             let [compliance_a, compliance_b] = self.oil_compliance(&state, end + away * penetration);
@@ -281,10 +278,10 @@ phea_dynamics::parameters! {
 }
 
 impl<S: Lane> Machine<S> {
-    /// Puts another machine into one lane.
+    /// Inserts another machine into one lane.
     ///
     /// # Errors
-    /// A machine with other components than these; nothing is changed then.
+    /// Machine with other components than these; nothing is changed in this case.
     ///
     /// # Example
     /// ```
@@ -323,7 +320,7 @@ impl<S: Lane> Machine<S> {
         Ok(())
     }
 
-    /// As [`Parameters::convert`], compiled once for all functions.
+    /// Conversion as in [`Parameters::convert`], compiled once for all functions.
     fn replaced<T: Copy>(&self, of: &mut dyn FnMut(S) -> T) -> Machine<T> {
         self.convert(&mut |value| of(value))
     }

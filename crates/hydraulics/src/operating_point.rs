@@ -1,18 +1,17 @@
-//! Where the valve and the cylinder settle: chamber pressures at which the flows balance, for any
-//! edges and areas.
+//! Equilibrium of valve and cylinder: chamber pressures at which the flows balance, for any edges
+//! and areas.
 //!
-//! At standstill nothing may flow into either chamber, in steady motion the piston takes it:
+//! At standstill no flow enters either chamber, in steady motion the piston takes it:
 //!
 //! ```text
 //! q_A(U, p_A) = A_A v        q_B(U, p_B) = -A_B v        F = A_A p_A - A_B p_B
 //! ```
 //!
-//! What flows from chamber to chamber ([`CrossFlow`](crate::cross_port::CrossFlow)) is taken from A
-//! and given to B. q_A falls strictly
-//! with p_A and q_B with p_B, so each pressure is unique. At standstill p_A rises and p_B falls
-//! with U, and in motion both move so that F falls with v: every unknown is found by bisection, to
-//! the last bit. The same balance over any scalar, recorded expressions among them, is
-//! [`Balance::settle`].
+//! The flow from chamber to chamber ([`CrossFlow`](crate::cross_port::CrossFlow)) is taken from A
+//! and given to B. q_A falls strictly with p_A and q_B with p_B, so each pressure is unique. At
+//! standstill p_A rises and p_B falls with U, and in motion both move so that F falls with v: every
+//! unknown is found by bisection, to the last bit. The balance over any scalar, including recorded
+//! expressions, is [`Balance::settle`].
 
 mod balance;
 mod bisection;
@@ -28,7 +27,7 @@ pub use supply::SettledSupply;
 use crate::actuator::Actuator;
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 
-/// What is known of an operating point.
+/// Given values of an operating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Condition {
     /// Standstill at this spool command in V; zero for the null valve.
@@ -37,64 +36,65 @@ pub enum Condition {
     Load(SteadyLoad),
     /// Steady motion at this command in V under this load; the velocity is found.
     Motion(f64, SteadyLoad),
-    /// Steady motion at this velocity in m/s under this load; the command that keeps it is found.
+    /// Steady motion at this velocity in m/s under this load; the command that holds it is found.
     Moving(f64, SteadyLoad),
-    /// This command in V and load pressure in Pa with both edges of each path taking half the drop,
-    /// as thesis (4.18) assumes: p_A, p_B = (p_S + p_T +- p_L)/2. Steady for equal edges and areas
-    /// alone; see the net flows.
+    /// This command in V and load pressure in Pa with half the drop over either edge of each path,
+    /// as thesis (4.18) assumes: p_A, p_B = (p_S + p_T +- p_L)/2. Steady only for equal edges and
+    /// areas; see the net flows.
     Matched(f64, f64),
 }
 
-/// A load held by the pressures, friction left aside.
+/// Load held by the pressures, without friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SteadyLoad<S = f64> {
-    /// A_A p_A - A_B p_B in N.
+    /// Force A_A p_A - A_B p_B, N.
     Force(S),
-    /// p_A - p_B in Pa.
+    /// Load pressure p_A - p_B, Pa.
     Pressure(S),
 }
 
-/// An operating point. Units: m, V, Pa, m/s, N, m3/s.
+/// Operating point. Units: m, V, Pa, m/s, N, m3/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OperatingPoint<S = f64> {
-    /// Piston position x in m.
+    /// Piston position x, m.
     pub position: S,
-    /// Spool position U_Csp in V, equal to the command.
+    /// Spool position U_Csp, equal to the command, V.
     pub command: S,
-    /// Chamber pressure p_A in Pa.
+    /// Chamber pressure p_A, Pa.
     pub pressure_a: S,
-    /// Chamber pressure p_B in Pa.
+    /// Chamber pressure p_B, Pa.
     pub pressure_b: S,
-    /// Piston velocity in m/s.
+    /// Piston velocity, m/s.
     pub velocity: S,
-    /// Force of the pressures on the piston, A_A p_A - A_B p_B, in N.
+    /// Force of the pressures on the piston, A_A p_A - A_B p_B, N.
     pub hydraulic_force: S,
-    /// Surplus flow into chamber A, in m3/s: zero except for [`Condition::Matched`].
+    /// Surplus flow into chamber A: zero except for [`Condition::Matched`], m3/s.
     pub net_flow_a: S,
-    /// Surplus flow into chamber B, in m3/s: zero except for [`Condition::Matched`].
+    /// Surplus flow into chamber B: zero except for [`Condition::Matched`], m3/s.
     pub net_flow_b: S,
 }
 
-/// Why there is no such operating point.
+/// Error for an operating point that does not exist.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum OperatingPointError {
-    /// The position lies outside the stroke.
+    /// A position outside the stroke.
     #[error("position {position} is outside the stroke of {stroke} (m, or rad of a motor)")]
     PositionOutsideStroke {
-        /// The position asked for, in m.
+        /// Requested position, m.
         position: f64,
-        /// The stroke in m.
+        /// Stroke, m.
         stroke: f64,
     },
-    /// The command exceeds the valve's nominal voltage.
+    /// A command beyond the valve's nominal voltage.
     #[error("command {command} V is beyond the nominal {nominal} V")]
     CommandBeyondNominal {
-        /// The command asked for, in V.
+        /// Requested command, V.
         command: f64,
-        /// The valve's nominal voltage.
+        /// Nominal voltage of the valve, V.
         nominal: f64,
     },
-    /// No command within the nominal voltage holds this load (force in N, or load pressure in Pa).
+    /// A load (force in N, or load pressure in Pa) that no command within the nominal voltage
+    /// holds.
     #[error(
         "a load {} of {} {unit} cannot be held{}: the valve holds {} to {} {unit}",
         if *is_force { "force" } else { "pressure" },
@@ -105,35 +105,35 @@ pub enum OperatingPointError {
         unit = if *is_force { "N" } else { "Pa" }
     )]
     LoadOutOfReach {
-        /// The load asked for.
+        /// Requested load.
         load: f64,
-        /// Whether it is a force in N, or else a load pressure in Pa.
+        /// True for a force in N, false for a load pressure in Pa.
         is_force: bool,
-        /// Whether the piston moves.
+        /// True if the piston moves.
         moves: bool,
-        /// The least that can be held.
+        /// Least load that can be held.
         minimum: f64,
-        /// The greatest that can be held.
+        /// Greatest load that can be held.
         maximum: f64,
     },
-    /// A chamber would have to be below vacuum.
+    /// A chamber pressure below vacuum.
     #[error("a chamber would be at {pressure} Pa gauge, below vacuum")]
     BelowVacuum {
-        /// The lower of both chamber pressures in Pa gauge.
+        /// Lower of both chamber pressures, Pa gauge.
         pressure: f64,
     },
-    /// A value asked for is not a number, or no balance was found.
+    /// A requested value that is NaN, or a balance that was not found.
     #[error("no balance was found")]
     NotFound,
 }
 
-/// A load in words: whole newtons or pascals say enough.
+/// Load for a message, rounded: whole newtons or pascals are sufficient.
 fn whole(value: f64) -> f64 {
     value.round()
 }
 
 impl OperatingPoint {
-    /// Load pressure in Pa.
+    /// Load pressure, Pa.
     ///
     /// ```text
     /// p_L = p_A - p_B
@@ -143,14 +143,15 @@ impl OperatingPoint {
     }
 }
 
-/// The operating point of an actuator at piston position `position` in m.
+/// Operating point of an actuator at piston position `position` in m.
 ///
 /// # Errors
-/// A position outside the stroke, a command beyond the nominal voltage, a load out of reach, a
+/// Position outside the stroke, a command beyond the nominal voltage, a load out of reach, a
 /// pressure below vacuum.
 ///
 /// # Example
-/// Unequal edges at null do not settle at half the supply pressure, and push:
+/// With unequal edges at null the pressures differ from half the supply pressure, and push the
+/// piston:
 /// ```
 /// # use phea_hydraulics::{actuator::*, cylinder::*, fluid::*, force_sensor::*, friction::*, line::*};
 /// # use phea_hydraulics::{operating_point::*, servovalve::*, stiffness::*, stroke::ActuatorStroke};
@@ -234,8 +235,8 @@ impl From<Steady> for Condition {
     }
 }
 
-/// Force of the chamber pressures on the piston, A_A p_A - A_B p_B, in N, positive towards B:
-/// thesis (4.29).
+/// Force of the chamber pressures on the piston, A_A p_A - A_B p_B, N, positive towards B: thesis
+/// (4.29).
 #[inline(always)]
 pub fn hydraulic_force<S: Scalar>([area_a, area_b]: [S; 2], [pressure_a, pressure_b]: [S; 2]) -> S {
     area_a * pressure_a - area_b * pressure_b

@@ -2,15 +2,15 @@
 
 use phea_dynamics::scalar::Scalar;
 
-/// Square root of a pressure drop with its sign, smooth at zero, in Pa^0.5.
+/// Square root of a pressure drop with its sign, smooth at zero, Pa^0.5.
 ///
 /// ```text
 /// root(dp) = dp / (dp^2 + dp_t^2)^(1/4)  ->  sign(dp) sqrt|dp|  for |dp| >> dp_t
 /// ```
 ///
-/// Value and slope are continuous at zero drop, where the slope is 1/sqrt(dp_t). Ten times the
-/// transition pressure dp_t away the square root is reached to 0.25 %. With dp_t = 0 the slope at
-/// zero drop does not exist.
+/// Value and slope are continuous at zero drop, where the slope is 1/sqrt(dp_t). At ten times the
+/// transition pressure dp_t the square root is reached to 0.25 %. With dp_t = 0 the slope at zero
+/// drop does not exist.
 ///
 /// # Example
 /// ```
@@ -26,7 +26,7 @@ pub fn regular_root<S: Scalar>(drop: S, transition_pressure: S) -> S {
     drop / (drop.squared() + transition_pressure.squared()).sqrt().sqrt()
 }
 
-/// Slope of [`regular_root`] over the drop, in Pa^-0.5.
+/// Slope of [`regular_root`] over the drop, Pa^-0.5.
 ///
 /// ```text
 /// d root/d(dp) = (dp^2/2 + dp_t^2) / (dp^2 + dp_t^2)^(5/4)
@@ -46,7 +46,7 @@ pub fn regular_root_slope<S: Scalar>(drop: S, transition_pressure: S) -> S {
     (drop_squared / S::from(2.0) + transition_squared) / (square * square.sqrt().sqrt())
 }
 
-/// Flow through a sharp edge, laminar below the transition pressure, in m3/s; positive along a
+/// Flow through a sharp edge, laminar below the transition pressure, m3/s; positive along a
 /// positive drop.
 ///
 /// ```text
@@ -56,7 +56,7 @@ pub fn regular_root_slope<S: Scalar>(drop: S, transition_pressure: S) -> S {
 /// K in m3/(s Pa^0.5), the drop in Pa. A rigid edge, no cavitation.
 ///
 /// # Example
-/// Four times the drop gives twice the flow.
+/// Four times the drop gives twice the flow:
 /// ```
 /// use phea_hydraulics::orifice::flow;
 /// let ratio: f64 = flow(3e-7, 4e6, 1e3) / flow(3e-7, 1e6, 1e3);

@@ -1,6 +1,6 @@
-//! Refusal of parameters outside physics, naming the quantity, its value and the requirement.
+//! Rejection of impossible parameters, with the quantity, its value and the requirement.
 
-/// A parameter that cannot describe a real component.
+/// Error for a parameter that cannot describe a real component.
 ///
 /// # Example
 /// ```
@@ -11,9 +11,9 @@
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{quantity} is {value}, but must be {requirement}")]
 pub struct ParameterError {
-    /// Which quantity, as a dotted path below the component it belongs to: `cylinder.stroke`.
+    /// Name of the quantity, as a dotted path below the component it belongs to: `cylinder.stroke`.
     pub quantity: String,
-    /// The value given, in SI units.
+    /// Value, in SI units.
     pub value: f64,
     /// Requirement that it violates.
     pub requirement: ParameterRequirement,
@@ -31,13 +31,13 @@ pub enum ParameterRequirement {
     /// Numbers that are not negative.
     #[error("zero or positive")]
     ZeroOrPositive,
-    /// Fractions with both ends.
+    /// Fractions, both ends included.
     #[error("from 0 to 1")]
     FractionWithEnds,
-    /// Fractions without the upper end.
+    /// Fractions, the upper end excluded.
     #[error("from 0 to below 1")]
     FractionBelowOne,
-    /// Fractions of up to a half, without both ends.
+    /// Fractions up to a half, both ends excluded.
     #[error("between 0 and 1/2")]
     BelowHalf,
     /// Poisson ratios of an elastic solid.
@@ -112,18 +112,18 @@ pub enum ParameterRequirement {
 }
 
 impl ParameterError {
-    /// The same refusal seen from the owner of the component: `stroke` becomes `cylinder.stroke`.
+    /// Error as reported by the owner of the component: `stroke` becomes `cylinder.stroke`.
     pub fn within(self, owner: &str) -> ParameterError {
         ParameterError { quantity: format!("{owner}.{}", self.quantity), ..self }
     }
 }
 
-/// Collects refusals, so that all of a component are reported at once.
+/// Collects errors, so that all of a component are reported at once.
 #[derive(Debug, Default)]
 pub(crate) struct Problems(Vec<ParameterError>);
 
 impl Problems {
-    /// Refuses `value` unless `holds`; a value that is not finite is always refused.
+    /// Records an error for `value` unless `holds`; a value that is not finite is always an error.
     pub(crate) fn require(
         &mut self,
         quantity: &str,

@@ -1,17 +1,17 @@
-//! The linear plant of the controller at an operating point, with lumped lines and with its load.
+//! Linear plant of the controller at an operating point, with lumped lines and with its load.
 //!
 //! ```text
 //! U_sp = w^2/(s^2 + 2 xi w s + w^2) U_C                                  spool, thesis (4.1)
 //! D F_h = N_u U_sp - N_v s X                                             chambers: ChamberDynamics
 //! (M s^2 + f_v s + k_A) X = F_h - F_e, F_e = K_S (X - X_L)               piston and force sensor, thesis (6.6)
 //! X_L = X_0,   or   (m s^2 + c s + k) X_L = F_e + (c s + k) X_0          load: LinearLoad
-//! U_C -> U_C + K_x (1 + e) H_v s X_L - H (p_A - phi p_B)                 what is fed forward of the load's velocity, and back of
+//! U_C -> U_C + K_x (1 + e) H_v s X_L - H (p_A - phi p_B)                 feed-forward of the load's velocity, feedback of
 //!                                                                        the pressures: PressureFeedback
-//! F_e -> F_e + Z_v X_L                                                   what a virtual impedance adds to the output
+//! F_e -> F_e + Z_v X_L                                                   contribution of a virtual impedance to the output
 //! ```
 //!
 //! These are the equations of [`crate::machine`] differentiated, with friction as one slope f_v.
-//! The supply is at a constant pressure, or has one of its own: [`YieldingSupply`].
+//! The supply pressure is constant, or a state: [`YieldingSupply`].
 
 mod chambers;
 mod in_motion;
@@ -40,57 +40,59 @@ use crate::linear::LinearParameters;
 use crate::linear::polynomial::{product, scaled, shifted, sum};
 use crate::two_pressure::TwoPressureLinearParameters;
 
-/// Everything that the linear plant depends on.
+/// Parameters of the linear plant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearPlant<S = f64> {
-    /// Natural frequency w of the spool in rad/s.
+    /// Natural frequency w of the spool, rad/s.
     pub valve_natural_frequency: S,
     /// Damping ratio xi of the spool.
     pub valve_damping_ratio: S,
-    /// From spool position and piston velocity to the force of the pressures.
+    /// Dynamics from spool position and piston velocity to the force of the pressures.
     pub chambers: ChamberDynamics<S>,
-    /// Conductance G from chamber to chamber in m3/(s Pa): leakage across the piston, and a valve
+    /// Conductance G from chamber to chamber, m3/(s Pa): leakage across the piston, and a valve
     /// between the chambers.
     pub internal_leakage: S,
-    /// Dynamic pressure feedback between the chambers; `None` where there is none.
+    /// Dynamic pressure feedback between the chambers; `None` without it.
     pub dynamic_feedback: Option<DynamicFeedback<S>>,
-    /// Gas behind a neck, or with heat, at either chamber: the chambers' compliances leave it out.
+    /// Gas behind a neck, or with heat, at either chamber: not included in the chambers'
+    /// compliances.
     pub gas: [Option<GasBranch<S>>; 2],
-    /// Moving mass M in kg.
+    /// Moving mass M, kg.
     pub moving_mass: S,
-    /// Slope f_v of the friction in N s/m.
+    /// Slope f_v of the friction, N s/m.
     pub viscous_friction: S,
-    /// Stiffness k_A in N/m that the slope of the areas of a telescopic piston gives it; `None`
-    /// where they have none.
+    /// Stiffness k_A from the slope of the areas of a telescopic piston, N/m; `None` for constant
+    /// areas.
     pub area_stiffness: Option<S>,
-    /// Stiffness K_S of the force sensor in N/m; with a prescribed load, of sensor and environment.
+    /// Stiffness K_S of the force sensor, N/m; with a prescribed load, of sensor and environment.
     pub sensor_stiffness: S,
-    /// What lies between force sensor and load; `None` where the sensor pushes on the load itself.
+    /// Element between force sensor and load; `None` if the sensor acts directly on the load.
     pub series: Option<LinearSeries<S>>,
-    /// What the force sensor pushes on.
+    /// Load on the force sensor.
     pub load: LinearLoad<S>,
-    /// A supply that yields; `None` where its pressure is constant.
+    /// Supply that yields; `None` if its pressure is constant.
     pub supply: Option<YieldingSupply<S>>,
-    /// Gain K_x in V s/m from the velocity of the load to the command, at once; `None` where
-    /// nothing is fed forward.
+    /// Gain K_x from the velocity of the load to the command, without delay, V s/m; `None` without
+    /// feed-forward.
     pub load_velocity_feed_forward: Option<S>,
-    /// What that velocity is measured with.
+    /// Sensor of this velocity.
     pub velocity_sensor: VelocitySensor<S>,
-    /// Z_v of an outer loop, with which the output is y = F_e + Z_v X_L; `None` for the force.
+    /// Virtual impedance Z_v of an outer loop, with which the output is y = F_e + Z_v X_L; `None`
+    /// for the force.
     pub virtual_impedance: Option<VirtualImpedance>,
-    /// Feedback of the chambers' pressures to the command, at once; `None` without one.
+    /// Feedback of the chambers' pressures to the command, without delay; `None` without one.
     pub pressure_feedback: Option<PressureFeedback>,
-    /// phi of a pressure signal p_A - phi p_B that a loop around the plant samples: its paths are
-    /// then among the coefficients. `None` where no loop does.
+    /// Factor phi of a pressure signal p_A - phi p_B that a loop around the plant samples: its
+    /// paths are then among the coefficients. `None` without such a loop.
     pub pressure_signal: Option<f64>,
 }
 
-/// The sensor of the load's velocity, without its dead time.
+/// Sensor of the load's velocity, without its dead time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VelocitySensor<S = f64> {
-    /// Shown velocity over the true one, 1 + e; `None` where e is zero.
+    /// Ratio 1 + e of measured to true velocity; `None` if e is zero.
     pub gain: Option<S>,
-    /// H_v of the velocity that is fed forward within the plant.
+    /// Filter H_v of the velocity that is fed forward within the plant.
     pub filter: RateFilter,
 }
 
@@ -101,19 +103,19 @@ impl<S> Default for VelocitySensor<S> {
 }
 
 impl<S> VelocitySensor<S> {
-    /// With this gain, and no filter within the plant.
+    /// Sensor with this gain, and no filter within the plant.
     pub fn shown_by(gain: Option<S>) -> VelocitySensor<S> {
         VelocitySensor { gain, filter: RateFilter::None }
     }
 }
 
 impl<S: Scalar> VelocitySensor<S> {
-    /// A polynomial of the true velocity as one of the shown velocity, before its filter.
+    /// Polynomial of the measured velocity, before its filter, from that of the true velocity.
     fn shown(&self, velocity: Vec<S>) -> Vec<S> {
         self.gain.map_or(velocity.clone(), |gain| scaled(gain, &velocity))
     }
 
-    /// A polynomial times the denominator of the filter.
+    /// Polynomial times the denominator of the filter.
     fn filtered(&self, polynomial: Vec<S>) -> Vec<S> {
         match self.filter {
             RateFilter::None => polynomial,
@@ -125,9 +127,9 @@ impl<S: Scalar> VelocitySensor<S> {
     }
 }
 
-/// Paths over their divisors: F_e (sensed - fed) = command U_C + ground X_0 and v_L
-/// (sensed - fed) = s (driven U_C + held R X_0), `fed` being the feedback through the velocity of a
-/// load that can move and R what ties this load to its ground.
+/// Paths over their divisors: F_e (sensed - fed) = command U_C + ground X_0 and v_L (sensed - fed)
+/// = s (driven U_C + held R X_0), `fed` being the feedback through the velocity of a load that can
+/// move and R the connection of this load to its ground.
 struct Paths<T> {
     command: T,
     ground: T,
@@ -138,8 +140,8 @@ struct Paths<T> {
 }
 
 impl<S: Scalar> LinearPlant<S> {
-    /// The plant of these parameters of the fifth-order model, with the effects that this model
-    /// leaves out.
+    /// Plant with these parameters of the fifth-order model, and with the effects that this model
+    /// omits.
     pub fn of_load_pressure(
         parameters: &LinearParameters<S>,
         leakage: S,
@@ -172,8 +174,8 @@ impl<S: Scalar> LinearPlant<S> {
         }
     }
 
-    /// The plant of these parameters of the two-pressure model, with the effects that this model
-    /// leaves out.
+    /// Plant with these parameters of the two-pressure model, and with the effects that this model
+    /// omits.
     pub fn of_two_pressures(
         parameters: &TwoPressureLinearParameters<S>,
         leakage: S,
@@ -207,9 +209,9 @@ impl<S: Scalar> LinearPlant<S> {
         }
     }
 
-    /// D, N_u and N_v of a reading with what flows from chamber to chamber; dynamic pressure
-    /// feedback multiplies all three by C_cp s + g, the denominator of its admittance, and gas by
-    /// that of its own.
+    /// Polynomials D, N_u and N_v of a reading with the flow from chamber to chamber; dynamic
+    /// pressure feedback multiplies all three by C_cp s + g, the denominator of its admittance, and
+    /// gas multiplies them by that of its own admittance.
     fn chamber_polynomials(&self, reading: &Reading<S>) -> ChamberPolynomials<Vec<S>> {
         let chambers = match (&self.supply, self.gas) {
             (None, [None, None]) => self.chambers.chambers(reading),
@@ -229,7 +231,7 @@ impl<S: Scalar> LinearPlant<S> {
         }
     }
 
-    /// F_e/U_C in N/V and F_e/X_0 in N/m, X_0 the motion of the load or of its ground.
+    /// Paths F_e/U_C in N/V and F_e/X_0 in N/m, X_0 being the motion of the load or of its ground.
     ///
     /// ```text
     /// Q = (M s^2 + f_v s + k_A) D + N_v s,     Z = m s^2 + c s + k,     V = s^2 + 2 xi w s + w^2
@@ -238,25 +240,25 @@ impl<S: Scalar> LinearPlant<S> {
     ///               v_L = s (K_S w^2 N_u U_C + (c s + k) V (Q + K_S D) X_0)/(V (Q (Z + K_S) + K_S Z D))
     /// ```
     ///
-    /// Behind a linkage Z has k_g in addition to k, and r^2 K_S w^2 N_u and r^2 K_S stand for what
-    /// the force does to the load: [`LinearLoad::Linked`]. The velocity of the load that is fed
-    /// forward is a second path of a prescribed motion, and a second loop of a load that yields.
-    /// With the sensor's gain 1 + e and its filter H_v = 1/d_v,
+    /// Behind a linkage Z has k_g in addition to k, and r^2 K_S w^2 N_u and r^2 K_S represent the
+    /// effect of the force on the load: [`LinearLoad::Linked`]. The velocity of the load that is
+    /// fed forward is a second path of a prescribed motion, and a second loop of a load that
+    /// yields. With the sensor's gain 1 + e and its filter H_v = 1/d_v,
     ///
     /// ```text
     /// prescribed    F_e = (N U_C - (d_v B - (1 + e) K_x s N) X_0/d_v)/D                    N, B, D of the equations above
     /// yielding      F_e = (d_v N U_C - (c s + k) (d_v B - (1 + e) K_x s K_S w^2 N_u) X_0)/(d_v D - (1 + e) K_x s K_S w^2 N_u)
     /// ```
     ///
-    /// The `rate` is (1 + e) v_L, before its filter. With a series element between sensor and load
-    /// see [`LinearSeries`]. With a virtual impedance the output is y:
+    /// Output `rate` is (1 + e) v_L, before its filter. With a series element between sensor and
+    /// load see [`LinearSeries`]. With a virtual impedance the output is y:
     ///
     /// ```text
-    /// y/U_C = F_e/U_C + Z_v X_L/U_C,     y/X_0 = F_e/X_0 + Z_v X_L/X_0         X_L = X_0 where its motion is prescribed
+    /// y/U_C = F_e/U_C + Z_v X_L/U_C,     y/X_0 = F_e/X_0 + Z_v X_L/X_0         X_L = X_0 if its motion is prescribed
     /// ```
     ///
     /// # Example
-    /// The effect of the load: with a mass as heavy as the earth it does not move.
+    /// The load has an effect: with a mass as heavy as the earth it does not move:
     /// ```
     /// # use phea_hydraulics::linear::{LinearParameters, linear_model_coefficients};
     /// use phea_hydraulics::plant::{LinearLoad, LinearPlant};
@@ -286,7 +288,7 @@ impl<S: Scalar> LinearPlant<S> {
         }
     }
 
-    /// Q of these chambers.
+    /// Denominator Q for these chambers.
     fn resisted(&self, ChamberPolynomials { own, displaced, .. }: &ChamberPolynomials<Vec<S>>) -> Vec<S> {
         let moved = shifted(&sum(&product(&[self.moving_mass, self.viscous_friction], own), displaced));
         match self.area_stiffness {
@@ -295,7 +297,7 @@ impl<S: Scalar> LinearPlant<S> {
         }
     }
 
-    /// Valve and chambers with this Q against the load.
+    /// Valve and chambers with this Q, connected to the load.
     fn against_load(&self, valve: ValveAndChambers<S>, moved: Vec<S>) -> PlantCoefficients<S> {
         let ValveAndChambers { chambers, spool, square } = valve;
         let ChamberPolynomials { driven, .. } = &chambers;
@@ -320,7 +322,7 @@ impl<S: Scalar> LinearPlant<S> {
                 command: RationalCoefficients { numerator: command, denominator: held.clone() },
                 disturbance: Some(self.beside_motion(by_load, filtered(held.clone()))),
                 dead_time_s: S::from(0.0),
-                // what is shown of the rate of X_0 itself
+                // measured rate of X_0 itself
                 rate: shows.gain.map(|gain| RateNumerators {
                     command: vec![S::from(0.0)],
                     disturbance: shifted(&scaled(gain, &held)),

@@ -1,44 +1,44 @@
-//! What supplies the pressure: a pressure that nothing moves, or a pump with its relief valve.
+//! Source of the supply pressure: a constant pressure, or a pump with its relief valve.
 
 use phea_dynamics::scalar::Scalar;
 
 use crate::accumulator::Accumulator;
 use crate::parameter::{ParameterError, Problems};
 
-/// Where the supply pressure comes from. Units: m3/s, Pa, m3.
+/// Source of the supply pressure. Units: m3/s, Pa, m3.
 ///
 /// ```text
-/// constant        p_S as stated, whatever the valve takes
+/// constant        p_S as stated, for any flow of the valve
 /// pump limited    C_S(p_S) dp_S/dt = q_pump - q_relief - q_supply
 ///                 q_relief = (q_pump/dp_o) (p_S - p_relief)+
 ///                 C_S = V/beta + C_acc,    C_acc = (V_0/(n P)) (P_0/P)^(1/n) above the precharge, 0 below
 /// ```
 ///
 /// P and P_0 are absolute. The relief valve opens at the stated supply pressure less the override
-/// dp_o, so that an idle pump holds the stated pressure; its own motion is faster than that of the
+/// dp_o, so that an idle pump holds the stated pressure; its dynamics are faster than those of the
 /// volume after it and neglected.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum PowerUnit<S = f64> {
-    /// A pressure that nothing moves.
+    /// Constant pressure.
     #[default]
     Constant,
-    /// A pump of fixed flow with its relief valve, on the volume of the supply line.
+    /// Pump of fixed flow with its relief valve, on the volume of the supply line.
     PumpLimited(PumpLimited<S>),
 }
 
-/// A pump with fixed flow, a relief valve and the line to the servovalve. Units: m3/s, Pa, m3.
+/// Pump with fixed flow, a relief valve and the line to the servovalve. Units: m3/s, Pa, m3.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PumpLimited<S = f64> {
-    /// Flow of the pump in m3/s.
+    /// Flow of the pump, m3/s.
     pub pump_flow: S,
-    /// Rise of pressure dp_o in Pa over which the relief valve opens from nothing to the pump's
-    /// whole flow.
+    /// Rise of pressure dp_o over which the relief valve opens from zero to the pump's whole flow,
+    /// Pa.
     pub relief_override: S,
-    /// Volume V of the supply line in m3.
+    /// Volume V of the supply line, m3.
     pub volume: S,
-    /// Effective bulk modulus beta of the supply line in Pa.
+    /// Effective bulk modulus beta of the supply line, Pa.
     pub effective_bulk_modulus: S,
-    /// A bladder accumulator on it.
+    /// Bladder accumulator on the supply line.
     pub accumulator: Option<Accumulator<S>>,
 }
 
@@ -63,15 +63,15 @@ phea_dynamics::parameters! {
 }
 
 impl<S: Copy> PowerUnit<S> {
-    /// Whether the supply pressure is a state.
+    /// True if the supply pressure is a state.
     pub fn yields(&self) -> bool {
         matches!(self, PowerUnit::PumpLimited(_))
     }
 }
 
 impl<S: Scalar> PumpLimited<S> {
-    /// Flow of the relief valve in m3/s at a supply pressure in Pa, where `stated` in Pa is held by
-    /// the idle pump.
+    /// Flow of the relief valve at a supply pressure in Pa, with `stated` in Pa held by the idle
+    /// pump, m3/s.
     ///
     /// # Example
     /// ```
@@ -88,7 +88,7 @@ impl<S: Scalar> PumpLimited<S> {
         self.pump_flow * above.maximum(S::from(0.0)) / self.relief_override
     }
 
-    /// Compliance C_S in m3/Pa at a supply pressure in Pa.
+    /// Compliance C_S at a supply pressure in Pa, m3/Pa.
     pub fn compliance(&self, pressure: S) -> S {
         let line = self.volume / self.effective_bulk_modulus;
         match self.accumulator {
@@ -97,7 +97,7 @@ impl<S: Scalar> PumpLimited<S> {
         }
     }
 
-    /// Rate of the supply pressure in Pa/s while `taken` in m3/s goes to the valve.
+    /// Rate of the supply pressure while `taken` in m3/s flows to the valve, Pa/s.
     #[inline(always)]
     pub(crate) fn pressure_rate(&self, pressure: S, stated: S, taken: S) -> S {
         (self.pump_flow - self.relief_flow(pressure, stated) - taken) / self.compliance(pressure)

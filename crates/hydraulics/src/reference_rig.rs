@@ -1,9 +1,9 @@
-//! The rig of Ledezma (2019) as a reference problem: the same numbers in examples, tests and
+//! Rig of Ledezma (2019) as a reference problem: one set of numbers for examples, tests and
 //! benches.
 //!
-//! Table A.1 for the components, Table 5.1 for the valve's edges, section 6.4.1 for the hose. What
-//! the thesis does not print (fluid modulus, density, viscosity, friction beyond f_v, the
-//! transition pressure) is chosen here: 1.45 GPa reproduces its tables.
+//! Table A.1 for the components, Table 5.1 for the valve's edges, section 6.4.1 for the hose.
+//! Values missing in the thesis (fluid modulus, density, viscosity, friction beyond f_v, the
+//! transition pressure) are chosen here: 1.45 GPa reproduces its tables.
 
 use crate::actuator::Components;
 use crate::contact::Contact;
@@ -19,11 +19,11 @@ use crate::servovalve::{
 use crate::stiffness::StiffnessModel;
 use crate::stroke::ActuatorStroke;
 
-/// Useful piston area of a 50 mm piston with 22 mm rods, in m2.
+/// Useful piston area of a 50 mm piston with 22 mm rods, m2.
 pub const USEFUL_AREA: f64 = std::f64::consts::FRAC_PI_4 * (0.05 * 0.05 - 0.022 * 0.022);
 
-/// Eaton Synflex 3130-08: 12.7 mm, E = 1.56e-5 m3/m at 70 bar and less by the slope times 35 bar at
-/// 35 bar.
+/// Hose Eaton Synflex 3130-08: 12.7 mm, E = 1.56e-5 m3/m at 70 bar, less by the slope times 35 bar
+/// at 35 bar.
 pub fn hose() -> Hose {
     Hose {
         bore: 12.7e-3,
@@ -34,29 +34,29 @@ pub fn hose() -> Hose {
     }
 }
 
-/// 1.5 m of [`hose`] on each side.
+/// Line of 1.5 m of [`hose`] on each side.
 pub fn hose_line() -> Line {
     Line::Hose { hose: hose(), length: 1.5 }
 }
 
-/// The pipe the hose is compared with: 0.35 m of 10.5 mm bore, taken as rigid.
+/// Pipe with which the hose is compared: 0.35 m of 10.5 mm bore, assumed rigid.
 pub fn pipe_line() -> Line {
     Line::Pipe { pipe: Pipe { bore: 10.5e-3, wall: PipeWall::Rigid }, length: 0.35 }
 }
 
-/// These components, with a leakage across the piston in m3/(s Pa).
+/// Components with a leakage across the piston in m3/(s Pa).
 pub fn leaking(components: Components, internal_leakage: f64) -> Components {
     let cylinder = Cylinder { internal_leakage: Some(internal_leakage), ..components.cylinder };
     Components { cylinder, ..components }
 }
 
-/// These components, with end stops.
+/// Components with end stops.
 pub fn stopped(components: Components, contact: Contact) -> Components {
     let cylinder = Cylinder { end_stops: Some(contact), ..components.cylinder };
     Components { cylinder, ..components }
 }
 
-/// The symmetric cylinder: 50/22 mm, 0.5 m, 13.1 kg.
+/// Symmetric cylinder: 50/22 mm, 0.5 m, 13.1 kg.
 pub fn cylinder() -> Cylinder {
     Cylinder {
         area_a: USEFUL_AREA,
@@ -71,7 +71,7 @@ pub fn cylinder() -> Cylinder {
     }
 }
 
-/// Moog 760 C263-A with the unequal edges of Table 5.1.
+/// Valve Moog 760 C263-A with the unequal edges of Table 5.1.
 pub fn valve() -> Servovalve {
     Servovalve {
         flow_coefficients: Edges::from_array([3.2e-7, 2.5e-7, 2.0e-7, 3.85e-7]),
@@ -87,14 +87,14 @@ pub fn valve() -> Servovalve {
     }
 }
 
-/// What section 5.2.1 measured of its null: at 0.078 V rising and at -0.05 V falling. The threshold
-/// in it is not printed.
+/// Measured null of section 5.2.1: 0.078 V rising and -0.05 V falling. The threshold included is
+/// not printed.
 pub fn measured_spool() -> SpoolImperfection {
     SpoolImperfection { null_bias: 0.014, hysteresis_width: Some(0.128), ..SpoolImperfection::default() }
 }
 
-/// The same valve with equal edges: K_vp = 3.0e-7 and K_vinp = 2.40e-9, which give K_qU 5.61e-5 and
-/// K_c 6.42e-13 at null.
+/// Valve with equal edges: K_vp = 3.0e-7 and K_vinp = 2.40e-9, which give K_qU 5.61e-5 and K_c
+/// 6.42e-13 at null.
 pub fn valve_with_equal_edges() -> Servovalve {
     Servovalve {
         flow_coefficients: Edges::equal(3.0e-7),
@@ -104,8 +104,8 @@ pub fn valve_with_equal_edges() -> Servovalve {
     }
 }
 
-/// The whole actuator with this line on both sides, viscous friction and the sensor in series with
-/// its environment.
+/// Components of the whole actuator with this line on both sides, viscous friction and the sensor
+/// in series with its environment.
 pub fn components(line: Line, stiffness_model: StiffnessModel) -> Components {
     Components {
         fluid: Fluid {
@@ -132,8 +132,8 @@ pub fn components(line: Line, stiffness_model: StiffnessModel) -> Components {
     }
 }
 
-/// The rig that solvers of differential equations are compared on: the valve and hose of the thesis
-/// in round numbers, LuGre friction, one modulus for line and chamber.
+/// Rig for comparisons of differential equation solvers: the valve and hose of the thesis in round
+/// numbers, LuGre friction, one modulus for line and chamber.
 ///
 /// ```text
 /// A_u = 1.583e-3 m2, V_line = 1.9e-4 m3, beta_e = 2.6e8 Pa, sigma_0 = 1e7 N/m, sigma_1 = 2000 N s/m, sigma_2 = 100 N s/m
@@ -158,7 +158,7 @@ pub fn benchmark_components() -> Components {
 /// Nominal plant of Table 6.3, with K_S = 2e7 N/m.
 ///
 /// # Example
-/// The valve with equal edges at null has the K_c of the table, to a unit of its last digit.
+/// The valve with equal edges at null has the K_c of the table, to a unit of its last digit:
 /// ```
 /// use phea_hydraulics::reference_rig::{components, hose_line, nominal_plant, valve_with_equal_edges};
 /// use phea_hydraulics::servovalve::{SpoolDirection, control_coefficients};

@@ -1,14 +1,14 @@
-//! What may lie between force sensor and load: a spring, or a hydraulic transmission.
+//! Optional element between force sensor and load: a spring, or a hydraulic transmission.
 //!
 //! ```text
 //! rod - force sensor K_S - mass m - spring k, damper c, ends - load                      SeriesSpring
 //! rod - force sensor K_S - piston - oil - line - oil - piston - load                     Transmission
 //! ```
 //!
-//! The sensor sits on the rod, as on a rig, and what lies in series is screwed to it; the load
-//! hangs on the other end. With a mass the sensor measures what accelerates this mass, too; the
-//! deflection of the spring does not see it. With a transmission it measures what accelerates the
-//! oil and what the line takes, and these are held by the line's fixings and not by the load.
+//! The sensor sits on the rod, as on a rig, and the series element is screwed to it; the load is at
+//! the other end. With a mass the sensor also measures the force that accelerates this mass; the
+//! deflection of the spring does not include it. With a transmission it also measures the forces of
+//! the oil's acceleration and of line friction, which the line's fixings hold and not the load.
 
 mod coil;
 mod oil_column;
@@ -26,31 +26,31 @@ use crate::fluid::Fluid;
 use crate::line::StiffeningMember;
 use crate::parameter::ParameterError;
 
-/// What lies between force sensor and load.
+/// Element between force sensor and load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SeriesElement<S = f64> {
-    /// A spring with its damper and the mass before it.
+    /// Spring with its damper and the mass before it.
     Spring(SeriesSpring<S>),
     /// Two pistons with oil and a line between them.
     Transmission(Transmission<S>),
 }
 
-/// The same in motion.
+/// Series element in motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MovingSeries<S = f64> {
-    /// A spring with its damper and the mass before it.
+    /// Spring with its damper and the mass before it.
     Spring(SeriesSpring<S>),
-    /// The oil between two pistons.
+    /// Oil between two pistons.
     Oil(OilColumn<S>),
 }
 
-/// What the measured force is taken from.
+/// Source of the measured force.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ForceFrom {
-    /// The force sensor between rod and spring.
+    /// Force sensor between rod and spring.
     #[default]
     Sensor,
-    /// The deflection of the spring, through its own characteristic: without damper and ends.
+    /// Deflection of the spring, through its own characteristic: without damper and ends.
     Deflection,
 }
 
@@ -65,7 +65,7 @@ impl SeriesElement {
 }
 
 impl<S: Scalar> SeriesElement<S> {
-    /// It in motion, a transmission filled with this fluid.
+    /// Element in motion, a transmission being filled with this fluid.
     pub fn in_motion(&self, fluid: &Fluid<S>, member: StiffeningMember) -> MovingSeries<S> {
         match self {
             SeriesElement::Spring(spring) => MovingSeries::Spring(*spring),
@@ -75,8 +75,8 @@ impl<S: Scalar> SeriesElement<S> {
         }
     }
 
-    /// How far it is compressed in m where it holds a force in N at rest, within its travel, and
-    /// the slope in m/N.
+    /// Compression in m at which it holds a force in N at rest, within its travel, and the slope in
+    /// m/N.
     pub fn held_deflection(&self, force: S, fluid: &Fluid<S>) -> [S; 2] {
         let one = S::from(1.0);
         match self {
@@ -90,7 +90,7 @@ impl<S: Scalar> SeriesElement<S> {
         }
     }
 
-    /// What the measured force is taken from.
+    /// Source of the measured force.
     pub fn force_from(&self) -> ForceFrom {
         match self {
             SeriesElement::Spring(spring) => spring.force_from,

@@ -1,5 +1,5 @@
-//! The servovalve: four edges with their leakage, a second-order spool, and what a data sheet says
-//! about them.
+//! Servovalve: four edges with their leakage, a second-order spool, and the evaluation of data
+//! sheets.
 
 mod coefficients;
 mod flow;
@@ -37,7 +37,8 @@ use phea_dynamics::scalar::Scalar;
 
 use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
-/// One number for each of the valve's four edges; the thesis numbers them 3, 4, 5, 6 in this order.
+/// Set of one number for each of the valve's four edges; the thesis numbers them 3, 4, 5, 6 in this
+/// order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edges<S = f64> {
     /// Edge 3, from supply to A.
@@ -53,7 +54,7 @@ pub struct Edges<S = f64> {
 phea_dynamics::parameters! { Edges { supply_to_a, a_to_tank, supply_to_b, b_to_tank } }
 
 impl<S: Copy> Edges<S> {
-    /// The same number for all four edges.
+    /// Equal numbers for all four edges.
     ///
     /// ```text
     /// K_v3 = K_v4 = K_v5 = K_v6 = K_vp                 thesis (4.15)
@@ -63,72 +64,73 @@ impl<S: Copy> Edges<S> {
         Edges { supply_to_a: value, a_to_tank: value, supply_to_b: value, b_to_tank: value }
     }
 
-    /// In the order 3, 4, 5, 6.
+    /// Edges from numbers in the order 3, 4, 5, 6.
     pub fn from_array([supply_to_a, a_to_tank, supply_to_b, b_to_tank]: [S; 4]) -> Edges<S> {
         Edges { supply_to_a, a_to_tank, supply_to_b, b_to_tank }
     }
 
-    /// In the order 3, 4, 5, 6.
+    /// Numbers in the order 3, 4, 5, 6.
     pub fn to_array(&self) -> [S; 4] {
         [self.supply_to_a, self.a_to_tank, self.supply_to_b, self.b_to_tank]
     }
 }
 
 impl<S: Scalar> Edges<S> {
-    /// The leakage of an ideal valve, whose edges are shut at null: the limit of equal leakage that
-    /// vanishes, m3/(s Pa^0.5).
+    /// Leakage of an ideal valve, whose edges are shut at null: the limit of vanishing equal
+    /// leakage, m3/(s Pa^0.5).
     ///
     /// ```text
     /// G_3 = G_4 = G_5 = G_6 = g:      g root(p_S - p) = g root(p - p_T),      p_A = p_B = (p_S + p_T)/2             for every g > 0
     /// K_c = g/sqrt(2 (p_S - p_T))  ->  0,      K_qU = K_v sqrt((p_S - p_T)/2)/U_Cn
     /// ```
     ///
-    /// Without any leakage every pressure of a chamber is an equilibrium. The limit has one; under
-    /// a load p_A + p_B = p_S + p_T too, of edges with equal flow coefficients.
+    /// Without any leakage every pressure of a chamber is an equilibrium. The limit has a unique
+    /// one; under a load, its pressures also satisfy p_A + p_B = p_S + p_T if the edges have equal
+    /// flow coefficients.
     pub fn vanishing() -> Edges<S> {
         Edges::equal(S::from(VANISHING))
     }
 }
 
-/// A four-way servovalve with a spool of second order. Units: m3/(s Pa^0.5), m3/s, V, rad/s, Pa.
+/// Four-way servovalve with a second-order spool. Units: m3/(s Pa^0.5), m3/s, V, rad/s, Pa.
 ///
 /// ```text
 /// U_C = (1/w_nv^2) d2U_Csp/dt2 + (2 xi_v/w_nv) dU_Csp/dt + U_Csp       thesis (4.1)
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Servovalve<S = f64> {
-    /// Flow coefficients K_v3 to K_v6 in m3/(s Pa^0.5).
+    /// Flow coefficients K_v3 to K_v6, m3/(s Pa^0.5).
     pub flow_coefficients: Edges<S>,
-    /// What the spool opens of the edges.
+    /// Opening of the edges by the spool.
     pub opening: OpeningLaw<S>,
-    /// Leakage coefficients K_vin3 to K_vin6 at null in m3/(s Pa^0.5).
+    /// Leakage coefficients K_vin3 to K_vin6 at null, m3/(s Pa^0.5).
     pub leakage_coefficients: Edges<S>,
     /// Shape lambda of the leakage over the spool position.
     pub leakage_shape: LeakageShape<S>,
-    /// What lambda and the leakage coefficients mean away from null.
+    /// Meaning of lambda and the leakage coefficients away from null.
     pub leakage_model: LeakageModel,
-    /// Flow of the hydraulic amplifier q_tare in m3/s; takes no part in the motion.
+    /// Flow of the hydraulic amplifier q_tare, m3/s; without effect on the motion.
     pub tare_flow: S,
-    /// Voltage of full opening U_Cn in V.
+    /// Voltage of full opening U_Cn, V.
     pub nominal_voltage: S,
-    /// Natural frequency w_nv of the spool in rad/s.
+    /// Natural frequency w_nv of the spool, rad/s.
     pub natural_frequency: S,
     /// Damping ratio xi_v of the spool.
     pub damping_ratio: S,
-    /// Drop in Pa below which an edge's flow is laminar: [`crate::orifice::regular_root`].
+    /// Drop below which an edge's flow is laminar, Pa: [`crate::orifice::regular_root`].
     pub transition_pressure: S,
 }
 
-/// Leakage of an edge of an ideal valve, m3/(s Pa^0.5): a part in 10^7 of that of ordinary edges.
-/// The spool that holds a load is then 1e-9 of its travel from null, which rounding resolves.
+/// Leakage of an edge of an ideal valve, m3/(s Pa^0.5): 10^-7 of that of ordinary edges. The spool
+/// that holds a load is then 1e-9 of its travel from null, which rounding resolves.
 const VANISHING: f64 = 1e-16;
 
-/// Pressures at the valve's supply and tank ports, in Pa gauge.
+/// Pressures at the valve's supply and tank ports, Pa gauge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Supply<S = f64> {
-    /// Supply pressure p_S in Pa.
+    /// Supply pressure p_S, Pa.
     pub pressure: S,
-    /// Tank pressure p_T in Pa.
+    /// Tank pressure p_T, Pa.
     pub tank_pressure: S,
 }
 
@@ -194,17 +196,17 @@ impl Supply {
     }
 }
 
-/// Flow coefficient of one edge from rated flow and rated drop over the whole valve, in m3/(s
-/// Pa^0.5).
+/// Flow coefficient of one edge from rated flow and rated drop over the whole valve, m3/(s Pa^0.5).
 ///
 /// ```text
 /// K_vp = q_vn / sqrt(dp_tn / 2)                                        thesis (4.12), corrected
 /// ```
 ///
-/// Two equal edges in series share the drop. Flow in m3/s at full opening, drop in Pa.
+/// The drop divides equally between two equal edges in series. Flow in m3/s at full opening, drop
+/// in Pa.
 ///
 /// # Example
-/// 88 % of 10 gpm at 70 bar
+/// Example: 88 % of 10 gpm at 70 bar.
 /// ```
 /// use phea_hydraulics::servovalve::flow_coefficient_from_rating;
 /// assert!((flow_coefficient_from_rating(0.88 * 6.31e-4, 7e6) - 2.97e-7_f64).abs() < 0.5e-9);
@@ -213,18 +215,19 @@ pub fn flow_coefficient_from_rating<S: Scalar>(rated_flow: S, rated_drop: S) -> 
     rated_flow / (rated_drop / S::from(2.0)).sqrt()
 }
 
-/// Leakage coefficient of one edge from the leakage at null, in m3/(s Pa^0.5).
+/// Leakage coefficient of one edge from the leakage at null, m3/(s Pa^0.5).
 ///
 /// ```text
 /// K_vinp = (q_total - q_tare sqrt(p_in/p_tare)) / sqrt(2 p_in)         thesis (4.13), the tare flow subtracted
 /// ```
 ///
-/// Catalogues state the whole leakage, the amplifier's tare flow included; what is left runs
+/// Catalogues state the whole leakage, including the amplifier's tare flow; the remainder flows
 /// through two paths of two edges. Flows in m3/s, the leakage at the pressure p_in and the tare
-/// flow, which goes with the root of the pressure, at p_tare, both in Pa.
+/// flow, which is proportional to the root of the pressure, at p_tare, both in Pa.
 ///
 /// # Example
-/// 0.61 gpm less 0.26 gpm, both at 3000 psi; 0.40 gpm at 3000 psi less what was measured at 70 bar
+/// Examples: 0.61 gpm less 0.26 gpm, both at 3000 psi; 0.40 gpm at 3000 psi less a measurement at
+/// 70 bar.
 /// ```
 /// use phea_hydraulics::servovalve::leakage_coefficient_from_rating;
 /// let coefficient: f64 = leakage_coefficient_from_rating(3.84e-5, 1.64e-5, 2.068e7, 2.068e7);

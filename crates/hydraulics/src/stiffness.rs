@@ -3,14 +3,14 @@
 //! ```text
 //! K_H = A_A^2/C_A(x) + A_B^2/C_B(x)                                    thesis (6.1)
 //! uniform:    C_A = (A_A x + V_A0 + V_line)/beta_e                     thesis (6.3): one modulus for line and chamber
-//! by_volume:  C_A = (A_A x + V_A0)/beta_0 + C_line                     each volume with the modulus of what encloses it
-//! C_line:     hose epsilon L/r_beta + (A_ho + E(p)) L/beta_0, else V_line/beta_e          what its sheet says
+//! by_volume:  C_A = (A_A x + V_A0)/beta_0 + C_line                     each volume with the modulus of its enclosure
+//! C_line:     hose epsilon L/r_beta + (A_ho + E(p)) L/beta_0, else V_line/beta_e          from its data sheet
 //! ```
 //!
-//! and likewise C_B with L - x. A chamber of steel does not become soft because a hose is screwed
-//! to it, so `by_volume` is right, and takes of a hose what its sheet says at the operating
-//! pressure p; `uniform` is what the thesis' tables were made with, and is too soft wherever the
-//! chamber holds a fair share of the fluid.
+//! and likewise C_B with L - x. A chamber of steel does not become softer when a hose is connected,
+//! so `by_volume` is right, and uses the hose's data sheet at the operating pressure p; `uniform`
+//! is the model of the thesis' tables, and is too soft whenever the chamber contains a considerable
+//! fraction of the fluid.
 
 mod length;
 mod range;
@@ -27,12 +27,12 @@ use crate::cylinder::Cylinder;
 use crate::line::{Line, StiffeningMember};
 use crate::stroke::ActuatorStroke;
 
-/// Which modulus the fluid in the cylinder's chambers has.
+/// Modulus of the fluid in the cylinder's chambers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StiffnessModel {
-    /// The line's effective modulus holds for line and chamber alike (the thesis).
+    /// Effective modulus of the line for both line and chamber (the thesis).
     Uniform,
-    /// The chamber keeps the fluid's modulus, and the line takes up what its sheet says.
+    /// Modulus of the fluid for the chamber, and the line's compliance by its data sheet.
     #[default]
     ByVolume,
 }
@@ -44,30 +44,31 @@ pub enum StiffnessModel {
 /// C_A(x) = constant_a + slope_a x        C_B(x) = constant_b + slope_b (L - x)
 /// ```
 ///
-/// x and L - x are ways of the first stage of a telescopic piston: [`ActuatorStroke::travels`].
+/// For a telescopic piston x and L - x are equivalent travels of the first stage:
+/// [`ActuatorStroke::travels`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChamberCompliance<S = f64> {
-    /// Piston area A_A in m2; of a telescopic piston that of its first stage.
+    /// Piston area A_A, m2; of a telescopic piston that of its first stage.
     pub area_a: S,
-    /// Piston area A_B in m2; likewise.
+    /// Piston area A_B, m2; of a telescopic piston that of its first stage.
     pub area_b: S,
-    /// ActuatorStroke L in m.
+    /// Stroke L, m.
     pub stroke: ActuatorStroke<S>,
-    /// C_A with the piston at the A end, in m3/Pa.
+    /// Compliance C_A with the piston at the A end, m3/Pa.
     pub constant_a: S,
-    /// Growth of C_A with x, in m2/Pa.
+    /// Growth of C_A with x, m2/Pa.
     pub slope_a: S,
-    /// C_B with the piston at the B end, in m3/Pa.
+    /// Compliance C_B with the piston at the B end, m3/Pa.
     pub constant_b: S,
-    /// Growth of C_B with L - x, in m2/Pa.
+    /// Growth of C_B with L - x, m2/Pa.
     pub slope_b: S,
 }
 
-/// Compliance of both chambers with their lines (A first), for fluids of these moduli in Pa (they
-/// differ between the chambers when air is entrained and the pressures differ).
+/// Compliance of both chambers with their lines (A first), for fluids of these moduli in Pa
+/// (different in the chambers if air is entrained and the pressures differ).
 ///
 /// # Example
-/// The thesis' hose, both models, piston at mid stroke
+/// The thesis' hose, both models, piston at mid stroke:
 /// ```
 /// # use phea_hydraulics::{cylinder::*, line::*, stiffness::*, stroke::ActuatorStroke};
 /// # let areas = [annulus_area(0.05, 0.022); 2];
@@ -113,27 +114,27 @@ pub fn chamber_compliance<S: Scalar>(
     }
 }
 
-/// C_A and C_B at piston position x, in m3/Pa.
+/// Compliances C_A and C_B at piston position x, m3/Pa.
 #[inline]
 pub fn compliance_at<S: Scalar>(chambers: &ChamberCompliance<S>, x: S) -> [S; 2] {
     let [from_a, to_b] = chambers.stroke.travels(x);
     [chambers.constant_a + chambers.slope_a * from_a, chambers.constant_b + chambers.slope_b * to_b]
 }
 
-/// Stiffness of the two shut chambers at piston position x, in N/m.
+/// Stiffness of the two shut chambers at piston position x, N/m.
 ///
 /// ```text
 /// K_HA = A_A^2/C_A(x)        K_HB = A_B^2/C_B(x)                       thesis (6.1)
 /// ```
 ///
-/// The areas are those at x, which matters for a telescopic piston alone.
+/// The areas are those at x, which matters only for a telescopic piston.
 pub fn chamber_stiffness<S: Scalar>(chambers: &ChamberCompliance<S>, x: S) -> [S; 2] {
     let [compliance_a, compliance_b] = compliance_at(chambers, x);
     let [area_a, area_b] = chambers.areas_at(x);
     [area_a.squared() / compliance_a, area_b.squared() / compliance_b]
 }
 
-/// Hydraulic stiffness at piston position x, in N/m.
+/// Hydraulic stiffness at piston position x, N/m.
 ///
 /// ```text
 /// K_H = K_HA + K_HB                                                    thesis (6.1), (6.2), (6.3)
@@ -145,13 +146,13 @@ pub fn hydraulic_stiffness<S: Scalar>(chambers: &ChamberCompliance<S>, x: S) -> 
 }
 
 impl<S: Scalar> ChamberCompliance<S> {
-    /// A_A and A_B in m2 at piston position x.
+    /// Areas A_A and A_B at piston position x, m2.
     #[inline(always)]
     pub fn areas_at(&self, x: S) -> [S; 2] {
         self.stroke.areas([self.area_a, self.area_b], x)
     }
 
-    /// The same with the gas of an accumulator at either chamber, in m3/Pa.
+    /// Compliance with the gas of an accumulator at either chamber, in m3/Pa, added.
     #[must_use]
     pub fn with_gas(self, [gas_a, gas_b]: [Option<S>; 2]) -> ChamberCompliance<S> {
         let with = |oil: S, gas: Option<S>| gas.map_or(oil, |gas| oil + gas);

@@ -1,4 +1,4 @@
-//! How far a cylinder or motor moves, and what that does to its chambers.
+//! Stroke of a cylinder or motor, and its effect on the chambers.
 
 mod telescope;
 
@@ -6,15 +6,16 @@ pub use telescope::{FURTHER_STAGES, PistonStage, Telescope};
 
 use phea_dynamics::scalar::Scalar;
 
-/// The stroke, in m or rad.
+/// Stroke, m or rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ActuatorStroke<S = f64> {
-    /// From zero at the A end to this at the B end: chamber A grows by what chamber B loses.
+    /// Range from zero at the A end to this value at the B end: chamber A grows by the volume that
+    /// chamber B loses.
     Limited(S),
-    /// The same of a telescopic piston, whose areas change from stage to stage.
+    /// Stroke of a telescopic piston, whose areas change from stage to stage.
     Telescopic(Telescope<S>),
-    /// None: a motor that turns on. What enters one of its ports leaves the other, and its chambers
-    /// keep their volumes.
+    /// Unlimited rotation of a motor. The flow into one of its ports leaves the other, and its
+    /// chambers have constant volumes.
     Unlimited,
 }
 
@@ -25,7 +26,7 @@ phea_dynamics::parameters! {
 }
 
 impl<S: Copy> ActuatorStroke<S> {
-    /// The stroke in m or rad, where there is one.
+    /// Stroke in m or rad, if there is one.
     pub fn length(&self) -> Option<S> {
         match self {
             ActuatorStroke::Limited(stroke) => Some(*stroke),
@@ -34,7 +35,7 @@ impl<S: Copy> ActuatorStroke<S> {
         }
     }
 
-    /// The stages of a telescopic piston; `None` for any other.
+    /// Stages of a telescopic piston; `None` for any other.
     pub fn telescope(&self) -> Option<&Telescope<S>> {
         match self {
             ActuatorStroke::Telescopic(telescope) => Some(telescope),
@@ -44,8 +45,8 @@ impl<S: Copy> ActuatorStroke<S> {
 }
 
 impl<S: Scalar> ActuatorStroke<S> {
-    /// What the position adds to each chamber, as a way of the piston's areas: the way from the A
-    /// end and the way to the B end.
+    /// Contribution of the position to each chamber, as an equivalent travel of the piston's areas:
+    /// from the A end and to the B end.
     ///
     /// ```text
     /// x and L - x;   l_A(x) and l_B(L) - l_B(x) of a telescopic piston;   zero and zero without a stroke
@@ -66,7 +67,7 @@ impl<S: Scalar> ActuatorStroke<S> {
         }
     }
 
-    /// The distances from the A end and to the B end, in m or rad; zero and zero without a stroke.
+    /// Distances from the A end and to the B end, m or rad; zero and zero without a stroke.
     #[inline(always)]
     pub fn distances(&self, position: S) -> [S; 2] {
         match self {
@@ -75,7 +76,7 @@ impl<S: Scalar> ActuatorStroke<S> {
         }
     }
 
-    /// The areas of a piston at a position, from those of its first stage.
+    /// Areas of a piston at a position, from those of its first stage.
     #[inline(always)]
     pub fn areas(&self, first: [S; 2], position: S) -> [S; 2] {
         match self {
@@ -87,7 +88,7 @@ impl<S: Scalar> ActuatorStroke<S> {
         }
     }
 
-    /// Half of it, where the position is taken that nobody states; zero without a stroke.
+    /// Half of the stroke, the default position; zero without a stroke.
     pub fn middle(&self) -> S {
         match self {
             ActuatorStroke::Limited(stroke) => *stroke / S::from(2.0),
@@ -98,7 +99,7 @@ impl<S: Scalar> ActuatorStroke<S> {
 }
 
 impl ActuatorStroke {
-    /// Whether it has this position; without a stroke every finite one.
+    /// True if the stroke includes this position; without a stroke, for every finite position.
     pub fn contains(&self, position: f64) -> bool {
         match self {
             ActuatorStroke::Limited(stroke) => (0.0..=*stroke).contains(&position),

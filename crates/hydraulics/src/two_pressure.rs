@@ -1,6 +1,5 @@
-//! The two-pressure model: one pressure a chamber, the spool, the piston on the force sensor. The
-//! full truth that the reduced linear models are measured against, at any position, with any edges
-//! and any areas.
+//! Two-pressure model: one pressure per chamber, the spool, the piston on the force sensor. The
+//! reference for the reduced linear models, at any position, with any edges and any areas.
 //!
 //! ```text
 //! d2U_Csp/dt2 = w_nv^2 (U_C - U_Csp) - 2 xi_v w_nv dU_Csp/dt                    thesis (4.1)
@@ -11,7 +10,7 @@
 //! ```
 //!
 //! The deflection of the sensor is a state and the piston's position is not: the force is a small
-//! difference of two long positions, which would cost it six digits.
+//! difference of two long positions, which would lose six digits.
 
 mod linearization;
 mod reduction;
@@ -30,7 +29,7 @@ use crate::operating_point::{OperatingPoint, hydraulic_force};
 use crate::servovalve::{ChamberFlows, Servovalve, Supply, chamber_flows};
 use crate::stiffness::{ChamberCompliance, compliance_at};
 
-/// What the equations depend on. Units: kg, N s/m, N/m and those of the components.
+/// Parameters of the equations. Units: kg, N s/m, N/m and those of the components.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoPressureModel<S = f64> {
     /// The servovalve.
@@ -39,51 +38,51 @@ pub struct TwoPressureModel<S = f64> {
     pub supply: Supply<S>,
     /// Compliance of both chambers with their lines.
     pub chambers: ChamberCompliance<S>,
-    /// Moving mass M in kg.
+    /// Moving mass M, kg.
     pub moving_mass: S,
-    /// Viscous friction f_v in N s/m.
+    /// Viscous friction f_v, N s/m.
     pub viscous_friction: S,
-    /// Sensor stiffness K_S in N/m.
+    /// Sensor stiffness K_S, N/m.
     pub sensor_stiffness: S,
-    /// Conductance from each chamber to the tank in m3/(s Pa); `None` where nothing leaks outwards.
+    /// Conductance from each chamber to the tank, m3/(s Pa); `None` without external leakage.
     pub external_leakage: Option<S>,
 }
 
 /// States of the model. Units: V, V/s, Pa, m, m/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoPressureState<S = f64> {
-    /// Spool position U_Csp in V.
+    /// Spool position U_Csp, V.
     pub spool: S,
-    /// Its rate in V/s.
+    /// Rate of the spool position, V/s.
     pub spool_rate: S,
-    /// Chamber pressure p_A in Pa.
+    /// Chamber pressure p_A, Pa.
     pub pressure_a: S,
-    /// Chamber pressure p_B in Pa.
+    /// Chamber pressure p_B, Pa.
     pub pressure_b: S,
-    /// Deflection of the force sensor x - x_L in m.
+    /// Deflection of the force sensor x - x_L, m.
     pub deflection: S,
-    /// Piston velocity v in m/s.
+    /// Piston velocity v, m/s.
     pub velocity: S,
 }
 
 /// Inputs of the model. Units: V, m/s, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoPressureInput<S = f64> {
-    /// Command U_C in V.
+    /// Command U_C, V.
     pub command: S,
-    /// Load velocity v_L in m/s.
+    /// Load velocity v_L, m/s.
     pub load_velocity: S,
-    /// Load position x_L in m; its rate is the load velocity.
+    /// Load position x_L, m; its rate is the load velocity.
     pub load_position: S,
 }
 
 impl<S: Copy> TwoPressureState<S> {
-    /// In the order of the fields.
+    /// States in the order of the fields.
     pub fn to_array(&self) -> [S; 6] {
         [self.spool, self.spool_rate, self.pressure_a, self.pressure_b, self.deflection, self.velocity]
     }
 
-    /// In the order of the fields.
+    /// State from numbers in the order of the fields.
     pub fn from_array([spool, spool_rate, pressure_a, pressure_b, deflection, velocity]: [S; 6]) -> Self {
         TwoPressureState { spool, spool_rate, pressure_a, pressure_b, deflection, velocity }
     }
@@ -96,7 +95,7 @@ phea_dynamics::parameters! {
 }
 
 impl<S: Scalar> TwoPressureModel<S> {
-    /// As [`TwoPressureModel::new`], of components over any scalar.
+    /// Model as in [`TwoPressureModel::new`], from components over any scalar.
     pub fn of(
         components: &Components<S>,
         pressures: [S; 2],
@@ -116,8 +115,8 @@ impl<S: Scalar> TwoPressureModel<S> {
 }
 
 impl TwoPressureModel {
-    /// The model of an actuator, its friction replaced by a viscous one in N s/m, the fluid's
-    /// modulus taken at these chamber pressures in Pa (they matter with entrained air alone).
+    /// Model of an actuator, its friction replaced by a viscous one in N s/m, the fluid's modulus
+    /// taken at these chamber pressures in Pa (relevant only with entrained air).
     pub fn new(
         actuator: &Actuator,
         pressures: [f64; 2],
@@ -146,10 +145,10 @@ impl TwoPressureModel {
     }
 }
 
-/// Rates of all states, per second: the equations at the top of this module.
+/// Rates of all states, per second: the equations of this module's documentation.
 ///
 /// # Example
-/// At an operating point it rests: what is left of its rates is rounding.
+/// At an operating point the model is at rest: the remaining rates are rounding:
 /// ```
 /// use phea_hydraulics::actuator::Actuator;
 /// use phea_hydraulics::line::StiffeningMember;

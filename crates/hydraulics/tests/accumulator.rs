@@ -11,7 +11,7 @@ use phea_hydraulics::machine::{INDICATORS, Machine, MachineOptions};
 use phea_hydraulics::reference_rig::{components, cylinder, hose_line, pipe_line};
 use phea_hydraulics::stiffness::{StiffnessModel, hydraulic_stiffness};
 
-/// The rig of the thesis with lines of hardly any volume, and this gas at both chambers.
+/// Rig of the thesis with lines of negligible volume, and this gas at both chambers.
 fn rig(gas: Option<Accumulator>) -> Components {
     let line = Line::Volume { volume: 1e-12, effective_bulk_modulus: 1.45e9 };
     Components { accumulators: [gas; 2], ..components(line, StiffnessModel::ByVolume) }
@@ -22,7 +22,7 @@ fn stiffness(components: &Components, pressures: [f64; 2]) -> f64 {
     hydraulic_stiffness(&chambers, cylinder().stroke.middle())
 }
 
-/// The gas that softens the actuator as much as metres of hose: at rest, and hardly harder at 4 kN.
+/// Gas that softens the actuator as much as metres of hose: at rest, and hardly stiffer at 4 kN.
 #[test]
 fn ten_millilitres_of_gas_do_the_work_of_the_hose() {
     let gas = |precharge_pressure: f64, gas_volume: f64| Accumulator {
@@ -41,7 +41,8 @@ fn ten_millilitres_of_gas_do_the_work_of_the_hose() {
     assert!((loaded / idle - 1.028_21).abs() < 1e-5, "{}", loaded / idle);
 }
 
-/// Everything the machine does at a state, as the gas becomes less: the rig without, in proportion.
+/// All results of the machine at a state as the gas volume tends to zero: proportionally those of
+/// the rig without it.
 #[test]
 fn without_gas_it_is_the_rig_without_accumulator() {
     let rates = |gas_volume: Option<f64>| {
@@ -68,8 +69,8 @@ fn without_gas_it_is_the_rig_without_accumulator() {
     assert!(apart(1e-15) < 1e-9);
 }
 
-/// Below the precharge the gas takes nothing and the indicator says so; what the chamber's oil
-/// yields is not what an empty chamber is known by.
+/// Gas below the precharge takes no oil, which the indicator reports; the compliance of the
+/// chamber's oil is not that of an empty chamber.
 #[test]
 fn gas_is_shut_off_below_its_precharge() {
     let gas = Accumulator { gas_volume: 2e-5, precharge_pressure: 20e5, polytropic_exponent: 1.4 };
@@ -99,8 +100,7 @@ fn gas_is_shut_off_below_its_precharge() {
     }
 }
 
-/// A gas without volume, without precharge, or with an index that no gas has, is refused by its
-/// path.
+/// Gas without volume, without precharge, or with an impossible index is rejected by its path.
 #[test]
 fn impossible_gas_is_refused() {
     for (gas_volume, precharge_pressure, polytropic_exponent, quantity) in [

@@ -1,5 +1,5 @@
 //! Accumulators that are adjusted in operation: frozen settings, closed forms of their work and of
-//! switching, limits, passivity, and their refusals.
+//! switching, limits, passivity, and their rejections.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -41,7 +41,7 @@ fn adjusted(part: AdjustedPart, setting: f64, neck: Option<Neck>) -> Components 
     }
 }
 
-/// A fixed setting is the accumulator declared with what the setting stands for, in every rate.
+/// A fixed setting equals the accumulator declared with the values of that setting, in every rate.
 #[test]
 fn a_frozen_setting_is_the_declared_accumulator() {
     let neck = Neck::round([6e-3, 0.04], [870.0, 46e-6, 1.45e9], 1.5);
@@ -83,7 +83,7 @@ fn a_frozen_setting_is_the_declared_accumulator() {
                 machine.rates(&states[0], 1.0, &[0.25, 0.05, change, 0.0], &mut rates[0]);
                 declared.rates(&states[1], 1.0, &[0.25, 0.05], &mut rates[1]);
                 for (rates, of) in rates.iter_mut().zip(bladders.into_iter().flatten()) {
-                    // that of the pressure of the oil
+                    // that of the oil pressure
                     rates[7] /= of.rate(pressure, [1.0, 0.0]);
                 }
                 for (one, other) in rates[0].iter().zip(&rates[1]) {
@@ -94,7 +94,7 @@ fn a_frozen_setting_is_the_declared_accumulator() {
     }
 }
 
-/// Oil that is held while gas is added and pressed: the work is that of the polytrope.
+/// Oil at constant volume while gas is added and compressed: the work is that of the polytrope.
 #[test]
 fn its_work_is_that_of_the_polytrope() {
     for exponent in [1.0, 1.4] {
@@ -134,8 +134,8 @@ fn its_work_is_that_of_the_polytrope() {
     }
 }
 
-/// What the oil can get back from the gas at a pressure, W: the integral of p C dp by Simpson's
-/// rule.
+/// Energy that the oil can recover from the gas at a pressure, W: the integral of p C dp by
+/// Simpson's rule.
 fn held_energy(gas: &Accumulator, pressure: f64) -> f64 {
     let steps = 100_000;
     let from = 0.98 * (gas.precharge_pressure + ATMOSPHERE) - ATMOSPHERE;
@@ -148,8 +148,8 @@ fn held_energy(gas: &Accumulator, pressure: f64) -> f64 {
     (0..steps).map(strip).sum::<f64>() * width
 }
 
-/// A stiffness that swings at twice the frequency of the oil pumps energy into it: 1/2 dK/dt x^2
-/// over a cycle, in each phase.
+/// A stiffness that oscillates at twice the frequency of the oil pumps energy into it: 1/2 dK/dt
+/// x^2 over a cycle, in each phase.
 #[test]
 fn a_swinging_stiffness_pumps_half_its_rate_times_the_square() {
     let middle = GAS.oil(35e5);
@@ -181,7 +181,7 @@ fn a_swinging_stiffness_pumps_half_its_rate_times_the_square() {
             (pumped / told - 1.0, told)
         };
         let ((wide, told), (narrow, _)) = (gap(0.02 * GAS.gas_volume), gap(0.01 * GAS.gas_volume));
-        // what is left falls with the square of the amplitude
+        // the remainder falls with the square of the amplitude
         assert!(told.abs() > 0.0 && narrow.abs() < 1e-2, "{phase}: {narrow} {wide}");
         assert!((wide / narrow - 4.0).abs() < 0.2, "{phase}: {wide} {narrow}");
     }
@@ -212,8 +212,8 @@ fn switched(
     *state.first_chunk().unwrap()
 }
 
-/// Switched on at equal pressures nothing is lost; at unequal ones 1/2 C_1 C_2/(C_1 + C_2) dp^2,
-/// the more exactly the smaller dp.
+/// Switching on at equal pressures loses no energy; at unequal ones it loses 1/2 C_1 C_2/(C_1 +
+/// C_2) dp^2, the more exactly the smaller dp.
 #[test]
 fn switching_loses_what_two_compliances_lose() {
     let compliance = 2e-12;
@@ -233,12 +233,12 @@ fn switching_loses_what_two_compliances_lose() {
         assert!(narrow.abs() < 0.03, "{narrow}");
         assert!((wide / narrow - 2.0).abs() < 0.3, "{wide} {narrow}");
     }
-    // shut it keeps both apart
+    // shut, it separates both
     let kept = switched([50e5, 20e5], compliance, |_| 0.0, |_| 0.0, (0.1, 1000), |_| ());
     assert_eq!(kept, [50e5, 20e5, 0.0, 0.0]);
 }
 
-/// Whatever flows at an opening that stands, no more comes out than went in.
+/// For any flow at a constant opening, the output energy never exceeds the input.
 #[test]
 fn a_frozen_opening_is_passive() {
     for number in 0..24 {
@@ -276,7 +276,7 @@ fn a_frozen_opening_is_passive() {
         }
         entered += found[2] - rest * oil;
         let stored = whole(last);
-        // what entered is stored and throttled
+        // the energy that entered is stored and throttled
         assert!(stored >= 0.0 && found[3] > 0.0);
         assert!(
             (entered - stored - found[3]).abs() < 1e-5 * (stored + found[3]),
@@ -285,8 +285,8 @@ fn a_frozen_opening_is_passive() {
     }
 }
 
-/// In the linear plant a valve without resistance is no valve, and one that passes nothing is no
-/// accumulator.
+/// In the linear plant a valve without resistance has no effect, and one that passes no flow
+/// removes the accumulator.
 #[test]
 fn its_conductance_has_two_limits() {
     let gas = GAS.compliance(35e5);
@@ -308,8 +308,8 @@ fn its_conductance_has_two_limits() {
     }
 }
 
-/// Shut at rest, a valve leaves neither gas nor its oil in the plant; the machine keeps the
-/// pressure of its gas.
+/// A valve that is shut at rest removes both the gas and its oil from the plant; the machine
+/// preserves the pressure of its gas.
 #[test]
 fn a_shut_valve_keeps_its_gas() {
     let parts = adjusted(AdjustedPart::Valve(GasValve { shut: true, ..VALVE }), 0.0, None);
@@ -328,7 +328,7 @@ fn a_shut_valve_keeps_its_gas() {
     }
 }
 
-/// The precharge that shuts the gas off moves with the setting.
+/// The precharge at which the gas is shut off moves with the setting.
 #[test]
 fn it_is_empty_at_the_precharge_of_its_setting() {
     let part = AdjustedPart::Gas { gas_volume: 0.0, precharge_pressure: 10e5 };
@@ -359,8 +359,8 @@ fn it_rests_like_the_declared_one() {
     }
 }
 
-/// Settings outside 0 to 1, gas that vanishes on the way, a valve of no size, and what goes with
-/// neither are refused by path.
+/// Settings outside 0 to 1, gas that vanishes within the range, a valve of zero size, and
+/// incompatible options are rejected by path.
 #[test]
 fn impossible_adjustments_are_refused() {
     let gas = AdjustedPart::Gas { gas_volume: 1e-5, precharge_pressure: 0.0 };
@@ -387,7 +387,7 @@ fn impossible_adjustments_are_refused() {
     }
 }
 
-/// Pressures of gas and oil come together as through a conductance where the drop is small.
+/// Pressures of gas and oil equalise as through a conductance if the drop is small.
 #[test]
 fn a_small_drop_decays_exponentially() {
     let (compliance, opening) = (2e-12, 0.4);
@@ -400,7 +400,7 @@ fn a_small_drop_decays_exponentially() {
     assert!(((chamber - behind) / expected - 1.0).abs() < 1e-5, "{} {expected}", chamber - behind);
 }
 
-/// A limit is a multiple of the precharge: the setting moves both alike.
+/// A limit is a multiple of the precharge: the setting moves both in proportion.
 #[test]
 fn a_limit_follows_the_precharge() {
     let limit = 4.0 * (GAS.precharge_pressure + ATMOSPHERE) - ATMOSPHERE;
@@ -420,7 +420,7 @@ fn a_limit_follows_the_precharge() {
     }
 }
 
-/// What a valve throttles is what the account of the neck in its place loses.
+/// The throttling loss of a valve equals the loss in the account of the neck in its place.
 #[test]
 fn what_a_valve_throttles_is_lost_in_its_account() {
     let machine = machine_of(adjusted(AdjustedPart::Valve(VALVE), 0.5, None), &moving());

@@ -1,5 +1,5 @@
-//! The components and machines from outside: closed forms, limits, conservation and published
-//! numbers.
+//! Components and machines through the public interface: closed forms, limits, conservation and
+//! published numbers.
 #![cfg(test)]
 
 mod accumulator;

@@ -1,4 +1,4 @@
-//! A machine whose first input is its command, to differentiate it by, and its supply.
+//! Machine with its command as first input, for differentiation with respect to it, and its supply.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -16,8 +16,8 @@ use phea_hydraulics::plant::YieldingSupply;
 use phea_hydraulics::servovalve::{SpoolDirection, Supply};
 use phea_hydraulics::signal::Signal;
 
-/// Two of five numbers have a supply that yields, with an accumulator for every other of these;
-/// some pumps give less than what leaks.
+/// Two out of five numbers have a supply that yields, with an accumulator for every other of these;
+/// some pumps deliver less than the leakage.
 pub(super) fn power_unit(number: u64) -> PowerUnit {
     if number % 5 < 3 {
         return PowerUnit::Constant;
@@ -35,7 +35,7 @@ pub(super) fn power_unit(number: u64) -> PowerUnit {
     })
 }
 
-/// Necks of the accumulators at the chambers, of two of three numbers.
+/// Necks of the accumulators at the chambers, for two out of three numbers.
 pub(super) fn necks(number: u64) -> [Option<Neck>; 2] {
     let mut state = stream(43, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
@@ -46,14 +46,14 @@ pub(super) fn necks(number: u64) -> [Option<Neck>; 2] {
     })
 }
 
-/// Thermal time constants of the gas at the chambers, of half of the numbers.
+/// Thermal time constants of the gas at the chambers, for half of the numbers.
 pub(super) fn thermal_time_constants(number: u64) -> [Option<f64>; 2] {
     let mut state = stream(47, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
     [0, 1].map(|_| (spread(1.0, 4.0) > 2.0).then_some(spread(1e-3, 1e2)))
 }
 
-/// Valves between chambers and gas, of half of the chambers whose gas has no neck.
+/// Valves between chambers and gas, for half of the chambers whose gas has no neck.
 pub(super) fn gas_valves(number: u64) -> [Option<Adjustment>; 2] {
     let mut state = stream(59, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
@@ -69,7 +69,7 @@ pub(super) fn gas_valves(number: u64) -> [Option<Adjustment>; 2] {
     })
 }
 
-/// These compliances in m3/Pa less that of gas behind necks and with heat.
+/// Compliances in m3/Pa less that of gas behind necks and with heat.
 pub(super) fn without_branches(
     components: &Components,
     pressures: [f64; 2],
@@ -79,7 +79,7 @@ pub(super) fn without_branches(
     [compliances[0] - gas[0], compliances[1] - gas[1]]
 }
 
-/// A valve between the chambers of every kind, or none.
+/// Valve of every kind between the chambers, or none.
 pub(super) fn cross_port(number: u64) -> Option<CrossPort> {
     let mut state = stream(41, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
@@ -96,14 +96,14 @@ pub(super) fn cross_port(number: u64) -> Option<CrossPort> {
     }
 }
 
-/// The supply pressure of a machine in this state, or the stated one where it does not yield.
+/// Supply pressure of a machine in this state, or the stated one if it does not yield.
 pub(super) fn supply_pressure(machine: &Machine, stated: f64, state: &[f64]) -> f64 {
     let place = machine.state_names().iter().position(|name| name == Signal::SupplyPressure.name());
     place.map_or(stated, |place| state[place])
 }
 
-/// The supply where it rests, for small motions, with this command in V and these pressures at the
-/// valve's ports and of the supply in Pa.
+/// Supply at rest, for small motions, with this command in V and these pressures at the valve's
+/// ports and of the supply in Pa.
 pub(super) fn yielding(
     actuator: &Actuator,
     unit: &PowerUnit,
@@ -117,7 +117,7 @@ pub(super) fn yielding(
     let settled = SettledSupply { supply, settled: Settled { command, pressures: ports }, taken: f64::NAN };
     let idle = components.supply.pressure;
     let drops = [idle, idle - components.supply.tank_pressure];
-    // at standstill no area matters
+    // at standstill the areas have no effect
     let balance = Balance::at(components, 0.25);
     Some(YieldingSupply::new(unit, &balance, drops, &settled, SpoolDirection::Extending))
 }
@@ -147,12 +147,12 @@ impl System<f64> for Commanded {
     }
 }
 
-/// States that signals of a machine may depend on, without those of its lines, and inputs likewise,
-/// without waves.
+/// States on which signals of a machine may depend, without those of its lines, and likewise
+/// inputs, without waves.
 const STATES: usize = 24;
 const INPUTS: usize = 4;
 
-/// How signals of a machine at rest grow with its states and with its inputs.
+/// Slopes of the signals of a machine at rest over its states and its inputs.
 pub(super) fn slopes(
     machine: &Machine,
     rest: &InitialCondition,
@@ -178,9 +178,9 @@ pub(super) fn slopes(
     slopes
 }
 
-/// These states of a machine and then these inputs, for one unit of its command and of the motion
-/// of its ground, which for one unit of the rod's end moves by `turned`; with this gain from the
-/// load's velocity to the command.
+/// Amplitudes of these states of a machine and then of these inputs, for one unit of its command
+/// and of the motion of its ground, which for one unit of the rod's end moves by `turned`; with
+/// this gain from the load's velocity to the command.
 pub(super) fn amplitudes(
     machine: &Machine,
     rest: &InitialCondition,
@@ -202,7 +202,7 @@ pub(super) fn amplitudes(
     })
 }
 
-/// A signal of these slopes at these amplitudes.
+/// Amplitude of a signal with these slopes, for these amplitudes.
 pub(super) fn signal_of(amplitudes: &[Complex64], slopes: &[f64]) -> Complex64 {
     amplitudes.iter().zip(slopes).map(|(amplitude, slope)| amplitude * *slope).sum()
 }

@@ -10,7 +10,7 @@ use phea_hydraulics::line::{
 use phea_hydraulics::orifice::{flow, regular_root, regular_root_slope};
 use phea_hydraulics::reference_rig::{hose, hose_line};
 
-/// The modulus is -V dp/dV of the volumes it is said to come from.
+/// The modulus equals -V dp/dV of the volumes from which it is derived.
 #[test]
 fn bulk_modulus_with_air_is_the_slope_of_the_volume() {
     fn volume<S: Scalar>(p: S) -> S {
@@ -84,8 +84,8 @@ fn elastic_pipe_is_a_little_softer_than_its_fluid() {
     assert!((taken_by_wall / (elastic.volume() * pipe.wall_compliance()) - 1.0).abs() < 1e-12);
 }
 
-/// The thesis multiplies a modulus of the expanded bore with the unexpanded volume; a hose's sheet
-/// says what its wall gives.
+/// The thesis multiplies a modulus of the expanded bore by the unexpanded volume; a hose's sheet
+/// states the expansion of its wall.
 #[test]
 fn a_hose_takes_up_what_its_sheet_says() {
     let (hose, line) = (hose(), hose_line());
@@ -169,9 +169,9 @@ fn derivatives_of_friction_exist_at_standstill() {
     }
 }
 
-/// Power taken less power stored in the bristles, F v - sigma_0 z dz/dt, at any velocity and any
-/// deflection that the model can reach (|sigma_0 z| <= F_S): never negative when the condition
-/// holds, negative somewhere just beyond it.
+/// Absorbed power less power stored in the bristles, F v - sigma_0 z dz/dt, at any velocity and any
+/// deflection that the model can reach (|sigma_0 z| <= F_S): never negative if the condition holds,
+/// negative somewhere just beyond it.
 #[test]
 fn lugre_gives_no_energy_exactly_when_it_is_passive() {
     let least_dissipation = |lugre: LuGre| {
@@ -194,14 +194,14 @@ fn lugre_gives_no_energy_exactly_when_it_is_passive() {
     assert!(least_dissipation(at(205.0)) < 0.0);
 }
 
-/// A friction whose way back is harder.
+/// Friction with greater resistance in retraction.
 fn harder_back() -> LuGre {
     let retracting = Some(FrictionLevels { coulomb: 110.0, static_friction: 160.0, viscous: 130.0 });
     LuGre { curve: Stribeck { retracting, ..curve() }, bristle_stiffness: 1e7, bristle_damping: 200.0 }
 }
 
-/// Each direction has the curve of a friction with its levels both ways, and where the motion turns
-/// round neither force nor rate of the bristles jumps, whatever their deflection.
+/// Each direction has the curve of a friction with its levels both ways, and at a reversal neither
+/// force nor rate of the bristles jumps, for any deflection.
 #[test]
 fn friction_by_direction_is_one_friction_for_each_and_continuous_between_them() {
     let both = harder_back();
@@ -219,8 +219,8 @@ fn friction_by_direction_is_one_friction_for_each_and_continuous_between_them() 
     assert!((more - less).abs() < 1e-5, "{more} {less}");
 }
 
-/// Moved slowly to and fro, the bristles carry -g of retracting and g of extending in turn; what a
-/// whole cycle takes is the sum of both over the distance.
+/// In slow reciprocation the bristles carry -g of retracting and g of extending alternately; the
+/// energy of a whole cycle is the sum of both over the distance.
 #[test]
 fn a_slow_cycle_takes_the_friction_of_each_direction() {
     let both = harder_back();
@@ -237,7 +237,7 @@ fn a_slow_cycle_takes_the_friction_of_each_direction() {
             taken[usize::from(way < 0.0)] += both.force(velocity, deflection) * velocity * step;
         }
     }
-    // ORIGIN: analytic, force times distance of each way; the bristles take a little to turn round
+    // force times distance in each direction; the bristles take a short distance to reverse
     for (found, force) in taken.iter().zip([85.0, 116.5]) {
         let expected = turns as f64 * 0.1 * force;
         assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");

@@ -1,5 +1,5 @@
-//! A valve between the chambers: closed forms, limits, passivity, and the equilibrium that it
-//! leaves.
+//! A valve between the chambers: closed forms, limits, passivity, and its effect on the
+//! equilibrium.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -31,7 +31,7 @@ fn actuator(cross_port: Option<CrossPort>) -> Actuator {
     Actuator::new(Components { cross_port, ..rig }).unwrap()
 }
 
-/// The plant of Table 6.3 with a load that moves, and what lies between its chambers.
+/// Plant of Table 6.3 with a load that moves, and an element between its chambers.
 fn plant(linear: &LinearParameters, leakage: f64, feedback: Option<DynamicFeedback>) -> LinearPlant {
     let load = LinearLoad::Yielding { mass: 100.0, damping: 500.0, stiffness: 2e5 };
     let plant = LinearPlant::of_load_pressure(linear, leakage, load);
@@ -59,7 +59,7 @@ fn a_laminar_valve_adds_to_the_flow_pressure_coefficient() {
 }
 
 /// The limits of feedback: a restrictor that is shut has no effect, an open one joins the capacity
-/// to both chambers, a capacity without end leaves the restrictor, one of nothing shuts it.
+/// to both chambers, an infinite capacity leaves the restrictor, a zero one shuts it.
 #[test]
 fn feedback_has_four_limits() {
     let linear = nominal_plant();
@@ -78,7 +78,7 @@ fn feedback_has_four_limits() {
     assert!(apart(&of(1e3, 1e-13), &plant(&softened, 1e-12, None)) < 1e-9);
 }
 
-/// The damping ratio at the resonance on the load cell.
+/// Damping ratio at the resonance on the load cell.
 fn damping_ratio(linear: &LinearParameters, leakage: f64, feedback: Option<DynamicFeedback>) -> f64 {
     let plant = LinearPlant::of_load_pressure(linear, leakage, LinearLoad::Prescribed);
     let coefficients = LinearPlant { dynamic_feedback: feedback, ..plant }.coefficients();
@@ -87,8 +87,8 @@ fn damping_ratio(linear: &LinearParameters, leakage: f64, feedback: Option<Dynam
     -pole.unwrap().re / magnitude(*pole.unwrap())
 }
 
-/// What it does to the resonance that FACTS of the thesis leave undamped: with pipes a tenth is to
-/// be had, with the hose it is not.
+/// Effect on the resonance that FACTS of the thesis leave undamped: with pipes a damping ratio of a
+/// tenth is possible, with the hose it is not.
 #[test]
 fn it_damps_the_resonance_on_the_load_cell() {
     let hose = nominal_plant();
@@ -106,8 +106,8 @@ fn it_damps_the_resonance_on_the_load_cell() {
     }
 }
 
-/// What is between the chambers takes energy at every frequency, so that the impedance at the load
-/// has no negative real part.
+/// An element between the chambers absorbs energy at every frequency, so that the impedance at the
+/// load has no negative real part.
 #[test]
 fn the_impedance_stays_passive() {
     let linear = nominal_plant();
@@ -126,7 +126,7 @@ fn the_impedance_stays_passive() {
     }
 }
 
-/// Everything the machine does, as the valve becomes less: the machine without.
+/// All results of the machine as the valve vanishes: those of the machine without it.
 #[test]
 fn a_valve_that_is_shut_is_none() {
     let rates = |cross_port: Option<CrossPort>| {
@@ -149,8 +149,8 @@ fn a_valve_that_is_shut_is_none() {
     }
 }
 
-/// A laminar valve is leakage across the piston, in the machine as at rest; only the account of
-/// energy distinguishes them.
+/// A laminar valve is leakage across the piston, both in the machine and at rest; only the account
+/// of energy distinguishes them.
 #[test]
 fn a_laminar_valve_is_leakage() {
     let conductance = 3e-12;
@@ -191,7 +191,7 @@ fn feedback_leaves_the_equilibrium_alone() {
     }
 }
 
-/// With an orifice every point of equilibrium is that of the bisection and where the machine rests.
+/// Every equilibrium with an orifice agrees with bisection and with the rest of the machine.
 #[test]
 fn an_orifice_settles_where_the_machine_rests() {
     let mut found = 0;
@@ -227,7 +227,7 @@ fn an_orifice_settles_where_the_machine_rests() {
     assert!(found > 30, "{found}");
 }
 
-/// Under a load the orifice's flow is made up by the spool, with equal areas.
+/// The spool supplies the orifice's flow under a load if the areas are equal.
 #[test]
 fn an_orifice_under_load_takes_a_command() {
     let [bare, valved] = [None, Some(orifice(3e-9, None))].map(actuator);
@@ -242,7 +242,7 @@ fn an_orifice_under_load_takes_a_command() {
     }
 }
 
-/// A valve between the chambers that cannot be is refused by its path.
+/// An impossible valve between the chambers is rejected by its path.
 #[test]
 fn impossible_valves_are_refused() {
     let of = |restrictor, capacity| CrossPort { restrictor, capacity };

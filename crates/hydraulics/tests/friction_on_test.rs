@@ -1,15 +1,15 @@
-//! Friction on test against the equations of LuGre, integrated by another method.
+//! Friction on test compared with the LuGre equations, integrated by another method.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
 use phea_hydraulics::friction::{KnottedForce, LuGre, MultisineForce, PressedMass, SlidBlock};
 
-/// With levels of the other direction.
+/// Friction with levels of the other direction.
 const NUMBERS: [f64; 10] = [80.0, 120.0, 0.01, 2.0, 100.0, 1e7, 2e3, 95.0, 150.0, 100.0];
 const MASS: f64 = 13.1;
 
-/// Displacement of a mass on bristles that begins at this velocity and deflection, by the method of
-/// Runge and Kutta with this number of steps between rows.
+/// Displacement of a mass on bristles from this initial velocity and deflection, by the Runge-Kutta
+/// method with this number of steps between rows.
 fn runge_kutta(
     lugre: &LuGre,
     [velocity, deflection]: [f64; 2],
@@ -41,8 +41,8 @@ fn runge_kutta(
     moved
 }
 
-/// A force of 96 N put on slowly and let go within 3 ms: the mass rings on its bristles, and keeps
-/// a part of the displacement.
+/// A force of 96 N applied slowly and released within 3 ms: the mass rings on its bristles, and
+/// retains a part of the displacement.
 fn released() -> KnottedForce {
     KnottedForce { knots: vec![0, 60, 63, 120], forces: vec![0.0, 96.0, 0.0, 0.0] }
 }
@@ -112,7 +112,7 @@ fn the_derivatives_are_those_of_the_displacement() {
         for (row, (more, less)) in moved(1.0).iter().zip(moved(-1.0)).enumerate() {
             let slope = found.gradients[row * count + index] * unit;
             let difference = (more - less) / 2e-5;
-            // the bristles' slip has a kink where the mass turns round
+            // the bristles' slip has a kink where the mass reverses
             assert!((slope - difference).abs() < 3e-3 * largest, "{index} {row}: {slope} {difference}");
         }
     }
@@ -179,7 +179,7 @@ fn the_derivatives_of_a_shaken_mass_are_those_of_the_displacement() {
     }
 }
 
-/// The mean over each block against the equation of the bristles, solved in short steps.
+/// Mean over each block compared with the equation of the bristles, solved in short steps.
 #[test]
 fn the_force_after_a_reversal_is_that_of_the_bristles() {
     let lugre = LuGre::from_array(NUMBERS);
@@ -189,13 +189,13 @@ fn the_force_after_a_reversal_is_that_of_the_bristles() {
     let settled = -lugre.curve.sliding_force(velocity) / lugre.bristle_stiffness;
     let mut forces = Vec::with_capacity(steps);
     for _ in 0..steps {
-        // the middle of each step, by the rate there
+        // middle of each step, by the rate there
         let rate = lugre.bristle_rate(velocity, deflection);
         let middle = deflection + h / 2.0 * lugre.bristle_rate(velocity, deflection + h / 2.0 * rate);
         forces.push(lugre.force(velocity, middle));
         deflection += h * lugre.bristle_rate(velocity, middle);
     }
-    // what is left of the force at the beginning: of the spring and of the damper of the bristles
+    // remainder of the initial force: of the spring and of the damper of the bristles
     let share = 1.0 - lugre.bristle_damping * velocity.abs() / lugre.curve.sliding_force(velocity);
     let left = lugre.bristle_stiffness * (9e-6 - settled) * share;
     let length = velocity.abs() * h;

@@ -1,5 +1,5 @@
 //! Gas that exchanges heat with its wall: limits, closed forms, a cycle integrated by SciPy,
-//! passivity, and its refusals.
+//! passivity, and its rejections.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -28,7 +28,7 @@ fn machine(gas: Accumulator, thermal_time_constant: Option<f64>) -> Machine {
     machine_of(parts, &MachineOptions::default())
 }
 
-/// Pressure and theta - 1 of the gas, then what `more` adds, over a flow into it.
+/// Pressure and theta - 1 of the gas, then the additions of `more`, over a flow into it.
 fn driven(
     gas: &RelaxingGas,
     start: [f64; 2],
@@ -50,8 +50,8 @@ fn driven(
     *state.first_chunk().unwrap()
 }
 
-/// In the linear plant a short time constant is isothermal gas, a long one adiabatic gas, and one
-/// between them neither.
+/// In the linear plant a short time constant gives isothermal gas, a long one adiabatic gas, and
+/// one between them neither.
 #[test]
 fn the_time_constant_has_two_limits() {
     let isothermal = GAS.compliance(35e5);
@@ -81,18 +81,19 @@ fn the_time_constant_has_two_limits() {
     }
 }
 
-/// The admittance is the closed form: C_T s (1 + tau s)/(1 + gamma tau s).
+/// The admittance has the closed form C_T s (1 + tau s)/(1 + gamma tau s).
 #[test]
 fn small_motions_are_a_lead_of_gamma() {
     let RelaxingGas { gas, time_constant } = RelaxingGas { gas: GAS, time_constant: 3.0 };
     let later = RelaxingGas { gas, time_constant }.relaxation(35e5);
-    // ORIGIN: analytic, P_0 V_0/P^2 of isothermal gas; its share 1 - 1/gamma comes after gamma tau
+    // ORIGIN: analytic, P_0 V_0/P^2 of isothermal gas; its fraction 1 - 1/gamma follows after gamma
+    // tau
     let at_rest = (15e5 + ATMOSPHERE) * 2e-5 / ((35e5 + ATMOSPHERE) * (35e5 + ATMOSPHERE));
     assert!((later.compliance / (at_rest * (1.0 - 1.0 / 1.4)) - 1.0).abs() < 1e-12);
     assert!((later.time / (1.4 * 3.0) - 1.0).abs() < 1e-12);
 }
 
-/// In a volume that is held the gas comes to the temperature of its wall exponentially, and its
+/// At constant volume the gas approaches the temperature of its wall exponentially, and its
 /// pressure with it.
 #[test]
 fn held_gas_cools_exponentially() {
@@ -114,7 +115,7 @@ fn held_gas_cools_exponentially() {
     );
 }
 
-/// Without time for heat P V^1.4 stays, with plenty of it P V: along large strokes.
+/// P V^1.4 is constant without time for heat exchange, P V with ample time: for large strokes.
 #[test]
 fn fast_gas_is_adiabatic_and_slow_gas_isothermal() {
     let absolute = 30e5 + ATMOSPHERE;
@@ -132,7 +133,7 @@ fn fast_gas_is_adiabatic_and_slow_gas_isothermal() {
     }
 }
 
-/// A cycle between both, and ten of them.
+/// A cycle between both limits, and ten such cycles.
 #[test]
 fn a_cycle_is_that_of_scipy() {
     let gas = RelaxingGas { gas: GAS, time_constant: 0.4 };
@@ -147,8 +148,8 @@ fn a_cycle_is_that_of_scipy() {
     }
 }
 
-/// A machine whose gas has no time for heat is one whose gas is polytropic with 1.4 from where it
-/// stands.
+/// A machine whose gas has no time for heat exchange equals one with polytropic gas of index 1.4
+/// from its present state.
 #[test]
 fn a_machine_with_fast_gas_is_the_polytropic_one() {
     // the polytrope through the gas at 35 bar, from the same precharge
@@ -178,8 +179,8 @@ fn a_machine_with_fast_gas_is_the_polytropic_one() {
     assert!(heated[6].abs() > 1e-3);
 }
 
-/// Whatever flows, no more comes out of the gas than went in: with the pressure counted from where
-/// it rested.
+/// For any flow, no more energy leaves the gas than enters it: with the pressure counted from its
+/// rest.
 #[test]
 fn it_is_passive_under_random_flows() {
     for number in 0..64 {
@@ -202,10 +203,10 @@ fn it_is_passive_under_random_flows() {
         let mut before = 0.0;
         driven(&gas, [rest, 0.0], flow, (4.0, 40_000), |_, [pressure, warming, work, heat]| {
             let heated = gas.at(pressure, warming);
-            // work at the pressure from rest: that in full less P_rest times the oil that has
+            // work at the pressure from rest: the full work less P_rest times the oil that has
             // entered
             entered = work - from_rest * (heated.oil - gas.at(rest, 0.0).oil);
-            // and the heat is what the first law says
+            // and the heat agrees with the first law
             let held = heated.energy + ATMOSPHERE * heated.oil;
             let gap = held - (gas.at(rest, 0.0).energy + ATMOSPHERE * gas.at(rest, 0.0).oil) - (work - heat);
             assert!(gap.abs() < 1e-9 * held, "{number}: {gap}");
@@ -236,7 +237,7 @@ fn it_is_shut_off_by_the_pressure_of_its_own_temperature() {
     }
 }
 
-/// A limit of the maker is reported where it is passed, by the pressure of the gas.
+/// A pressure limit of the maker is reported when the pressure of the gas exceeds it.
 #[test]
 fn too_much_pressure_is_told() {
     let rig =
@@ -261,7 +262,7 @@ fn too_much_pressure_is_told() {
     assert!(refused.contains("line.b.accumulator.maximum_pressure"), "{refused}");
 }
 
-/// No time, and gas that has an exponent of its own besides, are refused by their path.
+/// A zero time constant, and gas with an exponent of its own as well, are rejected by their path.
 #[test]
 fn impossible_heat_is_refused() {
     let polytropic = Accumulator { polytropic_exponent: 1.4, ..GAS };

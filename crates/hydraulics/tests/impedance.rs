@@ -1,5 +1,5 @@
 //! The impedance at the load: asymptotes, the published controller's lack of passivity, and the
-//! step that leaves no force.
+//! step without a final force.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -63,7 +63,7 @@ fn published_closed_loop_fails_between_447_and_921_rad_per_s() {
     }
 }
 
-/// All three conditions, and the band as the passivity test finds it.
+/// All three conditions, and the band found by the passivity test.
 #[test]
 fn passivity_of_open_and_published_closed_loop() {
     let open = passivity(&open_loop_impedance(&model()).unwrap()).unwrap();
@@ -75,7 +75,7 @@ fn passivity_of_open_and_published_closed_loop() {
     assert!((closed.bands[0].to_rad_per_s / 921.59055 - 1.0).abs() < 2e-8);
 }
 
-/// Z from factors against Z_open/(1 + G P), at every frequency.
+/// Z from factors compared with Z_open/(1 + G P), at every frequency.
 #[test]
 fn closed_loop_impedance_is_the_open_one_divided() {
     let controller = published_controller();
@@ -97,7 +97,7 @@ fn asymptote(kind: AsymptoteKind, controller: Option<&TransferFunction>) -> Asym
     *all.iter().find(|asymptote| asymptote.kind == kind).unwrap()
 }
 
-/// Each asymptote against the model, far into its range.
+/// Each asymptote compared with the model, far into its range.
 #[test]
 fn model_follows_its_asymptotes() {
     let proportional = TransferFunction::gain_only(2.73e-4);
@@ -116,7 +116,7 @@ fn model_follows_its_asymptotes() {
         assert!(near(ratio(AsymptoteKind::LowFrequency, 1e-5), 1e-3), "{controller:?}");
         assert!(near(ratio(AsymptoteKind::SensorLimit, 1e6), 1e-4), "{controller:?}");
     }
-    // The plateau lies between the loop's bandwidth and the frequency where the mass takes over.
+    // the plateau is between the loop's bandwidth and the frequency where the mass takes over.
     let open = open_loop_impedance(&model()).unwrap();
     let plateau = asymptote(AsymptoteKind::CompliancePlateau, None);
     assert_eq!((plateau.power, plateau.to), (-1, compliance_hidden_above(2.24e6, 13.1)));
@@ -148,7 +148,7 @@ fn coefficients_of_the_asymptotes() {
     assert!((compliance_hidden_above(2.233e6, 13.1) - 412.9).abs() < 0.05);
 }
 
-/// No asymptote runs backwards: what is the nearest nowhere is left out.
+/// Asymptotes have positive ranges: one that is nowhere the nearest is omitted.
 #[test]
 fn asymptotes_that_are_nearest_nowhere_are_left_out() {
     let kinds = |parameters: &LinearParameters, controller: Option<&TransferFunction>| {
@@ -159,11 +159,11 @@ fn asymptotes_that_are_nearest_nowhere_are_left_out() {
     let all = [AsymptoteKind::LowFrequency, AsymptoteKind::CompliancePlateau, AsymptoteKind::SensorLimit];
     let nominal = nominal_plant();
     assert_eq!(kinds(&nominal, None), all);
-    // Without leakage the spring holds from the start.
+    // without leakage the spring applies from the lowest frequency
     let tight = LinearParameters { flow_pressure_coefficient: 0.0, ..nominal };
     assert_eq!(kinds(&tight, None), all[1..]);
-    // A loop faster than sqrt(K_H/M) leaves no plateau: its damper A/(K_qU K_p) crosses the spring
-    // above 413 rad/s.
+    // a loop faster than sqrt(K_H/M) leaves no plateau: its damper A/(K_qU K_p) crosses the spring
+    // above 413 rad/s
     let fast = TransferFunction::gain_only(0.1);
     assert_eq!(kinds(&nominal, Some(&fast)), [all[0], all[2]]);
 }
@@ -181,7 +181,7 @@ fn mass_hides_the_compliance() {
     assert!((at(1.12e6, hidden * 10.0) / at(2.24e6, hidden * 10.0) - 1.0).abs() < 0.02);
 }
 
-/// Proposition 6.2, and where it ends.
+/// Proposition 6.2, and its limits.
 #[test]
 fn load_step_leaves_no_force() {
     let open = model().load_position;
@@ -192,7 +192,7 @@ fn load_step_leaves_no_force() {
     for controller in [TransferFunction::gain_only(1e-3), published_controller()] {
         assert_eq!(final_force_after_load_step(&closed(&controller), 5e-3), Some(0.0));
     }
-    // A gain of one, as the proof has it, is unstable for this plant: there is no final value.
+    // a gain of one, as in the proof, is unstable for this plant: there is no final value
     let unstable = closed(&TransferFunction::gain_only(1.0));
     assert_eq!(final_force_after_load_step(&unstable, 5e-3), None);
     // ORIGIN: analytic, without leakage and feedback the springs keep K_eq x

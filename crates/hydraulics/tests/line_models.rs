@@ -1,4 +1,4 @@
-//! Lines in motion: against the exact line, against each other, and against conservation.
+//! Dynamic lines compared with the exact line, with each other, and with conservation.
 
 #[cfg(test)]
 mod blocked;

@@ -1,4 +1,5 @@
-//! The fifth-order model, its decomposition and its first-order core against the thesis' tables.
+//! The fifth-order model, its decomposition and its first-order core compared with the thesis'
+//! tables.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
@@ -16,7 +17,7 @@ fn check(what: &str, value: f64, printed: f64, last_digit: f64) {
     assert!((value - printed).abs() <= 0.5 * last_digit, "{what}: {value} is not {printed}");
 }
 
-/// The case of Table 6.1 and Figure 6.6: the load cell alone, K_c and f_v from the printed poles.
+/// Case of Table 6.1 and Figure 6.6: the load cell only, K_c and f_v from the printed poles.
 fn table_6_1(hydraulic_stiffness: f64) -> LinearParameters {
     LinearParameters {
         viscous_friction: 299.0,
@@ -206,7 +207,7 @@ fn gain_for_the_purchased_hose() {
     check("K_SS at the largest K_c", closed_loop_steady_state_gain(&leaking, 2.73e-4), 0.26, 1e-2);
 }
 
-/// (6.16) and (6.27) undo each other and the closed loop has the time constant that was asked for.
+/// Equations (6.16) and (6.27) are inverse, and the closed loop has the requested time constant.
 #[test]
 fn sizing_equations_undo_each_other() {
     for stiffness in [1e5, 2.24e6, 8e7] {
@@ -238,8 +239,8 @@ fn sizing_equations_undo_each_other() {
 fn hydraulic_mode_dominates_more_the_softer_it_is() {
     let modes = |stiffness| dominance(&linear_model(&table_6_1(stiffness)).unwrap().command);
     let (stiff, soft) = (modes(1.5e7), modes(1.5e5));
-    // ORIGIN: analytic, over (6.12) the share of the slow pole -a is 1/((1 - a
-    // e_1/e_0 + ...)(1 - ...)): within 1 % of 1
+    // ORIGIN: analytic, over (6.12) the fraction of the slow pole -a is
+    // 1/((1 - a e_1/e_0 + ...)(1 - ...)): within 1 % of 1
     assert!((stiff[0].step_share - 1.0).abs() < 1e-2 && (soft[0].step_share - 1.0).abs() < 1e-4);
     for index in [1, 2] {
         assert!(stiff[index].step_share < 1e-2);
@@ -271,7 +272,7 @@ fn a_share_that_does_not_exist_has_its_reason() {
     }
 }
 
-/// The coefficients recorded as an uncertain plant are those computed with numbers.
+/// Coefficients recorded as an uncertain plant equal those computed with numbers.
 #[test]
 fn recorded_plant_is_the_plant() {
     let nominal = nominal_plant();

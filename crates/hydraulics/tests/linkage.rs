@@ -33,10 +33,10 @@ use super::plant::point_at;
 use super::rich_machines::{asymmetric, pump};
 
 pub(super) const STROKE: f64 = 0.08;
-/// The zero of the joint's angle, rad.
+/// Zero of the joint's angle, rad.
 pub(super) const OFFSET: f64 = 0.4;
 
-/// The knee of comparisons/recompute_linkage.py.
+/// Knee of comparisons/recompute_linkage.py.
 pub(super) fn knee() -> PivotTriangle {
     PivotTriangle { cylinder_pivot: 0.30, rod_pivot: 0.05, retracted_length: 0.26 }
 }
@@ -57,7 +57,7 @@ fn reduced(geometry: LinkageGeometry) -> Linkage {
     geometry.reduced(STROKE, OFFSET).unwrap().linkage
 }
 
-/// Rows of the knee, measured to a micrometre or not at all.
+/// Rows of the knee, measured to a micrometre or exact.
 fn table(rows: usize, roughness: f64, tolerance: f64) -> LinkageGeometry {
     let linkage = reduced(LinkageGeometry::Triangle(knee()));
     let extensions: Vec<f64> = (0..rows).map(|row| STROKE * row as f64 / (rows - 1) as f64).collect();
@@ -70,7 +70,7 @@ fn table(rows: usize, roughness: f64, tolerance: f64) -> LinkageGeometry {
     LinkageGeometry::Table(LinkageTable { extensions: measured, angles, tolerance })
 }
 
-/// All kinds.
+/// Linkages of all kinds.
 pub(super) fn linkages() -> [Linkage; 4] {
     let table = table(30, 0.0, 1e-6).reduced(STROKE, 0.0).unwrap().linkage;
     let [open, crossed] = [false, true].map(|crossed| reduced(LinkageGeometry::FourBar(four_bar(crossed))));
@@ -109,7 +109,7 @@ fn a_four_bar_closes() {
         let at = |x: f64| sense * (linkage.angle(x) + OFFSET);
         for (x, expected) in rows {
             let turns = (at(x) - expected) / std::f64::consts::TAU;
-            // crossed, the lever arm grows fourfold towards a dead point: the fit is worse
+            // crossed, the lever arm grows fourfold towards a dead point: the fit is less accurate
             let tolerance = if is_crossed { 1e-7 } else { 1e-10 };
             assert!((turns - turns.round()).abs() < tolerance, "{is_crossed} {x}: {} {expected}", at(x));
         }
@@ -117,7 +117,7 @@ fn a_four_bar_closes() {
     }
 }
 
-/// What one polynomial cannot be is refused, with the place.
+/// Linkages that no polynomial can represent are rejected, with the position.
 #[test]
 fn impossible_linkages_are_refused() {
     let of = |geometry: LinkageGeometry| geometry.reduced(STROKE, 0.0).unwrap_err();
@@ -146,7 +146,7 @@ fn impossible_linkages_are_refused() {
     assert!(matches!(back, LinkageError::DeadPoint { .. } | LinkageError::NoFourBar { .. }), "{back:?}");
 }
 
-/// A table of the knee is the knee up to its residual; a rough one is within its tolerance.
+/// A table of the knee equals the knee up to its residual; a rough one is within its tolerance.
 #[test]
 fn a_table_is_what_was_measured() {
     let exact = reduced(LinkageGeometry::Triangle(knee()));
@@ -161,7 +161,7 @@ fn a_table_is_what_was_measured() {
     }
 }
 
-/// Intervals of the angle enclose what they are intervals of.
+/// Intervals of the angle enclose the values in them.
 #[test]
 fn intervals_enclose_it() {
     for (kind, linkage) in linkages().into_iter().enumerate() {
@@ -177,7 +177,7 @@ fn intervals_enclose_it() {
     }
 }
 
-/// A rig whose chambers keep their pressures: valve and lines are as good as infinite volumes.
+/// A rig with constant chamber pressures: valve and lines behave like infinite volumes.
 fn open_ended() -> Components {
     let line = Line::Volume { volume: 1e8, effective_bulk_modulus: 1e9 };
     let rig = components(line, StiffnessModel::ByVolume);
@@ -196,7 +196,8 @@ fn open_ended() -> Components {
     }
 }
 
-/// A knee swings as a Lagrangian in the coordinates of the rod says, in which no lever arm occurs.
+/// The motion of a knee agrees with a Lagrangian in the coordinates of the rod, which has no lever
+/// arm.
 #[test]
 fn a_knee_swings_by_its_lagrangian() {
     // ORIGIN: recomputed by comparisons/recompute_linkage.py
@@ -249,7 +250,7 @@ fn swings(rig: Components, expected: [[f64; 3]; 3]) {
     }
 }
 
-/// A lever arm in m that is the same everywhere, and the linkage that has it.
+/// A constant lever arm in m, and the linkage that has it.
 const ARM: f64 = 0.05;
 
 fn straight() -> Linkage {
@@ -257,7 +258,7 @@ fn straight() -> Linkage {
     LinkageGeometry::Table(table).reduced(0.5, 0.0).unwrap().linkage
 }
 
-/// Loads in linear quantities, and the same on that lever.
+/// Loads in linear quantities, and equivalent loads on that lever.
 fn pairs() -> [[LoadModel; 2]; 3] {
     let square = ARM * ARM;
     let sprung =
@@ -302,7 +303,7 @@ fn a_constant_lever_is_a_load_in_other_units() {
     }
 }
 
-/// The same by its plant.
+/// Equivalence by its plant.
 #[test]
 fn a_constant_lever_has_the_plant_of_a_load_in_other_units() {
     let (mass, stiffness, damping, square) = (20.0, 3e5, 200.0, ARM * ARM);
@@ -324,12 +325,12 @@ fn a_constant_lever_has_the_plant_of_a_load_in_other_units() {
     }
 }
 
-/// A rig for every number, at rest, with every kind of linkage and load, pushed and pulled.
+/// Rig for every number, at rest, with every kind of linkage and load, pushed and pulled.
 struct Drawn {
     machine: Machine,
     rest: InitialCondition,
     sensor: f64,
-    /// The load's end of the rod there.
+    /// Load's end of the rod there.
     end: RodEnd,
     plant: LinearPlant,
 }
@@ -355,7 +356,7 @@ fn drawn(number: u64) -> Drawn {
         series: series(number, &mut spread),
         ..components(hose_line(), StiffnessModel::ByVolume)
     };
-    // every second one with a weight that is level anywhere over the stroke
+    // every second one with a weight that is level somewhere in the stroke
     let weighed = linkage.level_at(spread(0.1, 6.0)).with_moment(spread(0.1, 30.0));
     let linkage = if number % 2 == 1 { weighed } else { linkage };
     let rig = Components { linkage: Some(linkage), ..rig };
@@ -365,7 +366,7 @@ fn drawn(number: u64) -> Drawn {
     let actuator = Actuator::new(rig).unwrap();
     let machine = Machine::new(&actuator, &MachineOptions { load, ..MachineOptions::default() }).unwrap();
     let position = spread(0.005, 0.075);
-    // to either side, but a wall takes no pull
+    // to either side, but a wall cannot pull
     let sign = if number % 3 == 1 && number.is_multiple_of(2) { -1.0 } else { 1.0 };
     let rests = (1..20).map(|more| {
         let condition = Condition::Command(sign * 0.05 * f64::from(more));
@@ -405,7 +406,7 @@ fn load(number: u64, [mass, stiffness, damping]: [f64; 3], contact: Contact) -> 
     }
 }
 
-/// Of five numbers two have a damped, progressive spring on the rod, one a transmission.
+/// Two out of five numbers have a damped, progressive spring on the rod, one a transmission.
 fn series(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> Option<SeriesElement> {
     match number % 5 {
         1 | 2 => Some(SeriesElement::Spring(SeriesSpring {
@@ -426,7 +427,7 @@ fn series(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> Option<Serie
     }
 }
 
-/// The plant with this load where the machine rests.
+/// Plant with this load at the rest of the machine.
 fn plant_at(actuator: &Actuator, position: f64, rest: &InitialCondition, load: LinearLoad) -> LinearPlant {
     let pressures = [rest.state[2], rest.state[3]];
     let friction = actuator.components().friction.viscous();
@@ -436,7 +437,7 @@ fn plant_at(actuator: &Actuator, position: f64, rest: &InitialCondition, load: L
     LinearPlant::of_two_pressures(&parameters, 0.0, load)
 }
 
-/// The plant is the machine for small motions, as polynomials and as a response.
+/// The plant agrees with the machine for small motions, as polynomials and as a response.
 #[test]
 fn the_plant_is_the_machine_for_small_motions() {
     for number in 0..60_u64 {
@@ -470,7 +471,7 @@ fn the_plant_is_the_machine_for_small_motions() {
     }
 }
 
-/// Through a wave of the stroke every account of energy closes.
+/// Every account of energy closes over an oscillation of the stroke.
 #[test]
 fn ledgers_close_with_a_linkage() {
     let motion = Motion { amplitude: 0.3, bias: 0.05, ground: 0.0, ground_amplitude: 0.05 };

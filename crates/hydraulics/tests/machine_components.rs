@@ -1,5 +1,5 @@
-//! What each component adds to the machine: closed forms, limits, and a published kind of reference
-//! run.
+//! Contribution of each component to the machine: closed forms, limits, and a published kind of
+//! reference run.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -56,8 +56,8 @@ fn load_step(time: f64) -> [f64; 2] {
     [0.25 + 5e-3 * position, 5e-3 * slope / 0.1]
 }
 
-/// The closed loop of 5 s on which solvers are compared: PI controller and prefilter, 4 kN at 2 s,
-/// 5 mm of load at 3 s.
+/// Closed loop of 5 s for the comparison of solvers: PI controller and prefilter, 4 kN at 2 s, 5 mm
+/// of load at 3 s.
 ///
 /// ORIGIN: other tool, CVODE at a tolerance of 1e-12 on the same equations written in C
 #[test]
@@ -80,8 +80,7 @@ fn the_benchmark_runs_as_the_reference_says() {
     for (time, force) in expected {
         let last = (time / width).round() as usize;
         for index in done..last {
-            // Held over the step, so that the jump of the reference falls on the border of two
-            // steps.
+            // held over the step, so that the jump of the reference is at the border of two steps
             let wanted = reference((index as f64 + 0.5) * width);
             let mut rates = |time: f64, state: &[f64], rates: &mut [f64]| {
                 let (plant, loop_states) = state.split_at(7);
@@ -102,7 +101,7 @@ fn the_benchmark_runs_as_the_reference_says() {
     }
 }
 
-/// The spool alone: opening over a command, sampled every step.
+/// Spool without a machine: opening over a command, sampled every step.
 fn spool_run(imperfection: &SpoolImperfection, duration: f64, command: impl Fn(f64) -> f64) -> Vec<[f64; 3]> {
     let valve = valve();
     let mut state = [0.0; 4];
@@ -134,8 +133,8 @@ fn triangle(phase: f64) -> f64 {
     1.0 - 4.0 * (phase - 0.5).abs()
 }
 
-/// A slow cycle finds null where it was measured: rising at 0.078 V, falling at -0.05 V (section
-/// 5.2.1 of the thesis).
+/// A slow cycle reproduces the measured null: rising at 0.078 V, falling at -0.05 V (section 5.2.1
+/// of the thesis).
 #[test]
 fn a_slow_cycle_finds_null_at_bias_and_half_width() {
     for threshold in [None, Some(0.05)] {
@@ -151,9 +150,9 @@ fn a_slow_cycle_finds_null_at_bias_and_half_width() {
     }
 }
 
-/// A slow test and the machine have the same opening: that of the memories less the lag of the
-/// spool behind a command that goes on steadily. The memories of the machine follow the late spool:
-/// next to a reversal that changes the opening by up to twice the lag.
+/// A slow test and the machine have equal openings: that of the memories less the lag of the spool
+/// behind a steadily moving command. The memories of the machine follow the late spool: next to a
+/// reversal that changes the opening by up to twice the lag.
 #[test]
 fn the_machine_is_as_late_as_a_slow_test_says() {
     let spool = measured_spool();
@@ -174,8 +173,8 @@ fn the_machine_is_as_late_as_a_slow_test_says() {
     }
 }
 
-/// What of a reversal the threshold takes moves the opening by 7 % of it (x = 2 exp(-20 x), half of
-/// x); twice as much by nearly all that is beyond.
+/// Within the threshold, a reversal moves the opening by 7 % of the command (x = 2 exp(-20 x), half
+/// of x); twice as much moves it by nearly all of the excess.
 #[test]
 fn a_reversal_takes_the_threshold() {
     let spool = SpoolImperfection { threshold: Some(0.05), ..SpoolImperfection::default() };
@@ -187,7 +186,7 @@ fn a_reversal_takes_the_threshold() {
     assert!((moved(0.1) - 0.05).abs() < 1e-3, "{}", moved(0.1));
 }
 
-/// A great step moves at the limit, a small one as if there were none.
+/// A large step moves at the rate limit, a small one is unaffected by it.
 #[test]
 fn the_rate_is_limited() {
     let free = SpoolImperfection::default();
@@ -217,7 +216,7 @@ fn foamy() -> Components {
     }
 }
 
-/// Compliances with air are those of the actuator at the same pressures, for every kind of line and
+/// Compliances with air equal those of the actuator at equal pressures, for every kind of line and
 /// both models.
 #[test]
 fn air_softens_each_chamber_by_its_own_pressure() {
@@ -239,14 +238,14 @@ fn air_softens_each_chamber_by_its_own_pressure() {
             }
         }
     }
-    // Below vacuum there is no such oil, but still a number.
+    // below vacuum there is no such oil, but the result is still a number
     let machine = machine_of(foamy(), &MachineOptions::default());
     let mut rates = [f64::NAN; 6];
     machine.rates(&[0.0, 0.0, -3e5, 35e5, 0.0, 0.0], 0.0, &[0.25, 0.0], &mut rates);
     assert!(rates.iter().all(|rate| rate.is_finite()));
 }
 
-/// Bristles that move slowly give the static curve, and so does the smoothed one but near
+/// Slowly moving bristles give the static curve, and so does the smoothed curve except near
 /// standstill.
 #[test]
 fn slow_bristles_are_the_static_curve() {
@@ -307,8 +306,8 @@ fn pump() -> PumpLimited {
     }
 }
 
-/// A pump holds nearly the stated pressure while it has flow to spare; asked for more than it has,
-/// it sets the velocity and the pressure falls.
+/// A pump holds nearly the stated pressure while it has flow to spare; if more is required, it
+/// limits the velocity and the pressure falls.
 #[test]
 fn a_pump_gives_what_it_has() {
     let unit = PumpLimited { accumulator: None, ..pump() };
@@ -319,7 +318,7 @@ fn a_pump_gives_what_it_has() {
     let rest = machine.rest(&idle).unwrap();
     let outputs = machine.signals(&rest.state, &rest.inputs);
     let [supply, taken] = [outputs.supply_pressure, outputs.supply_flow];
-    // What the valve leaks and its tare flow do not go through the relief valve.
+    // leakage and tare flow of the valve do not pass the relief valve
     assert!((supply - (70e5 - 5e5 * taken / unit.pump_flow)).abs() < 1.0);
     assert!(taken > 7e-6 && taken < 4e-5);
     let load = MachineOptions {
@@ -342,7 +341,7 @@ fn a_pump_gives_what_it_has() {
     assert!(outputs.supply_pressure < 40e5 && velocity > 0.09);
 }
 
-/// The gas of an accumulator takes up what its polytropic compression says.
+/// Oil volume in an accumulator agrees with the polytropic compression of its gas.
 #[test]
 fn accumulators_hold_a_polytropic_gas() {
     let unit = pump();
@@ -360,7 +359,8 @@ fn accumulators_hold_a_polytropic_gas() {
     assert_eq!(unit.compliance(39e5), bare.compliance(39e5));
 }
 
-/// The supply gives the edges and the tare flow, which goes with the root of the pressure.
+/// The supply delivers the flow of the edges and the tare flow, which is proportional to the root
+/// of the pressure.
 #[test]
 fn tare_flow_is_the_supplys() {
     let options = MachineOptions { tare_reference_drop: Some(70e5), ..MachineOptions::default() };
@@ -377,7 +377,7 @@ fn tare_flow_is_the_supplys() {
     }
 }
 
-/// Events have the sign of what happens.
+/// Signs of events agree with their direction.
 #[test]
 fn indicators_turn_negative_with_their_events() {
     let contact = Contact { stiffness: 1e8, relative_damping: 0.0 };

@@ -1,4 +1,4 @@
-//! Ledgers of oil and energy of the machine in motion, by a fixed-step method of its own.
+//! Ledgers of oil and energy of the machine in motion, by a separate fixed-step method.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -39,14 +39,14 @@ fn names() -> Vec<String> {
     oil.chain(ENERGY_ACCOUNTS.iter().map(|name| format!("energy of {name}"))).collect()
 }
 
-/// Accounts at an instant, as [`names`] lists them.
+/// Accounts at an instant, in the order of [`names`].
 fn accounts(machine: &Machine, state: &[f64], inputs: &[f64]) -> Vec<Account<f64>> {
     let ledger = machine.ledger(state, inputs).unwrap();
     ledger.oil.into_iter().chain(ledger.energy).collect()
 }
 
-/// How a machine is moved: command in V, ground of its load, force on the load from outside and
-/// setting of its accumulators where it has these inputs.
+/// Motion of a machine: command in V, ground of its load, and, if it has these inputs, external
+/// force on the load and setting of its accumulators.
 pub(super) struct Motion {
     pub(super) amplitude: f64,
     pub(super) bias: f64,
@@ -72,8 +72,7 @@ impl Motion {
     }
 }
 
-/// What a run shows: each account's name, how far it is from closing and what went through it, and
-/// what it lost.
+/// Result of a run: each account's name, its closure error, its throughput, and its loss.
 struct Closing {
     name: String,
     gap: f64,
@@ -82,7 +81,7 @@ struct Closing {
     least_loss: f64,
 }
 
-/// What enters and is lost is summed by Simpson's rule over the steps.
+/// Inflow and losses are summed by Simpson's rule over the steps.
 fn run(machine: &Machine, motion: &Motion, start: &[f64], duration: f64, width: f64) -> Vec<Closing> {
     let at = |index: usize, state: &[f64]| accounts(machine, state, &motion.inputs(index as f64 * width));
     let mut rates = |time: f64, state: &[f64]| {
@@ -124,11 +123,11 @@ pub(super) fn machine_of(components: Components, options: &MachineOptions) -> Ma
     Machine::new(&Actuator::new(components).unwrap(), options).unwrap()
 }
 
-/// Every account closes, and nothing that should take energy gives any.
+/// Every account closes, and no dissipative part supplies energy.
 pub(super) fn check(machine: &Machine, motion: &Motion, start: &StartValues, duration: f64, width: f64) {
     let beginning = machine.start(start).unwrap();
     let motion = Motion { ground: beginning.inputs[0], ..*motion };
-    // heat goes both ways between gas and wall
+    // heat flows both ways between gas and wall
     let mut heats = false;
     for Closing { name, gap, throughput, lost, least_loss } in
         run(machine, &motion, &beginning.state, duration, width)
@@ -173,15 +172,15 @@ fn ledgers_close_with_loads_of_their_own() {
     }
 }
 
-/// Driven into both of its stops, the piston stays in reach, the stops are reported, and the
-/// ledgers close.
+/// Driven into both of its stops, the piston stays within its stroke, the stops are reported, and
+/// the ledgers close.
 #[test]
 fn ledgers_close_in_the_end_stops() {
     let contact = Contact { stiffness: 1e8, relative_damping: 0.5 };
     let load = LoadModel::SpringMassDamper { mass: 5.0, stiffness: 0.0, damping: 100.0 };
     let options = MachineOptions { load, ..MachineOptions::default() };
-    // An open edge at zero drop and a small chamber are too fast for this method where the root's
-    // transition is short.
+    // an open edge at zero drop and a small chamber are too fast for this method if the root's
+    // transition is short
     let rig = asymmetric();
     let valve = Servovalve { transition_pressure: 1e5, ..rig.valve };
     let machine = machine_of(stopped(Components { valve, ..rig }, contact), &options);
@@ -205,13 +204,13 @@ fn ledgers_close_in_the_end_stops() {
             machine.indicate(&state, &inputs, &mut indicators);
             deepest = deepest.min(indicators[2].min(indicators[3]));
         }
-        // The whole supply presses 70 bar on 1.96e-3 m2: 0.14 mm into 1e8 N/m, and no more than
-        // twice that when it bounces.
+        // the whole supply presses 70 bar on 1.96e-3 m2: 0.14 mm into 1e8 N/m, and at most twice
+        // that when it bounces
         assert!(deepest < -2e-5 && deepest > -2.8e-4, "{deepest}");
     }
 }
 
-/// Between components nothing is lost: what all of them take is what crosses the rig's border.
+/// Nothing is lost between components: their total inflow is the flow across the rig's border.
 #[test]
 fn the_rig_is_the_sum_of_its_components() {
     let contact = Contact { stiffness: 3e7, relative_damping: 0.4 };
@@ -229,7 +228,7 @@ fn the_rig_is_the_sum_of_its_components() {
         let [components @ .., rig] = ledger.oil;
         let sum: f64 = components.iter().map(|account| account.inflow).sum();
         assert!((sum - (rig.inflow - rig.lost)).abs() < 1e-15, "{sum} {}", rig.inflow);
-        // An orifice law in volumes loses at most p_S/beta of what flows.
+        // an orifice law in volumes loses at most p_S/beta of the flow
         assert!(rig.lost.abs() < 70e5 / 1e9 * 2.0 * 3e-4);
     }
 }
@@ -249,10 +248,10 @@ pub(super) fn random(state: &mut u64) -> f64 {
     (*state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
-/// What is wrong with the accounts at this state: what is stored must change, along the rates of
-/// all states, by what enters and is lost; energy is never stored or lost below zero.
+/// Error of the accounts at this state: the content must change, along the rates of all states, by
+/// inflow and losses; stored or dissipated energy is never below zero.
 pub(super) fn check_instant(name: &str, machine: &Machine, state: &[f64], command: f64, inputs: [f64; 2]) {
-    // in the first of the directions that the machine is compiled for
+    // in the first of the directions for which the machine is compiled
     let along = |value: f64, rate: f64| {
         Dual::<DIRECTIONS>::new(
             value,
@@ -277,7 +276,7 @@ pub(super) fn check_instant(name: &str, machine: &Machine, state: &[f64], comman
         let size = growth.abs().max(inflow.abs()).max(lost.abs());
         assert!(gap.abs() <= 1e-9 * size, "{account} of {name}: {gap} of {size}");
         if index >= OIL_ACCOUNTS.len() {
-            // heat goes both ways between gas and wall
+            // heat flows both ways between gas and wall
             let only_lost = !(account.starts_with("gas_heat") || name.contains("heat") && *account == "rig");
             assert!(stored.value() >= 0.0, "{account} of {name}: {stored:?}");
             assert!(!only_lost || lost >= -1e-12 * size, "{account} of {name}: {lost}");
@@ -285,8 +284,8 @@ pub(super) fn check_instant(name: &str, machine: &Machine, state: &[f64], comman
     }
 }
 
-/// At any state, whether it comes about or not: near the pressures of a run, about atmospheric
-/// pressure, with gas let out.
+/// Accounts at any state, including unreachable ones: near the pressures of a run, and about
+/// atmospheric pressure, with gas released.
 #[test]
 fn what_is_stored_changes_by_what_enters_and_is_lost() {
     let mut seed = 7;
@@ -313,8 +312,8 @@ fn what_is_stored_changes_by_what_enters_and_is_lost() {
     }
 }
 
-/// What is under way between the ends of a line is no part of states and inputs: no ledger, rather
-/// than a wrong one.
+/// Waves in transit in a line are not part of states and inputs: there is no ledger, rather than a
+/// wrong one.
 #[test]
 fn waves_have_no_ledger() {
     let rig = asymmetric();
@@ -326,8 +325,8 @@ fn waves_have_no_ledger() {
     assert!(machine.ledger(&beginning.state, &beginning.all_inputs()).is_none());
 }
 
-/// Energy in J that friction takes over one cycle of velocities in m/s held over distances in m,
-/// after the bristles settled.
+/// Energy that friction takes over one cycle of velocities in m/s held over distances in m, after
+/// the bristles settled, J.
 fn cycle_energy(lugre: &LuGre, legs: &[(f64, f64)]) -> f64 {
     let mut state = vec![0.0, 0.0];
     let mut taken = 0.0;
@@ -348,9 +347,9 @@ fn cycle_energy(lugre: &LuGre, legs: &[(f64, f64)]) -> f64 {
     taken
 }
 
-/// LuGre friction takes energy over every cycle if sigma_2 >= sigma_1 (F_S - F_C)/F_C. Outside, a
-/// slow creep that loads the bristles to F_S and a jerk that unloads them at F_C give energy, cycle
-/// after cycle.
+/// LuGre friction absorbs energy over every cycle if sigma_2 >= sigma_1 (F_S - F_C)/F_C. Outside, a
+/// slow creep that loads the bristles to F_S and a jerk that unloads them at F_C supply energy,
+/// cycle after cycle.
 #[test]
 fn lugre_takes_energy_under_its_condition_and_may_give_it_outside() {
     let Friction::LuGre(outside) = benchmark_components().friction else { unreachable!() };
@@ -369,8 +368,8 @@ fn lugre_takes_energy_under_its_condition_and_may_give_it_outside() {
     }
 }
 
-/// Newton's law of the load alone: a force from outside changes its acceleration by F_x/m and
-/// nothing else, and its power is what the load and the rig take in.
+/// Newton's law of the load: an external force changes only its acceleration, by F_x/m, and its
+/// power is the power that the load and the rig absorb.
 #[test]
 fn a_force_from_outside_acts_on_the_load_alone() {
     let load = LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };

@@ -1,5 +1,5 @@
-//! The machine's equations against texts of their own, its Jacobian against differences, and its
-//! rests.
+//! Equations of the machine compared with separate formulations, its Jacobian with differences, and
+//! its states of rest.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -25,7 +25,7 @@ use phea_hydraulics::reference_rig::{
 use phea_hydraulics::servovalve::{Servovalve, SpoolImperfection};
 use phea_hydraulics::stiffness::StiffnessModel;
 
-/// Uniform numbers from -1 to 1, the same on every machine.
+/// Uniform numbers from -1 to 1, identical on every machine.
 pub(super) struct Noise(pub(super) u64);
 
 impl Noise {
@@ -56,7 +56,7 @@ fn pump() -> PumpLimited {
     }
 }
 
-/// Everything at once.
+/// Rig with all options at once.
 fn full() -> MachineOptions {
     let contact = Contact { stiffness: 1e8, relative_damping: 0.3 };
     MachineOptions {
@@ -97,7 +97,7 @@ fn asymmetric() -> Components {
     }
 }
 
-/// What a machine can have, on very different actuators.
+/// Rigs with all possible options, on very different actuators.
 pub(super) fn machines() -> Vec<Machine> {
     let plain = MachineOptions::default();
     let sprung = MachineOptions {
@@ -125,8 +125,7 @@ pub(super) fn machines() -> Vec<Machine> {
 /// State, command and inputs.
 type Instant = (Vec<f64>, f64, Vec<f64>);
 
-/// A state within some hundred scales of a working point, and the command and inputs that go with
-/// it.
+/// State within some hundred scales of a working point, with command and inputs to match.
 pub(super) fn some_state(machine: &Machine, noise: &mut Noise) -> Instant {
     let mut state: Vec<f64> = machine.scales().iter().map(|scale| scale * 2.0 * noise.next()).collect();
     state[2] = 35e5 + 25e5 * noise.next();
@@ -184,7 +183,7 @@ fn the_benchmark_is_the_text_of_its_equations() {
     }
 }
 
-/// A machine with everything, in another form: one side at a time, forces and flows case by case.
+/// A machine with all options, in another form: one side at a time, forces and flows case by case.
 fn full_rates(state: &[f64], command: f64, inputs: &[f64]) -> [f64; 12] {
     let &[u, r, p_a, p_b, d, v, z, way, v_l, p_s, f, lag] = state else { unreachable!() };
     let spool_rate = r.clamp(-4000.0, 4000.0);
@@ -238,7 +237,7 @@ fn a_machine_with_everything_is_the_text_of_its_equations() {
     let mut contacts = 0;
     for index in 0..600 {
         let (mut state, command, mut inputs) = some_state(&machine, &mut noise);
-        // Everywhere, in the stops, and at the wall.
+        // everywhere, in the stops, and at the wall
         let position = [0.25 + 0.2 * noise.next(), 1e-4 * noise.next(), 0.5 + 1e-4 * noise.next()][index % 3];
         state[7] = 2e-3 + 1e-4 * noise.next();
         state[9] = 55e5 + 20e5 * noise.next();
@@ -257,8 +256,7 @@ fn a_machine_with_everything_is_the_text_of_its_equations() {
     assert!(contacts > 50);
 }
 
-/// The forces that a machine reports are those that accelerate its piston: M
-/// dv/dt = F_H + F_stops - F_fr - F_e.
+/// Forces that a machine reports accelerate its piston: M dv/dt = F_H + F_stops - F_fr - F_e.
 #[test]
 fn forces_that_are_told_accelerate_the_piston() {
     let mut stopped = 0;
@@ -279,7 +277,7 @@ fn forces_that_are_told_accelerate_the_piston() {
     assert!(stopped > 20, "{stopped}");
 }
 
-/// At an operating point nothing moves, whatever the machine has.
+/// At an operating point nothing moves, for any options of the machine.
 #[test]
 fn rests_do_not_move() {
     for machine in machines() {
@@ -320,7 +318,7 @@ fn starts_that_cannot_be_are_refused() {
     let actuator = Actuator::new(benchmark_components()).unwrap();
     let machine = machine_of(benchmark_components(), &MachineOptions::default());
     let matched = operating_point(&actuator, 0.2, Condition::Matched(1.0, 10e5)).unwrap();
-    // The balance that is found for this command is steady, though the point was not.
+    // the balance found for this command is steady, although the point was not
     let rest = machine.rest(&matched).unwrap();
     assert!(rest.state[2] != matched.pressure_a);
     let outside = phea_hydraulics::machine::StartValues { position: 0.6, ..Default::default() };
@@ -351,7 +349,7 @@ fn static_friction() -> Friction {
     Friction::Stribeck(lugre.curve)
 }
 
-/// Lanes compute what each machine computes alone, bit for bit.
+/// Lanes compute the result of each separate machine, bit for bit.
 #[test]
 fn lanes_are_machines_side_by_side() {
     for machine in machines() {
@@ -378,7 +376,7 @@ fn lanes_are_machines_side_by_side() {
     }
 }
 
-/// The valve's own parameters reach the equations.
+/// Parameters of the valve enter the equations.
 #[test]
 fn saturation_is_that_of_the_valve() {
     let valve = Servovalve { nominal_voltage: 5.0, ..benchmark_components().valve };

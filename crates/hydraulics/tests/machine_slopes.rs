@@ -1,4 +1,4 @@
-//! The machine's Jacobian by dual numbers, against differences and against the linearised model.
+//! The machine's Jacobian by dual numbers, compared with differences and with the linearised model.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -34,8 +34,8 @@ fn seeded(
     (states, others[0], inputs)
 }
 
-/// Derivatives by dual numbers agree with central differences, and differ from zero only where the
-/// pattern says so.
+/// Derivatives by dual numbers agree with central differences, and differ from zero only within the
+/// pattern.
 #[test]
 fn jacobians_are_slopes_and_keep_to_their_pattern() {
     let mut noise = Noise(7);
@@ -121,11 +121,11 @@ fn compare(machine: &Machine, system: &StateSpace, state: &[f64], command: f64, 
     };
     let ((by_state, sensed), (by_input, _)) = (slopes_from(0), slopes_from(6));
     for row in 0..6 {
-        // six states, the command, and of the inputs the second
+        // six states, the command, and the second of the inputs
         let (states, [command, _, velocity, ..]) = (by_state[row].gradient(), *by_input[row].gradient());
         for (column, &found) in states.iter().chain(&[command, velocity]).enumerate() {
             let expected = if column < 6 { system.a()[(row, column)] } else { system.b()[(row, column - 6)] };
-            // What the deflection does to the compliances vanishes with the net flow.
+            // the effect of the deflection on the compliances vanishes with the net flow
             let scale = if column == 4 && row < 4 { states[5].abs() * 100.0 } else { expected.abs() };
             assert!((found - expected).abs() <= 1e-8 * scale, "({row}, {column}): {found}, {expected}");
         }

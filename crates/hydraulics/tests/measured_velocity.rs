@@ -1,5 +1,4 @@
-//! A load velocity that is fed forward as its sensor shows it, against the machine's own
-//! derivatives.
+//! A measured load velocity that is fed forward, compared with the machine's own derivatives.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -17,7 +16,7 @@ use super::plant_in_motion::drawn;
 
 /// A filter, an error of the gain and a delay of the measured velocity: the machine's own
 /// derivatives with K_x (1 + e) H_v e^(-s tau), behind lines in motion; with lumped lines and
-/// without delay the quotient of polynomials, which without error is that without sensor.
+/// without delay the quotient of polynomials, which without error equals that without sensor.
 #[test]
 fn a_measured_feed_forward_is_the_machine_with_what_its_sensor_shows() {
     for number in 0..36 {

@@ -1,5 +1,5 @@
-//! A motor: the same equations as a cylinder on a lever, its stiffness, its leakage, and turning
-//! on.
+//! A motor: equivalence to a cylinder on a lever, its stiffness, its leakage, and unlimited
+//! rotation.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -27,7 +27,7 @@ use super::rich_machines::{asymmetric, pump};
 /// Lever arm in m.
 const ARM: f64 = 0.04;
 
-/// A double-rod cylinder with everything that a motor may have.
+/// Double-rod cylinder with all options of a motor.
 fn cylinder_rig() -> Components {
     let rig = benchmark_components();
     let contact = Contact { stiffness: 2e8, relative_damping: 0.2 };
@@ -42,7 +42,7 @@ fn cylinder_rig() -> Components {
     Components { cylinder, line_a: hose_line(), line_b: hose_line(), ..rig }
 }
 
-/// The motor that the cylinder is with its rod on a lever: what its load and its friction do at the
+/// Motor equivalent to the cylinder with its rod on a lever: effects of load and friction at the
 /// lever's end, seen at the shaft.
 ///
 /// ```text
@@ -84,7 +84,7 @@ fn close(one: f64, other: f64, what: &str) {
     assert!((one - other).abs() <= 1e-9 * one.abs().max(other.abs()), "{what}: {one} and {other}");
 }
 
-/// Where a machine is after 0.2 s under a command and a sprung load: position, force, pressures.
+/// State of a machine after 0.2 s under a command and a sprung load: position, force, pressures.
 fn driven(rig: Components, arm: f64) -> [f64; 4] {
     let load = LoadModel::SpringMassDamper {
         mass: 20.0 * arm * arm,
@@ -120,7 +120,7 @@ fn a_motor_moves_as_the_cylinder_on_its_lever() {
     }
 }
 
-/// The parameters of the linear plant, and F_e/U_C over frequency.
+/// Parameters of the linear plant, and F_e/U_C over frequency.
 fn plant(rig: Components, arm: f64) -> (LinearParameters, LinearPlant) {
     let actuator = Actuator::new(rig).unwrap();
     let load = SteadyLoad::Force(2e3 * arm);
@@ -172,8 +172,8 @@ fn its_stiffness_is_that_of_its_oil() {
     close(over.minimum, over.maximum, "over every angle");
 }
 
-/// Oil through a motor that turns on leaves its chambers as they are, and its torque turns it
-/// through hundreds of revolutions.
+/// Oil through a motor with unlimited rotation leaves its chamber volumes unchanged, and its torque
+/// turns it through hundreds of revolutions.
 #[test]
 fn turning_on_changes_no_volume() {
     let rig = on_lever(cylinder_rig());
@@ -197,15 +197,15 @@ fn turning_on_changes_no_volume() {
     let mut indicators = vec![0.0; machine.indicators()];
     machine.indicate(&state, &beginning.inputs, &mut indicators);
     let angle = machine.signals(&state, &beginning.inputs).piston.position;
-    // no end is reached, and the compliance at this angle is that at the start
+    // no end is reached, and the compliance at this angle equals that at the start
     assert!(angle > 2.0 && indicators[2] > 0.0 && indicators[3] > 0.0, "{angle} {indicators:?}");
     let compliance = actuator.chamber_compliance([35e5, 30e5], StiffeningMember::Nominal);
     close(hydraulic_stiffness(&compliance, angle), hydraulic_stiffness(&compliance, 0.0), "K_theta");
-    // every angle is a place to linearise at, and to start from
+    // linearisation and start are possible at every angle
     assert!(operating_point(&actuator, 1e4, Condition::Command(0.0)).is_ok());
 }
 
-/// What leaks to the tank stays in balance: the machine rests where the operating point is.
+/// Leakage to the tank stays in balance: the machine rests at the operating point.
 #[test]
 fn a_leaking_motor_rests_at_its_operating_point() {
     for external_leakage in [1e-14, 1e-12, 2e-11] {
@@ -226,7 +226,7 @@ fn a_leaking_motor_rests_at_its_operating_point() {
     }
 }
 
-/// Rigs that leak to the tank, and motors that turn on.
+/// Rigs that leak to the tank, and motors with unlimited rotation.
 fn turning_machines() -> Vec<(&'static str, Machine)> {
     let rig = asymmetric();
     let of = |rig, power_unit| {
@@ -238,7 +238,7 @@ fn turning_machines() -> Vec<(&'static str, Machine)> {
     let at_chambers = |rig| Components { accumulators: [gas(2e-5, 8e5, 1.4), gas(5e-6, 3e5, 1.0)], ..rig };
     let seeping = Cylinder { external_leakage: Some(2e-12), ..rig.cylinder };
     let vane = Components { cylinder: seeping, ..rig };
-    // what a motor that turns on takes in on one side it gives out on the other
+    // such a motor discharges on one side the flow that it takes in on the other
     let turning = Cylinder { area_b: seeping.area_a, stroke: ActuatorStroke::Unlimited, ..seeping };
     let motor = Components { cylinder: turning, ..rig };
     let air = Some(EntrainedAir { volume_fraction: 0.02, polytropic_exponent: 1.4 });
@@ -251,8 +251,8 @@ fn turning_machines() -> Vec<(&'static str, Machine)> {
     ]
 }
 
-/// Oil and energy close to 1e-6 of what went through, over a run; and at any state what is stored
-/// changes by what enters and is lost.
+/// Oil and energy accounts close to 1e-6 of their throughput, over a run; and at any state the
+/// content changes by inflow and losses.
 #[test]
 fn its_ledgers_close() {
     let motion = Motion { amplitude: 1.5, bias: 0.2, ground: 0.0, ground_amplitude: 2e-3 };

@@ -1,5 +1,5 @@
 //! The neck of an accumulator at a chamber: its limits, its resonance, passivity, and the pressure
-//! by which its gas is shut off.
+//! that shuts its gas off.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -29,15 +29,15 @@ fn machine(gas: [Option<Accumulator>; 2], necks: [Option<Neck>; 2]) -> Machine {
     machine_of(Components { accumulators: gas, necks, ..rig }, &MachineOptions::default())
 }
 
-/// The bladder of gas behind a neck.
+/// Bladder of gas behind a neck.
 pub(super) fn bladder(gas: &Accumulator, neck: &Neck) -> Bladder {
     let absolute = gas.precharge_pressure + 101_325.0;
     let softness = neck.compliance * gas.polytropic_exponent * absolute / gas.gas_volume;
     Bladder { precharge_pressure: gas.precharge_pressure, softness }
 }
 
-/// The plants with these compliances and this gas behind necks: lumped, and without polynomials;
-/// with a constant supply and with one that yields.
+/// Plants with these compliances and this gas behind necks: lumped, and without polynomials; with a
+/// constant supply and with one that yields.
 pub(super) fn responses(
     compliances: [f64; 2],
     gas: [Option<GasBranch>; 2],
@@ -65,7 +65,7 @@ pub(super) fn responses(
         .collect()
 }
 
-/// The largest relative gap between the plants of a chamber A with gas behind a neck of this
+/// Largest relative difference between the plants of a chamber A with gas behind a neck of this
 /// length, and with these compliances.
 fn apart(length: f64, compliances: [f64; 2], frequency: f64) -> f64 {
     let gas = GasBranch::of(3e-12, None, Some(&Neck::round([6e-3, length], OIL, 1.5)));
@@ -74,8 +74,8 @@ fn apart(length: f64, compliances: [f64; 2], frequency: f64) -> f64 {
     gaps.map(|(with, without)| (with / without - 1.0).norm_sqr().sqrt()).fold(0.0, f64::max)
 }
 
-/// A neck that becomes short has no effect; one that becomes long shuts its gas off; between them
-/// it is neither.
+/// A neck whose length tends to zero has no effect; one whose length tends to infinity shuts its
+/// gas off; between them it does neither.
 #[test]
 fn a_neck_has_two_limits() {
     let (lumped, alone) = ([8e-13 + 3e-12, 9e-13], [8e-13, 9e-13]);
@@ -87,7 +87,7 @@ fn a_neck_has_two_limits() {
     assert!(apart(0.04, lumped, 700.0).min(apart(0.04, alone, 700.0)) > 0.1);
 }
 
-/// Without inertance and resistance it is no neck, exactly.
+/// A neck without inertance and resistance has no effect, exactly.
 #[test]
 fn without_inertance_and_resistance_there_is_none() {
     let neck = Some(NeckImpedance { inertance: 0.0, resistance: 0.0 });
@@ -100,7 +100,7 @@ fn without_inertance_and_resistance_there_is_none() {
     }
 }
 
-/// At a chamber whose pressure is held, gas and neck are a damped oscillator.
+/// At a chamber of constant pressure, gas and neck are a damped oscillator.
 #[test]
 fn it_rings_at_the_helmholtz_resonance() {
     let gas = Accumulator { gas_volume: 2e-5, precharge_pressure: 10e5, polytropic_exponent: 1.4 };
@@ -171,8 +171,9 @@ impl Shaking {
     }
 }
 
-/// Whatever drives the port: what has entered neck and gas, less what they hold more, has been
-/// lost, and this only grows, as long as the gas is in use, which these motions leave it.
+/// For any drive at the port: energy that has entered neck and gas, less the increase of their
+/// content, has been lost, and this loss only grows while the gas is in use, as it is in these
+/// motions.
 #[test]
 fn it_is_passive_under_random_pressures_of_its_port() {
     let places = ["neck_a", "accumulator_a", "neck_b", "accumulator_b"]
@@ -214,7 +215,7 @@ fn it_is_passive_under_random_pressures_of_its_port() {
     }
 }
 
-/// At any state, also where the gas is shut off and the oil of the neck alone yields.
+/// Accounts at any state, including gas that is shut off, where only the oil of the neck yields.
 #[test]
 fn accounts_close_where_its_gas_is_shut_off() {
     let mut seed = 46;
@@ -253,8 +254,7 @@ fn it_is_empty_at_the_pressure_of_its_gas() {
     }
 }
 
-/// Where the gas is shut off while oil leaves the neck, its pressure may fall below that of the
-/// vapour.
+/// While the gas is shut off and oil leaves the neck, its pressure may fall below vapour pressure.
 #[test]
 fn oil_in_a_neck_cavitates() {
     let gas = Accumulator { gas_volume: 2e-5, precharge_pressure: 20e5, polytropic_exponent: 1.4 };
@@ -268,12 +268,11 @@ fn oil_in_a_neck_cavitates() {
         indicators[place]
     };
     assert!(told(20e5, 20e5) > 0.0 && told(20e5, -2e5) < 0.0 && told(-2e5, 20e5) < 0.0);
-    // but for the rounding of the state over the softness of the oil
+    // except for the rounding of the state over the softness of the oil
     assert!((told(20e5, -2e5) - told(-2e5, 20e5)).abs() < 1e-3);
 }
 
-/// Without flow through it a neck is not seen: the machine rests where it rests with the gas at its
-/// chamber.
+/// A neck without flow has no effect: the machine rests as with the gas at its chamber.
 #[test]
 fn at_rest_it_is_not_seen() {
     for number in 0..16 {
@@ -288,7 +287,7 @@ fn at_rest_it_is_not_seen() {
     }
 }
 
-/// A neck without a length, or of an impossible loss, is refused by its path.
+/// A neck without a length, or with an impossible loss, is rejected by its path.
 #[test]
 fn impossible_necks_are_refused() {
     let gas = Accumulator { gas_volume: 2e-5, precharge_pressure: 20e5, polytropic_exponent: 1.4 };

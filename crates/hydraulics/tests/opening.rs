@@ -1,5 +1,5 @@
-//! Valves with lap, saturation, and leakage that each edge has a shape of its own of: flows in
-//! closed form, slopes, operating points and test benches.
+//! Valves with lap, saturation, and a separate leakage shape for each edge: flows in closed form,
+//! slopes, operating points and test benches.
 
 use phea_dynamics::portable;
 use phea_dynamics::scalar::{Dual, Parameters};
@@ -32,8 +32,8 @@ fn unlike() -> Servovalve {
     Servovalve { leakage_shape: LeakageShape::ByEdge(shapes), ..valve() }
 }
 
-/// ORIGIN: analytic. Far from its end an edge has the area of a sharp one, and passes it over one
-/// plus the saturation times it; never more than a thousandth of the lap beside.
+/// ORIGIN: analytic. Far from its end an edge has the area a of a sharp one, and passes a over one
+/// plus the saturation times a; the error is never more than a thousandth of the lap.
 #[test]
 fn openings_are_those_of_a_sharp_edge() {
     for shape in SHAPES {
@@ -49,7 +49,7 @@ fn openings_are_those_of_a_sharp_edge() {
                 let wanted = passed(sharp(travel, lap));
                 assert!((found - wanted).abs() <= lap.abs() / 1000.0 + 1e-16, "{shape:?} {spool}");
                 let beyond = (travel - lap).abs();
-                // the rounding of an edge falls off with the distance from its end
+                // the rounding of an edge decreases with the distance from its end
                 let rounded = (0.002 * lap) * (0.002 * lap) / (4.0 * beyond.max(1e-9));
                 assert!((found - wanted).abs() <= 1.01 * rounded + 1e-15, "{shape:?} {spool}");
             }
@@ -57,7 +57,7 @@ fn openings_are_those_of_a_sharp_edge() {
     }
 }
 
-/// Without lap and saturation the law is that of edges that open in proportion.
+/// Law without lap and saturation is that of edges that open in proportion.
 #[test]
 fn a_shape_of_zeros_is_the_law_in_proportion() {
     for leakage_model in [LeakageModel::EachEdge, LeakageModel::OneCurve] {
@@ -110,8 +110,8 @@ fn coefficients_are_the_derivatives_of_the_flows() {
     }
 }
 
-/// ORIGIN: analytic. Beyond an overlap two edges in series pass the flow of the travel that is
-/// left; within it what leaks.
+/// ORIGIN: analytic. Beyond an overlap two edges in series pass the flow of the remaining travel;
+/// within it only the leakage.
 #[test]
 fn an_overlap_is_a_dead_band_of_the_metered_flow() {
     let shape = OpeningShape { lap_positive: 0.003, lap_negative: 0.003, saturation: 0.0 };
@@ -124,14 +124,14 @@ fn an_overlap_is_a_dead_band_of_the_metered_flow() {
         let wanted = series * (spool / 10.0 - 0.003) * 70e5_f64.sqrt();
         assert!((flow(spool) / wanted - 1.0).abs() < 1e-3, "{spool}");
     }
-    // the flow within the lap changes by less than a fiftieth of what it would without lap
+    // the flow within the lap changes by less than a fiftieth of the change without lap
     let without = Servovalve { opening: OpeningLaw::Proportional, ..lapped };
     let open = connected_ports(&without, &supply, 0.02, 0.0).port_flow
         - connected_ports(&without, &supply, 0.0, 0.0).port_flow;
     assert!((flow(0.02) - flow(0.0)).abs() < 0.02 * open);
 }
 
-/// An underlap of both pairs doubles the flow gain about null, an overlap leaves hardly any.
+/// An underlap of both pairs doubles the flow gain about null, an overlap nearly removes it.
 #[test]
 fn lap_changes_the_gain_about_null_as_it_must() {
     let gain = |lap: f64| {
@@ -142,14 +142,13 @@ fn lap_changes_the_gain_about_null_as_it_must() {
         let found = chamber_coefficients(&valve, &supply, 0.0, 35e5, 35e5, SpoolDirection::Mean);
         found.flow_gain_a + found.flow_gain_b
     };
-    // ORIGIN: analytic, with an underlap all four edges take part at null, without lap each on one
-    // side
+    // ORIGIN: analytic, with an underlap all four edges act at null, without lap each on one side
     assert!((gain(-0.005) / gain(0.0) - 2.0).abs() < 2e-3);
     assert!(gain(0.005) > 0.0 && gain(0.005) < 1e-4 * gain(0.0));
 }
 
-/// Operating points of lapped and saturating valves balance, at rest and in motion, and a start
-/// beside leads to the same.
+/// Operating points of lapped and saturating valves balance, at rest and in motion, and are also
+/// found from a nearby start.
 #[test]
 fn operating_points_balance() {
     for shape in SHAPES {
@@ -171,7 +170,8 @@ fn operating_points_balance() {
     }
 }
 
-/// The command that moves a piston is more by the lap than without, to what the rounding leaves.
+/// The command that moves a piston is greater by the lap than without it, up to the effect of
+/// rounding.
 #[test]
 fn a_motion_takes_the_lap_more_of_command() {
     let with = |opening| {

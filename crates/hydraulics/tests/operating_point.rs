@@ -1,4 +1,4 @@
-//! Equilibria: closed forms, balances that must hold, and refusals with their numbers.
+//! Equilibria: closed forms, required balances, and errors with their numbers.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -41,7 +41,7 @@ fn equal_edges_settle_at_half_the_supply() {
     }
 }
 
-/// Whatever was asked for holds, and nothing flows that the piston does not take.
+/// Every requested condition holds, and no flow exceeds the motion of the piston.
 #[test]
 fn every_equilibrium_balances() {
     for actuator in [Actuator::new(rig()).unwrap(), asymmetric()] {
@@ -61,7 +61,7 @@ fn every_equilibrium_balances() {
         for condition in conditions {
             let point = operating_point(&actuator, 0.2, condition).unwrap();
             let flows = chamber_flows(&valve, &supply, point.command, point.pressure_a, point.pressure_b);
-            // The last bit of a pressure near the supply's is worth K/sqrt(dp_t) times 1e-9 Pa.
+            // the last bit of a pressure near the supply's is worth K/sqrt(dp_t) times 1e-9 Pa
             let scale = 2e-17 + 1e-9 * flows.into_a.abs();
             assert!((flows.into_a - cylinder.area_a * point.velocity).abs() < scale, "{condition:?}");
             assert!((flows.into_b + cylinder.area_b * point.velocity).abs() < scale, "{condition:?}");
@@ -82,7 +82,7 @@ fn every_equilibrium_balances() {
     }
 }
 
-/// At full opening leakage hardly matters, and the speed is that of the edges in series.
+/// At full opening leakage hardly matters, and the speed is that of two edges in series.
 #[test]
 fn speed_at_full_opening_is_the_velocity_gain() {
     for actuator in [Actuator::new(rig()).unwrap(), asymmetric()] {
@@ -128,9 +128,9 @@ fn what_cannot_be_is_refused_with_numbers() {
     else {
         panic!()
     };
-    // ORIGIN: analytic, at full opening the supply pressure on one side alone
+    // ORIGIN: analytic, at full opening the supply pressure on one side only
     assert!(load == 12e3 && (maximum / (USEFUL_AREA * 70e5) - 1.0).abs() < 1e-3 && minimum < -0.99 * maximum);
-    // An overrunning load sucks chamber A empty.
+    // an overrunning load draws chamber A empty
     let overrun = refused(0.1, Condition::Motion(1.0, SteadyLoad::Force(-30e3)));
     assert!(matches!(overrun, OperatingPointError::BelowVacuum { pressure } if pressure < -101_325.0));
     for condition in

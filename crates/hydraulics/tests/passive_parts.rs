@@ -1,12 +1,12 @@
-//! Each passive part by itself: whatever its port does, no more comes out than went in.
+//! Each passive part in isolation: for any drive at its port, no more energy leaves than enters.
 //!
-//! The valve is shut at null, nothing flows to it, friction takes nothing, and the load or its
-//! ground makes random strokes. What passes a port is its effort times its flow, found from
-//! pressures, motions and areas, not from the accounts of the machine:
+//! The valve is shut at null, no flow reaches it, friction is zero, and the load or its ground
+//! makes random strokes. The power at a port is its effort times its flow, found from pressures,
+//! motions and areas, not from the accounts of the machine:
 //!
 //! ```text
 //! lost(t) = integral of effort times flow - (stored(t) - stored(0))
-//! it grows all the time, and stays zero where nothing is lost
+//! it never decreases, and stays zero without losses
 //! ```
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
@@ -35,7 +35,7 @@ use super::machine_conservation::{machine_of, step};
 
 const ATMOSPHERE: f64 = 101_325.0;
 const MODULUS: f64 = 1.45e9;
-/// Compliance in m3/Pa of a line that yields less than the gas, and of one that keeps its pressure.
+/// Compliance of a line that yields less than the gas, and of one with constant pressure, m3/Pa.
 const LINE: f64 = 1e-12;
 const SOFT_LINE: f64 = 1e-9;
 const MIDDLE: f64 = 0.25;
@@ -45,7 +45,7 @@ fn line(compliance: f64) -> Line {
     Line::Volume { volume: 2e8 * compliance, effective_bulk_modulus: 2e8 }
 }
 
-/// The cylinder of the reference rig behind a valve that lets nothing pass, without friction.
+/// Cylinder of the reference rig behind a valve without flow, without friction.
 fn closed(compliances: [f64; 2]) -> Components {
     let [line_a, line_b] = compliances.map(line);
     let rig = components(line_a, StiffnessModel::ByVolume);
@@ -53,7 +53,7 @@ fn closed(compliances: [f64; 2]) -> Components {
     Components { valve, line_b, friction: Friction::Viscous { viscous: 0.0 }, ..rig }
 }
 
-/// Where a load is moved to, one stroke after the other of random length and duration.
+/// Target of the load, one stroke after the other of random length and duration.
 struct Strokes {
     times: Vec<f64>,
     positions: Vec<f64>,
@@ -65,17 +65,17 @@ const LONGEST: f64 = 8e-3;
 /// Step of the integration, s; a whole number of times that of a run.
 const WIDTH: f64 = 2e-5;
 
-/// What a run is drawn by: its number, how far the ground is moved to either side, and into how
-/// many steps `WIDTH` is cut.
+/// Parameters of a random run: its number, the displacement of the ground to either side, and the
+/// number of steps into which `WIDTH` is divided.
 type History = (u64, f64, u32);
 
 impl Strokes {
-    /// As far as `reach` to either side of where it begins.
+    /// Displacement up to `reach` to either side of the start.
     fn drawn(number: u64, start: f64, reach: f64) -> Strokes {
         let mut state = stream(93, number);
         let (mut times, mut positions) = (vec![0.0], vec![start]);
         for index in 0..STROKES {
-            // of whole steps, so that no step has two strokes
+            // whole steps, so that no step has two strokes
             let steps = (LONGEST / WIDTH * (0.2 + 0.8 * share(&mut state))).round();
             times.push(times[index] + steps * WIDTH);
             positions.push(start + reach * (2.0 * share(&mut state) - 1.0));
@@ -87,7 +87,7 @@ impl Strokes {
         self.times[STROKES]
     }
 
-    /// Position and velocity: 3 u^2 - 2 u^3 of a stroke after its share u of time.
+    /// Position and velocity: 3 u^2 - 2 u^3 of a stroke at its time fraction u.
     fn at(&self, time: f64) -> [f64; 2] {
         let next = self.times.partition_point(|of| *of <= time).clamp(1, STROKES);
         let [from, to] = [self.positions[next - 1], self.positions[next]];
@@ -107,8 +107,8 @@ struct Now<'a> {
 }
 
 impl Now<'_> {
-    /// What leaves chambers A and B other than by the motion of the piston, m3/s: by areas and
-    /// compliances of the closed rig.
+    /// Flow that leaves chambers A and B other than by the motion of the piston, m3/s: from areas
+    /// and compliances of the closed rig.
     fn leaving(&self, lines: [f64; 2]) -> [f64; 2] {
         let Cylinder { area_a, area_b, .. } = cylinder();
         let position = self.inputs[0] + self.state[4];
@@ -129,19 +129,20 @@ impl Now<'_> {
     }
 }
 
-/// What a run shows of a port, J.
+/// Result of a run at a port, J.
 struct Passed {
-    /// All power that went through it, to either side.
+    /// Total energy through the port, in both directions.
     through: f64,
-    /// The least of what had gone in until then.
+    /// Least net energy that had entered at any time.
     least: f64,
-    /// What was lost until the end, by how much it fell meanwhile, and how far from zero it came.
+    /// Energy lost until the end, its apparent decrease during the run, and its greatest distance
+    /// from zero.
     lost: f64,
     fallen: f64,
     farthest: f64,
 }
 
-/// A run from rest under these strokes of the ground: the power into a port in W, and what is
+/// Run from rest under these strokes of the ground: the power into a port in W, and the energy
 /// stored behind it in J.
 fn run(
     machine: &Machine,
@@ -190,11 +191,10 @@ fn run(
     passed
 }
 
-/// Of what went through, the share by which what is lost may seem to fall: of a method of fourth
-/// order.
+/// Fraction of the throughput by which the loss may seem to decrease: for a method of fourth order.
 const ERROR: f64 = 1e-7;
 
-/// No part gives more than went in, from any instant on and from where it rests with the least
+/// No part supplies more energy than it received, from any instant on and from its rest of least
 /// energy.
 fn check(what: &str, passed: &Passed, error: f64) {
     let Passed { through, least, fallen, .. } = *passed;
@@ -202,13 +202,13 @@ fn check(what: &str, passed: &Passed, error: f64) {
     assert!(fallen <= error * through, "{what} gives {fallen} of {through}");
 }
 
-/// It takes some.
+/// The part dissipates energy.
 fn check_lossy(what: &str, passed: &Passed) {
     check(what, passed, ERROR);
     assert!(passed.lost > 1e-3 * passed.through, "{what}: {} of {}", passed.lost, passed.through);
 }
 
-/// It takes none.
+/// The part dissipates no energy.
 fn check_lossless(what: &str, passed: &Passed, error: f64) {
     check(what, passed, error);
     assert!(passed.farthest <= error * passed.through, "{what}: {} of {}", passed.farthest, passed.through);
@@ -226,7 +226,7 @@ fn at_rest(pressure: f64) -> StartValues {
 
 const RUNS: u64 = 8;
 
-/// Both ports of a valve between the chambers: what it takes from one it gives to the other.
+/// Both ports of a valve between the chambers: flow from one enters the other.
 #[test]
 fn valves_between_the_chambers_are_passive() {
     for number in 0..2 * RUNS {
@@ -249,7 +249,7 @@ fn valves_between_the_chambers_are_passive() {
     }
 }
 
-/// Gas that is squeezed from below its precharge on, where it holds nothing; small steps pass where
+/// Gas that is compressed from below its precharge on, where it contains no oil; small steps while
 /// its bladder lifts, and its compliance begins.
 #[test]
 fn polytropic_gas_is_lossless() {
@@ -272,9 +272,9 @@ fn polytropic_gas_is_lossless() {
     }
 }
 
-/// Gas that exchanges heat with its wall can do work by the heat of the wall: what it stores is
-/// what it could do at the temperature of the wall, U - T_w S, with an atmosphere and a chamber
-/// that keeps its pressure.
+/// Gas that exchanges heat with its wall can do work by the heat of the wall: its stored energy is
+/// the available work at the temperature of the wall, U - T_w S, with an atmosphere and a chamber
+/// of constant pressure.
 ///
 /// ```text
 /// U - T_w S = P_0 V_0 ((theta - 1 - ln theta)/(gamma - 1) - ln (V/V_r)),     V = P_0 V_0 theta/P
@@ -313,7 +313,7 @@ fn gas_with_heat_is_passive() {
     }
 }
 
-/// At an opening that stands, seen from a chamber at rest.
+/// At a constant opening, seen from a chamber at rest.
 #[test]
 fn a_gas_valve_is_passive() {
     for number in 0..RUNS {
@@ -349,7 +349,7 @@ fn with_stroke(stroke: ActuatorStroke) -> Components {
     Components { cylinder: Cylinder { stroke, ..rig.cylinder }, ..rig }
 }
 
-/// The joint of a knee whose angle is prescribed, its torque by the law of cosines.
+/// Joint of a knee whose angle is prescribed, its torque by the law of cosines.
 #[test]
 fn a_linkage_is_lossless_at_its_joint() {
     let PivotTriangle { cylinder_pivot: a, rod_pivot: b, retracted_length } = knee();
@@ -370,7 +370,7 @@ fn a_linkage_is_lossless_at_its_joint() {
     }
 }
 
-/// A load that swings with its weight on a spring, whose ground is moved: linkages of every kind
+/// Load that oscillates with its weight on a spring, whose ground is moved: linkages of every kind
 /// between it and the oil.
 #[test]
 fn a_linkage_is_lossless_before_a_load_with_weight() {
@@ -392,7 +392,7 @@ fn a_linkage_is_lossless_before_a_load_with_weight() {
     }
 }
 
-/// Through both transitions of its areas, seen from the force with which it rests.
+/// Through both transitions of its areas, seen from the force at its rest.
 #[test]
 fn a_telescopic_piston_is_lossless() {
     for number in 0..RUNS {
@@ -417,8 +417,8 @@ fn a_telescopic_piston_is_lossless() {
     }
 }
 
-/// A motor that turns on, tight, leaking from chamber to chamber or to the tank, at its shaft: what
-/// its oil stores at volumes that stay, about the pressure of the tank.
+/// Motor with unlimited rotation, tight, or leaking from chamber to chamber or to the tank, at its
+/// shaft: energy of its oil at constant volumes, relative to tank pressure.
 #[test]
 fn a_motor_is_passive_at_its_shaft() {
     for number in 0..RUNS {
@@ -433,7 +433,7 @@ fn a_motor_is_passive_at_its_shaft() {
             moving_mass: inertia,
             dead_volume_a,
             dead_volume_b,
-            // each alone, so that none hides what the other gives
+            // each separately, so that none hides the energy that another supplies
             internal_leakage: (number % 3 == 1).then(|| spread(5e-12, 5e-11)),
             external_leakage: (number % 3 == 2).then(|| spread(5e-12, 5e-11)),
             ..rig.cylinder

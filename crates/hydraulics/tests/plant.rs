@@ -1,4 +1,5 @@
-//! The linear plant against the machine's own derivatives, and against the models it grew from.
+//! The linear plant compared with the machine's own derivatives, and with the models that it
+//! generalises.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -31,7 +32,7 @@ use super::commanded::{
     without_branches, yielding,
 };
 
-/// A rig of its own for every number, with everything that lumped lines let the plant have.
+/// Rig for every number, with all options that lumped lines allow in the plant.
 struct Drawn {
     actuator: Actuator,
     machine: Machine,
@@ -41,7 +42,7 @@ struct Drawn {
     load: LinearLoad,
 }
 
-/// Gas at one chamber, both or none, which most rests leave in use.
+/// Gas at one chamber, both or none, in use at most states of rest.
 fn accumulators(number: u64) -> [Option<Accumulator>; 2] {
     let mut state = stream(12, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
@@ -55,7 +56,7 @@ fn accumulators(number: u64) -> [Option<Accumulator>; 2] {
     })
 }
 
-/// Some leak to the tank, some turn on without a stroke, and some are telescopic, mostly within a
+/// Some leak to the tank, some rotate without limit, and some are telescopic, mostly within a
 /// transition.
 fn turning(cylinder: Cylinder, number: u64) -> Cylinder {
     let external_leakage = (number % 5 == 3).then_some(1e-14 * pow(1e3, number as f64 / 300.0));
@@ -119,13 +120,13 @@ fn drawn(number: u64) -> Drawn {
     let options = MachineOptions { load, power_unit: unit, ..MachineOptions::default() };
     let machine = Machine::new(&actuator, &options).unwrap();
     let (position, command) = (spread(0.05, 0.45), spread(0.01, 2.0));
-    // a wall takes no pull: the next command pushes harder
+    // a wall cannot pull: the next command pushes harder
     let rests = (0..20).map(|step| {
         let condition = Condition::Command(command + 0.4 * f64::from(step));
         machine.rest(&operating_point(&actuator, position, condition).unwrap())
     });
     let rest = rests.flatten().next().unwrap();
-    // the wall is pressed by K d_0, and its damping grows with that
+    // the wall is pressed by K d_0, and its damping grows with this force
     let pressed = rest.state[4] * actuator.components().force_sensor.stiffness / stiffness;
     let load = match load {
         LoadModel::Prescribed => LinearLoad::Prescribed,
@@ -138,7 +139,7 @@ fn drawn(number: u64) -> Drawn {
     Drawn { actuator, machine, unit, rest, friction, load }
 }
 
-/// The operating point of a machine that rests in this state, its piston at a position in m.
+/// Operating point of a machine that rests in this state, its piston at a position in m.
 pub(super) fn point_at(position: f64, state: &[f64]) -> OperatingPoint {
     OperatingPoint {
         position,
@@ -152,9 +153,9 @@ pub(super) fn point_at(position: f64, state: &[f64]) -> OperatingPoint {
     }
 }
 
-/// The plant of an actuator where its machine rests, its piston at a position in m, and the
+/// Plant of an actuator at the rest of its machine, its piston at a position in m, and the
 /// compliances of its chambers with lumped lines; the pressures in Pa at the valve's ports are
-/// those of the chambers or a little off them.
+/// those of the chambers or slightly different.
 pub(super) fn plant_at_rest(
     actuator: &Actuator,
     (machine, unit): (&Machine, &PowerUnit),
@@ -183,7 +184,7 @@ pub(super) fn plant_at_rest(
 }
 
 impl Drawn {
-    /// The plant where the machine rests.
+    /// Plant at the rest of the machine.
     fn plant(&self) -> LinearPlant {
         let state = &self.rest.state;
         let moved = if self.load == LinearLoad::Prescribed { 0.0 } else { state[6] };
@@ -192,7 +193,7 @@ impl Drawn {
         plant_at_rest(&self.actuator, (&self.machine, &self.unit), (position, pressures, state), self.load).0
     }
 
-    /// F_e/U_C and F_e/X_0 of the machine's own derivatives.
+    /// Paths F_e/U_C and F_e/X_0 from the machine's own derivatives.
     fn small_signal(&self, feed_forward: f64, frequency: f64) -> [Complex64; 2] {
         let inputs = [&[self.rest.command], &self.rest.inputs[..]].concat();
         let (zero, one) = (Complex64::ZERO, Complex64::ONE);
@@ -210,8 +211,8 @@ impl Drawn {
 fn it_is_the_machine_for_small_motions() {
     for number in 0..300 {
         let rig = drawn(number);
-        // every other rig feeds the velocity of its load forward, from a thousandth of what holds
-        // the force to three times that
+        // every other rig feeds the velocity of its load forward, with gains from a thousandth to
+        // three times the one that holds the force
         let feed_forward =
             if number.is_multiple_of(2) { 0.03 * pow(3e3, number as f64 / 300.0) } else { 0.0 };
         let fed = (feed_forward > 0.0).then_some(feed_forward);
@@ -228,8 +229,8 @@ fn it_is_the_machine_for_small_motions() {
     }
 }
 
-/// Where a limited pump settles the machine rests, as far as the pump gives what is taken there;
-/// the others have fallen to less.
+/// At the equilibrium of a limited pump the machine rests, if the pump delivers the flow taken
+/// there; the pressure of the others has fallen lower.
 #[test]
 fn a_limited_pump_settles_where_the_machine_rests() {
     let mut counted = [0, 0];
@@ -238,7 +239,7 @@ fn a_limited_pump_settles_where_the_machine_rests() {
         let PowerUnit::PumpLimited(unit) = rig.unit else { continue };
         let components = rig.actuator.components();
         let idle = components.supply.pressure;
-        // at standstill no area matters
+        // at standstill the areas have no effect
         let balance = Balance::at(components, 0.25);
         let found = balance.settled_supply(&unit, idle, Steady::Command(rig.rest.state[0]));
         let rests = supply_pressure(&rig.machine, f64::NAN, &rig.rest.state);
@@ -256,8 +257,8 @@ fn a_limited_pump_settles_where_the_machine_rests() {
     assert!(counted.iter().all(|count| *count > 10), "{counted:?}");
 }
 
-/// Without leakage and with a prescribed load it is the model it is made of, coefficient by
-/// coefficient.
+/// The plant without leakage and with a prescribed load equals the model from which it is built,
+/// coefficient by coefficient.
 #[test]
 fn without_load_and_leakage_it_is_the_known_models() {
     let of_load_pressure = LinearPlant::of_load_pressure(&nominal_plant(), 0.0, LinearLoad::Prescribed);
@@ -288,7 +289,7 @@ fn without_load_and_leakage_it_is_the_known_models() {
     }
 }
 
-/// Equal chambers: one load pressure determines all, leakage included.
+/// Equal chambers: one load pressure is sufficient, leakage included.
 #[test]
 fn equal_chambers_need_one_pressure() {
     let actuator = Actuator::new(Components {

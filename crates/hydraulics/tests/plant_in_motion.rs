@@ -1,5 +1,5 @@
-//! The plant behind lines in motion against the machine's own derivatives, delays included, and
-//! against lumped lines.
+//! The plant behind dynamic lines compared with the machine's own derivatives, delays included, and
+//! with lumped lines.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -45,8 +45,7 @@ pub(super) fn model(number: u64, time: f64) -> LineModel {
     }
 }
 
-/// LinearPlant and machine of a rig of its own for every number, with a model of its own for every
-/// line.
+/// Linear plant and machine of a rig for every number, with a model for every line.
 pub(crate) struct Drawn {
     machine: Machine,
     inputs: Vec<f64>,
@@ -66,9 +65,9 @@ fn loads(number: u64, mass: f64, stiffness: f64, damping: f64) -> (LoadModel, Li
     (sprung, LinearLoad::Yielding { mass, damping, stiffness })
 }
 
-/// The plant behind these lines where its machine rests, its piston at a position in m: the leakage
-/// flows through the lines, so that the pressures at the valve's ports are a little off the
-/// chambers.
+/// Plant behind these lines at the rest of its machine, its piston at a position in m: the leakage
+/// flows through the lines, so that the pressures at the valve's ports differ slightly from those
+/// of the chambers.
 pub(super) fn plant_behind(
     actuator: &Actuator,
     (machine, unit): (&Machine, &PowerUnit),
@@ -89,7 +88,7 @@ pub(super) fn plant_behind(
     (plant, BehindLines { lines, chambers: own, lumped, leaking })
 }
 
-/// Gas at one chamber, both or none, which most rests leave in use.
+/// Gas at one chamber, both or none, in use at most states of rest.
 fn accumulators(number: u64) -> [Option<Accumulator>; 2] {
     let mut state = stream(24, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
@@ -103,7 +102,8 @@ fn accumulators(number: u64) -> [Option<Accumulator>; 2] {
     })
 }
 
-/// The parts of a rig for every number and the models of its lines, its numbers drawn by `spread`.
+/// Components of a rig for every number and the models of its lines, with numbers drawn by
+/// `spread`.
 fn parts(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> (Components, [LineModel; 2]) {
     let (friction, leakage) = (spread(50.0, 2e4), spread(1e-14, 1e-10));
     let [area_a, area_b] = [0.022, spread(0.01, 0.036)].map(|rod| annulus_area(0.05, rod));
@@ -172,8 +172,8 @@ pub(crate) fn drawn(number: u64) -> Drawn {
 }
 
 impl Drawn {
-    /// F_e and the velocity of the load, by the command and by the ground, where nothing is fed
-    /// forward.
+    /// Paths F_e and the velocity of the load, by the command and by the ground, without
+    /// feed-forward.
     pub(crate) fn force_and_velocity(&self, frequency: f64) -> [[Complex64; 2]; 2] {
         let s = Complex64::new(0.0, frequency);
         let inputs = [&[self.command], &self.inputs[..]].concat();
@@ -202,7 +202,7 @@ impl Drawn {
     }
 }
 
-/// 108 rigs, every pair of line models among them, at 14 frequencies over six decades.
+/// 108 rigs, including every pair of line models, at 14 frequencies over six decades.
 #[test]
 fn it_is_the_machine_for_small_motions() {
     for number in 0..108 {
@@ -224,8 +224,8 @@ fn it_is_the_machine_for_small_motions() {
 }
 
 /// The velocity of the load is that of the machine, by the command and by the ground; with lumped
-/// lines it is the quotient over the plant's denominator, and fed forward at once it is fed back
-/// too.
+/// lines it is the quotient over the plant's denominator, and fed forward without delay it is fed
+/// back too.
 #[test]
 fn the_velocity_of_the_load_is_that_of_the_machine() {
     let mut yielding = 0;
@@ -271,7 +271,8 @@ fn the_velocity_of_the_load_is_that_of_the_machine() {
     assert!(yielding > 500, "{yielding}");
 }
 
-/// The machine's own derivatives, its load's velocity on the command by algebra: K_x e^(-s tau).
+/// Response from the machine's own derivatives, with its load's velocity on the command by algebra:
+/// K_x e^(-s tau).
 #[test]
 fn a_late_feed_forward_is_the_machine_with_a_late_command() {
     for number in 0..36 {
@@ -295,7 +296,7 @@ fn a_late_feed_forward_is_the_machine_with_a_late_command() {
     }
 }
 
-/// Discs hold the response of a late plant between two frequencies, and shrink.
+/// Discs contain the response of a late plant between two frequencies, and shrink.
 #[test]
 fn a_late_feed_forward_is_enclosed() {
     for number in [1, 4, 8, 14] {
@@ -314,7 +315,7 @@ fn a_late_feed_forward_is_enclosed() {
     }
 }
 
-/// The plant's own poles in the right half plane against those with e^(-s tau) as six quotients of
+/// Number of open-loop poles in the right half plane compared with e^(-s tau) as six quotients of
 /// second order.
 #[test]
 fn poles_of_a_late_plant_are_counted() {
@@ -331,7 +332,7 @@ fn poles_of_a_late_plant_are_counted() {
             .command
             .denominator;
         let back = Polynomial::new(fed).sum(&alone.scaled(-1.0));
-        // behind a filter the count is that of a longer product of polynomials
+        // with a filter the count is that of a longer product of polynomials
         let filter = RateFilter::FirstOrder { frequency_rad_per_s: 30.0 };
         let lag = Polynomial::new(filter.denominator());
         for delay in [0.0, 1e-3, 1e-2, 4e-2] {
@@ -363,7 +364,7 @@ fn poles_of_a_late_plant_are_counted() {
     assert!(seen[0] > 3 && seen[1] > 3, "{seen:?}");
 }
 
-/// Lumped lines make the quotient of polynomials, whatever numbers are stated.
+/// Lumped lines give the quotient of polynomials, for any stated numbers.
 #[test]
 fn lumped_lines_make_the_rational_plant() {
     for number in (0..36).step_by(6).map(|first| first * 6) {
@@ -392,7 +393,7 @@ fn lumped_lines_make_the_rational_plant() {
     }
 }
 
-/// What a line yields at once is what its lumped model yields, and a stiffer line is one with a
+/// Immediate compliance of a line equals that of its lumped model, and a stiffer line is one with a
 /// stiffer fluid and wall.
 #[test]
 fn compliance_is_that_of_the_lumped_line() {
@@ -409,8 +410,8 @@ fn compliance_is_that_of_the_lumped_line() {
     }
 }
 
-/// Whatever lies between two frequencies lies in the disc of both, which shrinks onto the response;
-/// and the response stays below its roll-off from wherever that begins.
+/// Responses between two frequencies are in the disc of both, which shrinks onto the response; and
+/// the response stays below its roll-off from its first frequency on.
 #[test]
 fn what_bounds_it_holds_it() {
     let mut state = 8;
@@ -441,8 +442,7 @@ fn what_bounds_it_holds_it() {
     }
 }
 
-/// Every fourth plant with its load's velocity fed forward, late and behind a filter that
-/// resonates.
+/// Every fourth plant with its load's velocity fed forward, delayed and with a resonant filter.
 fn sometimes_fed(plant: PlantInMotion, number: u64) -> PlantInMotion {
     let filter = RateFilter::SecondOrder { frequency_rad_per_s: 700.0, damping_ratio: 0.3 };
     match number % 4 {
@@ -452,7 +452,7 @@ fn sometimes_fed(plant: PlantInMotion, number: u64) -> PlantInMotion {
 }
 
 /// Towards zero frequency both paths are those of the slow plant: lines are resistances there, and
-/// have crept all they ever do.
+/// have crept completely.
 #[test]
 fn slowly_it_is_a_quotient_of_polynomials() {
     for number in 0..108 {

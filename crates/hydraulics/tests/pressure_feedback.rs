@@ -1,5 +1,5 @@
-//! Feedback of the chambers' pressures: the damping that it adds in closed form, and what robust
-//! design takes from a plant without polynomials.
+//! Feedback of the chambers' pressures: the damping that it adds in closed form, and the interface
+//! of a plant without polynomials to robust design.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -30,8 +30,8 @@ fn roots(path: &RationalCoefficients<f64>) -> Vec<Complex64> {
     TransferFunction::from_polynomials(&over, &under).unwrap().poles().to_vec()
 }
 
-/// Of a load that is held and a fast valve, the swinging pole w^2 = (K_S + K_H)/M is damped by what
-/// flows past the piston's swing, K_qU k p_L, as far as that is small:
+/// For a fixed load and a fast valve, the oscillating pole w^2 = (K_S + K_H)/M is damped by the
+/// flow K_qU k p_L, if that is small:
 ///
 /// ```text
 /// -2 Re s = f_v/M + (K_c + K_qU k) K_H^2/(A^2 (K_S + K_H))
@@ -57,8 +57,8 @@ fn it_damps_as_leakage_does() {
     }
 }
 
-/// A high pass leaves the plant of rest as it is; without one the valve must hold k p_L against the
-/// leakage, and the gain at rest falls to K_c/(K_c + K_qU k) of what it was.
+/// A high pass leaves the plant at rest unchanged; without one the valve must hold k p_L against
+/// the leakage, and the gain at rest falls by the factor K_c/(K_c + K_qU k).
 #[test]
 fn a_high_pass_leaves_the_rest_alone() {
     let parameters = nominal_plant();
@@ -90,8 +90,8 @@ fn any(number: u64) -> PressureFeedback {
     PressureFeedback { filter, ratio: spread(0.3, 2.0) }
 }
 
-/// Late by d, it is H e^(-s d) around the plant without it: what the machine's derivatives make of
-/// force and pressures is in `together`.
+/// Late by d, it is H e^(-s d) around the plant without it: the comparison with the machine's
+/// derivatives is in `together`.
 #[test]
 fn a_delay_turns_what_is_fed_back() {
     for number in 0..24 {
@@ -102,7 +102,7 @@ fn a_delay_turns_what_is_fed_back() {
             let at = |filter: InnerFeedback, delay: f64| {
                 plain.fed_back(Some(PressureFeedback { filter, ..back }), delay).response(s)
             };
-            // the signal by the command follows from what a gain alone does
+            // the signal by the command follows from the effect of a gain only
             let unit = InnerFeedback { gain: 1e-7, ..InnerFeedback::default() };
             let [[alone, _], [with, _]] = [plain.response(s), at(unit, 0.0)];
             let signal = (alone / with - 1.0) / unit.gain;
@@ -114,8 +114,8 @@ fn a_delay_turns_what_is_fed_back() {
     }
 }
 
-/// What a loop around the plant samples of the pressures: closed around the plant without them, it
-/// is the plant that has the feedback within it, by command and by the motion of the load or its
+/// Pressure signal that a loop around the plant samples: closed around the plant without feedback,
+/// it gives the plant with the feedback inside, by command and by the motion of the load or its
 /// ground, as polynomials and behind lines in motion, with a series element and a virtual impedance
 /// too.
 #[test]
@@ -175,7 +175,7 @@ fn unstable_poles_are_those_of_the_polynomials() {
         let plant = LinearPlant { pressure_feedback: Some(any(number)), ..drawn(number).plant };
         let poles = roots(&plant.coefficients().command);
         let fastest = poles.iter().map(|pole| pole.norm_sqr().sqrt()).fold(0.0, f64::max);
-        // a pole at the edge is one of either kind
+        // a pole at the edge may be of either kind
         if poles.iter().any(|pole| pole.re.abs() < 1e-9 * fastest) {
             continue;
         }
@@ -187,7 +187,7 @@ fn unstable_poles_are_those_of_the_polynomials() {
     assert!(seen.iter().all(|count| *count > 5), "{seen:?}");
 }
 
-/// What encloses the response between two frequencies, and what bounds it above one, holds.
+/// Enclosures of the response between two frequencies, and bounds above one, are valid.
 #[test]
 fn enclosure_and_roll_off_hold() {
     let mut bounded = 0;

@@ -1,4 +1,4 @@
-//! Rigs with friction, gas, air and lines of their own, whose ledgers are taken.
+//! Rigs with friction, gas, air and dynamic lines, for the ledgers.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -17,7 +17,7 @@ use phea_hydraulics::stiffness::StiffnessModel;
 
 use super::machine_conservation::machine_of;
 
-/// LuGre friction that can only take energy.
+/// LuGre friction that is passive.
 pub(super) fn passive_friction() -> Friction {
     let Friction::LuGre(lugre) = benchmark_components().friction else { unreachable!() };
     let passive = LuGre { bristle_damping: 150.0, ..lugre };
@@ -50,12 +50,12 @@ pub(super) fn pump() -> PowerUnit {
     pump_with(None)
 }
 
-/// A pump that leans on gas of this precharge in Pa and this index.
+/// Pump with gas of this precharge in Pa and this index.
 pub(super) fn charged_pump(precharge_pressure: f64, polytropic_exponent: f64) -> PowerUnit {
     pump_with(Some(Accumulator { gas_volume: 1e-4, precharge_pressure, polytropic_exponent }))
 }
 
-/// The rig with bubbles in its fluid.
+/// Rig with bubbles in its fluid.
 pub(super) fn foamy(
     rig: Components,
     stiffness_model: StiffnessModel,
@@ -65,7 +65,7 @@ pub(super) fn foamy(
     Components { fluid: Fluid { entrained_air: air, ..rig.fluid }, stiffness_model, ..rig }
 }
 
-/// Both lines of a rig with dynamics of their own.
+/// Rig with dynamics of both lines.
 pub(super) fn lines_of(rig: &Components, models: [LineModel; 2]) -> Option<[DynamicLine; 2]> {
     let [model_a, model_b] = models;
     let of =
@@ -73,7 +73,7 @@ pub(super) fn lines_of(rig: &Components, models: [LineModel; 2]) -> Option<[Dyna
     Some([of(&rig.line_a, model_a), of(&rig.line_b, model_b)])
 }
 
-/// Segments with all that segments may have.
+/// Segments with all their options.
 const FULL: LineModel = LineModel::Segments {
     count: 3,
     friction: LaminarFriction::FrequencyDependent,
@@ -85,7 +85,7 @@ const SMEARED: LineModel =
     LineModel::Segments { count: 2, friction: LaminarFriction::FrequencyDependent, relaxation_time: None };
 const CREEPING: LineModel = LineModel::Creeping { relaxation_time: 0.02 };
 
-/// Rigs with gas in the supply, air in the oil, and lines of their own, one by one and all at once.
+/// Rigs with gas in the supply, air in the oil, and dynamic lines, one by one and all at once.
 pub(super) fn rich_machines() -> Vec<(&'static str, Machine)> {
     let rig = asymmetric();
     let hoses = Components { line_b: hose_line(), ..rig };
@@ -143,7 +143,7 @@ pub(super) fn rich_machines() -> Vec<(&'static str, Machine)> {
     machines
 }
 
-/// Rigs whose accumulators are adjusted while a force from outside acts on their load.
+/// Rigs whose accumulators are adjusted while an external force acts on their load.
 fn adjusted_machines() -> [(&'static str, Machine); 3] {
     let rig = asymmetric();
     let by_volume = foamy(rig, StiffnessModel::ByVolume, 1.4);

@@ -1,5 +1,5 @@
-//! The spring between force sensor and load: the linear plant against the machine, the rigid limit,
-//! ledgers and passivity.
+//! The spring between force sensor and load: the linear plant compared with the machine, the rigid
+//! limit, ledgers and passivity.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -37,7 +37,8 @@ fn rig(spring: SeriesSpring) -> Components {
     }
 }
 
-/// Spring alone, with a damper, with a mass, with both; every other one progressive with ends.
+/// Spring with nothing, with a damper, with a mass, with both; every other one progressive with
+/// ends.
 pub(super) fn element(number: u64) -> SeriesSpring {
     let mut state = stream(41, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
@@ -109,7 +110,7 @@ fn at_rest(machine: &Machine, rest: &InitialCondition, signal: Signal) -> f64 {
 }
 
 impl Drawn {
-    /// A signal of the machine, for one unit of the command and of the motion of the ground.
+    /// Signal of the machine, for one unit of the command and of the motion of the ground.
     pub(super) fn small_signal(&self, signal: Signal, feed_forward: f64, frequency: f64) -> [Complex64; 2] {
         let slopes = slopes(&self.machine, &self.rest, &[signal]);
         amplitudes(&self.machine, &self.rest, (feed_forward, 1.0), frequency)
@@ -125,7 +126,7 @@ fn it_is_the_machine_for_small_motions() {
     }
 }
 
-/// The force through the sensor and that on the load, with a velocity that is fed forward in every
+/// Force through the sensor and force on the load, with a velocity that is fed forward in every
 /// other rig.
 pub(super) fn is_the_machine(rig: &Drawn, number: u64) {
     let gain = if number.is_multiple_of(2) { 0.03 * pow(3e3, number as f64 / 200.0) } else { 0.0 };
@@ -147,7 +148,7 @@ pub(super) fn is_the_machine(rig: &Drawn, number: u64) {
     }
 }
 
-/// The path of a load that yields: its velocity for a volt.
+/// Path of a load that yields: its velocity per volt.
 #[test]
 fn the_velocity_of_the_load_is_that_of_the_machine() {
     for number in (2..80).filter(|number| number % 5 > 1) {
@@ -175,15 +176,15 @@ pub(super) fn velocity_is_that_of_the_machine(rig: &Drawn, number: u64) {
     }
 }
 
-/// With lumped lines the response is that of the polynomials, and its roll-off bounds it, also
-/// where the velocity of the load is fed forward from a sensor with an error and a filter.
+/// The response with lumped lines is that of the polynomials, and its roll-off bounds it, also if
+/// the velocity of the load is fed forward from a sensor with an error and a filter.
 #[test]
 fn the_response_is_that_of_the_polynomials() {
     let bounded: usize = (0..80).map(|number| responds_as_its_polynomials(&drawn(number), number)).sum();
     assert!(bounded > 1000, "{bounded}");
 }
 
-/// How many bounds of its roll-off were compared.
+/// Number of roll-off bounds that were compared.
 pub(super) fn responds_as_its_polynomials(rig: &Drawn, number: u64) -> usize {
     let mut bounded = 0;
     let gain = if number.is_multiple_of(2) { Some(0.1) } else { None };
@@ -278,7 +279,7 @@ fn a_rigid_spring_is_no_spring() {
     }
 }
 
-/// A spring without damper and mass is a softer force sensor, in the machine too.
+/// A spring without damper and mass is equivalent to a softer force sensor, in the machine too.
 #[test]
 fn a_spring_alone_is_a_softer_sensor() {
     let spring = SeriesSpring {
@@ -347,8 +348,8 @@ fn ledgers_close() {
                 ends: travel.ends.map(|ends| Contact { stiffness: 2e7, ..ends }),
                 ..travel
             });
-            // an edge that opens at zero drop is too fast for this method where the root's
-            // transition is short
+            // an edge that opens at zero drop is too fast for this method if the root's transition
+            // is short
             let parts = rig(SeriesSpring { travel: ends, ..own });
             let valve = Servovalve { transition_pressure: 1e5, ..parts.valve };
             let machine = machine_of(
@@ -360,7 +361,7 @@ fn ledgers_close() {
     }
 }
 
-/// At any state, whether it comes about or not.
+/// Accounts at any state, including unreachable ones.
 #[test]
 fn what_is_stored_changes_by_what_enters_and_is_lost() {
     let mut seed = 5;
@@ -373,7 +374,7 @@ fn what_is_stored_changes_by_what_enters_and_is_lost() {
     }
 }
 
-/// The accounts at ten random states around that at rest.
+/// Accounts at ten random states around that at rest.
 pub(super) fn closes_at_any_state(name: &str, machine: &Machine, seed: &mut u64) {
     let start = StartValues { position: 0.25, pressure_a: 35e5, pressure_b: 35e5, ..StartValues::default() };
     let beginning = machine.start(&start).unwrap();
@@ -385,8 +386,8 @@ pub(super) fn closes_at_any_state(name: &str, machine: &Machine, seed: &mut u64)
     }
 }
 
-/// Whatever moves its two ends: from rest, what has entered it is never less than what it gave
-/// back.
+/// For any motion of its two ends: from rest, the energy that has entered is never less than the
+/// energy returned.
 #[test]
 fn it_is_passive_under_random_motions_of_its_ports() {
     for number in 0..16 {
@@ -408,7 +409,7 @@ fn it_is_passive_under_random_motions_of_its_ports() {
     }
 }
 
-/// From rest, with random motions of both ports of what lies in series, drawn by this seed.
+/// From rest, with random motions of both ports of the series element, drawn by this seed.
 pub(super) fn stays_passive(machine: &Machine, seed: u64, number: u64) {
     let series = ENERGY_ACCOUNTS.iter().position(|name| *name == "series").unwrap();
     let mut state = stream(seed, number);
@@ -443,7 +444,7 @@ pub(super) fn stays_passive(machine: &Machine, seed: u64, number: u64) {
     assert!(through > 0.1 && least >= -1e-6 * through, "{number}: {least} of {through}");
 }
 
-/// What cannot be is refused with its place.
+/// Impossible elements are rejected with their path.
 #[test]
 fn impossible_elements_are_refused() {
     let ends = Some(Contact { stiffness: 1e8, relative_damping: 0.5 });

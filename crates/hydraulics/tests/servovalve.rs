@@ -1,5 +1,4 @@
-//! The four-edge valve: data sheet, coefficients at any operating point, and what is true of any
-//! such valve.
+//! The four-edge valve: data sheet, coefficients at any operating point, and general properties.
 
 use phea_dynamics::portable;
 use phea_dynamics::scalar::{Dual, Parameters};
@@ -75,7 +74,7 @@ fn ranges_of_table_6_3() {
     let at = |spool, load| control_coefficients(&valve, &SUPPLY, spool, load, SpoolDirection::Extending);
     // ORIGIN: thesis Table 6.3 (one unit of the last digit)
     check("K_qU, no load", at(0.0, 0.0).flow_gain, 5.61e-5, 2.0 * 1e-7);
-    // The printed lower end is 5.61e-5/sqrt(3); K_vp = 3.0e-7 itself gives 3.240e-5.
+    // the printed lower end is 5.61e-5/sqrt(3); K_vp = 3.0e-7 itself gives 3.240e-5
     let ratio = at(0.0, 2.0 * 70e5 / 3.0).flow_gain / at(0.0, 0.0).flow_gain;
     assert!((ratio * 3.0_f64.sqrt() - 1.0).abs() < 1e-6);
     check("K_qU, two thirds", 5.61e-5 * ratio, 3.23e-5, 2.0 * 1e-7);
@@ -100,7 +99,7 @@ fn velocity_gain_carries_the_same_flow_through_both_edges() {
     assert_eq!(velocity_gain(&valve(), &SUPPLY, [1e-3, 1e-3], 1e5, SpoolDirection::Extending), None);
 }
 
-/// The leakage's share of the flow gain that thesis (4.21) leaves out.
+/// Contribution of the leakage to the flow gain, which thesis (4.21) omits.
 #[test]
 fn leakage_adds_to_the_flow_gain_under_load() {
     let largest = (1..200)
@@ -120,8 +119,8 @@ fn leakage_adds_to_the_flow_gain_under_load() {
     assert!((largest - expected).abs() < 1e-3 * expected, "{largest} against {expected}");
 }
 
-/// With the leakage's curve on each edge the total leakage is not greatest at null, as
-/// thesis (4.14) has it.
+/// The total leakage with a leakage curve on each edge is not greatest at null, as thesis (4.14)
+/// requires.
 #[test]
 fn total_leakage_peaks_beside_null() {
     // ORIGIN: recomputed by comparisons/recompute_rig.py (plain square roots, blocked ports)
@@ -155,7 +154,7 @@ fn total_leakage_peaks_beside_null() {
     }
 }
 
-/// ORIGIN: analytic, thesis (4.14): wherever the spool is, the whole leakage is one secant, and at
+/// ORIGIN: analytic, thesis (4.14): at any spool position the whole leakage is one secant, and at
 /// null that of the other model.
 #[test]
 fn one_curve_is_the_curve_of_the_whole_valve() {
@@ -174,8 +173,8 @@ fn one_curve_is_the_curve_of_the_whole_valve() {
     }
 }
 
-/// ORIGIN: analytic, equal edges: what one edge opens the other closes, so that null passes twice
-/// the flow gain of one edge.
+/// ORIGIN: analytic, equal edges: one edge opens as much as the other closes, so that null passes
+/// twice the flow gain of one edge.
 #[test]
 fn one_curve_doubles_the_flow_gain_at_null() {
     let one = Servovalve { leakage_model: LeakageModel::OneCurve, ..valve_with_equal_edges() };
@@ -185,8 +184,8 @@ fn one_curve_doubles_the_flow_gain_at_null() {
     assert!((gain(one, 1.0) / gain(valve_with_equal_edges(), 1.0) - 1.0).abs() < 1e-3);
 }
 
-/// Analytic derivatives of both chambers' flows against dual numbers, everywhere, the laminar zone
-/// and reversed drops included.
+/// Analytic derivatives of both chambers' flows compared with dual numbers, everywhere, including
+/// the laminar zone and reversed drops.
 #[test]
 fn chamber_coefficients_are_the_derivatives_of_the_flows() {
     let one_curve = Servovalve { leakage_model: LeakageModel::OneCurve, ..valve() };
@@ -265,7 +264,7 @@ fn chords_across_null_have_the_slopes_between() {
     }
 }
 
-/// Exchanging A and B and reversing the command is the same valve seen from the other side.
+/// Exchanging A and B and reversing the command gives the mirrored valve.
 #[test]
 fn mirrored_valve() {
     let edges = |e: Edges| Edges::from_array([e.supply_to_b, e.b_to_tank, e.supply_to_a, e.a_to_tank]);
@@ -281,7 +280,7 @@ fn mirrored_valve() {
     }
 }
 
-/// Thesis (4.18) in its printed form for equal edges, and no flow without a cause.
+/// Thesis (4.18) in its printed form for equal edges, and no flow at null without load.
 #[test]
 fn control_flow_of_equal_edges() {
     let valve = Servovalve { transition_pressure: 1e-3, ..valve_with_equal_edges() };

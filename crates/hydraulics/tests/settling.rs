@@ -1,4 +1,4 @@
-//! The balance over any scalar against bisection, the machine, and closed forms.
+//! The balance over any scalar compared with bisection, the machine, and closed forms.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -18,7 +18,7 @@ use phea_hydraulics::servovalve::{Edges, LeakageModel, LeakageShape, OpeningLaw,
 use phea_hydraulics::stiffness::StiffnessModel;
 
 /// Over a box of supply pressures, loads and commands the pressures at standstill are enclosed
-/// between tank and supply, however wide the box is.
+/// between tank and supply, for any width of the box.
 #[test]
 fn pressures_at_rest_are_enclosed_between_tank_and_supply() {
     let mut draw = Draw(11);
@@ -51,7 +51,7 @@ fn pressures_at_rest_are_enclosed_between_tank_and_supply() {
     }
 }
 
-/// A number between two ends, evenly or by a factor.
+/// Number between two ends, with linear or logarithmic spacing.
 struct Draw(u64);
 
 impl Draw {
@@ -92,7 +92,7 @@ impl Draw {
         Actuator::new(Components { supply, valve, cylinder, ..rig }).unwrap()
     }
 
-    /// A load that the supply can hold, and a velocity within what the valve lets through.
+    /// Load that the supply can hold, and a velocity that the valve allows.
     fn steady(&mut self, actuator: &Actuator) -> Steady {
         let Components { supply, cylinder, .. } = actuator.components();
         let drop = supply.pressure - supply.tank_pressure;
@@ -120,7 +120,7 @@ fn error(actuator: &Actuator, settled: &Settled, found: &OperatingPoint) -> f64 
         + ((b - found.pressure_b) / drop).abs()
 }
 
-/// Without leakage across the piston every point is that of the bisection, wherever it lies.
+/// Every point without leakage across the piston agrees with bisection, at any position.
 #[test]
 fn settled_points_are_those_of_bisection() {
     let mut draw = Draw(7);
@@ -138,8 +138,8 @@ fn settled_points_are_those_of_bisection() {
     assert!(found > 9_500, "{found}");
 }
 
-/// Whether the force at standstill rises with the command all over its range: with unequal areas
-/// and edges much leakage undoes that, and one load has several commands.
+/// True if the force at standstill rises with the command all over its range: with unequal areas
+/// and edges this fails for large leakage, and one load has several commands.
 fn rises(actuator: &Actuator) -> bool {
     let balance = Balance::at(actuator.components(), 0.25);
     let force = |command: f64| {
@@ -151,7 +151,7 @@ fn rises(actuator: &Actuator) -> bool {
     commands.windows(2).all(|pair| force(pair[0]) < force(pair[1]))
 }
 
-/// With leakage across the piston every point is where the machine rests, found by its own
+/// Every point with leakage across the piston is the rest of the machine, found by its own
 /// equations from the point without leakage.
 #[test]
 fn leaking_points_are_where_the_machine_rests() {
@@ -193,7 +193,7 @@ fn leaking_points_are_where_the_machine_rests() {
     assert!(found.iter().all(|count| *count > 500), "{found:?}");
 }
 
-/// Edges, pressures, areas, leakage, velocity and force, in this order, and where they settle.
+/// Equilibrium for edges, pressures, areas, leakage, velocity and force, in this order.
 fn settle<S: phea_dynamics::scalar::Scalar>(p: &[S], leakage_model: LeakageModel) -> Vec<S> {
     let balance = Balance {
         valve: Servovalve {
@@ -214,9 +214,8 @@ fn settle<S: phea_dynamics::scalar::Scalar>(p: &[S], leakage_model: LeakageModel
 const NAMES: [&str; 15] =
     ["K3", "K4", "K5", "K6", "L3", "L4", "L5", "L6", "p_S", "p_T", "A_A", "A_B", "G", "v", "F"];
 
-/// One recording serves every point of a box that brings the spool through null, and
-/// differentiating it gives the derivatives of the point itself, by the theorem of implicit
-/// functions.
+/// A single recording is valid for every point of a box that brings the spool through null, and
+/// differentiating it gives the derivatives of the point itself, by the implicit function theorem.
 #[test]
 fn a_recorded_point_is_right_everywhere_with_its_derivatives() {
     for leakage_model in [LeakageModel::EachEdge, LeakageModel::OneCurve] {
@@ -267,7 +266,7 @@ fn check_recorded_point(leakage_model: LeakageModel) {
     assert!(sides.iter().all(|count| *count > 50), "{sides:?}");
 }
 
-/// The leakage that leaves the operating point is that of equal pressures: none.
+/// Equal pressures cause no leakage, which leaves the operating point unchanged.
 #[test]
 fn leakage_leaves_equal_pressures_alone() {
     let balance = |leakage: f64| Balance {
@@ -281,7 +280,7 @@ fn leakage_leaves_equal_pressures_alone() {
     assert_eq!(settled.pressures, [35e5; 2]);
     let moving = Steady::Moving { velocity: 0.0, load: SteadyLoad::Force(0.0) };
     assert_eq!(balance(1e-11).settle(moving).command, 0.0);
-    // ORIGIN: analytic, all of the load pressure gone through a piston that leaks without end
+    // ORIGIN: analytic, no load pressure remains with infinite leakage across the piston
     let open = Balance { valve: valve(), ..balance(1e-4) }.settle(Steady::Command(0.0));
     assert!((open.pressures[0] - open.pressures[1]).abs() < 1.0);
 }

@@ -16,7 +16,7 @@ use phea_hydraulics::stroke::ActuatorStroke;
 
 const FLUID_MODULUS: f64 = 1.45e9;
 
-/// `value` is what was printed, to half the unit of its last digit.
+/// `value` is the printed number, to half the unit of its last digit
 fn check(what: &str, value: f64, printed: f64, last_digit: f64) {
     assert!((value - printed).abs() <= 0.5 * last_digit, "{what}: {value} is not {printed}");
 }
@@ -136,7 +136,8 @@ fn softest_position_leaves_the_stroke_when_one_line_is_long() {
         )
         .over_stroke()
     };
-    // Chamber B alone is a spring then, softest when it is largest: at the A end.
+    // with chamber B as the only spring, the stiffness is least when that chamber is largest: at
+    // the A end
     assert_eq!((at([&long, &short]).minimum_position, at([&long, &short]).maximum_position), (0.0, 0.5));
     assert_eq!((at([&short, &long]).minimum_position, at([&short, &long]).maximum_position), (0.5, 0.0));
 }

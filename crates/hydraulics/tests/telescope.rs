@@ -1,5 +1,5 @@
-//! A telescopic piston: its areas and volumes, machine and stiffness against closed forms, the
-//! single stage, and its ledgers.
+//! A telescopic piston: its areas and volumes, machine and stiffness compared with closed forms,
+//! the single stage, and its ledgers.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -57,7 +57,7 @@ fn areas_are_the_slopes_of_the_volumes() {
     }
 }
 
-/// What an interval of positions gives holds every position of it.
+/// The enclosure of an interval of positions contains every position of it.
 #[test]
 fn intervals_enclose_it() {
     let telescope = three(0.05);
@@ -79,7 +79,7 @@ fn intervals_enclose_it() {
     }
 }
 
-/// A stage of the same areas changes no bit of a machine.
+/// A stage of equal areas leaves a machine unchanged to the bit.
 #[test]
 fn a_stage_of_the_same_areas_is_none() {
     let same = Telescope { stroke: 0.5, stages: [stage(0.2, [1.0; 2]), None, None], transition: 0.05 };
@@ -121,7 +121,8 @@ fn stiffness_is_that_of_each_stage() {
     }
 }
 
-/// The range over the stroke is that of a fine grid, and its places are where it is reached.
+/// The range over the stroke agrees with a fine grid, and its positions are those at which it is
+/// reached.
 #[test]
 fn the_range_over_the_stroke_is_reached() {
     let actuator = Actuator::new(with(three(0.02), asymmetric())).unwrap();
@@ -135,8 +136,7 @@ fn the_range_over_the_stroke_is_reached() {
     }
 }
 
-/// A force is held with the areas of the stage in which the piston stands, and the machine rests
-/// there.
+/// A force is held with the areas of the stage at the piston position, and the machine rests there.
 #[test]
 fn a_force_is_held_by_the_stage_that_moves() {
     let rig = with(three(0.02), asymmetric());
@@ -193,7 +193,7 @@ fn ledgers_close_through_the_stages() {
     check(&machine_of(rig, &MachineOptions::default()), &motion, &start, 0.2, 1e-5);
 }
 
-/// Stages that do not follow each other within the stroke, and areas that are none.
+/// Stages that do not follow each other within the stroke, and impossible areas.
 #[test]
 fn impossible_stages_are_refused() {
     let refused = |telescope: Telescope, path: &str| {

@@ -1,4 +1,5 @@
-//! Rigs with any of the parts at once: the linear plant against the machine for small motions.
+//! Rigs with any combination of parts: the linear plant compared with the machine for small
+//! motions.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -35,7 +36,7 @@ use super::transmission::transmission;
 
 const RIGS: u64 = 200;
 
-/// Parts by name, each with those further down that no rig has with it.
+/// Parts by name, each with the later parts with which no rig combines it.
 const PARTS: [(&str, &[&str]); 30] = [
     ("polytropic gas", &[]),
     ("gas with heat", &[]),
@@ -69,7 +70,7 @@ const PARTS: [(&str, &[&str]); 30] = [
     ("sprung load", &[]),
 ];
 
-/// Random numbers, and the parts that they have drawn so far.
+/// Random numbers, and the parts drawn so far.
 struct Draw {
     state: u64,
     parts: Vec<&'static str>,
@@ -84,7 +85,7 @@ impl Draw {
         low * pow(high / low, share(&mut self.state))
     }
 
-    /// Whether the rig has a part that this share of the rigs has.
+    /// True if the rig has a part that this fraction of the rigs has.
     fn part(&mut self, name: &'static str, likely: f64) -> bool {
         let has = share(&mut self.state) < likely;
         self.parts.extend(has.then_some(name));
@@ -92,7 +93,7 @@ impl Draw {
     }
 }
 
-/// The gas at a chamber, with all that it may have.
+/// Gas at a chamber, with all its options.
 #[derive(Default)]
 struct Gas {
     accumulator: Option<Accumulator>,
@@ -133,8 +134,8 @@ fn gas(draw: &mut Draw) -> Gas {
     Gas { accumulator, neck, heat, adjustment }
 }
 
-/// A motor that turns on, or a cylinder of this stroke in m, with its friction and its force
-/// sensor.
+/// Motor with unlimited rotation, or a cylinder of this stroke in m, with its friction and its
+/// force sensor.
 fn actuator(draw: &mut Draw, number: u64, stroke: f64, motor: bool) -> Components {
     let telescopic = !motor && draw.part("telescopic piston", 0.4);
     let unequal = !motor && draw.part("unequal areas", 0.6);
@@ -182,7 +183,7 @@ fn actuator(draw: &mut Draw, number: u64, stroke: f64, motor: bool) -> Component
     }
 }
 
-/// Hoses or pipes on both sides, alike or not.
+/// Hoses or pipes on both sides, equal or not.
 fn lines(draw: &mut Draw) -> [Line; 2] {
     let mut line = |is_hose: bool| match is_hose {
         true => Line::Hose { hose: hose(), length: draw.spread(0.3, 3.0) },
@@ -197,7 +198,7 @@ fn lines(draw: &mut Draw) -> [Line; 2] {
     [one, if draw.part("unequal lines", 0.5) { other } else { one }]
 }
 
-/// What lies between sensor and load.
+/// Element between sensor and load.
 fn series(draw: &mut Draw, number: u64) -> Option<SeriesElement> {
     if draw.part("transmission", 0.35) {
         return Some(SeriesElement::Transmission(transmission(number)));
@@ -214,7 +215,7 @@ fn series(draw: &mut Draw, number: u64) -> Option<SeriesElement> {
     has.then_some(SeriesElement::Spring(spring))
 }
 
-/// The names of a valve between the chambers of every kind.
+/// Names of a valve between the chambers of every kind.
 fn name_of(port: &CrossPort) -> &'static str {
     match (port.restrictor, port.capacity) {
         (Restrictor::Laminar { .. }, None) => "laminar valve",
@@ -233,11 +234,11 @@ fn linkage(draw: &mut Draw, kinds: &[Linkage; 4]) -> Option<Linkage> {
     Some(if draw.part("weight", 0.6) { weighed } else { linkage })
 }
 
-/// A machine where it rests, and its plant.
+/// Machine at rest, and its plant.
 struct Drawn {
     machine: Machine,
     rest: InitialCondition,
-    /// How far its ground moves for one metre of the rod's end.
+    /// Motion of its ground for one metre of the rod's end.
     turned: f64,
     plant: LinearPlant,
     /// Lines with dynamics of their own.
@@ -245,7 +246,7 @@ struct Drawn {
     parts: Vec<&'static str>,
 }
 
-/// An actuator whose piston is at a position in m where its machine rests.
+/// Actuator whose piston is at a position in m at the rest of its machine.
 struct Resting {
     actuator: Actuator,
     lines: Option<[DynamicLine; 2]>,
@@ -256,7 +257,7 @@ struct Resting {
     rest: InitialCondition,
 }
 
-/// The parts of a rig, and its gas, whose parts count where it is in use.
+/// Parts of a rig, and its gas, whose parts count if it is in use.
 fn parts(draw: &mut Draw, number: u64, kinds: &[Linkage; 4]) -> (Components, [Draw; 2]) {
     let motor = draw.part("motor", 0.25);
     let linkage = if motor { None } else { linkage(draw, kinds) };
@@ -287,7 +288,7 @@ fn parts(draw: &mut Draw, number: u64, kinds: &[Linkage; 4]) -> (Components, [Dr
     (rig, of_gas)
 }
 
-/// Where a machine rests at a small command to either side, its rod within the linkage.
+/// Rest of a machine at a small command to either side, its rod within the linkage.
 fn rest(draw: &mut Draw, rig: &Actuator, machine: &Machine, position: f64) -> InitialCondition {
     let side = if share(&mut draw.state) < 0.5 { -1.0 } else { 1.0 };
     let command = draw.spread(3e-3, 0.3);
@@ -301,7 +302,7 @@ fn rest(draw: &mut Draw, rig: &Actuator, machine: &Machine, position: f64) -> In
     rests.find(within).unwrap()
 }
 
-/// Lines with dynamics of their own, of every model that they may have.
+/// Dynamic lines, of every possible model.
 fn moving_lines(draw: &mut Draw, rig: &Actuator) -> Option<[DynamicLine; 2]> {
     if !draw.part("lines in motion", 0.4) {
         return None;
@@ -344,7 +345,7 @@ fn resting(draw: &mut Draw, number: u64, rig: Components) -> Resting {
     Resting { actuator, lines, load, unit, machine, position, rest }
 }
 
-/// The load where it is held, and by how much its ground moves for the rod's end.
+/// Load at its held position, and the motion of its ground for the rod's end.
 fn linear_load(load: &LoadModel, linkage: Option<&Linkage>, force: f64, angle: f64) -> (LinearLoad, f64) {
     let end = linkage.map(|linkage| linkage.end(angle));
     let own = match (*load, end) {
@@ -366,7 +367,8 @@ fn linear_load(load: &LoadModel, linkage: Option<&Linkage>, force: f64, angle: f
     (own, end.map_or(1.0, |end| 1.0 / end.lever_arm))
 }
 
-/// Of the pressure difference, the load pressure or another reading, with each filter or without.
+/// Feedback of the pressure difference, the load pressure or another reading, with each filter or
+/// without.
 fn pressure_feedback(draw: &mut Draw, actuator: &Actuator) -> Option<PressureFeedback> {
     if !draw.part("pressure feedback", 0.6) {
         return None;
@@ -429,8 +431,8 @@ fn closed(
     })
 }
 
-/// The largest relative gap between plant and machine over frequency: in the force measured, as
-/// polynomials and as a response, in the force on the load, and in its velocity where it yields.
+/// Largest relative difference between plant and machine over frequency: in the force measured, as
+/// polynomials and as a response, in the force on the load, and in its velocity if it yields.
 fn apart(rig: &Drawn) -> f64 {
     let Drawn { machine, rest, turned, plant, behind, .. } = rig;
     let on_load = plant.series.map(|series| LinearSeries { output: SeriesOutput::OnLoad, ..series });
@@ -469,13 +471,13 @@ fn apart(rig: &Drawn) -> f64 {
 /// to 1e-8: forces by command and by motion of the load or of its ground, and the velocity of a
 /// load that yields.
 ///
-/// What cannot be combined: [`Actuator::new`] refuses a neck with a valve before the same gas, as
+/// Invalid combinations: [`Actuator::new`] rejects a neck with a valve before one gas, since only
 /// one of them leads to it; a polytropic exponent other than one with a thermal time constant,
-/// which states the heat already; and gas that is added and taken with a thermal time constant,
-/// as the temperature of what is added is not known. Spring and transmission, the kinds of valves
-/// between the chambers, and the strokes of a motor that turns on, of a telescopic piston and of
-/// any other cylinder are each one choice. A motor has one displacement, and behind it `phea check`
-/// refuses a linkage, a spring and a transmission.
+/// which states the heat already; and gas that is added and removed with a thermal time constant,
+/// as the temperature of the added gas is not known. Spring and transmission, the kinds of valves
+/// between the chambers, and the strokes of a motor with unlimited rotation, of a telescopic piston
+/// and of any other cylinder are each one choice. A motor has one displacement, and with a motor
+/// `phea check` rejects a linkage, a spring and a transmission.
 #[test]
 fn it_is_the_machine_for_small_motions() {
     let kinds = linkages();
@@ -486,7 +488,7 @@ fn it_is_the_machine_for_small_motions() {
         assert!(worst < 1e-8, "rig {number} of {:?}: {worst}", rig.parts);
         found.push(rig.parts);
     }
-    // each part in ten rigs, and every pair that can be in one
+    // each part in ten rigs, and every possible pair in one
     let count =
         |names: [&str; 2]| found.iter().filter(|of| names.iter().all(|name| of.contains(name))).count();
     for (index, (name, never)) in PARTS.iter().enumerate() {

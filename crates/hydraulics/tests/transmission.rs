@@ -1,5 +1,5 @@
-//! The hydraulic transmission between force sensor and load: the linear plant against the machine,
-//! the line in segments and the distributed one, the spring that it is for slow motions, ledgers
+//! The hydraulic transmission between force sensor and load: the linear plant compared with the
+//! machine, the line in segments with the distributed one, its stiffness in slow motions, ledgers
 //! and passivity.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
@@ -42,8 +42,8 @@ fn pipe(bore: f64, length: f64) -> Line {
     Line::Pipe { pipe: Pipe { bore, wall: PipeWall::Rigid }, length }
 }
 
-/// Of one to three segments, every third with the soft hose, every other with oil in addition to
-/// the line.
+/// Transmission of one to three segments, every third with the soft hose, every other with oil in
+/// addition to the line.
 pub(super) fn transmission(number: u64) -> Transmission {
     let mut state = stream(81, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
@@ -98,10 +98,9 @@ fn conduit(transmission: &Transmission) -> Conduit {
         .unwrap()
 }
 
-/// The modes of a rig whose load is held, as pairs of frequency in rad/s and damping ratio, in
-/// addition to those of the valve.
-/// ORIGIN: recomputed by comparisons/recompute_transmission.py, eigenvalues of the equations in
-/// pressures and flows
+/// Modes of a rig whose load is held, as pairs of frequency in rad/s and damping ratio, in addition
+/// to those of the valve. ORIGIN: recomputed by comparisons/recompute_transmission.py, eigenvalues
+/// of the equations in pressures and flows
 #[test]
 fn its_modes_are_those_of_pressures_and_flows() {
     let own = Transmission {
@@ -132,12 +131,12 @@ fn its_modes_are_those_of_pressures_and_flows() {
     assert!((slowest / -1.458_292_12 - 1.0).abs() < 1e-6 && poles.len() == 11, "{slowest}: {poles:?}");
 }
 
-/// What it holds back from the load, in s: `LinearSeries::held_back`.
+/// Force held back from the load, in s: `LinearSeries::held_back`.
 fn held_back(transmission: Transmission) -> Vec<f64> {
     LinearSeries::of_components(&rig(transmission), 0.0).unwrap().held_back().unwrap()
 }
 
-/// p_rod = b q + ... of a line with segments that stands behind a valve: F_s = ... + A^2 s b X_L.
+/// p_rod = b q + ... of a line with segments behind a valve: F_s = ... + A^2 s b X_L.
 #[test]
 fn its_line_is_the_line_in_segments() {
     for number in 0..60 {
@@ -176,8 +175,8 @@ fn many_segments_are_the_distributed_line() {
     }
 }
 
-/// Without inertia and friction it is a spring: in the linear plant at every frequency, and in the
-/// machine at rest.
+/// A transmission without inertia and friction is a spring: in the linear plant at every frequency,
+/// and in the machine at rest.
 #[test]
 fn without_inertia_it_is_a_spring() {
     for segments in [1, 4] {
@@ -228,7 +227,7 @@ fn without_inertia_it_is_a_spring() {
     }
 }
 
-/// The stiffness of slow motions, of any line: A^2 over all of its compliance.
+/// Stiffness in slow motions, for any line: A^2 over its total compliance.
 #[test]
 fn slow_motions_meet_all_of_its_compliance() {
     for number in 0..40 {
@@ -242,8 +241,8 @@ fn slow_motions_meet_all_of_its_compliance() {
     }
 }
 
-/// In steady motion all oil moves alike, and its resistance takes R_0 A^2 v from the force, and R_0
-/// A v from the pressure.
+/// In steady motion all oil moves at one velocity, and its resistance takes R_0 A^2 v from the
+/// force, and R_0 A v from the pressure.
 #[test]
 fn steady_motion_costs_the_resistance_of_the_line() {
     for number in 0..12 {
@@ -276,9 +275,8 @@ fn steady_motion_costs_the_resistance_of_the_line() {
     }
 }
 
-/// A pull lowers its pressure, and the oil tears off at that of its vapour: the indicator is zero
-/// there.
-/// ORIGIN: analytic, F = -A (p_0 + 101,325 Pa).
+/// A pull lowers its pressure, and the oil column separates at vapour pressure: the indicator is
+/// zero there. ORIGIN: analytic, F = -A (p_0 + 101,325 Pa).
 #[test]
 fn a_pull_beyond_its_filling_is_reported() {
     let own = Transmission { piston_area: 1e-3, ..transmission(4) };
@@ -298,7 +296,7 @@ fn a_pull_beyond_its_filling_is_reported() {
         machine.indicate(&beginning.state, &beginning.inputs, &mut indicators);
         indicators[place]
     };
-    // of oil that evaporates at 0 Pa absolute
+    // oil that evaporates at 0 Pa absolute
     let tears = -1e-3 * (2e5 + 101_325.0);
     let vapour = MachineOptions::default().vapour_pressure_absolute;
     assert!((indicated(0.0) - (2e5 + 101_325.0 - vapour)).abs() < 1e-6);
@@ -324,7 +322,7 @@ fn ledgers_close() {
             check(&machine_of(Components { valve, ..parts }, &options), &motion, &start, 0.1, 5e-6);
         }
     }
-    // with lines in segments of the rig itself
+    // with the rig's lines in segments
     let parts = rig(transmission(2));
     let model = LineModel::Segments { count: 3, friction: LaminarFriction::Steady, relaxation_time: None };
     let line = DynamicLine::new(&hose_line(), &parts.fluid, 35e5, StiffeningMember::Nominal, &model).unwrap();
@@ -333,7 +331,7 @@ fn ledgers_close() {
     check(&machine_of(Components { valve, ..parts }, &options), &motion, &start, 0.1, 5e-6);
 }
 
-/// At any state, whether it comes about or not.
+/// Accounts at any state, including unreachable ones.
 #[test]
 fn what_is_stored_changes_by_what_enters_and_is_lost() {
     let mut seed = 7;
@@ -344,8 +342,8 @@ fn what_is_stored_changes_by_what_enters_and_is_lost() {
     }
 }
 
-/// Whatever moves its two ends: from rest, what has entered it is never less than what it gave
-/// back.
+/// For any motion of its two ends: from rest, the energy that has entered is never less than the
+/// energy returned.
 #[test]
 fn it_is_passive_under_random_motions_of_its_ports() {
     for number in 0..12 {
@@ -354,8 +352,8 @@ fn it_is_passive_under_random_motions_of_its_ports() {
     }
 }
 
-/// The port of the load with its force fed back: F_L/X_L of the loop, by eliminating the command
-/// from both paths.
+/// Port of the load with its force fed back: F_L/X_L of the loop, by eliminating the command from
+/// both paths.
 #[test]
 fn the_port_of_a_loop_counts_what_the_oil_holds_back() {
     use phea_dynamics::linear::{Polynomial, TransferFunction};
@@ -383,8 +381,8 @@ fn the_port_of_a_loop_counts_what_the_oil_holds_back() {
     }
 }
 
-/// Above all resonances the load meets the oil at its own piston alone, and the line says from
-/// where.
+/// Above all resonances the load meets only the oil at its own piston, and the line states the
+/// frequency limit.
 #[test]
 fn at_last_the_load_meets_the_oil_at_its_piston() {
     for number in (0..40).filter(|number| number % 5 < 2) {
@@ -403,7 +401,7 @@ fn at_last_the_load_meets_the_oil_at_its_piston() {
     }
 }
 
-/// What cannot be is refused with its place.
+/// Impossible transmissions are rejected with their path.
 #[test]
 fn impossible_transmissions_are_refused() {
     let own = Transmission {

@@ -1,5 +1,5 @@
-//! The two-pressure model against its own dual-number linearisation, and the fifth-order model
-//! against it.
+//! The two-pressure model compared with its own dual-number linearisation, and the fifth-order
+//! model compared with the two-pressure model.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -51,8 +51,8 @@ fn jacobian(
 }
 
 /// Every entry agrees to 1e-9 of itself. The chambers' dependence on the deflection is proportional
-/// to a net flow that vanishes at an equilibrium: it must be 1e-9 of what the piston's velocity
-/// does to the same pressure.
+/// to a net flow that vanishes at an equilibrium: it must be 1e-9 of the effect of the piston's
+/// velocity on that pressure.
 fn check_against_jacobian(system: &StateSpace, jacobian: &[[f64; 8]; 6]) {
     for (row, duals) in jacobian.iter().enumerate() {
         for (column, &dual) in duals.iter().enumerate() {
@@ -103,7 +103,7 @@ fn linearisation_agrees_with_dual_numbers_everywhere() {
                 let system = linearize(&parameters).unwrap();
                 let (jacobian, rest) = jacobian(&model, &state, &input);
                 check_against_jacobian(&system, &jacobian);
-                // It rests there: what is left over is rounding of far larger terms.
+                // at rest the remainder is rounding of far larger terms
                 let largest = [1e-9, 1e-3, 10.0, 10.0, 1e-12, 1e-6];
                 for (rate, bound) in rest.into_iter().zip(largest) {
                     assert!(rate.abs() < bound, "{rest:?}");
@@ -113,7 +113,7 @@ fn linearisation_agrees_with_dual_numbers_everywhere() {
     }
 }
 
-/// The equations themselves, far from rest.
+/// Equations compared directly, far from rest.
 #[test]
 fn rates_of_the_nonlinear_model() {
     let actuator = Actuator::new(components(hose_line(), StiffnessModel::ByVolume)).unwrap();
@@ -127,7 +127,7 @@ fn rates_of_the_nonlinear_model() {
     }
 }
 
-/// Run with recorded numbers the equations become data that gives the same bits.
+/// Run with recorded numbers the equations become data that give identical bits.
 #[test]
 fn recorded_rates_are_the_rates() {
     let actuator = Actuator::new(rigs()[2]).unwrap();
@@ -151,8 +151,8 @@ fn recorded_rates_are_the_rates() {
     }
 }
 
-/// A passive actuator stays passive whatever its edges, areas and position: leakage and friction
-/// only take energy.
+/// A passive actuator stays passive for any edges, areas and position: leakage and friction only
+/// absorb energy.
 #[test]
 fn open_loop_impedance_of_the_two_pressure_model_is_passive() {
     for components in rigs() {
@@ -192,12 +192,12 @@ fn null_valve_takes_the_mean_slope_of_both_directions() {
     );
     let (extending, retracting) = (of(SpoolDirection::Extending), of(SpoolDirection::Retracting));
     assert!((extending[(2, 0)] + retracting[(2, 0)] - 2.0 * duals[2][0]).abs() < 1e-12 * extending[(2, 0)]);
-    // ORIGIN: analytic, K_v3 sqrt(p_S - p_A) over K_v4 sqrt(p_A) where leakage balances
+    // ORIGIN: analytic, K_v3 sqrt(p_S - p_A) over K_v4 sqrt(p_A) if leakage balances
     let ratio = (3.2e-7 / 2.5e-7) * (2.2e-9 / 2.35e-9);
     assert!((extending[(2, 0)] / retracting[(2, 0)] / ratio - 1.0).abs() < 1e-6);
 }
 
-/// The rational form and the state space are the same system.
+/// The rational form and the state space represent one system.
 #[test]
 fn coefficients_and_state_space_respond_alike() {
     for components in rigs() {
@@ -223,8 +223,8 @@ fn coefficients_and_state_space_respond_alike() {
 }
 
 fn matched(position: f64) -> TwoPressureLinearParameters {
-    // The case of comparisons/recompute_rig.py: the hose, K_qU 5.62e-5, K_c 6.42e-13, f_v 100, K_S
-    // 2e7.
+    // the case of comparisons/recompute_rig.py: the hose, K_qU 5.62e-5, K_c 6.42e-13, f_v 100, K_S
+    // 2e7
     let valve = Servovalve {
         flow_coefficients: Edges::equal(5.62e-4 / 35e5_f64.sqrt()),
         leakage_coefficients: Edges::equal(6.42e-13 * 140e5_f64.sqrt()),
@@ -245,7 +245,7 @@ fn fifth_order_model_is_exact_at_mid_stroke_with_equal_edges() {
     let parameters = matched(0.25);
     let reduced = reduce(&parameters);
     let plant = nominal_plant();
-    // ORIGIN: analytic, the parameters of (6.7) come back
+    // ORIGIN: analytic, the parameters of (6.7) are recovered
     assert!((reduced.flow_gain / 5.62e-5 - 1.0).abs() < 1e-6);
     assert!((reduced.flow_pressure_coefficient / plant.flow_pressure_coefficient - 1.0).abs() < 1e-6);
     assert!((reduced.hydraulic_stiffness / 2.2329616e6 - 1.0).abs() < 1e-7);
@@ -268,7 +268,7 @@ fn fifth_order_model_errs_off_mid_stroke() {
     }
 }
 
-/// What the reduction promises for any cylinder: the fast and the slow ends are right.
+/// Properties of the reduction for any cylinder: the fast and the slow limits are right.
 #[test]
 fn reduction_of_an_asymmetric_actuator_keeps_both_ends() {
     let actuator = Actuator::new(rigs()[2]).unwrap();

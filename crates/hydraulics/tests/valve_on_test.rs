@@ -1,5 +1,5 @@
-//! A valve on a test bench: balance of flows, limits, and a slow spool against the equations of a
-//! fast one.
+//! A valve on a test bench: balance of flows, limits, and a slow spool compared with the equations
+//! of a fast one.
 
 use phea_hydraulics::reference_rig::valve;
 use phea_hydraulics::servovalve::{
@@ -10,7 +10,7 @@ use phea_hydraulics::servovalve::{
 
 const SUPPLY: Supply = Supply { pressure: 70e5, tank_pressure: 2e5 };
 
-/// From far below null to far above, finely where the leakage is.
+/// From far below null to far above, with fine steps over the leakage.
 fn openings() -> Vec<f64> {
     let fine = (-100..=100).map(|step| f64::from(step) * 5e-3);
     fine.chain((-20..=20).map(|step| f64::from(step) * 0.5)).collect()
@@ -28,8 +28,7 @@ fn blocked_ports_pass_on_what_they_take() {
             let found = blocked_ports(&valve, &SUPPLY, opening);
             let conductances = edge_conductances(&valve, opening);
             let edges = edge_flows(&valve, &SUPPLY, &conductances, found.pressure_a, found.pressure_b);
-            // where an edge is wide open its drop is below one rounding error of the supply
-            // pressure
+            // for a wide-open edge the drop is below one rounding error of the supply pressure
             let rounding = 1e-9 * 2.0 * 3.85e-7 * opening.abs() / 10.0 / 1e3_f64.sqrt() + 1e-20;
             assert!((edges.supply_to_a - edges.a_to_tank).abs() < rounding, "{opening} {edges:?}");
             assert!((edges.supply_to_b - edges.b_to_tank).abs() < rounding, "{opening} {edges:?}");
@@ -77,7 +76,7 @@ fn the_metered_flow_is_that_of_two_edges_in_series() {
     }
 }
 
-/// The memories driven slowly by small steps of the equations of a fast spool, and exactly.
+/// Memories driven slowly by small steps of the equations of a fast spool, and exactly.
 #[test]
 fn a_slow_spool_is_the_fast_one_at_rest() {
     let imperfection = SpoolImperfection {
@@ -108,7 +107,7 @@ fn a_slow_spool_is_the_fast_one_at_rest() {
     }
 }
 
-/// Derivatives against differences, for every coefficient and both circuits.
+/// Derivatives compared with differences, for every coefficient and both circuits.
 #[test]
 fn sensitivities_are_derivatives() {
     for leakage_model in MODELS {
@@ -165,7 +164,7 @@ fn check_sensitivities(tested: &TestedValve) {
     }
 }
 
-/// Where an edge is shut for good, derivatives exist all the same.
+/// Derivatives exist even if an edge is permanently shut.
 #[test]
 fn a_shut_edge_has_finite_derivatives() {
     let coefficients = StaticCoefficients {

@@ -1,5 +1,5 @@
-//! The linear plant with a virtual impedance, y = F_e + Z_v X_L, against the machine's own
-//! derivatives and against the force and the motion of the load by themselves.
+//! The linear plant with a virtual impedance, y = F_e + Z_v X_L, compared with the machine's own
+//! derivatives and with the separate force and motion of the load.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -15,7 +15,7 @@ use phea_hydraulics::plant::{
 
 use super::plant_in_motion::drawn;
 
-/// A spring, with a damper, with a mass, or a mass alone.
+/// Spring, with a damper, with a mass, or only a mass.
 fn impedance(number: u64) -> VirtualImpedance {
     let mut state = stream(61, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
@@ -44,8 +44,8 @@ fn check(found: Complex64, expected: Complex64, what: &str) {
     assert!(error < 1e-7, "{what}: {error}");
 }
 
-/// Behind lines in motion, and with the velocity of the load fed forward late: what the machine's
-/// derivatives make of force and motion.
+/// Behind dynamic lines, and with the velocity of the load fed forward with a delay: force and
+/// motion from the machine's derivatives.
 #[test]
 fn the_output_is_that_of_the_machine() {
     for number in 0..36 {
@@ -71,8 +71,8 @@ fn the_output_is_that_of_the_machine() {
     }
 }
 
-/// The quotients of polynomials are the force and the motion of the load, with a series element
-/// too; the rate stays that of the load.
+/// Quotients of polynomials agree with the force and the motion of the load, with a series element
+/// too; the rate remains that of the load.
 #[test]
 fn the_quotients_are_force_and_motion() {
     for number in 0..48 {
@@ -105,7 +105,7 @@ fn the_quotients_are_force_and_motion() {
     }
 }
 
-/// What encloses the output between two frequencies, and what bounds it above one, holds.
+/// Enclosures of the output between two frequencies, and bounds above one, are valid.
 #[test]
 fn enclosure_and_roll_off_hold() {
     let mut bounded = 0;

@@ -1,4 +1,4 @@
-//! A machine under its controller.
+//! Machine under its controller.
 
 use std::ops::Range;
 
@@ -9,54 +9,54 @@ use phea_dynamics::simulation::{
 };
 use phea_hydraulics::machine::{InitialCondition, Machine};
 
-/// The observer of a run.
+/// Observer of a run.
 pub type Watcher<'a> = Box<dyn Observer + 'a>;
 
-/// A machine as it appears to the controller, with its source of commands.
+/// Machine as it appears to the controller, with its source of commands.
 pub type Commanded<S = f64> = CommandedPlant<Sensed<Machine<S>>>;
 
-/// A machine under its controller.
+/// Machine under its controller.
 #[derive(Clone, Debug)]
 pub enum Control {
-    /// The controller acts continuously.
+    /// Continuous controller.
     Continuous(Box<Commanded>),
-    /// It acts once a sample.
+    /// Controller that acts once per sample.
     Sampled(Box<Sampled>),
-    /// Without a controller: a stated command goes to the valve.
+    /// Machine without a controller: a stated command is applied to the valve.
     Open(Box<Commanded>),
 }
 
-/// A machine whose command is held between samples, and the computer that commands it.
+/// Machine whose command is held between samples, and the computer that commands it.
 #[derive(Clone, Debug)]
 pub struct Sampled {
-    /// The machine with its hold.
+    /// Machine with its hold.
     pub held: Commanded,
-    /// G and F in z.
+    /// Controller with G and F in z.
     pub controller: SampledController,
-    /// From a sample until its command takes effect, s.
+    /// Delay from a sample until its command takes effect, s.
     pub delay_s: f64,
     /// Largest magnitude of the command, V.
     pub command_limit: f64,
-    /// From the load's velocity to the command, V s/m.
+    /// Feed-forward gain from the load's velocity to the command, V s/m.
     pub feed_forward: f64,
-    /// Converter of the command, if it rounds.
+    /// Converter of the command, if it is quantised.
     pub command_converter: Option<Converter>,
-    /// Converter of the measurement, if it rounds.
+    /// Converter of the measurement, if it is quantised.
     pub measurement_converter: Option<Converter>,
-    /// Root mean square of the noise, N.
+    /// Root mean square of the measurement noise, N.
     pub noise: f64,
     /// Root mean square of the noise of the velocity that is fed forward, m/s.
     pub velocity_noise: f64,
     /// Root mean square of the noise of the pressure signal that is fed back, Pa.
     pub pressure_noise: f64,
-    /// Step to which that velocity is rounded, m/s; zero: not at all.
+    /// Resolution of that velocity, m/s; zero without rounding.
     pub velocity_resolution: f64,
     /// Seed of the random numbers of the noise.
     pub seed: u64,
 }
 
 impl Control {
-    /// The machine with its source of commands, which is a hold between samples.
+    /// Machine with its source of commands, which is a hold between samples.
     pub fn commanded(&self) -> &Commanded {
         match self {
             Control::Continuous(commanded) | Control::Open(commanded) => commanded,
@@ -71,12 +71,12 @@ impl Control {
         }
     }
 
-    /// The plant as it appears to the controller.
+    /// Plant as it appears to the controller.
     pub fn sensed(&self) -> &Sensed<Machine> {
         self.commanded().plant()
     }
 
-    /// The same loop without its virtual impedance, whose states it then lacks.
+    /// Loop without its virtual impedance and the states of that impedance.
     #[must_use]
     pub fn without_impedance(mut self) -> Control {
         let sensed = self.commanded_mut().plant_mut();
@@ -84,15 +84,15 @@ impl Control {
         self
     }
 
-    /// The states of its virtual impedance among those of the loop; none without one.
+    /// Indices of the states of its virtual impedance among those of the loop; empty without one.
     pub fn impedance_states(&self) -> Range<usize> {
         let sensed = self.sensed();
         let end = Plant::<f64>::states(sensed);
         end - sensed.impedance_states()..end
     }
 
-    /// Makes the position of the load in a state of the loop the rest position of its virtual
-    /// impedance, with the load's ground there, in m.
+    /// Sets the rest position of its virtual impedance to the position of the load in a state of
+    /// the loop, with the load's ground there, in m.
     pub fn rest_at(&self, state: &mut [f64], ground_m: f64) {
         let sensed = self.sensed();
         let mut inputs = vec![0.0; Plant::<f64>::inputs(sensed)];
@@ -102,7 +102,7 @@ impl Control {
         sensed.rest_at(state, &inputs);
     }
 
-    /// The same around another machine.
+    /// Control around another machine.
     #[must_use]
     pub fn around(mut self, machine: Machine) -> Control {
         *self.commanded_mut().plant_mut().plant_mut() = machine;
@@ -136,12 +136,12 @@ impl Control {
         self.commanded().rates(state, inputs, rates);
     }
 
-    /// What is sent into each delay.
+    /// Waves sent into the delays.
     pub fn outgoing(&self, state: &[f64], inputs: &[f64], waves: &mut [f64]) {
         self.commanded().outgoing(state, inputs, waves);
     }
 
-    /// Indicators in a state: those of the machine are positive while nothing is wrong, that of the
+    /// Indicators in a state: those of the machine are positive in ordinary operation, that of the
     /// command's limit while it is reached.
     pub fn indicators(&self, state: &[f64], inputs: &[f64]) -> Vec<f64> {
         let system = self.commanded();
@@ -150,8 +150,8 @@ impl Control {
         indicators
     }
 
-    /// The waves in transit while the machine is in its initial state: those of its lines, and
-    /// those between controller and sensor. `first` are the inputs before the machine's.
+    /// Waves in transit while the machine is in its initial state: those of its lines, and those
+    /// between controller and sensor. `first` are the inputs before the machine's.
     pub fn under_way(&self, state: &[f64], first: &[f64], beginning: &InitialCondition) -> Vec<f64> {
         let system = self.commanded();
         let mut inputs = [first, &beginning.all_inputs()].concat();
@@ -167,8 +167,8 @@ impl Control {
         inputs.split_off(known - lines)
     }
 
-    /// Simulates it under an input schedule; `watch` is called with the simulated time after each
-    /// step and stops it by returning false.
+    /// Simulates the loop under an input schedule; `watch` is called with the simulated time after
+    /// each step and stops the simulation by returning false.
     ///
     /// # Errors
     /// [`SimulationError`] when start or input schedule do not fit the machine.

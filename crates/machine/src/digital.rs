@@ -1,4 +1,4 @@
-//! The controller as its computer runs it: converters, noise, samples.
+//! Controller as executed by its computer: converters, noise, samples.
 
 use std::cell::RefCell;
 
@@ -10,38 +10,38 @@ use super::control::Sampled;
 use super::frozen::{FrozenSample, least_stable};
 use super::samples::{ControllerSample, ControllerSamples};
 
-/// The state of a sampled controller.
+/// State of a sampled controller.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DigitalMemory {
-    /// Its last command, V.
+    /// Last command, V.
     pub command_v: f64,
     /// States of its sections.
     pub memories: Vec<f64>,
-    /// The position in its random numbers.
+    /// Position in its random numbers.
     pub random: u64,
 }
 
-/// The initial state of a sampled controller.
+/// Initial state of a sampled controller.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Waking {
-    /// At rest.
+    /// State of rest.
     AtRest,
-    /// Holding a command while what it reads is constant.
+    /// State that holds a command while its inputs are constant.
     Holding {
-        /// What it reads.
+        /// Inputs of the controller.
         read: ControllerInput,
-        /// V.
+        /// Command, V.
         command_v: f64,
     },
-    /// Where another run ended.
+    /// State at the end of another run.
     Resumed(DigitalMemory),
 }
 
-/// A sampled controller at work.
+/// Sampled controller in operation.
 ///
 /// ```text
-/// m = AD(y + n)                                    y the sensor's, n white noise, AD rounds and ends at its range
-/// v = q round((v_m + n_v)/q)                       v_m the velocity sensor's, n_v white noise, q its resolution
+/// m = AD(y + n)                                    y the sensor output, n white noise, AD rounds and ends at its range
+/// v = q round((v_m + n_v)/q)                       v_m the velocity sensor output, n_v white noise, q its resolution
 /// p = p_m + n_p                                    p_m the pressure signal, n_p white noise
 /// u = DA(limit(G (F r - m) + k v - H p))           k v the feed-forward, H p the pressure feedback, DA rounds
 /// ```
@@ -49,17 +49,17 @@ pub struct Digital<'a> {
     sampled: &'a Sampled,
     state: ControllerState,
     random: u64,
-    /// Before its first command takes effect, V.
+    /// Command held before the first one takes effect, V.
     held: f64,
-    /// The growth of the loop from sample to sample.
+    /// Growth of the loop from sample to sample.
     watch: FrozenWatch,
     log: &'a RefCell<ControllerSamples>,
-    /// Where it stores its state.
+    /// Destination of its stored state.
     memory: Option<&'a RefCell<DigitalMemory>>,
 }
 
 impl<'a> Digital<'a> {
-    /// A controller with this initial state.
+    /// Controller with this initial state.
     pub fn new(sampled: &'a Sampled, waking: &Waking, log: &'a RefCell<ControllerSamples>) -> Digital<'a> {
         let controller = &sampled.controller;
         let (state, held, random) = match waking {
@@ -83,7 +83,7 @@ impl<'a> Digital<'a> {
 }
 
 impl Digital<'_> {
-    /// The velocity of the load as it is fed forward, m/s.
+    /// Velocity of the load as it is fed forward, m/s.
     fn velocity(&mut self, state: &[f64], inputs: &[f64]) -> f64 {
         let Sampled { held, velocity_noise, velocity_resolution, .. } = self.sampled;
         let states: usize = Plant::<f64>::states(held.plant());

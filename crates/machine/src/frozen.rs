@@ -1,23 +1,23 @@
-//! The loop from sample to sample, frozen at a sample.
+//! Loop from sample to sample, linearised at a sample.
 
 use phea_dynamics::controller::ControllerState;
 use phea_dynamics::simulation::{Frozen, FrozenMode, Plant, SampledLaw};
 
 use super::control::Sampled;
 
-/// A sample at which the loop is frozen.
+/// Sample at which the loop is linearised.
 pub(crate) struct FrozenSample<'a> {
     /// States of the plant.
     pub(crate) state: &'a [f64],
-    /// Its inputs.
+    /// Inputs of the plant.
     pub(crate) inputs: &'a [f64],
-    /// The state of the controller before.
+    /// State of the controller before the sample.
     pub(crate) memory: ControllerState,
     /// Filtered reference and measurement in N, and inner signal in Pa.
     pub(crate) read: [f64; 3],
 }
 
-/// The least stable mode of the loop.
+/// Least stable mode of the loop.
 pub(crate) fn least_stable(sampled: &Sampled, sample: &FrozenSample<'_>) -> Option<FrozenMode> {
     let Sampled { held, controller, feed_forward, delay_s, .. } = sampled;
     let FrozenSample { state, inputs, memory, read } = sample;

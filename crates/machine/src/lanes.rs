@@ -1,4 +1,5 @@
-//! Many machines, one after the other or a machine in each lane, each with its own time and step.
+//! Simulation of many machines, one after the other or one in each lane, each with its own time and
+//! step.
 
 use phea_dynamics::controller::{Controller, RateSensor, VirtualImpedance};
 use phea_dynamics::linear::{LinearError, TransferFunction};
@@ -10,29 +11,29 @@ use phea_hydraulics::machine::{Machine, MachineError};
 
 use super::control::{Commanded, Control, Watcher};
 
-/// The source of machines, and the destination of their outcomes.
+/// Source of machines, and destination of their outcomes.
 pub trait Fleet<'a> {
-    /// The next machine, put into its lane, with its task; `None` when there are no more.
+    /// Next machine, put into its lane, with its task; `None` when there are no more.
     fn next(
         &mut self,
         lane: usize,
         put: &mut dyn FnMut(&Machine) -> Result<(), MachineError>,
     ) -> Option<Task<'a, Watcher<'a>>>;
 
-    /// Takes the outcome of the machine in this lane.
+    /// Receives the outcome of the machine in this lane.
     fn done(&mut self, lane: usize, outcome: Outcome);
 
-    /// Called once per step: false ends everything.
+    /// Called once per step; return `false` to cancel.
     fn goes_on(&mut self) -> bool;
 }
 
-/// Simulates machines one by one until none are left. Simulations in lanes must agree with it.
+/// Simulates machines one by one until none remain. Simulations in lanes must agree with it.
 ///
 /// # Errors
 /// [`SimulationError`] when a task does not fit its machine.
 ///
 /// # Example
-/// Two machines that begin at rest stay at rest under the command that holds them.
+/// Two machines that begin at rest stay at rest under the command that holds them:
 /// ```
 /// # use phea_dynamics::linear::TransferFunction;
 /// use phea_dynamics::simulation::{
@@ -101,22 +102,22 @@ pub fn one_by_one<'a>(
     drive::<f64, _, _>(&mut control.commanded().clone(), &mut Queued(fleet), settings)
 }
 
-/// The motion of the load in a loop of its force.
+/// Motion of the load in a loop of its force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FedMotion {
-    /// From the shown velocity to the command, V s/m; zero where nothing is fed forward.
+    /// Gain from the measured velocity to the command, V s/m; zero without feed-forward.
     pub gain: f64,
-    /// What shows the velocity.
+    /// Sensor of the velocity.
     pub sensor: RateSensor,
-    /// What the position adds to the measured force.
+    /// Contribution of the position to the measured force.
     pub impedance: VirtualImpedance,
 }
 
-/// A machine in each lane, under one continuous controller or a stated command.
+/// Parallel machines, one in each lane, under one continuous controller or a stated command.
 pub struct Lanewise(Box<Commanded<Lanes>>);
 
 impl Lanewise {
-    /// Whether this processor has the vector instructions that lanes need; [`one_by_one`] gives the
+    /// True if this processor has the vector instructions that lanes need; [`one_by_one`] gives the
     /// same bits without them.
     pub fn is_available() -> bool {
         can_drive::<Lanes>()
@@ -144,10 +145,10 @@ impl Lanewise {
         })))
     }
 
-    /// Simulates machines until none are left.
+    /// Simulates machines until none remain.
     ///
     /// # Errors
-    /// As [`one_by_one`].
+    /// Errors of [`one_by_one`].
     pub fn in_lanes<'a>(
         &mut self,
         fleet: &mut dyn Fleet<'a>,

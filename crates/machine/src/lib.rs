@@ -1,5 +1,5 @@
-//! The nonlinear model with its source of commands: a continuous controller, a computer that
-//! samples, or a stated command.
+//! Nonlinear model with its source of commands: a continuous controller, a computer that samples,
+//! or a stated command.
 //!
 //! ```text
 //! Machine (hydraulics) -> Sensed -> Control { Continuous | Sampled | Open }

@@ -1,4 +1,4 @@
-//! The equilibrium of a loop: all simulated rates are zero.
+//! Equilibrium of a loop: all simulated rates are zero.
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{EquilibriumError, Plant, System, equilibrium};
@@ -6,7 +6,7 @@ use phea_hydraulics::machine::InitialCondition;
 
 use super::control::{Commanded, Control};
 
-/// The constant inputs of a loop in equilibrium.
+/// Constant inputs of a loop in equilibrium.
 #[derive(Clone, Copy, Debug)]
 pub struct HeldInputs {
     /// Reference, N.
@@ -15,35 +15,35 @@ pub struct HeldInputs {
     pub command_v: f64,
     /// External force on the load, N, if the machine has that input.
     pub external_n: f64,
-    /// By how much the setting of accumulators has moved, if the machine has that input.
+    /// Change of the setting of accumulators, if the machine has that input.
     pub setting_change: f64,
 }
 
-/// A loop in equilibrium.
+/// Loop in equilibrium.
 #[derive(Clone, Debug)]
 pub struct Rest {
     /// States of the loop, and the waves in transit.
     pub start: Vec<f64>,
-    /// The measurement of the controller, N.
+    /// Measurement of the controller, N.
     pub measured_n: f64,
-    /// The pressure signal that it may feed back, Pa.
+    /// Pressure signal that it may feed back, Pa.
     pub inner_pa: f64,
-    /// The command of the controller, V.
+    /// Command of the controller, V.
     pub command_v: f64,
     /// Largest magnitude of the command, V.
     pub limit_v: f64,
 }
 
-/// The equilibrium of a loop under constant inputs, near a guess of its states; `beginning` is the
-/// state of its machine there. The load is then where its virtual impedance rests, if there is one,
-/// which [`Control::rest_at`] states.
+/// Equilibrium of a loop under constant inputs, near a guess of its states; `beginning` is the
+/// state of its machine there. The load is then at the rest position of its virtual impedance, if
+/// there is one, which [`Control::rest_at`] sets.
 ///
 /// # Errors
-/// [`EquilibriumError`] where none is found.
+/// [`EquilibriumError`] if none is found.
 ///
 /// # Example
-/// A controller that integrates lets the loop rest where the force is its reference, 2 kN, instead
-/// of the 3 kN of the guess.
+/// With an integrating controller the loop rests at a force equal to its reference, 2 kN, instead
+/// of the 3 kN of the guess:
 /// ```
 /// # use phea_dynamics::controller::{Compensator, Controller, Element};
 /// # use phea_dynamics::linear::TransferFunction;
@@ -120,19 +120,19 @@ pub fn at_rest(
     })
 }
 
-/// A machine whose command is held by a controller in steady state.
+/// Machine whose command is held by a controller in steady state.
 ///
 /// ```text
-/// 0 = F(1) r - m                             where the controller integrates
-/// 0 = G(1) (F(1) r - m) - H(1) p - u         where it does not
+/// 0 = F(1) r - m                             if the controller integrates
+/// 0 = G(1) (F(1) r - m) - H(1) p - u         if it does not
 /// ```
 ///
 /// Its last state is the command u.
 struct RestingMachine<'a> {
     held: &'a Commanded,
-    /// F(1) and G(1).
+    /// Steady gains F(1) and G(1).
     gains: [Option<f64>; 2],
-    /// H(1) of the pressures that are fed back.
+    /// Steady gain H(1) of the pressures that are fed back.
     inner_gain: f64,
 }
 

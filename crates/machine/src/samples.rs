@@ -1,34 +1,34 @@
-//! The record of a sampled controller during a run.
+//! Record of a sampled controller during a run.
 
 use phea_dynamics::simulation::Amplification;
 
-/// The events of one sample.
+/// Record of one sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ControllerSample {
-    /// s
+    /// Time, s.
     pub time_s: f64,
-    /// Behind the prefilter, N.
+    /// Reference after the prefilter, N.
     pub filtered_reference_n: f64,
-    /// The output of the computer, V.
+    /// Output of the computer, V.
     pub command_v: f64,
-    /// The same before limit and rounding, V.
+    /// Command before limit and rounding, V.
     pub unlimited_v: f64,
-    /// Part of the command that the integral part of G holds, V.
+    /// Part of the command held by the integral part of G, V.
     pub integral_v: f64,
-    /// The measurement that the computer read, N.
+    /// Measurement read by the computer, N.
     pub measurement_n: f64,
-    /// Whether its limit held the command.
+    /// True if the limit acted on the command.
     pub limited: bool,
 }
 
-/// The record of a sampled controller during a run.
+/// Record of a sampled controller during a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ControllerSamples {
-    /// The last one.
+    /// Last sample.
     pub last: Option<ControllerSample>,
-    /// When the command reached its limit (`true`) or left it, s.
+    /// Times at which the command reached its limit (`true`) or left it, s.
     pub limits: Vec<(f64, bool)>,
-    /// What grew most from sample to sample.
+    /// Largest amplification from sample to sample.
     pub amplification: Option<Amplification>,
 }
 

@@ -1,5 +1,5 @@
-//! A machine that is excited: by its exact derivatives, and by sines until its response has
-//! settled.
+//! Frequency response of a machine: from its exact derivatives, and from simulated sines until the
+//! response has settled.
 
 use num_complex::Complex64;
 use phea_dynamics::scalar::Dual;
@@ -11,17 +11,17 @@ use phea_hydraulics::machine::Machine;
 
 use super::control::Control;
 
-/// The excited machine, and its initial state.
+/// Excited machine, and its initial state.
 pub struct Shaken<'a> {
     /// States at the start, followed by the waves in transit.
     pub start: &'a [f64],
-    /// What drives it.
+    /// Inputs of the machine.
     pub inputs: Vec<Input>,
-    /// The computer that commands it, if there is one.
+    /// Computer that commands it, if there is one.
     pub sampler: Option<Box<dyn Sampler + 'a>>,
-    /// How exactly.
+    /// Accuracy of the simulation.
     pub settings: SimulationSettings,
-    /// For how long.
+    /// Duration of the simulation.
     pub plan: SinePlan,
 }
 
@@ -42,7 +42,7 @@ impl Control {
     }
 
     /// Amplitudes of the states for a sine of amplitude one at the first input, by exact
-    /// derivatives; `None` where they do not form a linear system.
+    /// derivatives; `None` if they do not form a linear system.
     pub fn orbit(&self, state: &[f64], inputs: &[f64], frequency_rad_per_s: f64) -> Option<Vec<Complex64>> {
         let amplitude = [Complex64::ONE];
         small_signal(self.commanded(), state, inputs, &amplitude, frequency_rad_per_s)
@@ -53,8 +53,8 @@ impl Control {
 /// states.
 ///
 /// # Example
-/// At rest the machine pushes with the force of its operating point; without a progressive spring,
-/// an amplitude j times as large as its state pushes with j times that force.
+/// At rest the force is that of the operating point; without a progressive spring, an amplitude j
+/// times its state gives j times that force.
 /// ```
 /// # use num_complex::Complex64;
 /// # use phea_dynamics::portable::magnitude;
@@ -80,8 +80,8 @@ pub fn force(machine: &Machine, state: &[f64]) -> f64 {
     state.get(..own).map_or(f64::NAN, |state| Plant::<f64>::measurement(machine, state, &[]))
 }
 
-/// Complex amplitude of the force for small complex amplitudes of the states about a rest; NaN for
-/// fewer states.
+/// Complex amplitude of the force for small complex amplitudes of the states about a state of rest;
+/// NaN for fewer states.
 ///
 /// ```text
 /// F^ = (dF/dy at y_0) y^

@@ -1,4 +1,4 @@
-//! The machine in motion, by the methods that are compiled for it here.
+//! The machine in motion, by the methods compiled for it in this crate.
 #![cfg(test)]
 
 mod driven;

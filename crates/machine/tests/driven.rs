@@ -1,4 +1,4 @@
-//! A machine without a controller over an input schedule, with all of its states kept.
+//! Machine without a controller under an input schedule, with all of its states recorded.
 
 #![allow(clippy::unwrap_used, reason = "a helper of tests")]
 
@@ -41,8 +41,8 @@ impl Observer for Recorder<'_> {
     }
 }
 
-/// The machine from a state, followed by the waves in transit, under a command in V, its ground
-/// being moved.
+/// Simulated machine from a state, followed by the waves in transit, under a command in V, with its
+/// ground moved.
 pub(crate) fn driven(
     machine: Machine,
     start: Vec<f64>,

@@ -1,5 +1,5 @@
-//! The machine behind lines with dynamics of their own: their limits, and each against the other,
-//! by the method that drives everything.
+//! The machine behind dynamic lines: their limits, and comparison with each other, by the
+//! production method.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -64,7 +64,7 @@ fn largest_difference(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// A capacity without segments behind the valve is the lumped line, whatever the stiffness model of
+/// A capacity without segments behind the valve equals the lumped line, for any stiffness model of
 /// the chamber.
 #[test]
 fn one_capacity_is_the_lumped_line() {
@@ -79,7 +79,7 @@ fn one_capacity_is_the_lumped_line() {
     assert_eq!(lumped.ledger(&state, &[0.31, 0.01]), capacity.ledger(&state, &[0.31, 0.01]));
 }
 
-/// Behind a slow motion every line is its compliance; behind a fast one they part.
+/// In slow motion every line acts as its compliance; in fast motion they differ.
 #[test]
 fn slow_motions_see_the_lumped_line() {
     let compare = |line: DynamicLine, motion_s: f64| {
@@ -95,8 +95,8 @@ fn slow_motions_see_the_lumped_line() {
     }
 }
 
-/// More segments come nearer to the wave that travels, the order of the error is that of their
-/// length squared.
+/// More segments approach the travelling wave; the error is proportional to the square of their
+/// length.
 #[test]
 fn segments_become_a_transmission_line() {
     let travelling = forces(Some(waves()), 0.02, 0.05);
@@ -105,7 +105,7 @@ fn segments_become_a_transmission_line() {
     assert!(errors[1] < 0.6 * errors[0] && errors[2] < 0.02 * 4e3, "{errors:?}");
 }
 
-/// A pulse at the valve is not felt before its wave has arrived.
+/// A pulse at the valve has no effect before its wave has arrived.
 #[test]
 fn nothing_is_felt_before_the_wave_arrives() {
     let machine = machine(Some(waves()));
@@ -128,7 +128,7 @@ fn nothing_is_felt_before_the_wave_arrives() {
     assert!(machine.measurement(last, &rest.all_inputs()) > 10.0);
 }
 
-/// Lines of any kind of hose keep a steady motion, the drop of pressure along them included.
+/// Lines of any kind of hose preserve a steady motion, including the pressure drop along them.
 #[test]
 fn steady_motions_stay() {
     let line = Line::Hose { hose: hose(), length: 3.0 };

@@ -1,5 +1,5 @@
-//! Machines driven hard by the method that drives everything: they end where they should, or state
-//! why not.
+//! Machines under extreme inputs, by the production method: they end where they should, or report
+//! the reason.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -18,7 +18,8 @@ use phea_hydraulics::stiffness::StiffnessModel;
 
 use crate::driven::{Driven, driven};
 
-/// The machine over a course; its ground is to start where the start says that it lies.
+/// Simulates the machine under an input schedule; its ground starts at the position stated by the
+/// start.
 fn drive(
     machine: Machine,
     start: &StartValues,
@@ -50,12 +51,12 @@ fn happened(result: &Driven, name: &str) -> bool {
     result.outcome.events.iter().any(|event| INDICATORS[event.indicator] == name && !event.rising)
 }
 
-/// Ground so that the load of a prescribed motion starts where the piston does.
+/// Ground at which the load of a prescribed motion starts at the piston position.
 fn at(position: f64) -> StartValues {
     StartValues { position, pressure_a: 30e5, pressure_b: 30e5, ..StartValues::default() }
 }
 
-/// With end stops.
+/// Hose rig with end stops.
 fn hose_rig() -> Components {
     let contact = Contact { stiffness: 1e8, relative_damping: 0.5 };
     stopped(components(hose_line(), StiffnessModel::ByVolume), contact)
@@ -65,7 +66,7 @@ fn free_load() -> LoadModel {
     LoadModel::SpringMassDamper { mass: 5.0, stiffness: 0.0, damping: 300.0 }
 }
 
-/// Shut for half a minute, the pressures settle where leakage balances and nothing else happens.
+/// Shut for half a minute, the pressures settle where leakage balances, without any other motion.
 #[test]
 fn a_shut_valve_settles() {
     let machine = machine_of(benchmark_components(), &MachineOptions::default());
@@ -80,7 +81,7 @@ fn a_shut_valve_settles() {
     assert!((before - last).abs() < 1e-4 * last && result.outcome.work.steps < 2000);
 }
 
-/// Into the end stop at full command: held there by the whole supply, reported, and back again.
+/// Into the end stop at full command: held there by the whole supply, reported, and back.
 #[test]
 fn a_piston_meets_its_end_stops() {
     let options = MachineOptions { load: free_load(), ..MachineOptions::default() };
@@ -123,7 +124,7 @@ fn violent_loads_are_survived() {
     assert!(happened(&result, "cavitation_a") && happened(&result, "cavitation_b"));
 }
 
-/// A pump that gives nothing, and a tank above the chambers: oil flows back, the loss is reported.
+/// A pump without flow, and a tank above the chambers: oil flows back, the loss is reported.
 #[test]
 fn lost_supplies_and_reversed_pressures_are_no_error() {
     let unit = PumpLimited {
@@ -155,8 +156,8 @@ fn lost_supplies_and_reversed_pressures_are_no_error() {
     assert!(taken[0] < 0.0 && taken[taken.len() - 1] > 0.0);
 }
 
-/// A wall that is met at speed pushes and never pulls, with every kind of friction and every
-/// imperfection of the spool.
+/// A wall hit at speed pushes and never pulls, with every kind of friction and every imperfection
+/// of the spool.
 #[test]
 fn walls_are_met_with_every_friction() {
     let Friction::LuGre(lugre) = benchmark_components().friction else { unreachable!() };

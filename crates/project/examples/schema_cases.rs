@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 const MUTATIONS: usize = 4000;
 
-/// What a value may be replaced by.
+/// Replacements of a value.
 const VALUES: &[&str] = &[
     "1",
     "0.5",
@@ -60,7 +60,7 @@ impl Sequence {
     }
 }
 
-/// What the reader says of a text.
+/// Findings of the reader for a text.
 fn case(name: &str, text: &str) -> Value {
     let found = read(&Memory::default().with("project.toml", text), "project.toml", &[], &[]);
     let errors: Vec<String> = match &found {

@@ -1,4 +1,4 @@
-//! `[line.accumulator.adjustment]`: an accumulator that is adjusted in operation.
+//! Table `[line.accumulator.adjustment]`: an accumulator that is adjusted in operation.
 
 use super::DeclaredActuator;
 use super::cross_port::DeclaredOrifice;
@@ -6,43 +6,43 @@ use super::key::{key, plain};
 use super::visitor::{Variants, Visitor};
 use phea_quantity::{PRESSURE, RATIO, VOLUME};
 
-/// What of an accumulator is adjusted, by a setting from 0 to 1.
+/// Adjusted part of an accumulator, with a setting from 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DeclaredAdjustment {
-    /// What the setting moves.
+    /// Part that the setting moves.
     pub kind: AdjustmentKind,
-    /// Its value at rest.
+    /// Value at rest.
     pub setting: f64,
 }
 
-/// What a setting moves.
+/// Part that a setting moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AdjustmentKind {
-    /// Gas is added and taken: the declared accumulator is that at setting 0.
+    /// Gas that is added and removed: the declared accumulator is that at setting 0.
     Gas(GasAtOne),
-    /// A valve between chamber and gas: shut at setting 0.
+    /// Valve between chamber and gas: shut at setting 0.
     Valve(DeclaredGasValve),
 }
 
-/// The gas at setting 1, where it is not that of setting 0.
+/// Gas at setting 1, if different from setting 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GasAtOne {
-    /// m³, at its precharge.
+    /// Gas volume at its precharge, m³.
     pub gas_volume: Option<f64>,
-    /// Pa, gauge.
+    /// Precharge pressure, Pa gauge.
     pub precharge_pressure: Option<f64>,
 }
 
-/// A valve between chamber and gas.
+/// Valve between chamber and gas.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DeclaredGasValve {
-    /// Wide open.
+    /// Orifice of the fully open valve.
     pub orifice: DeclaredOrifice,
-    /// m³, of the oil between valve and gas; absent: a hundredth of the gas volume.
+    /// Volume of the oil between valve and gas, m³; if absent, a hundredth of the gas volume.
     pub dead_volume: Option<f64>,
 }
 
-/// Share of the gas volume that the oil between valve and gas has where it is not stated.
+/// Default ratio of the oil volume between valve and gas to the gas volume.
 const DEAD_SHARE: f64 = 0.01;
 
 impl Default for AdjustmentKind {
@@ -94,7 +94,7 @@ impl DeclaredAdjustment {
         v.quantity(k.at_least(0.0).at_most(1.0).or(0.0), &mut self.setting);
     }
 
-    /// Its valve, if it is one.
+    /// Valve of the adjustment, if it has one.
     pub fn valve(&self) -> Option<&DeclaredGasValve> {
         match &self.kind {
             AdjustmentKind::Valve(valve) => Some(valve),
@@ -104,14 +104,14 @@ impl DeclaredAdjustment {
 }
 
 impl DeclaredGasValve {
-    /// m³, of the oil between the valve and this gas.
+    /// Volume of the oil between the valve and this gas, m³.
     pub fn dead_volume(&self, gas_volume: f64) -> f64 {
         self.dead_volume.unwrap_or(DEAD_SHARE * gas_volume)
     }
 }
 
 impl DeclaredActuator {
-    /// The adjustments of the accumulators at chambers A and B.
+    /// Adjustments of the accumulators at chambers A and B.
     pub fn adjustments(&self) -> [Option<DeclaredAdjustment>; 2] {
         [&self.line.a, &self.line.b].map(|line| line.accumulator.as_ref()?.adjustment)
     }

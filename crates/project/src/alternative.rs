@@ -1,21 +1,21 @@
-//! `[[alternative]]`: the same project with other values, to be compared with it.
+//! Table `[[alternative]]`: the project with other values, for comparison.
 
 use super::key::plain;
 use super::visitor::Visitor;
 
-/// The name under which the project itself is judged among its alternatives.
+/// Name under which the project itself is judged among its alternatives.
 pub const AS_DECLARED: &str = "as declared";
 
-/// Settings of the project under a name.
+/// Named settings of the project.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Alternative {
-    /// Its name; those of one project differ.
+    /// Name, unique within a project.
     pub name: String,
-    /// What it sets, in file order: the path, as `--set` takes it, and the value in TOML.
+    /// Settings in file order: the path, as for `--set`, and the value in TOML.
     pub set: Vec<(String, String)>,
-    /// Whether its hose is sized by `[sizing]` before anything is designed.
+    /// True if `[sizing]` sizes its hose before the design.
     pub size: bool,
-    /// Whether the ranges of `[uncertainty]` move with the parameters of the linear model that it
+    /// True if the ranges of `[uncertainty]` move with the parameters of the linear model that it
     /// changes.
     pub recentre: bool,
 }
@@ -42,7 +42,7 @@ impl Alternative {
         v.flag(k, &mut self.recentre);
     }
 
-    /// What it sets, as `--set` takes it.
+    /// Settings, as for `--set`.
     pub fn settings(&self) -> impl Iterator<Item = String> {
         self.set.iter().map(|(path, value)| format!("{path}={value}"))
     }

@@ -1,4 +1,4 @@
-//! `[bench]`: the virtual tests of the servovalve, and of the cylinder's friction.
+//! Table `[bench]`: the virtual tests of the servovalve, and of the cylinder's friction.
 
 mod friction;
 
@@ -12,109 +12,109 @@ use super::key::{Key, key, plain};
 use super::visitor::Visitor;
 use phea_quantity::{FLOW, PRESSURE, RATIO, TEMPERATURE, TEMPERATURE_COEFFICIENT, TIME, VOLTAGE};
 
-/// The form of the command over a cycle.
+/// Waveform of the command over a cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BenchWaveform {
-    /// A sine from zero.
+    /// Sine from zero.
     #[default]
     Sine,
-    /// A triangle from zero.
+    /// Triangle from zero.
     Triangle,
 }
 
-/// The tests of the servovalve, and their instruments.
+/// Tests of the servovalve, and their instruments.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bench {
-    /// s, of one test.
+    /// Duration of one test, s.
     pub duration: f64,
     /// Cycles of the command in a test.
     pub cycles: u32,
-    /// The form of the command over a cycle.
+    /// Waveform of the command over a cycle.
     pub waveform: BenchWaveform,
-    /// Amplitude of the command in the leakage and metering tests, as a share of the nominal
+    /// Amplitude of the command in the leakage and metering tests, as a fraction of the nominal
     /// voltage.
     pub amplitude: f64,
-    /// The same for the pressure gain test.
+    /// Amplitude for the pressure gain test.
     pub pressure_gain_amplitude: f64,
-    /// s, between two rows.
+    /// Time between two rows, s.
     pub sample_time: f64,
-    /// m³/s, of the pump; absent: that of a pump-limited supply, and no limit otherwise.
+    /// Flow of the pump, m³/s; if absent, that of a pump-limited supply, otherwise unlimited.
     pub pump_flow: Option<f64>,
     /// Meter of the leakage.
     pub leak_meter: FlowMeter,
     /// Meter between the ports.
     pub flow_meter: FlowMeter,
-    /// A second one for small flows, with a metering test of its own.
+    /// Second meter for small flows, with a metering test of its own.
     pub low_flow_meter: Option<LowFlowMeter>,
-    /// The test of hysteresis and threshold, where it is wanted.
+    /// Test of hysteresis and threshold, if requested.
     pub reversals: Option<Reversals>,
-    /// How the oil warms during each test; absent: it does not.
+    /// Temperature of the oil during each test; constant if absent.
     pub oil_temperature: Option<OilTemperature>,
-    /// The tests of a line, where they are wanted.
+    /// Tests of a line, if requested.
     pub line: Option<LineBench>,
-    /// The runs of the cylinder for its friction, where they are wanted.
+    /// Runs of the cylinder for its friction, if requested.
     pub friction: Option<FrictionBench>,
-    /// Pa, root mean square of the noise of every pressure.
+    /// Root mean square of the noise of every pressure, Pa.
     pub pressure_noise: f64,
-    /// V, root mean square of the noise of the recorded command.
+    /// Root mean square of the noise of the recorded command, V.
     pub command_noise: f64,
-    /// Pa, range of every pressure transducer, from zero.
+    /// Range of every pressure transducer, from zero, Pa.
     pub pressure_range: f64,
-    /// Bits of the converters of all signals; zero: no conversion.
+    /// Bits of the converters of all signals; zero for no conversion.
     pub converter_bits: u32,
     /// Seed of the noise.
     pub seed: u32,
 }
 
-/// A meter for small flows, and how far the command goes with it.
+/// Meter for small flows, and the amplitude of the command with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LowFlowMeter {
-    /// The meter.
+    /// Flow meter.
     pub meter: FlowMeter,
     /// Amplitude of the command over the nominal voltage.
     pub amplitude: f64,
 }
 
-/// The test of hysteresis and threshold: a cycle of the command with small reversals on its way.
+/// Test of hysteresis and threshold: a cycle of the command with small reversals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reversals {
     /// Greatest command over the nominal voltage.
     pub amplitude: f64,
-    /// How far the command goes back at each reversal, over the nominal voltage.
+    /// Size of each reversal of the command, over the nominal voltage.
     pub size: f64,
 }
 
-/// How the oil's temperature goes through a test, in a straight line. Units: degC, 1/degC.
+/// Linear change of the oil temperature during a test. Units: degC, 1/degC.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OilTemperature {
-    /// At the beginning of each test.
+    /// Temperature at the beginning of each test.
     pub start: f64,
-    /// At its end.
+    /// Temperature at the end of each test.
     pub end: f64,
-    /// That `[valve]` and `[fluid]` are stated at; absent: that of the beginning.
+    /// Temperature for which `[valve]` and `[fluid]` are stated; if absent, that of the beginning.
     pub reference: Option<f64>,
-    /// Share by which the dynamic viscosity falls with each degree.
+    /// Relative decrease of the dynamic viscosity per degree.
     pub viscosity_slope: f64,
-    /// Share by which the density falls with each degree.
+    /// Relative decrease of the density per degree.
     pub density_slope: f64,
 }
 
-/// A flow meter.
+/// Flow meter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlowMeter {
-    /// m³/s, the highest flow.
+    /// Highest flow, m³/s.
     pub range: f64,
-    /// m³/s, flow below which it stands still.
+    /// Flow below which the meter does not move, m³/s.
     pub minimum: f64,
-    /// m³/s, root mean square of its noise.
+    /// Root mean square of its noise, m³/s.
     pub noise: f64,
-    /// Pa, its drop at the highest flow.
+    /// Pressure drop at the highest flow, Pa.
     pub pressure_drop: f64,
-    /// Whether it indicates the direction.
+    /// True if it indicates the direction.
     pub signed: bool,
 }
 
-/// One litre per minute.
+/// Flow of one litre per minute, m³/s.
 const LITRE_PER_MINUTE: f64 = 1.0 / 60_000.0;
 
 /// Default meter of the leakage.
@@ -135,7 +135,7 @@ const FLOW_METER: FlowMeter = FlowMeter {
     signed: false,
 };
 
-/// Meter of small flows where a project does not say.
+/// Default meter for small flows.
 const SMALL_METER: FlowMeter = FlowMeter {
     range: 5.0 * LITRE_PER_MINUTE,
     minimum: 0.1 * LITRE_PER_MINUTE,
@@ -158,7 +158,7 @@ impl Default for Reversals {
 
 impl Default for OilTemperature {
     fn default() -> OilTemperature {
-        // the viscosity of an ISO VG 46 oil near 40 degC, and the density of mineral oil
+        // viscosity of an ISO VG 46 oil near 40 degC, and density of mineral oil
         let [viscosity_slope, density_slope] = [0.045, 7e-4];
         OilTemperature { start: 37.0, end: 37.0, reference: None, viscosity_slope, density_slope }
     }
@@ -277,14 +277,14 @@ impl OilTemperature {
     }
 }
 
-/// A meter, with its own defaults where the table or a key of it is absent.
+/// Visits a meter, with its own defaults for an absent table or key.
 fn meter<V: Visitor>(key: Key, field: &mut FlowMeter, absent: FlowMeter, v: &mut V) {
     let mut declared = (*field != absent).then_some(Declared(*field));
     v.table(key, &mut declared, |declared, v| declared.0.visit(absent, v));
     *field = declared.map_or(absent, |declared| declared.0);
 }
 
-/// A meter while it is read.
+/// Meter while it is read.
 struct Declared(FlowMeter);
 
 impl Default for Declared {
@@ -301,8 +301,8 @@ impl FlowMeter {
         v.quantity(k, &mut self.minimum);
         let k = key("noise", &FLOW, "Root mean square of its noise.").not_negative().or(absent.noise);
         v.quantity(k, &mut self.noise);
-        // The leakage flows to the valve through a meter whose drop the regulated supply makes up
-        // for.
+        // the leakage flows to the valve through a meter whose drop the regulated supply
+        // compensates
         if absent.pressure_drop > 0.0 {
             let k = key("pressure_drop", &PRESSURE, "Its pressure drop at the highest flow.").not_negative();
             v.quantity(k.or(absent.pressure_drop), &mut self.pressure_drop);

@@ -1,52 +1,52 @@
-//! `[campaign]`: what is varied in a Monte Carlo campaign.
+//! Table `[campaign]`: the variations of a Monte Carlo campaign.
 
 use super::key::{Key, key, plain};
 use super::visitor::Visitor;
 use phea_quantity::RATIO;
 
-/// What is varied, and how it is distributed.
+/// Varied numbers and their distributions.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Campaign {
-    /// What is varied, in file order.
+    /// Varied numbers, in file order.
     pub parameters: Vec<Varied>,
-    /// The distribution of parameters that do not state one.
+    /// Default distribution of the parameters.
     pub distribution: Distribution,
-    /// Name of the scenario that is driven; absent: the first.
+    /// Name of the simulated scenario; if absent, the first.
     pub scenario: Option<String>,
-    /// Number of runs in a report; absent: a number that suffices for its quantiles.
+    /// Number of runs in a report; if absent, a number sufficient for its quantiles.
     pub runs: Option<u32>,
 }
 
-/// One varied number: around its declared value, or between two.
+/// Varied number: around its declared value, or between two values.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Varied {
-    /// A path of the project, or `start.` and a state.
+    /// Path of the project, or `start.` and a state.
     pub path: String,
-    /// Half-width of the range, as a share of the declared value.
+    /// Half-width of the range, as a fraction of the declared value.
     pub spread: Option<f64>,
-    /// In SI.
+    /// Lower end, SI.
     pub minimum: Option<f64>,
-    /// In SI.
+    /// Upper end, SI.
     pub maximum: Option<f64>,
-    /// Absent: the campaign's.
+    /// Distribution; if absent, that of the campaign.
     pub distribution: Option<Distribution>,
 }
 
-/// How a varied number is distributed.
+/// Distribution of a varied number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Distribution {
-    /// Evenly between its ends.
+    /// Uniform between its ends.
     #[default]
     Uniform,
     /// Normal; its ends are two standard deviations from the middle.
     Normal,
-    /// Evenly in the logarithm.
+    /// Uniform in the logarithm.
     LogUniform,
     /// Triangular, highest in the middle.
     Triangular,
 }
 
-/// The words of a distribution.
+/// Words of the distributions.
 pub static DISTRIBUTIONS: [(&str, Distribution); 4] = [
     ("uniform", Distribution::Uniform),
     ("normal", Distribution::Normal),

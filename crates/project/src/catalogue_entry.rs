@@ -9,31 +9,31 @@ use super::tree::TreeNode;
 /// Components by name.
 #[derive(Clone, Debug, Default)]
 pub struct Catalogue {
-    /// The entries of the built-in files, where they are part of it.
+    /// Entries of the built-in files, if they are part of it.
     pub(crate) built_in: Option<BuiltInEntries>,
     /// Entries of the user's files.
     pub(crate) own: Vec<Arc<CatalogueEntry>>,
 }
 
-/// The built-in entries of a kind, read when they are first asked for.
+/// Built-in entries of a kind, read on first use.
 pub(crate) type BuiltInEntries = fn(CatalogueKind) -> &'static [CatalogueEntry];
 
-/// One product.
+/// Single product.
 #[derive(Clone, Debug)]
 pub struct CatalogueEntry {
-    /// What it is.
+    /// Kind of product.
     pub kind: CatalogueKind,
-    /// The name projects use.
+    /// Name for projects.
     pub name: String,
-    /// The name people use.
+    /// Name for people.
     pub title: String,
-    /// Who makes it.
+    /// Manufacturer.
     pub manufacturer: String,
-    /// The file it was read from; `built-in:` and a path for those that come with the workbench.
+    /// Source file; `built-in:` and a path for the built-in ones.
     pub file: String,
-    /// For a hose that is complete by itself.
+    /// Properties of a complete hose.
     pub hose: Option<HoseProperties>,
-    /// Source of every number that has none of its own.
+    /// Default source of the numbers.
     pub(crate) source: Option<String>,
     /// Key and source.
     pub(crate) sources: Vec<(String, String)>,
@@ -42,7 +42,7 @@ pub struct CatalogueEntry {
 }
 
 impl CatalogueEntry {
-    /// Author, title and table a number comes from.
+    /// Author, title and table from which a number is taken.
     pub fn source_of(&self, key: &str) -> String {
         let own = self.sources.iter().find(|(name, _)| name == key).map(|(_, source)| source);
         own.or(self.source.as_ref()).cloned().unwrap_or_default()
@@ -50,14 +50,13 @@ impl CatalogueEntry {
 }
 
 impl Catalogue {
-    /// The entry of that kind and name.
+    /// Entry of that kind and name.
     pub fn find(&self, kind: CatalogueKind, name: &str) -> Option<&CatalogueEntry> {
         self.entries(kind).find(|entry| entry.name == name)
     }
 
-    /// The entries of that kind, built-in ones first, each group by name; an entry of the user's
-    /// takes the place of the built-in one of its name. The built-in files of a kind are read when
-    /// it is first asked for.
+    /// Entries of that kind, built-in ones first, each group by name; an entry of the user replaces
+    /// the built-in one of its name. The built-in files of a kind are read on first use.
     pub fn entries(&self, kind: CatalogueKind) -> impl Iterator<Item = &CatalogueEntry> {
         let built_in = self.built_in.map_or(&[][..], |built_in| built_in(kind));
         let own = move || self.own.iter().map(Arc::as_ref).filter(move |entry| entry.kind == kind);
@@ -67,7 +66,7 @@ impl Catalogue {
         built_in.iter().map(replaced).chain(own().filter(is_new))
     }
 
-    /// The names of that kind.
+    /// Names of that kind.
     pub fn names(&self, kind: CatalogueKind) -> Vec<&str> {
         self.entries(kind).map(|entry| entry.name.as_str()).collect()
     }

@@ -1,6 +1,6 @@
-//! The kinds of parts that the catalogue has.
+//! Kinds of parts in the catalogue.
 
-/// What a catalogue entry describes.
+/// Kind of a catalogue entry.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum CatalogueKind {
     /// A hose, for `line.hose`.
@@ -15,11 +15,11 @@ pub enum CatalogueKind {
 }
 
 impl CatalogueKind {
-    /// All of them.
+    /// All kinds.
     pub const ALL: [CatalogueKind; 4] =
         [CatalogueKind::Hose, CatalogueKind::Valve, CatalogueKind::Pipe, CatalogueKind::Cylinder];
 
-    /// As it is written in a catalogue file.
+    /// Word in a catalogue file.
     pub fn name(self) -> &'static str {
         match self {
             CatalogueKind::Hose => "hose",

@@ -1,32 +1,31 @@
-//! The model of lines whose project states none, as it was chosen.
+//! Automatically chosen model of lines for which the project states none.
 
 use crate::{DeclaredLine, LineMotion, Load, Project};
 
-/// The model that was chosen for the lines without a stated one.
+/// Model chosen for the lines without a stated one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChosenLines {
-    /// Whether they have waves; otherwise they are lumped.
+    /// True if they have waves; otherwise they are lumped.
     pub with_waves: bool,
-    /// Where the slower of them is a quarter of a wave long, rad/s.
+    /// Quarter-wave frequency of the slower line, rad/s.
     pub quarter_wave_rad_per_s: f64,
-    /// The highest frequency that loop and requirements reach, and what reaches it; `None` where
-    /// there is neither.
+    /// Highest frequency of loop and requirements, and its origin; `None` if there is neither.
     pub reach: Option<(f64, ReachedBy)>,
-    /// Why they are lumped although waves are reached.
+    /// Reason why they are lumped although their waves are within the frequency range.
     pub hindrance: Option<WavesHindrance>,
 }
 
-/// Why no model with waves is computed.
+/// Reason why no model with waves is computed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum WavesHindrance {
     /// The load is a mass without stiffness.
     FreeLoad,
-    /// The rig cannot be computed with them; the message of its error.
+    /// A rig that cannot be computed with them; the message of its error.
     Rig(String),
 }
 
 impl ChosenLines {
-    /// The model.
+    /// Chosen model.
     pub fn motion(&self) -> LineMotion {
         motion(self.with_waves)
     }
@@ -39,36 +38,35 @@ fn motion(with_waves: bool) -> LineMotion {
     }
 }
 
-/// What reaches a frequency.
+/// Origin of the highest frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ReachedBy {
-    /// The highest frequency at which |L| = 1 in the given loop, over the plants that were
-    /// examined.
+    /// Highest frequency at which |L| = 1 in the given loop, over the examined plants.
     Crossover,
-    /// The bandwidth of a required settling or rise time, of the specification with this number.
+    /// Bandwidth of a required settling or rise time, of the specification with this number.
     RequiredTime(usize),
-    /// The highest design frequency of the specification with this number.
+    /// Highest design frequency of the specification with this number.
     DesignFrequency(usize),
-    /// The highest bandwidth that a design may have.
+    /// Highest bandwidth that a design may have.
     HighestBandwidth,
-    /// The bandwidth that valve, lines and sampling leave to a design that limits none.
+    /// Bandwidth that valve, lines and sampling allow a design without a limit.
     UnlimitedBandwidth,
 }
 
 impl Project {
-    /// True where waves travel in a hose or pipe.
+    /// True if waves travel in a hose or pipe.
     pub fn has_waves(&self) -> bool {
         let mut lines = self.actuator.iter().flat_map(|actuator| [&actuator.line.a, &actuator.line.b]);
         lines.any(|line| line.length().is_some() && line.motion.has_waves())
     }
 
-    /// The hoses and pipes whose project states no model.
+    /// Hoses and pipes for which the project states no model.
     pub fn lines_without_model(&self) -> impl Iterator<Item = &DeclaredLine> {
         let lines = self.actuator.iter().flat_map(|actuator| [&actuator.line.a, &actuator.line.b]);
         lines.filter(|line| line.leaves_model_open())
     }
 
-    /// Whether its load is a mass that nothing holds, whose plant is not computed behind lines with
+    /// True if the load is a mass without stiffness, whose plant is not computed behind lines with
     /// waves.
     pub fn has_free_load(&self) -> bool {
         let Some(actuator) = &self.actuator else { return false };
@@ -77,7 +75,7 @@ impl Project {
         is_free && !is_uncertain && actuator.linkage.is_none()
     }
 
-    /// The same project with waves in these, or with these lumped.
+    /// Project with waves in these lines, or with these lines lumped.
     #[must_use]
     pub fn with_chosen_lines(mut self, with_waves: bool) -> Project {
         let lines = self.actuator.iter_mut().flat_map(|own| [&mut own.line.a, &mut own.line.b]);

@@ -1,4 +1,4 @@
-//! `[controller]` and `[prefilter]`.
+//! Tables `[controller]` and `[prefilter]`.
 
 mod element;
 mod impedance;
@@ -21,18 +21,18 @@ use phea_dynamics::controller::{AntiWindup, CoefficientFormat};
 use phea_dynamics::linear::Discretization;
 use phea_quantity::{ANGULAR_FREQUENCY, FORCE, RATIO, TIME, VOLTAGE, VOLTAGE_PER_VELOCITY};
 
-/// A transfer function: a ratio of polynomials, or elements in series.
+/// Transfer function: a ratio of polynomials, or elements in series.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Transfer {
-    /// The ratio; empty where it has elements.
+    /// Ratio; empty if it has elements.
     pub ratio: RationalFunction,
     /// Elements in series.
     pub elements: Vec<DeclaredElement>,
 }
 
 impl Transfer {
-    /// All of it as elements in series: a ratio is one general element, with every number as it was
-    /// written.
+    /// Transfer function as elements in series: a ratio is one general element, with every number
+    /// as written.
     ///
     /// # Example
     /// ```
@@ -50,7 +50,7 @@ impl Transfer {
         }
     }
 
-    /// The transfer function in a table; other keys are ignored.
+    /// Transfer function in a table; other keys are ignored.
     pub fn read(table: &TreeNode, findings: &mut Findings) -> Transfer {
         let catalogue = Catalogue::default();
         let mut transfer = Transfer::default();
@@ -64,38 +64,38 @@ impl Transfer {
     }
 }
 
-/// The controller as declared.
+/// Declared controller.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredController {
-    /// From force error to command.
+    /// Transfer function from force error to command.
     pub transfer: Transfer,
-    /// V (or the plant's input unit), limit of the command.
+    /// Limit of the command, V (or the plant's input unit).
     pub saturation: Option<f64>,
-    /// What happens to the integrator at the limit.
+    /// Behaviour of the integrator at the limit.
     pub anti_windup: AntiWindup,
-    /// s; absent: continuous.
+    /// Sample time, s; continuous if absent.
     pub sample_time: Option<f64>,
-    /// s, computation and transport delay of the loop.
+    /// Computation and transport delay of the loop, s.
     pub delay: f64,
-    /// How a continuous controller becomes a sampled one.
+    /// Method that discretises a continuous controller.
     pub discretization: Discretization,
-    /// rad/s, where Tustin's rule is exact; absent: at zero.
+    /// Frequency at which Tustin's rule is exact, rad/s; if absent, zero.
     pub discretization_frequency: Option<f64>,
-    /// The rounding in its computer; absent: none.
+    /// Rounding in its computer; none if absent.
     pub quantization: Option<DeclaredQuantization>,
-    /// The feed-forward of the load velocity; absent: none.
+    /// Feed-forward of the load velocity; none if absent.
     pub load_velocity_feed_forward: Option<FeedForward>,
-    /// The impedance that it gives the load; absent: none.
+    /// Virtual impedance; none if absent.
     pub impedance: Option<DeclaredImpedance>,
-    /// The feedback of the chambers' pressures; absent: none.
+    /// Feedback of the chambers' pressures; none if absent.
     pub pressure_feedback: Option<DeclaredPressureFeedback>,
 }
 
-/// What the controller adds to its command for a measured velocity of the load.
+/// Addition to the command for a measured velocity of the load.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FeedForward {
-    /// V·s/m; absent: the piston area over the flow gain of the linear model, which supplies the
-    /// flow that the motion needs.
+    /// Gain, V·s/m; if absent, the piston area over the flow gain of the linear model, which
+    /// supplies the flow that the motion needs.
     pub gain: Option<f64>,
 }
 
@@ -111,23 +111,23 @@ impl FeedForward {
     }
 }
 
-/// What the computer of a sampled controller rounds.
+/// Rounding in the computer of a sampled controller.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredQuantization {
-    /// Bits of the converter of the command; 0: no rounding.
+    /// Bits of the command converter; 0 for no rounding.
     pub command_bits: u32,
-    /// V (or the plant's input unit), from and to.
+    /// Range of the command converter, V (or the plant's input unit).
     pub command_range: Option<[f64; 2]>,
-    /// Bits of the converter of the measurement; 0: no rounding.
+    /// Bits of the measurement converter; 0 for no rounding.
     pub measurement_bits: u32,
-    /// N (or the plant's output unit), from and to.
+    /// Range of the measurement converter, N (or the plant's output unit).
     pub measurement_range: Option<[f64; 2]>,
-    /// How the coefficients are kept.
+    /// Format of the coefficients.
     pub coefficients: CoefficientFormat,
-    /// N (or the plant's output unit), rms: allowed error of the force due to the rounded command.
+    /// Allowed rms error of the force due to the rounded command, N (or the plant's output unit).
     pub allowed_force_error: Option<f64>,
-    /// V (or the plant's input unit), rms: allowed error of the command due to the rounded
-    /// measurement.
+    /// Allowed rms error of the command due to the rounded measurement, V (or the plant's input
+    /// unit).
     pub allowed_command_error: Option<f64>,
 }
 
@@ -154,7 +154,7 @@ impl DeclaredQuantization {
 }
 
 impl DeclaredController {
-    /// The rule by which it is sampled, with the frequency at which that is exact.
+    /// Discretisation rule, with the frequency at which it is exact.
     pub fn sampling_rule(&self) -> Discretization {
         match (self.discretization, self.discretization_frequency) {
             (Discretization::Tustin, Some(frequency_rad_per_s)) => {
@@ -164,8 +164,8 @@ impl DeclaredController {
         }
     }
 
-    /// Whether it states a transfer function, and not only its timing: without one it is to be
-    /// designed.
+    /// True if it states a transfer function, and not only its timing: otherwise the controller
+    /// must be designed.
     pub fn has_law(&self) -> bool {
         !self.transfer.as_elements().is_empty()
     }
@@ -206,14 +206,14 @@ impl DeclaredController {
     }
 }
 
-/// The prefilter as declared.
+/// Declared prefilter.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Prefilter {
-    /// From reference to filtered reference.
+    /// Transfer function from reference to filtered reference.
     pub transfer: Transfer,
-    /// s; absent: continuous.
+    /// Sample time, s; continuous if absent.
     pub sample_time: Option<f64>,
-    /// Whether it acts in continuous time although the controller is sampled.
+    /// True if it acts in continuous time although the controller is sampled.
     pub continuous: bool,
 }
 

@@ -1,27 +1,27 @@
-//! What parts cost and weigh: `price` and `mass` where a part is declared, for a line also for its
+//! Costs and masses of parts: `price` and `mass` in the declaration of a part, for a line also per
 //! length.
 
 use super::key::{key, plain};
 use super::visitor::Visitor;
 use phea_quantity::{MASS, MASS_PER_LENGTH, Price, PricedBy};
 
-/// What a part costs and weighs, as far as it is stated.
+/// Stated cost and mass of a part.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PartCost {
     /// Price of the part.
     pub price: Option<Price>,
-    /// kg, of the part.
+    /// Mass of the part, kg.
     pub mass: Option<f64>,
 }
 
-/// The same of a hose or a pipe: what both its ends add, and each metre.
+/// Cost and mass of a hose or a pipe: of both its ends, and per metre.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LineCost {
-    /// Cost of the ends of one line, in addition to that of its length.
+    /// Cost and mass of the ends of one line, in addition to those of its length.
     pub ends: PartCost,
     /// Price of a metre.
     pub price_per_length: Option<Price>,
-    /// kg/m, without the oil in it.
+    /// Mass per length without the oil, kg/m.
     pub mass_per_length: Option<f64>,
 }
 

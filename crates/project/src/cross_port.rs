@@ -1,95 +1,95 @@
-//! `[cross_port]`: a valve between the chambers.
+//! Table `[cross_port]`: a valve between the chambers.
 
 use super::cost::PartCost;
 use super::key::{Key, key, plain};
 use super::visitor::{Variants, Visitor};
 use phea_quantity::{CAPACITY, FLOW, FLOW_PRESSURE_COEFFICIENT, LENGTH, PRESSURE, RATIO, STIFFNESS};
 
-/// A valve between the chambers, at the cylinder.
+/// Valve between the chambers, at the cylinder.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredCrossPort {
-    /// What it is.
+    /// Kind of valve.
     pub kind: CrossPortKind,
-    /// What it costs and weighs.
+    /// Cost and mass.
     pub cost: PartCost,
 }
 
 /// Kinds of valves between the chambers.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CrossPortKind {
-    /// Flow in proportion to the pressure difference.
+    /// Laminar: flow proportional to the pressure difference.
     Laminar {
-        /// m³/(s·Pa).
+        /// Conductance, m³/(s·Pa).
         conductance: f64,
     },
-    /// A sharp edge.
+    /// Sharp edge.
     Orifice(DeclaredOrifice),
-    /// A restrictor in series with a capacity.
+    /// Restrictor in series with a capacity.
     DynamicPressureFeedback {
-        /// What the oil passes through.
+        /// Restrictor.
         restrictor: DeclaredRestrictor,
-        /// What takes it.
+        /// Capacity.
         capacity: DeclaredCapacity,
     },
 }
 
-/// A restrictor of dynamic pressure feedback.
+/// Restrictor of dynamic pressure feedback.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DeclaredRestrictor {
-    /// Flow in proportion to the drop.
+    /// Laminar: flow proportional to the drop.
     Laminar {
-        /// m³/(s·Pa).
+        /// Conductance, m³/(s·Pa).
         conductance: f64,
     },
-    /// A sharp edge.
+    /// Sharp edge.
     Orifice(DeclaredOrifice),
 }
 
-/// A sharp edge.
+/// Sharp edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DeclaredOrifice {
-    /// How large it is.
+    /// Size.
     pub size: OrificeSize,
-    /// Pa, drop below which the square root is made regular.
+    /// Pressure drop below which the square root is regularised, Pa.
     pub transition_pressure: f64,
 }
 
-/// How large an orifice is.
+/// Size of an orifice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum OrificeSize {
-    /// By its diameter.
+    /// Size by diameter.
     Diameter {
-        /// m.
+        /// Diameter, m.
         diameter: f64,
-        /// C_d.
+        /// Discharge coefficient C_d.
         discharge_coefficient: f64,
     },
-    /// By what it passes.
+    /// Size by flow.
     Flow {
-        /// m³/s.
+        /// Flow, m³/s.
         flow: f64,
-        /// Pa, the drop at which it does.
+        /// Pressure drop at this flow, Pa.
         pressure_drop: f64,
     },
 }
 
-/// The capacity of dynamic pressure feedback.
+/// Capacity of dynamic pressure feedback.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DeclaredCapacity {
-    /// m³/Pa.
+    /// Stated capacity, m³/Pa.
     Stated(f64),
-    /// A piston between springs.
+    /// Piston between springs.
     Piston {
-        /// m.
+        /// Diameter of the piston, m.
         diameter: f64,
-        /// N/m, of all its springs together.
+        /// Stiffness of all springs together, N/m.
         stiffness: f64,
     },
 }
 
 /// Discharge coefficient of a sharp edge.
 const DISCHARGE_COEFFICIENT: f64 = 0.6;
-/// Pa, the same as of the edges of a servovalve.
+/// Transition pressure as of the edges of a servovalve, Pa.
 const TRANSITION_PRESSURE: f64 = 1e3;
 
 impl Default for CrossPortKind {
@@ -120,7 +120,7 @@ impl DeclaredCrossPort {
         self.cost.visit(v);
     }
 
-    /// Its orifice, if it has one.
+    /// Orifice of the valve, if it has one.
     pub fn orifice(&self) -> Option<&DeclaredOrifice> {
         match &self.kind {
             CrossPortKind::Orifice(orifice)
@@ -175,7 +175,7 @@ fn conductance_key() -> Key {
 
 impl DeclaredRestrictor {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
-        // a conductance is positive, except for one that is not read yet
+        // a conductance is positive, unless it is not read yet
         let (mut conductance, orifice) = match self {
             DeclaredRestrictor::Laminar { conductance } => {
                 (Some(*conductance).filter(|value| *value > 0.0), None)
@@ -216,7 +216,7 @@ impl DeclaredCapacity {
     }
 }
 
-/// The keys of an orifice.
+/// Keys of an orifice.
 #[derive(Default)]
 struct OrificeParts {
     diameter: Option<f64>,
@@ -263,7 +263,7 @@ impl OrificeParts {
         v.optional(k.positive(), &mut self.transition_pressure);
     }
 
-    /// `None` where nothing says how large it is.
+    /// Orifice; `None` if nothing states its size.
     fn orifice<V: Visitor>(&self, v: &mut V) -> Option<DeclaredOrifice> {
         let size = match *self {
             OrificeParts { diameter: Some(diameter), discharge_coefficient, .. } => OrificeSize::Diameter {

@@ -1,4 +1,4 @@
-//! `[cylinder]` and `[cylinder.friction]`.
+//! Tables `[cylinder]` and `[cylinder.friction]`.
 
 use std::f64::consts::FRAC_PI_4;
 
@@ -11,56 +11,57 @@ use phea_quantity::{
     VELOCITY, VOLUME,
 };
 
-/// The cylinder; `a` is the end x = 0, and x grows from A to B.
+/// Cylinder; `a` is the end x = 0, and x grows from A to B.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredCylinder {
-    /// Name of the catalogue's cylinder, if piston and rod came from there.
+    /// Name of the catalogue's cylinder, if it supplied piston and rod.
     pub model: Option<String>,
-    /// m; this or `piston_area`.
+    /// Piston diameter, m; this or `piston_area`.
     pub piston_diameter: Option<f64>,
-    /// m², on which the pressure acts, the same in both chambers: rods are subtracted already.
+    /// Effective area, equal in both chambers, with rods already subtracted, m².
     pub piston_area: Option<f64>,
-    /// m², on which the pressure acts in chamber A and in chamber B.
+    /// Effective areas in chamber A and in chamber B, m².
     pub piston_areas: Option<[f64; 2]>,
-    /// m, of the rod through both chambers; this or `rod_diameters`.
+    /// Diameter of the rod through both chambers, m; this or `rod_diameters`.
     pub rod_diameter: Option<f64>,
-    /// m, of the rod in chamber A and in chamber B; zero where there is none.
+    /// Diameters of the rod in chamber A and in chamber B, m; zero without a rod.
     pub rod_diameters: Option<[f64; 2]>,
-    /// m.
+    /// Stroke, m.
     pub stroke: f64,
-    /// Of a telescopic piston: the stages that follow the first.
+    /// Further stages of a telescopic piston, after the first.
     pub stages: Vec<DeclaredStage>,
-    /// m, over which the areas of one stage blend into those of the next.
+    /// Distance over which the areas of one stage blend into those of the next, m.
     pub stage_transition: f64,
-    /// kg, piston, rod and what moves with them.
+    /// Mass of piston, rod and the parts that move with them, kg.
     pub moving_mass: f64,
-    /// m, what the retracted actuator measures from mount to mount besides its stroke.
+    /// Length of the retracted actuator from mount to mount in addition to its stroke, m.
     pub dead_length: Option<f64>,
-    /// m³, in each chamber in addition to the swept volume and the line; this or `dead_volumes`.
+    /// Volume in each chamber in addition to the swept volume and the line, m³; this or
+    /// `dead_volumes`.
     pub dead_volume: Option<f64>,
-    /// m³, in chamber A and in chamber B.
+    /// Volumes in chamber A and in chamber B, m³.
     pub dead_volumes: Option<[f64; 2]>,
-    /// m³/(s·Pa), laminar leakage across the piston.
+    /// Laminar leakage across the piston, m³/(s·Pa).
     pub internal_leakage: Option<f64>,
-    /// End stops of the piston; absent: the ends are reported, and nothing stops it.
+    /// End stops of the piston; if absent, the ends are only reported.
     pub end_stops: Option<EndStops>,
     /// Friction of seals and bearings.
     pub friction: Option<DeclaredFriction>,
 }
 
-/// A further stage of a telescopic piston.
+/// Further stage of a telescopic piston.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DeclaredStage {
-    /// m, position of the piston from which this stage moves.
+    /// Position of the piston from which this stage moves, m.
     pub from: f64,
-    /// m², on which the pressure acts, the same in both chambers; this or `piston_areas`.
+    /// Effective area, equal in both chambers, m²; this or `piston_areas`.
     pub piston_area: Option<f64>,
-    /// m², on which the pressure acts in chamber A and in chamber B.
+    /// Effective areas in chamber A and in chamber B, m².
     pub piston_areas: Option<[f64; 2]>,
 }
 
 impl DeclaredStage {
-    /// m², in chamber A and B.
+    /// Effective areas in chambers A and B, m².
     pub fn areas_m2(&self) -> [f64; 2] {
         let area = self.piston_area.unwrap_or(0.0);
         self.piston_areas.unwrap_or([area, area])
@@ -77,12 +78,12 @@ impl DeclaredStage {
     }
 }
 
-/// The end stops at both ends of the stroke.
+/// End stops at both ends of the stroke.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EndStops {
-    /// N/m.
+    /// Stiffness, N/m.
     pub stiffness: f64,
-    /// s/m, damping relative to the elastic force.
+    /// Damping relative to the elastic force, s/m.
     pub relative_damping: f64,
 }
 
@@ -96,27 +97,27 @@ impl EndStops {
 }
 
 impl DeclaredCylinder {
-    /// m, of the piston: declared, or from the larger area and the rod on its side.
+    /// Diameter of the piston, m: declared, or from the larger area and the rod on its side.
     pub fn piston_diameter_m(&self) -> f64 {
         let faces = self.effective_areas_m2().into_iter().zip(self.rod_diameters_m());
         let by_area = faces.map(|(area, rod)| (area / FRAC_PI_4 + rod * rod).sqrt()).fold(0.0, f64::max);
         self.piston_diameter.unwrap_or(by_area)
     }
 
-    /// m, of the rods in chamber A and B.
+    /// Diameters of the rods in chambers A and B, m.
     pub fn rod_diameters_m(&self) -> [f64; 2] {
         let rod = self.rod_diameter.unwrap_or(0.0);
         self.rod_diameters.unwrap_or([rod, rod])
     }
 
-    /// m², on which the pressure acts in chamber A and B: declared, or the piston less the rod.
+    /// Effective areas in chambers A and B, m²: declared, or those of the piston less the rod.
     pub fn effective_areas_m2(&self) -> [f64; 2] {
         let declared = self.piston_areas.or(self.piston_area.map(|area| [area, area]));
         let piston = self.piston_diameter.unwrap_or(0.0);
         declared.unwrap_or(self.rod_diameters_m().map(|rod| FRAC_PI_4 * (piston - rod) * (piston + rod)))
     }
 
-    /// m, of the longest stage: what the retracted actuator needs of its stroke.
+    /// Length of the longest stage, which determines the retracted length, m.
     pub fn longest_stage_m(&self) -> f64 {
         let ends = self.stages.iter().map(|stage| stage.from).chain([self.stroke]);
         let lengths = ends.scan(0.0, |before, end| Some(end - std::mem::replace(before, end)));
@@ -176,29 +177,29 @@ impl DeclaredCylinder {
 /// Friction of seals and bearings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredFriction {
-    /// Its part other than the viscous one.
+    /// Law of its non-viscous part.
     pub law: FrictionLaw,
-    /// N·s/m, slope at high velocity (σ₂ of LuGre).
+    /// Slope at high velocity (σ₂ of LuGre), N·s/m.
     pub viscous: f64,
-    /// Levels while the rod retracts, where they differ.
+    /// Levels in retraction, if different.
     pub retracting: Option<RetractingFriction>,
-    /// Part of the recordings that it was identified from and leaves unexplained.
+    /// Residual of the recordings from which it was identified.
     pub misfit: Option<DeclaredMisfit>,
 }
 
-/// Levels of friction while the rod retracts; what is absent is as while it extends.
+/// Levels of friction in retraction; absent ones equal those in extension.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RetractingFriction {
-    /// N, sliding friction F_C.
+    /// Sliding friction F_C, N.
     pub coulomb: Option<f64>,
-    /// N, breakaway friction F_S.
+    /// Breakaway friction F_S, N.
     pub static_friction: Option<f64>,
-    /// N·s/m, slope at high velocity.
+    /// Slope at high velocity, N·s/m.
     pub viscous: Option<f64>,
 }
 
 impl RetractingFriction {
-    /// Stated levels, to be changed.
+    /// Stated levels, mutable.
     pub fn each_mut(&mut self) -> impl Iterator<Item = &mut f64> {
         [&mut self.coulomb, &mut self.static_friction, &mut self.viscous].into_iter().flatten()
     }
@@ -213,26 +214,26 @@ impl RetractingFriction {
     }
 }
 
-/// A friction law, without its viscous part.
+/// Friction law, without its viscous part.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum FrictionLaw {
-    /// Nothing: proportional to velocity.
+    /// No other part: proportional to velocity.
     #[default]
     Viscous,
-    /// Coulomb and breakaway part as a function of velocity.
+    /// Coulomb and breakaway friction as a function of velocity.
     Stribeck {
-        /// The function.
+        /// Curve over velocity.
         curve: StribeckCurve,
-        /// m/s, smooths its jump at standstill for simulation.
+        /// Velocity that smooths the jump at standstill for simulation, m/s.
         regular_velocity: Option<f64>,
     },
     /// Bristles with a state of their own.
     LuGre {
         /// Friction at constant velocity.
         curve: StribeckCurve,
-        /// N/m, σ₀.
+        /// Bristle stiffness σ₀, N/m.
         bristle_stiffness: f64,
-        /// N·s/m, σ₁.
+        /// Bristle damping σ₁, N·s/m.
         bristle_damping: f64,
     },
 }
@@ -240,11 +241,11 @@ pub enum FrictionLaw {
 /// Friction that falls from breakaway to sliding.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StribeckCurve {
-    /// N, sliding friction F_C.
+    /// Sliding friction F_C, N.
     pub coulomb: f64,
-    /// N, breakaway friction F_S.
+    /// Breakaway friction F_S, N.
     pub static_friction: f64,
-    /// m/s.
+    /// Stribeck velocity, m/s.
     pub stribeck_velocity: f64,
     /// Exponent.
     pub stribeck_exponent: f64,
@@ -317,7 +318,7 @@ impl DeclaredFriction {
         v.quantity(k.or(0.0), &mut self.viscous);
     }
 
-    /// The friction of a cylinder, which is identified from recordings.
+    /// Visits the friction of a cylinder, which is identified from recordings.
     pub(crate) fn visit_of_cylinder<V: Visitor>(&mut self, v: &mut V) {
         self.visit(v);
         let k = plain("retracting", "What differs while the rod retracts; absent: the same both ways.");

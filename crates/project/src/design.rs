@@ -1,4 +1,4 @@
-//! `[design]`: how a controller is designed.
+//! Table `[design]`: the design of a controller.
 
 use super::controller::DeclaredElement;
 use super::key::{key, plain};
@@ -6,87 +6,86 @@ use super::visitor::{Variants, Visitor};
 use phea_dynamics::controller::{NamedStructure, Objective};
 use phea_quantity::{ANGULAR_FREQUENCY, GAIN, RATIO, TIME};
 
-/// What is optimised, and among which controllers.
+/// Objective of a design, and the set of controllers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeclaredDesign {
-    /// What is minimised or maximised.
+    /// Quantity that is minimised or maximised.
     pub objective: Objective,
-    /// Most poles of the controller.
+    /// Largest number of poles of the controller.
     pub maximum_order: u32,
-    /// Largest number of poles of the prefilter; 0: none is designed.
+    /// Largest number of poles of the prefilter; 0 for no prefilter design.
     pub prefilter_maximum_order: u32,
-    /// The seed of the random starting points.
+    /// Seed of the random starting points.
     pub seed: u32,
-    /// Which limits hold that are not stated.
+    /// Defaults of limits that are not stated.
     pub limits: UnstatedLimits,
-    /// s, which every plant must tolerate in addition to the delay of the loop; absent: of a rig
-    /// one sample, or half a millisecond where the loop is continuous.
+    /// Delay that every plant must tolerate in addition to that of the loop, s; if absent, for a
+    /// rig one sample, or half a millisecond in a continuous loop.
     pub minimum_delay_margin: Option<f64>,
-    /// Least distance |1 + L| of every plant; absent: of a rig 0.5.
+    /// Least distance |1 + L| of every plant; if absent, 0.5 for a rig.
     pub modulus_margin: Option<f64>,
-    /// rad/s, from where on |L/(1+L)| is at most -3 dB; absent: of a rig the least of what quarter
-    /// wave, servovalve and sampling leave.
+    /// Frequency from which |L/(1+L)| is at most -3 dB, rad/s; if absent, for a rig the least of
+    /// the limits from quarter wave, servovalve and sampling.
     pub highest_bandwidth: Option<f64>,
     /// Largest root mean square of the command from the noise of the force sensor, over the valve's
-    /// nominal voltage; absent: 1 %.
+    /// nominal voltage; if absent, 1 %.
     pub noise_to_command: Option<f64>,
-    /// Least damping ratio of the controller's poles; absent: of a rig 0.3.
+    /// Least damping ratio of the controller's poles; if absent, 0.3 for a rig.
     pub pole_damping_ratio: Option<f64>,
-    /// Largest |F| of the designed prefilter; absent: of a rig 2.
+    /// Largest |F| of the designed prefilter; if absent, 2 for a rig.
     pub prefilter_gain: Option<f64>,
-    /// Largest command that a step of the reference in a scenario may take, over the valve's
-    /// nominal voltage; absent: of a rig 1.
+    /// Largest command for a reference step of a scenario, over the valve's nominal voltage; if
+    /// absent, 1 for a rig.
     pub command_of_steps: Option<f64>,
-    /// Factor by which every limit is kept, above what counts as met; absent: what the recordings
-    /// of an identified valve leave open.
+    /// Factor of reserve for every limit, in addition to the tolerance; if absent, the uncertainty
+    /// from the recordings of an identified valve.
     pub reserve: Option<f64>,
     /// Least and greatest gain of `structure`; both negative for a controller of negative sign.
     pub gain: Option<[f64; 2]>,
-    /// Which structures are tried, unless `structure` holds factors.
+    /// Structures that are tested, unless `structure` contains factors.
     pub structure_choice: StructureChoice,
-    /// The controller's factors.
+    /// Factors of the controller.
     pub structure: Vec<StructurePart>,
-    /// Where the feedback of the chambers' pressures comes from.
+    /// Source of the feedback of the chambers' pressures.
     pub pressure_feedback: FeedbackChoice,
-    /// Factor by which each further pole must lower what the command takes from the noise, or what
-    /// the objective is, for a longer structure to be taken in place of one that is met; absent: 2,
-    /// which is 6 dB.
+    /// Factor by which each further pole must reduce the noise of the command, or the objective,
+    /// for a longer structure to replace a feasible one; if absent, 2, which is 6 dB.
     pub earned_per_pole: Option<f64>,
 }
 
-/// Which limits of what may be built hold where the project states none.
+/// Limits on the controller in effect if the project states none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum UnstatedLimits {
-    /// Those of a rig.
+    /// Default limits of a rig.
     #[default]
     Default,
-    /// None: a design has its specifications alone.
+    /// No limits: a design has only its specifications.
     None,
 }
 
-/// Where the feedback of the chambers' pressures comes from.
+/// Source of the feedback of the chambers' pressures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FeedbackChoice {
-    /// The one of the controller, if it has one.
+    /// Feedback of the declared controller, if it has one.
     #[default]
     AsDeclared,
-    /// Its gain and the corner of its high pass are found before the loop.
+    /// Feedback whose gain and high-pass corner are found before the loop.
     Free,
 }
 
-/// Which structures are tried.
+/// Structures that are tested.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StructureChoice {
-    /// Those that have a name, the shortest first, then structures of growing order.
+    /// Named structures, the shortest first, then structures of growing order.
     #[default]
     Any,
-    /// Structures of growing order alone.
+    /// Structures of growing order only.
     Free,
-    /// One by its name.
+    /// Single named structure.
     Named(NamedStructure),
 }
 
-/// The words of `structure`.
+/// Words of `structure`.
 pub static STRUCTURES: [(&str, StructureChoice); 11] = [
     ("any", StructureChoice::Any),
     ("p", StructureChoice::Named(NamedStructure::Proportional)),
@@ -101,15 +100,15 @@ pub static STRUCTURES: [(&str, StructureChoice); 11] = [
     ("free", StructureChoice::Free),
 ];
 
-/// The words of `objective`.
+/// Words of `objective`.
 pub static DESIGN_OBJECTIVES: [(&str, Objective); 3] = [
     ("least_high_frequency_gain", Objective::LeastHighFrequencyGain),
     ("least_bandwidth", Objective::LeastBandwidth),
     ("best_worst_margin", Objective::BestWorstMargin),
 ];
 
-/// One factor of a structure. Every free number has its least and greatest value, frequencies in
-/// rad/s; absent: wide around the design frequencies.
+/// Factor of a structure. Every free number has its least and greatest value, frequencies in rad/s;
+/// if absent, a wide range around the design frequencies.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum StructurePart {
     /// 1/s.
@@ -141,12 +140,12 @@ pub enum StructurePart {
     },
     /// An element without free numbers.
     Fixed {
-        /// As in a controller.
+        /// Element as in a controller.
         element: DeclaredElement,
     },
 }
 
-/// Most poles that are tried.
+/// Largest number of poles that are tested.
 const MAXIMUM_ORDER: f64 = 20.0;
 
 impl Default for DeclaredDesign {

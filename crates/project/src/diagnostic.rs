@@ -1,55 +1,55 @@
-//! The errors of a file: where they are, and what was expected.
+//! Errors of a file: their location, and the expected content.
 
 use std::ops::Range;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 
-/// One finding in a file or setting.
+/// Finding in a file or setting.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// Whether it refuses the file.
+    /// Severity: an error rejects the file.
     pub severity: Severity,
-    /// What is wrong, in one sentence.
+    /// Fault, in one sentence.
     pub message: String,
-    /// The file, or `--set` and its text.
+    /// File, or `--set` and its text.
     pub file: String,
-    /// From 1; 0 where the file itself is meant.
+    /// Line, from 1; 0 for the file as a whole.
     pub line: usize,
-    /// In characters, from 1; 0 where the file itself is meant.
+    /// Column in characters, from 1; 0 for the file as a whole.
     pub column: usize,
-    /// In bytes of the file.
+    /// Range in bytes of the file.
     pub span: Range<usize>,
-    /// What was expected there.
+    /// Expected content.
     pub expected: Option<String>,
-    /// The nearest valid name, or what to do.
+    /// Nearest valid name, or a remedy.
     pub help: Option<String>,
 }
 
-/// Whether a finding rejects the file.
+/// Effect of a finding on the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// The file is refused.
+    /// The file is rejected.
     Error,
     /// The file is accepted.
     Warning,
 }
 
-/// Why a project was rejected: every finding of one run, and the texts they point into.
+/// Error for a rejected project: every finding of one run, and the texts to which they refer.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Refusal {
     /// Errors first, each in file order.
     pub diagnostics: Vec<Diagnostic>,
-    /// How many more errors there are beyond those listed.
+    /// Number of further errors that are not listed.
     pub more: usize,
-    /// Name and content of every text a diagnostic points into.
+    /// Name and content of every text to which a diagnostic refers.
     pub texts: Vec<(String, String)>,
 }
 
 /// Longest line that is shown, in bytes.
 const MAXIMUM_SHOWN: usize = 400;
 
-/// The findings for people: each with its line, what was expected and what would help. `styled`
-/// adds terminal colours.
+/// Findings for people: each with its line, the expected content and a remedy. `styled` adds
+/// terminal colours.
 pub fn render(diagnostics: &[Diagnostic], texts: &[(String, String)], styled: bool) -> String {
     let renderer = if styled { Renderer::styled() } else { Renderer::plain() };
     let one = |diagnostic: &Diagnostic| renderer.render(&diagnostic.groups(texts));
@@ -89,7 +89,7 @@ impl Diagnostic {
         std::iter::once(group).chain(help).collect()
     }
 
-    /// The line with the span underlined and the expectation next to it.
+    /// Line with the span underlined and the expectation next to it.
     fn snippet<'a>(&'a self, line: &'a str) -> Snippet<'a, annotate_snippets::Annotation<'a>> {
         let start: usize = line.chars().take(self.column.saturating_sub(1)).map(char::len_utf8).sum();
         let mut end = (start + self.span.len()).min(line.len());
@@ -107,24 +107,24 @@ impl Diagnostic {
     }
 }
 
-/// What is wrong with a valid project is sometimes known only where its rig is computed.
+/// Error of a valid project that becomes known only when its rig is computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LateError {
-    /// The key.
+    /// Path of the key.
     pub path: String,
-    /// What is wrong with it.
+    /// Fault.
     pub message: String,
-    /// What to do; empty where there is nothing to say.
+    /// Remedy; empty if there is none.
     pub help: String,
 }
 
 impl LateError {
-    /// A file that cannot be read.
+    /// Error for a file that cannot be read.
     pub fn of_file(path: String, message: String) -> LateError {
         LateError { path, message, help: "paths are relative to the project file".to_string() }
     }
 
-    /// The error and its cure in one sentence.
+    /// Error and its remedy in one sentence.
     pub fn sentence(&self) -> String {
         format!("{}: {}", self.message, self.help)
     }

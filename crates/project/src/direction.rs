@@ -1,4 +1,4 @@
-//! `[[uncertainty_direction]]`: numbers that are uncertain together.
+//! Table `[[uncertainty_direction]]`: numbers that are uncertain together.
 
 use super::Uncertain;
 use super::key::{AcceptedRange, Key, key, plain};
@@ -6,30 +6,30 @@ use super::visitor::Visitor;
 use phea_dynamics::uncertain_plant::Spacing;
 use phea_quantity::RATIO;
 
-/// The variable z of a direction.
+/// Variable z of a direction.
 pub const DIRECTION: Key = key("direction", &RATIO, "Standard deviations along a direction.");
 
 /// Numbers that move together by a standard normal variable z, independent of the other directions.
 ///
 /// ```text
-/// number = what the project states + sum over directions of change z        |z| <= deviations
+/// number = stated value + sum over directions of change z        |z| <= deviations
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UncertaintyDirection {
-    /// What members of the family call it.
+    /// Name in the members of the family.
     pub name: String,
-    /// Standard deviations to either side that belong to the family.
+    /// Standard deviations to either side that are included in the family.
     pub deviations: f64,
     /// Points of the grid over it.
     pub points: u32,
-    /// The numbers by their paths, and the change of each per standard deviation, SI.
+    /// Numbers by their paths, and the change of each per standard deviation, SI.
     pub changes: NumberChanges,
 }
 
-/// The change of each number per standard deviation.
+/// Change of each number per standard deviation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NumberChanges {
-    /// Path and change in SI.
+    /// Path and change, SI.
     pub numbers: Vec<(String, f64)>,
 }
 
@@ -46,7 +46,7 @@ impl UncertaintyDirection {
         v.needed_table(k, &mut self.changes, NumberChanges::visit);
     }
 
-    /// As an uncertain number of its own: z.
+    /// Direction as an uncertain number z.
     pub(crate) fn as_uncertain(&self) -> Uncertain {
         Uncertain {
             name: self.name.clone(),
@@ -61,7 +61,7 @@ impl UncertaintyDirection {
 
 impl NumberChanges {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
-        // a change has either sign, whatever the number itself may be
+        // a change has either sign, whatever the sign of the number
         let change = |number: Key| Key { range: AcceptedRange::ANY, default: None, ..number };
         v.numbers(key("number", &RATIO, "Change per standard deviation."), change, &mut self.numbers);
     }

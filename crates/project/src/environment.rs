@@ -1,4 +1,4 @@
-//! `[force_sensor]`, `[velocity_sensor]` and `[load]`.
+//! Tables `[force_sensor]`, `[velocity_sensor]` and `[load]`.
 
 use super::key::{key, plain};
 use super::visitor::{Variants, Visitor};
@@ -6,14 +6,15 @@ use phea_quantity::{
     ANGULAR_FREQUENCY, DAMPING, FORCE, INVERSE_VELOCITY, LENGTH, MASS, RATIO, STIFFNESS, TIME, VELOCITY,
 };
 
-/// The load cell.
+/// Load cell.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredForceSensor {
-    /// N/m, K_S: the cell in series with its environment when the load is a prescribed motion.
+    /// Stiffness K_S, N/m: of the cell in series with its environment if the load is a prescribed
+    /// motion.
     pub stiffness: f64,
-    /// N, root mean square of the white noise that a sampled controller sees.
+    /// Root mean square of the white noise at a sampled controller, N.
     pub noise: f64,
-    /// N, the largest force that it tolerates, in both directions.
+    /// Largest permitted force in both directions, N.
     pub capacity: Option<f64>,
 }
 
@@ -32,20 +33,20 @@ impl DeclaredForceSensor {
     }
 }
 
-/// What the velocity of the load is measured with, which a controller may feed forward.
+/// Sensor of the load velocity, which a controller may feed forward.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredVelocitySensor {
-    /// Shown velocity over the true one, less one.
+    /// Ratio of measured to true velocity, less one.
     pub gain_error: f64,
-    /// s, from the velocity until it is shown.
+    /// Delay of the measured velocity, s.
     pub delay: f64,
-    /// rad/s, corner frequency of its filter; absent: it has none.
+    /// Corner frequency of its filter, rad/s; no filter if absent.
     pub filter_frequency: Option<f64>,
-    /// Damping ratio of a filter of second order; absent: it is of first order.
+    /// Damping ratio of a second-order filter; first order if absent.
     pub filter_damping_ratio: Option<f64>,
-    /// m/s, root mean square of the white noise that a sampled controller sees.
+    /// Root mean square of the white noise at a sampled controller, m/s.
     pub noise: f64,
-    /// m/s, step to which a sampled controller sees it rounded; zero: not at all.
+    /// Resolution at a sampled controller, m/s; zero without rounding.
     pub resolution: f64,
 }
 
@@ -69,32 +70,32 @@ impl DeclaredVelocitySensor {
     }
 }
 
-/// What the force acts on.
+/// Load on which the force acts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Load {
-    /// It moves as the scenario states, whatever the force.
+    /// Motion prescribed by the scenario, for any force.
     #[default]
     Prescribed,
     /// Mass, spring and damper.
     SpringMassDamper {
-        /// kg.
+        /// Mass, kg.
         mass: f64,
-        /// N/m.
+        /// Stiffness, N/m.
         stiffness: f64,
-        /// N·s/m.
+        /// Damping, N·s/m.
         damping: f64,
     },
-    /// A guided mass; nothing up to the gap, then the wall.
+    /// Guided mass; free up to the gap, then the wall.
     Wall {
-        /// kg; needed only for a load that moves freely.
+        /// Mass, kg; needed only for a load that moves freely.
         mass: Option<f64>,
-        /// N·s/m, of its guide.
+        /// Damping of its guide, N·s/m.
         damping: f64,
-        /// N/m, of the wall.
+        /// Stiffness of the wall, N/m.
         stiffness: f64,
-        /// m, free play before the wall is touched.
+        /// Free play before the wall is touched, m.
         gap: f64,
-        /// s/m, damping of the wall relative to its elastic force.
+        /// Damping of the wall relative to its elastic force, s/m.
         relative_damping: f64,
     },
 }

@@ -1,55 +1,55 @@
-//! `[family]`: which plants of the box are examined, or measured plants.
+//! Table `[family]`: the examined plants of the box, or measured plants.
 
 use super::Uncertain;
 use super::key::{key, plain};
 use super::visitor::Visitor;
 use phea_quantity::{FORCE, LENGTH, RATIO, VELOCITY};
 
-/// The members of the family. Without any of them it is the grid of `[uncertainty]`.
+/// Members of the family. By default the grid of `[uncertainty]`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredFamily {
-    /// The grid, in addition to the other members.
+    /// True for the grid, in addition to the other members.
     pub grid: bool,
-    /// All corners of the box.
+    /// True for all corners of the box.
     pub vertices: bool,
-    /// Points of the box drawn at random.
+    /// Random points of the box.
     pub random: Option<Random>,
     /// Plants by their parameters: name and value, in file order.
     pub cases: Vec<Case>,
     /// Groups of parameters that are fully correlated.
     pub correlation: Vec<Correlation>,
-    /// The operating points that the rig visits, limited by the flow of the pump.
+    /// Operating points of the rig, limited by the flow of the pump.
     pub operating_region: Option<OperatingRegion>,
-    /// Ranges of the linear model that region and directions replace, for comparison alone.
+    /// Ranges of the linear model that region and directions replace, only for comparison.
     pub replaces: Vec<Uncertain>,
     /// Files with measured frequency responses, the nominal plant first; paths are relative to the
     /// project file.
     pub measured: Vec<String>,
     /// Open-loop poles of each measured plant in the right half plane.
     pub unstable_poles: u32,
-    /// Poles less zeros of each measured plant at the origin; absent: what its slope shows.
+    /// Poles less zeros of each measured plant at the origin; if absent, derived from its slope.
     pub integrators: Option<u32>,
 }
 
 /// Ranges of the operating point: the plants are correlated through the resulting pressures.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OperatingRegion {
-    /// m, of the piston.
+    /// Piston position, m.
     pub position: Option<[f64; 2]>,
-    /// N, that the pressures hold.
+    /// Force held by the pressures, N.
     pub load_force: Option<[f64; 2]>,
-    /// m/s; limited to what the pump can supply.
+    /// Velocity, m/s; limited to what the pump can supply.
     pub velocity: Option<[f64; 2]>,
-    /// Points of the grid over each.
+    /// Points of the grid over each range.
     pub points: u32,
 }
 
-/// Points of the box drawn at random.
+/// Random points of the box.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Random {
-    /// How many.
+    /// Number of points.
     pub count: u32,
-    /// What the draw begins with.
+    /// Seed.
     pub seed: u32,
 }
 
@@ -58,14 +58,14 @@ pub struct Random {
 pub struct Correlation {
     /// Names of uncertain parameters.
     pub parameters: Vec<String>,
-    /// Those of them that fall while the others rise.
+    /// Parameters among them that fall while the others rise.
     pub opposed: Vec<String>,
 }
 
-/// One plant of an explicit family.
+/// Plant of an explicit family.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Case {
-    /// Name and value in SI.
+    /// Name and value, SI.
     pub parameters: Vec<(String, f64)>,
 }
 

@@ -1,4 +1,4 @@
-//! `[fluid]` and `[supply]`.
+//! Tables `[fluid]` and `[supply]`.
 
 use super::adjustment::{AdjustmentKind, DeclaredAdjustment};
 use super::cost::PartCost;
@@ -8,20 +8,20 @@ use phea_quantity::{
     DENSITY, FLOW, KINEMATIC_VISCOSITY, LENGTH, PRESSURE, RATIO, TEMPERATURE, TIME, VOLUME, ZERO_CELSIUS,
 };
 
-/// The oil.
+/// Oil.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredFluid {
-    /// Pa, of the liquid without air.
+    /// Bulk modulus of the liquid without air, Pa.
     pub bulk_modulus: f64,
-    /// kg/m³.
+    /// Density, kg/m³.
     pub density: f64,
-    /// m²/s.
+    /// Kinematic viscosity, m²/s.
     pub kinematic_viscosity: Option<f64>,
     /// Volume of free air over total volume at atmospheric pressure; `None` and zero mean none.
     pub entrained_air: Option<f64>,
     /// Polytropic exponent of the entrained air.
     pub polytropic_exponent: f64,
-    /// Pa, absolute, below which a chamber is reported to cavitate.
+    /// Absolute pressure below which a chamber is reported to cavitate, Pa.
     pub vapour_pressure: f64,
 }
 
@@ -42,38 +42,39 @@ impl DeclaredFluid {
     }
 }
 
-/// The pressure supply.
+/// Pressure supply.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredSupply {
-    /// How the pressure behaves under load.
+    /// Behaviour of the pressure under load.
     pub model: SupplyModel,
-    /// Pa, gauge.
+    /// Supply pressure, Pa gauge.
     pub pressure: f64,
-    /// Pa, gauge.
+    /// Tank pressure, Pa gauge.
     pub tank_pressure: f64,
 }
 
-/// A gas-charged accumulator.
+/// Gas-charged accumulator.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DeclaredAccumulator {
-    /// m³, of the gas at its precharge.
+    /// Volume of the gas at its precharge, m³.
     pub gas_volume: f64,
-    /// Pa, gauge.
+    /// Precharge pressure, Pa gauge.
     pub precharge_pressure: f64,
-    /// Polytropic exponent of the gas; without effect where it has a thermal time constant.
+    /// Polytropic exponent of the gas; without effect if it has a thermal time constant.
     pub polytropic_exponent: f64,
-    /// s, at a chamber: of the heat between gas and wall. `None` for polytropic gas.
+    /// Time constant of the heat exchange between gas and wall at a chamber, s. `None` for
+    /// polytropic gas.
     pub thermal_time_constant: Option<f64>,
-    /// At which the precharge is stated, and at which the gas works; `None` where they are the
-    /// same.
+    /// Temperatures at which the precharge is stated and at which the gas works; `None` if they are
+    /// equal.
     pub temperatures: Option<GasTemperatures>,
     /// Highest permitted pressure over the precharge, both absolute, if stated.
     pub maximum_pressure_ratio: Option<f64>,
-    /// Between a chamber and the gas; absent: the gas has the pressure of the chamber.
+    /// Neck between a chamber and the gas; if absent, the gas has the pressure of the chamber.
     pub neck: Option<DeclaredNeck>,
-    /// What of it is adjusted in operation, at a chamber.
+    /// Adjustment in operation, at a chamber.
     pub adjustment: Option<DeclaredAdjustment>,
-    /// What it costs and weighs, at a chamber.
+    /// Cost and mass, at a chamber.
     pub cost: PartCost,
 }
 
@@ -94,18 +95,18 @@ impl GasTemperatures {
         v.quantity(key("working_temperature", &TEMPERATURE, doc).above(-ZERO_CELSIUS), &mut self.working);
     }
 
-    /// Both in K.
+    /// Both temperatures, K.
     pub fn absolute(&self) -> [f64; 2] {
         [self.precharge, self.working].map(|celsius| celsius + ZERO_CELSIUS)
     }
 }
 
-/// The neck of an accumulator at a chamber.
+/// Neck of an accumulator at a chamber.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DeclaredNeck {
-    /// m.
+    /// Diameter, m.
     pub diameter: f64,
-    /// m.
+    /// Length, m.
     pub length: f64,
     /// Loss at both its ends, over the velocity head.
     pub loss_coefficient: f64,
@@ -126,7 +127,7 @@ impl DeclaredNeck {
 }
 
 impl DeclaredAccumulator {
-    /// Pa, gauge: the precharge at the temperature in operation, given the atmosphere in Pa.
+    /// Precharge at the working temperature for an atmosphere in Pa, Pa gauge.
     pub fn working_precharge(&self, atmosphere: f64) -> f64 {
         let ratio = self.temperatures.map_or(1.0, |temperatures| {
             let [stated, working] = temperatures.absolute();
@@ -135,7 +136,7 @@ impl DeclaredAccumulator {
         (self.precharge_pressure + atmosphere) * ratio - atmosphere
     }
 
-    /// The same at setting 0 of its adjustment and at setting 1.
+    /// Accumulator at setting 0 of its adjustment and at setting 1.
     pub fn ends(&self) -> [DeclaredAccumulator; 2] {
         let Some(DeclaredAdjustment { kind: AdjustmentKind::Gas(last), .. }) = self.adjustment else {
             return [*self; 2];
@@ -145,7 +146,7 @@ impl DeclaredAccumulator {
         [*self, DeclaredAccumulator { gas_volume, precharge_pressure, ..*self }]
     }
 
-    /// At a chamber, where it may have a neck, exchange heat and be adjusted.
+    /// Visits an accumulator at a chamber, which may have a neck, exchange heat and be adjusted.
     pub(crate) fn visit_at_chamber<V: Visitor>(&mut self, v: &mut V) {
         let doc = "Of the heat between gas and wall, in place of `polytropic_exponent`: slow isothermal, fast adiabatic.";
         v.optional(key("thermal_time_constant", &TIME, doc).positive(), &mut self.thermal_time_constant);
@@ -165,7 +166,7 @@ impl DeclaredAccumulator {
         let k = k.at_least(1.0).at_most(5.0 / 3.0);
         match self.thermal_time_constant {
             None => v.quantity(k.or(1.4), &mut self.polytropic_exponent),
-            // it would contradict, and is refused where it is written
+            // a value would be contradictory, and is rejected where it is written
             Some(_) => v.optional(k, &mut None),
         }
         v.way(
@@ -178,31 +179,31 @@ impl DeclaredAccumulator {
     }
 }
 
-/// How the supply pressure behaves under load.
+/// Behaviour of the supply pressure under load.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(clippy::large_enum_variant, reason = "a project has one supply")]
 pub enum SupplyModel {
-    /// It stays as declared.
+    /// Constant pressure as declared.
     Constant {
-        /// m³/s, the flow of the pump, which limits sizing and the operating region.
+        /// Flow of the pump, which limits sizing and the operating region, m³/s.
         flow: Option<f64>,
     },
-    /// It falls when the demand exceeds the pump's flow.
+    /// Pressure that falls when the demand exceeds the pump's flow.
     PumpLimited(Pump),
 }
 
-/// A limited pump with the line to the valve.
+/// Limited pump with the line to the valve.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pump {
-    /// m³/s, what it can give.
+    /// Maximum flow, m³/s.
     pub flow: f64,
-    /// Pa, rise over which the relief valve opens for the pump's whole flow.
+    /// Rise of pressure over which the relief valve opens for the pump's whole flow, Pa.
     pub relief_override: f64,
-    /// m³, of the supply line.
+    /// Volume of the supply line, m³.
     pub volume: f64,
-    /// Pa, of the supply line; absent: the fluid's.
+    /// Effective bulk modulus of the supply line, Pa; if absent, that of the fluid.
     pub effective_bulk_modulus: Option<f64>,
-    /// On the supply line.
+    /// Accumulator on the supply line.
     pub accumulator: Option<DeclaredAccumulator>,
 }
 
@@ -251,7 +252,7 @@ impl Pump {
 }
 
 impl DeclaredSupply {
-    /// m³/s, the flow of the pump, if stated.
+    /// Flow of the pump, if stated, m³/s.
     pub fn flow(&self) -> Option<f64> {
         match &self.model {
             SupplyModel::Constant { flow } => *flow,

@@ -15,22 +15,22 @@ use std::ops::Range;
 
 use phea_dynamics::scalar::Scalar;
 
-/// A formula in `s` or `z` and named parameters. Two are equal if they are written alike.
+/// Formula in `s` or `z` and named parameters. Two are equal if they are written identically.
 #[derive(Clone, Debug)]
 pub struct Formula {
     text: String,
-    /// Operands before their operators; the last is the whole.
+    /// Operands before their operators; the last node is the whole formula.
     nodes: Vec<FormulaNode>,
 }
 
-/// A part of a formula, and its position in the text.
+/// Part of a formula, and its position in the text.
 #[derive(Clone, Debug)]
 struct FormulaNode {
     part: FormulaPart,
     range: Range<usize>,
 }
 
-/// The kind of a part; operands by their index.
+/// Kind of a part; operands by their index.
 #[derive(Clone, Debug)]
 enum FormulaPart {
     Number(f64),
@@ -44,7 +44,7 @@ enum FormulaPart {
     Power(usize, u32),
 }
 
-/// The variable of a transfer function.
+/// Variable of a transfer function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Variable {
     /// Continuous time.
@@ -54,7 +54,7 @@ pub enum Variable {
 }
 
 impl Variable {
-    /// As it is written.
+    /// Symbol of the variable.
     pub fn name(self) -> &'static str {
         match self {
             Variable::S => "s",
@@ -63,15 +63,15 @@ impl Variable {
     }
 }
 
-/// What is wrong with a formula, and where in its text.
+/// Error in a formula, with its position in the text.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct FormulaError {
-    /// What is wrong, in one sentence.
+    /// Fault, in one sentence.
     pub message: String,
-    /// Where, in bytes of the text.
+    /// Range in bytes of the text.
     pub range: Range<usize>,
-    /// What to do.
+    /// Remedy.
     pub help: Option<String>,
 }
 
@@ -89,9 +89,9 @@ impl FormulaError {
 /// Numerator and denominator by their coefficients, highest power first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ratio<S> {
-    /// Never empty.
+    /// Numerator coefficients, never empty.
     pub numerator: Vec<S>,
-    /// Never empty.
+    /// Denominator coefficients, never empty.
     pub denominator: Vec<S>,
 }
 
@@ -114,10 +114,10 @@ impl Formula {
         parse::formula(text, true)
     }
 
-    /// Reads a formula in `s` in which `z` is a parameter, as it may be where nothing is sampled.
+    /// Reads a formula in `s` in which `z` is a parameter, as is possible if nothing is sampled.
     ///
     /// # Errors
-    /// As [`Formula::parse`].
+    /// Errors of [`Formula::parse`].
     ///
     /// # Example
     /// ```
@@ -130,26 +130,26 @@ impl Formula {
         parse::formula(text, false)
     }
 
-    /// A number as a formula.
+    /// Formula of a number.
     pub fn number(value: f64) -> Formula {
         let text = format!("{value}");
         let range = 0..text.len();
         Formula { text, nodes: vec![FormulaNode { part: FormulaPart::Number(value), range }] }
     }
 
-    /// As written.
+    /// Text as written.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// The variable, if it occurs.
+    /// Variable, if it occurs.
     pub fn variable(&self) -> Option<Variable> {
         self.nodes
             .iter()
             .find_map(|node| if let FormulaPart::Variable(v) = node.part { Some(v) } else { None })
     }
 
-    /// Names of the parameters and where each first occurs, in text order.
+    /// Names of the parameters and the first occurrence of each, in text order.
     pub fn parameters(&self) -> Vec<(&str, Range<usize>)> {
         let mut found: Vec<(&str, Range<usize>)> = Vec::new();
         for node in &self.nodes {
@@ -163,16 +163,16 @@ impl Formula {
         found
     }
 
-    /// The ratio of polynomials in the variable, its parameters given as numbers of any kind:
+    /// Ratio of polynomials in the variable, with its parameters given as numbers of any kind:
     /// plain, dual or recorded. A divisor without the variable divides the coefficients.
     ///
     /// # Errors
-    /// [`FormulaError`] for a parameter that is not given, or a power above 50.
+    /// [`FormulaError`] for a missing parameter, or a power above 50.
     pub fn ratio<S: Scalar>(&self, parameter: &dyn Fn(&str) -> Option<S>) -> Result<Ratio<S>, FormulaError> {
         expand::ratio(self, parameter, |_| None)
     }
 
-    /// The ratio of polynomials of a formula without parameters, leading zeros dropped.
+    /// Ratio of polynomials of a formula without parameters, leading zeros dropped.
     ///
     /// # Errors
     /// [`FormulaError`] for a parameter, a power above 50, or a coefficient that f64 cannot hold.
@@ -182,9 +182,9 @@ impl Formula {
         Ok(Ratio { numerator, denominator })
     }
 
-    /// The coefficients of a polynomial without parameters, highest power first, leading zeros
-    /// dropped; `None` if there are parameters, the variable in a divisor, or coefficients that f64
-    /// cannot hold.
+    /// Coefficients of a polynomial without parameters, highest power first, leading zeros dropped;
+    /// `None` if there are parameters, the variable in a divisor, or coefficients that f64 cannot
+    /// hold.
     pub fn polynomial(&self) -> Option<Vec<f64>> {
         let ratio = self.numbers().ok()?;
         if ratio.denominator.len() != 1 { None } else { Some(ratio.numerator) }

@@ -1,5 +1,5 @@
-//! `[identify]`: recorded static tests of the servovalve and what their columns hold; recordings of
-//! a line and of the cylinder.
+//! Table `[identify]`: recorded static tests of the servovalve and the contents of their columns;
+//! recordings of a line and of the cylinder.
 
 use super::key::{key, plain};
 use super::visitor::Visitor;
@@ -9,7 +9,7 @@ use phea_quantity::{
     VOLTAGE,
 };
 
-/// One of the static tests of ISO 10770-1.
+/// Static test of ISO 10770-1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StaticTest {
     /// Ports blocked: leakage and port pressures over the command.
@@ -21,10 +21,10 @@ pub enum StaticTest {
 }
 
 impl StaticTest {
-    /// All, in the order of ISO 10770-1.
+    /// All tests, in the order of ISO 10770-1.
     pub const ALL: [StaticTest; 3] = [StaticTest::Leakage, StaticTest::Metering, StaticTest::PressureGain];
 
-    /// As files are called.
+    /// Name in file names.
     pub fn name(self) -> &'static str {
         match self {
             StaticTest::Leakage => "leakage",
@@ -33,7 +33,7 @@ impl StaticTest {
         }
     }
 
-    /// How the ports are piped.
+    /// Piping of the ports.
     pub fn circuit(self) -> PortCircuit {
         match self {
             StaticTest::Leakage | StaticTest::PressureGain => PortCircuit::Blocked,
@@ -41,37 +41,37 @@ impl StaticTest {
         }
     }
 
-    /// Whether the leakage is measured, and the flow between the ports.
+    /// Flags for a measured leakage, and for a measured flow between the ports.
     pub fn measures_flow(self) -> [bool; 2] {
         [self == StaticTest::Leakage, self == StaticTest::Metering]
     }
 }
 
-/// What a column of a recorded test holds.
+/// Content of a column of a recorded test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TestSignal {
-    /// s.
+    /// Time, s.
     Time,
-    /// V.
+    /// Command, V.
     Command,
-    /// Pa, p_S.
+    /// Supply pressure p_S, Pa.
     SupplyPressure,
-    /// Pa, p_T.
+    /// Tank pressure p_T, Pa.
     TankPressure,
-    /// Pa, p_A.
+    /// Pressure p_A, Pa.
     PressureA,
-    /// Pa, p_B.
+    /// Pressure p_B, Pa.
     PressureB,
-    /// m³/s, from the supply, ports blocked.
+    /// Flow from the supply with blocked ports, m³/s.
     LeakFlow,
-    /// m³/s, from port A to port B.
+    /// Flow from port A to port B, m³/s.
     Flow,
-    /// degC, of the oil.
+    /// Oil temperature, degC.
     OilTemperature,
 }
 
 impl TestSignal {
-    /// All, in the order of columns.
+    /// All signals, in the order of columns.
     pub const ALL: [TestSignal; 9] = [
         TestSignal::Time,
         TestSignal::Command,
@@ -84,7 +84,7 @@ impl TestSignal {
         TestSignal::OilTemperature,
     ];
 
-    /// As columns and keys call it.
+    /// Name of columns and keys.
     pub const fn name(self) -> &'static str {
         match self {
             TestSignal::Time => "time",
@@ -99,7 +99,7 @@ impl TestSignal {
         }
     }
 
-    /// What it measures.
+    /// Dimension of the signal.
     pub const fn dimension(self) -> &'static Dimension {
         match self {
             TestSignal::Time => &TIME,
@@ -127,23 +127,23 @@ impl TestSignal {
     }
 }
 
-/// What a column of a record for a frequency response holds.
+/// Content of a column of a record for a frequency response.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ResponseSignal {
-    /// s.
+    /// Time, s.
     Time,
-    /// V, what excites.
+    /// Exciting command, V.
     Command,
-    /// N, what follows.
+    /// Resulting force, N.
     Force,
-    /// N, what a closed loop is to follow.
+    /// Reference of a closed loop, N.
     Reference,
-    /// V, what is added to the command of a closed loop.
+    /// Signal added to the command of a closed loop, V.
     Excitation,
 }
 
 impl ResponseSignal {
-    /// All, in the order of columns.
+    /// All signals, in the order of columns.
     pub const ALL: [ResponseSignal; 5] = [
         ResponseSignal::Time,
         ResponseSignal::Command,
@@ -152,7 +152,7 @@ impl ResponseSignal {
         ResponseSignal::Excitation,
     ];
 
-    /// As columns and keys call it.
+    /// Name of columns and keys.
     pub const fn name(self) -> &'static str {
         match self {
             ResponseSignal::Time => "time",
@@ -163,7 +163,7 @@ impl ResponseSignal {
         }
     }
 
-    /// What it measures.
+    /// Dimension of the signal.
     pub const fn dimension(self) -> &'static Dimension {
         match self {
             ResponseSignal::Time => &TIME,
@@ -183,43 +183,43 @@ impl ResponseSignal {
     }
 }
 
-/// What of an identified valve every command takes in place of what the project declares.
+/// Identified values of a valve that every command uses in place of the declared ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum IdentifiedUse {
-    /// Nothing: the valve is as declared.
+    /// No identified values: the valve is as declared.
     #[default]
     Nothing,
-    /// Its coefficients.
+    /// Identified coefficients.
     Valve,
-    /// Its coefficients, and the family of what the recordings leave uncertain of them.
+    /// Identified coefficients, and the family of their remaining uncertainty.
     ValveAndUncertainty,
 }
 
-/// What a valve is identified from.
+/// Recordings from which a valve is identified.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Identify {
-    /// What takes the place of what is declared.
+    /// Identified values that replace declared ones.
     pub takes: IdentifiedUse,
-    /// Recorded tests, one in a file.
+    /// Recorded tests, one per file.
     pub recordings: Vec<RecordedTest>,
-    /// Records for frequency responses, one in a file.
+    /// Records for frequency responses, one per file.
     pub responses: Vec<RecordedResponse>,
     /// Recordings of a blocked line, as paths relative to the project file.
     pub line: Vec<String>,
     /// Recorded runs of the cylinder, as paths relative to the project file.
     pub friction: Vec<String>,
-    /// How the oil of the valve's tests changes with its temperature.
+    /// Temperature dependence of the oil in the valve's tests.
     pub oil_temperature: TestOilTemperature,
 }
 
-/// What is known of the oil whose temperature is recorded. Units: degC, 1/degC.
+/// Properties of oil with recorded temperature. Units: degC, 1/degC.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TestOilTemperature {
-    /// That the coefficients are to be stated at; absent: the mean of the recordings.
+    /// Temperature for which the coefficients are stated; if absent, the mean of the recordings.
     pub reference: Option<f64>,
-    /// Share by which the dynamic viscosity falls with each degree.
+    /// Relative decrease of the dynamic viscosity per degree.
     pub viscosity_slope: f64,
-    /// Share by which the density falls with each degree.
+    /// Relative decrease of the density per degree.
     pub density_slope: f64,
 }
 
@@ -244,77 +244,76 @@ impl TestOilTemperature {
     }
 }
 
-/// A file with a recorded test.
+/// File with a recorded test.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordedTest {
-    /// A table as text or Parquet, relative to the project.
+    /// Path of a table as text or Parquet, relative to the project.
     pub file: String,
-    /// Which test; absent: as the columns say.
+    /// Test; if absent, determined by the columns.
     pub test: Option<StaticTest>,
-    /// What separates the values of a text; absent: it is found.
+    /// Separator of the values of a text; detected if absent.
     pub separator: Option<String>,
-    /// What the headings do not say, in the order of [`TestSignal::ALL`].
+    /// Information that the headings lack, in the order of [`TestSignal::ALL`].
     pub columns: [Option<RecordedColumn>; 9],
 }
 
-/// A file with a record for a frequency response.
+/// File with a record for a frequency response.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordedResponse {
-    /// A table as text or Parquet, relative to the project.
+    /// Path of a table as text or Parquet, relative to the project.
     pub file: String,
-    /// What separates the values of a text; absent: it is found.
+    /// Separator of the values of a text; detected if absent.
     pub separator: Option<String>,
-    /// What the headings do not say, in the order of [`ResponseSignal::ALL`].
+    /// Information that the headings lack, in the order of [`ResponseSignal::ALL`].
     pub columns: [Option<RecordedColumn>; 5],
-    /// The loop during the test; absent: it is tested for feedback.
+    /// Loop during the test; if absent, it is tested for feedback.
     pub recorded_loop: Option<RecordedLoop>,
-    /// The controller of a closed loop; absent: it is not known.
+    /// Controller of a closed loop; unknown if absent.
     pub recorded_controller: Option<RecordedController>,
-    /// Name of the operating point; absent: the record is not compared with others.
+    /// Name of the operating point; if absent, the record is not compared with others.
     pub operating_point: Option<String>,
 }
 
-/// The controller that acted while a record was made.
+/// Controller that acted during a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecordedController {
-    /// The one of `[controller]`.
+    /// Controller of `[controller]`.
     Declared,
 }
 
-/// The loop around the plant while a record was made.
+/// Loop around the plant during a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecordedLoop {
-    /// No controller acted on the output.
+    /// Open loop: no controller acted on the output.
     Open,
-    /// A controller did.
+    /// Closed loop.
     Closed,
 }
 
-/// A column of a file.
+/// Column of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordedColumn {
-    /// Its heading; absent: the name of the signal.
+    /// Heading; if absent, the name of the signal.
     pub column: Option<String>,
-    /// Its unit; absent: as the heading says.
+    /// Unit; if absent, that of the heading.
     pub unit: Option<String>,
-    /// The signal is its numbers with the opposite sign.
+    /// True if the signal is the column with the opposite sign.
     pub reversed: bool,
-    /// What the instrument may be wrong by, as it was written; absent: nothing.
+    /// Accuracy of the instrument as written; exact if absent.
     pub accuracy: Option<String>,
 }
 
-/// What an instrument may be wrong by throughout a test.
+/// Possible constant error of an instrument during a test.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Accuracy {
-    /// A share of what it reads.
+    /// Fraction of the reading.
     OfReading(f64),
-    /// In the unit of the signal: at zero, and again at its greatest reading.
+    /// Error in the unit of the signal: at zero, and again at its greatest reading.
     OfRange(f64),
 }
 
 impl RecordedColumn {
-    /// What the instrument may be wrong by; `None` where nothing is said, or nothing that can be
-    /// read.
+    /// Accuracy of the instrument; `None` if none is stated, or none that can be read.
     pub fn stated_accuracy(&self, dimension: &Dimension) -> Option<Accuracy> {
         let text = self.accuracy.as_ref()?;
         let share = || quantity::parse(text, &RATIO).ok().map(Accuracy::OfReading);
@@ -349,12 +348,12 @@ impl Identify {
 }
 
 impl RecordedTest {
-    /// A file whose headings say everything.
+    /// File with complete headings.
     pub fn of(file: &str) -> RecordedTest {
         RecordedTest { file: file.to_string(), ..RecordedTest::default() }
     }
 
-    /// What the project says of a signal's column.
+    /// Declared properties of a signal's column.
     pub fn column(&self, signal: TestSignal) -> Option<&RecordedColumn> {
         let all = TestSignal::ALL.iter().zip(&self.columns);
         all.filter(|(one, _)| **one == signal).find_map(|(_, column)| column.as_ref())
@@ -379,7 +378,7 @@ impl RecordedTest {
 }
 
 impl RecordedResponse {
-    /// A file whose headings say everything.
+    /// File with complete headings.
     pub fn of(file: &str) -> RecordedResponse {
         RecordedResponse { file: file.to_string(), ..RecordedResponse::default() }
     }

@@ -6,92 +6,92 @@ use super::published::Published;
 use super::visitor::{Variants, Visitor};
 use phea_quantity::{ANGLE, ANGULAR_FREQUENCY, Dimension, FORCE, RATIO, TIME, VOLTAGE};
 
-/// One part of a function of time; the parts add up, each zero before it begins. Values and
-/// amplitudes are in the unit of the signal, times in s, frequencies in rad/s. Without a start it
-/// begins at once; after its duration it holds its final value.
+/// Part of a function of time; the parts add up, each zero before it begins. Values and amplitudes
+/// are in the unit of the signal, times in s, frequencies in rad/s. It begins immediately without a
+/// start; after its duration it holds its final value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum InputSignal {
-    /// A value that holds until the next step.
+    /// Step to a value that holds until the next step.
     Step {
-        /// When it comes.
+        /// Time of the step.
         at: f64,
-        /// From then on.
+        /// Value after the step.
         value: f64,
         /// Published values for a step of the reference, for comparison with the simulation.
         published: Option<Published>,
     },
     /// Several steps.
     Steps {
-        /// When each comes.
+        /// Times of the steps.
         times: Vec<f64>,
-        /// Each holds from its time until the next.
+        /// Values, each from its time until the next.
         values: Vec<f64>,
     },
-    /// At one rate from zero to a value.
+    /// Ramp from zero to a value.
     Ramp {
-        /// How far.
+        /// Final value.
         value: f64,
-        /// When it begins.
+        /// Start.
         start: Option<f64>,
-        /// How long it moves.
+        /// Duration.
         duration: f64,
     },
     /// Sine.
     Sine {
-        /// When it begins.
+        /// Start.
         start: Option<f64>,
-        /// How long it moves; absent: to the end.
+        /// Duration; if absent, to the end.
         duration: Option<f64>,
         /// Amplitude of the sine.
         amplitude: f64,
         /// Frequency of the sine.
         frequency: f64,
     },
-    /// Sine whose frequency moves evenly.
+    /// Sine whose frequency changes linearly.
     Chirp {
-        /// When it begins.
+        /// Start.
         start: Option<f64>,
-        /// How long it moves.
+        /// Duration.
         duration: f64,
         /// Amplitude of the sine.
         amplitude: f64,
-        /// Where it begins.
+        /// Initial frequency.
         frequency: f64,
-        /// Where it ends.
+        /// Final frequency.
         final_frequency: f64,
     },
-    /// Several sines at once.
+    /// Sum of several sines.
     Multisine(Multisine),
-    /// From a CSV file with time and value.
+    /// Signal from a CSV file with time and value.
     File {
-        /// When it begins.
+        /// Start.
         start: Option<f64>,
-        /// Its name.
+        /// Name of the file.
         file: String,
     },
 }
 
-/// Several sines at once.
+/// Sum of several sines.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Multisine {
-    /// s, when it begins; absent: at once.
+    /// Start, s; immediate if absent.
     pub start: Option<f64>,
-    /// s, how long it moves; absent: to the end.
+    /// Duration, s; if absent, to the end.
     pub duration: Option<f64>,
-    /// How large the sines are.
+    /// Amplitudes of the sines.
     pub amplitudes: Amplitudes,
-    /// rad/s.
+    /// Frequencies, rad/s.
     pub frequencies: Vec<f64>,
-    /// rad; absent: Schroeder's phases, which keep its peak low.
+    /// Phases, rad; if absent, Schroeder's phases, which keep the peak low.
     pub phases: Vec<f64>,
 }
 
-/// The amplitudes of the sines of a multisine.
+/// Amplitudes of the sines of a multisine.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Amplitudes {
-    /// All of one size.
+    /// Equal amplitudes.
     Equal(f64),
-    /// One for each sine.
+    /// Amplitude of each sine.
     Each(Vec<f64>),
 }
 
@@ -107,28 +107,28 @@ impl Default for InputSignal {
     }
 }
 
-/// The quantity of a signal, and the names of its values.
+/// Quantity of a signal, and the names of its values.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct InputUnit {
-    /// Key of one value.
+    /// Key of a single value.
     pub(crate) value: &'static str,
-    /// Key of several.
+    /// Key of several values.
     pub(crate) values: &'static str,
     pub(crate) dimension: &'static Dimension,
-    /// Whether a step may have published values.
+    /// True if a step may have published values.
     published: bool,
-    /// Whether it acts on the load.
+    /// True if it acts on the load.
     on_load: bool,
 }
 
 impl InputUnit {
-    /// The unit of a reference.
+    /// Unit of a reference.
     pub(crate) const REFERENCE: InputUnit =
         InputUnit { value: "force", values: "forces", dimension: &FORCE, published: true, on_load: false };
-    /// The unit of an external force on the load.
+    /// Unit of an external force on the load.
     pub(crate) const EXTERNAL_FORCE: InputUnit =
         InputUnit { value: "force", values: "forces", dimension: &FORCE, published: false, on_load: true };
-    /// The unit of an open-loop command.
+    /// Unit of an open-loop command.
     pub(crate) const COMMAND: InputUnit = InputUnit {
         value: "voltage",
         values: "voltages",
@@ -136,12 +136,12 @@ impl InputUnit {
         published: false,
         on_load: false,
     };
-    /// The unit of the setting of accumulators.
+    /// Unit of the setting of accumulators.
     pub(crate) const SETTING_CHANGE: InputUnit =
         InputUnit { value: "change", values: "changes", dimension: &RATIO, published: false, on_load: false };
 }
 
-/// A signal as it is written, which depends on its quantity.
+/// Signal as written, which depends on its quantity.
 #[derive(Clone)]
 struct WrittenSignal {
     unit: InputUnit,
@@ -238,7 +238,7 @@ impl Variants for WrittenSignal {
 }
 
 impl Amplitudes {
-    /// One for each sine.
+    /// Amplitude of each sine.
     pub fn of(&self, count: usize) -> Vec<f64> {
         match self {
             Amplitudes::Equal(amplitude) => vec![*amplitude; count],
@@ -260,7 +260,7 @@ impl Amplitudes {
 }
 
 impl InputSignal {
-    /// Its shape, as it is written in the project file.
+    /// Word of the shape in the project file.
     pub fn kind(&self) -> &'static str {
         match self {
             InputSignal::Step { .. } => "step",
@@ -273,7 +273,7 @@ impl InputSignal {
         }
     }
 
-    /// When it begins, s; of several steps, the first.
+    /// Start of the signal, s; of several steps, the first.
     pub fn begins_s(&self) -> f64 {
         match self {
             InputSignal::Step { at, .. } => *at,
@@ -286,7 +286,7 @@ impl InputSignal {
         }
     }
 
-    /// How long it moves, s, if stated.
+    /// Duration, if stated, s.
     pub fn duration_s(&self) -> Option<f64> {
         match self {
             InputSignal::Ramp { duration, .. } | InputSignal::Chirp { duration, .. } => Some(*duration),
@@ -297,7 +297,7 @@ impl InputSignal {
         }
     }
 
-    /// The times and values of its steps.
+    /// Times and values of its steps.
     pub fn steps(&self) -> Vec<(f64, f64)> {
         match self {
             InputSignal::Step { at, value, .. } => vec![(*at, *value)],
@@ -313,7 +313,7 @@ impl InputSignal {
         if let InputSignal::Step { published, .. } = self { published.as_ref() } else { None }
     }
 
-    /// Reads or prints it as a signal of its quantity.
+    /// Visitor that reads or prints it as a signal of its quantity.
     pub(crate) fn visitor<V: Visitor>(unit: InputUnit) -> impl Fn(&mut InputSignal, &mut V) {
         move |signal, v| {
             let mut written = WrittenSignal { unit, signal: std::mem::take(signal) };

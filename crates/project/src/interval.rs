@@ -1,21 +1,21 @@
-//! A number known within bounds: `5`, or `{ nominal = 5, minimum = 4, maximum = 5 }`.
+//! Number known within bounds: `5`, or `{ nominal = 5, minimum = 4, maximum = 5 }`.
 
 use super::key::Key;
 use super::visitor::{ValueForm, Visitor};
 
-/// A number known within bounds.
+/// Number known within bounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BoundedNumber {
-    /// The value to design with.
+    /// Nominal value for the design.
     pub nominal: f64,
-    /// The least it may be.
+    /// Least possible value.
     pub minimum: f64,
-    /// The most it may be.
+    /// Greatest possible value.
     pub maximum: f64,
 }
 
 impl BoundedNumber {
-    /// A number without spread.
+    /// Number without spread.
     pub fn exactly(value: f64) -> Self {
         BoundedNumber { nominal: value, minimum: value, maximum: value }
     }

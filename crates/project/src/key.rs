@@ -1,63 +1,62 @@
-//! A key of the project file: its name, dimension, range, default and meaning, written once.
+//! Key of the project file: its name, dimension, range, default and meaning, in one place.
 
 use phea_quantity::{Dimension, MotionKind, RATIO};
 
-/// One key of the project file. Built at the place where its field is described, in the `visit`
-/// function of its table.
+/// Key of the project file. Built at the description of its field, in the `visit` function of its
+/// table.
 #[derive(Clone, Copy, Debug)]
 pub struct Key {
-    /// As written in the file.
+    /// Name in the file.
     pub name: &'static str,
-    /// What its numbers measure.
+    /// Dimension of its numbers.
     pub dimension: &'static Dimension,
-    /// Which of its numbers are accepted.
+    /// Accepted range of its numbers.
     pub range: AcceptedRange,
-    /// The value of an absent key; `None` where the key is required or its absence has a meaning of
-    /// its own.
+    /// Value of an absent key; `None` if the key is required or its absence has another meaning.
     pub default: Option<f64>,
-    /// Whether its numbers measure the motion of the rig or what drives it, so that a motor has
-    /// another dimension in its place: a torque for a force, an angle for a length.
+    /// True if its numbers measure the motion of the rig or its drive, so that a motor has another
+    /// dimension: a torque for a force, an angle for a length.
     pub of_motion: bool,
-    /// Whether they measure the motion of the load or what drives it, which may turn where the rig
+    /// True if they measure the motion of the load or its drive, which may turn although the rig
     /// does not: behind a linkage.
     pub of_load: bool,
-    /// What it means, in one sentence.
+    /// Meaning, in one sentence.
     pub doc: &'static str,
 }
 
-/// How a rig moves, and how its load does.
+/// Motion of a rig and of its load.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Motions {
     /// Motion of the rod or the shaft.
     pub rig: MotionKind,
-    /// Motion of what it drives.
+    /// Motion of the load.
     pub load: MotionKind,
 }
 
 impl Motions {
-    /// A load that moves with its rig.
+    /// Motion of a load that moves with its rig.
     pub(crate) const fn both(motion: MotionKind) -> Motions {
         Motions { rig: motion, load: motion }
     }
 }
 
-/// Which numbers are accepted, in SI.
+/// Accepted numbers, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AcceptedRange {
-    /// The lowest number.
+    /// Lowest number.
     pub minimum: f64,
-    /// The highest number.
+    /// Highest number.
     pub maximum: f64,
-    /// Whether the lowest number itself is excluded.
+    /// True if the lowest number is excluded.
     pub above_minimum: bool,
-    /// Whether the highest number itself is excluded.
+    /// True if the highest number is excluded.
     pub below_maximum: bool,
-    /// Whether `inf` is accepted.
+    /// True if `inf` is accepted.
     pub infinity: bool,
 }
 
 impl AcceptedRange {
-    /// Every finite number.
+    /// Range of all finite numbers.
     pub const ANY: AcceptedRange = AcceptedRange {
         minimum: f64::MIN,
         maximum: f64::MAX,
@@ -66,7 +65,7 @@ impl AcceptedRange {
         infinity: false,
     };
 
-    /// Whether the number is accepted; never true for NaN.
+    /// True if the number is accepted; never true for NaN.
     pub fn contains(&self, value: f64) -> bool {
         if value == f64::INFINITY {
             return self.infinity;
@@ -77,31 +76,31 @@ impl AcceptedRange {
     }
 }
 
-/// A key whose numbers have a dimension.
+/// Key whose numbers have a dimension.
 pub(crate) const fn key(name: &'static str, dimension: &'static Dimension, doc: &'static str) -> Key {
     Key { name, dimension, range: AcceptedRange::ANY, default: None, of_motion: false, of_load: false, doc }
 }
 
-/// A key without a dimension: a table, a list, a text or a choice.
+/// Key without a dimension: a table, a list, a text or a choice.
 pub(crate) const fn plain(name: &'static str, doc: &'static str) -> Key {
     key(name, &RATIO, doc)
 }
 
 impl Key {
-    /// Its numbers measure the motion of the rig: `dimension` is that of a cylinder.
+    /// Key whose numbers measure the motion of the rig: `dimension` is that of a cylinder.
     pub(crate) const fn of_motion(mut self) -> Key {
         self.of_motion = true;
         self
     }
 
-    /// Its numbers measure the motion of the load: `dimension` is that of a cylinder without a
-    /// linkage.
+    /// Key whose numbers measure the motion of the load: `dimension` is that of a cylinder without
+    /// a linkage.
     pub(crate) const fn of_load(mut self) -> Key {
         self.of_load = true;
         self
     }
 
-    /// The key in a rig of these motions.
+    /// Key in a rig of these motions.
     pub fn in_motion(mut self, Motions { rig, load }: Motions) -> Key {
         if self.of_motion {
             self.dimension = rig.dimension(self.dimension);
@@ -156,7 +155,7 @@ impl Key {
         self
     }
 
-    /// The value of an absent key, in SI.
+    /// Sets the value of an absent key, SI.
     pub(crate) const fn or(mut self, default: f64) -> Key {
         self.default = Some(default);
         self

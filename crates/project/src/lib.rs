@@ -1,19 +1,19 @@
-//! The project file: a rig, or any other plant, and its requirements, in one readable text.
+//! Project file: a rig, or any other plant, and its requirements, in one readable text.
 //!
 //! ```text
 //! bytes -> tree -> setting (--set) -> reader <- catalogue: values of named parts
 //!                                     |
-//!                             Project::visit_system, visit_wishes: each key beside its field
+//!                             Project::visit_system, visit_wishes: each key next to its field
 //!                                     |
 //!                                     -> validate: the conditions between keys -> Loaded, or a Refusal
 //!
-//! Project   -> printer -> text                   the same visits, written
-//!           -> listing -> keys, numbers by path  what `--set` and campaigns may change
+//! Project   -> printer -> text                   these visits, written
+//!           -> listing -> keys, numbers by path  numbers that `--set` and campaigns may change
 //!           -> schema                            for editors
-//! bytes, controller -> rewrite -> bytes          everything else as it was
+//! bytes, controller -> rewrite -> bytes          all other text unchanged
 //! ```
 //!
-//! Inside, everything is SI. Keys are a contract: other tools read them.
+//! Internally, all numbers are SI. Keys are a contract: other tools read them.
 
 mod adjustment;
 mod alternative;
@@ -140,32 +140,30 @@ pub use written_units::WrittenUnits;
 use phea_dynamics::portable;
 use phea_quantity::{MotionKind, RATIO, Units};
 
-/// A commented project to start from.
+/// Commented project as a starting point.
 pub const STARTER: &str = include_str!("starter.toml");
 
-/// A project as it was declared. It has exactly one of `actuator`, `plant` and measured plants in
-/// `family`.
+/// Declared project. It has exactly one of `actuator`, `plant` and measured plants in `family`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Project {
-    /// The folder to which paths of other files are relative: the project file's own path up to its
+    /// Folder to which paths of other files are relative: the project file's own path up to its
     /// name. Not a key.
     pub folder: String,
-    /// The units in which its quantities are shown: those in which its text writes them, otherwise
-    /// the customary ones. Not a key.
+    /// Display units of its quantities: those of its text, otherwise the customary ones. Not a key.
     pub units: Units,
-    /// One line for people.
+    /// Title for people, one line.
     pub title: String,
-    /// The hydraulic actuator and what it works against.
+    /// Hydraulic actuator and its load.
     pub actuator: Option<DeclaredActuator>,
-    /// Any other plant, as a transfer function.
+    /// Other plant, as a transfer function.
     pub plant: Option<DeclaredPlant>,
-    /// Which plants are examined; absent: the grid of `uncertainty`.
+    /// Examined plants; if absent, the grid of `uncertainty`.
     pub family: Option<DeclaredFamily>,
-    /// What lies between the controlled output and the controller; absent: 1.
+    /// Dynamics between the controlled output and the controller; if absent, 1.
     pub sensor: Option<Sensor>,
-    /// What the compliant component is sized for.
+    /// Requirements for sizing the compliant component.
     pub sizing: Option<DeclaredSizing>,
-    /// Where the linear model is taken.
+    /// Operating point of the linear model.
     pub operating_point: DeclaredOperatingPoint,
     /// Parameters of the linear model that are stated directly.
     pub linear: Linear,
@@ -173,40 +171,40 @@ pub struct Project {
     pub uncertainty: Vec<Uncertain>,
     /// Numbers that are uncertain together, in file order.
     pub directions: Vec<UncertaintyDirection>,
-    /// What the closed loop must meet, in file order.
+    /// Requirements on the closed loop, in file order.
     pub specifications: Vec<DeclaredSpecification>,
-    /// Given, to be verified; absent or without a transfer function, to be designed.
+    /// Controller to be verified; if absent or without a transfer function, it is designed.
     pub controller: Option<DeclaredController>,
-    /// Given, to be verified; absent, to be designed.
+    /// Prefilter to be verified; if absent, it is designed.
     pub prefilter: Option<Prefilter>,
-    /// How a controller is designed; absent: by the defaults.
+    /// Settings of the design; defaults if absent.
     pub design: Option<DeclaredDesign>,
-    /// How a controller is judged; absent: by the defaults.
+    /// Settings of the verification; defaults if absent.
     pub verification: Option<DeclaredVerification>,
-    /// What is simulated.
+    /// Simulated scenarios.
     pub scenarios: Vec<Scenario>,
-    /// How scenarios are simulated.
+    /// Settings of the simulation.
     pub simulation: Simulation,
-    /// What a Monte Carlo campaign varies.
+    /// Variations of a Monte Carlo campaign.
     pub campaign: Option<Campaign>,
-    /// How the servovalve is tested; absent: by the defaults.
+    /// Tests of the servovalve; defaults if absent.
     pub bench: Bench,
-    /// What the servovalve is identified from.
+    /// Recordings for the identification of the servovalve.
     pub identify: Option<Identify>,
-    /// The same project with other values, to be compared with it, in file order.
+    /// Alternatives with other values, for comparison, in file order.
     pub alternatives: Vec<Alternative>,
-    /// Other values under which it and its alternatives are judged again, in file order.
+    /// Other values under which the project and its alternatives are judged again, in file order.
     pub load_cases: Vec<LoadCase>,
 }
 
 impl Project {
-    /// What still counts as met, dB, if it is stated.
+    /// Tolerance of the verdict, if stated, dB.
     pub fn tolerance_db(&self) -> Option<f64> {
         let declared = self.verification.as_ref()?;
         declared.tolerance.map(|factor| 20.0 * portable::log10(factor))
     }
 
-    /// The tables that make the system: the actuator or the plant.
+    /// Visits the tables of the system: the actuator or the plant.
     fn visit_system<V: Visitor>(&mut self, v: &mut V) {
         let mut schema = 1;
         v.count(key("schema", &RATIO, "Version of this format: 1.").at_least(1.0).at_most(1.0), &mut schema);
@@ -217,7 +215,7 @@ impl Project {
         v.part(&mut self.actuator, DeclaredActuator::visit);
     }
 
-    /// The requirements on the system.
+    /// Visits the requirements on the system.
     fn visit_wishes<V: Visitor>(&mut self, v: &mut V) {
         let k = plain("operating_point", "Where the linear model is taken.");
         v.table_or_default(k, &mut self.operating_point, DeclaredOperatingPoint::visit);
@@ -258,41 +256,41 @@ impl Project {
     }
 }
 
-/// The hydraulic actuator and what it works against.
+/// Hydraulic actuator and its load.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredActuator {
-    /// The oil.
+    /// Oil.
     pub fluid: DeclaredFluid,
-    /// The pressure supply.
+    /// Pressure supply.
     pub supply: DeclaredSupply,
-    /// The servovalve.
+    /// Servovalve.
     pub valve: Valve,
-    /// The cylinder; of a rig with a motor it is that of nothing.
+    /// Cylinder; the default value if the rig has a motor.
     pub cylinder: DeclaredCylinder,
-    /// The motor in its place.
+    /// Motor in place of the cylinder.
     pub motor: Option<DeclaredMotor>,
-    /// The lines between valve and cylinder.
+    /// Lines between valve and cylinder.
     pub line: DeclaredLines,
-    /// A valve between the chambers, if there is one.
+    /// Valve between the chambers, if there is one.
     pub cross_port: Option<DeclaredCrossPort>,
-    /// The load cell.
+    /// Load cell.
     pub force_sensor: DeclaredForceSensor,
-    /// What the velocity of the load is measured with; absent: the true one is known at once.
+    /// Sensor of the load velocity; if absent, the true velocity is known immediately.
     pub velocity_sensor: Option<DeclaredVelocitySensor>,
-    /// What lies between load cell and load; absent: the cell pushes on the load itself.
+    /// Element between load cell and load; if absent, the cell acts directly on the load.
     pub series: Option<DeclaredSeries>,
-    /// The linkage between rod and load; absent: the load moves with the rod.
+    /// Linkage between rod and load; if absent, the load moves with the rod.
     pub linkage: Option<DeclaredLinkage>,
-    /// What the force acts on.
+    /// Load on which the force acts.
     pub load: Load,
 }
 
 impl DeclaredActuator {
-    /// The tables of an actuator that are required, and one of [`DeclaredActuator::MOVING`].
+    /// Required tables of an actuator, in addition to one of [`DeclaredActuator::MOVING`].
     const REQUIRED: [&'static str; 5] = ["fluid", "supply", "valve", "line", "force_sensor"];
-    /// Tables of which exactly one describes what moves.
+    /// Tables of which exactly one describes the moving part.
     const MOVING: [&'static str; 2] = ["cylinder", "motor"];
-    /// Those that may be absent.
+    /// Optional tables.
     const OPTIONAL: [&'static str; 5] = ["cross_port", "velocity_sensor", "series", "linkage", "load"];
 
     fn visit<V: Visitor>(&mut self, v: &mut V) {
@@ -322,13 +320,13 @@ impl DeclaredActuator {
         v.table_or_default(plain("load", "What the force acts on."), &mut self.load, Load::visit);
     }
 
-    /// Every table with its name.
+    /// All tables with their names.
     fn tables() -> impl Iterator<Item = &'static str> + Clone {
         Self::REQUIRED.into_iter().chain(Self::MOVING).chain(Self::OPTIONAL)
     }
 
-    /// What moves: a motor, or otherwise a cylinder. The keys of all other tables measure its
-    /// motion.
+    /// Visits the moving part: a motor, or otherwise a cylinder. The keys of all other tables
+    /// measure its motion.
     fn visit_moving<V: Visitor>(&mut self, v: &mut V) {
         let k = plain("motor", "A rotary actuator in place of the cylinder.");
         v.table(k, &mut self.motor, DeclaredMotor::visit);
@@ -340,7 +338,7 @@ impl DeclaredActuator {
     }
 }
 
-/// A table of which a schema says beside that of the plant that it is required.
+/// Table that a schema marks as required in addition to that of the plant.
 fn required<T: Default, V: Visitor>(key: Key, field: &mut T, visit: impl Fn(&mut T, &mut V), v: &mut V) {
     let mut table = Some(std::mem::take(field));
     v.table(key, &mut table, visit);

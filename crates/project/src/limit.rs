@@ -1,4 +1,4 @@
-//! `limit`, `upper` and `lower` of a specification, in each of their forms.
+//! Keys `limit`, `upper` and `lower` of a specification, in each of their forms.
 
 use super::formula::Formula;
 use super::key::{Key, key, plain};
@@ -7,64 +7,64 @@ use super::visitor::{FormulaShape, ValueForm, Visitor};
 use phea_dynamics::time_response::SettlingRule;
 use phea_quantity::{ANGLE, ANGULAR_FREQUENCY, GAIN, PERCENT, RATIO, TIME};
 
-/// A limit over frequency.
+/// Limit over frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DeclaredLimit {
-    /// The same at every frequency.
+    /// Constant over frequency.
     Constant(f64),
-    /// The magnitude of a ratio of polynomials in one text.
+    /// Magnitude of a ratio of polynomials in one text.
     Text(Formula),
-    /// The magnitude of a transfer function.
+    /// Magnitude of a transfer function.
     Rational(Rational),
     /// Numbers at frequencies, interpolated linearly in a log-log diagram.
     Table(DeclaredLimitTable),
-    /// What guarantees these margins.
+    /// Limit that guarantees these margins.
     Margins(MarginWish),
-    /// A limit that follows from a wish in time, or is checked against one.
+    /// Limit that follows from a requirement in time, or is checked against one.
     Response(ResponseWish),
 }
 
-/// A limit at frequencies.
+/// Limit at frequencies.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredLimitTable {
-    /// rad/s, increasing.
+    /// Frequencies, increasing, rad/s.
     pub frequencies: Vec<f64>,
-    /// Ratios, as many.
+    /// Ratios, one for each frequency.
     pub values: Vec<f64>,
 }
 
-/// Margins that a limit must guarantee; the strictest of several decides.
+/// Margins that a limit must guarantee; the strictest one determines the limit.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MarginWish {
     /// Factor by which the gain may grow, above 1.
     pub gain_margin: Option<f64>,
     /// Factor to which the gain may fall, below 1.
     pub gain_reduction: Option<f64>,
-    /// rad.
+    /// Phase margin, rad.
     pub phase_margin: Option<f64>,
     /// Least distance |1 + L|.
     pub modulus_margin: Option<f64>,
-    /// s.
+    /// Delay margin, s.
     pub delay_margin: Option<f64>,
 }
 
-/// The wanted step response: the fastest one for `upper`, the slowest for `lower`.
+/// Required step response: the fastest one for `upper`, the slowest for `lower`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ResponseWish {
-    /// Percent of the step; of `upper`.
+    /// Overshoot, percent of the step; for `upper`.
     pub overshoot_percent: Option<f64>,
-    /// s.
+    /// Settling time, s.
     pub settling_time: Option<f64>,
-    /// Percent of the step.
+    /// Settling band, percent of the step.
     pub settling_band_percent: Option<f64>,
-    /// rad/s, the zero added to `upper`.
+    /// Zero added to `upper`, rad/s.
     pub zero: Option<f64>,
-    /// rad/s, the pole added to `lower`.
+    /// Pole added to `lower`, rad/s.
     pub pole: Option<f64>,
-    /// The rule by which the wish becomes a second-order model; absent: such that the response,
-    /// extra zero or pole included, meets the wish.
+    /// Rule that converts the requirement into a second-order model; if absent, the model is such
+    /// that the response, including an extra zero or pole, satisfies the requirement.
     pub rule: Option<SettlingRule>,
-    /// The limit itself, where it is given and only checked against the wish.
+    /// Limit that is given and only checked against the requirement.
     pub function: Option<Rational>,
 }
 
@@ -98,8 +98,8 @@ impl DeclaredLimit {
         }
     }
 
-    /// Every key is read, so that the nearest spelling of a misspelt one is found; the keys that
-    /// are present decide the form. No key at all counts as an empty table.
+    /// Reads every key, so that the nearest spelling of a misspelt one is found; the keys that are
+    /// present determine the form. No key at all counts as an empty table.
     fn visit_table<V: Visitor>(&mut self, v: &mut V) {
         let (mut table, mut function) = (DeclaredLimitTable::default(), None);
         let (mut margins, mut response) = (MarginWish::default(), ResponseWish::default());

@@ -1,4 +1,4 @@
-//! `[line]`, `[line.a]` and `[line.b]`.
+//! Tables `[line]`, `[line.a]` and `[line.b]`.
 
 use super::cost::LineCost;
 use super::fluid::DeclaredAccumulator;
@@ -11,131 +11,131 @@ use crate::catalogue_kind::CatalogueKind;
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_quantity::{DENSITY, EXPANSION_SLOPE, LENGTH, PRESSURE, RATIO, VOLUME, VOLUME_PER_LENGTH};
 
-/// The lines between the valve and the chambers.
+/// Lines between the valve and the chambers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredLines {
-    /// To which volume the line's effective bulk modulus applies.
+    /// Volume to which the line's effective bulk modulus applies.
     pub compliance: StiffnessModel,
-    /// The line to chamber A.
+    /// Line to chamber A.
     pub a: DeclaredLine,
-    /// The line to chamber B.
+    /// Line to chamber B.
     pub b: DeclaredLine,
 }
 
-/// One line.
+/// Single line.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredLine {
-    /// What it is made of.
+    /// Component of the line.
     pub component: Component,
-    /// r_β, dynamic over static modulus of the hose.
+    /// Ratio r_β of dynamic to static modulus of the hose.
     pub dynamic_stiffening: Option<BoundedNumber>,
-    /// How it moves.
+    /// Dynamic model.
     pub motion: LineMotion,
-    /// At its chamber's end.
+    /// Accumulator at its chamber end.
     pub accumulator: Option<DeclaredAccumulator>,
-    /// Part of the recordings that it was identified from and leaves unexplained.
+    /// Residual of the recordings from which it was identified.
     pub misfit: Option<DeclaredMisfit>,
 }
 
-/// What a line is made of.
+/// Component of a line.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Component {
-    /// A hose with volumetric expansion.
+    /// Hose with volumetric expansion.
     Hose {
-        /// Name of the catalogue's hose, if it came from there.
+        /// Name of the catalogue's hose, if it is from there.
         name: Option<String>,
-        /// Its data, from the catalogue or stated here.
+        /// Data of the hose, from the catalogue or stated here.
         properties: HoseProperties,
-        /// m, of this one line.
+        /// Length of this one line, m.
         length: f64,
     },
-    /// A pipe.
+    /// Pipe.
     Pipe {
-        /// Its dimensions and wall.
+        /// Dimensions and wall.
         pipe: DeclaredPipe,
-        /// m, of this one line.
+        /// Length of this one line, m.
         length: f64,
     },
-    /// A volume given outright.
+    /// Volume stated directly.
     Volume(LineVolume),
 }
 
-/// A volume with its modulus.
+/// Volume with its modulus.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LineVolume {
-    /// m³.
+    /// Volume, m³.
     pub volume: f64,
-    /// Pa.
+    /// Effective bulk modulus, Pa.
     pub effective_bulk_modulus: f64,
 }
 
-/// The data of a hose.
+/// Data of a hose.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HoseProperties {
-    /// m, inner diameter of the hose.
+    /// Inner diameter of the hose, m.
     pub bore: f64,
-    /// What it gains under pressure.
+    /// Volumetric expansion under pressure.
     pub expansion: HoseExpansion,
-    /// m.
+    /// Minimum bend radius, m.
     pub minimum_bend_radius: Option<f64>,
-    /// Pa.
+    /// Working pressure, Pa.
     pub working_pressure: Option<f64>,
-    /// Pa.
+    /// Burst pressure, Pa.
     pub burst_pressure: Option<f64>,
-    /// What it costs and weighs.
+    /// Cost and mass.
     pub cost: LineCost,
 }
 
 /// Volumetric expansion of a hose under pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HoseExpansion {
-    /// By its slope.
+    /// Expansion by its slope.
     Slope {
-        /// m³/(m·Pa).
+        /// Slope, m³/(m·Pa).
         slope: f64,
-        /// m³/m, measured value, if stated.
+        /// Measured value, if stated, m³/m.
         measured: Option<f64>,
-        /// Pa, at which they were.
+        /// Pressure of the measurement, Pa.
         pressure: Option<f64>,
     },
-    /// From the measured value, on a straight line through zero.
+    /// Expansion from the measured value, on a straight line through zero.
     Measured {
-        /// m³/m.
+        /// Measured value, m³/m.
         measured: f64,
-        /// Pa, at which they were.
+        /// Pressure of the measurement, Pa.
         pressure: f64,
     },
 }
 
-/// A pipe with an elastic wall.
+/// Pipe with an elastic wall.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredPipe {
-    /// Name of the catalogue's pipe, if it came from there.
+    /// Name of the catalogue's pipe, if it is from there.
     pub model: Option<String>,
-    /// m, inner diameter.
+    /// Inner diameter, m.
     pub bore: f64,
-    /// The data of the wall; absent: it is rigid.
+    /// Data of the wall; rigid if absent.
     pub wall: Option<ElasticWall>,
     /// Poisson's ratio of the wall.
     pub poisson_ratio: f64,
-    /// m.
+    /// Outer diameter, m.
     pub outer_diameter: Option<f64>,
-    /// Pa.
+    /// Working pressure, Pa.
     pub working_pressure: Option<f64>,
-    /// Pa.
+    /// Burst pressure, Pa.
     pub burst_pressure: Option<f64>,
-    /// What it costs and weighs.
+    /// Cost and mass.
     pub cost: LineCost,
 }
 
-/// An elastic wall of a pipe.
+/// Elastic wall of a pipe.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ElasticWall {
-    /// m.
+    /// Thickness, m.
     pub thickness: f64,
-    /// Pa.
+    /// Young's modulus, Pa.
     pub youngs_modulus: f64,
-    /// kg/m³, from which its mass follows.
+    /// Density, from which the mass follows, kg/m³.
     pub density: Option<f64>,
 }
 
@@ -152,7 +152,7 @@ impl Default for HoseExpansion {
 }
 
 impl DeclaredLine {
-    /// What a line can be.
+    /// Possible components of a line.
     const COMPONENTS: Kinds = Kinds {
         chosen_by: &["hose", "pipe", "volume"],
         keys: &[
@@ -173,10 +173,10 @@ impl DeclaredLine {
             "effective_bulk_modulus",
         ],
     };
-    /// What a side may choose for itself.
+    /// Kinds that a side may choose for itself.
     const KINDS: &[Kinds] = &[DeclaredLine::COMPONENTS, LineMotion::MODELS];
 
-    /// Its hose.
+    /// Hose of the line, if it is one.
     pub fn hose(&self) -> Option<&HoseProperties> {
         if let Component::Hose { properties, .. } = &self.component { Some(properties) } else { None }
     }
@@ -186,12 +186,12 @@ impl DeclaredLine {
         if let Component::Hose { name, .. } = &self.component { name.as_deref() } else { None }
     }
 
-    /// Its pipe.
+    /// Pipe of the line, if it is one.
     pub fn pipe(&self) -> Option<&DeclaredPipe> {
         if let Component::Pipe { pipe, .. } = &self.component { Some(pipe) } else { None }
     }
 
-    /// m, of a hose or pipe.
+    /// Length of a hose or pipe, m.
     pub fn length(&self) -> Option<f64> {
         match self.component {
             Component::Hose { length, .. } | Component::Pipe { length, .. } => Some(length),
@@ -199,12 +199,12 @@ impl DeclaredLine {
         }
     }
 
-    /// Pa, the pressure up to which the expansion of a hose was measured, if stated.
+    /// Pressure up to which the expansion of a hose was measured, if stated, Pa.
     pub fn expansion_stated_at(&self) -> Option<f64> {
         self.hose().and_then(|hose| hose.expansion.pressure())
     }
 
-    /// A hose or pipe that ends at no chamber.
+    /// Visits a hose or pipe that ends at no chamber.
     pub(crate) fn visit_alone<V: Visitor>(&mut self, v: &mut V) {
         self.component.visit(false, v);
         self.visit_stiffening(v);
@@ -226,13 +226,13 @@ impl DeclaredLine {
 }
 
 impl Component {
-    /// Keys of which each makes it a hose.
+    /// Keys any of which makes the line a hose.
     pub(crate) const HOSE: [&'static str; 4] =
         ["hose", "bore", "volumetric_expansion", "volumetric_expansion_slope"];
-    /// Keys of which each makes it a volume that is stated directly.
+    /// Keys any of which makes the line a directly stated volume.
     pub(crate) const VOLUME: [&'static str; 2] = ["volume", "effective_bulk_modulus"];
 
-    /// Also as a volume that is stated directly, where `or_volume`.
+    /// Visits the line, also as a directly stated volume if `or_volume`.
     fn visit<V: Visitor>(&mut self, or_volume: bool, v: &mut V) {
         let (mut name, mut hose, mut pipe, mut volume, mut length) = (None, None, None, None, 0.0);
         match std::mem::take(self) {
@@ -278,7 +278,7 @@ impl LineVolume {
 }
 
 impl HoseExpansion {
-    /// m³/(m·Pa): the declared slope, or the expansion over the pressure it was measured at.
+    /// Declared slope, or the expansion over the pressure of its measurement, m³/(m·Pa).
     pub fn slope(&self) -> f64 {
         match *self {
             HoseExpansion::Slope { slope, .. } => slope,
@@ -286,7 +286,7 @@ impl HoseExpansion {
         }
     }
 
-    /// m³/m, measured value, if stated.
+    /// Measured value, if stated, m³/m.
     pub fn measured(&self) -> Option<f64> {
         match *self {
             HoseExpansion::Slope { measured, .. } => measured,
@@ -294,7 +294,7 @@ impl HoseExpansion {
         }
     }
 
-    /// Pa, at which they were.
+    /// Pressure of the measurement, Pa.
     pub fn pressure(&self) -> Option<f64> {
         match *self {
             HoseExpansion::Slope { pressure, .. } => pressure,
@@ -304,7 +304,7 @@ impl HoseExpansion {
 
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         let (mut measured, mut pressure) = (self.measured(), self.pressure());
-        // a slope is positive, except for an expansion that is not read yet
+        // a slope is positive, unless an expansion is not read yet
         let mut slope = match *self {
             HoseExpansion::Slope { slope, .. } if slope > 0.0 => Some(slope),
             HoseExpansion::Slope { .. } | HoseExpansion::Measured { .. } => None,
@@ -329,7 +329,7 @@ impl HoseExpansion {
 }
 
 impl HoseProperties {
-    /// The keys a catalogue's hose has.
+    /// Visits the keys of a hose in the catalogue.
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = key("bore", &LENGTH, "Inner diameter of the hose.").positive();
         v.quantity(k, &mut self.bore);
@@ -345,7 +345,7 @@ impl HoseProperties {
 }
 
 impl DeclaredPipe {
-    /// The keys that a pipe has, in the catalogue too.
+    /// Visits the keys of a pipe, also in the catalogue.
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = plain("model", "Name of a pipe of the catalogue.");
         v.catalogue(k, CatalogueKind::Pipe, &mut self.model);

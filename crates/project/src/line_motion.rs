@@ -1,61 +1,61 @@
-//! The dynamic model of a line: `model` of `[line]`, and its keys.
+//! Dynamic model of a line: `model` of `[line]`, and its keys.
 
 use super::key::{Key, key, plain};
 use super::visitor::{Kinds, Variants, Visitor};
 use phea_hydraulics::line::LaminarFriction;
 use phea_quantity::{MASS_PER_LENGTH, RATIO, STRAIN_PER_FORCE, STRAIN_PER_PRESSURE, TIME};
 
-/// The dynamic model of a line with its parameters.
+/// Dynamic model of a line with its parameters.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum LineMotion {
-    /// Chosen by the frequencies that loop and requirements reach; lumped until it is chosen.
+    /// Model chosen by the frequency range of loop and requirements; lumped until it is chosen.
     #[default]
     Automatic,
-    /// One pressure.
+    /// Single pressure.
     Lumped,
-    /// One pressure, and a wall that creeps.
+    /// Single pressure, and a wall that creeps.
     Creeping {
-        /// s, in which pressure relaxes while the volume is held.
+        /// Time constant in which pressure relaxes at constant volume, s.
         relaxation_time: f64,
     },
-    /// Capacities and inertances in turn.
+    /// Alternating capacities and inertances.
     Segments(LineSegments),
     /// Fluid waves.
     TransmissionLine {
-        /// Share of the line's compliance that is a plain volume at each end; absent:
+        /// Fraction of the line's compliance that is a plain volume at each end; if absent,
         /// `phea_hydraulics::line::END_SHARE`.
         end_share: Option<f64>,
     },
     /// Fluid and wall waves, coupled.
     TwoWave {
-        /// As of a transmission line.
+        /// Fraction as for a transmission line.
         end_share: Option<f64>,
-        /// The data of a wall that moves along its axis.
+        /// Data of a wall that moves along its axis.
         wall: Option<LineWall>,
     },
 }
 
-/// A line cut into segments.
+/// Line divided into segments.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LineSegments {
-    /// How many; absent: [`LineSegments::COUNT`].
+    /// Number of segments; if absent, [`LineSegments::COUNT`].
     pub count: Option<u32>,
-    /// The friction of the flow in them; absent: it depends on frequency.
+    /// Friction of the flow; frequency-dependent if absent.
     pub friction: Option<LaminarFriction>,
-    /// s, of a wall that creeps; absent: it is elastic.
+    /// Relaxation time of a wall that creeps, s; elastic if absent.
     pub relaxation_time: Option<f64>,
 }
 
-/// The data of a hose's wall that moves along its axis; absent values are assumed.
+/// Data of a hose's wall that moves along its axis; absent values are assumed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LineWall {
-    /// kg/m.
+    /// Mass per length, kg/m.
     pub mass_per_length: Option<f64>,
-    /// 1/Pa, area strain per pressure without tension.
+    /// Area strain per pressure without tension, 1/Pa.
     pub pressure_compliance: Option<f64>,
-    /// 1/N, area strain per tension.
+    /// Area strain per tension, 1/N.
     pub coupling_compliance: Option<f64>,
-    /// 1/N, axial strain per tension.
+    /// Axial strain per tension, 1/N.
     pub axial_compliance: Option<f64>,
 }
 
@@ -118,28 +118,28 @@ impl Variants for LineMotion {
 }
 
 impl LineMotion {
-    /// Keys that belong to one model or another.
+    /// Keys that belong to single models.
     pub(crate) const KEYS: [&'static str; 5] =
         ["segments", "friction", "relaxation_time", "end_share", "wall"];
-    /// A side that chooses its model has that model's keys of its own too.
+    /// Models as kinds: a side that chooses its model also has that model's keys of its own.
     pub(crate) const MODELS: Kinds = Kinds { chosen_by: &["model"], keys: &LineMotion::KEYS };
 
-    /// Its model as in a project file.
+    /// Word of its model in a project file.
     pub fn model(&self) -> &'static str {
         self.word()
     }
 
-    /// True where waves travel in the line.
+    /// True if waves travel in the line.
     pub fn has_waves(&self) -> bool {
         !self.is_lumped() && !matches!(self, LineMotion::Creeping { .. })
     }
 
-    /// True where the line has one pressure and a wall that does not creep.
+    /// True if the line has one pressure and a wall that does not creep.
     pub fn is_lumped(&self) -> bool {
         matches!(self, LineMotion::Automatic | LineMotion::Lumped)
     }
 
-    /// s, of a wall that creeps.
+    /// Relaxation time of a wall that creeps, s.
     pub fn relaxation_time(&self) -> Option<f64> {
         match self {
             LineMotion::Creeping { relaxation_time } => Some(*relaxation_time),
@@ -155,16 +155,16 @@ impl LineMotion {
 impl LineSegments {
     /// Default number of segments: the first resonance of a line closed at one end is 0.2 % low.
     pub const COUNT: u32 = 8;
-    /// States that segments of one line may have, so that both lines and what is around them fit
-    /// into a simulation.
+    /// Largest number of states of the segments of one line, so that both lines and the parts
+    /// around them fit into a simulation.
     const MOST_STATES: u32 = 112;
 
-    /// How many there are.
+    /// Number of segments.
     pub fn count(&self) -> u32 {
         self.count.unwrap_or(Self::COUNT)
     }
 
-    /// The most with this friction and this wall.
+    /// Largest number of segments with this friction and this wall.
     pub(crate) fn most(&self) -> u32 {
         let lags = if self.friction == Some(LaminarFriction::Steady) { 0 } else { 5 };
         let creeping = u32::from(self.relaxation_time.is_some());

@@ -1,4 +1,4 @@
-//! `[linear]`: the linear model's parameters.
+//! Table `[linear]`: the linear model's parameters.
 
 use super::key::{Key, key};
 use super::visitor::Visitor;
@@ -9,39 +9,39 @@ use phea_quantity::{
 /// Parameters of the linear model that are stated directly.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Linear {
-    /// N·s/m, f_v.
+    /// Viscous friction f_v, N·s/m.
     pub viscous_friction: Option<f64>,
-    /// m³/(s·V), K_qU.
+    /// Flow gain K_qU, m³/(s·V).
     pub flow_gain: Option<f64>,
-    /// m³/(s·Pa), K_c.
+    /// Flow-pressure coefficient K_c, m³/(s·Pa).
     pub flow_pressure_coefficient: Option<f64>,
-    /// N/m, K_H.
+    /// Hydraulic stiffness K_H, N/m.
     pub hydraulic_stiffness: Option<f64>,
-    /// rad/s.
+    /// Natural frequency of the valve, rad/s.
     pub valve_natural_frequency: Option<f64>,
-    /// ξ_v.
+    /// Damping ratio ξ_v.
     pub valve_damping_ratio: Option<f64>,
-    /// kg, M.
+    /// Moving mass M, kg.
     pub moving_mass: Option<f64>,
-    /// m², A_u.
+    /// Piston area A_u, m².
     pub piston_area: Option<f64>,
-    /// N/m, K_S.
+    /// Sensor stiffness K_S, N/m.
     pub sensor_stiffness: Option<f64>,
 }
 
-/// A parameter of the linear model, and what it is derived from.
+/// Parameter of the linear model, and its dependencies.
 #[derive(Clone, Copy, Debug)]
 pub struct LinearParameter {
-    /// Its key, in `[linear]` and `[uncertainty]`.
+    /// Key, in `[linear]` and `[uncertainty]`.
     pub key: Key,
-    /// Numbers of the project it depends on directly, and not only through the pressures of the
-    /// operating point. Those of one line are listed as of both. A test compares the lists with
-    /// what changes if a number of a rig does.
+    /// Numbers of the project on which it depends directly, and not only through the pressures of
+    /// the operating point. Numbers of one line are listed as of both. A test compares the lists
+    /// with the effects of changed numbers of a rig.
     pub depends_on: &'static [&'static str],
 }
 
 impl LinearParameter {
-    /// Whether it follows from the number at a path.
+    /// True if it depends on the number at a path.
     pub fn follows_from(&self, path: &str) -> bool {
         let of_one = ["line.a.", "line.b."].into_iter().find_map(|side| path.strip_prefix(side));
         self.depends_on.iter().any(|known| match of_one {
@@ -51,7 +51,7 @@ impl LinearParameter {
     }
 }
 
-/// Paths the valve coefficients depend on.
+/// Paths on which the valve coefficients depend.
 const VALVE: &[&str] = &[
     "valve.flow_coefficients.supply_to_a",
     "valve.flow_coefficients.supply_to_b",
@@ -85,7 +85,7 @@ const VALVE: &[&str] = &[
     "motor.case_leakage",
 ];
 
-/// Paths the hydraulic stiffness depends on.
+/// Paths on which the hydraulic stiffness depends.
 const STIFFNESS_PATHS: &[&str] = &[
     "fluid.bulk_modulus",
     "fluid.entrained_air",
@@ -126,7 +126,7 @@ const STIFFNESS_PATHS: &[&str] = &[
 const AREA_PATHS: &[&str] =
     &["cylinder.piston_diameter", "cylinder.piston_area", "cylinder.rod_diameter", "motor.displacement"];
 
-/// The parameters of the linear model, in the order of `[linear]`.
+/// Parameters of the linear model, in the order of `[linear]`.
 pub static LINEAR_PARAMETERS: [LinearParameter; 9] = [
     LinearParameter {
         key: key("viscous_friction", &DAMPING, "f_v.").of_motion().not_negative(),
@@ -161,7 +161,7 @@ pub static LINEAR_PARAMETERS: [LinearParameter; 9] = [
 ];
 
 impl Linear {
-    /// The declared value of a parameter by its name.
+    /// Declared value of a parameter by its name.
     pub fn get(&self, name: &str) -> Option<f64> {
         let mut copy = self.clone();
         copy.fields()

@@ -1,4 +1,4 @@
-//! `[linkage]`: what lies between the rod and a load that turns about a joint.
+//! Table `[linkage]`: a linkage between the rod and a load that turns about a joint.
 
 use super::key::{key, plain};
 use super::visitor::{Variants, Visitor};
@@ -7,90 +7,90 @@ use phea_hydraulics::linkage::{
 };
 use phea_quantity::{ANGLE, LENGTH, MASS};
 
-/// A linkage: the angle of the joint grows while the rod extends.
+/// Linkage: the angle of the joint grows while the rod extends.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredLinkage {
-    /// What it is made of.
+    /// Kind of linkage.
     pub kind: LinkageKind,
-    /// That gravity turns the load by; absent: by none.
+    /// Weight of the load; if absent, gravity exerts no torque.
     pub weight: Option<DeclaredWeight>,
 }
 
-/// The weight of a load that turns.
+/// Weight of a load that turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DeclaredWeight {
-    /// kg, of all that turns with the joint.
+    /// Mass of all parts that turn with the joint, kg.
     pub mass: f64,
-    /// m, from the joint to the centre of mass.
+    /// Distance from the joint to the centre of mass, m.
     pub centre_distance: f64,
-    /// rad, of the joint: where the centre is level with it and rises.
+    /// Angle of the joint at which the centre is level with it and rises, rad.
     pub level_angle: f64,
 }
 
 /// Kinds of linkages.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LinkageKind {
-    /// The cylinder between two pivots at either side of the joint.
+    /// Cylinder between two pivots on either side of the joint.
     Triangle(CylinderTriangle),
-    /// The cylinder turns the input link of a four-bar.
+    /// Cylinder that turns the input link of a four-bar linkage.
     FourBar {
-        /// About the joint of the input link.
+        /// Triangle about the joint of the input link.
         triangle: CylinderTriangle,
         /// Fixed, input and output link, and coupler.
         links: DeclaredLinks,
     },
-    /// Measured.
+    /// Measured table.
     Table {
-        /// m, of the piston.
+        /// Positions of the piston, m.
         extensions: Vec<f64>,
-        /// rad, of the joint.
+        /// Angles of the joint, rad.
         angles: Vec<f64>,
-        /// m, by which the polynomial may pass a row.
+        /// Largest distance of the polynomial from a row, m.
         tolerance: f64,
     },
 }
 
-/// The triangle of a joint and both pivots of a cylinder.
+/// Triangle of a joint and both pivots of a cylinder.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CylinderTriangle {
-    /// m, from the joint to the pivot of the cylinder's body.
+    /// Distance from the joint to the pivot of the cylinder's body, m.
     pub cylinder_pivot: f64,
-    /// m, from the joint to the pivot of the rod.
+    /// Distance from the joint to the pivot of the rod, m.
     pub rod_pivot: f64,
-    /// m, from pivot to pivot at position zero.
+    /// Distance from pivot to pivot at position zero, m.
     pub retracted_length: f64,
-    /// rad, what the angle of the joint is less than that of the geometry.
+    /// Difference between the angle of the geometry and that of the joint, rad.
     pub angle_offset: f64,
 }
 
-/// The links of a four-bar.
+/// Links of a four-bar linkage.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DeclaredLinks {
-    /// rad, by which the input link is ahead of the triangle's angle.
+    /// Lead of the input link over the triangle's angle, rad.
     pub input_angle: f64,
-    /// m, from joint to joint.
+    /// Distance from joint to joint, m.
     pub fixed_link: f64,
-    /// m.
+    /// Length of the input link, m.
     pub input_link: f64,
-    /// m.
+    /// Length of the coupler, m.
     pub coupler: f64,
-    /// m, that the load turns with.
+    /// Length of the output link, with which the load turns, m.
     pub output_link: f64,
-    /// Which of the two ways in which the links can be joined.
+    /// Assembly of the links.
     pub branch: FourBarBranch,
 }
 
-/// Ways in which a coupler joins two links.
+/// Assemblies of a coupler with two links.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FourBarBranch {
     /// Coupler and fixed link do not cross.
     #[default]
     Open,
-    /// They do.
+    /// Coupler and fixed link cross.
     Crossed,
 }
 
-/// m.
+/// Default tolerance, m.
 const TOLERANCE: f64 = 1e-4;
 
 impl Default for LinkageKind {
@@ -106,10 +106,10 @@ impl DeclaredLinkage {
         v.table(k, &mut self.weight, DeclaredWeight::visit);
     }
 
-    /// As the equations have it, over a stroke in m.
+    /// Reduced form for the equations, over a stroke in m.
     ///
     /// # Errors
-    /// A linkage that does not close over the stroke, comes to a dead point in it, or is too rough.
+    /// Linkage that does not close over the stroke, reaches a dead point in it, or is too rough.
     pub fn reduced(&self, stroke: f64) -> Result<ReducedLinkage, LinkageError> {
         let (geometry, angle_offset) = match &self.kind {
             LinkageKind::Triangle(triangle) => {
@@ -146,7 +146,7 @@ impl DeclaredLinkage {
 }
 
 impl DeclaredWeight {
-    /// N m, that gravity turns it with where its centre is level with the joint.
+    /// Moment of gravity when the centre is level with the joint, N m.
     pub fn moment(&self) -> f64 {
         self.mass * self.centre_distance * STANDARD_GRAVITY
     }

@@ -11,48 +11,48 @@ use phea_quantity::{MotionKind, Price, PricedBy};
 /// Walks a project without changing it, except for the numbers to be set.
 #[derive(Default)]
 pub(crate) struct Listing {
-    /// Tables that are absent are listed too.
+    /// True if absent tables are listed too.
     everything: bool,
-    /// How the rig moves.
+    /// Motion of the rig.
     motion: Motions,
     path: String,
-    /// Every key with a value of its own, by its path.
+    /// All keys with a value of their own, by path.
     pub(crate) keys: Vec<KeyEntry>,
-    /// The keys of the outermost table.
+    /// Keys of the outermost table.
     pub(crate) outermost: Vec<&'static str>,
-    /// Whether keys belong to a variant or to one of several ways, which needs them where it is
+    /// True if keys belong to a variant or to one of several ways, which requires them if it is
     /// chosen.
     of_variant: bool,
-    /// Every number that exists, by its path.
+    /// All existing numbers, by path.
     pub(crate) numbers: BTreeMap<String, (Key, f64)>,
-    /// The path of every whole number, stated or not.
+    /// Paths of all whole numbers, stated or not.
     pub(crate) counts: Vec<String>,
     /// Numbers to set.
     assign: BTreeMap<String, f64>,
-    /// How many of them were found.
+    /// Number of them that were found.
     pub(crate) assigned: usize,
 }
 
-/// A key as the documentation lists it.
+/// Key in the documentation.
 #[derive(Clone, Debug)]
 pub struct KeyEntry {
-    /// Dotted; `[]` stands for each element of a list, `NAME` for a name chosen by the user.
+    /// Dotted path; `[]` represents each element of a list, `NAME` a name chosen by the user.
     pub path: String,
-    /// What is known of it.
+    /// Properties of the key.
     pub key: Key,
-    /// What it takes: a quantity, a text, one of several words, ...
+    /// Accepted value: a quantity, a text, one of several words, ...
     pub takes: String,
-    /// Whether its absence is an error.
+    /// True if its absence is an error.
     pub required: bool,
 }
 
 impl Listing {
-    /// Lists every possible key.
+    /// Listing of every possible key.
     pub(crate) fn of_everything() -> Self {
         Listing { everything: true, ..Listing::default() }
     }
 
-    /// Sets numbers, and lists none.
+    /// Listing that sets numbers, and lists none.
     pub(crate) fn assigning(assign: BTreeMap<String, f64>) -> Self {
         Listing { assign, ..Listing::default() }
     }
@@ -97,12 +97,12 @@ impl Listing {
     }
 }
 
-/// The keys of a variant.
+/// Keys of a variant.
 pub(crate) fn keys_of<T: Variants>(variant: &T) -> Vec<&'static str> {
     keys_of_table(|listing| variant.clone().visit(listing))
 }
 
-/// The keys of a table, those of the tables in it left out.
+/// Keys of a table, without those of the tables in it.
 pub(crate) fn keys_of_table(visit: impl FnOnce(&mut Listing)) -> Vec<&'static str> {
     let mut listing = Listing::of_everything();
     visit(&mut listing);

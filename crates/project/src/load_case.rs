@@ -1,15 +1,15 @@
-//! `[[load_case]]`: other values under which the project and its alternatives are judged again,
-//! such as another load.
+//! Table `[[load_case]]`: other values under which the project and its alternatives are judged
+//! again, such as another load.
 
 use super::key::plain;
 use super::visitor::Visitor;
 
-/// Settings of the project and of every alternative, under a name.
+/// Named settings of the project and of every alternative.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LoadCase {
-    /// Its name; those of one project differ.
+    /// Name, unique within a project.
     pub name: String,
-    /// What it sets, in file order: the path, as `--set` takes it, and the value in TOML.
+    /// Settings in file order: the path, as for `--set`, and the value in TOML.
     pub set: Vec<(String, String)>,
 }
 
@@ -25,7 +25,7 @@ impl LoadCase {
         v.overrides(k, &mut self.set);
     }
 
-    /// What it sets, as `--set` takes it.
+    /// Settings, as for `--set`.
     pub fn settings(&self) -> impl Iterator<Item = String> {
         self.set.iter().map(|(path, value)| format!("{path}={value}"))
     }

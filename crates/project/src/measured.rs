@@ -1,37 +1,37 @@
-//! `[[scenario.measured]]`: measurements on the rig, to be compared with the simulation.
+//! Table `[[scenario.measured]]`: measurements on the rig, for comparison with the simulation.
 
 use super::key::{key, plain};
 use super::visitor::Visitor;
 use phea_hydraulics::signal::Signal;
 use phea_quantity::TIME;
 
-/// A file with measured signals.
+/// File with measured signals.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeasuredFile {
-    /// A CSV file, relative to the project.
+    /// CSV file, relative to the project.
     pub file: String,
-    /// Name of its column of times; absent: `time_s` or `time_ms`.
+    /// Name of its time column; if absent, `time_s` or `time_ms`.
     pub time_column: Option<String>,
-    /// Unit of that column; absent: s.
+    /// Unit of that column; if absent, s.
     pub time_unit: Option<String>,
-    /// s, added to the file's times.
+    /// Offset added to the file's times, s.
     pub offset: f64,
-    /// Which column is which signal.
+    /// Columns and their signals.
     pub signals: Vec<MeasuredSignal>,
 }
 
-/// A column of a measurement, and the corresponding signal of the simulation.
+/// Column of a measurement, and the corresponding signal of the simulation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeasuredSignal {
-    /// The simulated signal.
+    /// Simulated signal.
     pub signal: Signal,
-    /// Name of the file's column; absent: that of the signal.
+    /// Name of the file's column; if absent, that of the signal.
     pub column: Option<String>,
-    /// Unit of the file's column; absent: the SI unit in the name of the signal.
+    /// Unit of the file's column; if absent, the SI unit in the name of the signal.
     pub unit: Option<String>,
 }
 
-/// The signals that can be measured: every column of a simulation's table but time.
+/// Signals that can be measured: every column of a simulation's table but time.
 pub static MEASURABLE: [(&str, Signal); Signal::ALL.len() - 1] = {
     let mut all = [("", Signal::Time); Signal::ALL.len() - 1];
     let mut place = 0;

@@ -1,21 +1,21 @@
-//! `misfit` of the valve, of its lines and of the friction: what identified numbers leave
-//! unexplained of recordings.
+//! Key `misfit` of the valve, of its lines and of the friction: the residual of recordings with the
+//! identified numbers.
 
 use super::key::{key, plain};
 use super::visitor::Visitor;
 use phea_quantity::{RATIO, significant};
 
-/// The greatest misfit of the numbers of a part that were identified from recordings.
+/// Greatest misfit of the numbers of a part that were identified from recordings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredMisfit {
-    /// Its root mean square, over the range of the signal.
+    /// Root mean square over the range of the signal.
     pub share: f64,
-    /// Which signal of which recording, and where.
+    /// Signal and recording, and the location in it.
     pub at: Option<String>,
 }
 
 impl DeclaredMisfit {
-    /// As the value of the key `misfit`.
+    /// Value of the key `misfit`.
     ///
     /// # Example
     /// ```
@@ -27,13 +27,13 @@ impl DeclaredMisfit {
         format!("{{ {} }}", self.entries().join(", "))
     }
 
-    /// Each of its own keys with the value.
+    /// Entries of its own keys with their values.
     pub fn entries(&self) -> Vec<String> {
         let at = self.at.iter().map(|at| format!("at = \"{}\"", at.replace(['"', '\\'], "/")));
         [format!("share = {}", significant(self.share, 3))].into_iter().chain(at).collect()
     }
 
-    /// The key `misfit` of a part.
+    /// Visits the key `misfit` of a part.
     pub(crate) fn visit<V: Visitor>(misfit: &mut Option<DeclaredMisfit>, v: &mut V) {
         let k = plain("misfit", "What these numbers leave unexplained of recordings, as identified.");
         v.table(k, misfit, |misfit, v| {

@@ -1,4 +1,4 @@
-//! `[motor]`, in place of `[cylinder]`: a rotary actuator.
+//! Table `[motor]`, in place of `[cylinder]`: a rotary actuator.
 
 use phea_quantity::{ANGLE, DISPLACEMENT, FLOW_PRESSURE_COEFFICIENT, INERTIA, MotionKind, VOLUME};
 
@@ -6,24 +6,26 @@ use super::key::{Motions, key, plain};
 use super::visitor::Visitor;
 use super::{DeclaredActuator, DeclaredFriction, EndStops};
 
-/// A hydraulic motor or a vane actuator; its angle grows while oil enters chamber A.
+/// Hydraulic motor or vane actuator; its angle grows while oil enters chamber A.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredMotor {
-    /// m³/rad, that a chamber takes for an angle.
+    /// Displacement of a chamber per angle, m³/rad.
     pub displacement: f64,
-    /// rad, from end to end; absent: it turns on without end, and its chambers keep their volumes.
+    /// Stroke from end to end, rad; if absent, it rotates without limit, and its chamber volumes
+    /// are constant.
     pub stroke: Option<f64>,
-    /// kg·m², shaft, rotor and what turns with them.
+    /// Inertia of shaft, rotor and the parts that turn with them, kg·m².
     pub inertia: f64,
-    /// m³, in each chamber in addition to the swept volume and the line; this or `dead_volumes`.
+    /// Volume in each chamber in addition to the swept volume and the line, m³; this or
+    /// `dead_volumes`.
     pub dead_volume: Option<f64>,
-    /// m³, in chamber A and in chamber B.
+    /// Volumes in chamber A and in chamber B, m³.
     pub dead_volumes: Option<[f64; 2]>,
-    /// m³/(s·Pa), laminar leakage from chamber to chamber.
+    /// Laminar leakage from chamber to chamber, m³/(s·Pa).
     pub internal_leakage: Option<f64>,
-    /// m³/(s·Pa), laminar leakage of each chamber through the case to the tank.
+    /// Laminar leakage of each chamber through the case to the tank, m³/(s·Pa).
     pub case_leakage: Option<f64>,
-    /// End stops; absent: the ends are reported, and nothing stops the shaft.
+    /// End stops; if absent, the ends are only reported.
     pub end_stops: Option<EndStops>,
     /// Friction of seals and bearings.
     pub friction: Option<DeclaredFriction>,
@@ -64,7 +66,7 @@ impl DeclaredMotor {
 }
 
 impl DeclaredActuator {
-    /// How it moves.
+    /// Motion of the actuator.
     ///
     /// # Example
     /// ```
@@ -79,22 +81,22 @@ impl DeclaredActuator {
         if self.motor.is_some() { MotionKind::Rotary } else { MotionKind::Linear }
     }
 
-    /// How its load moves: it turns behind a linkage too.
+    /// Motion of the load, which also turns behind a linkage.
     pub fn load_motion(&self) -> MotionKind {
         if self.linkage.is_some() { MotionKind::Rotary } else { self.motion() }
     }
 
-    /// Both.
+    /// Motions of actuator and load.
     pub fn motions(&self) -> Motions {
         Motions { rig: self.motion(), load: self.load_motion() }
     }
 
-    /// m or rad; `None` for a motor that turns on.
+    /// Stroke in m or rad; `None` for a motor that rotates without limit.
     pub fn stroke(&self) -> Option<f64> {
         self.motor.as_ref().map_or(Some(self.cylinder.stroke), |motor| motor.stroke)
     }
 
-    /// Whether a position in m or rad lies beyond the end of the stroke.
+    /// True if a position in m or rad is beyond the end of the stroke.
     pub(crate) fn is_beyond(&self, position: f64) -> bool {
         self.stroke().is_some_and(|stroke| stroke > 0.0 && position > stroke)
     }
@@ -104,7 +106,7 @@ impl DeclaredActuator {
         self.motor.as_ref().map_or(self.cylinder.friction.as_ref(), |motor| motor.friction.as_ref())
     }
 
-    /// The same, to be changed.
+    /// Friction of seals and bearings, mutable.
     pub fn friction_mut(&mut self) -> Option<&mut DeclaredFriction> {
         match &mut self.motor {
             Some(motor) => motor.friction.as_mut(),
@@ -112,7 +114,7 @@ impl DeclaredActuator {
         }
     }
 
-    /// kg or kg·m², what moves, to be changed.
+    /// Moving mass in kg or inertia in kg·m², mutable.
     pub fn moving_mass_mut(&mut self) -> &mut f64 {
         match &mut self.motor {
             Some(motor) => &mut motor.inertia,
@@ -120,7 +122,7 @@ impl DeclaredActuator {
         }
     }
 
-    /// The table that describes what moves.
+    /// Table that describes the moving part.
     pub fn moving_part(&self) -> &'static str {
         if self.motor.is_some() { "motor" } else { "cylinder" }
     }

@@ -1,5 +1,4 @@
-//! The files that a project is made of and those that it names, so that a command can refuse to
-//! replace one of them.
+//! Files of a project and those that it names, so that a command can refuse to replace one of them.
 
 use super::read::print;
 use super::text::Findings;
@@ -9,8 +8,8 @@ use crate::source::Source;
 
 impl Loaded {
     /// Paths of the project file, of its catalogues, and of every file that a text of the project
-    /// may name: in the file as it is written, and with the settings applied. Not all of them
-    /// exist, since a text such as `70 bar` is among them.
+    /// may name: in the file as written, and with the settings applied. Not all of them exist,
+    /// since a text such as `70 bar` is among them.
     ///
     /// # Example
     /// ```
@@ -42,7 +41,7 @@ impl Loaded {
     }
 }
 
-/// Every text of the file and of the project that was read from it.
+/// All texts of the file and of the project that was read from it.
 fn texts_of(project: &Project, bytes: &[u8]) -> Vec<String> {
     let mut texts = Vec::new();
     for content in [bytes, print(project).as_bytes()] {

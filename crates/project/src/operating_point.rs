@@ -1,4 +1,5 @@
-//! `[operating_point]`: where the linear model is taken; and its numbers where they are uncertain.
+//! Table `[operating_point]`: the operating point of the linear model; and its numbers if they are
+//! uncertain.
 
 use std::collections::BTreeMap;
 
@@ -9,20 +10,21 @@ use super::{DeclaredActuator, OperatingRegion, Project, Uncertain, UncertaintyDi
 use phea_dynamics::uncertain_plant::Spacing;
 use phea_quantity::{FORCE, LENGTH, PRESSURE, RATIO, VELOCITY, VOLTAGE};
 
-/// Where the linear model is taken; absent parts are mid stroke and null.
+/// Operating point of the linear model; absent parts are mid stroke and null.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredOperatingPoint {
-    /// m, from the end of chamber A.
+    /// Position from the end of chamber A, m.
     pub position: Option<f64>,
-    /// Pa, p_A - p_B.
+    /// Load pressure p_A - p_B, Pa.
     pub load_pressure: Option<f64>,
-    /// N, A_A p_A - A_B p_B.
+    /// Load force A_A p_A - A_B p_B, N.
     pub load_force: Option<f64>,
-    /// m/s, towards the end of chamber B.
+    /// Velocity towards the end of chamber B, m/s.
     pub velocity: Option<f64>,
-    /// V.
+    /// Command, V.
     pub command: Option<f64>,
-    /// From -1, the slopes of a spool that retracts the piston, to 1, of one that extends it.
+    /// Side of null, from -1, the slopes of a spool that retracts the piston, to 1, of one that
+    /// extends it.
     pub spool_side: Option<f64>,
 }
 
@@ -72,7 +74,7 @@ impl DeclaredOperatingPoint {
         );
     }
 
-    /// The numbers that may be uncertain, by their names.
+    /// Numbers that may be uncertain, by their names.
     pub(super) fn slot(&mut self, name: &str) -> Option<&mut Option<f64>> {
         match name {
             "position" => Some(&mut self.position),
@@ -84,13 +86,13 @@ impl DeclaredOperatingPoint {
         }
     }
 
-    /// Its number at a path of the project.
+    /// Number at a path of the project.
     pub(super) fn at_path(&mut self, path: &str) -> Option<&mut Option<f64>> {
         self.slot(path.strip_prefix(TABLE)?.strip_prefix('.')?)
     }
 }
 
-/// The numbers of the operating point that may be uncertain, stated or not, by their paths.
+/// Numbers of the operating point that may be uncertain, stated or not, by their paths.
 pub(super) fn operating_numbers() -> BTreeMap<String, Key> {
     let mut listing = Listing::default();
     let number = Some(0.0);
@@ -107,7 +109,7 @@ pub(super) fn operating_numbers() -> BTreeMap<String, Key> {
 }
 
 impl Project {
-    /// The operating point, with the nominal values of uncertain numbers where none are declared.
+    /// Operating point, with the nominal values of uncertain numbers that are not declared.
     pub fn resolved_operating_point(&self) -> DeclaredOperatingPoint {
         let mut point = self.operating_point.clone();
         for uncertain in self.uncertain_numbers() {
@@ -118,7 +120,7 @@ impl Project {
         point
     }
 
-    /// The numbers of `[uncertainty]`, then those of `[[uncertainty_direction]]`, then those of
+    /// Numbers of `[uncertainty]`, then those of `[[uncertainty_direction]]`, then those of
     /// `[family.operating_region]`, before the pump limits them.
     ///
     /// # Example
@@ -138,8 +140,8 @@ impl Project {
         self.uncertainty.iter().cloned().chain(directions).chain(of_region).collect()
     }
 
-    /// The nominal value is the declared one; otherwise mid stroke, no force and standstill, or the
-    /// nearest value in the region.
+    /// Uncertain numbers of a region. The nominal value is the declared one; otherwise mid stroke,
+    /// no force and standstill, or the nearest value in the region.
     fn of_region(&self, region: &OperatingRegion) -> Vec<Uncertain> {
         let stroke = self.actuator.as_ref().and_then(DeclaredActuator::stroke);
         let middle = stroke.map_or(0.0, |stroke| stroke / 2.0);

@@ -1,27 +1,27 @@
-//! `[plant]`: a plant given as a transfer function instead of an actuator.
+//! Table `[plant]`: a plant given as a transfer function instead of an actuator.
 
 use super::formula::Formula;
 use super::key::{Key, key, plain};
 use super::visitor::{FormulaShape, ValueForm, Visitor};
 use phea_quantity::{RATIO, TIME};
 
-/// A transfer function in `s` and named parameters.
+/// Transfer function in `s` and named parameters.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredPlant {
     /// Numerator and denominator.
     pub transfer: Rational,
     /// Dead time.
     pub delay: Delay,
-    /// The second path, for "load_motion".
+    /// Second path, for "load_motion".
     pub disturbance: Option<Rational>,
 }
 
-/// A dead time.
+/// Dead time of a plant.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Delay {
-    /// s.
+    /// Constant dead time, s.
     Constant(f64),
-    /// A formula of the uncertain parameters that gives seconds.
+    /// Formula of the uncertain parameters that gives seconds.
     Formula(Formula),
 }
 
@@ -52,18 +52,18 @@ impl Delay {
 /// Numerator and denominator: as written, or those of the written factors.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rational {
-    /// A polynomial.
+    /// Polynomial of the numerator.
     pub numerator: Formula,
-    /// A polynomial.
+    /// Polynomial of the denominator.
     pub denominator: Formula,
-    /// The factors that they are the products of, where these are written.
+    /// Factors of which they are the products, if these are written.
     pub factors: Option<PlantFactors>,
 }
 
-/// k Π(s - z)/Π(s - p).
+/// Factored form k Π(s - z)/Π(s - p).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlantFactors {
-    /// k: a number, or a formula of the uncertain parameters.
+    /// Gain k: a number, or a formula of the uncertain parameters.
     pub gain: Option<Formula>,
     /// Real and imaginary parts, 1/s.
     pub zeros: Vec<[f64; 2]>,
@@ -71,7 +71,7 @@ pub struct PlantFactors {
     pub poles: Vec<[f64; 2]>,
 }
 
-/// The keys of factors, and of polynomials.
+/// Keys of factors, and of polynomials.
 const FACTORS: [&str; 3] = ["gain", "zeros", "poles"];
 const POLYNOMIALS: [&str; 2] = ["numerator", "denominator"];
 
@@ -108,7 +108,7 @@ impl Rational {
         self.visit_as(FormulaShape::Polynomial, v);
     }
 
-    /// Polynomials with named parameters, or factors.
+    /// Visits polynomials with named parameters, or factors.
     fn visit_parametric<V: Visitor>(&mut self, v: &mut V) {
         let mut polynomials = self.factors.is_none().then(|| std::mem::take(self));
         v.way(&FACTORS, &mut self.factors, PlantFactors::visit);
@@ -147,7 +147,7 @@ fn required<V: Visitor>(key: Key, shape: FormulaShape, field: &mut Formula, v: &
 pub(crate) const DELAY_PATH: &str = "plant.delay";
 
 impl DeclaredPlant {
-    /// Every formula with its path; a gain stands for the numerator of its factors.
+    /// All formulas with their paths; a gain represents the numerator of its factors.
     pub(crate) fn formulas(&self) -> Vec<(&'static str, &Formula)> {
         let mut formulas = Vec::new();
         let plant = ["plant.gain", "plant.numerator", "plant.denominator"];

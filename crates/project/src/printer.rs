@@ -1,4 +1,4 @@
-//! Writes a project as TOML that reads back as the same project.
+//! Printer of a project as TOML that reads back as an equal project.
 
 use std::collections::BTreeMap;
 
@@ -9,16 +9,16 @@ use super::visitor::{FormulaShape, Kinds, NamedNumber, Variants, Visitor};
 use crate::catalogue_kind::CatalogueKind;
 use phea_quantity::{self as quantity, MotionKind, Price, PricedBy};
 
-/// Writes tables; the innermost is the last of `open`.
+/// Printer of tables; the innermost is the last of `open`.
 pub(crate) struct Printer {
     open: Vec<PrintedTable>,
     /// Dimension and range of numbers that are named by their path.
     named: BTreeMap<String, Key>,
-    /// How the rig moves.
+    /// Motion of the rig.
     motion: Motions,
 }
 
-/// A table: its lines, then the tables in it.
+/// Table: its lines, then the tables in it.
 #[derive(Debug, Default)]
 struct PrintedTable {
     header: String,
@@ -31,7 +31,7 @@ struct PrintedTable {
 const INLINE_WIDTH: usize = 96;
 
 impl PrintedTable {
-    /// As an inline table, if it has no tables of its own.
+    /// Inline table, if it has no tables of its own.
     fn inline(&self) -> Option<String> {
         if !self.inner.is_empty() {
             return None;
@@ -57,17 +57,17 @@ impl Printer {
         Printer { open: vec![PrintedTable::default()], named, motion: Motions::default() }
     }
 
-    /// The same for keys of a rig with these motions.
+    /// Printer for keys of a rig with these motions.
     pub(crate) fn in_motions(self, motion: Motions) -> Self {
         Printer { motion, ..self }
     }
 
-    /// What was written since the beginning as one inline table.
+    /// Text written since the beginning as one inline table.
     pub(crate) fn finish_inline(self) -> Option<String> {
         self.open.first().and_then(PrintedTable::inline)
     }
 
-    /// The lines of the outermost table: each key with its value, a table in it in one line.
+    /// Lines of the outermost table: each key with its value, a table in it in one line.
     pub(crate) fn lines(self) -> Vec<(String, String)> {
         let PrintedTable { mut lines, inner, .. } = self.open.into_iter().next().unwrap_or_default();
         let tables = inner.iter().filter_map(|section| {
@@ -78,7 +78,7 @@ impl Printer {
         lines
     }
 
-    /// The whole text.
+    /// Complete text.
     pub(crate) fn finish(self) -> String {
         let mut out = String::new();
         for section in &self.open {
@@ -93,7 +93,7 @@ impl Printer {
         }
     }
 
-    /// The present table's dotted path with one more part.
+    /// Dotted path of the current table with one more part.
     fn path(&self, key: &str) -> String {
         let header = self.open.last().map_or("", |section| section.header.trim_matches(['[', ']']));
         if header.is_empty() { bare_or_quoted(key) } else { format!("{header}.{}", bare_or_quoted(key)) }
@@ -107,8 +107,8 @@ impl Printer {
         if self.open.len() > 1 { self.open.pop().unwrap_or_default() } else { PrintedTable::default() }
     }
 
-    /// Ends a table: short ones below the first level, and those that keep the order of their
-    /// names, go into one line.
+    /// Ends a table: short ones below the first level, and those whose names have an order, are
+    /// written in one line.
     fn attach(&mut self, key: &str, in_order: bool) {
         let nested = self.open.len() > 2;
         let section = self.leave();

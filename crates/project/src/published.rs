@@ -1,4 +1,4 @@
-//! What is published of a simulated step.
+//! Published values for a simulated step.
 
 use super::key::{key, plain};
 use super::visitor::Visitor;
@@ -11,9 +11,9 @@ pub struct Published {
     pub overshoot_percent: Option<f64>,
     /// Settling time in s.
     pub settling_time: Option<f64>,
-    /// Where it is published.
+    /// Source of the publication.
     pub source: Option<String>,
-    /// A remark for the reader.
+    /// Remark for the reader.
     pub remark: Option<String>,
 }
 

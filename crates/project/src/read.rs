@@ -21,8 +21,8 @@ use crate::source::Source;
 use phea_quantity::spelling::nearest;
 use phea_quantity::{Dimension, MotionKind, RATIO, display};
 
-/// Reads a project file, applies `path=value` settings, and looks names up in the catalogue, to
-/// which the given files and folders are added.
+/// Reads a project file, applies `path=value` settings, and finds names in the catalogue, to which
+/// the given files and folders are added.
 ///
 /// # Errors
 /// [`Refusal`] with all errors, each with file, line and column.
@@ -53,7 +53,7 @@ pub fn read(
     )
 }
 
-/// Whose settings a project is read again with, by its index.
+/// Part whose settings a project is read again with, by its index.
 #[derive(Clone, Copy)]
 pub(super) enum OwnSettings {
     Alternative(usize),
@@ -61,7 +61,7 @@ pub(super) enum OwnSettings {
 }
 
 impl OwnSettings {
-    /// The table that lists it, and the words for it.
+    /// Table that contains it, and its words for messages.
     pub(super) fn table(self) -> (&'static str, &'static str, usize) {
         match self {
             OwnSettings::Alternative(index) => ("alternative", "alternative", index),
@@ -88,7 +88,7 @@ impl OwnSettings {
     }
 }
 
-/// A project of bytes with settings, then with those of a part of it, and with what was found
+/// Project from bytes with settings, then with those of a part of it, and with an error found
 /// later.
 pub(super) fn read_bytes(
     (source, path): (&dyn Source, &str),
@@ -153,7 +153,7 @@ pub(super) fn read_bytes(
     })
 }
 
-/// The hash by which answers name a project.
+/// Hash by which results identify a project.
 pub fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
@@ -184,7 +184,7 @@ fn project(reader: &mut Reader<'_>, root: &TreeNode) -> Project {
     project
 }
 
-/// The key that names measured plants.
+/// Key that names measured plants.
 fn measured(root: &TreeNode) -> Option<&tree::Entry> {
     root.get("family")?.node.get("measured")
 }
@@ -203,7 +203,7 @@ fn parameters(root: &TreeNode) -> Vec<String> {
     parameters
 }
 
-/// The names of `[[uncertainty_direction]]`, which other tables may call.
+/// Names of `[[uncertainty_direction]]`, to which other tables may refer.
 fn directions(root: &TreeNode) -> impl Iterator<Item = &str> {
     let tables = match root.get("uncertainty_direction").map(|entry| &entry.node.value) {
         Some(tree::Value::List(tables)) => tables.as_slice(),
@@ -215,7 +215,7 @@ fn directions(root: &TreeNode) -> impl Iterator<Item = &str> {
     })
 }
 
-/// The tables that an actuator cannot do without, each with keys that suffice.
+/// Tables that an actuator requires, each with keys that suffice.
 const LEAST: [(&str, &str); 5] = [
     ("fluid", "bulk_modulus = \"1.45 GPa\", density = \"870 kg/m3\", kinematic_viscosity = \"46 cSt\""),
     ("supply", "pressure = \"70 bar\", and `flow` where the pump is small"),
@@ -224,7 +224,7 @@ const LEAST: [(&str, &str); 5] = [
     ("force_sensor", "stiffness = \"20 MN/m\", and `capacity`; 1e9 N/m where nothing gives way"),
 ];
 
-/// Either a complete actuator, or a plant, or measured plants.
+/// Rejects a project that is not a complete actuator, or a plant, or measured plants.
 fn refuse_mixture(reader: &mut Reader<'_>, root: &TreeNode, is_plant: bool, is_measured: bool) {
     let tables = DeclaredActuator::tables();
     let present: Vec<_> = tables.clone().filter_map(|name| root.get(name)).collect();
@@ -278,7 +278,7 @@ fn refuse_mixture(reader: &mut Reader<'_>, root: &TreeNode, is_plant: bool, is_m
     }
 }
 
-/// Every number of the project that can be named, and the parameters of its linear model; and its
+/// All numbers of the project that can be named, and the parameters of its linear model; and its
 /// whole numbers, which cannot vary.
 fn numbers(project: &mut Project) -> (BTreeMap<String, Key>, Vec<String>) {
     let mut listing = Listing::default();
@@ -296,7 +296,7 @@ fn numbers(project: &mut Project) -> (BTreeMap<String, Key>, Vec<String>) {
     (named, listing.counts)
 }
 
-/// The project as TOML: [`read`] gives an equal project, if the same catalogue is available.
+/// Project as TOML: [`read`] gives an equal project, if an equal catalogue is available.
 pub fn print(project: &Project) -> String {
     let mut project = project.clone();
     let (mut named, _) = numbers(&mut project);
@@ -310,7 +310,7 @@ pub fn print(project: &Project) -> String {
     printer.finish()
 }
 
-/// Every key a project file may have, in the order of the tables.
+/// All possible keys of a project file, in the order of the tables.
 pub fn keys() -> Vec<KeyEntry> {
     let mut listing = Listing::of_everything();
     let mut project = Project::default();
@@ -320,8 +320,8 @@ pub fn keys() -> Vec<KeyEntry> {
 }
 
 impl Project {
-    /// The path of a file that the project names, as [`Source`] takes it: relative paths start at
-    /// the project file.
+    /// Path of a file that the project names, for [`Source`]: relative paths start at the project
+    /// file.
     ///
     /// # Example
     /// ```
@@ -338,22 +338,23 @@ impl Project {
         }
     }
 
-    /// How the rig moves; a project without one moves along a line.
+    /// Motion of the rig; linear for a project without a rig.
     pub fn motion(&self) -> MotionKind {
         self.actuator.as_ref().map_or(MotionKind::Linear, DeclaredActuator::motion)
     }
 
-    /// How rig and load move.
+    /// Motions of rig and load.
     pub fn motions(&self) -> Motions {
         self.actuator.as_ref().map(DeclaredActuator::motions).unwrap_or_default()
     }
 
-    /// The number at a dotted path such as `supply.pressure`, in SI.
+    /// Number at a dotted path such as `supply.pressure`, SI.
     pub fn number(&self, path: &str) -> Option<f64> {
         self.number_among(path, &self.system_numbers())
     }
 
-    /// The same, from [`Project::system_numbers`]: listing them takes longer than one lookup.
+    /// Number among those of [`Project::system_numbers`]: listing them takes longer than one
+    /// lookup.
     pub(crate) fn number_among(&self, path: &str, numbers: &BTreeMap<String, f64>) -> Option<f64> {
         match self.operating_point.clone().at_path(path) {
             Some(number) => *number,
@@ -361,34 +362,34 @@ impl Project {
         }
     }
 
-    /// Every number of the system by its dotted path, in SI.
+    /// All numbers of the system by their dotted paths, SI.
     pub(crate) fn system_numbers(&self) -> BTreeMap<String, f64> {
         let mut listing = Listing::default();
         self.clone().visit_system(&mut listing);
         listing.numbers.into_iter().map(|(path, (_, value))| (path, value)).collect()
     }
 
-    /// The dimension of each number, by its path or its name in the linear model.
+    /// Dimension of each number, by its path or its name in the linear model.
     pub fn dimensions(&self) -> BTreeMap<String, &'static Dimension> {
         let (named, _) = numbers(&mut self.clone());
         named.into_iter().map(|(path, key)| (path, key.dimension)).collect()
     }
 
-    /// A value of the number at a path, in a unit of its dimension.
+    /// Value of the number at a path, in a unit of its dimension.
     pub fn in_words(&self, path: &str, value: f64) -> String {
         let (named, _) = numbers(&mut self.clone());
         named.get(path).map_or_else(|| value.to_string(), |key| display(value, key.dimension, 4))
     }
 
-    /// The same project with another number at a path; `None` if no number is there. Those of the
-    /// operating point always are.
+    /// Project with another number at a path; `None` if there is no number. Those of the operating
+    /// point always exist.
     #[must_use]
     pub fn with_number(&self, path: &str, value: f64) -> Option<Project> {
         self.with_numbers(&[(path, value)])
     }
 
-    /// The same project with other numbers at several paths; `None` if one of them leads to no
-    /// number. The value of a direction moves the numbers of that direction from where they are.
+    /// Project with other numbers at several paths; `None` if one of them leads to no number. The
+    /// value of a direction moves the numbers of that direction from their present values.
     ///
     /// # Example
     /// ```
@@ -427,15 +428,14 @@ impl Project {
         (listing.assigned == wanted).then_some(project)
     }
 
-    /// The same project as if every number of it were known: without `[uncertainty]`, its
-    /// directions and `[family]`.
+    /// Project with all numbers known: without `[uncertainty]`, its directions and `[family]`.
     #[must_use]
     pub fn without_uncertainty(&self) -> Project {
         Project { uncertainty: Vec::new(), directions: Vec::new(), family: None, ..self.clone() }
     }
 
-    /// The key of every number that a campaign may vary, and its value if one is stated; those of
-    /// the start have none here.
+    /// Keys of all numbers that a campaign may vary, and their values if stated; those of the start
+    /// have none here.
     pub fn listed_numbers(&self) -> BTreeMap<String, (Key, Option<f64>)> {
         let mut listing = Listing::default();
         self.clone().visit_system(&mut listing);
@@ -448,19 +448,19 @@ impl Project {
 }
 
 impl Findings {
-    /// The bytes of a file; none, with a finding, if it cannot be read.
+    /// Bytes of a file; `None`, with a finding, if it cannot be read.
     pub fn bytes_of(&mut self, source: &dyn Source, path: &str) -> Option<Vec<u8>> {
         source.read(path).map_err(|error| self.unread(source, path, &error.to_string())).ok()
     }
 
-    /// A file that could not be read, and which one may be meant if there is none.
+    /// Reports a file that could not be read, and a similar name if the file does not exist.
     fn unread(&mut self, source: &dyn Source, path: &str, reason: &str) {
         let help = source.list(path).is_err().then(|| meant(source, path)).flatten();
         let place = self.whole_file(path);
         self.push(RawFinding::error(place, reason.to_string()).syntax().maybe_help(help));
     }
 
-    /// A file that could not be read at all.
+    /// Reports a file that could not be read at all.
     pub fn unreadable(&mut self, path: &str, reason: &str) {
         let place = self.whole_file(path);
         self.push(RawFinding::error(place, reason.to_string()).syntax());
@@ -471,8 +471,8 @@ impl Findings {
     }
 }
 
-/// What to say of a missing file: which name in its folder comes nearest, or that the folder is
-/// missing too.
+/// Remedy for a missing file: the nearest name in its folder, or a note that the folder is missing
+/// too.
 fn meant(source: &dyn Source, path: &str) -> Option<String> {
     let (folder, name) = path.rsplit_once('/').unwrap_or((".", path));
     let Ok(files) = source.list(folder) else {

@@ -1,12 +1,12 @@
-//! A project read once more: with the settings of an alternative or a load case, or for the place
-//! of what was found later.
+//! Second reading of a project: with the settings of an alternative or a load case, or to locate an
+//! error found later.
 
 use super::Loaded;
 use super::diagnostic::{Diagnostic, LateError, Refusal, Severity};
 use super::read::{OwnSettings, read_bytes};
 use crate::source::Source;
 
-/// A refusal with that error at the place of its key, or of the nearest table around it.
+/// Refusal with this error at the place of its key, or of the nearest table around it.
 ///
 /// # Example
 /// ```
@@ -26,18 +26,18 @@ pub fn refused(source: &dyn Source, loaded: &Loaded, late: &LateError) -> Refusa
     read.err().unwrap_or_default()
 }
 
-/// The same of the alternative of a project with this index, with the place in its settings.
+/// Refusal for the alternative of a project with this index, with the place in its settings.
 pub fn refused_alternative(source: &dyn Source, base: &Loaded, index: usize, late: &LateError) -> Refusal {
     let name = base.project.alternatives.get(index).map_or("", |one| one.name.as_str());
     let own = (OwnSettings::Alternative(index), name);
     read_again(source, base, (&base.catalogues, Some(late)), own).err().unwrap_or_default()
 }
 
-/// The alternative of a project with this index: the same bytes with the same settings, and then
-/// those of the alternative. Its settings are listed as if they had been given to [`read`](super::read()).
+/// Alternative of a project with this index: its bytes with its settings, and then those of the
+/// alternative. The settings are listed as if they had been given to [`read`](super::read()).
 ///
 /// # Errors
-/// [`Refusal`] with all errors; those in a value of the alternative have its place.
+/// [`Refusal`] with all errors; those in a value of the alternative have the place of that value.
 ///
 /// # Example
 /// ```
@@ -61,11 +61,11 @@ pub fn read_alternative(
     read_again(source, base, (catalogues, None), (OwnSettings::Alternative(index), name))
 }
 
-/// The load case of a project with this index, read as an alternative is: its settings are listed
-/// as if they had been given to [`read`](super::read()), so that alternatives of it can be read.
+/// Load case of a project with this index, read like an alternative: its settings are listed as if
+/// they had been given to [`read`](super::read()), so that alternatives of it can be read.
 ///
 /// # Errors
-/// [`Refusal`] with all errors; those in a value of the load case have its place.
+/// [`Refusal`] with all errors; those in a value of the load case have the place of that value.
 pub fn read_load_case(
     source: &dyn Source,
     base: &Loaded,
@@ -76,18 +76,18 @@ pub fn read_load_case(
     read_again(source, base, (catalogues, None), (OwnSettings::LoadCase(index), name))
 }
 
-/// The bytes of a project with its settings, and then with those of a part of it of that name.
+/// Project from its bytes with its settings, and then those of its part of that name.
 fn read_again(
     source: &dyn Source,
     base: &Loaded,
     also: (&[String], Option<&LateError>),
     (own, name): (OwnSettings, &str),
 ) -> Result<Loaded, Refusal> {
-    // what recordings gave holds here, too
+    // values from recordings apply here, too
     let settings = base.all_settings();
     let read = read_bytes((source, &base.path), Ok(base.bytes.clone()), &settings, also, Some(own));
     read.map_err(|mut refusal| {
-        // a warning on the project itself is reported with the project, and once
+        // a warning on the project itself is reported only once, with the project
         let known = |found: &Diagnostic| {
             found.severity != Severity::Error
                 && base.warnings.iter().any(|warning| warning.message == found.message)

@@ -1,4 +1,4 @@
-//! Fills a project from the tree of a file, and reports everything that is wrong with it.
+//! Reading of a project from the tree of a file, with a report of all errors.
 
 mod choice;
 mod fields;
@@ -15,7 +15,7 @@ use crate::catalogue_entry::Catalogue;
 use phea_quantity::MotionKind;
 use phea_quantity::spelling::nearest;
 
-/// Reads the tables of one file.
+/// Reader of the tables of one file.
 pub(crate) struct Reader<'a> {
     pub(crate) findings: &'a mut Findings,
     catalogue: &'a Catalogue,
@@ -23,75 +23,74 @@ pub(crate) struct Reader<'a> {
     frames: Vec<Frame<'a>>,
     /// Index of the text of the project itself; others are settings.
     project_text: usize,
-    /// Whether absent keys are allowed, as in the catalogue.
+    /// True if absent keys are allowed, as in the catalogue.
     partial: bool,
-    /// Whether something was absent that a project needs.
+    /// True if a required value was absent.
     pub(crate) incomplete: bool,
-    /// Whether the parts of an actuator are read.
+    /// True for reading the parts of an actuator.
     pub(crate) parts: bool,
-    /// How the rig moves.
+    /// Motion of the rig.
     motion: Motions,
     /// Numbers of the project that can be named, with their keys.
     pub(crate) named: BTreeMap<String, Key>,
-    /// Its whole numbers, which have no range to vary in.
+    /// Whole numbers of the project, which have no range to vary in.
     pub(crate) counts: Vec<String>,
     /// Parameters that formulas may contain.
     pub(crate) parameters: Vec<String>,
-    /// Where each value is written, by its path.
+    /// Places of the values, by path.
     pub(crate) places: BTreeMap<String, Place>,
-    /// Paths of values that were refused.
+    /// Paths of values that were rejected.
     pub(crate) refused: Vec<String>,
     /// Paths of tables whose kind is misspelt or missing, so that nothing follows from their keys.
     pub(crate) unclear: Vec<String>,
-    /// Where each table of a list is written, by its path.
+    /// Places of the tables of lists, by path.
     pub(crate) item_places: BTreeMap<String, Place>,
     pub(crate) provenance: Vec<Provenance>,
     pub(crate) catalogue_files: Vec<String>,
-    /// The keys of all tables.
+    /// Keys of all tables.
     all_keys: fn() -> Vec<KeyEntry>,
 }
 
-/// A table being read.
+/// Table being read.
 struct Frame<'a> {
     path: String,
     place: Place,
-    /// The table itself, then what it inherits from.
+    /// The table itself, then the layers from which it inherits.
     layers: Vec<Layer<'a>>,
-    /// Keys asked for so far.
+    /// Keys requested so far.
     asked: Vec<&'static str>,
-    /// Those that are needed and not there, with what is said of each at the end of the table: a
-    /// key that is misspelt explains one.
+    /// Missing required keys, with the finding for each at the end of the table: a misspelt key
+    /// explains one.
     lacking: Vec<(&'static str, RawFinding)>,
-    /// The choice of the variant being read, in words.
+    /// Choice of the variant being read, for messages.
     chosen: Option<String>,
-    /// Whether it names an entry that the catalogue does not have, so that keys that seem to be
+    /// True if it names an entry that the catalogue does not have, so that keys that seem to be
     /// missing may not be.
     lost: bool,
-    /// While the keys of another variant are examined: those that count as absent, since they are
-    /// already read.
+    /// Keys of another variant under examination that count as absent, since they are already read.
     passed_over: Option<Vec<&'static str>>,
-    /// The values of a table written as an array, in the order of its keys.
+    /// Values of a table written as an array, in the order of its keys.
     in_order: Option<std::slice::Iter<'a, TreeNode>>,
 }
 
-/// A table, or what it inherits from.
+/// Table, or a layer from which it inherits.
 #[derive(Clone)]
 struct Layer<'a> {
     node: &'a TreeNode,
-    /// Its keys that do not count.
+    /// Ignored keys.
     hidden: Vec<&'static str>,
-    /// The catalogue's entry it comes from.
+    /// Catalogue entry of the layer.
     entry: Option<&'a crate::catalogue_entry::CatalogueEntry>,
 }
 
-/// A value that was found.
+/// Value that was found.
 #[derive(Clone, Copy)]
 struct Hit<'a> {
     node: &'a TreeNode,
     entry: Option<&'a crate::catalogue_entry::CatalogueEntry>,
 }
 
-/// A name that stands for several numbers of the project, or for none.
+/// Message for a name that denotes several numbers of the project, or none.
 fn not_one(name: &str, kind: &str, holds_several: bool) -> String {
     match holds_several {
         true => format!("`{name}` holds several numbers in this project, not one"),
@@ -131,17 +130,17 @@ impl<'a> Reader<'a> {
         reader
     }
 
-    /// Names the table of a key that stands in the wrong one, by the keys of all tables.
+    /// Reader that names the correct table of a misplaced key, from the keys of all tables.
     pub(crate) fn knowing(self, all_keys: fn() -> Vec<KeyEntry>) -> Self {
         Reader { all_keys, ..self }
     }
 
-    /// How the rig moves whose keys are read.
+    /// Motion of the rig whose keys are read.
     pub(crate) fn motion(&self) -> MotionKind {
         self.motion.rig
     }
 
-    /// Accepts absent keys.
+    /// Reader that accepts absent keys.
     pub(crate) fn partial(mut self) -> Self {
         self.partial = true;
         self
@@ -189,23 +188,23 @@ impl<'a> Reader<'a> {
         frame.asked
     }
 
-    /// Where the file begins.
+    /// Place of the beginning of the file.
     pub(crate) fn root_place(&self) -> Place {
         Place { text: self.project_text, start: 0, end: 0 }
     }
 
-    /// The end of the project file, where another table would be written.
+    /// Place of the end of the project file, where another table would be written.
     pub(crate) fn end_place(&self) -> Place {
         let end = self.findings.content(self.project_text).len();
         Place { text: self.project_text, start: end, end }
     }
 
-    /// A top-level key, whether read or not.
+    /// Top-level key, whether read or not.
     pub(crate) fn root_entry(&self, key: &str) -> Option<&'a Entry> {
         self.root.get(key)
     }
 
-    /// Counts a key of the present table as known.
+    /// Marks a key of the current table as known.
     pub(crate) fn know(&mut self, key: &'static str) {
         if let Some(frame) = self.frames.last_mut() {
             frame.asked.push(key);
@@ -223,7 +222,7 @@ impl<'a> Reader<'a> {
         self.frames.last().map(|frame| frame.place).unwrap_or_default()
     }
 
-    /// The value of a key of the present table, from itself or what it inherits.
+    /// Value of a key of the current table, from the table or from its layers.
     fn find(&mut self, key: Key) -> Option<Hit<'a>> {
         let path = self.path(key.name);
         let frame = self.frames.last_mut()?;
@@ -249,14 +248,13 @@ impl<'a> Reader<'a> {
         Some(hit)
     }
 
-    /// Whether a number may only seem to be absent: a value or the kind of its table is not
-    /// known.
+    /// True if a number may only seem to be absent: a value or the kind of its table is unknown.
     fn seems_absent(&self, name: &str) -> bool {
         let root = |path: &str| path.split(['.', '[']).next().unwrap_or("").to_string();
         self.refused.iter().chain(&self.unclear).any(|known| root(known) == root(name))
     }
 
-    /// Help that names a number in a table of this name, the one to design with where there is one.
+    /// Help that names a number in a table of this name, the nominal one if it exists.
     fn number_inside(&self, name: &str) -> Option<String> {
         let inside = format!("{name}.");
         let nominal = self.named.get_key_value(&format!("{name}.nominal")).map(|(path, _)| path);
@@ -264,7 +262,7 @@ impl<'a> Reader<'a> {
         found.map(|path| format!("name one of them, such as `{path}`"))
     }
 
-    /// How to write a name with dots in it, if it was parsed as nested tables.
+    /// Correct spelling of a name with dots in it, if it was parsed as nested tables.
     fn quoted(&self, key: Key, entry: &Entry) -> Option<String> {
         let (mut name, mut node) = (entry.key.clone(), &entry.node);
         while !self.named.contains_key(&name) {
@@ -291,7 +289,7 @@ impl<'a> Reader<'a> {
         self.provenance.push(Provenance { path, origin });
     }
 
-    /// Whether the present table is only searched for keys of variants that were not chosen.
+    /// True if the current table is only searched for keys of variants that were not chosen.
     fn looks_elsewhere(&self) -> bool {
         self.frames.last().is_some_and(|frame| frame.passed_over.is_some())
     }
@@ -311,8 +309,8 @@ impl<'a> Reader<'a> {
         self.lack(key.name, found);
     }
 
-    /// What is said of a key of the present table that is needed and not there, unless a key that
-    /// is misspelt explains it.
+    /// Records the finding for a missing required key of the current table, unless a misspelt key
+    /// explains it.
     pub(crate) fn lack(&mut self, name: &'static str, found: RawFinding) {
         match self.frames.last_mut() {
             Some(frame) => frame.lacking.push((name, found)),
@@ -320,14 +318,14 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Whether absent keys are accepted, which is remembered: an entry of the catalogue that is not
-    /// there might have had them.
+    /// True if absent keys are accepted, which is recorded: a missing catalogue entry might have
+    /// had them.
     fn takes_absent(&mut self) -> bool {
         self.incomplete = true;
         self.partial || self.looks_elsewhere() || self.is_lost()
     }
 
-    /// The present table, as in `missing ... in [line]`.
+    /// Current table, as in `missing ... in [line]`.
     fn of_table(&self) -> String {
         let path = self.frames.last().map_or("", |frame| frame.path.as_str());
         if path.is_empty() { String::new() } else { format!(" in [{path}]") }
@@ -338,12 +336,12 @@ impl<'a> Reader<'a> {
         self.findings.push(RawFinding::error(node.place, message));
     }
 
-    /// Opens the table under a hit; returns whether it is one.
+    /// Opens the table at a hit; returns true if it is a table.
     fn enter(&mut self, key: Key, hit: Hit<'a>, path: String) -> bool {
         self.enter_as(key, hit, path, "a table")
     }
 
-    /// The same of a key that expects this.
+    /// Opens the table at a hit; `expected` describes the value that the key expects.
     fn enter_as(&mut self, key: Key, hit: Hit<'a>, path: String, expected: &str) -> bool {
         if !matches!(hit.node.value, Value::Table(_)) {
             self.wrong_kind(key, expected, hit.node);
@@ -354,8 +352,8 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// A key nobody asked for. Where it resembles one that is missing, this says both, and nothing else
-/// says that it is missing.
+/// Finding for an unknown key. If it resembles a missing key, the finding states both, and the
+/// missing key is not reported separately.
 fn unknown_key(entry: &Entry, known: &[KeyEntry], frame: &mut Frame<'_>) -> RawFinding {
     let place = if frame.path.is_empty() { String::new() } else { format!(" in [{}]", frame.path) };
     let near = nearest(&entry.key, frame.asked.iter().copied());
@@ -386,14 +384,14 @@ fn unknown_key(entry: &Entry, known: &[KeyEntry], frame: &mut Frame<'_>) -> RawF
     }
 }
 
-/// The only key that has this one as a word of its name: `bulk_modulus` of `modulus`.
+/// Only key that has this one as a word of its name: `bulk_modulus` for `modulus`.
 fn word_of(key: &str, asked: &[&'static str]) -> Option<&'static str> {
     let inside = |name: &&str| name.split('_').any(|word| word == key);
     let mut all = asked.iter().copied().filter(|name| inside(name));
     all.next().filter(|_| all.next().is_none())
 }
 
-/// Where the value of one side belongs: to the table of that side, or into a pair.
+/// Correct place of the value of one side: the table of that side, or a pair.
 fn of_one_side(key: &str, frame: &Frame<'_>) -> Option<String> {
     let cut = |side: &'static str| {
         let (after, before) = (format!("_{side}"), format!("{side}_"));
@@ -411,10 +409,10 @@ fn of_one_side(key: &str, frame: &Frame<'_>) -> Option<String> {
     pair.map(|pair| format!("both sides are one pair: `{pair} = [A, B]`"))
 }
 
-/// Most tables that a sentence names.
+/// Largest number of tables that a sentence names.
 const MOST_TABLES: usize = 4;
 
-/// The other tables that have a key or a table of this name.
+/// Other tables that have a key or a table of this name.
 fn tables_with(name: &str, own: &str, known: &[KeyEntry]) -> Vec<String> {
     let own: Vec<&str> = own.split('.').map(|part| part.split('[').next().unwrap_or(part)).collect();
     let own = own.join(".");

@@ -1,76 +1,76 @@
-//! What recordings gave in place of what a project declares.
+//! Values from recordings that replace declared ones.
 
-/// A file as it was read.
+/// File with its hash.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct HashedFile {
-    /// As the project names it.
+    /// Name in the project.
     pub path: String,
     /// SHA-256 of its bytes, in hexadecimal.
     pub sha256: String,
 }
 
-/// A number that was identified. SI.
+/// Identified number. SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IdentifiedNumber {
-    /// Of the project, such as `valve.leakage_shape`.
+    /// Path in the project, such as `valve.leakage_shape`.
     pub path: String,
-    /// Its unit.
+    /// Unit.
     pub unit: &'static str,
-    /// In place of the declared one.
+    /// Value in place of the declared one.
     pub value: f64,
-    /// Its 95 % confidence interval.
+    /// Confidence interval of 95 %.
     pub interval: [f64; 2],
-    /// What the project declares; absent where it declares none.
+    /// Declared value; absent if none is declared.
     pub declared: Option<f64>,
 }
 
-/// A number that stays as declared, because the recordings do not determine it.
+/// Number that remains as declared, because the recordings do not determine it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct KeptNumber {
     /// Path of the number in the project.
     pub path: String,
-    /// Why.
+    /// Reason.
     pub reason: KeptReason,
 }
 
-/// Reason for which a number stays as declared.
+/// Reason why a number remains as declared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeptReason {
     /// The recordings do not determine it.
     NotIdentifiable,
-    /// Its interval contains zero.
+    /// The confidence interval contains zero.
     MayVanish,
 }
 
-/// The family that takes the place of the declared one: the directions of the project.
+/// Family that replaces the declared one: the directions of the project.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IdentifiedFamily {
-    /// Largest relative change of K_qU and K_c that each direction makes from its middle to an end.
+    /// Largest relative change of K_qU and K_c along each direction, from its middle to an end.
     pub effects: Vec<f64>,
-    /// Directions that were left out.
+    /// Number of omitted directions.
     pub left_out: usize,
-    /// Largest relative change of K_qU or K_c that those make together.
+    /// Largest relative change of K_qU or K_c from the omitted directions together.
     pub effect_left_out: f64,
     /// Standard deviations to either side.
     pub deviations: f64,
 }
 
-/// What recordings gave in place of what the project declares.
+/// Values from recordings that replace declared ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FromRecordings {
-    /// Hash of the project file alone.
+    /// Hash of the project file without recordings.
     pub project_sha256: String,
-    /// The recordings, in the order of the project.
+    /// Recordings, in the order of the project.
     pub files: Vec<HashedFile>,
-    /// What they determine.
+    /// Identified numbers.
     pub numbers: Vec<IdentifiedNumber>,
-    /// What they do not determine.
+    /// Numbers that remain as declared.
     pub kept: Vec<KeptNumber>,
-    /// Pa, drops from supply to tank at which the tare flow is stated: of the recordings, and as
-    /// declared.
+    /// Pressure drops from supply to tank at which the tare flow is stated, Pa: of the recordings,
+    /// and as declared.
     pub tare_pressures: [f64; 2],
-    /// What they leave uncertain, where it is in use.
+    /// Remaining uncertainty, if in use.
     pub family: Option<IdentifiedFamily>,
-    /// The same as `path=value` texts that make the project of its file, before the user's.
+    /// Equivalent `path=value` settings, applied to the file before those of the user.
     pub settings: Vec<String>,
 }

@@ -1,10 +1,10 @@
-//! A project's text with another controller and prefilter in it, or with other elements of one,
-//! everything else byte for byte as it was.
+//! A project's text with another controller and prefilter in it, or with other elements of one; all
+//! other bytes are unchanged.
 //!
-//! It rests on the tokens of `toml_parser`. The crate `toml_edit` (0.25) does not keep every byte:
-//! it drops all carriage returns, ends the last line where it had no end, and does not keep the
-//! order of dotted keys. Settings (`--set`) change the tree that was read, to whose positions
-//! errors refer, and not the text.
+//! The implementation uses the tokens of `toml_parser`. The crate `toml_edit` (0.25) does not
+//! preserve every byte: it drops all carriage returns, adds a missing end of the last line, and
+//! changes the order of dotted keys. Settings (`--set`) change the tree that was read, to whose
+//! positions errors refer, and not the text.
 
 mod elements;
 mod statement;
@@ -25,16 +25,16 @@ fn law_keys() -> Vec<&'static str> {
     keys_of_table(|listing| Transfer::default().visit(listing))
 }
 
-/// The bytes of a project file with this controller, and with this prefilter if there is one, in
-/// place of the old ones. Other keys of `[controller]` and `[prefilter]` remain as they are
-/// written, unless `settings` overrode them.
+/// Bytes of a project file with this controller, and with this prefilter if there is one, in place
+/// of the old ones. Other keys of `[controller]` and `[prefilter]` remain as written, unless
+/// `settings` overrode them.
 pub fn with_laws(
     bytes: &[u8],
     settings: &[String],
     (controller, prefilter): (&DeclaredController, Option<&Prefilter>),
     motions: Motions,
 ) -> Vec<u8> {
-    // a text that was read as a project is UTF-8
+    // the text of a project that was read is UTF-8
     let text = String::from_utf8_lossy(bytes);
     let (mark, content) =
         text.strip_prefix('\u{feff}').map_or(("", text.as_ref()), |rest| ("\u{feff}", rest));
@@ -53,7 +53,7 @@ pub fn with_laws(
                 let all = keys_of_table(|listing| Prefilter::default().visit(listing));
                 (all, prefilter_lines(prefilter))
             }
-            // a controller in z has the samples of the loop
+            // a controller in z has the sample time of the loop
             false => ([law_keys(), vec!["sample_time"]].concat(), law_lines(&prefilter.transfer)),
         };
         content = replaced(&content, "prefilter", &keys, &lines);
@@ -61,13 +61,13 @@ pub fn with_laws(
     format!("{mark}{content}").into_bytes()
 }
 
-/// The bytes of a project file with this pressure feedback of its controller in place of the old
-/// one, and without any where there is none.
+/// Bytes of a project file with this pressure feedback of its controller in place of the old one,
+/// or without any for `None`.
 pub fn with_pressure_feedback(bytes: &[u8], feedback: Option<&DeclaredPressureFeedback>) -> Vec<u8> {
     const KEY: &str = "pressure_feedback";
     let text = String::from_utf8_lossy(bytes);
     let only = DeclaredController { pressure_feedback: feedback.copied(), ..DeclaredController::default() };
-    // a pressure has the same unit in every rig
+    // a pressure has one unit in every rig
     let lines = controller_lines(&only, Motions::default())
         .into_iter()
         .filter(|(key, _)| key == KEY)
@@ -75,8 +75,8 @@ pub fn with_pressure_feedback(bytes: &[u8], feedback: Option<&DeclaredPressureFe
     replaced(&text, "controller", &[KEY], &lines).into_bytes()
 }
 
-/// The bytes of a project file with the model of lines for which none is stated: what was chosen
-/// for one controller might be chosen otherwise for another, and margins are those of the model.
+/// Bytes of a project file with the chosen model of lines for which none is stated: the choice
+/// might differ for another controller, and margins depend on the model.
 pub fn with_line_model(bytes: &[u8], chosen: &ChosenLines) -> Vec<u8> {
     const KEY: &str = "model";
     let text = String::from_utf8_lossy(bytes);
@@ -84,20 +84,20 @@ pub fn with_line_model(bytes: &[u8], chosen: &ChosenLines) -> Vec<u8> {
     replaced(&text, "line", &[KEY], &[line]).into_bytes()
 }
 
-/// The text with these lines in place of the transfer function of the table.
+/// Text with these lines in place of the transfer function of the table.
 fn with_law(text: &str, table: &str, lines: &[(String, String)]) -> String {
     replaced(text, table, &law_keys(), lines)
 }
 
-/// Keys with their default values are left out.
+/// Lines of a prefilter; keys with their default values are omitted.
 fn prefilter_lines(prefilter: &Prefilter) -> KeyValues {
     let mut printer = Printer::new(BTreeMap::new());
     prefilter.clone().visit(&mut printer);
     printer.lines().into_iter().filter(|(key, _)| key != "continuous" || prefilter.continuous).collect()
 }
 
-/// Controller and prefilter as tables of the file of a project with these motions, ready to be
-/// pasted into it.
+/// Controller and prefilter as tables of the file of a project with these motions, to be pasted
+/// into it.
 pub fn snippet(
     (controller, prefilter): (&DeclaredController, Option<&Prefilter>),
     motions: Motions,
@@ -119,13 +119,13 @@ fn law_lines(transfer: &Transfer) -> KeyValues {
     printer.lines().into_iter().chain(element_lines(transfer)).collect()
 }
 
-/// The elements of a transfer function, one a line; `None` where it has none.
+/// Elements of a transfer function, one per line; `None` if it has none.
 fn element_lines(transfer: &Transfer) -> Option<(String, String)> {
     let rows: String = transfer.elements.iter().map(|one| format!("  {},\n", one.print())).collect();
     (!rows.is_empty()).then(|| ("elements".to_string(), format!("[\n{rows}]")))
 }
 
-/// Keys with their default values are left out.
+/// Lines of a controller; keys with their default values are omitted.
 fn controller_lines(controller: &DeclaredController, motions: Motions) -> KeyValues {
     let lines = |mut controller: DeclaredController| {
         let mut printer = Printer::new(BTreeMap::new()).in_motions(motions);

@@ -1,4 +1,4 @@
-//! `[[scenario]]`: what is simulated.
+//! Table `[[scenario]]`: a simulation.
 
 use super::input_signal::{InputSignal, InputUnit};
 use super::key::{Key, key, plain};
@@ -6,60 +6,60 @@ use super::measured::MeasuredFile;
 use super::visitor::{Variants, Visitor};
 use phea_quantity::{ANGULAR_FREQUENCY, FORCE, LENGTH, PERCENT, PRESSURE, TIME, VELOCITY, VOLTAGE};
 
-/// One simulation.
+/// Simulation of the rig.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scenario {
-    /// Names its results.
+    /// Name of its results.
     pub name: String,
-    /// s.
+    /// Duration, s.
     pub duration: f64,
-    /// s, between rows of the result.
+    /// Time between rows of the result, s.
     pub output_step: f64,
-    /// The state at the start; absent: the closed loop at rest at the position of the operating
+    /// State at the start; if absent, the closed loop at rest at the position of the operating
     /// point, mid stroke by default.
     pub start: Option<Start>,
-    /// The reference force, the sum of these.
+    /// Reference force, the sum of these.
     pub reference: Vec<InputSignal>,
-    /// The open-loop command of the valve, the sum of these; empty: the controller commands.
+    /// Open-loop command of the valve, the sum of these; if empty, the controller commands.
     pub command: Vec<InputSignal>,
-    /// What the load does.
+    /// Motion of the load.
     pub load_motion: Option<LoadMotion>,
-    /// An external force on the load, the sum of these; positive in the direction of positive
+    /// External force on the load, the sum of these; positive in the direction of positive
     /// position.
     pub external_force: Vec<InputSignal>,
-    /// By how much the setting of accumulators has moved from rest, the sum of these.
+    /// Change of the accumulators' setting from rest, the sum of these.
     pub setting_change: Vec<InputSignal>,
-    /// Percent, of every settling time.
+    /// Band of every settling time, percent.
     pub settling_band_percent: f64,
     /// Measurements on the rig.
     pub measured: Vec<MeasuredFile>,
 }
 
-/// The state at the start; states not named are zero.
+/// State at the start; states not named are zero.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Start {
-    /// m.
+    /// Position, m.
     pub position: Option<f64>,
-    /// m/s.
+    /// Velocity, m/s.
     pub velocity: Option<f64>,
-    /// Pa.
+    /// Pressure of chamber A, Pa.
     pub pressure_a: Option<f64>,
-    /// Pa.
+    /// Pressure of chamber B, Pa.
     pub pressure_b: Option<f64>,
-    /// V, spool position as equivalent command.
+    /// Spool position as equivalent command, V.
     pub spool: Option<f64>,
-    /// N, deflection of the load cell as a force.
+    /// Deflection of the load cell as a force, N.
     pub force: Option<f64>,
-    /// A file with the state at the end of another run, instead of all these.
+    /// File with the state at the end of another run, instead of all these.
     pub file: Option<String>,
 }
 
-/// What the load does.
+/// Motion of the load.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LoadMotion {
-    /// Its shape in time.
+    /// Shape in time.
     pub shape: MotionShape,
-    /// s, when it begins.
+    /// Start, s.
     pub start: f64,
 }
 
@@ -67,18 +67,18 @@ pub struct LoadMotion {
 /// rad/s.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MotionShape {
-    /// Quintic: velocity and acceleration are zero at both ends.
+    /// Quintic step: velocity and acceleration are zero at both ends.
     SmoothStep {
-        /// How long it moves.
+        /// Duration.
         duration: f64,
-        /// How far.
+        /// Distance.
         distance: f64,
     },
-    /// 1 - exp(-t/τ).
+    /// First-order motion 1 - exp(-t/τ).
     FirstOrder {
-        /// How far.
+        /// Distance.
         distance: f64,
-        /// τ.
+        /// Time constant τ.
         time_constant: f64,
     },
     /// Sine.
@@ -88,20 +88,20 @@ pub enum MotionShape {
         /// Frequency of the sine.
         frequency: f64,
     },
-    /// Sine whose frequency moves evenly.
+    /// Sine whose frequency changes linearly.
     Chirp {
-        /// How long it moves.
+        /// Duration.
         duration: f64,
         /// Amplitude of the sine.
         amplitude: f64,
-        /// Where it begins.
+        /// Initial frequency.
         frequency: f64,
-        /// Where it ends.
+        /// Final frequency.
         final_frequency: f64,
     },
-    /// From a CSV file with time and position.
+    /// Motion from a CSV file with time and position.
     File {
-        /// Its name.
+        /// Name of the file.
         file: String,
     },
 }
@@ -171,7 +171,7 @@ impl Variants for MotionShape {
 }
 
 impl Scenario {
-    /// Whether it runs open loop.
+    /// True if it runs open loop.
     pub fn is_open_loop(&self) -> bool {
         !self.command.is_empty()
     }
@@ -206,7 +206,7 @@ impl Scenario {
 }
 
 impl Start {
-    /// Its number at a key.
+    /// Number at a key.
     pub fn number(&self, key: &str) -> Option<f64> {
         *self.clone().place(key)?
     }
@@ -249,7 +249,7 @@ impl LoadMotion {
     }
 }
 
-/// The numbers of the start as a campaign names them: `start.position` and so on.
+/// Numbers of the start by their names in a campaign: `start.position` and so on.
 pub(crate) fn start_numbers() -> Vec<(String, Key)> {
     let keys = [
         key("start.position", &LENGTH, "Position of the piston at the start.").of_motion().not_negative(),

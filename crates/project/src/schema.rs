@@ -1,6 +1,6 @@
-//! The JSON Schema of the project file, for editors, made from the descriptions that read it.
+//! JSON Schema of the project file, for editors, from the descriptions that read it.
 //!
-//! It is of draft 7, the newest that the editors of TOML check with. Conditions on numbers or on
+//! The schema follows draft 7, the newest that TOML editors support. Conditions on numbers or on
 //! several tables are left to the reader: the schema accepts every file that the reader accepts,
 //! and rejects errors of structure.
 
@@ -14,7 +14,7 @@ use super::{DeclaredActuator, Project};
 use quantity::definitions;
 use writer::SchemaWriter;
 
-/// The JSON Schema of the project file.
+/// JSON Schema of the project file.
 ///
 /// # Example
 /// ```
@@ -41,7 +41,7 @@ pub fn schema() -> Value {
     schema
 }
 
-/// Either an actuator, all of it, or a plant, or measured ones.
+/// Requires either a complete actuator, or a plant, or measured plants.
 fn what_is_described(writer: &mut SchemaWriter) {
     let measured =
         json!({ "required": ["family"], "properties": { "family": { "required": ["measured"] } } });
@@ -56,7 +56,7 @@ fn what_is_described(writer: &mut SchemaWriter) {
     }));
 }
 
-/// None of these keys.
+/// Schema without any of these keys.
 fn without(names: &[&str]) -> Value {
     let refused = names.iter().map(|name| ((*name).to_string(), Value::Bool(false)));
     json!({ "properties": refused.collect::<serde_json::Map<_, _>>() })

@@ -1,16 +1,16 @@
-//! `[sensor]`: the dynamics between the controlled output and the input of the controller.
+//! Table `[sensor]`: the dynamics between the controlled output and the input of the controller.
 
 use super::key::key;
 use super::plant::Rational;
 use super::visitor::Visitor;
 use phea_quantity::TIME;
 
-/// The dynamics of the sensor, H; absent: 1.
+/// Dynamics H of the sensor; if absent, 1.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sensor {
     /// Numerator and denominator in s.
     pub transfer: Rational,
-    /// s, dead time.
+    /// Dead time, s.
     pub delay: f64,
 }
 

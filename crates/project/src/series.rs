@@ -1,5 +1,5 @@
-//! `[series]` with `[series.coil]` or `[series.line]`: the spring or the hydraulic transmission
-//! between force sensor and load.
+//! Table `[series]` with `[series.coil]` or `[series.line]`: the spring or the hydraulic
+//! transmission between force sensor and load.
 
 use phea_hydraulics::series::{ForceFrom, MOST_SEGMENTS};
 
@@ -11,75 +11,75 @@ use phea_quantity::{
     AREA, DAMPING, DENSITY, INVERSE_VELOCITY, LENGTH, MASS, PRESSURE, PricedBy, RATIO, STIFFNESS, VOLUME,
 };
 
-/// What lies between force sensor and load.
+/// Element between force sensor and load.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DeclaredSeries {
-    /// A spring.
+    /// Spring.
     Spring(DeclaredSpring),
     /// Two pistons with a line between them.
     Transmission(Box<DeclaredTransmission>),
 }
 
-/// The spring between force sensor and load, with its damper, the mass before it and the ends of
-/// its travel.
+/// Spring between force sensor and load, with its damper, the mass before it and the ends of its
+/// travel.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredSpring {
-    /// N/m, of the spring; of a progressive one at rest.
+    /// Stiffness of the spring, N/m; of a progressive one at rest.
     pub stiffness: f64,
-    /// N·s/m, parallel to the spring.
+    /// Damping in parallel with the spring, N·s/m.
     pub damping: f64,
-    /// kg, between force sensor and spring.
+    /// Mass between force sensor and spring, kg.
     pub mass: f64,
-    /// m, to either side; absent: as far as it is pressed.
+    /// Travel to either side, m; unlimited if absent.
     pub travel: Option<f64>,
-    /// Share by which the force at the end of the travel exceeds that of a linear spring.
+    /// Fraction by which the force at the end of the travel exceeds that of a linear spring.
     pub progression: f64,
-    /// N/m, of the stops at both ends of the travel; absent: the ends are reported, and nothing
-    /// stops it.
+    /// Stiffness of the stops at both ends of the travel, N/m; if absent, the ends are only
+    /// reported.
     pub stop_stiffness: Option<f64>,
-    /// s/m, damping of the stops relative to their elastic force.
+    /// Damping of the stops relative to their elastic force, s/m.
     pub stop_damping: f64,
-    /// What the measured force is taken from.
+    /// Source of the measured force.
     pub force_from: ForceFrom,
-    /// How it is wound.
+    /// Coil of the spring.
     pub coil: Option<SpringCoil>,
-    /// What the spring costs and weighs, with its housing; without a mass that of its coils.
+    /// Cost and mass of the spring with its housing; the default mass is that of its coils.
     pub cost: PartCost,
 }
 
-/// A hydraulic transmission between force sensor and load, filled once and closed.
+/// Hydraulic transmission between force sensor and load, filled once and closed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeclaredTransmission {
-    /// m², of either piston.
+    /// Area of either piston, m².
     pub piston_area: f64,
-    /// Pa, gauge, at rest and without force.
+    /// Filling pressure at rest and without force, Pa gauge.
     pub filling_pressure: f64,
-    /// m³, of oil at either piston in addition to that of the line.
+    /// Oil volume at either piston in addition to that of the line, m³.
     pub end_volume: f64,
-    /// Into how many segments the line is cut.
+    /// Number of segments of the line.
     pub segments: u32,
-    /// The hose or pipe between the pistons.
+    /// Hose or pipe between the pistons.
     pub line: DeclaredLine,
-    /// m, of either cylinder of it; absent: not known.
+    /// Length of either of its cylinders, m; unknown if absent.
     pub cylinder_length: Option<f64>,
-    /// What both cylinders cost and weigh together.
+    /// Cost and mass of both cylinders together.
     pub cylinders: PartCost,
 }
 
-/// What a coil spring is wound from.
+/// Winding of a coil spring.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpringCoil {
     /// Mean diameter of the coil over that of the wire.
     pub index: f64,
-    /// Pa, greatest shear stress in the wire.
+    /// Greatest shear stress in the wire, Pa.
     pub allowed_shear_stress: f64,
-    /// Pa, of the wire.
+    /// Shear modulus of the wire, Pa.
     pub shear_modulus: f64,
-    /// kg/m³, of the wire.
+    /// Density of the wire, kg/m³.
     pub density: f64,
 }
 
-/// Pa and kg/m³, spring steel (EN 10270-1).
+/// Shear modulus in Pa and density in kg/m³ of spring steel (EN 10270-1).
 const STEEL_SHEAR_MODULUS: f64 = 81.5e9;
 const STEEL_DENSITY: f64 = 7850.0;
 
@@ -111,12 +111,12 @@ impl DeclaredSeries {
         v.variant(plain("kind", "What lies between force sensor and load."), self, false);
     }
 
-    /// It, where it is a spring.
+    /// The spring, if it is one.
     pub fn spring(&self) -> Option<&DeclaredSpring> {
         if let DeclaredSeries::Spring(spring) = self { Some(spring) } else { None }
     }
 
-    /// It, where it is a transmission.
+    /// The transmission, if it is one.
     pub fn transmission(&self) -> Option<&DeclaredTransmission> {
         if let DeclaredSeries::Transmission(transmission) = self { Some(transmission) } else { None }
     }

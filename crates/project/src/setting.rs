@@ -1,13 +1,13 @@
-//! `--set path=value`: puts a value into the tree before anything is checked.
+//! Setting `--set path=value`: a value put into the tree before anything is checked.
 
 use super::text::{Findings, Place, RawFinding};
 use super::tree::{self, Entry, TreeNode, Value};
 
-/// Most parts of a path.
+/// Largest number of parts of a path.
 const MAXIMUM_PARTS: usize = 16;
 
-/// Applies one setting. Its own errors, and those of its value later on, point into the setting's
-/// text.
+/// Applies one setting. Errors of the setting, and later errors of its value, refer to the
+/// setting's text.
 pub(crate) fn apply(root: &mut TreeNode, setting: &str, findings: &mut Findings) {
     let text = findings.add_text(&format!("--set {setting}"), setting, 0);
     let whole = Place { text, start: 0, end: setting.len() };
@@ -25,7 +25,7 @@ pub(crate) fn apply(root: &mut TreeNode, setting: &str, findings: &mut Findings)
     }
 }
 
-/// A part of the path and its position.
+/// Part of the path and its position.
 type PathPart = (String, Place);
 
 fn parts(text: usize, path: &str) -> Result<Vec<PathPart>, RawFinding> {
@@ -47,24 +47,24 @@ fn parts(text: usize, path: &str) -> Result<Vec<PathPart>, RawFinding> {
     Ok(parts)
 }
 
-/// A setting that a table states.
+/// Setting in a table.
 pub(crate) struct TableSetting<'t> {
     parts: Vec<PathPart>,
-    /// What is set.
+    /// Value of the setting.
     pub(crate) value: &'t TreeNode,
 }
 
 impl TableSetting<'_> {
-    /// Its path, parts with dots in them in quotes.
+    /// Path of the setting, with parts that contain dots in quotes.
     pub(crate) fn path(&self) -> String {
         let quoted = |name: &String| if name.contains('.') { format!("\"{name}\"") } else { name.clone() };
         self.parts.iter().map(|(name, _)| quoted(name)).collect::<Vec<_>>().join(".")
     }
 }
 
-/// The settings of a table, in its order: a key is a path, as in a setting on the command line;
-/// keys with dots outside quotes and tables with a heading state paths part by part, and an inline
-/// table is a value.
+/// Settings of a table, in its order: a key is a path, as in a setting on the command line; keys
+/// with dots outside quotes and tables with a heading state paths part by part, and an inline table
+/// is a value.
 pub(crate) fn of_table<'t>(
     table: &'t TreeNode,
     findings: &Findings,
@@ -107,7 +107,7 @@ fn gather<'t>(
     }
 }
 
-/// The parts of a key that is a path, each with its place inside the quotes.
+/// Parts of a key that is a path, each with its place inside the quotes.
 fn key_parts(entry: &Entry, findings: &Findings) -> Result<Vec<PathPart>, RawFinding> {
     let Place { text, start, end } = entry.key_place;
     let written = findings.content(text).get(start..end).unwrap_or_default();
@@ -115,7 +115,7 @@ fn key_parts(entry: &Entry, findings: &Findings) -> Result<Vec<PathPart>, RawFin
     let as_written = written.get(quotes..written.len().saturating_sub(quotes)) == Some(entry.key.as_str());
     let place = |inner: Place| match as_written {
         true => Place { text, start: inner.start + start + quotes, end: inner.end + start + quotes },
-        // a key with escapes
+        // key with escapes
         false => entry.key_place,
     };
     let moved = |(name, inner): PathPart| (name, place(inner));
@@ -136,7 +136,7 @@ pub(crate) fn apply_table(root: &mut TreeNode, table: &TreeNode, findings: &mut 
     wrong.into_iter().for_each(|found| findings.push(found));
 }
 
-/// At the dots that are not inside quotes.
+/// Splits at the dots that are not inside quotes.
 fn split(path: &str) -> Vec<&str> {
     let mut inside = false;
     path.split(|c| {
@@ -146,7 +146,7 @@ fn split(path: &str) -> Vec<&str> {
     .collect()
 }
 
-/// A TOML value, or else the bare text.
+/// Value in TOML, otherwise the bare text.
 fn value(text: usize, start: usize, setting: &str, findings: &mut Findings) -> TreeNode {
     let written = &setting[start..];
     let from = start + written.len() - written.trim_start().len();

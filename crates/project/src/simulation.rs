@@ -1,14 +1,14 @@
-//! `[simulation]`: how accurately scenarios are simulated.
+//! Table `[simulation]`: the accuracy of simulations.
 
 use super::key::{key, plain};
 use super::visitor::Visitor;
 use phea_dynamics::simulation::Method;
 use phea_quantity::RATIO;
 
-/// The method, accuracy, random numbers and largest effort.
+/// Method, accuracy, random numbers and largest effort.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Simulation {
-    /// How steps are made.
+    /// Integration method.
     pub method: Method,
     /// Largest error of a step, relative to each state plus its scale.
     pub tolerance: f64,

@@ -1,4 +1,4 @@
-//! `[sizing]` and `[sizing.other_means]`.
+//! Tables `[sizing]` and `[sizing.other_means]`.
 
 use super::key::{key, plain};
 use super::series::SpringCoil;
@@ -8,52 +8,54 @@ use phea_quantity::{
     VOLTAGE_PER_FORCE,
 };
 
-/// The requirements for the compliant component.
+/// Requirements on the compliant component.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredSizing {
-    /// The wanted speed of the closed loop.
+    /// Required speed of the closed loop.
     pub speed: Speed,
-    /// m³/(s·V), K_qU; absent: derived from the valve at null.
+    /// Flow gain K_qU, m³/(s·V); if absent, derived from the valve at null.
     pub flow_gain: Option<f64>,
-    /// m³/(s·Pa), K_c; absent: derived from the valve at null.
+    /// Flow-pressure coefficient K_c, m³/(s·Pa); if absent, derived from the valve at null.
     pub flow_pressure_coefficient: Option<f64>,
-    /// m/s, range of the oil velocity: a velocity above it rejects a bore, one below it causes a
+    /// Range of the oil velocity, m/s: a velocity above it rejects a bore, one below it causes a
     /// warning.
     pub oil_velocity: Option<[f64; 2]>,
-    /// V/N, floor of the search over the proportional gain.
+    /// Lower end of the search over the proportional gain, V/N.
     pub minimum_gain: Option<f64>,
-    /// V/N, where the search over the proportional gain starts.
+    /// Starting value of the search over the proportional gain, V/N.
     pub maximum_gain: Option<f64>,
-    /// m, available for both hoses together.
+    /// Length available for both hoses together, m.
     pub stock_length: Option<f64>,
-    /// m, acceptable range for one hose.
+    /// Acceptable length of one hose, m.
     pub hose_length: Option<[f64; 2]>,
-    /// m, hoses are cut to multiples of this; absent: to any length.
+    /// Increment of hose lengths, m; any length if absent.
     pub length_increment: Option<f64>,
-    /// What else is sized for the stiffness of the hose; absent: nothing.
+    /// Other components to be sized for the stiffness of the hose; none if absent.
     pub other_means: Option<OtherMeansWish>,
 }
 
-/// Requirements on the ways to be as soft as the hose without it.
+/// Requirements on alternatives with the softness of the hose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OtherMeansWish {
-    /// N/m, K_H; absent: that of the hose which is accepted.
+    /// Stiffness K_H, N/m; if absent, that of the accepted hose.
     pub stiffness: Option<f64>,
-    /// N, forces at standstill between which gas is to be in use; absent: no gas is sized.
+    /// Range of forces at standstill over which gas must be in use, N; if absent, no gas is sized.
     pub force_range: Option<[f64; 2]>,
-    /// Precharge over the lowest pressure of a chamber between these forces, both absolute.
+    /// Ratio of the precharge to the lowest pressure of a chamber between these forces, both
+    /// absolute.
     pub precharge_share: f64,
     /// Polytropic exponent of the gas.
     pub polytropic_exponent: f64,
-    /// Damping ratio of the mode of the load cell; absent: no valve between the chambers is sized.
+    /// Damping ratio of the mode of the load cell; if absent, no valve between the chambers is
+    /// sized.
     pub damping_ratio: Option<f64>,
-    /// What a spring on the rod is wound from; absent: only its stiffness and travel are found.
+    /// Winding of a spring on the rod; if absent, only its stiffness and travel are found.
     pub coil: Option<SpringCoil>,
 }
 
-/// Accumulators are commonly filled to 0.9 of their lowest working pressure.
+/// Common ratio of an accumulator's precharge to its lowest working pressure.
 const PRECHARGE_SHARE: f64 = 0.9;
-/// Of nitrogen that exchanges no heat.
+/// Polytropic exponent of nitrogen without heat exchange.
 const ADIABATIC: f64 = 1.4;
 
 impl Default for OtherMeansWish {
@@ -86,21 +88,21 @@ impl OtherMeansWish {
     }
 }
 
-/// The wanted speed of a closed loop.
+/// Required speed of a closed loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Speed {
-    /// s, its time constant.
+    /// Time constant, s.
     TimeConstant(f64),
-    /// Its settling time.
+    /// Settling time.
     Settling(SettlingTime),
 }
 
-/// A settling time and its band.
+/// Settling time and its band.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SettlingTime {
-    /// s.
+    /// Settling time, s.
     pub time: f64,
-    /// Percent of the step.
+    /// Band, percent of the step.
     pub band_percent: f64,
 }
 

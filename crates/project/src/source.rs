@@ -1,53 +1,53 @@
-//! The only interfaces to text and bytes: where files come from, and where long ones go. Shells
+//! The only interfaces to text and bytes: sources of files, and destinations of long ones. Shells
 //! implement them over the file system.
 
 use std::collections::BTreeMap;
 use std::io;
 use std::sync::{Mutex, PoisonError};
 
-/// A file that a command produced, named relative to the output folder.
+/// File produced by a command, named relative to the output folder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutputFile {
-    /// File name with its ending.
+    /// File name with its extension.
     pub name: String,
     /// Content.
     pub bytes: Vec<u8>,
 }
 
 impl OutputFile {
-    /// A file of this name with a text or bytes.
+    /// File of this name with a text or bytes.
     pub fn new(name: impl Into<String>, content: impl Into<Vec<u8>>) -> OutputFile {
         OutputFile { name: name.into(), bytes: content.into() }
     }
 }
 
-/// Where files come from. A path is the text of the user, which only the implementation interprets.
+/// Source of files. A path is the text of the user, which only the implementation interprets.
 pub trait Source: Sync {
-    /// The bytes of a file.
+    /// Bytes of a file.
     ///
     /// # Errors
     /// [`SourceError`] if there is no such file or it cannot be read.
     fn read(&self, path: &str) -> Result<Vec<u8>, SourceError>;
 
-    /// The paths of the files in a folder, each such that [`Source::read`] takes it; in any order.
-    /// A path that is a file gives `None`.
+    /// Paths of the files in a folder, in a form that [`Source::read`] accepts; in any order. A
+    /// path that is a file gives `None`.
     ///
     /// # Errors
-    /// [`SourceError`] if there is neither, or it cannot be read.
+    /// [`SourceError`] if the path does not exist, or cannot be read.
     fn list(&self, path: &str) -> Result<Option<Vec<String>>, SourceError>;
 }
 
-/// A file that could not be read, and why.
+/// Error for a file that could not be read, with the reason.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cannot read {path}: {reason}")]
 pub struct SourceError {
-    /// As the user wrote it.
+    /// Path as the user wrote it.
     pub path: String,
-    /// In the words of the system.
+    /// Reason given by the system.
     pub reason: String,
 }
 
-/// Files held in memory, for tests and for shells without a file system.
+/// Files in memory, for tests and for shells without a file system.
 ///
 /// # Example
 /// ```
@@ -64,7 +64,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// The same files and one more.
+    /// These files and one more.
     #[must_use]
     pub fn with(mut self, path: &str, content: impl Into<Vec<u8>>) -> Self {
         self.files.insert(path.to_string(), content.into());
@@ -92,41 +92,41 @@ impl Source for Memory {
     }
 }
 
-/// Where files go that are too long for memory: they are written as they are produced.
+/// Destination of files that are too long for memory: they are written as they are produced.
 pub trait Destination {
-    /// Begins a file. It receives its name only when it is finished, and does not exist if it never
-    /// is.
+    /// Begins a file. The file receives its name only when it is finished, and does not exist if it
+    /// never is.
     ///
     /// # Errors
     /// [`WriteError`] if it cannot be begun.
     fn begin<'a>(&'a self, name: &str) -> Result<Box<dyn Unfinished + 'a>, WriteError>;
 
-    /// Where a file of this name goes, for messages: the name with its folder.
+    /// Destination of a file of this name, for messages: the name with its folder.
     fn path_of(&self, name: &str) -> String {
         name.to_string()
     }
 }
 
-/// A file that is being written. Data may wait in a buffer until it is finished.
+/// File that is being written. Data may be buffered until it is finished.
 pub trait Unfinished: io::Write + Send {
     /// Stores the complete file under its name.
     ///
     /// # Errors
-    /// What the system says.
+    /// Error of the system.
     fn finish(self: Box<Self>) -> io::Result<()>;
 }
 
-/// A file that could not be written, and why.
+/// Error for a file that could not be written, with the reason.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cannot write {path}: {reason}")]
 pub struct WriteError {
-    /// Where it should go.
+    /// Destination.
     pub path: String,
-    /// In the words of the system.
+    /// Reason given by the system.
     pub reason: String,
 }
 
-/// Files held in memory, for tests and for shells without a file system.
+/// Files in memory, for tests and for shells without a file system.
 ///
 /// # Example
 /// ```

@@ -1,4 +1,4 @@
-//! `[[specification]]`: a requirement on the closed loop.
+//! Table `[[specification]]`: a requirement on the closed loop.
 
 use super::key::{key, plain};
 use super::limit::DeclaredLimit;
@@ -6,12 +6,12 @@ use super::visitor::Visitor;
 use phea_dynamics::closed_loop::ClosedLoop;
 use phea_quantity::{ANGULAR_FREQUENCY, FORCE, PERCENT, TIME};
 
-/// What a specification is about.
+/// Subject of a specification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpecificationKind {
-    /// The magnitude of a closed loop over frequency.
+    /// Magnitude of a closed loop over frequency.
     ClosedLoop(ClosedLoop),
-    /// The response to a step of the reference over time.
+    /// Response to a step of the reference over time.
     Step,
 }
 
@@ -21,10 +21,10 @@ impl Default for SpecificationKind {
     }
 }
 
-/// One specification.
+/// Requirement as declared.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredSpecification {
-    /// What is limited.
+    /// Limited quantity.
     pub kind: SpecificationKind,
     /// Upper limit; for every kind except tracking.
     pub limit: Option<DeclaredLimit>,
@@ -32,37 +32,36 @@ pub struct DeclaredSpecification {
     pub upper: Option<DeclaredLimit>,
     /// Lower limit of tracking.
     pub lower: Option<DeclaredLimit>,
-    /// rad/s, where bounds are drawn.
+    /// Frequencies of the bounds, rad/s.
     pub frequencies: Vec<f64>,
-    /// rad/s, where it must hold; absent: the span of `frequencies`.
+    /// Band in which it must hold, rad/s; if absent, the span of `frequencies`.
     pub band: Option<[f64; 2]>,
-    /// What is required of a step; of the kind `step`.
+    /// Requirements on a step; for the kind `step`.
     pub step: RequiredStep,
 }
 
-/// What is required of the response to a step of the reference, of every plant and in every run.
+/// Requirements on the response to a reference step, for every plant and every run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RequiredStep {
-    /// Most overshoot, percent of the step.
+    /// Largest overshoot, percent of the step.
     pub overshoot_percent: Option<f64>,
-    /// Settled by then, s.
+    /// Latest settling time, s.
     pub settling_time: Option<f64>,
-    /// The band of the settling time, percent of the step; absent: [`SETTLING_BAND_PERCENT`].
+    /// Band of the settling time, percent of the step; if absent, [`SETTLING_BAND_PERCENT`].
     pub settling_band_percent: Option<f64>,
-    /// From 10 to 90 percent of the step within this time, s.
+    /// Longest time from 10 to 90 percent of the step, s.
     pub rise_time: Option<f64>,
-    /// Size of the step on the nonlinear rig, N, with the sign of its direction; absent: a tenth of
-    /// the force that the supply can produce.
+    /// Size of the step on the nonlinear rig, N, with the sign of its direction; if absent, a tenth
+    /// of the force that the supply can produce.
     pub amplitude: Option<f64>,
-    /// Force from which the step begins on the nonlinear rig, N; absent: that of the operating
-    /// point.
+    /// Initial force of the step on the nonlinear rig, N; if absent, that of the operating point.
     pub initial_force: Option<f64>,
 }
 
-/// Percent of a step within which it counts as settled where no band is stated.
+/// Default settling band, percent of a step.
 pub const SETTLING_BAND_PERCENT: f64 = 2.0;
 
-/// The words of `kind`, by which answers and certificates call a closed loop too.
+/// Words of `kind`, which results and certificates also use for a closed loop.
 pub static SPECIFICATION_KINDS: [(&str, SpecificationKind); 7] = [
     ("robust_stability", SpecificationKind::ClosedLoop(ClosedLoop::RobustStability)),
     ("sensitivity", SpecificationKind::ClosedLoop(ClosedLoop::Sensitivity)),
@@ -74,7 +73,7 @@ pub static SPECIFICATION_KINDS: [(&str, SpecificationKind); 7] = [
 ];
 
 impl DeclaredSpecification {
-    /// The closed loop whose magnitude is limited; `None` for a requirement in time.
+    /// Closed loop whose magnitude is limited; `None` for a requirement in time.
     pub fn closed_loop(&self) -> Option<ClosedLoop> {
         match self.kind {
             SpecificationKind::ClosedLoop(closed_loop) => Some(closed_loop),
@@ -82,7 +81,7 @@ impl DeclaredSpecification {
         }
     }
 
-    /// Where it must hold, rad/s: the declared band, or the span of the frequencies.
+    /// Band in which it must hold, rad/s: the declared band, or the span of the frequencies.
     pub fn band_rad_per_s(&self) -> [f64; 2] {
         let first = self.frequencies.first().copied().unwrap_or(0.0);
         let last = self.frequencies.last().copied().unwrap_or(0.0);

@@ -1,11 +1,11 @@
-//! Texts, positions in them, and findings: the common basis of everything that reads a file.
+//! Texts, positions in them, and findings: the common basis of all file reading.
 
 use super::diagnostic::{Diagnostic, Refusal, Severity};
 
-/// Where something is written: which text, and its bytes.
+/// Place in a text: the text, and its bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Place {
-    /// Index into the texts.
+    /// Index of the text.
     pub text: usize,
     /// First byte.
     pub start: usize,
@@ -13,18 +13,18 @@ pub struct Place {
     pub end: usize,
 }
 
-/// The texts that are read, and the findings in them.
+/// Texts that are read, and the findings in them.
 #[derive(Clone, Debug, Default)]
 pub struct Findings {
     texts: Vec<NamedText>,
     found: Vec<RawFinding>,
-    /// The numbers of errors and warnings that are kept, and of findings that are not.
+    /// Numbers of kept errors and warnings, and of findings that are not kept.
     errors: usize,
     warnings: usize,
     more: usize,
 }
 
-/// A named text.
+/// Named text.
 #[derive(Clone, Debug)]
 struct NamedText {
     name: String,
@@ -33,7 +33,7 @@ struct NamedText {
     skipped: usize,
 }
 
-/// A finding before its line and column are counted.
+/// Finding before its line and column are determined.
 #[derive(Clone, Debug)]
 pub struct RawFinding {
     severity: Severity,
@@ -41,76 +41,76 @@ pub struct RawFinding {
     message: String,
     expected: Option<String>,
     help: Option<String>,
-    /// Whether it can be the consequence of a syntax error elsewhere.
+    /// True if it can be the consequence of a syntax error elsewhere.
     consequence: bool,
     syntax: bool,
 }
 
 impl RawFinding {
-    /// An error at a place.
+    /// Error at a place.
     pub fn error(place: Place, message: impl Into<String>) -> Self {
         let message = message.into();
         let severity = Severity::Error;
         RawFinding { severity, place, message, expected: None, help: None, consequence: false, syntax: false }
     }
 
-    /// A warning at a place.
+    /// Warning at a place.
     pub fn warning(place: Place, message: impl Into<String>) -> Self {
         RawFinding { severity: Severity::Warning, ..RawFinding::error(place, message) }
     }
 
-    /// The same at another place.
+    /// Finding at another place.
     pub(crate) fn at(self, place: Place) -> Self {
         RawFinding { place, ..self }
     }
 
-    /// The same with the expectation.
+    /// Finding with the expectation.
     pub fn expected(mut self, expected: impl Into<String>) -> Self {
         self.expected = Some(expected.into());
         self
     }
 
-    /// The same with the expectation, if known.
+    /// Finding with the expectation, if known.
     pub fn maybe_expected(mut self, expected: Option<String>) -> Self {
         self.expected = expected.or(self.expected);
         self
     }
 
-    /// The same with a remedy.
+    /// Finding with a remedy.
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 
-    /// The same with a remedy, if known.
+    /// Finding with a remedy, if known.
     pub fn maybe_help(mut self, help: Option<String>) -> Self {
         self.help = help.or(self.help);
         self
     }
 
-    /// The same of this number of rows of a table, of which this is the first.
+    /// Finding for this number of rows of a table, of which this is the first.
     pub fn and_more(mut self, rows: usize) -> Self {
         self.message = format!("{}; {rows} rows are like this", self.message);
         self
     }
 
-    /// Something is missing, which a syntax error may be to blame for.
+    /// Finding for something missing, possibly because of a syntax error.
     pub(crate) fn consequence(mut self) -> Self {
         self.consequence = true;
         self
     }
 
-    /// The same as an error of syntax, for which others may be a consequence.
+    /// Finding as an error of syntax, of which others may be a consequence.
     pub(crate) fn syntax(mut self) -> Self {
         self.syntax = true;
         self
     }
 }
 
-/// More findings than this are counted but not listed.
+/// Largest number of listed findings; further ones are only counted.
 const MAXIMUM_LISTED: usize = 200;
-/// More errors, or warnings, than this are counted but not kept, so that the work for each stays
-/// small.
+/// Largest number of kept errors, or warnings; further ones are only counted, so that the work for
+/// each stays small.
 const MAXIMUM_KEPT: usize = 400;
 
 impl Findings {
@@ -120,7 +120,7 @@ impl Findings {
         self.texts.len() - 1
     }
 
-    /// Gives back the memory of a text in which nothing was found and nothing will be.
+    /// Releases the memory of a text without findings, present or future.
     pub fn release(&mut self, text: usize) {
         if self.found.iter().all(|found| found.place.text != text)
             && let Some(text) = self.texts.get_mut(text)
@@ -134,7 +134,7 @@ impl Findings {
         self.texts.len().saturating_sub(1)
     }
 
-    /// Adds a finding; beyond the largest number that is kept it is only counted.
+    /// Adds a finding; beyond the largest number of kept findings it is only counted.
     pub fn push(&mut self, found: RawFinding) {
         let kept = if found.severity == Severity::Error { &mut self.errors } else { &mut self.warnings };
         if *kept < MAXIMUM_KEPT {
@@ -145,17 +145,17 @@ impl Findings {
         }
     }
 
-    /// The content of a text; empty for an index without one.
+    /// Content of a text; empty for an index without one.
     pub fn content(&self, text: usize) -> &str {
         self.texts.get(text).map_or("", |text| &text.content)
     }
 
-    /// How many errors are kept.
+    /// Number of kept errors.
     pub fn error_count(&self) -> usize {
         self.errors
     }
 
-    /// What was read, unless an error was found.
+    /// The value that was read, unless an error was found.
     ///
     /// # Errors
     /// All findings.
@@ -163,12 +163,12 @@ impl Findings {
         if self.errors > 0 { Err(Box::new(self.report())) } else { Ok(read) }
     }
 
-    /// Whether an error was found.
+    /// True if an error was found.
     pub fn has_errors(&self) -> bool {
         self.found.iter().any(|found| found.severity == Severity::Error)
     }
 
-    /// Whether something within a place was already rejected.
+    /// True if a value within a place was already rejected.
     pub(crate) fn has_error_within(&self, place: Place) -> bool {
         let within = |inner: &Place| {
             inner.text == place.text && inner.start >= place.start && inner.end <= place.end && place.end > 0
@@ -207,7 +207,7 @@ impl Findings {
 }
 
 impl NamedText {
-    /// Where each line begins.
+    /// Beginnings of the lines.
     fn line_starts(&self) -> Vec<usize> {
         let ends = self.content.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
         std::iter::once(0).chain(ends.map(|(at, _)| at + 1)).collect()
@@ -233,7 +233,7 @@ impl NamedText {
     }
 }
 
-/// The line of a byte, from 1.
+/// Line of a byte, from 1.
 fn line_of(line_starts: &[usize], at: usize) -> usize {
     line_starts.partition_point(|start| *start <= at)
 }

@@ -1,15 +1,15 @@
-//! Values as TOML in one line.
+//! Values as TOML on one line.
 
 use super::tree::{Entry, TreeNode, Value};
 use phea_quantity as quantity;
 
-/// As a key of TOML.
+/// Key of TOML.
 pub(crate) fn bare_or_quoted(key: &str) -> String {
     let bare = !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
     if bare { key.to_string() } else { quoted(key) }
 }
 
-/// As a basic TOML string.
+/// Basic TOML string.
 pub(crate) fn quoted(text: &str) -> String {
     let mut out = String::from("\"");
     for c in text.chars() {
@@ -24,18 +24,18 @@ pub(crate) fn quoted(text: &str) -> String {
     out
 }
 
-/// A list in one line.
+/// List on one line.
 pub(crate) fn list(items: impl Iterator<Item = String>) -> String {
     format!("[{}]", items.collect::<Vec<_>>().join(", "))
 }
 
-/// A table in one line.
+/// Table on one line.
 pub(crate) fn inline(lines: &[(String, String)]) -> String {
     let parts: Vec<String> = lines.iter().map(|(key, value)| format!("{key} = {value}")).collect();
     if parts.is_empty() { "{}".to_string() } else { format!("{{ {} }}", parts.join(", ")) }
 }
 
-/// Any value in one line; `None` for a date.
+/// Any value on one line; `None` for a date.
 pub(crate) fn in_toml(node: &TreeNode) -> Option<String> {
     Some(match &node.value {
         Value::Text(text) => quoted(text),

@@ -1,4 +1,4 @@
-//! A TOML text as a tree in which every part knows its position.
+//! TOML text as a tree in which every part has its position.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -7,16 +7,16 @@ use toml_parser::lexer::TokenKind;
 
 use super::text::{Findings, Place, RawFinding};
 
-/// A value and its place.
+/// Value and its place.
 #[derive(Clone, Debug)]
 pub struct TreeNode {
-    /// Where it is written.
+    /// Place of the text.
     pub place: Place,
-    /// What is written there.
+    /// Value at the place.
     pub value: Value,
 }
 
-/// A value of the tree.
+/// Value of the tree.
 #[derive(Clone, Debug)]
 pub enum Value {
     /// A text.
@@ -33,29 +33,29 @@ pub enum Value {
     Table(Vec<Entry>),
 }
 
-/// A key of a table with its value.
+/// Key of a table with its value.
 #[derive(Clone, Debug)]
 pub struct Entry {
-    /// The key.
+    /// Key.
     pub key: String,
-    /// Where the key is written.
+    /// Place of the key.
     pub key_place: Place,
-    /// Its value.
+    /// Value.
     pub node: TreeNode,
 }
 
 impl TreeNode {
-    /// The keys of a table; empty for anything else.
+    /// Keys of a table; empty for any other value.
     pub fn entries(&self) -> &[Entry] {
         if let Value::Table(entries) = &self.value { entries } else { &[] }
     }
 
-    /// A key of a table with its value.
+    /// Key of a table with its value.
     pub fn get(&self, key: &str) -> Option<&Entry> {
         self.entries().iter().find(|entry| entry.key == key)
     }
 
-    /// Its kind, with an article.
+    /// Kind of value, with an article.
     pub fn kind(&self) -> &'static str {
         match &self.value {
             Value::Text(_) => "a text",
@@ -130,7 +130,7 @@ pub(crate) fn value(text: usize, range: std::ops::Range<usize>, findings: &mut F
     Some(node)
 }
 
-/// The same, its syntax error among the findings.
+/// Single value of TOML, with its syntax error among the findings.
 pub fn value_or_finding(
     text: usize,
     range: std::ops::Range<usize>,
@@ -163,7 +163,8 @@ fn shift(node: &mut TreeNode, by: usize) {
     }
 }
 
-/// Nesting is checked on the tokens, so that no later walk over the tree can be deep.
+/// Finding for too deep nesting. It is checked on the tokens, so that no later walk over the tree
+/// can be deep.
 fn too_deep(text: usize, content: &str) -> Option<RawFinding> {
     let (mut depth, mut parts) = (0_usize, 0_usize);
     for token in Source::new(content).lex() {
@@ -197,12 +198,12 @@ fn syntax_error(text: usize, content: &str, error: &toml::de::Error) -> RawFindi
     found.maybe_help(help.or_else(|| number_help(line, span.start.saturating_sub(line_start))))
 }
 
-/// The nearest position at or before `at` where a character begins.
+/// Nearest position at or before `at` at which a character begins.
 fn boundary(content: &str, at: usize) -> usize {
     (0..=at.min(content.len())).rev().find(|at| content.is_char_boundary(*at)).unwrap_or(0)
 }
 
-/// `70 bar` without its quotes.
+/// Help for a quantity such as `70 bar` without its quotes.
 fn quote_help(value: &str) -> Option<String> {
     let value = value.split('#').next().unwrap_or_default().trim();
     let begins_with_digit = value.starts_with(|c: char| c.is_ascii_digit());
@@ -212,8 +213,8 @@ fn quote_help(value: &str) -> Option<String> {
         .then(|| format!("a quantity with its unit is written in quotes: \"{value}\""))
 }
 
-/// A number at a place of a line with a decimal comma, or without a digit on one side of its point:
-/// `0,8`, `.8` and `8.`, which TOML does not have.
+/// Help for a number at a place of a line with a decimal comma, or without a digit on one side of
+/// its point: `0,8`, `.8` and `8.`, which TOML does not have.
 fn number_help(line: &str, at: usize) -> Option<String> {
     let is_of_number = |c: char| c.is_ascii_digit() || matches!(c, '.' | ',' | '-' | '+' | 'e' | 'E');
     let (before, after) = line.split_at_checked(boundary(line, at))?;
@@ -241,7 +242,7 @@ impl TreeBuilder<'_> {
         Place { text: self.text, start: span.start, end: span.end }
     }
 
-    /// Entries in the order they are written.
+    /// Entries in the order in which they are written.
     fn table(&mut self, table: &DeTable<'_>, place: Place) -> TreeNode {
         let mut entries: Vec<Entry> = Vec::with_capacity(table.len());
         for (key, value) in table {

@@ -1,29 +1,29 @@
-//! `[uncertainty]`: which numbers are uncertain, and the grid over them.
+//! Table `[uncertainty]`: the uncertain numbers, and the grid over them.
 
 use super::key::{Key, key, plain};
 use super::visitor::Visitor;
 use phea_dynamics::uncertain_plant::Spacing;
 use phea_quantity::RATIO;
 
-/// One uncertain number.
+/// Uncertain number.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Uncertain {
-    /// A parameter of the linear model, a path of the project, or a parameter of `[plant]`.
+    /// Name of a parameter of the linear model, a path of the project, or a parameter of `[plant]`.
     pub name: String,
-    /// In SI, like the other two.
+    /// Nominal value, SI like the other two.
     pub nominal: f64,
-    /// The least it may be.
+    /// Least possible value.
     pub minimum: f64,
-    /// The most it may be.
+    /// Greatest possible value.
     pub maximum: f64,
     /// Points of the grid over it.
     pub points: u32,
-    /// How the points are spread.
+    /// Spacing of the points.
     pub spacing: Spacing,
 }
 
 impl Uncertain {
-    /// A table of them, each by the name of its number.
+    /// Visits a table of them, each by the name of its number.
     pub(crate) fn visit_all<V: Visitor>(k: Key, all: &mut Vec<Uncertain>, v: &mut V) {
         v.dictionary(
             k,
@@ -36,7 +36,7 @@ impl Uncertain {
         );
     }
 
-    /// `number` gives name, dimension and range of the number itself.
+    /// Visits one; `number` has name, dimension and range of the number itself.
     fn visit<V: Visitor>(&mut self, number: Key, v: &mut V) {
         let part = |name, doc| Key { name, doc, default: None, ..number };
         v.quantity(part("nominal", "The value of plant 0."), &mut self.nominal);

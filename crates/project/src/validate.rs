@@ -73,7 +73,7 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     alternative::load_cases(project, &mut check);
 }
 
-/// An error that was found later. A table that is absent would be at the end of the file.
+/// Reports an error that was found later. An absent table would be at the end of the file.
 pub(super) fn late(late: &LateError, reader: &mut Reader<'_>) {
     let mut check = Check { reader };
     let place = if check.has_table(&late.path) { check.place(&late.path) } else { check.reader.end_place() };
@@ -82,7 +82,7 @@ pub(super) fn late(late: &LateError, reader: &mut Reader<'_>) {
 }
 
 impl DeclaredElement {
-    /// The element that a table describes; its errors go to the findings. `sample_time` in s is
+    /// Element described by a table; its errors are added to the findings. `sample_time` in s is
     /// that of the controller.
     pub fn read(
         node: &TreeNode,
@@ -111,12 +111,12 @@ struct Check<'r, 'a> {
 }
 
 impl Check<'_, '_> {
-    /// How the rig moves.
+    /// Motion of the rig.
     fn motion(&self) -> phea_quantity::MotionKind {
         self.reader.motion()
     }
 
-    /// Where the value of a path is written, or the nearest table around it.
+    /// Place of the value of a path, or of the nearest table around it.
     fn place(&self, path: &str) -> Place {
         let mut path = path;
         loop {
@@ -131,12 +131,12 @@ impl Check<'_, '_> {
         }
     }
 
-    /// Whether a path was written in the project or set.
+    /// True if a path was written in the project or set.
     fn declared(&self, path: &str) -> bool {
         self.reader.places.contains_key(path)
     }
 
-    /// Whether the value of a path was already rejected, so that nothing follows from it.
+    /// True if the value of a path was already rejected, so that nothing follows from it.
     fn refused(&self, path: &str) -> bool {
         self.reader.places.get(path).is_some_and(|place| self.reader.findings.has_error_within(*place))
     }
@@ -149,7 +149,7 @@ impl Check<'_, '_> {
         self.push_error(path, RawFinding::error(self.place(path), message).help(help));
     }
 
-    /// Whether a path is in a table whose kind is misspelt or missing, or has one in it, so that
+    /// True if a path is in a table whose kind is misspelt or missing, or contains one, so that
     /// nothing follows from its keys.
     fn is_unclear(&self, path: &str) -> bool {
         let within = |inner: &str, outer: &str| {
@@ -164,7 +164,7 @@ impl Check<'_, '_> {
         }
     }
 
-    /// Whether the first table of a path is present at all.
+    /// True if the first table of a path is present at all.
     fn has_table(&self, path: &str) -> bool {
         self.reader.root_entry(path.split(['.', '[']).next().unwrap_or(path)).is_some()
     }
@@ -185,7 +185,7 @@ impl Check<'_, '_> {
         }
     }
 
-    /// Something is absent from the table at `path`, perhaps because its value was rejected.
+    /// Reports a value missing from the table at `path`, perhaps because it was rejected.
     fn missing(&mut self, path: &str, name: &str, message: impl Into<String>) {
         if self.declared(&format!("{path}.{name}")) || !self.has_table(path) || self.is_unclear(path) {
             return;
@@ -194,7 +194,7 @@ impl Check<'_, '_> {
         self.reader.findings.push(RawFinding::error(place, message).consequence());
     }
 
-    /// Numbers must increase from one to the next.
+    /// Checks that numbers increase from one to the next.
     fn increasing(&mut self, path: &str, values: &[f64]) {
         if values.windows(2).any(|pair| pair[0] >= pair[1]) {
             self.error(path, format!("`{}` must increase from each to the next", last(path)));
@@ -202,12 +202,12 @@ impl Check<'_, '_> {
     }
 }
 
-/// The last part of a path.
+/// Last part of a path.
 fn last(path: &str) -> &str {
     path.rsplit('.').next().unwrap_or(path)
 }
 
-/// The linear parameter of that name.
+/// Linear parameter of that name.
 fn linear_parameter(name: &str) -> Option<&'static super::LinearParameter> {
     LINEAR_PARAMETERS.iter().find(|parameter| parameter.key.name == name)
 }

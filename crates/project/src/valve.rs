@@ -1,4 +1,4 @@
-//! `[valve]`.
+//! Table `[valve]`.
 
 use super::key::{key, plain};
 use super::visitor::Visitor;
@@ -9,64 +9,65 @@ use phea_quantity::{
     ANGULAR_FREQUENCY, FLOW, FLOW_COEFFICIENT, PRESSURE, RATIO, TIME, VOLTAGE, VOLTAGE_RATE,
 };
 
-/// The words of `leakage_model`.
+/// Words of `leakage_model`.
 pub static LEAKAGE_MODELS: [(&str, LeakageModel); 2] =
     [("each_edge", LeakageModel::EachEdge), ("one_curve", LeakageModel::OneCurve)];
 
-/// The servovalve, by coefficients of its four edges or by its data sheet.
+/// Servovalve, by coefficients of its four edges or by its data sheet.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Valve {
-    /// Name of the catalogue entry the values came from.
+    /// Name of the catalogue entry of the values.
     pub model: Option<String>,
-    /// V, command of full opening.
+    /// Command of full opening, V.
     pub nominal_voltage: f64,
-    /// rad/s.
+    /// Natural frequency of the spool, rad/s.
     pub natural_frequency: f64,
     /// Damping ratio of the spool's dynamics.
     pub damping_ratio: f64,
-    /// λ of sech(λ U/U_n) in the leakage; zero keeps the leakage constant.
+    /// Shape λ of sech(λ U/U_n) in the leakage; zero gives constant leakage.
     pub leakage_shape: f64,
-    /// λ of each edge, in place of the one of all.
+    /// Shape λ of each edge, in place of the common one.
     pub leakage_shapes: Option<EdgeCoefficients>,
-    /// The meaning of λ and the leakage coefficients away from null.
+    /// Meaning of λ and the leakage coefficients away from null.
     pub leakage_model: LeakageModel,
-    /// m³/s, pilot stage flow from supply to tank.
+    /// Pilot stage flow from supply to tank, m³/s.
     pub tare_flow: f64,
-    /// Pa, drop from supply to tank at which the tare flow is stated; absent: the supply's.
+    /// Pressure drop from supply to tank at which the tare flow is stated, Pa; if absent, that of
+    /// the supply.
     pub tare_pressure: Option<f64>,
-    /// V, spool position at which the valve is at null.
+    /// Spool position at which the valve is at null, V.
     pub null_bias: f64,
-    /// V, width of the loop over a slow full cycle, threshold included.
+    /// Width of the loop over a slow full cycle, including the threshold, V.
     pub hysteresis: Option<f64>,
-    /// V, change of command that a reversal takes.
+    /// Change of command that a reversal requires, V.
     pub threshold: Option<f64>,
-    /// V/s, greatest rate of the spool.
+    /// Greatest rate of the spool, V/s.
     pub rate_limit: Option<f64>,
-    /// Pa, pressure drop below which the square root is smoothed.
+    /// Pressure drop below which the square root is smoothed, Pa.
     pub transition_pressure: f64,
-    /// K_v3 to K_v6, or what they follow from.
+    /// Flow coefficients K_v3 to K_v6, or the data from which they follow.
     pub flow: ValveCoefficients<RatedFlow>,
-    /// K_vin3 to K_vin6, or what they follow from.
+    /// Leakage coefficients K_vin3 to K_vin6, or the data from which they follow.
     pub leakage: ValveCoefficients<NullLeakage>,
-    /// Travel by which the edges overlap, or, negative, underlap.
+    /// Overlap of the edges, or, if negative, underlap.
     pub lap: Option<ValveLap>,
-    /// How much less than in proportion the edges open, c of u/(1 + c u).
+    /// Saturation of the opening, c of u/(1 + c u).
     pub saturation: f64,
-    /// s, step response time of the data sheet; for information.
+    /// Step response time of the data sheet, for information, s.
     pub response_time: Option<f64>,
-    /// What its coefficients leave unexplained of the recordings that they were identified from.
+    /// Residual of the recordings from which its coefficients were identified.
     pub misfit: Option<DeclaredMisfit>,
-    /// What it costs and weighs.
+    /// Cost and mass.
     pub cost: PartCost,
 }
 
-/// The lap of the edges over the travel of full opening: positive for an overlap, negative for an
+/// Lap of the edges over the travel of full opening: positive for an overlap, negative for an
 /// underlap.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ValveLap {
-    /// Of edges 3 and 6, which a positive command opens.
+    /// Lap of edges 3 and 6, which a positive command opens.
     pub positive: f64,
-    /// Of edges 4 and 5, which a negative command opens.
+    /// Lap of edges 4 and 5, which a negative command opens.
     pub negative: f64,
 }
 
@@ -74,34 +75,34 @@ pub struct ValveLap {
 /// for all edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ValveCoefficients<R> {
-    /// Declared for each edge, m³/(s·√Pa).
+    /// Coefficients declared for each edge, m³/(s·√Pa).
     Edges {
-        /// As declared.
+        /// Declared coefficients.
         edges: EdgeCoefficients,
-        /// The data sheet values, in addition.
+        /// Additional data sheet values.
         rating: Option<R>,
     },
-    /// From the data sheet.
+    /// Coefficients from the data sheet.
     Rated(R),
 }
 
-/// The rated flow of a data sheet.
+/// Rated flow of a data sheet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RatedFlow {
-    /// m³/s.
+    /// Flow, m³/s.
     pub flow: f64,
-    /// Pa, drop over both edges at this flow.
+    /// Pressure drop over both edges at this flow, Pa.
     pub pressure_drop: f64,
 }
 
-/// The leakage at null of a data sheet.
+/// Leakage at null of a data sheet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct NullLeakage {
-    /// m³/s, tare flow included; the lowest of a range.
+    /// Leakage including the tare flow, m³/s; the lowest of a range.
     pub flow: f64,
-    /// m³/s, the highest, tare flow included, where the data sheet prints a range.
+    /// Highest leakage including the tare flow, if the data sheet prints a range, m³/s.
     pub maximum: Option<f64>,
-    /// Pa, supply pressure at which it was measured.
+    /// Supply pressure of the measurement, Pa.
     pub pressure: f64,
 }
 
@@ -112,12 +113,12 @@ impl<R: Default> Default for ValveCoefficients<R> {
 }
 
 impl<R> ValveCoefficients<R> {
-    /// The coefficients of each edge, if declared.
+    /// Coefficients of each edge, if declared.
     pub fn edges(&self) -> Option<&EdgeCoefficients> {
         if let ValveCoefficients::Edges { edges, .. } = self { Some(edges) } else { None }
     }
 
-    /// What the data sheet says.
+    /// Data sheet values.
     pub fn rating(&self) -> Option<&R> {
         match self {
             ValveCoefficients::Edges { rating, .. } => rating.as_ref(),
@@ -169,7 +170,7 @@ impl NullLeakage {
     }
 }
 
-/// One number for each edge of a four-way spool.
+/// Set of one number for each edge of a four-way spool.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EdgeCoefficients {
     /// Edge 3.
@@ -194,12 +195,12 @@ impl EdgeCoefficients {
         v.quantity(k, &mut self.b_to_tank);
     }
 
-    /// All four, to be changed.
+    /// All four numbers, mutable.
     pub fn each_mut(&mut self) -> [&mut f64; 4] {
         [&mut self.supply_to_a, &mut self.a_to_tank, &mut self.supply_to_b, &mut self.b_to_tank]
     }
 
-    /// In the order of edges 3, 4, 5, 6.
+    /// Numbers in the order of edges 3, 4, 5, 6.
     pub fn in_order(&self) -> [f64; 4] {
         [self.supply_to_a, self.a_to_tank, self.supply_to_b, self.b_to_tank]
     }
@@ -217,7 +218,7 @@ impl EdgeCoefficients {
 }
 
 impl Valve {
-    /// Pa, drop from supply to tank at which the tare flow is stated.
+    /// Pressure drop from supply to tank at which the tare flow is stated, Pa.
     pub fn tare_drop(&self, supply: &DeclaredSupply) -> f64 {
         self.tare_pressure.unwrap_or(supply.pressure - supply.tank_pressure)
     }

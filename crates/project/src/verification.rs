@@ -1,13 +1,13 @@
-//! `[verification]`: how a controller is judged.
+//! Table `[verification]`: the judgement of a controller.
 
 use super::key::key;
 use super::visitor::Visitor;
 use phea_quantity::GAIN;
 
-/// How a controller is judged.
+/// Settings of the verification.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredVerification {
-    /// Factor by which a limit may be missed and still counts as met; absent: 0.01 dB.
+    /// Factor by which a limit may be missed and still counts as met; if absent, 0.01 dB.
     pub tolerance: Option<f64>,
 }
 
@@ -18,5 +18,5 @@ impl DeclaredVerification {
     }
 }
 
-/// 6 dB: what is beyond is no tolerance of numbers.
+/// Greatest tolerance, 6 dB: beyond it, the factor is no longer a numerical tolerance.
 const GREATEST: f64 = 2.0;

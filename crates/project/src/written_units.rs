@@ -1,4 +1,4 @@
-//! The units in which a project is written, for numbers that follow from it.
+//! Units in which a project is written, for numbers that follow from it.
 
 use std::collections::BTreeMap;
 
@@ -7,21 +7,21 @@ use phea_quantity::{
     DIMENSIONS, Dimension, DisplayUnit, FLOW, FORCE, LENGTH, MotionKind, PRESSURE, UnitScale, Units, parse,
 };
 
-/// The units that a project file and its settings use.
+/// Units that a project file and its settings use.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WrittenUnits {
-    /// By SI unit and family, each with how often it is used, in order of appearance.
+    /// Units by SI unit and family, each with its number of uses, in order of appearance.
     used: BTreeMap<(&'static str, UnitFamily), Vec<(String, usize)>>,
 }
 
-/// Which numbers of one dimension people write in one unit.
+/// Numbers of one dimension that are customarily written in one unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum UnitFamily {
     /// Elastic moduli, which have the dimension of a pressure.
     Modulus,
-    /// Friction of seals, which is a small part of the forces of a rig.
+    /// Friction of seals, which is a small fraction of the forces of a rig.
     Friction,
-    /// Positions and strokes, next to the lengths and bores of lines.
+    /// Positions and strokes, in addition to the lengths and bores of lines.
     Position,
     Other,
 }
@@ -37,21 +37,21 @@ impl UnitFamily {
         }
     }
 
-    /// The family whose units it takes where it has none of its own.
+    /// Family whose units it uses if it has none of its own.
     fn otherwise(self) -> UnitFamily {
         if self == UnitFamily::Modulus { self } else { UnitFamily::Other }
     }
 }
 
-/// SI units that are never replaced: pure numbers, temperatures, and rad/s, whose Hz is another
-/// number for the same symbol.
+/// SI units that are never replaced: pure numbers, temperatures, and rad/s, since Hz would be
+/// another number.
 const KEPT: [&str; 5] = ["1", "%", "degC", "1/degC", "rad/s"];
 
-/// Magnitudes beyond which a number stays in SI units.
+/// Magnitudes outside which a number stays in SI units.
 const HANDY: std::ops::Range<f64> = 1e-3..1e6;
 
 impl WrittenUnits {
-    /// Those of a project.
+    /// Units of a project.
     ///
     /// # Example
     /// ```
@@ -67,7 +67,7 @@ impl WrittenUnits {
         WrittenUnits::written(&loaded.bytes, &loaded.settings)
     }
 
-    /// Those of the bytes of a file and of settings.
+    /// Units of the bytes of a file and of settings.
     pub(super) fn written(bytes: &[u8], settings: &[String]) -> WrittenUnits {
         let mut units = WrittenUnits::default();
         units.take_in(&String::from_utf8_lossy(bytes));
@@ -78,7 +78,7 @@ impl WrittenUnits {
         units
     }
 
-    /// One unit for each quantity of the project.
+    /// Unit of each quantity of the project.
     pub(super) fn units(&self, motion: MotionKind) -> Units {
         let customary = Units::customary(motion);
         let unit = |family, of: &'static Dimension, customary| {
@@ -95,15 +95,14 @@ impl WrittenUnits {
         }
     }
 
-    /// The unit that is written most often; of several that are used as often, the first.
+    /// Most frequently written unit; among equally frequent ones, the first.
     fn most(&self, si: &'static str, family: UnitFamily) -> Option<&str> {
         let used = self.used.get(&(si, family)).or_else(|| self.used.get(&(si, family.otherwise())))?;
         used.iter().rev().max_by_key(|(_, count)| *count).map(|(unit, _)| unit.as_str())
     }
 
-    /// A number in the unit in which the project writes such numbers, most often; where it writes
-    /// none, in the customary one, or in the SI unit where there is none, or where the number would
-    /// be far from one.
+    /// Number in the unit that the project uses most often for such numbers; otherwise in the
+    /// customary unit, or in the SI unit if there is none, or if the number would be far from one.
     pub fn shown(&self, name: &str, value: f64, si: &'static str) -> (f64, String) {
         let dimension = DIMENSIONS.iter().find(|dimension| dimension.si == si);
         let family = UnitFamily::of(name);
@@ -157,7 +156,7 @@ impl WrittenUnits {
     }
 }
 
-/// The unit of [`Units::customary`] for numbers of an SI unit.
+/// Unit of [`Units::customary`] for numbers of an SI unit.
 fn customary(si: &'static str, family: UnitFamily) -> Option<&'static str> {
     let linear = Units::customary(MotionKind::Linear);
     let known = [
@@ -174,7 +173,7 @@ fn customary(si: &'static str, family: UnitFamily) -> Option<&'static str> {
 mod tests {
     use super::{MotionKind, WrittenUnits};
 
-    /// The expansion of a hose and an area have one dimension, and each its own unit.
+    /// The expansion of a hose and an area have one dimension, but separate units.
     #[test]
     fn an_expansion_is_no_area() {
         let mut units = WrittenUnits::default();
@@ -185,8 +184,8 @@ mod tests {
         assert_eq!(units.shown("cylinder.area_a", 3e-3, "m2").1, "cm2");
     }
 
-    /// Friction and the lengths of lines leave the units of forces and positions alone; a project
-    /// that writes none is shown in the customary ones.
+    /// Friction and the lengths of lines do not affect the units of forces and positions; a project
+    /// without units is shown in the customary ones.
     #[test]
     fn a_quantity_has_the_unit_of_its_own_numbers() {
         let units = |text: &str, motion| {

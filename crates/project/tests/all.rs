@@ -1,4 +1,5 @@
-//! The language of a rig from outside: what is read, what is refused, and how.
+//! Language of a rig through the public interface: accepted and rejected projects, and the
+//! messages.
 #![cfg(test)]
 
 mod alternative;

@@ -1,4 +1,4 @@
-//! Alternatives: what they set, in which forms, and where their errors stand.
+//! Alternatives: their settings, in all forms, and the places of their errors.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -15,7 +15,7 @@ fn other(alternatives: &str, settings: &[&str]) -> Result<Loaded, Refusal> {
     read_alternative(&Memory::default(), &loaded(alternatives, settings).unwrap(), &[], 0)
 }
 
-/// An alternative is the project with the same settings on the command line.
+/// An alternative equals the project with its settings on the command line.
 #[test]
 fn an_alternative_is_what_set_makes_of_the_project() {
     let forms = [
@@ -48,7 +48,7 @@ fn an_inline_table_replaces_a_whole_table() {
     assert_ne!(pipe.project.actuator, loaded(text, &[]).unwrap().project.actuator);
 }
 
-/// What is printed is read back as an equal project, alternatives and all.
+/// A printed project reads back as an equal one, including alternatives.
 #[test]
 fn alternatives_are_printed_as_they_are_read() {
     let text = "[[alternative]]\nname = \"a \\\"b\\\"\"\n[alternative.set]\nline.length = \"2 m\"\n\
@@ -76,7 +76,7 @@ fn errors_stand_where_they_are_written() {
         ]
     );
     assert_eq!(refusal.diagnostics[0].help.as_deref(), Some("did you mean `length`?"));
-    // the name behind `"line.`, and the unit of the value
+    // the name after `"line.`, and the unit of the value
     assert_eq!(places, [(first + 3, 7), (first + 4, 23)]);
     assert!(refusal.diagnostics.iter().all(|found| found.file == "rig.toml"));
 }

@@ -1,5 +1,5 @@
-//! Pipes and cylinders of the catalogue: what an entry gives, what a project overrides, and what
-//! their numbers say of each other.
+//! Pipes and cylinders of the catalogue: values of an entry, overriding values of a project, and
+//! consistency of their numbers.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -42,7 +42,7 @@ fn an_entry_gives_what_the_table_does_not_state() {
     assert!((a - PI / 4.0 * 0.05 * 0.05).abs() < 1e-15 && (a - b - PI / 4.0 * 0.022 * 0.022).abs() < 1e-15);
 }
 
-/// What the project states goes before the entry, also where it states the rods or the areas in
+/// Values of the project override those of the entry, also if it states the rods or the areas in
 /// another way.
 #[test]
 fn what_the_project_states_goes_before_its_entry() {
@@ -54,7 +54,7 @@ fn what_the_project_states_goes_before_its_entry() {
     assert!(told("the pipe's `working_pressure` is below the supply pressure"), "{warnings:?}");
     let misspelt =
         read(&["line.pipe.model=\"parker_eo_14x22\"", "cylinder.model=\"iso_6020_2_50\""]).unwrap_err();
-    // what the entries would have stated is not asked for
+    // values that the entries would have supplied are not requested
     let errors = misspelt.diagnostics.iter().filter(|found| found.severity == Severity::Error);
     assert_eq!(errors.count(), 2, "{misspelt}");
     let error = misspelt.diagnostics.iter().find(|found| found.message.contains("no pipe called")).unwrap();
@@ -65,8 +65,8 @@ fn what_the_project_states_goes_before_its_entry() {
 }
 
 /// Bore, outer diameter and wall in the name of a pipe agree, its mass with that of steel of 7.85
-/// kg/dm3, and its burst pressure lies above its working pressure. Of two sizes the printed mass
-/// does not agree, as their files say.
+/// kg/dm3, and its burst pressure is above its working pressure. The printed mass of two sizes does
+/// not agree, as their files state.
 #[test]
 fn the_numbers_of_pipes_agree() {
     let all = catalogue::load(&Memory::default(), &[]).unwrap();
@@ -90,8 +90,8 @@ fn the_numbers_of_pipes_agree() {
     assert_eq!((names.len(), apart.as_slice()), (63, ["parker_eo_4x0_5", "parker_eo_6x0_75"].as_slice()));
 }
 
-/// Two rods for each bore, with about the areas of ISO 6020/2: the piston has 1.25 to 2 times the
-/// area of its ring.
+/// Two rods for each bore, with approximately the areas of ISO 6020/2: the piston has 1.25 to 2
+/// times the area of its ring.
 #[test]
 fn the_numbers_of_cylinders_agree() {
     let all = catalogue::load(&Memory::default(), &[]).unwrap();
@@ -107,8 +107,8 @@ fn the_numbers_of_cylinders_agree() {
     }
 }
 
-/// The oil of a transmission has more than the pipe stands at the stall force: a warning at the
-/// pipe.
+/// The oil pressure of a transmission at the stall force exceeds the limit of the pipe: a warning
+/// at the pipe.
 #[test]
 fn the_pipe_of_a_transmission_has_its_limit() {
     let text = include_str!("valid/transmission_pipe.toml");

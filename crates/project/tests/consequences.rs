@@ -1,4 +1,4 @@
-//! A value that is refused is the one error: nothing is said of what would follow from it.
+//! A rejected value is the only error: no consequences of it are reported.
 
 #![allow(
     clippy::expect_used,
@@ -13,7 +13,7 @@ use std::path::Path;
 use phea_project::source::Memory;
 use phea_project::{self as project, Severity};
 
-/// Every project of the corpus of valid ones, and the examples.
+/// All valid projects of the corpus, and the examples.
 fn projects() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut found = Vec::new();
@@ -37,7 +37,7 @@ fn a_refused_number_is_the_only_error() {
         let Ok(loaded) = project::read(&source, "p.toml", &[], &[]) else { continue };
         for (path, (_, value)) in loaded.project.listed_numbers() {
             let path = path.replace('[', ".").replace(']', "");
-            // a setting makes a table of its own where a side inherits one
+            // a setting creates a separate table if a side inherits one
             let is_declared =
                 |value: f64| project::read(&source, "p.toml", &[format!("{path}={value:e}")], &[]).is_ok();
             if !value.is_some_and(is_declared) {
@@ -57,7 +57,7 @@ fn a_refused_number_is_the_only_error() {
     assert!(wrong.is_empty(), "{} of {count}\n{}", wrong.len(), wrong.join("\n"));
 }
 
-/// Every project of a folder and of those in it.
+/// All projects of a folder and of its subfolders.
 fn below(folder: &Path, found: &mut Vec<(String, String)>) {
     for file in std::fs::read_dir(folder).unwrap() {
         let path = file.unwrap().path();
@@ -69,7 +69,7 @@ fn below(folder: &Path, found: &mut Vec<(String, String)>) {
     }
 }
 
-/// The choices of this name, each with its words.
+/// Choices of this name, each with its words.
 fn choices() -> BTreeMap<String, Vec<String>> {
     let mut choices: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for entry in project::keys().iter().filter(|entry| entry.takes.starts_with("one of ")) {
@@ -83,9 +83,8 @@ fn choices() -> BTreeMap<String, Vec<String>> {
     choices
 }
 
-/// Where a text says `key = "word"` with a word of a choice: the name, and the place after the
-/// word. What comments say, and settings of alternatives and load cases, which are read later, are
-/// left out.
+/// Occurrences of `key = "word"` with a word of a choice: the name, and the position after the
+/// word. Comments, and settings of alternatives and load cases, which are read later, are excluded.
 fn chosen(text: &str, choices: &BTreeMap<String, Vec<String>>) -> Vec<(String, usize)> {
     let is_read = |before: &str| {
         let table = before.lines().rev().find(|line| line.starts_with('[')).unwrap_or_default();
@@ -106,14 +105,14 @@ fn chosen(text: &str, choices: &BTreeMap<String, Vec<String>>) -> Vec<(String, u
     found
 }
 
-/// A text without the `key = "word"` that ends here.
+/// Text without the `key = "word"` that ends here.
 fn without(text: &str, name: &str, end: usize) -> String {
     let start = text[..end].rfind(name).unwrap();
     let rest = text[end + 1..].trim_start_matches([' ', ',']);
     format!("{}{rest}", &text[..start])
 }
 
-/// The errors of a text.
+/// Errors of a text.
 fn errors(text: &str) -> Vec<String> {
     let source = Memory::default().with("p.toml", text);
     let found = project::read(&source, "p.toml", &[], &[]).err();
@@ -153,8 +152,8 @@ fn a_misspelt_choice_is_the_only_error() {
     assert!(wrong.is_empty(), "{} of {}\n{}", wrong.len(), seen.values().sum::<usize>(), wrong.join("\n"));
 }
 
-/// Tables that a check compares with each other, where the default of a kind would contradict what
-/// is written.
+/// Tables that a check compares with each other, in which the default of a kind would contradict
+/// the text.
 #[test]
 fn nothing_follows_from_a_misspelt_kind_elsewhere() {
     let plant = "schema = 1\n[plant]\nnumerator = \"1\"\ndenominator = \"s\"\n";

@@ -1,4 +1,5 @@
-//! Formulas in text: polynomials, ratios, parameters, and refusals that point at the character.
+//! Formulas in text: polynomials, ratios, parameters, and errors with the position of the
+//! character.
 
 #![allow(
     clippy::expect_used,

@@ -1,5 +1,5 @@
-//! Every malformed project of the corpus is refused with the messages and places written next to
-//! it.
+//! Every malformed project of the corpus is rejected with the messages and places stated in its
+//! `.expect` file.
 //!
 //! `NAME.expect` has one line for each finding, in order: severity, line, column and message, and
 //! below it, indented, the help if there is one.
@@ -26,7 +26,7 @@ fn corpus() -> Vec<PathBuf> {
     files
 }
 
-/// What is found in a file, as the expectations are written; and whether it was refused.
+/// Findings in a file, in the form of the expectations, and a flag for its rejection.
 fn findings(bytes: &[u8]) -> (String, bool) {
     let source = Memory::default().with("project.toml", bytes);
     let (diagnostics, refused) = match project::read(&source, "project.toml", &[], &[]) {

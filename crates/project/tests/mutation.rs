@@ -3,7 +3,7 @@
 //!
 //! The sequence is fixed by its seed. Every input is at most a few kilobytes, so the work for each
 //! is bounded; the limits that bound it for any size (bytes, nesting, listed findings) are checked
-//! on their own below.
+//! separately below.
 
 #![allow(
     clippy::expect_used,
@@ -18,7 +18,8 @@ use std::thread;
 use phea_project::source::Memory;
 use phea_project::{self as project, STARTER};
 
-/// In the test command; the stage `mutation` of `cargo xtask ci` reads twenty times as many.
+/// Number of inputs in the test command; the stage `mutation` of `cargo xtask ci` reads twenty
+/// times as many.
 const INPUTS: u64 = 10_000;
 const THREADS: u64 = 2;
 
@@ -104,7 +105,7 @@ const TOKENS: &[&str] = &[
     "9999999999999999999",
 ];
 
-/// The files of some folders below the package, in a fixed order.
+/// Files of some folders below the package, in a fixed order.
 fn corpus(folders: &[&str]) -> Vec<Vec<u8>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut files: Vec<_> = folders
@@ -117,7 +118,7 @@ fn corpus(folders: &[&str]) -> Vec<Vec<u8>> {
     files.iter().map(|path| std::fs::read(path).expect("readable")).collect()
 }
 
-/// A random part of a text, of whole lines half of the time.
+/// Random part of a text, of whole lines half of the time.
 fn part(text: &[u8], random: &mut Sequence) -> (usize, usize) {
     let mut from = random.below(text.len() + 1);
     let mut to = (from + random.below(60)).min(text.len());
@@ -158,7 +159,8 @@ fn mutate(text: &mut Vec<u8>, corpus: &[Vec<u8>], random: &mut Sequence) {
     }
 }
 
-/// Reads one input and checks what must hold whatever it is. Gives whether it was accepted.
+/// Reads one input and checks the properties that hold for any input. Returns true if it was
+/// accepted.
 fn check(input: &[u8], settings: &[String]) -> bool {
     let source = Memory::default().with("x.toml", input);
     match project::read(&source, "x.toml", settings, &[]) {
@@ -183,7 +185,7 @@ fn check(input: &[u8], settings: &[String]) -> bool {
     }
 }
 
-/// Gives how many mutations were accepted. Every other input starts from a valid project.
+/// Returns the number of accepted mutations. Every other input starts from a valid project.
 fn run(seed: u64, inputs: u64, valid: &[Vec<u8>], all: &[Vec<u8>]) -> u64 {
     let mut random = Sequence(seed);
     let mut accepted = 0;
@@ -216,7 +218,7 @@ fn neither_panic_nor_hang(inputs: u64) {
         let threads = [0x9e37_79b9_7f4a_7c15, 0xd1b5_4a32_d192_ed03].map(one);
         threads.into_iter().map(|thread| thread.join().expect("no panic")).sum()
     });
-    // Mutations that leave a project valid make the test reach past the reader; most do not.
+    // mutations that leave a project valid make the test reach past the reader; most do not
     assert!(accepted > inputs / 100 && accepted < inputs, "{accepted}");
 }
 
@@ -251,7 +253,7 @@ fn size_and_nesting_are_bounded() {
     assert_eq!((report.diagnostics.len(), report.more > 45_000), (200, true));
 }
 
-/// Files of a megabyte, each made to be slow where work could grow with the square of its size.
+/// Files of a megabyte, each constructed to be slow if work could grow with the square of its size.
 fn work_is_bounded() {
     let plant = "schema = 1\n[plant]\nnumerator = \"k\"\ndenominator = \"s\"\n";
     let names =
@@ -291,7 +293,7 @@ fn work_is_bounded() {
     });
 }
 
-/// A file of at most a megabyte is read, or refused.
+/// Checks that a file of at most a megabyte is read, or rejected.
 fn reads(input: &str) {
     assert!(input.len() <= 1 << 20, "{}", input.len());
     let source = Memory::default().with("x.toml", input);

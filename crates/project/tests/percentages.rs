@@ -1,4 +1,4 @@
-//! A key that counts percent takes the sign of percent, wherever its number is written.
+//! A key in percent accepts the percent sign, in every form of its number.
 
 #![allow(
     clippy::expect_used,
@@ -17,7 +17,7 @@ fn read(text: &str, settings: &[&str]) -> Loaded {
     project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"))
 }
 
-/// One rule for all of them: the dimension of the key.
+/// Single rule for all of them: the dimension of the key.
 #[test]
 fn every_key_named_percent_is_a_percentage() {
     let keys = project::keys();
@@ -63,7 +63,7 @@ fn a_spread_of_ten_percent_is_a_tenth() {
     assert_eq!(campaign("\"10 %\""), campaign("0.1"));
 }
 
-/// The forms of a limit are not among the listed keys.
+/// Forms of a limit are not among the listed keys.
 #[test]
 fn a_wish_in_time_takes_percent_in_text() {
     let text = |overshoot: &str, band: &str| {

@@ -1,4 +1,4 @@
-//! Numbers that no such part has are asked about, and none of a sound rig is.
+//! Implausible numbers cause warnings, and those of a sound rig do not.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -45,7 +45,7 @@ fn a_unit_that_was_forgotten_is_asked_for() {
     }
 }
 
-/// A factor of ten beyond what is usual is a rig of its own kind, and nobody is asked.
+/// A factor of ten beyond the usual range may be a special rig, without a warning.
 #[test]
 fn unusual_rigs_are_not_asked_about() {
     for setting in ["cylinder.piston_diameter=2", "line.length=200 m", "force_sensor.stiffness=1 kN/mm"] {

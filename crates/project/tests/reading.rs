@@ -1,4 +1,4 @@
-//! Reading, printing and finding one's way in a project.
+//! Reading, printing and error messages of a project.
 
 #![allow(
     clippy::expect_used,
@@ -23,7 +23,7 @@ fn accept(text: &str) -> Loaded {
     read(text).unwrap_or_else(|report| panic!("{report}"))
 }
 
-/// Printing and reading again gives an equal project; printing that gives the same text.
+/// Printing and reading again gives an equal project; printing that gives an equal text.
 #[track_caller]
 fn round_trip(project: &Project) {
     let text = project::print(project);
@@ -55,7 +55,7 @@ fn the_ybitu_projects_read_and_warn_of_active_friction_only() {
     }
 }
 
-/// Projects that use every key.
+/// Projects that together use every key.
 fn valid() -> Vec<(String, String)> {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/valid");
     let files = std::fs::read_dir(folder).expect("the corpus is there");
@@ -110,7 +110,7 @@ fn settings_come_before_everything_else() {
         "uncertainty.\"supply.pressure\".maximum=90 bar",
         "title=Rig of the second floor",
     ]);
-    // A linear parameter that depends on it is uncertain already.
+    // a linear parameter that depends on it is uncertain already
     let report = loaded.expect_err("counted twice");
     assert_eq!(report.diagnostics[0].file, "--set uncertainty.\"supply.pressure\".nominal=80 bar");
 
@@ -178,7 +178,7 @@ help: did you mean `bar`?"#;
     assert_eq!(missing.diagnostics[0].message, "cannot read rig.toml: no such file");
 }
 
-/// A file that is missing is told with the one that may be meant.
+/// A missing file is reported with a file of similar name.
 #[test]
 fn a_misspelt_file_is_told_with_its_neighbour() {
     let source = Memory::default().with("rigs/hose.toml", HOSE).with("rigs/notes.txt", "");
@@ -218,7 +218,7 @@ fn catalogues_are_added_and_every_number_has_a_source() {
             assert!(entry.file.contains(&format!("{}s/{}.toml", kind.name(), entry.name)), "{}", entry.file);
         }
     }
-    // Read as a user's files, so that everything wrong with one is reported.
+    // read as a user's files, so that all errors in one are reported
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("catalogue");
     for kind in CatalogueKind::ALL {
         let files = std::fs::read_dir(folder.join(format!("{}s", kind.name()))).expect("a folder");
@@ -283,7 +283,7 @@ fn what_has_no_effect_is_told() {
 }
 
 /// The measured valve of the catalogue is the thesis' null at 0.078 V rising and -0.05 V falling,
-/// and the example's valve but for that.
+/// and otherwise the example's valve.
 #[test]
 fn the_measured_valve_adds_its_null_to_that_of_the_examples() {
     let read = |settings: &[String]| {
@@ -323,7 +323,7 @@ fn a_side_inherits_what_it_does_not_say() {
     assert_eq!(narrowed.b.hose().map(|hose| hose.expansion.slope()), Some(2.236e-12));
     round_trip(&pipe);
     round_trip(&own);
-    // what was measured alone gives the slope from zero
+    // the measured value gives the slope through zero
     let measured = HOSE.replace("hose = \"eaton_synflex_3130_08\"", "bore = \"9.5 mm\"\nvolumetric_expansion = \"2.4 cc/ft\"\nvolumetric_expansion_pressure = \"1000 psi\"");
     let project = accept(&measured).project;
     let expansion = lines(&project).a.hose().map(|hose| hose.expansion);
@@ -341,7 +341,7 @@ fn areas_come_from_diameters_or_stand_for_themselves() {
     let [area_a, area_b] = diameters.effective_areas_m2();
     // ORIGIN: analytic, pi/4 (0.05^2 - 0.022^2) = 1.58336e-3
     assert!((area_a - 1.58336e-3).abs() < 0.5e-8 && area_a == area_b);
-    // An area is what the pressure acts on: a rod given as well takes nothing away.
+    // an area is the effective one: an additional rod subtracts nothing
     let area = DeclaredCylinder {
         piston_area: Some(1.583e-3),
         rod_diameter: Some(0.022),
@@ -355,8 +355,8 @@ fn areas_come_from_diameters_or_stand_for_themselves() {
 
 const MOTOR: &str = include_str!("valid/motor.toml");
 
-/// The controller of a motor, as it is offered to be pasted, is read in its place as what it was
-/// printed from: torques have the units of a rig that turns.
+/// A printed controller of a motor reads back equal when pasted into its project: torques have the
+/// units of a rig that turns.
 #[test]
 fn what_is_pasted_into_the_project_of_a_motor_is_what_was_printed() {
     let quantization = "quantization = { command_bits = 12, command_range = [\"-10 V\", \"10 V\"], measurement_bits = 12, \

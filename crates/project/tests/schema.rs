@@ -1,5 +1,5 @@
-//! The schema and the guide in the book have the keys of the code; `comparisons/compare_schema.py`
-//! compares the schema with the reader.
+//! Schema and guide in the book have the keys of the code; `comparisons/compare_schema.py` compares
+//! the schema with the reader.
 #![allow(clippy::expect_used, reason = "helpers of tests may fail the test")]
 
 use std::collections::BTreeSet;
@@ -16,7 +16,7 @@ fn the_schema_beside_the_book_is_what_the_command_prints() {
     assert!(same, "write it anew: cargo run -p phea-cli -- schema --out book/src");
 }
 
-/// Every key below a schema, by name, and the words of every choice; but not the names of signals,
+/// All keys below a schema, by name, and the words of every choice; without the names of signals,
 /// which are columns of the simulation's table.
 fn names(schema: &Value, found: &mut BTreeSet<String>) {
     match schema {
@@ -45,7 +45,7 @@ fn every_key_that_is_listed_is_in_the_schema_with_what_it_means() {
     assert!(found.len() > 200, "{}", found.len());
 }
 
-/// The code spans of a line, `[table]` as `table`.
+/// Code spans of a line, `[table]` as `table`.
 fn spans(line: &str) -> impl Iterator<Item = &str> {
     line.split('`').skip(1).step_by(2).map(|span| span.trim_matches(['[', ']']))
 }

@@ -1,2 +1,2 @@
-/// Thermodynamic temperature of 0 degC, in K: what a Celsius temperature is counted from.
+/// Thermodynamic temperature of 0 degC, the zero of Celsius temperatures, K.
 pub const ZERO_CELSIUS: f64 = 273.15;

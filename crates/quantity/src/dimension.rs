@@ -1,4 +1,4 @@
-//! Dimensions of physical quantities, and which units people expect to read for each.
+//! Dimensions of physical quantities, and the customary units of each.
 
 /// Exponents of (mass, length, time, voltage, angle, temperature), counted in halves so that
 /// m³/(s·√Pa) is exact.
@@ -11,15 +11,15 @@ impl Exponents {
         Exponents([2 * mass, 2 * length, 2 * time, 2 * voltage, 2 * angle, 0])
     }
 
-    /// A whole exponent of degrees Celsius.
+    /// Exponent of degrees Celsius, a whole number.
     pub const fn celsius(temperature: i8) -> Self {
         Exponents([0, 0, 0, 0, 0, 2 * temperature])
     }
 
-    /// The dimension of a pure number.
+    /// Exponents of a pure number.
     pub const NONE: Exponents = Exponents([0; 6]);
 
-    /// Of the power `halves`/2; `None` where one of them would not be a multiple of one half.
+    /// Exponents of the power `halves`/2; `None` if one of them is not a multiple of one half.
     pub(crate) fn to_halves(self, halves: i8) -> Option<Exponents> {
         let mut exponents = [0; 6];
         for (power, exponent) in exponents.iter_mut().zip(self.0) {
@@ -29,7 +29,7 @@ impl Exponents {
         Some(Exponents(exponents))
     }
 
-    /// In SI base units, such as `kg/(m.s^2)`; `1` for a pure number.
+    /// Text in SI base units, such as `kg/(m.s^2)`; `1` for a pure number.
     pub(crate) fn in_base_units(self) -> String {
         let symbols = ["kg", "m", "s", "V", "rad", "degC"];
         let side = |positive: bool| -> Vec<String> {
@@ -57,25 +57,25 @@ impl Exponents {
     }
 }
 
-/// A kind of quantity: its name, its exponents, and the units in which it is shown.
+/// Kind of quantity: its name, its exponents, and its display units.
 #[derive(Debug, PartialEq)]
 pub struct Dimension {
-    /// With its article, as it stands in "expected a pressure".
+    /// Name with its article, as in "expected a pressure".
     pub name: &'static str,
-    /// Without its article.
+    /// Name without its article.
     pub noun: &'static str,
     /// Exponents of the base units.
     pub exponents: Exponents,
-    /// Units to print in, smallest first. The first serves zero; empty means a bare SI number.
+    /// Display units, smallest first. The first is used for zero; empty means a bare SI number.
     pub units: &'static [&'static str],
-    /// Spellings to offer when the text is wrong.
+    /// Examples of valid texts for error messages.
     pub examples: &'static str,
-    /// The SI unit in words of this grammar.
+    /// SI unit in this grammar.
     pub si: &'static str,
 }
 
 impl Dimension {
-    /// The ending of names of quantities in SI: of a key of JSON, of a column of a table.
+    /// Ending of names of quantities in SI: of a key of JSON, or of a column of a table.
     ///
     /// # Example
     /// ```
@@ -104,7 +104,7 @@ macro_rules! dimensions {
                 si: $si,
                 examples: $examples,
             };)*
-        /// Every named dimension, for naming what was found.
+        /// All named dimensions, to identify the dimension of a wrong unit.
         pub static DIMENSIONS: &[&Dimension] = &[$(&$identifier),*];
     };
 }
@@ -135,7 +135,7 @@ dimensions! {
     POWER = "a" "power", whole(1, 2, -3, 0, 0), ["W"], "W", r#""50 W", "1.2 kW""#;
     /// A pure number.
     RATIO = "a" "pure number", Exponents::NONE, [], "1", r#"0.9, "20 %""#;
-    /// Percent: the value is the number of percent, with the sign or without it.
+    /// Percent: the value is the number of percent, with or without the sign.
     PERCENT = "a" "percentage", Exponents::NONE, [], "%", r#"2, "2 %""#;
     /// A gain as a ratio; its text may be in dB.
     GAIN = "a" "gain", Exponents::NONE, [], "1", r#"1.3, "6 dB""#;
@@ -216,9 +216,9 @@ dimensions! {
     /// V·s/rad, from an angular velocity to a command.
     VOLTAGE_PER_ANGULAR_VELOCITY = "a" "gain in V.s/rad", whole(0, 0, 1, 1, -1), [], "V.s/rad",
         r#"0.8, "0.8 V.s/rad", "0.8 V/(rad/s)""#;
-    /// degC: the Celsius temperature, the thermodynamic one less 273.15 K.
+    /// Celsius temperature in degC: the thermodynamic temperature less 273.15 K.
     TEMPERATURE = "a" "temperature", Exponents::celsius(1), ["degC"], "degC", r#""37 degC""#;
-    /// 1/degC, the share by which something changes with each degree.
+    /// Relative change per degree, 1/degC.
     TEMPERATURE_COEFFICIENT = "a" "fraction per degree", Exponents::celsius(-1), [], "1/degC",
         r#"0.045, "4.5 %/degC""#;
 }

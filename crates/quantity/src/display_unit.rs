@@ -1,14 +1,14 @@
-//! Units that figures and sentences show; values come in SI.
+//! Units for figures and sentences; values are given in SI.
 
 use super::shortest::shortest;
 use super::significant;
 
-/// A unit on an axis.
+/// Display unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DisplayUnit {
     /// Symbol.
     pub symbol: &'static str,
-    /// How much SI one of it is.
+    /// Size of the unit in SI.
     pub in_si: f64,
 }
 
@@ -51,7 +51,7 @@ impl DisplayUnit {
     pub const MILLIVOLT_PER_NEWTON_METRE: Self = DisplayUnit { symbol: "mV/(N.m)", in_si: 1e-3 };
     /// Pressure.
     pub const BAR: Self = DisplayUnit { symbol: "bar", in_si: 1e5 };
-    /// degC.
+    /// Celsius temperature.
     pub const DEGREE_CELSIUS: Self = DisplayUnit { symbol: "degC", in_si: 1.0 };
     /// Energy.
     pub const JOULE: Self = DisplayUnit { symbol: "J", in_si: 1.0 };
@@ -61,15 +61,16 @@ impl DisplayUnit {
     pub const VOLT: Self = DisplayUnit { symbol: "V", in_si: 1.0 };
     /// Voltage for a force.
     pub const MILLIVOLT_PER_NEWTON: Self = DisplayUnit { symbol: "mV/N", in_si: 1e-3 };
-    /// A ratio.
+    /// Ratio.
     pub const ONE: Self = DisplayUnit { symbol: "1", in_si: 1.0 };
 
-    /// An SI value in this unit.
+    /// Value in this unit, from SI.
     pub fn of(self, value: f64) -> f64 {
         value / self.in_si
     }
 
-    /// An SI value in this unit with this number of significant digits, without the symbol.
+    /// Number for an SI value in this unit with this number of significant digits, without the
+    /// symbol.
     ///
     /// # Example
     /// ```
@@ -80,12 +81,12 @@ impl DisplayUnit {
         significant(self.of(value), digits)
     }
 
-    /// The same, followed by the symbol.
+    /// Number followed by the symbol.
     pub fn text(self, value: f64, digits: usize) -> String {
         self.with_symbol(self.number(value, digits))
     }
 
-    /// The same without digits that are zero at the end: for values that someone wrote.
+    /// Number followed by the symbol, without trailing zeros: for values entered by a user.
     ///
     /// # Example
     /// ```
@@ -102,7 +103,7 @@ impl DisplayUnit {
         if self.symbol == "1" { numbers } else { format!("{numbers} {}", self.symbol) }
     }
 
-    /// `quantity (symbol)`.
+    /// Axis title `quantity (symbol)`.
     pub fn title(self, quantity: &str) -> String {
         if self.symbol == "1" { quantity.to_string() } else { format!("{quantity} ({})", self.symbol) }
     }

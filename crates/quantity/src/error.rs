@@ -1,16 +1,16 @@
-//! The error of a text that is not a quantity.
+//! Error for a text that is not a quantity.
 
 use std::ops::Range;
 
 use super::dimension::Exponents;
 
-/// The error of a quantity, and where it is in its text.
+/// Error of a quantity, with its location in the text.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{fault}")]
 pub struct QuantityError {
     /// Fault of the text.
     pub fault: QuantityFault,
-    /// Where, in bytes of the text.
+    /// Location, in bytes of the text.
     pub range: Range<usize>,
     /// Text that was expected there.
     pub expected: Option<QuantityExpectation>,
@@ -21,13 +21,13 @@ pub struct QuantityError {
 /// Fault of a text that is not a quantity.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum QuantityFault {
-    /// More bytes than any quantity has.
+    /// A text longer than any quantity.
     #[error("too long for a quantity")]
     TooLong,
-    /// More bytes than any unit has.
+    /// A unit longer than any unit.
     #[error("too long for a unit")]
     TooLongUnit,
-    /// Nothing but spaces.
+    /// A text of spaces only.
     #[error("an empty text")]
     Empty,
     /// A text without a number at its beginning.
@@ -39,7 +39,7 @@ pub enum QuantityFault {
     /// A number that f64 rounds to zero.
     #[error("the number is too small to be distinguished from zero")]
     TooSmall,
-    /// A number with a sign that is both a decimal sign and one between thousands.
+    /// A number with a sign that may be a decimal sign or a thousands separator.
     #[error("`{written}` can be read as {readings} or as {other}", readings = readings[0], other = readings[1])]
     TwoReadings {
         /// The number as written.
@@ -78,22 +78,22 @@ pub enum QuantityFault {
         /// Exponents of the unit.
         found: Exponents,
     },
-    /// A character that no unit has.
+    /// A character that occurs in no unit.
     #[error("unexpected character in a unit")]
     UnexpectedCharacter,
     /// A product after a division.
     #[error("a product after \"/\" can be read in two ways")]
     ProductAfterDivision,
-    /// Exponents beyond those of any unit.
+    /// Exponents that no unit in use has.
     #[error("no such unit is in use")]
     NotInUse,
-    /// More factors than any unit has.
+    /// Too many factors for a unit.
     #[error("too many factors in one unit")]
     TooManyFactors,
     /// A parenthesis without its partner.
     #[error("this parenthesis is not closed")]
     OpenParenthesis,
-    /// A power that makes an exponent other than a half or whole number.
+    /// A power that gives an exponent other than a half or whole number.
     #[error("no unit of this grammar has that power")]
     ImpossiblePower,
     /// A missing name.
@@ -102,7 +102,7 @@ pub enum QuantityFault {
     /// A missing or impossible exponent.
     #[error("expected an exponent such as 2, -1 or 0.5")]
     NoExponent,
-    /// A name of no unit.
+    /// An unknown name of a unit.
     #[error("unknown unit `{0}`")]
     UnknownUnit(String),
     /// A negative or infinite price.
@@ -111,7 +111,7 @@ pub enum QuantityFault {
     /// A price without a currency.
     #[error("this price has no currency")]
     NoCurrency,
-    /// A code of no currency.
+    /// An unknown code of a currency.
     #[error("there is no such currency")]
     UnknownCurrency,
     /// A price per length for a piece.
@@ -130,7 +130,7 @@ pub enum QuantityExpectation {
     OfDimension {
         /// Name of the dimension.
         name: &'static str,
-        /// Some quantities.
+        /// Example quantities.
         examples: &'static str,
     },
     /// A price per piece.
@@ -144,10 +144,10 @@ pub enum QuantityExpectation {
 /// Remedy of a text that is not a quantity.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum QuantityHint {
-    /// A unit that is spelled like what was read.
+    /// Unit with a similar spelling.
     #[error("did you mean `{0}`?")]
     NearUnit(&'static str),
-    /// A currency that is spelled like what was read.
+    /// Currency with a similar spelling.
     #[error("did you mean {0}?")]
     NearCurrency(&'static str),
     /// Remedy of an unknown currency.

@@ -1,13 +1,13 @@
 //! Decimal numbers times exact factors, rounded once.
 
-/// A whole number of any size, in base 10⁹, lowest first.
+/// Whole number of any size, in base 10⁹, lowest digit first.
 #[derive(Clone, Debug)]
 pub(crate) struct Whole(Vec<u64>);
 
 const BASE: u64 = 1_000_000_000;
 
 impl Whole {
-    /// From decimal digits; anything else is skipped.
+    /// Number from decimal digits; other characters are skipped.
     pub(crate) fn from_digits(digits: &str) -> Whole {
         let mut whole = Whole(vec![0]);
         for digit in digits.chars().filter_map(|c| c.to_digit(10)) {
@@ -42,7 +42,7 @@ impl Whole {
         }
     }
 
-    /// Divides in place; whether a remainder was left.
+    /// Divides in place; returns true if there is a remainder.
     fn divide(&mut self, divisor: u64) -> bool {
         let mut remainder: u128 = 0;
         for limb in self.0.iter_mut().rev() {
@@ -61,8 +61,8 @@ impl Whole {
         self.0.iter().rev().map(|limb| format!("{limb:09}")).collect()
     }
 
-    /// This times 10^`ten` over the divisors, as the nearest f64: quotients are carried to forty
-    /// digits, and what is left beyond them decides a tie.
+    /// This number times 10^`ten` over the divisors, as the nearest f64: quotients are carried to
+    /// forty digits, and the remainder decides a tie.
     pub(crate) fn to_f64(&self, ten: i64, divisors: &[u64]) -> f64 {
         if self.is_zero() {
             return 0.0;

@@ -1,7 +1,7 @@
 //! Quantities in text: `"70 bar"`, `"4.7 cc/ft"`, `"9.8 L/min"`, and back.
 //!
-//! The only place of the workspace with factors between units. Inside, every number is SI.
-//! Pressures are gauge unless the name of their key says `absolute`.
+//! The only place of the workspace with factors between units. Internally, every number is SI.
+//! Pressures are gauge unless the name of their key includes `absolute`.
 
 mod celsius;
 mod dimension;

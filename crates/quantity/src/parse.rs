@@ -19,17 +19,17 @@ use crate::spelling::nearest;
 
 /// Longest text read as a quantity, in bytes.
 const MAXIMUM_LENGTH: usize = 120;
-/// Most factors in one unit.
+/// Largest number of factors in one unit.
 const MAXIMUM_FACTORS: usize = 12;
 /// Largest exponent of one factor, in halves.
 const MAXIMUM_EXPONENT: i32 = 16;
 
-/// The SI value of a text such as `"9.8 L/min"`.
+/// SI value of a text such as `"9.8 L/min"`.
 ///
 /// The decimal number and the factors of its units are multiplied exactly and rounded once (π and
-/// square roots are rounded on their own). `Hz` counts cycles: where an angular frequency is
-/// expected, `"175 Hz"` is 2π·175 rad/s. Of a percentage the value is the number of percent: `"2
-/// %"` and `"2"` are 2. `inf` is read as infinity; whether a key accepts it is the key's business.
+/// square roots are rounded on their own). `Hz` counts cycles: for an angular frequency, `"175 Hz"`
+/// is 2π·175 rad/s. The value of a percentage is the number of percent: `"2 %"` and `"2"` are 2.
+/// `inf` is read as infinity; each key decides whether to accept it.
 ///
 /// # Errors
 /// [`QuantityError`] for text that is not a quantity, an unknown unit, another dimension, a missing
@@ -69,7 +69,7 @@ pub fn parse(text: &str, dimension: &Dimension) -> Result<f64, QuantityError> {
     number.times(&product, text).map_err(with_expected)
 }
 
-/// The unit in a part of a text.
+/// Unit in a part of a text.
 fn product_of(text: &str, range: Range<usize>, dimension: &Dimension) -> Result<UnitProduct, QuantityError> {
     let product = UnitReader { text, at: range.start, end: range.end, factors: 0 }.unit()?;
     let is_angular = dimension.exponents == Exponents::whole(0, 0, -1, 0, 1);
@@ -86,7 +86,7 @@ fn product_of(text: &str, range: Range<usize>, dimension: &Dimension) -> Result<
     Err(if is_current { error.help(QuantityHint::CommandsAreVoltages) } else { error })
 }
 
-/// A unit, and whether its numbers are decibels; an empty text is the unit of a pure number.
+/// Unit, and a flag for numbers in decibels; an empty text is the unit of a pure number.
 pub(crate) fn unit_of(unit: &str, dimension: &Dimension) -> Result<(UnitProduct, bool), QuantityError> {
     let is_pure = dimension.exponents == Exponents::NONE;
     if unit == "dB" && std::ptr::eq(dimension, &GAIN) {
@@ -102,7 +102,7 @@ pub(crate) fn unit_of(unit: &str, dimension: &Dimension) -> Result<(UnitProduct,
     }
 }
 
-/// 10^(x/20).
+/// Ratio 10^(x/20).
 pub(crate) fn decibels(decibels: f64) -> f64 {
     phea_dynamics::scalar::Scalar::exp(decibels * LN_10 / 20.0)
 }
@@ -119,7 +119,7 @@ fn unitless(text: &str, number: &DecimalNumber, dimension: &Dimension) -> Result
 
 const PER_SECOND: Exponents = Exponents::whole(0, 0, -1, 0, 0);
 
-/// An angular frequency may also be written 1/s.
+/// True if the dimension accepts these exponents. An angular frequency may also be written 1/s.
 pub(crate) fn accepts(dimension: &Dimension, found: Exponents) -> bool {
     let rotation = Exponents::whole(0, 0, -1, 0, 1);
     found == dimension.exponents || (dimension.exponents == rotation && found == PER_SECOND)
@@ -140,13 +140,13 @@ fn finite(value: f64, text: &str) -> Result<f64, QuantityError> {
     }
 }
 
-/// A decimal number, as written.
+/// Decimal number, as written.
 pub(crate) struct DecimalNumber {
     negative: bool,
     infinite: bool,
     digits: String,
     ten: i64,
-    /// First byte behind it.
+    /// First byte after it.
     pub(crate) end: usize,
 }
 
@@ -223,7 +223,7 @@ impl DecimalNumber {
     }
 }
 
-/// A product of units: `over / under · 10^ten · rounded`.
+/// Product of units: `over / under · 10^ten · rounded`.
 #[derive(Clone, Debug)]
 pub(crate) struct UnitProduct {
     exponents: Exponents,
@@ -246,7 +246,7 @@ impl UnitProduct {
         UnitProduct { exponents: unit.exponents, over, under, ten: i64::from(unit.ten), rounded }
     }
 
-    /// To the power of `halves`/2.
+    /// Power `halves`/2 of the product.
     fn power(&self, halves: i32) -> Option<UnitProduct> {
         let exponents = self.exponents.to_halves(i8::try_from(halves).ok()?)?;
         let mut result = UnitProduct::default();
@@ -393,7 +393,7 @@ impl UnitReader<'_> {
         named(name).ok_or_else(|| unknown(name, start..self.at))
     }
 
-    /// The exponent in halves; `None` if it is absent.
+    /// Exponent in halves; `None` if it is absent.
     fn exponent(&mut self) -> Result<Option<i32>, QuantityError> {
         let start = self.at;
         match self.peek() {
@@ -420,7 +420,7 @@ impl UnitReader<'_> {
     }
 }
 
-/// A unit by its name, or several written as one word (`kNm`, `Ns`).
+/// Unit by its name, or several written as one word (`kNm`, `Ns`).
 fn named(name: &str) -> Option<UnitProduct> {
     if let Some(unit) = unit::find(name) {
         return Some(UnitProduct::of(&unit));

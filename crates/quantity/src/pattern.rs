@@ -5,17 +5,17 @@ use super::dimension::{Dimension, Exponents, GAIN, LENGTH};
 use super::parse::accepts;
 use super::unit::{self, Unit};
 
-/// A decimal number, as [`parse`](super::parse()) reads it.
+/// Decimal number, as [`parse`](super::parse()) reads it.
 const NUMBER: &str = r"[+-]?(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?";
-/// The same without a sign.
+/// Decimal number without a sign.
 pub(crate) const UNSIGNED: &str = r"(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?";
-/// An exponent of any size.
+/// Exponent of any size.
 const EXPONENT: &str = r"(?:\^?-?[0-9]*\.?[0-9]+|[²³])?";
 
 /// Matches every text that [`parse`](super::parse()) accepts for this dimension and whose unit is
-/// one name with an exponent, or no unit. A unit of another dimension is not matched.
+/// one name with an exponent, or absent. A unit of another dimension is not matched.
 ///
-/// The syntax is what ECMA-262, Python and the crate `regex` have in common.
+/// The syntax is common to ECMA-262, Python and the crate `regex`.
 ///
 /// # Example
 /// ```
@@ -33,7 +33,7 @@ pub fn single_unit_pattern(dimension: &Dimension) -> String {
 }
 
 /// Matches every number with a product of units, written together or not, or with a unit in
-/// parentheses, whatever its dimension.
+/// parentheses, of any dimension.
 pub fn compound_unit_pattern() -> String {
     let prefixes: String = unit::prefixes().collect();
     let [beginnings, others] = [unit::BEGINNINGS.join("|"), unit::CONTINUATIONS.join("|")];
@@ -57,14 +57,13 @@ pub fn any_quantity_pattern() -> String {
     format!(r"^\s*(?:{NUMBER}|[+-]?inf\s*$)")
 }
 
-/// Every unit of a length.
+/// All units of a length.
 pub(crate) fn length_units() -> String {
     let units: Vec<String> = unit::all().filter_map(|unit| power_of(unit, &LENGTH)).collect();
     units.join("|")
 }
 
-/// The names of a unit with the exponent that makes it one of the dimension; `None` where no
-/// exponent does.
+/// Names of a unit with the exponent that gives the dimension; `None` if no exponent does.
 fn power_of(unit: &Unit, dimension: &Dimension) -> Option<String> {
     if unit.exponents == Exponents::NONE {
         let free = format!("{}{EXPONENT}", names(unit));
@@ -80,7 +79,7 @@ fn power_of(unit: &Unit, dimension: &Dimension) -> Option<String> {
     Some(format!("{}(?:{exponents})", names(unit)))
 }
 
-/// An exponent of this number of halves; 1 may be omitted.
+/// Exponent of this number of halves; 1 may be omitted.
 fn exponent(halves: i8) -> String {
     let sign = if halves < 0 { "-" } else { "" };
     let (whole, half) = (halves.unsigned_abs() / 2, halves % 2 != 0);
@@ -94,7 +93,7 @@ fn exponent(halves: i8) -> String {
     }
 }
 
-/// Every spelling of a unit.
+/// All spellings of a unit.
 fn names(unit: &Unit) -> String {
     let prefixes: String = if unit.prefixes { unit::prefixes().collect() } else { String::new() };
     let optional = if unit.prefixes { format!("[{prefixes}]?") } else { String::new() };

@@ -8,30 +8,30 @@ use super::print::print_bare;
 use super::separators::refuse_thousands;
 use crate::spelling::nearest;
 
-/// A currency, by its code of ISO 4217.
+/// Currency, by its code of ISO 4217.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Currency(&'static str);
 
 impl Currency {
-    /// Its three letters.
+    /// Code of three letters.
     pub fn code(self) -> &'static str {
         self.0
     }
 }
 
-/// What a price is paid for.
+/// Unit of a price.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PricedBy {
-    /// A piece.
+    /// Per piece.
     Piece,
-    /// A metre.
+    /// Per metre.
     Length,
 }
 
-/// What a piece or a metre costs.
+/// Price of a piece or a metre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Price {
-    /// In the currency, for a piece or a metre.
+    /// Amount in the currency, per piece or metre.
     pub amount: f64,
     /// Currency of the amount.
     pub currency: Currency,
@@ -40,8 +40,8 @@ pub struct Price {
 /// Reads a price.
 ///
 /// # Errors
-/// [`QuantityError`] for a text that is not a price, a negative one, an unknown currency, and one
-/// for a length where one for a piece is wanted, or the other way round.
+/// [`QuantityError`] for a text that is not a price, a negative one, an unknown currency, and a
+/// price per length instead of one per piece, or vice versa.
 ///
 /// # Example
 /// ```
@@ -97,7 +97,7 @@ pub fn parse_price(text: &str, by: PricedBy) -> Result<Price, QuantityError> {
     Ok(Price { amount: amount / metres, currency })
 }
 
-/// A price in TOML, with its quotes, that reads back as the same.
+/// Price in TOML, with its quotes, that reads back unchanged.
 ///
 /// # Example
 /// ```
@@ -127,7 +127,7 @@ pub fn price_pattern(by: PricedBy) -> String {
     format!(r"^\s*\+?{UNSIGNED}\s*(?:{currencies}){over}\s*$")
 }
 
-/// ISO 4217, the currencies of countries.
+/// Currencies of countries by ISO 4217.
 static CURRENCIES: [&str; 154] = [
     "AED", "AFN", "ALL", "AMD", "ANG", "AOA", "ARS", "AUD", "AWG", "AZN", "BAM", "BBD", "BDT", "BGN", "BHD",
     "BIF", "BMD", "BND", "BOB", "BRL", "BSD", "BTN", "BWP", "BYN", "BZD", "CAD", "CDF", "CHF", "CLP", "CNY",

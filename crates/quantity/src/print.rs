@@ -1,11 +1,11 @@
-//! Writing a quantity in the unit people expect, without losing a bit.
+//! Output of a quantity in the customary unit, without losing a bit.
 
 use super::dimension::Dimension;
 use super::display_unit::DisplayUnit;
 use super::parse::parse;
 use super::shortest::{plain, rounded};
 
-/// The shortest TOML text that reads back as exactly `value`: `"70 bar"` with its quotes if an
+/// Shortest TOML text that reads back as exactly `value`: `"70 bar"` with its quotes if an
 /// engineering unit can express it, otherwise a bare SI number.
 ///
 /// # Example
@@ -26,7 +26,7 @@ pub fn print(value: f64, dimension: &Dimension) -> String {
     }
 }
 
-/// For readers: `value` rounded to this number of significant digits, in the customary unit,
+/// Text for readers: `value` rounded to this number of significant digits, in the customary unit,
 /// without quotes.
 ///
 /// # Example
@@ -47,7 +47,7 @@ pub fn display(value: f64, dimension: &Dimension, significant_digits: usize) -> 
     }
 }
 
-/// The unit that people expect for such a value, for several numbers in one unit.
+/// Customary unit for such a value, for several numbers in one unit.
 ///
 /// # Example
 /// ```
@@ -62,15 +62,15 @@ pub fn fitting(value: f64, dimension: &Dimension) -> DisplayUnit {
     }
 }
 
-/// A number as TOML writes it.
+/// Number in the syntax of TOML.
 pub fn print_bare(value: f64) -> String {
     let text =
         if value.abs() >= 1e-4 && value.abs() < 1e15 { format!("{value}") } else { format!("{value:e}") };
     if value.is_nan() { "nan".to_string() } else { text }
 }
 
-/// The largest of the dimension's units that is not above the value, or the smallest; for zero that
-/// of the SI, where it is one of them.
+/// Largest of the dimension's units that is not above the value, or the smallest; for zero the SI
+/// unit, if it is one of them.
 fn fitting_unit(value: f64, dimension: &Dimension) -> Option<&'static str> {
     let fits = |unit: &&&str| factor(unit, dimension) <= value.abs() * (1.0 + 1e-12);
     if value == 0.0 && dimension.units.contains(&dimension.si) {
@@ -83,7 +83,7 @@ fn factor(unit: &str, dimension: &Dimension) -> f64 {
     parse(&format!("1 {unit}"), dimension).unwrap_or(1.0)
 }
 
-/// The shortest number that is exactly `value` in that unit.
+/// Shortest number that is exactly `value` in that unit.
 fn exactly(value: f64, unit: &str, dimension: &Dimension) -> Option<String> {
     let scaled = value / factor(unit, dimension);
     let neighbours = [scaled, scaled.next_up(), scaled.next_down()];

@@ -1,12 +1,11 @@
-//! A unit that many numbers are read in.
+//! Common unit of many numbers to be read.
 
 use super::dimension::Dimension;
 use super::error::QuantityError;
 use super::parse::{DecimalNumber, UnitProduct, decibels, unit_of};
 
-/// A unit, ready to read a column of numbers: each as [`crate::parse`] reads it with the unit
-/// behind it, to the last bit, but without reading the unit again. A number may end in its point
-/// (`5.`).
+/// Unit that is ready to read a column of numbers: each as [`crate::parse`] reads it with this
+/// unit, to the last bit, but without reading the unit again. A number may end in its point (`5.`).
 ///
 /// # Example
 /// ```
@@ -24,16 +23,16 @@ pub struct UnitScale {
     is_decibel: bool,
 }
 
-/// Whole numbers up to this one are exact in f64.
+/// Largest whole number up to which all are exact in f64.
 const EXACT: u128 = 1 << 53;
-/// The most decimal digits of a number that is read without arithmetic of any size.
+/// Largest number of decimal digits that is read without arithmetic of arbitrary size.
 const MOST_DIGITS: usize = 19;
 
 impl UnitScale {
-    /// The unit of this dimension; an empty text is that of a pure number.
+    /// Scale of a unit of this dimension; an empty text is the unit of a pure number.
     ///
     /// # Errors
-    /// [`QuantityError`] for what is not a unit, or one of another dimension.
+    /// [`QuantityError`] for a text that is not a unit, or one of another dimension.
     pub fn new(unit: &str, dimension: &Dimension) -> Result<UnitScale, QuantityError> {
         let (product, is_decibel) = unit_of(unit, dimension)?;
         let of = |factors: &[u64]| {
@@ -43,7 +42,8 @@ impl UnitScale {
         Ok(UnitScale { product, over, under, is_decibel })
     }
 
-    /// SI; `None` for what is not a decimal number, and for one that f64 cannot hold.
+    /// SI value; `None` for a text that is not a decimal number, and for one that f64 cannot
+    /// represent.
     pub fn read(&self, number: &str) -> Option<f64> {
         let value = self.read_quickly(number.as_bytes()).or_else(|| self.read_exactly(number))?;
         let value = if self.is_decibel { decibels(value) } else { value };
@@ -60,7 +60,7 @@ impl UnitScale {
         (read.end == text.len() && !read.is_infinite()).then(|| read.times(&self.product, text).ok())?
     }
 
-    /// The nearest f64, where numerator and denominator are no longer than the processor's numbers;
+    /// Nearest f64, if numerator and denominator are no longer than the processor's numbers;
     /// otherwise `None`.
     fn read_quickly(&self, number: &[u8]) -> Option<f64> {
         let decimal = ScaledDecimal::read(number)?;
@@ -74,7 +74,7 @@ impl UnitScale {
     }
 }
 
-/// over/under, rounded once.
+/// Quotient over/under, rounded once.
 fn nearest(over: u128, under: u128) -> Option<f64> {
     if over <= EXACT && under <= EXACT {
         return Some(over as f64 / under as f64);
@@ -85,13 +85,13 @@ fn nearest(over: u128, under: u128) -> Option<f64> {
     let shift = over.leading_zeros();
     let shifted = over << shift;
     let quotient = shifted / under;
-    // the last bit stands for all that were cut off: below the rounding there are two at least
+    // the last bit represents all that were cut off: below the rounding there are at least two
     let inexact = quotient * under != shifted;
     let power = f64::from_bits(u64::from(1023 - shift) << 52);
     (quotient >> 55 != 0).then(|| (quotient | u128::from(inexact)) as f64 * power)
 }
 
-/// digits · 10^ten.
+/// Decimal number digits · 10^ten.
 struct ScaledDecimal {
     is_negative: bool,
     digits: u64,
@@ -99,7 +99,7 @@ struct ScaledDecimal {
 }
 
 impl ScaledDecimal {
-    /// `None` for what is not a decimal, and for one of more digits.
+    /// Decimal number of a text; `None` for a text that is not one, and for one of more digits.
     fn read(text: &[u8]) -> Option<ScaledDecimal> {
         let (is_negative, text) = match text {
             [b'-', rest @ ..] => (true, rest),
@@ -131,7 +131,7 @@ impl ScaledDecimal {
     }
 }
 
-/// A whole number of up to three digits.
+/// Whole number of up to three digits.
 fn exponent(text: &[u8]) -> Option<i32> {
     let (sign, text) = match text {
         [b'-', rest @ ..] => (-1, rest),

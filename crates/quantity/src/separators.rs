@@ -1,27 +1,27 @@
-//! Numbers as people write them who set off thousands, or the decimals with a comma.
+//! Numbers with thousands separators, or with a decimal comma.
 
 use super::error::{QuantityError, QuantityFault, QuantityHint};
 
-/// Signs that stand between digits.
+/// Signs that occur between digits.
 const SIGNS: [char; 8] = ['.', ',', '\'', '\u{2019}', '_', ' ', '\u{a0}', '\u{202f}'];
 
-/// A number and the signs between its digits.
+/// Number and the signs between its digits.
 struct SeparatedNumber<'a> {
-    /// Sign and digits in front of the first sign.
+    /// Sign and digits before the first sign.
     first: &'a str,
-    /// Each sign with the digits behind it.
+    /// Each sign with the digits after it.
     groups: Vec<(char, &'a str)>,
-    /// Where in the text it is.
+    /// Position of the number in the text.
     start: usize,
     end: usize,
 }
 
-/// Refuses a number with signs that have more than one meaning: `20.000` is 20 in one country and
-/// 20000 in another, a factor that no other check notices. A point behind which the digits end in
-/// zero after three of them counts as such; `1.234` and `0.870` do not.
+/// Rejects a number with signs that have more than one meaning: `20.000` is 20 in one country and
+/// 20000 in another, an error that no other check detects. A point before exactly three digits that
+/// end in zero counts as ambiguous; `1.234` and `0.870` do not.
 ///
 /// # Errors
-/// [`QuantityError`] with the readings to choose from.
+/// [`QuantityError`] with the possible readings.
 pub(crate) fn refuse_thousands(text: &str) -> Result<(), QuantityError> {
     let found = SeparatedNumber::of(text);
     let rest = text.get(found.end..).unwrap_or_default();
@@ -72,7 +72,7 @@ impl<'a> SeparatedNumber<'a> {
         SeparatedNumber { first, groups, start, end }
     }
 
-    /// What it may mean; `None` for a plain decimal.
+    /// Possible readings; `None` for a plain decimal.
     fn readings(&self, rest: &str) -> Option<Vec<String>> {
         let digits = self.first.trim_start_matches(['+', '-']);
         let is_led = (1..=3).contains(&digits.len()) && !digits.starts_with('0');

@@ -1,16 +1,16 @@
-//! Numbers without digits that say nothing.
+//! Numbers without insignificant digits.
 
-/// A number with at most this number of significant digits, without zeros at its end.
+/// Number with at most this number of significant digits, without trailing zeros.
 pub(crate) fn shortest(value: f64, digits: usize) -> String {
     plain(rounded(value, digits.clamp(1, 17)))
 }
 
-/// To this number of significant digits.
+/// Number rounded to this number of significant digits.
 pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
 }
 
-/// Without zeros at its end.
+/// Number without trailing zeros.
 pub(crate) fn plain(value: f64) -> String {
     if value == 0.0 {
         return "0".to_string();

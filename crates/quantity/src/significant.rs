@@ -1,5 +1,5 @@
-/// A number with this many significant digits, as an engineer writes it: plain between 0.001 and
-/// 100 000, with a power of ten elsewhere.
+/// Number with this many significant digits, as an engineer writes it: plain between 0.001 and 100
+/// 000, otherwise with a power of ten.
 ///
 /// # Example
 /// ```
@@ -17,7 +17,7 @@ pub fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return if value.is_nan() { "-".to_string() } else { format!("{value}") };
     }
-    // Rounding first decides the exponent: 9.9996 has four digits as 10.00.
+    // rounding first decides the exponent: 9.9996 has four digits as 10.00
     let scientific = format!("{value:.decimals$e}");
     let exponent = scientific.split_once('e').and_then(|(_, power)| power.parse::<i32>().ok()).unwrap_or(0);
     match exponent {

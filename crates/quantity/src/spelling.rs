@@ -1,11 +1,11 @@
-//! The nearest valid name for a misspelt one.
+//! Nearest valid name for a misspelt one.
 
-/// The candidate a reader most likely meant, or none if every one is far off.
+/// Most likely candidate for a misspelt name, or none if every one is too different.
 ///
 /// A name that differs only in case wins; otherwise the fewest insertions, deletions, substitutions
 /// and swaps of neighbours, at most a third of the name's length (one for two or three characters,
-/// two from four on). Ties go to the earlier one. Another word for a candidate is taken for it.
-/// Where none is near, the shortest candidate that begins with all words of the name is.
+/// two from four on). Ties go to the earlier one. A synonym of a candidate selects it. If none is
+/// near, the shortest candidate that begins with all words of the name is returned.
 ///
 /// # Example
 /// ```
@@ -51,7 +51,7 @@ const OTHER_WORDS: [(&str, &str); 2] = [("gauss", "normal"), ("gaussian", "norma
 
 /// Largest number of candidates that are compared.
 const MAXIMUM_CANDIDATES: usize = 1000;
-/// Longer names are compared by their beginning only.
+/// Length up to which names are compared; only the beginning of longer ones counts.
 const MAXIMUM_LENGTH: usize = 64;
 
 /// Optimal string alignment distance.

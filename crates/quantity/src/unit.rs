@@ -1,8 +1,8 @@
-//! The units, with exact factors.
+//! Units, with exact factors.
 
 use super::dimension::Exponents;
 
-/// A unit: `numerator / denominator · 10^ten · (2π)^turns` of its SI unit, all whole numbers, so
+/// Unit: `numerator / denominator · 10^ten · (2π)^turns` of its SI unit, all whole numbers, so
 /// exact.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Unit {
@@ -46,8 +46,8 @@ const PRESSURE: Exponents = Exponents::whole(1, -1, -2, 0, 0);
 const ANGLE: Exponents = Exponents::whole(0, 0, 0, 0, 1);
 const ROTATION: Exponents = Exponents::whole(0, 0, -1, 0, 1);
 
-/// Definitions: 1 in = 25.4 mm, 1 lb = 0.45359237 kg, g = 9.80665 m/s², 1 gal (US) = 231 in³, all
-/// exact.
+/// Table of units by definition: 1 in = 25.4 mm, 1 lb = 0.45359237 kg, g = 9.80665 m/s², 1 gal (US)
+/// = 231 in³, all exact.
 static UNITS: &[Unit] = &[
     unit(&["m"], LENGTH, 1, 0).prefixed(),
     unit(&["in", "inch", "inches"], LENGTH, 254, -4),
@@ -105,17 +105,17 @@ const PREFIXES: [(&str, i32); 12] = [
     ("T", 12),
 ];
 
-/// Every unit but the pure number, without its prefixes.
+/// All units except the pure number, without prefixes.
 pub(crate) fn all() -> impl Iterator<Item = &'static Unit> {
     UNITS.iter().filter(|unit| unit.names != ["1"])
 }
 
-/// Every prefix, each one letter.
+/// All prefixes, each one letter.
 pub(crate) fn prefixes() -> impl Iterator<Item = &'static str> {
     PREFIXES.iter().map(|(prefix, _)| *prefix)
 }
 
-/// The unit of that name, with its prefix worked in.
+/// Unit of that name, with its prefix included.
 pub(crate) fn find(name: &str) -> Option<Unit> {
     let named = |wanted: &str| UNITS.iter().find(|unit| unit.names.contains(&wanted));
     if let Some(unit) = named(name) {
@@ -127,12 +127,12 @@ pub(crate) fn find(name: &str) -> Option<Unit> {
     })
 }
 
-/// Units that a word begins with which several make together, and those that go on with it.
+/// Units that may begin a word of several units, and those that continue it.
 pub(crate) const BEGINNINGS: [&str; 6] = ["N", "daN", "Pa", "V", "A", "W"];
 pub(crate) const CONTINUATIONS: [&str; 6] = ["mm", "cm", "min", "m", "s", "h"];
 
-/// The units of a word that several make together, as data sheets write `kNm`, `Ns`, `Nms`. A
-/// thousandth of a second is none of them: `Nms` is N.m.s.
+/// Units of a word that combines several, as data sheets write `kNm`, `Ns`, `Nms`. Milliseconds are
+/// excluded: `Nms` is N.m.s.
 pub(crate) fn written_together(name: &str) -> Option<Vec<Unit>> {
     let is_beginning = |unit: &Unit| unit.names.iter().any(|name| BEGINNINGS.contains(name));
     (1..name.len()).filter(|at| name.is_char_boundary(*at)).find_map(|at| {
@@ -146,7 +146,7 @@ pub(crate) fn written_together(name: &str) -> Option<Vec<Unit>> {
     })
 }
 
-/// Names a misspelt unit may have meant: every plain name, and the prefixed ones in common use.
+/// Candidates for a misspelt unit: every plain name, and the prefixed ones in common use.
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {
     let common = [
         "mm", "cm", "um", "mL", "kg", "ms", "us", "kN", "MN", "kPa", "MPa", "GPa", "mbar", "cSt", "mV", "kV",

@@ -1,35 +1,35 @@
-//! The units in which the quantities of one project are shown.
+//! Display units of the quantities of one project.
 
 use super::dimension::*;
 use super::display_unit::DisplayUnit;
 use super::motion::MotionKind;
 use super::parse::parse;
 
-/// One unit for each quantity of a project, in tables, sentences and axes alike.
+/// Unit of each quantity of a project, for tables, sentences and axes.
 ///
-/// Two are equal if the motion is: a value remains the same in whichever unit it is shown.
+/// Equality compares only the motion: a value does not depend on its display unit.
 #[derive(Clone, Copy, Debug)]
 pub struct Units {
-    /// How the rig moves.
+    /// Motion of the rig.
     pub motion: MotionKind,
-    /// Forces, or torques of a rig that turns.
+    /// Unit of forces, or of torques of a rig that turns.
     pub force: DisplayUnit,
-    /// Positions of piston and load, or angles.
+    /// Unit of positions of piston and load, or of angles.
     pub position: DisplayUnit,
-    /// Pressures.
+    /// Unit of pressures.
     pub pressure: DisplayUnit,
-    /// Flows.
+    /// Unit of flows.
     pub flow: DisplayUnit,
 }
 
-/// Symbols of the units in which projects can be shown.
+/// Symbols of the possible display units of projects.
 static SYMBOLS: [&str; 19] = [
     "N", "kN", "MN", "lbf", "N.m", "kN.m", "mm", "cm", "m", "in", "deg", "rad", "bar", "MPa", "kPa", "psi",
     "L/min", "m3/s", "gpm",
 ];
 
 impl Units {
-    /// The units that people expect where a project writes none.
+    /// Customary units for a project that states none.
     ///
     /// # Example
     /// ```
@@ -47,7 +47,7 @@ impl Units {
         }
     }
 
-    /// The unit in which quantities of a dimension are shown; the SI unit where none is customary.
+    /// Display unit for quantities of a dimension; the SI unit if none is customary.
     ///
     /// # Example
     /// ```
@@ -69,7 +69,7 @@ impl Units {
         found.map_or(DisplayUnit { symbol: dimension.si, in_si: 1.0 }, |(_, unit)| unit)
     }
 
-    /// The unit of this symbol, if quantities of the dimension can be shown in it.
+    /// Unit of this symbol, if quantities of the dimension can be shown in it.
     pub fn known(symbol: &str, dimension: &Dimension) -> Option<DisplayUnit> {
         let symbol = *SYMBOLS.iter().find(|known| **known == symbol)?;
         let in_si = parse(&format!("1 {symbol}"), dimension).ok()?;

@@ -1,4 +1,4 @@
-//! Quantities in text from outside.
+//! Quantities in text through the public interface.
 #![cfg(test)]
 
 mod text;

@@ -1,4 +1,4 @@
-//! Quantities in text: exact factors, refusals that point, and printing that loses nothing.
+//! Quantities in text: exact factors, errors with their location, and output without loss.
 
 #![allow(
     clippy::expect_used,
@@ -108,7 +108,8 @@ fn refusals_say_what_is_right() {
     refuse("1 m\u{a0}\u{2003}é", &LENGTH, "unknown unit `é`", None);
 }
 
-/// A number that two countries read differently by a factor of a thousand is refused with both.
+/// A number that two countries read differently by a factor of a thousand is rejected with both
+/// readings.
 #[test]
 fn thousands_are_never_taken_for_decimals() {
     for (text, readings) in [
@@ -192,7 +193,7 @@ fn nothing_panics() {
     assert!(parse(&"1 m".repeat(1000), &LENGTH).is_err());
 }
 
-/// A fixed sequence of numbers over many decades.
+/// Fixed sequence of numbers over many decades.
 fn numbers(count: u64) -> impl Iterator<Item = f64> {
     (0..count).scan(0x9e37_79b9_7f4a_7c15_u64, |state, _| {
         *state ^= *state << 13;
@@ -234,7 +235,7 @@ fn people_read_their_own_units() {
     }
 }
 
-/// Units that tables are read in.
+/// Units of tables.
 static READ_IN: [(&str, &Dimension); 14] = [
     ("Pa", &PRESSURE),
     ("bar", &PRESSURE),
@@ -252,7 +253,7 @@ static READ_IN: [(&str, &Dimension); 14] = [
     ("dB", &GAIN),
 ];
 
-/// A scale reads every number as [`parse`] does with the unit behind it, to the last bit.
+/// A scale reads every number as [`parse`] does with its unit, to the last bit.
 #[test]
 fn a_scale_is_a_quantity_without_its_unit() {
     for (unit, dimension) in READ_IN {
@@ -265,7 +266,7 @@ fn a_scale_is_a_quantity_without_its_unit() {
             assert_eq!(scale.read(text).map(f64::to_bits), expected.map(f64::to_bits), "{text} {unit}");
         };
         for value in numbers(300) {
-            // every number of digits, in the decades of a test bench and in its own
+            // every number of digits, in the decades of a test bench and in the full range
             let digits = (value.to_bits() % 18) as usize;
             let text = format!("{value:.digits$e}");
             let (mantissa, exponent) = text.split_once('e').unwrap();

@@ -11,7 +11,7 @@ use crate::portable;
 /// ```text
 /// (a, r) + (b, q) = (a + b, r + q)
 /// (a, r)(b, q) = (a b, |a| q + |b| r + r q)
-/// 1/(a, r) = (conj a, r)/(|a|^2 - r^2)                 |a| > r; the whole plane otherwise
+/// 1/(a, r) = (conj a, r)/(|a|^2 - r^2)                 |a| > r; otherwise the whole plane
 /// exp (a, r) = (e^a, |e^a| (e^r - 1))
 /// ```
 ///
@@ -36,34 +36,34 @@ impl Disc {
         if centre.is_finite() && radius >= 0.0 { Disc { centre, radius } } else { Disc::WHOLE }
     }
 
-    /// The smallest disc that contains j w for every w between two frequencies in rad/s.
+    /// Smallest disc that contains j w for every w between two frequencies in rad/s.
     pub fn of_frequencies([from, to]: [f64; 2]) -> Disc {
         let middle = 0.5 * (from + to);
         let radius = (to - middle).abs().max((middle - from).abs());
         Disc::new(Complex64::new(0.0, middle), radius * (1.0 + ROUNDING))
     }
 
-    /// Its centre.
+    /// Centre of the disc.
     pub fn centre(self) -> Complex64 {
         self.centre
     }
 
-    /// Its radius; infinite for the whole plane.
+    /// Radius; infinite for the whole plane.
     pub fn radius(self) -> f64 {
         self.radius
     }
 
-    /// Whether it contains a point.
+    /// True if the disc contains the point.
     pub fn contains(self, point: Complex64) -> bool {
         portable::magnitude(point - self.centre) <= self.radius
     }
 
-    /// The smallest distance of its points from zero; 0 if it contains zero.
+    /// Smallest distance of a point of the disc from zero; 0 if the disc contains zero.
     pub fn distance(self) -> f64 {
         (portable::magnitude(self.centre) * (1.0 - ROUNDING) - self.radius).max(0.0)
     }
 
-    /// The derivative of (1 - e^(-z))/z, given the value of that function.
+    /// Derivative of (1 - e^(-z))/z, given the value of that function.
     pub(super) fn slope_of_mean_of_decay(self, mean: Disc) -> Disc {
         if portable::magnitude(self.centre) + self.radius < SMALL {
             let found = slope_of_series(self);
@@ -73,7 +73,7 @@ impl Disc {
         ((-self).exponential() - mean) / self
     }
 
-    /// The result of an operation whose centre is accurate to `size` times the rounding.
+    /// Result of an operation whose centre is accurate to `size` times the rounding.
     fn rounded(centre: Complex64, radius: f64, size: f64) -> Disc {
         Disc::new(centre, radius * (1.0 + ROUNDING) + ROUNDING * size)
     }
@@ -191,8 +191,8 @@ mod tests {
         disc.centre + turn * (disc.radius * share(state).sqrt())
     }
 
-    /// Whatever points are taken from two discs, their sum, product, quotient and the rest lie in
-    /// those of the discs.
+    /// Sums, products, quotients and the other results of points of two discs are in the resulting
+    /// discs.
     #[test]
     fn results_hold_those_of_every_point() {
         let mut state = 4;
@@ -223,7 +223,7 @@ mod tests {
         assert_eq!((Disc::WHOLE * Disc::from(0.0)).distance(), 0.0);
     }
 
-    /// ORIGIN: analytic; the series and the quotient agree where one takes over from the other.
+    /// ORIGIN: analytic; the series and the quotient agree at the transition between them.
     #[test]
     fn the_mean_of_a_decay_is_smooth() {
         for size in [1e-9, 0.1, 0.499_999, 0.500_001] {

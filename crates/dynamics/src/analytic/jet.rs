@@ -4,7 +4,7 @@ use num_complex::Complex64;
 
 use super::{Analytic, Disc};
 
-/// The value of a function over a set of arguments, and its derivative over that set.
+/// Value of a function over a set of arguments, and its derivative over that set.
 ///
 /// # Example
 /// Over a short interval the excess of the disc shrinks with the square of the interval's length.

@@ -1,4 +1,4 @@
-//! Converters between a computer and what it controls, and how it keeps coefficients.
+//! Converters between a computer and the plant, and the number formats of coefficients.
 
 use crate::portable;
 
@@ -24,16 +24,16 @@ pub struct Converter {
     range: [f64; 2],
 }
 
-/// The bits or the range are invalid. A converter has 1 to 32 bits and a finite range
+/// Error for an invalid number of bits or range. A converter has 1 to 32 bits and a finite range
 /// `[minimum, maximum]` with minimum < maximum.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("a converter with {bits} bits from {minimum} to {maximum} is invalid")]
 pub struct ConverterError {
-    /// Bits.
+    /// Number of bits.
     pub bits: u32,
-    /// Lower end.
+    /// Lower end of the range.
     pub minimum: f64,
-    /// Upper end.
+    /// Upper end of the range.
     pub maximum: f64,
 }
 
@@ -53,7 +53,7 @@ impl Converter {
         Ok(Converter { step, range })
     }
 
-    /// q, in the unit of the signal.
+    /// Step q, in the unit of the signal.
     pub fn step(&self) -> f64 {
         self.step
     }
@@ -65,7 +65,7 @@ impl Converter {
     }
 }
 
-/// How a coefficient is kept.
+/// Number format of a coefficient.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CoefficientFormat {
     /// IEEE 754 with 53 bits: unchanged.
@@ -77,24 +77,24 @@ pub enum CoefficientFormat {
     Fixed {
         /// Bits before the point, without the sign.
         integer_bits: u8,
-        /// Bits behind the point.
+        /// Bits after the point.
         fraction_bits: u8,
     },
 }
 
-/// A coefficient is beyond what its format can hold.
+/// Error for a coefficient beyond the range of its format.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("the coefficient {value} is beyond the largest of its format, {largest}")]
 pub struct CoefficientTooLarge {
     /// The coefficient.
     pub value: f64,
-    /// The largest that can be represented.
+    /// Largest number that can be represented.
     pub largest: f64,
 }
 
 impl CoefficientFormat {
-    /// The nearest number that can be represented; halves are rounded away from zero in fixed
-    /// point, and to even in floating point.
+    /// Nearest number that can be represented; halves are rounded away from zero in fixed point,
+    /// and to even in floating point.
     ///
     /// # Errors
     /// [`CoefficientTooLarge`].
@@ -115,7 +115,7 @@ impl CoefficientFormat {
                 ((value / unit).round() * unit, power_of_two(f64::from(integer_bits)) - unit)
             }
         };
-        // also what is not a number
+        // also rejects NaN
         if kept.abs() <= largest { Ok(kept) } else { Err(CoefficientTooLarge { value, largest }) }
     }
 }

@@ -3,7 +3,8 @@ use num_complex::Complex64;
 use crate::linear::{LinearError, TransferFunction};
 
 /// A building block of loop shaping. Frequencies in rad/s; every block but gain, integrator and
-/// differentiator has unit gain at zero frequency, so that adding one does not move the loop there.
+/// differentiator has unit gain at zero frequency, so that adding one leaves the loop unchanged
+/// there.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Element {
     /// k
@@ -47,7 +48,7 @@ pub enum Element {
     Notch {
         /// w
         natural_frequency: f64,
-        /// zeta_z, the depth is zeta_z/zeta_p
+        /// Damping ratio zeta_z; the depth is zeta_z/zeta_p.
         zero_damping_ratio: f64,
         /// zeta_p
         pole_damping_ratio: f64,
@@ -70,7 +71,7 @@ pub enum Element {
         /// T_f in s, positive
         filter_time: f64,
     },
-    /// Any rational function.
+    /// General rational function.
     General(TransferFunction),
 }
 
@@ -79,7 +80,7 @@ pub enum Element {
 pub struct Stage {
     /// The element.
     pub element: Element,
-    /// Whether it acts.
+    /// True if the element acts.
     pub enabled: bool,
 }
 
@@ -91,16 +92,16 @@ pub struct Compensator {
 }
 
 impl Compensator {
-    /// These elements, all enabled.
+    /// Compensator of these elements, all enabled.
     pub fn new(elements: Vec<Element>) -> Compensator {
         Compensator { stages: elements.into_iter().map(|element| Stage { element, enabled: true }).collect() }
     }
 
-    /// The product of the enabled elements. A gain is the same in s and in z, and so combines with
+    /// Product of the enabled elements. A gain is identical in s and in z, and so combines with
     /// elements of either domain.
     ///
     /// # Errors
-    /// A frequency of zero or a number that is not finite; elements in different time domains.
+    /// Frequency of zero or a number that is not finite; elements in different time domains.
     pub fn transfer_function(&self) -> Result<TransferFunction, LinearError> {
         let enabled = self.stages.iter().filter(|stage| stage.enabled).map(|stage| &stage.element);
         let (gains, others): (Vec<&Element>, Vec<&Element>) =
@@ -118,10 +119,10 @@ impl Compensator {
 }
 
 impl Element {
-    /// The element as a transfer function.
+    /// Transfer function of the element.
     ///
     /// # Errors
-    /// A frequency of zero or a number that is not finite.
+    /// Frequency of zero or a number that is not finite.
     ///
     /// # Example
     /// ```
@@ -216,7 +217,7 @@ mod tests {
         element.transfer_function().unwrap().at_frequency(frequency)
     }
 
-    /// Each element against its formula at s = j w.
+    /// Elements agree with their formulas at s = j w.
     #[test]
     fn elements_are_their_formulas() {
         let w = 7.0;

@@ -1,4 +1,4 @@
-//! The feedback of a second measured signal to the command, inside the loop of the controller.
+//! Feedback of a second measured signal to the command, inside the main loop.
 
 use crate::analytic::Analytic;
 use crate::linear::{LinearError, Polynomial, TransferFunction};
@@ -9,11 +9,11 @@ use crate::linear::{LinearError, Polynomial, TransferFunction};
 /// u = G (F r - y) - H p,     H(s) = k s/(s + w_h) w_l/(s + w_l)         each of both filters optional
 /// ```
 ///
-/// For an actuator p is the pressure of its load, and H adds to the flow-pressure coefficient of
-/// its valve: active damping.
+/// For an actuator, p is the load pressure, and H adds to the flow-pressure coefficient of the
+/// valve: active damping.
 ///
 /// # Example
-/// Far above the high pass and far below the low pass only the gain is left.
+/// Far above the high-pass corner and far below the low-pass corner only the gain remains.
 /// ```
 /// use num_complex::Complex64;
 /// use phea_dynamics::controller::InnerFeedback;
@@ -27,16 +27,16 @@ use crate::linear::{LinearError, Polynomial, TransferFunction};
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct InnerFeedback {
-    /// k, command per unit of the signal.
+    /// Gain k, command per unit of the signal.
     pub gain: f64,
-    /// w_h in rad/s; `None` where the signal at rest is fed back too.
+    /// High-pass corner w_h in rad/s; `None` if the signal at rest is fed back too.
     pub high_pass_rad_per_s: Option<f64>,
-    /// w_l in rad/s; `None` without a low pass.
+    /// Low-pass corner w_l in rad/s; `None` without a low pass.
     pub low_pass_rad_per_s: Option<f64>,
 }
 
 impl InnerFeedback {
-    /// True where H is zero.
+    /// True if H is zero.
     pub fn is_zero(&self) -> bool {
         self.gain == 0.0
     }
@@ -81,14 +81,14 @@ impl InnerFeedback {
         )
     }
 
-    /// H at s in rad/s, or over a set of such.
+    /// H at s in rad/s, or over a set of values of s.
     pub fn response<A: Analytic>(&self, s: A) -> A {
         let gain = A::from(self.gain);
         let high = self.high_pass_rad_per_s.map_or(gain, |corner| gain * s / (s + A::from(corner)));
         self.low_pass_rad_per_s.map_or(high, |corner| high / (s.scaled(1.0 / corner) + A::from(1.0)))
     }
 
-    /// At least |H(jv)| of every v from a frequency in rad/s on.
+    /// Upper bound of |H(jv)| for every v at or above a frequency in rad/s.
     ///
     /// # Example
     /// ```

@@ -1,21 +1,22 @@
-//! The content of the integral part of a compensator.
+//! Content of the integral part of a compensator.
 
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 
 use crate::linear::TransferFunction;
 
-/// Poles this near to the integrating point integrate: 1e-12 rad/s, or as much of a pole angle.
+/// Distance of a pole from the integrating point below which it integrates: 1e-12 rad/s, or 1e-12
+/// rad of pole angle.
 const INTEGRATING: f64 = 1e-12;
 
-/// Singular values below this are zero: an equation without information.
+/// Relative size of singular values that are taken as zero: an equation without information.
 const SINGULAR: f64 = 1e-13;
 
-/// The row w that reads the integral part of an output off the states, w x; all zero where nothing
+/// Row w that gives the integral part of an output from the states, w x; all zero if nothing
 /// integrates.
 ///
 /// ```text
-/// G = c_1/(s - p) + ... + c_m/(s - p)^m + what does not integrate          p = 0; sampled, z in place of s and p = 1
+/// G = c_1/(s - p) + ... + c_m/(s - p)^m + remainder without integration          p = 0; sampled, z in place of s and p = 1
 /// w (A - p)^m = 0,    w (A - p)^(k - 1) B = c_k,    k = 1 ... m
 /// ```
 ///
@@ -54,7 +55,7 @@ pub(crate) fn integral_row(
     solution.map_or_else(|_| vec![f64::NAN; states], |row| row.iter().copied().collect())
 }
 
-/// c_1, c_2 ... of the partial fractions at this point; empty where nothing integrates.
+/// Coefficients c_1, c_2 ... of the partial fractions at this point; empty if nothing integrates.
 fn residues(function: &TransferFunction, point: f64) -> Vec<f64> {
     let integrates = |pole: &Complex64| (pole - point).norm_sqr() <= INTEGRATING * INTEGRATING;
     let order = function.poles().iter().filter(|pole| integrates(pole)).count();
@@ -86,7 +87,7 @@ mod tests {
     use super::*;
     use crate::linear::{Polynomial, StateSpace};
 
-    /// Coefficients from 1/s^m down, found by hand.
+    /// Coefficients from 1/s^m down, checked by hand.
     #[test]
     fn partial_fractions_at_zero() {
         let of = |numerator: &[f64], denominator: &[f64]| {
@@ -109,7 +110,7 @@ mod tests {
         near(of(&[1.0], &[1.0, 2.0]), &[]);
     }
 
-    /// Driven by a constant error, the value is its integral, however fast the other poles are.
+    /// For a constant error, the value is its integral, however fast the other poles are.
     #[test]
     fn the_row_reads_the_integral() {
         let polynomial = |coefficients: &[f64]| Polynomial::new(coefficients.to_vec());
@@ -121,7 +122,7 @@ mod tests {
         let system = StateSpace::from_transfer_function(&function).unwrap();
         let drive = system.b().column(0).into_owned();
         let row = DVector::from_vec(integral_row(&function, system.a(), &drive, 0.0)).transpose();
-        // its rate is c_1 e whatever the states are
+        // its rate is c_1 e for any states
         let rates = &row * system.a();
         let size = row.amax() * system.a().amax();
         assert!(rates.amax() < 1e-9 * size, "{rates} {size}");

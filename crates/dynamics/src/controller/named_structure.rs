@@ -1,6 +1,7 @@
-//! The controllers of a manual by their names.
+//! Standard controllers by their textbook names.
 
-/// A controller by its name, in order of length: by its poles, then by its free numbers.
+/// Standard controller structure, in order of length: by number of poles, then by number of free
+/// parameters.
 ///
 /// ```text
 /// PI          K_p (1 + 1/(T_i s))
@@ -26,7 +27,7 @@ pub enum NamedStructure {
     ProportionalIntegral,
     /// PI and a low pass of first order.
     PiLowPass,
-    /// PID whose derivative is filtered.
+    /// PID with a filtered derivative.
     Pid,
     /// PI and a notch.
     PiNotch,
@@ -39,7 +40,7 @@ pub enum NamedStructure {
 }
 
 impl NamedStructure {
-    /// All, the shortest first.
+    /// All structures, the shortest first.
     pub const ALL: [NamedStructure; 9] = [
         NamedStructure::Proportional,
         NamedStructure::Integral,

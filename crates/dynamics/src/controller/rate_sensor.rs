@@ -1,11 +1,11 @@
-//! The dynamics of the sensor of a rate: its filter and its dead time.
+//! Dynamics of the sensor of a rate: its filter and its dead time.
 
 use num_complex::Complex64;
 
 use crate::analytic::Analytic;
 use crate::linear::{LinearError, Polynomial, TransferFunction};
 
-/// The sensor of a rate that is fed forward.
+/// Sensor of a rate that is fed forward.
 ///
 /// ```text
 /// H_v(s) = e^(-s tau)                                          no filter
@@ -13,10 +13,10 @@ use crate::linear::{LinearError, Polynomial, TransferFunction};
 /// H_v(s) = e^(-s tau) w^2/(s^2 + 2 xi w s + w^2)               second order
 /// ```
 ///
-/// H_v(0) = 1: an error of its gain belongs to the plant, of which it is an uncertain parameter.
+/// H_v(0) = 1: a gain error of the sensor is an uncertain parameter of the plant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RateSensor {
-    /// Its low-pass filter.
+    /// Low-pass filter of the sensor.
     pub filter: RateFilter,
     /// Dead time tau in s.
     pub delay_s: f64,
@@ -25,19 +25,19 @@ pub struct RateSensor {
 /// A low-pass filter with a static gain of 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum RateFilter {
-    /// What comes in goes out.
+    /// No filter: the output equals the input.
     #[default]
     None,
     /// w/(s + w).
     FirstOrder {
-        /// w in rad/s.
+        /// Corner frequency w in rad/s.
         frequency_rad_per_s: f64,
     },
     /// w^2/(s^2 + 2 xi w s + w^2).
     SecondOrder {
-        /// w in rad/s.
+        /// Natural frequency w in rad/s.
         frequency_rad_per_s: f64,
-        /// xi.
+        /// Damping ratio xi.
         damping_ratio: f64,
     },
 }
@@ -63,7 +63,7 @@ impl RateFilter {
         }
     }
 
-    /// H at s in rad/s, or over a set of such.
+    /// H at s in rad/s, or over a set of values of s.
     pub fn response<A: Analytic>(&self, s: A) -> A {
         let one = A::from(1.0);
         match *self {
@@ -77,7 +77,7 @@ impl RateFilter {
         }
     }
 
-    /// w in rad/s; `None` without a filter.
+    /// Filter frequency w in rad/s; `None` without a filter.
     pub fn frequency_rad_per_s(&self) -> Option<f64> {
         match *self {
             RateFilter::None => None,
@@ -86,7 +86,7 @@ impl RateFilter {
         }
     }
 
-    /// The largest |H(jw)| at any frequency: 1/(2 xi sqrt(1 - xi^2)) of a filter that resonates.
+    /// Largest |H(jw)| at any frequency: 1/(2 xi sqrt(1 - xi^2)) for a filter that resonates.
     ///
     /// # Example
     /// ```
@@ -105,7 +105,7 @@ impl RateFilter {
 }
 
 impl RateSensor {
-    /// Whether H_v is 1.
+    /// True if H_v is 1.
     pub fn is_direct(&self) -> bool {
         *self == RateSensor::default()
     }
@@ -117,7 +117,8 @@ impl RateSensor {
     /// time.
     ///
     /// # Example
-    /// A filter at its corner, behind 1 ms: half the power, and 45 degrees less 0.1 rad.
+    /// A filter at its corner with 1 ms of dead time: half the power, and a lag of 45 degrees plus
+    /// 0.1 rad.
     /// ```
     /// use phea_dynamics::controller::{RateFilter, RateSensor};
     /// use phea_dynamics::portable::argument;

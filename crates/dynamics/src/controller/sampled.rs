@@ -3,21 +3,21 @@ use nalgebra::{DMatrix, DVector};
 use super::{AntiWindup, Compensator, Controller, Section, integral_row};
 use crate::linear::{LinearError, TimeDomain, TransferFunction};
 
-/// A controller ready to run once a sample.
+/// Controller ready to run once per sample.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampledController {
     feedback: Vec<Section>,
     prefilter: Vec<Section>,
-    /// H of an inner signal that is fed back; `None` where none is.
+    /// Sections of H, which feeds an inner signal back; `None` if there is no such signal.
     inner: Option<Vec<Section>>,
-    /// Reads the integral part of the command off the states of the feedback.
+    /// Row that gives the integral part of the command from the states of the feedback compensator.
     integral: Vec<f64>,
     command_limit: f64,
     anti_windup: AntiWindup,
     sample_time_s: f64,
 }
 
-/// All that changes from sample to sample.
+/// All values that change from sample to sample.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ControllerState {
     feedback: Vec<[f64; 2]>,
@@ -26,50 +26,50 @@ pub struct ControllerState {
 }
 
 impl ControllerState {
-    /// Every number in it: two for each section of the feedback, then of the prefilter, then of
-    /// what feeds an inner signal back.
+    /// All numbers of the state: two for each section of the feedback, then of the prefilter, then
+    /// of the inner feedback.
     pub fn memories(&self) -> Vec<f64> {
         [self.feedback.as_flattened(), self.prefilter.as_flattened(), self.inner.as_flattened()].concat()
     }
 }
 
-/// The values that a controller reads at a sample.
+/// Values that a controller reads at a sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ControllerInput {
-    /// r.
+    /// Reference r.
     pub reference: f64,
-    /// y.
+    /// Measurement y.
     pub measurement: f64,
-    /// p, of which H p is subtracted from the command.
+    /// Inner signal p; H p is subtracted from the command.
     pub inner: f64,
-    /// A value that is added to the command.
+    /// Value that is added to the command.
     pub added: f64,
 }
 
-/// What one sample gives.
+/// Outputs of one sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ControllerOutput {
     /// The command, within its limits.
     pub command: f64,
-    /// The command before its limits.
+    /// Command before its limits.
     pub wanted: f64,
-    /// Part of the command that the integral part of G holds, the error of this sample not yet in
-    /// it; zero where nothing integrates.
+    /// Part of the command held by the integral part of G, before the error of this sample is
+    /// added; zero if nothing integrates.
     pub integral: f64,
-    /// Whether the limit was reached.
+    /// True if the limit was reached.
     pub limited: bool,
-    /// The reference after the prefilter.
+    /// Reference after the prefilter.
     pub filtered_reference: f64,
 }
 
 impl Controller {
-    /// The controller as it is deployed with this sample time: continuous compensators discretised
-    /// by the timing's method, sampled ones taken as they are. A prefilter that acts before the
-    /// samples is not part of it.
+    /// Controller as deployed with this sample time: continuous compensators discretised by the
+    /// timing's method, sampled ones unchanged. A prefilter that acts before the sampler is not
+    /// part of it.
     ///
     /// # Errors
-    /// A compensator that is improper, has dead time or cannot be discretised, or a sampled one
-    /// with another sample time.
+    /// Compensator that is improper, has dead time or cannot be discretised, or a sampled one with
+    /// another sample time.
     pub fn sampled(&self, sample_time_s: f64) -> Result<SampledController, LinearError> {
         let sampled = |compensator: &Compensator| -> Result<TransferFunction, LinearError> {
             let function = compensator.transfer_function()?;
@@ -107,12 +107,12 @@ impl SampledController {
         self.sample_time_s
     }
 
-    /// The same without a limit of its command.
+    /// Controller without a limit of its command.
     pub(crate) fn unlimited(&self) -> SampledController {
         SampledController { command_limit: f64::INFINITY, ..self.clone() }
     }
 
-    /// The state at rest.
+    /// State at rest.
     pub fn at_rest(&self) -> ControllerState {
         ControllerState {
             feedback: vec![[0.0; 2]; self.feedback.len()],
@@ -125,14 +125,14 @@ impl SampledController {
         self.inner.as_deref().unwrap_or_default()
     }
 
-    /// True where it feeds an inner signal back.
+    /// True if it feeds an inner signal back.
     pub fn reads_inner(&self) -> bool {
         self.inner.is_some()
     }
 
-    /// The state in which it holds a command while reference and measurement do not change: an
-    /// integral part carries the command, and a controller without one gives its response to the
-    /// error. No inner signal is fed back: see [`SampledController::holding_with`].
+    /// State in which the controller holds a command while reference and measurement do not change:
+    /// an integral part carries the command, and a controller without one gives its response to the
+    /// error. Without feedback of an inner signal: see [`SampledController::holding_with`].
     ///
     /// # Example
     /// ```
@@ -151,10 +151,11 @@ impl SampledController {
         self.holding_with(&ControllerInput { reference, measurement, ..ControllerInput::default() }, command)
     }
 
-    /// The same while an inner signal that is fed back does not change either.
+    /// State in which the controller holds a command while reference, measurement and the inner
+    /// signal do not change.
     ///
     /// # Example
-    /// The integral part holds what is fed back without a high pass.
+    /// The integral part balances the inner signal that is fed back without a high pass.
     /// ```
     /// use phea_dynamics::controller::{Compensator, Controller, ControllerInput, Element, InnerFeedback, Timing};
     /// let feedback = Compensator::new(vec![Element::Gain(2.0), Element::Integrator]);
@@ -180,11 +181,11 @@ impl SampledController {
         ControllerState { feedback, prefilter, inner }
     }
 
-    /// A state with these memories, in the order of [`ControllerState::memories`]; `None` for
-    /// another number of them.
+    /// State with these memories, in the order of [`ControllerState::memories`]; `None` for another
+    /// number of them.
     ///
     /// # Example
-    /// A controller goes on where another left off.
+    /// A controller continues from the memories of another.
     /// ```
     /// use phea_dynamics::controller::{Compensator, Controller, Element};
     /// let feedback = Compensator::new(vec![Element::Gain(2.0), Element::Integrator]);
@@ -205,8 +206,7 @@ impl SampledController {
         Some(ControllerState { feedback, prefilter, inner })
     }
 
-    /// The steady response of prefilter and feedback to constant inputs; `None` for one that
-    /// integrates.
+    /// Steady gains of prefilter and feedback for constant inputs; `None` for one that integrates.
     ///
     /// # Example
     /// ```
@@ -224,7 +224,7 @@ impl SampledController {
         })
     }
 
-    /// The steady response of what feeds an inner signal back; zero where none is.
+    /// Steady gain of the inner feedback; zero without one.
     pub fn steady_inner_gain(&self) -> f64 {
         let gains = self.inner.iter().flatten().map(|section| section.steady_gain().unwrap_or(0.0));
         if self.reads_inner() { gains.product() } else { 0.0 }
@@ -250,15 +250,15 @@ impl SampledController {
         self.step_with(state, &ControllerInput { reference, measurement, ..ControllerInput::default() })
     }
 
-    /// The same with what is added to the command and an inner signal that is fed back: the limit
-    /// is that of the sum.
+    /// One sample with a value added to the command and an inner signal that is fed back; the limit
+    /// applies to the sum.
     ///
     /// ```text
     /// u = limit(G (F r - y) - H p + a)
     /// ```
     ///
     /// # Example
-    /// Six that the feedback requires and nine that are added reach the limit of ten.
+    /// A feedback command of six and an added value of nine reach the limit of ten.
     /// ```
     /// use phea_dynamics::controller::{Compensator, Controller, ControllerInput, Element};
     /// let feedback = Compensator::new(vec![Element::Gain(2.0)]);
@@ -289,7 +289,7 @@ impl SampledController {
         ControllerOutput { command, wanted, integral, limited: command != wanted, filtered_reference }
     }
 
-    /// The command within its limit, and before it, with what lies beside the feedback.
+    /// Command within its limit and command before it, including the value added to the feedback.
     fn feedback_step(&self, state: &mut [[f64; 2]], error: f64, beside: f64) -> (f64, f64) {
         let before = (self.anti_windup == AntiWindup::Clamping).then(|| state.to_vec());
         let last = self.feedback.len().saturating_sub(1);
@@ -315,14 +315,14 @@ impl SampledController {
     }
 }
 
-/// The part of the output that feedback may have so that the sum stays within its limit.
+/// Part of the output that feedback may have so that the sum stays within its limit.
 fn within(wanted: f64, limit: f64, beside: f64, output: f64) -> f64 {
     let command = wanted.clamp(-limit, limit);
     if command == wanted { output } else { command - beside }
 }
 
-/// The row that reads the integral part off the states of these sections: their matrices follow
-/// from the response to each state alone and to the input alone.
+/// Row that gives the integral part from the states of these sections: their matrices follow from
+/// the response to each single state and to the input.
 fn integral_of(function: &TransferFunction, sections: &[Section]) -> Vec<f64> {
     let states = 2 * sections.len();
     let next = |state: &[f64], input: f64| -> Vec<f64> {

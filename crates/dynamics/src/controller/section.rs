@@ -3,11 +3,11 @@ use num_complex::Complex64;
 use crate::linear::{LinearError, LinearOperation, Polynomial, TimeDomain, TransferFunction};
 use crate::order::sort_by_number;
 
-/// Denominators at z = 1 up to this are of integrators: 1e-12 rad of pole angle, beyond any sampled
-/// plant.
+/// Largest denominator at z = 1 of a section that integrates: 1e-12 rad of pole angle, below any
+/// sampled plant.
 const INTEGRATING: f64 = 1e-12;
 
-/// A second-order difference equation, in the transposed direct form that rounds least.
+/// Second-order difference equation, in the transposed direct form that rounds least.
 ///
 /// ```text
 /// H(z) = (b0 + b1 z^-1 + b2 z^-2)/(1 + a1 z^-1 + a2 z^-2)
@@ -15,9 +15,9 @@ const INTEGRATING: f64 = 1e-12;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Section {
-    /// b0, b1, b2
+    /// Coefficients b0, b1, b2.
     pub numerator: [f64; 3],
-    /// a1, a2
+    /// Coefficients a1, a2.
     pub denominator: [f64; 2],
 }
 
@@ -59,11 +59,11 @@ impl Section {
         Ok(cascade(function))
     }
 
-    /// The section as a transfer function in z; poles at z = 0 that only stand for its order are
-    /// left out.
+    /// The section as a transfer function in z; poles at z = 0 that only pad its order are left
+    /// out.
     ///
     /// # Errors
-    /// Those of [`Polynomial::roots`], and [`LinearError::SampleTime`].
+    /// Errors of [`Polynomial::roots`], and [`LinearError::SampleTime`].
     pub fn transfer_function(&self, sample_time_s: f64) -> Result<TransferFunction, LinearError> {
         let [a1, a2] = self.denominator;
         let [b0, b1, b2] = self.numerator;
@@ -74,12 +74,12 @@ impl Section {
             .in_domain(TimeDomain::Discrete { sample_time_s })
     }
 
-    /// The output for this input and state.
+    /// Output for this input and state.
     pub fn output(&self, state: [f64; 2], input: f64) -> f64 {
         self.numerator[0] * input + state[0]
     }
 
-    /// The state in which a constant input gives a constant output, which replaces the input; for a
+    /// State in which a constant input gives a constant output, which replaces the input; for a
     /// section that integrates, the output is the wanted one.
     pub(super) fn settled(&self, signal: &mut f64, wanted: f64) -> [f64; 2] {
         let input = *signal;
@@ -90,13 +90,13 @@ impl Section {
         [self.numerator[1] * input - self.denominator[0] * *signal + second, second]
     }
 
-    /// The final output for a constant input of one; `None` for a section that integrates.
+    /// Final output for a constant input of one; `None` for a section that integrates.
     pub(super) fn steady_gain(&self) -> Option<f64> {
         let under = 1.0 + self.denominator.iter().sum::<f64>();
         (under.abs() > INTEGRATING).then(|| self.numerator.iter().sum::<f64>() / under)
     }
 
-    /// The next state, once the output is known (limited or not).
+    /// Next state, once the output is known (limited or not).
     pub fn advance(&self, state: [f64; 2], input: f64, output: f64) -> [f64; 2] {
         [
             self.numerator[1] * input - self.denominator[0] * output + state[1],
@@ -109,7 +109,7 @@ fn cascade(function: &TransferFunction) -> Vec<Section> {
     let mut poles = grouped(function.poles());
     sort_by_number(&mut poles, |group| -distance_from_one(group));
     let mut zeros = grouped(function.zeros());
-    // Pairs first: they need a section of order two, and there are always enough of those.
+    // pairs first: they need a section of order two, of which there are always enough
     zeros.sort_by_key(|group| std::cmp::Reverse(group.len()));
     let mut sections: Vec<(Vec<Complex64>, Vec<Complex64>)> =
         poles.into_iter().map(|group| (group, vec![])).collect();
@@ -127,8 +127,8 @@ fn cascade(function: &TransferFunction) -> Vec<Section> {
     sections.iter().enumerate().map(|(index, (poles, zeros))| section(poles, zeros, gain(index))).collect()
 }
 
-/// Conjugate pairs together, real roots two by two beginning with those nearest z = 1, a single one
-/// left over.
+/// Groups of roots: conjugate pairs, then real roots two by two beginning with those nearest z = 1,
+/// a single one last.
 fn grouped(roots: &[Complex64]) -> Vec<Vec<Complex64>> {
     let mut groups: Vec<Vec<Complex64>> =
         roots.iter().filter(|root| root.im > 0.0).map(|root| vec![*root, root.conj()]).collect();

@@ -1,31 +1,31 @@
-//! The virtual impedance of an outer loop: mass, damper and spring between a load and its rest
+//! Virtual impedance of an outer loop: mass, damper and spring between a load and its rest
 //! position.
 
 use crate::analytic::Analytic;
 use crate::linear::{LinearError, Polynomial, TransferFunction};
 
-/// What a force reference gives way by for the position of a load.
+/// Virtual impedance: the force by which the reference yields to the position of a load.
 ///
 /// ```text
-/// Z_v(s) = (M_v s^2 + B_v s + K_v)/(tau s + 1)^n        n = 2 with a mass, 1 with a damper, 0 with a spring alone
+/// Z_v(s) = (M_v s^2 + B_v s + K_v)/(tau s + 1)^n        n = 2 with a mass, 1 with a damper, 0 with only a spring
 /// u = G (F r - y),    y = H (F_e + Z_v (x_L - x_0))
 /// ```
 ///
-/// The filter makes damper and mass proper: without them there is none.
+/// The filter makes damper and mass proper; without damper and mass there is no filter.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct VirtualImpedance {
-    /// M_v in kg.
+    /// Virtual mass M_v in kg.
     pub mass: f64,
-    /// B_v in N s/m.
+    /// Virtual damping B_v in N s/m.
     pub damping: f64,
-    /// K_v in N/m.
+    /// Virtual stiffness K_v in N/m.
     pub stiffness: f64,
-    /// tau in s.
+    /// Filter time constant tau in s.
     pub filter_time_s: f64,
 }
 
 impl VirtualImpedance {
-    /// Whether Z_v is zero.
+    /// True if Z_v is zero.
     pub fn is_zero(&self) -> bool {
         self.mass == 0.0 && self.damping == 0.0 && self.stiffness == 0.0
     }
@@ -77,9 +77,9 @@ impl VirtualImpedance {
         )
     }
 
-    /// 1/(M_v s^2 + B_v s + K_v), without the filter: how far the load has to move for a force. In
-    /// series with the controller of a position it is that of a force, see the theory of impedance
-    /// control.
+    /// 1/(M_v s^2 + B_v s + K_v), without the filter: the displacement of the load per unit of
+    /// force. In series with a position controller it gives a force controller, see the theory of
+    /// impedance control.
     ///
     /// # Errors
     /// [`LinearError`] for an impedance of zero.
@@ -87,7 +87,7 @@ impl VirtualImpedance {
         TransferFunction::from_polynomials(&Polynomial::new(vec![1.0]), &Polynomial::new(self.numerator()))
     }
 
-    /// Z_v at s in rad/s, or over a set of such.
+    /// Z_v at s in rad/s, or over a set of values of s.
     pub fn response<A: Analytic>(&self, s: A) -> A {
         let own = (s * s).scaled(self.mass) + s.scaled(self.damping) + A::from(self.stiffness);
         let lag = s.scaled(self.filter_time_s) + A::from(1.0);
@@ -98,7 +98,7 @@ impl VirtualImpedance {
         }
     }
 
-    /// At least |Z_v(jv)| of every v from w on: each term at its largest.
+    /// Upper bound of |Z_v(jv)| for every v: each term at its largest.
     ///
     /// # Example
     /// ```
@@ -118,8 +118,8 @@ impl VirtualImpedance {
         }
     }
 
-    /// Half the power of the filter, where the impedance begins to lag, in rad/s; `None` without a
-    /// filter.
+    /// Half-power frequency of the filter in rad/s, where the impedance begins to lag; `None`
+    /// without a filter.
     pub fn corner_rad_per_s(&self) -> Option<f64> {
         (self.order() > 0 && self.filter_time_s > 0.0).then(|| 1.0 / self.filter_time_s)
     }

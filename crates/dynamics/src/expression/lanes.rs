@@ -6,7 +6,7 @@ use super::Expression;
 use crate::scalar::{LANES, Lanes};
 
 impl Expression {
-    /// The first result at each of these points, with the bits of [`Expression::number`]: each
+    /// First result at each of these points, bit for bit that of [`Expression::number`]: each
     /// operation is read once for four points.
     ///
     /// # Example
@@ -28,7 +28,7 @@ struct FirstResults<'e> {
 impl WithSimd for FirstResults<'_> {
     type Output = Vec<f64>;
 
-    // Inlined into code for the widest vectors that the processor has.
+    // inlined, so that it is compiled for the widest vectors of the processor
     #[inline(always)]
     fn with_simd<V: Simd>(self, _: V) -> Vec<f64> {
         let FirstResults { expression, points } = self;
@@ -46,7 +46,7 @@ impl WithSimd for FirstResults<'_> {
     }
 }
 
-/// Each parameter at these points; lanes without a point have those of the last one.
+/// Each parameter at these points; unused lanes repeat the last point.
 fn parameters(points: &[Vec<f64>], count: usize) -> Vec<Lanes> {
     let number = |lane: usize, parameter: usize| {
         let point = points.get(lane).or(points.last());

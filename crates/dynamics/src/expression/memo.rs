@@ -3,17 +3,17 @@ use std::sync::Arc;
 
 use super::{Expression, Node, NodeIndex};
 
-/// Fewer operations than this cost less than finding what they gave before.
+/// Number of operations below which evaluation costs less than finding a stored result.
 const OPERATIONS_MINIMUM: usize = 200;
-/// Results of a costly part that are kept, of some 200 bytes each.
+/// Largest number of stored results of a costly part, of some 200 bytes each.
 const KEPT_MAXIMUM: usize = 200_000;
 
-/// Remembers what most operations of an expression gave, where they are computed from a few of its
+/// Stores the results of most operations of an expression, if they are computed from a few of its
 /// parameters.
 ///
-/// In a plant over an operating region nearly all operations find where valve and chambers settle,
-/// and need force and velocity alone; a search moves all parameters, and returns to the same force
-/// and velocity again and again.
+/// For a plant over an operating region nearly all operations find the steady state of valve and
+/// chambers, and need force and velocity only; a search moves all parameters, and returns to equal
+/// force and velocity again and again.
 #[derive(Clone, Debug, Default)]
 pub struct EvaluationMemo(Option<Remembered>);
 
@@ -21,9 +21,9 @@ pub struct EvaluationMemo(Option<Remembered>);
 struct Remembered {
     expression: Arc<Expression>,
     part: CostlyPart,
-    /// What the part gave, by the bits of its parameters.
+    /// Results of the part, by the bits of its parameters.
     kept: BTreeMap<Vec<u64>, Vec<f64>>,
-    /// The last value of each operation: within the part only where the others need it.
+    /// Last value of each operation; within the part only if the others need it.
     values: Vec<f64>,
 }
 
@@ -32,14 +32,14 @@ struct Remembered {
 struct CostlyPart {
     parameters: Vec<usize>,
     operations: Vec<NodeIndex>,
-    /// Those of them that an operation outside of the part, or the reader of a result, needs.
+    /// Operations of the part that an operation outside it, or the reader of a result, needs.
     given: Vec<NodeIndex>,
     /// All other operations.
     others: Vec<NodeIndex>,
 }
 
 impl EvaluationMemo {
-    /// All results for these numbers: the bits of [`Expression::evaluate`].
+    /// All results for these numbers, bit for bit those of [`Expression::evaluate`].
     ///
     /// # Example
     /// ```
@@ -96,8 +96,8 @@ impl Remembered {
 }
 
 impl CostlyPart {
-    /// Of the fewest parameters from which three quarters of the operations are computed; empty if
-    /// that takes all of them.
+    /// The part with the fewest parameters from which three quarters of the operations are
+    /// computed; empty if that takes all parameters.
     fn of(expression: &Expression) -> CostlyPart {
         let nodes = expression.nodes();
         let needs = needs(nodes);
@@ -125,7 +125,7 @@ impl CostlyPart {
     }
 }
 
-/// Which parameters each operation is computed from, a bit each.
+/// Parameters from which each operation is computed, a bit each.
 fn needs(nodes: &[Node]) -> Vec<u64> {
     let mut needs: Vec<u64> = Vec::with_capacity(nodes.len());
     for node in nodes {
@@ -157,7 +157,7 @@ mod tests {
         numbers.into_iter().map(f64::to_bits).collect()
     }
 
-    /// Points that come again, zeros of both signs, NaN, and another expression in between.
+    /// Repeated points, zeros of both signs, NaN, and another expression in between.
     #[test]
     fn what_is_remembered_has_the_bits_of_what_is_computed() {
         let (expression, other) = (expression(), expression());
@@ -180,7 +180,7 @@ mod tests {
             assert_eq!(bits(found), bits(expression.evaluate(point)), "{point:?}");
         }
         assert_eq!(memo.0.as_ref().map(|one| one.kept.len()), Some(5));
-        // a missing value counts as NaN, and not as zero
+        // a missing value counts as NaN, not as zero
         for point in [&[1.0, 2.0, 0.0][..], &[1.0, 2.0]] {
             assert_eq!(
                 bits(memo.evaluate(&expression, point)),

@@ -42,12 +42,12 @@ pub enum Node {
     Unary(Unary, NodeIndex),
     /// An operation on two earlier nodes.
     Binary(Binary, NodeIndex, NodeIndex),
-    /// The third where the first is less than the second, the fourth elsewhere.
+    /// The third node if the first is less than the second, otherwise the fourth.
     Select(NodeIndex, NodeIndex, NodeIndex, NodeIndex),
 }
 
 impl Node {
-    // in line where little is optimised too: most of the time of a search is spent here
+    // inlined even with little optimisation: most of the time of a search is spent here
     #[inline(always)]
     pub(super) fn evaluate<S: Scalar>(&self, parameters: &[S], earlier: &[S]) -> S {
         match *self {
@@ -63,7 +63,7 @@ impl Node {
 }
 
 impl Node {
-    /// The earlier nodes that this one is computed from.
+    /// Earlier nodes from which this one is computed.
     pub(super) fn operands(&self) -> [Option<NodeIndex>; 4] {
         match *self {
             Node::Parameter(_) | Node::Constant(_) => [None; 4],
@@ -73,7 +73,7 @@ impl Node {
         }
     }
 
-    /// The same operation, its operands being where `places` says.
+    /// The operation with its operands moved to `places`.
     pub(super) fn moved(&self, places: &[NodeIndex]) -> Node {
         match *self {
             Node::Parameter(_) | Node::Constant(_) => *self,
@@ -120,8 +120,8 @@ impl Binary {
         }
     }
 
-    /// Sign between the operands, binding strength of the operation, and what its right operand
-    /// must exceed.
+    /// Sign between the operands, precedence of the operation, and the precedence that its right
+    /// operand must exceed.
     fn sign(self) -> (&'static str, u8, u8) {
         match self {
             Binary::Add => (" + ", 1, 0),
@@ -132,7 +132,7 @@ impl Binary {
     }
 }
 
-/// The formula of one node, with the fewest parentheses that keep its meaning.
+/// Formula of one node, with the fewest parentheses that preserve its meaning.
 pub(super) fn text(nodes: &[Node], parameters: &[String], index: NodeIndex) -> String {
     strength_and_text(nodes, parameters, index).1
 }

@@ -5,7 +5,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use super::node::{Binary, Node, NodeIndex, Unary};
 use crate::scalar::Scalar;
 
-/// Where [`Recorded`] numbers write what is done to them.
+/// Tape on which [`Recorded`] numbers write their operations.
 #[derive(Debug, Default)]
 struct Tape {
     nodes: RefCell<Vec<Node>>,
@@ -13,7 +13,7 @@ struct Tape {
 }
 
 impl Tape {
-    /// The index of this node, recorded now unless it already is.
+    /// Index of this node, which is recorded now unless it already is.
     fn index(&self, node: Node) -> NodeIndex {
         let mut nodes = self.nodes.borrow_mut();
         *self.known.borrow_mut().entry(key(node)).or_insert_with(|| {
@@ -23,7 +23,7 @@ impl Tape {
     }
 }
 
-/// Equal keys mean the same operation on the same operands.
+/// Key of a node; equal keys mean equal operations on equal operands.
 fn key(node: Node) -> [u64; 5] {
     match node {
         Node::Parameter(index) => [0, index as u64, 0, 0, 0],
@@ -34,23 +34,23 @@ fn key(node: Node) -> [u64; 5] {
     }
 }
 
-/// A number that remembers how it was computed.
+/// Number that remembers how it was computed.
 #[derive(Clone, Copy, Debug)]
 pub enum Recorded<'tape> {
-    /// A known number, not yet on any tape.
+    /// Known number, not yet on any tape.
     Constant(f64),
-    /// The outcome of a recorded operation.
+    /// Result of a recorded operation.
     Node(TapeEntry<'tape>),
 }
 
-/// A place on a tape.
+/// Position on a tape.
 #[derive(Clone, Copy, Debug)]
 pub struct TapeEntry<'tape> {
     tape: &'tape Tape,
     index: NodeIndex,
 }
 
-/// Results that are computed from numbers which remember it.
+/// Equations from recorded parameters to recorded results.
 type Equations<'a> = &'a mut dyn for<'tape> FnMut(&[Recorded<'tape>]) -> Vec<Recorded<'tape>>;
 
 pub(super) fn record(parameter_count: usize, equations: Equations<'_>) -> (Vec<Node>, Vec<NodeIndex>) {
@@ -62,7 +62,7 @@ pub(super) fn record(parameter_count: usize, equations: Equations<'_>) -> (Vec<N
     needed(&tape.nodes.take(), results)
 }
 
-/// The nodes that some result is computed from, in their order, and where the results are among
+/// Nodes from which some result is computed, in their order, and the positions of the results among
 /// them.
 pub(super) fn needed(nodes: &[Node], results: Vec<NodeIndex>) -> (Vec<Node>, Vec<NodeIndex>) {
     let mut wanted = vec![false; nodes.len()];
@@ -114,7 +114,7 @@ impl<'tape> Recorded<'tape> {
                 let node = Node::Binary(operation, x.index_on(tape), y.index_on(tape));
                 Recorded::Node(TapeEntry { tape, index: tape.index(node) })
             }
-            // Two numbers without a tape are both constants, matched above.
+            // two numbers without a tape are both constants, matched above
             (x, _, None) => x,
         }
     }
@@ -201,7 +201,7 @@ impl<'tape> Scalar for Recorded<'tape> {
                 let node = Node::Select(x, y, if_less, otherwise);
                 Recorded::Node(TapeEntry { tape, index: tape.index(node) })
             }
-            // A comparison of constants is decided above, and anything else has a tape.
+            // a comparison of constants is decided above; any other has a tape
             (_, _, None) => if_false,
         }
     }

@@ -46,8 +46,7 @@ impl<V: Fn(f64) -> f64, S: Fn(f64) -> f64> SlopedFunction<V, S> {
     }
 }
 
-/// The point where the sign of a function changes between two positive frequencies, to the last
-/// bit.
+/// Point between two positive frequencies where the sign of a function changes, to the last bit.
 pub(super) fn bisect(function: &impl Fn(f64) -> f64, low: f64, high: f64) -> f64 {
     let (mut low, mut high) = (low, high);
     let below = function(low) < 0.0;

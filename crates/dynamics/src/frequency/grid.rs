@@ -41,13 +41,14 @@ pub fn logarithmic_grid(from: f64, to: f64, points: usize) -> Result<Vec<f64>, L
 
 /// Points per decade of a search grid, in addition to those at the corners.
 const POINTS_PER_DECADE: f64 = 100.0;
-/// Rotations by dead time that a search follows.
+/// Rotations by dead time that a search resolves.
 const MAXIMUM_ROTATIONS: f64 = 1000.0;
-/// Magnitude below which rotations by dead time are of no interest.
+/// Magnitude below which rotations by dead time are ignored.
 const NEGLIGIBLE: f64 = 1e-6;
 
 /// Frequencies between which the response has no feature: dense in logarithm, denser around every
-/// zero and pole, and as dense as the dead time turns. Beyond its ends only asymptotes are left.
+/// zero and pole, and dense enough for the rotation by dead time. Beyond its ends only asymptotes
+/// remain.
 pub(super) fn search_grid(system: &TransferFunction) -> Vec<f64> {
     let corners: Vec<Complex64> = equivalent_roots(system);
     let sizes = corners.iter().map(|root| magnitude(*root)).chain(asymptotic_crossovers(system));
@@ -85,7 +86,8 @@ fn equivalent_roots(system: &TransferFunction) -> Vec<Complex64> {
     }
 }
 
-/// Where the low- and high-frequency asymptotes of a continuous system have unit magnitude.
+/// Frequencies at which the low- and high-frequency asymptotes of a continuous system have unit
+/// magnitude.
 fn asymptotic_crossovers(system: &TransferFunction) -> Vec<f64> {
     if system.domain() != TimeDomain::Continuous || system.gain() == 0.0 {
         return Vec::new();
@@ -122,7 +124,7 @@ fn extend_around(grid: &mut Vec<f64>, root: Complex64) {
     }
 }
 
-/// Points as dense as the dead time turns the response, where the response matters.
+/// Adds points dense enough for the rotation by dead time, where the response matters.
 fn extend_by_rotations(grid: &mut Vec<f64>, system: &TransferFunction, last_corner: f64, to: f64) {
     let dead_time = system.dead_time_s();
     if dead_time == 0.0 {

@@ -15,10 +15,10 @@ use crate::portable::{ln, magnitude};
 /// `factor`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GainMargin {
-    /// Phase crossover frequency in rad/s; zero or infinity where the response ends on the negative
+    /// Phase crossover frequency in rad/s; zero or infinity if the response ends on the negative
     /// axis.
     pub frequency_rad_per_s: f64,
-    /// 1/|L|. Above one: the gain may grow by it; below one: it may fall to it.
+    /// Factor 1/|L|. Above one, the gain may grow to this multiple; below one, it may fall to it.
     pub factor: f64,
 }
 
@@ -42,18 +42,18 @@ pub struct PhaseMargin {
     pub delay_s: f64,
 }
 
-/// The closest approach of the response to -1.
+/// Closest approach of the response to -1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModulusMargin {
     /// Frequency of the closest approach in rad/s; may be zero or infinity.
     pub frequency_rad_per_s: f64,
-    /// min |1 + L|, the inverse of the largest sensitivity.
+    /// Distance min |1 + L|, the inverse of the largest sensitivity.
     pub distance: f64,
 }
 
 /// All margins of a loop L, crossings in order of frequency.
 ///
-/// The numbers say how far the response is from -1; they are margins of stability only for a loop
+/// The numbers are distances of the response from -1; they are margins of stability only for a loop
 /// that is stable when closed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Margins {
@@ -66,21 +66,21 @@ pub struct Margins {
 }
 
 impl Margins {
-    /// The crossing that limits an increase of gain (smallest factor of at least one); none: any
+    /// Crossing that limits an increase of gain (smallest factor of at least one); `None` if any
     /// increase is allowed.
     pub fn gain_increase(&self) -> Option<&GainMargin> {
         let above = self.gain_margins.iter().filter(|margin| margin.factor >= 1.0);
         above.min_by(|a, b| a.factor.total_cmp(&b.factor))
     }
 
-    /// The crossing that limits a decrease of gain (largest factor below one); none: any decrease
+    /// Crossing that limits a decrease of gain (largest factor below one); `None` if any decrease
     /// is allowed.
     pub fn gain_decrease(&self) -> Option<&GainMargin> {
         let below = self.gain_margins.iter().filter(|margin| margin.factor < 1.0);
         below.max_by(|a, b| a.factor.total_cmp(&b.factor))
     }
 
-    /// Factor by which the gain may grow; infinity without limit.
+    /// Factor by which the gain may grow; infinite without limit.
     pub fn gain_increase_factor(&self) -> f64 {
         self.gain_increase().map_or(f64::INFINITY, |margin| margin.factor)
     }
@@ -90,28 +90,28 @@ impl Margins {
         self.gain_decrease().map_or(0.0, |margin| margin.factor)
     }
 
-    /// The crossing of the unit circle nearest to -1; none when |L| never is one.
+    /// Crossing of the unit circle nearest to -1; `None` if |L| is never one.
     pub fn critical_phase(&self) -> Option<&PhaseMargin> {
         self.phase_margins.iter().min_by(|a, b| a.phase_deg.abs().total_cmp(&b.phase_deg.abs()))
     }
 
-    /// Smallest angle to -1 in degrees; infinity when |L| never is one.
+    /// Smallest angle to -1 in degrees; infinite if |L| is never one.
     pub fn phase_margin_deg(&self) -> f64 {
         self.critical_phase().map_or(f64::INFINITY, |margin| margin.phase_deg)
     }
 
-    /// The crossing that the least dead time brings to -1.
+    /// Crossing that the least dead time brings to -1.
     pub fn critical_delay(&self) -> Option<&PhaseMargin> {
         self.phase_margins.iter().min_by(|a, b| a.delay_s.total_cmp(&b.delay_s))
     }
 
-    /// Least dead time in s that brings the loop to -1; infinity when none does.
+    /// Least dead time in s that brings the loop to -1; infinite if none does.
     pub fn delay_margin_s(&self) -> f64 {
         self.critical_delay().map_or(f64::INFINITY, |margin| margin.delay_s)
     }
 }
 
-/// The margins of the loop L, closed by -1 (characteristic equation 1 + L = 0).
+/// Margins of the loop L, closed by -1 (characteristic equation 1 + L = 0).
 ///
 /// ```text
 /// gain:     arg L = -180 deg   ->  1/|L|
@@ -121,7 +121,7 @@ impl Margins {
 ///
 /// Crossings are bracketed on a grid that is dense around every zero and pole, and refined to the
 /// last bits on the factors. A response that runs along the negative axis (a double integrator) has
-/// no crossing there; its phase margin of zero says so. With dead time the crossings are endless;
+/// no crossing there; its phase margin is zero. With dead time there are infinitely many crossings;
 /// the first thousand turns are listed.
 ///
 /// # Example
@@ -151,8 +151,8 @@ pub fn margins(open_loop: &TransferFunction) -> Margins {
     }
 }
 
-/// d ln L / dw at a frequency: the real part is the slope of ln |L|, the imaginary part that of the
-/// phase.
+/// d ln L / dw at a frequency: the real part is the slope of ln |L|, the imaginary part the slope
+/// of the phase.
 fn logarithmic_slope(open_loop: &TransferFunction, frequency: f64) -> Complex64 {
     let point = open_loop.boundary_point(frequency);
     let speed = match open_loop.domain() {
@@ -199,7 +199,7 @@ fn gain_margin(open_loop: &TransferFunction, frequency_rad_per_s: f64) -> GainMa
     GainMargin { frequency_rad_per_s, factor: 1.0 / magnitude(open_loop.at_frequency(frequency_rad_per_s)) }
 }
 
-/// Where the response starts or ends on the negative real axis with finite gain.
+/// Gain margins where the response starts or ends on the negative real axis with finite gain.
 fn gain_margins_at_the_ends(open_loop: &TransferFunction) -> Vec<GainMargin> {
     let start = (0.0, open_loop.dc_gain());
     let end = match open_loop.domain() {

@@ -7,51 +7,50 @@ use crate::linear::even_part::EvenPart;
 use crate::linear::{LinearError, LinearOperation, TimeDomain, TransferFunction};
 use crate::portable::magnitude;
 
-/// Frequencies in rad/s between which Re Z(jw) < 0; the upper end may be infinity.
+/// Frequency band in rad/s in which Re Z(jw) < 0; the upper end may be infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Band {
     /// Lower end, rad/s.
     pub from_rad_per_s: f64,
     /// Upper end, rad/s.
     pub to_rad_per_s: f64,
-    /// Frequency in rad/s at which the phase of Z is farthest beyond 90 degrees.
+    /// Frequency in rad/s at which the phase of Z most exceeds 90 degrees.
     pub worst_frequency_rad_per_s: f64,
-    /// Z(jw) there.
+    /// Impedance Z(jw) at that frequency.
     pub worst_impedance: Complex64,
 }
 
 /// A pole on the imaginary axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImaginaryPole {
-    /// Its frequency in rad/s: zero at the origin, infinity for a pole there (an impedance that
-    /// grows like s).
+    /// Frequency of the pole in rad/s: zero at the origin, infinity for a pole there (an impedance
+    /// that grows like s).
     pub frequency_rad_per_s: f64,
-    /// How many poles coincide there.
+    /// Number of poles that coincide there.
     pub multiplicity: usize,
     /// Residue of a simple pole (at infinity: the factor of s); passive when real and positive.
     pub residue: Option<Complex64>,
-    /// Whether the pole is simple with a positive real residue.
+    /// True if the pole is simple with a positive real residue.
     pub passive: bool,
 }
 
-/// The three conditions of passivity of an impedance, each with its numbers.
+/// Numbers of the three conditions for the passivity of an impedance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PassivityReport {
-    /// Whether all three conditions hold.
+    /// True if all three conditions hold.
     pub passive: bool,
-    /// Condition 1 fails by these poles.
+    /// Poles that violate condition 1.
     pub right_half_plane_poles: Vec<Complex64>,
-    /// Condition 2: the poles on the imaginary axis (of each conjugate pair, the one above).
+    /// Poles of condition 2, on the imaginary axis (for each conjugate pair, the one above).
     pub imaginary_poles: Vec<ImaginaryPole>,
-    /// Condition 3 fails in these bands, in which Re Z(jw) < 0.
+    /// Bands that violate condition 3, in which Re Z(jw) < 0.
     pub bands: Vec<Band>,
 }
 
-/// A pole counts as lying on the imaginary axis when its real part is below this share of its
-/// magnitude.
+/// Ratio of real part to magnitude below which a pole counts as on the imaginary axis.
 const ON_AXIS: f64 = 1e-12;
 
-/// Whether a driving-point impedance Z(s) is passive (Colgate 1988; Hogan and Buerger 2005; thesis
+/// Tests a driving-point impedance Z(s) for passivity (Colgate 1988; Hogan and Buerger 2005; thesis
 /// section 2.2).
 ///
 /// ```text
@@ -61,9 +60,9 @@ const ON_AXIS: f64 = 1e-12;
 /// ```
 ///
 /// Condition 3 is decided on N(jw) conj D(jw), an even polynomial in w formed in twice the working
-/// precision: the bands end at its sign changes. Where it vanishes to rounding, as for a lossless
-/// network, it counts as zero; so does a band in which Re Z nowhere falls below -1e-12 |Z|, since
-/// the factors themselves are rounded.
+/// precision: the bands end at its sign changes. A polynomial that vanishes to rounding, as for a
+/// lossless network, counts as zero; so does a band in which Re Z nowhere falls below -1e-12 |Z|,
+/// since the factors themselves are rounded.
 ///
 /// # Errors
 /// [`LinearError::WrongDomain`] for a sampled impedance, [`LinearError::NotRational`] for one with
@@ -127,12 +126,12 @@ fn poles_on_the_axis(
     result
 }
 
-/// Real to rounding, and positive.
+/// True if the number is real to rounding, and positive.
 fn is_positive_real(residue: Complex64) -> bool {
     residue.re > 0.0 && residue.im.abs() <= 1e-9 * residue.re
 }
 
-/// (s - p) Z(s) at a simple pole p.
+/// Residue (s - p) Z(s) at a simple pole p.
 fn residue_at(impedance: &TransferFunction, pole: Complex64) -> Complex64 {
     let mut others = impedance.poles().iter().filter(|other| **other != pole);
     let mut value = Complex64::new(impedance.gain(), 0.0);
@@ -157,7 +156,7 @@ fn pole_at_infinity(impedance: &TransferFunction) -> Option<ImaginaryPole> {
     })
 }
 
-/// The bands in which the even polynomial Re (N conj D) is negative.
+/// Bands in which the even polynomial Re (N conj D) is negative.
 fn bands_of_negative_real_part(impedance: &TransferFunction) -> Result<Vec<Band>, LinearError> {
     let real_part = EvenPart::of_product(impedance.gain(), impedance.zeros(), impedance.poles());
     let mut bands: Vec<(f64, f64)> = Vec::new();
@@ -185,7 +184,7 @@ fn bands_of_negative_real_part(impedance: &TransferFunction) -> Result<Vec<Band>
     Ok(sharpened.filter(|band| band.worst_impedance.re < -1e-12 * magnitude(band.worst_impedance)).collect())
 }
 
-/// A band with the frequency at which Re Z/|Z| is lowest, searched on ever finer grids.
+/// Band with the frequency at which Re Z/|Z| is lowest, searched on successively finer grids.
 fn band(impedance: &TransferFunction, from_rad_per_s: f64, to_rad_per_s: f64) -> Band {
     let cosine = |frequency: f64| {
         let value = impedance.at_frequency(frequency);

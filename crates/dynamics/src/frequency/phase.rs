@@ -36,7 +36,7 @@ impl TransferFunction {
         start + factors - frequency_rad_per_s * self.dead_time_s()
     }
 
-    /// Whether the factor of this root is negative at zero frequency.
+    /// True if the factor of this root is negative at zero frequency.
     fn reverses_sign(&self, root: Complex64) -> bool {
         let boundary = match self.domain() {
             TimeDomain::Continuous => 0.0,
@@ -46,13 +46,13 @@ impl TransferFunction {
     }
 }
 
-/// arg(jw - r), less the pi of a real root in the right half plane and the 2 pi of a pair.
+/// Phase arg(jw - r), less the pi of a real root in the right half plane and the 2 pi of a pair.
 fn continuous_part(root: Complex64, frequency: f64) -> f64 {
     let angle = atan2(frequency - root.im, root.re.abs());
     if root.re > 0.0 { -angle } else { angle }
 }
 
-/// arg(exp(j angle) - r), less the pi of a real root beyond +1.
+/// Phase arg(exp(j angle) - r), less the pi of a real root beyond +1.
 fn discrete_part(root: Complex64, angle: f64) -> f64 {
     let one = Complex64::new(1.0, 0.0);
     if magnitude(root) <= 1.0 {

@@ -1,27 +1,28 @@
-//! How well data determine variables: covariance, and directions that they do not determine.
+//! Uncertainty of variables determined from data: covariance, and directions that data do not
+//! determine.
 
 use crate::order::sort_by_number;
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::Linearised;
 
-/// How well data determine variables.
+/// Uncertainty of variables determined from data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertainty {
-    /// Standard deviation of each variable; infinite where nothing depends on it.
+    /// Standard deviation of each variable; infinite for one without influence.
     pub deviations: Vec<f64>,
-    /// Correlation of each pair, row by row.
+    /// Correlation of each pair of variables, row by row.
     pub correlations: Vec<f64>,
     /// Combinations of variables, the best determined first.
     pub directions: Vec<Direction>,
 }
 
-/// A combination of variables, and how well data determine it.
+/// Combination of variables, and its uncertainty.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Direction {
-    /// Share of each variable; of length one.
+    /// Components of the combination, one for each variable; of unit length.
     pub shares: Vec<f64>,
-    /// Standard deviation along it; infinite where nothing depends on it.
+    /// Standard deviation along the combination; infinite for one without influence.
     pub deviation: f64,
 }
 
@@ -35,13 +36,13 @@ const ROUNDING: f64 = 1e-15;
 /// cov = H^-1 S H^-1 n/(n - m)      H = sum psi' j j',  S = sum over groups of g g',  g = sum psi j within a group
 /// ```
 ///
-/// with j the derivatives of one residual, n residuals and m variables on which one depends.
-/// Residuals of one group may depend on each other, as readings of one instant do (Liang and Zeger
-/// 1986); `groups` has the index of each residual's group. Along each eigenvector of H the standard
-/// deviation is that of the covariance.
+/// with j the derivatives of one residual, n residuals and m variables that influence one.
+/// Residuals of one group may depend on each other, as readings at one instant do (Liang and Zeger
+/// 1986); `groups` has the index of each residual's group. The standard deviation along each
+/// eigenvector of H follows from the covariance.
 ///
 /// # Example
-/// The mean of n numbers is known to their deviation over the root of n.
+/// The standard deviation of the mean of n numbers is their deviation over the root of n.
 /// ```
 /// use phea_dynamics::least_squares::{Linearised, uncertainty};
 /// let residuals = vec![-1.0, 1.0, -1.0, 1.0, 1.0, -1.0, 1.0, -1.0];
@@ -58,18 +59,18 @@ pub fn uncertainty(at: &Linearised, groups: &[usize], count: usize, robust_beyon
     uncertainty_with_shared(at, groups, count, robust_beyond, &[])
 }
 
-/// The same where residuals also share errors that more data do not average out: an instrument that
-/// is wrong by the same all the time.
+/// Covariance where the residuals also have common errors that more data do not average out, such
+/// as a constant error of an instrument.
 ///
 /// ```text
 /// S = sum over groups of g g' n/(n - m) + sum over errors of e e'       e = sum psi' j d
 /// ```
 ///
 /// with d the change of each residual by one standard deviation of the error; `shared` has one row
-/// of them for each error.
+/// of d for each error.
 ///
 /// # Example
-/// The mean of many readings is known no better than the zero of the instrument.
+/// The mean of many readings is no more certain than the zero of the instrument.
 /// ```
 /// use phea_dynamics::least_squares::{Linearised, uncertainty_with_shared};
 /// let residuals = (0..10_000).map(|row| if row % 2 == 0 { 1.0 } else { -1.0 }).collect();
@@ -116,24 +117,24 @@ pub fn uncertainty_with_shared(
     information.fill_upper_triangle_with_lower_triangle();
     scatter.fill_upper_triangle_with_lower_triangle();
     of_errors.fill_upper_triangle_with_lower_triangle();
-    // a variable on which nothing depends takes no freedom from the residuals
+    // a variable without influence takes no degree of freedom from the residuals
     let varied = (0..count).filter(|index| information[(*index, *index)] > 0.0).count();
     let (rows, variables) = (at.residuals.len() as f64, varied as f64);
     let freedom = if rows > variables { rows / (rows - variables) } else { f64::INFINITY };
     sandwich(information, &(scatter * freedom + of_errors))
 }
 
-/// Efficiency of the loss with the usual bend where the noise is normal (Huber 1981).
+/// Efficiency of the loss with the usual bend for normal noise (Huber 1981).
 const EFFICIENCY: f64 = 0.95;
 
-/// Covariance of the variables at a minimum where the residuals are known to be independent, normal
+/// Covariance of the variables at a minimum for residuals that are known to be independent, normal
 /// and of standard deviation one, by the information in all of them.
 ///
 /// ```text
 /// cov = (sum j j')^-1/0.95
 /// ```
 ///
-/// A residual on which a variable of its own depends shows no noise: [`uncertainty`], which takes
+/// A residual that depends on a variable of its own shows no noise: [`uncertainty`], which takes
 /// the noise from the residuals, would count it as exact. 0.95 is the efficiency of the usual
 /// robust loss.
 ///
@@ -154,7 +155,7 @@ pub fn uncertainty_by_scale(at: &Linearised, count: usize) -> Uncertainty {
     sandwich(information, &scatter)
 }
 
-/// Adds the lower triangle of a row's product with itself.
+/// Adds the lower triangle of a row's outer product with itself.
 fn add_square(matrix: &mut DMatrix<f64>, row: &[f64]) {
     for (i, first) in row.iter().enumerate().filter(|(_, first)| **first != 0.0) {
         for (j, second) in row.iter().enumerate().take(i + 1) {

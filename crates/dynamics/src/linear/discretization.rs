@@ -1,4 +1,4 @@
-//! From continuous time to samples.
+//! Discretisation of continuous systems.
 
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
@@ -11,18 +11,19 @@ use super::transfer_function::TransferFunction;
 use super::{LinearError, LinearNumber, LinearOperation, StateSpace, TimeDomain, realization, zeros};
 use crate::portable::{cos, exp, expm1, sin, tan};
 
-/// How a continuous system becomes a sampled one.
+/// Method that discretises a continuous system.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum Discretization {
-    /// The trapezoidal rule, s = (2/T) (z - 1)/(z + 1).
+    /// Trapezoidal rule, s = (2/T) (z - 1)/(z + 1).
     #[default]
     Tustin,
-    /// The trapezoidal rule scaled so that the response is exact at one frequency.
+    /// Trapezoidal rule, scaled so that the response is exact at one frequency.
     PrewarpedTustin {
-        /// The frequency in rad/s at which the responses agree, below pi/T.
+        /// Frequency in rad/s at which the responses agree, below pi/T.
         frequency_rad_per_s: f64,
     },
-    /// Exact at the samples for an input that is constant between them (a converter's output).
+    /// Hold, exact at the samples for an input that is constant between them (a converter's
+    /// output).
     ZeroOrderHold,
     /// Zeros and poles mapped by z = exp(sT); all but one zero at infinity go to z = -1; the gain
     /// agrees at low frequency.
@@ -30,7 +31,7 @@ pub enum Discretization {
 }
 
 impl TransferFunction {
-    /// The sampled system; poles are mapped one by one, never through coefficients.
+    /// Sampled system; poles are mapped one by one, never through coefficients.
     ///
     /// A dead time must be a whole number of samples, except for the zero-order hold, which takes
     /// any: a fraction of a sample adds a pole at z = 0.
@@ -68,7 +69,7 @@ impl TransferFunction {
         }
     }
 
-    /// The bilinear image of every zero and pole.
+    /// Bilinear image of every zero and pole.
     ///
     /// ```text
     /// z = (kappa + s)/(kappa - s)          s - r contributes (kappa - r)/(z + 1) to the gain
@@ -145,7 +146,7 @@ impl TransferFunction {
 }
 
 impl StateSpace {
-    /// The sampled system by Tustin's rule (prewarped or not) or an exact zero-order hold.
+    /// Sampled system by Tustin's rule (prewarped or not) or an exact zero-order hold.
     ///
     /// # Errors
     /// [`LinearError::WrongDomain`] (also for [`Discretization::Matched`], which is for transfer
@@ -166,7 +167,7 @@ impl StateSpace {
         }
     }
 
-    /// The exact zero-order hold of the system with dead time at its inputs, which becomes states.
+    /// Exact zero-order hold of the system, with input dead time that becomes states.
     ///
     /// # Errors
     /// [`LinearError::WrongDomain`], [`LinearError::SampleTime`], [`LinearError::DeadTime`],
@@ -189,7 +190,7 @@ impl StateSpace {
         Ok(result)
     }
 
-    /// The bilinear image of the states, and inputs and outputs to match.
+    /// Bilinear image of the states, with matching inputs and outputs.
     ///
     /// ```text
     /// A_d = (kappa + A)(kappa - A)^-1,     kappa = 2/T
@@ -218,7 +219,7 @@ impl StateSpace {
     }
 }
 
-/// The exact zero-order hold with an input dead time of a fraction of a sample.
+/// Exact zero-order hold with an input dead time of a fraction of a sample.
 fn held_with_fraction(
     system: &StateSpace,
     sample_time_s: f64,
@@ -236,7 +237,7 @@ fn held_with_fraction(
             domain,
         );
     }
-    // the previous input acts until the fraction has passed, the present one for the rest
+    // the previous input acts until the fraction has passed, the current one for the rest
     let early = ExactStep::new(system.a(), system.b(), fraction_s);
     let rest_s = sample_time_s - fraction_s;
     let other = (rest_s != fraction_s).then(|| ExactStep::new(system.a(), system.b(), rest_s));
@@ -266,7 +267,7 @@ fn check_continuous(domain: TimeDomain, sample_time_s: f64) -> Result<(), Linear
     Ok(())
 }
 
-/// The kappa with which the bilinear image is exact at w.
+/// Factor kappa with which the bilinear image is exact at w.
 ///
 /// ```text
 /// s = kappa (z - 1)/(z + 1),     kappa = w/tan(w T/2)
@@ -279,7 +280,7 @@ pub(super) fn prewarped(frequency_rad_per_s: f64, sample_time_s: f64) -> Result<
     Ok(frequency_rad_per_s / tan(half_angle))
 }
 
-/// Whole samples, and the rest in s; a rest that is rounding counts as none.
+/// Whole samples of dead time, and the remainder in s; a remainder within rounding counts as none.
 pub(super) fn split_dead_time(dead_time_s: f64, sample_time_s: f64) -> (f64, f64) {
     let samples = dead_time_s / sample_time_s;
     if (samples - samples.round()).abs() <= 1e-9 * samples.max(1.0) {

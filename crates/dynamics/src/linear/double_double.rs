@@ -1,7 +1,7 @@
 //! Numbers of twice the working precision (about 32 digits), for sums that nearly cancel.
 //!
 //! A number is the unevaluated sum of two `f64`; the operations are those of Dekker (1971) and
-//! Knuth, with a fused multiply-add for the error of a product. Not for numbers beyond about 1e290.
+//! Knuth, with a fused multiply-add for the error of a product. Invalid beyond about 1e290.
 
 use num_complex::Complex64;
 use std::ops::{Add, Mul, Neg, Sub};
@@ -16,7 +16,7 @@ pub(crate) struct DoubleDouble {
 impl DoubleDouble {
     pub(crate) const ZERO: DoubleDouble = DoubleDouble { high: 0.0, low: 0.0 };
 
-    /// a + b without error.
+    /// Sum a + b without error.
     #[inline(always)]
     pub(crate) fn sum_of(a: f64, b: f64) -> Self {
         let high = a + b;
@@ -24,7 +24,7 @@ impl DoubleDouble {
         DoubleDouble { high, low: (a - (high - part)) + (b - part) }
     }
 
-    /// a b without error.
+    /// Product a b without error.
     #[inline(always)]
     pub(crate) fn product_of(a: f64, b: f64) -> Self {
         let high = a * b;
@@ -42,13 +42,13 @@ impl DoubleDouble {
         if self.high < 0.0 { -self } else { self }
     }
 
-    /// The quotient by an `f64`.
+    /// Quotient by an `f64`.
     #[inline(always)]
     pub(crate) fn divided_by(self, divisor: f64) -> Self {
         self.divided_by_wide(divisor.into())
     }
 
-    /// The quotient, good to about thirty digits.
+    /// Quotient, accurate to about thirty digits.
     #[inline(always)]
     pub(crate) fn divided_by_wide(self, divisor: Self) -> Self {
         let first = self.high / divisor.high;
@@ -56,7 +56,7 @@ impl DoubleDouble {
         DoubleDouble::normalised(first, rest.value() / divisor.high)
     }
 
-    /// The number times a power of two.
+    /// Number times a power of two.
     #[inline(always)]
     pub(crate) fn scaled(self, power_of_two: f64) -> Self {
         DoubleDouble { high: self.high * power_of_two, low: self.low * power_of_two }
@@ -121,7 +121,7 @@ pub(crate) struct ComplexDoubleDouble {
 }
 
 impl ComplexDoubleDouble {
-    /// z - root without error.
+    /// Difference z - root without error.
     #[inline(always)]
     pub(crate) fn difference_of(z: Complex64, root: Complex64) -> Self {
         ComplexDoubleDouble {
@@ -130,25 +130,25 @@ impl ComplexDoubleDouble {
         }
     }
 
-    /// The number times a power of two.
+    /// Number times a power of two.
     #[inline(always)]
     pub(crate) fn scaled(self, power_of_two: f64) -> Self {
         ComplexDoubleDouble { re: self.re.scaled(power_of_two), im: self.im.scaled(power_of_two) }
     }
 
-    /// The number times a real one: the same digits as the complex product, for half of its work.
+    /// Number times a real one: all digits of the complex product, at half the work.
     #[inline(always)]
     pub(crate) fn times_real(self, factor: f64) -> Self {
         self.times_wide(DoubleDouble::from(factor))
     }
 
-    /// The same with a real number of twice the working precision.
+    /// Number times a real one of twice the working precision.
     #[inline(always)]
     pub(crate) fn times_wide(self, factor: DoubleDouble) -> Self {
         ComplexDoubleDouble { re: factor * self.re, im: factor * self.im }
     }
 
-    /// The quotient, good to about thirty digits.
+    /// Quotient, accurate to about thirty digits.
     #[inline(always)]
     pub(crate) fn divided_by(self, divisor: Self) -> Self {
         let squares = divisor.re * divisor.re + divisor.im * divisor.im;
@@ -160,7 +160,7 @@ impl ComplexDoubleDouble {
         }
     }
 
-    /// The nearest ordinary complex number.
+    /// Nearest ordinary complex number.
     #[inline(always)]
     pub(crate) fn value(self) -> Complex64 {
         Complex64::new(self.re.value(), self.im.value())

@@ -15,8 +15,8 @@ use super::structure::{balance, irreducible_blocks};
 use super::{LinearError, LinearNumber};
 use crate::portable::magnitude;
 
-/// All eigenvalues, sorted, in exact conjugate pairs; that of an irreducible block which is
-/// singular to rounding is zero.
+/// All eigenvalues, sorted, in exact conjugate pairs; an irreducible block that is singular to
+/// rounding has the eigenvalue zero.
 pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Result<Vec<Complex64>, LinearError> {
     by_blocks(matrix, |block, values| {
         if is_singular(block)
@@ -27,14 +27,13 @@ pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Result<Vec<Complex64>, Linea
     })
 }
 
-/// The same for a matrix whose entries are themselves the result of a cancellation: no eigenvalue
-/// is taken for zero.
+/// All eigenvalues of a matrix whose entries result from a cancellation: none is taken as zero.
 pub(crate) fn eigenvalues_of_computed(matrix: &DMatrix<f64>) -> Result<Vec<Complex64>, LinearError> {
     by_blocks(matrix, |_, _| ())
 }
 
-/// The same in working precision, unsorted, for a matrix that is evaluated repeatedly: to a part of
-/// its largest eigenvalue, and not of each. `None` where the iteration stopped without an answer.
+/// Eigenvalues in working precision, unsorted, for a matrix that is evaluated repeatedly: accurate
+/// relative to the largest eigenvalue, not to each. `None` if the iteration did not converge.
 pub(crate) fn working_eigenvalues(mut matrix: DMatrix<f64>) -> Option<Vec<Complex64>> {
     if matrix.iter().any(|entry| !entry.is_finite()) {
         return None;
@@ -95,8 +94,8 @@ fn of_block(
     Ok(symmetrise(&values))
 }
 
-/// f/f' for f = det(s I - A), by elimination in twice the working precision on the matrix and its
-/// derivative I.
+/// Newton step f/f' for f = det(s I - A), by elimination in twice the working precision on the
+/// matrix and its derivative I.
 ///
 /// ```text
 /// f'/f = sum of u_k'/u_k over the pivots u
@@ -144,7 +143,7 @@ fn newton_step(matrix: &DMatrix<f64>, s: Complex64) -> Option<Complex64> {
     step.is_finite().then_some(step)
 }
 
-/// The eigenvalues on the diagonal blocks of a real Schur form.
+/// Eigenvalues on the diagonal blocks of a real Schur form.
 fn of_quasi_triangular(triangular: &DMatrix<f64>) -> Vec<Complex64> {
     let order = triangular.nrows();
     let mut values = Vec::with_capacity(order);
@@ -188,7 +187,7 @@ pub(super) fn of_two_by_two(a: f64, b: f64, c: f64, d: f64) -> [Complex64; 2] {
     }
 }
 
-/// Whether rounding the entries could make the matrix singular: its Skeel condition number, which
+/// True if rounding the entries could make the matrix singular: its Skeel condition number, which
 /// no scaling of rows (or, transposed, of columns) changes, reaches the inverse of the working
 /// precision.
 fn is_singular(matrix: &DMatrix<f64>) -> bool {

@@ -1,4 +1,4 @@
-//! The real part of a rational function on the imaginary axis, as an even polynomial.
+//! Real part of a rational function on the imaginary axis, as an even polynomial.
 
 use num_complex::Complex64;
 
@@ -8,8 +8,8 @@ use super::{LinearError, Polynomial};
 use crate::order::sort_numbers;
 use crate::portable::magnitude;
 
-/// The polynomial whose sign is that of the real part of a response N/D, its coefficients in twice
-/// the working precision, highest power first.
+/// Polynomial with the sign of the real part of a response N/D; coefficients in twice the working
+/// precision, highest power first.
 ///
 /// ```text
 /// R(x) = Re (N(jw) conj D(jw)),     x = w^2
@@ -21,7 +21,7 @@ pub(crate) struct EvenPart {
 }
 
 impl EvenPart {
-    /// N = gain prod (s - zero), D = prod (s - pole).
+    /// Even part for N = gain prod (s - zero), D = prod (s - pole).
     pub(crate) fn of_product(gain: f64, zeros: &[Complex64], poles: &[Complex64]) -> Self {
         let numerator = expand(gain, zeros);
         let mut reflected = expand(1.0, poles);
@@ -39,7 +39,7 @@ impl EvenPart {
         for (index, (&value, scale)) in product.iter().zip(&scales).enumerate() {
             let power = top - index;
             if power.is_multiple_of(2) {
-                // s^(2k) = (-x)^k; what cancels to rounding is zero
+                // s^(2k) = (-x)^k; a sum that cancels to rounding is zero
                 let signed = if (power / 2) % 2 == 1 { -value } else { value };
                 let noise = 1e4 * f64::EPSILON * f64::EPSILON * scale.value();
                 let kept = if value.value().abs() <= noise { DoubleDouble::ZERO } else { signed };
@@ -49,8 +49,8 @@ impl EvenPart {
         EvenPart { coefficients }
     }
 
-    /// Frequencies among which every sign change lies: the square roots of the magnitudes of all
-    /// roots in x, sorted.
+    /// Frequencies that include every sign change: the square roots of the magnitudes of all roots
+    /// in x, sorted.
     pub(crate) fn candidate_frequencies(&self) -> Result<Vec<f64>, LinearError> {
         let polynomial = Polynomial::new(self.coefficients.iter().map(|c| c.value()).collect());
         if polynomial.is_zero() {
@@ -81,8 +81,8 @@ impl EvenPart {
         }
     }
 
-    /// The end of a band, sharpened by bisection on the sign in its immediate neighbourhood; zero
-    /// and infinity stay.
+    /// End of a band, refined by bisection on the sign in its immediate neighbourhood; zero and
+    /// infinity stay.
     pub(crate) fn sign_change_near(&self, frequency: f64) -> f64 {
         let (mut low, mut high) = (frequency * (1.0 - 1e-7), frequency * (1.0 + 1e-7));
         if frequency == 0.0 || frequency.is_infinite() || self.sign_at(low) == self.sign_at(high) {

@@ -1,16 +1,16 @@
-//! Gain and zeros of a plant that is held and sampled, read off its states.
+//! Gain and zeros of a held and sampled plant, from its states.
 //!
 //! ```text
 //! x(k+1) = Phi x(k) + G_1 u(k-1) + G_0 u(k),   y = C x + D u              G_1 only with a fraction of a sample of dead time
-//! numerator:  N(z) = z^f P(z) det(z I - Phi),  f = 1 with that fraction, else 0
+//! numerator:  N(z) = z^f P(z) det(z I - Phi),  f = 1 with that fraction, otherwise 0
 //! ```
 //!
 //! Phi is block triangular, its blocks the poles one by one, so that P(z) is a substitution from
-//! the last state to the first. All of it is done in twice the working precision, in which poles at
-//! exp(-40) and at 0.99 together lose nothing. N is a polynomial: its values at roots of -1 give
-//! its coefficients, these the first guess of its zeros, and the response itself brings the zeros
-//! to full accuracy. What comes out is compared with the response along the unit circle, where it
-//! will be used; factors that miss it are refused.
+//! the last state to the first. All operations are done in twice the working precision, in which
+//! poles at exp(-40) and at 0.99 together lose no digits. N is a polynomial: its values at roots of
+//! -1 give its coefficients, which give the first guess of its zeros, and the response itself
+//! brings the zeros to full accuracy. The result is compared with the response along the unit
+//! circle, where it will be used; factors that do not agree are rejected.
 
 mod modes;
 mod numerator;
@@ -26,14 +26,14 @@ use super::wide::{Wide, WideColumn};
 use super::{LinearError, LinearNumber};
 pub use modes::{HeldFactors, HeldModes, HeldPoint};
 
-/// Beyond exp of this the poles of a sampled plant leave the range of numbers.
+/// Largest exponent for which the poles of a sampled plant stay in the range of numbers.
 const GROWTH_MAXIMUM: f64 = 300.0;
 
 /// A held and sampled plant with one input and one output, whose system matrix is block triangular.
 pub(super) struct Held {
     /// The diagonal blocks of Phi, from the last to the first.
     diagonal: Vec<DiagonalBlock>,
-    /// What of Phi stands above them, column by column.
+    /// Entries of Phi above the blocks, column by column.
     above: Wide,
     /// G_0
     present: Vec<DoubleDouble>,
@@ -43,7 +43,7 @@ pub(super) struct Held {
     feedthrough: f64,
 }
 
-/// z^f P(z), its derivative, and det(z I - Phi).
+/// Values z^f P(z), its derivative, and det(z I - Phi).
 pub(super) struct Local {
     value: ComplexDoubleDouble,
     slope: ComplexDoubleDouble,
@@ -51,7 +51,7 @@ pub(super) struct Local {
 }
 
 impl Held {
-    /// The plant with a zero-order hold at its input and a dead time of a fraction of a sample.
+    /// Plant with a zero-order hold at its input and a dead time of a fraction of a sample.
     ///
     /// # Errors
     /// [`LinearError::NotFinite`] for a plant that grows beyond the range of numbers within a
@@ -82,7 +82,7 @@ impl Held {
         held.filter(Held::is_finite).ok_or(unbounded)
     }
 
-    /// `None` where an entry of Phi is not finite.
+    /// Assembles the plant; `None` if an entry of Phi is not finite.
     fn assembled(
         plant: Chain,
         transition: &Wide,
@@ -113,7 +113,7 @@ impl Held {
         self.present.len()
     }
 
-    /// Degree that N(z) can have.
+    /// Largest degree of N(z).
     fn degree(&self) -> usize {
         if self.feedthrough == 0.0 && self.previous.is_none() {
             self.order().saturating_sub(1)
@@ -128,12 +128,12 @@ impl Held {
         Some(local.value * local.determinant)
     }
 
-    /// `None` at a pole.
+    /// Values at a point; `None` at a pole.
     pub(super) fn at(&self, z: ComplexDoubleDouble) -> Option<Local> {
         Arch::new().dispatch(VectorizedResponse { held: self, z, with_slope: true })
     }
 
-    /// b(z)
+    /// Input vector b(z).
     #[inline(always)]
     fn driven(&self, z: ComplexDoubleDouble) -> WideColumn {
         let mut driven = WideColumn::zero(self.order());
@@ -147,7 +147,7 @@ impl Held {
         driven
     }
 
-    /// C x
+    /// Output C x.
     #[inline(always)]
     fn read(&self, states: &WideColumn, start: f64) -> ComplexDoubleDouble {
         let mut sum = ComplexDoubleDouble::from(start);
@@ -157,7 +157,7 @@ impl Held {
         sum
     }
 
-    /// (z I - Phi)^-1 b in the place of b, from the last state to the first.
+    /// Solves (z I - Phi) x = b in place, from the last state to the first.
     #[inline(always)]
     fn substitute(&self, blocks: &[InvertedBlock], states: &mut WideColumn) {
         for (block, inverted) in self.diagonal.iter().zip(blocks) {
@@ -177,7 +177,7 @@ impl Held {
     }
 }
 
-/// A pole or a pair of them in Phi.
+/// Real pole or pair of poles in Phi.
 struct DiagonalBlock {
     first: usize,
     last: usize,
@@ -207,7 +207,7 @@ fn diagonal_blocks(transition: &Wide) -> Vec<DiagonalBlock> {
     blocks
 }
 
-/// A diagonal block of z I - Phi, inverted.
+/// Inverted diagonal block of z I - Phi.
 struct InvertedBlock {
     diagonal: [ComplexDoubleDouble; 2],
     determinant: ComplexDoubleDouble,
@@ -215,7 +215,7 @@ struct InvertedBlock {
 }
 
 impl DiagonalBlock {
-    /// Within z I - Phi; `None` where it is singular.
+    /// Inverse of the block within z I - Phi; `None` if it is singular.
     #[inline(always)]
     fn inverted(&self, z: ComplexDoubleDouble) -> Option<InvertedBlock> {
         let diagonal = self.diagonal.map(|entry| z - entry.into());
@@ -230,8 +230,8 @@ impl DiagonalBlock {
     }
 }
 
-/// The response of a plant at a point, with the instructions of the processor at hand; its slope is
-/// zero where it is not asked for.
+/// Response of a plant at a point, with the vector instructions of the processor; its slope is zero
+/// unless requested.
 struct VectorizedResponse<'a> {
     held: &'a Held,
     z: ComplexDoubleDouble,
@@ -267,7 +267,7 @@ impl WithSimd for VectorizedResponse<'_> {
     }
 }
 
-/// exp(A h), and the effect of a constant input over h.
+/// Step matrices: exp(A h), and the effect of a constant input over h.
 struct HeldStep {
     transition: Wide,
     input: Vec<DoubleDouble>,

@@ -1,19 +1,19 @@
-//! Eigenvalues alone of a small matrix, in working precision: by elimination to Hessenberg form
-//! (Martin and Wilkinson 1968), then by the iteration of Francis (1961) with two shifts at once.
-//! Without vectors, and within what is still coupled, it takes a quarter of the work of a Schur
-//! form, which is the reference for it.
+//! Eigenvalues, without eigenvectors, of a small matrix in working precision: by elimination to
+//! Hessenberg form (Martin and Wilkinson 1968), then by the iteration of Francis (1961) with double
+//! shifts. Restricted to coupled blocks, it takes a quarter of the work of a Schur form, which is
+//! its reference.
 
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use super::eigenvalues::of_two_by_two;
 
-/// Sweeps that one eigenvalue may take; each tenth has shifts of its own, so that no cycle is for
-/// ever.
+/// Largest number of sweeps for one eigenvalue; every tenth has exceptional shifts, so that no
+/// cycle is endless.
 const SWEEPS: usize = 40;
 const EXCEPTIONAL: usize = 10;
 
-/// The eigenvalues, unsorted; `None` where the iteration stopped without an answer.
+/// Eigenvalues, unsorted; `None` if the iteration did not converge.
 pub(super) fn eigenvalues(mut matrix: DMatrix<f64>) -> Option<Vec<Complex64>> {
     reduce(&mut matrix);
     let h = &mut matrix;
@@ -41,8 +41,8 @@ pub(super) fn eigenvalues(mut matrix: DMatrix<f64>) -> Option<Vec<Complex64>> {
     values.iter().all(|value| value.is_finite()).then_some(values)
 }
 
-/// To zeros below the first subdiagonal, by multiples of the row with the largest pivot and what
-/// undoes them in the columns.
+/// Reduces the matrix to zeros below the first subdiagonal, by multiples of the row with the
+/// largest pivot and the inverse operations on the columns.
 fn reduce(a: &mut DMatrix<f64>) {
     let order = a.nrows();
     for column in 0..order.saturating_sub(2) {
@@ -72,7 +72,7 @@ fn reduce(a: &mut DMatrix<f64>) {
     }
 }
 
-/// Whether the entry below the diagonal in this row is negligible against its neighbours.
+/// True if the entry below the diagonal in this row is negligible compared with its neighbours.
 fn is_apart(h: &DMatrix<f64>, row: usize, norm: f64) -> bool {
     let beside = h[(row - 1, row - 1)].abs() + h[(row, row)].abs();
     h[(row, row - 1)].abs() <= f64::EPSILON * if beside == 0.0 { norm } else { beside }
@@ -113,17 +113,17 @@ fn sweep(h: &mut DMatrix<f64>, start: usize, end: usize, exceptional: bool) {
     }
 }
 
-/// I - u v^T, which takes a column to its first entry alone; u has what v has times v_0.
+/// Reflection I - u v^T, which reduces a column to its first entry; u is v times v_0.
 struct Mirror {
     image: f64,
-    /// v, its first entry being one.
+    /// Vector v, with first entry one.
     across: [f64; 3],
-    /// u.
+    /// Vector u.
     along: [f64; 3],
 }
 
 impl Mirror {
-    /// `None` for a column of zeros.
+    /// Reflection of a column; `None` for a column of zeros.
     fn of(column: [f64; 3]) -> Option<Mirror> {
         let scale = column.iter().map(|entry| entry.abs()).sum::<f64>();
         if scale == 0.0 {
@@ -168,7 +168,7 @@ impl Mirror {
 mod tests {
     use super::*;
 
-    /// The largest distance from a value of one list to its nearest of the other.
+    /// Largest distance from a value of one list to the nearest of the other.
     fn farthest(found: &[Complex64], expected: &[Complex64]) -> f64 {
         let mut open = expected.to_vec();
         let mut most: f64 = 0.0;
@@ -180,8 +180,8 @@ mod tests {
         most
     }
 
-    /// The Schur form has them on its diagonal: full matrices, chains of lags whose matrix is
-    /// nearly triangular, and cycles that turn on without shifts of their own.
+    /// Eigenvalues equal the diagonal of the Schur form: full matrices, chains of lags whose matrix
+    /// is nearly triangular, and cycles that do not end without exceptional shifts.
     #[test]
     fn those_of_the_schur_form() {
         let mut seed = 5_u64;

@@ -1,7 +1,7 @@
 //! Series, parallel and negative feedback, for transfer functions and state space.
 //!
-//! The new zeros or poles of a sum are the roots of N_1 D_2 + N_2 D_1, which is evaluated from the
-//! factors in twice the working precision; its coefficients serve only to start the search.
+//! The new zeros or poles of a sum are the roots of N_1 D_2 + N_2 D_1, evaluated from the factors
+//! in twice the working precision; its coefficients serve only to start the search.
 
 use nalgebra::DMatrix;
 use num_complex::Complex64;
@@ -35,7 +35,7 @@ impl RootFactors {
         (value, slope)
     }
 
-    /// The factors of the sum of two products. Leading and trailing coefficients that cancel to
+    /// Factors of the sum of two products. Leading and trailing coefficients that cancel to
     /// rounding are zero.
     fn sum(&self, other: &RootFactors) -> Result<RootFactors, LinearError> {
         let (left, right) = (expand(self.gain, &self.roots), expand(other.gain, &other.roots));
@@ -69,7 +69,7 @@ impl RootFactors {
 }
 
 impl TransferFunction {
-    /// Both systems one after the other; common factors are kept, dead times add.
+    /// Both systems in series; common factors are kept, dead times add.
     ///
     /// # Errors
     /// [`LinearError::DomainMismatch`].
@@ -81,7 +81,7 @@ impl TransferFunction {
             .with_dead_time(self.dead_time_s() + other.dead_time_s())
     }
 
-    /// The sum of both systems. Poles that they share exactly appear once.
+    /// Sum of both systems. Exactly equal poles appear once.
     ///
     /// # Errors
     /// [`LinearError::DomainMismatch`]; [`LinearError::NotRational`] when the dead times differ.
@@ -106,8 +106,8 @@ impl TransferFunction {
             .with_dead_time(self.dead_time_s())
     }
 
-    /// The system closed by `other` in negative feedback, P / (1 + P H). Common factors of P and H
-    /// are kept.
+    /// System closed by `other` in negative feedback, P / (1 + P H). Common factors of P and H are
+    /// kept.
     ///
     /// # Errors
     /// [`LinearError::DomainMismatch`]; [`LinearError::NotRational`] with dead time in the loop;
@@ -133,7 +133,7 @@ impl TransferFunction {
         if self.domain() == other.domain() {
             return Ok(self.domain());
         }
-        // a pure gain lives in any domain
+        // a pure gain fits either domain
         let is_gain = |system: &TransferFunction| {
             system.zeros().is_empty() && system.poles().is_empty() && system.dead_time_s() == 0.0
         };
@@ -148,7 +148,7 @@ impl TransferFunction {
 }
 
 impl StateSpace {
-    /// This system followed by `next`, whose inputs are this system's outputs.
+    /// System followed by `next`, whose inputs are this system's outputs.
     ///
     /// # Errors
     /// [`LinearError::DomainMismatch`], [`LinearError::Shape`].
@@ -160,7 +160,7 @@ impl StateSpace {
         StateSpace::new(a, b, c, next.d() * self.d(), self.domain())
     }
 
-    /// The sum of both systems' outputs for the same input.
+    /// Sum of both systems' outputs for one input.
     ///
     /// # Errors
     /// [`LinearError::DomainMismatch`], [`LinearError::Shape`].
@@ -173,7 +173,7 @@ impl StateSpace {
         StateSpace::new(a, b, c, self.d() + other.d(), self.domain())
     }
 
-    /// This system closed by `other` in negative feedback.
+    /// System closed by `other` in negative feedback.
     ///
     /// ```text
     /// u = r - H y

@@ -1,9 +1,9 @@
 //! exp(A t) - I and the integrals that an exact step of a linear system needs.
 //!
 //! Squaring repeats rounding errors as often as the fastest mode fits into the step, so a slow pole
-//! together with a fast one would come out wrong by their ratio. The exponential is therefore
-//! formed in twice the working precision: balanced, scaled by a power of two, summed as a Taylor
-//! series, and squared back.
+//! would have an error multiplied by its ratio to a fast one. The exponential is therefore formed
+//! in twice the working precision: balanced, scaled by a power of two, summed as a Taylor series,
+//! and squared back.
 
 use nalgebra::DMatrix;
 use pulp::{Arch, Simd, WithSimd};
@@ -14,8 +14,8 @@ use super::wide::Wide;
 
 const TAYLOR_TERMS: i32 = 18;
 
-/// exp(A t) - I, whose small entries (a slow mode, a short step) are kept to full precision;
-/// infinite or not a number where the result overflows.
+/// exp(A t) - I, in which small entries (a slow mode, a short step) have full precision; infinite
+/// or not a number where the result overflows.
 pub(crate) fn exponential_less_identity(matrix: &DMatrix<f64>, time: f64) -> DMatrix<f64> {
     let order = matrix.nrows();
     let result = exponential(matrix, time);
@@ -40,8 +40,8 @@ pub(super) fn exponential(matrix: &DMatrix<f64>, time: f64) -> Wide {
     Wide::from_fn(result.order(), |i, j| result.entry(i, j).scaled(scales[i]).scaled(1.0 / scales[j]))
 }
 
-/// exp(X 2^n) by the series of exp(X), squared n times; with the instructions of the processor at
-/// hand.
+/// exp(X 2^n) by the series of exp(X), squared n times, with the vector instructions of the
+/// processor.
 struct Squaring {
     scaled: Wide,
     halvings: i32,
@@ -64,10 +64,9 @@ impl WithSimd for Squaring {
     }
 }
 
-/// One exact step of dx/dt = A x + B u over a time h, with u straight between its values at both
-/// ends.
+/// Exact step of dx/dt = A x + B u over a time h, with u linear between its values at both ends.
 pub(crate) struct ExactStep {
-    /// exp(A h) - I: the change of the state over the step by itself.
+    /// exp(A h) - I: free change of the state over the step.
     pub(crate) increment: DMatrix<f64>,
     /// Effect of a constant input: integral of exp(A t) B over the step.
     pub(crate) constant: DMatrix<f64>,

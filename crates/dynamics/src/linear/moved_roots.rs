@@ -7,15 +7,14 @@ use crate::portable::{argument, ln, magnitude};
 /// Damping ratio below which a zero or a pole makes a narrow notch or peak.
 const LIGHT_DAMPING: f64 = 0.3;
 
-/// A lightly damped zero or pole of a continuous system, and the one that its samples have in its
-/// place.
+/// Lightly damped zero or pole of a continuous system, and its image in the sampled system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovedRoot {
-    /// Whether it is a zero and not a pole.
+    /// True for a zero, false for a pole.
     pub is_zero: bool,
-    /// The root in rad/s, of a pair the one in the upper half plane.
+    /// Root in rad/s; the member of a pair in the upper half plane.
     pub root: Complex64,
-    /// ln(z)/T of its image z in rad/s.
+    /// Image in rad/s: ln(z)/T of the root z.
     pub image: Complex64,
 }
 
@@ -27,7 +26,7 @@ impl MovedRoot {
 }
 
 impl Discretization {
-    /// kappa of s = kappa (z - 1)/(z + 1) in rad/s; `None` where the method is not bilinear.
+    /// Rate kappa of s = kappa (z - 1)/(z + 1) in rad/s; `None` if the method is not bilinear.
     ///
     /// ```text
     /// Tustin 2/T,     exact at a frequency w: w/tan(w T/2)
@@ -47,15 +46,15 @@ impl Discretization {
 }
 
 impl TransferFunction {
-    /// The lightly damped zeros and poles of this continuous system, each with its image among the
-    /// zeros or poles of the sampled one; one at or above pi/T, which the samples cannot show, has
-    /// the image that the method gives it.
+    /// Lightly damped zeros and poles of this continuous system, each with its image among the
+    /// zeros or poles of the sampled one; a root at or above pi/T, which the samples cannot
+    /// represent, has the image defined by the method.
     ///
     /// # Errors
-    /// As [`TransferFunction::discretized`].
+    /// Errors of [`TransferFunction::discretized`].
     ///
     /// # Example
-    /// Tustin's rule takes the frequency w to 2/T atan(w T/2); one that is exact there keeps it.
+    /// Tustin's rule takes the frequency w to 2/T atan(w T/2); a rule prewarped to w preserves it.
     /// ```
     /// use num_complex::Complex64;
     /// use phea_dynamics::linear::{Discretization, TransferFunction};

@@ -13,8 +13,8 @@ use crate::portable::magnitude;
 /// ```
 ///
 /// Products and sums are rounded once, from twice the working precision. The zero polynomial has
-/// the single coefficient 0 and degree 0. Coefficients that are not finite are kept and refused
-/// where roots are asked for.
+/// the single coefficient 0 and degree 0. Coefficients that are not finite are accepted here and
+/// rejected when roots are requested.
 ///
 /// # Example
 /// ```
@@ -33,7 +33,7 @@ pub struct Polynomial {
 }
 
 impl Polynomial {
-    /// The polynomial with these coefficients, highest power first; leading zeros are dropped.
+    /// Polynomial with these coefficients, highest power first; leading zeros are dropped.
     pub fn new(coefficients: Vec<f64>) -> Self {
         let first = coefficients.iter().position(|&c| c != 0.0).unwrap_or(coefficients.len());
         let kept: Vec<f64> = coefficients.into_iter().skip(first).collect();
@@ -53,7 +53,7 @@ impl Polynomial {
         Ok(Polynomial::expanded(gain, &roots))
     }
 
-    /// The expansion of factors whose conjugate symmetry is already known.
+    /// Expansion of factors whose conjugate symmetry is already known.
     pub(crate) fn expanded(gain: f64, roots: &[Complex64]) -> Self {
         let wide = expand(gain, roots);
         Polynomial::new(wide.iter().map(|c| c.value()).collect())
@@ -69,7 +69,7 @@ impl Polynomial {
         self.coefficients.len() - 1
     }
 
-    /// Whether the polynomial is zero everywhere.
+    /// True if the polynomial is zero everywhere.
     pub fn is_zero(&self) -> bool {
         self.coefficients == [0.0]
     }
@@ -79,7 +79,7 @@ impl Polynomial {
         self.coefficients.first().copied().unwrap_or(0.0)
     }
 
-    /// p(s), by Horner's rule in twice the working precision.
+    /// Value p(s), by Horner's rule in twice the working precision.
     pub fn evaluate(&self, s: Complex64) -> Complex64 {
         self.evaluate_wide(s).value()
     }
@@ -93,7 +93,7 @@ impl Polynomial {
         sum
     }
 
-    /// The sum of |c_i| |s|^(n-i): the scale against which a value of p at s is small or not.
+    /// Sum of |c_i| |s|^(n-i): the scale by which a value of p at s is judged as small or not.
     pub(crate) fn evaluate_magnitudes(&self, s: Complex64) -> f64 {
         let radius = magnitude(s);
         self.coefficients.iter().fold(0.0, |sum, c| sum * radius + c.abs())
@@ -125,12 +125,12 @@ impl Polynomial {
         Polynomial::new(sums)
     }
 
-    /// The polynomial times a number.
+    /// Polynomial times a number.
     pub fn scaled(&self, factor: f64) -> Polynomial {
         Polynomial::new(self.coefficients.iter().map(|c| c * factor).collect())
     }
 
-    /// dp/ds.
+    /// Derivative dp/ds.
     pub fn derivative(&self) -> Polynomial {
         let mut power = self.degree() as f64;
         let mut coefficients = Vec::with_capacity(self.degree());
@@ -144,10 +144,10 @@ impl Polynomial {
     /// All roots, sorted by magnitude, in exact conjugate pairs.
     ///
     /// Zeros at the origin are exact. The others are found by the iteration of Ehrlich and Aberth
-    /// from starting radii read off the Newton polygon (Bini 1996), which finds roots of 1e-3 and
-    /// 1e6 side by side, and are polished with residuals in twice the working precision. Roots that
-    /// a rounding of the coefficients makes indistinguishable are returned as one multiple root,
-    /// and those it makes indistinguishable from imaginary ones lie on the axis.
+    /// from starting radii from the Newton polygon (Bini 1996), which finds roots of 1e-3 and 1e6
+    /// together, and are polished with residuals in twice the working precision. Roots that a
+    /// rounding of the coefficients makes indistinguishable are returned as one multiple root, and
+    /// those that become indistinguishable from imaginary ones are on the axis.
     ///
     /// # Errors
     /// [`LinearError::ZeroPolynomial`], [`LinearError::NotFinite`],
@@ -157,8 +157,8 @@ impl Polynomial {
     }
 
     /// All roots from points near them, such as those of a polynomial with nearly the same
-    /// coefficients, for a share of the work; `None` where they are not found from there. A
-    /// multiple root stays a cluster.
+    /// coefficients, for a fraction of the work; `None` if the iteration does not converge from
+    /// there. A multiple root stays a cluster.
     ///
     /// # Example
     /// ```

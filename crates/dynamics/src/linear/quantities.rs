@@ -1,4 +1,4 @@
-//! Names of numbers and operations that a linear system refuses.
+//! Names of numbers and operations that a linear system rejects.
 
 /// Number of a linear system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

@@ -7,8 +7,8 @@
 //! ```
 //!
 //! The taps r are the digits of the numerator in the mixed radix d_1, d_1 d_2, ...: remainders of
-//! repeated division, done in twice the working precision. The poles stand on the diagonal of A;
-//! the companion form of the whole would lose the small ones to rounding.
+//! repeated division, done in twice the working precision. The poles are on the diagonal of A; the
+//! companion form of the whole would lose the small ones to rounding.
 
 use nalgebra::DMatrix;
 use num_complex::Complex64;
@@ -42,8 +42,8 @@ pub(crate) fn cascade(system: &TransferFunction) -> Result<StateSpace, LinearErr
     (0..delay).try_fold(result, |result, _| result.series(&sample([0.0, 1.0, 1.0, 0.0])?))
 }
 
-/// The matrices of a chain, block upper triangular, its taps in twice the working precision: where
-/// zeros lie far below the poles, they cancel in the response.
+/// Matrices of a chain, block upper triangular, its taps in twice the working precision: if zeros
+/// are far below the poles, the taps cancel in the response.
 pub(super) struct Chain {
     pub(super) a: DMatrix<f64>,
     pub(super) b: DMatrix<f64>,
@@ -51,7 +51,7 @@ pub(super) struct Chain {
     pub(super) feedthrough: f64,
 }
 
-/// The chain of a transfer function, whose dead time is left out.
+/// Chain of a transfer function without its dead time.
 pub(super) fn chain_of(system: &TransferFunction) -> Result<Chain, LinearError> {
     let (zeros, poles) = (system.zeros(), system.poles());
     if zeros.len() > poles.len() {
@@ -68,7 +68,7 @@ pub(super) fn chain_of(system: &TransferFunction) -> Result<Chain, LinearError> 
     Ok(states_of(&chain, poles.len(), feedthrough))
 }
 
-/// The number of states for this many samples of dead time, a whole number up to rounding.
+/// Number of states for this many samples of dead time, a whole number up to rounding.
 pub(crate) fn delay_states(samples: f64) -> Result<usize, LinearError> {
     if samples > MAXIMUM_DELAY_STATES {
         return Err(LinearError::TooManyDelayStates { samples });
@@ -76,21 +76,21 @@ pub(crate) fn delay_states(samples: f64) -> Result<usize, LinearError> {
     Ok((0..).map(|count: u32| f64::from(count) + 0.5).take_while(|upper| *upper < samples).count())
 }
 
-/// A real pole or a complex pair (by its upper member), with its digit of the numerator.
+/// Real pole or complex pair (by its upper member), with its digit of the numerator.
 struct ChainSection {
     pole: Complex64,
     remainder: Vec<DoubleDouble>,
-    /// Its input and its inner coupling are multiplied by this power of two, near the magnitude of
-    /// its pole.
+    /// Exponent of the power of two, near the magnitude of the pole, by which input and inner
+    /// coupling are multiplied.
     exponent: i32,
 }
 
-/// s - p, or (s - sigma)^2 + omega^2.
+/// Denominator s - p, or (s - sigma)^2 + omega^2.
 fn denominator(pole: Complex64) -> Vec<DoubleDouble> {
     if pole.im == 0.0 { expand(1.0, &[pole]) } else { expand(1.0, &[pole.conj(), pole]) }
 }
 
-/// The real poles and the upper members of pairs, by their distance from zero frequency.
+/// Real poles and upper members of pairs, in order of distance from zero frequency.
 fn slowest_first(poles: &[Complex64], domain: TimeDomain) -> Vec<Complex64> {
     let slow = match domain {
         TimeDomain::Continuous => Complex64::new(0.0, 0.0),
@@ -118,8 +118,7 @@ fn divided(dividend: &[DoubleDouble], divisor: &[DoubleDouble]) -> (Vec<DoubleDo
     (rest, [padding, remainder].concat())
 }
 
-/// The states of a chain whose slowest section comes first in the list and last in the signal's
-/// way.
+/// States of a chain whose slowest section comes first in the list and last in the signal path.
 ///
 /// ```text
 /// x   = w v/(s - p)                                    one real pole; v the input, w = 2^exponent
@@ -131,10 +130,9 @@ fn states_of(chain: &[ChainSection], order: usize, feedthrough: f64) -> Chain {
     let mut a = DMatrix::zeros(order, order);
     let mut b = DMatrix::zeros(order, 1);
     let mut taps = vec![DoubleDouble::ZERO; order];
-    // exponent of the product of all w that a signal has met before the section, from the fastest
-    // on
+    // exponent of the product of all w on the signal path before the section, from the fastest on
     let mut before = 0;
-    // where the signal comes from: a state, or (at first) the input
+    // source of the section's input: a state, or (at first) the input
     let mut source: Option<usize> = None;
     let mut end = order;
     for section in chain.iter().rev() {

@@ -12,8 +12,9 @@ use crate::portable::magnitude;
 /// z_i <- z_i - N_i / (1 - N_i sum over j of 1/(z_i - z_j)),      N_i = f(z_i)/f'(z_i)
 /// ```
 ///
-/// where `newton_step` gives N. A root is left alone when it has an equal twin, when the step is no
-/// longer small, or when steps stop shrinking, so that good roots are never made worse by rounding.
+/// where `newton_step` gives N. A root is left unchanged when it has an equal twin, when the step
+/// is no longer small, or when steps stop shrinking, so that good roots are never made worse by
+/// rounding.
 pub(crate) fn refine<F>(roots: &mut [Complex64], sweeps: usize, newton_step: F)
 where
     F: Fn(Complex64) -> Option<Complex64>,
@@ -38,11 +39,11 @@ where
     }
 }
 
-/// The same iteration without restraint, for steps that are accurate however far they reach; roots
-/// without a step, and exact zeros (put there for a reason), stay.
+/// Iteration without these limits, for steps that are accurate at any distance; roots without a
+/// step, and exact zeros (placed intentionally), stay.
 ///
 /// From real points a real function never leads to complex roots, so points that are still far from
-/// a root, or that do not come to rest, are moved off the real axis.
+/// a root, or that do not converge, are moved off the real axis.
 pub(crate) fn converge<F>(roots: &mut [Complex64], sweeps: usize, newton_step: F)
 where
     F: Fn(Complex64) -> Option<Complex64>,
@@ -72,7 +73,7 @@ where
     }
 }
 
-/// The step of Ehrlich and Aberth for one root, or nothing when it is undefined or zero.
+/// Step of Ehrlich and Aberth for one root; `None` if it is undefined or zero.
 pub(crate) fn repelled_step(
     roots: &[Complex64],
     index: usize,
@@ -95,11 +96,11 @@ pub(crate) fn repelled_step(
 
 /// Makes a set of roots of a real function exactly symmetric about the real axis.
 ///
-/// Each root is either nearer to the conjugate of another one than to its own (then the two become
-/// a pair) or becomes real. The roots come out sorted.
+/// A root nearer to the conjugate of another root than to its own forms a pair with that root; any
+/// other becomes real. The result is sorted.
 pub(crate) fn symmetrise(roots: &[Complex64]) -> Vec<Complex64> {
     let mut open: Vec<Complex64> = roots.to_vec();
-    // the most clearly complex first, so that the doubtful ones near the axis are left over
+    // the most clearly complex first, so that the doubtful ones near the axis remain
     open.sort_by(|a, b| lean(*b).total_cmp(&lean(*a)).then(a.im.total_cmp(&b.im)));
     let mut result = Vec::with_capacity(roots.len());
     while let Some(root) = (!open.is_empty()).then(|| open.remove(0)) {
@@ -140,7 +141,7 @@ pub(crate) fn sort(roots: &mut [Complex64]) {
     interleave_pairs(roots);
 }
 
-/// Among equal roots, sorting puts (-, -, +, +): make it (-, +, -, +).
+/// Puts equal roots, sorted as (-, -, +, +), in the order (-, +, -, +).
 fn interleave_pairs(roots: &mut [Complex64]) {
     let mut start = 0;
     while start < roots.len() {
@@ -159,7 +160,7 @@ fn interleave_pairs(roots: &mut [Complex64]) {
 /// Checks that roots given by a user come in conjugate pairs, and returns them sorted and exactly
 /// paired.
 ///
-/// Partners may differ by rounding (1e-12 of their magnitude); anything else is refused.
+/// Partners may differ by rounding (1e-12 of their magnitude); anything else is rejected.
 pub(crate) fn conjugate_pairs(roots: &[Complex64]) -> Result<Vec<Complex64>, LinearError> {
     if roots.iter().any(|root| !root.is_finite()) {
         return Err(LinearError::NotFinite { what: LinearNumber::ZeroOrPole });

@@ -1,4 +1,4 @@
-//! Roots of a polynomial with real coefficients, however widely they are spread.
+//! Roots of a polynomial with real coefficients, over any range of magnitudes.
 //!
 //! The iteration of Ehrlich (1967) and Aberth (1973) moves all roots at once and converges
 //! cubically to simple ones. Its starting radii come from the Newton polygon of the coefficients
@@ -16,9 +16,9 @@ use crate::order::sort_by_number;
 use crate::portable::{self, magnitude};
 
 const MAXIMUM_SWEEPS: usize = 300;
-/// Sweeps from points that are said to be near; the usual way takes over beyond them.
+/// Sweeps from points that are expected to be near; after them the usual method is used.
 const SWEEPS_FROM_NEAR: usize = 12;
-/// A pair whose imaginary part is more than this share of it is not a double root on the axis.
+/// Ratio of imaginary part to magnitude above which a pair is not a double root on the axis.
 const FAR_FROM_AXIS: f64 = 0.5;
 
 /// All roots, sorted, in exact conjugate pairs.
@@ -26,8 +26,8 @@ pub(crate) fn of_polynomial(polynomial: &Polynomial) -> Result<Vec<Complex64>, L
     found(polynomial, |deflated| Ok(merge_multiple(deflated, iterate(deflated)?)))
 }
 
-/// The same to working precision, with multiple roots slightly apart: for a polynomial whose
-/// coefficients are rounded, and whose roots are refined by other means.
+/// Roots to working precision, with multiple roots slightly apart: for a polynomial with rounded
+/// coefficients, whose roots are refined by other means.
 pub(crate) fn guessed(polynomial: &Polynomial) -> Result<Vec<Complex64>, LinearError> {
     found(polynomial, |deflated| {
         let mut roots = starting_points(deflated.coefficients());
@@ -37,8 +37,8 @@ pub(crate) fn guessed(polynomial: &Polynomial) -> Result<Vec<Complex64>, LinearE
     })
 }
 
-/// All roots, sorted; `find` gives those of the polynomial without roots at the origin, if its
-/// degree is at least two.
+/// All roots, sorted; `find` returns the roots of the polynomial without roots at the origin, if
+/// its degree is at least two.
 fn found(
     polynomial: &Polynomial,
     find: impl FnOnce(&Polynomial) -> Result<Vec<Complex64>, LinearError>,
@@ -69,8 +69,8 @@ fn found(
     Ok(roots)
 }
 
-/// Ehrlich-Aberth from the Newton polygon to the level of rounding, once more with residuals in
-/// twice the working precision, and made symmetric.
+/// Ehrlich-Aberth iteration from the Newton polygon to the level of rounding, then with residuals
+/// in twice the working precision; the result is made symmetric.
 fn iterate(polynomial: &Polynomial) -> Result<Vec<Complex64>, LinearError> {
     let mut roots = starting_points(polynomial.coefficients());
     sweep(&mut roots, |z| evaluate_locally(polynomial, z))
@@ -80,7 +80,8 @@ fn iterate(polynomial: &Polynomial) -> Result<Vec<Complex64>, LinearError> {
 }
 
 /// All roots, sorted and in exact conjugate pairs, from points near them, such as the roots of a
-/// polynomial with nearly the same coefficients; `None` where they are not found from there.
+/// polynomial with nearly the same coefficients; `None` if the iteration does not converge from
+/// there.
 ///
 /// A pair moves by its root in the upper half plane; the other one is its conjugate.
 pub(crate) fn near(polynomial: &Polynomial, guesses: &[Complex64]) -> Option<Vec<Complex64>> {
@@ -110,7 +111,7 @@ pub(crate) fn near(polynomial: &Polynomial, guesses: &[Complex64]) -> Option<Vec
 }
 
 /// Moves the roots of the closed upper half plane, and their mirror images with them, until each is
-/// at the rounding level of its residual or moves no more; a real root stays real, and a pair must
+/// at the rounding level of its residual or stops moving; a real root stays real, and a pair must
 /// stay one.
 fn settle<F: Fn(Complex64) -> LocalValue>(upper: &mut [Complex64], evaluate: F) -> Option<()> {
     let mut done = vec![false; upper.len()];
@@ -156,7 +157,7 @@ fn repulsion(upper: &[Complex64], index: usize) -> Complex64 {
     sum
 }
 
-/// Moves all roots until each is at the rounding level of its residual or moves no more.
+/// Moves all roots until each is at the rounding level of its residual or stops moving.
 fn sweep<F: Fn(Complex64) -> LocalValue>(roots: &mut [Complex64], evaluate: F) -> Option<()> {
     let mut done = vec![false; roots.len()];
     for _ in 0..MAXIMUM_SWEEPS {
@@ -226,7 +227,7 @@ struct LocalValue {
     at_rounding_level: bool,
 }
 
-/// p/p' at z in working precision, and whether |p| is no more than its own rounding error.
+/// Ratio p/p' at z in working precision, and a flag: |p| is no more than its own rounding error.
 fn evaluate_locally(polynomial: &Polynomial, z: Complex64) -> LocalValue {
     let coefficients = polynomial.coefficients();
     let degree = polynomial.degree() as f64;
@@ -252,13 +253,14 @@ fn evaluate_locally(polynomial: &Polynomial, z: Complex64) -> LocalValue {
     LocalValue { newton_step, at_rounding_level }
 }
 
-/// p/p' at z with both in twice the working precision; partial sums that grow out of range are
-/// scaled down together.
+/// Ratio p/p' at z with both in twice the working precision; partial sums that grow out of range
+/// are scaled down together.
 fn evaluate_widely(polynomial: &Polynomial, z: Complex64) -> LocalValue {
     Arch::new().dispatch(Widely { polynomial, z })
 }
 
-/// The same, compiled for the instructions of the processor at hand.
+/// Evaluation in twice the working precision, compiled for the vector instructions of the
+/// processor.
 struct Widely<'a> {
     polynomial: &'a Polynomial,
     z: Complex64,
@@ -296,14 +298,14 @@ fn widely(polynomial: &Polynomial, z: Complex64) -> LocalValue {
     }
 }
 
-/// a/b with b brought to unit size first, so that its square stays in range.
+/// Quotient a/b with b brought to unit size first, so that its square stays in range.
 fn quotient(a: Complex64, b: Complex64) -> Option<Complex64> {
     let scale = 1.0 / b.re.abs().max(b.im.abs());
     let result = (a * scale) / (b * scale);
     result.is_finite().then_some(result)
 }
 
-/// Moves roots that rounding of the coefficients cannot distinguish from the imaginary axis onto
+/// Moves roots onto the imaginary axis if rounding of the coefficients cannot distinguish them from
 /// it.
 fn on_the_axis(mut roots: Vec<Complex64>) -> Vec<Complex64> {
     for root in roots.iter_mut().filter(|root| root.re.abs() <= 0.5 * f64::EPSILON * root.im.abs()) {
@@ -344,8 +346,8 @@ fn merge_multiple(polynomial: &Polynomial, roots: Vec<Complex64>) -> Vec<Complex
     merged
 }
 
-/// The multiple root that stands for these members of the closed upper half plane, and how many of
-/// the returned set it is.
+/// Multiple root that represents these members of the closed upper half plane, and its multiplicity
+/// in the returned set.
 fn multiple_root(polynomial: &Polynomial, members: &[Complex64]) -> Option<(Complex64, usize)> {
     let mean = members.iter().sum::<Complex64>() / members.len() as f64;
     let real_count: usize = members.iter().map(|root| if root.im == 0.0 { 1 } else { 2 }).sum();

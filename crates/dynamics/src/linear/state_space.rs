@@ -43,8 +43,7 @@ pub struct StateSpace {
 }
 
 impl StateSpace {
-    /// The system with these matrices. Any of order, number of inputs and number of outputs may be
-    /// zero.
+    /// System with these matrices. The order and the numbers of inputs and outputs may be zero.
     ///
     /// # Errors
     /// [`LinearError::Shape`] when the matrices do not fit, [`LinearError::NotFinite`],
@@ -79,7 +78,7 @@ impl StateSpace {
         Ok(StateSpace { a, b, c, d, domain })
     }
 
-    /// A well-scaled realisation of a transfer function: a cascade of first- and second-order
+    /// Well-scaled realisation of a transfer function: a cascade of first- and second-order
     /// sections.
     ///
     /// A whole number of samples of dead time becomes that many poles at z = 0.
@@ -131,7 +130,7 @@ impl StateSpace {
         self.c.nrows()
     }
 
-    /// The eigenvalues of A, sorted by magnitude, in exact conjugate pairs.
+    /// Eigenvalues of A, sorted by magnitude, in exact conjugate pairs.
     ///
     /// # Errors
     /// [`LinearError::EigenvaluesNotConverged`].
@@ -139,7 +138,7 @@ impl StateSpace {
         eigenvalues(&self.a)
     }
 
-    /// Whether every pole lies strictly inside the stable region.
+    /// True if every pole lies strictly inside the stable region.
     ///
     /// # Errors
     /// [`LinearError::EigenvaluesNotConverged`].
@@ -147,7 +146,7 @@ impl StateSpace {
         Ok(self.poles()?.iter().all(|&pole| is_stable_pole(pole, self.domain)))
     }
 
-    /// One input and one output of the system, counted from zero, with all its states.
+    /// Channel from one input to one output, counted from zero, with all states.
     ///
     /// # Errors
     /// [`LinearError::NoSuchPort`].
@@ -189,11 +188,11 @@ impl StateSpace {
         Ok(channel.responses(point)[(0, 0)])
     }
 
-    /// C (s I - A)^-1 B + D for all channels at any s (or z); infinite entries where s is an
-    /// eigenvalue of A.
+    /// Response C (s I - A)^-1 B + D for all channels at any s (or z); infinite entries where s is
+    /// an eigenvalue of A.
     ///
-    /// The solution is refined in twice the working precision: the result is that of the matrices
-    /// as they stand.
+    /// The solution is refined in twice the working precision: the result is accurate for the given
+    /// matrices.
     pub fn responses(&self, s: Complex64) -> DMatrix<Complex64> {
         let resolvent = Resolvent::new(&self.a, s);
         let mut values =
@@ -209,9 +208,9 @@ impl StateSpace {
         values
     }
 
-    /// The transfer function from one input to one output: poles from A, zeros from the system
-    /// pencil, gain from the first Markov parameter that is not zero. Modes that cancel are kept as
-    /// common factors ([`TransferFunction::without_common_factors`] removes them).
+    /// Transfer function from one input to one output: poles from A, zeros from the system pencil,
+    /// gain from the first Markov parameter that is not zero. Modes that cancel remain as common
+    /// factors ([`TransferFunction::without_common_factors`] removes them).
     ///
     /// # Errors
     /// [`LinearError::NoSuchPort`], [`LinearError::EigenvaluesNotConverged`].

@@ -1,5 +1,4 @@
-//! The block-triangular structure that the zeros of a matrix give it, and solutions that respect
-//! it.
+//! Block-triangular structure from the zeros of a matrix, and solutions that respect it.
 
 use nalgebra::{DMatrix, DVector, Dyn, LU, linalg::balancing::balance_parlett_reinsch};
 use num_complex::Complex64;
@@ -7,8 +6,8 @@ use num_complex::Complex64;
 use super::double_double::ComplexDoubleDouble;
 use crate::portable::magnitude;
 
-/// The sets of states that all influence each other, ordered so that each is influenced by earlier
-/// ones only.
+/// Sets of states that all influence each other, ordered so that each is influenced by earlier sets
+/// only.
 pub(crate) fn irreducible_blocks(matrix: &DMatrix<f64>) -> Vec<Vec<usize>> {
     let order = matrix.nrows();
     let mut depends = DMatrix::from_fn(order, order, |i, j| i == j || matrix[(i, j)] != 0.0);
@@ -31,19 +30,20 @@ pub(crate) fn irreducible_blocks(matrix: &DMatrix<f64>) -> Vec<Vec<usize>> {
             blocks.push(block);
         }
     }
-    // whatever depends on a block depends on all that the block depends on, and on more
+    // a set that depends on another depends on all that the other depends on, and more
     blocks.sort_by_key(|block: &Vec<usize>| {
         block.first().map_or(0, |&state| (0..order).filter(|&other| depends[(state, other)]).count())
     });
     blocks
 }
 
-/// The squares of larger entries leave the range of numbers.
+/// Largest entry of a matrix that is balanced: the squares of larger entries leave the range of
+/// numbers.
 const BALANCED_MAXIMUM: f64 = 1e140;
 
 /// Scales states so that rows and columns have like norms (Parlett and Reinsch 1969); the units,
-/// powers of two. A matrix with entries whose squares leave the range of numbers, on which the
-/// iteration would not end, is left as it is.
+/// powers of two. A matrix with entries whose squares leave the range of numbers, for which the
+/// iteration would not end, is unchanged.
 pub(crate) fn balance(matrix: &mut DMatrix<f64>) -> DVector<f64> {
     if matrix.iter().all(|entry| entry.abs() <= BALANCED_MAXIMUM) {
         balance_parlett_reinsch(matrix)
@@ -55,12 +55,11 @@ pub(crate) fn balance(matrix: &mut DMatrix<f64>) -> DVector<f64> {
 /// A column of numbers in twice the working precision.
 pub(crate) type WideVector = Vec<ComplexDoubleDouble>;
 
-/// (s I - A)^-1 at one point, block by block, so that a slow mode is not mixed with a fast one that
-/// it only feeds.
+/// Resolvent (s I - A)^-1 at one point, block by block, so that a slow mode is not mixed with a
+/// fast one that it only drives.
 ///
 /// Each block is balanced and factored in working precision; its solutions are refined with
-/// residuals in twice the working precision, so that what is lost by the condition of A is
-/// regained.
+/// residuals in twice the working precision, which recovers the digits lost by the condition of A.
 pub(crate) struct Resolvent<'a> {
     matrix: &'a DMatrix<f64>,
     s: Complex64,
@@ -88,7 +87,7 @@ impl<'a> Resolvent<'a> {
         Resolvent { matrix, s, blocks: irreducible_blocks(matrix).into_iter().map(block).collect() }
     }
 
-    /// (s I - A)^-1 r, or nothing where s is an eigenvalue.
+    /// Solution (s I - A)^-1 r; `None` if s is an eigenvalue.
     pub(crate) fn solve(&self, right: &[ComplexDoubleDouble]) -> Option<WideVector> {
         let mut solution = vec![ComplexDoubleDouble::default(); right.len()];
         let everything: Vec<usize> = (0..right.len()).collect();
@@ -116,7 +115,7 @@ impl<'a> Resolvent<'a> {
         Some(solution)
     }
 
-    /// One row of r - (s I - A) x.
+    /// Residual of one row, r - (s I - A) x.
     fn residual(
         &self,
         row: usize,
@@ -134,12 +133,12 @@ impl<'a> Resolvent<'a> {
     }
 }
 
-/// A real column in twice the working precision.
+/// Real column in twice the working precision.
 pub(crate) fn widened<'a>(column: impl Iterator<Item = &'a f64>) -> WideVector {
     column.map(|&entry| ComplexDoubleDouble::from(entry)).collect()
 }
 
-/// c x + d, rounded once.
+/// Sum c x + d, rounded once.
 pub(crate) fn product<'a>(
     row: impl Iterator<Item = &'a f64>,
     column: &[ComplexDoubleDouble],

@@ -1,4 +1,4 @@
-//! Transfer functions kept as gain, zeros, poles and dead time.
+//! Transfer functions stored as gain, zeros, poles and dead time.
 
 use num_complex::Complex64;
 
@@ -14,8 +14,7 @@ use crate::portable::{self, exp_complex};
 /// In [`TimeDomain::Discrete`] the variable is z and the dead time, a whole number of samples, is
 /// z^(-tau/T). The gain k is the leading coefficient, not the gain at zero frequency
 /// ([`TransferFunction::dc_gain`]). Zeros and poles are sorted by magnitude in exact conjugate
-/// pairs. Common factors are kept until [`TransferFunction::without_common_factors`] is asked to
-/// cancel them.
+/// pairs. Common factors are kept until [`TransferFunction::without_common_factors`] cancels them.
 ///
 /// # Example
 /// ```
@@ -72,12 +71,13 @@ impl TransferFunction {
         Ok(TransferFunction::assembled(gain, zeros, poles, TimeDomain::Continuous))
     }
 
-    /// A constant. One that is not finite gives responses that are not finite.
+    /// Constant gain. One that is not finite gives responses that are not finite.
     pub fn gain_only(gain: f64) -> Self {
         TransferFunction::assembled(gain, Vec::new(), Vec::new(), TimeDomain::Continuous)
     }
 
-    /// Factors already sorted and in conjugate pairs. A system with zero gain has no zeros.
+    /// System of factors that are already sorted and in conjugate pairs. A system with zero gain
+    /// has no zeros.
     pub(crate) fn assembled(
         gain: f64,
         mut zeros: Vec<Complex64>,
@@ -92,7 +92,7 @@ impl TransferFunction {
         TransferFunction { gain, zeros, poles, dead_time_s: 0.0, domain }
     }
 
-    /// The same system with this dead time in s, in place of the one it had.
+    /// System with this dead time in s, in place of its own.
     ///
     /// # Errors
     /// [`LinearError::DeadTime`] when negative or not finite; [`LinearError::FractionalDeadTime`]
@@ -111,7 +111,7 @@ impl TransferFunction {
         Ok(self)
     }
 
-    /// The same factors read as a system in this time domain.
+    /// Factors of this system, interpreted in another time domain.
     ///
     /// # Errors
     /// [`LinearError::SampleTime`], and [`LinearError::FractionalDeadTime`] when the dead time does
@@ -152,22 +152,22 @@ impl TransferFunction {
         self.domain
     }
 
-    /// k (s - z_1) (s - z_2) ..., dead time left out.
+    /// Numerator k (s - z_1) (s - z_2) ..., without dead time.
     pub fn numerator(&self) -> Polynomial {
         Polynomial::expanded(self.gain, &self.zeros)
     }
 
-    /// (s - p_1) (s - p_2) ..., leading coefficient one.
+    /// Denominator (s - p_1) (s - p_2) ..., leading coefficient one.
     pub fn denominator(&self) -> Polynomial {
         Polynomial::expanded(1.0, &self.poles)
     }
 
-    /// Whether the system has no more zeros than poles.
+    /// True if the system has no more zeros than poles.
     pub(crate) fn is_proper(&self) -> bool {
         self.zeros.len() <= self.poles.len()
     }
 
-    /// P(s), or P(z) for a sampled system, from the factors. At a pole the value is infinite.
+    /// Value P(s), or P(z) for a sampled system, from the factors. At a pole the value is infinite.
     pub fn evaluate(&self, s: Complex64) -> Complex64 {
         let rational = self.evaluate_rational(s);
         if self.dead_time_s == 0.0 {
@@ -183,7 +183,8 @@ impl TransferFunction {
         }
     }
 
-    /// P(jw), or P(exp(jwT)) for a sampled system; `frequency` in rad/s. Dead time included.
+    /// Response P(jw), or P(exp(jwT)) for a sampled system; `frequency` in rad/s. Dead time
+    /// included.
     pub fn at_frequency(&self, frequency: f64) -> Complex64 {
         let rational = self.evaluate_rational(self.boundary_point(frequency));
         if self.dead_time_s == 0.0 {
@@ -193,7 +194,7 @@ impl TransferFunction {
         rational * Complex64::new(portable::cos(angle), portable::sin(angle))
     }
 
-    /// jw, or exp(jwT).
+    /// Point jw, or exp(jwT).
     pub(crate) fn boundary_point(&self, frequency: f64) -> Complex64 {
         match self.domain {
             TimeDomain::Continuous => Complex64::new(0.0, frequency),
@@ -204,7 +205,7 @@ impl TransferFunction {
         }
     }
 
-    /// The rational part at s; zeros and poles are taken in turn, so that the product stays in
+    /// Rational part at s; zeros and poles are multiplied alternately, so that the product stays in
     /// range.
     pub(crate) fn evaluate_rational(&self, s: Complex64) -> Complex64 {
         if !s.is_finite() {
@@ -252,14 +253,14 @@ impl TransferFunction {
         }
     }
 
-    /// Whether every pole lies strictly inside the stable region.
+    /// True if every pole lies strictly inside the stable region.
     pub fn is_stable(&self) -> bool {
         self.poles.iter().all(|&pole| is_stable_pole(pole, self.domain))
     }
 
-    /// The system without the poles and zeros that lie within `relative_tolerance` of each other:
-    /// real ones with real ones, complex pairs with complex pairs. What is left has the same
-    /// response to about that tolerance.
+    /// System without the poles and zeros that are within `relative_tolerance` of each other: real
+    /// ones with real ones, complex pairs with complex pairs. The response is unchanged to about
+    /// that tolerance.
     ///
     /// Their distance is relative to the magnitude of the pole in 1/s: a root z of a sampled system
     /// is compared as s = ln(z)/T. Near z = 1 all roots are close together, though one may decay a
@@ -306,7 +307,7 @@ impl TransferFunction {
         if ratio.is_nan() { f64::INFINITY } else { ratio }
     }
 
-    /// 1/P, without its dead time's inverse: a system with dead time has none.
+    /// Inverse 1/P; a system with dead time has none.
     ///
     /// # Errors
     /// [`LinearError::NoInverse`] for zero gain, [`LinearError::NotRational`] with dead time.
@@ -330,7 +331,7 @@ fn divide(value: &mut Complex64, factor: Complex64, infinite: &mut bool) {
     }
 }
 
-/// Whether a pole lies in the open left half plane, or strictly inside the unit circle.
+/// True if a pole is in the open left half plane, or strictly inside the unit circle.
 pub(crate) fn is_stable_pole(pole: Complex64, domain: TimeDomain) -> bool {
     match domain {
         TimeDomain::Continuous => pole.re < 0.0,

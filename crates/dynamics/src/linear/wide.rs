@@ -1,12 +1,12 @@
-//! Matrices and columns in twice the working precision, a few numbers at a time: with the
-//! instructions of the processor at hand where the caller is compiled for them.
+//! Matrices and columns in twice the working precision, processed a few numbers at a time: with the
+//! vector instructions of the processor if the caller is compiled for them.
 
 use super::double_double::{ComplexDoubleDouble, DoubleDouble};
 
-/// Numbers that the processor takes at once.
+/// Numbers processed at once.
 const LANES: usize = 4;
 
-/// A few numbers of twice the working precision, all first parts before all second ones.
+/// A few numbers of twice the working precision, all high parts before all low ones.
 #[derive(Clone, Copy, Default)]
 pub(super) struct WideNumbers {
     high: [f64; LANES],
@@ -102,7 +102,7 @@ impl Wide {
         result
     }
 
-    /// The first numbers of a row that are not all zero.
+    /// Index of the first group of a row that is not all zero.
     #[inline(always)]
     fn first_group(&self, row: usize) -> usize {
         self.row(row).iter().position(|group| group.high != [0.0; LANES]).unwrap_or(self.groups)
@@ -182,8 +182,8 @@ impl WideColumn {
 mod tests {
     use super::*;
 
-    /// Products a few numbers at a time are those of the definition, number by number, to the last
-    /// bit; padding with zeros changes nothing.
+    /// Grouped products equal those by definition, number by number, to the last bit; padding with
+    /// zeros changes nothing.
     #[test]
     fn products_are_those_of_their_definition() {
         let entry = |i: usize, j: usize| {

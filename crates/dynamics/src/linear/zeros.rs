@@ -6,10 +6,10 @@
 //! ```
 //!
 //! Without feedthrough, the output y = C x = 0 ties one state to the others; that state is
-//! eliminated, and what drives it becomes the new feedthrough, until one is not zero. Then the
-//! zeros are eigenvalues of A - B C/D, and are brought to full accuracy on the response itself. How
-//! many zeros there are depends on which numbers count as zero, so the result is compared with the
-//! response, and the answer that agrees is taken.
+//! eliminated and its input becomes the new feedthrough, until the feedthrough is not zero. Then
+//! the zeros are the eigenvalues of A - B C/D, and are brought to full accuracy on the response
+//! itself. How many zeros there are depends on which numbers count as zero, so the result is
+//! compared with the response, and the result that agrees is returned.
 
 mod elimination;
 
@@ -22,11 +22,11 @@ use super::{LinearError, StateSpace, TransferFunction};
 use crate::portable::{exp, ln, magnitude};
 
 /// Roundings of the inputs that may make the result of a cancellation count as zero, in the order
-/// in which they are tried: many (matrices are often the result of a computation), a few, none. The
-/// first that agrees has the fewest zeros.
+/// of the attempts: many (matrices are often the result of a computation), a few, none. The first
+/// attempt that agrees has the fewest zeros.
 const ROUNDINGS: [f64; 4] = [1e4, 1e2, 4.0, 0.0];
 
-/// Agreement of the factors with the response at which no further attempt is made.
+/// Agreement of the factors with the response that ends the attempts.
 const AGREEMENT: f64 = 1e-11;
 
 /// Gain (leading coefficient) and zeros of a system with one input and one output, whose poles are
@@ -75,7 +75,7 @@ fn attempt(
     Ok(Some((matched.unwrap_or(gain), zeros)))
 }
 
-/// The response at s, and the sum of the magnitudes of its parts.
+/// Response at s, and the sum of the magnitudes of its terms.
 fn response(system: &StateSpace, s: Complex64) -> Option<(Complex64, f64)> {
     let states = Resolvent::new(system.a(), s).solve(&widened(system.b().iter()))?;
     let feedthrough = system.d()[(0, 0)];
@@ -94,7 +94,7 @@ fn test_points(poles: &[Complex64]) -> Vec<Complex64> {
     points
 }
 
-/// Whether the response is nowhere more than the rounding of its parts.
+/// True if the response is nowhere larger than the rounding of its terms.
 fn is_zero_everywhere(system: &StateSpace, poles: &[Complex64]) -> bool {
     test_points(poles).into_iter().all(|s| {
         response(system, s).is_none_or(|(value, size)| magnitude(value) <= 16.0 * f64::EPSILON * size)
@@ -112,8 +112,9 @@ fn deviation(system: &StateSpace, factors: &(f64, Vec<Complex64>), poles: &[Comp
     test_points(poles).into_iter().filter_map(at).fold(0.0, f64::max)
 }
 
-/// The gain that makes the factors agree with the response at a point of the real axis among the
-/// poles. (The leading coefficient itself is only as good as what was neglected as zero above it.)
+/// Gain that makes the factors agree with the response at a point of the real axis among the poles.
+/// (The leading coefficient itself is only as accurate as the terms above it that were neglected as
+/// zero.)
 fn matched_gain(system: &StateSpace, zeros: &[Complex64], poles: &[Complex64]) -> Option<f64> {
     let logarithms = || poles.iter().map(|root| magnitude(*root)).filter(|size| *size > 0.0).map(ln);
     let centre = exp(logarithms().sum::<f64>() / logarithms().count().max(1) as f64);
@@ -130,14 +131,13 @@ fn matched_gain(system: &StateSpace, zeros: &[Complex64], poles: &[Complex64]) -
     (gain.is_finite() && gain != 0.0).then_some(gain)
 }
 
-/// Whether the response at s = 0 is no more than the rounding of its parts.
+/// True if the response at s = 0 is no larger than the rounding of its terms.
 fn vanishes_at_origin(system: &StateSpace) -> bool {
     let at_origin = response(system, Complex64::new(0.0, 0.0));
     at_origin.is_some_and(|(value, size)| magnitude(value) <= 16.0 * f64::EPSILON * size)
 }
 
-/// The step of Newton's method for the numerator f of the response g; nothing at a pole that
-/// cancels.
+/// Newton step for the numerator f of the response g; `None` at a pole that cancels.
 ///
 /// ```text
 /// f/f',     f = g(s) prod (s - p)

@@ -2,7 +2,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::{Lanes, Scalar};
 
-/// Which variables a number depends on, and nothing of its value: an equation evaluated with it
+/// Set of variables on which a number depends, without its value: an equation evaluated with it
 /// shows which of its derivatives can differ from zero anywhere.
 ///
 /// Both sides of a choice count. Variables are counted from 0 to [`Dependence::CAPACITY`] - 1.
@@ -19,11 +19,10 @@ use super::{Lanes, Scalar};
 pub struct Dependence([u64; 4]);
 
 impl Dependence {
-    /// How many variables there can be.
+    /// Largest number of variables.
     pub const CAPACITY: usize = 256;
 
-    /// The variable with this index; one of [`Dependence::CAPACITY`] or more is taken for a
-    /// constant.
+    /// The variable with this index; one of [`Dependence::CAPACITY`] or more is a constant.
     pub fn on(index: usize) -> Self {
         let mut bits = [0; 4];
         if let Some(word) = bits.get_mut(index / 64) {
@@ -32,7 +31,7 @@ impl Dependence {
         Dependence(bits)
     }
 
-    /// Whether it depends on the variable with this index.
+    /// True if the number depends on the variable with this index.
     pub fn includes(&self, index: usize) -> bool {
         self.0.get(index / 64).is_some_and(|word| word >> (index % 64) & 1 == 1)
     }

@@ -2,14 +2,14 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::{Lanes, LocalFunction, Scalar};
 
-/// A number and its gradient with respect to N variables: exact first derivatives of a model
+/// Number and its gradient with respect to N variables: exact first derivatives of a model
 /// equation.
 ///
 /// ```text
 /// (u, u') (v, v') = (u v, u' v + u v')                  forward-mode differentiation
 /// ```
 ///
-/// The number itself is any scalar S, so that lanes have their derivatives too.
+/// The number itself may be any scalar S, so that lanes have derivatives too.
 ///
 /// # Example
 /// d(x² y)/dx = 2 x y and d(x² y)/dy = x²
@@ -36,8 +36,7 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
         Dual { value, gradient: [S::from(0.0); N] }
     }
 
-    /// The variable with this index, at this value. An index of N or more belongs to no variable: a
-    /// constant.
+    /// Variable with this index, at this value. An index of N or more gives a constant.
     pub fn variable(value: S, index: usize) -> Self {
         let mut gradient = [S::from(0.0); N];
         if let Some(slot) = gradient.get_mut(index) {
@@ -57,12 +56,12 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
         self.value = value;
     }
 
-    /// The partial derivatives, one a variable.
+    /// Partial derivatives, one for each variable.
     pub fn gradient(&self) -> &[S; N] {
         &self.gradient
     }
 
-    /// f(u), given f(u) and f'(u) as numbers.
+    /// Function f(u), given f(u) and f'(u) as numbers.
     #[inline]
     fn chain(self, value: S, slope: S) -> Self {
         let mut gradient = self.gradient;
@@ -72,7 +71,7 @@ impl<const N: usize, S: Scalar> Dual<N, S> {
         Dual { value, gradient }
     }
 
-    /// f(u, v), given its value and its two partial derivatives.
+    /// Function f(u, v), given its value and its two partial derivatives.
     #[inline]
     fn chain_two(self, other: Self, value: S, slope: S, other_slope: S) -> Self {
         let mut gradient = self.gradient;
@@ -222,8 +221,8 @@ impl<const N: usize, S: Scalar> Scalar for Dual<N, S> {
 mod tests {
     use super::*;
 
-    /// A function that is taken apart from its variables has the derivatives of the same text over
-    /// all of them.
+    /// A function evaluated on its own variables has the derivatives of its text over all
+    /// variables.
     #[test]
     fn a_local_function_has_the_derivatives_of_its_text() {
         struct Text(f64);
@@ -244,7 +243,7 @@ mod tests {
         }
     }
 
-    /// Every operation against a central difference of the same text evaluated with plain numbers.
+    /// Every operation against a central difference of its text evaluated with plain numbers.
     #[test]
     fn derivatives_agree_with_central_differences() {
         fn equation<S: Scalar>(x: S, y: S) -> S {

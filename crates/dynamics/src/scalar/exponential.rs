@@ -1,4 +1,4 @@
-//! The exponential without a branch, so that lanes take it as one.
+//! Exponential without a branch, so that it vectorises over lanes.
 
 /// Natural exponential, to within one unit of the last place; 0 below -708, infinite above 709.
 ///
@@ -6,13 +6,13 @@
 /// e^x = 2^k e^r,     k = round(x/ln 2),   r = x - k ln 2 in two parts,   |r| <= ln(2)/2,   e^r by its series
 /// ```
 ///
-/// Only additions, multiplications and shifts of the bits: the same result on every machine and in
-/// every lane.
+/// Only additions, multiplications and shifts of the bits: an identical result on every machine and
+/// in every lane.
 #[inline(always)]
 pub(super) fn exponential(x: f64) -> f64 {
-    /// Added to a number below 2^51 it leaves the nearest integer in the last bits.
+    /// Number whose addition to a number below 2^51 leaves the nearest integer in the last bits.
     const ROUNDING: f64 = 6_755_399_441_055_744.0;
-    /// ln 2 with 21 zeros at its end, and what is missing.
+    /// ln 2 with 21 zeros at its end, and the remainder.
     const LN2: [f64; 2] = [0.693_147_180_369_123_8, 1.908_214_929_270_587_7e-10];
     let shifted = x * std::f64::consts::LOG2_E + ROUNDING;
     let k = shifted - ROUNDING;
@@ -23,7 +23,8 @@ pub(super) fn exponential(x: f64) -> f64 {
     if x > 709.0 { f64::INFINITY } else { value }
 }
 
-/// 1 + r + r^2/2! + ... + r^13/13!, in pairs and pairs of pairs (Estrin), the small ones first.
+/// Series 1 + r + r^2/2! + ... + r^13/13!, in pairs and pairs of pairs (Estrin), the small terms
+/// first.
 #[inline(always)]
 fn series(r: f64) -> f64 {
     let r2 = r * r;

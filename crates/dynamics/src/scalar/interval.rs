@@ -3,12 +3,12 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use super::Scalar;
 use crate::portable;
 
-/// All numbers between two ends: an equation evaluated with it encloses every value that it takes
-/// while its variables run through theirs.
+/// All numbers between two ends: an equation evaluated with it encloses every value that it has
+/// while its variables vary over their intervals.
 ///
-/// Ends are rounded outwards, and not at all where the result is exact. What is not defined
-/// everywhere (a quotient by an interval that holds zero, the logarithm of one that reaches below)
-/// is enclosed by the whole axis. A choice that is not decided takes both sides.
+/// Ends are rounded outwards, unless the result is exact. An operation that is not defined
+/// everywhere (a quotient by an interval that contains zero, the logarithm of one that extends
+/// below) gives the whole axis. A choice that is not decided takes both sides.
 ///
 /// # Example
 /// ```
@@ -30,7 +30,7 @@ impl Interval {
     /// The whole axis.
     pub const WHOLE: Interval = Interval { low: f64::NEG_INFINITY, high: f64::INFINITY };
 
-    /// Between two ends in either order; the whole axis where one is not a number.
+    /// Interval between two ends in either order; the whole axis if one is NaN.
     pub fn new(one: f64, other: f64) -> Interval {
         if one.is_nan() || other.is_nan() {
             return Interval::WHOLE;
@@ -38,30 +38,31 @@ impl Interval {
         Interval { low: one.min(other), high: one.max(other) }
     }
 
-    /// The lower end.
+    /// Lower end.
     pub fn low(self) -> f64 {
         self.low
     }
 
-    /// The upper end.
+    /// Upper end.
     pub fn high(self) -> f64 {
         self.high
     }
 
-    /// Whether it holds negative and positive numbers.
+    /// True if it contains negative and positive numbers.
     pub fn has_both_signs(self) -> bool {
         self.low < 0.0 && self.high > 0.0
     }
 
-    /// The square, which is not negative; a product of the interval with itself would not know that
-    /// both factors are the same.
+    /// Square, which is not negative; a product of the interval with itself would treat the factors
+    /// as independent.
     pub fn square(self) -> Interval {
         let square = self * self;
         let least = if self.low <= 0.0 && self.high >= 0.0 { 0.0 } else { square.low.max(0.0) };
         Interval { low: least, ..square }
     }
 
-    /// The lesser of a number of each; where the choice is not decided, tighter than both sides.
+    /// Minimum of one number from each interval; if the choice is not decided, tighter than both
+    /// sides.
     ///
     /// # Example
     /// ```
@@ -74,7 +75,7 @@ impl Interval {
         Interval { low: self.low.min(other.low), high: self.high.min(other.high) }
     }
 
-    /// The greater of a number of each.
+    /// Maximum of one number from each interval.
     pub fn greatest(self, other: Interval) -> Interval {
         Interval { low: self.low.max(other.low), high: self.high.max(other.high) }
     }
@@ -83,14 +84,14 @@ impl Interval {
         Interval::new(self.low.min(other.low), self.high.max(other.high))
     }
 
-    /// Both ends of an increasing function that is good to two units in the last place.
+    /// Both ends of an increasing function that is accurate to two units in the last place.
     fn increasing(self, function: fn(f64) -> f64) -> Interval {
         let (low, high) = (function(self.low), function(self.high));
         Interval::new(low.next_down().next_down(), high.next_up().next_up())
     }
 }
 
-/// An end and whether what it stands for is less or more than it.
+/// End of an interval, with its rounding: the exact value is less or more.
 #[derive(Clone, Copy)]
 struct Rounded {
     value: f64,
@@ -123,14 +124,14 @@ fn product(a: f64, b: f64) -> [Rounded; 2] {
     }
     let value = a * b;
     let error = a.mul_add(b, -value);
-    // near the least numbers the error is lost as well
+    // near the least numbers the error underflows as well
     if value.abs() < 16.0 * f64::MIN_POSITIVE / f64::EPSILON {
         return [Rounded { value, error: -1.0 }, Rounded { value, error: 1.0 }];
     }
     [Rounded { value, error }; 2]
 }
 
-/// On which side of zero an interval lies.
+/// Side of zero on which an interval is.
 #[derive(Clone, Copy)]
 enum SideOfZero {
     Positive,
@@ -183,7 +184,7 @@ impl Sub for Interval {
 
 impl Mul for Interval {
     type Output = Self;
-    /// Each end is a product of two ends; the signs of both factors say of which.
+    /// Each end is a product of two ends, selected by the signs of both factors.
     #[inline]
     fn mul(self, other: Self) -> Self {
         let of = |(low, high): ((f64, f64), (f64, f64))| Interval {
@@ -223,7 +224,7 @@ impl Div for Interval {
         let exact = |quotient: f64| quotient == 0.0 && self.low == 0.0 && self.high == 0.0;
         let low = quotients.iter().copied().fold(f64::INFINITY, f64::min);
         let high = quotients.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        // where the signs of both are known, zero is an end whatever underflows
+        // if the signs of both are known, zero is an end even if a product underflows
         let (positive, negative) = (other.low > 0.0, other.high < 0.0);
         let not_below = positive && self.low >= 0.0 || negative && self.high <= 0.0;
         let not_above = positive && self.high <= 0.0 || negative && self.low >= 0.0;
@@ -235,7 +236,7 @@ impl Div for Interval {
 }
 
 impl Scalar for Interval {
-    /// `None` where it holds for some of the numbers only.
+    /// Result of a comparison; `None` if it holds for only some of the numbers.
     type Mask = Option<bool>;
 
     #[inline]
@@ -289,7 +290,7 @@ impl Scalar for Interval {
 mod tests {
     use super::*;
 
-    /// An equation with every operation, at points inside of an interval.
+    /// An equation with every operation, at points inside an interval.
     fn equation<S: Scalar>(x: S) -> S {
         let inner = (x * x + S::from(0.3)).sqrt() - x.abs().times(0.1);
         let choice = S::select(x.less_than(S::from(0.2)), (-x).exp(), inner / (x + S::from(3.0)));
@@ -311,7 +312,7 @@ mod tests {
         }
     }
 
-    /// The least and the greatest of the four products of ends, whatever their signs.
+    /// Least and greatest of the four products of ends, for any signs.
     fn product_of_all_ends(one: Interval, other: Interval) -> Interval {
         let products = [one.low, one.high].map(|a| [other.low, other.high].map(|b| product(a, b)));
         let products = products.as_flattened();

@@ -4,17 +4,16 @@ use super::Scalar;
 use super::exponential::exponential;
 use crate::portable;
 
-/// Lanes of a vector: two registers of the widest kind that is common, which hide the time that
-/// divisions and roots take.
+/// Lanes of a vector: two registers of the widest common kind, which hide the latency of divisions
+/// and roots.
 pub const LANES: usize = 4;
 
-/// Numbers side by side, every operation on all of them at once: the same equation for as many
-/// machines as there are lanes.
+/// Parallel numbers, every operation on all of them at once: one equation for as many machines as
+/// there are lanes.
 ///
-/// A lane's result has the same bits as the plain number's: each operation is the plain one, lane
-/// by lane, and the compiler makes vector instructions of it. The lanes are written out: an
-/// operation that is a loop, in equations of thousands of operations, takes the compiler several
-/// times as long.
+/// A lane's result is bit-identical to that of a plain number: each operation is the plain one,
+/// lane by lane, which the compiler vectorises. The lanes are written out: with loops in equations
+/// of thousands of operations, compilation takes several times as long.
 ///
 /// # Example
 /// ```

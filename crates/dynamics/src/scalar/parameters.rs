@@ -1,9 +1,9 @@
 use super::Scalar;
 
-/// A component whose parameters are numbers of one kind, and can become numbers of another: lanes,
+/// Component whose parameters are numbers of one kind, and can become numbers of another: lanes,
 /// dual numbers, intervals.
 ///
-/// [`crate::parameters!`] writes it from the names of the fields.
+/// [`crate::parameters!`] generates the implementation from the names of the fields.
 ///
 /// # Example
 /// ```
@@ -22,12 +22,12 @@ use super::Scalar;
 /// assert_eq!(spring.convert(&mut |value| 10.0 * value).play, Some([0.0, 10.0]));
 /// ```
 pub trait Parameters: Copy {
-    /// What the parameters are.
+    /// Type of the parameters.
     type Number;
-    /// The same component with parameters of another kind.
+    /// The component with parameters of another type.
     type Over<T: Copy>;
 
-    /// Every parameter replaced, in a fixed order.
+    /// Replaces every parameter, in a fixed order.
     fn convert<T: Copy>(&self, of: &mut impl FnMut(Self::Number) -> T) -> Self::Over<T>;
 }
 
@@ -62,8 +62,8 @@ impl<P: Parameters, const N: usize> Parameters for [P; N] {
 }
 
 /// Writes [`Parameters`](crate::scalar::Parameters) for a struct over a scalar, of its fields, or
-/// for an enum, of its variants. Fields are converted in the order in which they stand here; those
-/// marked `kept` are copied.
+/// for an enum, of its variants. Fields are converted in the order in which they are listed here;
+/// those marked `kept` are copied.
 ///
 /// # Example
 /// ```

@@ -1,42 +1,42 @@
-//! An error carried along a run: what grows where no single mode does.
+//! Small error propagated along a run: growth where no single mode grows.
 //!
-//! Each stretch between two kinks may be stable, and the run unstable: a mass that bounces off a
-//! wall loses less of an error on its way back than it gains at the wall. Eigenvalues show nothing
-//! of that, the derivative of the whole run does.
+//! Each interval between two kinks may be stable, but the run unstable: a mass that bounces off a
+//! wall loses less of an error on its way back than it gains at the wall. Eigenvalues do not show
+//! this; the derivative of the whole run does.
 
 use super::{Amplification, GrowthCause, Lane};
 use crate::{portable, random};
 
-/// Beyond this size an error is scaled back, so that it stays a number.
+/// Size beyond which an error is scaled back, so that it stays finite.
 const LARGE: f64 = 1e6;
 
-/// An error of each lane, in the units of its states.
+/// Error of each lane, in the units of its states.
 ///
 /// ```text
 /// e -> R(h J) e                         over a step: Rosenbrock::carry
-/// e -> e + s,  s_i = +-scale_i          where it has not grown
+/// e -> e + s,  s_i = +-scale_i          if it has not grown
 /// growth = |e|/|e_1|,  |e| the root mean square of e_i/scale_i
 /// ```
 ///
-/// e_1 is e a step after the last s, or s if that is larger: states that are bound stiffly to one
-/// another have shared it by then.
+/// e_1 is e a step after the last s, or s if that is larger: by then the error has spread over
+/// states that are stiffly coupled.
 #[derive(Clone, Debug)]
 pub(super) struct CarriedErrors<S> {
     error: Vec<S>,
-    /// At the end of the step.
+    /// Error at the end of the step.
     pub(super) next: Vec<S>,
     lanes: Vec<CarriedLane>,
 }
 
-/// The growth of the error in a lane.
+/// Growth of the error in a lane.
 #[derive(Clone, Copy, Debug, Default)]
 struct CarriedLane {
     /// State of the random numbers from which the signs are drawn.
     chance: u64,
     from_s: f64,
-    /// Logarithm of what the error was scaled back by.
+    /// Logarithm of the factor by which the error was scaled back.
     scaled: f64,
-    /// Logarithm of its size a step after it was last made anew; `None` within that step.
+    /// Logarithm of the error one step after its last renewal; `None` within that step.
     first: Option<f64>,
     largest: Option<Amplification>,
 }
@@ -47,18 +47,18 @@ impl<S: Lane> CarriedErrors<S> {
         CarriedErrors { error: none.clone(), next: none, lanes: vec![CarriedLane::default(); S::COUNT] }
     }
 
-    /// Begins anew in a lane.
+    /// Resets a lane.
     pub(super) fn forget(&mut self, lane: usize) {
         self.lanes[lane] = CarriedLane::default();
         self.error.iter_mut().for_each(|error| error.set_lane(lane, 0.0));
     }
 
-    /// Sets the error at the start of a step, to be carried to its end.
+    /// Sets the error at the start of a step, to be propagated to its end.
     pub(super) fn begin(&mut self) {
         self.next.copy_from_slice(&self.error);
     }
 
-    /// Takes the error at the end of a step that was taken in a lane, at this time in s.
+    /// Accepts the error at the end of a step taken in a lane, at this time in s.
     pub(super) fn take(&mut self, lane: usize, time_s: f64, scales: &[S]) {
         let Some(own) = self.lanes.get_mut(lane) else { return };
         let mut sum = 0.0;
@@ -89,7 +89,7 @@ impl<S: Lane> CarriedErrors<S> {
         }
     }
 
-    /// Adds an error to what is left of the one before.
+    /// Adds a new error to the remaining previous one.
     fn renew(&mut self, lane: usize, time_s: f64, scales: &[S]) {
         let Some(own) = self.lanes.get_mut(lane) else { return };
         for (error, scale) in self.error.iter_mut().zip(scales) {
@@ -100,16 +100,17 @@ impl<S: Lane> CarriedErrors<S> {
         (own.from_s, own.first, own.scaled) = (time_s, None, 0.0);
     }
 
-    /// What a lane's error has grown by most.
+    /// Largest growth of the error in a lane.
     pub(super) fn amplification(&self, lane: usize) -> Option<Amplification> {
         self.lanes.get(lane).and_then(|own| own.largest)
     }
 }
 
-/// Factors of the fraction by which an error is carried over a step.
+/// Number of factors of the fraction by which an error is propagated over a step.
 pub(super) const CARRIED: usize = 6;
 
-/// b_k of [`Rosenbrock::carry`](super::rosenbrock::Rosenbrock::carry), from the coefficients p_j of P.
+/// Weights b_k of [`Rosenbrock::carry`](super::rosenbrock::Rosenbrock::carry), from the
+/// coefficients p_j of P.
 ///
 /// ```text
 /// p_j = sum over i of C(6, i) (-gamma)^i/(j - i)!,    z^j w^6 = (w - 1)^j w^(6 - j)/gamma^j
@@ -136,8 +137,8 @@ mod tests {
 
     use super::*;
 
-    /// The weights are those of the exponential to the order of the method, and of an L-stable
-    /// fraction: |R| is at most 1 on the imaginary axis, and vanishes far out.
+    /// The weights are those of the exponential to the order of the method, and form an L-stable
+    /// fraction: |R| is at most 1 on the imaginary axis, and vanishes at infinity.
     #[test]
     fn errors_are_carried_by_the_exponential() {
         let gamma = 0.21193756319429014;

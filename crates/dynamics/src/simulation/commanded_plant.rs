@@ -1,4 +1,4 @@
-//! A plant with its source of commands: a controller that acts continuously, or a hold between
+//! Plant with its source of commands: a controller that acts continuously, or a hold between
 //! samples.
 
 use super::realization::Realization;
@@ -7,7 +7,7 @@ use crate::controller::{AntiWindup, Controller, InnerFeedback, integral_row};
 use crate::linear::{LinearError, StateSpace, TransferFunction};
 use crate::scalar::Scalar;
 
-/// A plant with what commands it.
+/// Plant with its source of commands.
 ///
 /// ```text
 /// in a loop   u = G (F r - y) + k d - H p,    |u| <= limit,    delayed;    inputs r and those of the plant; states of plant, G, H, F
@@ -16,40 +16,39 @@ use crate::scalar::Scalar;
 ///
 /// In a loop, the plant's disturbance d (a load's velocity) may be fed forward, and its inner
 /// measurement p (a pressure) fed back by the controller's [`InnerFeedback`]. A limited command
-/// stops the integral part as the controller's [`AntiWindup`] says: clamping holds the states of G
-/// while the error drives the command further out, back calculation drives them with the error that
-/// would have given the limited command. Clamping takes hold over the first ten-thousandth beyond
-/// the limit: a hold at once would let the command slide along its limit, held and let go without
-/// end.
+/// stops the integral part according to the controller's [`AntiWindup`]: clamping holds the states
+/// of G while the error drives the command further out, back calculation drives them with the error
+/// that would have given the limited command. Clamping sets in over the first ten-thousandth beyond
+/// the limit: with an abrupt hold, the command would chatter along its limit.
 ///
-/// On hold, F is the prefilter that stays continuous before a sampled controller; one where that is
-/// sampled too.
+/// On hold, F is the prefilter that stays continuous before a sampled controller; one if the
+/// prefilter is sampled too.
 ///
-/// Both are one type, so that whatever simulates a plant is compiled once.
+/// Both sources have one type, so that the simulation of a plant is compiled once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommandedPlant<P> {
     plant: P,
-    /// Absent behind a hold.
+    /// Continuous control law; `None` on hold.
     law: Option<ContinuousLaw>,
     prefilter: Realization,
 }
 
-/// A continuous controller, its prefilter apart.
+/// Continuous controller without its prefilter.
 #[derive(Clone, Debug, PartialEq)]
 struct ContinuousLaw {
     feedback: Realization,
-    /// Reads the integral part of the command off the states of G.
+    /// Row that gives the integral part of the command from the states of G.
     integral: Vec<f64>,
     limit: f64,
     anti_windup: AntiWindup,
     feed_forward: f64,
-    /// H; `None` where no inner measurement is fed back.
+    /// Realisation of H; `None` if no inner measurement is fed back.
     inner: Option<Realization>,
     delay_s: f64,
 }
 
 impl ContinuousLaw {
-    /// What drives the states of G.
+    /// Input of the states of G.
     #[inline(always)]
     fn driving<T: Scalar>(&self, signals: &LoopSignals<T>) -> T {
         match self.anti_windup {
@@ -76,7 +75,7 @@ impl ContinuousLaw {
 }
 
 impl<P> CommandedPlant<P> {
-    /// This plant under this controller, which acts continuously, the disturbance fed forward with
+    /// Plant under this controller, which acts continuously, with its disturbance fed forward with
     /// this gain.
     ///
     /// # Errors
@@ -103,10 +102,10 @@ impl<P> CommandedPlant<P> {
         Ok(CommandedPlant { plant, law: Some(law), prefilter })
     }
 
-    /// This plant with its command held constant, and the reference filtered by this prefilter.
+    /// Plant with its command held constant, and the reference filtered by this prefilter.
     ///
     /// # Errors
-    /// As [`CommandedPlant::in_loop`].
+    /// Errors of [`CommandedPlant::in_loop`].
     pub fn on_hold(plant: P, prefilter: &TransferFunction) -> Result<Self, LinearError> {
         Ok(CommandedPlant { plant, law: None, prefilter: Realization::new(prefilter)? })
     }
@@ -116,12 +115,12 @@ impl<P> CommandedPlant<P> {
         &self.plant
     }
 
-    /// The plant, to be changed.
+    /// The plant, mutable.
     pub fn plant_mut(&mut self) -> &mut P {
         &mut self.plant
     }
 
-    /// How many inputs come before those of the plant: the reference; on hold the command and the
+    /// Number of inputs before those of the plant: the reference; on hold the command and the
     /// reference.
     #[inline(always)]
     pub fn leading_inputs(&self) -> usize {
@@ -133,13 +132,13 @@ impl<P> CommandedPlant<P> {
         self.law.as_ref().map_or(f64::INFINITY, |law| law.limit)
     }
 
-    /// The same loop without a limit of the command, and so without anti-windup.
+    /// Loop without a limit of the command, and so without anti-windup.
     #[must_use]
     pub fn unlimited(self) -> Self {
         CommandedPlant { law: self.law.map(|law| ContinuousLaw { limit: f64::INFINITY, ..law }), ..self }
     }
 
-    /// How many states controller and prefilter have.
+    /// Number of states of controller and prefilter.
     pub fn controller_states(&self) -> usize {
         self.feedback_states() + self.inner_states() + self.prefilter.states
     }
@@ -154,7 +153,7 @@ impl<P> CommandedPlant<P> {
         self.law.as_ref().and_then(|law| law.inner.as_ref()).map_or(0, |inner| inner.states)
     }
 
-    /// Each part of the states, or of their rates: those of plant, G, H and F.
+    /// Parts of the states, or of their rates: those of plant, G, H and F.
     #[inline(always)]
     fn parts<'t, S: Scalar, T>(&self, state: &'t [T]) -> [&'t [T]; 4]
     where
@@ -167,10 +166,10 @@ impl<P> CommandedPlant<P> {
     }
 
     /// States of G, H and F, in this order, that hold a command at constant reference, measurement
-    /// and inner measurement, or come nearest to it. On hold those of F.
+    /// and inner measurement, or come nearest to it; on hold only the states of F.
     ///
     /// # Example
-    /// An integrator holds any command while there is no error.
+    /// An integrator holds any command while the error is zero.
     /// ```
     /// use phea_dynamics::controller::{Compensator, Controller, Element};
     /// use phea_dynamics::simulation::CommandedPlant;
@@ -207,7 +206,7 @@ impl<P> CommandedPlant<P> {
         self.law.as_ref().is_some_and(|law| law.delay_s > 0.0)
     }
 
-    /// The inputs of the plant among all.
+    /// Inputs of the plant among all inputs.
     #[inline(always)]
     fn own<'i, S: Scalar, T>(&self, inputs: &'i [T]) -> &'i [T]
     where
@@ -244,14 +243,14 @@ impl<P> CommandedPlant<P> {
         LoopSignals { filtered_reference, measurement, error, wanted, command }
     }
 
-    /// Part of the command that the integral part of G holds; zero where nothing integrates.
+    /// Part of the command that the integral part of G holds; zero if nothing integrates.
     ///
     /// ```text
-    /// G = c_1/s + ... + c_m/s^m + what does not integrate          of a simple pole c_1 times the integral of F r - y
+    /// G = c_1/s + ... + c_m/s^m + remainder without integration          for a simple pole, c_1 times the integral of F r - y
     /// ```
     ///
     /// # Example
-    /// Of 2 + 3/s the error of one leaves 3 t.
+    /// For 2 + 3/s a constant error of one gives an integral part of 3 t.
     /// ```
     /// use phea_dynamics::controller::{Compensator, Controller, Element};
     /// use phea_dynamics::scalar::Scalar;
@@ -282,7 +281,7 @@ impl<P> CommandedPlant<P> {
         of_feedback.zip(integral).map(|(state, part)| state * part).sum()
     }
 
-    /// The command as it reaches the plant: after the delay.
+    /// Command on arrival at the plant: after the delay.
     pub fn arriving_command(&self, state: &[f64], inputs: &[f64]) -> f64
     where
         P: Plant<f64>,
@@ -291,7 +290,7 @@ impl<P> CommandedPlant<P> {
         delayed.unwrap_or_else(|| self.signals::<f64, f64>(state, inputs).command)
     }
 
-    /// The inputs of a sampled controller: reference after the prefilter, measurement, and inner
+    /// Inputs of a sampled controller: reference after the prefilter, measurement, and inner
     /// measurement.
     pub fn sampled<S: Scalar, T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> [T; 3]
     where
@@ -304,24 +303,24 @@ impl<P> CommandedPlant<P> {
     }
 }
 
-/// Part of the limit over which clamping takes hold.
+/// Fraction of the limit over which clamping sets in.
 const HOLDING: f64 = 1e-4;
 
-/// Kinks that a limited command has.
+/// Number of kinks of a limited command.
 const LIMITED: usize = 3;
 
 /// Signals of a control loop at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopSignals<T> {
-    /// F r.
+    /// Filtered reference F r.
     pub filtered_reference: T,
-    /// y.
+    /// Measurement y.
     pub measurement: T,
-    /// F r - y.
+    /// Error F r - y.
     pub error: T,
-    /// The command before its limit; on hold the command.
+    /// Command before its limit; on hold the command.
     pub wanted: T,
-    /// The command within its limit, before any delay.
+    /// Command within its limit, before any delay.
     pub command: T,
 }
 
@@ -406,8 +405,8 @@ impl<S: Scalar, P: Plant<S>> System<S> for CommandedPlant<P> {
         self.plant.kinks() + if self.limit().is_finite() { LIMITED } else { 0 }
     }
 
-    /// Those of the plant; where the command reaches its limit, where clamping holds, and where the
-    /// error reverses, at which clamping lets go.
+    /// Kinks of the plant, and those where the command reaches its limit, where clamping holds, and
+    /// where the error reverses, at which clamping releases.
     fn mark<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], marks: &mut [T]) {
         let own = self.own::<S, T>(inputs);
         let limited = if self.limit().is_finite() { LIMITED } else { 0 };
@@ -417,7 +416,7 @@ impl<S: Scalar, P: Plant<S>> System<S> for CommandedPlant<P> {
             let LoopSignals { wanted, error, .. } = self.signals::<S, T>(state, inputs);
             let beyond = wanted.abs() - T::from(self.limit());
             let held = beyond - T::from(HOLDING * self.limit());
-            // of no account within the limit
+            // irrelevant within the limit
             let reversal = T::select(beyond.less_than(T::from(0.0)), T::from(1.0), error * wanted);
             own_marks.copy_from_slice(&[beyond, held, reversal]);
         }

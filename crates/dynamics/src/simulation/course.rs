@@ -9,26 +9,26 @@ use crate::range::RequiredRange;
 /// Duration, inputs and output step of a simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InputSchedule {
-    /// From time zero, in s; positive.
+    /// Duration from time zero, in s; positive.
     pub duration_s: f64,
     /// Time between rows of the result in s; positive.
     pub output_step_s: f64,
-    /// One for each input of the system, in order, delayed waves excluded.
+    /// Inputs of the system, in order, without delayed waves.
     pub inputs: Vec<Input>,
 }
 
-/// What an input is.
+/// Input of a system.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Input {
     /// A known function of time.
     Value(Profile),
-    /// Its first derivative.
+    /// First derivative of a known function of time.
     Rate(Profile),
-    /// The last command of the sampler; before its first one, [`Sampler::held`].
+    /// Last command of the sampler; before its first one, [`Sampler::held`].
     Command,
 }
 
-/// Acts once per sample: a digital controller with its converters.
+/// Controller that acts once per sample, with its converters.
 pub trait Sampler {
     /// Time between samples in s; positive. The first is at time zero.
     fn sample_time_s(&self) -> f64;
@@ -36,44 +36,44 @@ pub trait Sampler {
     /// Time from a sample until its command takes effect, in s; zero or positive.
     fn delay_s(&self) -> f64;
 
-    /// What is held before the first command takes effect.
+    /// Command that is held before the first sampled command takes effect.
     fn held(&self) -> f64 {
         0.0
     }
 
-    /// The command for the state and the inputs at a sample.
+    /// Command for the state and the inputs at a sample.
     fn command(&mut self, time_s: f64, state: &[f64], inputs: &[f64]) -> f64;
 }
 
-/// Receives the results during a simulation.
+/// Receiver of the results of a simulation.
 pub trait Observer {
-    /// Indices of the states it needs, in the order in which it needs them.
+    /// Indices of the required states, in the required order.
     fn wanted(&self) -> &[usize];
 
-    /// Whether it needs the row with this index, counted from zero.
+    /// True if the row with this index, counted from zero, is required.
     fn wants_row(&self, _row: u64) -> bool {
         true
     }
 
-    /// Called at each row of the result that it wants, with those states and all inputs, beginning
-    /// with time zero. At a break it sees the inputs as they are from then on.
+    /// Called at each required row of the result, with the required states and all inputs,
+    /// beginning with time zero. At a break, the inputs are those after it.
     fn observe(&mut self, time_s: f64, states: &[f64], inputs: &[f64]);
 
-    /// Whether it needs the inputs; if not, the list of inputs is empty.
+    /// True if inputs are required; if not, the list of inputs is empty.
     fn wants_inputs(&self) -> bool {
         true
     }
 
-    /// Whether it needs the steps in addition to the rows.
+    /// Required level of detail.
     fn attention(&self) -> Attention {
         Attention::Rows
     }
 
-    /// Called with each step that was taken, after its rows, where it pays attention to steps.
+    /// Called with each accepted step, after its rows, if steps are required.
     fn follow(&mut self, _stretch: &Stretch<'_>) {}
 
-    /// Asked before [`Observer::follow`]: whether it needs the solution within a step from sample
-    /// to sample more accurately than by a cubic.
+    /// True if the solution within a step from sample to sample must be more accurate than a cubic;
+    /// called before [`Observer::follow`].
     fn looks_closer(&self, _stretch: &Stretch<'_>) -> bool {
         false
     }
@@ -109,32 +109,32 @@ impl<P: DerefMut<Target: Observer>> Observer for P {
     }
 }
 
-/// What an observer needs.
+/// Level of detail that an observer requires.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Attention {
-    /// Rows alone: how often there are rows may decide how a step is made.
+    /// Rows only: the spacing of rows may determine how a step is made.
     #[default]
     Rows,
-    /// Every step as a whole. Between samples a machine may go by known matrices;
-    /// [`Observer::looks_closer`] is asked of each such step.
+    /// Every step as a whole. Between samples a step may use precomputed matrices;
+    /// [`Observer::looks_closer`] is called for each such step.
     Steps,
-    /// Every step as a whole and every row, so that rows decide nothing: no step is made by known
-    /// matrices.
+    /// Every step as a whole and every row, independent of the spacing of rows: no step uses
+    /// precomputed matrices.
     Everything,
 }
 
 /// Tolerance, limit of the work and method of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SimulationSettings {
-    /// Largest error of a step as it is estimated, relative to the state plus its scale. Above 0
-    /// and below 1.
+    /// Largest estimated error of a step, relative to the state plus its scale. Above 0 and below
+    /// 1.
     ///
-    /// Where a rate has a kink within the step, as friction has at a standstill, one step in a
-    /// hundred is off by ten times as much and more.
+    /// If a rate has a kink within the step, as friction has at standstill, one step in a hundred
+    /// is off by ten times as much or more.
     pub tolerance: f64,
-    /// Largest number of steps, rejected ones included.
+    /// Largest number of steps, including rejected ones.
     pub maximum_steps: u64,
-    /// How steps are made.
+    /// Integration method.
     pub method: Method,
 }
 
@@ -144,51 +144,51 @@ impl Default for SimulationSettings {
     }
 }
 
-/// How a simulation ended.
+/// Reason for the end of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Status {
-    /// At the end of its duration.
+    /// The duration was reached.
     Completed,
-    /// By its watch.
+    /// The watch stopped the simulation.
     Cancelled {
-        /// When, in s of simulated time.
+        /// Simulated time of the end, s.
         time_s: f64,
     },
     /// No step was short enough for the tolerance.
     StepTooSmall {
-        /// When, in s of simulated time.
+        /// Simulated time of the end, s.
         time_s: f64,
     },
-    /// A rate or an input was not a finite number.
+    /// A rate or an input was not finite.
     NotFinite {
-        /// When, in s of simulated time.
+        /// Simulated time of the end, s.
         time_s: f64,
     },
-    /// It took more steps than it was allowed, and the last of them were short because a mode
-    /// grows: its oscillation would take more steps than there are.
+    /// The limit of steps was reached, and the last steps were short because a mode grows: to
+    /// resolve its oscillation would take more steps than allowed.
     UnresolvedOscillation {
-        /// When, in s of simulated time.
+        /// Simulated time of the end, s.
         time_s: f64,
         /// Magnitude of the mode's eigenvalue, in rad/s.
         frequency_rad_per_s: f64,
-        /// Its real part, in 1/s.
+        /// Real part of the eigenvalue, in 1/s.
         growth_per_s: f64,
     },
-    /// It took more steps than it was allowed.
+    /// The limit of steps was reached.
     TooManySteps {
-        /// When, in s of simulated time.
+        /// Simulated time of the end, s.
         time_s: f64,
     },
 }
 
-/// An indicator that changed its sign.
+/// Change of sign of an indicator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Event {
-    /// When, in s of simulated time.
+    /// Simulated time of the event, s.
     pub time_s: f64,
-    /// Which indicator.
+    /// Index of the indicator.
     pub indicator: usize,
-    /// Whether it became positive.
+    /// True if the indicator became positive.
     pub rising: bool,
 }
 
@@ -197,19 +197,19 @@ pub struct Event {
 pub struct StepCounts {
     /// Accepted steps.
     pub steps: u64,
-    /// Steps tried again with a shorter one.
+    /// Rejected steps, which were repeated with a shorter step.
     pub rejected: u64,
-    /// Evaluations of the rates, that for derivatives at the start of each step not counted.
+    /// Evaluations of the rates, without those for derivatives at the start of each step.
     pub evaluations: u64,
 }
 
-/// Part of the scale of a state from which on an error is visible.
+/// Fraction of the scale of a state above which an error is visible.
 const VISIBLE: f64 = 1e-3;
 
-/// A mode that grew by itself, without being suppressed by the method.
+/// Mode that grew freely, without being suppressed by the method.
 ///
 /// ```text
-/// factor = exp(integral of Re(lambda) over the time from its begin to its end)
+/// factor = exp(integral of Re(lambda) over the time from its beginning to its end)
 /// ```
 ///
 /// lambda is the least stable of the fast eigenvalues of the Jacobian along the trajectory, or of
@@ -219,40 +219,40 @@ const VISIBLE: f64 = 1e-3;
 /// ratio of two amplitudes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Amplification {
-    /// Logarithm of the factor.
+    /// Logarithm of the growth factor.
     pub logarithm: f64,
-    /// When the growth began, in s of simulated time.
+    /// Simulated time at which the growth began, s.
     pub from_s: f64,
-    /// When it was largest, in s of simulated time.
+    /// Simulated time at which the growth was largest, s.
     pub until_s: f64,
-    /// Magnitude of the eigenvalue at that time, in rad/s; zero where no single mode grows.
+    /// Magnitude of the eigenvalue at that time, in rad/s; zero if no single mode grows.
     pub frequency_rad_per_s: f64,
-    /// What grows.
+    /// Cause of the growth.
     pub cause: GrowthCause,
 }
 
-/// What amplifies errors.
+/// Cause that amplifies errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GrowthCause {
-    /// A mode of the machine, with a continuous controller if there is one.
+    /// A mode of the machine, including a continuous controller.
     #[default]
     Mode,
     /// The closed loop: from sample to sample, or with its delays.
     Loop,
-    /// The motion from kink to kink, though no mode grows: bouncing off a wall.
+    /// The motion from kink to kink, although no mode grows: bouncing off a wall.
     Motion,
 }
 
 impl Amplification {
-    /// The one that grew more.
+    /// The amplification with the larger growth.
     pub fn larger(all: [Option<Amplification>; 2]) -> Option<Amplification> {
         let [one, other] = all;
         let more = other.filter(|other| one.is_none_or(|one| one.logarithm < other.logarithm));
         more.or(one)
     }
 
-    /// The one that names a mode where it may show errors of this tolerance, else the one that grew
-    /// more.
+    /// The amplification that identifies a mode if it may show errors of this tolerance, otherwise
+    /// the one with the larger growth.
     pub(super) fn named(
         mode: Option<Amplification>,
         motion: Option<Amplification>,
@@ -261,44 +261,44 @@ impl Amplification {
         mode.filter(|mode| mode.may_show_errors(tolerance)).or(Amplification::larger([mode, motion]))
     }
 
-    /// Whether rounding may have grown to a thousandth of the scales of the states: no tolerance
-    /// determines the result then.
+    /// True if rounding may have grown to a thousandth of the scales of the states: then no
+    /// tolerance determines the result.
     pub fn may_show_rounding(&self) -> bool {
         self.may_show_errors(f64::EPSILON)
     }
 
-    /// Whether errors as large as the tolerance may have grown to a thousandth of the scales of the
+    /// True if errors as large as the tolerance may have grown to a thousandth of the scales of the
     /// states.
     pub fn may_show_errors(&self, tolerance: f64) -> bool {
         self.logarithm >= portable::ln(VISIBLE / tolerance)
     }
 }
 
-/// Kinks that a run passed without a deviation being carried from one to the next: what they
-/// amplify together is not known.
+/// Kinks that a run passed without propagation of a deviation from one to the next: their combined
+/// amplification is unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnfollowedKinks {
     /// Steps within which some kink was passed.
     pub steps: u64,
-    /// Why nothing was carried.
+    /// Reason why no deviation was propagated.
     pub cause: UnfollowedCause,
 }
 
-/// The reason why a deviation is not carried along a run.
+/// Reason why a deviation is not propagated along a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnfollowedCause {
     /// A controller acts at samples.
     Samples,
-    /// A delay holds a part of the deviation: of a command, or of a wave.
+    /// A delay of a command or of a wave holds a part of the deviation.
     Delays,
-    /// The method has no matrix for it.
+    /// The method has no matrix for the propagation.
     Method,
 }
 
-/// The outcome of one simulation, apart from what its observer received.
+/// Outcome of one simulation, except the data received by its observer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
-    /// How it ended.
+    /// Reason for the end of the simulation.
     pub status: Status,
     /// Events, in order of time.
     pub events: Vec<Event>,
@@ -306,26 +306,27 @@ pub struct Outcome {
     pub work: StepCounts,
     /// State at the end.
     pub end: Vec<f64>,
-    /// What grew most; `None` where nothing did.
+    /// Largest amplification; `None` if nothing grew.
     pub amplification: Option<Amplification>,
-    /// `None` where a deviation was carried along, or fewer than two steps passed a kink.
+    /// Kinks that were not followed; `None` if a deviation was propagated, or fewer than two steps
+    /// passed a kink.
     pub unfollowed: Option<UnfollowedKinks>,
 }
 
-/// Why a simulation did not start.
+/// Error for a simulation that did not start.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SimulationError {
-    /// A count does not fit the system.
+    /// A count that does not fit the system.
     #[error("{found} {what} where the system has {expected}")]
     Count {
         /// Name of the count.
         what: SimulationCount,
-        /// How many there are.
+        /// Number found.
         found: usize,
-        /// How many there should be.
+        /// Number required.
         expected: usize,
     },
-    /// A time or a tolerance is invalid.
+    /// An invalid time or tolerance.
     #[error("{what} is {value}, but must be {requirement}")]
     Setting {
         /// Name of the number.
@@ -335,15 +336,15 @@ pub enum SimulationError {
         /// Range of the number.
         requirement: RequiredRange,
     },
-    /// A state at the start is not a finite number.
+    /// A state at the start that is not a finite number.
     #[error("state {index} is {value} at the start")]
     Start {
-        /// Which state.
+        /// Index of the state.
         index: usize,
-        /// Its value.
+        /// Value of the state.
         value: f64,
     },
-    /// Lanes need vector instructions that the processor lacks.
+    /// Lanes that need vector instructions which the processor lacks.
     #[error(
         "machines cannot be driven side by side on this processor: it lacks the vector instructions AVX2 and FMA"
     )]

@@ -1,10 +1,10 @@
-//! Derivatives of a system's equations by its states and inputs.
+//! Derivatives of a system's equations with respect to its states and inputs.
 
 use super::System;
 use crate::scalar::Dual;
 
-/// Derivatives found in one evaluation of a system's equations: the same number everywhere, because
-/// the equations are compiled once more for every other.
+/// Number of derivatives found in one evaluation of a system's equations: one number everywhere,
+/// because the equations are compiled once for each number used.
 pub const DIRECTIONS: usize = 6;
 
 /// Derivatives with respect to one state or input.
@@ -13,8 +13,8 @@ pub(super) struct DerivativeColumn {
     pub(super) sent: Vec<f64>,
 }
 
-/// The derivatives of the rates, and of what is sent into the delays, by all states and then by all
-/// inputs.
+/// Derivatives of the rates, and of the waves sent into the delays, with respect to all states and
+/// then all inputs.
 pub(super) fn derivatives<E: System<f64>>(
     system: &E,
     state: &[f64],

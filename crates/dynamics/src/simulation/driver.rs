@@ -1,4 +1,4 @@
-//! Drives systems through their courses, one in each lane.
+//! Simulation of systems under their input schedules, one in each lane.
 
 mod between;
 mod joined;
@@ -23,39 +23,39 @@ use super::slot::Slot;
 use super::task::{Task, check};
 use crate::order::sort_by_number;
 
-/// All lanes and the method they share.
+/// All lanes and their common method.
 struct Drive<'a, S, O> {
     method: Stepper<S>,
     /// The known modes of each lane.
     watches: Vec<GrowthWatch>,
     /// The growth of slower modes, and of those that delays close, in each lane without samples.
     frozen: Vec<FrozenWatch>,
-    /// For lanes that are sampled.
+    /// Exact steps of lanes that are sampled.
     propagator: Propagator<S>,
-    /// An error in each lane, carried along.
+    /// Small error in each lane, propagated along its run.
     carried: CarriedErrors<S>,
     settings: SimulationSettings,
     slots: Vec<Option<Slot<'a, O>>>,
     state: Vec<S>,
-    /// Whether a state or its input differs from the last point of linearisation.
+    /// True if a state or its input differs from the last point of linearisation.
     fresh: bool,
     step: S,
     inputs: StepInputs<S>,
     indicators: Vec<S>,
-    /// At the start of the step, of the kinks.
+    /// Marks of the kinks at the start of the step.
     marks: Vec<S>,
-    /// Points inside a step at which it is evaluated.
+    /// Error inside a step.
     between: ErrorBetween<S>,
 }
 
 struct ErrorBetween<S> {
-    /// States over the step, those that were asked for.
+    /// Requested states over the step.
     extensions: Vec<Option<Extension<S>>>,
-    /// Whether the step was taken with known matrices.
+    /// True if the step used precomputed matrices.
     propagated: bool,
-    /// Those an observer wants, in its lane.
+    /// States required by an observer, in its lane.
     wanted: Vec<Extension<f64>>,
-    /// The same as polynomials.
+    /// Required states as polynomials.
     quartics: Vec<Quartic>,
     /// State at the end of the step.
     end: Vec<S>,
@@ -111,7 +111,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         })
     }
 
-    /// Puts a machine into a free lane.
+    /// Inserts a machine into a free lane.
     fn enter(
         &mut self,
         system: &dyn Kernel<S>,
@@ -162,14 +162,14 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         Ok(())
     }
 
-    /// Tries one step in every lane: where its matrices are known by them, where that is not good
-    /// enough by the method.
+    /// Attempts one step in every lane: by its precomputed matrices if it has them, by the method
+    /// if those are too inaccurate.
     fn step(&mut self, system: &dyn Kernel<S>) {
         for lane in 0..S::COUNT {
             self.prepare(lane);
         }
-        // A lane that goes by its matrices now stands, after this step, where the method has not
-        // linearised it.
+        // after this step, a lane that uses its matrices is at a state at which the method has not
+        // linearised it
         let mut fresh = std::mem::take(&mut self.fresh);
         self.choose_propagated();
         if self.watch_propagated(system, fresh) {
@@ -207,14 +207,14 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         self.carry(system, taken);
     }
 
-    /// Rates, Jacobian and slopes in time where each lane stands.
+    /// Finds rates, Jacobian and slopes in time at the state of each lane.
     fn linearize(&mut self, system: &dyn Kernel<S>) {
         let mut left = self.slots.iter().flatten().filter(|slot| !slot.propagated);
         self.inputs.moving = left.any(|slot| !slot.passage.still);
         self.method.linearize(system, &self.state, &self.inputs);
     }
 
-    /// Shortens steps that would calm a mode that grows.
+    /// Shortens steps that would suppress a growing mode.
     fn watch(&mut self, system: &dyn Kernel<S>) {
         for lane in 0..S::COUNT {
             let Some(slot) = &mut self.slots[lane] else { continue };
@@ -240,7 +240,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         }
     }
 
-    /// Ends machines that took more steps than they are allowed.
+    /// Ends machines that exceed the allowed number of steps.
     fn limit_work(&mut self) {
         for Slot { passage, .. } in self.slots.iter_mut().flatten() {
             let tried = passage.work.steps + passage.work.rejected;
@@ -250,7 +250,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         }
     }
 
-    /// Lets the sampler act, chooses the step and sets its inputs in one lane.
+    /// Runs the sampler, chooses the step and sets its inputs in one lane.
     fn prepare(&mut self, lane: usize) {
         let Some(slot) = &mut self.slots[lane] else { return };
         let Slot { passage, sampler, states, inputs, .. } = slot;
@@ -284,7 +284,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         set_lane(&mut self.inputs.slopes, lane, inputs);
     }
 
-    /// A state over the step, found once for all lanes.
+    /// State over the step, found once for all lanes.
     fn extension(&mut self, index: usize) -> &Extension<S> {
         let (method, propagator, state) = (&self.method, &self.propagator, &self.state);
         let (end, step, propagated) = (&self.between.end, self.step, self.between.propagated);
@@ -298,7 +298,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         })
     }
 
-    /// Moves one lane to the end of the step it took.
+    /// Advances one lane to the end of its accepted step.
     fn take(&mut self, system: &dyn Kernel<S>, lane: usize) {
         self.fresh = true;
         if let Some(slot) = &mut self.slots[lane] {
@@ -319,8 +319,8 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         }
     }
 
-    /// Shows the observer of a lane every row before the end of the step, and the step itself if it
-    /// wants to be.
+    /// Passes every row before the end of the step to the observer of a lane, and the step itself
+    /// if required.
     fn observe(&mut self, lane: usize) {
         let Some(slot) = &self.slots[lane] else { return };
         let follows = slot.passage.attention != Attention::Rows;
@@ -336,7 +336,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         }
     }
 
-    /// Finds the states that the observer of a lane wants over the step.
+    /// Finds the states over the step that the observer of a lane requires.
     fn want(&mut self, lane: usize) {
         self.between.wanted.clear();
         for place in 0.. {
@@ -348,7 +348,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         }
     }
 
-    /// State and inputs of one lane at a part of the step it took.
+    /// Finds state and inputs of one lane at a fraction of its accepted step.
     fn look(&mut self, lane: usize, part: f64) {
         for index in 0..self.state.len() {
             self.between.state[index] = self.extension(index).at(S::from(part));
@@ -378,8 +378,8 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         }
     }
 
-    /// Indicators and marks at the end of the step, in every lane: where the last stage has its
-    /// inputs.
+    /// Evaluates indicators and marks at the end of the step, in every lane, with the inputs of the
+    /// last stage.
     fn indicate_ends(&mut self, system: &dyn Kernel<S>) {
         let [.., inputs] = &self.inputs.stages;
         if !self.indicators.is_empty() {
@@ -390,7 +390,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         }
     }
 
-    /// Makes the marks at the end of the step of a lane those at the start of its next.
+    /// Takes the marks at the end of a lane's step as those at the start of its next step.
     fn keep_marks(&mut self, lane: usize) {
         for (before, after) in self.marks.iter_mut().zip(&self.between.marks) {
             before.set_lane(lane, after.lane(lane));
@@ -412,14 +412,14 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         }
     }
 
-    /// Finds when an indicator changed its sign within the step, if it did.
+    /// Finds the time at which an indicator changed its sign within the step, if it did.
     fn find_event(&mut self, system: &dyn Kernel<S>, lane: usize, index: usize) {
         let (before, after) = (self.indicators[index].lane(lane), self.between.ends[index].lane(lane));
         if (before > 0.0) == (after > 0.0) {
             return;
         }
         let mut same = |part| (self.indicator(system, lane, index, part) > 0.0) == (before > 0.0);
-        // A break may have changed the sign at once.
+        // a break may have changed the sign at once
         let (mut low, mut high) = if same(0.0) { (0.0, 1.0) } else { (0.0, 0.0) };
         while high - low > 1e-12 {
             let middle = 0.5 * (low + high);
@@ -437,7 +437,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         self.between.indicators[index].lane(lane)
     }
 
-    /// Takes a machine that is done out of its lane.
+    /// Removes a finished machine from its lane.
     fn leave(&mut self, lane: usize) -> Option<(Outcome, O)> {
         let status = self.slots[lane].as_ref()?.passage.status?;
         let Slot { passage, observer, sampler, .. } = self.slots[lane].take()?;

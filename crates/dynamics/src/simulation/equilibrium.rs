@@ -1,4 +1,4 @@
-//! Where a system stands still.
+//! Equilibria of a system.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -9,54 +9,54 @@ use crate::scalar::Dual;
 /// Newton steps, and halvings of each.
 const STEPS: usize = 100;
 const HALVINGS: usize = 40;
-/// Singular values below this are zero: a direction in which nothing is decided, along which the
-/// guess is kept.
+/// Relative size of singular values that are taken as zero: a direction that the equations do not
+/// determine, along which the guess is kept.
 const SINGULAR: f64 = 1e-11;
-/// How far off, in scales, a state may be where it stands still.
+/// Largest deviation of a state at an equilibrium, in scales.
 const TOLERANCE: f64 = 1e-8;
 
-/// Why there is no equilibrium.
+/// Error for a missing equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum EquilibriumError {
-    /// A count does not fit the system.
+    /// A count that does not fit the system.
     #[error("{found} {what} where the system has {expected}")]
     Count {
-        /// What is counted.
+        /// Name of the count.
         what: &'static str,
-        /// How many there are.
+        /// Number found.
         found: usize,
-        /// How many there should be.
+        /// Number required.
         expected: usize,
     },
-    /// A rate at the guess is not a finite number.
+    /// A rate at the guess that is not a finite number.
     #[error("the equations have no value where the search begins")]
     NotFinite,
-    /// Nothing stands still near the guess.
+    /// No equilibrium near the guess.
     #[error("state {state} still moves at {rate} of its typical magnitude per second where all move least")]
     NotFound {
-        /// The state that is farthest from standing still.
+        /// Index of the state farthest from equilibrium.
         state: usize,
-        /// Its rate over its scale, 1/s.
+        /// Rate of this state over its scale, 1/s.
         rate: f64,
     },
 }
 
-/// The state in which a system stands still under inputs that do, and the waves under way in its
-/// delays, in one vector: by damped Newton steps from a guess of both.
+/// Equilibrium state of a system under constant inputs, and the waves in transit in its delays, in
+/// one vector: by damped Newton steps from a guess of both.
 ///
 /// ```text
 /// f(y, w, z) = 0,    z = g(y, w, z)        y states, w inputs, z the waves, which arrive as they were sent
 /// ```
 ///
-/// The Jacobian is exact. Values that these equations leave open (a load in front of its wall, the
-/// share of equal waves) remain as guessed, and so do the states in `kept`: memories such as the
-/// bristles of friction, which can rest anywhere.
+/// The Jacobian is exact. Values that these equations do not determine (a load in front of its
+/// wall, the split between equal waves) keep their guess, and so do the states in `kept`: memories
+/// such as the bristles of friction, which can rest anywhere.
 ///
 /// # Errors
-/// [`EquilibriumError`]; an equilibrium outside its equations is not found.
+/// [`EquilibriumError`]; an equilibrium that violates its equations is not accepted.
 ///
 /// # Example
-/// A tank of which more flows out the higher it stands, sqrt(y), holds at 4 what flows in
+/// A tank whose outflow sqrt(y) rises with its level: the equilibrium level for this inflow is 4.
 /// ```
 /// use phea_dynamics::scalar::Scalar;
 /// use phea_dynamics::simulation::{System, equilibrium};
@@ -100,7 +100,7 @@ pub fn equilibrium<E: System<f64>>(
         return Err(EquilibriumError::NotFinite);
     }
     for _ in 0..STEPS {
-        // each equation over what a scale of its most influential variable makes of it
+        // each equation relative to the effect of one scale of its most influential variable
         let weights: Vec<f64> =
             (0..rest.len()).map(|row| 1.0 / jacobian.row(row).amax().max(f64::MIN_POSITIVE)).collect();
         let weighted = |rest: &DVector<f64>| DVector::from_fn(rest.len(), |row, _| weights[row] * rest[row]);
@@ -177,7 +177,7 @@ impl<E: System<f64>> EquilibriumSearch<'_, E> {
         (rest, jacobian)
     }
 
-    /// What was found, if it stands still.
+    /// Result of the search, if it is an equilibrium.
     fn checked(
         &self,
         found: Vec<f64>,
@@ -195,7 +195,7 @@ impl<E: System<f64>> EquilibriumSearch<'_, E> {
     }
 }
 
-/// Of states as they are, of waves as they are guessed.
+/// Scales of the states, and of the waves by their guess.
 fn scales<E: System<f64>>(system: &E, guess: &[f64]) -> Vec<f64> {
     let mut scales = system.scales();
     let waves = guess.iter().skip(scales.len()).map(|wave| wave.abs().max(1.0)).collect::<Vec<f64>>();

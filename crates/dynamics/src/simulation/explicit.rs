@@ -1,14 +1,14 @@
-//! One step of an explicit Runge-Kutta method of order five.
+//! Single step of an explicit Runge-Kutta method of order five.
 
 use super::Lane;
 use super::growth::AmplitudeLost;
 use super::kernel::{Kernel, StepTrial};
 use super::method::{Extension, StepInputs, relative_error};
 
-/// Stages of the method, the first of the next step included.
+/// Number of stages, including the first stage of the next step.
 const STAGES: usize = 7;
 
-/// a_ij of stages 2 to 7, times h: what the rates before add to the state.
+/// Coefficients a_ij of stages 2 to 7, times h: contributions of earlier rates to the state.
 const A: [&[f64]; STAGES - 1] = [
     &[1.0 / 5.0],
     &[3.0 / 40.0, 9.0 / 40.0],
@@ -18,14 +18,15 @@ const A: [&[f64]; STAGES - 1] = [
     &[35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0],
 ];
 
-/// Where in the step the inputs of each stage are taken; the last two stages are both at its end.
+/// Fractions of the step at which the inputs of each stage are taken; the last two stages are both
+/// at its end.
 pub(super) const STAGE_TIMES: [f64; 6] = [0.0, 1.0 / 5.0, 3.0 / 10.0, 4.0 / 5.0, 8.0 / 9.0, 1.0];
 
-/// b_i less those of the embedded method of order 4.
+/// Weights b_i less those of the embedded method of order 4.
 const ERROR: [f64; STAGES] =
     [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
 
-/// d_i of the continuous extension.
+/// Weights d_i of the continuous extension.
 const EXTENSION: [f64; STAGES] = [
     -12715105075.0 / 11282082432.0,
     0.0,
@@ -39,19 +40,19 @@ const EXTENSION: [f64; STAGES] = [
 /// On the imaginary axis, ln |R(i theta)| = -(1/600 - 1/720) theta^6 + ...
 pub(super) const AMPLITUDE_LOST: AmplitudeLost = AmplitudeLost { factor: 1.0 / 3600.0, power: 6 };
 
-/// The method with its memory.
+/// Method with its memory.
 ///
 /// ```text
 /// k_i = f(y + h sum a_ij k_j, t + c_i h),        y(t + h) = y + h sum b_i k_i,        error: h sum (b_i - b*_i) k_i
 /// ```
 ///
 /// Order 5 with an embedded solution of order 4; continuous extension of order 4. Its step is
-/// bounded by the fastest mode, h |lambda| < 3.3: the independent check of the implicit method
-/// where nothing is stiff. Source: Dormand and Prince (1980), Journal of Computational and Applied
-/// Mathematics 6, 19; extension: Shampine (1986), Mathematics of Computation 46, 135.
+/// bounded by the fastest mode, h |lambda| < 3.3: an independent check of the implicit method for
+/// systems that are not stiff. Source: Dormand and Prince (1980), Journal of Computational and
+/// Applied Mathematics 6, 19; extension: Shampine (1986), Mathematics of Computation 46, 135.
 #[derive(Clone, Debug)]
 pub(super) struct DormandPrince<S> {
-    /// k_i, stage by stage.
+    /// Rates k_i, stage by stage.
     rates: Vec<S>,
     stage: Vec<S>,
     errors: Vec<S>,
@@ -61,7 +62,7 @@ pub(super) struct DormandPrince<S> {
 }
 
 impl<S: Lane> DormandPrince<S> {
-    /// For systems of this many states.
+    /// Method for systems of this many states.
     pub(super) fn new(states: usize) -> Self {
         let zeros = vec![S::from(0.0); states];
         DormandPrince {
@@ -73,13 +74,13 @@ impl<S: Lane> DormandPrince<S> {
         }
     }
 
-    /// Rates at the start of a step.
+    /// Evaluates the rates at the start of a step.
     pub(super) fn begin(&mut self, system: &dyn Kernel<S>, state: &[S], inputs: &StepInputs<S>) {
         system.rates(state, &inputs.stages[0], &mut self.rates[..state.len()]);
     }
 
-    /// One step of length h from here, [`DormandPrince::begin`] having been called here; the error
-    /// of each lane in units of the tolerance.
+    /// Attempts a step of length h from the point at which [`DormandPrince::begin`] was called;
+    /// returns the error of each lane in units of the tolerance.
     pub(super) fn attempt(
         &mut self,
         system: &dyn Kernel<S>,
@@ -118,7 +119,7 @@ impl<S: Lane> DormandPrince<S> {
     }
 }
 
-/// sum w_i k_i of one state.
+/// Sum of w_i k_i for one state.
 #[inline]
 fn combined<S: Lane>(weights: &[f64], rates: &[S], index: usize, states: usize) -> S {
     let mut sum = rates[index].times(weights[0]);

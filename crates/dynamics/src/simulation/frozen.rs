@@ -1,4 +1,4 @@
-//! Modes of a whole loop, frozen at a state: with its delays, and from sample to sample with the
+//! Modes of a whole loop linearised at a state: with its delays, or from sample to sample with the
 //! controller's memory.
 
 mod law;
@@ -14,37 +14,37 @@ use super::{Lane, System};
 use crate::linear::working_eigenvalues;
 use crate::portable;
 
-/// A loop linearised at a state, each delay d of a wave replaced by a rational function.
+/// Loop linearised at a state, each delay d of a wave replaced by a rational function.
 ///
 /// ```text
 /// x' = A x + B u,      e^(-s d) = (1 - s d/3)/(1 + 2 s d/3 + (s d)^2/6) + O((s d)^4)
 /// ```
 ///
 /// States are over their scales, and two a delay follow them. The matrices are central differences:
-/// right to 1e-6, and the same operations for one machine and in lanes.
+/// accurate to 1e-6, with identical operations for one machine and in lanes.
 #[derive(Clone, Debug)]
 pub struct Frozen {
     a: DMatrix<f64>,
-    /// One column for each input before the waves.
+    /// Input matrix, one column for each input before the waves.
     b: DMatrix<f64>,
-    /// Of all states and waves.
+    /// Scales of all states and waves.
     scales: Vec<f64>,
     states: usize,
     longest_delay_s: f64,
 }
 
-/// The least stable mode of a frozen loop.
+/// Least stable mode of a linearised loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrozenMode {
     /// Real part of its eigenvalue in 1/s; from sample to sample the logarithm of its magnitude
     /// over the sample time.
     pub growth_per_s: f64,
-    /// Magnitude of its eigenvalue in rad/s; from sample to sample its angle over the sample time.
+    /// Magnitude of the eigenvalue in rad/s; from sample to sample its angle over the sample time.
     pub frequency_rad_per_s: f64,
 }
 
 impl FrozenMode {
-    /// The least stable of all modes that are not faster than this in rad/s.
+    /// Least stable of all modes that are not faster than this in rad/s.
     pub(super) fn least_stable(all: &[FrozenMode], below_rad_per_s: f64) -> Option<FrozenMode> {
         let fastest = all.iter().fold(0.0, |most, mode| mode.frequency_rad_per_s.max(most));
         let slower = all.iter().filter(|mode| mode.frequency_rad_per_s <= below_rad_per_s);
@@ -54,26 +54,26 @@ impl FrozenMode {
     }
 }
 
-/// Displacement of a state, as a part of its magnitude and scale.
+/// Displacement of a state, as a fraction of its magnitude and scale.
 const DISPLACED: f64 = 1e-5;
-/// The wave of a delay over its two states, times d.
+/// Arriving wave of a delay in terms of its two states, times d.
 const ARRIVING: [f64; 2] = [6.0, -2.0];
-/// Largest angle of a mode in the longest delay that the rational function shows, in rad.
+/// Largest angle of a mode in the longest delay that the rational function represents, in rad.
 const SHOWN: f64 = 1.5;
-/// Growth below this part of the fastest mode is the error of an eigenvalue that is zero.
+/// Fraction of the fastest mode below which growth is the error of a zero eigenvalue.
 const LEAST_GROWTH: f64 = 1e-6;
 
-/// Derivatives by one state or input.
+/// Derivatives with respect to one state or input.
 struct Displaced {
     rates: Vec<f64>,
     sent: Vec<f64>,
 }
 
 impl Frozen {
-    /// The loop of a system at a state, under all its inputs.
+    /// Linearises the loop of a system at a state, under all its inputs.
     ///
     /// # Example
-    /// A level that falls by itself at 2 1/s, seen 0.1 s late and driven back with the wrong sign
+    /// A level that falls freely at 2 1/s, measured 0.1 s late and fed back with the wrong sign:
     /// ```
     /// use phea_dynamics::scalar::Scalar;
     /// use phea_dynamics::simulation::{Frozen, System};
@@ -106,7 +106,7 @@ impl Frozen {
         Frozen::of::<f64>(system, state, inputs, 0)
     }
 
-    /// The loop of the machine in a lane.
+    /// Linearises the loop of the machine in a lane.
     pub(super) fn of<S: Lane>(system: &dyn Kernel<S>, state: &[S], inputs: &[S], lane: usize) -> Frozen {
         let delays: Vec<f64> = system.delays().iter().map(|delay| delay.lane(lane)).collect();
         let (states, waves) = (system.states(), delays.len());
@@ -120,7 +120,7 @@ impl Frozen {
         }
         let order = states + 2 * waves;
         let (mut a, mut b) = (DMatrix::zeros(order, order), DMatrix::zeros(order, own));
-        // the rates and the waves sent that a column causes, over the scales of their rows
+        // rates and sent waves caused by a column, over the scales of their rows
         let put = |matrix: &mut DMatrix<f64>, place: usize, factor: f64, column: &Displaced| {
             for (row, (rate, scale)) in column.rates.iter().zip(&scales).enumerate() {
                 matrix[(row, place)] += factor * rate / scale;
@@ -150,8 +150,8 @@ impl Frozen {
         Frozen { a, b, scales, states, longest_delay_s }
     }
 
-    /// The least stable mode below a frequency in rad/s that the delays show; `None` where there is
-    /// none.
+    /// Least stable mode below a frequency in rad/s at which the delays are represented; `None` if
+    /// there is none.
     pub fn least_stable(&self, below_rad_per_s: f64) -> Option<FrozenMode> {
         let values = working_eigenvalues(self.a.clone())?.into_iter();
         let all: Vec<FrozenMode> = values
@@ -164,8 +164,8 @@ impl Frozen {
         FrozenMode::least_stable(&all, below_rad_per_s.min(shown))
     }
 
-    /// Derivatives of a signal by all states, for a [`SampledLaw`]; state and inputs are those at
-    /// which the loop is frozen.
+    /// Derivatives of a signal with respect to all states, for a [`SampledLaw`]; state and inputs
+    /// are those of the linearisation.
     pub fn row(&self, state: &[f64], inputs: &[f64], signal: impl Fn(&[f64], &[f64]) -> f64) -> Vec<f64> {
         let own = self.b.ncols();
         let mut row = vec![0.0; self.a.ncols()];
@@ -197,7 +197,7 @@ impl Frozen {
     }
 }
 
-/// Central differences by all states and then by all inputs.
+/// Central differences with respect to all states and then all inputs.
 fn displaced<S: Lane>(system: &dyn Kernel<S>, state: &[S], inputs: &[S], lane: usize) -> Vec<Displaced> {
     let (states, waves) = (system.states(), system.delays().len());
     let scales = system.scales();

@@ -1,6 +1,6 @@
-//! Limits the step length so that growing modes are resolved.
+//! Limits on the step length that resolve growing modes.
 //!
-//! An L-stable method damps the modes that are fast against its step. This does no harm to a
+//! An L-stable method damps the modes that are fast compared with its step. This does no harm to a
 //! decaying mode, but it would suppress a growing one, and no error estimate detects this while the
 //! amplitude is small. So each step is limited by the modes of its own Jacobian.
 
@@ -16,21 +16,21 @@ use super::{Amplification, Lane};
 use crate::linear::working_eigenvalues;
 use crate::portable;
 
-/// Where friction acts: the one part of the damping that may change its sign from one step to the
-/// next.
+/// Place where friction acts: the one part of the damping that may change its sign from one step to
+/// the next.
 ///
 /// ```text
 /// d(omega) = -df/dv - Re((df/dz) (dg/dv)/(i omega - dg/dz)),    f = dv/dt, g = dz/dt          v velocity, z its memory
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sliding {
-    /// The state that is a velocity.
+    /// Index of the state that is a velocity.
     pub velocity: usize,
-    /// The state of what remembers the motion, as bristles do.
+    /// Index of the state that remembers the motion, as bristles do.
     pub memory: Option<usize>,
 }
 
-/// A growing mode, and the longest step that resolves it.
+/// Growing mode, and the longest step that resolves it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct GrowingMode {
     pub(super) step_s: f64,
@@ -47,9 +47,9 @@ pub(super) struct GrowingMode {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct AmplitudeLost {
-    /// c.
+    /// Factor c.
     pub(super) factor: f64,
-    /// p.
+    /// Exponent p.
     pub(super) power: u32,
 }
 
@@ -58,43 +58,44 @@ const GROWTH_ERROR: f64 = 0.02;
 /// Largest angle of a growing mode in a step, in rad: beyond it, the numerical damping does not
 /// follow a power law.
 const LARGEST_ANGLE: f64 = 2.0;
-/// While a mode grows, no step is longer than this multiple of the previous one; limits beyond it
-/// are not computed.
+/// Multiple of the previous step that no step exceeds while a mode grows; limits beyond it are not
+/// computed.
 const FAR: f64 = 2.0;
-/// Modes above this part of the fastest are about as fast.
+/// Fraction of the fastest magnitude above which modes count as fast.
 const FAST: f64 = 0.25;
-/// Slower growth than this part of its frequency is rounding.
+/// Growth relative to the frequency below which it is rounding.
 const LEAST_GROWTH: f64 = 1e-10;
-/// Of the largest eigenvalue of a block: what rounding may make of one that is zero, as that of an
-/// integrator.
+/// Fraction of the largest eigenvalue of a block that rounding may make of a zero eigenvalue, as
+/// that of an integrator.
 const ZERO: f64 = 1e-12;
-/// Turning by less in a step, in rad, no mode's growth is off by more than 3e-6 of its frequency,
-/// whatever its damping.
+/// Angle of a step in rad below which no mode's growth is off by more than 3e-6 of its frequency,
+/// for any damping.
 const SMALL_ANGLE: f64 = 0.8;
-/// A step that is longer by no more than this is shortened to the small angle rather than looked
-/// into: it costs less.
+/// Ratio up to which a longer step is shortened to the small angle instead of evaluating the modes:
+/// this costs less.
 const NEARLY: f64 = 1.25;
-/// When the damping of friction falls below this fraction of its last value, the modes are computed
-/// again.
+/// Fraction of its last value below which the damping of friction requires a new evaluation of the
+/// modes.
 const FALLEN: f64 = 0.02;
-/// Where waves come back late the Jacobian does not show whether a mode decays: one that decays by
-/// less than this part of its frequency is taken to grow by the other.
+/// Decay of a mode relative to its frequency below which delayed waves may make it grow, since the
+/// Jacobian does not include them, and the growth that is then assumed.
 const UNTOLD: [f64; 2] = [0.05, 1e-3];
-/// More growth than this, as a logarithm, leads beyond any linear mode.
+/// Logarithm of a growth that leads beyond any linear mode.
 const MOST_GROWN: f64 = 20.0;
-/// Decay is followed as if it were at least this part of the frequency.
+/// Least decay that is followed, relative to the frequency.
 const LEAST_FOLLOWED: f64 = 1e-3;
-/// Steps between two looks at a small system: together they cost a hundredth or two of its steps.
+/// Steps between two evaluations of the modes of a small system: together they cost one or two
+/// hundredths of its steps.
 const LEAST_INTERVAL: u64 = 256;
-/// Part of that while a mode grows.
+/// Fraction of this interval while a mode grows.
 const WHILE_GROWING: u64 = 8;
-/// Part of a change of the growth that a step misses by matrices found before it, over the square
-/// of the angle it turns in rad.
+/// Fraction of a change of the growth that a step with older matrices misses, over the square of
+/// the angle of the step in rad.
 const MISSED: f64 = 0.08;
-/// Smaller errors of the growth, in 1/s, do not require new matrices.
+/// Error of the growth, in 1/s, below which no new matrices are required.
 const LEAST_CHANGE: f64 = 0.1;
-/// Parts of its growth to which that of the least stable mode may fall, or its decay, before it is
-/// looked at again.
+/// Fractions of its growth, or its decay, to which the least stable mode may fall before the modes
+/// are evaluated again.
 const LEFT: [f64; 2] = [0.25, 0.5];
 
 #[derive(Clone, Copy, Debug)]
@@ -104,8 +105,8 @@ struct Mode {
 }
 
 impl Mode {
-    /// The longest step that shows this mode, with this growth, to [`GROWTH_ERROR`], or [`FAR`]
-    /// such steps as are taken where that is shorter; `None` where it does not grow.
+    /// Longest step that resolves this mode, with this growth, to [`GROWTH_ERROR`], or [`FAR`]
+    /// times the present step if that is shorter; `None` if the mode does not grow.
     ///
     /// ```text
     /// c theta^p <= e zeta theta,        theta = h |lambda|, zeta = Re lambda/|lambda|
@@ -126,47 +127,48 @@ impl Mode {
     }
 }
 
-/// The known modes of the machine in one lane.
+/// Known modes of the machine in one lane.
 ///
 /// Eigenvalues cost several steps, so they are computed only when they may have changed: at fixed
-/// numbers of steps for slow changes, and when the damping of friction changes its sign or falls to
-/// a part of what it was, or may have turned growth into decay. In between it shifts all modes as
-/// it would the one that has all its kinetic energy in the velocity: by half of its own change.
+/// numbers of steps for slow changes, and when the damping of friction changes its sign, falls to a
+/// fraction of its value, or may have turned growth into decay. Between evaluations every mode is
+/// shifted by half the change in friction damping, which is exact for a mode whose kinetic energy
+/// is all in the velocity.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GrowthWatch {
-    /// States that influence each other, set by set: their modes are found apart.
+    /// Sets of states that influence each other: their modes are found separately.
     blocks: Vec<Vec<usize>>,
-    /// Places in the Jacobian of df/dv, and of df/dz, dg/dv, dg/dz.
+    /// Positions in the Jacobian of df/dv, and of df/dz, dg/dv, dg/dz.
     own: Option<usize>,
     memory: Option<[usize; 3]>,
-    /// What the method that makes the steps takes from an amplitude.
+    /// Amplitude lost to the method that takes the steps.
     lost: AmplitudeLost,
-    /// Whether waves come back late.
+    /// True if waves return with a delay.
     delayed: bool,
     /// Modes that oscillate or grow.
     modes: Vec<Mode>,
-    /// Largest growth of those, in 1/s.
+    /// Largest growth of these modes, in 1/s.
     most: f64,
-    /// Largest magnitude of those, in rad/s.
+    /// Largest magnitude of these modes, in rad/s.
     fastest: f64,
-    /// The step in which the fastest turns by the small angle, in s; zero where no mode oscillates,
+    /// Step in which the fastest mode turns by the small angle, in s; zero if no mode oscillates,
     /// so that no step counts as small.
     small_s: f64,
-    /// Largest growth of those that are about as fast, in 1/s.
+    /// Largest growth of the fast modes, in 1/s.
     growth: f64,
-    /// The least stable of the slower modes.
+    /// Least stable of the slower modes.
     slow: Option<FrozenMode>,
-    /// d at the last look.
+    /// Damping d at the last evaluation of the modes.
     damping: f64,
-    /// When growth was last estimated, and its value.
+    /// Time of the last estimate of growth, and its value.
     before: Option<(f64, f64)>,
-    /// Logarithm of what the least stable mode has grown by and has not decayed by since.
+    /// Logarithm of the growth of the least stable mode that has not decayed since.
     grown: f64,
-    /// Growth of the least stable fast mode, as its eigenvalue has it, in 1/s.
+    /// Growth of the least stable fast mode by its eigenvalue, in 1/s.
     eigenvalue: f64,
-    /// What grows now, and what has grown most.
+    /// Growth of the present mode, and the largest so far.
     growing: Amplifying,
-    /// Steps since the last look; `None` before the first.
+    /// Steps since the last evaluation of the modes; `None` before the first.
     age: Option<u64>,
     interval: u64,
 }
@@ -190,15 +192,15 @@ impl GrowthWatch {
         GrowthWatch { own: place(velocity, velocity), memory, interval, ..watch }
     }
 
-    /// Resets everything for another machine in the lane.
+    /// Resets all values for another machine in the lane.
     pub(super) fn forget(&mut self) {
         self.age = None;
         (self.before, self.grown) = (None, 0.0);
         self.growing = Amplifying::default();
     }
 
-    /// The mode that limits a step of this length, from the Jacobian at its start, `steps` steps
-    /// after the last call; `None` where none does.
+    /// Mode that limits a step of this length, from the Jacobian at its start, `steps` steps after
+    /// the last call; `None` if none does.
     pub(super) fn bound<S: Lane>(
         &mut self,
         time_s: f64,
@@ -231,8 +233,8 @@ impl GrowthWatch {
         bounds.min_by(|one, other| one.step_s.total_cmp(&other.step_s))
     }
 
-    /// Takes note of how the least stable mode has grown since it was last asked for: what has
-    /// grown is there until it has decayed by as much.
+    /// Records how the least stable mode has grown since the last call: a growth counts until it
+    /// has decayed by an equal amount.
     fn follow(&mut self, time_s: f64, growth_per_s: f64) {
         let (before_s, before) = self.before.replace((time_s, growth_per_s)).unwrap_or((time_s, 0.0));
         if time_s > before_s {
@@ -241,23 +243,23 @@ impl GrowthWatch {
         }
     }
 
-    /// The least stable of the slower modes, where the last call evaluated the modes; `Some(None)`
-    /// where there is none.
+    /// Least stable of the slower modes, if the last call evaluated the modes; `Some(None)` if
+    /// there is none.
     pub(super) fn slow_modes(&self) -> Option<Option<FrozenMode>> {
         (self.age == Some(0)).then_some(self.slow)
     }
 
-    /// Modes below this in rad/s are slower than those whose growth is followed.
+    /// Frequency in rad/s below which modes are slower than those whose growth is followed.
     pub(super) fn slower(&self) -> f64 {
         if self.fastest > 0.0 { FAST * self.fastest } else { f64::INFINITY }
     }
 
-    /// What has grown most.
+    /// Largest amplification.
     pub(super) fn amplification(&self) -> Option<Amplification> {
         self.growing.largest()
     }
 
-    /// The longest step that shows how what has grown decays.
+    /// Longest step that resolves the decay of an earlier growth.
     fn followed(&self, growth_per_s: f64, taken_s: f64) -> Option<GrowingMode> {
         let mode = Mode { magnitude: self.fastest, growth: growth_per_s };
         let bound = mode.bound(growth_per_s.abs().max(LEAST_FOLLOWED * self.fastest), self.lost, taken_s)?;
@@ -269,7 +271,7 @@ impl GrowthWatch {
         self.growth + 0.5 * (self.damping - damping)
     }
 
-    /// Whether the modes at the last look show those under this damping of friction.
+    /// True if the modes at the last evaluation represent those under this damping of friction.
     fn is_known_at(&self, damping: f64) -> bool {
         let [growth, decay] = LEFT.map(|left| left * self.growth);
         let now = self.growth_at(damping);
@@ -282,9 +284,9 @@ impl GrowthWatch {
         }
     }
 
-    /// Whether friction's damping has moved so far from another value that a step of this length by
-    /// matrices found there is off: of the growth that the change makes, a step by such matrices
-    /// misses a part that rises with the angle it turns.
+    /// True if friction's damping has changed so far that a step of this length by older matrices
+    /// is inaccurate: it misses a fraction of the additional growth that increases with the angle
+    /// of the step.
     pub(super) fn has_left<S: Lane>(
         &self,
         other: f64,
@@ -298,7 +300,7 @@ impl GrowthWatch {
         missed * change > (GROWTH_ERROR * self.growth.abs()).max(LEAST_CHANGE)
     }
 
-    /// d at the fastest mode.
+    /// Damping d at the fastest mode.
     pub(super) fn friction<S: Lane>(&self, method: &Rosenbrock<S>, lane: usize) -> f64 {
         let value = |place: usize| method.jacobian_at(place, lane);
         let own = self.own.map_or(0.0, value);
@@ -350,15 +352,14 @@ impl GrowthWatch {
         self.damping = self.friction(method, lane);
     }
 
-    /// A mode as it counts where waves come back late.
+    /// Mode with the growth that is assumed for delayed waves.
     fn told(&self, mode: Mode, frequency: f64) -> Mode {
         let [decay, growth] = UNTOLD.map(|part| part * mode.magnitude);
         let unsure = self.delayed && frequency > 0.0 && mode.growth > -decay;
         Mode { growth: if unsure { mode.growth.max(growth) } else { mode.growth }, ..mode }
     }
 
-    /// The mode that requires the shortest step, if friction has added this much to the growth of
-    /// each.
+    /// Mode that requires the shortest step, if friction has added this much to the growth of each.
     fn shortest(&self, added: f64, taken_s: f64) -> Option<GrowingMode> {
         if self.most + added <= 0.0 {
             return None;

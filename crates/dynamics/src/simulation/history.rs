@@ -1,13 +1,13 @@
-//! What a delay still holds.
+//! Content of a delay.
 
 use std::collections::VecDeque;
 
 use super::quartic::Quartic;
 
-/// A wave on its way: pieces of degree four in time, as long as the delay.
+/// Wave in transit: pieces of degree four in time, over the length of the delay.
 ///
 /// # Example
-/// A ramp of 3 1/s, sent in one piece, is seen 0.2 s later
+/// A ramp of 3 1/s, sent in one piece, arrives 0.2 s later:
 /// ```
 /// use phea_dynamics::simulation::WaveHistory;
 /// let mut ramp = WaveHistory::new(0.2, 0.0);
@@ -19,7 +19,7 @@ use super::quartic::Quartic;
 #[derive(Clone, Debug)]
 pub struct WaveHistory {
     delay_s: f64,
-    /// Before the first piece.
+    /// Value before the first piece.
     initial: f64,
     pieces: VecDeque<HistoryPiece>,
 }
@@ -28,9 +28,9 @@ pub struct WaveHistory {
 struct HistoryPiece {
     start_s: f64,
     length_s: f64,
-    /// c_0 + c_1 x + ... + c_4 x^4 for x from 0 to 1
+    /// Coefficients c_0 + c_1 x + ... + c_4 x^4 for x from 0 to 1.
     coefficients: [f64; 5],
-    /// Between which the wave is.
+    /// Lower and upper bound of the wave.
     bounds: [f64; 2],
 }
 
@@ -38,18 +38,18 @@ struct HistoryPiece {
 pub(super) const NODES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 impl WaveHistory {
-    /// A wave that takes this long in s, and was `initial` before time zero.
+    /// History of a wave with this travel time in s, which was `initial` before time zero.
     pub fn new(delay_s: f64, initial: f64) -> WaveHistory {
         WaveHistory { delay_s, initial, pieces: VecDeque::new() }
     }
 
-    /// How long it travels, in s.
+    /// Travel time, s.
     pub fn delay_s(&self) -> f64 {
         self.delay_s
     }
 
-    /// Adds the wave sent over a step, given at its quarters, and forgets what arrived before the
-    /// step's end.
+    /// Adds the wave sent over a step, given at its quarters, and forgets the part that arrived
+    /// before the step's end.
     pub fn send(&mut self, start_s: f64, length_s: f64, values: [f64; 5]) {
         let arrived = start_s + length_s - self.delay_s;
         while self.pieces.front().is_some_and(|piece| piece.start_s + piece.length_s < arrived - length_s) {
@@ -60,14 +60,14 @@ impl WaveHistory {
         self.pieces.push_back(HistoryPiece { start_s, length_s, coefficients: sent.0, bounds });
     }
 
-    /// Numbers of the pieces of which some part arrives between two times.
+    /// Range of the pieces of which some part arrives between two times.
     fn between(&self, [from_s, until_s]: [f64; 2]) -> std::ops::Range<usize> {
         let [from, until] = [from_s - self.delay_s, until_s - self.delay_s];
         let first = self.pieces.partition_point(|piece| piece.start_s + piece.length_s < from);
         first..self.pieces.partition_point(|piece| piece.start_s <= until).max(first)
     }
 
-    /// Two numbers between which the wave is that arrives between two times, at little cost.
+    /// Bounds of the wave that arrives between two times, at little cost.
     pub fn bounds(&self, times_s: [f64; 2]) -> [f64; 2] {
         let before = self.pieces.front().is_none_or(|first| times_s[0] - self.delay_s < first.start_s);
         let none = if before { [self.initial; 2] } else { [f64::INFINITY, f64::NEG_INFINITY] };
@@ -75,16 +75,16 @@ impl WaveHistory {
         pieces.fold(none, |[low, high], piece| [low.min(piece.bounds[0]), high.max(piece.bounds[1])])
     }
 
-    /// The times between two others at which another piece begins to arrive: between them what
-    /// arrives is a polynomial of degree four.
+    /// Times between two others at which another piece begins to arrive: between them the arriving
+    /// wave is a polynomial of degree four.
     pub fn joints(&self, [from_s, until_s]: [f64; 2]) -> impl Iterator<Item = f64> + '_ {
         let pieces = self.pieces.range(self.between([from_s, until_s]));
         let joints = pieces.map(|piece| piece.start_s + self.delay_s);
         joints.filter(move |joint_s| from_s < *joint_s && *joint_s < until_s)
     }
 
-    /// The wave that arrives at this time, and its slope. Where the wave jumps it is that of the
-    /// side on which `beside_s` lies, within what rounding does to a time and a delay.
+    /// Wave that arrives at this time, and its slope. At a jump of the wave, the value is that on
+    /// the side of `beside_s`, within the rounding of a time and a delay.
     pub fn arriving(&self, time_s: f64, beside_s: f64) -> [f64; 2] {
         let sent = time_s - self.delay_s;
         let rounding = 8.0 * f64::EPSILON * time_s;
@@ -122,7 +122,8 @@ mod tests {
         assert_eq!(WaveHistory::new(0.3, 5.0).arriving(0.2, 0.2), [5.0, 0.0]);
     }
 
-    /// A wave of one period of a sine is within its bounds over any span, and these are near.
+    /// A wave of one period of a sine is within its bounds over any interval, and the bounds are
+    /// close.
     #[test]
     fn what_arrives_lies_within_its_bounds() {
         let wave = |t: f64| crate::portable::sin(10.0 * t);
@@ -140,7 +141,7 @@ mod tests {
                 [least.min(value), most.max(value)]
             });
             assert!(low <= least && most <= high, "{from} {until}");
-            // a piece beyond each end, and what the bounds of a piece are too wide by
+            // a piece beyond each end, and the excess of a piece's bounds
             assert!(low > least - 0.5 && high < most + 0.5, "{from} {until}");
             let joints: Vec<f64> = history.joints([from, until]).collect();
             assert!(joints.iter().all(|joint| from < *joint && *joint < until));

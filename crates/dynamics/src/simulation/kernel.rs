@@ -1,4 +1,4 @@
-//! A system as its driver sees it, over the one scalar that is driven.
+//! Interface of a system to its driver, over the one scalar of the simulation.
 
 use pulp::{Simd, WithSimd};
 
@@ -11,56 +11,56 @@ use super::rosenbrock::Rosenbrock;
 use super::{Lane, System};
 use crate::scalar::{Dependence, Dual};
 
-/// What a step is tried with.
+/// Data of an attempted step.
 #[derive(Clone, Copy)]
 pub(super) struct StepTrial<'t, S> {
-    /// State at its start.
+    /// State at the start.
     pub(super) state: &'t [S],
-    /// Its length, s.
+    /// Length, s.
     pub(super) step: S,
     /// Typical magnitudes of the states.
     pub(super) scales: &'t [S],
-    /// What the error is measured by.
+    /// Tolerance of the error.
     pub(super) tolerance: f64,
 }
 
 /// A [`System`] with the parts of the methods that evaluate its equations, compiled for the vector
-/// instructions of the processor. All else of a driver knows a system by this trait alone, and is
-/// compiled once for all systems.
+/// instructions of the processor. All other code of a driver uses a system through this trait only,
+/// and is compiled once for all systems.
 pub(super) trait Kernel<S: Lane> {
-    /// As [`System::states`].
+    /// Number as in [`System::states`].
     fn states(&self) -> usize;
-    /// As [`System::inputs`].
+    /// Number as in [`System::inputs`].
     fn inputs(&self) -> usize;
-    /// As [`System::scales`].
+    /// Magnitudes as in [`System::scales`].
     fn scales(&self) -> Vec<S>;
-    /// As [`System::delays`].
+    /// Travel times as in [`System::delays`].
     fn delays(&self) -> Vec<S>;
-    /// As [`System::sliding`].
+    /// Friction as in [`System::sliding`].
     fn sliding(&self) -> Option<Sliding>;
-    /// As [`System::indicators`].
+    /// Number as in [`System::indicators`].
     fn indicators(&self) -> usize;
-    /// As [`System::rates`].
+    /// Rates as in [`System::rates`].
     fn rates(&self, state: &[S], inputs: &[S], rates: &mut [S]);
-    /// As [`System::outgoing`].
+    /// Waves as in [`System::outgoing`].
     fn outgoing(&self, state: &[S], inputs: &[S], waves: &mut [S]);
-    /// As [`System::indicate`].
+    /// Indicators as in [`System::indicate`].
     fn indicate(&self, state: &[S], inputs: &[S], indicators: &mut [S]);
-    /// As [`System::kinks`].
+    /// Number as in [`System::kinks`].
     fn kinks(&self) -> usize;
-    /// As [`System::mark`].
+    /// Marks as in [`System::mark`].
     fn mark(&self, state: &[S], inputs: &[S], marks: &mut [S]);
-    /// As [`JacobianPattern::of`].
+    /// Calls [`JacobianPattern::of`].
     fn pattern(&self) -> Option<JacobianPattern>;
-    /// As [`Rosenbrock::linearize`].
+    /// Calls [`Rosenbrock::linearize`].
     fn linearize(&self, method: &mut Rosenbrock<S>, state: &[S], inputs: &StepInputs<S>);
-    /// As [`Rosenbrock::attempt`].
+    /// Calls [`Rosenbrock::attempt`].
     fn attempt(&self, method: &mut Rosenbrock<S>, trial: StepTrial<'_, S>, inputs: &StepInputs<S>) -> S;
-    /// As [`Rosenbrock::error_between`].
+    /// Calls [`Rosenbrock::error_between`].
     fn error_between(&self, method: &mut Rosenbrock<S>, trial: StepTrial<'_, S>, at: (S, &[S])) -> S;
-    /// As [`Rosenbrock::carry`].
+    /// Calls [`Rosenbrock::carry`].
     fn carry(&self, method: &mut Rosenbrock<S>, step: S, error: &mut [S]);
-    /// As [`Propagator::step`].
+    /// Calls [`Propagator::step`].
     fn propagate(&self, propagator: &mut Propagator<S>, trial: StepTrial<'_, S>, inputs: &[S]) -> S;
 }
 
@@ -138,8 +138,8 @@ where
     }
 }
 
-/// [`Rosenbrock::linearize`] with the vector instructions that there are. A closure would not do:
-/// the call of a closure is a function of its own, and compiled without them.
+/// [`Rosenbrock::linearize`] with the available vector instructions. A closure cannot replace it: a
+/// closure is compiled as a separate function, without them.
 struct VectorizedLinearization<'m, S, E> {
     method: &'m mut Rosenbrock<S>,
     system: &'m E,
@@ -160,7 +160,7 @@ where
     }
 }
 
-/// [`Rosenbrock::attempt`] with the vector instructions that there are.
+/// [`Rosenbrock::attempt`] with the vector instructions of the processor.
 struct VectorizedAttempt<'m, S, E> {
     method: &'m mut Rosenbrock<S>,
     system: &'m E,
@@ -177,7 +177,7 @@ impl<S: Lane, E: System<S>> WithSimd for VectorizedAttempt<'_, S, E> {
     }
 }
 
-/// [`Rosenbrock::error_between`] with the vector instructions that there are.
+/// [`Rosenbrock::error_between`] with the vector instructions of the processor.
 struct VectorizedErrorBetween<'m, S, E> {
     method: &'m mut Rosenbrock<S>,
     system: &'m E,
@@ -194,7 +194,7 @@ impl<S: Lane, E: System<S>> WithSimd for VectorizedErrorBetween<'_, S, E> {
     }
 }
 
-/// [`Rosenbrock::carry`] with the vector instructions that there are.
+/// [`Rosenbrock::carry`] with the vector instructions of the processor.
 struct Carrying<'m, S> {
     method: &'m mut Rosenbrock<S>,
     step: S,
@@ -210,7 +210,7 @@ impl<S: Lane> WithSimd for Carrying<'_, S> {
     }
 }
 
-/// [`Propagator::step`] with the vector instructions that there are.
+/// [`Propagator::step`] with the vector instructions of the processor.
 struct Propagation<'p, S, E> {
     propagator: &'p mut Propagator<S>,
     system: &'p E,

@@ -1,4 +1,4 @@
-//! The integration methods, with one interface.
+//! Common interface of the integration methods.
 
 use super::Lane;
 use super::explicit::{self, DormandPrince};
@@ -7,41 +7,42 @@ use super::kernel::{Kernel, StepTrial};
 use super::passage::Passage;
 use super::rosenbrock::{self, Rosenbrock};
 
-/// Where in a step the equations are asked how far its course is off: late, since a step that is
-/// shortened for a kink comes to end shortly after it.
+/// Fraction of the step at which the dense-output residual is checked. Late, because a step
+/// shortened for a kink ends just after it.
 pub(super) const LOOKED_AT: f64 = 0.75;
 
-/// How steps are made.
+/// Integration method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
     /// L-stable, linearly implicit, of order 5: for stiff systems. Rodas5P, Steinebach (2023).
     #[default]
     Rosenbrock,
-    /// Explicit, of order 5: an independent check where no mode is much faster than the motion of
+    /// Explicit, of order 5: an independent check if no mode is much faster than the motion of
     /// interest. Dormand and Prince (1980).
     DormandPrince,
 }
 
-/// Inputs of one step: at the time of every stage, and their slopes in time at its start.
+/// Inputs of one step: at the time of every stage, and their slopes in time at the start.
 #[derive(Clone, Debug)]
 pub(super) struct StepInputs<S> {
-    /// At the times of [`Stepper::stage_times`].
+    /// Inputs at the times of [`Stepper::stage_times`].
     pub(super) stages: [Vec<S>; 6],
-    /// Per second, at the start.
+    /// Slopes per second, at the start.
     pub(super) slopes: Vec<S>,
-    /// Whether any slope differs from zero.
+    /// True if any slope differs from zero.
     pub(super) moving: bool,
 }
 
-/// A method with its memory.
+/// Method with its memory.
 #[derive(Clone, Debug)]
 enum MethodSteps<S> {
     Implicit(Box<Rosenbrock<S>>),
-    /// With who finds the Jacobian, which is asked for the modes alone.
+    /// Explicit method. The Rosenbrock stepper supplies the Jacobian, needed for mode estimates
+    /// only.
     Explicit(DormandPrince<S>, Box<Rosenbrock<S>>),
 }
 
-/// The method of all lanes, and its scales of errors.
+/// Method of all lanes, and its scales of errors.
 #[derive(Clone, Debug)]
 pub(super) struct Stepper<S> {
     steps: MethodSteps<S>,
@@ -50,7 +51,8 @@ pub(super) struct Stepper<S> {
 }
 
 impl<S: Lane> Stepper<S> {
-    /// This method for this system; `None` when the system is too large to find its pattern.
+    /// Stepper of this method for this system; `None` if the system is too large to find its
+    /// pattern.
     pub(super) fn new(method: Method, system: &dyn Kernel<S>) -> Option<Self> {
         let implicit = Box::new(Rosenbrock::new(system)?);
         let steps = match method {
@@ -60,7 +62,7 @@ impl<S: Lane> Stepper<S> {
         Some(Stepper { steps, scales: system.scales() })
     }
 
-    /// Where in the step the inputs of each stage are taken.
+    /// Fractions of the step at which the inputs of each stage are taken.
     pub(super) fn stage_times(&self) -> [f64; 6] {
         match self.steps {
             MethodSteps::Implicit(_) => rosenbrock::STAGE_TIMES,
@@ -76,7 +78,7 @@ impl<S: Lane> Stepper<S> {
         }
     }
 
-    /// Takes note of the start of a step: rates, and what derivatives the method needs.
+    /// Evaluates the start of a step: rates, and the derivatives that the method needs.
     pub(super) fn linearize(&mut self, system: &dyn Kernel<S>, state: &[S], inputs: &StepInputs<S>) {
         let method = match &mut self.steps {
             MethodSteps::Implicit(method) => method,
@@ -88,9 +90,9 @@ impl<S: Lane> Stepper<S> {
         system.linearize(method, state, inputs);
     }
 
-    /// One step of length h from where [`Stepper::linearize`] was called; the error of each lane in
-    /// units of the tolerance. Above one, or not a number, the step is to be tried again with a
-    /// shorter one.
+    /// Attempts a step of length h from the point at which [`Stepper::linearize`] was called;
+    /// returns the error of each lane in units of the tolerance. If the error is above one or NaN,
+    /// the step must be repeated with a shorter length.
     pub(super) fn attempt(
         &mut self,
         system: &dyn Kernel<S>,
@@ -106,20 +108,20 @@ impl<S: Lane> Stepper<S> {
         }
     }
 
-    /// Whether a step may be further off than the error at its end shows. Never for the explicit
+    /// True if a step may be less accurate than the error at its end shows. Never for the explicit
     /// method, whose steps are too short for that.
     ///
-    /// Where a state is bound stiffly, what lies between the ends is. And a step that was shortened
-    /// until its error let it pass may end where the error is blind: where a rate has a kink, as
-    /// friction has at a standstill, that is so for some places of the kink within the step, which
-    /// steps made shorter one after the other find.
+    /// Inside a step this occurs for states that are stiffly coupled. In addition, a step that was
+    /// shortened until its error passed may end where the error estimate is blind: if a rate has a
+    /// kink, as friction has at standstill, the estimate is blind for some positions of the kink
+    /// within the step, and successively shortened steps find these positions.
     pub(super) fn doubts(&self, lane: usize, passage: &Passage<'_>) -> bool {
         let Some(method) = self.linearized() else { return false };
         passage.rejected || (passage.looked_into() && method.binds_stiffly(lane, passage.step_s))
     }
 
-    /// How far what lies between the ends of the step just attempted is off at a part of it, for
-    /// the inputs there, in units of the tolerance.
+    /// Error of the solution at a fraction of the step just attempted, for the inputs there, in
+    /// units of the tolerance.
     pub(super) fn error_between(
         &mut self,
         system: &dyn Kernel<S>,
@@ -135,8 +137,8 @@ impl<S: Lane> Stepper<S> {
         }
     }
 
-    /// Carries a small error over the step just attempted, where the method has the matrix for it;
-    /// whether it has.
+    /// Propagates a small error over the step just attempted, if the method has the matrix for it;
+    /// returns true if it has.
     pub(super) fn carry(&mut self, system: &dyn Kernel<S>, step: S, error: &mut [S]) -> bool {
         match &mut self.steps {
             MethodSteps::Implicit(method) => {
@@ -147,7 +149,7 @@ impl<S: Lane> Stepper<S> {
         }
     }
 
-    /// The implicit method with the Jacobian that it last found.
+    /// Implicit method with its last Jacobian.
     pub(super) fn linearized(&self) -> Option<&Rosenbrock<S>> {
         match &self.steps {
             MethodSteps::Implicit(method) => Some(method),
@@ -155,7 +157,7 @@ impl<S: Lane> Stepper<S> {
         }
     }
 
-    /// The Jacobian last found.
+    /// Last Jacobian.
     pub(super) fn jacobian(&self) -> &Rosenbrock<S> {
         match &self.steps {
             MethodSteps::Implicit(method) | MethodSteps::Explicit(_, method) => method,
@@ -213,7 +215,7 @@ pub(super) fn relative_error<S: Lane>(
     (sum * S::from(1.0 / scales.len().max(1) as f64)).sqrt() * S::from(1.0 / tolerance)
 }
 
-/// A state over one step:
+/// State over one step:
 ///
 /// ```text
 /// y(theta) = (1 - theta) y_0 + theta (y_1 + (1 - theta) (k_1 + theta (k_2 + theta k_3)))
@@ -226,14 +228,14 @@ pub(super) struct Extension<S> {
 }
 
 impl<S: Lane> Extension<S> {
-    /// The cubic with these ends and slopes, both times the step.
+    /// Cubic with these end values and slopes, both slopes times the step.
     pub(super) fn cubic([start, end]: [S; 2], [first, last]: [S; 2]) -> Extension<S> {
         let rise = end - start;
         let coefficients = [first - rise, rise.times(2.0) - first - last, S::from(0.0)];
         Extension { start, end, coefficients }
     }
 
-    /// Slope at this part of the step, times the step.
+    /// Slope at this fraction of the step, times the step.
     pub(super) fn slope(&self, part: S) -> S {
         let [first, second, third] = self.coefficients;
         let left = |of: f64, times: f64| S::from(of) - part.times(times);
@@ -241,13 +243,13 @@ impl<S: Lane> Extension<S> {
         rise + (second * left(2.0, 3.0) + third * part * left(3.0, 4.0)) * part
     }
 
-    /// The same in one lane.
+    /// Extension in one lane.
     pub(super) fn lane(&self, index: usize) -> Extension<f64> {
         let coefficients = self.coefficients.map(|coefficient| coefficient.lane(index));
         Extension { start: self.start.lane(index), end: self.end.lane(index), coefficients }
     }
 
-    /// At this part of the step, from 0 to 1.
+    /// Value at this fraction of the step, from 0 to 1.
     #[inline]
     pub(super) fn at(&self, part: S) -> S {
         let left = S::from(1.0) - part;

@@ -1,5 +1,5 @@
-//! One machine's way through time: where it is, how far the next step may go, what breaks
-//! ahead.
+//! Progress of one machine through time: its state, the limit of its next step, and the coming
+//! breaks.
 
 use std::collections::VecDeque;
 
@@ -9,17 +9,18 @@ use super::{Attention, Event, Input, InputSchedule, ProfilePiece, Sampler, Statu
 use crate::order::sorted_distinct;
 use crate::portable;
 
-/// No step grows by more than this, nor shrinks below the other.
+/// Smallest and largest ratio of a step to the previous one.
 const GROWTH: [f64; 2] = [0.1, 6.0];
-/// A step that fails ends at its kink where that is farther than this part of it from both ends.
+/// Distance of a kink from both ends of a failed step, as a fraction of it, above which the
+/// repeated step ends at the kink.
 const KINK_WITHIN: f64 = 0.02;
-/// What is kept of the step that the error would allow.
+/// Safety factor of the step that the error would allow.
 const SAFETY: f64 = 0.9;
-/// A break's waves are met by restarts this many times; by then they have faded. What jumps still
-/// is smeared over a step.
+/// Number of restarts for the waves of a break; by then they have faded. Remaining jumps are
+/// smeared over a step.
 const ECHOES: u8 = 12;
 
-/// An input between two breaks.
+/// Input between two breaks.
 #[derive(Clone, Debug)]
 enum InputSegment {
     Still(f64),
@@ -28,43 +29,43 @@ enum InputSegment {
     Rate(ProfilePiece),
 }
 
-/// One machine's way through time.
+/// Progress of one machine through time.
 pub(super) struct Passage<'a> {
     pub(super) course: &'a InputSchedule,
-    /// The inputs of the course up to the next break.
+    /// Inputs up to the next break.
     segments: Vec<InputSegment>,
-    /// Whether no input moves before the next break.
+    /// True if no input moves before the next break.
     pub(super) still: bool,
     pub(super) time_s: f64,
-    /// The next step, if nothing breaks before.
+    /// Length of the next step, unless a break comes before.
     proposed_s: f64,
-    /// No step is longer.
+    /// Longest step.
     longest_s: f64,
-    /// The mode that grows and asks for the shortest step, if any does.
+    /// Growing mode that requires the shortest step, if there is one.
     pub(super) growing: Option<GrowingMode>,
-    /// Whether the step being tried is shorter for it.
+    /// True if the attempted step is shortened for it.
     held_back: bool,
-    /// Where the step being tried ends, if at a break or a kink.
+    /// End of the attempted step, if it is at a break or a kink.
     target_s: Option<f64>,
-    /// The part of the step being tried just after the first kink of the rates in it.
+    /// Fraction of the attempted step just after the first kink of the rates in it.
     pub(super) kink: Option<f64>,
     /// Steps within which some kink was passed.
     pub(super) passed_kinks: u64,
-    /// A kink at which a step is to end.
+    /// Time of a kink at which a step must end.
     kink_s: Option<f64>,
-    /// The next break, sample or arrival.
+    /// Time of the next break, sample or arrival.
     goal_s: f64,
     pub(super) step_s: f64,
-    /// Times to restart at, rising, with how many delays each has been through.
+    /// Times of restarts, rising, each with the number of delays that it has passed.
     breaks: VecDeque<(f64, u8)>,
     pub(super) histories: Vec<WaveHistory>,
     sample: u64,
     pending: VecDeque<(f64, f64)>,
     command: f64,
     pub(super) row: u64,
-    /// How closely it is followed.
+    /// Level of detail for its observer.
     pub(super) attention: Attention,
-    /// Whether the last step was refused.
+    /// True if the last step was rejected.
     pub(super) rejected: bool,
     /// Error of the last step.
     before: f64,
@@ -74,7 +75,7 @@ pub(super) struct Passage<'a> {
 }
 
 impl<'a> Passage<'a> {
-    /// At time zero, with a command that is held.
+    /// Start at time zero, with a held command.
     pub(super) fn new(course: &'a InputSchedule, command: f64) -> Passage<'a> {
         let mut times: Vec<f64> = Vec::new();
         let mut longest_s = course.duration_s;
@@ -117,7 +118,7 @@ impl<'a> Passage<'a> {
         }
     }
 
-    /// Waves in delays, each with what it was before time zero.
+    /// Adds waves in delays, each with its value before time zero.
     pub(super) fn with_waves(mut self, delays_s: &[f64], initial: &[f64]) -> Passage<'a> {
         self.histories =
             delays_s.iter().zip(initial).map(|(&d, &value)| WaveHistory::new(d, value)).collect();
@@ -129,7 +130,7 @@ impl<'a> Passage<'a> {
         self
     }
 
-    /// A first step from how fast the state changes, per second and relative to its scale.
+    /// Sets a first step from the rate of the state, per second and relative to its scale.
     pub(super) fn begin(&mut self, rate: f64, tolerance: f64) {
         let guess = 0.1 * portable::pow(tolerance, 0.2) / rate;
         if guess.is_finite() {
@@ -137,7 +138,7 @@ impl<'a> Passage<'a> {
         }
     }
 
-    /// Sets the length of the step to try.
+    /// Chooses the length of the next attempt.
     pub(super) fn choose(&mut self, sample_time_s: Option<f64>) {
         let mut target = self.breaks.front().map_or(self.course.duration_s, |&(time, _)| time);
         if let Some(sample_time_s) = sample_time_s {
@@ -162,14 +163,14 @@ impl<'a> Passage<'a> {
         };
     }
 
-    /// Takes note of the mode that bounds the step; whether the step being tried is too long for
+    /// Records the mode that bounds the step; returns true if the attempted step is too long for
     /// it.
     pub(super) fn limit(&mut self, growing: Option<GrowingMode>) -> bool {
         self.growing = growing;
         growing.is_some_and(|growing| growing.step_s < self.step_s * (1.0 - 1e-9))
     }
 
-    /// How it ends when it may take no more steps.
+    /// Status of a run that has used all its steps.
     pub(super) fn out_of_steps(&self) -> Status {
         let time_s = self.time_s;
         match self.growing.filter(|growing| self.held_back && growing.growth_per_s > 0.0) {
@@ -185,7 +186,7 @@ impl<'a> Passage<'a> {
         self.row as f64 * self.course.output_step_s
     }
 
-    /// Whether a state between the ends of the step being tried is shown or sent.
+    /// True if a state inside the attempted step is observed or sent.
     pub(super) fn looked_into(&self) -> bool {
         let past = self.next_row_s() <= later(self.time_s);
         let next_row_s = (self.row + u64::from(past)) as f64 * self.course.output_step_s;
@@ -201,19 +202,19 @@ impl<'a> Passage<'a> {
         (self.still && !seen && self.attention != Attention::Everything).then_some(step_s)
     }
 
-    /// Makes the step being tried that to the next break.
+    /// Extends the attempted step to the next break.
     pub(super) fn go_whole(&mut self) {
         (self.step_s, self.target_s) = (self.goal_s - self.time_s, Some(self.goal_s));
     }
 
-    /// Inputs at a part of the step being tried.
+    /// Inputs at a fraction of the attempted step.
     pub(super) fn inputs_within(&self, part: f64, inputs: &mut [f64]) {
         let time_s = if part == 1.0 { self.end_s() } else { self.time_s + part * self.step_s };
         self.inputs_at(time_s, inputs);
     }
 
-    /// Inputs at a time up to the next break, waves included: at a break as they are within the
-    /// step that is being tried.
+    /// Inputs at a time up to the next break, waves included: at a break, those within the
+    /// attempted step.
     #[inline]
     pub(super) fn inputs_at(&self, time_s: f64, inputs: &mut [f64]) {
         for (place, segment) in inputs.iter_mut().zip(&self.segments) {
@@ -232,7 +233,7 @@ impl<'a> Passage<'a> {
         }
     }
 
-    /// Slopes of all inputs where the step begins.
+    /// Slopes of all inputs at the beginning of the step.
     pub(super) fn slopes(&self, slopes: &mut [f64]) {
         let known = self.segments.iter().map(|segment| match segment {
             InputSegment::Still(_) | InputSegment::Command => 0.0,
@@ -246,7 +247,7 @@ impl<'a> Passage<'a> {
         }
     }
 
-    /// Where the step being tried ends.
+    /// End of the attempted step.
     pub(super) fn end_s(&self) -> f64 {
         self.target_s.unwrap_or(self.time_s + self.step_s)
     }
@@ -255,12 +256,13 @@ impl<'a> Passage<'a> {
         self.time_s + 0.5 * self.step_s
     }
 
-    /// Takes the step or shortens it, by its error in units of the tolerance; whether it was taken.
+    /// Accepts the step or shortens it, by its error in units of the tolerance; returns true if it
+    /// was accepted.
     pub(super) fn judge(&mut self, error: f64) -> bool {
         let taken = error <= 1.0;
         let factor = if error.is_finite() {
-            // A proportional-integral controller of the step (Gustafsson 1991): error^(-3/16)
-            // before^(1/16).
+            // proportional-integral control of the step (Gustafsson 1991): error^(-3/16)
+            // before^(1/16)
             let (eighth, before) =
                 (error.max(1e-8).sqrt().sqrt().sqrt(), self.before.sqrt().sqrt().sqrt().sqrt());
             let damped = if taken { before } else { 1.0 };
@@ -270,14 +272,14 @@ impl<'a> Passage<'a> {
         };
         if taken {
             let factor = if self.rejected { factor.min(1.0) } else { factor };
-            // A step cut short by a break says nothing against the longer one proposed.
+            // a step cut short by a break does not limit the longer one proposed
             let grown = self.step_s * factor;
             let cut = self.target_s.is_some() && factor >= 1.0;
             self.proposed_s = if cut { grown.max(self.proposed_s) } else { grown };
             self.before = error.max(1e-3);
             self.work.steps += 1;
         } else if let Some(part) = self.kink.filter(|part| self.may_end_at(*part, error)) {
-            // what follows the kink may take the length that was tried
+            // the step after the kink may have the length of this attempt
             self.kink_s = Some(self.time_s + part * self.step_s);
             self.work.rejected += 1;
         } else {
@@ -296,14 +298,15 @@ impl<'a> Passage<'a> {
         taken
     }
 
-    /// Whether a step that failed by this error is to end at a kink at this part of it: once for a
-    /// step that is taken, so that what fails for another reason becomes shorter.
+    /// True if a step that failed by this error must end at a kink at this fraction of it: once for
+    /// each accepted step, so that a step which fails for another reason becomes shorter.
     fn may_end_at(&self, part: f64, error: f64) -> bool {
         let within = (KINK_WITHIN..1.0 - KINK_WITHIN).contains(&part);
         within && error.is_finite() && self.kink_s.is_none()
     }
 
-    /// Stands at the end of the step that was taken; what happens there: breaks, arriving commands.
+    /// Advances to the end of the accepted step and processes the events there: breaks, arriving
+    /// commands.
     pub(super) fn arrive(&mut self) {
         self.time_s = self.end_s();
         self.kink_s = self.kink_s.filter(|&kink_s| kink_s > later(self.time_s));
@@ -331,12 +334,12 @@ impl<'a> Passage<'a> {
         }
     }
 
-    /// Whether the sampler acts now.
+    /// True if the sampler must act now.
     pub(super) fn samples_now(&self, sample_time_s: f64) -> bool {
         later(self.time_s) >= self.sample as f64 * sample_time_s
     }
 
-    /// Lets the sampler act.
+    /// Runs the sampler.
     pub(super) fn act(&mut self, sampler: &mut dyn Sampler, state: &[f64], inputs: &[f64]) {
         let command = sampler.command(self.time_s, state, inputs);
         if !command.is_finite() {
@@ -351,19 +354,19 @@ impl<'a> Passage<'a> {
         }
     }
 
-    /// Takes a command from now on.
+    /// Applies a command from now on.
     fn hold(&mut self, command: f64) {
         self.command = command;
         self.begin_anew();
     }
 
-    /// Inputs are not what they were in the step before.
+    /// Restarts the method, since the inputs have changed.
     fn begin_anew(&mut self) {
         self.before = 1.0;
         self.still = false;
     }
 
-    /// Whether no input has moved or will move before the next break, and this was so before.
+    /// True if no input moves before the next break, and none moved before the previous one.
     pub(super) fn stands_still(&mut self) -> bool {
         let was = self.still;
         let at_rest =
@@ -372,7 +375,7 @@ impl<'a> Passage<'a> {
         was && self.still
     }
 
-    /// The waves that leave at a break arrive as breaks.
+    /// Schedules the arrival of waves that leave at a break as breaks.
     fn meet_again(&mut self, time_s: f64, generation: u8) {
         if generation >= ECHOES {
             return;
@@ -380,8 +383,8 @@ impl<'a> Passage<'a> {
         for history in &self.histories {
             let arrival = time_s + history.delay_s();
             if arrival < self.course.duration_s {
-                // Waves that travel the same way in another order arrive together, but for
-                // rounding.
+                // waves that travel equal delays in another order arrive together, except for
+                // rounding
                 let rounding = 4.0 * f64::EPSILON * arrival;
                 let place = self.breaks.partition_point(|&(time, _)| time < arrival - rounding);
                 match self.breaks.get_mut(place) {
@@ -395,8 +398,7 @@ impl<'a> Passage<'a> {
     }
 }
 
-/// The latest time in s that is this one but for rounding: 17 times 0.7 ms and 11.9 ms are one
-/// time.
+/// Latest time in s that equals this one within rounding: 17 times 0.7 ms and 11.9 ms are one time.
 pub(super) fn later(time_s: f64) -> f64 {
     time_s * (1.0 + 4.0 * f64::EPSILON)
 }

@@ -1,4 +1,4 @@
-//! Where a Jacobian can differ from zero, and in how few evaluations it is found.
+//! Structure of a Jacobian, and a small number of evaluations that find it.
 
 use super::System;
 use crate::scalar::{Dependence, Scalar};
@@ -6,18 +6,18 @@ use crate::scalar::{Dependence, Scalar};
 /// Structure of the Jacobian of a system.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct JacobianPattern {
-    /// For each rate the states it depends on, rising.
+    /// States on which each rate depends, rising.
     pub(super) rows: Vec<Vec<usize>>,
-    /// A colour for each state: no rate depends on two states of one colour.
+    /// Colour of each state: no rate depends on two states of one colour.
     pub(super) colours: Vec<usize>,
-    /// How many colours.
+    /// Number of colours.
     pub(super) colour_count: usize,
-    /// Whether the rate depends on an input.
+    /// True for a rate that depends on an input.
     pub(super) driven: Vec<bool>,
 }
 
 impl JacobianPattern {
-    /// The pattern of this system, `None` when it has more states and inputs than can be followed.
+    /// Pattern of this system; `None` if it has more states and inputs than can be followed.
     pub(super) fn of<S: Scalar, E: System<S>>(system: &E) -> Option<JacobianPattern>
     where
         Dependence: From<S>,
@@ -40,7 +40,7 @@ impl JacobianPattern {
     }
 }
 
-/// Greedy colouring in the order of the states: each takes the least colour that none of its
+/// Greedy colouring in the order of the states: each state takes the least colour that none of its
 /// neighbours has. Two states are neighbours when a rate depends on both. Source: Curtis, Powell
 /// and Reid (1974).
 fn coloured(rows: &[Vec<usize>], states: usize) -> Vec<usize> {

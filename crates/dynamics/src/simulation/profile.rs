@@ -14,16 +14,14 @@ use piece::PieceShape;
 
 use crate::range::RequiredRange;
 
-/// A known function of time w(t), in whatever unit its user gives it: smooth pieces, one after the
-/// other.
+/// Known function of time w(t), in the unit of its user: consecutive smooth pieces.
 ///
 /// ```text
 /// w(t) = p_k(t)     for b_k <= t < b_{k+1},      b_0 = -inf          p_k smooth, b_1, b_2 ... the breaks
 /// ```
 ///
-/// At a break the new piece holds already. Whoever integrates across a break asks for the
-/// [`ProfilePiece`] of each side: a piece is an analytic function that can be evaluated beyond its
-/// ends.
+/// At a break the later piece applies. To integrate across a break, use the [`ProfilePiece`] of
+/// each side: a piece is an analytic function that can be evaluated beyond its ends.
 ///
 /// # Example
 /// A load that moves by 5 mm in 0.1 s, three seconds after the start
@@ -42,7 +40,7 @@ pub struct Profile {
     later: Vec<(f64, ProfilePiece)>,
 }
 
-/// The function of time is invalid.
+/// Error for an invalid function of time.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ProfileError {
     /// A number outside the range in which the function has a meaning.
@@ -55,7 +53,7 @@ pub enum ProfileError {
         /// Range of the number.
         expected: RequiredRange,
     },
-    /// Times that do not rise strictly, or are not finite.
+    /// Times that do not strictly increase, or are not finite.
     #[error("time number {index} ({time_s} s) does not come after the one before it")]
     TimeOrder {
         /// Position in the list, from zero.
@@ -63,18 +61,18 @@ pub enum ProfileError {
         /// The time, s.
         time_s: f64,
     },
-    /// Too few points to interpolate between, or a value missing.
+    /// Too few points to interpolate between, or a missing value.
     #[error("{values} values at {times} times; the same number of each is needed, and at least two")]
     Count {
-        /// How many times there are.
+        /// Number of times.
         times: usize,
-        /// How many values there are.
+        /// Number of values.
         values: usize,
     },
 }
 
 impl Profile {
-    /// Always this value.
+    /// Constant function.
     ///
     /// # Example
     /// ```
@@ -85,7 +83,8 @@ impl Profile {
         Profile { first: ProfilePiece::new(PieceShape::Constant { value }), later: Vec::new() }
     }
 
-    /// Piecewise constant: `initial` at first, and from each time on the value paired with it.
+    /// Piecewise constant function: `initial` at first, and from each time on the value paired with
+    /// it.
     ///
     /// # Errors
     /// [`ProfileError::TimeOrder`] unless the times rise strictly, [`ProfileError::OutOfRange`] for
@@ -109,8 +108,8 @@ impl Profile {
         Ok(Profile { later: steps.iter().map(piece).collect(), ..Profile::constant(initial) })
     }
 
-    /// From zero to `distance` within `duration_s`, with velocity and acceleration zero at both
-    /// ends.
+    /// Smooth step from zero to `distance` within `duration_s`, with velocity and acceleration zero
+    /// at both ends.
     ///
     /// ```text
     /// w = d (10 s^3 - 15 s^4 + 6 s^5),     s = (t - t_0)/D in [0, 1];      greatest rate 15/8 d/D at s = 1/2
@@ -128,7 +127,8 @@ impl Profile {
         Ok(Profile::from_rest(&[(start_s, rise), (start_s + duration_s, end)]))
     }
 
-    /// From zero to `distance` at one rate within `duration_s`; the rate jumps at both ends.
+    /// Ramp from zero to `distance` at a constant rate within `duration_s`; the rate jumps at both
+    /// ends.
     ///
     /// ```text
     /// w = d (t - t_0)/D,     t - t_0 in [0, D];      w = d from then on
@@ -155,7 +155,7 @@ impl Profile {
         Ok(Profile::from_rest(&[(start_s, rise), (start_s + duration_s, end)]))
     }
 
-    /// From zero towards `distance`, as a first-order lag answers a step.
+    /// Step response of a first-order lag from zero towards `distance`.
     ///
     /// ```text
     /// w = d (1 - exp(-(t - t_0)/tau)),     t >= t_0;      rate d/tau at t_0
@@ -172,7 +172,7 @@ impl Profile {
         Ok(Profile::from_rest(&[(start_s, approach)]))
     }
 
-    /// Zero, and a sine from its start on; the rate jumps there.
+    /// Zero, and a sine from its start on; the rate jumps at the start.
     ///
     /// ```text
     /// w = a sin(omega (t - t_0)),     t >= t_0;      omega in rad/s
@@ -195,7 +195,8 @@ impl Profile {
         Ok(Profile::from_rest(&[(start_s, sine)]))
     }
 
-    /// Zero, a sine whose frequency moves evenly from one to the other, and the value it ends with.
+    /// Zero, then a sine whose frequency changes linearly from one value to the other, then its
+    /// final value.
     ///
     /// ```text
     /// w = a sin(omega_0 tau + (omega_1 - omega_0) tau^2/(2 D)),     tau = t - t_0 in [0, D];      omega in rad/s
@@ -228,8 +229,8 @@ impl Profile {
         Ok(Profile::from_rest(&[(start_s, sine), (end_s, end)]))
     }
 
-    /// Through measured points by a shape-preserving cubic, held before the first and after the
-    /// last; each point is a break.
+    /// Interpolation of measured points by a shape-preserving cubic, constant before the first and
+    /// after the last point; each point is a break.
     ///
     /// ```text
     /// h_k = t_{k+1} - t_k,   s_k = (w_{k+1} - w_k)/h_k
@@ -238,10 +239,10 @@ impl Profile {
     /// ```
     ///
     /// with w(t_k) = w_k and w'(t_k) = m_k at both ends of each cubic. The velocity is continuous
-    /// between first and last point, and no motion beyond the measured values is made up: between
+    /// between first and last point, and no motion beyond the measured values is invented: between
     /// two points the curve stays between them. (Straight lines would make the velocity jump at
-    /// each point, an ordinary spline would overshoot.) At the first and the last point the slope
-    /// is the three-point one of the two nearest intervals, limited to keep the shape. Source:
+    /// each point, an ordinary spline would overshoot.) The slope at the first and the last point
+    /// is the three-point slope over the two nearest intervals, limited to keep the shape. Source:
     /// Fritsch and Butland 1984, a method for constructing local monotone piecewise cubic
     /// interpolants.
     ///
@@ -267,7 +268,7 @@ impl Profile {
         Ok(interpolation::through(times_s, values))
     }
 
-    /// The function with a number added to its values: a motion from somewhere else than zero.
+    /// Function with a number added to its values: a motion from a start other than zero.
     ///
     /// # Example
     /// ```
@@ -282,25 +283,25 @@ impl Profile {
         Profile { first: self.first.shifted(by), later }
     }
 
-    /// The function at a time.
+    /// Value at a time.
     pub fn value(&self, time_s: f64) -> f64 {
         self.holding(time_s).at(time_s).value
     }
 
-    /// Its first derivative, per second.
+    /// First derivative, per second.
     pub fn rate(&self, time_s: f64) -> f64 {
         self.holding(time_s).at(time_s).rate
     }
 
-    /// Its second derivative, per second squared.
+    /// Second derivative, per second squared.
     pub fn acceleration(&self, time_s: f64) -> f64 {
         self.holding(time_s).at(time_s).acceleration
     }
 
-    /// The piece that holds from this time on.
+    /// Piece in force from this time on.
     ///
     /// # Example
-    /// Both sides of a break
+    /// Both sides of a break:
     /// ```
     /// use phea_dynamics::simulation::Profile;
     /// let reference = Profile::steps(0.0, &[(2.0, 4000.0)])?;
@@ -315,18 +316,18 @@ impl Profile {
         self.last_of(self.later.partition_point(|(start_s, _)| *start_s <= time_s))
     }
 
-    /// The last of the pieces that have begun, given their number.
+    /// Last of the pieces that have begun, given their number.
     fn last_of(&self, begun: usize) -> &ProfilePiece {
         begun.checked_sub(1).and_then(|last| self.later.get(last)).map_or(&self.first, |(_, piece)| piece)
     }
 
-    /// The times at which the function or one of its derivatives jumps, rising.
+    /// Times at which the function or one of its derivatives jumps, rising.
     pub fn breaks(&self) -> Vec<f64> {
         self.later.iter().map(|(start_s, _)| *start_s).collect()
     }
 
-    /// The longest step that cannot pass over a swing unseen, in s: a quarter of the shortest
-    /// period; none without a swing.
+    /// Longest step that cannot miss an oscillation, in s: a quarter of the shortest period; `None`
+    /// without oscillation.
     ///
     /// # Example
     /// ```
@@ -340,7 +341,7 @@ impl Profile {
         pieces.filter_map(ProfilePiece::quarter_period_s).reduce(f64::min)
     }
 
-    /// Zero, then these.
+    /// Profile of these shapes after zero.
     fn from_rest(shapes: &[(f64, PieceShape)]) -> Profile {
         let later = shapes.iter().map(|&(start_s, shape)| (start_s, ProfilePiece::new(shape))).collect();
         Profile { later, ..Profile::constant(0.0) }

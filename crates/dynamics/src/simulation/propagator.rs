@@ -1,5 +1,5 @@
-//! Steps of one and the same length, taken with matrices found once: how a machine that is nearly
-//! linear for a while gets from sample to sample.
+//! Steps of one fixed length with precomputed matrices: from sample to sample of a machine that is
+//! nearly linear for a while.
 
 use nalgebra::DMatrix;
 use pulp::{Arch, Simd, WithSimd};
@@ -9,41 +9,41 @@ use super::rosenbrock::Rosenbrock;
 use super::square::Square;
 use super::{Lane, System};
 
-/// The equations around a state, and their solution over a step of one length, lane by lane.
+/// Equations linearised at a state, and their solution over a step of one length, lane by lane.
 ///
 /// ```text
 /// y_1 = y_0 + h phi_1(h J) f(y_0),      r = f(y_1) - f(y_0) - J (y_1 - y_0)
 /// y(t + h) = y_1 + 2 h phi_3(h J) r,    error: the last term
 /// ```
 ///
-/// Order 3 while J is the Jacobian at y_0, and exact for linear equations with inputs that stand
-/// still whatever the step; a J found earlier adds to r what it has changed by. Source: the method
-/// exprb32 of Hochbruck and Ostermann (2010), Exponential integrators, Acta Numerica 19.
+/// Order 3 while J is the Jacobian at y_0, and exact for linear equations with constant inputs for
+/// any step; an older J adds its change to r. Source: the method exprb32 of Hochbruck and Ostermann
+/// (2010), Exponential integrators, Acta Numerica 19.
 #[derive(Clone, Debug)]
 pub(super) struct Propagator<S> {
     states: usize,
-    /// J, h phi_1 and 2 h phi_3.
+    /// Matrices J, h phi_1 and 2 h phi_3.
     jacobian: Square<S>,
     first: Square<S>,
     third: Square<S>,
-    /// Damping of friction where each lane's matrices were found.
+    /// Damping of friction at which each lane's matrices were found.
     pub(super) friction: Vec<f64>,
-    /// The step of each lane in s; NaN for a lane without a step.
+    /// Step of each lane in s; NaN for a lane without a step.
     step_s: Vec<f64>,
-    /// State, rates at both ends, remainder, difference.
+    /// State, rates at both ends, remainder and difference.
     pub(super) end: Vec<S>,
     pub(super) rates: [Vec<S>; 2],
     remainder: Vec<[S; 4]>,
     difference: Vec<[S; 4]>,
-    /// How many steps ago each lane's matrices were found.
+    /// Steps since each lane's matrices were found.
     age: Vec<u32>,
 }
 
-/// A lane's matrices are found again after this many steps at the earliest: it costs as much as
-/// several steps without.
+/// Least number of steps after which a lane's matrices are found again: finding them costs as much
+/// as several ordinary steps.
 const LEAST_AGE: u32 = 8;
 
-/// Steps of this relative difference are one.
+/// Relative difference up to which steps count as equal.
 const SAME: f64 = 1e-9;
 
 impl<S: Lane> Propagator<S> {
@@ -64,24 +64,24 @@ impl<S: Lane> Propagator<S> {
         }
     }
 
-    /// Whether a lane has matrices for this step.
+    /// True if a lane has matrices for this step.
     pub(super) fn knows(&self, lane: usize, step_s: f64) -> bool {
         (self.step_s[lane] - step_s).abs() <= SAME * step_s
     }
 
-    /// Forgets a lane's matrices: another machine is in it.
+    /// Removes a lane's matrices for another machine.
     pub(super) fn forget(&mut self, lane: usize) {
         self.step_s[lane] = f64::NAN;
         self.age[lane] = LEAST_AGE;
     }
 
-    /// Whether a lane's matrices may be found again.
+    /// True if a lane's matrices may be found again.
     pub(super) fn may_learn(&mut self, lane: usize) -> bool {
         self.age[lane] = self.age[lane].saturating_add(1);
         self.age[lane] > LEAST_AGE
     }
 
-    /// Finds a lane's matrices for a step, from the Jacobian at its present state.
+    /// Finds a lane's matrices for a step, from the Jacobian at its current state.
     pub(super) fn learn(&mut self, lane: usize, step_s: f64, method: &Rosenbrock<S>, scales: &[S]) {
         let states = self.states;
         let scales: Vec<f64> = scales.iter().map(|scale| scale.lane(lane)).collect();
@@ -105,8 +105,8 @@ impl<S: Lane> Propagator<S> {
         self.age[lane] = 0;
     }
 
-    /// The step from a state with constant inputs; the error of each lane in units of the
-    /// tolerance.
+    /// Takes the step from a state with constant inputs; returns the error of each lane in units of
+    /// the tolerance.
     #[inline(always)]
     pub(super) fn step<E: System<S>>(&mut self, system: &E, trial: StepTrial<'_, S>, inputs: &[S]) -> S {
         let StepTrial { state, scales, tolerance, .. } = trial;
@@ -135,7 +135,7 @@ impl<S: Lane> Propagator<S> {
     }
 }
 
-/// phi_1 of a matrix.
+/// Function phi_1 of a matrix.
 pub(super) fn first_function(z: &DMatrix<f64>) -> DMatrix<f64> {
     let order = z.nrows();
     let mut square = Square::new(order);
@@ -148,7 +148,7 @@ pub(super) fn first_function(z: &DMatrix<f64>) -> DMatrix<f64> {
     DMatrix::from_fn(order, order, |row, column| *first.entry(row, column))
 }
 
-/// [`first_and_third`] with the vector instructions that there are.
+/// [`first_and_third`] with the vector instructions of the processor.
 struct Functions {
     z: Square<f64>,
 }
@@ -162,7 +162,7 @@ impl WithSimd for Functions {
     }
 }
 
-/// phi_1(Z) and phi_3(Z) by the series of Z over a power of two, and doubling.
+/// Functions phi_1(Z) and phi_3(Z) by the series of Z over a power of two, and doubling.
 ///
 /// ```text
 /// phi_k(Z) = sum over n of Z^n/(n + k)!,        phi_{k-1}(Z) = Z phi_k(Z) + 1/(k - 1)!
@@ -176,7 +176,7 @@ fn first_and_third(mut z: Square<f64>) -> [Square<f64>; 2] {
         (halvings, part) = (halvings + 1, 0.5 * part);
     }
     z.entries_mut().for_each(|x| *x *= part);
-    // Horner's scheme for the sum of Z^n/(n + 3)!, the terms left out below 0.5^12/15!.
+    // Horner's scheme for the sum of Z^n/(n + 3)!, omitted terms below 0.5^12/15!
     let mut phi_3 = Square::new(z.order());
     phi_3.add_identity(1.0);
     for order in (4..=14).rev() {
@@ -213,7 +213,7 @@ mod tests {
     use super::*;
     use crate::portable;
 
-    /// Of two states, given row by row.
+    /// Functions of a matrix of two states, given row by row.
     fn functions(z: [f64; 4]) -> [Square<f64>; 2] {
         let mut matrix = Square::new(2);
         for (place, value) in z.into_iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Names of what a simulation refuses.
+//! Names of quantities that a simulation rejects.
 
 /// Count of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

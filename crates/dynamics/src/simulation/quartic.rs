@@ -1,17 +1,17 @@
 use super::method::Extension;
 use crate::order::sort_numbers;
 
-/// Halvings in which a root is found to the last bit of a part of a step.
+/// Halvings that find a root to the last bit of a fraction of a step.
 const HALVINGS: usize = 60;
 
-/// A signal over one step: a polynomial of degree four in the part of the step, from 0 to 1.
+/// Signal over one step: a polynomial of degree four in the fraction of the step, from 0 to 1.
 ///
 /// ```text
 /// p(theta) = c_0 + c_1 theta + c_2 theta^2 + c_3 theta^3 + c_4 theta^4
 /// ```
 ///
 /// # Example
-/// theta (1 - theta) is largest, a quarter, in the middle of the step
+/// The maximum of theta (1 - theta) is a quarter, in the middle of the step:
 /// ```
 /// use phea_dynamics::simulation::Quartic;
 /// let hump = Quartic([0.0, 1.0, -1.0, 0.0, 0.0]);
@@ -28,7 +28,7 @@ const HALVINGS: usize = 60;
 pub struct Quartic(pub [f64; 5]);
 
 impl Quartic {
-    /// A signal that stands still.
+    /// Constant signal.
     pub fn constant(value: f64) -> Quartic {
         Quartic([value, 0.0, 0.0, 0.0, 0.0])
     }
@@ -38,7 +38,7 @@ impl Quartic {
         Quartic([*start, end - start + first, second - first, third - second, -third])
     }
 
-    /// The polynomial through five values at 0, 1/4, 1/2, 3/4 and 1.
+    /// Polynomial through five values at 0, 1/4, 1/2, 3/4 and 1.
     ///
     /// # Example
     /// ```
@@ -56,7 +56,7 @@ impl Quartic {
         ])
     }
 
-    /// Another one added, times a factor.
+    /// Sum with another polynomial times a factor.
     #[inline]
     pub fn plus(self, factor: f64, other: &Quartic) -> Quartic {
         let mut sum = self;
@@ -66,7 +66,7 @@ impl Quartic {
         sum
     }
 
-    /// Its value at a part of the step.
+    /// Value at a fraction of the step.
     #[inline]
     pub fn at(&self, part: f64) -> f64 {
         let [c0, c1, c2, c3, c4] = self.0;
@@ -78,8 +78,7 @@ impl Quartic {
         c1 + part * (2.0 * c2 + part * (3.0 * c3 + part * 4.0 * c4))
     }
 
-    /// Its coefficients over Bernstein's polynomials, between the least and the greatest of which
-    /// it stays.
+    /// Bernstein coefficients, whose least and greatest bound the polynomial.
     #[inline]
     fn hull(&self) -> [f64; 5] {
         let [c0, c1, c2, c3, c4] = self.0;
@@ -92,21 +91,21 @@ impl Quartic {
         ]
     }
 
-    /// Two numbers between which it stays over the whole step, at little cost.
+    /// Bounds over the whole step, at little cost.
     #[inline]
     pub fn bounds(&self) -> [f64; 2] {
         let [first, others @ ..] = self.hull();
         others.iter().fold([first; 2], |[low, high], value| [low.min(*value), high.max(*value)])
     }
 
-    /// Whether it only rises or only falls, as far as this shows at little cost.
+    /// True if a test of little cost shows that it only rises or only falls.
     #[inline]
     pub fn is_plainly_monotone(&self) -> bool {
         let [b0, b1, b2, b3, b4] = self.hull();
         (b0 <= b1 && b1 <= b2 && b2 <= b3 && b3 <= b4) || (b0 >= b1 && b1 >= b2 && b2 >= b3 && b3 >= b4)
     }
 
-    /// Its least and greatest value between two parts of the step.
+    /// Least and greatest value between two fractions of the step.
     pub fn extremes(&self, [from, until]: [f64; 2]) -> [f64; 2] {
         let (first, last) = (self.at(from), self.at(until));
         let ends = [first.min(last), first.max(last)];
@@ -117,7 +116,7 @@ impl Quartic {
         within.map(|part| self.at(part)).fold(ends, |[low, high], value| [low.min(value), high.max(value)])
     }
 
-    /// The first part of the step from `from` to `until` at which it is not below a level.
+    /// First fraction of the step from `from` to `until` at which it is not below a level.
     pub fn first_above(&self, level: f64, [from, until]: [f64; 2]) -> Option<f64> {
         if self.at(from) >= level {
             return Some(from);
@@ -132,7 +131,7 @@ impl Quartic {
         None
     }
 
-    /// The last part of the step from `from` to `until` at which it is above a level.
+    /// Last fraction of the step from `from` to `until` at which it is above a level.
     pub fn last_above(&self, level: f64, [from, until]: [f64; 2]) -> Option<f64> {
         if self.at(until) > level {
             return Some(until);
@@ -150,18 +149,18 @@ impl Quartic {
         None
     }
 
-    /// The mean between two parts of the step.
+    /// Mean between two fractions of the step.
     pub fn mean(&self, span: [f64; 2]) -> f64 {
         gauss(span, |part| self.at(part))
     }
 
-    /// The mean of its square between two parts of the step.
+    /// Mean square between two fractions of the step.
     pub fn mean_square(&self, span: [f64; 2]) -> f64 {
         gauss(span, |part| self.at(part) * self.at(part))
     }
 
-    /// The mean of its square between two parts of the step, of a signal that is held within plus
-    /// and minus a limit.
+    /// Mean square between two fractions of the step of a signal that is limited to plus and minus
+    /// a limit.
     pub fn mean_square_within(&self, limit: f64, [from, until]: [f64; 2]) -> f64 {
         let [low, high] = self.bounds();
         if -limit <= low && high <= limit {
@@ -185,14 +184,14 @@ impl Quartic {
         ends.windows(2).map(of).sum::<f64>() / (until - from)
     }
 
-    /// Ends of the pieces, from `from` to `until`, over each of which it rises or falls.
+    /// Ends of the intervals, from `from` to `until`, over each of which it rises or falls.
     fn pieces(&self, [from, until]: [f64; 2]) -> impl Iterator<Item = f64> {
         let turning = if self.is_plainly_monotone() { Vec::new() } else { self.turning_points() };
         turning.into_iter().filter(move |part| from < *part && *part < until).chain(std::iter::once(until))
     }
 
-    /// Where it crosses a level between two parts on either side of it, between which it rises or
-    /// falls.
+    /// Fraction at which it crosses a level, between two fractions on either side of it between
+    /// which it rises or falls.
     fn crossing(&self, level: f64, [mut one, mut other]: [f64; 2]) -> f64 {
         let above = self.at(one) >= level;
         for _ in 0..HALVINGS {
@@ -206,8 +205,8 @@ impl Quartic {
         other
     }
 
-    /// Where its slope vanishes within the step, in order: between the places where its curvature
-    /// does.
+    /// Fractions in the step at which its slope vanishes, in order: between the zeros of its
+    /// curvature.
     fn turning_points(&self) -> Vec<f64> {
         let [_, _, c2, c3, c4] = self.0;
         let mut ends = vec![0.0];
@@ -247,20 +246,20 @@ fn roots_within([c0, c1, c2]: [f64; 3]) -> Vec<f64> {
     roots
 }
 
-/// Places from the middle in half spans, and weights: the rule of Gauss with five points, exact to
-/// degree nine.
+/// Distances from the middle in half spans, and weights: the five-point Gauss rule, exact to degree
+/// nine.
 // ORIGIN: analytic, roots of Legendre's polynomial of degree five
 const POINTS: [(f64, f64); 2] =
     [(0.538_469_310_105_683_1, 0.239_314_335_249_683_24), (0.906_179_845_938_664, 0.118_463_442_528_094_54)];
 
-/// Weight of the place in the middle.
+/// Weight of the middle.
 const MIDDLE: f64 = 64.0 / 225.0;
 
-/// Places between 0 and 1 and their weights in a mean: the rule of Gauss with five points, exact to
-/// degree nine.
+/// Points between 0 and 1 and their weights in a mean: the five-point Gauss rule, exact to degree
+/// nine.
 ///
 /// # Example
-/// The mean of x^9 over the unit span is a tenth.
+/// The mean of x^9 over the unit interval is a tenth:
 /// ```
 /// let mean: f64 = phea_dynamics::simulation::gauss_points().map(|(x, weight)| weight * x.powi(9)).iter().sum();
 /// assert!((mean - 0.1).abs() < 1e-15);
@@ -277,7 +276,7 @@ pub fn gauss_points() -> [(f64, f64); 5] {
     ]
 }
 
-/// The mean over a span, by that rule.
+/// Mean over an interval by the Gauss rule.
 #[inline]
 fn gauss([from, until]: [f64; 2], value: impl Fn(f64) -> f64) -> f64 {
     let (middle, half) = (0.5 * (from + until), 0.5 * (until - from));
@@ -291,7 +290,7 @@ mod tests {
     use super::*;
     use crate::random;
 
-    /// Signals of every shape against what ten thousand places show.
+    /// Signals of every shape agree with ten thousand sampled points.
     #[test]
     fn extremes_crossings_and_means_are_those_of_many_places() {
         let mut stream = 7;
@@ -314,7 +313,7 @@ mod tests {
             for (found, seen) in
                 [(signal.first_above(level, span), first), (signal.last_above(level, span), last)]
             {
-                // a touch between two places is not seen
+                // a touch between two points is not detected
                 if let Some(seen) = seen {
                     assert!(found.is_some_and(|found| (found - seen).abs() < 1e-4), "{signal:?} {level}");
                 }

@@ -1,14 +1,14 @@
-//! A compensator or a sensor as states.
+//! State-space realisation of a compensator or a sensor.
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::linear::{LinearError, LinearOperation, StateSpace, TimeDomain, TransferFunction};
 use crate::scalar::Scalar;
 
-/// Singular values below this are zero: an equation that says nothing.
+/// Relative size of singular values that are taken as zero: an equation without information.
 const SINGULAR: f64 = 1e-12;
 
-/// A compensator as states, its zeros left out.
+/// Compensator as states, its zero entries left out.
 ///
 /// ```text
 /// dx/dt = A x + B e,        y = C x + D e
@@ -16,11 +16,11 @@ const SINGULAR: f64 = 1e-12;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Realization {
     pub(super) states: usize,
-    /// (column, value) of each row of A.
+    /// Entries (column, value) of each row of A.
     dynamics: Vec<Vec<(usize, f64)>>,
-    /// B.
+    /// Column B.
     drive: Vec<f64>,
-    /// (column, value) of C.
+    /// Entries (column, value) of C.
     taps: Vec<(usize, f64)>,
     pub(super) feedthrough: f64,
 }
@@ -48,8 +48,8 @@ impl Realization {
         })
     }
 
-    /// Magnitudes of the states that make an output of this magnitude, directly or through the
-    /// states they drive.
+    /// Magnitudes of the states that produce an output of this magnitude, directly or through the
+    /// states that they drive.
     pub(super) fn scales<S: Scalar>(&self, output: S) -> Vec<S> {
         let mut parts = vec![f64::INFINITY; self.states];
         for &(column, value) in &self.taps {
@@ -59,7 +59,7 @@ impl Realization {
             let own = self.dynamics[state].iter().find(|entry| entry.0 == state);
             own.map_or(1.0, |entry| entry.1.abs())
         };
-        // A chain of sections lists the last one first: what a state drives stands before it.
+        // a chain of sections lists the last one first: the states that a state drives precede it
         for state in 0..self.states {
             for row in (0..state).filter(|&row| parts[row].is_finite()).collect::<Vec<_>>() {
                 for (_, value) in self.dynamics[row].iter().filter(|entry| entry.0 == state) {
@@ -70,7 +70,7 @@ impl Realization {
         parts.iter().map(|&part| output.times(if part.is_finite() { part } else { 1.0 })).collect()
     }
 
-    /// C x.
+    /// Product C x.
     #[inline(always)]
     fn tapped<T: Scalar>(&self, state: &[T]) -> T {
         let products = self.taps.iter().map(|&(column, value)| state[column].times(value));
@@ -93,8 +93,8 @@ impl Realization {
         }
     }
 
-    /// States that stand still under an input and, where it is stated, give an output; the nearest
-    /// to that where none do.
+    /// States that are constant under an input and, if it is stated, give an output; the nearest to
+    /// that if none do.
     ///
     /// ```text
     /// A x = -B e,    C x = y - D e        each equation over the largest number of its row, least squares

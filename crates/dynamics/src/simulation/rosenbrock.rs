@@ -1,4 +1,4 @@
-//! One step of an L-stable Rosenbrock method of order five.
+//! Single step of an L-stable Rosenbrock method of order five.
 
 use nalgebra::DMatrix;
 
@@ -13,17 +13,17 @@ use super::{Lane, System};
 use crate::linear::irreducible_blocks;
 use crate::scalar::{Dependence, Dual};
 
-/// Stages of the method.
+/// Number of stages.
 const STAGES: usize = 8;
 
-/// Times the step: a rate beyond which what lies between the ends of a step is looked after.
+/// Product of step and rate beyond which the error inside a step is checked.
 const STIFF: f64 = 1e3;
 
-/// gamma, on the diagonal of every stage.
+/// Coefficient gamma, on the diagonal of every stage.
 const GAMMA: f64 = 0.21193756319429014;
 
-/// a_ij: what the stages before add to the state of stages 2 to 6; the last two stages each add the
-/// increment before them.
+/// Coefficients a_ij: contributions of earlier stages to the state of stages 2 to 6; the last two
+/// stages each add the previous increment.
 const A2: [f64; 1] = [3.0];
 const A3: [f64; 2] = [2.849394379747939, 0.45842242204463923];
 const A4: [f64; 3] = [-6.954028509809101, 2.489845061869568, -10.358996098473584];
@@ -31,7 +31,8 @@ const A5: [f64; 4] = [2.8029986275628964, 0.5072464736228206, -0.398831254177052
 const A6: [f64; 5] =
     [-7.502846399306121, 2.561846144803919, -11.627539656261098, -0.18268767659942256, 0.030198172008377946];
 
-/// c_ij: what the stages before add to the right-hand side of stages 2 to 8, over h.
+/// Coefficients c_ij: contributions of earlier stages to the right-hand side of stages 2 to 8, over
+/// h.
 const C2: [f64; 1] = [-14.155112264123755];
 const C3: [f64; 2] = [-17.97296035885952, -2.859693295451294];
 const C4: [f64; 3] = [147.12150275711716, -1.41221402718213, 71.68940251302358];
@@ -56,15 +57,15 @@ const C8: [f64; 7] = [
     -9.48861652309627,
 ];
 
-/// Where in the step the inputs of each stage are taken.
+/// Fractions of the step at which the inputs of each stage are taken.
 pub(super) const STAGE_TIMES: [f64; 6] =
     [0.0, 0.6358126895828704, 0.4095798393397535, 0.9769306725060716, 0.4288403609558664, 1.0];
 
-/// d_i: weight of the slope in time.
+/// Coefficients d_i: weights of the slope in time.
 const SLOPE_WEIGHTS: [f64; 5] =
     [0.21193756319429014, -0.42387512638858027, -0.3384627126235924, 1.8046452872882734, 2.325825639765069];
 
-/// h_ij of the continuous extension.
+/// Coefficients h_ij of the continuous extension.
 const EXTENSION: [[f64; STAGES]; 3] = [
     [
         25.948786856663858,
@@ -98,26 +99,25 @@ const EXTENSION: [[f64; STAGES]; 3] = [
     ],
 ];
 
-/// On the imaginary axis, ln |R(i theta)| = -c theta^8 + ...: below by a fifth at 0.5 rad, above by
-/// a third at 1.5 rad.
+/// On the imaginary axis, ln |R(i theta)| = -c theta^8 + ...: too low by a fifth at 0.5 rad, too
+/// high by a third at 1.5 rad.
 pub(super) const AMPLITUDE_LOST: AmplitudeLost = AmplitudeLost { factor: 1.2e-5, power: 8 };
 
-/// Where an entry of the Jacobian is found.
+/// Source of an entry of the Jacobian.
 #[derive(Clone, Copy, Debug)]
 struct JacobianEntry {
     row: usize,
-    /// Which evaluation finds it, and in which direction.
+    /// Evaluation that finds it, and the direction.
     pass: usize,
     direction: usize,
-    /// Its place in the step's matrix.
+    /// Position in the step's matrix.
     entry: usize,
 }
 
-/// States are combined in groups of four: whole vectors for the machine. The last group is filled
-/// up with zeros.
+/// Group of four states: whole vectors for the processor. The last group is padded with zeros.
 type StateGroup<S> = [S; 4];
 
-/// The method with its memory, for a system of one pattern.
+/// Method with its memory, for a system of one pattern.
 ///
 /// ```text
 /// (1/(h gamma) - J) u_i = f(y + sum a_ij u_j, t + alpha_i h) + sum c_ij u_j/h + h d_i df/dt
@@ -130,24 +130,25 @@ type StateGroup<S> = [S; 4];
 pub(super) struct Rosenbrock<S> {
     pattern: JacobianPattern,
     matrix: StepMatrix<S>,
-    /// u_i of all stages, group by group.
+    /// Increments u_i of all stages, group by group.
     increments: Vec<[StateGroup<S>; STAGES]>,
     start: Vec<StateGroup<S>>,
     stage: Vec<StateGroup<S>>,
     rates: Vec<StateGroup<S>>,
     rates_of_stage: Vec<StateGroup<S>>,
-    /// The right-hand side of a stage, and then its increment.
+    /// Right-hand side of a stage, and then its increment.
     column: Box<ColumnIndex<S>>,
     slopes: Vec<S>,
     slopes_between: Vec<S>,
-    /// The states as variables, for one evaluation after another.
+    /// States as variables, for one evaluation after another.
     seeded: Vec<Vec<Dual<DIRECTIONS, S>>>,
     seeded_inputs: Vec<Dual<DIRECTIONS, S>>,
     seeded_rates: Vec<Dual<DIRECTIONS, S>>,
-    /// J, in the order in which it is found.
+    /// Entries of J, in the order in which they are found.
     jacobian: Vec<S>,
     found: Vec<JacobianEntry>,
-    /// Which of them are what a state's rate makes of the state itself, and the least of these.
+    /// Positions in J of the derivative of each state's rate with respect to that state, and the
+    /// least of these derivatives.
     own: Vec<usize>,
     fastest: S,
     /// Weights of [`Rosenbrock::carry`].
@@ -157,7 +158,7 @@ pub(super) struct Rosenbrock<S> {
 }
 
 impl<S: Lane> Rosenbrock<S> {
-    /// For this system; `None` when it is too large to find its pattern.
+    /// Method for this system; `None` if it is too large to find its pattern.
     pub(super) fn new(system: &dyn Kernel<S>) -> Option<Self> {
         let pattern = system.pattern()?;
         let (states, inputs) = (system.states(), system.inputs());
@@ -192,14 +193,14 @@ impl<S: Lane> Rosenbrock<S> {
         })
     }
 
-    /// Rates, Jacobian and slopes in time at the start of a step.
+    /// Evaluates rates, Jacobian and slopes in time at the start of a step.
     #[inline(always)]
     pub(super) fn linearize<E: System<S>>(&mut self, system: &E, state: &[S], inputs: &StepInputs<S>)
     where
         Dependence: From<S>,
         Dual<DIRECTIONS, S>: From<f64> + From<S>,
     {
-        // The slope in time is one more direction.
+        // the slope in time is one more direction
         let in_time = self.pattern.colour_count;
         let directions = (in_time + usize::from(inputs.moving)).max(1);
         for (seeded, &value) in self.seeded_inputs.iter_mut().zip(&inputs.stages[0]) {
@@ -226,8 +227,8 @@ impl<S: Lane> Rosenbrock<S> {
                 }
             }
             if time_here {
-                // Where nothing moves, nothing is asked: an infinite derivative there means no
-                // slope.
+                // without moving inputs the slope is not evaluated: an infinite derivative then
+                // means no slope
                 let zero = S::from(0.0);
                 let moving = inputs.slopes.iter().fold(zero, |sum, slope| sum + slope.abs());
                 for (slope, rate) in self.slopes.iter_mut().zip(&self.seeded_rates) {
@@ -244,9 +245,9 @@ impl<S: Lane> Rosenbrock<S> {
         }
     }
 
-    /// One step of length h from here, [`Rosenbrock::linearize`] having been called here; the error
-    /// of each lane in units of the tolerance. Above one, or not a number, the step is to be tried
-    /// again with a shorter one.
+    /// Attempts a step of length h from the point at which [`Rosenbrock::linearize`] was called;
+    /// returns the error of each lane in units of the tolerance. If the error is above one or NaN,
+    /// the step must be repeated with a shorter length.
     #[inline(always)]
     pub(super) fn attempt<E: System<S>>(
         &mut self,
@@ -273,7 +274,7 @@ impl<S: Lane> Rosenbrock<S> {
             system.rates(&self.stage.as_flattened()[..states], &inputs.stages[at], rates);
             self.finish_stage(stage, step, per_step, inputs.moving);
         }
-        // The column holds the last increment.
+        // the column holds the last increment
         for ((end, &stage), &increment) in
             self.end.iter_mut().zip(self.stage.as_flattened()).zip(&*self.column)
         {
@@ -283,22 +284,22 @@ impl<S: Lane> Rosenbrock<S> {
         S::select(S::from(0.0).less_than(kept), error, S::from(f64::INFINITY))
     }
 
-    /// Whether a state of this lane would come to rest within a small part of the step, if the
-    /// others stood still.
+    /// True if a state of this lane would settle within a small fraction of the step, if the others
+    /// were constant.
     pub(super) fn binds_stiffly(&self, lane: usize, step_s: f64) -> bool {
         self.fastest.lane(lane) * step_s < -STIFF
     }
 
-    /// How far the continuous extension is off at a part theta of the step just attempted, in units
-    /// of the tolerance, for the inputs there: the remainder of the equations, brought to
-    /// the state as a stage's increment is.
+    /// Error of the continuous extension at a fraction theta of the step just attempted, in units
+    /// of the tolerance, for the inputs there: the residual of the equations, converted to the
+    /// state like a stage's increment.
     ///
     /// ```text
     /// (1/(h gamma) - J) e = f(y(theta), w(theta)) - y'(theta)
     /// ```
     ///
-    /// Where a state is bound stiffly to others or to an input the error at the end says nothing of
-    /// what lies between.
+    /// For a state that is stiffly coupled to others or to an input, the error at the end does not
+    /// show the error inside the step.
     #[inline(always)]
     pub(super) fn error_between<E: System<S>>(
         &mut self,
@@ -322,7 +323,7 @@ impl<S: Lane> Rosenbrock<S> {
         relative_error(remainders, state, &self.end, scales, tolerance)
     }
 
-    /// Carries a small error of the state over the step just attempted, by the matrix that was
+    /// Propagates a small error of the state over the step just attempted, by the matrix that was
     /// factored for it.
     ///
     /// ```text
@@ -344,7 +345,7 @@ impl<S: Lane> Rosenbrock<S> {
         error.copy_from_slice(&self.column[..error.len()]);
     }
 
-    /// y + sum a_ij u_j.
+    /// Sum y + sum a_ij u_j.
     #[inline(always)]
     fn begin_stage(&mut self, stage: usize) {
         let one = S::from(1.0);
@@ -355,7 +356,7 @@ impl<S: Lane> Rosenbrock<S> {
             3 => combine(sums, start, &A4, one, increments),
             4 => combine(sums, start, &A5, one, increments),
             5 => combine(sums, start, &A6, one, increments),
-            // The column holds the increment before.
+            // the column holds the previous increment
             _ => {
                 for (value, &increment) in sums.as_flattened_mut().iter_mut().zip(&*self.column) {
                     *value = *value + increment;
@@ -364,7 +365,7 @@ impl<S: Lane> Rosenbrock<S> {
         }
     }
 
-    /// The increment of a stage from its rates.
+    /// Increment of a stage from its rates.
     #[inline(always)]
     fn finish_stage(&mut self, stage: usize, step: S, per_step: S, moving: bool) {
         let (column, _) = self.column.as_chunks_mut();
@@ -406,7 +407,7 @@ impl<S: Lane> Rosenbrock<S> {
 }
 
 impl<S: Lane> Rosenbrock<S> {
-    /// The sets of states that all influence each other.
+    /// Sets of states that all influence each other.
     pub(super) fn blocks(&self) -> Vec<Vec<usize>> {
         let mut pattern = DMatrix::zeros(self.end.len(), self.end.len());
         for (row, column, _) in self.jacobian_entries() {
@@ -415,15 +416,15 @@ impl<S: Lane> Rosenbrock<S> {
         irreducible_blocks(&pattern)
     }
 
-    /// Where the entry in a row and a column of the Jacobian is held; `None` where it is zero
-    /// whatever the state.
+    /// Position of the entry in a row and a column of the Jacobian; `None` if it is zero for any
+    /// state.
     pub(super) fn place(&self, row: usize, column: usize) -> Option<usize> {
         let before: usize = self.pattern.rows.iter().take(row).map(Vec::len).sum();
         let place = self.pattern.rows.get(row)?.iter().position(|&other| other == column)?;
         Some(before + place)
     }
 
-    /// The entry of the Jacobian that is held there, in one lane.
+    /// Entry of the Jacobian at this position, in one lane.
     pub(super) fn jacobian_at(&self, place: usize, lane: usize) -> f64 {
         self.jacobian.get(place).map_or(0.0, |value| value.lane(lane))
     }
@@ -436,7 +437,7 @@ impl<S: Lane> Rosenbrock<S> {
     }
 }
 
-/// base + factor sum w_j u_j over the first K stages.
+/// Sum base + factor sum w_j u_j over the first K stages.
 #[inline(always)]
 fn combine<S: Lane, const K: usize>(
     sums: &mut [StateGroup<S>],
@@ -458,7 +459,7 @@ fn combine<S: Lane, const K: usize>(
     }
 }
 
-/// Where each entry of the pattern is found and where it goes.
+/// Source and position of each entry of the pattern.
 fn found<S: Lane>(pattern: &JacobianPattern, matrix: &StepMatrix<S>) -> Vec<JacobianEntry> {
     let mut all = Vec::new();
     for (row, columns) in pattern.rows.iter().enumerate() {
@@ -471,7 +472,7 @@ fn found<S: Lane>(pattern: &JacobianPattern, matrix: &StepMatrix<S>) -> Vec<Jaco
     all
 }
 
-/// Places of the diagonal among the entries of the pattern.
+/// Positions of the diagonal among the entries of the pattern.
 fn own(pattern: &JacobianPattern) -> Vec<usize> {
     let rows = pattern.rows.iter().enumerate();
     let places = rows.flat_map(|(row, columns)| columns.iter().map(move |&column| row == column));

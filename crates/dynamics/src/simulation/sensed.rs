@@ -1,4 +1,4 @@
-//! A plant that is seen through a sensor.
+//! Plant measured through a sensor.
 
 use super::realization::Realization;
 use super::{Plant, Sliding};
@@ -6,17 +6,17 @@ use crate::controller::{RateSensor, VirtualImpedance};
 use crate::linear::{LinearError, TransferFunction};
 use crate::scalar::Scalar;
 
-/// A plant whose measurement passes through the dynamics of a sensor and its dead time.
+/// Plant whose measurement passes through the dynamics of a sensor and its dead time.
 ///
 /// ```text
-/// dx/dt = A x + B y,    m(t) = C x(t - d) + D y(t - d)         y what the plant gives, m what the controller sees
-/// y = F + Z_v (x_L - x_0)                                       with a virtual impedance: F what the plant measures
+/// dx/dt = A x + B y,    m(t) = C x(t - d) + D y(t - d)         y the output of the plant, m the measurement of the controller
+/// y = F + Z_v (x_L - x_0)                                       with a virtual impedance: F the measurement of the plant
 /// ```
 ///
 /// States are those of the plant, those of the sensor, those of the sensor of the rate that a
 /// controller may feed forward (a [`RateSensor`] between the disturbance of the plant and that of
 /// this one), and those of a [`VirtualImpedance`]: its filter, and the rest position x_0, which
-/// does not change. A sensor of one without dead time adds nothing.
+/// does not change. A sensor with gain one and no dead time adds no states.
 ///
 /// # Example
 /// ```
@@ -64,13 +64,13 @@ pub struct Sensed<P> {
     plant: P,
     sensor: Realization,
     delay_s: f64,
-    /// `None` where the disturbance itself is shown.
+    /// Sensor of the rate; `None` if the disturbance is measured directly.
     rate: Option<SensedRate>,
-    /// Z_v of a virtual impedance; `None` without one.
+    /// Realisation of Z_v of a virtual impedance; `None` without one.
     impedance: Option<Realization>,
 }
 
-/// The sensor of a rate as states.
+/// Sensor of a rate as states.
 #[derive(Clone, Debug, PartialEq)]
 struct SensedRate {
     filter: Realization,
@@ -78,7 +78,7 @@ struct SensedRate {
 }
 
 impl<P> Sensed<P> {
-    /// This plant, seen through this sensor.
+    /// Plant measured through this sensor.
     ///
     /// # Errors
     /// [`LinearError::WrongDomain`] for a sampled one, [`LinearError::Improper`].
@@ -88,7 +88,7 @@ impl<P> Sensed<P> {
         Ok(Sensed { plant, sensor, delay_s, rate: None, impedance: None })
     }
 
-    /// The same with its disturbance shown by this sensor.
+    /// Plant with its disturbance measured by this sensor.
     ///
     /// # Errors
     /// [`LinearError`] for a sensor that has no transfer function.
@@ -101,7 +101,8 @@ impl<P> Sensed<P> {
         Ok(Sensed { rate: Some(rate), ..self })
     }
 
-    /// The same with what a virtual impedance adds to its measurement; one of zero adds nothing.
+    /// Plant with the force of a virtual impedance added to its measurement; an impedance of zero
+    /// adds nothing.
     ///
     /// # Errors
     /// [`LinearError`] for a damper or a mass without a filter.
@@ -112,7 +113,7 @@ impl<P> Sensed<P> {
         Ok(Sensed { impedance: Some(Realization::new(&impedance.transfer_function()?)?), ..self })
     }
 
-    /// The same without a virtual impedance.
+    /// Plant without a virtual impedance.
     #[must_use]
     pub fn without_impedance(self) -> Self {
         Sensed { impedance: None, ..self }
@@ -123,27 +124,27 @@ impl<P> Sensed<P> {
         &self.plant
     }
 
-    /// The plant, to be changed.
+    /// The plant, mutable.
     pub fn plant_mut(&mut self) -> &mut P {
         &mut self.plant
     }
 
     /// States of the sensors at constant output of the plant, whose rate is zero, with the load at
-    /// its rest position, which is zero: see [`Sensed::rest_at`].
+    /// its rest position of zero: see [`Sensed::rest_at`].
     pub fn sensor_at_rest(&self, measured: f64) -> Vec<f64> {
         let mut states = self.sensor.at_rest(measured, None);
         states.resize(states.len() + self.rate_states() + self.impedance_states(), 0.0);
         states
     }
 
-    /// How many states a virtual impedance has: the last ones, with the rest position.
+    /// Number of states of a virtual impedance: the last ones, with the rest position.
     #[inline(always)]
     pub fn impedance_states(&self) -> usize {
         self.impedance.as_ref().map_or(0, |impedance| impedance.states + 1)
     }
 
-    /// Makes the position of the load in a state the rest position of a virtual impedance, whose
-    /// filter rests.
+    /// Sets the rest position of a virtual impedance to the load position of a state, with its
+    /// filter at rest.
     pub fn rest_at(&self, state: &mut [f64], inputs: &[f64])
     where
         P: Plant<f64>,
@@ -161,8 +162,8 @@ impl<P> Sensed<P> {
         }
     }
 
-    /// What a virtual impedance makes of the position of the load, in the unit of the measurement:
-    /// the force that the reference gives way by. Zero without one.
+    /// Output of a virtual impedance for the position of the load, in the unit of the measurement:
+    /// the force by which the reference yields. Zero without one.
     #[inline(always)]
     pub fn given_way<S: Scalar, T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> T
     where
@@ -183,7 +184,7 @@ impl<P> Sensed<P> {
         &state[from..from + self.impedance_states()]
     }
 
-    /// What the plant measures, with what a virtual impedance adds.
+    /// Measurement of the plant plus the output of a virtual impedance.
     #[inline(always)]
     fn given<S: Scalar, T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> T
     where
@@ -197,25 +198,25 @@ impl<P> Sensed<P> {
         }
     }
 
-    /// How many states the sensor of the rate has.
+    /// Number of states of the sensor of the rate.
     #[inline(always)]
     pub fn rate_states(&self) -> usize {
         self.rate.as_ref().map_or(0, |rate| rate.filter.states)
     }
 
-    /// Whether the sensor has dead time.
+    /// True if the sensor has dead time.
     #[inline(always)]
     fn is_late(&self) -> bool {
         self.delay_s > 0.0
     }
 
-    /// Whether the sensor of the rate has dead time.
+    /// True if the sensor of the rate has dead time.
     #[inline(always)]
     fn is_rate_late(&self) -> bool {
         self.rate.as_ref().is_some_and(|rate| rate.delay_s > 0.0)
     }
 
-    /// States of the plant, and inputs of the plant.
+    /// States and inputs of the plant.
     #[inline(always)]
     fn of_plant<'t, S: Scalar, T: Scalar + From<S>>(
         &self,
@@ -238,7 +239,7 @@ impl<P> Sensed<P> {
         self.sensor.output(of_sensor, self.given::<S, T>(state, inputs))
     }
 
-    /// The filtered rate before its dead time.
+    /// Filtered rate before its dead time.
     #[inline(always)]
     fn shown_rate<S: Scalar, T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> T
     where

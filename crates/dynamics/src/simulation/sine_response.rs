@@ -1,4 +1,4 @@
-//! The settled response of a system to a sine: the fundamental and the harmonics.
+//! Steady-state response of a system to a sine: the fundamental and the harmonics.
 
 use std::cell::Cell;
 
@@ -13,59 +13,59 @@ use super::{
 use crate::portable;
 use crate::range::RequiredRange;
 
-/// Rows of a period: harmonics up to the thirtieth do not meet one another.
+/// Rows per period: harmonics up to the thirtieth are not aliased.
 const ROWS: usize = 64;
 /// Number of harmonics that are computed.
 const HARMONICS: usize = 20;
 
-/// For how long the response to a sine is evaluated.
+/// Limits of the evaluation of a response to a sine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SinePlan {
     /// Frequency of the sine, rad/s.
     pub frequency_rad_per_s: f64,
-    /// Periods of one window, over which the fundamental is taken; at least one.
+    /// Periods of one window, over which the fundamental is evaluated; at least one.
     pub window_periods: u32,
-    /// Most windows; at least two.
+    /// Largest number of windows; at least two.
     pub most_windows: u32,
-    /// It has settled when the fundamental of a window differs from that of the one before by this
-    /// much of it, or less.
+    /// Largest difference of the fundamentals of two successive windows, relative to the
+    /// fundamental, at which the response has settled.
     pub change: f64,
 }
 
-/// The response to a sine.
+/// Response to a sine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SineResponse {
     /// Complex amplitude Y of the fundamental over the last window, y = y_0 + Im(Y e^(j w t)) +
-    /// harmonics; not a number where no window was seen to its end.
+    /// harmonics; NaN if no window was completed.
     pub fundamental: Complex64,
     /// Root of the sum of squares of the harmonics from the second to the twentieth, over the
     /// fundamental.
     pub distortion: f64,
-    /// Whether it settled within its windows.
+    /// True if it settled within its windows.
     pub settled: bool,
     /// Difference of the last two windows, over the fundamental.
     pub change: f64,
-    /// Periods that were watched.
+    /// Number of simulated periods.
     pub periods: u64,
-    /// Indicators that changed their sign on the way, each once, in their order.
+    /// Indicators that changed their sign, each once, in their order.
     pub indicators: Vec<usize>,
-    /// What it cost.
+    /// Steps and evaluations.
     pub work: StepCounts,
-    /// How the simulation ended, where neither it settled nor its windows were used up.
+    /// Status of the simulation, if it neither settled nor used up its windows.
     pub ended: Option<Status>,
 }
 
-/// Drives a system from a state (and the waves under way behind it) by inputs of which one is a
-/// sine that begins at time zero, until the fundamental of an output has settled. The output is
-/// read off states and inputs.
+/// Simulates a system from a state (and the waves in transit after it) under inputs of which one is
+/// a sine that begins at time zero, until the fundamental of an output has settled. The output is a
+/// function of states and inputs.
 ///
 /// ```text
 /// Y = (2 j/N) sum over a window of (y - trend) e^(-j w t)         N rows, 64 a period, whole periods
 /// ```
 ///
-/// The trend is the straight line between the ends of the window: a slow drift does not affect the
-/// fundamental to first order. `watch` is called with the simulated time after each step; if it
-/// returns false, the simulation stops.
+/// The trend removed is the straight line between the ends of the window: a slow drift does not
+/// affect the fundamental to first order. `watch` is called with the simulated time after each
+/// step; if it returns false, the simulation stops.
 ///
 /// # Errors
 /// [`SimulationError`] when start, inputs or settings do not fit the system, or the plan is
@@ -125,7 +125,7 @@ pub fn sine_response<E: System<f64> + Clone>(
     }
     let output_step_s = period_s / ROWS as f64;
     let rows = window as f64 * f64::from(plan.most_windows);
-    // half a row more, so that rounding does not leave the last one out
+    // half a row more, so that rounding does not omit the last one
     let course = InputSchedule { duration_s: (rows + 0.5) * output_step_s, output_step_s, inputs };
     let done = Cell::new(false);
     let observer = Windows {
@@ -160,13 +160,13 @@ pub fn sine_response<E: System<f64> + Clone>(
     })
 }
 
-/// e^(-j k) of each row of a period.
+/// Factors e^(-j k) for each row of a period.
 fn phasors() -> [Complex64; ROWS] {
     let angle = |row: usize| -std::f64::consts::TAU * row as f64 / ROWS as f64;
     std::array::from_fn(|row| portable::exp_complex(Complex64::new(0.0, angle(row))))
 }
 
-/// Sums of the rows of a window as they come.
+/// Running sums over the rows of a window.
 struct Windows<'a> {
     wanted: Vec<usize>,
     output: &'a dyn Fn(&[f64], &[f64]) -> f64,
@@ -176,7 +176,7 @@ struct Windows<'a> {
     rows: usize,
     /// Sums of the first harmonic, the second, and so on.
     sums: [Complex64; HARMONICS],
-    /// The first value of the window.
+    /// First value of the window.
     first: f64,
     fundamental: Complex64,
     distortion: f64,
@@ -204,7 +204,7 @@ impl Observer for Windows<'_> {
             self.first = value;
             self.sums = [Complex64::ZERO; HARMONICS];
         }
-        // without what it began with, which has no part in any harmonic but rounds
+        // without the initial value, which adds only rounding to the harmonics
         let above = value - self.first;
         for (place, sum) in self.sums.iter_mut().enumerate() {
             *sum += self.phasors[(place + 1) * self.rows % ROWS] * above;
@@ -214,7 +214,7 @@ impl Observer for Windows<'_> {
 }
 
 impl Windows<'_> {
-    /// Takes the trend to the value after the window off: of the ramp r, the sum of r z^r over
+    /// Subtracts the trend up to the value after the window: for the ramp r, the sum of r z^r over
     /// whole periods is N/(z - 1).
     fn end_window(&mut self, last: f64, rows: f64) {
         let mut squares = 0.0;

@@ -1,35 +1,36 @@
-//! A machine in its lane, and the data for its observer.
+//! Machine in its lane, and the data for its observer.
 
 use super::course::{Observer, Sampler};
 use super::method::Extension;
 use super::passage::{Passage, later};
 use super::{Lane, Quartic, Stretch};
 
-/// A machine in its lane.
+/// Machine in its lane.
 pub(super) struct Slot<'a, O> {
     pub(super) passage: Passage<'a>,
     pub(super) sampler: Option<Box<dyn Sampler + 'a>>,
     pub(super) observer: O,
-    /// Steps since its modes were asked for.
+    /// Steps since its modes were last evaluated.
     pub(super) unwatched: u64,
-    /// Whether its last step was taken with known matrices.
+    /// True if its last step used precomputed matrices.
     pub(super) propagated: bool,
-    /// A state or input at one time, for sampler and observer.
+    /// State or input at one time, for sampler and observer.
     pub(super) states: Vec<f64>,
     pub(super) inputs: Vec<f64>,
 }
 
-/// What goes by known matrices is asked for its modes after this many steps, or this time in s.
+/// Number of steps, or time in s, after which the modes of a machine with precomputed matrices are
+/// evaluated.
 const UNWATCHED: (u64, f64) = (64, 0.06);
 
 impl<O: Observer> Slot<'_, O> {
-    /// Whether its modes are to be asked for, though it goes by known matrices.
+    /// True if its modes must be evaluated, although it uses precomputed matrices.
     pub(super) fn is_due(&self) -> bool {
         let (steps, time_s) = UNWATCHED;
         self.unwatched >= steps || self.unwatched as f64 * self.passage.step_s >= time_s
     }
 
-    /// Shows the observer the step, from the states it wants over it.
+    /// Passes the step to the observer, from the required states over it.
     #[inline]
     pub(super) fn follow(&mut self, wanted: &[Extension<f64>], quartics: &mut Vec<Quartic>) {
         quartics.clear();
@@ -37,15 +38,15 @@ impl<O: Observer> Slot<'_, O> {
         self.observer.follow(&Stretch { passage: &self.passage, states: quartics });
     }
 
-    /// Whether the observer wants to know the step more exactly.
+    /// True if the observer requires the step more accurately.
     pub(super) fn looks_closer(&self, wanted: &[Extension<f64>], quartics: &mut Vec<Quartic>) -> bool {
         quartics.clear();
         quartics.extend(wanted.iter().map(Quartic::of));
         self.observer.looks_closer(&Stretch { passage: &self.passage, states: quartics })
     }
 
-    /// Shows the observer every row before the end of the step, from the states it wants over the
-    /// step.
+    /// Passes every row before the end of the step to the observer, from the required states over
+    /// the step.
     #[inline]
     pub(super) fn observe(&mut self, wanted: &[Extension<f64>]) {
         let Slot { passage, observer, states, inputs, .. } = self;
@@ -54,7 +55,7 @@ impl<O: Observer> Slot<'_, O> {
         let seen = if observer.wants_inputs() { inputs.len() } else { 0 };
         loop {
             let time_s = passage.next_row_s();
-            // at a break the row shows the values after it
+            // at a break the row has the values after it
             if later(time_s) >= before_s {
                 return;
             }
@@ -73,7 +74,7 @@ impl<O: Observer> Slot<'_, O> {
         }
     }
 
-    /// Shows the observer the last row, at the end of the course.
+    /// Passes the last row to the observer, at the end of the simulation.
     pub(super) fn observe_end<S: Lane>(&mut self, state: &[S], lane: usize) {
         let Slot { passage, observer, states, inputs, .. } = self;
         let duration_s = passage.course.duration_s;

@@ -7,19 +7,19 @@ use super::System;
 use super::derivatives::{DerivativeColumn, derivatives};
 use crate::portable;
 
-/// Complex amplitudes of all states under sines on the inputs about an equilibrium; `None` where
-/// the equations have no unique solution.
+/// Complex amplitudes of all states under sines on the inputs about an equilibrium; `None` if the
+/// equations have no unique solution.
 ///
 /// ```text
 /// j w X = A X + B U + E W,     W = e^(-j w d) (C X + D U + H W)         y = y_0 + Im(X e^(j w t)), u = u_0 + Im(U e^(j w t))
 /// ```
 ///
 /// A, B, E are the derivatives of the rates with respect to states, inputs and the waves that
-/// arrive, C, D, H those of what is sent into the delays d. `inputs` are all inputs at rest,
-/// `drive` the amplitudes of those before the waves; what it lacks is zero.
+/// arrive, C, D, H those of the waves sent into the delays d. `inputs` are all inputs at rest,
+/// `drive` the amplitudes of those before the waves; missing amplitudes are zero.
 ///
 /// # Example
-/// A tank of time constant 0.5 s
+/// A tank of time constant 0.5 s:
 /// ```
 /// use num_complex::Complex64;
 /// use phea_dynamics::scalar::Scalar;

@@ -1,12 +1,11 @@
-//! Square matrices whose product with a vector is taken four rows at a time.
+//! Square matrices whose product with a vector is computed four rows at a time.
 
 use super::Lane;
 
-/// A square matrix column by column, each column in groups of four rows, the last filled up with
-/// zeros.
+/// Square matrix column by column, each column in groups of four rows, the last padded with zeros.
 ///
 /// ```text
-/// A x = sum over j of a_j x_j          a_j the columns: four sums at once, where a row by row each sum waits for itself
+/// A x = sum over j of a_j x_j          a_j the columns: four sums in parallel; row by row, each sum would depend on itself
 /// ```
 #[derive(Clone, Debug)]
 pub(super) struct Square<S> {
@@ -15,23 +14,23 @@ pub(super) struct Square<S> {
 }
 
 impl<S: Lane> Square<S> {
-    /// Zero.
+    /// Zero matrix.
     pub(super) fn new(order: usize) -> Square<S> {
         let groups = order.div_ceil(4);
         Square { columns: vec![[S::from(0.0); 4]; groups * order], groups }
     }
 
-    /// The entry in a row and a column.
+    /// Entry in a row and a column.
     pub(super) fn entry(&mut self, row: usize, column: usize) -> &mut S {
         &mut self.columns[column * self.groups + row / 4][row % 4]
     }
 
-    /// All entries zero in one lane.
+    /// Sets all entries of one lane to zero.
     pub(super) fn clear(&mut self, lane: usize) {
         self.columns.as_flattened_mut().iter_mut().for_each(|entry| entry.set_lane(lane, 0.0));
     }
 
-    /// The product with a vector; what fills its last group up is zero.
+    /// Product with a vector; the padding of its last group is zero.
     #[inline(always)]
     pub(super) fn times(&self, vector: &[S], product: &mut [[S; 4]]) {
         let parts = product[..self.groups].chunks_mut(4).enumerate();
@@ -45,7 +44,7 @@ impl<S: Lane> Square<S> {
         }
     }
 
-    /// So many groups of rows of the product: their sums stay in registers.
+    /// Given number of row groups of the product: their sums stay in registers.
     #[inline(always)]
     fn groups_times<const GROUPS: usize>(&self, first: usize, vector: &[S], product: &mut [[S; 4]]) {
         let mut sums = [[S::from(0.0); 4]; GROUPS];
@@ -63,18 +62,18 @@ impl<S: Lane> Square<S> {
 }
 
 impl Square<f64> {
-    /// How many rows there are.
+    /// Number of rows.
     pub(super) fn order(&self) -> usize {
         self.columns.len() / self.groups.max(1)
     }
 
-    /// Every entry, and the zeros that fill the last groups up.
+    /// All entries, including the padding zeros.
     #[inline(always)]
     pub(super) fn entries(&self) -> impl Iterator<Item = &f64> {
         self.columns.as_flattened().iter()
     }
 
-    /// The same, to be changed: what is zero is to stay so in what fills up.
+    /// All entries, mutable; the padding must stay zero.
     #[inline(always)]
     pub(super) fn entries_mut(&mut self) -> impl Iterator<Item = &mut f64> {
         self.columns.as_flattened_mut().iter_mut()
@@ -84,7 +83,7 @@ impl Square<f64> {
         self.entries().all(|entry| entry.is_finite())
     }
 
-    /// A multiple of the identity is added.
+    /// Adds a multiple of the identity.
     #[inline(always)]
     pub(super) fn add_identity(&mut self, factor: f64) {
         let step = 4 * self.groups + 1;
@@ -101,7 +100,7 @@ impl Square<f64> {
         (0..self.order()).map(row).fold(0.0, f64::max)
     }
 
-    /// The product with another of the same order, on its right: column by column.
+    /// Product with another matrix of equal order, on its right: column by column.
     #[inline(always)]
     pub(super) fn after(&self, other: &Square<f64>) -> Square<f64> {
         let mut product = Square::new(self.order());

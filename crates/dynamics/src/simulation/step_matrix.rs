@@ -1,8 +1,8 @@
-//! The linear equations of a step, eliminated in an order found once.
+//! Linear equations of a step, with an elimination order found once.
 
 use super::Lane;
 
-/// `entry[target] -= entry[multiplier] * entry[source]`.
+/// Update `entry[target] -= entry[multiplier] * entry[source]`.
 #[derive(Clone, Copy, Debug)]
 struct Update {
     target: u32,
@@ -19,41 +19,41 @@ struct TermPair<S> {
     state: u8,
 }
 
-/// A triangle in the order of its substitution.
+/// Triangle in the order of its substitution.
 #[derive(Clone, Debug)]
 struct Triangle<S> {
     terms: Vec<TermPair<S>>,
-    /// Where the values of the terms are held, one after another; none for what fills a pair up.
+    /// Positions of the values of the terms, one after another; `None` for the padding of a pair.
     held: Vec<[Option<u32>; 2]>,
 }
 
-/// What a substitution works on: an index of eight bits is always inside.
+/// Vector of a substitution: an index of eight bits is always in range.
 pub(super) type ColumnIndex<S> = [S; COLUMN];
 
-/// As many states as a [`Dependence`](crate::scalar::Dependence) distinguishes.
+/// Number of states that a [`Dependence`](crate::scalar::Dependence) distinguishes.
 pub(super) const COLUMN: usize = 256;
 
-/// Systems with at most this number of states are solved by their inverse.
+/// Largest number of states of a system that is solved by its inverse.
 const SMALL: usize = 16;
 
-/// A small matrix by rows, each in groups of four.
+/// Small matrix by rows, each in groups of four.
 type MatrixRows<S> = [[[S; 4]; SMALL / 4]; SMALL];
 
-/// The inverse of a small matrix.
+/// Inverse of a small matrix.
 ///
 /// ```text
-/// W^-T = L^-T D^-1 U^-T         row by row: what each entry of a right-hand side adds to the solution
+/// W^-T = L^-T D^-1 U^-T         row by row: contribution of each entry of a right-hand side to the solution
 /// ```
 ///
-/// Its product with a vector is a sum of vectors, where a substitution waits for each state before
-/// it finds the next.
+/// Its product with a vector is a sum of vectors, whereas a substitution needs each state before it
+/// finds the next.
 #[derive(Clone, Debug)]
 struct Inverse<S> {
-    /// Through U^T, then through L^T.
+    /// Triangles U^T, then L^T.
     triangles: [Triangle<S>; 2],
-    /// W^-T, row by row, in groups of four columns.
+    /// Inverse W^-T, row by row, in groups of four columns.
     rows: Box<MatrixRows<S>>,
-    /// How many groups are used.
+    /// Number of groups used.
     groups: usize,
 }
 
@@ -68,8 +68,8 @@ impl<S: Lane> Inverse<S> {
         }
     }
 
-    /// With the number of groups of columns known at compile time, so that the sums stay in
-    /// registers.
+    /// Finds the inverse with the number of column groups known at compile time, so that the sums
+    /// stay in registers.
     #[inline(always)]
     fn find_groups<const GROUPS: usize>(&mut self, entries: &[S], inverses: &[S]) {
         let (zero, one) = (S::from(0.0), S::from(1.0));
@@ -133,7 +133,7 @@ impl<S: Lane> Triangle<S> {
         triangle
     }
 
-    /// Takes its values from the entries.
+    /// Reads its values from the entries.
     #[inline(always)]
     fn take(&mut self, entries: &[S]) {
         for (terms, held) in self.terms.iter_mut().zip(&self.held) {
@@ -145,7 +145,7 @@ impl<S: Lane> Triangle<S> {
         }
     }
 
-    /// The same for every column of a matrix that is given by rows of this number of groups.
+    /// Substitution for every column of a matrix that is given by rows of this number of groups.
     #[inline(always)]
     #[allow(clippy::needless_range_loop, reason = "three rows of one matrix, of which one is changed")]
     fn substitute_rows<const GROUPS: usize>(&self, rows: &mut MatrixRows<S>) {
@@ -174,8 +174,8 @@ impl<S: Lane> Triangle<S> {
     }
 }
 
-/// Elimination of one state: its place on the diagonal, the entries below and beside it, what they
-/// update.
+/// Elimination of one state: its position on the diagonal, the entries below and right of it, and
+/// the entries that they update.
 #[derive(Clone, Debug)]
 struct Pivot {
     state: usize,
@@ -185,36 +185,36 @@ struct Pivot {
     updates: Vec<Update>,
 }
 
-/// A matrix whose pattern is fixed, with its triangular factors in its own place.
+/// Matrix of a fixed pattern, with its triangular factors in place.
 ///
 /// ```text
 /// W = I/(h gamma) - J = L D U        L and U with ones on the diagonal; pivots on the diagonal, in an order that fills in least (Markowitz 1957)
 /// ```
 ///
-/// The order is that of the pattern and not of the values, so that lanes share it and no step
-/// searches for pivots. As the step h falls W tends to a multiple of the identity: a pivot that
-/// lost its digits asks for a shorter step.
+/// The order depends on the pattern and not on the values, so that all lanes have it and no step
+/// searches for pivots. As the step h decreases, W tends to a multiple of the identity: a pivot
+/// that lost its digits requires a shorter step.
 #[derive(Clone, Debug)]
 pub(super) struct StepMatrix<S> {
     values: Vec<S>,
     pivots: Vec<Pivot>,
     /// Forward and backward substitution.
     substitutions: [Triangle<S>; 2],
-    /// What takes their place in a small system.
+    /// Inverse that replaces the substitutions in a small system.
     inverse: Option<Inverse<S>>,
-    /// Entry of each (row, column) of the pattern it was made with, row by row.
+    /// Position of each (row, column) of the original pattern, row by row.
     entries: Vec<Vec<u32>>,
     diagonal: Vec<u32>,
-    /// The diagonal before elimination, and one over the pivots after it.
+    /// Diagonal before elimination, and the inverse pivots after it.
     untouched: Vec<S>,
     inverses: Vec<S>,
 }
 
-/// A pivot below this part of the diagonal it was made from has lost its digits.
+/// Ratio of a pivot to its original diagonal below which the pivot has lost its digits.
 const LOST_DIGITS: f64 = 1e-10;
 
 impl<S: Lane> StepMatrix<S> {
-    /// For matrices with these columns in each row, the diagonal besides; of no more rows than a
+    /// Matrix with these columns in each row in addition to the diagonal; with no more rows than a
     /// [`ColumnIndex`] has.
     pub(super) fn new(rows: &[Vec<usize>]) -> StepMatrix<S> {
         let count = rows.len();
@@ -253,7 +253,7 @@ impl<S: Lane> StepMatrix<S> {
         StepMatrix { values, pivots, substitutions, inverse, entries, diagonal, untouched, inverses }
     }
 
-    /// All entries zero but those of `diagonal` times the identity.
+    /// Sets the matrix to `diagonal` times the identity.
     #[inline(always)]
     pub(super) fn reset(&mut self, diagonal: S) {
         self.values.fill(S::from(0.0));
@@ -262,7 +262,7 @@ impl<S: Lane> StepMatrix<S> {
         }
     }
 
-    /// Where the entry at this place of this row of the pattern is held.
+    /// Position of the entry at this index in this row of the pattern.
     pub(super) fn entry(&self, row: usize, place: usize) -> usize {
         self.entries[row][place] as usize
     }
@@ -273,7 +273,8 @@ impl<S: Lane> StepMatrix<S> {
         self.values[entry] = self.values[entry] - value;
     }
 
-    /// Factors the matrix where it stands; positive in each lane where every pivot kept its digits.
+    /// Factors the matrix in place; the result is positive in each lane in which every pivot kept
+    /// its digits.
     #[inline(always)]
     pub(super) fn factor(&mut self) -> S {
         let mut least = S::from(f64::INFINITY);
@@ -307,7 +308,7 @@ impl<S: Lane> StepMatrix<S> {
         least
     }
 
-    /// Solves W x = b in the place of b.
+    /// Solves W x = b in place of b.
     #[inline(always)]
     pub(super) fn solve(&self, vector: &mut ColumnIndex<S>) {
         if let Some(inverse) = &self.inverse {
@@ -322,8 +323,8 @@ impl<S: Lane> StepMatrix<S> {
     }
 }
 
-/// The order in which states are eliminated, each time the one whose elimination touches the fewest
-/// entries; entries that fill in are marked.
+/// Elimination order: each time the state whose elimination affects the fewest entries; filled-in
+/// entries are marked.
 fn order_of_elimination(filled: &mut [Vec<bool>]) -> Vec<usize> {
     let count = filled.len();
     let mut left: Vec<usize> = (0..count).collect();
@@ -370,8 +371,8 @@ fn pivots(order: &[usize], filled: &[Vec<bool>], place: &[Vec<u32>]) -> Vec<Pivo
     pivots
 }
 
-/// Forward substitution through L, backward through U; where the entry of a row and a column is
-/// held.
+/// Forward substitution through L, backward through U; the position of the entry in each row and
+/// column.
 fn substitutions<S: Lane>(
     order: &[usize],
     filled: &[Vec<bool>],
@@ -398,8 +399,8 @@ mod tests {
     use super::*;
     use crate::scalar::Lanes;
 
-    /// An arrow with a band: fill-in, several pivots with nothing below, and numbers from a small
-    /// recurrence.
+    /// An arrow with a band: fill-in, several pivots without entries below, and numbers from a
+    /// small recurrence.
     #[test]
     fn solves_as_a_dense_factorisation_does() {
         for count in [1, 9, 15, 16, 17, 30] {
@@ -444,7 +445,7 @@ mod tests {
         }
     }
 
-    /// [1 1; 1 1] plus rounding has no second pivot worth the name.
+    /// The matrix [1 1; 1 1] plus rounding has no reliable second pivot.
     #[test]
     fn a_pivot_without_digits_is_told() {
         let mut matrix = StepMatrix::<f64>::new(&[vec![1], vec![0]]);

@@ -1,40 +1,40 @@
-//! Simulation tasks: where they come from, and whether they fit the system.
+//! Simulation tasks: their source, and their consistency with the system.
 
 use super::course::{Observer, Outcome, Sampler, SimulationError};
 use super::kernel::Kernel;
 use super::{InputSchedule, Lane, SimulationCount, SimulationNumber};
 use crate::range::RequiredRange;
 
-/// One simulation.
+/// Single simulation.
 pub struct Task<'a, O> {
-    /// State at time zero, followed, if given, by the wave that entered each delay before. If not
-    /// given, each wave is what the start sends while nothing arrives.
+    /// State at time zero, optionally followed by the wave that entered each delay before. Without
+    /// it, each wave is the one that the start sends while nothing arrives.
     pub start: Vec<f64>,
-    /// What it is driven by.
+    /// Input schedule.
     pub course: &'a InputSchedule,
-    /// A digital controller, if one commands it.
+    /// Digital controller of the plant, if there is one.
     pub sampler: Option<Box<dyn Sampler + 'a>>,
-    /// What receives the results.
+    /// Receiver of the results.
     pub observer: O,
 }
 
-/// Supplies simulations and takes their outcomes.
+/// Source of simulations and receiver of their outcomes.
 pub trait Queue<'a, E> {
-    /// What receives the results of each machine.
+    /// Receiver of the results of each machine.
     type Observer: Observer;
 
-    /// The next machine: its parameters put into this lane of the system, and what is to be done
-    /// with it. `None` when there are no more.
+    /// Next machine: its parameters are set in this lane of the system, and its task is returned.
+    /// `None` when there are no more.
     fn next(&mut self, system: &mut E, lane: usize) -> Option<Task<'a, Self::Observer>>;
 
-    /// Takes the outcome of the simulation in this lane.
+    /// Receives the outcome of the simulation in this lane.
     fn done(&mut self, lane: usize, outcome: Outcome, observer: Self::Observer);
 
     /// Called once per step with the simulated time of a lane; false stops all lanes.
     fn goes_on(&mut self, lane: usize, time_s: f64) -> bool;
 }
 
-/// Whether a machine in its lane can be driven by its task.
+/// Checks that the machine in a lane can be driven by its task.
 pub(super) fn check<S: Lane, O: Observer>(
     system: &dyn Kernel<S>,
     task: &Task<'_, O>,

@@ -11,18 +11,18 @@ use super::{
 pub struct Trajectory {
     /// Times of the rows in s.
     pub times_s: Vec<f64>,
-    /// All states at each.
+    /// All states at each time.
     pub states: Vec<Vec<f64>>,
-    /// All inputs at each; at a break, as they are from then on.
+    /// All inputs at each time; at a break, those after it.
     pub inputs: Vec<Vec<f64>>,
 }
 
-/// The result of a simulation.
+/// Result of a simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simulated {
-    /// The rows up to the end of the simulation.
+    /// Rows up to the end of the simulation.
     pub trajectory: Trajectory,
-    /// How it ended, what happened and what it cost.
+    /// Reason for the end, events and work.
     pub outcome: Outcome,
 }
 
@@ -43,7 +43,7 @@ impl Observer for Recorder {
     }
 }
 
-/// A queue of one.
+/// Queue of one machine.
 struct Single<'a, 'w, O> {
     task: Option<Task<'a, O>>,
     watch: &'w mut dyn FnMut(f64) -> bool,
@@ -66,16 +66,16 @@ impl<'a, E, O: Observer> Queue<'a, E> for Single<'a, '_, O> {
     }
 }
 
-/// Simulates one system as its task says, and returns its observer, which recorded what it wanted
-/// of each row: nothing else is kept. `watch` is called with the simulated time after each step; if
-/// it returns false, the simulation stops.
+/// Simulates one system according to its task, and returns its observer, which recorded the
+/// required data of each row: no other data are stored. `watch` is called with the simulated time
+/// after each step; if it returns false, the simulation stops.
 ///
 /// # Errors
-/// As [`simulate`].
+/// Errors of [`simulate`].
 ///
 /// # Example
-/// The largest force of a spring of 8 N/m whose end is drawn out at 2 m/s for 3 s, without its
-/// course.
+/// Largest force of a spring of 8 N/m whose end is drawn out at 2 m/s for 3 s, without its
+/// trajectory:
 /// ```
 /// use phea_dynamics::scalar::Scalar;
 /// use phea_dynamics::simulation::{InputSchedule, Observer, SimulationSettings, System, Task, drive_one};
@@ -130,7 +130,7 @@ pub fn drive_one<'a, E: System<f64> + Clone, O: Observer>(
 /// during the simulation is in the status.
 ///
 /// # Example
-/// A mass of 2 kg on a spring of 8 N/m, pulled by 1 m and let go
+/// A mass of 2 kg on a spring of 8 N/m, pulled by 1 m and released
 /// ```
 /// use phea_dynamics::scalar::Scalar;
 /// use phea_dynamics::simulation::{InputSchedule, SimulationSettings, Status, System, simulate};

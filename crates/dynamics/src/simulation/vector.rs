@@ -1,16 +1,16 @@
-//! Kernels that are compiled for the vector instructions of a processor.
+//! Kernels compiled for the vector instructions of a processor.
 
 use pulp::{Arch, WithSimd};
 
 use crate::scalar::Lanes;
 
-/// A scalar whose kernels are compiled for the vector instructions of the processor.
+/// Scalar whose kernels are compiled for the vector instructions of the processor.
 ///
-/// One number has a second copy of each kernel, for processors without. Lanes have none where a
-/// processor may have vector instructions (x86-64): several machines side by side gain nothing
-/// without, and this copy alone took most of the time of a build.
+/// A single number has a second copy of each kernel, for processors without vector instructions.
+/// Lanes have no such copy on architectures with vector instructions (x86-64): several parallel
+/// machines gain nothing without them, and the copy took most of the build time.
 pub trait Vectorized: Copy {
-    /// Does the work; `None` where the processor lacks the instructions that these scalars want.
+    /// Does the work; `None` if the processor lacks the instructions that these scalars need.
     fn vectorized<W: WithSimd>(work: W) -> Option<W::Output>;
 }
 
@@ -35,7 +35,7 @@ impl Vectorized for Lanes {
     }
 }
 
-/// Nothing, to ask whether there are the instructions for it.
+/// Empty work, to test whether the instructions are available.
 struct Nothing;
 
 impl WithSimd for Nothing {
@@ -45,8 +45,8 @@ impl WithSimd for Nothing {
     fn with_simd<V: pulp::Simd>(self, _: V) {}
 }
 
-/// Whether this processor can drive machines side by side; where it cannot, [`super::drive`]
-/// refuses lanes.
+/// True if this processor can simulate machines in parallel lanes; if not, [`super::drive`] rejects
+/// lanes.
 ///
 /// # Example
 /// ```

@@ -6,34 +6,34 @@ use super::estimate::fisher;
 use super::{SpectralPoint, Transform, disc_radius};
 use crate::portable::cos;
 
-/// Chance that a line of the input that is noise counts as excited, because its mean over the
+/// Probability that a line of the input that is noise counts as excited, because its mean over the
 /// periods is larger than their differences.
 const NOISE: f64 = 1e-5;
-/// Lines to each side whose differences show how large noise is.
+/// Number of lines to each side whose differences determine the size of noise.
 const AROUND: usize = 5;
 
 /// Transforms of an input and of an output, block by block.
 #[derive(Clone, Debug)]
 pub struct Blocks {
-    /// rad/s between lines.
+    /// Spacing of the lines, rad/s.
     spacing: f64,
-    /// Of each block, input and output at all lines up to half of the sampling frequency.
+    /// Transforms of input and output for each block, at all lines up to half of the sampling
+    /// frequency.
     pub(super) lines: Vec<[Vec<Complex64>; 2]>,
-    /// As how many independent blocks they count.
+    /// Equivalent number of independent blocks.
     independent: f64,
-    /// Whether all blocks are the response to the same input.
+    /// True if all blocks are the response to one repeated input.
     pub(super) is_repeated: bool,
 }
 
-/// The last whole periods of two signals that are sampled in steps of `time_step` seconds, after
-/// the first `settling` samples. `None` where fewer than two are left.
+/// Last whole periods of two signals that are sampled in steps of `time_step` seconds, after the
+/// first `settling` samples. `None` if fewer than two remain.
 ///
-/// Whole periods have no leakage: the lines are exact, and what differs from period to period is
-/// noise.
+/// Whole periods have no leakage: the lines are exact, and the difference between periods is noise.
 ///
 /// # Example
-/// Three periods of a cosine of four samples, and an output of twice its size a sample later: a
-/// quarter of a turn behind, -2j.
+/// Three periods of a cosine of four samples, and an output of twice its size a sample later: a lag
+/// of a quarter of a turn, -2j.
 /// ```
 /// use phea_dynamics::spectrum::periods;
 /// let input = [1.0, 0.0, -1.0, 0.0].repeat(3);
@@ -64,8 +64,8 @@ pub fn periods(signals: [&[f64]; 2], time_step: f64, period: usize, settling: us
     Some(Blocks { spacing, lines: lines.collect(), independent: repeats as f64, is_repeated: true })
 }
 
-/// Segments of two signals, each overlapping half of the one before, seen through a Hann window.
-/// `None` where fewer than two fit.
+/// Segments of two signals, each overlapping half of the one before, with a Hann window. `None` if
+/// fewer than two fit.
 ///
 /// ```text
 /// w_n = (1 - cos(2 pi n/N))/2          n_d = K/(1 + 2 rho (1 - 1/K)),   rho = (sum w_n w_(n+N/2) / sum w_n^2)^2
@@ -74,8 +74,8 @@ pub fn periods(signals: [&[f64]; 2], time_step: f64, period: usize, settling: us
 /// K segments that overlap count as n_d independent ones: Welch (1967).
 ///
 /// # Example
-/// Whatever the input, an output of three times its size has the response 3 at every frequency, and
-/// nothing else is in it.
+/// For any input, an output of three times its size has the response 3 at every frequency, without
+/// noise.
 /// ```
 /// use phea_dynamics::random::{normal, stream};
 /// use phea_dynamics::spectrum::segments;
@@ -120,29 +120,29 @@ pub fn segments(signals: [&[f64]; 2], time_step: f64, length: usize) -> Option<B
 }
 
 impl Blocks {
-    /// As how many independent blocks they count.
+    /// Equivalent number of independent blocks.
     pub fn independent(&self) -> f64 {
         self.independent
     }
 
-    /// How many there are.
+    /// Number of blocks.
     pub fn count(&self) -> usize {
         self.lines.len()
     }
 
-    /// The response at each line but that of the mean.
+    /// Response at each line except that of the mean.
     ///
     /// ```text
-    /// same input in all blocks:  G = sum Y / sum U        otherwise:  G = sum U* Y / sum |U|^2   (H1)
+    /// one input in all blocks:   G = sum Y / sum U        otherwise:  G = sum U* Y / sum |U|^2   (H1)
     /// sigma^2 = sum |Y - G U|^2/(n - 1) / sum |U|^2       sigma^2 = m/(m - 1) K/n_d sum |U|^2 |Y - G U|^2/(sum |U|^2)^2
     /// m = n_d/K (sum |U|^2)^2/sum |U|^4
     /// gamma^2 = |sum U* Y|^2/(sum |U|^2 sum |Y|^2)
     /// ```
     ///
     /// The first counts noise of the input as well (Pintelon and Schoukens 2012, section 2.4). In
-    /// the second a segment counts as it is excited (White 1980), m times together: a sweep passes
-    /// a frequency in one segment or two, however many there are, and what leaks there is in these.
-    /// It is that of Bendat and Piersol (2010), section 9.2, where all are excited alike: (1 -
+    /// the second a segment is weighted by its excitation (White 1980), m times in all: a sweep
+    /// passes a frequency in only one or two segments, which also contain its leakage. With equal
+    /// excitation the formula reduces to that of Bendat and Piersol (2010), section 9.2: (1 -
     /// gamma^2) S_yy/((n - 1) S_uu).
     pub fn points(&self) -> Vec<SpectralPoint> {
         let lines = self.lines.first().map_or(0, |[input, _]| input.len());
@@ -158,8 +158,8 @@ impl Blocks {
         points
     }
 
-    /// Takes the excitation from lines of the input that are no larger in the mean of the periods
-    /// than noise would be, as the periods differ from each other there and at the lines around.
+    /// Removes the excitation from lines of the input whose mean over the periods is no larger than
+    /// noise, estimated from the differences between periods there and at the lines around.
     fn without_noise(&self, points: &mut [SpectralPoint], scatter: &[f64]) {
         for (index, point) in points.iter_mut().enumerate() {
             let around = index.saturating_sub(AROUND)..(index + AROUND + 1).min(scatter.len());
@@ -170,7 +170,8 @@ impl Blocks {
         }
     }
 
-    /// A line, whose excitation is the power of the input, and the variance of the input there.
+    /// Point of a line, with the power of the input as excitation, and the variance of the input
+    /// there.
     fn point(&self, line: usize) -> (SpectralPoint, f64) {
         let pairs = || {
             let at = |values: &[Complex64]| values.get(line).copied().unwrap_or_default();
@@ -192,7 +193,8 @@ impl Blocks {
         let (variance, independent) = if self.is_repeated {
             (rest / (self.independent - 1.0) / power, self.independent)
         } else {
-            // a block counts as much as the input excites in it, its noise or leakage likewise
+            // a block is weighted by the excitation of the input in it, and so is its noise or
+            // leakage
             let alike = self.independent / self.lines.len() as f64;
             let squares: f64 = rests().map(|[power, _]| power * power).sum();
             let independent = alike * input_power * input_power / squares;

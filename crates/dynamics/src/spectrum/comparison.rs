@@ -3,19 +3,19 @@ use num_complex::Complex64;
 use super::SpectralPoint;
 use super::estimate::{OUTSIDE, fisher};
 
-/// Relative difference of two frequencies that count as one: the rounding of a time step.
+/// Relative difference up to which two frequencies count as equal: the rounding of a time step.
 const SAME: f64 = 1e-6;
-/// Distance over the frequency up to which a response is interpolated between two points.
+/// Ratio of distance to frequency up to which a response is interpolated between two points.
 const GAP: f64 = 0.1;
 
 /// Two independent estimates of a response at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ResponsePair {
-    /// rad/s.
+    /// Frequency, rad/s.
     pub frequency: f64,
-    /// The estimates.
+    /// Estimates of the response.
     pub responses: [Complex64; 2],
-    /// sigma_1^2 + sigma_2^2.
+    /// Sum of the variances, sigma_1^2 + sigma_2^2.
     variance: f64,
     /// Complex degrees of freedom of the less certain of the two variances.
     freedom: f64,
@@ -24,7 +24,7 @@ pub struct ResponsePair {
 }
 
 impl ResponsePair {
-    /// Distance of the estimates, in the unit of the responses.
+    /// Distance between the estimates, in the unit of the responses.
     pub fn distance(&self) -> f64 {
         (self.responses[1] - self.responses[0]).norm_sqr().sqrt()
     }
@@ -36,17 +36,17 @@ impl ResponsePair {
     /// ```
     ///
     /// With lambda_i the part of sigma_i^2 in the true variance of the difference, and variances
-    /// that rest on q_1 and q_2 complex degrees of freedom, the probability of a distance above
-    /// `c (sigma_1^2 + sigma_2^2)` is the product of (1 + c lambda_i/q_i)^(-q_i). Its logarithm is
+    /// with q_1 and q_2 complex degrees of freedom, the probability of a distance above `c
+    /// (sigma_1^2 + sigma_2^2)` is the product of (1 + c lambda_i/q_i)^(-q_i). Its logarithm is
     /// convex in lambda, so that it is largest where one of them is 1: the probability is p where
-    /// the noise of the estimate with the smaller q dominates, and less otherwise. What the
-    /// interpolation may be off by is added.
+    /// the noise of the estimate with the smaller q dominates, and less otherwise. The bound of the
+    /// interpolation error is added.
     pub fn distance_by_chance(&self, probability: f64) -> f64 {
         (fisher(self.freedom, probability) * self.variance).sqrt() + self.interpolation
     }
 }
 
-/// A response at a frequency, from the points of an estimate.
+/// Response at a frequency, from the points of an estimate.
 struct EstimateAt {
     response: Complex64,
     variance: f64,
@@ -54,11 +54,11 @@ struct EstimateAt {
     interpolation: f64,
 }
 
-/// The frequencies at which two estimates can be compared, the lowest first.
+/// Frequencies at which two estimates can be compared, the lowest first.
 ///
-/// They are those of the estimate with fewer points; both have their points in the order of
-/// frequency. Where the other has none at a frequency, it is interpolated between two points that
-/// are at most a tenth of the frequency apart, f_1 < f < f_2:
+/// The frequencies are those of the estimate with fewer points; both have their points in the order
+/// of frequency. If the other has no point at a frequency, it is interpolated between two points
+/// that are at most a tenth of the frequency apart, f_1 < f < f_2:
 ///
 /// ```text
 /// G(f) = G_1 + (G_2 - G_1) (f - f_1)/(f_2 - f_1),    error <= max |G[f_i, f_j, f_k]| (f - f_1) (f_2 - f)
@@ -67,7 +67,7 @@ struct EstimateAt {
 /// with the second divided differences over these two and the point below or above.
 ///
 /// # Example
-/// An estimate and itself are at no distance, which noise explains.
+/// An estimate has no distance from itself, and noise explains it.
 /// ```
 /// use phea_dynamics::random::{normal, stream};
 /// use phea_dynamics::spectrum::{local_polynomials, pairs};
@@ -96,7 +96,7 @@ pub fn pairs(one: &[SpectralPoint], other: &[SpectralPoint]) -> Vec<ResponsePair
     fewer.iter().filter_map(pair).collect()
 }
 
-/// A point by itself. Its variance is that of the disc, which counts a noisy input too.
+/// Estimate at one of its points. Its variance is that of the disc, which includes a noisy input.
 fn known(point: &SpectralPoint) -> EstimateAt {
     EstimateAt {
         response: point.response,
@@ -106,7 +106,7 @@ fn known(point: &SpectralPoint) -> EstimateAt {
     }
 }
 
-/// The response at a frequency; `None` where no points are close enough.
+/// Response at a frequency; `None` if no points are close enough.
 fn at(points: &[SpectralPoint], frequency: f64) -> Option<EstimateAt> {
     let index = points.partition_point(|point| point.frequency < frequency * (1.0 - SAME));
     let above = points.get(index)?;
@@ -133,7 +133,7 @@ fn at(points: &[SpectralPoint], frequency: f64) -> Option<EstimateAt> {
     })
 }
 
-/// G[f_1, f_2, f_3], half of the second derivative.
+/// Second divided difference G[f_1, f_2, f_3], half of the second derivative.
 fn second_difference([one, two, three]: [&SpectralPoint; 3]) -> Complex64 {
     let slope = |from: &SpectralPoint, to: &SpectralPoint| {
         (to.response - from.response) / (to.frequency - from.frequency)

@@ -2,29 +2,29 @@ use num_complex::Complex64;
 
 use super::Blocks;
 
-/// Power of a line over the strongest, below which the input does not excite.
+/// Ratio of a line's power to the strongest below which the input does not excite the line.
 const UNEXCITED: f64 = 1e-6;
-/// Multiples of the highest excited line that are looked through for harmonics.
+/// Multiples of the highest excited line that are searched for harmonics.
 const HARMONICS: usize = 3;
-/// Power over that of the excited lines that is rounding.
+/// Ratio to the power of the excited lines below which a power is rounding.
 const ROUNDING: f64 = 1e-20;
 /// Standard deviations of noise that a level must exceed.
 const SIGNIFICANT: f64 = 4.0;
 
 /// Size of an output at lines of the period that its input does not excite, over its size at those
-/// that it does: 0 where it is no more than noise. A linear system has none.
+/// that it does: 0 if it is no more than noise. A linear system has none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Distortion {
-    /// At even multiples of the period's frequency.
+    /// Distortion at even multiples of the period's frequency.
     pub even: f64,
-    /// At odd ones.
+    /// Distortion at odd multiples.
     pub odd: f64,
 }
 
 impl Blocks {
     /// Harmonics and products of the lines of a periodic input, up to three times the highest of
-    /// them. What repeats with the period is no noise: it is also at the excited lines, where no
-    /// average shows it (Pintelon and Schoukens 2012, chapter 4).
+    /// them. A part that repeats with the period is not noise: it is also present at the excited
+    /// lines, where no averaging reveals it (Pintelon and Schoukens 2012, chapter 4).
     ///
     /// ```text
     /// d^2 = sum over silent lines of (n |Y|^2 - s^2) / sum over excited lines of n |Y|^2
@@ -33,7 +33,7 @@ impl Blocks {
     /// with the mean Y of n periods and the variance s^2 from one to the other. Zero for segments.
     ///
     /// # Example
-    /// A cosine, and an output with a tenth of its square, whose half is a constant.
+    /// A cosine, and an output with a tenth of its square, half of which is a constant.
     /// ```
     /// use phea_dynamics::spectrum::periods;
     /// let angles = (0..64).map(|n| f64::from(n) * 2.0 * std::f64::consts::PI / 16.0);

@@ -2,19 +2,19 @@ use num_complex::Complex64;
 
 use crate::portable::pow;
 
-/// The response at one frequency, and how well it is known.
+/// Response at one frequency, and its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpectralPoint {
-    /// rad/s.
+    /// Frequency, rad/s.
     pub frequency: f64,
-    /// Y/U.
+    /// Response Y/U.
     pub response: Complex64,
-    /// Squared coherence gamma^2, from 0 to 1: the share of the output's power that depends
+    /// Squared coherence gamma^2, from 0 to 1: the fraction of the output's power that depends
     /// linearly on the input.
     pub coherence: f64,
-    /// Standard deviation of the response, sigma: the mean of |estimate - truth|^2 is sigma^2.
+    /// Standard deviation sigma of the response: the mean of |estimate - truth|^2 is sigma^2.
     pub deviation: f64,
-    /// Radius of the disc around the response that holds the truth with 95 % confidence.
+    /// Radius of the disc around the response that contains the true response with 95 % confidence.
     pub radius: f64,
     /// Complex degrees of freedom q of the deviation: the radius is that of F(2, 2 q).
     pub freedom: f64,
@@ -22,11 +22,11 @@ pub struct SpectralPoint {
     pub excitation: f64,
 }
 
-/// What lies outside the disc.
+/// Probability outside the disc.
 pub(super) const OUTSIDE: f64 = 0.05;
 
-/// Radius of the disc that holds the truth with 95 % confidence, from the standard deviation of an
-/// estimate that rests on this many independent blocks.
+/// Radius of the disc that contains the true response with 95 % confidence, from the standard
+/// deviation of an estimate that is based on this many independent blocks.
 ///
 /// ```text
 /// r^2 = F(2, 2 n - 2) sigma^2        F(2, m) = (m/2) (0.05^(-2/m) - 1)
@@ -49,7 +49,7 @@ pub fn disc_radius(deviation: f64, blocks: f64) -> f64 {
     if blocks <= 1.0 { f64::INFINITY } else { fisher(blocks - 1.0, OUTSIDE).sqrt() * deviation }
 }
 
-/// The value that Fisher's F with two degrees of freedom above and 2 m below exceeds with this
+/// Value that Fisher's F with two degrees of freedom above and 2 m below exceeds with this
 /// probability.
 ///
 /// ```text
@@ -59,7 +59,7 @@ pub(super) fn fisher(half: f64, probability: f64) -> f64 {
     half * (pow(probability, -1.0 / half) - 1.0)
 }
 
-/// The squared coherence that two signals without any relation exceed in one case of twenty, for
+/// Squared coherence that two signals without any relation exceed in one case out of twenty, for
 /// this many independent blocks: Carter, Knapp and Nuttall (1973).
 ///
 /// ```text

@@ -1,18 +1,19 @@
-/// Rows of the past in the models, of input and output.
+/// Number of past rows in the models, of input and output.
 const PAST: usize = 20;
-/// Rows of the future that are added.
+/// Number of future rows that are added.
 const FUTURE: usize = 10;
-/// Most rows that are taken.
+/// Largest number of rows used.
 const ROWS: usize = 20_000;
-/// Part of a column that must be new, as a square.
+/// Fraction of a column that must be independent, as a square.
 const NEW: f64 = 1e-12;
-/// Part of the output's power below which there is no noise that could return.
+/// Fraction of the output's power below which there is no noise that could return.
 const SILENT: f64 = 1e-6;
-/// Share of the innovation above which it returns.
+/// Fraction of the innovation above which it counts as returned.
 const SHARE: f64 = 0.01;
-/// Ratio of mean squares above which it is no chance: once in ten thousand for ten columns.
+/// Ratio of mean squares above which it is significant: chance exceeds it once in ten thousand for
+/// ten columns.
 const SIGNIFICANT: f64 = 4.0;
-/// The same for a single column: once in a hundred thousand.
+/// Ratio for a single column: chance exceeds it once in a hundred thousand.
 const SIGNIFICANT_ROW: f64 = 20.0;
 
 /// Effect of an input on the output of its own row.
@@ -25,23 +26,23 @@ pub enum WithinRow {
     Impossible,
 }
 
-/// The share of an output's innovation that its input follows: 0 in an open loop.
+/// Fraction of an output's innovation that its input follows: 0 in an open loop.
 ///
 /// ```text
 /// y_n = sum over i = 1..20 of (a_i y_(n-i) + b_i u_(n-i)) + b_0 u_n + sum over j = 1..10 of c_j u_(n+j) + e_n
 /// ```
 ///
-/// Without feedback an input does not know the noise of the output, so that its future explains
-/// nothing: c = 0, whatever the input (Sims 1972; with the past of the output, Geweke, Meese and
-/// Dent 1983). Under feedback it does. A controller that answers within the row in which it reads
-/// the output is seen in b_0, which then has the sign of the feedback, opposite to the sum of all
-/// other b; where the input cannot act within its row, b_0 shows feedback whatever its sign. Both
-/// count where they are no chance and explain more than a hundredth. The larger of the two shares
+/// Without feedback an input is independent of the output's noise, so that its future explains
+/// nothing: c = 0 for any input (Sims 1972; with the past of the output, Geweke, Meese and Dent
+/// 1983). Under feedback it explains some of it. A controller that acts within the row in which it
+/// reads the output is visible in b_0, which then has the sign of the feedback, opposite to the sum
+/// of all other b; if the input cannot act within its row, b_0 shows feedback for either sign. Both
+/// count if they are significant and explain more than a hundredth. The larger of the two fractions
 /// is returned. Noise of less than a millionth of the output's power, and records of fewer than 200
 /// rows, are not tested.
 ///
 /// # Example
-/// An input that nothing moves but the noise of the output, by an integral controller.
+/// An input moved only by the noise of the output, through an integral controller.
 /// ```
 /// use phea_dynamics::random::{normal, stream};
 /// use phea_dynamics::spectrum::{WithinRow, feedback};
@@ -75,7 +76,8 @@ pub fn feedback(input: &[f64], output: &[f64], within_row: WithinRow) -> f64 {
     for back in 1..=PAST {
         add(&mut basis, shifted(output, PAST - back));
     }
-    // next to the differences from the last row, the coefficient of that row is the sum of all b
+    // in addition to the differences from the last row, the coefficient of that row is the sum of
+    // all b
     let last = shifted(input, PAST - 1);
     for back in 2..=PAST {
         let earlier = shifted(input, PAST - back);
@@ -99,8 +101,8 @@ pub fn feedback(input: &[f64], output: &[f64], within_row: WithinRow) -> f64 {
     later.max(if is_against { in_row } else { 0.0 })
 }
 
-/// Takes these columns out of the innovation too: the share of it that they explain, 0 where that
-/// may be chance or is little.
+/// Removes these columns from the innovation too; returns the fraction that they explain, 0 if it
+/// may be chance or is small.
 fn explained(
     basis: &mut Vec<Vec<f64>>,
     innovation: &mut [f64],
@@ -122,7 +124,7 @@ fn product(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).map(|(one, other)| one * other).sum()
 }
 
-/// Takes the columns of an orthonormal basis out of a signal; twice, against rounding.
+/// Removes the columns of an orthonormal basis from a signal; twice, against rounding.
 fn take_out(basis: &[Vec<f64>], signal: &mut [f64]) {
     for column in basis.iter().chain(basis) {
         let along = product(column, signal);
@@ -130,7 +132,7 @@ fn take_out(basis: &[Vec<f64>], signal: &mut [f64]) {
     }
 }
 
-/// Adds what is new in a column to an orthonormal basis.
+/// Adds the independent part of a column to an orthonormal basis.
 fn add(basis: &mut Vec<Vec<f64>>, mut column: Vec<f64>) {
     let whole = product(&column, &column);
     take_out(basis, &mut column);

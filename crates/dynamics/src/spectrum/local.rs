@@ -7,20 +7,20 @@ use super::{SpectralPoint, Transform};
 
 /// Order of the polynomials over a band.
 const ORDER: usize = 2;
-/// Unknowns in a band: the coefficients of the response and those of the transient.
+/// Number of unknowns in a band: the coefficients of the response and those of the transient.
 const UNKNOWNS: usize = 2 * (ORDER + 1);
 /// Fewest lines in a band: one more than twice the unknowns.
 const FEWEST: usize = 2 * UNKNOWNS + 1;
-/// Width of a band over its lowest line, where that is more than the fewest lines.
+/// Ratio of a band's width to its lowest line, if that exceeds the fewest lines.
 const WIDTH: f64 = 0.06;
-/// Mean square that halving a band explains, over the rest, above which it is halved.
+/// Ratio of the mean square that halving a band explains to the rest above which it is halved.
 const LACK_OF_FIT: f64 = 1.3;
-/// Chance that noise looks like a reference that moves the input.
+/// Probability that noise resembles a reference that moves the input.
 const BY_CHANCE: f64 = 1e-4;
-/// Part of the reference's power in a band that no transient could be, below which nothing tells
-/// the two apart.
+/// Fraction of the reference's power in a band that no transient could explain, below which the two
+/// cannot be separated.
 const SMOOTH: f64 = 1e-3;
-/// Part of a column or of a signal below which its square is rounding.
+/// Fraction of a column or of a signal below which its square is rounding.
 const ROUNDING: f64 = 1e-18;
 
 /// Response from an input to an output in bands of a record that need not repeat, by local
@@ -30,30 +30,29 @@ const ROUNDING: f64 = 1e-18;
 /// [Y; U]_(k+r) = (g_0 + g_1 r + g_2 r^2) R_(k+r) + t_0 + t_1 r + t_2 r^2 + noise,     G(k) = g_0y/g_0u
 /// ```
 ///
-/// U, Y and R are the transforms, without a window, of the input, the output and the `reference`,
-/// k the middle of a band and r the lines around it. What the record does not hold of the time
-/// before and after it, the leakage, is the smooth transient t, so that no line is biased by it;
-/// the rest of the 13 or more lines shows the noise. In an open loop the reference is the input.
-/// In a closed one it is what moves the loop from outside: noise that returns through the
-/// controller has no part in it, whereas Y/U would tend to -1/C.
+/// U, Y and R are the transforms, without a window, of the input, the output and the `reference`, k
+/// the middle of a band and r the lines around it. The effect of the time before and after the
+/// record, the leakage, is the smooth transient t, so that it biases no line; the residual of the
+/// 13 or more lines shows the noise. In an open loop the reference is the input. In a closed loop
+/// it is the external excitation: noise that returns through the controller is not part of it,
+/// whereas Y/U would tend to -1/C.
 ///
-/// The disc is the set of all G that the estimates do not contradict with 95 % confidence
-/// (Fieller 1954):
+/// The disc is the set of all G consistent with the estimates at 95 % confidence (Fieller 1954):
 ///
 /// ```text
 /// abs(g_0y - G g_0u)^2 <= F(2, 2 q) (s_yy - 2 Re(G* s_yu) + |G|^2 s_uu)/p
 /// ```
 ///
-/// with the noise covariance s of q degrees of freedom and p = sum |R|^2 of what only g_0
+/// with the noise covariance s of q degrees of freedom and p = sum |R|^2 of the part that only g_0
 /// explains. The excitation is |g_0u|^2 p per line, the power by which the reference moves the
-/// input; it is zero where noise alone would move the input as much in one of 10,000 cases. The
-/// coherence takes the noise of the neighbouring bands: by its own a band would be chosen because
-/// chance left little in it, and its disc be too small. Bands are 6 % wide from 217 lines on and
+/// input; it is zero if noise could move the input as much in one of 10,000 cases. The coherence
+/// takes the noise of the neighbouring bands: with its own noise, a band would be selected because
+/// it is small by chance, and its disc would be too small. Bands are 6 % wide from 217 lines on and
 /// are halved where the halves leave significantly less unexplained. Signals are sampled in steps
 /// of `time_step` seconds.
 ///
 /// # Example
-/// An output of three times the input, whatever else the record began and ends with.
+/// An output of three times the input, for any history before and after the record.
 /// ```
 /// use phea_dynamics::random::{normal, stream};
 /// use phea_dynamics::spectrum::local_polynomials;
@@ -92,21 +91,21 @@ pub fn local_polynomials(reference: &[f64], signals: [&[f64]; 2], time_step: f64
     points
 }
 
-/// Fewest independent blocks that a point of [`local_polynomials`] counts as.
+/// Least equivalent number of independent blocks of a point of [`local_polynomials`].
 pub const LOCAL_BLOCKS: f64 = (FEWEST - UNKNOWNS + 1) as f64;
 
-/// A band with what is estimated in its middle; first that of the output, then that of the input.
+/// Band with the estimates in its middle; first that of the output, then that of the input.
 struct LineBand {
-    /// In lines.
+    /// Middle of the band, in lines.
     middle: f64,
     lines: f64,
-    /// sum |R|^2 of what only the response in the middle explains.
+    /// Sum |R|^2 of the part that only the response in the middle explains.
     power: f64,
-    /// From the reference.
+    /// Gains from the reference.
     gains: [Complex64; 2],
-    /// Squares that are left.
+    /// Residual squares.
     rest: [f64; 2],
-    /// Products of what is left, output times the conjugate of the input.
+    /// Products of the residuals, output times the conjugate of the input.
     cross: Complex64,
     /// Squares of the signals.
     squares: [f64; 2],
@@ -118,7 +117,7 @@ fn bands(spectra: &[Vec<Complex64>; 3]) -> Vec<LineBand> {
     let (mut first, mut bands) = (1, Vec::new());
     while first + FEWEST <= end {
         let width = FEWEST.max((WIDTH * first as f64) as usize);
-        // what would be too few lines for another band belongs to the last one
+        // lines too few for another band belong to the last one
         let width = if first + width + FEWEST > end { end - first } else { width };
         halved(spectra, first, width, &mut bands);
         first += width;
@@ -126,7 +125,7 @@ fn bands(spectra: &[Vec<Complex64>; 3]) -> Vec<LineBand> {
     bands
 }
 
-/// A band, or its halves where they leave significantly less unexplained.
+/// Single band, or its halves if they leave significantly less unexplained.
 fn halved(spectra: &[Vec<Complex64>; 3], first: usize, count: usize, bands: &mut Vec<LineBand>) {
     let whole = LineBand::of(spectra, first, count);
     let half = count / 2;
@@ -149,9 +148,9 @@ fn halved(spectra: &[Vec<Complex64>; 3], first: usize, count: usize, bands: &mut
 }
 
 impl LineBand {
-    /// Least squares in these lines. With an orthonormal basis of all other columns taken out of
-    /// reference and signals, one unknown is left (Frisch and Waugh 1933). `None` where the
-    /// reference has nothing else.
+    /// Least squares in these lines. Once an orthonormal basis of all other columns is removed from
+    /// reference and signals, one unknown remains (Frisch and Waugh 1933). `None` if nothing
+    /// remains of the reference.
     fn of([reference, output, input]: &[Vec<Complex64>; 3], first: usize, count: usize) -> Option<LineBand> {
         let within = |lines: &[Complex64]| lines.get(first..first + count).map(<[Complex64]>::to_vec);
         let (mut reference, mut output, mut input) = (within(reference)?, within(output)?, within(input)?);
@@ -192,12 +191,12 @@ impl LineBand {
         })
     }
 
-    /// Degrees of freedom of the noise, complex ones.
+    /// Complex degrees of freedom of the noise.
     fn freedom(&self) -> f64 {
         self.lines - UNKNOWNS as f64
     }
 
-    /// True where two halves leave significantly less of either signal unexplained.
+    /// True if two halves leave significantly less of either signal unexplained.
     fn is_worse_than(&self, lower: &LineBand, upper: &LineBand) -> bool {
         let freedom = lower.freedom() + upper.freedom();
         let rests = self.rest.iter().zip(&lower.rest).zip(&upper.rest).zip(&self.squares);
@@ -215,7 +214,7 @@ impl LineBand {
         rest.max(0.0) / self.freedom()
     }
 
-    /// The excitation of the point is the power per line by which the reference moves the input.
+    /// Point whose excitation is the power per line by which the reference moves the input.
     fn point(&self, spacing: f64, neighbours: [Option<&LineBand>; 2]) -> SpectralPoint {
         let freedom = self.freedom();
         let [output, input] = self.gains;
@@ -248,17 +247,17 @@ impl LineBand {
     }
 }
 
-/// sum |x|^2.
+/// Sum |x|^2.
 fn square(lines: &[Complex64]) -> f64 {
     lines.iter().map(|line| line.norm_sqr()).sum()
 }
 
-/// sum x* y.
+/// Sum x* y.
 fn product(one: &[Complex64], other: &[Complex64]) -> Complex64 {
     one.iter().zip(other).map(|(one, other)| one.conj() * other).sum()
 }
 
-/// Takes the columns of an orthonormal basis out of a signal; twice, against rounding.
+/// Removes the columns of an orthonormal basis from a signal; twice, against rounding.
 fn take_out(basis: &[Vec<Complex64>], signal: &mut [Complex64]) {
     for column in basis.iter().chain(basis) {
         let along = product(column, signal);
@@ -266,7 +265,7 @@ fn take_out(basis: &[Vec<Complex64>], signal: &mut [Complex64]) {
     }
 }
 
-/// Adds what is new in a column to an orthonormal basis.
+/// Adds the independent part of a column to an orthonormal basis.
 fn add(basis: &mut Vec<Vec<Complex64>>, mut column: Vec<Complex64>) {
     let whole = square(&column);
     take_out(basis, &mut column);

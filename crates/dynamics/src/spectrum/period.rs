@@ -2,24 +2,24 @@ use num_complex::Complex64;
 
 use super::Transform;
 
-/// Largest share of a signal's power that may differ from period to period.
+/// Largest fraction of a signal's power that may differ from period to period.
 const MOST_NOISE: f64 = 0.05;
 
-/// A shift counts as a period if no other repeats the signal much better.
+/// Ratio to the best shift up to which a shift counts as a period.
 const ALMOST_BEST: f64 = 1.5;
 
-/// Share of the power below which differences are rounding.
+/// Fraction of the power below which differences are rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// The period of a signal in samples: the shortest shift, up to half of the record, that repeats it
-/// as well as any; `None` where none does.
+/// Period of a signal in samples: the shortest shift, up to half of the record, that repeats it as
+/// well as any; `None` if none does.
 ///
 /// ```text
 /// d(P) = sum over n of (u_(n+P) - u_n)^2 / sum over n of (u_(n+P)^2 + u_n^2)
 /// ```
 ///
-/// is the share of the power that a shift does not explain: 0 for the period of a signal without
-/// noise, 1 where the parts have nothing in common.
+/// is the fraction of the power that a shift does not explain: 0 for the period of a signal without
+/// noise, 1 for uncorrelated parts.
 ///
 /// # Example
 /// ```
@@ -30,7 +30,7 @@ const ROUNDING: f64 = 1e-9;
 /// ```
 pub fn period(signal: &[f64]) -> Option<usize> {
     let unexplained = unexplained(signal);
-    // neighbouring samples of a slow signal are alike: a period comes after they have differed
+    // neighbouring samples of a slow signal are alike: a period follows after they have differed
     let first = unexplained.iter().position(|share| *share > 0.5)?;
     let later = || unexplained.iter().copied().enumerate().skip(first);
     let least = later().map(|(_, share)| share).fold(f64::INFINITY, f64::min);
@@ -44,12 +44,12 @@ pub fn period(signal: &[f64]) -> Option<usize> {
     near.min_by(|(_, one), (_, other)| one.total_cmp(other)).map(|(shift, _)| shift)
 }
 
-/// d for each shift up to half of the record.
+/// Unexplained fraction d for each shift up to half of the record.
 fn unexplained(signal: &[f64]) -> Vec<f64> {
     let count = signal.len();
     let mean = signal.iter().sum::<f64>() / count.max(1) as f64;
     let centred: Vec<f64> = signal.iter().map(|value| value - mean).collect();
-    // products at all shifts at once: the transform of the power spectrum
+    // products at all shifts at once, from the transform of the power spectrum
     let transform = Transform::new((2 * count).next_power_of_two());
     let power: Vec<Complex64> =
         transform.of_real(&centred).iter().map(|line| Complex64::new(line.norm_sqr(), 0.0)).collect();

@@ -4,15 +4,15 @@ use num_complex::Complex64;
 
 use crate::portable::{cos, sin};
 
-/// The discrete Fourier transform of a fixed length, any length.
+/// Discrete Fourier transform of a fixed length, any length.
 ///
 /// ```text
 /// X_k = sum over n of x_n exp(-2 pi i k n/N)
 /// ```
 ///
 /// Powers of two by halving (Cooley and Tukey 1965), other lengths as a convolution with a chirp
-/// (Bluestein 1970). Its own because the libraries choose vector instructions of the processor they
-/// run on, and the platform's sine and cosine: their last digits differ from machine to machine.
+/// (Bluestein 1970). Not from a library, because libraries choose the vector instructions of the
+/// processor and the platform's sine and cosine: their last digits differ from machine to machine.
 ///
 /// # Example
 /// ```
@@ -26,14 +26,14 @@ use crate::portable::{cos, sin};
 #[derive(Clone, Debug)]
 pub struct Transform {
     length: usize,
-    /// The transform whose length is the power of two.
+    /// Transform whose length is the power of two.
     halving: Halving,
-    /// Where the length is not a power of two.
+    /// Chirp, if the length is not a power of two.
     chirp: Option<Chirp>,
 }
 
 impl Transform {
-    /// For signals of this many samples, at least one.
+    /// Transform for signals of this many samples, at least one.
     pub fn new(length: usize) -> Transform {
         let length = length.max(1);
         if length.is_power_of_two() {
@@ -44,12 +44,12 @@ impl Transform {
         Transform { length, halving, chirp: Some(chirp) }
     }
 
-    /// Samples of a signal.
+    /// Number of samples of a signal.
     pub fn length(&self) -> usize {
         self.length
     }
 
-    /// The transform; a signal of another length is cut or filled up with zeros.
+    /// Transform of a signal; one of another length is cut or padded with zeros.
     pub fn of(&self, samples: &[Complex64]) -> Vec<Complex64> {
         let mut values = samples.to_vec();
         values.resize(self.length, Complex64::ZERO);
@@ -60,15 +60,15 @@ impl Transform {
         values
     }
 
-    /// That of a real signal, all of its N lines.
+    /// Transform of a real signal, all of its N lines.
     pub fn of_real(&self, samples: &[f64]) -> Vec<Complex64> {
         let samples: Vec<Complex64> = samples.iter().map(|value| Complex64::new(*value, 0.0)).collect();
         self.of(&samples)
     }
 
-    /// Output of a linear system for a real signal, as if the signal repeated. `response` is that
-    /// of the system, at an angle in radians per sample. The mean of the signal is discarded: there
-    /// the response of an integrator is infinite.
+    /// Output of a linear system for a real signal, as if the signal repeated. `response` is the
+    /// response of the system at an angle in radians per sample. The mean of the signal is
+    /// discarded, since an integrator has an infinite response to it.
     ///
     /// # Example
     /// A delay of one sample.
@@ -99,10 +99,10 @@ impl Transform {
     }
 }
 
-/// A transform whose length is a power of two.
+/// Transform whose length is a power of two.
 #[derive(Clone, Debug)]
 struct Halving {
-    /// exp(-2 pi i j/N), j < N/2.
+    /// Factors exp(-2 pi i j/N), j < N/2.
     rotations: Vec<Complex64>,
 }
 
@@ -140,14 +140,14 @@ impl Halving {
     }
 }
 
-/// A transform of any length as a convolution.
+/// Transform of any length as a convolution.
 ///
 /// ```text
 /// X_k = c_k sum over n of (x_n c_n) c*_(k-n)        c_n = exp(-i pi n^2/N)
 /// ```
 #[derive(Clone, Debug)]
 struct Chirp {
-    /// c_n.
+    /// Values c_n.
     values: Vec<Complex64>,
     /// Transform of c*, over the length of the convolution.
     spectrum: Vec<Complex64>,
@@ -156,7 +156,7 @@ struct Chirp {
 impl Chirp {
     fn new(length: usize, halving: &Halving) -> Chirp {
         let whole = 2 * halving.rotations.len();
-        // n^2 modulo 2 N: the angle stays exact however long the signal is
+        // n^2 modulo 2 N: the angle stays exact at any signal length
         let square = |n: usize| (n as u128 * n as u128 % (2 * length as u128)) as f64;
         let values: Vec<Complex64> = (0..length).map(|n| turned(-PI * square(n) / length as f64)).collect();
         let mut spectrum = vec![Complex64::ZERO; whole];
@@ -176,7 +176,7 @@ impl Chirp {
         let mut product: Vec<Complex64> = samples.iter().zip(&self.values).map(|(x, c)| x * c).collect();
         product.resize(whole, Complex64::ZERO);
         halving.transform(&mut product);
-        // back by the same transform of the conjugates
+        // inverse by the forward transform of the conjugates
         for (value, factor) in product.iter_mut().zip(&self.spectrum) {
             *value = (*value * factor).conj();
         }

@@ -1,25 +1,25 @@
 use crate::portable::{cos, sin};
 
-/// One term of a sum of cosines.
+/// Single term of a sum of cosines.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Cosine {
     pub(super) frequency_rad_per_s: f64,
     pub(super) weight: f64,
 }
 
-/// Terms that go through time side by side.
+/// Number of terms advanced in parallel.
 const LANES: usize = 8;
-/// Steps of the recurrence after which it begins anew: its rounding grows with their square.
+/// Steps after which the recurrence restarts: its rounding grows with their square.
 const STEPS: usize = 32;
 
-/// Terms side by side: the cosine and sine of where a block of steps begins, those of one step and
+/// Parallel terms: the cosine and sine at the beginning of a block of steps, those of one step and
 /// of a block.
 struct CosineLanes {
     cosine: [f64; LANES],
     sine: [f64; LANES],
     step: [[f64; LANES]; 2],
     block: [[f64; LANES]; 2],
-    /// 4 sin^2(w h/2) of one step.
+    /// Factor 4 sin^2(w h/2) of one step.
     bend: [f64; LANES],
 }
 
@@ -42,7 +42,7 @@ pub(super) fn sums_of_cosines(terms: &[Cosine], step_s: f64, count: usize) -> Ve
 }
 
 impl CosineLanes {
-    /// At time zero; lanes without a term weigh nothing.
+    /// Terms at time zero; unused lanes have zero weight.
     fn new(terms: &[Cosine], step_s: f64) -> CosineLanes {
         let mut all = [Cosine::default(); LANES];
         all[..terms.len()].copy_from_slice(terms);
@@ -77,7 +77,7 @@ impl CosineLanes {
         }
     }
 
-    /// A block of steps later.
+    /// Advances the terms by a block of steps.
     fn turn(&mut self) {
         for lane in 0..LANES {
             let [cosine, sine] = [self.cosine[lane], self.sine[lane]];
@@ -92,9 +92,9 @@ impl CosineLanes {
 mod tests {
     use super::*;
 
-    /// Cosines of their own, over more steps than go without beginning anew, and more terms than
-    /// go side by side; some turn by nearly nothing, by half a turn and by more than a whole one in
-    /// a step.
+    /// Sums equal those of separate cosines, over more steps than the recurrence takes without a
+    /// restart, and more terms than are parallel; some turn by nearly nothing, by half a turn and
+    /// by more than a whole one in a step.
     #[test]
     fn sums_are_those_of_cosines_of_their_own() {
         let step_s = 1e-3;

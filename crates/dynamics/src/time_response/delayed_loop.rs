@@ -1,4 +1,4 @@
-//! Step response of a loop with dead time, which is not a rational function when closed.
+//! Step response of a closed loop with dead time, which is not a rational function.
 
 use nalgebra::DVector;
 
@@ -6,23 +6,23 @@ use super::{TimeResponseError, step_response, uniform_times};
 use crate::linear::matrix_exponential::ExactStep;
 use crate::linear::{LinearError, StateSpace, TransferFunction};
 
-/// The unit step of a continuous loop with dead time: times in s, and the output.
+/// Unit step response of a continuous loop with dead time: times in s, and the output.
 ///
 /// ```text
 /// y = W(e(t - T)),    e = F r - H y                    W the forward path without its dead time T
 /// ```
 ///
-/// The signals are straight over short steps that divide the dead time of the whole loop: about
+/// The signals are linear over short steps that divide the dead time of the whole loop: about
 /// `steps` of them over `duration_s`, at least one to the dead time. The error is of second order
-/// in the step; of first order where both W and F pass a jump at once. The dead time of the sensor
-/// acts exactly: it is moved around the loop, and the output is read earlier by it.
+/// in the step; of first order if both W and F have direct feedthrough. The dead time of the sensor
+/// acts exactly: it is moved around the loop, and the output is advanced by it.
 ///
 /// # Errors
 /// [`LinearError::DeadTime`] without dead time in the loop (close that loop exactly, by
-/// `feedback`), those of a realisation, and those of [`step_response`] for the prefilter.
+/// `feedback`), errors of a realisation, and errors of [`step_response`] for the prefilter.
 ///
 /// # Example
-/// e^(-s)/s closed with gain 1/2: nothing for 1 s, then a ramp, then a parabola from 2 s on
+/// e^(-s)/s closed with gain 1/2: zero for 1 s, then a ramp, then a parabola from 2 s on:
 /// ```
 /// use num_complex::Complex64;
 /// use phea_dynamics::linear::TransferFunction;
@@ -61,7 +61,8 @@ pub fn delayed_loop_step(
         index.checked_sub(lag).and_then(|index| errors.get(index)).copied().unwrap_or(0.0)
     };
     for (index, reference) in reference.iter().enumerate() {
-        // before the error begins its end is zero too: its jump is at the beginning of a step
+        // before the error begins, the value at its end is zero too: its jump is at the beginning
+        // of a step
         let begun = index > lag;
         let now = late(&errors, index);
         if let Some(before) = index.checked_sub(1) {
@@ -78,12 +79,10 @@ pub fn delayed_loop_step(
     Ok(earlier.filter(|(time_s, _)| *time_s >= 0.0).unzip())
 }
 
-/// Steps that are taken at most, where the dead time is much shorter than the time that is asked
-/// for.
+/// Largest number of steps, if the dead time is much shorter than the requested duration.
 const STEPS_MAXIMUM: f64 = 1e6;
 
-/// A continuous system with one input and one output over equal steps, its input straight over
-/// each.
+/// Continuous system with one input and one output over equal steps, its input linear over each.
 struct RampedSystem {
     system: StateSpace,
     step: ExactStep,
@@ -97,7 +96,7 @@ impl RampedSystem {
         Ok(RampedSystem { state: DVector::zeros(system.order()), system, step })
     }
 
-    /// y = C x + D u
+    /// Output y = C x + D u.
     fn output(&self, input: f64) -> f64 {
         (self.system.c() * &self.state).sum() + self.system.d().sum() * input
     }

@@ -1,4 +1,4 @@
-//! Exact responses of linear systems to inputs that are constant or straight between samples.
+//! Exact responses of linear systems to inputs that are constant or linear between samples.
 
 use nalgebra::DVector;
 
@@ -11,7 +11,7 @@ use crate::order::sorted_distinct;
 /// Response at these times to a unit step at time zero, from rest.
 ///
 /// # Errors
-/// As [`forced_response`].
+/// Errors of [`forced_response`].
 ///
 /// # Example
 /// ```
@@ -51,8 +51,8 @@ pub fn forced_response(
     Ok(outputs.iter().map(|output| output.iter().sum()).collect())
 }
 
-/// Outputs of a state-space system at these times: one vector a time, from the given state at time
-/// zero, with one signal for each input. Exact between the signals' samples.
+/// Outputs of a state-space system at these times: one vector for each time, from the given state
+/// at time zero, with one signal for each input. Exact between the signals' samples.
 ///
 /// # Errors
 /// [`TimeResponseError::Count`] when the number of signals or states does not fit;
@@ -88,7 +88,7 @@ pub fn forced_response_of_states(
 }
 
 /// Runs from event to event (output times and samples of the inputs), between which each input is
-/// one straight piece.
+/// one linear piece.
 fn continuous(
     system: &StateSpace,
     initial_state: &DVector<f64>,
@@ -102,9 +102,9 @@ fn continuous(
     let events = sorted_distinct(events);
     let mut steps = StepCache::new(system, 8.0 * f64::EPSILON * end);
     let mut state = initial_state.clone();
-    // what rounding took from the state in the last step; without it long runs of short steps drift
+    // rounding error of the state in the last step; without it long runs of short steps drift
     let mut carried = DVector::zeros(system.order());
-    // `reached` follows the lengths of the steps taken, `now` the times asked for: they differ by
+    // `reached` follows the lengths of the steps taken, `now` the times requested: they differ by
     // rounding only
     let (mut now, mut reached) = (0.0, DoubleDouble::ZERO);
     let mut outputs = Vec::with_capacity(times_s.len());
@@ -132,7 +132,7 @@ fn continuous(
     outputs
 }
 
-/// Exact steps by their length: a uniform grid has one, give or take rounding.
+/// Exact steps by their length: a uniform grid has one, within rounding.
 struct StepCache<'a> {
     system: &'a StateSpace,
     tolerance: f64,
@@ -149,7 +149,7 @@ impl<'a> StepCache<'a> {
         let index = match self.steps.iter().position(|(known, _)| same(*known)) {
             Some(index) => index,
             None => {
-                // an irregular grid is not worth remembering in full
+                // an irregular grid is not worth storing in full
                 if self.steps.len() >= 64 {
                     self.steps.clear();
                 }
@@ -162,7 +162,7 @@ impl<'a> StepCache<'a> {
     }
 }
 
-/// The output at time t is that of the last sample instant not after t.
+/// Sampled response: the output at time t is that of the last sample instant not after t.
 ///
 /// ```text
 /// x(k+1) = A x(k) + B u(kT)

@@ -3,7 +3,7 @@ use std::f64::consts::PI;
 use super::cosine_sums::{Cosine, sums_of_cosines};
 use crate::portable::sin;
 
-/// Unit step response of a stable system that is known by its frequency response alone, at 0, h, 2
+/// Unit step response of a stable system that is known only by its frequency response, at 0, h, 2
 /// h, ...
 ///
 /// ```text
@@ -11,13 +11,13 @@ use crate::portable::sin;
 /// sampled:  g(k) = (2 h/pi) integral of Re T cos(w k h) over w = 0 .. pi/h,   g(0) half of that,   y(k) = sum of g
 /// ```
 ///
-/// `real_parts` are increasing frequencies in rad/s with Re T there, straight between two of them,
-/// constant below the first and zero beyond the last; `step_s` is h in s, which must be short
-/// against whatever the response does. The integral over frequency is exact, that over time is
-/// Simpson's.
+/// `real_parts` are increasing frequencies in rad/s with Re T there, linear between them, constant
+/// below the first and zero beyond the last; `step_s` is h in s, which must be short compared with
+/// any feature of the response. The integral over frequency is exact; that over time uses Simpson's
+/// rule.
 ///
 /// # Example
-/// A lag of 0.1 s
+/// A lag of 0.1 s:
 /// ```
 /// use phea_dynamics::portable::exp;
 /// use phea_dynamics::time_response::step_of_frequency_response;
@@ -53,15 +53,15 @@ pub fn step_of_frequency_response(
     response
 }
 
-/// The weights g(k) of the convolution y(k) = sum of g(i) u(k - i) that a stable system is, which
-/// is known by its frequency response H alone: that of a system of samples over its whole band, or
-/// of a continuous one whose response vanishes beyond its last point, by the trapezoidal rule.
+/// Weights g(k) of the convolution y(k) = sum of g(i) u(k - i) of a stable system that is known
+/// only by its frequency response H: that of a sampled system over its whole band, or of a
+/// continuous one whose response vanishes beyond its last point, by the trapezoidal rule.
 ///
 /// ```text
 /// g(k) = (2 h/pi) integral of Re H cos(w k h) over w,     g(0) half of that
 /// ```
 ///
-/// `real_parts` and `step_s` are those of [`step_of_frequency_response`].
+/// Arguments `real_parts` and `step_s` are those of [`step_of_frequency_response`].
 ///
 /// # Example
 /// y(k) = 0.5 y(k - 1) + u(k)
@@ -80,14 +80,14 @@ pub fn weights_of_frequency_response(real_parts: &[(f64, f64)], step_s: f64, cou
     std::iter::once(first).chain(later).take(count).map(|impulse| step_s * impulse).collect()
 }
 
-/// 2/pi times the integral of R(w), straight between its points.
+/// 2/pi times the integral of R(w), linear between its points.
 fn integral(points: &[(f64, f64)]) -> f64 {
     let pieces = points.windows(2).map(|pair| 0.5 * (pair[1].0 - pair[0].0) * (pair[0].1 + pair[1].1));
     let below = points.first().map_or(0.0, |(first, value)| first * value);
     2.0 / PI * (below + pieces.sum::<f64>())
 }
 
-/// 2/pi times the integral of R(w) cos(w t) at t = h, 2 h, ..., R straight between its points.
+/// 2/pi times the integral of R(w) cos(w t) at t = h, 2 h, ..., with R linear between its points.
 ///
 /// ```text
 /// of (r + q (w - a)) cos(w t) from a to b = [(r + q (w - a)) sin(w t)/t + q cos(w t)/t^2]
@@ -119,9 +119,9 @@ mod tests {
     use super::*;
     use crate::portable::{cos, exp, exp_complex};
 
-    /// A resonance of 20 rad/s behind a dead time of 30 ms: its closed form, late. Straight lines
-    /// over 0.1 rad/s miss it by up to 8e-5, and the corner with which it begins costs Simpson 400
-    /// h^2/12 = 3e-5.
+    /// A resonance of 20 rad/s with a dead time of 30 ms: its closed form, delayed. Straight lines
+    /// over 0.1 rad/s deviate by up to 8e-5, and the initial corner contributes 400 h^2/12 = 3e-5
+    /// by Simpson's rule.
     #[test]
     fn a_resonance_behind_dead_time() {
         let (own, damping, late) = (20.0_f64, 0.1_f64, 0.03);

@@ -1,4 +1,4 @@
-//! Names of what a response in time refuses.
+//! Names of quantities that a response in time rejects.
 
 /// Count of a response.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

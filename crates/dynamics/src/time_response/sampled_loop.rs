@@ -1,4 +1,4 @@
-//! Step response of a sampled loop, sample by sample: no root of the closed loop is computed.
+//! Step response of a sampled loop, sample by sample: no roots of the closed loop are computed.
 
 use nalgebra::DVector;
 
@@ -6,16 +6,15 @@ use super::{ResponseNumber, TimeResponseError, step_response};
 use crate::linear::{LinearError, LinearOperation, StateSpace, TimeDomain, TransferFunction};
 use crate::range::RequiredRange;
 
-/// The samples of the unit step of a loop in z: times in s, and the output.
+/// Samples of the unit step response of a loop in z: times in s, and the output.
 ///
 /// ```text
 /// u(k) = G (F r - M u),    y(k) = P u                  M the plant with its sensor, P the plant
 /// ```
 ///
 /// # Errors
-/// [`LinearError::DomainMismatch`] for systems that do not share their samples, and those of a
-/// realisation; [`TimeResponseError::OutOfRange`] where the loop passes a jump at once with gain
-/// -1.
+/// [`LinearError::DomainMismatch`] for systems with different sample times, and errors of a
+/// realisation; [`TimeResponseError::OutOfRange`] if the direct feedthrough of the loop is -1.
 ///
 /// # Example
 /// 1/(z - 1) closed with gain 1/2 approaches 1 by half at each sample
@@ -75,14 +74,14 @@ pub fn sampled_loop_step(
     Ok((times_s, outputs))
 }
 
-/// A sampled system with one input and one output, and its state.
+/// Sampled system with one input and one output, and its state.
 ///
 /// ```text
 /// y(k) = C x(k) + D u(k),     x(k+1) = A x(k) + B u(k)
 /// ```
 struct Stepped {
     system: StateSpace,
-    /// D
+    /// Feedthrough D.
     gain: f64,
     state: DVector<f64>,
 }
@@ -93,7 +92,7 @@ impl Stepped {
         Ok(Stepped { state: DVector::zeros(system.order()), gain: system.d().sum(), system })
     }
 
-    /// C x
+    /// Output C x without feedthrough.
     fn free(&self) -> f64 {
         (self.system.c() * &self.state).sum()
     }

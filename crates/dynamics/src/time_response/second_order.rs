@@ -1,5 +1,4 @@
-//! The second-order model behind a specification in the time domain, thesis (3.5) to (3.13),
-//! corrected.
+//! Second-order model of a specification in the time domain, thesis (3.5) to (3.13), corrected.
 
 use std::f64::consts::PI;
 
@@ -10,7 +9,7 @@ use crate::linear::{TimeDomain, TransferFunction};
 use crate::portable::{atan2, cos, exp, ln, sin, sinh};
 use crate::range::RequiredRange;
 
-/// A unit-gain second-order system.
+/// Second-order system with unit gain.
 ///
 /// ```text
 /// Y/R = w_n^2 / (s^2 + 2 xi w_n s + w_n^2)                                   thesis (3.5)
@@ -33,31 +32,31 @@ pub struct SecondOrder {
     damping_ratio: f64,
 }
 
-/// A rule of thumb for the settling time, with the band it stands for.
+/// Rule of thumb for the settling time, with its band.
 ///
 /// ```text
 /// t_s = factor / (xi w_n)          thesis (3.10) to (3.13)
 /// ```
 ///
-/// Rules follow the envelope and ignore where the response crosses it;
+/// Rules use the envelope and ignore where the response crosses the band;
 /// [`SecondOrder::settling_time_s`] is exact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SettlingRule {
-    /// 3 for 5 percent, thesis (3.10).
+    /// Factor 3 for 5 percent, thesis (3.10).
     FivePercent,
-    /// 4 for 2 percent, thesis (3.11).
+    /// Factor 4 for 2 percent, thesis (3.11).
     TwoPercent,
-    /// 4.6 for 1 percent: exp(-4.6) = 0.01.
+    /// Factor 4.6 for 1 percent: exp(-4.6) = 0.01.
     OnePercent,
-    /// 5 for 1 percent as printed in thesis (3.12); its envelope is at 0.67 percent by then.
+    /// Factor 5 for 1 percent as printed in thesis (3.12); its envelope is at 0.67 percent by then.
     OnePercentThesis,
-    /// Critically damped, 2 percent: 5.834, the solution of (1 + x) exp(-x) = 0.02. Thesis (3.13)
-    /// prints 6.
+    /// Critically damped, 2 percent: factor 5.834, the solution of (1 + x) exp(-x) = 0.02. Thesis
+    /// (3.13) prints 6.
     CriticallyDampedTwoPercent,
 }
 
 impl SettlingRule {
-    /// The factor over xi w_n.
+    /// Factor over xi w_n.
     pub fn factor(self) -> f64 {
         match self {
             SettlingRule::FivePercent => 3.0,
@@ -68,7 +67,7 @@ impl SettlingRule {
         }
     }
 
-    /// The band, percent of the step.
+    /// Settling band, percent of the step.
     pub fn band_percent(self) -> f64 {
         match self {
             SettlingRule::FivePercent => 5.0,
@@ -79,8 +78,7 @@ impl SettlingRule {
 }
 
 impl SecondOrder {
-    /// A system with this undamped natural frequency (positive) and damping ratio (zero or
-    /// positive).
+    /// System with this undamped natural frequency (positive) and damping ratio (zero or positive).
     ///
     /// # Errors
     /// [`TimeResponseError::OutOfRange`].
@@ -96,8 +94,8 @@ impl SecondOrder {
         Ok(SecondOrder { natural_frequency_rad_per_s, damping_ratio })
     }
 
-    /// The system with this overshoot (percent, from 0 up to but not 100) and settling time in s,
-    /// by a rule of thumb.
+    /// System with this overshoot (percent, from 0 up to but not 100) and settling time in s, by a
+    /// rule of thumb.
     ///
     /// ```text
     /// w_n = factor/(xi t_s)
@@ -163,8 +161,8 @@ impl SecondOrder {
         100.0 * exp(-PI * ratio / ((1.0 - ratio) * (1.0 + ratio)).sqrt())
     }
 
-    /// The exact time after which the step response stays within plus or minus `band_percent`, s;
-    /// none without damping, when it never does.
+    /// Exact time after which the step response stays within plus or minus `band_percent`, s;
+    /// `None` without damping, when it never does.
     ///
     /// The deviation has its extremes exp(-k pi sigma/w_d) at k pi/w_d; the last one outside the
     /// band is followed by the crossing, found by bisection.
@@ -188,7 +186,7 @@ impl SecondOrder {
                 let decrement = PI * self.damping_ratio * self.natural_frequency_rad_per_s / damped;
                 let mut last = (-ln(band) / decrement).floor();
                 if exp(-last * decrement) <= band {
-                    // the extreme that only touches the band is inside it
+                    // an extreme that only touches the band is inside it
                     last = (last - 1.0).max(0.0);
                 }
                 (last * PI / damped, (last + 1.0) * PI / damped)
@@ -231,7 +229,7 @@ impl SecondOrder {
         TransferFunction::assembled(natural * natural, Vec::new(), poles, TimeDomain::Continuous)
     }
 
-    /// What the step response still lacks, continued beyond critical damping.
+    /// Deviation of the step response from its final value, continued beyond critical damping.
     ///
     /// ```text
     /// 1 - y(t) = exp(-sigma t) (cos w_d t + sigma/w_d sin w_d t)
@@ -260,7 +258,7 @@ impl SecondOrder {
     }
 }
 
-/// The damping ratio with this overshoot in percent, from 0 (critically damped) up to but not 100.
+/// Damping ratio with this overshoot in percent, from 0 (critically damped) up to but not 100.
 ///
 /// ```text
 /// xi = -ln(M_p/100) / sqrt(pi^2 + ln^2(M_p/100))                           thesis (3.9), corrected

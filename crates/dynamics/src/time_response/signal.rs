@@ -3,16 +3,16 @@
 use super::{ResponseCount, ResponseNumber, TimeResponseError};
 use crate::range::RequiredRange;
 
-/// What an input does between two samples.
+/// Interpolation of an input between two samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interpolation {
-    /// It keeps the earlier value.
+    /// The earlier value is held.
     Hold,
-    /// It runs straight to the later value.
+    /// Linear interpolation to the later value.
     Linear,
 }
 
-/// An input in time: zero before its first sample, constant after its last.
+/// Input in time: zero before its first sample, constant after its last.
 ///
 /// # Example
 /// ```
@@ -31,7 +31,7 @@ pub struct SampledSignal {
 }
 
 impl SampledSignal {
-    /// A signal through these samples; times in s, strictly rising.
+    /// Signal through these samples; times in s, strictly rising.
     ///
     /// # Errors
     /// [`TimeResponseError::Count`], [`TimeResponseError::TimeOrder`],
@@ -62,12 +62,12 @@ impl SampledSignal {
         Ok(SampledSignal { times_s, values, interpolation })
     }
 
-    /// A step of this height at time zero.
+    /// Step of this height at time zero.
     pub fn step(height: f64) -> Self {
         SampledSignal { times_s: vec![0.0], values: vec![height], interpolation: Interpolation::Hold }
     }
 
-    /// The same signal, later by a dead time in s.
+    /// Signal delayed by a dead time in s.
     pub fn delayed(&self, dead_time_s: f64) -> Self {
         let times_s = self.times_s.iter().map(|time| time + dead_time_s).collect();
         SampledSignal { times_s, values: self.values.clone(), interpolation: self.interpolation }
@@ -97,7 +97,7 @@ impl SampledSignal {
     }
 }
 
-/// `points` times from zero to `duration_s`, equally spaced.
+/// Equally spaced times from zero to `duration_s`; their number is `points`.
 ///
 /// # Errors
 /// [`TimeResponseError::OutOfRange`] when the duration is not positive and finite.

@@ -1,41 +1,41 @@
-//! What is read off a step response.
+//! Characteristics of a step response.
 
 use super::{ResponseCount, ResponseNumber, TimeResponseError};
 use crate::range::RequiredRange;
 
-/// The step that a response is measured against.
+/// Step against which a response is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepBaseline {
-    /// When the step happens, s.
+    /// Time of the step, s.
     pub step_time_s: f64,
     /// Value before the step.
     pub initial_value: f64,
-    /// Value that the response should reach: zero and hundred percent are this far apart.
+    /// Target value of the response: its difference from the initial value is 100 percent.
     pub final_value: f64,
 }
 
 impl StepBaseline {
-    /// From zero to one at time zero.
+    /// Baseline from zero to one at time zero.
     pub fn unit() -> Self {
         StepBaseline { step_time_s: 0.0, initial_value: 0.0, final_value: 1.0 }
     }
 
-    /// From zero to this value at time zero, as the final value of a unit step response is the gain
-    /// at zero frequency.
+    /// Baseline from zero to this value at time zero, as the final value of a unit step response is
+    /// the gain at zero frequency.
     pub fn to_value(final_value: f64) -> Self {
         StepBaseline { step_time_s: 0.0, initial_value: 0.0, final_value }
     }
 }
 
-/// Whether the response stays in the band, and from when.
+/// Settling of the response in its band.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Settling {
-    /// It enters the band for good.
+    /// The response enters the band permanently.
     Settled {
         /// Time after the step, s.
         time_s: f64,
     },
-    /// Its last sample lies outside the band.
+    /// The last sample is outside the band.
     NotSettled {
         /// Deviation of the last sample from the final value, percent of the step.
         deviation_percent: f64,
@@ -43,7 +43,7 @@ pub enum Settling {
 }
 
 impl Settling {
-    /// The settling time in s, if there is one.
+    /// Settling time in s, if there is one.
     pub fn time_s(self) -> Option<f64> {
         match self {
             Settling::Settled { time_s } => Some(time_s),
@@ -52,25 +52,25 @@ impl Settling {
     }
 }
 
-/// Metrics of a step response. All times count from the step; crossings are interpolated between
-/// samples.
+/// Characteristics of a step response. All times count from the step; crossings are interpolated
+/// between samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepMetrics {
-    /// From 10 to 90 percent of the step, s; none if it never gets there.
+    /// Rise time from 10 to 90 percent of the step, s; `None` if the response never gets there.
     pub rise_time_10_90_s: Option<f64>,
-    /// The extreme value in the direction of the step.
+    /// Extreme value in the direction of the step.
     pub peak_value: f64,
-    /// When it is first taken, s.
+    /// Time of the first peak value, s.
     pub peak_time_s: f64,
-    /// How far the peak exceeds the final value, percent of the step; zero when it does not.
+    /// Excess of the peak over the final value, percent of the step; zero without overshoot.
     pub overshoot_percent: f64,
-    /// Whether and when the response stays within the band.
+    /// Settling of the response in the band.
     pub settling: Settling,
-    /// The band of the settling time: plus or minus this percentage of the step.
+    /// Band of the settling time: plus or minus this percentage of the step.
     pub settling_band_percent: f64,
 }
 
-/// Metrics of the samples of a step response, for an explicit baseline and settling band.
+/// Characteristics of the samples of a step response, for an explicit baseline and settling band.
 ///
 /// # Errors
 /// [`TimeResponseError::Count`] when times and values differ in number or none is after the step,
@@ -169,7 +169,7 @@ fn check(
     Ok(())
 }
 
-/// When the progress first reaches a level, interpolated.
+/// Time at which the progress first reaches a level, interpolated.
 fn first_reach(samples: &[(f64, f64)], level: f64) -> Option<f64> {
     let index = samples.iter().position(|sample| sample.1 >= level)?;
     let after = samples[index];
@@ -179,10 +179,10 @@ fn first_reach(samples: &[(f64, f64)], level: f64) -> Option<f64> {
     }
 }
 
-/// When the last sample outside the band crosses into it, interpolated; none when the last sample
-/// is outside.
+/// Time at which the last sample outside the band crosses into it, interpolated; `None` if the last
+/// sample is outside.
 fn settling_time(samples: &[(f64, f64)], band: f64) -> Option<f64> {
-    // a deviation that equals the band up to rounding is inside
+    // a deviation that equals the band within rounding is inside
     let outside = |sample: &(f64, f64)| (sample.1 - 1.0).abs() > band * (1.0 + 1e-12);
     let Some(index) = samples.iter().rposition(outside) else {
         return samples.first().map(|sample| sample.0);

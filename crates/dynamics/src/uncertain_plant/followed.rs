@@ -1,14 +1,14 @@
-//! Another recording of a plant's coefficients, for what follows them by polynomials.
+//! Second recording of a plant's coefficients, which polynomials track.
 
 use super::{PlantEquations, UncertainPlant};
 use crate::expression::Expression;
 
 impl UncertainPlant {
-    /// The same plant with another recording of its coefficients that polynomials follow: one
-    /// whose operations are smooth over the box. A recording with other powers of s is left out.
+    /// Plant with a second recording of its coefficients that polynomials track: one whose
+    /// operations are smooth over the box. A recording with other powers of s is ignored.
     ///
     /// # Example
-    /// A root found by Newton's method, and in closed form.
+    /// A root found by Newton's method, and in closed form:
     /// ```
     /// use phea_dynamics::scalar::Scalar;
     /// use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant};
@@ -38,7 +38,7 @@ impl UncertainPlant {
         self
     }
 
-    /// The recorded coefficients as polynomials follow them, in the order of
+    /// Recorded coefficients that polynomials track, in the order of
     /// [`UncertainPlant::expression`].
     pub fn followed_expression(&self) -> Option<&Expression> {
         self.recorded().map(|recorded| recorded.followed.as_deref().unwrap_or(&*recorded.coefficients))

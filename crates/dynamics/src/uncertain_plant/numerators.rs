@@ -1,19 +1,19 @@
-//! The paths to what a controller reads in addition to the output.
+//! Paths to the signals that a controller reads in addition to the output.
 
 /// Numerators of the paths to a rate, highest power first, over the denominator of the command's
 /// path to the output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RateNumerators<S> {
-    /// From the command, before its dead time.
+    /// Numerator from the command, before its dead time.
     pub command: Vec<S>,
-    /// From the disturbance.
+    /// Numerator from the disturbance.
     pub disturbance: Vec<S>,
     /// Numerators to the inner signal that a sampled controller feeds back, from command and
-    /// disturbance; `None` where it feeds back none.
+    /// disturbance; `None` if it feeds back none.
     pub inner: Option<[Vec<S>; 2]>,
 }
 
-/// How many coefficients each of them has.
+/// Numbers of coefficients of these numerators.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct RateLengths {
     paths: [usize; 2],
@@ -28,13 +28,13 @@ impl<S> RateNumerators<S> {
         }
     }
 
-    /// All coefficients, one after the other.
+    /// All coefficients in one sequence.
     pub(super) fn flat(self) -> impl Iterator<Item = S> {
         let inner = self.inner.into_iter().flatten().flatten();
         self.command.into_iter().chain(self.disturbance).chain(inner)
     }
 
-    /// The numerators of these lengths from coefficients in that order.
+    /// Numerators of these lengths from coefficients in that order.
     pub(super) fn sorted(
         RateLengths { paths, inner }: RateLengths,
         flat: &mut impl Iterator<Item = S>,

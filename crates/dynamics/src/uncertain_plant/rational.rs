@@ -4,7 +4,7 @@ use num_complex::Complex64;
 
 use crate::linear::{LinearError, Polynomial, TransferFunction};
 
-/// A quotient of polynomials, highest power first.
+/// Quotient of polynomials, highest power first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RationalCoefficients<S> {
     /// Numerator coefficients.
@@ -14,7 +14,7 @@ pub struct RationalCoefficients<S> {
 }
 
 impl RationalCoefficients<f64> {
-    /// The quotient at s = j w, by Horner's rule.
+    /// Quotient at s = j w, by Horner's rule.
     pub fn at_frequency(&self, frequency_rad_per_s: f64) -> Complex64 {
         let s = Complex64::new(0.0, frequency_rad_per_s);
         let polynomial =
@@ -22,10 +22,10 @@ impl RationalCoefficients<f64> {
         polynomial(&self.numerator) / polynomial(&self.denominator)
     }
 
-    /// The quotient by its zeros, poles and gain.
+    /// Quotient by its zeros, poles and gain.
     ///
     /// # Errors
-    /// [`LinearError`] for a denominator that is zero, and for roots that are not found.
+    /// [`LinearError`] for a zero denominator, and for roots that are not found.
     ///
     /// # Example
     /// ```

@@ -1,4 +1,4 @@
-//! Errors that grow where no mode does.
+//! Errors that grow although no mode grows.
 
 use phea_dynamics::portable;
 use phea_dynamics::scalar::Scalar;
@@ -56,7 +56,7 @@ fn growth(depth: f64, kinks: usize) -> Option<(f64, GrowthCause)> {
     run.outcome.amplification.map(|grown| (grown.logarithm, grown.cause))
 }
 
-/// Both pieces are damped, and what they make of each other grows by the spectral radius of
+/// Both pieces are damped, but their product grows by the spectral radius of
 ///
 /// ```text
 /// M = E(w_2) E(w_1),   tr M = e^(-2 z T) (2 c_1 c_2 - (O_1/O_2 + O_2/O_1) s_1 s_2),   det M = e^(-4 z T)
@@ -75,12 +75,12 @@ fn an_error_grows_from_piece_to_piece_as_the_product_of_both() {
     let expected = PERIODS as f64 * portable::ln(radius);
     assert!(expected > 10.0);
     let (logarithm, cause) = growth(0.5, 1).unwrap();
-    // the first error is not that which grows most
+    // the initial error is not the one that grows most
     assert!((logarithm - expected).abs() < 1.5, "{logarithm} {expected}");
     assert_eq!(cause, GrowthCause::Motion);
 }
 
-/// An oscillator that is only damped grows by nothing, and one without kinks is not asked.
+/// An oscillator with damping only does not grow, and one without kinks is not followed.
 #[test]
 fn a_damped_motion_amplifies_nothing() {
     assert!(growth(0.01, 1).is_none_or(|(logarithm, _)| logarithm < 1.0));

@@ -1,4 +1,5 @@
-//! Continuous controllers: linear loops in closed form, limited loops against short equal steps.
+//! Continuous controllers: linear loops in closed form, limited loops compared with short equal
+//! steps.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{AntiWindup, Compensator, Controller, Element};
@@ -11,8 +12,8 @@ use phea_dynamics::time_response::{Interpolation, SampledSignal, forced_response
 
 use super::laws::{course, distance, run, simulate};
 
-/// gain/((s - p_1)(s - p_2) ...): y_n' = p_n y_n + gain (u + d), y_k' = p_k y_k + y_(k+1); measured
-/// is y_1. The load d is an input, and given to a feed-forward.
+/// gain/((s - p_1)(s - p_2) ...): y_n' = p_n y_n + gain (u + d), y_k' = p_k y_k + y_(k+1); the
+/// measurement is y_1. The load d is an input, which is fed forward.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Chain {
     poles: Vec<f64>,
@@ -57,7 +58,7 @@ impl Plant<f64> for Chain {
     }
 }
 
-/// The same with a load at its input.
+/// Plant with a load at its input.
 #[derive(Clone)]
 struct Loaded(Chain);
 
@@ -128,7 +129,7 @@ fn a_linear_loop_answers_as_its_transfer_function() {
     assert!(exact.iter().any(|value| *value > 2.9));
 }
 
-/// A load at the plant's input: P/(1 + L), and nothing at all when it is fed forward.
+/// A load at the plant's input: P/(1 + L), and zero when it is fed forward.
 #[test]
 fn a_load_is_answered_and_fed_forward() {
     let (chain, mut controller) = (Chain::new(vec![-1.0, -3.0], 10.0), dynamic());
@@ -172,12 +173,13 @@ fn saturating(anti_windup: AntiWindup, tolerance: f64) -> Simulated {
     result
 }
 
-/// y_1 by 10^5 equal steps a second of the midpoint rule, the integral i written out.
+/// Output y_1 by 10^5 equal steps a second of the midpoint rule, with the integral i as an explicit
+/// sum.
 ///
 /// ```text
 /// wanted = K_p e + i,    i' = K_i e                          none
 /// i' = K_i (e + (u - wanted)/K_p)                            back calculation
-/// i' = 0 where |wanted| > limit and wanted e > 0              clamping
+/// i' = 0 if |wanted| > limit and wanted e > 0              clamping
 /// ```
 fn by_short_steps(anti_windup: AntiWindup) -> Vec<f64> {
     let step = 1e-5;
@@ -227,12 +229,12 @@ fn a_limited_loop_winds_up_and_does_not() {
         assert!(result.outcome.work.steps < 3_000, "{anti_windup:?}: {:?}", result.outcome.work);
         greatest.push(exact.iter().fold(0.0_f64, |most, value| most.max(*value)));
     }
-    // 1.5 is wanted
+    // 1.5 is the command before the limit
     assert!(greatest[0] > greatest[2] && greatest[0] > greatest[1], "{greatest:?}");
 }
 
-/// The command that leaves is never above its limit, and the indicator of the limit shows when it
-/// binds.
+/// The limited command is never above its limit, and the indicator of the limit shows when it is
+/// active.
 #[test]
 fn the_limit_is_kept_and_told() {
     let result = saturating(AntiWindup::BackCalculation, 1e-8);
@@ -268,7 +270,7 @@ fn what_cannot_act_continuously_is_refused() {
     assert_eq!(CommandedPlant::in_loop(plant, &slow, 0.0), Err(LinearError::NoFeedthrough));
 }
 
-/// Without error there is nothing to do: the loop at rest stays at rest, in few steps.
+/// A loop at rest without error stays at rest, in few steps.
 #[test]
 fn a_loop_at_rest_stays_there() {
     let system = CommandedPlant::in_loop(Chain::new(vec![-1.0, -3.0], 1.0), &dynamic(), 0.0).unwrap();

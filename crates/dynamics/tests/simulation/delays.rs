@@ -1,4 +1,4 @@
-//! Delays: the method of steps in closed form, waves that are reflected, commands that arrive late.
+//! Delays: the method of steps in closed form, reflected waves, late commands.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
@@ -10,7 +10,7 @@ use phea_dynamics::time_response::delayed_loop_step;
 use super::closed_loop::Chain;
 use super::laws::{course, distance, run, run_by};
 
-/// y'(t) = -k y(t - T)
+/// Equation y'(t) = -k y(t - T).
 #[derive(Clone)]
 struct Late {
     gain: f64,
@@ -38,7 +38,7 @@ impl System<f64> for Late {
     }
 }
 
-/// sum over j of (-k (t - (j-1) T))^j/j! up to j = t/T + 1, for y = 1 until time zero
+/// Sum over j of (-k (t - (j-1) T))^j/j! up to j = t/T + 1, for y = 1 until time zero.
 fn by_steps(gain: f64, delay_s: f64, time_s: f64) -> f64 {
     let (mut sum, mut power) = (0.0, 0_i32);
     while time_s >= f64::from(power - 1) * delay_s {
@@ -64,8 +64,8 @@ fn a_late_integrator_is_a_polynomial_of_each_delay() {
     }
 }
 
-/// At k T = pi/2 it swings for ever: y = cos(pi t/2) is the solution of the history cos(pi t/2);
-/// with k T = 1 it dies out.
+/// At k T = pi/2 it oscillates for ever: y = cos(pi t/2) is the solution of the history cos(pi
+/// t/2); with k T = 1 it decays.
 #[test]
 fn a_late_integrator_over_many_delays() {
     for tolerance in [1e-6, 1e-9] {
@@ -75,7 +75,7 @@ fn a_late_integrator_over_many_delays() {
     }
 }
 
-/// A wave to and fro between a source and an end; y is the integral of what arrives at the end.
+/// A wave between a source and an end; y is the integral of the wave that arrives at the end.
 ///
 /// ```text
 /// a = s + r b(t - T_b),    b = q a(t - T_a),    y' = a(t - T_a)
@@ -110,7 +110,7 @@ impl System<f64> for Reflected {
 }
 
 impl Reflected {
-    /// The sum of the echoes of a source whose integral is known.
+    /// Sum of the echoes of a source whose integral is known.
     fn integral(&self, source: impl Fn(f64) -> f64, time_s: f64) -> f64 {
         let (mut sum, mut factor) = (0.0, 1.0);
         let mut left = time_s - self.delays_s[0];
@@ -123,7 +123,7 @@ impl Reflected {
     }
 }
 
-/// Steps of the source arrive as steps, as often as they are reflected.
+/// Steps of the source arrive as steps, after every reflection.
 #[test]
 fn steps_arrive_as_steps() {
     let source = Profile::steps(0.0, &[(1.0, 2.0), (1.25, -1.0)]).unwrap();
@@ -141,7 +141,7 @@ fn steps_arrive_as_steps() {
     }
 }
 
-/// What is smooth stays so: the echoes of a quintic motion.
+/// A smooth signal stays smooth: the echoes of a quintic motion.
 #[test]
 fn motions_arrive_as_motions() {
     let motion = Profile::smooth_step(1.0, 0.4, 1.0).unwrap();
@@ -154,7 +154,7 @@ fn motions_arrive_as_motions() {
     }
 }
 
-/// K e^(-s T)/s closed: polynomials again, from where the reference steps.
+/// K e^(-s T)/s closed: polynomials again, from the step of the reference on.
 #[test]
 fn a_late_command_of_a_continuous_controller() {
     let controller = |delay_s| Controller {
@@ -167,14 +167,14 @@ fn a_late_command_of_a_continuous_controller() {
     let closed = CommandedPlant::in_loop(integrator.clone(), &controller(delay_s), 0.0).unwrap();
     let inputs = vec![Input::Value(Profile::steps(0.0, &[(0.5, 1.0)]).unwrap())];
     let result = run(&closed, &[0.0], &course(1.8, 0.01, inputs.clone()), 1e-6);
-    // The error obeys e' = -2 e(t - T), e = 1 at the step and zero before: y moves one delay later.
+    // the error obeys e' = -2 e(t - T), e = 1 at the step and zero before: y moves one delay later
     let exact = |time_s: f64| {
         let since = time_s - 0.5 - delay_s;
         if since < 0.0 { 0.0 } else { 1.0 - by_steps(2.0, delay_s, since) }
     };
     assert!(distance(&result, 0, exact) < 1e-12, "{}", distance(&result, 0, exact));
-    // The same from the linear answer, straight over short steps: of second order in them; the row
-    // may be one step late.
+    // equal to the linear result, with linear signals over short steps: second order in them; the
+    // row may be one step late
     let path = TransferFunction::from_factors(2.0, vec![], vec![Complex64::new(0.0, 0.0)]).unwrap();
     let path = path.with_dead_time(delay_s).unwrap();
     let one = TransferFunction::gain_only(1.0);
@@ -187,8 +187,8 @@ fn a_late_command_of_a_continuous_controller() {
     }
 }
 
-/// A plant of order three, a proportional-integral controller and a delay, against the linear
-/// answer.
+/// A plant of order three, a proportional-integral controller and a delay, compared with the linear
+/// result.
 #[test]
 fn a_late_command_of_a_dynamic_controller() {
     let plant = Chain::new(vec![-2.0, -8.0, -20.0], 320.0);
@@ -206,7 +206,7 @@ fn a_late_command_of_a_dynamic_controller() {
     let closed = CommandedPlant::in_loop(plant, &controller, 0.0).unwrap();
     let inputs = vec![Input::Value(Profile::steps(0.0, &[(0.5, 1.0)]).unwrap())];
     let result = run(&closed, &[0.0; 5], &course(4.5, 0.05, inputs), 1e-9);
-    // Of second order in the step: two step sizes, extrapolated.
+    // second order in the step: two step sizes, extrapolated
     let answer = |steps| delayed_loop_step(&path, &one, &prefilter, 4.0, steps).unwrap();
     let [coarse, fine] = [answer(8_000), answer(16_000)];
     assert_eq!((coarse.0[8_000], fine.0[16_000]), (4.0, 4.0));

@@ -1,4 +1,4 @@
-//! Indicators that change sign, against closed forms.
+//! Indicators that change sign, compared with closed forms.
 
 use std::f64::consts::PI;
 
@@ -8,7 +8,7 @@ use phea_dynamics::simulation::{Input, Method, Profile, System};
 
 use super::laws::{course, run, run_by};
 
-/// x'' = -omega^2 x with an input w; the indicators are x - a for levels a, and w - 1/2.
+/// Oscillator x'' = -omega^2 x with an input w; the indicators are x - a for levels a, and w - 1/2.
 #[derive(Clone)]
 struct Watched {
     omega: f64,
@@ -62,7 +62,7 @@ fn zeros_of_a_sine() {
     }
 }
 
-/// Levels that are passed in one step are distinguished, in the order of time.
+/// Levels passed in one step are distinguished, in the order of time.
 #[test]
 fn several_in_one_step() {
     let levels = vec![0.5, -0.3, 0.1, 0.501, 0.0];
@@ -88,7 +88,7 @@ fn several_in_one_step() {
     }
 }
 
-/// What an input does at a break happens at the break; what it does between is found between.
+/// An event from a break of an input is at the break; one between breaks is found between them.
 #[test]
 fn at_and_between_breaks() {
     let system = Watched { omega: 1.0, levels: vec![] };
@@ -102,7 +102,8 @@ fn at_and_between_breaks() {
     assert_eq!(times, [(0.7, true), (1.1, false)]);
 }
 
-/// Nothing changes sign, nothing is reported; what is positive from the start has not become so.
+/// No event is reported without a change of sign; an indicator that is positive from the start has
+/// not become positive.
 #[test]
 fn nothing_happens() {
     let system = Watched { omega: 3.0, levels: vec![1.5, -1.5] };

@@ -1,4 +1,4 @@
-//! Two independent methods give one answer.
+//! Two independent methods give one result.
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{Input, Method, Profile, SimulationSettings, Status};
@@ -41,7 +41,8 @@ fn both_methods_agree_on_a_mild_system() {
     }
 }
 
-/// y' = -1e7 y: the explicit method is bounded by its stability, the implicit one is not.
+/// Equation y' = -1e7 y: stability bounds the step of the explicit method, but not of the implicit
+/// one.
 #[test]
 fn an_explicit_method_pays_for_a_fast_mode() {
     let stiff = Lawful(super::laws::Following(-1e7), 1.0);

@@ -1,4 +1,4 @@
-//! Growth of slow modes and of modes that a delay closes is reported, however fast the others are.
+//! Growth of slow modes, and of modes that a delay closes, is reported however fast the others are.
 
 use phea_dynamics::portable;
 use phea_dynamics::scalar::Scalar;
@@ -6,7 +6,7 @@ use phea_dynamics::simulation::{Amplification, Method, System};
 
 use super::laws::{Law, Lawful, course, settings, simulate};
 
-/// A damped oscillation of 1 krad/s, and next to it a slow mode, real or an oscillation.
+/// A damped oscillation of 1 krad/s, and a slow mode, real or oscillating.
 ///
 /// ```text
 /// x' = 1000 y,  y' = -1000 x - 200 y;      z' = a z - b v,  v' = b z + a v
@@ -48,7 +48,7 @@ fn a_slow_mode_that_grows_is_reported() {
     assert_eq!(grown(&Lawful(stable, 1.0), &[1e-3, 0.0, 0.1, 0.1], 8.0), None);
 }
 
-/// A level that leaks, seen late and fed back.
+/// A leaking level, measured late and fed back.
 ///
 /// ```text
 /// x' = -2 x + k x(t - d),       s + 2 = k e^(-s d)
@@ -81,7 +81,7 @@ impl System<f64> for SeenLate {
 }
 
 impl SeenLate {
-    /// The real root, by Newton's method.
+    /// Real root, by Newton's method.
     fn growth(&self) -> f64 {
         let mut root = 0.0_f64;
         for _ in 0..50 {

@@ -1,4 +1,4 @@
-//! Modes that grow are seen to grow, however small they are and however loose the tolerance.
+//! Growing modes are seen to grow, however small they are and however loose the tolerance.
 
 use phea_dynamics::portable;
 use phea_dynamics::random;
@@ -9,8 +9,8 @@ use phea_dynamics::simulation::{
 
 use super::laws::{Law, Lawful, course, settings, simulate};
 
-/// Two equal masses between three equal springs, each damped by the negative of a damper; positions
-/// x_1, x_2 and velocities over omega.
+/// Two equal masses between three equal springs, each with negative damping; positions x_1, x_2 and
+/// velocities over omega.
 ///
 /// ```text
 /// x_1'' = omega^2 (x_2 - 2 x_1) + 2 alpha x_1',    x_2'' = omega^2 (x_1 - 2 x_2) + 2 alpha x_2'
@@ -36,7 +36,7 @@ impl Law for TwoMasses {
 }
 
 impl TwoMasses {
-    /// Logarithms of both modes' amplitudes, each of which grows by alpha a second.
+    /// Logarithms of both modes' amplitudes, each of which grows by alpha per second.
     fn amplitudes(&self, y: &[f64]) -> [f64; 2] {
         [(1.0, 1.0), (-1.0, 3.0)].map(|(sign, square)| {
             let (position, velocity) = (y[0] + sign * y[1], self.omega * (y[2] + sign * y[3]));
@@ -46,7 +46,7 @@ impl TwoMasses {
     }
 }
 
-/// From a part of 1e-9 of critical damping to a tenth, below the tolerance and above it.
+/// Negative damping from 1e-9 to a tenth of the critical value, below the tolerance and above it.
 #[test]
 fn two_masses_grow_at_their_rate() {
     for (place, zeta) in [1e-9, 1e-7, 1e-5, 1e-3, 1e-2, 1e-1].into_iter().enumerate() {
@@ -84,8 +84,8 @@ fn two_masses_grow_at_their_rate() {
     }
 }
 
-/// A mass on a spring whose friction feeds it the more the later it is; what a command adds to its
-/// speed is nothing here.
+/// A mass on a spring whose friction feeds it increasingly with time; the effect of a command on
+/// its speed is zero here.
 ///
 /// ```text
 /// x' = omega y,   y' = -omega x + 2 a s y + w,   s' = 1        amplitude A exp(a (s^2 - s_0^2)/2), to the order of a/omega^2
@@ -117,7 +117,7 @@ impl System<f64> for Drifting {
 }
 
 impl Drifting {
-    /// Logarithm of the amplitude, and s, after some time.
+    /// Logarithm of the amplitude and s, after a given time.
     fn after(&self, duration_s: f64, from: f64, sample_time_s: Option<f64>) -> [f64; 2] {
         let sampler = sample_time_s.map(|period| Box::new(Nothing(period)) as Box<dyn Sampler>);
         let input = if sampler.is_some() { Input::Command } else { Input::Value(Profile::constant(0.0)) };
@@ -129,8 +129,8 @@ impl Drifting {
         [portable::ln(portable::hypot(x, y)), reached]
     }
 
-    /// Growth of the logarithm of the amplitude from one time to two seconds, over what it should
-    /// be.
+    /// Growth of the logarithm of the amplitude from one time to two seconds, over the expected
+    /// growth.
     fn relative_growth(&self, since_s: f64, from: f64, sample_time_s: Option<f64>) -> f64 {
         let [before, after] = [since_s, 2.0].map(|time_s| self.after(time_s, from, sample_time_s));
         let expected = 0.5 * self.rate * (after[1] * after[1] - before[1] * before[1]);
@@ -138,7 +138,7 @@ impl Drifting {
     }
 }
 
-/// A sampler that commands nothing.
+/// Sampler whose command is zero.
 struct Nothing(f64);
 
 impl Sampler for Nothing {
@@ -160,10 +160,9 @@ fn friction_that_feeds_more_and_more_is_followed() {
     assert!((grown - 1.0).abs() < 0.02, "{grown}");
 }
 
-/// From sample to sample it goes by matrices that are found once: these are found anew when
-/// friction has changed, so that a mode that decayed when they were found is seen to grow, through
-/// whatever angle it turns in a sample. (The first sample goes by the method, which may damp what
-/// decays.)
+/// From sample to sample the machine uses precomputed matrices: these are found again when friction
+/// has changed, so that a mode that decayed when they were found is seen to grow, for any angle of
+/// the mode within a sample. (The first sample uses the method, which may damp the decaying mode.)
 #[test]
 fn samples_do_not_hide_growth() {
     for angle in [0.3, 1.3, 2.6, 6.5, 13.0, 39.0] {
@@ -173,8 +172,8 @@ fn samples_do_not_hide_growth() {
     }
 }
 
-/// A course that is too long for the oscillation that would have to be followed ends, and names the
-/// mode.
+/// A simulation too long for the oscillation that would have to be resolved ends, and identifies
+/// the mode.
 #[test]
 fn what_cannot_be_resolved_is_told() {
     let law = TwoMasses { omega: 1e4, alpha: 20.0 };
@@ -187,13 +186,13 @@ fn what_cannot_be_resolved_is_told() {
         panic!("{:?}", run.outcome.status)
     };
     assert!(time_s > 0.0 && time_s < 1.0);
-    // The faster mode asks for the shorter steps.
+    // the faster mode requires the shorter steps
     assert!((frequency_rad_per_s / (1e4 * 3.0_f64.sqrt()) - 1.0).abs() < 1e-6);
     assert!((growth_per_s / 20.0 - 1.0).abs() < 1e-6);
 }
 
-/// A decaying oscillation, a fast decay and an integrator of both, seen in coordinates that are
-/// turned at random: one eigenvalue is zero but for rounding, and none grows.
+/// A decaying oscillation, a fast decay and an integrator of both, in randomly rotated coordinates:
+/// one eigenvalue is zero within rounding, and none grows.
 #[derive(Clone)]
 struct Turned([[f64; 4]; 4]);
 
@@ -232,7 +231,7 @@ impl Law for Turned {
     }
 }
 
-/// A run that takes too many steps says no more than that where nothing grows.
+/// A run with too many steps and without growth has only that status.
 #[test]
 fn an_integrator_does_not_grow() {
     for number in 0..64 {
@@ -244,8 +243,8 @@ fn an_integrator_does_not_grow() {
     }
 }
 
-/// A mass that creeps against friction far above critical, without any oscillation, until friction
-/// falls: the oscillation that comes up then is seen from its beginning.
+/// A mass that creeps against friction far above critical, without oscillation, until friction
+/// decreases: the oscillation that then arises is resolved from its beginning.
 ///
 /// ```text
 /// x' = omega y,   y' = -omega x - d(s) y + w,   s' = 1,   d = 1e5 (1 - s) before s = 1 and -400 (s - 1) after it
@@ -285,8 +284,8 @@ fn an_oscillation_that_was_not_there_is_seen_when_it_comes_up() {
         let run = simulate(&Loosening, &begin, &course, None, &settings, &mut |_| true).unwrap();
         assert_eq!(run.outcome.status, Status::Completed);
         let [x, y, _] = run.outcome.end[..] else { panic!("three states") };
-        // It grows by e^100, from however little the friction and rounding leave; what the motion
-        // alone makes of it is 1e-6.
+        // it grows by e^100, from the little that friction and rounding leave; the motion without
+        // growth gives 1e-6
         let amplitude = portable::ln(portable::hypot(x, y));
         assert!(amplitude > 30.0, "{tolerance:e}: {amplitude}");
     }

@@ -1,4 +1,4 @@
-//! Rates with a kink, as those of friction have one at a standstill.
+//! Rates with a kink, as friction has at standstill.
 
 use std::f64::consts::PI;
 
@@ -20,8 +20,8 @@ impl Law for Bent {
     }
 }
 
-/// y(1) = (p^2 + (1 - p)^2)/2 at a thousand p. Steps that are refused and shortened do not end
-/// where their error is blind; what is left are first attempts that begin so that it is.
+/// y(1) = (p^2 + (1 - p)^2)/2 at a thousand p. Rejected and shortened steps do not end where their
+/// error estimate is blind; the remaining errors are first attempts that happen to begin so.
 #[test]
 fn a_kink_is_met_to_the_tolerance_wherever_it_lies() {
     for tolerance in [1e-4, 1e-6, 1e-8] {
@@ -42,7 +42,7 @@ fn a_kink_is_met_to_the_tolerance_wherever_it_lies() {
     }
 }
 
-/// The same, its kink known.
+/// Motion with its kink listed.
 #[derive(Clone)]
 struct Marked(f64);
 
@@ -59,8 +59,8 @@ impl Law for Marked {
     }
 }
 
-/// Where the kink is known no step errs by more than a few tolerances, wherever it lies, a first
-/// attempt neither.
+/// No step with a listed kink errs by more than a few tolerances, for any position of the kink,
+/// including first attempts.
 #[test]
 fn a_known_kink_is_met_by_every_step() {
     for tolerance in [1e-4, 1e-6, 1e-8] {
@@ -75,8 +75,8 @@ fn a_known_kink_is_met_by_every_step() {
     }
 }
 
-/// A ball that falls on a spring, x'' = -1 + k (-x)+, from a height h: it is back after a fall, a
-/// part of a swing on the spring, and a rise.
+/// A ball that falls on a spring, x'' = -1 + k (-x)+, from a height h: it returns after a fall,
+/// part of an oscillation on the spring, and a rise.
 #[derive(Clone)]
 struct Ball(f64);
 
@@ -112,8 +112,8 @@ fn a_ball_comes_back_to_its_height() {
     }
 }
 
-/// Bristles under a velocity cos t: z' = v - |v| z, by the way since the last reversal. States sin
-/// t, cos t and z.
+/// Bristles under a velocity cos t: z' = v - |v| z, by the distance since the last reversal. States
+/// sin t, cos t and z.
 #[derive(Clone)]
 struct Bristles;
 

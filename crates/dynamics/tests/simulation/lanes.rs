@@ -1,4 +1,5 @@
-//! Machines side by side: each as if it were alone, to the last bit.
+//! Machines in parallel lanes: each result is bit-identical to that of the machine simulated
+//! separately.
 
 use phea_dynamics::scalar::{Dependence, Dual, LANES, Lanes, Scalar};
 use phea_dynamics::simulation::{
@@ -8,8 +9,8 @@ use phea_dynamics::simulation::{
 
 use super::laws::settings;
 
-/// A stiff pair, a stop, a limit, a command and, if there is one, a late wave: states x, v, z;
-/// inputs w, u and the wave of x.
+/// A stiff pair, a stop, a limit, a command and, optionally, a late wave: states x, v, z; inputs w,
+/// u and the wave of x.
 ///
 /// ```text
 /// x' = v,   v' = -k x - k (x - 1/20)+ + f v/(1 + v^2) - |v| v + w + u,   z' = r (x - z) + sqrt(|w| + 1/10) - x(t - T)/2
@@ -19,7 +20,7 @@ struct Machine<S> {
     stiffness: S,
     rate: S,
     delay_s: S,
-    /// What a falling friction feeds, f.
+    /// Force f that a falling friction feeds.
     feeding: S,
     waves: usize,
 }
@@ -73,11 +74,11 @@ struct Case {
     start: [f64; 3],
     course: InputSchedule,
     sample_time_s: Option<f64>,
-    /// Largest of what is added to each command.
+    /// Largest addition to each command.
     noise: f64,
 }
 
-/// What it commands, disturbed by a sequence that looks random.
+/// Command, disturbed by a pseudo-random sequence.
 struct Holding {
     sample_time_s: f64,
     noise: f64,
@@ -100,7 +101,7 @@ impl Sampler for Holding {
 /// Status, events, work and the bits of the last state.
 type Ended = (Status, Vec<Event>, [u64; 3], Vec<u64>);
 
-/// Everything that was seen, to the bit.
+/// All observations, to the bit.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Seen {
     bits: Vec<u64>,
@@ -118,7 +119,7 @@ impl Observer for Notes {
     }
 }
 
-/// Cases in some order; what came of each goes back to its place.
+/// Cases in some order; each result is returned to its position.
 struct Line<'a> {
     cases: &'a [Case],
     order: Vec<usize>,
@@ -210,7 +211,7 @@ fn neighbours_make_no_difference() {
     neighbours(&cases(), 1);
 }
 
-/// Without waves and looked at seldom, samples are joined by matrices that are found once.
+/// Samples are connected by precomputed matrices if there are no waves and few rows.
 #[test]
 fn neighbours_make_no_difference_from_sample_to_sample() {
     let mut cases = cases();
@@ -222,8 +223,8 @@ fn neighbours_make_no_difference_from_sample_to_sample() {
     neighbours(&cases, 0);
 }
 
-/// With commands that jump at every sample known matrices are refused now and then, while
-/// neighbours repeat steps.
+/// Precomputed matrices are sometimes rejected if commands jump at every sample, while neighbours
+/// repeat steps.
 #[test]
 fn neighbours_make_no_difference_where_commands_jump() {
     let mut cases = cases();
@@ -263,7 +264,7 @@ fn neighbours(cases: &[Case], waves: usize) {
     }
 }
 
-/// A neighbour that comes to no end in numbers takes nobody with it.
+/// A neighbour that becomes infinite does not affect the others.
 #[test]
 fn a_neighbour_that_fails_fails_alone() {
     let mut cases = cases();
@@ -285,8 +286,8 @@ fn a_neighbour_that_fails_fails_alone() {
     }
 }
 
-/// y' = sqrt(w), whose derivative at w = 0 is infinite: no harm while w does not change, whatever
-/// moves next to it.
+/// Equation y' = sqrt(w), whose derivative at w = 0 is infinite: harmless while w does not change,
+/// whatever its neighbours do.
 #[derive(Clone)]
 struct Root;
 
@@ -305,7 +306,7 @@ impl<S: Lane> System<S> for Root {
     }
 }
 
-/// Courses in order, and how they ended.
+/// Input schedules in order, and the status of each.
 struct Ends<'a>(Vec<&'a InputSchedule>, Vec<Status>, &'static [usize]);
 
 impl<'a, E> Queue<'a, E> for Ends<'a> {
@@ -346,7 +347,7 @@ fn a_state_that_is_not_there_is_not_looked_at() {
     assert!(matches!(result, Err(SimulationError::Count { found: 2, expected: 1, .. })), "{result:?}");
 }
 
-/// Whoever says stop stops everything: no machine is begun any more, each that was is handed back.
+/// A stop request stops all lanes: no further machine begins, and each running one is returned.
 #[test]
 fn stopping_stops_all() {
     struct Stopped<'a>(Line<'a>, usize);

@@ -1,4 +1,4 @@
-//! Systems with known solutions, and how the tests drive them.
+//! Systems with known solutions, and their simulation in the tests.
 
 use phea_dynamics::expression::{Expression, Recorded};
 use phea_dynamics::scalar::Scalar;
@@ -18,7 +18,7 @@ pub(crate) trait Law: Clone {
     fn mark<T: Scalar>(&self, _y: &[T], _w: &[T], _marks: &mut [T]) {}
 }
 
-/// A law as a system, with one scale for all its states.
+/// Law as a system, with one scale for all its states.
 #[derive(Clone)]
 pub(crate) struct Lawful<L>(pub(crate) L, pub(crate) f64);
 
@@ -43,8 +43,8 @@ impl<L: Law> System<f64> for Lawful<L> {
     }
 }
 
-/// A system whose equations were recorded: the methods, which are compiled for each type of a
-/// system, are compiled once for all.
+/// System with recorded equations: the methods, which are compiled for each type of system, are
+/// compiled once for all of them.
 #[derive(Clone)]
 struct Recording {
     scales: Vec<f64>,
@@ -78,11 +78,11 @@ impl Recording {
     }
 }
 
-/// What functions of states and inputs write into their results.
+/// Functions of states and inputs that write their results.
 type Equations<'a> =
     &'a mut dyn for<'tape> FnMut(&[Recorded<'tape>], &[Recorded<'tape>], &mut [Recorded<'tape>]);
 
-/// So many functions of states and inputs.
+/// Given number of functions of states and inputs.
 fn recorded(states: usize, inputs: usize, results: usize, equations: Equations<'_>) -> Expression {
     Expression::record(&vec![""; states + inputs], |parameters| {
         let mut found = vec![Recorded::from(f64::NAN); results];
@@ -132,7 +132,7 @@ impl System<f64> for Recording {
     }
 }
 
-/// As [`simulation::simulate`] does, from the system's equations as they are recorded.
+/// Simulation as in [`simulation::simulate`], from the recorded equations of the system.
 pub(crate) fn simulate<E: System<f64>>(
     system: &E,
     start: &[f64],
@@ -144,7 +144,7 @@ pub(crate) fn simulate<E: System<f64>>(
     simulation::simulate(&Recording::of(system), start, course, sampler, settings, watch)
 }
 
-/// y' = w
+/// Equation y' = w.
 #[derive(Clone)]
 pub(crate) struct Integral;
 
@@ -157,7 +157,8 @@ impl Law for Integral {
     }
 }
 
-/// y' = lambda (y - w) + w',  y = w when begun there (Prothero and Robinson 1974)
+/// Equation y' = lambda (y - w) + w', with solution y = w if y starts at w (Prothero and Robinson
+/// 1974).
 #[derive(Clone)]
 pub(crate) struct Following(pub(crate) f64);
 
@@ -170,7 +171,7 @@ impl Law for Following {
     }
 }
 
-/// y' = -w' y^2,  y = 1/(1/y_0 + w)
+/// Equation y' = -w' y^2, with solution y = 1/(1/y_0 + w).
 #[derive(Clone)]
 pub(crate) struct Reciprocal;
 
@@ -183,7 +184,7 @@ impl Law for Reciprocal {
     }
 }
 
-/// x'' = -omega^2 x; the states are x and x'/omega
+/// Oscillator x'' = -omega^2 x; the states are x and x'/omega.
 #[derive(Clone)]
 pub(crate) struct Oscillator(pub(crate) f64);
 
@@ -204,7 +205,7 @@ pub(crate) fn settings(tolerance: f64, method: Method) -> SimulationSettings {
     SimulationSettings { tolerance, method, ..SimulationSettings::default() }
 }
 
-/// Driven to its end by the implicit method.
+/// Simulates to the end by the implicit method.
 pub(crate) fn run<E: System<f64> + Clone>(
     system: &E,
     start: &[f64],
@@ -214,7 +215,7 @@ pub(crate) fn run<E: System<f64> + Clone>(
     run_by(Method::Rosenbrock, system, start, course, tolerance)
 }
 
-/// Driven to its end.
+/// Simulates to the end.
 pub(crate) fn run_by<E: System<f64> + Clone>(
     method: Method,
     system: &E,
@@ -227,13 +228,13 @@ pub(crate) fn run_by<E: System<f64> + Clone>(
     result
 }
 
-/// The greatest distance of one state from a function of time, over all rows.
+/// Greatest distance of one state from a function of time, over all rows.
 pub(crate) fn distance(result: &Simulated, state: usize, exact: impl Fn(f64) -> f64) -> f64 {
     let rows = result.trajectory.times_s.iter().zip(&result.trajectory.states);
     rows.map(|(&time_s, row)| (row[state] - exact(time_s)).abs()).fold(0.0, f64::max)
 }
 
-/// The last row of one state.
+/// Last row of one state.
 pub(crate) fn last(result: &Simulated, state: usize) -> f64 {
     result.outcome.end[state]
 }

@@ -1,4 +1,4 @@
-//! Orders of convergence, of the steps and between them.
+//! Orders of convergence at the ends of steps and between them.
 
 use std::f64::consts::PI;
 
@@ -9,8 +9,8 @@ use super::laws::{Lawful, Oscillator, Reciprocal, course, distance, run_by};
 
 const METHODS: [Method; 2] = [Method::Rosenbrock, Method::DormandPrince];
 
-/// y = 1/(2 + sin(2 t)), with `steps` equal steps in 3 s: an input that nothing depends on breaks
-/// there, and a scale of 1e12 leaves the error no say.
+/// y = 1/(2 + sin(2 t)), with `steps` equal steps in 3 s: an unused input breaks there, and a scale
+/// of 1e12 removes the effect of the error.
 fn by_equal_steps(method: Method, steps: u32, rows: f64) -> Simulated {
     let breaks: Vec<(f64, f64)> =
         (1..steps).map(|step| (3.0 * f64::from(step) / f64::from(steps), f64::from(step % 2))).collect();
@@ -37,7 +37,7 @@ fn halving_the_step_leaves_a_thirty_second_of_the_error() {
     }
 }
 
-/// Rows at 0.07, 0.14 ... of the course fall anywhere in the steps.
+/// Rows at 0.07, 0.14 ... of the duration are anywhere in the steps.
 #[test]
 fn rows_between_steps_are_of_order_four_at_least() {
     for method in METHODS {
@@ -66,7 +66,7 @@ fn the_error_follows_the_tolerance_and_the_work_its_fifth_root() {
     }
 }
 
-/// What is conserved by x'' = -x drifts no faster than the tolerance lets it.
+/// The invariant of x'' = -x drifts no faster than the tolerance allows.
 #[test]
 fn the_energy_of_an_oscillator_is_kept() {
     for method in METHODS {

@@ -1,4 +1,4 @@
-//! Where inputs break the method begins anew: nothing is stepped over, nothing is smeared.
+//! The method restarts at breaks of the inputs: none is missed, none is smeared.
 
 use phea_dynamics::portable;
 use phea_dynamics::scalar::Scalar;
@@ -6,7 +6,7 @@ use phea_dynamics::simulation::{Input, Profile};
 
 use super::laws::{Following, Integral, Law, Lawful, course, distance, last, run};
 
-/// y' = w - y
+/// Equation y' = w - y.
 #[derive(Clone)]
 struct Lag;
 
@@ -36,7 +36,7 @@ fn steps_of_an_input_are_integrated_exactly() {
     assert_eq!((result.outcome.work.steps, result.outcome.work.rejected), (100, 0));
 }
 
-/// At a break the rows show the inputs as they are from then on, and the state is continuous.
+/// At a break the rows show the inputs after it, and the state is continuous.
 #[test]
 fn the_answer_to_a_step_begins_at_the_step() {
     for tolerance in [1e-4, 1e-7, 1e-10] {
@@ -64,8 +64,7 @@ fn a_short_bump_is_not_stepped_over() {
     }
 }
 
-/// Every kind of motion, begun in the middle of nothing: its velocity's integral is the way that
-/// was gone.
+/// Every kind of motion, begun at an arbitrary time: the integral of its velocity is the distance.
 #[test]
 fn motions_are_followed_from_their_start() {
     let motions = [
@@ -92,7 +91,8 @@ fn course_of_following(motion: &Profile) -> f64 {
     distance(&result, 0, |time_s| motion.value(time_s))
 }
 
-/// Breaks at time zero, at the end, twice at one time, and as close as numbers are.
+/// Breaks at time zero, at the end, twice at one time, and as close as floating-point numbers
+/// allow.
 #[test]
 fn breaks_may_coincide() {
     let sum = 0.1 + 0.2;
@@ -100,7 +100,7 @@ fn breaks_may_coincide() {
         Input::Value(Profile::steps(5.0, &[(0.0, 1.0), (0.3, 2.0), (1.0, 9.0)]).unwrap()),
         Input::Value(Profile::steps(0.0, &[(sum, 4.0), (0.6, 0.0), (2.0, 7.0)]).unwrap()),
     ];
-    /// y' = u + v
+    /// Equation y' = u + v.
     #[derive(Clone)]
     struct Both;
     impl Law for Both {

@@ -1,4 +1,4 @@
-//! A held command: linear plants against their exact discretisation.
+//! A held command: linear plants compared with their exact discretisation.
 
 use nalgebra::{DMatrix, DVector};
 use phea_dynamics::linear::{Discretization, StateSpace, TimeDomain, TransferFunction};
@@ -52,7 +52,7 @@ impl Plant<f64> for Spring {
     }
 }
 
-/// u_k = 0.2 e_k + 0.05 sum of e: what it saw and said is written down.
+/// Control law u_k = 0.2 e_k + 0.05 sum of e, with a record of its inputs and outputs.
 struct Integrating<'a> {
     sample_time_s: f64,
     delay_s: f64,
@@ -80,8 +80,8 @@ impl Sampler for Integrating<'_> {
     }
 }
 
-/// The same by matrix exponentials: from each sample to where a command arrives, and on to the next
-/// sample.
+/// Reference solution by matrix exponentials: from each sample to the arrival of a command, and on
+/// to the next sample.
 fn exactly(spring: &Spring, sample_time_s: f64, delay_s: f64, samples: usize) -> Vec<[f64; 3]> {
     let system = spring.system();
     let whole = (delay_s / sample_time_s + 1e-9).floor();
@@ -158,13 +158,13 @@ fn a_million_samples_a_second() {
     check(1e-6, 2.7e-6, 200);
 }
 
-/// A delay too short for any step to end after it.
+/// A delay too short for any step to end within it.
 #[test]
 fn a_delay_below_rounding_is_none() {
     check(0.1, 1e-19, 40);
 }
 
-/// Rows at the samples show the command that holds from then on.
+/// Rows at the samples show the command that applies afterwards.
 #[test]
 fn rows_show_the_command_that_is_held() {
     let plant = CommandedPlant::on_hold(Spring { rate: 1.0 }, &TransferFunction::gain_only(1.0)).unwrap();
@@ -182,8 +182,8 @@ fn rows_show_the_command_that_is_held() {
     }
 }
 
-/// A step of the reference at a whole number of samples acts at that sample, whatever rounding
-/// makes of the two times: its transient is that of any other, shifted.
+/// A step of the reference at a whole number of samples acts at that sample, whatever the rounding
+/// of the two times: its transient is that of any other, shifted.
 #[test]
 fn a_step_at_a_sample_acts_there() {
     let plant = CommandedPlant::on_hold(Spring { rate: 300.0 }, &TransferFunction::gain_only(1.0)).unwrap();
@@ -201,8 +201,7 @@ fn a_step_at_a_sample_acts_there() {
         assert!(still.iter().all(|row| row[2] == 0.0), "{samples}");
         moving.iter().take(50).map(|row| row[2]).collect::<Vec<f64>>()
     };
-    // tenths of a millisecond, and on which side of the decimal fraction the rounding of the
-    // product lies
+    // tenths of a millisecond, with the product rounded to either side of the decimal fraction
     for (tenths, below) in [(7, true), (11, false)] {
         let decimal = |samples: u32| f64::from(tenths * samples) / 1e4;
         let off = (1..200).map(|samples| f64::from(samples) * decimal(1) - decimal(samples));
@@ -216,7 +215,7 @@ fn a_step_at_a_sample_acts_there() {
     }
 }
 
-/// A row that falls on a break, but for rounding, is of what follows.
+/// A row at a break, within rounding, shows the values after it.
 #[test]
 fn a_row_at_a_break_shows_what_follows() {
     for rows in 1..300_u32 {
@@ -231,8 +230,7 @@ fn a_row_at_a_break_shows_what_follows() {
     }
 }
 
-/// A pendulum-like plant whose stiffness grows with its swing and which loses its way when the
-/// valve closes.
+/// A pendulum-like plant whose stiffness increases with its amplitude, with a valve that closes.
 ///
 /// ```text
 /// x' = v,   v' = z - 9 x - 4 x^3 - |v| v,   z' = (u - z) sqrt(1 + z^2) 8
@@ -266,8 +264,8 @@ impl Plant<f64> for Bent {
     }
 }
 
-/// From sample to sample by matrices found once, or by a method that knows of none: one answer,
-/// within the tolerance.
+/// From sample to sample by precomputed matrices, or by a method without them: one result, within
+/// the tolerance.
 #[test]
 fn a_bent_plant_gets_from_sample_to_sample() {
     let plant = CommandedPlant::on_hold(Bent, &TransferFunction::gain_only(1.0)).unwrap();

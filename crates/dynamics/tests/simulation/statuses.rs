@@ -1,4 +1,4 @@
-//! How simulations end, and what is refused.
+//! End statuses of simulations, and rejected inputs.
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{
@@ -8,7 +8,7 @@ use phea_dynamics::simulation::{
 
 use super::laws::{Integral, Law, Lawful, Oscillator, course, simulate};
 
-/// y' = y^2,  y = 1/(1 - t)
+/// Equation y' = y^2, with solution y = 1/(1 - t).
 #[derive(Clone)]
 struct Blow;
 
@@ -20,7 +20,8 @@ impl Law for Blow {
     }
 }
 
-/// y' = -sqrt(y),  y = (1 - t/2)^2, at rest from t = 2 on; a number no more if it slips below.
+/// Equation y' = -sqrt(y), with solution y = (1 - t/2)^2, at rest from t = 2 on; NaN if it becomes
+/// negative.
 #[derive(Clone)]
 struct Draining;
 
@@ -32,7 +33,7 @@ impl Law for Draining {
     }
 }
 
-/// y' = 1000 y
+/// Equation y' = 1000 y.
 #[derive(Clone)]
 struct Growing;
 
@@ -44,7 +45,7 @@ impl Law for Growing {
     }
 }
 
-/// y' = -sign(y), which no step can end on
+/// Equation y' = -sign(y), on which no step can end.
 #[derive(Clone)]
 struct Chattering;
 
@@ -120,7 +121,8 @@ fn work_is_bounded() {
     }
 }
 
-/// Told the time of each step, stopped at the first that is late enough; the rows before are kept.
+/// The watch receives the time of each step and stops at the first that is late enough; the rows
+/// before are retained.
 #[test]
 fn stopping_it() {
     let system = Lawful(Oscillator(1.0), 1.0);
@@ -213,7 +215,7 @@ fn what_does_not_fit_is_refused() {
     assert!(counted(refused(&[0.0], &InputSchedule { inputs: vec![], ..good }, None, 1e-6)));
 }
 
-/// A magnitude that is none would make every error infinite or nothing.
+/// An invalid magnitude would make every error infinite or zero.
 #[test]
 fn a_scale_that_is_no_magnitude_is_refused() {
     for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
@@ -225,7 +227,7 @@ fn a_scale_that_is_no_magnitude_is_refused() {
     }
 }
 
-/// No states: only time passes.
+/// Only time advances in a system without states.
 #[test]
 fn a_system_without_states_arrives() {
     #[derive(Clone)]

@@ -9,7 +9,7 @@ use phea_dynamics::time_response::{SampledSignal, forced_response_of_states};
 
 use super::laws::{Following, Law, Lawful, course, distance, last, run};
 
-/// y' = lambda y
+/// Equation y' = lambda y.
 #[derive(Clone)]
 struct Decay(f64);
 
@@ -21,7 +21,7 @@ impl Law for Decay {
     }
 }
 
-/// One step of 1 s, the error having no say: R(h lambda) tends to zero.
+/// One step of 1 s, without error control: R(h lambda) tends to zero.
 #[test]
 fn a_fast_mode_is_gone_after_one_step() {
     for (rate, left) in [(-1e6, 1e-4), (-1e9, 1e-7), (-1e12, 1e-10)] {
@@ -40,7 +40,7 @@ fn a_fast_mode_restricts_no_step() {
     }
 }
 
-/// y follows w = sin(3 t) exactly, however stiffly it is bound to it.
+/// y follows w = sin(3 t) exactly, however stiffly it is coupled to it.
 #[test]
 fn what_is_bound_stiffly_follows() {
     let sine = Profile::sine(0.0, 1.0, 3.0).unwrap();
@@ -59,7 +59,8 @@ fn what_is_bound_stiffly_follows() {
     }
 }
 
-/// y_1' = y_2,  y_2' = ((1 - y_1^2) y_2 - y_1)/epsilon: mu = 1e3 in the time of the relaxation.
+/// Equations y_1' = y_2,  y_2' = ((1 - y_1^2) y_2 - y_1)/epsilon: mu = 1e3 in the time of the
+/// relaxation.
 #[derive(Clone)]
 struct VanDerPol;
 
@@ -122,7 +123,7 @@ fn robertsons_reactions() {
     }
 }
 
-/// y' = A y + B w
+/// Equation y' = A y + B w.
 #[derive(Clone)]
 struct Linear {
     a: DMatrix<f64>,
@@ -148,7 +149,7 @@ impl System<f64> for Linear {
     }
 }
 
-/// Seven states make more colours than one evaluation has directions; modes at 1, 30 and 1e5 rad/s.
+/// Seven states need more colours than one evaluation has directions; modes at 1, 30 and 1e5 rad/s.
 #[test]
 fn a_linear_system_answers_as_its_matrix_exponential() {
     let size = 7;

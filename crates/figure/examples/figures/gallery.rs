@@ -121,7 +121,7 @@ pub(crate) fn stiffness() -> Figure {
     .draw(&words("stiffness", "Hydraulic stiffness over the stroke"))
 }
 
-/// A stiff pipe beside the hose: the axis becomes logarithmic.
+/// A stiff pipe next to the hose: the axis becomes logarithmic.
 pub(crate) fn stiffness_against_pipe() -> Figure {
     let places: Vec<f64> = (0..=100).map(|i| STROKE * f64::from(i) / 100.0).collect();
     let curve = |name: &str, line: f64, modulus: f64, uniform: bool| StiffnessCurve {
@@ -370,7 +370,7 @@ pub(crate) fn circuit() -> Figure {
     circuit_of_hoses().draw(&words("schematic", "The rig"))
 }
 
-/// What it shows.
+/// Content of the figure.
 pub(crate) fn circuit_of_hoses() -> Schematic {
     let hose = LineSymbol {
         kind: LineKind::Hose,

@@ -106,7 +106,7 @@ fn response(of: impl Fn(Complex64) -> Complex64, frequencies: &[f64]) -> Vec<Com
     frequencies.iter().map(|w| of(Complex64::new(0.0, *w))).collect()
 }
 
-/// Over phases two degrees apart, of the listed plants alone.
+/// Over phases two degrees apart, of the listed plants only.
 fn bound(plants: &[Plant], requirement: &Requirement, frequency: f64) -> Bound {
     let function =
         BoundFunction::new(&template(plants, frequency, false), requirement, TemplateFill::Points).unwrap();

@@ -1,7 +1,7 @@
-//! What a response may still come to, as an edge of a band.
+//! Future extreme of a response as an edge of a band.
 
-/// The edge of the band that a limit's response allows: itself until it is farthest out, then the
-/// farthest out that it will still be. `outwards` is 1 for the upper limit and -1 for the lower.
+/// Edge of the band that a limit's response allows: the response itself until it is farthest out,
+/// then its farthest future value. `outwards` is 1 for the upper limit and -1 for the lower.
 pub(super) fn settling(mut points: Vec<(f64, f64)>, outwards: f64) -> Vec<(f64, f64)> {
     points.retain(|point| point.0.is_finite() && point.1.is_finite());
     let mut reach = f64::NEG_INFINITY;

@@ -1,23 +1,23 @@
-//! The edges of a bound: from forbidden gains at each phase to curves.
+//! Edges of a bound: from forbidden gains at each phase to curves.
 
 use phea_dynamics::portable::log10;
 use phea_qft::bound::Bound;
 
-/// Stands for a gain of zero or infinity, dB: outside of every chart.
+/// Magnitude that represents a gain of zero or infinity, dB: outside every chart.
 const FAR_DB: f64 = 1e3;
 
-/// A piece of the edge of a bound. What is forbidden lies on its right-hand side, seen along it on
-/// a chart with phase to the right and magnitude upwards.
+/// Piece of the edge of a bound. The forbidden side is on its right, seen along it on a chart with
+/// phase to the right and magnitude upwards.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Boundary {
-    /// (phase in degrees, magnitude in dB); a gain of zero or infinity as a magnitude of -1000 or
-    /// 1000.
+    /// Points (phase in degrees, magnitude in dB); a gain of zero or infinity as a magnitude of
+    /// -1000 or 1000.
     pub points: Vec<(f64, f64)>,
-    /// The last point joins the first: an island.
+    /// True if the last point joins the first: an island.
     pub closed: bool,
 }
 
-/// The forbidden spans at one phase, degrees and dB.
+/// Forbidden spans at one phase, degrees and dB.
 struct PhaseColumn {
     phase: f64,
     spans: Vec<[f64; 2]>,
@@ -29,16 +29,16 @@ impl PhaseColumn {
     }
 }
 
-/// The way from one end of a span to the next end along the edge.
+/// Link from the end of one span to the next end along the edge.
 #[derive(Clone)]
 struct Link {
     to: usize,
     via: Vec<(f64, f64)>,
 }
 
-/// The edges of a bound. Spans that overlap at neighbouring phases belong together; where one
-/// appears, ends, splits or joins, its tip is drawn as a parabola whose place follows from the last
-/// two phases.
+/// The edges of a bound. Spans that overlap at neighbouring phases belong together; where a span
+/// appears, ends, splits or joins, its tip is drawn as a parabola whose position follows from the
+/// last two phases.
 ///
 /// # Example
 /// ```
@@ -75,7 +75,7 @@ pub fn boundaries(bound: &Bound) -> Vec<Boundary> {
     chained(&ends, links)
 }
 
-/// The phases that are finite and increase, each with its spans in dB.
+/// Finite and increasing phases, each with its spans in dB.
 fn columns(bound: &Bound) -> Vec<PhaseColumn> {
     let decibel = |gain: f64| {
         if gain > 0.0 { (20.0 * log10(gain)).clamp(-FAR_DB, FAR_DB) } else { -FAR_DB }
@@ -91,9 +91,9 @@ fn columns(bound: &Bound) -> Vec<PhaseColumn> {
     columns
 }
 
-/// Two neighbouring phases. The ends of spans are counted from the first phase on, the lower end of
-/// a span before its upper one. Along an edge upper ends lead to the right and lower ends to the
-/// left.
+/// Pair of neighbouring phases. The ends of spans are counted from the first phase on, the lower
+/// end of a span before its upper one. Along an edge upper ends lead to the right and lower ends to
+/// the left.
 struct Strip<'a> {
     columns: &'a [PhaseColumn],
     first_ends: &'a [usize],
@@ -154,8 +154,8 @@ impl Strip<'_> {
         }
     }
 
-    /// Links the ends of spans that belong together: the outermost across, the others around the
-    /// tips between them.
+    /// Links the ends of spans that belong together: the outermost ends across, the others around
+    /// the tips between them.
     fn join(&self, left: std::ops::Range<usize>, right: std::ops::Range<usize>, links: &mut [Option<Link>]) {
         let mut set = |from: usize, to: usize, via: Vec<(f64, f64)>| {
             if let Some(link) = links.get_mut(from) {
@@ -188,9 +188,8 @@ impl Strip<'_> {
         }
     }
 
-    /// The tip of a span or gap that is there at one phase and gone at the next. Its height shrinks
-    /// with the square root of the distance to the tip, so its square at two phases gives the
-    /// place.
+    /// Tip of a span or gap that exists at one phase and not at the next. Its height shrinks with
+    /// the square root of the distance to the tip, so its square at two phases gives the position.
     fn tip(&self, at: usize, beyond: usize, which: usize, of: impl Fn(&PhaseColumn) -> Vec<[f64; 2]>) -> Tip {
         let phase = |index: usize| self.column(index).map_or(0.0, |column| column.phase);
         let spans = |index: usize| self.column(index).map(&of).unwrap_or_default();
@@ -219,7 +218,7 @@ impl PhaseColumn {
     }
 }
 
-/// A parabola that closes a span.
+/// Parabola that closes a span.
 struct Tip {
     phase: f64,
     reach: f64,
@@ -227,7 +226,7 @@ struct Tip {
 }
 
 impl Tip {
-    /// From the upper end of the span to the lower.
+    /// Points from the upper end of the span to the lower.
     fn downwards(&self) -> Vec<(f64, f64)> {
         let (middle, half) = (0.5 * (self.span[0] + self.span[1]), 0.5 * (self.span[1] - self.span[0]));
         [0.8, 0.5, 0.2, 0.0, -0.2, -0.5, -0.8]
@@ -242,8 +241,7 @@ impl Tip {
     }
 }
 
-/// Follows the links: first the edges that begin somewhere, then those that return to their
-/// beginning.
+/// Follows the links: first the open edges, then the closed ones.
 fn chained(ends: &[(f64, f64)], mut links: Vec<Option<Link>>) -> Vec<Boundary> {
     let mut is_reached = vec![false; ends.len()];
     for link in links.iter().flatten() {

@@ -1,4 +1,4 @@
-//! The parts of a Nichols chart in their place: axes, marks, labels, legend.
+//! Parts of a Nichols chart in position: axes, marks, labels, legend.
 
 use std::ops::RangeInclusive;
 
@@ -18,15 +18,15 @@ use super::{Boundary, NicholsChart, OpenLoopViolation, boundaries, magnitude_con
 
 /// Phases that every chart shows, degrees.
 const PHASES: [f64; 2] = [-270.0, 0.0];
-/// A loop below this magnitude is far from the critical points whatever its phase, dB.
+/// Magnitude below which a loop is far from the critical points at any phase, dB.
 const FAR_BELOW_DB: f64 = -12.0;
-/// Magnitudes of what may widen the axis of phase beyond a whole turn, dB: outside of them the
-/// phase of a loop decides nothing.
+/// Magnitudes of the points that may widen the phase axis beyond a whole turn, dB: outside this
+/// range the phase of a loop is irrelevant.
 const NEAR_DB: RangeInclusive<f64> = -30.0..=30.0;
-/// Most turns that an axis of phase shows on either side of -360 to 0 degrees.
+/// Largest number of turns that a phase axis shows on either side of -360 to 0 degrees.
 const TURNS: i32 = 2;
 
-/// A chart in its place: axes, curves, and the colour of each frequency.
+/// Chart in position: axes, curves, and the colour of each frequency.
 pub(super) struct PlacedChart<'a> {
     chart: &'a NicholsChart<'a>,
     frequencies: Vec<f64>,
@@ -34,7 +34,7 @@ pub(super) struct PlacedChart<'a> {
     marks: Vec<LoopMark>,
     violations: Vec<(f64, f64)>,
     templates: Vec<PlacedTemplate>,
-    /// For each group and each of its bounds: edges between -360 and 0 degrees.
+    /// Edges between -360 and 0 degrees for each group and each of its bounds.
     boundaries: Vec<Vec<Vec<Boundary>>>,
     pub(super) x: Axis,
     pub(super) y: Axis,
@@ -75,8 +75,7 @@ impl<'a> PlacedChart<'a> {
         placed
     }
 
-    /// Everything within the frame from back to front; labels in the order of their claim to a
-    /// place.
+    /// All marks within the frame from back to front; labels in order of priority.
     pub(super) fn all_marks(&self) -> Vec<Mark> {
         let mut marks = self.contours();
         marks.extend(self.templates.iter().flat_map(PlacedTemplate::marks));
@@ -90,8 +89,8 @@ impl<'a> PlacedChart<'a> {
         marks
     }
 
-    /// Holds marks, templates, violations, and of bounds what lies between -60 and 80 dB; of loops
-    /// without marks likewise.
+    /// Magnitude axis that covers marks, templates and violations, and the parts of bounds between
+    /// -60 and 80 dB; also of loops without marks.
     fn magnitude_axis(&self) -> Axis {
         let marked = self
             .marks
@@ -105,8 +104,9 @@ impl<'a> PlacedChart<'a> {
         decibel_axis(&self.y.title, marked.chain(filled).chain(near).chain([-20.0, 20.0]))
     }
 
-    /// From -270 to 0 degrees, and on by quarter turns where a loop near 0 dB, or a violation that
-    /// can be seen, needs it; a mark or a template far from 0 dB widens it to -360 degrees at most.
+    /// Phase axis from -270 to 0 degrees, extended by quarter turns if a loop near 0 dB, or a
+    /// visible violation, requires it; a mark or a template far from 0 dB extends it to -360
+    /// degrees at most.
     fn phase_axis(&self) -> Axis {
         let loops = self.loops.iter().flat_map(|one| one.points.iter().copied());
         let loops = loops.filter(|point| (FAR_BELOW_DB..=*NEAR_DB.end()).contains(&point.1));
@@ -126,7 +126,8 @@ impl<'a> PlacedChart<'a> {
         Axis { steps, ..Axis::linear(self.x.title.clone(), low, high) }
     }
 
-    /// Shifts by whole turns that bring something between -360 and 0 degrees into sight.
+    /// Shifts by whole turns that bring points between -360 and 0 degrees into the range of the
+    /// axis.
     fn turns(&self) -> impl Iterator<Item = f64> + use<> {
         let (low, high) = (self.x.minimum, self.x.maximum);
         (-TURNS..=TURNS)
@@ -162,7 +163,7 @@ impl<'a> PlacedChart<'a> {
         marks
     }
 
-    /// Every edge with the index of its group and of its bound.
+    /// All edges with the index of their group and of their bound.
     fn edges(&self) -> impl Iterator<Item = (usize, usize, &Boundary)> {
         self.boundaries.iter().enumerate().flat_map(|(group, bounds)| {
             bounds
@@ -176,7 +177,8 @@ impl<'a> PlacedChart<'a> {
         self.chart.bounds.get(group)?.bounds.get(index)
     }
 
-    /// Colour by frequency; dashes by group, or by frequency where there is one group.
+    /// Stroke of a bound: colour by frequency; dash pattern by group, or by frequency if there is
+    /// one group.
     fn bound_stroke(&self, group: usize, bound: &Bound) -> Stroke {
         let role = role(&self.frequencies, bound.frequency_rad_per_s);
         let dash = match (self.chart.bounds.len(), role) {
@@ -224,7 +226,7 @@ impl<'a> PlacedChart<'a> {
             .collect()
     }
 
-    /// On the first loop; the colour shows the frequency on the others.
+    /// Frequency labels on the first loop; on the others the colour shows the frequency.
     fn frequency_labels(&self) -> Vec<Mark> {
         self.marks
             .iter()
@@ -237,13 +239,14 @@ impl<'a> PlacedChart<'a> {
             .collect()
     }
 
-    /// A single loop has the colour of text; several are distinguished by colour and dashes.
+    /// Stroke of a loop: a single loop has the text colour; several are distinguished by colour and
+    /// dash pattern.
     fn loop_stroke(&self, index: usize) -> Stroke {
         let role = if self.loops.len() > 1 { series_role(index) } else { Role::Text };
         Stroke::solid(role, 2.4).dashed(series_dash(index))
     }
 
-    /// The frequency upon the longest edge of each bound, at another part of it for each.
+    /// Frequency label on the longest edge of each bound, each at a different part of it.
     fn bound_labels(&self) -> Vec<Mark> {
         let mut marks = Vec::new();
         for (group, bounds) in self.boundaries.iter().enumerate() {
@@ -265,7 +268,7 @@ impl<'a> PlacedChart<'a> {
         marks
     }
 
-    /// Upon closed contours above the critical point; of the others at the border.
+    /// Contour labels: on closed contours above the critical point, on the others at the border.
     fn contour_labels(&self) -> Vec<Mark> {
         let text = |contour: f64| decimal(contour, usize::from(contour.fract() != 0.0));
         self.chart
@@ -320,10 +323,10 @@ fn contour_stroke() -> Stroke {
     Stroke::solid(Role::Muted, 0.6)
 }
 
-/// A design frequency on one of the loops.
+/// Design frequency on one of the loops.
 struct LoopMark {
     loop_index: usize,
-    /// rad/s
+    /// Frequency, rad/s.
     frequency: f64,
     phase_deg: f64,
     magnitude_db: f64,
@@ -341,12 +344,12 @@ fn loop_marks(loops: &[UnwrappedResponse], frequencies: &[f64]) -> Vec<LoopMark>
     marks
 }
 
-/// Circles on the first loop, squares on the second, and so on.
+/// Marker of a loop: circles on the first, squares on the second, and so on.
 fn loop_marker(index: usize) -> MarkerStyle {
     MarkerStyle { role: Role::Text, radius: 4.5, ..series_marker(index) }
 }
 
-/// Degrees, on the turn of the loop that passes nearest at that frequency.
+/// Phase in degrees, on the turn of the loop that passes nearest at that frequency.
 fn phase_on_nearest(loops: &[UnwrappedResponse], violation: &OpenLoopViolation) -> f64 {
     let magnitude = decibel(violation.open_loop);
     let places = loops.iter().filter_map(|one| one.at(violation.frequency_rad_per_s));
@@ -369,7 +372,7 @@ fn frequencies(chart: &NicholsChart<'_>) -> Vec<f64> {
     all
 }
 
-/// The colour of a frequency.
+/// Colour of a frequency.
 fn role(frequencies: &[f64], frequency: f64) -> Role {
     let index = frequencies.iter().position(|other| *other == frequency).unwrap_or(0);
     ramp_role(index, frequencies.len())
@@ -379,7 +382,7 @@ fn shifted(points: &[(f64, f64)], shift: f64) -> Vec<(f64, f64)> {
     points.iter().map(|(phase, magnitude)| (phase + shift, *magnitude)).collect()
 }
 
-/// About twenty of the points to choose a label's place from, beginning at another part for another
+/// About twenty of the points as candidates for a label, beginning at a different part for each
 /// start.
 fn spread(points: &[(f64, f64)], start: usize) -> Vec<(f64, f64)> {
     const PLACES: usize = 20;

@@ -2,11 +2,11 @@
 
 use phea_dynamics::portable::{cos, log10, sin};
 
-/// Points of one half of a contour.
+/// Number of points of one half of a contour.
 const POINTS: i32 = 90;
 
-/// The contour |L/(1+L)| = M as (phase of L in degrees within [-360, 0], magnitude of L in dB);
-/// empty for no usable M.
+/// Contour |L/(1+L)| = M as (phase of L in degrees within [-360, 0], magnitude of L in dB); empty
+/// for an invalid M.
 ///
 /// ```text
 /// (M^2 - 1) g^2 + 2 M^2 cos(phi) g + M^2 = 0,      L = g e^(j phi)           from |L|^2 = M^2 |1 + L|^2
@@ -30,7 +30,7 @@ pub fn magnitude_contour(contour_db: f64) -> Vec<(f64, f64)> {
     }
     let decibel = |gain: f64| 20.0 * log10(gain);
     if contour_db == 0.0 {
-        // Denser towards -90 and -270 degrees, where the gain has no end.
+        // denser towards -90 and -270 degrees, where the gain is unbounded
         let last = POINTS - 1;
         let phases = (-last..=last).map(|i| {
             let left = 1.0 - f64::from(i.abs()) / f64::from(POINTS);
@@ -43,15 +43,15 @@ pub fn magnitude_contour(contour_db: f64) -> Vec<(f64, f64)> {
         return phases
             .map(|phase| {
                 let part = square * cos(phase.to_radians());
-                // The one positive root, without cancellation where cos(phi) is negative.
+                // the one positive root, without cancellation if cos(phi) is negative
                 let root = (part * part + square * (1.0 - square)).sqrt();
                 let gain = if part > 0.0 { (part + root) / (1.0 - square) } else { square / (root - part) };
                 (phase, decibel(gain))
             })
             .collect();
     }
-    // Once around: the phase swings about -180 degrees as the gain goes from the greater root to
-    // the lesser and back.
+    // once around: the phase oscillates about -180 degrees as the gain goes from the greater root
+    // to the lesser and back
     let widest = phea_dynamics::portable::acos((1.0 - 1.0 / square).sqrt());
     (0..=4 * POINTS)
         .map(|i| {

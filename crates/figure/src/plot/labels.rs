@@ -1,4 +1,4 @@
-//! Labels of marks, each at the first free place that suits its kind.
+//! Labels of marks, each at the first free position that suits its kind.
 
 use phea_dynamics::portable::hypot;
 
@@ -43,7 +43,7 @@ pub(super) fn draw(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark], occup
     }
 }
 
-/// Names of lines that end at the right side, those that would touch one above left out.
+/// Names of lines that end at the right side; a name that would touch one above is omitted.
 pub(super) fn draw_at_edge(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark]) {
     let limit = WIDTH - placed.frame.right - EDGE_GAP - 2.0;
     let mut texts: Vec<Text> = marks
@@ -68,7 +68,8 @@ pub(super) fn draw_at_edge(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark
     }
 }
 
-/// Series colours are lines' colours; as text only those roles appear that have a text's contrast.
+/// Legible role: series colours are for lines; as text only roles with sufficient contrast are
+/// used.
 fn legible(role: Role) -> Role {
     match role {
         Role::Text | Role::Muted | Role::Accent | Role::Good | Role::Warning | Role::Bad => role,
@@ -98,10 +99,10 @@ fn place(
     }
 }
 
-/// Farthest a text may stand from its point without a line.
+/// Largest distance of a text from its point without a line.
 const BESIDE: f64 = 10.0;
 
-/// A text next to one of the points, or farther away at the end of a line.
+/// Text next to one of the points, or farther away at the end of a line.
 fn call_out(
     scene: &mut Scene,
     occupancy: &mut Occupancy,
@@ -136,14 +137,14 @@ fn call_out(
     }
 }
 
-/// Where a line towards a text leaves the marker at its point.
+/// Point at which a line towards a text leaves the marker.
 fn beside(from: Point, to: Point) -> Point {
     const MARKER: f64 = 5.0;
     let length = hypot(to.x - from.x, to.y - from.y).max(MARKER);
     point(from.x + MARKER / length * (to.x - from.x), from.y + MARKER / length * (to.y - from.y))
 }
 
-/// The eight directions from a point, sideways first.
+/// Candidates in eight directions from a point, sideways first.
 fn directions(at: Point, away: f64) -> [LabelHold; 8] {
     let (right, left) = (at.x + away, at.x - away);
     let slant = 0.75 * away;
@@ -164,8 +165,8 @@ fn rows(top: f64, bottom: f64) -> impl Iterator<Item = f64> {
     (0..count).map(move |index| top + 5.0 + ROW * index as f64)
 }
 
-/// Beside an upright line from the top down; above or below a lying line at its right end, its left
-/// end, its middle.
+/// Candidates next to a vertical line from the top down; above or below a horizontal line at its
+/// right end, its left end, its middle.
 fn beside_line(from: Point, to: Point, frame: Rectangle) -> Vec<LabelHold> {
     if from.x == to.x {
         return rows(frame.top, frame.bottom)
@@ -194,8 +195,8 @@ fn beside_line(from: Point, to: Point, frame: Rectangle) -> Vec<LabelHold> {
         .collect()
 }
 
-/// In the middle of an upright band from the top down, else beside it; in a lying band at its ends
-/// or its middle.
+/// Candidates in the middle of a vertical band from the top down, otherwise next to it; in a
+/// horizontal band at its ends or its middle.
 fn inside_band(area: Rectangle, direction: AxisDirection, frame: Rectangle) -> Vec<LabelHold> {
     match direction {
         AxisDirection::X => rows(frame.top, frame.bottom)
@@ -220,8 +221,8 @@ fn inside_band(area: Rectangle, direction: AxisDirection, frame: Rectangle) -> V
     }
 }
 
-/// Around a point: the wanted side and its corners, the other sides, the other corners, then
-/// farther away.
+/// Candidates around a point: the preferred side and its corners, the other sides, the other
+/// corners, then farther away.
 fn around(at: Point, side: PointSide) -> Vec<LabelHold> {
     const UP: [(f64, f64); 2] = [(1.0, -1.0), (-1.0, -1.0)];
     const DOWN: [(f64, f64); 2] = [(1.0, 1.0), (-1.0, 1.0)];

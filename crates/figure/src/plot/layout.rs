@@ -15,12 +15,12 @@ const EDGE: f64 = 8.0;
 const RIGHT: f64 = 18.0;
 const BETWEEN: f64 = 16.0;
 const TICK: f64 = 4.0;
-/// From the frame to the capitals below it: clear of a number at the lower left corner.
+/// Distance from the frame to the capitals below it: clear of a number at the lower left corner.
 const X_LABEL: f64 = 12.0;
-/// From the frame to a name on its right.
+/// Distance from the frame to a name on its right.
 pub(super) const EDGE_GAP: f64 = 6.0;
 
-/// A panel in its place: maps values to the view box.
+/// Panel in position: maps values to the view box.
 pub(super) struct Placed<'a> {
     pub(super) x: &'a Axis,
     pub(super) y: &'a Axis,
@@ -92,7 +92,7 @@ fn draw_panel(scene: &mut Scene, plot: &Plot, panel: &Panel, frame: Rectangle, l
 }
 
 fn x_tick_count(width: f64) -> usize {
-    // Between 3 and 20 for any width of a figure.
+    // between 3 and 20 for any width of a figure
     (width / 62.0).clamp(3.0, 20.0) as usize
 }
 
@@ -111,7 +111,7 @@ fn left_margin(plot: &Plot) -> f64 {
     (EDGE + TITLE_SIZE + 9.0 + widest + TICK + 4.0).ceil()
 }
 
-/// Right side of the frames: room for half a tick label, or for the names of lines that end there.
+/// Right side of the frames: space for half a tick label, or for the names of lines that end there.
 fn right_edge(plot: &Plot) -> f64 {
     let widest = plot
         .panels
@@ -187,8 +187,8 @@ fn tick_labels(scene: &mut Scene, placed: &Placed<'_>, x_ticks: &[Tick], y_ticks
     }
 }
 
-/// Extends the axis that is too short for equal units, x at its lower end, y at both; other scales
-/// than linear are left alone.
+/// Extends the axis that is too short for equal units, x at its lower end, y at both; scales other
+/// than linear are unchanged.
 pub(super) fn with_equal_aspect(plot: &Plot) -> Plot {
     let mut result = plot.clone();
     let width = right_edge(plot) - left_margin(plot);

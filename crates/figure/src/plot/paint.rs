@@ -11,7 +11,7 @@ use super::super::{clip, simplify};
 use super::layout::Placed;
 use super::{AxisDirection, Mark};
 
-/// What lies below the grid: bands and areas.
+/// Marks below the grid: bands and areas.
 pub(super) fn bands(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark]) {
     for mark in marks {
         match mark {
@@ -34,7 +34,7 @@ pub(super) fn bands(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark]) {
     }
 }
 
-/// What lies above the grid: reference lines, curves, markers.
+/// Marks above the grid: reference lines, curves, markers.
 pub(super) fn marks(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark], occupancy: &mut Occupancy) {
     for mark in marks {
         match mark {
@@ -61,7 +61,7 @@ pub(super) fn marks(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark], occu
                 let seen = thinned(points.filter(|p| placed.frame.contains_point(*p)));
                 let extent = |p: Point| Rectangle::from_corners(p, p).grown(*radius);
                 seen.iter().for_each(|p| occupancy.add_obstacle(extent(*p)));
-                // A line without length under round ends is a dot.
+                // a line of zero length with round ends is a dot
                 let steps: Vec<PathStep> =
                     seen.into_iter().flat_map(|p| [PathStep::Move(p), PathStep::Line(p)]).collect();
                 if !steps.is_empty() {
@@ -88,7 +88,7 @@ pub(super) fn marks(scene: &mut Scene, placed: &Placed<'_>, marks: &[Mark], occu
     }
 }
 
-/// The visible part of a band, or `None`.
+/// Visible part of a band, or `None`.
 pub(super) fn band_area(
     placed: &Placed<'_>,
     direction: AxisDirection,
@@ -110,7 +110,7 @@ pub(super) fn band_area(
     Some(Rectangle::from_corners(a, b))
 }
 
-/// The ends of a reference line, or `None` when it lies outside.
+/// Ends of a reference line, or `None` if it is outside.
 pub(super) fn reference_line(
     placed: &Placed<'_>,
     direction: AxisDirection,
@@ -157,12 +157,12 @@ fn fringe(run: &[Point], frame: &Rectangle) -> Vec<PathStep> {
     steps
 }
 
-/// The first of those points that share a cell of three units, in order of place.
+/// First of the points in each cell of three units, in order of position.
 fn thinned(points: impl Iterator<Item = Point>) -> Vec<Point> {
     const CELL: f64 = 3.0;
     let mut cells: BTreeMap<(i32, i32), Point> = BTreeMap::new();
     for p in points {
-        // Within a figure coordinates are small.
+        // coordinates within a figure are small
         cells.entry(((p.x / CELL).round() as i32, (p.y / CELL).round() as i32)).or_insert(p);
     }
     cells.into_values().collect()

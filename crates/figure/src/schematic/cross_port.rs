@@ -1,19 +1,19 @@
-//! A valve between the chambers, after ISO 1219-1: a restrictor, and the piston between springs
-//! that lets nothing pass at rest.
+//! Valve between the chambers, after ISO 1219-1: a restrictor, and the piston between springs that
+//! passes no flow at rest.
 
 use super::super::scene::{Anchor, Scene};
 use super::CrossPortSymbol;
 use super::mechanics::{PORT_FAR, PORT_NEAR};
 use super::pen::{OUTLINE, block, lines, rows, spring};
 
-/// How far below the ports the branch between the lines lies; between accumulators, whose branches
-/// are next.
+/// Distance of the branch between the lines below the ports; between accumulators, whose branches
+/// are adjacent.
 const BELOW: f64 = 14.0;
 const BELOW_BETWEEN: f64 = 5.0;
-/// Width of the words between both lines.
+/// Width of the text between both lines.
 const WIDE: f64 = 116.0;
 
-/// The branch from line to line. Words stand below it where no accumulator has its place there.
+/// Branch from line to line. Text is below it unless an accumulator occupies the space.
 pub(super) fn cross_port(scene: &mut Scene, symbol: &CrossPortSymbol, has_room: bool) {
     let below = if has_room { BELOW } else { BELOW_BETWEEN };
     let (y, middle) = (PORT_FAR.1 + below, 0.5 * (PORT_FAR.0 + PORT_NEAR.0));
@@ -28,7 +28,7 @@ pub(super) fn cross_port(scene: &mut Scene, symbol: &CrossPortSymbol, has_room: 
     }
 }
 
-/// Two curves that come near to the line from both sides.
+/// Restrictor: two curves that approach the line from both sides.
 fn restrictor(scene: &mut Scene, (x, y): (f64, f64)) {
     for side in [-1.0, 1.0] {
         let curve = [(-8.0, 7.5), (-4.0, 4.2), (0.0, 3.2), (4.0, 4.2), (8.0, 7.5)];
@@ -36,7 +36,7 @@ fn restrictor(scene: &mut Scene, (x, y): (f64, f64)) {
     }
 }
 
-/// A piston between springs in its cylinder.
+/// Piston between springs in its cylinder.
 fn capacity(scene: &mut Scene, (x, y): (f64, f64)) {
     let (half, high) = (20.0, 7.0);
     block(scene, x - half, y - high, 2.0 * half, 2.0 * high);

@@ -5,15 +5,15 @@ use super::super::scene::{Fill, Rectangle, Scene, Shape, point};
 use super::AccumulatorSymbol;
 use super::pen::{OUTLINE, PIPE, adjustable, lines};
 
-/// How far below a port the branch leaves its pipe.
+/// Distance below a port at which the branch leaves its pipe.
 pub(super) const BRANCH: f64 = 14.0;
-/// How far from the pipe the accumulator is.
+/// Distance of the accumulator from the pipe.
 const ASIDE: f64 = 42.0;
 /// Half the length of a valve in the branch, and half its height.
 const VALVE: (f64, f64) = (9.0, 6.0);
 
-/// An accumulator below its branch: the triangle of the gas, hollow, points to the oil. `way` is 1
-/// where it is right of the port, and -1 where it is left of it.
+/// Accumulator below its branch: the triangle of the gas, hollow, points to the oil. `way` is 1 if
+/// it is right of the port, and -1 if it is left of it.
 pub(super) fn accumulator(scene: &mut Scene, kind: AccumulatorSymbol, port: (f64, f64), way: f64) {
     let (x, branch) = (port.0 + way * ASIDE, port.1 + BRANCH);
     let (top, half, height) = (branch + 6.0, 8.0, 32.0);
@@ -31,7 +31,7 @@ pub(super) fn accumulator(scene: &mut Scene, kind: AccumulatorSymbol, port: (f64
     }
 }
 
-/// A shut-off valve: two triangles that meet, and the arrow of what opens it.
+/// Shut-off valve: two triangles that meet, and the arrow of its actuation.
 fn valve(scene: &mut Scene, (x, y): (f64, f64)) {
     let (long, half) = VALVE;
     for side in [-1.0, 1.0] {

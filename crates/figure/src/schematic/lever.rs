@@ -1,4 +1,4 @@
-//! A lever between the rod and a load that turns about a joint.
+//! Lever between the rod and a load that turns about a joint.
 
 use super::super::colour::Role;
 use super::super::scene::{Anchor, Fill, PathStep, Scene, Shape, Stroke, point};
@@ -10,12 +10,12 @@ use super::pen::{MOTION, OUTLINE, head, lines, rows, word};
 const JOINT: f64 = AXIS - 36.0;
 /// Height of the end that holds the load.
 pub(super) const LOAD: f64 = AXIS + 60.0;
-/// The joint is right of the words of the load cell.
+/// Least x of the joint: right of the text of the load cell.
 const LEAST_PLACE: f64 = CELL + 54.0;
-/// Right edge of the words.
+/// Right edge of the text.
 const RIGHT: f64 = 558.0;
 
-/// The lever with its joint above, the rod's end between, and the load below; where it stands.
+/// Lever with its joint above, the rod's end between, and the load below; returns its position.
 pub(super) fn lever(scene: &mut Scene, symbol: &LinkageSymbol, from: f64) -> f64 {
     let heavy = Stroke::solid(Role::Axis, 3.0);
     let x = LEAST_PLACE.max(from + 14.0);
@@ -32,7 +32,7 @@ pub(super) fn lever(scene: &mut Scene, symbol: &LinkageSymbol, from: f64) -> f64
     x
 }
 
-/// The bearing that holds the joint.
+/// Bearing that holds the joint.
 fn joint_on_ground(scene: &mut Scene, x: f64) {
     let top = JOINT - 14.0;
     let bearing = [point(x, JOINT), point(x - 8.0, top), point(x + 8.0, top)];
@@ -44,7 +44,7 @@ fn joint_on_ground(scene: &mut Scene, x: f64) {
     }
 }
 
-/// The lever arm r from the joint to the line of the rod.
+/// Lever arm r from the joint to the line of the rod.
 fn arm(scene: &mut Scene, x: f64) {
     let left = x - 11.0;
     let thin = Stroke::solid(Role::Muted, 1.0);
@@ -55,7 +55,7 @@ fn arm(scene: &mut Scene, x: f64) {
     word(scene, "r", (left - 8.0, JOINT + 14.0), Role::Muted);
 }
 
-/// The angle grows while the rod extends.
+/// Arrow of the angle, which grows while the rod extends.
 fn angle(scene: &mut Scene, x: f64) {
     let (from, end) = (point(x - 42.0, LOAD - 9.0), point(x - 20.0, LOAD + 2.0));
     let path = vec![

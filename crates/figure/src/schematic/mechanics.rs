@@ -20,14 +20,14 @@ pub(super) const CELL: f64 = 412.0;
 /// Lower edge of the load cell.
 pub(super) const CELL_BOTTOM: f64 = AXIS + 15.0;
 const WALL: f64 = 520.0;
-/// That of a load on a lever, which stands further right.
+/// Position of the wall for a load on a lever, which is further right.
 const WALL_OF_LEVER: f64 = 540.0;
 /// Port of the chamber away from the load.
 pub(super) const PORT_FAR: (f64, f64) = (LEFT + 30.0, AXIS + HALF);
-/// Port of the chamber beside the load.
+/// Port of the chamber next to the load.
 pub(super) const PORT_NEAR: (f64, f64) = (RIGHT - 30.0, AXIS + HALF);
 
-/// The cylinder with piston, rods and the names of its chambers.
+/// Cylinder with piston, rods and the names of its chambers.
 pub(super) fn cylinder(scene: &mut Scene, schematic: &Schematic) {
     let oil = Fill { role: Role::Series(0), opacity: 0.13 };
     let body = Rectangle { left: LEFT, top: AXIS - HALF, right: RIGHT, bottom: AXIS + HALF };
@@ -52,7 +52,7 @@ pub(super) fn cylinder(scene: &mut Scene, schematic: &Schematic) {
     position_arrow(scene, schematic);
 }
 
-/// The piston; a telescopic one is a sleeve for each stage, and in the last of them the piston.
+/// Piston; a telescopic one is a sleeve for each stage, with the piston in the last.
 fn pistons_within(scene: &mut Scene, further_stages: usize) {
     let surface = Some(Fill::solid(Role::Surface));
     let mut half = HALF;
@@ -71,7 +71,7 @@ fn pistons_within(scene: &mut Scene, further_stages: usize) {
     scene.rectangle(piston, Some(OUTLINE), surface);
 }
 
-/// The position x_p counts from the A end to the B end.
+/// Arrow of the position x_p, which counts from the A end to the B end.
 fn position_arrow(scene: &mut Scene, schematic: &Schematic) {
     let y = AXIS - HALF - 11.0;
     let (from, to) = if schematic.load_beside_b { (PISTON, PISTON + 40.0) } else { (PISTON, PISTON - 40.0) };
@@ -87,7 +87,7 @@ pub(super) fn load(scene: &mut Scene, schematic: &Schematic) {
     block(scene, MASS - 20.0, AXIS - 22.0, 40.0, 44.0);
     word(scene, schematic.motion.symbols().mass, (MASS, AXIS), Role::Text);
     let mass = [schematic.mass.clone()];
-    // an inertia takes more room than a mass: above what the sensor has
+    // an inertia needs more space than a mass: above the text of the sensor
     let (top, wide) = if schematic.motion.is_rotary() { (4.0, 100.0) } else { (AXIS - 41.0, 56.0) };
     rows(scene, &mass, (MASS, top), Anchor::Middle, wide, 1);
     match &schematic.load_cell {
@@ -106,7 +106,7 @@ pub(super) fn load(scene: &mut Scene, schematic: &Schematic) {
     let from = schematic.series.as_ref().map_or(from, |series| between(scene, series, from, words));
     match &schematic.linkage {
         Some(linkage) => {
-            // a mass is at the end of the lever, anything else beside the pin there
+            // a mass is at the end of the lever, any other load next to the pin there
             let aside = if schematic.environment == Environment::SpringMassDamper { -12.0 } else { 4.0 };
             let from = lever::lever(scene, linkage, from) + aside;
             let place = EnvironmentPlace { from, axis: lever::LOAD, wall: WALL_OF_LEVER, words: 100.0 };
@@ -120,26 +120,26 @@ pub(super) fn load(scene: &mut Scene, schematic: &Schematic) {
     }
 }
 
-/// Where the environment is drawn.
+/// Position of the environment.
 struct EnvironmentPlace {
-    /// What holds it.
+    /// Position of its support.
     from: f64,
     /// Height of its axis.
     axis: f64,
-    /// Where its ground is.
+    /// Position of its ground.
     wall: f64,
-    /// Width of its words.
+    /// Width of its text.
     words: f64,
 }
 
-/// Whether what is drawn has a lever to its right.
+/// Presence of a lever to the right of an element.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum BesideLever {
     Yes,
     No,
 }
 
-/// What lies between load cell and environment; where it ends.
+/// Element between load cell and environment; returns its end.
 fn between(scene: &mut Scene, series: &SeriesSymbol, from: f64, beside: BesideLever) -> f64 {
     let to = from + 34.0;
     let ends = |scene: &mut Scene, half: f64| {
@@ -173,7 +173,7 @@ fn between(scene: &mut Scene, series: &SeriesSymbol, from: f64, beside: BesideLe
     to
 }
 
-/// Two cylinders with a line between them, and the rods that come out of them.
+/// Two cylinders with a line between them, and their rods.
 fn pistons(scene: &mut Scene, from: f64, to: f64) {
     let heavy = Stroke::solid(Role::Axis, 3.0);
     for (rod, inner) in [(from, from + 13.0), (to, to - 13.0)] {
@@ -189,7 +189,7 @@ fn pistons(scene: &mut Scene, from: f64, to: f64) {
     lines(scene, &hose, Stroke::solid(Role::Axis, 2.0));
 }
 
-/// The environment with the names of its mass and of its position.
+/// Environment with the names of its mass and of its position.
 fn environment(
     scene: &mut Scene,
     schematic: &Schematic,
@@ -199,7 +199,7 @@ fn environment(
     let &EnvironmentPlace { from, axis, wall, words } = place;
     match schematic.environment {
         Environment::PrescribedMotion => {
-            // its arrow takes room to the right
+            // its arrow needs space to the right
             let wall = wall.min(WALL);
             spring(scene, from, wall - 6.0, axis, 9.0, OUTLINE);
             let plate =

@@ -1,5 +1,5 @@
-//! A motor in place of the cylinder, after ISO 1219-1: a circle with a triangle at each port, and
-//! its shaft towards the load.
+//! Motor in place of the cylinder, after ISO 1219-1: a circle with a triangle at each port, and its
+//! shaft towards the load.
 
 use super::super::SMALL_SIZE;
 use super::super::colour::Role;
@@ -12,7 +12,7 @@ use super::pen::{OUTLINE, PIPE, head, lines, turn, word};
 /// Height of the ports.
 const PORTS: f64 = AXIS + 16.0;
 
-/// The motor with its ports, its shaft and the direction of its angle.
+/// Motor with its ports, its shaft and the direction of its angle.
 pub(super) fn motor(scene: &mut Scene, schematic: &Schematic) {
     for (port, inwards) in [(PORT_FAR, 1.0), (PORT_NEAR, -1.0)] {
         let edge = PISTON - inwards * (HALF * HALF - 16.0 * 16.0).sqrt();
@@ -24,7 +24,7 @@ pub(super) fn motor(scene: &mut Scene, schematic: &Schematic) {
     let centre = point(PISTON, AXIS);
     scene.circle(centre, HALF, None, Some(Fill::solid(Role::Background)));
     scene.circle(centre, HALF, Some(OUTLINE), Some(oil));
-    // a motor that turns both ways: oil comes in at either side
+    // a bidirectional motor: oil enters at either side
     head(scene, (PISTON - HALF + 11.0, AXIS), (1.0, 0.0), Role::Axis);
     head(scene, (PISTON + HALF - 11.0, AXIS), (-1.0, 0.0), Role::Axis);
     let (far, near) = if schematic.load_beside_b { ("A", "B") } else { ("B", "A") };
@@ -32,7 +32,7 @@ pub(super) fn motor(scene: &mut Scene, schematic: &Schematic) {
         word(scene, name, (x + 14.0 * way, PORTS + 4.0), Role::Text);
         word(scene, &format!("p_{name}"), (x + 36.0 * way, PORTS + 4.0), Role::Muted);
     }
-    // as wide as the inertia of the load leaves room for
+    // as wide as the inertia of the load allows
     let text = typeset::fitted(&schematic.cylinder, SMALL_SIZE, 220.0);
     scene.text(Text::new(point(PISTON - 18.0, 4.0), text, SMALL_SIZE).held(Anchor::Middle, Baseline::Top));
     // the angle grows while oil enters chamber A

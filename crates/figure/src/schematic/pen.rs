@@ -1,4 +1,4 @@
-//! Strokes and small parts that the symbols share.
+//! Strokes and small parts common to the symbols.
 
 use super::super::colour::Role;
 use super::super::scene::{
@@ -10,7 +10,7 @@ use super::super::{LABEL_SIZE, SMALL_SIZE, typeset};
 pub(super) const OUTLINE: Stroke = Stroke::solid(Role::Axis, 1.6);
 /// Working line.
 pub(super) const PIPE: Stroke = Stroke::solid(Role::Axis, 2.4);
-/// Compliant line: what the design is about.
+/// Compliant line, the subject of the design.
 pub(super) const HOSE: Stroke = Stroke::solid(Role::Series(0), 4.0);
 /// Signal.
 pub(super) const SIGNAL: Stroke = Stroke::solid(Role::Series(3), 1.5);
@@ -27,13 +27,13 @@ pub(super) fn lines(scene: &mut Scene, points: &[(f64, f64)], stroke: Stroke) {
     scene.polyline(&points, stroke);
 }
 
-/// A box with the surface of components.
+/// Box with the surface of components.
 pub(super) fn block(scene: &mut Scene, left: f64, top: f64, width: f64, height: f64) {
     let area = Rectangle { left, top, right: left + width, bottom: top + height };
     scene.rectangle(area, Some(OUTLINE), Some(Fill::solid(Role::Surface)));
 }
 
-/// A filled arrow head with its tip at `tip`, pointing along (dx, dy) of length one.
+/// Filled arrow head with its tip at `tip`, pointing along (dx, dy) of length one.
 pub(super) fn head(scene: &mut Scene, tip: (f64, f64), direction: (f64, f64), role: Role) {
     let ((x, y), (dx, dy)) = (tip, direction);
     let (length, half) = (8.0, 3.4);
@@ -42,7 +42,7 @@ pub(super) fn head(scene: &mut Scene, tip: (f64, f64), direction: (f64, f64), ro
     scene.polygon(&corners, None, Some(Fill::solid(role)));
 }
 
-/// The arrow of an angle, over what turns.
+/// Arrow of an angle, over the rotating part.
 pub(super) fn turn(scene: &mut Scene, (x, y): (f64, f64)) {
     let (from, to, top) = (point(x - 24.0, y), point(x + 24.0, y), y - 16.0);
     let bend = [point(x - 12.0, top), point(x + 12.0, top)];
@@ -51,7 +51,7 @@ pub(super) fn turn(scene: &mut Scene, (x, y): (f64, f64)) {
     head(scene, (to.x + 2.0, to.y + 3.0), (0.6, 0.8), MOTION.role);
 }
 
-/// A line with a head at its end; the line stops inside the head.
+/// Line with a head at its end; the line stops inside the head.
 pub(super) fn arrow(scene: &mut Scene, from: (f64, f64), to: (f64, f64), stroke: Stroke) {
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);
     let length = (dx * dx + dy * dy).sqrt();
@@ -60,7 +60,7 @@ pub(super) fn arrow(scene: &mut Scene, from: (f64, f64), to: (f64, f64), stroke:
     head(scene, to, (ux, uy), stroke.role);
 }
 
-/// A lying spring between two points of the same height.
+/// Horizontal spring between two points of equal height.
 pub(super) fn spring(scene: &mut Scene, from: f64, to: f64, y: f64, amplitude: f64, stroke: Stroke) {
     const TURNS: i32 = 4;
     let lead = 0.12 * (to - from);
@@ -75,20 +75,20 @@ pub(super) fn spring(scene: &mut Scene, from: f64, to: f64, y: f64, amplitude: f
     lines(scene, &points, stroke);
 }
 
-/// A curve with one bend after another, as a hose hangs.
+/// Curve with successive bends, like a hanging hose.
 pub(super) fn flexible(scene: &mut Scene, from: (f64, f64), to: (f64, f64), sag: f64, stroke: Stroke) {
     let (a, b) = (point(from.0, from.1), point(to.0, to.1));
     let steps = vec![PathStep::Move(a), PathStep::Curve(point(a.x, a.y + sag), point(b.x, b.y - sag), b)];
     scene.shape(Shape::Path(steps), Some(stroke), None);
 }
 
-/// The arrow of adjustability through the middle of a symbol, after ISO 1219-1.
+/// Arrow of adjustability through the middle of a symbol, after ISO 1219-1.
 pub(super) fn adjustable(scene: &mut Scene, at: (f64, f64), (wide, high): (f64, f64)) {
     let [from, to] = [(at.0 - wide, at.1 + high), (at.0 + wide, at.1 - high)];
     arrow(scene, from, to, Stroke::solid(Role::Axis, 1.2));
 }
 
-/// Short diagonal strokes beside an upright line: fixed ground.
+/// Short diagonal strokes next to a vertical line: fixed ground.
 pub(super) fn ground(scene: &mut Scene, x: f64, top: f64, bottom: f64) {
     lines(scene, &[(x, top), (x, bottom)], Stroke::solid(Role::Axis, 2.4));
     let count = ((bottom - top) / 8.0).clamp(0.0, 40.0) as usize;
@@ -98,7 +98,7 @@ pub(super) fn ground(scene: &mut Scene, x: f64, top: f64, bottom: f64) {
     }
 }
 
-/// Rows of text below each other from the capital's top of the first, each cut to `limit`.
+/// Rows of text below each other, from the top of the first row's capitals, each cut to `limit`.
 pub(super) fn rows(
     scene: &mut Scene,
     texts: &[String],
@@ -114,7 +114,7 @@ pub(super) fn rows(
     }
 }
 
-/// A text broken between words so that each row is at most this wide, where its words are.
+/// Text broken between words so that each row is at most this wide, if its words allow.
 pub(super) fn wrapped(text: &str, limit: f64) -> Vec<String> {
     let mut found: Vec<String> = Vec::new();
     for word in text.split(' ') {
@@ -129,7 +129,7 @@ pub(super) fn wrapped(text: &str, limit: f64) -> Vec<String> {
     found
 }
 
-/// A word in the middle of a place.
+/// Text in the middle of a space.
 pub(super) fn word(scene: &mut Scene, text: &str, at: (f64, f64), role: Role) {
     let text = Text::new(point(at.0, at.1), text, LABEL_SIZE).held(Anchor::Middle, Baseline::Middle);
     scene.text(text.coloured(role));

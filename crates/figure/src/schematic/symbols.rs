@@ -11,12 +11,12 @@ use super::{ControllerSymbol, LINE_ROWS, LineKind, Schematic, SupplyKind};
 
 /// Middle of the valve.
 pub(super) const VALVE: (f64, f64) = (202.0, 232.0);
-/// Side of one of its boxes.
+/// Side of one of the valve's boxes.
 const SIDE: f64 = 46.0;
 pub(super) const PORT: f64 = 12.0;
 pub(super) const TOP: f64 = VALVE.1 - 0.5 * SIDE;
 const BOTTOM: f64 = VALVE.1 + 0.5 * SIDE;
-/// Top of the words of the controller, below those of the valve.
+/// Top of the text of the controller, below that of the valve.
 pub(super) const CONTROLLER_ROWS: f64 = BOTTOM + 16.0 + 2.0 * ROW + 8.0;
 /// Right end of the valve with its torque motor.
 pub(super) const VALVE_END: f64 = VALVE.0 + 1.5 * SIDE + 24.0;
@@ -26,7 +26,7 @@ pub(super) fn supply(scene: &mut Scene, schematic: &Schematic) {
     feed(scene, schematic.supply, &schematic.supply_rows, &schematic.tank);
 }
 
-/// The same by its words.
+/// Supply by its text.
 pub(super) fn feed(scene: &mut Scene, supply: SupplyKind, supply_rows: &[String], tank_word: &str) {
     let (pressure, tank) = (VALVE.0 - PORT, VALVE.0 + PORT);
     let source = (pressure - 60.0, 318.0);
@@ -77,7 +77,7 @@ fn tank_symbol(scene: &mut Scene, x: f64, bottom: f64) {
     );
 }
 
-/// Both lines with their words.
+/// Both lines with their text.
 pub(super) fn working_lines(scene: &mut Scene, schematic: &Schematic) {
     let (far, near) = if schematic.load_beside_b {
         (&schematic.line_a, &schematic.line_b)
@@ -117,14 +117,14 @@ pub(super) fn working_lines(scene: &mut Scene, schematic: &Schematic) {
     }
 }
 
-/// The 4/3 servovalve: three positions, continuous between them, spring on one side and torque
+/// Servovalve with 4 ports and 3 positions: continuous between them, spring on one side and torque
 /// motor on the other.
 pub(super) fn valve(scene: &mut Scene, schematic: &Schematic) {
     let ports = if schematic.load_beside_b { ["A", "B"] } else { ["B", "A"] };
     valve_with(scene, ports, &schematic.valve_rows);
 }
 
-/// The same by the names of its ports and its words.
+/// Servovalve by the names of its ports and its text.
 pub(super) fn valve_with(scene: &mut Scene, [a, b]: [&str; 2], valve_rows: &[String]) {
     let left = VALVE.0 - 1.5 * SIDE;
     for index in 0..3 {
@@ -153,7 +153,7 @@ pub(super) fn valve_with(scene: &mut Scene, [a, b]: [&str; 2], valve_rows: &[Str
     rows(scene, valve_rows, (VALVE.0 + 40.0, BOTTOM + 16.0), Anchor::Start, 300.0, 2);
 }
 
-/// A box with a diagonal and the arrow of proportional action.
+/// Box with a diagonal and the arrow of proportional action.
 fn torque_motor(scene: &mut Scene, left: f64) {
     let thin = Stroke::solid(Role::Axis, 1.2);
     let (top, right, bottom) = (VALVE.1 - 12.0, VALVE_END, VALVE.1 + 12.0);

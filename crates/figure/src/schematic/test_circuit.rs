@@ -1,4 +1,4 @@
-//! A servovalve on its test bench: ports blocked, or joined through a meter.
+//! Servovalve on its test bench: ports blocked, or joined through a meter.
 
 use super::super::colour::Role;
 use super::super::scene::{Anchor, Fill, Scene, point};
@@ -7,33 +7,33 @@ use super::SupplyKind;
 use super::pen::{MEASURED, OUTLINE, PIPE, SIGNAL, arrow, head, lines, rows, word};
 use super::symbols::{PORT, TOP, VALVE, VALVE_END, feed, valve_with};
 
-/// How the ports are piped.
+/// Piping of the ports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TestPorts {
-    /// Both shut, the meter between pump and valve.
+    /// Both ports shut, with the meter between pump and valve.
     Blocked,
-    /// Joined through the meter.
+    /// Ports joined through the meter.
     Joined,
 }
 
-/// A valve on its test bench.
+/// Valve on its test bench.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TestCircuit {
-    /// How the ports are piped.
+    /// Piping of the ports.
     pub ports: TestPorts,
     /// Label of the supply, such as `70 bar`; two rows at most.
     pub supply_rows: Vec<String>,
-    /// Words beside the ports: what is recorded; six rows at most.
+    /// Text next to the ports: the recorded quantities; six rows at most.
     pub rows: Vec<String>,
 }
 
-/// Where the pipes of the ports stand.
+/// Positions of the pipes of the ports.
 const SIDES: [f64; 2] = [VALVE.0 - 72.0, VALVE.0 + 72.0];
-/// Where they end.
+/// Height of their ends.
 const END: f64 = 96.0;
-/// Where the pipes leave the valve sideways.
+/// Height at which the pipes leave the valve sideways.
 const SHOULDER: f64 = 172.0;
-/// Where the gauges are.
+/// Height of the gauges.
 const GAUGE: f64 = 132.0;
 /// Height of the pipe from the supply.
 const FEED: f64 = 284.0;
@@ -70,7 +70,7 @@ impl TestCircuit {
     }
 }
 
-/// A flow meter in a pipe from left to right.
+/// Flow meter in a pipe from left to right.
 fn meter(scene: &mut Scene, at: (f64, f64), name: &str, label: (f64, f64)) {
     scene.circle(point(at.0, at.1), 12.0, Some(OUTLINE), Some(Fill::solid(Role::Surface)));
     lines(scene, &[(at.0 - 7.0, at.1), (at.0 + 4.0, at.1)], SIGNAL);
@@ -78,7 +78,7 @@ fn meter(scene: &mut Scene, at: (f64, f64), name: &str, label: (f64, f64)) {
     word(scene, name, (at.0 + label.0, at.1 + label.1), Role::Text);
 }
 
-/// A pressure transducer beside a pipe.
+/// Pressure transducer next to a pipe.
 fn gauge(scene: &mut Scene, at: (f64, f64), outward: f64, name: &str) {
     let centre = (at.0 + outward * 34.0, at.1);
     lines(scene, &[at, (centre.0 - outward * 11.0, at.1)], MEASURED);

@@ -1,9 +1,9 @@
-//! An accumulator at a chamber that is adjusted in operation: gas is added and taken, or a valve
+//! Accumulator at a chamber that is adjusted in operation: gas is added and removed, or a valve
 //! opens between chamber and gas.
 //!
 //! ```text
-//! V_0(u) = V_0 + V_1 u,   p_0(u) = p_0 + p_1 u             u: by how much the setting has moved from rest
-//! q = dV_oil/dt = C dp/dt + (dV_oil/du) du/dt               at a pressure that is held, V_oil grows with the setting
+//! V_0(u) = V_0 + V_1 u,   p_0(u) = p_0 + p_1 u             u: change of the setting from rest
+//! q = dV_oil/dt = C dp/dt + (dV_oil/du) du/dt               V_oil changes with the setting at constant pressure
 //! q = (s + u) K root(p - p_g)                               the valve, s: its opening at rest, from 0 to 1
 //! ```
 
@@ -14,56 +14,56 @@ use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use crate::orifice::{flow, regular_root_slope};
 use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
-/// What of an accumulator its setting moves, and where the setting is at rest.
+/// Adjusted part of an accumulator, and its setting at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Adjustment<S = f64> {
-    /// The setting at rest, from 0 to 1.
+    /// Setting at rest, from 0 to 1.
     pub setting: S,
-    /// What it moves.
+    /// Adjusted part.
     pub part: AdjustedPart<S>,
 }
 
-/// What a setting moves.
+/// Part that a setting adjusts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AdjustedPart<S = f64> {
-    /// The gas, by this much from setting 0 to 1.
+    /// Gas, adjusted by this amount from setting 0 to 1.
     Gas {
-        /// V_1 in m3.
+        /// Volume V_1, m3.
         gas_volume: S,
-        /// p_1 in Pa.
+        /// Pressure p_1, Pa.
         precharge_pressure: S,
     },
-    /// The opening of a valve between chamber and gas: shut at 0, wide open at 1.
+    /// Opening of a valve between chamber and gas: shut at 0, fully open at 1.
     Valve(GasValve<S>),
 }
 
-/// A valve between a chamber and the gas of its accumulator. Units: m3/(s Pa^0.5), Pa, m3/Pa.
+/// Valve between a chamber and the gas of its accumulator. Units: m3/(s Pa^0.5), Pa, m3/Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GasValve<S = f64> {
-    /// Flow coefficient K wide open.
+    /// Flow coefficient K, fully open.
     pub flow_coefficient: S,
-    /// Drop below which the square root is made regular.
+    /// Pressure drop below which the square root is regularised.
     pub transition_pressure: S,
-    /// What the oil between valve and gas yields: it remains where the gas fills its shell.
+    /// Compliance of the oil between valve and gas: it remains when the gas fills its shell.
     pub compliance: S,
-    /// Whether it is shut at rest, so that the gas takes no part in small motions.
+    /// True if the valve is shut at rest, so that the gas has no effect on small motions.
     pub shut: bool,
 }
 
-/// The gas of an accumulator while it is adjusted.
+/// Gas of an accumulator during adjustment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovedGas<S = f64> {
-    /// As it is at this setting.
+    /// Gas at this setting.
     pub gas: Accumulator<S>,
-    /// Rate of V_0 in m3/s.
+    /// Rate of V_0, m3/s.
     pub volume_rate: S,
-    /// Rate of p_0 in Pa/s.
+    /// Rate of p_0, Pa/s.
     pub precharge_rate: S,
 }
 
 impl Adjustment {
-    /// Impossible parameters of this adjustment of the gas as it is at rest; empty if there are
-    /// none.
+    /// Impossible parameters of this adjustment of the gas from its state at rest; empty if there
+    /// are none.
     pub fn problems(&self, at_rest: &Accumulator) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         let is_share = (0.0..=1.0).contains(&self.setting);
@@ -99,8 +99,8 @@ phea_dynamics::parameters! {
 }
 
 impl<S: Copy> Adjustment<S> {
-    /// As a machine has it: `None` of gas whose setting does not move. Whether its valve is shut at
-    /// rest is known from its setting there.
+    /// Adjustment within a machine: `None` for gas whose setting does not move. A valve that is
+    /// shut at rest is known from its setting.
     pub(crate) fn of_machine(self, moves: bool) -> Option<Adjustment<S>> {
         let part = match self.part {
             AdjustedPart::Valve(valve) => AdjustedPart::Valve(GasValve { shut: false, ..valve }),
@@ -109,7 +109,7 @@ impl<S: Copy> Adjustment<S> {
         Some(Adjustment { part, ..self })
     }
 
-    /// Its valve, if it is one.
+    /// Valve between chamber and gas, if the adjustment has one.
     pub fn valve(&self) -> Option<&GasValve<S>> {
         match &self.part {
             AdjustedPart::Valve(valve) => Some(valve),
@@ -119,7 +119,7 @@ impl<S: Copy> Adjustment<S> {
 }
 
 impl<S: Scalar> Adjustment<S> {
-    /// Rise of the precharge in Pa after the setting has moved by `change`.
+    /// Rise of the precharge after the setting has moved by `change`, Pa.
     pub(crate) fn precharge_rise<T: Scalar + From<S>>(&self, change: T) -> T {
         match self.part {
             AdjustedPart::Gas { precharge_pressure, .. } => T::from(precharge_pressure) * change,
@@ -127,8 +127,8 @@ impl<S: Scalar> Adjustment<S> {
         }
     }
 
-    /// The gas that is `at_rest` at rest, after the setting has moved by `change`, which moves on
-    /// at `rate` in 1/s.
+    /// Adjusted gas from the gas `at_rest`, after the setting has moved by `change`, at a rate of
+    /// the setting of `rate` in 1/s.
     pub fn moved(&self, at_rest: &Accumulator<S>, change: S, rate: S) -> MovedGas<S> {
         match self.part {
             AdjustedPart::Valve(_) => {
@@ -148,26 +148,26 @@ impl<S: Scalar> Adjustment<S> {
 }
 
 impl<S: Scalar> GasValve<S> {
-    /// Flow into the gas in m3/s along a drop p - p_g in Pa, at an opening from 0 to 1.
+    /// Flow into the gas for a drop p - p_g in Pa, at an opening from 0 to 1, m3/s.
     pub fn flow(&self, opening: S, drop: S) -> S {
         flow(opening * self.flow_coefficient, drop, self.transition_pressure)
     }
 
-    /// Its conductance in m3/(s Pa) without a drop, where it is that of its transition.
+    /// Conductance at zero drop, which is that of the transition, m3/(s Pa).
     pub fn conductance(&self, opening: S) -> S {
         opening * self.flow_coefficient * regular_root_slope(S::from(0.0), self.transition_pressure)
     }
 }
 
 impl<S: Scalar> MovedGas<S> {
-    /// Rate in m3/s at which the volume of its oil grows at a pressure in Pa that is held.
+    /// Rate at which the volume of its oil grows at a constant pressure in Pa, m3/s.
     ///
     /// ```text
     /// dV_oil/dt = V_oil/V_0 dV_0/dt - P/P_0 C dp_0/dt         V_oil is V_0 times a function of P/P_0
     /// ```
     ///
     /// # Example
-    /// Twice the gas at a pressure holds twice the oil.
+    /// Twice the gas at a pressure contains twice the oil:
     /// ```
     /// use phea_hydraulics::accumulator::{Accumulator, MovedGas};
     /// let gas = Accumulator { gas_volume: 1e-5, precharge_pressure: 15e5, polytropic_exponent: 1.2 };
@@ -181,16 +181,16 @@ impl<S: Scalar> MovedGas<S> {
             - ratio * gas.compliance(pressure) * self.precharge_rate
     }
 
-    /// Power in W of the adjustment: by how much what the oil can get back from the gas grows while
-    /// no oil moves.
+    /// Power of the adjustment: rate of the energy that the oil can recover from the gas while no
+    /// oil moves, W.
     ///
     /// ```text
-    /// W(V_oil, V_0, p_0): integral of p dV_oil, from the bladder on its shell on
+    /// W(V_oil, V_0, p_0): integral of p dV_oil, from the bladder on its shell
     /// dW/dt = p q + (W - p V_oil)/V_0 dV_0/dt + (W + p_atm V_oil)/P_0 dp_0/dt
     /// ```
     ///
-    /// It is what a spring of stiffness K gains by 1/2 dK/dt x^2. What it costs to press gas to its
-    /// precharge outside is not in it.
+    /// Analogous to the gain 1/2 dK/dt x^2 of a spring of stiffness K. The cost of compressing gas
+    /// to its precharge outside is not included.
     pub fn power(&self, pressure: S) -> S {
         let gas = &self.gas;
         let (held, oil) = (gas.energy(pressure), gas.oil(pressure));
@@ -210,8 +210,8 @@ mod tests {
 
     use super::*;
 
-    /// Rates of oil and energy are those of V_oil(p, V_0, p_0) and W(p, V_0, p_0), while the
-    /// bladder lifts too.
+    /// Rates of oil and energy agree with V_oil(p, V_0, p_0) and W(p, V_0, p_0), also while the
+    /// bladder lifts.
     #[test]
     fn oil_and_energy_follow_the_setting() {
         for exponent in [1.0, 1.02, 1.4] {

@@ -1,11 +1,11 @@
-//! The bladder between the gas and the oil behind a neck or a valve: the state of such gas.
+//! Bladder between the gas and the oil behind a neck or a valve: the state variable of such gas.
 
 use phea_dynamics::scalar::Scalar;
 
 use super::LIFTING;
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 
-/// The bladder of gas that has a state of its own, at one temperature and setting of this gas.
+/// Bladder of gas with its own state, at one temperature and setting of this gas.
 ///
 /// ```text
 /// s = p_0 - d + (d + v)/(1 + k)                              k = C_n/C_0,   d = P_0/100
@@ -14,14 +14,15 @@ use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 /// v = (1 + k) x - d               x > 2 d, s = p
 /// ```
 ///
-/// p is the pressure of the oil behind the neck, s that of the gas within the bladder, but for what
-/// the oil adds: C_0 (1 + k) s grows as the oil that has entered, to a few percent, whether the gas
-/// takes it or the oil alone. So ds/dt hardly changes where the compliance falls from that of the
-/// gas to that of the oil, by a factor 1/k of 1e4 and more, and dp/dt rises by as much.
+/// p is the pressure of the oil behind the neck, s the pressure of the gas within the bladder,
+/// apart from the contribution of the oil: C_0 (1 + k) s equals the oil volume that has entered, to
+/// a few percent, taken by the gas or only by the oil. So ds/dt hardly changes when the compliance
+/// falls from that of the gas to that of the oil, by a factor 1/k of 1e4 and more, and dp/dt rises
+/// by this factor.
 ///
 /// # Example
-/// In use the gas has the pressure of its oil; shut off it keeps its precharge whatever the oil
-/// does.
+/// In use the gas has the pressure of its oil; shut off, it keeps its precharge at any oil
+/// pressure.
 /// ```
 /// use phea_hydraulics::accumulator::Bladder;
 /// let bladder = Bladder { precharge_pressure: 15e5, softness: 1e-5 };
@@ -31,23 +32,23 @@ use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bladder<S = f64> {
-    /// Precharge pressure p_0 in Pa gauge of the gas as it is.
+    /// Precharge pressure p_0 of the gas at this setting and temperature, Pa gauge.
     pub precharge_pressure: S,
-    /// k, compliance of the oil over that of the gas at its precharge.
+    /// Ratio k of the compliance of the oil to that of the gas at its precharge.
     pub softness: S,
 }
 
 phea_dynamics::parameters! { Bladder { precharge_pressure, softness } }
 
 impl<S: Scalar> Bladder<S> {
-    /// d in Pa, and p_0 - d in Pa gauge.
+    /// Half width d in Pa, and lower edge p_0 - d in Pa gauge.
     fn edge(&self) -> [S; 2] {
         let precharge = self.precharge_pressure + S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
         let band = precharge * S::from(LIFTING);
         [band, self.precharge_pressure - band]
     }
 
-    /// p of the oil in Pa gauge, at s in Pa gauge.
+    /// Oil pressure p at s, both Pa gauge.
     pub fn pressure(&self, within: S) -> S {
         let ([band, edge], k) = (self.edge(), self.softness);
         let (zero, one, two) = (S::from(0.0), S::from(1.0), S::from(2.0));
@@ -58,7 +59,7 @@ impl<S: Scalar> Bladder<S> {
         S::select(v.less_than(zero), edge + v / k, above)
     }
 
-    /// s in Pa gauge, at p of the oil in Pa gauge.
+    /// Gas pressure s at the oil pressure p, both Pa gauge.
     pub fn within(&self, pressure: S) -> S {
         let ([band, edge], k) = (self.edge(), self.softness);
         let x = pressure - edge;
@@ -67,7 +68,7 @@ impl<S: Scalar> Bladder<S> {
         S::select(x.less_than(S::from(2.0) * band), below, pressure)
     }
 
-    /// ds/dt in Pa/s, while p in Pa gauge and the precharge change at these rates in Pa/s.
+    /// Rate ds/dt while p and the precharge change at these rates, Pa/s.
     ///
     /// ```text
     /// ds/dt = r dp/dt + (1 - r) d(p_0 - d)/dt + (1 - w^2)/(1 + k) dd/dt,   r = (k + w)/(1 + k)
@@ -91,18 +92,18 @@ mod tests {
 
     use super::*;
 
-    /// One is the inverse of the other from vacuum to ten times the precharge, and the rate is the
-    /// derivative of s by p and by the precharge.
+    /// Both functions are inverse from vacuum to ten times the precharge, and the rate is the
+    /// derivative of s with respect to p and to the precharge.
     #[test]
     fn state_and_pressure_are_one() {
         for softness in [1e-7, 1e-4, 0.3] {
             let bladder = Bladder { precharge_pressure: 20e5, softness };
             for number in 0..=4000 {
-                // closely through the band
+                // fine steps through the band
                 let near = 19.7e5 + 0.6e5 * f64::from(number) / 4000.0;
                 for pressure in [near, 5e4 * f64::from(number)] {
                     let within = bladder.within(pressure);
-                    // rounding of s is one of p over k
+                    // rounding of s equals rounding of p over k
                     let rounding = 1e-15 * 20e5 / softness + 1e-9;
                     assert!((bladder.pressure(within) - pressure).abs() < rounding, "{softness} {pressure}");
                     let varied: Bladder<Dual<2>> = Bladder {
@@ -120,8 +121,8 @@ mod tests {
         }
     }
 
-    /// While the bladder lifts, s is the pressure P_0 + d w^2 of the gas, whose compliance the
-    /// pressure of the oil shows.
+    /// s is the pressure P_0 + d w^2 of the gas while the bladder lifts, and the oil pressure shows
+    /// the gas compliance.
     #[test]
     fn it_is_the_pressure_of_the_gas() {
         let gas = crate::accumulator::Accumulator {

@@ -1,4 +1,4 @@
-//! The gas of an accumulator for small motions, where it is more than a compliance of its chamber.
+//! Gas of an accumulator for small motions, if it is more than a compliance of its chamber.
 
 use phea_dynamics::analytic::Analytic;
 use phea_dynamics::scalar::Scalar;
@@ -13,32 +13,34 @@ use crate::linear::polynomial::{product, scaled, shifted, sum};
 /// Y = g C(s) s/(C(s) s + g)                   behind a valve of conductance g
 /// ```
 ///
-/// Slower than its resonance 1/sqrt(I C) it is the gas, faster an inertance, which shuts the gas
-/// off. Slower than 1/T the gas is isothermal, faster adiabatic.
+/// Below its resonance 1/sqrt(I C) the branch is the gas, above it an inertance, which shuts the
+/// gas off. Below 1/T the gas is isothermal, above it adiabatic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GasBranch<S = f64> {
-    /// Compliance C in m3/Pa, at once.
+    /// Immediate compliance C, m3/Pa.
     pub compliance: S,
-    /// What it yields later; `None` where it exchanges no heat, or as much as keeps it polytropic.
+    /// Delayed compliance; `None` if the gas exchanges no heat, or exactly enough to remain
+    /// polytropic.
     pub relaxation: Option<GasRelaxation<S>>,
-    /// The neck before it; `None` where there is none.
+    /// Neck before the gas; `None` without one.
     pub neck: Option<NeckImpedance<S>>,
-    /// Conductance g in m3/(s Pa) of a valve before it, which then has no neck; `None` where there
-    /// is none.
+    /// Conductance g of a valve before the gas, which then has no neck, m3/(s Pa); `None` without
+    /// one.
     pub valve: Option<S>,
 }
 
-/// Drop of pressure over the flow through a neck, I s + R.
+/// Pressure drop over the flow through a neck, I s + R.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NeckImpedance<S = f64> {
-    /// Inertance I in kg/m4.
+    /// Inertance I, kg/m4.
     pub inertance: S,
-    /// Resistance R in Pa s/m3.
+    /// Resistance R, Pa s/m3.
     pub resistance: S,
 }
 
 impl<S: Scalar> GasBranch<S> {
-    /// Gas of this compliance at rest in m3/Pa; that of the oil in its neck is added.
+    /// Branch of gas with this compliance at rest in m3/Pa; the compliance of the oil in its neck
+    /// is added.
     pub fn of(at_rest: S, relaxation: Option<GasRelaxation<S>>, neck: Option<&Neck<S>>) -> GasBranch<S> {
         let at_once = relaxation.map_or(at_rest, |later| at_rest - later.compliance);
         GasBranch {
@@ -49,14 +51,14 @@ impl<S: Scalar> GasBranch<S> {
         }
     }
 
-    /// Without a neck, the same behind a valve of a conductance in m3/(s Pa) with oil of a
-    /// compliance in m3/Pa behind it.
+    /// Branch without a neck, behind a valve of a conductance in m3/(s Pa) with oil of a compliance
+    /// in m3/Pa behind the valve.
     #[must_use]
     pub fn behind_valve(&self, conductance: S, of_oil: S) -> GasBranch<S> {
         GasBranch { compliance: self.compliance + of_oil, valve: Some(conductance), ..*self }
     }
 
-    /// The same with this share of all that yields.
+    /// Branch with this fraction of all compliances.
     #[must_use]
     pub fn softened(&self, share: S) -> GasBranch<S> {
         GasBranch {
@@ -69,12 +71,12 @@ impl<S: Scalar> GasBranch<S> {
         }
     }
 
-    /// Compliance at rest in m3/Pa, with the oil of a neck.
+    /// Compliance at rest including the oil of a neck, m3/Pa.
     pub fn at_rest(&self) -> S {
         self.relaxation.map_or(self.compliance, |later| self.compliance + later.compliance)
     }
 
-    /// Helmholtz resonance 1/sqrt(I C) in rad/s; `None` without a neck.
+    /// Helmholtz resonance 1/sqrt(I C), rad/s; `None` without a neck.
     ///
     /// # Example
     /// ```
@@ -88,7 +90,7 @@ impl<S: Scalar> GasBranch<S> {
         self.neck.map(|neck| S::from(1.0) / (neck.inertance * self.compliance).sqrt())
     }
 
-    /// Damping ratio of that resonance by the neck, R/2 sqrt(C/I).
+    /// Damping ratio of the resonance from the neck, R/2 sqrt(C/I).
     pub fn damping_ratio(&self) -> Option<S> {
         self.neck.map(|neck| S::from(0.5) * neck.resistance * (self.compliance / neck.inertance).sqrt())
     }
@@ -117,7 +119,7 @@ impl<S: Scalar> GasBranch<S> {
 }
 
 impl GasBranch {
-    /// Y at s, or over a set of such.
+    /// Admittance Y at s, or over a set of values of s.
     pub(crate) fn admittance_at<A: Analytic>(&self, s: A) -> A {
         let at_once = s.scaled(self.compliance);
         let taken = match self.relaxation {
@@ -137,7 +139,7 @@ impl GasBranch {
         }
     }
 
-    /// Its numbers, none of which is negative where it is passive.
+    /// Numbers of the branch, none of which is negative if it is passive.
     pub(crate) fn numbers(&self) -> Vec<f64> {
         let later = self.relaxation.into_iter().flat_map(|later| [later.compliance, later.time]);
         let neck = self.neck.into_iter().flat_map(|neck| [neck.inertance, neck.resistance]);

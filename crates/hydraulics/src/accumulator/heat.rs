@@ -1,27 +1,28 @@
-//! The gas of an accumulator that exchanges heat with its wall.
+//! Gas of an accumulator that exchanges heat with its wall.
 
 use phea_dynamics::scalar::Scalar;
 
 use super::{Accumulator, LIFTING};
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 
-/// Ratio gamma of the specific heats of a diatomic ideal gas, which nitrogen nearly is up to 200
-/// bar.
+/// Ratio gamma of the specific heats of a diatomic ideal gas, a good approximation for nitrogen up
+/// to 200 bar.
 pub const HEAT_CAPACITY_RATIO: f64 = 1.4;
 
-/// An ideal gas whose temperature T approaches that of its wall, T_w, with a time constant.
+/// Ideal gas whose temperature T approaches that of its wall, T_w, with a time constant.
 ///
 /// ```text
 /// P V = P_0 V_0 theta,    theta = T/T_w
 /// P_0 V_0/(gamma - 1) dtheta/dt = P q - P_0 V_0/(gamma - 1) (theta - 1)/tau,     q = -dV/dt
 /// ```
 ///
-/// Source: Otis and Pourmovahed (1985), with an ideal gas and a wall that keeps its temperature.
-/// Slow it is isothermal, fast adiabatic. The bladder lifts from its shell as that of an
-/// [`Accumulator`], about P_0 theta.
+/// Source: Otis and Pourmovahed (1985), with an ideal gas and a wall of constant temperature. Slow
+/// changes are isothermal, fast ones adiabatic. The bladder lifts from its shell like that of an
+/// [`Accumulator`], around P_0 theta.
 ///
 /// # Example
-/// Nothing changes at the temperature of the wall, and fast the gas is gamma times as stiff.
+/// At the temperature of the wall nothing changes, and fast compression finds the gas gamma times
+/// as stiff:
 /// ```
 /// use phea_hydraulics::accumulator::{Accumulator, RelaxingGas};
 /// let gas = Accumulator { gas_volume: 1e-5, precharge_pressure: 15e5, polytropic_exponent: 1.0 };
@@ -32,38 +33,38 @@ pub const HEAT_CAPACITY_RATIO: f64 = 1.4;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RelaxingGas<S = f64> {
-    /// The gas at the temperature of its wall, with a polytropic exponent of 1.
+    /// Gas at the temperature of its wall, with a polytropic exponent of 1.
     pub gas: Accumulator<S>,
-    /// Thermal time constant tau in s.
+    /// Thermal time constant tau, s.
     pub time_constant: S,
 }
 
-/// Such gas at one instant.
+/// Heat-exchanging gas at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeatedGas<S = f64> {
-    /// Compliance in m3/Pa for what no heat can follow.
+    /// Compliance for changes faster than the heat exchange, m3/Pa.
     pub compliance: S,
-    /// Rate in Pa/s at which its pressure falls while it cools in a volume that is held.
+    /// Rate at which its pressure falls while it cools at constant volume, Pa/s.
     pub cooling: S,
-    /// Volume of the oil in m3.
+    /// Volume of the oil, m3.
     pub oil: S,
-    /// Internal energy of the gas less the work done by the atmosphere, in J; zero at absolute zero
+    /// Internal energy of the gas less the work done by the atmosphere, J; zero at absolute zero
     /// without oil.
     pub energy: S,
-    /// Heat that it gives to the wall, in W.
+    /// Heat flow to the wall, W.
     pub heat: S,
-    /// Rise of theta for the volume of oil that enters, in 1/m3.
+    /// Rise of theta per volume of oil that enters, 1/m3.
     warming: S,
-    /// Rate of theta in 1/s that heat alone causes.
+    /// Rate of theta from heat exchange only, 1/s.
     relaxing: S,
 }
 
 impl<S: Scalar> RelaxingGas<S> {
-    /// At a pressure in Pa gauge and theta - 1.
+    /// Gas at a pressure in Pa gauge and theta - 1.
     ///
     /// ```text
     /// V = V_0/g(r),   r = P/(P_0 theta);   g(r) = r,   or 1 + d w^2 while the bladder lifts,   d = 1/100
-    /// C = C_T/(1 + (gamma - 1) k),   C_T = V_0 w/(P_0 theta g^2),   k = w r^2/g^2;   w and k are 1 where it has lifted
+    /// C = C_T/(1 + (gamma - 1) k),   C_T = V_0 w/(P_0 theta g^2),   k = w r^2/g^2;   w and k are 1 after it has lifted
     /// q = C (dp/dt + P (theta - 1)/(theta tau))
     /// ```
     pub fn at(&self, pressure: S, warming: S) -> HeatedGas<S> {
@@ -93,10 +94,10 @@ impl<S: Scalar> RelaxingGas<S> {
         }
     }
 
-    /// For small motions at a pressure in Pa gauge, at the temperature of the wall.
+    /// Relaxation for small motions at a pressure in Pa gauge, at the temperature of the wall.
     ///
     /// ```text
-    /// q/p = s C_T (1 + tau s)/(1 + G tau s),    G = 1 + (gamma - 1) k: gamma where the bladder has lifted
+    /// q/p = s C_T (1 + tau s)/(1 + G tau s),    G = 1 + (gamma - 1) k: gamma after the bladder has lifted
     /// ```
     pub fn relaxation(&self, pressure: S) -> GasRelaxation<S> {
         let at_rest = self.gas.compliance(pressure);
@@ -112,22 +113,22 @@ impl<S: Scalar> RelaxingGas<S> {
 }
 
 impl<S: Scalar> HeatedGas<S> {
-    /// Flow into it in m3/s, while its pressure rises at this rate in Pa/s.
+    /// Flow into the gas while its pressure rises at this rate in Pa/s, m3/s.
     pub fn flow(&self, pressure_rate: S) -> S {
         self.compliance * (pressure_rate + self.cooling)
     }
 
-    /// Rate of theta in 1/s with this flow in m3/s.
+    /// Rate of theta at this flow in m3/s, 1/s.
     pub fn warming_rate(&self, flow: S) -> S {
         self.warming * flow + self.relaxing
     }
 }
 
-/// What gas yields later, for small motions: C_r/(1 + T s) of its compliance. Units: m3/Pa, s.
+/// Delayed compliance of gas for small motions: C_r/(1 + T s). Units: m3/Pa, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GasRelaxation<S = f64> {
-    /// C_r, by which its compliance at rest is larger than at once.
+    /// Excess C_r of the compliance at rest over the immediate one.
     pub compliance: S,
-    /// T, after which it yields at a pressure that is held: gamma tau.
+    /// Time constant T of the delayed compliance at constant pressure: gamma tau.
     pub time: S,
 }

@@ -1,4 +1,4 @@
-//! The neck between a chamber and the gas of its accumulator.
+//! Neck between a chamber and the gas of its accumulator.
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
@@ -6,7 +6,7 @@ use phea_dynamics::scalar::Scalar;
 
 use crate::parameter::{ParameterError, Problems};
 
-/// A neck with the flow q into the gas, for which it takes a pressure drop.
+/// Neck with the flow q into the gas, which requires a pressure drop.
 ///
 /// ```text
 /// p - p_g = I dq/dt + R q + Z q |q|
@@ -15,13 +15,13 @@ use crate::parameter::{ParameterError, Problems};
 /// Units: kg/m4, Pa s/m3, Pa s2/m6, m3/Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Neck<S = f64> {
-    /// Inertance I of its oil.
+    /// Inertance I of the oil.
     pub inertance: S,
     /// Laminar resistance R.
     pub resistance: S,
-    /// Loss Z at its ends, over the square of the flow.
+    /// Coefficient Z of the end losses, over the square of the flow.
     pub loss: S,
-    /// What its own oil yields, in m3/Pa: it remains where the gas is shut off.
+    /// Compliance of the oil in the neck, m3/Pa: it remains when the gas is shut off.
     pub compliance: S,
 }
 
@@ -40,15 +40,15 @@ impl Neck {
 phea_dynamics::parameters! { Neck { inertance, resistance, loss, compliance } }
 
 impl<S: Scalar> Neck<S> {
-    /// A round neck of a diameter and a length in m, filled with oil of a density in kg/m3, a
+    /// Round neck of a diameter and a length in m, filled with oil of a density in kg/m3, a
     /// kinematic viscosity in m2/s and a bulk modulus in Pa; `loss_coefficient` is that of its ends
-    /// over the velocity head.
+    /// relative to the velocity head.
     ///
     /// ```text
     /// I = rho L/A,   R = 128 rho nu L/(pi d^4),   Z = zeta rho/(2 A^2),   C = A L/beta,   A = pi d^2/4
     /// ```
     ///
-    /// Source: Merritt (1967), laminar flow in a pipe, and the head lost at its ends.
+    /// Source: Merritt (1967), laminar flow in a pipe, and head loss at its ends.
     ///
     /// # Example
     /// ```
@@ -72,7 +72,7 @@ impl<S: Scalar> Neck<S> {
         }
     }
 
-    /// What a steady flow in m3/s loses, in Pa.
+    /// Pressure drop of a steady flow in m3/s, Pa.
     #[inline(always)]
     pub fn drop(&self, flow: S) -> S {
         (self.resistance + self.loss * flow.abs()) * flow

@@ -13,38 +13,38 @@ use crate::parameter::{ParameterError, Problems};
 /// Source: Canudas de Wit, Olsson, Astrom and Lischinsky (1995); the thesis' (4.30) drops sigma_0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LuGre<S = f64> {
-    /// The steady curve, with g(v) and sigma_2.
+    /// Steady curve, with g(v) and sigma_2.
     pub curve: Stribeck<S>,
-    /// Bristle stiffness sigma_0 in N/m.
+    /// Bristle stiffness sigma_0, N/m.
     pub bristle_stiffness: S,
-    /// Bristle damping sigma_1 in N s/m.
+    /// Bristle damping sigma_1, N s/m.
     pub bristle_damping: S,
 }
 
-/// Whether a LuGre model can only take energy from the motion.
+/// Passivity of a LuGre model: it only absorbs energy from the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LuGrePassivity {
-    /// It is passive; the viscous friction exceeds the requirement by this, in N s/m.
+    /// Passive model; the viscous friction exceeds the requirement by this amount, N s/m.
     Passive {
-        /// sigma_2 less the required value, zero or positive, in N s/m.
+        /// Surplus of sigma_2 over the required value, zero or positive, N s/m.
         surplus: f64,
     },
-    /// For some motions it gives energy; this viscous friction is required, in N s/m.
+    /// Not passive: some motions gain energy; this viscous friction is required, N s/m.
     NotPassive {
-        /// sigma_1 (F_S - F_C)/F_C, above sigma_2, in N s/m.
+        /// Required value sigma_1 (F_S - F_C)/F_C, above sigma_2, N s/m.
         required_viscous: f64,
     },
 }
 
 impl<S: Scalar> LuGre<S> {
-    /// Rate of the bristle deflection in m/s, at sliding velocity v in m/s and deflection z in m.
+    /// Rate of the bristle deflection at sliding velocity v in m/s and deflection z in m, m/s.
     ///
     /// ```text
     /// dz/dt = v - sigma_0 |v| z/g(v)                                       thesis (4.30), corrected
     /// ```
     ///
     /// # Example
-    /// At a steady velocity the bristles settle where sigma_0 z = sign(v) g(v).
+    /// At a steady velocity the bristles settle at sigma_0 z = sign(v) g(v).
     /// ```
     /// use phea_hydraulics::friction::{LuGre, Stribeck};
     /// let curve = Stribeck {
@@ -61,7 +61,7 @@ impl<S: Scalar> LuGre<S> {
         velocity - self.bristle_stiffness * velocity.abs() * deflection / self.curve.sliding_force(velocity)
     }
 
-    /// Friction force in N and dz/dt in m/s together: the exponential is taken once.
+    /// Friction force in N together with dz/dt in m/s: the exponential is evaluated once.
     #[inline(always)]
     pub(crate) fn force_and_rate(&self, shape: StribeckShape, velocity: S, deflection: S) -> (S, S) {
         let spring = self.bristle_stiffness * deflection;
@@ -69,7 +69,7 @@ impl<S: Scalar> LuGre<S> {
         (spring + self.bristle_damping * rate + self.curve.levels(velocity).viscous * velocity, rate)
     }
 
-    /// Friction force in N at sliding velocity v in m/s and bristle deflection z in m.
+    /// Friction force at sliding velocity v in m/s and bristle deflection z in m, N.
     ///
     /// ```text
     /// F = sigma_0 z + sigma_1 dz/dt + sigma_2 v                            thesis (4.32)
@@ -94,8 +94,8 @@ impl LuGre {
         all
     }
 
-    /// Passivity by sigma_2 >= sigma_1 (F_S - F_C)/F_C, required of each direction: bristles that
-    /// one of them has loaded are swept in that direction, beyond its own F_C.
+    /// Passivity by sigma_2 >= sigma_1 (F_S - F_C)/F_C, required for each direction: bristles
+    /// loaded in one direction are swept onward beyond F_C of that direction.
     ///
     /// Source: Barabanov and Ortega (2000), IEEE Transactions on Automatic Control 45(4).
     ///

@@ -2,29 +2,29 @@ use phea_dynamics::scalar::{LocalFunction, Parameters, Scalar};
 
 use super::{Friction, LuGre, Stribeck, StribeckShape};
 
-/// Friction as part of equations that are integrated: every variant is smooth enough, and knows its
-/// own shape.
+/// Friction within equations of motion: every variant is smooth enough to be integrated, and knows
+/// its own shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MovingFriction<S = f64> {
-    /// F = f_v v.
+    /// Viscous force F = f_v v.
     Viscous {
-        /// Viscous coefficient f_v in N s/m.
+        /// Viscous coefficient f_v, N s/m.
         viscous: S,
     },
-    /// The steady curve, its jump at zero velocity smoothed: [`Stribeck::regular_force`].
+    /// Steady curve with its jump at zero velocity smoothed: [`Stribeck::regular_force`].
     Stribeck {
-        /// The curve.
+        /// Steady curve.
         curve: Stribeck<S>,
-        /// How its exponent is evaluated.
+        /// Evaluation of its exponent.
         shape: StribeckShape,
-        /// Velocity v_r in m/s that smooths the jump.
+        /// Velocity v_r that smooths the jump, m/s.
         regular_velocity: S,
     },
     /// Bristles, with their deflection as a state.
     LuGre {
-        /// The model.
+        /// LuGre model.
         lugre: LuGre<S>,
-        /// How the exponent of its curve is evaluated.
+        /// Evaluation of the exponent of its curve.
         shape: StribeckShape,
     },
 }
@@ -32,15 +32,15 @@ pub enum MovingFriction<S = f64> {
 /// Friction at one instant. Units: N, m/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionForce<S> {
-    /// Force in N that opposes the motion.
+    /// Force that opposes the motion, N.
     pub force: S,
-    /// Rate dz/dt of the bristles in m/s; zero for a model without bristles.
+    /// Rate dz/dt of the bristles, m/s; zero for a model without bristles.
     pub bristle_rate: S,
 }
 
 impl MovingFriction {
-    /// This friction, where it can be integrated: the static curve needs a velocity in m/s that
-    /// smooths its jump, the others leave it unused. `None` where that is missing.
+    /// Friction that can be integrated: the static curve needs a velocity in m/s that smooths its
+    /// jump, the others ignore it. `None` if it is missing.
     pub fn new(friction: &Friction, regular_velocity: Option<f64>) -> Option<MovingFriction> {
         match *friction {
             Friction::Viscous { viscous } => Some(MovingFriction::Viscous { viscous }),
@@ -61,12 +61,12 @@ phea_dynamics::parameters! {
 }
 
 impl<S: Copy> MovingFriction<S> {
-    /// Whether its bristles are a state.
+    /// True if its bristles are a state.
     pub(crate) fn has_bristles(&self) -> bool {
         self.bristle_stiffness().is_some()
     }
 
-    /// Stiffness sigma_0 of its bristles in N/m, if it has any.
+    /// Stiffness sigma_0 of its bristles, N/m, if it has any.
     pub fn bristle_stiffness(&self) -> Option<S> {
         match self {
             MovingFriction::LuGre { lugre, .. } => Some(lugre.bristle_stiffness),
@@ -75,7 +75,7 @@ impl<S: Copy> MovingFriction<S> {
     }
 }
 
-/// Force in N and rate of the bristles in m/s, of velocity and deflection.
+/// Force in N and rate of the bristles in m/s, as functions of velocity and deflection.
 impl<S: Scalar> LocalFunction<S, 2, 2> for MovingFriction<S> {
     #[inline(always)]
     fn at<T: Scalar>(&self, [velocity, bristle]: [T; 2], constant: impl Fn(S) -> T + Copy) -> [T; 2] {
@@ -112,7 +112,7 @@ impl<S: Scalar> MovingFriction<S> {
         }
     }
 
-    /// Energy in J that the bristles hold: sigma_0 z^2/2.
+    /// Energy sigma_0 z^2/2 of the bristles, J.
     pub(crate) fn stored_energy(&self, bristle: S) -> S {
         match self {
             MovingFriction::LuGre { lugre, .. } => S::from(0.5) * lugre.bristle_stiffness * bristle.squared(),
@@ -120,14 +120,14 @@ impl<S: Scalar> MovingFriction<S> {
         }
     }
 
-    /// Power in W that friction turns into heat: what the motion gives, less what the bristles'
-    /// springs store.
+    /// Power that friction turns into heat: the power of the motion less the rate of the energy in
+    /// the bristles, W.
     ///
     /// ```text
     /// F v - sigma_0 z dz/dt = sigma_0^2 |v| z^2/g(v) + sigma_1 v dz/dt + sigma_2 v^2              LuGre
     /// ```
     ///
-    /// Not negative, but for LuGre outside [`super::LuGre::passivity`].
+    /// Never negative, except for LuGre outside [`super::LuGre::passivity`].
     pub(crate) fn dissipated(&self, velocity: S, bristle: S) -> S {
         let FrictionForce { force, bristle_rate } = self.at(velocity, bristle);
         match self {

@@ -2,54 +2,54 @@ use phea_dynamics::scalar::Scalar;
 
 use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
-/// The steady friction curve. Units: N, m/s, N s/m.
+/// Steady friction curve. Units: N, m/s, N s/m.
 ///
 /// ```text
 /// F(v) = sign(v) g(v) + sigma_2 v                                      thesis (4.33)
 /// g(v) = F_C + (F_S - F_C) exp(-|v/v_S|^alpha)                         thesis (4.31), corrected
 /// ```
 ///
-/// Where a seal resists one direction more than the other, F_C, F_S and sigma_2 are those of
-/// `retracting` for v < 0. F is zero or jumps at v = 0 either way, so that this adds no jump.
+/// If a seal resists one direction more than the other, F_C, F_S and sigma_2 for v < 0 are those of
+/// `retracting`. F is zero or jumps at v = 0 in either case, so that this adds no jump.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stribeck<S = f64> {
-    /// Coulomb friction F_C in N; with `retracting`, for v > 0.
+    /// Coulomb friction F_C, N; with `retracting`, for v > 0.
     pub coulomb: S,
-    /// Static (breakaway) friction F_S in N.
+    /// Static (breakaway) friction F_S, N.
     pub static_friction: S,
-    /// Stribeck velocity v_S in m/s.
+    /// Stribeck velocity v_S, m/s.
     pub stribeck_velocity: S,
     /// Stribeck exponent alpha.
     pub stribeck_exponent: S,
-    /// Viscous coefficient sigma_2 in N s/m.
+    /// Viscous coefficient sigma_2, N s/m.
     pub viscous: S,
-    /// The levels for v < 0; absent: the same.
+    /// Levels for v < 0; if absent, those for v > 0.
     pub retracting: Option<FrictionLevels<S>>,
 }
 
 /// Levels of a steady curve, which may differ by direction. Units: N, N s/m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionLevels<S = f64> {
-    /// Coulomb friction F_C in N.
+    /// Coulomb friction F_C, N.
     pub coulomb: S,
-    /// Static (breakaway) friction F_S in N.
+    /// Static (breakaway) friction F_S, N.
     pub static_friction: S,
-    /// Viscous coefficient sigma_2 in N s/m.
+    /// Viscous coefficient sigma_2, N s/m.
     pub viscous: S,
 }
 
-/// How the exponent of a [`Stribeck`] curve is evaluated: a power takes a logarithm and an
-/// exponential more than a square.
+/// Evaluation of the exponent of a [`Stribeck`] curve: a power takes a logarithm and an exponential
+/// more than a square.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StribeckShape {
-    /// The exponent is 2: g(v) = F_C + (F_S - F_C) exp(-(v/v_S)^2).
+    /// Exponent 2: g(v) = F_C + (F_S - F_C) exp(-(v/v_S)^2).
     Squared,
     /// Any exponent.
     Power,
 }
 
 impl<S: Scalar> Stribeck<S> {
-    /// The levels in the direction of a velocity in m/s.
+    /// Levels in the direction of a velocity in m/s.
     ///
     /// # Example
     /// ```
@@ -74,7 +74,7 @@ impl<S: Scalar> Stribeck<S> {
         }
     }
 
-    /// g(v) in N as [`Stribeck::sliding_force`], the shape known beforehand.
+    /// Sliding force g(v) as [`Stribeck::sliding_force`], with the shape known beforehand, N.
     #[inline(always)]
     pub(crate) fn sliding_force_of(&self, shape: StribeckShape, velocity: S) -> S {
         match shape {
@@ -87,8 +87,8 @@ impl<S: Scalar> Stribeck<S> {
         }
     }
 
-    /// The steady curve as a smooth function of the velocity, in N, for equations that are
-    /// integrated.
+    /// Smooth form of the steady curve as a function of the velocity, for equations that are
+    /// integrated, N.
     ///
     /// ```text
     /// F(v) = g(v) v/sqrt(v^2 + v_r^2) + sigma_2 v
@@ -114,13 +114,13 @@ impl<S: Scalar> Stribeck<S> {
         self.sliding_force_of(shape, velocity) * velocity / speed + self.levels(velocity).viscous * velocity
     }
 
-    /// The force that the bristles carry when sliding steadily at v in m/s, in N.
+    /// Force that the bristles carry in steady sliding at v in m/s, N.
     ///
     /// ```text
     /// g(v) = F_C + (F_S - F_C) exp(-|v/v_S|^alpha)                         thesis (4.31), corrected
     /// ```
     pub fn sliding_force(&self, velocity: S) -> S {
-        // The least positive number stands for zero velocity, whose logarithm does not exist; its
+        // The least positive number replaces zero velocity, whose logarithm does not exist; its
         // power is zero.
         let least = S::from(f64::MIN_POSITIVE);
         let relative = (velocity / self.stribeck_velocity).abs().maximum(least);
@@ -129,14 +129,14 @@ impl<S: Scalar> Stribeck<S> {
         coulomb + (static_friction - coulomb) * (-power).exp()
     }
 
-    /// The steady friction force in N; zero at standstill, where any force up to F_S is possible.
+    /// Steady friction force, N; zero at standstill, where any force up to F_S is possible.
     ///
     /// ```text
     /// F(v) = sign(v) g(v) + sigma_2 v                                      thesis (4.33)
     /// ```
     ///
     /// # Example
-    /// Odd in the velocity, and Coulomb plus viscous friction far above the Stribeck velocity
+    /// Odd in the velocity, and Coulomb plus viscous friction far above the Stribeck velocity:
     /// ```
     /// use phea_hydraulics::friction::Stribeck;
     /// let curve = Stribeck {
@@ -168,12 +168,12 @@ impl Stribeck {
         problems.into_vec()
     }
 
-    /// The levels of both directions, of positive velocity first.
+    /// Levels of both directions, those of positive velocity first.
     pub fn both_levels(&self) -> [FrictionLevels; 2] {
         [1.0, -1.0].map(|velocity| self.levels(velocity))
     }
 
-    /// How its exponent is best evaluated.
+    /// Best evaluation of the exponent.
     #[inline(always)]
     pub fn shape(&self) -> StribeckShape {
         if self.stribeck_exponent == 2.0 { StribeckShape::Squared } else { StribeckShape::Power }
@@ -190,8 +190,8 @@ impl FrictionLevels {
         problems.into_vec()
     }
 
-    /// sigma_2 in N s/m that LuGre friction with this damping of its bristles requires to be
-    /// passive.
+    /// Viscous coefficient sigma_2 that LuGre friction with this damping of its bristles requires
+    /// to be passive, N s/m.
     ///
     /// ```text
     /// sigma_2 >= sigma_1 (F_S - F_C)/F_C

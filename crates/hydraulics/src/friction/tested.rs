@@ -1,5 +1,5 @@
-//! Friction as tests on a rig show it: while the piston slides at a constant velocity, and while a
-//! force presses it that does not yet break it away.
+//! Friction from tests on a rig: sliding of the piston at constant velocities, and a force that
+//! presses it without breaking it away.
 
 mod multisine;
 mod pressed;
@@ -11,12 +11,12 @@ pub use sliding::{SLIDING_VARIABLES, SlidBlock};
 
 use super::{FrictionLevels, LuGre, Stribeck};
 
-/// Number of coefficients of LuGre friction, with the levels of the other direction.
+/// Number of coefficients of LuGre friction, including the levels of the other direction.
 pub const FRICTION_COEFFICIENTS: usize = 10;
 
 impl<S: Copy> LuGre<S> {
-    /// F_C, F_S, v_S, alpha, sigma_2, sigma_0, sigma_1; then F_C, F_S and sigma_2 of negative
-    /// velocity.
+    /// Coefficients F_C, F_S, v_S, alpha, sigma_2, sigma_0, sigma_1; then F_C, F_S and sigma_2 of
+    /// negative velocity.
     ///
     /// # Example
     /// ```
@@ -46,7 +46,7 @@ impl<S: Copy> LuGre<S> {
         ]
     }
 
-    /// The friction of these coefficients, in the order of [`LuGre::to_array`].
+    /// Friction with these coefficients, in the order of [`LuGre::to_array`].
     pub fn from_array(numbers: [S; FRICTION_COEFFICIENTS]) -> LuGre<S> {
         let [both @ .., coulomb, static_friction, viscous] = numbers;
         let LuGre { curve, bristle_stiffness, bristle_damping } = LuGre::same_both_ways(both);
@@ -54,7 +54,7 @@ impl<S: Copy> LuGre<S> {
         LuGre { curve: Stribeck { retracting, ..curve }, bristle_stiffness, bristle_damping }
     }
 
-    /// The friction of the first seven of these coefficients, the same in both directions.
+    /// Friction with the first seven of these coefficients, equal in both directions.
     pub fn same_both_ways(numbers: [S; 7]) -> LuGre<S> {
         let [
             coulomb,

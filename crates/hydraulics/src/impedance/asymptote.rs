@@ -5,36 +5,36 @@ use phea_dynamics::portable;
 use crate::linear::LinearParameters;
 use crate::series::OilColumn;
 
-/// The meaning of an asymptote of the driving-point impedance.
+/// Physical meaning of an asymptote of the driving-point impedance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AsymptoteKind {
-    /// Valve leakage, or the feedback loop, gives way.
+    /// Valve leakage, or the feedback loop, yields.
     LowFrequency,
-    /// The fluid's spring in series with the sensor's: K_eq/s.
+    /// Spring of the fluid in series with that of the sensor: K_eq/s.
     CompliancePlateau,
-    /// The piston's mass stands still between load and fluid: K_S/s.
+    /// Piston mass at rest between load and fluid: K_S/s.
     SensorLimit,
-    /// The oil of a transmission stands still: the last of its springs, k_N+1/s.
+    /// Oil of a transmission at rest: the last of its springs, k_N+1/s.
     OilLimit,
 }
 
-/// One straight line of the impedance in a logarithmic plot, Z = coefficient s^power.
+/// Straight line of the impedance in a logarithmic plot, Z = coefficient s^power.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Asymptote {
-    /// What it stands for.
+    /// Physical meaning.
     pub kind: AsymptoteKind,
-    /// 1 for a mass (coefficient in kg), 0 for a damper (N s/m), -1 for a spring (N/m).
+    /// Power of s: 1 for a mass (coefficient in kg), 0 for a damper (N s/m), -1 for a spring (N/m).
     pub power: i32,
-    /// Mass, damping or stiffness; of whatever unit for other powers.
+    /// Mass, damping or stiffness; other units for other powers.
     pub coefficient: f64,
-    /// Frequency in rad/s from which it is the nearest asymptote.
+    /// Lower end of the range in which it is the nearest asymptote, rad/s.
     pub from: f64,
-    /// Frequency in rad/s up to which it is.
+    /// Upper end of this range, rad/s.
     pub to: f64,
 }
 
 impl Asymptote {
-    /// Z on the asymptote at a frequency in rad/s, in N s/m.
+    /// Z on the asymptote at a frequency in rad/s, N s/m.
     pub fn at_frequency(&self, frequency: f64) -> Complex64 {
         let s = Complex64::new(0.0, frequency);
         let factor = if self.power < 0 { 1.0 / s } else { s };
@@ -42,14 +42,14 @@ impl Asymptote {
     }
 }
 
-/// Frequency sqrt(K_H/M) in rad/s above which the piston's mass hides the added compliance from the
-/// load.
+/// Frequency sqrt(K_H/M) above which the piston's mass hides the added compliance from the load,
+/// rad/s.
 ///
-/// The load then moves the sensor's spring against a mass that no longer follows; making the fluid
-/// softer changes nothing.
+/// The load then moves the sensor's spring against a mass that no longer follows; a softer fluid
+/// changes nothing.
 ///
 /// # Example
-/// For the thesis' hose
+/// Result for the thesis' hose:
 /// ```
 /// assert!((phea_hydraulics::impedance::compliance_hidden_above(2.233e6, 13.1) - 413.0).abs() < 0.5);
 /// ```
@@ -57,8 +57,8 @@ pub fn compliance_hidden_above(hydraulic_stiffness: f64, moving_mass: f64) -> f6
     (hydraulic_stiffness / moving_mass).sqrt()
 }
 
-/// Asymptotes of the driving-point impedance, lowest frequency first; without a controller the open
-/// loop's.
+/// Asymptotes of the driving-point impedance, lowest frequency first; without a controller, those
+/// of the open loop.
 ///
 /// ```text
 /// low frequency   open loop             (A^2 + f_v K_c)/K_c                          a damper
@@ -66,11 +66,11 @@ pub fn compliance_hidden_above(hydraulic_stiffness: f64, moving_mass: f64) -> f6
 ///                 G -> K_i/s            (A^2 + f_v K_c)/(A K_qU K_i) s               a mass, about A/(K_qU K_i)
 ///                 G -> K/s^n            (A^2 + f_v K_c)/(A K_qU K) s^n
 /// plateau         K_eq/s                up to sqrt(K_H/M): the piston follows the load
-/// limit           K_S/s                 above sqrt((K_H + K_S)/M): the piston stands still
+/// limit           K_S/s                 above sqrt((K_H + K_S)/M): the piston is at rest
 /// ```
 ///
-/// The thesis (6.2.2) takes the plateau for the limit. An asymptote that is the nearest nowhere is
-/// left out: the first without leakage or feedback, the plateau where the piston's mass comes
+/// The thesis (6.2.2) treats the plateau as the limit. An asymptote that is nowhere the nearest is
+/// omitted: the first without leakage or feedback, the plateau if the piston's mass dominates
 /// before the spring.
 pub fn impedance_asymptotes(
     parameters: &LinearParameters,
@@ -103,12 +103,12 @@ pub fn impedance_asymptotes(
     asymptotes
 }
 
-/// These asymptotes where a transmission lies between sensor and load: its oil stands still before
-/// the piston's mass does, and at low frequency friction and mass of the oil are felt whatever the
-/// loop does.
+/// Asymptotes with a transmission between sensor and load: its oil comes to rest before the
+/// piston's mass does, and at low frequency friction and mass of the oil act independently of the
+/// loop.
 ///
 /// ```text
-/// low frequency   N b + Z               and of a mass Z = M s:  N b up to N b/(M + N m), then (M + N m) s
+/// low frequency   N b + Z               and for a mass Z = M s:  N b up to N b/(M + N m), then (M + N m) s
 /// limit           k_N+1/s               above sqrt((k_N + k_N+1)/m) of its last plug
 /// ```
 pub fn through_oil(asymptotes: Vec<Asymptote>, column: &OilColumn) -> Vec<Asymptote> {
@@ -140,8 +140,8 @@ pub fn through_oil(asymptotes: Vec<Asymptote>, column: &OilColumn) -> Vec<Asympt
     kept.filter(|line| line.from < line.to).chain([own]).collect()
 }
 
-/// G(s) -> gain/s^integrators as s -> 0, for a continuous controller; differentiators count
-/// negatively.
+/// Low-frequency behaviour G(s) -> gain/s^integrators as s -> 0, for a continuous controller;
+/// differentiators count negatively.
 fn low_frequency_behaviour(controller: &TransferFunction) -> (f64, i32) {
     let origin = Complex64::new(0.0, 0.0);
     let split = |roots: &[Complex64]| {

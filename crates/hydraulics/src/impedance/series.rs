@@ -7,14 +7,14 @@ use super::{closed_loop_impedance, open_loop_impedance};
 use crate::linear::{LinearModel, transfer_functions};
 use crate::plant::{LinearLoad, LinearPlant, LinearSeries, SeriesOutput};
 
-/// The actuator as its load meets it: the measured force per volt, and the force on the load per
-/// motion of the load, both at a load whose motion is prescribed.
+/// Actuator at its port to the load: the measured force per volt, and the force on the load per
+/// motion of the load, both with a prescribed load motion.
 ///
 /// # Errors
 /// Coefficients that are not finite.
 ///
 /// # Example
-/// A spring is felt through: the load never meets more than the spring's own stiffness.
+/// A spring limits the impedance: the load never meets more than the spring's own stiffness.
 /// ```
 /// use phea_hydraulics::impedance::{open_loop_impedance, port};
 /// use phea_hydraulics::plant::{LinearElement, LinearLoad, LinearPlant, LinearSeries, LinearSpring, SeriesOutput};
@@ -37,8 +37,8 @@ pub fn port(plant: &LinearPlant) -> Result<LinearModel, LinearError> {
     sharing_poles(&alone, both)
 }
 
-/// Coefficients of 1/H_v of a velocity that is fed forward within the plant, 1 where none is: the
-/// denominator of the path of the load's motion has it in addition to that of the command's path.
+/// Coefficients of 1/H_v of a velocity that is fed forward within the plant, 1 without one: the
+/// denominator of the load-motion path has it in addition to that of the command path.
 fn fed_forward_filter(plant: &LinearPlant) -> Vec<f64> {
     match plant.load_velocity_feed_forward {
         Some(_) => plant.velocity_sensor.filter.denominator(),
@@ -46,9 +46,8 @@ fn fed_forward_filter(plant: &LinearPlant) -> Vec<f64> {
     }
 }
 
-/// The path of the load's motion with the poles of the command's path, digit by digit, in addition
-/// to those of the filter of a velocity that is fed forward: a loop around them cancels the shared
-/// ones.
+/// Load-motion path with the poles of the command path, digit by digit, in addition to those of the
+/// filter of a velocity that is fed forward: a loop around them cancels the common ones.
 fn sharing_poles(plant: &LinearPlant, model: LinearModel) -> Result<LinearModel, LinearError> {
     let filter = fed_forward_filter(plant);
     if filter.len() == 1 {
@@ -62,24 +61,24 @@ fn sharing_poles(plant: &LinearPlant, model: LinearModel) -> Result<LinearModel,
     Ok(LinearModel { load_position, ..model })
 }
 
-/// Driving-point impedance in N s/m with the measured force fed back through a controller G in V/N.
+/// Driving-point impedance with the measured force fed back through a controller G in V/N, N s/m.
 ///
 /// ```text
 /// measured force that reaches the load      [`closed_loop_impedance`]
 /// force sensor before a mass or oil         -s Z = (F_L/X_L - G beta F_L/U_C)/(1 + G F_s/U_C)
 /// ```
 ///
-/// The second is the general one: what the sensor measures and the load does not feel,
-/// [`LinearSeries::held_back`], is the acceleration of a mass, beta = m s^2, or of the oil of a
-/// transmission with what its line takes. A virtual impedance Z_v adds what the loop makes of the
+/// The second is the general one: the force that the sensor measures and the load does not receive,
+/// [`LinearSeries::held_back`], accelerates a mass, beta = m s^2, or the oil of a transmission,
+/// including the flow into its line. A virtual impedance Z_v adds the response of the loop to the
 /// motion:
 ///
 /// ```text
-/// Z -> Z + (Z_v/s) G F_L/U_C/(1 + G F_s/U_C)                  about Z_v/s where the loop has much gain
+/// Z -> Z + (Z_v/s) G F_L/U_C/(1 + G F_s/U_C)                  about Z_v/s if the loop gain is high
 /// ```
 ///
 /// # Errors
-/// As [`closed_loop_impedance`].
+/// Errors of [`closed_loop_impedance`].
 pub fn closed_loop_port(
     plant: &LinearPlant,
     controller: &TransferFunction,
@@ -99,20 +98,19 @@ pub fn closed_loop_port(
         return open_loop_impedance(&port(plant)?);
     };
     let of = |coefficients: Vec<f64>| Polynomial::new(coefficients);
-    // the path of the motion has the filter of a velocity that is fed forward, that of the command
-    // has not
+    // the motion path has the filter of a velocity that is fed forward, the command path has not
     let filter = of(fed_forward_filter(plant));
     let [over, under] = [controller.numerator(), controller.denominator()];
     let accelerated = of(held_back).scaled(-1.0).product(&of(felt.command.numerator));
     let measured = of(alone.coefficients().command.numerator);
     let moved = of(moved).product(&under).sum(&accelerated.product(&over).product(&filter));
     let closed = of(denominator).product(&under).sum(&measured.product(&over).product(&filter));
-    // at rest no motion is felt: the factor s
+    // at rest the load feels no motion: the factor s
     let without_origin = moved.coefficients().split_last().map_or(Vec::new(), |(_, rest)| rest.to_vec());
     TransferFunction::from_polynomials(&of(without_origin).scaled(-1.0), &closed)
 }
 
-/// What a loop makes of a virtual impedance at its port, in N s/m.
+/// Contribution of a loop with a virtual impedance at its port, N s/m.
 fn beside(
     impedance: &VirtualImpedance,
     plant: &LinearPlant,
@@ -125,7 +123,7 @@ fn beside(
     let followed = match shaken {
         None => followed,
         Some(series) => {
-            // F_L in place of F_s, which have their denominators in common
+            // F_L in place of F_s, with common denominators
             let on_load = LinearSeries { output: SeriesOutput::OnLoad, ..series };
             let alone = LinearPlant { load: LinearLoad::Prescribed, series: Some(on_load), ..*plant };
             let felt = transfer_functions(&alone.coefficients())?.command;

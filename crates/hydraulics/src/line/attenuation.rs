@@ -1,5 +1,4 @@
-//! How a wave is smeared on its way through a laminar line: four first-order lags, by dissipation
-//! number.
+//! Attenuation of a wave along a laminar line: four first-order lags, by dissipation number.
 
 /// Number of lags.
 pub(super) const TERMS: usize = 4;
@@ -7,7 +6,7 @@ pub(super) const TERMS: usize = 4;
 /// Corners b_k of the lags in units of 1/T.
 pub(super) const CORNERS: [f64; TERMS] = [1.0, 6.0, 20.0, 100.0];
 
-/// The greatest dissipation number that was fitted.
+/// Greatest dissipation number of the fit.
 pub(super) const GREATEST_DISSIPATION: f64 = 0.1;
 
 /// Root of the dissipation number, and the weights a_k of the lags there.
@@ -31,16 +30,16 @@ const WEIGHTS: [(f64, [f64; TERMS]); 16] = [
     (0.316227766, [0.452102, 0.138736, 0.409162, 0.000000]),
 ];
 
-/// Weights a_k of the attenuation of a wave at a dissipation number nu T/R^2 from 0 to 0.1; none
+/// Weights a_k of the attenuation of a wave at a dissipation number nu T/R^2 from 0 to 0.1; `None`
 /// beyond.
 ///
 /// ```text
 /// exp(sT - Gamma(s)) ~ A(s) = 1 - sum a_k + sum a_k b_k/(b_k + s T),     Gamma = s T sqrt(N(s R^2/nu))
 /// ```
 ///
-/// Fitted by least squares from w T = 0.3 to 40 with weights that are not negative, so that |A(jw)|
-/// <= A(0) = 1 at every frequency: no wave grows. Between the rows of the table the weights are
-/// straight in the root of the dissipation number, as they are in theory when it is small.
+/// Fitted by least squares from w T = 0.3 to 40 with non-negative weights, so that |A(jw)| <= A(0)
+/// = 1 at every frequency: no wave grows. Between the rows of the table the weights are linear in
+/// the root of the dissipation number, as they are in theory when it is small.
 pub(super) fn attenuation_weights(dissipation: f64) -> Option<[f64; TERMS]> {
     if !(0.0..=GREATEST_DISSIPATION).contains(&dissipation) {
         return None;

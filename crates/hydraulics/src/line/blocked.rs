@@ -5,19 +5,19 @@ use phea_dynamics::simulation::System;
 use super::{DynamicLine, Line, LineError, LineModel, StiffeningMember};
 use crate::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, EntrainedAir, Fluid, bulk_modulus_with_air};
 
-/// A line on a test stand: flow enters at its valve end, its other end is blocked.
+/// Line on a test stand: flow enters at its valve end, its other end is blocked.
 ///
 /// ```text
 /// C_end(p) dp/dt = q_end        q_end from DynamicLine, p the pressure at the blocked end
-/// C_end(p) = C_end + V (1/beta(p) - 1/beta(p_m))          a lumped line whose fluid has air in it
+/// C_end(p) = C_end + V (1/beta(p) - 1/beta(p_m))          a lumped line whose fluid contains air
 /// ```
 ///
 /// As in the machine, air makes a lumped line softer at low pressure, and a line with inertance or
-/// waves has the modulus at its mean pressure p_m. Its input is the flow in m3/s, followed by the
+/// waves has the modulus at its mean pressure p_m. The input is the flow in m3/s, followed by the
 /// arriving waves; its states are the pressure at the blocked end in Pa and those of the line.
 ///
 /// # Example
-/// What enters slowly is taken up by the compliance.
+/// The compliance takes up a slow flow:
 /// ```
 /// use num_complex::Complex64;
 /// use phea_hydraulics::line::{BlockedLine, LineModel, StiffeningMember};
@@ -39,13 +39,13 @@ pub struct BlockedLine {
     air: Option<AeratedFluid>,
 }
 
-/// The fluid of a lumped line that carries air.
+/// Fluid of a lumped line that contains air.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct AeratedFluid {
     volume: f64,
     bulk_modulus: f64,
     air: EntrainedAir,
-    /// Compliance of the fluid at the mean pressure, which the line has already.
+    /// Compliance of the fluid at the mean pressure, which the line already includes.
     counted: f64,
 }
 
@@ -53,10 +53,10 @@ struct AeratedFluid {
 const LEAST_ABSOLUTE_PRESSURE: f64 = 1.0;
 
 impl BlockedLine {
-    /// A line filled with a fluid at a mean gauge pressure in Pa.
+    /// Line filled with a fluid at a mean gauge pressure in Pa.
     ///
     /// # Errors
-    /// As [`DynamicLine::new`].
+    /// Errors of [`DynamicLine::new`].
     pub fn new(
         line: &Line,
         fluid: &Fluid,
@@ -77,12 +77,12 @@ impl BlockedLine {
         Ok(BlockedLine { line: moving, air })
     }
 
-    /// A line with this motion.
+    /// Blocked line with this dynamic model.
     pub fn of(line: DynamicLine) -> BlockedLine {
         BlockedLine { line, air: None }
     }
 
-    /// Pressure over flow at the open end, at s in rad/s and the mean pressure, in Pa s/m3.
+    /// Ratio of pressure to flow at the open end, at s in rad/s and the mean pressure, Pa s/m3.
     ///
     /// ```text
     /// Z = (a + b s C_end)/(c + d s C_end)            ->  Z_c coth(Gamma) of the exact line
@@ -93,8 +93,7 @@ impl BlockedLine {
         (line.pressure + line.impedance * end) / (line.admittance + line.flow * end)
     }
 
-    /// Volume per pressure that the line takes up if it has time to, at a gauge pressure in Pa, in
-    /// m3/Pa.
+    /// Static compliance of the line at a gauge pressure in Pa, m3/Pa.
     pub fn static_compliance(&self, pressure: f64) -> f64 {
         self.line.static_compliance() + self.air.map_or(0.0, |fluid| fluid.excess(pressure))
     }
@@ -105,7 +104,7 @@ impl BlockedLine {
         ([vec![pressure], line].concat(), waves)
     }
 
-    /// Pressure in Pa at the open end.
+    /// Pressure at the open end, Pa.
     pub fn open_end(&self, state: &[f64]) -> f64 {
         match state {
             [blocked, line @ ..] => self.line.port_pressure(line, *blocked),
@@ -115,7 +114,7 @@ impl BlockedLine {
 }
 
 impl AeratedFluid {
-    /// Compliance in excess of that at the mean pressure, in m3/Pa.
+    /// Compliance in excess of that at the mean pressure, m3/Pa.
     fn excess<T: Scalar + From<f64>>(&self, pressure: T) -> T {
         let constant = |value: f64| <T as From<f64>>::from(value);
         let absolute = pressure + constant(ATMOSPHERIC_PRESSURE_ABSOLUTE);

@@ -1,36 +1,36 @@
 use super::{Hose, StiffeningMember};
 use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
-/// The wall of a hose that moves along its axis: its mass and its compliances.
+/// Wall of a hose that moves along its axis: its mass and its compliances.
 ///
 /// ```text
 /// area strain  = C_pp p + C_pF F         axial strain = A C_pF p + C_FF F         F the tension in the wall
 /// ```
 ///
-/// One C_pF for both, since the wall stores energy. A braided wall gets thinner when it is pulled:
-/// C_pF < 0.
+/// Both effects have one C_pF, since the wall stores energy. A braided wall becomes thinner when it
+/// is pulled: C_pF < 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BraidedWall {
-    /// Mass of the wall per length m in kg/m.
+    /// Mass of the wall per length m, kg/m.
     pub mass_per_length: f64,
-    /// Area strain per pressure without tension C_pp in 1/Pa.
+    /// Area strain per pressure without tension C_pp, 1/Pa.
     pub pressure_compliance: f64,
-    /// Area strain per tension C_pF in 1/N; times the area of the bore the axial strain per
+    /// Area strain per tension C_pF, 1/N; times the area of the bore, the axial strain per
     /// pressure.
     pub coupling_compliance: f64,
-    /// Axial strain per tension C_FF in 1/N.
+    /// Axial strain per tension C_FF, 1/N.
     pub axial_compliance: f64,
 }
 
-/// Assumed outer diameter in m of the wall of a half-inch thermoplastic hose.
+/// Assumed outer diameter of the wall of a half-inch thermoplastic hose, m.
 const OUTER_DIAMETER: f64 = 20.3e-3;
-/// Assumed density in kg/m3 of its polyamide, polyester braid and polyurethane.
+/// Assumed density of its polyamide, polyester braid and polyurethane, kg/m3.
 const WALL_DENSITY: f64 = 1150.0;
-/// Assumed static Young's modulus in Pa of its tube and cover together, without the braid.
+/// Assumed static Young's modulus of its tube and cover together, without the braid, Pa.
 const TUBE_MODULUS: f64 = 50e6;
 
 impl BraidedWall {
-    /// The wall of a hose braided at the neutral angle around an incompressible tube.
+    /// Wall of a hose braided at the neutral angle around an incompressible tube.
     ///
     /// ```text
     /// C_FF = 1/K_axial        C_pF = -C_FF        C_pp = 1/beta_free + A C_FF
@@ -38,16 +38,16 @@ impl BraidedWall {
     ///
     /// Inextensible in the direction of its threads, such a wall does not change its length when
     /// closed and free ends stretch it with F = p A (tan^2 of the braid angle is 2). So a
-    /// catalogue's volumetric expansion, which is measured in that way, is that of the hose between
-    /// fixed ends too: 1/beta_free = C_pp + 2 A C_pF + A C_FF = C_pp - A C_pF^2/C_FF. The tension
-    /// at constant pressure pulls on the tube alone: K_axial = E_tube A_wall. How stiff the threads
-    /// are follows from the catalogue.
+    /// catalogue's volumetric expansion, which is measured with free ends, also applies to the hose
+    /// between fixed ends: 1/beta_free = C_pp + 2 A C_pF + A C_FF = C_pp - A C_pF^2/C_FF. At
+    /// constant pressure only the tube carries the tension: K_axial = E_tube A_wall. The stiffness
+    /// of the threads follows from the catalogue.
     ///
-    /// `axial_stiffness` K_axial in N per unit of strain, at the same rate of change as the member
-    /// of the hose's stiffening.
+    /// Axial stiffness K_axial in N per unit of strain, at the same rate of change as the member of
+    /// the hose's stiffening.
     ///
     /// # Example
-    /// With free ends it does not move, and takes up the volume stated in the catalogue.
+    /// With free ends it does not move, and takes up the volume stated in the catalogue:
     /// ```
     /// use phea_hydraulics::line::{BraidedWall, StiffeningMember};
     /// let hose = phea_hydraulics::reference_rig::hose().filled();
@@ -67,8 +67,8 @@ impl BraidedWall {
         BraidedWall::of_hose(hose, member, axial_compliance, -axial_compliance, mass_per_length)
     }
 
-    /// The wall of these compliances in 1/N that expands as the catalogue states if its ends are
-    /// closed and free, around the bore that the hose has at the operating pressure.
+    /// Wall of these compliances in 1/N that expands as stated in the catalogue with closed, free
+    /// ends, around the bore of the hose at the operating pressure.
     ///
     /// ```text
     /// C_pp = 1/beta_free - 2 A C_pF - A C_FF
@@ -95,9 +95,9 @@ impl BraidedWall {
         BraidedWall { mass_per_length, pressure_compliance, coupling_compliance, axial_compliance }
     }
 
-    /// An assumed wall for a half-inch thermoplastic hose, none of it from a data sheet: outer
-    /// diameter 20.3 mm, 1150 kg/m3, tube and cover of 50 MPa at rest, stiffening as the whole hose
-    /// does, neutral braid.
+    /// Assumed wall for a half-inch thermoplastic hose, none of it from a data sheet: outer
+    /// diameter 20.3 mm, 1150 kg/m3, tube and cover of 50 MPa at rest, stiffening like the whole
+    /// hose, neutral braid.
     ///
     /// # Example
     /// ```
@@ -112,8 +112,8 @@ impl BraidedWall {
         BraidedWall::neutral(hose, member, stiffness, WALL_DENSITY * area)
     }
 
-    /// Impossible parameters of this wall; empty if there are none. Whether it stores positive
-    /// energy depends on the fluid.
+    /// Impossible parameters of this wall; empty if there are none. The sign of its stored energy
+    /// depends on the fluid.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.positive("mass_per_length", self.mass_per_length);

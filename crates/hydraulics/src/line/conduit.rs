@@ -6,78 +6,79 @@ use super::{Line, StiffeningMember};
 use crate::fluid::Fluid;
 use crate::parameter::{ParameterError, Problems};
 
-/// The fluid column of a line: round, straight, of constant bore and modulus. Units: m, kg/m3,
-/// m2/s, Pa.
+/// Fluid column of a line: round, straight, of constant bore and modulus. Units: m, kg/m3, m2/s,
+/// Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conduit<S = f64> {
-    /// Length L in m.
+    /// Length L, m.
     pub length: S,
-    /// Bore D = 2 R in m.
+    /// Bore D = 2 R, m.
     pub bore: S,
-    /// Density of the fluid rho in kg/m3.
+    /// Density of the fluid rho, kg/m3.
     pub density: S,
-    /// Kinematic viscosity of the fluid nu in m2/s.
+    /// Kinematic viscosity of the fluid nu, m2/s.
     pub kinematic_viscosity: S,
-    /// Bulk modulus of fluid and wall together beta_e in Pa.
+    /// Bulk modulus of fluid and wall together beta_e, Pa.
     pub effective_bulk_modulus: S,
 }
 
-/// Why a line has no such dynamic model.
+/// Error for a line that has no such dynamic model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LineError {
-    /// Parameters outside physics.
+    /// Impossible parameters.
     #[error("{}", problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
     Impossible {
-        /// All of them.
+        /// All impossible parameters.
         problems: Vec<ParameterError>,
     },
-    /// Only its volume is known: it has no length and no bore to calculate inertia, friction or
-    /// delay from.
+    /// A line with a known volume only: it has no length and no bore from which inertia, friction
+    /// or delay follow.
     #[error("a plain volume has neither length nor bore: only the lumped model fits it")]
     NoBore,
-    /// Nothing travels along a line without length.
+    /// A line without length, along which no wave travels.
     #[error("a line without length carries no waves: use the lumped model")]
     NoLength,
-    /// Friction between the fluid and a light wall mixes the waves so much that the model in time
-    /// would give energy at low frequency: the resistance that makes up for the lags of its waves
-    /// exceeds that of steady flow.
+    /// Friction between the fluid and a light wall, which mixes the waves so much that the model in
+    /// time would supply energy at low frequency: the resistance that compensates for the lags of
+    /// its waves exceeds that of steady flow.
     #[error(
         "friction mixes the waves: their lags take {needed} Pa s/m3 at each end, steady flow gives {half_resistance}"
     )]
     MixedByFriction {
-        /// Resistance that the lags of the waves need, in Pa s/m3.
+        /// Resistance that the lags of the waves need, Pa s/m3.
         needed: f64,
-        /// Half of the steady resistance, in Pa s/m3.
+        /// Half of the steady resistance, Pa s/m3.
         half_resistance: f64,
     },
-    /// Walls that creep or move along their axis are those of hoses.
+    /// A wall that creeps or moves along its axis, but is not a hose.
     #[error("this model of the wall is for hoses")]
     NotAHose,
-    /// A line cut into no segments.
+    /// A line with zero segments.
     #[error("a line in segments has at least one; without any it is lumped")]
     NoSegments,
-    /// Friction damps all waves before they arrive; the attenuation was not fitted there.
+    /// A dissipation number beyond the range of the attenuation's fit: friction damps all waves
+    /// before they arrive.
     #[error(
         "the dissipation number nu L/(c R^2) is {dissipation}, above {limit}: use the lumped model in segments"
     )]
     Overdamped {
         /// Dissipation number of the line.
         dissipation: f64,
-        /// The greatest that was fitted.
+        /// Greatest dissipation number of the fit.
         limit: f64,
     },
 }
 
 impl Conduit {
-    /// The fluid column of a hose or pipe, with the fluid's modulus at a mean gauge pressure in Pa.
+    /// Fluid column of a hose or pipe, with the fluid's modulus at a mean gauge pressure in Pa.
     ///
     /// # Errors
-    /// [`LineError::NoBore`] for a plain volume, [`LineError::NoLength`], and parameters outside
-    /// physics.
+    /// [`LineError::NoBore`] for a plain volume, [`LineError::NoLength`], and impossible
+    /// parameters.
     ///
     /// # Example
-    /// Pressure takes 2.80 ms along 1.5 m of the thesis' hose at 35 bar, and the compliance is that
-    /// of the lumped line.
+    /// Pressure takes 2.80 ms along 1.5 m of the thesis' hose at 35 bar, and the compliance equals
+    /// that of the lumped line.
     /// ```
     /// use phea_hydraulics::line::{Conduit, StiffeningMember};
     /// use phea_hydraulics::reference_rig::{components, hose_line};
@@ -130,8 +131,8 @@ impl Conduit {
 }
 
 impl<S: Scalar> Conduit<S> {
-    /// The fluid column of a hose or pipe over any scalar, unchecked; of a plain volume length and
-    /// bore are not a number.
+    /// Fluid column of a hose or pipe over any scalar, unchecked; length and bore of a plain volume
+    /// are NaN.
     pub(crate) fn filled(
         line: &Line<S>,
         fluid: &Fluid<S>,
@@ -152,12 +153,12 @@ impl<S: Scalar> Conduit<S> {
         }
     }
 
-    /// Area of the bore in m2.
+    /// Area of the bore, m2.
     pub fn area(&self) -> S {
         S::from(FRAC_PI_4) * self.bore.squared()
     }
 
-    /// Compliance in m3/Pa.
+    /// Compliance, m3/Pa.
     ///
     /// ```text
     /// C = A L/beta_e
@@ -166,7 +167,7 @@ impl<S: Scalar> Conduit<S> {
         self.area() * self.length / self.effective_bulk_modulus
     }
 
-    /// Inertance in Pa s2/m3.
+    /// Inertance, Pa s2/m3.
     ///
     /// ```text
     /// I = rho L/A
@@ -175,7 +176,7 @@ impl<S: Scalar> Conduit<S> {
         self.density * self.length / self.area()
     }
 
-    /// Resistance of steady laminar flow in Pa s/m3: Hagen and Poiseuille.
+    /// Resistance of steady laminar flow (Hagen and Poiseuille), Pa s/m3.
     ///
     /// ```text
     /// R_0 = 8 nu/R^2 rho L/A
@@ -184,7 +185,7 @@ impl<S: Scalar> Conduit<S> {
         S::from(8.0) * self.viscous_rate() * self.inertance()
     }
 
-    /// Rate in 1/s at which friction spreads from the wall into the flow.
+    /// Rate at which friction spreads from the wall into the flow, 1/s.
     ///
     /// ```text
     /// nu/R^2
@@ -193,7 +194,7 @@ impl<S: Scalar> Conduit<S> {
         S::from(4.0) * self.kinematic_viscosity / self.bore.squared()
     }
 
-    /// Speed of a pressure wave in m/s.
+    /// Speed of a pressure wave, m/s.
     ///
     /// ```text
     /// c = sqrt(beta_e/rho)
@@ -202,7 +203,7 @@ impl<S: Scalar> Conduit<S> {
         (self.effective_bulk_modulus / self.density).sqrt()
     }
 
-    /// Time in s that a wave takes along the line.
+    /// Travel time of a wave along the line, s.
     ///
     /// ```text
     /// T = L/c
@@ -211,7 +212,7 @@ impl<S: Scalar> Conduit<S> {
         self.length / self.speed()
     }
 
-    /// Characteristic impedance in Pa s/m3.
+    /// Characteristic impedance, Pa s/m3.
     ///
     /// ```text
     /// Z_c = rho c/A                                                        thesis (4.38), over the area
@@ -220,7 +221,7 @@ impl<S: Scalar> Conduit<S> {
         self.density * self.speed() / self.area()
     }
 
-    /// Dissipation number, without unit: how much friction a wave meets on its way.
+    /// Dissipation number, dimensionless: friction that acts on a wave along the line.
     ///
     /// ```text
     /// nu T/R^2

@@ -2,15 +2,15 @@ use phea_dynamics::scalar::Scalar;
 
 use super::{LineContent, Segments, TransmissionLine, TwoWaveLine};
 
-/// The dynamics of a line between its valve port and its chamber, as part of a machine: states, and
+/// Dynamics of a line between its valve port and its chamber, as part of a machine: states, and
 /// waves that are sent and arrive later.
 ///
-/// The valve gives its flow, the chamber its pressure; the line answers with its port's pressure
-/// and the flow into the chamber, and adds [`DynamicLine::chamber_compliance`] to the chamber. So
-/// no part of it is an algebraic loop. Units: Pa, m3/s, s.
+/// The inputs are the flow from the valve and the chamber pressure; the outputs are the port
+/// pressure and the flow into the chamber. The line adds [`DynamicLine::chamber_compliance`] to the
+/// chamber. So no part of it is an algebraic loop. Units: Pa, m3/s, s.
 ///
 /// # Example
-/// A steady flow stays.
+/// A steady flow remains steady:
 /// ```
 /// use phea_hydraulics::line::{Conduit, DynamicLine, END_SHARE, TransmissionLine};
 /// let conduit = Conduit {
@@ -63,7 +63,7 @@ impl<S: Copy> DynamicLine<S> {
         }
     }
 
-    /// How long each wave travels, in s; one wave sent and one arriving for each.
+    /// Travel time of each wave, s; one wave sent and one arriving for each.
     pub fn delays(&self) -> Vec<S> {
         match self {
             DynamicLine::Segments(_) => Vec::new(),
@@ -74,8 +74,8 @@ impl<S: Copy> DynamicLine<S> {
 }
 
 impl<S: Scalar> DynamicLine<S> {
-    /// Pressure over flow of each slow wave that travels one way, and half of the steady
-    /// resistance, in Pa s/m3; `None` without waves.
+    /// Ratio of pressure to flow of each slow wave in one direction, and half of the steady
+    /// resistance, Pa s/m3; `None` without waves.
     pub fn of_waves(&self) -> Option<(Vec<S>, S)> {
         match self {
             DynamicLine::Segments(_) => None,
@@ -86,8 +86,8 @@ impl<S: Scalar> DynamicLine<S> {
         }
     }
 
-    /// For each wave that is sent, in order, the numbers of the states X whose shares a of it are
-    /// late, with these shares; empty without waves.
+    /// Indices and fractions of the states X that smear each wave sent, in order; empty without
+    /// waves.
     ///
     /// ```text
     /// sent = (1 - sum a) h + sum a X                             of TravellingWaves
@@ -100,7 +100,7 @@ impl<S: Scalar> DynamicLine<S> {
         }
     }
 
-    /// The contribution of the line to the compliance of the chamber, in m3/Pa.
+    /// Contribution of the line to the compliance of the chamber, m3/Pa.
     pub fn chamber_compliance(&self) -> S {
         match self {
             DynamicLine::Segments(line) => line.chamber_compliance(),
@@ -118,7 +118,7 @@ impl<S: Scalar> DynamicLine<S> {
         }
     }
 
-    /// Pressure at the valve port in Pa.
+    /// Pressure at the valve port, Pa.
     #[inline]
     pub fn port_pressure<T: Scalar + From<S>>(&self, state: &[T], chamber_pressure: T) -> T {
         match self {
@@ -128,7 +128,7 @@ impl<S: Scalar> DynamicLine<S> {
         }
     }
 
-    /// Rates of all states; returns the flow into the chamber in m3/s. Slices as long as
+    /// Rates of all states; returns the flow into the chamber in m3/s. The slices have the lengths
     /// [`DynamicLine::states`] and [`DynamicLine::delays`].
     #[inline]
     pub fn rates<T: Scalar + From<S>>(
@@ -150,8 +150,8 @@ impl<S: Scalar> DynamicLine<S> {
         }
     }
 
-    /// The content of the line; `None` with waves, since much of their content is in transit and
-    /// not part of its states.
+    /// Content of the line; `None` with waves, since much of their content is in transit and not
+    /// part of its states.
     pub(crate) fn content<T: Scalar + From<S>>(
         &self,
         chamber_pressure: T,
@@ -163,7 +163,7 @@ impl<S: Scalar> DynamicLine<S> {
         }
     }
 
-    /// The waves sent into each delay, in Pa.
+    /// Waves sent into each delay, Pa.
     #[inline]
     pub fn outgoing<T: Scalar + From<S>>(
         &self,

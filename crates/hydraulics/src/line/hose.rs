@@ -5,21 +5,21 @@ use phea_dynamics::scalar::Scalar;
 use super::StiffeningMember;
 use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
-/// A hose described by its catalogue's volumetric expansion. Units: m, m3/m, m3/(m Pa).
+/// Hose described by its catalogue's volumetric expansion. Units: m, m3/m, m3/(m Pa).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hose<S = f64> {
-    /// Bore D_ho in m.
+    /// Bore D_ho, m.
     pub bore: S,
-    /// Volumetric expansion per length at the working pressure, E, in m3/m (ISO 6801), to which the
+    /// Volumetric expansion per length at the working pressure, E, m3/m (ISO 6801), to which the
     /// thesis' modulus refers.
     pub volumetric_expansion: S,
-    /// The same at the operating pressure, in m3/m: how much more oil a metre holds than its bore.
-    /// Below zero only where the straight line through a measured point of the catalogue misses the
-    /// origin.
+    /// Volumetric expansion at the operating pressure, m3/m: the oil in a metre in excess of its
+    /// bore. Negative only if the straight line through a measured point of the catalogue misses
+    /// the origin.
     pub operating_expansion: S,
-    /// Slope of the volumetric expansion over pressure, epsilon = dE/dp, in m3/(m Pa).
+    /// Slope of the volumetric expansion over pressure, epsilon = dE/dp, m3/(m Pa).
     pub expansion_slope: S,
-    /// Dynamic over static wall modulus, r_beta.
+    /// Ratio of dynamic to static wall modulus, r_beta.
     pub dynamic_stiffening: Stiffening<S>,
 }
 
@@ -28,23 +28,23 @@ pub struct Hose<S = f64> {
 /// frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stiffening<S = f64> {
-    /// What a nominal calculation uses.
+    /// Value for a nominal calculation.
     pub nominal: S,
-    /// The softest the wall may be.
+    /// Softest wall.
     pub minimum: S,
-    /// The stiffest the wall may be.
+    /// Stiffest wall.
     pub maximum: S,
 }
 
 impl Stiffening {
-    /// No uncertainty.
+    /// Ratio without uncertainty.
     pub fn certain(ratio: f64) -> Stiffening {
         Stiffening { nominal: ratio, minimum: ratio, maximum: ratio }
     }
 }
 
 impl<S: Copy> Stiffening<S> {
-    /// The ratio of one member of the interval.
+    /// Ratio for one member of the interval.
     pub fn member(&self, member: StiffeningMember) -> S {
         match member {
             StiffeningMember::Minimum => self.minimum,
@@ -88,7 +88,7 @@ impl Hose {
 }
 
 impl<S: Scalar> Hose<S> {
-    /// Compliance of a metre by its data sheet, in m2/Pa: the expansion of the wall, and the oil in
+    /// Compliance of a metre by its data sheet, m2/Pa: the expansion of the wall, and the oil in
     /// the bore at the operating pressure p.
     ///
     /// ```text
@@ -96,11 +96,11 @@ impl<S: Scalar> Hose<S> {
     /// ```
     ///
     /// The thesis refers beta_hoSS to the bore expanded at the working pressure (6.24) but
-    /// multiplies it with the unexpanded volume (6.25): this reduces the expansion of the wall to
+    /// multiplies it by the unexpanded volume (6.25): this reduces the expansion of the wall to
     /// A_ho/(A_ho + E) of it.
     ///
     /// # Example
-    /// Eaton Synflex 3130-08 at 35 bar
+    /// Eaton Synflex 3130-08 at 35 bar:
     /// ```
     /// # use phea_hydraulics::{line::StiffeningMember, reference_rig::hose};
     /// let compliance = hose().compliance_per_length(1.45e9, StiffeningMember::Nominal);
@@ -111,8 +111,8 @@ impl<S: Scalar> Hose<S> {
         self.expansion_slope / self.dynamic_stiffening.member(member) + area / fluid_modulus
     }
 
-    /// The same hose with the bore that it has at the operating pressure, its expansion counted
-    /// from there: its moduli refer to the oil that it holds.
+    /// Hose with its bore at the operating pressure, and its expansion counted from there: its
+    /// moduli refer to the oil that it contains.
     ///
     /// # Example
     /// ```
@@ -134,25 +134,25 @@ impl<S: Scalar> Hose<S> {
         }
     }
 
-    /// Static wall modulus beta_hoSS in Pa: [`static_hose_modulus`].
+    /// Static wall modulus beta_hoSS, Pa: [`static_hose_modulus`].
     pub fn static_modulus(&self) -> S {
         static_hose_modulus(self.bore, self.volumetric_expansion, self.expansion_slope)
     }
 
-    /// Dynamic wall modulus beta_ho = r_beta beta_hoSS in Pa.
+    /// Dynamic wall modulus beta_ho = r_beta beta_hoSS, Pa.
     pub fn wall_modulus(&self, member: StiffeningMember) -> S {
         self.dynamic_stiffening.member(member) * self.static_modulus()
     }
 }
 
-/// Static modulus of a hose wall from its volumetric expansion, in Pa.
+/// Static modulus of a hose wall from its volumetric expansion, Pa.
 ///
 /// ```text
 /// beta_hoSS = (A_ho + E)/epsilon = (pi D_ho^2 + 4 E)/(4 epsilon)                  thesis (6.21) to (6.24)
 /// ```
 ///
 /// # Example
-/// Eaton Synflex 3130-08 at 70 bar
+/// Eaton Synflex 3130-08 at 70 bar:
 /// ```
 /// use phea_hydraulics::line::static_hose_modulus;
 /// assert!((static_hose_modulus(12.7e-3, 1.56e-5, 2.236e-12) - 6.363e7_f64).abs() < 0.5e4);

@@ -7,13 +7,13 @@ use num_complex::Complex64;
 /// ```
 ///
 /// Corners from the first squared zero upwards by factors of five; weights fitted to the friction
-/// factor, which they meet within 0.5 % for viscous frequencies w R^2/nu from 0.5 to 3e4 (W itself
-/// within 4.5 % for tau from 3e-4 to 0.05).
+/// factor within 0.5 % for viscous frequencies w R^2/nu from 0.5 to 3e4 (W itself within 4.5 % for
+/// tau from 3e-4 to 0.05).
 // ORIGIN: recomputed by comparisons/recompute_lines.py
 pub(super) const UNSTEADY_FRICTION: [(f64, f64); 5] =
     [(26.3744, 1.122127), (131.872, 3.123206), (659.36, 6.431796), (3296.8, 12.243534), (16484.0, 68.188558)];
 
-/// Apparent over true inertia of a laminar oscillating flow, friction included, at s R^2/nu.
+/// Ratio of apparent to true inertia of a laminar oscillating flow, friction included, at s R^2/nu.
 ///
 /// ```text
 /// N = I_0(z)/I_2(z),   z^2 = s R^2/nu          dp/dx = -(rho/A) N s q
@@ -21,7 +21,7 @@ pub(super) const UNSTEADY_FRICTION: [(f64, f64); 5] =
 /// ```
 ///
 /// Newtonian fluid, round rigid tube, small velocities: no turbulence. Evaluated by the continued
-/// fraction of the ratios of modified Bessel functions, from the far end inwards. Source: Zielke
+/// fraction of the ratios of modified Bessel functions, from its end backwards. Source: Zielke
 /// (1968), Journal of Basic Engineering 90(1). `viscous_frequency` must not be a negative real
 /// number.
 ///
@@ -80,7 +80,7 @@ mod tests {
             let error = fitted / exact_weighting(tau) - 1.0;
             assert!(error.abs() < tolerance, "W({tau}) is {error} off");
         }
-        // At long times friction adds a third to the inertia: 4 W integrated over tau.
+        // at long times friction adds a third to the inertia: 4 W integrated over tau
         let inertia: f64 = UNSTEADY_FRICTION.iter().map(|(corner, weight)| 4.0 * weight / corner).sum();
         assert!((inertia - 1.0 / 3.0).abs() < 3e-3, "{inertia}");
     }

@@ -4,46 +4,45 @@ use super::{
 };
 use crate::fluid::Fluid;
 
-/// Which model a line gets in motion.
+/// Dynamic model of a line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum LineModel {
-    /// One elastic capacity at the chamber. Fits every line, a plain volume and no line at all
-    /// included.
+    /// Elastic capacity at the chamber. Fits every line, including a plain volume and no line.
     #[default]
     Lumped,
-    /// One capacity at the chamber whose wall creeps with this relaxation time in s. Hoses only.
+    /// Capacity at the chamber with a creeping wall. Hoses only.
     Creeping {
-        /// Relaxation time tau in s.
+        /// Relaxation time tau, s.
         relaxation_time: f64,
     },
     /// Pi segments, at least one.
     Segments {
-        /// How many.
+        /// Number of segments.
         count: usize,
-        /// What resists the flow.
+        /// Model of laminar friction.
         friction: LaminarFriction,
-        /// Relaxation time in s of a wall that creeps; hoses only.
+        /// Relaxation time of a creeping wall, s; hoses only.
         relaxation_time: Option<f64>,
     },
-    /// One wave each way.
+    /// Wave model with one wave in each direction.
     TransmissionLine {
-        /// Share of the compliance at each end, [`super::END_SHARE`] unless there is a reason.
+        /// Fraction of the compliance at each end, normally [`super::END_SHARE`].
         end_share: f64,
     },
-    /// Two waves each way. Hoses only.
+    /// Wave model with two waves in each direction. Hoses only.
     TwoWave {
-        /// Share of the compliance at each end, [`super::END_SHARE`] unless there is a reason.
+        /// Fraction of the compliance at each end, normally [`super::END_SHARE`].
         end_share: f64,
-        /// The wall; absent, the one of [`BraidedWall::assumed`].
+        /// Wall; if absent, that of [`BraidedWall::assumed`].
         wall: Option<BraidedWall>,
     },
 }
 
 impl DynamicLine {
-    /// A line in motion, filled with a fluid at a mean gauge pressure in Pa.
+    /// Dynamic line filled with a fluid at a mean gauge pressure in Pa.
     ///
     /// # Errors
-    /// Parameters outside physics, and a line that the model does not fit: see [`LineError`].
+    /// Impossible parameters, and a line that the model does not fit: see [`LineError`].
     ///
     /// # Example
     /// ```

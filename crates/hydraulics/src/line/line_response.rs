@@ -3,31 +3,31 @@ use phea_dynamics::portable::{exp_complex, sqrt_complex};
 
 use super::Conduit;
 
-/// Response of a line that is the same from both ends, at one complex frequency.
+/// Response of a line that is symmetric between its ends, at one complex frequency.
 ///
 /// ```text
 /// p_1 = p_2, q_1 = q_2 into the line:  in_phase = p/q           p_1 = -p_2, q_1 = -q_2:  in_opposition = p/q
 /// ```
 ///
-/// In Pa s/m3. A line is passive where both have a real part that is not negative on the imaginary
+/// Impedances in Pa s/m3. A line is passive if both have a non-negative real part on the imaginary
 /// axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineResponse {
-    /// Impedance with both ends in phase: how the line yields.
+    /// Impedance with both ends in phase: the compliance of the line.
     pub in_phase: Complex64,
-    /// Impedance with both ends in opposition: how it lets flow pass.
+    /// Impedance with both ends in opposition: the resistance to flow through the line.
     pub in_opposition: Complex64,
 }
 
 impl LineResponse {
-    /// One wave each way: Z coth(Gamma/2) and Z tanh(Gamma/2).
+    /// Response of one wave in each direction: Z coth(Gamma/2) and Z tanh(Gamma/2).
     pub(super) fn of_wave(impedance: Complex64, propagation: Complex64) -> LineResponse {
         let passed = exp_complex(-propagation);
         let coth = (1.0 + passed) / (1.0 - passed);
         LineResponse { in_phase: impedance * coth, in_opposition: impedance / coth }
     }
 
-    /// The transfer matrix t with (p_1, q_1) = t (p_2, q_2), flows counted from end 1 to end 2; its
+    /// Transfer matrix t with (p_1, q_1) = t (p_2, q_2), flows counted from end 1 to end 2; its
     /// determinant is 1.
     ///
     /// # Example
@@ -52,15 +52,15 @@ impl LineResponse {
 }
 
 impl Conduit {
-    /// The exact line at s in rad/s, for this factor of its inertia.
+    /// Response of the exact line at s in rad/s, for this factor of its inertia.
     ///
     /// ```text
     /// Gamma = s T sqrt(N)      Z = Z_c sqrt(N)      p_1 = p_2 cosh Gamma + q_2 Z sinh Gamma
     /// ```
     ///
-    /// N = 1 without friction, 1 + 8 nu/(s R^2) with that of steady flow,
-    /// [`super::friction_factor`] of s/[`Conduit::viscous_rate`] for laminar flow. Source: D'Souza
-    /// and Oldenburger (1964), Journal of Basic Engineering 86(3).
+    /// N = 1 without friction, N = 1 + 8 nu/(s R^2) with that of steady flow, and
+    /// [`super::friction_factor`] of s/[`Conduit::viscous_rate`] with that of laminar flow. Source:
+    /// D'Souza and Oldenburger (1964), Journal of Basic Engineering 86(3).
     pub fn response(&self, s: Complex64, factor: Complex64) -> LineResponse {
         let root = sqrt_complex(factor);
         LineResponse::of_wave(self.characteristic_impedance() * root, s * self.delay() * root)

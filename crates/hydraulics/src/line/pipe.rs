@@ -2,42 +2,42 @@ use phea_dynamics::scalar::Scalar;
 
 use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
-/// A round pipe. Units: m, Pa.
+/// Round pipe. Units: m, Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pipe<S = f64> {
-    /// Bore D in m.
+    /// Bore D, m.
     pub bore: S,
-    /// What the wall gives, or nothing.
+    /// Elasticity of the wall.
     pub wall: PipeWall<S>,
 }
 
 /// Elasticity of a pipe's wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PipeWall<S = f64> {
-    /// The wall does not yield at all.
+    /// Rigid wall.
     Rigid,
     /// Linear elasticity.
     Elastic {
-        /// Wall thickness e in m.
+        /// Wall thickness e, m.
         thickness: S,
-        /// Young's modulus E in Pa.
+        /// Young's modulus E, Pa.
         youngs_modulus: S,
         /// Poisson's ratio.
         poisson_ratio: S,
-        /// How the pipe is held along its axis.
+        /// Axial support of the pipe.
         anchoring: Anchoring,
-        /// Whether the stress varies over the wall (exact for any thickness) or is taken as even
-        /// (D/e above 25).
+        /// True if the stress varies over the wall (exact for any thickness), false if it is taken
+        /// as uniform (D/e above 25).
         thick: bool,
     },
 }
 
-/// How a pipe is held along its axis.
+/// Axial support of a pipe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchoring {
-    /// Held against all axial movement: no axial strain.
+    /// Anchored throughout: no axial strain.
     Throughout,
-    /// Held at one end, the other closed and free: axial stress from the pressure on the end.
+    /// Anchored at one end, the other closed and free: axial stress from the pressure on the end.
     OneEnd,
     /// Expansion joints: no axial stress.
     ExpansionJoints,
@@ -59,7 +59,7 @@ impl Pipe {
 }
 
 impl<S: Scalar> Pipe<S> {
-    /// Relative growth of the bore's area per pressure, (dA/A)/dp, in 1/Pa; zero for a rigid wall.
+    /// Relative growth of the bore's area per pressure, (dA/A)/dp, 1/Pa; zero for a rigid wall.
     pub fn wall_compliance(&self) -> S {
         match self.wall {
             PipeWall::Rigid => S::from(0.0),
@@ -70,7 +70,7 @@ impl<S: Scalar> Pipe<S> {
     }
 }
 
-/// Relative growth of a pipe's bore area per pressure, 1/beta_wall = (dA/A)/dp, in 1/Pa.
+/// Relative growth of a pipe's bore area per pressure, 1/beta_wall = (dA/A)/dp, 1/Pa.
 ///
 /// ```text
 /// 1/beta_wall = D/(E e) c          thin wall:  c = c_a
@@ -82,7 +82,8 @@ impl<S: Scalar> Pipe<S> {
 /// Lamé's solution.
 ///
 /// # Example
-/// A thick steel wall follows Lamé: (dA/A)/p = 2/E ((b^2 + a^2)/(b^2 - a^2) + nu) for radii a and b
+/// A thick steel wall follows Lamé: (dA/A)/p = 2/E ((b^2 + a^2)/(b^2 - a^2) + nu) for radii a and
+/// b:
 /// ```
 /// use phea_hydraulics::line::{Anchoring, pipe_wall_compliance};
 /// let (a, b, e, nu) = (5e-3, 8e-3, 206e9, 0.3);

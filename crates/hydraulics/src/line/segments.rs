@@ -8,7 +8,7 @@ use phea_dynamics::scalar::Scalar;
 use super::laminar_friction::UNSTEADY_FRICTION;
 use super::{Conduit, LineError, StandardLinearSolid};
 
-/// A line cut into equal pi segments, each a plug of fluid between two half capacities; without
+/// Line divided into equal pi segments, each a plug of fluid between two half capacities; without
 /// segments, one capacity.
 ///
 /// ```text
@@ -34,12 +34,12 @@ pub struct Segments<S = f64> {
     creep: Option<Creep<S>>,
 }
 
-/// How laminar friction is taken.
+/// Model of laminar friction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LaminarFriction {
-    /// As in steady flow, 8 nu/R^2.
+    /// Friction of steady flow, 8 nu/R^2.
     Steady,
-    /// With the boundary layer of changing flow: five lags more for each segment.
+    /// Friction with the boundary layer of unsteady flow: five additional lags for each segment.
     FrequencyDependent,
 }
 
@@ -50,8 +50,8 @@ struct Creep<S> {
 }
 
 impl Segments {
-    /// One elastic capacity of this compliance in m3/Pa, all of it at the chamber: the lumped line.
-    /// Zero is not a line.
+    /// Elastic capacity of this compliance in m3/Pa, all of it at the chamber: the lumped line.
+    /// Zero means no line.
     pub fn lumped(compliance: f64) -> Segments {
         Segments {
             count: 0,
@@ -64,13 +64,13 @@ impl Segments {
         }
     }
 
-    /// `count` segments of a conduit with an elastic wall.
+    /// Segments of a conduit with an elastic wall; their number is `count`.
     ///
     /// # Errors
-    /// A conduit that is impossible or has no length.
+    /// Conduit that is impossible or has no length.
     ///
     /// # Example
-    /// The chamber takes half a segment.
+    /// The chamber takes half a segment:
     /// ```
     /// # use phea_hydraulics::line::{Conduit, LaminarFriction, Segments};
     /// let conduit = Conduit {
@@ -94,11 +94,11 @@ impl Segments {
         })
     }
 
-    /// The same segments with a wall that creeps. The modulus of their conduit must be that of the
-    /// fluid with the wall's dynamic modulus: the creep is added.
+    /// Segments with a wall that creeps. The modulus of their conduit must be that of the fluid
+    /// with the wall's dynamic modulus: the creep is added.
     ///
     /// # Errors
-    /// A wall that is impossible.
+    /// Impossible wall.
     pub fn with_creep(self, conduit: &Conduit, wall: &StandardLinearSolid) -> Result<Segments, LineError> {
         let problems = wall.problems();
         if !problems.is_empty() {
@@ -139,7 +139,7 @@ impl<S: Copy> Segments<S> {
         self.states_of(pressure, flow, |_| pressure)
     }
 
-    /// Pressures, flows, creep pressures, lags.
+    /// States in order: pressures, flows, creep pressures, lags.
     fn states_of<T: Copy>(&self, wall: T, flow: T, pressure: impl Fn(usize) -> T) -> Vec<T> {
         let mut state: Vec<T> = (0..self.count).map(pressure).collect();
         state.extend(vec![flow; self.count]);
@@ -150,7 +150,7 @@ impl<S: Copy> Segments<S> {
 }
 
 impl<S: Scalar> Segments<S> {
-    /// The contribution of the line to the compliance of the chamber, in m3/Pa.
+    /// Contribution of the line to the compliance of the chamber, m3/Pa.
     pub fn chamber_compliance(&self) -> S {
         if self.count == 0 { self.compliance } else { self.share() / S::from(2.0) }
     }
@@ -159,7 +159,7 @@ impl<S: Scalar> Segments<S> {
         self.compliance / S::from(self.count.max(1) as f64)
     }
 
-    /// The state of a steady flow in m3/s into a chamber at this pressure in Pa.
+    /// State of a steady flow in m3/s into a chamber at this pressure in Pa.
     pub fn steady_state(&self, chamber_pressure: S, flow: S) -> Vec<S> {
         let drop = self.resistance * flow / S::from(self.count.max(1) as f64);
         let pressure = |node: usize| chamber_pressure + drop * S::from((self.count - node) as f64);
@@ -170,7 +170,7 @@ impl<S: Scalar> Segments<S> {
         state
     }
 
-    /// Pressure at the valve port in Pa.
+    /// Pressure at the valve port, Pa.
     #[inline]
     pub fn port_pressure<T: Scalar + From<S>>(&self, state: &[T], chamber_pressure: T) -> T {
         if self.count == 0 { chamber_pressure } else { state[0] }
@@ -207,7 +207,7 @@ impl<S: Scalar> Segments<S> {
         inflow
     }
 
-    /// The flow into the creeping wall at a node, in m3/s.
+    /// Flow into the creeping wall at a node, m3/s.
     fn creep_rate<T: Scalar + From<S>>(&self, node: usize, pressure: T, state: &[T], rates: &mut [T]) -> T {
         let Some(creep) = self.creep else {
             return <T as From<f64>>::from(0.0);
@@ -219,7 +219,7 @@ impl<S: Scalar> Segments<S> {
         <T as From<S>>::from(creep.compliance) / parts * rates[index]
     }
 
-    /// Pressure that friction would take over the whole length at the flow of one segment, in Pa.
+    /// Pressure drop of friction over the whole length at the flow of one segment, Pa.
     fn friction_drop<T: Scalar + From<S>>(&self, segment: usize, flow: T, state: &[T], rates: &mut [T]) -> T {
         let mut drop = <T as From<S>>::from(self.resistance) * flow;
         let first = 2 * self.count + self.creeping() + segment * self.lags();

@@ -4,29 +4,28 @@ use phea_dynamics::scalar::Scalar;
 use super::{Hose, StiffeningMember};
 use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
-/// A wall that creeps: a spring in parallel with a spring and damper in series (Zener). Units: Pa,
-/// s.
+/// Creeping wall: a spring in parallel with a spring and damper in series (Zener). Units: Pa, s.
 ///
 /// ```text
 /// beta(s) = beta_static + (beta_dynamic - beta_static) tau s/(1 + tau s)
 /// ```
 ///
-/// At rest it is as soft as stated in the catalogue, in fast motion as stiff as measured at high
-/// frequency, and in between it dissipates. A single relaxation time is the simplest model between
-/// these limits; those of measured hoses are spread over decades.
+/// At rest the wall is as soft as stated in the catalogue, in fast motion as stiff as measured at
+/// high frequency; between these limits it dissipates. A single relaxation time is the simplest
+/// model with these limits; relaxation times of measured hoses extend over decades.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StandardLinearSolid<S = f64> {
-    /// Modulus at rest in Pa.
+    /// Modulus at rest, Pa.
     pub static_modulus: S,
-    /// Modulus at high frequency in Pa, not below the static one.
+    /// Modulus at high frequency, Pa, not below the static one.
     pub dynamic_modulus: S,
-    /// Time tau in s in which pressure relaxes while the volume is held.
+    /// Time constant tau in which pressure relaxes at constant volume, s.
     pub relaxation_time: S,
 }
 
 impl StandardLinearSolid {
-    /// The wall of a hose: its modulus at rest, of the bore it has at the operating pressure, and
-    /// r_beta times that at high frequency.
+    /// Wall of a hose: its modulus at rest, with the bore at the operating pressure, and r_beta
+    /// times that modulus at high frequency.
     ///
     /// # Example
     /// ```
@@ -62,7 +61,7 @@ impl StandardLinearSolid {
         problems.into_vec()
     }
 
-    /// Compliance 1/beta(s) per volume in 1/Pa: the immediate and the delayed part.
+    /// Compliance 1/beta(s) per volume: the immediate and the delayed part, 1/Pa.
     ///
     /// ```text
     /// 1/beta(s) = 1/beta_dynamic + (1/beta_static - 1/beta_dynamic)/(1 + theta s)
@@ -73,7 +72,7 @@ impl StandardLinearSolid {
 }
 
 impl<S: Scalar> StandardLinearSolid<S> {
-    /// The delayed part of the compliance per volume, in 1/Pa.
+    /// Delayed part of the compliance per volume, 1/Pa.
     ///
     /// ```text
     /// 1/beta_static - 1/beta_dynamic
@@ -83,7 +82,7 @@ impl<S: Scalar> StandardLinearSolid<S> {
         one / self.static_modulus - one / self.dynamic_modulus
     }
 
-    /// Time in s in which the volume follows while the pressure is held.
+    /// Time constant in which the volume follows at constant pressure, s.
     ///
     /// ```text
     /// theta = tau beta_dynamic/beta_static

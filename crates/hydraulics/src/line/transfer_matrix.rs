@@ -3,7 +3,7 @@ use phea_dynamics::analytic::Analytic;
 
 use super::DynamicLine;
 
-/// The response of a line at one frequency, from its valve port to its chamber.
+/// Response of a line at one frequency, from its valve port to its chamber.
 ///
 /// ```text
 /// p_port  = a p_chamber + b q_chamber
@@ -13,24 +13,24 @@ use super::DynamicLine;
 /// Flows count from the valve to the chamber. Units: 1, Pa s/m3, m3/(s Pa), 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransferMatrix<A = Complex64> {
-    /// a
+    /// Entry a.
     pub pressure: A,
-    /// b
+    /// Entry b.
     pub impedance: A,
-    /// c
+    /// Entry c.
     pub admittance: A,
-    /// d
+    /// Entry d.
     pub flow: A,
 }
 
 impl<A: Analytic> TransferMatrix<A> {
-    /// No line.
+    /// Matrix of no line.
     pub fn identity() -> TransferMatrix<A> {
         let (one, zero) = (A::from(1.0), A::from(0.0));
         TransferMatrix { pressure: one, impedance: zero, admittance: zero, flow: one }
     }
 
-    /// This line with a compliance at the end of its chamber.
+    /// Matrix of this line with a compliance at its chamber end.
     pub(super) fn across(&self, admittance: A) -> TransferMatrix<A> {
         TransferMatrix {
             pressure: self.pressure + self.impedance * admittance,
@@ -41,11 +41,13 @@ impl<A: Analytic> TransferMatrix<A> {
 }
 
 impl DynamicLine {
-    /// The line at s in rad/s, or over a set of such: its equations in time, transformed. The end
-    /// that it adds to the chamber ([`DynamicLine::chamber_compliance`]) belongs to the chamber.
+    /// Transfer matrix at s in rad/s, or over a set of values of s: the Laplace transform of the
+    /// line's equations. The end capacity that the line adds to the chamber
+    /// ([`DynamicLine::chamber_compliance`]) belongs to the chamber.
     ///
     /// # Example
-    /// A lumped line has all of its compliance at the chamber, and does nothing else.
+    /// A lumped line has all of its compliance at the chamber, and passes pressure and flow
+    /// unchanged:
     /// ```
     /// use num_complex::Complex64;
     /// use phea_hydraulics::line::{DynamicLine, Segments, TransferMatrix};
@@ -69,8 +71,8 @@ impl DynamicLine {
         }
     }
 
-    /// The immediate compliance of fluid and wall, in m3/Pa, the end at the chamber included: the
-    /// compliance of the lumped line. A wall that creeps yields more later.
+    /// Immediate compliance of fluid and wall in m3/Pa, including the chamber end: the compliance
+    /// of the lumped line. A wall that creeps yields more later.
     pub fn elastic_compliance(&self) -> f64 {
         match self {
             DynamicLine::Segments(line) => line.elastic_compliance(),
@@ -79,7 +81,8 @@ impl DynamicLine {
         }
     }
 
-    /// A frequency above all modes of a line that has finitely many, rad/s; 0 where waves travel.
+    /// Frequency above all modes of a line with finitely many modes, rad/s; 0 for a line with
+    /// waves.
     pub(crate) fn fastest_rad_per_s(&self) -> f64 {
         match self {
             DynamicLine::Segments(line) => line.fastest_rad_per_s(),
@@ -87,8 +90,7 @@ impl DynamicLine {
         }
     }
 
-    /// The final compliance of fluid and wall, in m3/Pa: the immediate part, and the creep of the
-    /// wall.
+    /// Final compliance of fluid and wall: the immediate part, and the creep of the wall, m3/Pa.
     pub(crate) fn static_compliance(&self) -> f64 {
         match self {
             DynamicLine::Segments(line) => line.elastic_compliance() + line.creep_compliance(),
@@ -96,8 +98,8 @@ impl DynamicLine {
         }
     }
 
-    /// The same line, fluid and wall stiffer by a factor: waves are faster by its root, inertia and
-    /// steady friction stay.
+    /// Line with fluid and wall stiffer by a factor: waves are faster by its root, inertia and
+    /// steady friction are unchanged.
     pub fn stiffened(&self, factor: f64) -> DynamicLine {
         match self {
             DynamicLine::Segments(line) => DynamicLine::Segments(line.stiffened(factor)),

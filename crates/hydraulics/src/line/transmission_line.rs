@@ -2,27 +2,28 @@ use super::travelling_waves::WaveData;
 use super::{Conduit, LineError, TravellingWaves};
 use crate::parameter::{ParameterRequirement, Problems};
 
-/// Share of a line's compliance that each end volume takes unless said otherwise.
+/// Default fraction of a line's compliance in each end volume.
 pub const END_SHARE: f64 = 0.01;
 
-/// A line with one wave each way, exact delay and frequency-dependent laminar friction.
+/// Line with one wave in each direction, exact delay and frequency-dependent laminar friction.
 pub type TransmissionLine<S = f64> = TravellingWaves<1, S>;
 
 impl TransmissionLine {
-    /// The transmission line of a conduit, `end_share` of whose compliance is a plain volume at
-    /// each end.
+    /// Transmission line of a conduit, with `end_share` of its compliance as a plain volume at each
+    /// end.
     ///
     /// ```text
     /// C_end = f C      Z = Z_c/sqrt(1 - 2 f)      delay = T sqrt(1 - 2 f)
     /// ```
     ///
-    /// The end volumes keep the line off the valve's edges, which would make an algebraic loop, and
-    /// leave a chamber at its end stop something to work on. What is between them keeps all of the
+    /// The end volumes separate the line from the valve's edges, which avoids an algebraic loop,
+    /// and give a chamber at its end stop a finite compliance. The part between them has all of the
     /// inertia and the resistance: compliance, inertance and steady resistance of the whole are
-    /// exact for any share, and the waves tend to the exact ones as it tends to zero.
+    /// exact for any fraction, and the waves tend to the exact ones as it tends to zero.
     ///
     /// # Errors
-    /// A conduit that is impossible, has no length or is overdamped; a share not between 0 and 1/2.
+    /// Conduit that is impossible, has no length or is overdamped; a fraction not between 0 and
+    /// 1/2.
     ///
     /// # Example
     /// 1.5 m of the thesis' hose.

@@ -5,18 +5,18 @@ use phea_dynamics::scalar::Scalar;
 use super::LineError;
 use super::attenuation::{CORNERS, GREATEST_DISSIPATION, TERMS, attenuation_weights};
 
-/// A line along which M waves travel each way, smeared by friction, between two small end volumes.
+/// Line along which M waves travel in each direction, smeared by friction, between two small end
+/// volumes.
 ///
 /// ```text
-/// at each end, with p its pressure, q the flow into the line there, c_i the waves that arrive:
+/// at each end, with pressure p, flow q into the line, and arriving waves c_i:
 ///     p = R_0/2 Q + sum over i of [c_i + Z_i (q + sum_k (a_ik/b_k) Y_ik)]          thesis (4.36), (4.37)
-///     h_i = c_i + 2 Z_i (q + sum_k (a_ik/b_k) Y_ik)              what leaves; thesis (4.39) to (4.42)
+///     h_i = c_i + 2 Z_i (q + sum_k (a_ik/b_k) Y_ik)              leaving wave; thesis (4.39) to (4.42)
 ///     sent off: (1 - sum_k a_ik) h_i + sum_k a_ik X_ik            arrives at the other end T_i later; thesis (4.43)
 ///     dY_ik/dt = (b_k/T_i)(q - Y_ik),    dX_ik/dt = (b_k/T_i)(h_i - X_ik),    Q = Y_11         thesis (4.44)
 /// ```
 ///
-/// With A_i(s) the attenuation of wave i that the weights a_ik and corners b_k/T_i stand for, this
-/// is
+/// With A_i(s) the attenuation of wave i from the weights a_ik and corners b_k/T_i, this is
 ///
 /// ```text
 /// Z_i(s) = Z_i [1 + (1 - A_i)/(s T_i)],    c_i = e^(-s T_i) A_i(s) [c_i + 2 Z_i(s) q of the other end]
@@ -27,11 +27,11 @@ use super::attenuation::{CORNERS, GREATEST_DISSIPATION, TERMS, attenuation_weigh
 /// At rest it has the whole compliance of the line and its steady resistance. It is passive when
 /// R_0/2 is at least sum Z_i l_i^2/(1 + l_i), l_i = sum_k a_ik/b_k, and wave 1 has the shortest
 /// delay; a single wave always is. Structure after the transmission line method (Krus, Weddfelt and
-/// Palmberg 1994; Johnston 2012), weights and impedance our own.
+/// Palmberg 1994; Johnston 2012); weights and impedance are original.
 ///
 /// States: the pressure of the valve's end volume, then for the valve end and the chamber end, for
-/// each wave, Y and X. Waves, sent or arriving: those of each i from the valve end to the chamber
-/// end, then those the other way.
+/// each wave, Y and X. Waves, sent or arriving: for each i the wave from the valve end to the
+/// chamber end, then the opposite one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TravellingWaves<const M: usize, S = f64> {
     waves: [Wave<S>; M],
@@ -39,7 +39,7 @@ pub struct TravellingWaves<const M: usize, S = f64> {
     half_resistance: S,
 }
 
-/// One wave each way.
+/// Single wave in each direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Wave<S> {
     impedance: S,
@@ -47,14 +47,14 @@ struct Wave<S> {
     weights: [S; TERMS],
 }
 
-/// A wave with friction: impedance in Pa s/m3, delay in s, dissipation number.
+/// Wave with friction: impedance in Pa s/m3, delay in s, dissipation number.
 pub(super) struct WaveData {
     pub(super) impedance: f64,
     pub(super) delay: f64,
     pub(super) dissipation: f64,
 }
 
-/// States of one wave at one end.
+/// Number of states of one wave at one end.
 const FILTERS: usize = 2 * TERMS;
 
 impl<const M: usize> TravellingWaves<M> {
@@ -68,9 +68,9 @@ impl<const M: usize> TravellingWaves<M> {
             };
             *wave = Wave { impedance: data.impedance, delay: data.delay, weights };
         }
-        // In phase and slow, a wave gives energy as a resistance -Z l^2/(1 + l) would, l = sum
-        // a_k/b_k, and never more than that over 1 + (wT)^2 (comparisons/recompute_lines.py): a
-        // greater resistance with the shortest lag makes up for all.
+        // In phase and at low frequency, a wave supplies energy like a resistance -Z l^2/(1 + l), l
+        // = sum a_k/b_k, and never more than that over 1 + (wT)^2 (comparisons/recompute_lines.py):
+        // a greater resistance with the shortest lag compensates for all waves.
         let half_resistance = resistance / 2.0;
         let needed = attenuated.iter().map(|wave| {
             let lag = wave.lagging(&[1.0; TERMS]);
@@ -99,18 +99,17 @@ impl<const M: usize, S: Copy> TravellingWaves<M, S> {
         [vec![pressure], filters.repeat(2 * M)].concat()
     }
 
-    /// How long each wave travels, in s.
+    /// Travel time of each wave, s.
     pub fn delays(&self) -> Vec<S> {
         self.waves.iter().chain(&self.waves).map(|wave| wave.delay).collect()
     }
 
-    /// The contribution of the line to the compliance of the chamber, in m3/Pa: its end volume
-    /// there.
+    /// Contribution of the line to the compliance of the chamber: its end volume there, m3/Pa.
     pub fn chamber_compliance(&self) -> S {
         self.end_compliance
     }
 
-    /// Pressure at the valve port in Pa.
+    /// Pressure at the valve port, Pa.
     #[inline]
     pub fn port_pressure<T: Copy>(&self, state: &[T]) -> T {
         state[0]
@@ -118,19 +117,18 @@ impl<const M: usize, S: Copy> TravellingWaves<M, S> {
 }
 
 impl<const M: usize, S: Scalar> TravellingWaves<M, S> {
-    /// Z_i (1 + l_i) of each wave in Pa s/m3: pressure over flow of a slow wave that travels one
-    /// way.
+    /// Ratio Z_i (1 + l_i) of pressure to flow of a slow wave in one direction, for each wave, Pa
+    /// s/m3.
     pub fn slow_impedances(&self) -> [S; M] {
         self.waves.each_ref().map(|wave| wave.impedance * wave.slow([S::from(1.0); TERMS]))
     }
 
-    /// R_0/2 in Pa s/m3.
+    /// Half resistance R_0/2, Pa s/m3.
     pub fn half_resistance(&self) -> S {
         self.half_resistance
     }
 
-    /// For each wave that is sent, in order, the numbers of the states X_ik with their weights
-    /// a_ik.
+    /// Indices of the states X_ik with their weights a_ik for each wave sent, in order.
     pub fn smearing(&self) -> Vec<Vec<(usize, S)>> {
         let first = |end: usize, wave: usize| 1 + (end * M + wave) * FILTERS + TERMS;
         let of = |end: usize, (number, wave): (usize, &Wave<S>)| {
@@ -144,7 +142,7 @@ impl<const M: usize, S: Scalar> TravellingWaves<M, S> {
 
     /// State and arriving waves of a steady flow in m3/s into a chamber at this pressure in Pa.
     ///
-    /// Waves share the pressure as capacities in series do, by T_i/Z_i.
+    /// The pressure divides between the waves as between capacities in series, by T_i/Z_i.
     pub fn steady_state(&self, chamber_pressure: S, flow: S) -> (Vec<S>, Vec<S>) {
         let zero = S::from(0.0);
         let middle = chamber_pressure + self.half_resistance * flow;
@@ -155,7 +153,7 @@ impl<const M: usize, S: Scalar> TravellingWaves<M, S> {
         let (forward, backward) = (towards(S::from(1.0)), towards(S::from(-1.0)));
         let waves: Vec<S> = forward.clone().chain(backward.clone()).collect();
         let mut state = vec![middle + self.half_resistance * flow];
-        // A wave that leaves one end arrives unchanged at the other.
+        // a wave that leaves one end arrives unchanged at the other
         for (entering, leaving) in [(flow, forward.collect::<Vec<S>>()), (-flow, backward.collect())] {
             for wave in leaving {
                 state.extend([entering; TERMS]);
@@ -188,7 +186,7 @@ impl<const M: usize, S: Scalar> TravellingWaves<M, S> {
         -from_chamber
     }
 
-    /// The waves sent into each delay, in Pa.
+    /// Waves sent into each delay, Pa.
     #[inline]
     pub fn outgoing<T: Scalar + From<S>>(
         &self,
@@ -205,7 +203,7 @@ impl<const M: usize, S: Scalar> TravellingWaves<M, S> {
         self.sent(chamber_pressure, towards_chamber, at_chamber, from_chamber);
     }
 
-    /// Flow into the line at one end, in m3/s.
+    /// Flow into the line at one end, m3/s.
     fn end_flow<T: Scalar + From<S>>(&self, pressure: T, arriving: &[T], filters: &[T]) -> T {
         let mut left = pressure - <T as From<S>>::from(self.half_resistance) * filters[0];
         let mut impedance = <T as From<f64>>::from(0.0);
@@ -247,13 +245,13 @@ impl<const M: usize, S: Scalar> TravellingWaves<M, S> {
 }
 
 impl<S: Scalar> Wave<S> {
-    /// h_i in Pa.
+    /// Wave h_i, Pa.
     fn leaving<T: Scalar + From<S>>(&self, flow: T, arriving: T, filters: &[T]) -> T {
         let impedance = <T as From<S>>::from(self.impedance);
         arriving + <T as From<f64>>::from(2.0) * impedance * (flow + self.lagging(filters))
     }
 
-    /// sum_k (a_k/b_k) Y_k in m3/s.
+    /// Sum_k (a_k/b_k) Y_k, m3/s.
     fn lagging<T: Scalar + From<S>>(&self, filters: &[T]) -> T {
         let mut sum = <T as From<f64>>::from(0.0);
         for (weight, (corner, lagging)) in self.weights.iter().zip(CORNERS.into_iter().zip(filters)) {
@@ -262,7 +260,7 @@ impl<S: Scalar> Wave<S> {
         sum
     }
 
-    /// q + sum_k (a_k/b_k) Y_k of a steady flow.
+    /// Sum q + sum_k (a_k/b_k) Y_k of a steady flow.
     fn slow(&self, flow: [S; TERMS]) -> S {
         flow[0] + self.lagging(&flow)
     }

@@ -9,10 +9,11 @@ use super::{BraidedWall, Conduit, Hose, LineError, LineResponse, StiffeningMembe
 use crate::fluid::Fluid;
 use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
-/// A hose along which two waves travel each way, shared by fluid and wall, held at both ends.
+/// Hose along which two waves travel in each direction, coupled through fluid and wall, held at
+/// both ends.
 pub type TwoWaveLine<S = f64> = TravellingWaves<2, S>;
 
-/// A hose whose wall moves along its axis, after Johnston (2006).
+/// Hose whose wall moves along its axis, after Johnston (2006).
 ///
 /// ```text
 /// rho v_t = -p_x                 m u_t = F_x                  v, u velocities of fluid and wall
@@ -23,42 +24,42 @@ pub type TwoWaveLine<S = f64> = TravellingWaves<2, S>;
 /// p = p_1 + p_2,  Z_i = rho c_i/(A (1 - N_i/N_j))              thesis (4.36), (4.38) over the area
 /// ```
 ///
-/// With the wall held at both ends both waves see the same flow and their pressures add. So the
+/// With the wall held at both ends both waves have the same flow and their pressures add. So the
 /// hose is calculated as two lines of impedances Z_i in series at both ends: [`TravellingWaves`].
 /// Friction acts between fluid and wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoWaveHose {
-    /// Length L in m.
+    /// Length L, m.
     pub length: f64,
-    /// Bore in m.
+    /// Bore, m.
     pub bore: f64,
-    /// Density of the fluid rho in kg/m3.
+    /// Density of the fluid rho, kg/m3.
     pub density: f64,
-    /// Kinematic viscosity of the fluid nu in m2/s.
+    /// Kinematic viscosity of the fluid nu, m2/s.
     pub kinematic_viscosity: f64,
-    /// Bulk modulus of the fluid alone B in Pa.
+    /// Bulk modulus B of the fluid without wall, Pa.
     pub fluid_modulus: f64,
-    /// The wall.
+    /// Wall of the hose.
     pub wall: BraidedWall,
 }
 
-/// One of the two waves, without friction.
+/// Wave of the hose, without friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HoseWave {
-    /// Speed c_i in m/s.
+    /// Speed c_i, m/s.
     pub speed: f64,
-    /// Velocity of the wall over that of the fluid N_i; infinite for a wave of the wall alone.
+    /// Ratio N_i of wall velocity to fluid velocity; infinite for a wave of the wall only.
     pub modal_ratio: f64,
-    /// Impedance rho c_i/(A (1 - N_i/N_j)) in Pa s/m3 of the line that stands for this wave.
+    /// Impedance rho c_i/(A (1 - N_i/N_j)) of the line that represents this wave, Pa s/m3.
     pub impedance: f64,
-    /// How much of the friction factor's excess N - 1 slows this wave: lambda_i grows by (N - 1)
-    /// times this, to first order.
+    /// Effect of the friction factor's excess N - 1 on this wave: lambda_i grows by (N - 1) times
+    /// this fraction, to first order.
     pub friction_share: f64,
 }
 
 impl TwoWaveHose {
-    /// A hose of this length filled with a fluid at a mean gauge pressure in Pa, with the bore of
-    /// [`Hose::filled`]; `wall` for the same `member`.
+    /// Hose of this length filled with a fluid at a mean gauge pressure in Pa, with the bore of
+    /// [`Hose::filled`]; `wall` for this `member`.
     pub fn new(hose: &Hose, length: f64, fluid: &Fluid, pressure: f64, wall: BraidedWall) -> TwoWaveHose {
         TwoWaveHose {
             length,
@@ -70,7 +71,7 @@ impl TwoWaveHose {
         }
     }
 
-    /// The same with the assumed wall of a half-inch hose: [`BraidedWall::assumed`].
+    /// Hose with the assumed wall of a half-inch hose: [`BraidedWall::assumed`].
     pub fn assumed(
         hose: &Hose,
         length: f64,
@@ -87,7 +88,7 @@ impl TwoWaveHose {
         let mut problems = Problems::default();
         problems.positive("fluid_modulus", self.fluid_modulus);
         problems.component("wall", self.wall.problems());
-        // Energy is positive only if pressure without motion of the ends widens the hose.
+        // Energy is positive only if pressure with fixed ends widens the hose.
         let modulus = self.fixed_end_conduit().effective_bulk_modulus;
         problems.require("fixed_end_modulus", modulus, modulus > 0.0, ParameterRequirement::PassiveWall);
         let mut all = problems.into_vec();
@@ -96,7 +97,7 @@ impl TwoWaveHose {
         all
     }
 
-    /// The same hose with one wave: its modulus at rest between fixed ends.
+    /// Conduit of this hose with one wave: its modulus at rest between fixed ends.
     ///
     /// ```text
     /// 1/beta_e = 1/B + C_pp - A C_pF^2/C_FF
@@ -164,13 +165,13 @@ impl TwoWaveHose {
         [wave(slower, faster), wave(faster, slower)]
     }
 
-    /// The exact hose, both ends of its wall held, at s in rad/s, for this factor of the fluid's
-    /// inertia: 1 without friction, [`super::friction_factor`] with it.
+    /// Response of the exact hose, both ends of its wall held, at s in rad/s, for this factor of
+    /// the fluid's inertia: 1 without friction, [`super::friction_factor`] with it.
     pub fn response(&self, s: Complex64, factor: Complex64) -> LineResponse {
         let BraidedWall { mass_per_length, coupling_compliance, axial_compliance, .. } = self.wall;
         let area = self.area();
         let radial = 1.0 / self.fluid_modulus + self.wall.pressure_compliance;
-        // inertia [m_vv m_vu; m_uv m_uu] of fluid and wall, friction dragging one with the other
+        // inertia [m_vv m_vu; m_uv m_uu] of fluid and wall, friction couples the two
         let drag = self.density * (factor - 1.0);
         let (m_vv, m_vu) = (self.density + drag, -drag);
         let (m_uv, m_uu) = (-area * drag, mass_per_length + area * drag);
@@ -192,18 +193,18 @@ impl TwoWaveHose {
         }
     }
 
-    /// The hose in time, `end_share` of its compliance at each end a plain volume as in
+    /// Hose in time, with `end_share` of its compliance at each end as a plain volume as in
     /// [`super::TransmissionLine::of_conduit`].
     ///
     /// The friction of wave i is that of a line with one wave whose dissipation number is nu
-    /// T_i/R^2 times the square of [`HoseWave::friction_share`]: right to the first order in the
-    /// thickness of the boundary layer. How friction mixes the waves is left out, so that the
-    /// resonance of a wave in which the wall goes with the fluid, which friction then hardly finds,
-    /// comes out too sharp. The steady resistance is exact.
+    /// T_i/R^2 times the square of [`HoseWave::friction_share`]: accurate to first order in the
+    /// thickness of the boundary layer. The mixing of the waves by friction is omitted, so that the
+    /// resonance of a wave in which the wall moves with the fluid, which friction hardly damps, is
+    /// too sharp. The steady resistance is exact.
     ///
     /// # Errors
-    /// A hose that is impossible, has no length, is overdamped, or whose wall is so light that
-    /// friction mixes its waves ([`LineError::MixedByFriction`]); a share not between 0 and 1/2.
+    /// Hose that is impossible, has no length, is overdamped, or whose wall is so light that
+    /// friction mixes its waves ([`LineError::MixedByFriction`]); a fraction not between 0 and 1/2.
     pub fn in_time(&self, end_share: f64) -> Result<TwoWaveLine, LineError> {
         let problems = self.problems();
         if !problems.is_empty() {
@@ -218,7 +219,7 @@ impl TwoWaveHose {
             let friction = conduit.viscous_rate() * wave.friction_share * wave.friction_share;
             WaveData { impedance: wave.impedance / root, delay, dissipation: friction * delay }
         };
-        // the steady resistance lags as the faster wave does
+        // the steady resistance lags like the faster wave
         let [slower, faster] = self.waves().map(of_wave);
         let waves = [faster, slower];
         TravellingWaves::new(waves, end_share * conduit.compliance(), conduit.steady_resistance())

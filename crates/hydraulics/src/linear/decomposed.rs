@@ -5,33 +5,33 @@ use phea_dynamics::scalar::Scalar;
 
 use super::LinearParameters;
 
-/// Which damping the mechanical factor has.
+/// Damping of the mechanical factor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MechanicalDamping {
-    /// d_1 = f_v/M, as the thesis prints it.
+    /// Damping d_1 = f_v/M, as printed in the thesis.
     Printed,
-    /// d_1 = f_v/M + K_c K_H^2/(A_u^2 (K_H + K_S)): leakage damps the piston too.
+    /// Damping d_1 = f_v/M + K_c K_H^2/(A_u^2 (K_H + K_S)): leakage damps the piston too.
     Corrected,
 }
 
-/// The three factors of the decomposed model. Units: N/(V s), rad/s, rad2/s2.
+/// Factors of the decomposed model. Units: N/(V s), rad/s, rad2/s2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decomposition<S = f64> {
-    /// K_qU K_eq/A_u, numerator of the hydraulic factor.
+    /// Numerator K_qU K_eq/A_u of the hydraulic factor.
     pub hydraulic_gain: S,
-    /// K_c K_eq/A_u^2: the hydraulic pole is at minus this.
+    /// Rate K_c K_eq/A_u^2: the hydraulic pole is at minus this rate.
     pub hydraulic_rate: S,
-    /// d_0 = (K_H + K_S)/M.
+    /// Coefficient d_0 = (K_H + K_S)/M.
     pub mechanical_square: S,
-    /// d_1, damping of the mechanical factor.
+    /// Coefficient d_1, damping of the mechanical factor.
     pub mechanical_damping: S,
-    /// e_0 = w_nv^2.
+    /// Coefficient e_0 = w_nv^2.
     pub valve_square: S,
-    /// e_1 = 2 xi_v w_nv.
+    /// Coefficient e_1 = 2 xi_v w_nv.
     pub valve_damping: S,
 }
 
-/// The fifth-order model decomposed into the contributions of fluid, piston and spool.
+/// Fifth-order model decomposed into the contributions of fluid, piston and spool.
 ///
 /// ```text
 /// F_e/U_C = (K_qU K_eq/A_u)/(s + K_c K_eq/A_u^2)  d_0/(s^2 + d_1 s + d_0)  e_0/(s^2 + e_1 s + e_0)      thesis (6.12)
@@ -40,7 +40,7 @@ pub struct Decomposition<S = f64> {
 /// ```
 ///
 /// The spool's factor is exact. The other two are first-order perturbations of the lossless piston
-/// between its springs: good while the hydraulic pole is slow against sqrt(d_0).
+/// between its springs: accurate while the hydraulic pole is slow compared with sqrt(d_0).
 pub fn decompose<S: Scalar>(
     parameters: &LinearParameters<S>,
     damping: MechanicalDamping,
@@ -67,22 +67,22 @@ pub fn decompose<S: Scalar>(
 }
 
 impl Decomposition {
-    /// The pole of the fluid against valve leakage, in rad/s.
+    /// Pole of the fluid with valve leakage, rad/s.
     pub fn hydraulic_pole(&self) -> Complex64 {
         Complex64::new(-self.hydraulic_rate, 0.0)
     }
 
-    /// The two poles of the piston between its springs, in rad/s.
+    /// Poles of the piston between its springs, rad/s.
     pub fn mechanical_poles(&self) -> [Complex64; 2] {
         quadratic_roots(self.mechanical_damping, self.mechanical_square)
     }
 
-    /// The two poles of the spool, in rad/s.
+    /// Poles of the spool, rad/s.
     pub fn valve_poles(&self) -> [Complex64; 2] {
         quadratic_roots(self.valve_damping, self.valve_square)
     }
 
-    /// All five: hydraulic, mechanical, valve.
+    /// All five poles: hydraulic, mechanical, valve.
     pub fn poles(&self) -> Vec<Complex64> {
         let mut poles = vec![self.hydraulic_pole()];
         poles.extend(self.mechanical_poles());
@@ -91,7 +91,7 @@ impl Decomposition {
     }
 }
 
-/// The decomposed model as one transfer function F_e/U_C in N/V.
+/// Decomposed model as one transfer function F_e/U_C, N/V.
 ///
 /// # Errors
 /// Parameters whose factors are not finite.

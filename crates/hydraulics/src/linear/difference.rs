@@ -6,16 +6,16 @@ use phea_dynamics::portable;
 pub struct ResponseDifference {
     /// Largest difference of the magnitudes, as a positive number of dB.
     pub magnitude_db: f64,
-    /// Where it is, in rad/s.
+    /// Frequency of this difference, rad/s.
     pub magnitude_frequency: f64,
     /// Largest difference of the phases, as a positive number of degrees up to 180.
     pub phase_deg: f64,
-    /// Where it is, in rad/s.
+    /// Frequency of this difference, rad/s.
     pub phase_frequency: f64,
 }
 
-/// Largest magnitude and phase of `other/reference` over these frequencies in rad/s; zeros for no
-/// frequencies.
+/// Largest magnitude and phase differences of `other/reference` over these frequencies in rad/s;
+/// zeros without frequencies.
 ///
 /// # Example
 /// ```
@@ -41,8 +41,7 @@ pub fn response_difference(
         let ratio = other(frequency) / reference(frequency);
         let magnitude_db = (20.0 * portable::log10(portable::magnitude(ratio))).abs();
         let phase_deg = portable::argument(ratio).to_degrees().abs();
-        // A ratio that is not a number is as large a difference as there is, and must not be passed
-        // over.
+        // a NaN ratio is the largest possible difference and must not be ignored
         if magnitude_db > largest.magnitude_db || magnitude_db.is_nan() {
             (largest.magnitude_db, largest.magnitude_frequency) = (magnitude_db, frequency);
         }

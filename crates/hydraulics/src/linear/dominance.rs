@@ -3,30 +3,30 @@ use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::order::sort_by_number;
 use phea_dynamics::portable;
 
-/// The contribution of one mode (a real pole or a conjugate pair) to the step response.
+/// Contribution of one mode (a real pole or a conjugate pair) to the step response.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModeShare {
-    /// The pole, of a pair the one with positive imaginary part, in rad/s.
+    /// Pole, for a pair the one with positive imaginary part, rad/s.
     pub pole: Complex64,
     /// Greatest amplitude of this mode in the step response over the final value: |residue/pole|,
     /// twice that for a pair.
     pub step_share: f64,
-    /// Decay rate of this mode over that of the slowest: how many times faster it decays.
+    /// Ratio of the decay rate of this mode to that of the slowest.
     pub decay_ratio: f64,
-    /// Why a number does not exist and is not a number.
+    /// Reason why a number does not exist and is NaN.
     pub absence: Option<ShareAbsence>,
 }
 
-/// Why a mode has no share of the step response.
+/// Reason why a mode has no fraction of the step response.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ShareAbsence {
-    /// A pole at the origin or to its right: neither share nor decay ratio exists.
+    /// Pole at the origin or to its right: neither fraction nor decay ratio exists.
     #[error("a mode does not decay, so that the step response has no final value to share")]
     NoFinalValue,
-    /// The static gain is zero.
+    /// Static gain of zero.
     #[error("the step response ends at zero")]
     ZeroFinalValue,
-    /// The pole coincides with another: no share of its own.
+    /// Pole that coincides with another: no separate fraction.
     #[error(
         "the pole coincides with another: together they decay as a polynomial in time times one exponential"
     )]
@@ -40,9 +40,9 @@ pub enum ShareAbsence {
 /// step_share_i = |r_i/(p_i G(0))|  (twice for a pair),      decay_ratio_i = Re p_i / max_k Re p_k
 /// ```
 ///
-/// A mode is dominant when its share is near one and the others' are near zero and their decay
-/// ratios are large. Shares of poles that coincide with another (to 1e-6), or of a system with a
-/// pole not left of the axis, do not exist and are not a number; `absence` says why.
+/// A mode is dominant when its fraction is near one, those of the others are near zero and their
+/// decay ratios are large. Fractions of poles that coincide with another (to 1e-6), or of a system
+/// with a pole not left of the axis, do not exist and are NaN; `absence` says why.
 ///
 /// # Example
 /// Over 1/((s + 1)(s + 100)) the slow pole carries 100/99 of the step and the fast one 1/99.
@@ -85,8 +85,8 @@ pub fn dominance(system: &TransferFunction) -> Vec<ModeShare> {
     modes
 }
 
-/// Distance relative to the pole within which two poles are one: numerical roots of a double pole
-/// lie that far apart.
+/// Relative distance within which two poles count as one: numerical roots of a double pole are that
+/// far apart.
 const COINCIDENCE: f64 = 1e-6;
 
 fn coincides(system: &TransferFunction, index: usize, pole: Complex64) -> bool {

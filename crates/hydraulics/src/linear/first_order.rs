@@ -3,7 +3,7 @@ use phea_dynamics::scalar::Scalar;
 
 use super::LinearParameters;
 
-/// The hydraulic factor alone, F_e/U_C in N/V.
+/// Hydraulic factor as a model F_e/U_C, N/V.
 ///
 /// ```text
 /// F_e/U_C = (K_qU K_eq/A_u)/(s + K_c K_eq/A_u^2)                                                  thesis (6.13)
@@ -16,8 +16,8 @@ pub fn first_order_model(parameters: &LinearParameters) -> Result<TransferFuncti
     TransferFunction::from_factors(factors.hydraulic_gain, Vec::new(), vec![factors.hydraulic_pole()])
 }
 
-/// Time constant tau_d in s of the first-order loop closed by a proportional controller of gain K_p
-/// in V/N.
+/// Time constant tau_d of the first-order loop closed by a proportional controller of gain K_p in
+/// V/N, s.
 ///
 /// ```text
 /// tau_d = A (K_H + K_S)/(K_H K_S (K_c/A + K_p K_qU))                  thesis (6.14), (6.15)
@@ -29,13 +29,14 @@ pub fn closed_loop_time_constant<S: Scalar>(parameters: &LinearParameters<S>, pr
 }
 
 /// Steady-state gain K_SS of the loop closed by a proportional controller of gain K_p in V/N: below
-/// one, since leakage takes flow at any pressure.
+/// one, since leakage consumes flow at any pressure.
 ///
 /// ```text
 /// K_SS = A K_p K_qU/(K_c + A K_p K_qU)                                 thesis (6.14), (6.15)
 /// ```
 ///
-/// The thesis' sizing drops it: 0.974 at the null valve of Table 6.3, 0.26 at its largest K_c.
+/// The thesis omits it in its sizing: 0.974 at the null valve of Table 6.3, 0.26 at its largest
+/// K_c.
 pub fn closed_loop_steady_state_gain<S: Scalar>(parameters: &LinearParameters<S>, proportional_gain: S) -> S {
     let driven = parameters.useful_area * proportional_gain * parameters.flow_gain;
     driven / (parameters.flow_pressure_coefficient + driven)
@@ -44,25 +45,25 @@ pub fn closed_loop_steady_state_gain<S: Scalar>(parameters: &LinearParameters<S>
 /// Hydraulic stiffness that gives a wanted time constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RequiredStiffness {
-    /// This stiffness, in N/m.
+    /// Required stiffness, N/m.
     Stiffness(f64),
-    /// At this gain even a rigid transmission is slower than wanted: the gain must exceed
+    /// Gain at which even a rigid transmission is slower than wanted: the gain must exceed
     /// `rigid_limit`.
     TooSlow {
-        /// Gain at which the stiffness becomes infinite, in V/N.
+        /// Gain at which the stiffness becomes infinite, V/N.
         rigid_limit: f64,
     },
 }
 
-/// Hydraulic stiffness K_H for a wanted closed-loop time constant tau_d in s at a proportional gain
-/// K_p in V/N; the stiffness among the parameters is not used.
+/// Hydraulic stiffness K_H in N/m for a wanted closed-loop time constant tau_d in s at a
+/// proportional gain K_p in V/N; the stiffness in the parameters is ignored.
 ///
 /// ```text
 /// K_H = K_S A^2/(K_S tau_d (K_c + A K_p K_qU) - A^2)                                              thesis (6.16)
 /// ```
 ///
 /// # Example
-/// A row of Table 6.2
+/// Example: a row of Table 6.2.
 /// ```
 /// use phea_hydraulics::linear::{LinearParameters, RequiredStiffness, required_stiffness};
 /// let parameters = LinearParameters {
@@ -90,21 +91,21 @@ pub fn required_stiffness(
     }
 }
 
-/// Proportional gain K_p in V/N that gives a wanted closed-loop time constant tau_d in s.
+/// Proportional gain K_p that gives a wanted closed-loop time constant tau_d in s, V/N.
 ///
 /// ```text
 /// K_p = (A (K_H + K_S)/(tau_d K_H K_S) - K_c/A)/K_qU                                              thesis (6.27)
 /// ```
 ///
-/// Negative when leakage alone is faster than wanted. The inverse of [`required_stiffness`].
+/// Negative if leakage is already faster than wanted. The inverse of [`required_stiffness`].
 pub fn proportional_gain<S: Scalar>(parameters: &LinearParameters<S>, time_constant: S) -> S {
     let area = parameters.useful_area;
     let needed = area / (time_constant * parameters.equivalent_stiffness());
     (needed - parameters.flow_pressure_coefficient / area) / parameters.flow_gain
 }
 
-/// Proportional gain in V/N at which (6.16) requires an infinite stiffness: (6.27) with the sensor
-/// as the only spring.
+/// Proportional gain at which (6.16) requires an infinite stiffness, V/N: (6.27) with the sensor as
+/// the only spring.
 ///
 /// ```text
 /// K_p = (A/(tau_d K_S) - K_c/A)/K_qU

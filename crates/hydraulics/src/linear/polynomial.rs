@@ -2,7 +2,7 @@
 
 use phea_dynamics::scalar::Scalar;
 
-/// p q
+/// Product p q.
 pub(crate) fn product<S: Scalar>(p: &[S], q: &[S]) -> Vec<S> {
     let mut result = vec![S::from(0.0); (p.len() + q.len()).saturating_sub(1)];
     for (i, &a) in p.iter().enumerate() {
@@ -13,7 +13,7 @@ pub(crate) fn product<S: Scalar>(p: &[S], q: &[S]) -> Vec<S> {
     result
 }
 
-/// p + q, aligned at the lowest power.
+/// Sum p + q, aligned at the lowest power.
 pub(crate) fn sum<S: Scalar>(p: &[S], q: &[S]) -> Vec<S> {
     let (longer, shorter) = if p.len() >= q.len() { (p, q) } else { (q, p) };
     let mut result = longer.to_vec();
@@ -23,12 +23,12 @@ pub(crate) fn sum<S: Scalar>(p: &[S], q: &[S]) -> Vec<S> {
     result
 }
 
-/// k p
+/// Scaled polynomial k p.
 pub(crate) fn scaled<S: Scalar>(k: S, p: &[S]) -> Vec<S> {
     p.iter().map(|&a| k * a).collect()
 }
 
-/// s p
+/// Shifted polynomial s p.
 pub(crate) fn shifted<S: Scalar>(p: &[S]) -> Vec<S> {
     let mut result = p.to_vec();
     result.push(S::from(0.0));

@@ -1,28 +1,29 @@
 use phea_dynamics::portable;
 use phea_dynamics::scalar::{LocalFunction, Parameters, Scalar};
 
-/// Terms of a [`ChebyshevSeries`].
+/// Number of terms of a [`ChebyshevSeries`].
 pub(super) const TERMS: usize = 32;
 
-/// A smooth function of one variable as a polynomial, without branches.
+/// Smooth function of one variable as a polynomial, without branches.
 ///
 /// ```text
 /// f(u) = sum over k of c_k t^k,   t = (u - u_0)/w                     k = 0 to TERMS - 1
 /// ```
 ///
-/// It is found in Chebyshev's polynomials, and kept in powers: there intervals stay narrow.
+/// The polynomial is found in Chebyshev polynomials and stored in powers, in which intervals stay
+/// narrow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ChebyshevSeries<S = f64> {
-    /// c_k, the lowest first.
+    /// Coefficients c_k, the lowest first.
     pub(super) coefficients: [S; TERMS],
-    /// u_0
+    /// Middle u_0.
     pub(super) middle: S,
-    /// w
+    /// Half width w.
     pub(super) half_width: S,
 }
 
 impl ChebyshevSeries {
-    /// The polynomial that has the values of this function at the zeros of T_n in `range`, n the
+    /// Polynomial with the values of this function at the zeros of T_n in `range`, n being the
     /// number of terms.
     pub(super) fn through<E>(
         [from, to]: [f64; 2],
@@ -44,7 +45,7 @@ impl ChebyshevSeries {
     }
 }
 
-/// A sum of Chebyshev's polynomials in powers of its variable, the lowest first.
+/// Sum of Chebyshev polynomials in powers of its variable, the lowest first.
 ///
 /// ```text
 /// T_0 = 1,   T_1 = t,   T_k+1 = 2 t T_k - T_k-1

@@ -1,4 +1,4 @@
-//! Where a linkage of given lengths is at an extension of the cylinder.
+//! Position of a linkage of given lengths at an extension of the cylinder.
 
 use nalgebra::{DMatrix, DVector};
 use phea_dynamics::portable;
@@ -10,11 +10,11 @@ use super::{FourBar, LinkageError, LinkageTable, PivotTriangle};
 const HALVINGS: usize = 64;
 /// Highest degree of the polynomial through a table.
 const HIGHEST_DEGREE: usize = 11;
-/// How far a table's polynomial is searched beyond its ends, as a share of its angles.
+/// Range beyond its ends in which a table's polynomial is searched, as a fraction of its angles.
 const BEYOND_TABLE: f64 = 0.2;
 
 impl PivotTriangle {
-    /// Angle at the joint between both pivots, in rad; `None` where no such triangle exists.
+    /// Angle at the joint between both pivots, in rad; `None` if no such triangle exists.
     ///
     /// ```text
     /// l = l_0 + x,     cos(phi) = (a^2 + b^2 - l^2)/(2 a b)
@@ -28,7 +28,7 @@ impl PivotTriangle {
 
 impl FourBar {
     /// Angle of the output link from the fixed link in rad, counted from its joint away from the
-    /// input's; `None` where the links do not meet.
+    /// input's; `None` if the links do not meet.
     ///
     /// ```text
     /// A = r (cos alpha, sin alpha),   D = (d, 0),   e = |A - D|
@@ -47,7 +47,7 @@ impl FourBar {
     }
 }
 
-/// The polynomial of least degree that passes every row of a table within its tolerance, and the
+/// Polynomial of least degree that passes every row of a table within its tolerance, and the
 /// largest distance of a row from it in m.
 pub(super) fn through_table(table: &LinkageTable) -> Result<(ChebyshevSeries, f64), LinkageError> {
     let rows = table.angles.len().min(table.extensions.len());
@@ -87,14 +87,14 @@ pub(super) fn through_table(table: &LinkageTable) -> Result<(ChebyshevSeries, f6
     Err(LinkageError::TableRough { residual, tolerance: table.tolerance, degree: highest })
 }
 
-/// The angle in rad at which a rising series has this value, to the last bit; `None` where it has
-/// it nowhere near its range.
+/// Angle in rad at which a rising series has this value, to the last bit; `None` if it has the
+/// value nowhere near its range.
 pub(super) fn where_it_is(series: &ChebyshevSeries, value: f64) -> Option<f64> {
     let reach = series.half_width * (1.0 + BEYOND_TABLE);
     rising_root(|angle| Some(series.at(angle)[0] - value), [series.middle - reach, series.middle + reach])
 }
 
-/// Where a rising function vanishes, to the last bit; `None` where it does not change its sign, or
+/// Root of a rising function, to the last bit; `None` if the function does not change its sign, or
 /// has no value.
 pub(super) fn rising_root(of: impl Fn(f64) -> Option<f64>, [from, to]: [f64; 2]) -> Option<f64> {
     let (mut low, mut high) = (from, to);

@@ -4,44 +4,44 @@ use phea_dynamics::scalar::Scalar;
 use super::Linkage;
 use super::chebyshev::ChebyshevSeries;
 
-/// Standard acceleration of free fall in m/s2.
+/// Standard acceleration of free fall, m/s2.
 pub const STANDARD_GRAVITY: f64 = 9.80665;
 
-/// The weight of a load that turns about a joint.
+/// Weight of a load that turns about a joint.
 ///
 /// ```text
 /// U = m g d h(theta),   h = sin(theta - theta_l)          d from the joint to the centre of mass
 /// tau_g = -m g d h'(theta),   k_w = -d tau_g/d theta = m g d h''(theta)
 /// ```
 ///
-/// At theta_l the centre of mass is level with the joint and rises while the angle grows. h is a
-/// polynomial over the angles of the linkage, as the linkage itself is.
+/// At theta_l the centre of mass is level with the joint and rises with the angle. Like the linkage
+/// itself, h is a polynomial over the angles of the linkage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinkedWeight<S = f64> {
-    /// m g d in N m.
+    /// Moment m g d, N m.
     moment: S,
-    /// h(theta)
+    /// Height h(theta).
     height: ChebyshevSeries<S>,
 }
 
-/// A weight at one angle. Units: J, N m, N m/rad.
+/// Weight at one angle. Units: J, N m, N m/rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WeightAt<S = f64> {
-    /// U, zero where the centre of mass is level with the joint.
+    /// Potential energy U, zero when the centre of mass is level with the joint.
     pub energy: S,
-    /// tau_g, positive where it helps the rod to extend.
+    /// Torque tau_g, positive when it helps the rod to extend.
     pub torque: S,
-    /// k_w: positive where the load hangs, negative where it stands above its joint.
+    /// Stiffness k_w: positive when the load hangs, negative when it stands above its joint.
     pub stiffness: S,
 }
 
 impl Linkage {
-    /// The same with a load whose centre of mass is level with the joint at this angle in rad; its
-    /// moment is 1 N m until [`Linkage::with_moment`] states it.
+    /// Linkage with a load whose centre of mass is level with the joint at this angle in rad; its
+    /// moment is 1 N m until [`Linkage::with_moment`] sets it.
     ///
     /// # Example
-    /// A load of 2 kg at half a metre, level at the angle zero: there its weight has the whole
-    /// lever arm.
+    /// A load of 2 kg at half a metre, level at the angle zero, where its weight has the whole
+    /// lever arm:
     /// ```
     /// use phea_hydraulics::linkage::{LinkageGeometry, LinkageTable, STANDARD_GRAVITY};
     /// let table = LinkageTable { extensions: vec![0.0, 0.1], angles: vec![-1.0, 1.0], tolerance: 1e-6 };
@@ -65,30 +65,30 @@ impl Linkage {
 }
 
 impl<S: Scalar> Linkage<S> {
-    /// The same with this moment m g d in N m of its weight, if it has one.
+    /// Linkage with this moment m g d of its weight in N m, if it has one.
     #[must_use]
     pub fn with_moment(&self, moment: S) -> Linkage<S> {
         Linkage { weight: self.weight.map(|weight| LinkedWeight { moment, ..weight }), ..*self }
     }
 
-    /// The weight of the load at an angle in rad; `None` for one without.
+    /// Weight of the load at an angle in rad; `None` for a load without weight.
     pub fn weight_at(&self, angle: S) -> Option<WeightAt<S>> {
         let weight = self.weight.as_ref()?;
         Some(WeightAt::of(weight.moment, weight.height.at(angle)))
     }
 
-    /// The same as a part of a machine of many states.
+    /// Weight as in [`Linkage::weight_at`], as part of a machine of many states.
     ///
-    /// Apart, so that machines without a weight do not carry its code along.
+    /// Separate function, so that machines without a weight do not contain its code.
     #[inline(never)]
     pub(crate) fn weight_of<T: Scalar + From<S>>(&self, angle: T) -> Option<WeightAt<T>> {
         let weight = self.weight.as_ref()?;
         Some(WeightAt::of(T::from(weight.moment), T::local(&weight.height, [angle])))
     }
 
-    /// The force of the rod in N that holds the weight where the piston is at a position in m;
-    /// `yields` gives how far the rod is shortened by a force in N, in m, and its slope in m/N.
-    /// `None` without a weight.
+    /// Force of the rod in N that holds the weight with the piston at a position in m; `yields`
+    /// returns the shortening of the rod in m by a force in N, and its slope in m/N. `None` without
+    /// a weight.
     ///
     /// ```text
     /// F = -tau_g(theta)/g'(theta),   g(theta) + d(F) = x             by Newton's steps in theta
@@ -113,11 +113,12 @@ impl<S: Scalar> Linkage<S> {
     }
 }
 
-/// Newton's steps: a stiff rod needs two, one as soft as its weight five.
+/// Number of Newton steps: a stiff rod needs two, one as soft as its weight five.
 const HOLDING_STEPS: usize = 6;
 
 impl<S: Scalar> WeightAt<S> {
-    /// Of this moment m g d in N m, with h and its two derivatives by the angle.
+    /// Weight with this moment m g d in N m, from h and its two derivatives with respect to the
+    /// angle.
     fn of(moment: S, [height, slope, curvature]: [S; 3]) -> WeightAt<S> {
         WeightAt { energy: moment * height, torque: -(moment * slope), stiffness: moment * curvature }
     }

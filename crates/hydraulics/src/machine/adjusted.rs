@@ -1,4 +1,4 @@
-//! The gas of accumulators that are adjusted in operation.
+//! Gas of accumulators that are adjusted in operation.
 
 use phea_dynamics::scalar::{Parameters, Scalar};
 
@@ -7,12 +7,12 @@ use crate::accumulator::{Adjustment, MovedGas};
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 
 impl<S: Scalar> Machine<S> {
-    /// The adjustment of the gas at a chamber.
+    /// Adjustment of the gas at a chamber.
     fn adjustment<T: Scalar + From<S>>(&self, side: usize) -> Option<Adjustment<T>> {
         self.adjustments[side].map(|of| of.convert(&mut T::from))
     }
 
-    /// The gas at a chamber at its setting; `None` without an accumulator.
+    /// Gas at a chamber at its setting; `None` without an accumulator.
     pub(super) fn moved_gas<T: Scalar + From<S>>(
         &self,
         side: usize,
@@ -24,7 +24,7 @@ impl<S: Scalar> Machine<S> {
         Some(self.adjustment(side).map_or(still, |of: Adjustment<T>| of.moved(&gas, change, rate)))
     }
 
-    /// Settings of the accumulators at both chambers; zero of those that are not adjusted.
+    /// Settings of the accumulators at both chambers; zero for one that is not adjusted.
     pub(super) fn settings<T: Scalar + From<S>>(&self, [change, _]: [T; 2]) -> [T; 2] {
         [0, 1].map(|side| {
             let of: Option<Adjustment<T>> = self.adjustment(side);
@@ -32,7 +32,7 @@ impl<S: Scalar> Machine<S> {
         })
     }
 
-    /// Power in W of both adjustments, with the gas at these pressures in Pa.
+    /// Power of both adjustments with the gas at these pressures in Pa, W.
     pub(super) fn adjustment_power<T: Scalar + From<S>>(&self, pressures: [T; 2], setting: [T; 2]) -> T {
         let of = |side: usize| {
             let power = self.moved_gas(side, setting).map(|gas| gas.power(pressures[side]));
@@ -41,8 +41,8 @@ impl<S: Scalar> Machine<S> {
         of(0) + of(1)
     }
 
-    /// Flow in m3/s through the valve between a chamber and its gas along a drop in Pa; `None`
-    /// where there is none.
+    /// Flow through the valve between a chamber and its gas for a drop in Pa, m3/s; `None` without
+    /// a valve.
     pub(super) fn through_gas_valve<T: Scalar + From<S>>(
         &self,
         side: usize,
@@ -53,8 +53,8 @@ impl<S: Scalar> Machine<S> {
         Some(of.valve()?.flow(of.setting + change, drop))
     }
 
-    /// Pressures in Pa up to which the gas at either chamber may be compressed: the limit at rest
-    /// is a multiple of the precharge, which the setting moves.
+    /// Largest permitted pressures of the gas at either chamber, Pa: the limit at rest is a
+    /// multiple of the precharge, which the setting moves.
     ///
     /// ```text
     /// P_2(u) = (P_2/P_0) P_0(u),     absolute
@@ -71,7 +71,7 @@ impl<S: Scalar> Machine<S> {
         })
     }
 
-    /// What the valves between the chambers and their gas throttle, in W: `lost` of the necks in
+    /// Throttling loss of the valves between the chambers and their gas, W: `lost` of the necks in
     /// the [`Ledger`](super::Ledger) of a machine that has valves in their place.
     ///
     /// ```text
@@ -90,7 +90,7 @@ impl<S: Scalar> Machine<S> {
         of(0) + of(1)
     }
 
-    /// What the oil between the chamber and its gas yields, in m3/Pa: in a neck, or behind a valve.
+    /// Compliance of the oil between the chamber and its gas: in a neck, or behind a valve, m3/Pa.
     pub(super) fn before_gas<T: Scalar + From<S>>(&self, side: usize) -> T {
         let neck = self.necks[side].map(|neck| neck.compliance);
         let valve = self.adjustments[side].and_then(|of| Some(of.valve()?.compliance));

@@ -5,16 +5,16 @@ use super::equations::constant;
 use super::{Machine, MachineState, PowerUnit};
 use crate::operating_point::hydraulic_force;
 
-/// The values that an equilibrium keeps while the pressures are found.
+/// Value that an equilibrium holds while the pressures are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Kept {
-    /// The position of the spool.
+    /// Position of the spool.
     Spool,
-    /// The force of the pressures on the piston, in N.
+    /// Force of the pressures on the piston, N.
     Force(f64),
 }
 
-/// The scales of surplus flows in m3/s, of the supply pressure in Pa, of the spool in V and of the
+/// Scales of surplus flows in m3/s, of the supply pressure in Pa, of the spool in V and of the
 /// force in N.
 const FLOW_SCALE: f64 = 1e-6;
 const PRESSURE_SCALE: f64 = 1e5;
@@ -23,16 +23,16 @@ const FORCE_SCALE: f64 = 10.0;
 /// Newton steps, and halvings of each.
 const STEPS: usize = 60;
 
-/// p_A, p_B, p_S and the spool's position.
+/// Unknowns p_A, p_B, p_S and the spool's position.
 type Unknowns = Vector4<f64>;
 
 impl Machine {
-    /// The state with those pressures, and that spool position, at which nothing flows that the
-    /// piston does not take: by damped Newton steps from where it is.
+    /// State with the pressures and the spool position at which the flows balance the motion of the
+    /// piston: by damped Newton steps from the given state.
     ///
     /// ```text
     /// q_A(U, p_A + R_A Q_A, p_S) = Q_A = A_A v + q_i        q_B(...) = Q_B = -A_B v - q_i
-    /// p_S as stated, or q_pump - q_relief = q_supply        U as it is, or A_A p_A - A_B p_B = F
+    /// p_S as stated, or q_pump - q_relief = q_supply        U as given, or A_A p_A - A_B p_B = F
     /// ```
     ///
     /// R is the steady resistance of a line, and the areas are those at a position in m.
@@ -67,7 +67,7 @@ impl Machine {
         balanced
     }
 
-    /// The residuals of the four equations, and their derivatives with respect to the unknowns.
+    /// Residuals of the four equations, and their derivatives with respect to the unknowns.
     fn surplus(
         &self,
         state: &MachineState,
@@ -108,8 +108,8 @@ impl Machine {
         (rows.map(|row| row.value()).into(), slopes)
     }
 
-    /// The flows into the chambers in steady motion, in m3/s: the piston's displacement, what flows
-    /// from chamber to chamber, and what leaks outwards.
+    /// Flows into the chambers in steady motion: the piston's displacement, the flow from chamber
+    /// to chamber, and the external leakage, m3/s.
     pub(super) fn steady_flows<T: Scalar + From<f64>>(
         &self,
         state: &MachineState<T>,
@@ -123,7 +123,7 @@ impl Machine {
         ]
     }
 
-    /// Drops of pressure over both lines per steady flow, in Pa s/m3.
+    /// Pressure drops over both lines per steady flow, Pa s/m3.
     fn line_resistances(&self) -> [f64; 2] {
         self.lines.map(|line| {
             let (state, _) = line.steady_state(0.0, 1.0);

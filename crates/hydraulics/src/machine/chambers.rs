@@ -6,27 +6,27 @@ use crate::line::{Line, StiffeningMember};
 use crate::stiffness::{ChamberCompliance, StiffnessModel, chamber_compliance, compliance_at};
 use crate::stroke::ActuatorStroke;
 
-/// Absolute pressure in Pa below which the modulus of fluid with air is that at this pressure. Far
-/// below any vapour pressure that is reported, it only keeps a trial step of an integrator a
-/// number.
+/// Absolute pressure in Pa below which the modulus of fluid with air is evaluated at this pressure.
+/// Far below any vapour pressure that is reported, it only keeps a trial step of an integrator
+/// finite.
 const LEAST_ABSOLUTE_PRESSURE: f64 = 1.0;
 
 /// Compliance of both chambers with their lines as the machine moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Chambers<S = f64> {
-    /// Fluid without air: compliance depends on the position alone.
+    /// Fluid without air: compliance depends only on the position.
     Clean(ChamberCompliance<S>),
-    /// Fluid with entrained air: it depends on each chamber's pressure too.
+    /// Fluid with entrained air: compliance depends on each chamber's pressure too.
     Aerated(AeratedChambers<S>),
 }
 
-/// Chambers whose fluid carries air.
+/// Chambers whose fluid contains air.
 ///
 /// ```text
 /// C_A(x, p) = (V_A + A_A x)/beta(p) + W_A + w_A x              and likewise C_B with L - x
 /// ```
 ///
-/// V holds fluid whose modulus is that of the mixture, W is the compliance of walls and stated
+/// Volume V contains fluid with the modulus of the mixture, W is the compliance of walls and stated
 /// moduli. Units: Pa, 1, m, m3, m2, m3/Pa, m2/Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AeratedChambers<S = f64> {
@@ -38,7 +38,7 @@ pub struct AeratedChambers<S = f64> {
     pub(super) side_b: AeratedSide<S>,
 }
 
-/// One chamber with its line.
+/// Chamber with its line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct AeratedSide<S> {
     pub(super) fluid_constant: S,
@@ -48,13 +48,13 @@ pub(super) struct AeratedSide<S> {
 }
 
 impl Chambers {
-    /// The chambers of an actuator with lumped lines; `member` chooses the hose's stiffening.
+    /// Chambers of an actuator with lumped lines; `member` selects the hose's stiffening.
     pub fn new(actuator: &Actuator, member: StiffeningMember) -> Chambers {
         Chambers::of(actuator.components(), member)
     }
 
-    /// The chambers with the compliance in m3/Pa that lines with dynamics of their own add to each;
-    /// in the model `uniform` they keep the modulus of their line.
+    /// Chambers with the compliance in m3/Pa that lines with dynamics of their own add to each; in
+    /// the model `uniform` they retain the modulus of their line.
     pub fn behind_lines(
         actuator: &Actuator,
         member: StiffeningMember,
@@ -96,7 +96,7 @@ impl Chambers {
     }
 }
 
-/// The same line, holding nothing.
+/// Line of this type, without volume.
 fn without_volume(line: Line) -> Line {
     match line {
         Line::Hose { hose, .. } => Line::Hose { hose, length: 0.0 },
@@ -105,7 +105,7 @@ fn without_volume(line: Line) -> Line {
     }
 }
 
-/// The part of a side that is fluid with air, and the compliance without it.
+/// Part of a side that is fluid with air, and the compliance without it.
 fn aerated_side(
     model: StiffnessModel,
     area: f64,
@@ -147,7 +147,8 @@ phea_dynamics::parameters! {
 }
 
 impl<S: Scalar> Chambers<S> {
-    /// C_A and C_B in m3/Pa at piston position `x` in m and chamber pressures in Pa gauge.
+    /// Compliances C_A and C_B at piston position `x` in m and chamber pressures in Pa gauge,
+    /// m3/Pa.
     #[inline(always)]
     pub fn compliance<T: Scalar + From<S>>(&self, x: T, [pressure_a, pressure_b]: [T; 2]) -> [T; 2] {
         match self {

@@ -2,17 +2,17 @@ use phea_dynamics::scalar::Scalar;
 
 use super::{Machine, Motion};
 
-/// The end of the rod on the load's side. Without a linkage it is the load.
+/// End of the rod on the load's side. Without a linkage this is the load.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LoadEnd<T> {
-    /// x_L and v_L.
+    /// Position x_L and velocity v_L.
     pub(super) motion: Motion<T>,
-    /// g' of a linkage, in m; `None` without one.
+    /// Lever arm g' of a linkage, m; `None` without one.
     pub(super) lever_arm: Option<T>,
 }
 
 impl<T: Scalar> LoadEnd<T> {
-    /// What a force on this end in N is to the load: itself, or a torque in N m.
+    /// Effect on the load of a force on this end in N: the force itself, or a torque in N m.
     #[inline(always)]
     pub(super) fn on_load(&self, force: T) -> T {
         self.lever_arm.map_or(force, |arm| arm * force)
@@ -20,7 +20,7 @@ impl<T: Scalar> LoadEnd<T> {
 }
 
 impl<S: Scalar> Machine<S> {
-    /// Where the motion of the load takes the end of the rod.
+    /// Motion of the end of the rod for a motion of the load.
     ///
     /// ```text
     /// x_L = g(theta),   v_L = g'(theta) omega
@@ -37,14 +37,13 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// The torque of the load's weight in N m; `None` without one.
+    /// Torque of the load's weight, N m; `None` without one.
     #[inline(always)]
     pub(super) fn weight_on<T: Scalar + From<S>>(&self, load: &Motion<T>) -> Option<T> {
         Some(self.linkage.as_ref()?.weight_of(load.position)?.torque)
     }
 
-    /// The potential energy of the load's weight in J; zero without one, and where the load does
-    /// not yield.
+    /// Potential energy of the load's weight, J; zero without one, and if the load does not yield.
     pub(super) fn weight_energy<T: Scalar + From<S>>(&self, load: &Motion<T>) -> T {
         let weight = self.linkage.as_ref().filter(|_| self.load.moves());
         let weight = weight.and_then(|linkage| linkage.weight_of(load.position));
@@ -67,8 +66,8 @@ impl<S: Scalar> Machine<S> {
 }
 
 impl Machine {
-    /// The load where the end of the rod is at a position in m and its force in N is held: its
-    /// motion from its ground, and where that is.
+    /// Load with the end of the rod at a position in m and its force in N held: its motion from its
+    /// ground, and the position of the ground.
     pub(super) fn held_load(&self, end: f64, force: f64, velocity: f64) -> Option<(Motion, f64)> {
         let (position, arm, weight) = match &self.linkage {
             None => (end, 1.0, 0.0),
@@ -78,14 +77,14 @@ impl Machine {
                 (angle, linkage.end(angle).lever_arm, weight)
             }
         };
-        // what nothing holds begins to fall from where it stands
+        // a load that nothing holds begins to fall from its position
         let torque = force * arm;
         let relative = self.load.held_at(torque + weight).or_else(|| self.load.held_at(torque))?;
         Some((Motion { position: relative, velocity: velocity / arm }, position - relative))
     }
 
-    /// How far the load turns in rad, at this angle of its joint, while its end of the rod moves
-    /// this far in m, by the lever arm there; the same way without a linkage.
+    /// Rotation of the load in rad, at this angle of its joint, for a displacement of its end of
+    /// the rod in m, by the lever arm there; the displacement itself without a linkage.
     pub fn turn_of(&self, angle: f64, way: f64) -> f64 {
         self.linkage.map_or(way, |linkage| way / linkage.end(angle).lever_arm)
     }

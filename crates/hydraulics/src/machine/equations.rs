@@ -9,30 +9,30 @@ use crate::series::MovingSeries;
 use crate::servovalve::{EdgeFlows, Edges, Servovalve, Supply, edge_conductances, edge_flows, tare_flow};
 use crate::stroke::{ActuatorStroke, Telescope};
 
-/// Every flow at one instant, in m3/s.
+/// All flows at one instant, m3/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Flows<T> {
-    /// Through the four edges.
+    /// Flows through the four edges.
     pub(super) edges: EdgeFlows<T>,
-    /// From chamber A to chamber B: across the piston and through a valve between them.
+    /// Flow from chamber A to chamber B: across the piston and through a valve between them.
     pub(super) internal: T,
-    /// From each chamber to the tank, as through the case of a motor; `None` where nothing leaks
-    /// outwards.
+    /// Flow from each chamber to the tank, as through the case of a motor; `None` without such
+    /// leakage.
     pub(super) outward: Option<[T; 2]>,
-    /// The share of that valve.
+    /// Part of the internal flow that passes this valve.
     pub(super) cross_port: T,
-    /// From the valve into line A and line B.
+    /// Flows from the valve into line A and line B.
     pub(super) from_valve: [T; 2],
 }
 
 impl<T: Scalar> Flows<T> {
-    /// From each chamber to the tank, in m3/s.
+    /// Flow from each chamber to the tank, m3/s.
     pub(super) fn out_of_chambers(&self) -> [T; 2] {
         self.outward.unwrap_or([T::from(0.0); 2])
     }
 }
 
-/// Every force at one instant, in N.
+/// All forces at one instant, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Forces<T> {
     /// Force of the chamber pressures, towards B.
@@ -43,13 +43,13 @@ pub(super) struct Forces<T> {
     pub(super) end_stops: T,
 }
 
-/// A parameter as a constant of the equations.
+/// Parameter as a constant of the equations.
 #[inline(always)]
 pub(super) fn constant<S, T: From<S>>(parameter: S) -> T {
     T::from(parameter)
 }
 
-/// The flows through the four edges as a function of few states.
+/// Flows through the four edges as a function of few states.
 struct ValveEdges<'m, S> {
     valve: &'m Servovalve<S>,
     supply: &'m Supply<S>,
@@ -63,7 +63,7 @@ impl<S: Scalar> LocalFunction<S, 3, 4> for ValveEdges<'_, S> {
     }
 }
 
-/// Flows as a function of opening, both ports' pressures, and that of the supply.
+/// Flows as a function of opening, both ports' pressures, and the supply pressure.
 impl<S: Scalar> LocalFunction<S, 4, 4> for ValveEdges<'_, S> {
     #[inline(always)]
     fn at<T: Scalar>(&self, [opening, a, b, pressure]: [T; 4], constant: impl Fn(S) -> T + Copy) -> [T; 4] {
@@ -74,7 +74,7 @@ impl<S: Scalar> LocalFunction<S, 4, 4> for ValveEdges<'_, S> {
 }
 
 impl<S: Scalar> Machine<S> {
-    /// Pressures at the valve's ports: the supply's own where it does not yield.
+    /// Pressures at the valve's supply ports: the stated ones if the supply does not yield.
     #[inline(always)]
     pub(super) fn supply_of<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> Supply<T> {
         let stated = self.supply.convert(&mut constant::<S, T>);
@@ -94,7 +94,7 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// Pressures at the valve's ports A and B: the chambers' own where lines are lumped.
+    /// Pressures at the valve's ports A and B: those of the chambers if the lines are lumped.
     #[inline(always)]
     pub(super) fn ports<T: Scalar + From<S>>(&self, state: &MachineState<T>, vector: &[T]) -> [T; 2] {
         if self.layout.has_lines() {
@@ -104,17 +104,17 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// Apart, so that machines without such lines do not carry their code along; and of the
-    /// pressures alone, as no function apart is given the whole state: it would be copied for it in
-    /// every machine.
+    /// Separate function, so that machines without such lines do not contain its code; it takes
+    /// only the pressures, because a separate function with the whole state would copy that state
+    /// in every machine.
     #[inline(never)]
     fn ports_of_lines<T: Scalar + From<S>>(&self, chambers: [T; 2], lines: [&[T]; 2]) -> [T; 2] {
         let ([line_a, line_b], [state_a, state_b]) = (&self.lines, lines);
         [line_a.port_pressure(state_a, chambers[0]), line_b.port_pressure(state_b, chambers[1])]
     }
 
-    /// Compliance of both chambers including their lines and accumulators, in m3/Pa, without gas
-    /// that is behind a neck or a valve, exchanges heat or is adjusted.
+    /// Compliance of both chambers including their lines and accumulators, without gas that is
+    /// behind a neck or a valve, exchanges heat or is adjusted, m3/Pa.
     #[inline(always)]
     pub(super) fn compliance<T: Scalar + From<S>>(&self, state: &MachineState<T>, position: T) -> [T; 2] {
         let [oil_a, oil_b] = self.oil_compliance(state, position);
@@ -130,7 +130,7 @@ impl<S: Scalar> Machine<S> {
         [with(oil_a, gas_a, apart_a, state.pressure_a), with(oil_b, gas_b, apart_b, state.pressure_b)]
     }
 
-    /// The same without accumulators: it vanishes with the volume of a chamber.
+    /// Compliance without accumulators, which vanishes with the volume of a chamber.
     #[inline(always)]
     pub(super) fn oil_compliance<T: Scalar + From<S>>(&self, state: &MachineState<T>, position: T) -> [T; 2] {
         self.chambers.compliance(position, [state.pressure_a, state.pressure_b])
@@ -161,16 +161,16 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// Flow through a valve between the chambers from A to B, in m3/s, at the drop p_A - p_B and
-    /// the pressure difference over its capacity, both in Pa. Apart, so that machines without such
-    /// a valve do not carry its code along.
+    /// Flow through a valve between the chambers from A to B in m3/s, for the drop p_A - p_B and
+    /// the pressure difference over its capacity, both in Pa. Separate function, so that machines
+    /// without such a valve do not contain its code.
     #[inline(never)]
     fn through_cross_port<T: Scalar + From<S>>(&self, port: &CrossPort<S>, drop: T, over_capacity: T) -> T {
         let CrossPort { restrictor, capacity } = port.convert(&mut constant::<S, T>);
         restrictor.flow(if capacity.is_some() { drop - over_capacity } else { drop })
     }
 
-    /// What flows from chamber A to chamber B at rest, in m3/s.
+    /// Flow from chamber A to chamber B at rest, m3/s.
     pub(super) fn steady_cross_flow<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> T {
         let leakage = self.leakage(state);
         let steady = self.cross_port.as_ref().filter(|port| port.capacity.is_none());
@@ -178,7 +178,7 @@ impl<S: Scalar> Machine<S> {
         steady.map_or(leakage, |port| leakage + self.through_cross_port(port, drop, T::from(0.0)))
     }
 
-    /// Flow across the piston from A to B, in m3/s.
+    /// Flow across the piston from A to B, m3/s.
     #[inline(always)]
     pub(super) fn leakage<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> T {
         self.cylinder.internal_leakage.map_or(T::from(0.0), |conductance| {
@@ -186,7 +186,7 @@ impl<S: Scalar> Machine<S> {
         })
     }
 
-    /// Flows out of both chambers to the tank, in m3/s.
+    /// Flows out of both chambers to the tank, m3/s.
     #[inline(always)]
     pub(super) fn outward_leakage<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> Option<[T; 2]> {
         let conductance: T = constant(self.cylinder.external_leakage?);
@@ -194,7 +194,7 @@ impl<S: Scalar> Machine<S> {
         Some([conductance * (state.pressure_a - tank), conductance * (state.pressure_b - tank)])
     }
 
-    /// Oil that the valve takes from the supply, tare flow included, in m3/s.
+    /// Flow that the valve takes from the supply, tare flow included, m3/s.
     #[inline(always)]
     pub(super) fn supply_flow<T: Scalar + From<S>>(
         &self,
@@ -209,7 +209,7 @@ impl<S: Scalar> Machine<S> {
         tare_flow(&valve, &self.supply_of(state), constant(self.tare_reference_drop))
     }
 
-    /// A_A and A_B in m2 at a position of the piston in m.
+    /// Areas A_A and A_B at a position of the piston in m, m2.
     #[inline(always)]
     pub(super) fn areas_at<T: Scalar + From<S>>(&self, position: T) -> [T; 2] {
         match &self.cylinder.stroke {
@@ -220,7 +220,7 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// Apart, so that machines with a single stage do not carry its code along.
+    /// Separate function, so that machines with a single stage do not contain its code.
     #[inline(never)]
     fn areas_of_stages<T: Scalar + From<S>>(&self, telescope: &Telescope<S>, position: T) -> [T; 2] {
         let [ratio_a, ratio_b] = telescope.convert(&mut constant::<S, T>).ratios(position);
@@ -246,7 +246,7 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// The equations of the machine: rates of all states at a command in V.
+    /// Equations of the machine: rates of all states at a command in V.
     #[inline(always)]
     pub(super) fn write_rates<T: Scalar + From<S>>(
         &self,
@@ -305,8 +305,8 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// What enters both chambers and not their growing volumes, in m3/s, with these flows from the
-    /// lines.
+    /// Flows that compress the oil of both chambers, net of their growing volumes, for these flows
+    /// from the lines, m3/s.
     #[inline(always)]
     pub(super) fn entering_chambers<T: Scalar + From<S>>(
         &self,
@@ -324,8 +324,7 @@ impl<S: Scalar> Machine<S> {
         [stays_in_a - area_a * state.velocity, stays_in_b + area_b * state.velocity]
     }
 
-    /// Flows that leave the lines into the chambers, in m3/s; writes the rates of the lines'
-    /// states.
+    /// Flows that leave the lines into the chambers, m3/s; writes the rates of the lines' states.
     #[inline(never)]
     fn through_lines<T: Scalar + From<S>>(
         &self,
@@ -344,7 +343,7 @@ impl<S: Scalar> Machine<S> {
         ]
     }
 
-    /// The waves sent into the delays of the lines, in Pa.
+    /// Waves sent into the delays of the lines, Pa.
     pub(super) fn write_outgoing<T: Scalar + From<S>>(&self, vector: &[T], inputs: &[T], waves: &mut [T]) {
         let state = self.layout.read(vector);
         let [state_a, state_b] = self.layout.lines(vector);
@@ -355,7 +354,7 @@ impl<S: Scalar> Machine<S> {
         line_b.outgoing(state.pressure_b, state_b, arriving_b, waves_b);
     }
 
-    /// Rate of the pressure difference over the capacity of a valve between the chambers, in Pa/s.
+    /// Rate of the pressure difference over the capacity of a valve between the chambers, Pa/s.
     #[inline(always)]
     fn cross_port_rate<T: Scalar + From<S>>(&self, flows: &Flows<T>) -> T {
         match self.cross_port.and_then(|port| port.capacity) {
@@ -364,7 +363,7 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// Rate of the supply pressure in Pa/s.
+    /// Rate of the supply pressure, Pa/s.
     #[inline(always)]
     fn supply_rate<T: Scalar + From<S>>(&self, state: &MachineState<T>, flows: &Flows<T>) -> T {
         match self.power_unit.convert(&mut constant::<S, T>) {

@@ -1,5 +1,5 @@
-//! The gas of accumulators at the chambers: at its chamber, behind necks and valves, and where it
-//! exchanges heat.
+//! Gas of accumulators at the chambers: directly at its chamber, behind necks and valves, and with
+//! heat exchange.
 
 use phea_dynamics::scalar::{Parameters, Scalar};
 
@@ -8,39 +8,39 @@ use super::equations::constant;
 use crate::accumulator::{Bladder, HeatedGas, RelaxingGas};
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 
-/// States of the gas at both chambers, or their rates; those that a machine lacks are zero.
+/// States of the gas at both chambers, or their rates; states that a machine lacks are zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct GasStates<T> {
-    /// Flow q_n in m3/s through the neck of the accumulator at each chamber, into its gas.
+    /// Flow q_n through the neck of the accumulator at each chamber, into its gas, m3/s.
     pub(super) neck_flows: [T; 2],
-    /// Pressure s in Pa of the gas behind each neck or valve, within its bladder: [`Bladder`].
+    /// Pressure s of the gas behind each neck or valve, within its bladder, Pa: [`Bladder`].
     pub(super) pressures: [T; 2],
-    /// theta - 1 of the gas at each chamber, by which its absolute temperature is above that of its
-    /// wall, where it exchanges heat.
+    /// Relative rise theta - 1 of the absolute temperature of the gas at each chamber above that of
+    /// its wall, if it exchanges heat.
     pub(super) warmings: [T; 2],
 }
 
 impl<T: Scalar> GasStates<T> {
-    /// Everything zero.
+    /// State of zeros.
     pub(super) fn zero() -> GasStates<T> {
         let zero = [T::from(0.0); 2];
         GasStates { neck_flows: zero, pressures: zero, warmings: zero }
     }
 }
 
-/// Gas of both chambers that exchanges heat; `None` of a chamber without such gas.
+/// Gas of both chambers that exchanges heat; `None` for a chamber without such gas.
 pub(super) type HeatedSides<T> = [Option<HeatedGas<T>>; 2];
 
-/// Gas at a pressure: while this changes, C dp/dt + q flows into it.
+/// Gas at a pressure: with a changing pressure, C dp/dt + q flows into it.
 struct Content<T> {
-    /// C in m3/Pa.
+    /// Compliance C, m3/Pa.
     compliance: T,
-    /// q in m3/s at a pressure that is held.
+    /// Flow q at constant pressure, m3/s.
     held: T,
 }
 
 impl<S: Scalar> Machine<S> {
-    /// Pressures p_g of the oil at the gas of either chamber, in Pa.
+    /// Pressures p_g of the oil at the gas of either chamber, Pa.
     #[inline(always)]
     pub(super) fn gas_pressures<T: Scalar + From<S>>(
         &self,
@@ -52,7 +52,7 @@ impl<S: Scalar> Machine<S> {
         [0, 1].map(|side| bladders[side].map_or(chambers[side], |of| of.pressure(gas.pressures[side])))
     }
 
-    /// The states of the gas where the pressures of the oil at it are these in Pa, the gas at the
+    /// States of the gas for these pressures of the oil at it in Pa, with the gas at the
     /// temperature of its wall and its setting at rest.
     pub(super) fn resting_gas<T: Scalar + From<S>>(&self, chambers: [T; 2]) -> GasStates<T> {
         let zero = GasStates::zero();
@@ -62,7 +62,7 @@ impl<S: Scalar> Machine<S> {
         GasStates { pressures, ..zero }
     }
 
-    /// The bladders of gas behind a neck or a valve; `None` at a chamber without.
+    /// Bladders of gas behind a neck or a valve; `None` at a chamber without either.
     #[inline(always)]
     fn bladders<T: Scalar + From<S>>(&self, gas: &GasStates<T>, setting: [T; 2]) -> [Option<Bladder<T>>; 2] {
         let (behind, precharges) = (self.layout.behind(), self.precharges(gas, setting));
@@ -98,7 +98,7 @@ impl<S: Scalar> Machine<S> {
         })
     }
 
-    /// Pressures in Pa of the oil at the gas behind the necks, and theta of the gas that exchanges
+    /// Pressures of the oil at the gas behind the necks in Pa, and theta of the gas that exchanges
     /// heat; zero at a chamber without.
     pub(super) fn told_of_gas<T: Scalar + From<S>>(&self, vector: &[T], setting: [T; 2]) -> [[T; 2]; 2] {
         let gas = self.layout.read_gas(vector);
@@ -110,7 +110,7 @@ impl<S: Scalar> Machine<S> {
         [self.gas_pressures([zero; 2], &gas, setting), ratios]
     }
 
-    /// The gas that exchanges heat, at these pressures of the oil at it in Pa.
+    /// Gas that exchanges heat, at these pressures of the oil at it in Pa.
     pub(super) fn heated<T: Scalar + From<S>>(
         &self,
         pressures: [T; 2],
@@ -127,7 +127,7 @@ impl<S: Scalar> Machine<S> {
 
     /// Rates of the pressures of both chambers in Pa/s with gas that has states of its own, with
     /// these flows into them in m3/s and these compliances in m3/Pa; writes the rates of those
-    /// states. Apart, so that machines without such gas do not carry its code along.
+    /// states. Separate function, so that machines without such gas do not contain its code.
     #[inline(never)]
     pub(super) fn beside_gas<T: Scalar + From<S>>(
         &self,
@@ -144,7 +144,7 @@ impl<S: Scalar> Machine<S> {
         own
     }
 
-    /// The gas at a chamber at its pressure in Pa.
+    /// Gas at a chamber at its pressure in Pa.
     fn content<T: Scalar + From<S>>(
         &self,
         side: usize,
@@ -163,10 +163,10 @@ impl<S: Scalar> Machine<S> {
     /// its own or is adjusted.
     ///
     /// ```text
-    /// (C_oil + C) dp/dt = into - q                     gas at its chamber; q: at a pressure that is held
+    /// (C_oil + C) dp/dt = into - q                     gas at its chamber; q: at constant pressure
     /// C_oil dp/dt = into - q_n                         gas behind a neck or a valve
     /// (C + C_n) dp_g/dt = q_n - q                      which gives the rate of its state s: Bladder
-    /// I dq_n/dt = p - p_g - drop(q_n)                  of a neck
+    /// I dq_n/dt = p - p_g - drop(q_n)                  for a neck
     /// ```
     fn gas_rates<T: Scalar + From<S>>(
         &self,
@@ -210,8 +210,8 @@ impl<S: Scalar> Machine<S> {
         }
         (own, rates)
     }
-    /// Rate in Pa/s of the pressure at which the gas at a chamber has its precharge, P_0 theta,
-    /// with this rate of theta in 1/s.
+    /// Rate of the pressure at which the gas at a chamber has its precharge, P_0 theta, with this
+    /// rate of theta in 1/s, Pa/s.
     fn precharge_rate<T: Scalar + From<S>>(&self, side: usize, setting: [T; 2], warming_rate: T) -> T {
         let Some(moved) = self.moved_gas(side, setting) else { return T::from(0.0) };
         let absolute = moved.gas.precharge_pressure + T::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);

@@ -1,5 +1,5 @@
-//! Where the rates of the machine have kinks: places in its motion at which a derivative of a rate
-//! jumps. An integrator looks closely at steps that cross one.
+//! Kinks of the machine's rates: states of its motion at which a derivative of a rate jumps. An
+//! integrator checks steps that cross one more closely.
 
 use phea_dynamics::scalar::{Parameters, Scalar};
 
@@ -12,15 +12,15 @@ use crate::series::MovingSeries;
 use crate::stroke::ActuatorStroke;
 
 impl<S: Scalar> Machine<S> {
-    /// Writes the functions that change their sign at the kinks this machine has.
+    /// Writes the functions that change their sign at the kinks of this machine.
     ///
     /// ```text
     /// spool       U of its edges; dU/dt of its memories; limit - |dU/dt|
     /// friction    v, of bristles and of the smoothed curve
-    /// contacts    d and 1 + c d' of end stops and wall; the way left of a series spring
+    /// contacts    d and 1 + c d' of end stops and wall; the remaining travel of a series spring
     /// stages      x at both ends of each transition
-    /// gas         p where the bladder begins to lift and where it has lifted
-    /// supply      p where the relief valve opens
+    /// gas         p at which the bladder begins to lift, and at which it has lifted
+    /// supply      p at which the relief valve opens
     /// ```
     pub(super) fn write_kinks<T: Scalar + From<S>>(
         &self,
@@ -79,7 +79,7 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// Of the gas at the chambers.
+    /// Writes the kinks of the gas at the chambers.
     fn write_gas_kinks<T: Scalar + From<S>>(
         &self,
         chambers: [T; 2],
@@ -104,7 +104,7 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// How many kinks this machine can have.
+    /// Number of possible kinks of this machine.
     pub(super) fn kink_count(&self) -> usize {
         let zero = S::from(0.0);
         let mut count = 0;
@@ -114,7 +114,7 @@ impl<S: Scalar> Machine<S> {
     }
 }
 
-/// A surface that is touched, and its rebound, at which damping would pull.
+/// Kinks of a contact: first touch, and rebound, at which damping would pull.
 fn write_contact<S: Scalar, T: Scalar + From<S>>(
     contact: &Contact<S>,
     depth: T,

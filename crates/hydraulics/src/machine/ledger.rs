@@ -9,7 +9,7 @@ use super::{Machine, Motion};
 use crate::series::MovingSeries;
 use instant::Instant;
 
-/// Names of the accounts of oil, in the order of [`Ledger::oil`]. Accounts of parts that a machine
+/// Names of the oil accounts, in the order of [`Ledger::oil`]. Accounts of parts that a machine
 /// lacks are zero.
 pub const OIL_ACCOUNTS: [&str; 11] = [
     "chamber_a",
@@ -25,7 +25,7 @@ pub const OIL_ACCOUNTS: [&str; 11] = [
     "rig",
 ];
 
-/// Names of the accounts of energy, in the order of [`Ledger::energy`]. Accounts of parts that a
+/// Names of the energy accounts, in the order of [`Ledger::energy`]. Accounts of parts that a
 /// machine lacks are zero.
 pub const ENERGY_ACCOUNTS: [&str; 22] = [
     "chamber_a",
@@ -52,18 +52,17 @@ pub const ENERGY_ACCOUNTS: [&str; 22] = [
     "rig",
 ];
 
-/// The content of a component, its inflow and its losses.
+/// Content of a component, its inflow and its losses.
 ///
 /// ```text
 /// d(stored)/dt = inflow - lost
 /// ```
 ///
-/// Each of the three has its own formula, so that the sum over time is a check and not a
-/// definition.
+/// The three have separate formulas, so that the sum over time is a check and not a definition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Account<T> {
-    /// The content of the component: J, or m3 of oil, which is counted at zero gauge pressure
-    /// except for the volumes of lines and gas.
+    /// Content of the component: J, or m3 of oil, which is counted at zero gauge pressure except
+    /// for the volumes of lines and gas.
     pub stored: T,
     /// Inflow through its ports, in W or m3/s.
     pub inflow: T,
@@ -90,8 +89,8 @@ fn total<T: Scalar>(accounts: &[Account<T>], of: fn(&Account<T>) -> T) -> T {
 }
 
 impl<S: Scalar> Machine<S> {
-    /// The accounts of oil and energy; `None` where waves travel along a line: their content in
-    /// transit is not part of states and inputs.
+    /// Accounts of oil and energy; `None` if waves travel along a line: their content in transit is
+    /// not part of states and inputs.
     ///
     /// ```text
     ///               oil                        energy
@@ -99,23 +98,22 @@ impl<S: Scalar> Machine<S> {
     /// line          sum C p                    sum C p^2/2 + I q^2/2        enters as q and q p
     /// accumulator   V_0 - V_gas                gas at gauge pressure        enters as q and q p
     ///   with heat   V_0 - V_gas                internal energy less p_atm V   enters as q and q p, leaves as heat to the wall
-    ///   adjusted    V_0 - V_gas                what the oil can get back    enters as q and q p, and by the power of its adjustment
+    ///   adjusted    V_0 - V_gas                oil's recoverable energy     enters as q and q p, and by the power of its adjustment
     /// neck          C p                        I q^2/2 + C p^2/2            enters as q and q p
-    ///   a valve     C p                        C p^2/2                      likewise: what it throttles is lost there
+    ///   a valve     C p                        C p^2/2                      likewise: its throttling loss is lost there
     /// ```
     ///
     /// rho is the density over that at zero gauge pressure and w the energy of compression per
     /// volume: exp(p/beta) and beta (exp(p/beta) - 1 - p/beta) with a constant modulus; with
-    /// entrained air integrals over the pressure, of which rho alone has a closed form, and which
-    /// are taken by a fixed rule of Gauss and Legendre. Without air a side's volume is its
-    /// compliance times the modulus of its chamber, so that a hose counts as the oil that would
-    /// yield as much; with air it is the fluid's own, and the oil that yielding walls take is
-    /// added.
+    /// entrained air, integrals over the pressure, of which only rho has a closed form, evaluated
+    /// by a fixed Gauss-Legendre rule. Without air a side's volume is its compliance times the
+    /// modulus of its chamber, so that a hose counts as the oil of equal compliance; with air it is
+    /// the volume of the fluid, and the oil taken up by yielding walls is added.
     ///
     /// Edges, lines and gas pass on volumes: the difference between the densities at which such an
     /// element receives and delivers oil is lost to the rig's account of oil, q times the
-    /// difference of both densities, at most p_S/beta of the flow where no air is. A constant
-    /// supply has no content, and the density of side A.
+    /// difference of both densities, at most p_S/beta of the flow without air. A constant supply
+    /// has no content, and the density of side A.
     pub fn ledger<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> Option<Ledger<T>> {
         let instant = self.instant(state, inputs)?;
         Some(Ledger { oil: self.oil(&instant), energy: self.energy(&instant) })
@@ -207,7 +205,7 @@ impl<S: Scalar> Machine<S> {
             load,
         ];
         // Only the flows across the rig's border: flow work and compression energy of the oil, the
-        // work of the external force, and that on the ground.
+        // work of the external force, and the work on the ground.
         let carried = side_a.compression() * into_a
             + side_b.compression() * into_b
             + supply.line.compression() * supply.line_flow();
@@ -222,7 +220,7 @@ impl<S: Scalar> Machine<S> {
         [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, rig]
     }
 
-    /// A valve between the chambers: heat of its restrictor, and what its capacity holds.
+    /// Valve between the chambers: heat of its restrictor, and content of its capacity.
     fn cross_port_account<T: Scalar + From<S>>(&self, now: &Instant<T>) -> Account<T> {
         let (flow, [side_a, side_b]) = (now.flows.cross_port, &now.sides);
         let drop = side_a.pressure - side_b.pressure;
@@ -269,7 +267,7 @@ impl<S: Scalar> Machine<S> {
         ]
     }
 
-    /// Power that the load hands on to its ground, in W.
+    /// Power from the load to its ground, W.
     fn on_ground<T: Scalar + From<S>>(&self, now: &Instant<T>) -> T {
         if self.load.moves() {
             let [_, to_ground, _] = self.load.convert(&mut constant::<S, T>).powers(&now.load, &now.ground);

@@ -3,7 +3,7 @@ use phea_dynamics::scalar::Scalar;
 use crate::contact::Contact;
 use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
-/// The load on the force sensor. Units: kg, N/m, N s/m, m.
+/// Load on the force sensor. Units: kg, N/m, N s/m, m.
 ///
 /// Each has a ground, whose position x_0 in m and velocity v_0 in m/s are the two inputs of the
 /// machine.
@@ -14,32 +14,32 @@ use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 /// wall                   m dv_L/dt = F_e + F_x - F_wall - c (v_L - v_0)            F_wall(d = x_L - x_0 - gap), see Contact
 /// ```
 ///
-/// F_x is a force from outside in N, positive in the direction of positive position; a machine that
-/// has it takes it as an input.
+/// F_x is an external force in N, positive in the direction of positive position; it is an input of
+/// a machine that has it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum LoadModel<S = f64> {
-    /// The load moves as its ground does. The sensor's stiffness is that in series with the
+    /// The load moves with its ground. The stiffness of the sensor is that in series with the
     /// environment.
     #[default]
     Prescribed,
-    /// A mass on a spring. The sensor's stiffness is that of the load cell alone.
+    /// Mass on a spring. The stiffness of the sensor is that of the load cell only.
     SpringMassDamper {
-        /// Mass m in kg, all that moves beyond the load cell.
+        /// Mass m of all parts that move beyond the load cell, kg.
         mass: S,
-        /// Stiffness k in N/m.
+        /// Stiffness k, N/m.
         stiffness: S,
-        /// Damping c in N s/m.
+        /// Damping c, N s/m.
         damping: S,
     },
-    /// A mass guided towards a wall.
+    /// Mass guided towards a wall.
     Wall {
-        /// Mass m in kg, all that moves beyond the load cell.
+        /// Mass m of all parts that move beyond the load cell, kg.
         mass: S,
-        /// Damping c of its guide in N s/m.
+        /// Damping c of its guide, N s/m.
         damping: S,
-        /// Distance in m that x_L - x_0 covers before it touches.
+        /// Distance that x_L - x_0 covers before contact, m.
         gap: S,
-        /// The wall.
+        /// Wall contact.
         contact: Contact<S>,
     },
 }
@@ -47,9 +47,9 @@ pub enum LoadModel<S = f64> {
 /// Position and velocity of the load or of its ground. Units: m, m/s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion<S = f64> {
-    /// Position in m.
+    /// Position, m.
     pub position: S,
-    /// Velocity in m/s.
+    /// Velocity, m/s.
     pub velocity: S,
 }
 
@@ -82,12 +82,12 @@ phea_dynamics::parameters! {
 }
 
 impl<S: Copy> LoadModel<S> {
-    /// Whether the load's position and velocity are states.
+    /// True if the load's position and velocity are states.
     pub fn moves(&self) -> bool {
         !matches!(self, LoadModel::Prescribed)
     }
 
-    /// Mass in kg that moves by itself.
+    /// Mass that can move, kg.
     pub fn mass(&self) -> Option<S> {
         match *self {
             LoadModel::Prescribed => None,
@@ -97,8 +97,8 @@ impl<S: Copy> LoadModel<S> {
 }
 
 impl<S: Scalar> LoadModel<S> {
-    /// The load's acceleration in m/s2 under the forces of sensor and outside together in N; zero
-    /// for a prescribed motion, which yields to none.
+    /// Acceleration of the load in m/s2 under the sum of sensor and external forces in N; zero for
+    /// a prescribed motion, which does not yield.
     #[inline(always)]
     pub fn acceleration(&self, pushing: S, load: &Motion<S>, ground: &Motion<S>) -> S {
         let relative = relative(load, ground);
@@ -138,7 +138,7 @@ impl<S: Scalar> LoadModel<S> {
         }
     }
 
-    /// The remaining gap in m; negative in contact. One metre for loads without a wall.
+    /// Remaining gap, m; negative in contact. One metre for loads without a wall.
     pub fn clearance(&self, load: &Motion<S>, ground: &Motion<S>) -> S {
         match self {
             LoadModel::Wall { gap, .. } => *gap - relative(load, ground).position,
@@ -147,7 +147,7 @@ impl<S: Scalar> LoadModel<S> {
     }
 }
 
-/// Motion of the load seen from its ground.
+/// Motion of the load relative to its ground.
 #[inline(always)]
 fn relative<S: Scalar>(load: &Motion<S>, ground: &Motion<S>) -> Motion<S> {
     Motion { position: load.position - ground.position, velocity: load.velocity - ground.velocity }

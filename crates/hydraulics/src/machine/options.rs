@@ -3,49 +3,48 @@ use crate::line::{DynamicLine, StiffeningMember};
 use crate::parameter::{ParameterError, Problems};
 use crate::servovalve::SpoolImperfection;
 
-/// Absolute vapour pressure of mineral oil in Pa: a few pascals at working temperatures, negligible
-/// against an atmosphere.
+/// Absolute vapour pressure of mineral oil, Pa: a few pascals at working temperatures, negligible
+/// compared with an atmosphere.
 pub(crate) const VAPOUR_PRESSURE_ABSOLUTE: f64 = 0.0;
 
-/// The parts of a machine other than its actuator. The default adds nothing: a prescribed load on a
+/// Parts of a machine other than its actuator. The default adds nothing: a prescribed load on a
 /// constant supply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MachineOptions {
     /// Null bias, hysteresis, threshold and rate limit of the spool.
     pub spool: SpoolImperfection,
-    /// Drop p_S - p_T in Pa at which the valve's tare flow is stated; absent, that of the
+    /// Pressure drop p_S - p_T at which the valve's tare flow is stated, Pa; if absent, that of the
     /// actuator's own supply.
     pub tare_reference_drop: Option<f64>,
-    /// Velocity in m/s that smooths the jump of a static friction curve; needed for such a curve
-    /// alone.
+    /// Velocity that smooths the jump of a static friction curve, m/s; needed only for such a
+    /// curve.
     pub friction_regular_velocity: Option<f64>,
-    /// Where the supply pressure comes from.
+    /// Source of the supply pressure.
     pub power_unit: PowerUnit,
-    /// What the force sensor pushes on.
+    /// Load on the force sensor.
     pub load: LoadModel,
-    /// Velocity of the load as its sensor shows it, over the true one: 1 + e, e the error of its
-    /// gain.
+    /// Ratio of the measured to the true velocity of the load: 1 + e, e being the error of the
+    /// sensor's gain.
     pub velocity_gain: f64,
-    /// phi of the pressure signal p_A - phi p_B that a controller may feed back.
+    /// Factor phi of the pressure signal p_A - phi p_B that a controller may feed back.
     pub pressure_ratio: f64,
-    /// Whether a force from outside acts on the load, as an input of the machine; it needs a load
-    /// that has a mass.
+    /// True if an external force acts on the load, as an input of the machine; requires a load with
+    /// a mass.
     pub external_force: bool,
-    /// Whether the setting of accumulators that are adjusted moves, as an input of the machine: by
-    /// how much it has moved from rest, and at which rate. Without it they stand at their setting
-    /// at rest.
+    /// True if the setting of adjusted accumulators moves, as an input of the machine: its change
+    /// from rest, and its rate. Otherwise they remain at their setting at rest.
     pub moving_setting: bool,
     /// Pressure in Pa absolute below which a chamber is reported to cavitate. Fluid with entrained
-    /// air expands before it boils and comes to no vacuum: for it, state the pressure at which
-    /// dissolved air comes out.
+    /// air expands before it boils and never reaches vacuum: for it, state the pressure at which
+    /// dissolved air is released.
     pub vapour_pressure_absolute: f64,
-    /// Which member of the hoses' stiffening interval.
+    /// Member of the hoses' stiffening interval.
     pub member: StiffeningMember,
-    /// Pressures in Pa gauge that the gas of the accumulators at A and B must not exceed: beyond
-    /// them a run reports it.
+    /// Pressure limits of the gas of the accumulators at A and B, Pa gauge: a run reports when they
+    /// are exceeded.
     pub gas_pressure_limits: [Option<f64>; 2],
-    /// Lines between valve and chambers with dynamics of their own, A first; absent, one pressure
-    /// for a chamber with its line.
+    /// Lines between valve and chambers with dynamics of their own, A first; if absent, each
+    /// chamber has one pressure with its line.
     pub lines: Option<[DynamicLine; 2]>,
 }
 
@@ -70,7 +69,7 @@ impl Default for MachineOptions {
 }
 
 impl MachineOptions {
-    /// Impossible ones among these options; empty if there are none.
+    /// Impossible options; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.component("valve", self.spool.problems());
@@ -95,61 +94,61 @@ impl MachineOptions {
     }
 }
 
-/// Why there is no such machine, or no such start.
+/// Error for an impossible machine, or an impossible start.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MachineError {
-    /// Parameters outside physics.
+    /// Impossible parameters.
     #[error("{}", problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
     Impossible {
-        /// All of them.
+        /// All impossible parameters.
         problems: Vec<ParameterError>,
     },
-    /// A static friction curve has a jump, which no integrator can hold; it needs a velocity that
-    /// smooths it, or bristles.
+    /// A static friction curve with a jump, which no integrator can resolve; it needs a velocity
+    /// that smooths it, or bristles.
     #[error("static Stribeck friction jumps at standstill: state a regular velocity, or use LuGre friction")]
     StaticFriction,
-    /// A force from outside on a load whose motion is prescribed: it would move nothing.
+    /// An external force on a load whose motion is prescribed: it would have no effect.
     #[error("an external force moves no load whose motion is prescribed: it needs one with a mass")]
     UnyieldingLoad,
-    /// Pressed into its end stop by the whole supply pressure, the piston would leave no fluid in
-    /// the chamber.
+    /// An end stop that is too soft: pressed into it by the whole supply pressure, the piston would
+    /// leave no fluid in the chamber.
     #[error(
         "pressed {penetration} (m, or rad of a motor) into its end stop, the piston leaves no fluid ({compliance} m3/Pa)"
     )]
     ChamberVanishes {
-        /// How far into the stop, in m.
+        /// Penetration into the stop, m.
         penetration: f64,
-        /// The remaining compliance of the smaller chamber with its line, in m3/Pa.
+        /// Remaining compliance of the smaller chamber with its line, m3/Pa.
         compliance: f64,
     },
-    /// The start lies outside the stroke.
+    /// A start outside the stroke.
     #[error("a start at {position} is outside the stroke of {stroke} (m, or rad of a motor)")]
     StartOutsideStroke {
-        /// Position asked for, in m.
+        /// Requested position, m.
         position: f64,
-        /// The stroke, in m.
+        /// Stroke, m.
         stroke: f64,
     },
-    /// A starting value is not a number, or below vacuum.
+    /// A starting value that is NaN, or below vacuum.
     #[error("a start with {quantity} of {value} is impossible")]
     ImpossibleStart {
-        /// Which quantity.
+        /// Name of the quantity.
         quantity: &'static str,
-        /// Its value in SI units.
+        /// Value in SI units.
         value: f64,
     },
-    /// No state of rest was found near the operating point.
+    /// An operating point near which no state of rest was found.
     #[error(
         "the machine does not rest at this operating point: a residual of {residual} scales per second remains"
     )]
     NoRest {
-        /// The greatest rate that remains, each over the scale of its state, in 1/s.
+        /// Greatest remaining rate over the scale of its state, 1/s.
         residual: f64,
     },
-    /// Machines that are to run side by side do not have the same components.
+    /// Machines for parallel lanes that do not have equal components.
     #[error("machine {index} does not have the components of the first")]
     DifferentStructure {
-        /// Which machine, counted from 0.
+        /// Index of the machine, counted from 0.
         index: usize,
     },
 }

@@ -5,8 +5,8 @@ use super::{Machine, MachineState};
 use crate::servovalve::SpoolState;
 
 impl<S: Scalar> Machine<S> {
-    /// A tenth of the force that the supply can produce, in N: the typical magnitudes of the states
-    /// follow from it.
+    /// Typical force, a tenth of the force that the supply can produce, N: the typical magnitudes
+    /// of the states follow from it.
     pub(super) fn typical_force(&self) -> S {
         self.typical_pressure() * (self.cylinder.area_a + self.cylinder.area_b) / S::from(2.0)
     }
@@ -15,7 +15,7 @@ impl<S: Scalar> Machine<S> {
         (self.supply.pressure - self.supply.tank_pressure) / S::from(10.0)
     }
 
-    /// A tenth of the valve's nominal voltage, in V.
+    /// Typical command, a tenth of the valve's nominal voltage, V.
     pub(super) fn typical_command(&self) -> S {
         self.valve.nominal_voltage / S::from(10.0)
     }
@@ -49,7 +49,7 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// The same in the order of the vector, the states of gas and lines included.
+    /// Typical magnitudes in the order of the vector, including the states of gas and lines.
     pub(super) fn typical_vector(&self) -> Vec<S> {
         let typical = self.typical_state();
         let flow = typical.velocity * self.cylinder.area_a;

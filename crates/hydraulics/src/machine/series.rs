@@ -5,20 +5,20 @@ use super::{Machine, MachineState, Motion};
 use crate::force_sensor;
 use crate::series::{ForceFrom, MovingSeries, OilColumn, SeriesSpring};
 
-/// Which states a series element has in [`MachineState`]; those of a transmission follow the states
-/// of gas. The state `deflection` is that of the force sensor, except where the spring has neither
-/// damper nor mass: both carry the same force then, so that one of the deflections gives the other,
-/// and the state is that of the spring.
+/// States of a series element in [`MachineState`]; those of a transmission follow the states of
+/// gas. The state `deflection` is that of the force sensor, unless the spring has neither damper
+/// nor mass: then both carry the same force, one deflection determines the other, and the state is
+/// that of the spring.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum SeriesStates {
-    /// There is no spring.
+    /// No spring.
     #[default]
     Absent,
-    /// Neither damper nor mass: no additional states.
+    /// Spring with neither damper nor mass: no additional states.
     Spring,
-    /// A damper without a mass: the deflection of the spring.
+    /// Damper without a mass: the deflection of the spring.
     Damped,
-    /// A mass: the deflection of the spring and the velocity of the mass.
+    /// Mass: the deflection of the spring and the velocity of the mass.
     Mass,
 }
 
@@ -33,32 +33,32 @@ impl SeriesStates {
     }
 }
 
-/// A joint that holds a force at rest, or in steady motion.
+/// Joint that holds a force at rest, or in steady motion.
 pub(super) struct HeldJoint {
-    /// The state `deflection`.
+    /// State `deflection`.
     pub(super) deflection: f64,
     /// States of a spring.
     pub(super) series: Motion,
     /// States of a transmission.
     pub(super) columns: Vec<f64>,
-    /// How far the piston is ahead of the load, in m.
+    /// Distance of the piston ahead of the load, m.
     pub(super) ahead: f64,
-    /// The force on the load in N.
+    /// Force on the load, N.
     pub(super) on_load: f64,
 }
 
-/// What connects the rod with the load, at one instant. Units: m, N, m/s.
+/// Connection of the rod with the load, at one instant. Units: m, N, m/s.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Joint<T> {
     /// Position x of the piston.
     pub(super) position: T,
-    /// x - x_m.
+    /// Sensor deflection x - x_m.
     pub(super) sensor_deflection: T,
-    /// Through the force sensor.
+    /// Force through the force sensor.
     pub(super) sensed: T,
-    /// On the load.
+    /// Force on the load.
     pub(super) on_load: T,
-    /// Behind the sensor: velocity v_m, that of the load without a series element.
+    /// Velocity v_m behind the sensor, that of the load without a series element.
     pub(super) behind_sensor: T,
     /// Deflection d of the spring, or of all oil of a transmission, and its rate; zero without one.
     pub(super) spring: Motion<T>,
@@ -69,7 +69,7 @@ pub(super) struct Joint<T> {
 }
 
 impl<S: Scalar> Machine<S> {
-    /// What connects the rod with its load, at a state by name and as a vector.
+    /// Connection of the rod with its load, at a state by name and as a vector.
     #[inline(always)]
     pub(super) fn joint<T: Scalar + From<S>>(
         &self,
@@ -101,10 +101,10 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// Apart, so that machines without a series element do not carry its code along.
+    /// Separate function, so that machines without a series element do not contain its code.
     ///
     /// ```text
-    /// spring alone   K_S d_S = F_el(d),  d' (1 + F_el'(d)/K_S) = v - v_L
+    /// only a spring  K_S d_S = F_el(d),  d' (1 + F_el'(d)/K_S) = v - v_L
     /// damper         c d' + ... = K_S d_S - F_f(d),   d_S' = v - v_L - d'
     /// mass           m dv_m/dt = K_S d_S - F_L,   d' = v_m - v_L,   d_S' = v - v_m
     /// ```
@@ -159,8 +159,8 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// The joint through a transmission. The first spring carries the force of the sensor, so that
-    /// both yield together:
+    /// Joint through a transmission. The first spring carries the force of the sensor, so that both
+    /// deform together:
     ///
     /// ```text
     /// k_1 d_1 = K_S d_S,    d_S' (1 + K_S/k_1) = v - u_1
@@ -198,7 +198,7 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// Rates of the states of a transmission, with the force of the sensor at one end and the
+    /// Rates of the states of a transmission, given the force of the sensor at one end and the
     /// velocity of the load at the other.
     ///
     /// ```text
@@ -225,7 +225,7 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// The lowest pressure in the oil of a transmission, in Pa.
+    /// Lowest pressure in the oil of a transmission, Pa.
     #[inline(never)]
     pub(super) fn least_oil_pressure<T: Scalar + From<S>>(
         &self,
@@ -238,7 +238,7 @@ impl<S: Scalar> Machine<S> {
         column.pressure(forces.into_iter().fold(sensed, |least, force| least.minimum(force)))
     }
 
-    /// The force that is measured, in N: through the sensor, or by the deflection of the spring.
+    /// Measured force, N: through the sensor, or by the deflection of the spring.
     #[inline(always)]
     pub(super) fn measured_force<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> T {
         match &self.series {
@@ -298,8 +298,8 @@ impl<S: Scalar> Machine<S> {
 }
 
 impl Machine {
-    /// The states of what connects rod and load where the sensor holds a force in N at rest, or in
-    /// motion at a velocity in m/s.
+    /// States of the connection of rod and load with a sensor force in N at rest, or in motion at a
+    /// velocity in m/s.
     pub(super) fn held_joint(&self, force: f64, velocity: f64) -> HeldJoint {
         let sensor = force / self.sensor_stiffness;
         let none = Motion { position: 0.0, velocity: 0.0 };

@@ -5,10 +5,10 @@ use super::{Machine, Motion};
 use crate::series::MovingSeries;
 use crate::signal::Signal;
 
-/// The signals of a machine at one time; those of parts that it lacks are zero.
+/// Signals of a machine at one time; those of parts that it lacks are zero.
 ///
-/// Pairs are of sides A and B. With a series element `force` is the force that its
-/// [`ForceFrom`](crate::series::ForceFrom) measures and `load_force` that on the load. Behind a
+/// Pairs refer to sides A and B. With a series element, `force` is the one measured by its
+/// [`ForceFrom`](crate::series::ForceFrom), and `load_force` is the force on the load. Behind a
 /// linkage `load` is the motion of the rod's end.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MachineSignals<T = f64> {
@@ -62,7 +62,8 @@ pub struct MachineSignals<T = f64> {
 }
 
 impl<T: Copy> MachineSignals<T> {
-    /// The value of a signal; `None` for those of the controller and of what acts on the load.
+    /// Value of a signal; `None` for those of the controller and of the external inputs on the
+    /// load.
     pub fn get(&self, signal: Signal) -> Option<T> {
         Some(match signal {
             Signal::Force => self.force,
@@ -116,17 +117,18 @@ impl<T: Copy> MachineSignals<T> {
 }
 
 /// Names of the state events of a machine, in the order of its indicators. Each indicator is
-/// positive in ordinary operation and negative while the event lasts.
+/// positive in ordinary operation and negative during the event.
 ///
-/// `cavitation`: the chamber's pressure, or that behind the neck of its accumulator where it is
-/// lower, less vapour pressure in Pa. `end_stop`: the way left to that end in m. `empty`: the
-/// chamber's compliance in m3/Pa without accumulators, which vanishes with its volume.
-/// `load_contact`: the way left to the wall in m. `supply_lost`: supply less tank pressure in Pa.
-/// `accumulator_empty`: the chamber's pressure, or that behind the neck where there is one, less
-/// the precharge of its accumulator in Pa. `accumulator_overpressure`: what is left to the pressure
-/// limit of that gas in Pa, which moves with a precharge that is adjusted. `series_end`: the way
-/// left to the nearer end of a series spring's travel in m. `cavitation_transmission`: the lowest
-/// pressure in the oil of a transmission, less vapour pressure in Pa.
+/// `cavitation`: the chamber's pressure, or that behind the neck of its accumulator if that is
+/// lower, less vapour pressure in Pa. `end_stop`: the remaining distance to that end in m. `empty`:
+/// the chamber's compliance in m3/Pa without accumulators, which vanishes with its volume.
+/// `load_contact`: the remaining distance to the wall in m. `supply_lost`: supply less tank
+/// pressure in Pa. `accumulator_empty`: the chamber's pressure, or that behind the neck if there is
+/// one, less the precharge of its accumulator in Pa. `accumulator_overpressure`: the remaining
+/// margin to the pressure limit of that gas in Pa, which moves with an adjusted precharge.
+/// `series_end`: the remaining distance to the nearer end of a series spring's travel in m.
+/// `cavitation_transmission`: the lowest pressure in the oil of a transmission, less vapour
+/// pressure in Pa.
 pub const INDICATORS: [&str; 14] = [
     "cavitation_a",
     "cavitation_b",
@@ -145,11 +147,11 @@ pub const INDICATORS: [&str; 14] = [
 ];
 
 impl<S: Scalar> Machine<S> {
-    /// The signals at a state and inputs. Between `force` and `hydraulic_force` are the piston's
+    /// Signals at a state and inputs. `force` differs from `hydraulic_force` by the piston's
     /// friction, end stops and acceleration:
     ///
     /// ```text
-    /// F_H = A_A p_A - A_B p_B = F_e + F_fr - F_stops + M dv/dt      all positive towards the B end but F_fr      thesis (4.29)
+    /// F_H = A_A p_A - A_B p_B = F_e + F_fr - F_stops + M dv/dt      all positive towards the B end except F_fr      thesis (4.29)
     /// ```
     ///
     /// # Example
@@ -216,8 +218,8 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// Pressures of the oil of a transmission in Pa where it carries these forces in N; zero
-    /// without one.
+    /// Pressures of the oil of a transmission that carries these forces in N, Pa; zero without a
+    /// transmission.
     fn oil_pressures<T: Scalar + From<S>>(&self, forces: [T; 2]) -> [T; 2] {
         match &self.series {
             Some(MovingSeries::Oil(column)) => {
@@ -228,7 +230,7 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// The [`INDICATORS`] at a state and inputs.
+    /// Indicators [`INDICATORS`] at a state and inputs.
     pub(super) fn indicated<T: Scalar + From<S>>(&self, vector: &[T], inputs: &[T]) -> [T; INDICATORS.len()] {
         let state = self.layout.read(vector);
         let gas = self.layout.read_gas(vector);
@@ -280,7 +282,7 @@ impl<S: Scalar> Machine<S> {
     }
 }
 
-/// The machine's inputs by name; missing inputs are NaN.
+/// Inputs of the machine by name; missing inputs are NaN.
 #[inline(always)]
 pub(super) fn ground_of<T: Scalar>(inputs: &[T]) -> Motion<T> {
     let mut entries = inputs.iter().copied();

@@ -12,50 +12,50 @@ use crate::stroke::ActuatorStroke;
 /// its power unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StartValues {
-    /// Piston position x in m.
+    /// Piston position x, m.
     pub position: f64,
-    /// Piston velocity in m/s.
+    /// Piston velocity, m/s.
     pub velocity: f64,
-    /// Chamber pressure p_A in Pa.
+    /// Chamber pressure p_A, Pa.
     pub pressure_a: f64,
-    /// Chamber pressure p_B in Pa.
+    /// Chamber pressure p_B, Pa.
     pub pressure_b: f64,
-    /// Force on the load in N.
+    /// Force on the load, N.
     pub force: f64,
-    /// Spool position in V.
+    /// Spool position, V.
     pub spool: f64,
 }
 
-/// Where a run begins.
+/// Initial condition of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InitialCondition {
-    /// The machine's states.
+    /// States of the machine.
     pub state: Vec<f64>,
-    /// The command in V that holds the spool there.
+    /// Command that holds the spool at its position, V.
     pub command: f64,
-    /// Position in m and velocity in m/s of the load's ground, in rad and rad/s behind a linkage:
-    /// where a prescribed motion starts.
+    /// Initial position in m and velocity in m/s of the load's ground, in rad and rad/s behind a
+    /// linkage: where a prescribed motion starts.
     pub inputs: [f64; 2],
-    /// The force on the load from outside in N, zero until then; `None` for a machine without that
-    /// input.
+    /// External force on the load before the start, which is zero, N; `None` for a machine without
+    /// that input.
     pub external_force: Option<f64>,
-    /// By how much the setting of the accumulators has moved until then, at rest; `None` for a
-    /// machine without that input.
+    /// Change of the setting of the accumulators before the start, at rest; `None` for a machine
+    /// without that input.
     pub setting_change: Option<f64>,
-    /// The waves that arrive from the lines until then, in Pa, as the machine's last inputs.
+    /// Waves that arrive from the lines before the start, Pa, as the last inputs of the machine.
     pub waves: Vec<f64>,
 }
 
 impl InitialCondition {
-    /// All inputs of the machine: the ground's, the force from outside, the setting of the
-    /// accumulators, and the waves.
+    /// All inputs of the machine: the ground, the external force, the setting of the accumulators,
+    /// and the waves.
     pub fn all_inputs(&self) -> Vec<f64> {
         let setting: Vec<f64> = self.setting_change.into_iter().flat_map(|change| [change, 0.0]).collect();
         [&self.inputs, self.external_force.as_slice(), setting.as_slice(), self.waves.as_slice()].concat()
     }
 }
 
-/// A state whose load is held, with the states of the oil of a transmission.
+/// State with its load held, and the states of the oil of a transmission.
 struct HeldState {
     state: MachineState,
     columns: Vec<f64>,
@@ -63,17 +63,17 @@ struct HeldState {
 
 /// Largest residual of an equilibrium, in scales per second.
 const REST_TOLERANCE: f64 = 1e-4;
-/// Force in N that is rounding: a load without spring or wall holds it.
+/// Force that counts as rounding, N: a load without spring or wall holds it.
 const ROUNDED_FORCE: f64 = 1e-6;
 
 impl Machine {
-    /// The machine at stated values. Its load's ground lies where the stated force is held: at a
-    /// spring's relaxed end, at a wall that the load touches with this force, or at a wall its gap
-    /// away where the force is zero.
+    /// Machine at stated values. The load's ground is where the stated force is held: at a spring's
+    /// relaxed end, at a wall that the load touches with this force, or at a wall at the distance
+    /// of its gap if the force is zero.
     ///
     /// # Errors
-    /// A position outside the stroke, a pressure below vacuum, a value that is not finite, a pull
-    /// on a wall.
+    /// Position outside the stroke, a pressure below vacuum, a value that is not finite, a pull on
+    /// a wall.
     ///
     /// # Example
     /// ```
@@ -101,30 +101,30 @@ impl Machine {
         Ok(self.begin(&held, start.position, ground))
     }
 
-    /// The machine at rest, or in steady motion with its load, at an operating point of its
-    /// actuator: its command is kept.
+    /// Machine at rest, or in steady motion with its load, at an operating point of its actuator:
+    /// its command is held.
     ///
-    /// Effects that the operating point leaves out (leakage across the piston, a limited pump,
-    /// resistance of lines) shift the pressures to where all flows balance, and the force is the
-    /// one that they hold.
+    /// Effects that the operating point omits (leakage across the piston, a limited pump,
+    /// resistance of lines) shift the pressures until all flows balance, and the force is the one
+    /// that these pressures hold.
     ///
     /// # Errors
-    /// As [`Machine::start`]; no balance near the operating point.
+    /// Errors of [`Machine::start`]; no balance near the operating point.
     pub fn rest(&self, point: &OperatingPoint) -> Result<InitialCondition, MachineError> {
         self.settled(point, Kept::Spool)
     }
 
-    /// As [`Machine::rest`], but it is the force of the pressures that is kept, and the command
-    /// that moves to where it is held.
+    /// Machine as in [`Machine::rest`], but with the force of the pressures held, and the command
+    /// adjusted to hold it.
     ///
     /// # Errors
-    /// As [`Machine::rest`].
+    /// Errors of [`Machine::rest`].
     pub fn rest_under_load(&self, point: &OperatingPoint) -> Result<InitialCondition, MachineError> {
         self.settled(point, Kept::Force(point.hydraulic_force))
     }
 
-    /// Places of the states that stand still at any value while all others do: memories of friction
-    /// and magnetisation. At zero they carry no force.
+    /// Indices of the states that stay at any value while all others are at rest: memories of
+    /// friction and magnetisation. At zero they carry no force.
     ///
     /// # Example
     /// ```
@@ -166,8 +166,8 @@ impl Machine {
         if residual <= REST_TOLERANCE { Ok(beginning) } else { Err(MachineError::NoRest { residual }) }
     }
 
-    /// The state with its load held by this force in N at this piston position in m, and where its
-    /// ground is.
+    /// State with its load held by this force in N at this piston position in m, and the position
+    /// of its ground.
     fn held(
         &self,
         state: &MachineState,
@@ -226,7 +226,7 @@ impl Machine {
         }
     }
 
-    /// The greatest rate over the scale of its state, in 1/s: zero in a steady motion.
+    /// Greatest rate over the scale of its state, 1/s: zero in a steady motion.
     fn residual(&self, beginning: &InitialCondition) -> f64 {
         let mut rates = vec![0.0; self.layout.count()];
         self.rates(&beginning.state, beginning.command, &beginning.all_inputs(), &mut rates);
@@ -238,7 +238,8 @@ impl Machine {
 }
 
 impl LoadModel {
-    /// x_L - x_0 in m at which the load is held with this force in N; `None` where none does.
+    /// Distance x_L - x_0 at which the load is held with this force in N, m; `None` if there is
+    /// none.
     pub(super) fn held_at(&self, force: f64) -> Option<f64> {
         match *self {
             LoadModel::Prescribed => Some(0.0),

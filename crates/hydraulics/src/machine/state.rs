@@ -8,44 +8,44 @@ use crate::series::MovingSeries;
 use crate::servovalve::SpoolState;
 use crate::signal::Signal;
 
-/// States of a machine, or their rates, by name. States that a machine lacks are zero and have no
-/// place in its vector.
+/// States of a machine, or their rates, by name. States that a machine lacks are zero and are not
+/// in its vector.
 ///
 /// The order of the vector is that of the fields: spool voltage and rate, p_A, p_B, deflection,
 /// velocity, and then, if present, those of bristles, load, capacity between the chambers, supply,
 /// spool friction, magnetic lag, series spring. The states of gas ([`Machine::state_names`] names
-/// them too), of the oil of a transmission and those of lines follow; they are read by what is made
-/// of them alone, so that machines without them do not carry zeros along.
+/// them too), of the oil of a transmission and those of lines follow; they are read only by the
+/// parts that use them, so that machines without them store no zeros.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MachineState<T = f64> {
-    /// Position of the spool in V and what moves it; its two memories stand last in the vector.
+    /// Position of the spool in V and its drive; its two memories are last in the vector.
     pub spool: SpoolState<T>,
-    /// Chamber pressure p_A in Pa.
+    /// Chamber pressure p_A, Pa.
     pub pressure_a: T,
-    /// Chamber pressure p_B in Pa.
+    /// Chamber pressure p_B, Pa.
     pub pressure_b: T,
-    /// Deflection of the force sensor x - x_L in m; of a series spring that has neither damper nor
-    /// mass, where there is one.
+    /// Deflection x - x_L of the force sensor, m; of a series spring instead, if it has neither
+    /// damper nor mass.
     pub deflection: T,
-    /// Piston velocity v in m/s.
+    /// Piston velocity v, m/s.
     pub velocity: T,
-    /// Deflection z of the bristles in m.
+    /// Deflection z of the bristles, m.
     pub bristle: T,
-    /// A load that moves by itself: its position from its ground, x_L - x_0, in m, and its velocity
-    /// v_L in m/s; behind a linkage its angle in rad and angular velocity in rad/s. Errors are
-    /// scaled by the deformation of its spring or wall, not by its distance from the end of the
-    /// cylinder.
+    /// Motion of a load that is not prescribed: its position from its ground, x_L - x_0, in m, and
+    /// its velocity v_L in m/s; behind a linkage its angle in rad and angular velocity in rad/s.
+    /// Errors are scaled by the deformation of its spring or wall, not by its distance from the end
+    /// of the cylinder.
     pub load: Motion<T>,
-    /// Pressure difference p_cp in Pa over the capacity of a valve between the chambers.
+    /// Pressure difference p_cp over the capacity of a valve between the chambers, Pa.
     pub cross_port_pressure: T,
-    /// Supply pressure p_S in Pa, where a pump is limited.
+    /// Supply pressure p_S of a limited pump, Pa.
     pub supply_pressure: T,
-    /// A series spring with damper or mass: deflection of its spring in m, and velocity of the mass
+    /// Series spring with damper or mass: deflection of its spring in m, and velocity of the mass
     /// between sensor and spring in m/s.
     pub series: Motion<T>,
 }
 
-/// Which states beyond the first six a machine has.
+/// States of a machine beyond the first six.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Layout {
     bristle: bool,
@@ -53,20 +53,20 @@ pub(super) struct Layout {
     supply: bool,
     spool_friction: bool,
     magnetic_lag: bool,
-    /// A capacity between the chambers.
+    /// Capacity between the chambers.
     capacity: bool,
     series: SeriesStates,
     /// Necks of accumulators at the chambers.
     necks: [bool; 2],
     /// Valves between chambers and gas.
     valves: [bool; 2],
-    /// Accumulators at the chambers whose gas is added and taken.
+    /// Accumulators at the chambers whose gas is added and removed.
     moved: [bool; 2],
-    /// Whether the setting of accumulators is an input.
+    /// True if the setting of accumulators is an input.
     setting: bool,
     /// Accumulators at the chambers whose gas exchanges heat.
     heat: [bool; 2],
-    /// Whether a force from outside is an input.
+    /// True if an external force is an input.
     external_force: bool,
     /// States of the gas, which follow those of [`MachineState`].
     gas: usize,
@@ -80,13 +80,13 @@ pub(super) struct Layout {
     own: usize,
 }
 
-/// Position and velocity of the ground come first.
+/// Number of the first inputs, position and velocity of the ground.
 const GROUND_INPUTS: usize = 2;
-/// By how much the setting of accumulators has moved, and its rate in 1/s.
+/// Number of inputs for the change of the setting of accumulators, and its rate in 1/s.
 const SETTING_INPUTS: usize = 2;
 
 impl<T: Scalar> MachineState<T> {
-    /// Everything zero.
+    /// State of zeros.
     pub(super) fn zero() -> MachineState<T> {
         let zero = T::from(0.0);
         let spool = SpoolState { spool: zero, spool_rate: zero, spool_friction: zero, magnetic_lag: zero };
@@ -156,22 +156,22 @@ impl Layout {
         self.own + self.gas + self.columns
     }
 
-    /// States of the oil of a transmission: of each segment velocity and deflection.
+    /// States of the oil of a transmission: velocity and deflection of each segment.
     #[inline(always)]
     pub(super) fn columns<'a, T>(&self, vector: &'a [T]) -> &'a [T] {
         let first = self.own + self.gas;
         vector.get(first..first + self.columns).unwrap_or_default()
     }
 
-    /// The same, to be written.
+    /// States of the oil of a transmission, mutable.
     #[inline(always)]
     pub(super) fn columns_mut<'a, T>(&self, vector: &'a mut [T]) -> &'a mut [T] {
         let first = self.own + self.gas;
         vector.get_mut(first..first + self.columns).unwrap_or_default()
     }
 
-    /// Where friction acts: on the velocity, the sixth of the states that all machines have, and on
-    /// the bristle deflection after it.
+    /// Friction acts on the velocity, the sixth of the states of all machines, and on the bristle
+    /// deflection after it.
     pub(super) fn sliding(&self) -> Sliding {
         Sliding { velocity: 5, memory: self.bristle.then_some(6) }
     }
@@ -190,15 +190,15 @@ impl Layout {
         GROUND_INPUTS + usize::from(self.external_force) + setting
     }
 
-    /// The external force in N, an input; `None` if the machine does not have this input.
+    /// External force in N, an input; `None` if the machine does not have this input.
     #[inline(always)]
     pub(super) fn external_force<T: Scalar>(&self, inputs: &[T]) -> Option<T> {
         let missing = T::from(f64::NAN);
         self.external_force.then(|| inputs.get(GROUND_INPUTS).copied().unwrap_or(missing))
     }
 
-    /// By how much the setting of accumulators has moved from rest and its rate in 1/s, inputs;
-    /// zero where none is adjusted.
+    /// Change of the setting of accumulators from rest and its rate in 1/s, inputs; zero if none is
+    /// adjusted.
     #[inline(always)]
     pub(super) fn setting<T: Scalar>(&self, inputs: &[T]) -> [T; 2] {
         if !self.setting {
@@ -208,39 +208,39 @@ impl Layout {
         [0, 1].map(|place| inputs.get(first + place).copied().unwrap_or(T::from(f64::NAN)))
     }
 
-    /// Whether accumulators at the chambers are adjusted.
+    /// True if accumulators at the chambers are adjusted.
     #[inline(always)]
     pub(super) fn is_adjusted(&self) -> bool {
         self.valves != [false; 2] || self.moved != [false; 2]
     }
 
-    /// Whether the gas at each chamber has a pressure of its own.
+    /// True if the gas at each chamber has a pressure of its own.
     #[inline(always)]
     pub(super) fn behind(&self) -> [bool; 2] {
         [self.necks[0] || self.valves[0], self.necks[1] || self.valves[1]]
     }
 
-    /// Whether gas at a chamber has states of its own, or is adjusted.
+    /// True if gas at a chamber has states of its own, or is adjusted.
     #[inline(always)]
     pub(super) fn has_gas(&self) -> bool {
         self.gas != 0 || self.moved != [false; 2]
     }
 
-    /// Whether the gas at each chamber has states of its own, or is adjusted.
+    /// True if the gas at each chamber has states of its own, or is adjusted.
     #[inline(always)]
     pub(super) fn gas_at(&self) -> [bool; 2] {
         let [behind_a, behind_b] = self.behind();
         [behind_a || self.heat[0] || self.moved[0], behind_b || self.heat[1] || self.moved[1]]
     }
 
-    /// Whether lines have states of their own.
+    /// True if lines have states of their own.
     #[inline(always)]
     pub(super) fn has_lines(&self) -> bool {
         self.lines != [0, 0]
     }
 
-    /// Places of the states that remember, and stand still wherever all else does: bristles and the
-    /// friction and lag of the spool.
+    /// Indices of the states that are memories, and stay constant whenever all others do: bristles
+    /// and the friction and lag of the spool.
     pub(super) fn memories(&self) -> Vec<usize> {
         let mut state = MachineState::<f64>::zero();
         (state.bristle, state.spool.spool_friction, state.spool.magnetic_lag) = (1.0, 1.0, 1.0);
@@ -249,7 +249,7 @@ impl Layout {
         vector.iter().enumerate().filter(|(_, value)| **value != 0.0).map(|(index, _)| index).collect()
     }
 
-    /// Places of the pressures of the gas at these chambers.
+    /// Indices of the pressures of the gas at these chambers.
     pub(super) fn gas_places(&self, sides: [bool; 2]) -> Vec<usize> {
         let pressures = sides.map(|is_meant| if is_meant { 1.0 } else { 0.0 });
         let mut vector = vec![0.0; self.count()];
@@ -263,7 +263,7 @@ impl Layout {
         two_parts(vector, self.before_lines(), self.lines)
     }
 
-    /// States of both lines, to be written.
+    /// States of both lines, mutable.
     #[inline(always)]
     pub(super) fn lines_mut<'a, T>(&self, vector: &'a mut [T]) -> [&'a mut [T]; 2] {
         let [count_a, count_b] = self.lines;
@@ -288,7 +288,7 @@ impl Layout {
         }
     }
 
-    /// The states by name; states that the vector lacks are NaN.
+    /// States by name; states that the vector lacks are NaN.
     #[inline(always)]
     pub(super) fn read<T: Scalar>(&self, vector: &[T]) -> MachineState<T> {
         let mut state = MachineState::zero();
@@ -297,7 +297,7 @@ impl Layout {
         state
     }
 
-    /// The states in the order of the vector.
+    /// Writes the states in the order of the vector.
     #[inline(always)]
     pub(super) fn write<T: Scalar>(&self, mut state: MachineState<T>, vector: &mut [T]) {
         let mut entries = vector.iter_mut();
@@ -308,7 +308,7 @@ impl Layout {
         });
     }
 
-    /// Visits the places of all states in the order of the vector.
+    /// Visits the positions of all states in the order of the vector.
     #[inline(always)]
     fn visit<T>(&self, state: &mut MachineState<T>, mut visit: impl FnMut(&mut T)) {
         visit(&mut state.spool.spool);
@@ -344,8 +344,8 @@ impl Layout {
         }
     }
 
-    /// The states of the gas by name; states that the vector lacks are NaN, those that the machine
-    /// lacks zero.
+    /// States of the gas by name; states that the vector lacks are NaN, those that the machine
+    /// lacks are zero.
     pub(super) fn read_gas<T: Scalar>(&self, vector: &[T]) -> GasStates<T> {
         let mut gas = GasStates::zero();
         let mut entries = vector.iter().skip(self.own);
@@ -353,7 +353,7 @@ impl Layout {
         gas
     }
 
-    /// The states of the gas, or their rates, at their places in the vector.
+    /// Writes the states of the gas, or their rates, at their positions in the vector.
     pub(super) fn write_gas<T: Copy>(&self, mut gas: GasStates<T>, vector: &mut [T]) {
         let mut entries = vector.iter_mut().skip(self.own);
         self.visit_gas(&mut gas, |slot| {
@@ -382,7 +382,7 @@ impl Layout {
     }
 }
 
-/// Two consecutive slices of these lengths after the first entries; empty where the vector is too
+/// Two consecutive slices of these lengths after the first entries; empty if the vector is too
 /// short.
 #[inline(always)]
 fn two_parts<T>(vector: &[T], behind: usize, [first, second]: [usize; 2]) -> [&[T]; 2] {

@@ -7,7 +7,7 @@ use crate::actuator::Components;
 use crate::cross_port::CrossFlow;
 use crate::servovalve::{ChamberFlows, Servovalve, Supply, chamber_flows};
 
-/// The parameters of the balance of flows and forces. Units: those of the components, m2.
+/// Parameters of the balance of flows and forces. Units: those of the components, m2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Balance<S = f64> {
     /// The servovalve.
@@ -16,14 +16,14 @@ pub struct Balance<S = f64> {
     pub supply: Supply<S>,
     /// Piston areas A_A and A_B at the position.
     pub areas: [S; 2],
-    /// What flows from chamber A to chamber B; `None` where nothing does.
+    /// Flow from chamber A to chamber B; `None` without such flow.
     pub across: Option<CrossFlow<S>>,
-    /// Conductance from each chamber to the tank in m3/(s Pa); `None` where nothing leaks outwards.
+    /// Conductance from each chamber to the tank in m3/(s Pa); `None` without external leakage.
     pub outward: Option<S>,
 }
 
 impl<S: Scalar> Balance<S> {
-    /// Of these components with the piston at a position in m.
+    /// Balance of these components with the piston at a position in m.
     pub fn at(components: &Components<S>, position: S) -> Balance<S> {
         let cylinder = &components.cylinder;
         Balance {
@@ -35,7 +35,7 @@ impl<S: Scalar> Balance<S> {
         }
     }
 
-    /// What leaks from a chamber of this pressure to the tank, in m3/s.
+    /// Leakage from a chamber of this pressure to the tank, m3/s.
     pub(super) fn leaving(&self, pressure: S) -> S {
         self.outward.map_or(S::from(0.0), |conductance| conductance * (pressure - self.supply.tank_pressure))
     }
@@ -43,11 +43,11 @@ impl<S: Scalar> Balance<S> {
 
 /// Halvings to the last bit.
 const ALL_HALVINGS: usize = 60;
-/// Largest relative error of a balance that is one.
+/// Largest relative error of an accepted balance.
 const BALANCED: f64 = 1e-9;
 
 impl Balance {
-    /// Pressures at which the chambers take the flow of a piston at this velocity.
+    /// Pressures at which the chamber flows match a piston at this velocity.
     pub(super) fn pressures(&self, command: f64, velocity: f64) -> Result<[f64; 2], OperatingPointError> {
         if self.across.is_some() {
             return self.leaking_pressures(command, velocity);
@@ -65,7 +65,7 @@ impl Balance {
         }
     }
 
-    /// The same with a flow from chamber to chamber, which makes either pressure depend on the
+    /// Pressures with a flow from chamber to chamber, which makes either pressure depend on the
     /// other.
     fn leaking_pressures(&self, command: f64, velocity: f64) -> Result<[f64; 2], OperatingPointError> {
         let pressures = self.settle_at(command, velocity, ALL_HALVINGS);
@@ -77,7 +77,7 @@ impl Balance {
         }
     }
 
-    /// The load that these pressures hold, in its own unit.
+    /// Load that these pressures hold, in its own unit.
     fn held(&self, load: SteadyLoad, [pressure_a, pressure_b]: [f64; 2]) -> f64 {
         match load {
             SteadyLoad::Force(_) => hydraulic_force(self.areas, [pressure_a, pressure_b]),
@@ -85,7 +85,7 @@ impl Balance {
         }
     }
 
-    /// The command that holds a load at this velocity.
+    /// Command that holds a load at this velocity.
     pub(super) fn holding_command(
         &self,
         load: SteadyLoad,
@@ -111,7 +111,7 @@ impl Balance {
         Ok(if command.abs() < AT_NULL * nominal { 0.0 } else { command })
     }
 
-    /// The steady velocity at a command under a load.
+    /// Steady velocity at a command under a load.
     pub(super) fn velocity(&self, command: f64, load: SteadyLoad) -> Result<f64, OperatingPointError> {
         let wanted = wanted(load);
         let excess = |velocity: f64| {

@@ -1,5 +1,5 @@
 /// Root of a falling function, sought outwards from a first bracket; `None` if it never changes
-/// sign or is not a number.
+/// sign or is NaN.
 pub(super) fn falling_root(function: impl Fn(f64) -> f64, lower: f64, upper: f64) -> Option<f64> {
     let width = upper - lower;
     let (mut lower, mut upper) = (lower, upper);
@@ -19,8 +19,8 @@ pub(super) fn falling_root(function: impl Fn(f64) -> f64, lower: f64, upper: f64
     None
 }
 
-/// Root of a falling function between two points where it is not negative and not positive, to the
-/// last bit.
+/// Root of a falling function between two points at which it is non-negative and non-positive, to
+/// the last bit.
 pub(super) fn falling_root_within(
     function: impl Fn(f64) -> f64,
     mut lower: f64,
@@ -32,8 +32,8 @@ pub(super) fn falling_root_within(
     if function(upper) == 0.0 {
         return Some(upper);
     }
-    // Halving any interval of finite numbers ends within some two thousand steps, at neighbouring
-    // numbers.
+    // halving any interval of finite numbers ends within some two thousand steps, at neighbouring
+    // numbers
     loop {
         let middle = 0.5 * (lower + upper);
         let value = function(middle);

@@ -1,10 +1,10 @@
-//! The balance of an operating point over any scalar: recorded, it is right over a whole box of
+//! Balance of an operating point over any scalar: a recorded balance is valid over a whole box of
 //! parameters.
 //!
 //! A `Scalar` never branches on a value, so nothing here stops early. Closed forms of plain square
-//! roots bracket the unknown, halvings of the bracket come near it from anywhere, and a fixed
-//! number of Newton steps on the regular equations of [`crate::servovalve`] does the rest;
-//! [`Balance::error`] measures the residual.
+//! roots bracket the unknown, halvings of the bracket approach it from any start, and a fixed
+//! number of Newton steps on the regularised equations of [`crate::servovalve`] completes the
+//! solution; [`Balance::error`] measures the residual.
 
 use phea_dynamics::scalar::Scalar;
 
@@ -13,24 +13,24 @@ use crate::servovalve::{
     ChamberCoefficients, ChamberFlows, SpoolDirection, chamber_coefficients, chamber_flows, edge_conductances,
 };
 
-/// The conditions of an operating point, over any scalar.
+/// Condition of an operating point, over any scalar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Steady<S = f64> {
     /// Standstill at this spool command in V.
     Command(S),
-    /// Steady motion at a velocity in m/s under a load; the command that keeps it is found. Zero
+    /// Steady motion at a velocity in m/s under a load; the command that holds it is found. Zero
     /// velocity is standstill.
     Moving {
-        /// Velocity v in m/s.
+        /// Velocity v, m/s.
         velocity: S,
-        /// What the pressures hold.
+        /// Load that the pressures hold.
         load: SteadyLoad<S>,
     },
-    /// As [`super::Condition::Matched`].
+    /// Matched condition as in [`super::Condition::Matched`].
     Matched(S, S),
 }
 
-/// Where the valve and both chambers settle. Units: V, Pa.
+/// Equilibrium of the valve and both chambers. Units: V, Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settled<S = f64> {
     /// Spool position U_Csp.
@@ -39,38 +39,37 @@ pub struct Settled<S = f64> {
     pub pressures: [S; 2],
 }
 
-/// Halvings of the spool's travel: to 4e-6 of it, where the leakage of the edges takes a hundredth
-/// to fall.
+/// Halvings of the spool's travel: to 4e-6 of it, whereas the leakage of the edges falls over a
+/// hundredth of the travel.
 const HALVINGS_OF_TRAVEL: usize = 18;
-/// Number of halvings for the load pressure that remains with a flow from chamber to chamber, and
-/// to less than the transition pressure of an orifice: with an orifice, and for leakage to the
-/// tank.
+/// Number of halvings for the remaining load pressure with a flow from chamber to chamber, to less
+/// than the transition pressure of an orifice: with an orifice, and for leakage to the tank.
 const HALVINGS_OF_LEAKAGE: usize = 12;
 const HALVINGS_OF_ORIFICE: usize = 20;
-/// How often the load pressure of unequal areas is taken anew.
+/// Number of updates of the load pressure for unequal areas.
 const ROUNDS: usize = 3;
 /// Newton steps without and with leakage.
 const STEPS: [usize; 2] = [5, 9];
-/// Newton steps from a start next to the solution: each squares its relative error.
+/// Newton steps from a start close to the solution: each squares its relative error.
 const STEPS_FROM_START: usize = 2;
-/// Share of the nominal voltage within which a spool counts as at null: closer than rounding can
-/// distinguish.
+/// Fraction of the nominal voltage within which a spool counts as at null: closer than rounding can
+/// resolve.
 pub(super) const AT_NULL: f64 = 1e-12;
 
-/// The flow into each side of the piston, and the relation between the pressures.
+/// Flow into each side of the piston, and the relation between the pressures.
 #[derive(Clone, Copy)]
 struct PressureHold<S> {
     velocity: S,
-    /// w_A p_A - w_B p_B is wanted.
+    /// Weights of the required value w_A p_A - w_B p_B.
     weights: [S; 2],
     wanted: S,
 }
 
 impl<S: Scalar> Balance<S> {
-    /// Where the valve and the chambers settle.
+    /// Equilibrium of the valve and the chambers.
     ///
     /// # Example
-    /// The pressures of a recorded supply are those that are found for a number:
+    /// The pressures of a recorded supply equal those found for a number:
     /// ```
     /// use phea_dynamics::expression::Expression;
     /// use phea_dynamics::scalar::Parameters;
@@ -101,11 +100,11 @@ impl<S: Scalar> Balance<S> {
         }
     }
 
-    /// Where the valve and the chambers settle, by Newton steps from a start next to it: smooth in
-    /// every parameter and in the start, where [`Balance::settle`] halves and chooses.
+    /// Equilibrium of the valve and the chambers, by Newton steps from a start close to it: smooth
+    /// in every parameter and in the start, whereas [`Balance::settle`] halves and selects.
     ///
     /// # Example
-    /// From a volt and ten bar beside, the second step has the digits of the solution.
+    /// From a start one volt and ten bar away, the second step has the digits of the solution:
     /// ```
     /// use phea_hydraulics::operating_point::{Balance, Settled, SteadyLoad, Steady};
     /// use phea_hydraulics::reference_rig::{USEFUL_AREA, valve};
@@ -139,12 +138,12 @@ impl<S: Scalar> Balance<S> {
         Settled { command, pressures }
     }
 
-    /// Newton steps after the first guess.
+    /// Newton steps after the initial estimate.
     fn steps(&self) -> usize {
         STEPS[usize::from(self.leaks())]
     }
 
-    /// Whether anything flows from chamber to chamber or to the tank.
+    /// True if there is a flow from chamber to chamber or to the tank.
     pub(super) fn leaks(&self) -> bool {
         self.across.is_some() || self.outward.is_some()
     }
@@ -153,7 +152,7 @@ impl<S: Scalar> Balance<S> {
         self.across.is_some_and(|across| across.orifice.is_some())
     }
 
-    /// The pressures at a spool position in V and a velocity in m/s.
+    /// Pressures at a spool position in V and a velocity in m/s.
     pub(super) fn settle_at(&self, command: S, velocity: S, halvings: usize) -> [S; 2] {
         let conductances = self.conductances(command);
         let at = |load_pressure: S| self.near(&conductances, velocity, load_pressure);
@@ -161,7 +160,7 @@ impl<S: Scalar> Balance<S> {
         let mut pressures = match self.across {
             None => still,
             Some(_) => {
-                // the flow leaves a share of the load pressure: p_A falls with it and p_B rises
+                // the flow leaves a fraction of the load pressure: p_A falls with it and p_B rises
                 let [a, b] = still;
                 let whole = a - b;
                 let falls = |share: S| {
@@ -172,7 +171,7 @@ impl<S: Scalar> Balance<S> {
                 let ([a, b], half) = (at(left), S::from(0.5));
                 match self.has_orifice() {
                     false => [a, b],
-                    // its flow without a drop makes too much of the difference's error
+                    // its flow at zero drop amplifies the error of the difference
                     true => [half * (a + b + left), half * (a + b - left)],
                 }
             }
@@ -184,8 +183,8 @@ impl<S: Scalar> Balance<S> {
         pressures.map(|pressure| self.at_rest(velocity, pressure))
     }
 
-    /// A pressure, at standstill between those of tank and supply, which every edge and leakage
-    /// draws it to: its enclosure over a box of parameters is no wider.
+    /// Pressure, limited at standstill to the range between tank and supply, in which every edge
+    /// and leakage holds it: so its enclosure over a box of parameters is no wider.
     fn at_rest(&self, velocity: S, pressure: S) -> S {
         let still = velocity.abs().less_than(S::from(f64::MIN_POSITIVE));
         let bounded = pressure.maximum(self.supply.tank_pressure).minimum(self.supply.pressure);
@@ -232,14 +231,14 @@ impl<S: Scalar> Balance<S> {
         }
     }
 
-    /// Of each chamber, the conductances of its edge from supply and of its edge to tank.
+    /// Conductances of the edges from supply and to tank, for each chamber.
     fn conductances(&self, command: S) -> [[S; 2]; 2] {
         let edges = edge_conductances(&self.valve, command);
         [[edges.supply_to_a, edges.a_to_tank], [edges.supply_to_b, edges.b_to_tank]]
     }
 
-    /// Both pressures by plain square roots, the flow from chamber to chamber being that of a
-    /// stated load pressure.
+    /// Both pressures by plain square roots, with the flow from chamber to chamber at a stated load
+    /// pressure.
     fn near(&self, [edges_a, edges_b]: &[[S; 2]; 2], velocity: S, load_pressure: S) -> [S; 2] {
         let across = self.across.map_or(S::from(0.0), |across| across.flow(load_pressure));
         let [area_a, area_b] = self.areas;
@@ -249,8 +248,8 @@ impl<S: Scalar> Balance<S> {
         ]
     }
 
-    /// [`Balance::between`] with what leaks outwards at the pressure that is found, by bisection:
-    /// the more leaks, the lower is the pressure.
+    /// Pressure as in [`Balance::between`] with the leakage to the tank at this pressure, found by
+    /// bisection: the more leakage, the lower the pressure.
     fn leaking(&self, edges: &[S; 2], flow: S) -> S {
         if self.outward.is_none() {
             return self.between(edges, flow);
@@ -262,8 +261,8 @@ impl<S: Scalar> Balance<S> {
         tank + halved([S::from(0.0), S::from(1.0)], HALVINGS_OF_ORIFICE, falls) * drop
     }
 
-    /// The pressure between an edge from supply and one to tank, of conductances a and b, that
-    /// gives the flow Q into the chamber.
+    /// Pressure between an edge from supply and one to tank, of conductances a and b, that gives
+    /// the flow Q into the chamber.
     ///
     /// ```text
     /// a s(p_S - p) - b s(p - p_T) = Q,      s(d) = sign(d) sqrt|d|,      D = p_S - p_T
@@ -287,8 +286,8 @@ impl<S: Scalar> Balance<S> {
         S::select(is_above, self.supply.tank_pressure + above.squared(), not_above)
     }
 
-    /// The surplus flow into each chamber, after the piston and the flow from chamber to chamber,
-    /// and the slope of that.
+    /// Surplus flow into each chamber, after the piston and the flow from chamber to chamber, and
+    /// the slope of the latter.
     fn surplus(&self, command: S, velocity: S, [pressure_a, pressure_b]: [S; 2]) -> ([S; 2], S) {
         let ChamberFlows { into_a, into_b } =
             chamber_flows(&self.valve, &self.supply, command, pressure_a, pressure_b);
@@ -308,7 +307,7 @@ impl<S: Scalar> Balance<S> {
             .leaking(self.outward)
     }
 
-    /// The Newton step of both pressures at a fixed spool.
+    /// Newton step of both pressures at a fixed spool position.
     pub(super) fn step_at(&self, command: S, velocity: S, pressures: [S; 2]) -> [S; 2] {
         let ([surplus_a, surplus_b], across) = self.surplus(command, velocity, pressures);
         let ChamberCoefficients { flow_pressure_a: a, flow_pressure_b: b, .. } =
@@ -320,7 +319,7 @@ impl<S: Scalar> Balance<S> {
         ]
     }
 
-    /// The Newton step of the spool and of p_A, p_B being bound to p_A by the load.
+    /// Newton step of the spool and of p_A, with p_B tied to p_A by the load.
     fn step_moving(&self, hold: &PressureHold<S>, command: S, pressure_a: S) -> [S; 2] {
         let pressures = [pressure_a, hold.other(pressure_a)];
         let ([surplus_a, surplus_b], across) = self.surplus(command, hold.velocity, pressures);
@@ -337,9 +336,9 @@ impl<S: Scalar> Balance<S> {
 }
 
 impl Balance {
-    /// How far a settled point is from balance: one more Newton step, relative to the nominal
-    /// voltage and to the supply's drop; NaN where there is no balance. Where the balance is unique
-    /// a small step is a small error, see [`Balance::is_unique`].
+    /// Error of a settled point: one more Newton step, relative to the nominal voltage and to the
+    /// supply's drop; NaN if there is no balance. If the balance is unique, a small step means a
+    /// small error, see [`Balance::is_unique`].
     pub fn error(&self, steady: Steady, settled: &Settled) -> f64 {
         let drop = self.supply.pressure - self.supply.tank_pressure;
         let steps = match steady {
@@ -358,12 +357,12 @@ impl Balance {
 }
 
 impl Balance {
-    /// Whether the pressures are unique whatever is known: so they are without a flow from chamber
-    /// to chamber, with equal areas, at a stated command, and under a stated load pressure. Under a
+    /// True if the pressures are unique for any values: this is so without a flow from chamber to
+    /// chamber, with equal areas, at a stated command, and under a stated load pressure. Under a
     /// force, such a flow with unequal areas may leave several.
     ///
     /// ```text
-    /// dF/dU ~ A_A K_qA K_cB + A_B K_qB K_cA + G (A_A - A_B) (K_qA - K_qB)              may change its sign with much leakage
+    /// dF/dU ~ A_A K_qA K_cB + A_B K_qB K_cA + G (A_A - A_B) (K_qA - K_qB)              may change its sign with large leakage
     /// ```
     pub fn is_unique(&self, steady: Steady) -> bool {
         let by_force = matches!(steady, Steady::Moving { load: SteadyLoad::Force(_), .. });
@@ -372,7 +371,7 @@ impl Balance {
 }
 
 impl<S: Scalar> PressureHold<S> {
-    /// p_B with this p_A.
+    /// Pressure p_B for this p_A.
     fn other(&self, pressure_a: S) -> S {
         let [weight_a, weight_b] = self.weights;
         (weight_a * pressure_a - self.wanted) / weight_b

@@ -1,4 +1,4 @@
-//! Where a supply that yields settles with the valve and the chambers.
+//! Equilibrium of a yielding supply with the valve and the chambers.
 
 use phea_dynamics::scalar::Scalar;
 
@@ -6,35 +6,35 @@ use super::{Balance, Settled, Steady};
 use crate::power_unit::PumpLimited;
 use crate::servovalve::{Supply, edge_conductances, edge_flows, tare_flow};
 
-/// A supply, the valve and both chambers, settled. Units: Pa, m3/s, 1.
+/// Supply, valve and both chambers in equilibrium. Units: Pa, m3/s, 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SettledSupply<S = f64> {
     /// Supply and tank pressures.
     pub supply: Supply<S>,
     /// Command and chamber pressures.
     pub settled: Settled<S>,
-    /// The flow of the valve from the supply, its tare flow included.
+    /// Flow of the valve from the supply, including its tare flow.
     pub taken: S,
 }
 
-/// Newton steps, with the slope of a flow that goes with the root of the pressure: without and with
-/// leakage, which goes with the pressure itself.
+/// Newton steps without and with leakage, with the slope of a flow proportional to the root of the
+/// pressure; leakage is proportional to the pressure itself.
 const ROUNDS: [usize; 2] = [6, 9];
 
 impl<S: Scalar> Balance<S> {
-    /// Where a limited pump settles, this balance having the pressure that it holds when idle;
-    /// `tare_drop` in Pa is that at which the tare flow is stated.
+    /// Equilibrium of a limited pump; this balance has the pressure that the pump holds when idle;
+    /// `tare_drop` in Pa is the drop at which the tare flow is stated.
     ///
     /// ```text
-    /// p_S = p_idle - dp_o q_S(p_S)/q_pump         down to p_idle - dp_o, where the relief valve is shut
+    /// p_S = p_idle - dp_o q_S(p_S)/q_pump         down to p_idle - dp_o, at which the relief valve is shut
     /// ```
     ///
-    /// Where the valve draws more than the pump delivers, the result is the pressure at which the
+    /// If the valve draws more than the pump delivers, the result is the pressure at which the
     /// relief valve closes: the rest of the flow comes from the volume and the accumulator, so that
     /// this is not an equilibrium, and the pressure falls.
     ///
     /// # Example
-    /// At null a pump of 10 L/min supplies the leakage and the tare flow, 0.92 L/min in all.
+    /// At null a pump of 10 L/min supplies the leakage and the tare flow, 0.92 L/min in all:
     /// ```
     /// # use phea_hydraulics::{reference_rig::{components, hose_line}, stiffness::StiffnessModel};
     /// use phea_hydraulics::machine::PumpLimited;
@@ -61,9 +61,9 @@ impl<S: Scalar> Balance<S> {
         found
     }
 
-    /// A pressure of the supply, not below that at which the relief valve is shut, and at
-    /// standstill, where nothing flows back, not above that which is held when idle. The solution
-    /// lies there, and its enclosure over a box of parameters is no wider.
+    /// Supply pressure limited to the range of the solution: not below the pressure at which the
+    /// relief valve is shut, and at standstill, without return flow, not above the pressure held
+    /// when idle. This does not widen its enclosure over a box of parameters.
     fn within_relief(&self, pressure: S, unit: &PumpLimited<S>, steady: Steady<S>) -> S {
         let idle = self.supply.pressure;
         let not_below = pressure.maximum(idle - unit.relief_override);

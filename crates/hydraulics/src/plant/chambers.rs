@@ -1,4 +1,4 @@
-//! The pressures of both chambers by Cramer's rule, and what the force and a pressure signal are of
+//! Pressures of both chambers by Cramer's rule, and the force and a pressure signal computed from
 //! them.
 
 use phea_dynamics::scalar::Scalar;
@@ -7,7 +7,7 @@ use super::supply::{Coupled, YieldingSupply};
 use crate::accumulator::GasBranch;
 use crate::linear::polynomial::{product, scaled, sum};
 
-/// How pressures build up. Units: m2, m3/(s V), m3/(s Pa), N/m, m3/Pa.
+/// Dynamics of the pressures. Units: m2, m3/(s V), m3/(s Pa), N/m, m3/Pa.
 ///
 /// ```text
 /// load pressure    D = A^2 s + (K_c + G) K_H,   N_u = A K_H K_qU,   N_v = A^2 K_H             thesis (6.5) with (4.20)
@@ -16,11 +16,11 @@ use crate::linear::polynomial::{product, scaled, sum};
 ///                  N_v = A_A^2 Y_B + A_B^2 Y_A + G (A_A - A_B)^2
 /// ```
 ///
-/// Both are the same where both chambers are: equal areas, compliances and flow-pressure
+/// Both forms are equal for equal chambers: equal areas, compliances and flow-pressure
 /// coefficients. Dynamic pressure feedback adds g C_cp s/(C_cp s + g) to G.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ChamberDynamics<S = f64> {
-    /// One load pressure, of a cylinder whose chambers are equal.
+    /// Single load pressure, for a cylinder with equal chambers.
     LoadPressure {
         /// Useful area A.
         useful_area: S,
@@ -31,7 +31,7 @@ pub enum ChamberDynamics<S = f64> {
         /// Hydraulic stiffness K_H.
         hydraulic_stiffness: S,
     },
-    /// A pressure a chamber.
+    /// Separate pressures of the chambers.
     TwoPressures {
         /// Areas A_A and A_B.
         areas: [S; 2],
@@ -43,15 +43,15 @@ pub enum ChamberDynamics<S = f64> {
         flow_pressures: [S; 2],
     },
 }
-/// D, N_u and N_v: polynomials, highest power first, or their values.
+/// Polynomials D, N_u and N_v, highest power first, or their values.
 pub(super) struct ChamberPolynomials<T> {
     pub(super) own: T,
     pub(super) driven: T,
     pub(super) displaced: T,
 }
 
-/// Both chambers where nothing flows between them, and the same joined to one pressure: with an
-/// admittance Y between them, of which the determinant of their equations is linear,
+/// Chambers without flow between them (separate), and joined to one pressure: with an admittance Y
+/// between them, in which the determinant of their equations is linear,
 ///
 /// ```text
 /// D = D_apart + Y D_joined,   N_u and N_v likewise
@@ -62,7 +62,7 @@ pub(super) struct ChamberPair<T> {
 }
 
 impl<T> ChamberPair<T> {
-    /// Each of D, N_u and N_v apart and joined, combined.
+    /// Combination of D, N_u and N_v, separate and joined.
     pub(super) fn combined(&self, with: impl Fn(&T, &T) -> T) -> ChamberPolynomials<T> {
         let ChamberPair { apart, joined } = self;
         ChamberPolynomials {
@@ -73,24 +73,25 @@ impl<T> ChamberPair<T> {
     }
 }
 
-/// What is read off both pressures, w_A p_A - w_B p_B: the force, or the signal of a pressure
+/// Linear combination of both pressures, w_A p_A - w_B p_B: the force, or the signal of a pressure
 /// feedback.
 #[derive(Clone, Copy)]
 pub(super) struct Reading<S> {
-    /// w_A and w_B.
+    /// Weights w_A and w_B.
     pub(super) weights: [S; 2],
-    /// w_A A_A and w_B A_B.
+    /// Products w_A A_A and w_B A_B.
     pub(super) displaced: [S; 2],
-    /// w_A - w_B.
+    /// Difference w_A - w_B.
     pub(super) difference: S,
-    /// (w_A - w_B) (A_A - A_B).
+    /// Product (w_A - w_B) (A_A - A_B).
     pub(super) displaced_difference: S,
-    /// (w_A + w_B)/2 and the same times A, for chambers of equal areas: p_A = -p_B = p_L/2.
+    /// Mean weight (w_A + w_B)/2 and its product with A, for chambers of equal areas: p_A = -p_B =
+    /// p_L/2.
     pub(super) of_equal: [S; 2],
 }
 
 impl<S: Scalar> Reading<S> {
-    /// The force F_h = A_A p_A - A_B p_B.
+    /// Force F_h = A_A p_A - A_B p_B.
     pub(super) fn of_force(areas: [S; 2]) -> Reading<S> {
         let difference = areas[0] - areas[1];
         Reading {
@@ -102,7 +103,7 @@ impl<S: Scalar> Reading<S> {
         }
     }
 
-    /// The pressure signal p_A - phi p_B.
+    /// Pressure signal p_A - phi p_B.
     pub(super) fn of_signal(ratio: f64, areas: [S; 2]) -> Reading<S> {
         let (mean, difference) = (S::from(0.5 * (1.0 + ratio)), S::from(1.0 - ratio));
         let ratio = S::from(ratio);
@@ -161,7 +162,7 @@ impl<S: Scalar> ChamberDynamics<S> {
         }
     }
 
-    /// The same with gas of its own dynamics, of either form, each chamber multiplied by the
+    /// Chambers with gas that has its own dynamics, of either form, each chamber multiplied by the
     /// denominator of its gas.
     pub(super) fn beside(&self, gas: [Option<GasBranch<S>>; 2], reading: &Reading<S>) -> ChamberPair<Vec<S>> {
         let [one, other] = [self.side(0), self.side(1)];
@@ -184,7 +185,7 @@ impl<S: Scalar> ChamberDynamics<S> {
         }
     }
 
-    /// With a supply that yields, of either form.
+    /// Chambers with a supply that yields, of either form.
     pub(super) fn behind(
         &self,
         supply: &YieldingSupply<S>,
@@ -201,7 +202,7 @@ impl<S: Scalar> ChamberDynamics<S> {
         }
     }
 
-    /// One chamber, 0 or 1. One load pressure is that of two equal chambers:
+    /// Parameters of one chamber, 0 or 1. One load pressure represents two equal chambers:
     ///
     /// ```text
     /// C = 2 A^2/K_H,   K_q = K_qU,   2 K_c
@@ -238,7 +239,7 @@ pub(super) struct Chamber<S> {
 }
 
 impl<S: Scalar> Chamber<S> {
-    /// Its admittance C s + K_c with that of the gas, times the denominator of that, and this
+    /// Admittance C s + K_c plus that of the gas, times the denominator of the latter, and this
     /// denominator.
     pub(super) fn beside(&self, gas: Option<GasBranch<S>>) -> (Vec<S>, Vec<S>) {
         let own = vec![self.compliance, self.flow_pressure];

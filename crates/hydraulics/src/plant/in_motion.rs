@@ -14,21 +14,22 @@ use crate::accumulator::GasBranch;
 use crate::cross_port::DynamicFeedback;
 use crate::line::{DynamicLine, Segments, TransferMatrix};
 
-/// The plant with lines that have dynamics of their own: it is not a quotient of polynomials, but
-/// has a response at every frequency.
+/// Plant with lines that have dynamics of their own: not a quotient of polynomials, but with a
+/// response at every frequency.
 ///
 /// ```text
 /// q_valve = K_q U_sp - K_c p_port                                              valve
 /// p_port = a p + b q,   q_valve = c p + d q                                    line: TransferMatrix
-/// q = C s p + A s X + G (p - p_other) + G_e p                                  chamber behind it, which leaks to the tank
+/// q = C s p + A s X + G (p - p_other) + G_e p                                  chamber behind the line, with leakage to the tank
 /// so each chamber of LinearPlant has   K_q/(d + K_c b)   for K_q   and   C s + G_e + (c + K_c a)/(d + K_c b)   for C s + K_c + G_e
 /// ```
 ///
-/// At every frequency it is the machine with these lines, for small motions. Where a stated number
-/// makes a chamber of the plant stiffer than its parts are, chamber and line are stiffened alike.
+/// At every frequency the response is that of the machine with these lines, for small motions. If a
+/// stated number makes a chamber of the plant stiffer than its parts, chamber and line are
+/// stiffened by one factor.
 ///
 /// # Example
-/// Slow motion sees no waves.
+/// Slow motion is not affected by waves:
 /// ```
 /// # use phea_hydraulics::reference_rig::{components, hose_line, nominal_plant};
 /// # use phea_hydraulics::stiffness::StiffnessModel;
@@ -55,87 +56,88 @@ use crate::line::{DynamicLine, Segments, TransferMatrix};
 pub struct PlantInMotion {
     plant: LinearPlant,
     sides: [ChamberSide; 2],
-    /// Whether both lines are the same.
+    /// True if both lines are equal.
     alike: bool,
-    /// Delay of the load's velocity that is fed forward, s: of its sensor and of the loop.
+    /// Delay of the load's velocity that is fed forward, from its sensor and the loop, s.
     lateness: f64,
-    /// Delay of the pressures that are fed back, s: of the loop.
+    /// Delay of the pressures that are fed back, from the loop, s.
     feedback_delay_s: f64,
 }
 
-/// The chambers of a plant. Units: m3/Pa.
+/// Chambers of a plant, behind its lines. Units: m3/Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BehindLines {
     /// The lines.
     pub lines: [DynamicLine; 2],
     /// Compliance of each chamber without its line.
     pub chambers: [f64; 2],
-    /// Compliance of both together where the line is lumped, as it follows from the parts.
+    /// Compliance of each chamber with its line if the line is lumped, from the components.
     pub lumped: [f64; 2],
-    /// Share of each flow-pressure coefficient of the plant that is leakage from the chamber to the
-    /// tank, from 0 to 1: it lies behind the line, the valve before it.
+    /// Fraction of each flow-pressure coefficient of the plant that is leakage from the chamber to
+    /// the tank, from 0 to 1: the leakage is behind the line, the valve before it.
     pub leaking: [f64; 2],
 }
 
-/// A chamber with its line.
+/// Chamber with its line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct ChamberSide {
     area: f64,
-    /// Of the chamber with the end of the line there.
+    /// Compliance of the chamber with the end of the line there.
     compliance: f64,
     flow_gain: f64,
-    /// K_c of the valve.
+    /// Flow-pressure coefficient K_c of the valve.
     flow_pressure: f64,
-    /// G_e to the tank, behind the line.
+    /// Leakage conductance G_e to the tank, behind the line.
     leakage: f64,
     line: DynamicLine,
     /// Gas behind a neck, or with heat.
     gas: Option<GasBranch>,
 }
 
-/// A chamber with its line at s, everything times what the line passes: `passed` is d + K_c b, by
-/// which the valve's flow is less at the chamber than at a port held still.
+/// Chamber with its line at s, with all terms multiplied by the transmission of the line: `passed`
+/// is d + K_c b, the factor by which the valve's flow is smaller at the chamber than at a port of
+/// constant pressure.
 struct AtChamber<A> {
     /// Flow per pascal at the chamber, times `passed`.
     admittance: A,
     passed: A,
-    /// b
+    /// Entry b.
     impedance: A,
 }
 
 impl PlantInMotion {
-    /// The same with the velocity of the load fed forward, K_x in V s/m.
+    /// Plant with the velocity of the load fed forward, K_x in V s/m.
     #[must_use]
     pub fn fed_forward(self, load_velocity_feed_forward: Option<f64>) -> PlantInMotion {
         PlantInMotion { plant: LinearPlant { load_velocity_feed_forward, ..self.plant }, ..self }
     }
 
-    /// The same with the velocity that is fed forward behind this filter.
+    /// Plant with the velocity that is fed forward behind this filter.
     #[must_use]
     pub fn filtered(self, filter: RateFilter) -> PlantInMotion {
         let velocity_sensor = VelocitySensor { filter, ..self.plant.velocity_sensor };
         PlantInMotion { plant: LinearPlant { velocity_sensor, ..self.plant }, ..self }
     }
 
-    /// The same on another load.
+    /// Plant with another load.
     #[must_use]
     pub fn of_load(self, load: LinearLoad) -> PlantInMotion {
         PlantInMotion { plant: LinearPlant { load, ..self.plant }, ..self }
     }
 
-    /// The same with a virtual impedance added to its force.
+    /// Plant with a virtual impedance added to its force.
     #[must_use]
     pub fn beside(self, virtual_impedance: Option<VirtualImpedance>) -> PlantInMotion {
         PlantInMotion { plant: LinearPlant { virtual_impedance, ..self.plant }, ..self }
     }
 
-    /// The same with the feed-forward delayed by a time in s: K_x e^(-s tau) for K_x.
+    /// Plant with the feed-forward delayed by a time in s: K_x e^(-s tau) for K_x.
     #[must_use]
     pub fn late(self, lateness: f64) -> PlantInMotion {
         PlantInMotion { lateness, ..self }
     }
 
-    /// The same with the chambers' pressures fed back, delayed by a time in s: H e^(-s tau) for H.
+    /// Plant with the chambers' pressures fed back, delayed by a time in s: H e^(-s tau) for H.
     #[must_use]
     pub fn fed_back(
         self,
@@ -146,14 +148,14 @@ impl PlantInMotion {
         PlantInMotion { plant, feedback_delay_s, ..self }
     }
 
-    /// The same with the paths to a pressure signal p_A - phi p_B that a loop around it samples.
+    /// Plant with the paths to a pressure signal p_A - phi p_B that a loop around it samples.
     #[must_use]
     pub fn showing(self, pressure_signal: Option<f64>) -> PlantInMotion {
         PlantInMotion { plant: LinearPlant { pressure_signal, ..self.plant }, ..self }
     }
 
-    /// The plant with its lumped lines as they are: for a load velocity that is fed forward late,
-    /// or pressures that are fed back late, of which there is no quotient of polynomials.
+    /// Plant with its lumped lines unchanged: for a load velocity that is fed forward late, or
+    /// pressures that are fed back late, for which there is no quotient of polynomials.
     pub fn lumped(plant: &LinearPlant) -> PlantInMotion {
         let compliances = [0, 1].map(|side| plant.chambers.side(side).compliance);
         let none = DynamicLine::Segments(Segments::lumped(0.0));
@@ -163,7 +165,7 @@ impl PlantInMotion {
         )
     }
 
-    /// The plant with these chambers and lines in place of its lumped ones.
+    /// Plant with these chambers and lines in place of its lumped ones.
     pub fn new(plant: &LinearPlant, behind: &BehindLines) -> PlantInMotion {
         let side = |side: usize| {
             let Chamber { area, compliance, flow_gain, flow_pressure } = plant.chambers.side(side);
@@ -180,15 +182,15 @@ impl PlantInMotion {
         PlantInMotion { plant: *plant, sides, alike, lateness: 0.0, feedback_delay_s: 0.0 }
     }
 
-    /// F_e/U_C in N/V and F_e/X_0 in N/m at s in rad/s, or over a set of such, by the equations of
-    /// [`LinearPlant::coefficients`].
+    /// Paths F_e/U_C in N/V and F_e/X_0 in N/m at s in rad/s, or over a set of values of s, by the
+    /// equations of [`LinearPlant::coefficients`].
     pub fn response<A: Analytic>(&self, s: A) -> [A; 2] {
         let Paths { command, ground, sensed, fed, .. } = self.paths(s);
         let divisor = fed.map_or(sensed, |fed| sensed - fed);
         [command / divisor, ground / divisor]
     }
 
-    /// v_L/U_C in m/(s V) and v_L/X_0 in 1/s, the velocity of the load, at s in rad/s.
+    /// Paths v_L/U_C in m/(s V) and v_L/X_0 in 1/s to the velocity of the load, at s in rad/s.
     pub fn load_velocity(&self, s: Complex64) -> [Complex64; 2] {
         let Some(load) = self.plant.load.terms() else { return [Complex64::ZERO, s] };
         let [_, tied] = load.at(s);
@@ -197,12 +199,12 @@ impl PlantInMotion {
         [driven, tied * held].map(|path| s * path / divisor)
     }
 
-    /// Shown velocity of the load over the true one.
+    /// Ratio of measured to true velocity of the load.
     fn velocity_gain(&self) -> f64 {
         self.plant.velocity_sensor.gain.unwrap_or(1.0)
     }
 
-    /// Gain in V s/m from the true velocity of the load to the command.
+    /// Gain from the true velocity of the load to the command, V s/m.
     fn fed_gain(&self) -> Option<f64> {
         self.plant.load_velocity_feed_forward.map(|gain| gain * self.velocity_gain())
     }
@@ -222,7 +224,7 @@ impl PlantInMotion {
         self.against_load(s, spool, chambers, moved)
     }
 
-    /// p/U_C in Pa/V and p/X_0 in Pa/m of the signal p_A - phi p_B: as polynomials are, see
+    /// Paths p/U_C in Pa/V and p/X_0 in Pa/m of the signal p_A - phi p_B, like the polynomials of
     /// [`LinearPlant::coefficients`]. Nothing is fed forward or back in the plant.
     fn signal(&self, s: Complex64, ratio: f64) -> [Complex64; 2] {
         let spool = self.spool(s);
@@ -248,7 +250,7 @@ impl PlantInMotion {
         A::from(square) / (s * s + turned + A::from(square))
     }
 
-    /// Q of these chambers.
+    /// Denominator Q for these chambers.
     fn resisted<A: Analytic>(&self, s: A, chambers: &ChamberPolynomials<A>) -> A {
         let rubbed = s.scaled(self.plant.moving_mass) + A::from(self.plant.viscous_friction);
         let moved = s * (rubbed * chambers.own + chambers.displaced);
@@ -256,7 +258,7 @@ impl PlantInMotion {
         stiffness.map_or(moved, |stiffness| moved + chambers.own.scaled(stiffness))
     }
 
-    /// Valve and chambers with this Q against the load.
+    /// Valve and chambers with this Q, connected to the load.
     fn against_load<A: Analytic>(
         &self,
         s: A,
@@ -300,8 +302,8 @@ impl PlantInMotion {
         }
     }
 
-    /// D, N_u and N_v at s with the pressures fed back behind a spool S, see [`PressureFeedback`]:
-    /// D + S H N_p, N_u and N_v + S H m.
+    /// Polynomials D, N_u and N_v at s with the pressures fed back behind a spool S, see
+    /// [`PressureFeedback`]: D + S H N_p, N_u and N_v + S H m.
     fn with_feedback<A: Analytic>(&self, s: A, spool: A) -> ChamberPolynomials<A> {
         let (across, at) = (self.across(s), self.at_chambers(s));
         let areas = self.sides.map(|side| side.area);
@@ -321,7 +323,7 @@ impl PlantInMotion {
         }
     }
 
-    /// D, N_u and N_v of a reading with what flows from chamber to chamber.
+    /// Polynomials D, N_u and N_v of a reading with the flow from chamber to chamber.
     fn read<A: Analytic>(
         &self,
         s: A,
@@ -340,7 +342,7 @@ impl PlantInMotion {
         }
     }
 
-    /// m over A_B - phi A_A, see [`PressureFeedback`].
+    /// Determinant m over A_B - phi A_A, see [`PressureFeedback`].
     fn turned<A: Analytic>(&self, s: A, at: &[AtChamber<A>; 2]) -> A {
         let areas = self.sides.map(|side| side.area);
         match &self.plant.supply {
@@ -359,8 +361,8 @@ impl PlantInMotion {
         [one.at_chamber(line, s), other.at_chamber(across, s)]
     }
 
-    /// D, N_u and N_v of a reading at s on a constant supply, multiplied by the transmission of
-    /// both lines, so that nothing is divided by a quantity that vanishes at a resonance.
+    /// Polynomials D, N_u and N_v of a reading at s on a constant supply, multiplied by the
+    /// transmission of both lines, so that no divisor vanishes at a resonance.
     fn chambers<A: Analytic>(&self, at: &[AtChamber<A>; 2], reading: &Reading<f64>) -> ChamberPair<A> {
         let [one, other] = at;
         let [gain_a, gain_b] = self.sides.map(|side| side.flow_gain);
@@ -393,7 +395,8 @@ impl PlantInMotion {
         }
     }
 
-    /// With a supply that yields. Its edges end at the valve's ports, whose pressures are, with a d
+    /// Chambers with a supply that yields. Its edges end at the valve's ports, whose pressures are,
+    /// with a d
     /// - b c = 1,
     ///
     /// ```text
@@ -418,9 +421,9 @@ impl PlantInMotion {
         }
     }
 
-    /// Whether nothing in it except what is fed forward and back supplies energy, so that without
-    /// these none of its poles lies in the right half plane: its lines are passive, and so are
-    /// valve, leakage, friction and load where none of their coefficients is negative.
+    /// True if only its feed-forward and feedback can supply energy, so that without these none of
+    /// its poles is in the right half plane: its lines are passive, and so are valve, leakage,
+    /// friction and load if none of their coefficients is negative.
     pub fn is_passive(&self) -> bool {
         let load = self.plant.load.terms().map_or([0.0; 3], |load| load.own());
         let series = self.plant.series.iter().flat_map(LinearSeries::numbers);
@@ -442,8 +445,7 @@ impl PlantInMotion {
         beyond.chain(of_sides).chain(of_supply).chain(feedback).all(|value| value >= 0.0)
     }
 
-    /// Where the slower line is a quarter of a wave long, pi/(2 T) in rad/s; `None` where no wave
-    /// travels.
+    /// Quarter-wave frequency pi/(2 T) of the slower line, rad/s; `None` without waves.
     pub fn quarter_wave_rad_per_s(&self) -> Option<f64> {
         let delays = self.sides.iter().flat_map(|side| side.line.delays());
         let longest = delays.fold(0.0, f64::max);

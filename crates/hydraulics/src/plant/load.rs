@@ -5,71 +5,71 @@ use phea_dynamics::uncertain_plant::PlantCoefficients;
 use super::LinearPlant;
 use crate::linear::polynomial::scaled;
 
-/// The load on the force sensor, linearised at the operating point.
+/// Load on the force sensor, linearised at the operating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LinearLoad<S = f64> {
-    /// Its motion is prescribed, whatever the force.
+    /// Prescribed motion, for any force.
     Prescribed,
-    /// A mass that yields, held to its ground by a spring and a damper; a wall that is touched is
-    /// the spring.
+    /// Mass that yields, held to its ground by a spring and a damper; a wall in contact is the
+    /// spring.
     Yielding {
-        /// Mass m in kg.
+        /// Mass m, kg.
         mass: S,
-        /// Damping c in N s/m.
+        /// Damping c, N s/m.
         damping: S,
-        /// Stiffness k in N/m; zero where no wall is touched.
+        /// Stiffness k, N/m; zero without contact with a wall.
         stiffness: S,
     },
-    /// A mass that nothing holds to its ground but a damper. Its position is open and no force
-    /// depends on it: the factor s that all polynomials have in common is left out.
+    /// Mass tied to its ground by a damper only. Its position is undetermined and no force depends
+    /// on it: the common factor s of all polynomials is omitted.
     Free {
-        /// Mass m in kg.
+        /// Mass m, kg.
         mass: S,
-        /// Damping c in N s/m.
+        /// Damping c, N s/m.
         damping: S,
     },
-    /// A load that turns behind a linkage, with X_0 = r Theta_0 the way of the rod that follows
-    /// from the angle of its ground.
+    /// Load that turns behind a linkage, with X_0 = r Theta_0 the displacement of the rod that
+    /// follows from the angle of its ground.
     ///
     /// ```text
     /// (J s^2 + c s + k + k_g + k_w) X_L = r^2 F_L + (c s + k) X_0,     k_g = -F g''(theta) at a force F
     /// ```
     ///
-    /// Nothing is divided by r, so that an interval of positions keeps the sign of J.
+    /// No term is divided by r, so that an interval of positions preserves the sign of J.
     Linked {
-        /// Inertia J in kg m2.
+        /// Inertia J, kg m2.
         inertia: S,
-        /// Damping c in N m s/rad.
+        /// Damping c, N m s/rad.
         damping: S,
-        /// Stiffness k in N m/rad of what holds it to its ground.
+        /// Stiffness k of the connection to its ground, N m/rad.
         stiffness: S,
-        /// Stiffness k_g in N m/rad by the change of the lever arm under the force there, and k_w
-        /// by that of the load's weight; may be negative.
+        /// Stiffness k_g from the change of the lever arm under the force there, N m/rad, and k_w
+        /// from that of the load's weight; may be negative.
         geometric_stiffness: S,
-        /// Lever arm r = g' in m.
+        /// Lever arm r = g', m.
         lever_arm: S,
     },
 }
 
-/// The polynomials of a load that yields, the highest power first.
+/// Polynomials of a load that yields, highest power first.
 ///
 /// ```text
 /// Z X_L = share F_L + T X_0
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LoadTerms<S> {
-    /// m or J.
+    /// Mass m or inertia J.
     mass: S,
-    /// T: c and k, which tie it to its ground.
+    /// Polynomial T: c and k, which tie the load to its ground.
     pub(super) ground: [S; 2],
-    /// k_g
+    /// Geometric stiffness k_g.
     geometric: Option<S>,
-    /// r^2 of a linkage; `None` for one.
+    /// Factor r^2 of a linkage; `None` for one.
     pub(super) share: Option<S>,
 }
 
 impl<S: Scalar> LinearLoad<S> {
-    /// Its polynomials; `None` where its motion is prescribed.
+    /// Polynomials of the load; `None` if its motion is prescribed.
     pub(super) fn terms(&self) -> Option<LoadTerms<S>> {
         match *self {
             LinearLoad::Prescribed => None,
@@ -92,12 +92,12 @@ impl<S: Scalar> LinearLoad<S> {
 }
 
 impl LinearLoad {
-    /// Stiffness in N/m that holds it against a force of the rod at rest, behind a linkage
-    /// (k + k_g)/r^2; `None` where nothing does: a prescribed motion, a free mass, a linkage that
-    /// gives way.
+    /// Stiffness in N/m that holds the load against a force of the rod at rest, behind a linkage
+    /// (k + k_g)/r^2; `None` if there is no such stiffness: a prescribed motion, a free mass, an
+    /// unstable linkage.
     ///
     /// # Example
-    /// Behind a lever arm of half a metre a torsion spring is four times as stiff.
+    /// Behind a lever arm of half a metre a torsion spring is four times as stiff:
     /// ```
     /// use phea_hydraulics::plant::LinearLoad;
     /// let turned = LinearLoad::Linked {
@@ -114,8 +114,8 @@ impl LinearLoad {
 }
 
 impl<S: Scalar> LinearPlant<S> {
-    /// Of a free mass the coefficients without the factor s in common; it is not in common where
-    /// the output or the piston depends on the position.
+    /// Coefficients for a free mass without the common factor s; the factor is not common if the
+    /// output or the piston depends on the position.
     pub(super) fn of_free_load(&self, mut plant: PlantCoefficients<S>) -> PlantCoefficients<S> {
         let LinearLoad::Free { .. } = self.load else { return plant };
         if self.virtual_impedance.is_some() || self.area_stiffness.is_some() {
@@ -137,18 +137,18 @@ impl<S: Scalar> LinearPlant<S> {
 }
 
 impl<S: Scalar> LoadTerms<S> {
-    /// Z: m, c and k with k_g.
+    /// Polynomial Z: m, c and k with k_g.
     pub(super) fn own(&self) -> [S; 3] {
         let [damping, stiffness] = self.ground;
         [self.mass, damping, self.geometric.map_or(stiffness, |geometric| stiffness + geometric)]
     }
 
-    /// A number of the rod's force times the share with which this load is moved by it.
+    /// Number of the rod's force times the factor of its effect on this load.
     pub(super) fn moved_by(&self, number: S) -> S {
         self.share.map_or(number, |share| number * share)
     }
 
-    /// A polynomial likewise.
+    /// Polynomial times this factor.
     pub(super) fn moved(&self, polynomial: Vec<S>) -> Vec<S> {
         match self.share {
             None => polynomial,
@@ -158,18 +158,18 @@ impl<S: Scalar> LoadTerms<S> {
 }
 
 impl LoadTerms<f64> {
-    /// Z over the share with which the rod's force moves it.
+    /// Polynomial Z over the factor of the rod force's effect on the load.
     pub(super) fn reflected(&self) -> [f64; 3] {
         let own = self.own();
         self.share.map_or(own, |share| own.map(|number| number / share))
     }
 
-    /// A value times that share.
+    /// Value times this factor.
     pub(super) fn moved_at<A: Analytic>(&self, value: A) -> A {
         self.share.map_or(value, |share| value.scaled(share))
     }
 
-    /// Z and what ties it to its ground, at s.
+    /// Polynomial Z and the connection to ground, at s.
     pub(super) fn at<A: Analytic>(&self, s: A) -> [A; 2] {
         let [damping, stiffness] = self.ground;
         let tied = s.scaled(damping) + A::from(stiffness);

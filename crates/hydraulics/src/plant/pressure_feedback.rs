@@ -1,4 +1,4 @@
-//! The feedback of the chambers' pressures to the command: active damping.
+//! Feedback of the chambers' pressures to the command: active damping.
 
 use phea_dynamics::controller::InnerFeedback;
 use phea_dynamics::scalar::Scalar;
@@ -8,7 +8,7 @@ use super::chambers::{ChamberPolynomials, Reading};
 use super::{LinearPlant, LinearSeries, SeriesOutput, product, scaled, shifted, sum};
 use crate::cross_port::DynamicFeedback;
 
-/// A pressure signal that is fed back to the command.
+/// Pressure signal that is fed back to the command.
 ///
 /// ```text
 /// u = u_C - H p,     p = p_A - phi p_B,     D p = N_p U_sp - N_x s X      chambers, as D F_h = N_u U_sp - N_v s X
@@ -16,13 +16,13 @@ use crate::cross_port::DynamicFeedback;
 /// m = (N_v N_p - N_x N_u)/D = (A_B - phi A_A) (A_B K_qA - A_A K_qB)       no supply that yields
 /// ```
 ///
-/// m is the determinant that is left of two pressures: a number, and zero for equal chambers as for
-/// phi = A_B/A_A, where the signal is the load pressure F_h/A_A. Between equal chambers H of a fast
-/// spool so is an admittance K_qU H beside the flow-pressure coefficient K_c: it damps as leakage
-/// across the piston does, and a high pass in it leaves the stiffness at rest.
+/// The term m is the remaining determinant of two pressures: a number, and zero for equal chambers
+/// and for phi = A_B/A_A, where the signal is the load pressure F_h/A_A. So with equal chambers and
+/// a fast spool, H is an admittance K_qU H in addition to the flow-pressure coefficient K_c: it
+/// damps like leakage across the piston, and with a high pass it preserves the stiffness at rest.
 ///
 /// # Example
-/// A fast spool with a gain k is the plant with k K_qU more leakage across the piston.
+/// With a fast spool and a gain k, the plant has an additional leakage k K_qU across the piston:
 /// ```
 /// # use phea_hydraulics::linear::LinearParameters;
 /// use phea_dynamics::controller::InnerFeedback;
@@ -42,19 +42,19 @@ use crate::cross_port::DynamicFeedback;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PressureFeedback {
-    /// H, V/Pa.
+    /// Filter H, V/Pa.
     pub filter: InnerFeedback,
-    /// phi: how many pascals in chamber B count as one in chamber A.
+    /// Ratio phi: weight of a pascal in chamber B relative to one in chamber A.
     pub ratio: f64,
 }
 
 /// Polynomials of the valve with its chambers, highest power first.
 pub(super) struct ValveAndChambers<S> {
-    /// D, N_u and N_v, or what takes their place.
+    /// Polynomials D, N_u and N_v, or their replacements.
     pub(super) chambers: ChamberPolynomials<Vec<S>>,
-    /// V, or one where the chambers have it.
+    /// Polynomial V, or one if the chambers include it.
     pub(super) spool: Vec<S>,
-    /// w^2, or one.
+    /// Factor w^2, or one.
     pub(super) square: S,
 }
 
@@ -67,7 +67,7 @@ impl PressureFeedback {
 }
 
 impl<S: Scalar> LinearPlant<S> {
-    /// V, w^2 and the chambers; with pressure feedback H = n/d one and one, and
+    /// Polynomial V, w^2 and the chambers; with pressure feedback H = n/d one and one, and
     ///
     /// ```text
     /// D -> V D d + w^2 n N_p,     N_u -> w^2 d N_u,     N_v -> V d N_v + w^2 n m
@@ -93,7 +93,7 @@ impl<S: Scalar> LinearPlant<S> {
         ValveAndChambers { chambers, spool: vec![one], square: one }
     }
 
-    /// N_p and m of the signal p_A - phi p_B, over the D of the force.
+    /// Polynomials N_p and m of the signal p_A - phi p_B, over the D of the force.
     fn signal(&self, ratio: f64) -> [Vec<S>; 2] {
         let areas = self.chambers.areas();
         let signal = self.chamber_polynomials(&Reading::of_signal(ratio, areas)).driven;
@@ -105,7 +105,7 @@ impl<S: Scalar> LinearPlant<S> {
         [signal, turned]
     }
 
-    /// The plant with the paths to the signal p_A - phi p_B, for a loop that samples it: those of
+    /// Plant with the paths to the signal p_A - phi p_B, for a loop that samples it: the paths of
     /// the force without a virtual impedance, with N_p and m for D and N_v in the denominator, and
     /// N_x s for Q in the numerator of the motion.
     ///
@@ -148,7 +148,7 @@ impl<S: Scalar> LinearPlant<S> {
         plant
     }
 
-    /// m over A_B - phi A_A.
+    /// Determinant m over A_B - phi A_A.
     fn turned(&self) -> Vec<S> {
         if let Some(supply) = &self.supply {
             return self.chambers.behind(supply, self.gas).turned(self.chambers.areas());

@@ -1,4 +1,4 @@
-//! The spring or transmission between force sensor and load in the linear plant.
+//! Spring or transmission between force sensor and load in the linear plant.
 
 use phea_dynamics::analytic::Analytic;
 use phea_dynamics::scalar::Scalar;
@@ -12,10 +12,10 @@ use crate::line::StiffeningMember;
 use crate::linear::polynomial::{product, scaled, shifted, sum};
 use crate::series::{ForceFrom, MovingSeries, OilColumn, SeriesSpring};
 
-/// A series element for small motions about an operating point.
+/// Series element for small motions about an operating point.
 ///
-/// Whatever it is, force and displacement at the sensor are those at the load by a matrix, whose
-/// determinant is one, so that it is reciprocal:
+/// For any element, force and displacement at the sensor follow from those at the load by a matrix
+/// with determinant one, so that the element is reciprocal:
 ///
 /// ```text
 /// F_s = (alpha F_L + beta t X_L)/t,    X_m = (gamma F_L + delta t X_L)/t
@@ -24,7 +24,7 @@ use crate::series::{ForceFrom, MovingSeries, OilColumn, SeriesSpring};
 ///               K = ((1, 0), (1/k, 1)) of a spring,   M = ((1, m s^2 + b s), (0, 1)) of a plug
 /// ```
 ///
-/// With Q and D of the plant without it, between rod and sensor:
+/// For Q and D of the plant without it, between rod and sensor:
 ///
 /// ```text
 /// Delta = Q (alpha + K gamma) + K D alpha,     B = (Q + K D) beta/K + Q delta       K = K_S
@@ -33,25 +33,25 @@ use crate::series::{ForceFrom, MovingSeries, OilColumn, SeriesSpring};
 /// F_d = F_L/t                                                             by the deflection of the spring
 /// ```
 ///
-/// [`LinearPlant::coefficients`] closes them with the load.
+/// The load closes the equations in [`LinearPlant::coefficients`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearSeries<S = f64> {
-    /// What it is.
+    /// Type of element.
     pub element: LinearElement<S>,
-    /// Which force is the output of the plant.
+    /// Force that is the output of the plant.
     pub output: SeriesOutput,
 }
 
-/// A series element for small motions.
+/// Series element for small motions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LinearElement<S = f64> {
     /// A spring.
     Spring(LinearSpring<S>),
-    /// The oil of a transmission, which is linear.
+    /// Oil of a transmission, which is linear.
     Oil(OilColumn<S>),
 }
 
-/// A series spring for small motions. Units: N/m, N s/m, kg.
+/// Series spring for small motions. Units: N/m, N s/m, kg.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearSpring<S = f64> {
     /// Stiffness k of the spring at its deflection.
@@ -62,19 +62,19 @@ pub struct LinearSpring<S = f64> {
     pub mass: Option<S>,
 }
 
-/// The force that a plant with a series element gives out.
+/// Output force of a plant with a series element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SeriesOutput {
-    /// Through the force sensor.
+    /// Force through the force sensor.
     Sensor,
-    /// k times the deflection of the spring.
+    /// Force k times the deflection of the spring.
     Deflection,
-    /// On the load.
+    /// Force on the load.
     OnLoad,
 }
 
 impl<S: Scalar> LinearSeries<S> {
-    /// A spring about the deflection at which it holds a force in N.
+    /// Spring about the deflection at which it holds a force in N.
     pub fn of_spring(spring: &SeriesSpring<S>, force: S) -> LinearSeries<S> {
         LinearSeries {
             element: LinearElement::Spring(LinearSpring {
@@ -89,7 +89,7 @@ impl<S: Scalar> LinearSeries<S> {
         }
     }
 
-    /// The series element of a rig where it holds a force in N; `None` where there is none.
+    /// Series element of a rig at a held force in N; `None` without one.
     pub fn of_components(components: &Components<S>, force: S) -> Option<LinearSeries<S>> {
         match components.series.as_ref()?.in_motion(&components.fluid, StiffeningMember::Nominal) {
             MovingSeries::Spring(spring) => Some(LinearSeries::of_spring(&spring, force)),
@@ -99,7 +99,7 @@ impl<S: Scalar> LinearSeries<S> {
         }
     }
 
-    /// Stiffness in N/m for slow motions.
+    /// Stiffness for slow motions, N/m.
     pub fn stiffness(&self) -> S {
         match &self.element {
             LinearElement::Spring(spring) => spring.stiffness,
@@ -107,14 +107,14 @@ impl<S: Scalar> LinearSeries<S> {
         }
     }
 
-    /// Whether it is a spring alone, which makes the force sensor softer and nothing else.
+    /// True if it is a spring without mass or damper, which only makes the force sensor softer.
     pub fn is_spring_alone(&self) -> bool {
         let LinearElement::Spring(spring) = &self.element else { return false };
         spring.damping.is_none() && spring.mass.is_none()
     }
 
-    /// beta: the force through the sensor that does not reach the load, for a unit of the motion of
-    /// the load; `None` where both forces are the same.
+    /// Coefficient beta: the force through the sensor that does not reach the load, per unit motion
+    /// of the load; `None` if both forces are equal.
     pub fn held_back(&self) -> Option<Vec<S>> {
         match &self.element {
             LinearElement::Spring(spring) => spring.mass.map(|mass| vec![mass, S::from(0.0), S::from(0.0)]),
@@ -123,8 +123,8 @@ impl<S: Scalar> LinearSeries<S> {
     }
 }
 
-/// The entries of the matrix: t, alpha, beta, K_S gamma and delta, as polynomials or as their
-/// values; `None` for a beta of zero and a delta of one.
+/// Entries of the matrix: t, alpha, beta, K_S gamma and delta, as polynomials or as their values;
+/// `None` for a beta of zero and a delta of one.
 struct SeriesMatrix<T> {
     tied: T,
     force: T,
@@ -133,8 +133,8 @@ struct SeriesMatrix<T> {
     moved: Option<T>,
 }
 
-/// What a series element is between. `driven` is K w^2 N_u, `spool` V, `fed` what the velocity of
-/// the load adds to `driven` for a unit of its motion.
+/// Plant on either side of a series element. `driven` is K w^2 N_u, `spool` V, `fed` the
+/// contribution of the load's velocity to `driven` per unit of its motion.
 struct Between<'a, S, T> {
     chambers: &'a ChamberPolynomials<T>,
     moved: &'a T,
@@ -143,12 +143,12 @@ struct Between<'a, S, T> {
     fed: Option<&'a T>,
     sensor: S,
     load: Option<[T; 2]>,
-    /// Of a linkage, r^2 by which the force on the load counts there; `None` for one.
+    /// Factor r^2 of a linkage for the force on the load; `None` for one.
     share: Option<S>,
 }
 
 impl<S: Scalar> LinearSeries<S> {
-    /// All paths through the element; `load` is its own polynomial and that of its ground.
+    /// All paths through the element; `load` has the polynomial of the load and that of its ground.
     fn paths<T: Admittance<S> + Clone>(
         &self,
         matrix: &SeriesMatrix<T>,
@@ -212,7 +212,7 @@ impl<S: Scalar> LinearSeries<S> {
         }
     }
 
-    /// The matrix as polynomials, for a sensor of this stiffness in N/m.
+    /// Matrix as polynomials, for a sensor of this stiffness in N/m.
     fn polynomials(&self, sensor: S) -> SeriesMatrix<Vec<S>> {
         let (one, zero) = (S::from(1.0), S::from(0.0));
         match &self.element {
@@ -232,14 +232,14 @@ impl<S: Scalar> LinearSeries<S> {
     }
 }
 
-/// One and m s^2 + b s of an oil column.
+/// Polynomials one and m s^2 + b s of an oil column.
 fn plug_polynomials<S: Scalar>(column: &OilColumn<S>) -> [Vec<S>; 2] {
     [vec![S::from(1.0)], vec![column.mass, column.damping, S::from(0.0)]]
 }
 
 impl<S: Scalar> OilColumn<S> {
-    /// Its matrix, from one and m s^2 + b s, as polynomials or as their values; with gamma in
-    /// place of K_S gamma.
+    /// Matrix of the oil column, from one and m s^2 + b s, as polynomials or as their values; with
+    /// gamma in place of K_S gamma.
     fn matrix<T: Admittance<S> + Clone>(&self, [one, plug]: &[T; 2]) -> SeriesMatrix<T> {
         let spring = |plugs: usize| S::from(1.0) / self.stiffness_behind(plugs);
         // (alpha, beta) and (gamma, delta) of the first spring, then of each plug and the spring
@@ -257,7 +257,7 @@ impl<S: Scalar> OilColumn<S> {
 }
 
 impl<T> SeriesMatrix<T> {
-    /// The same for a sensor of this stiffness in N/m.
+    /// Matrix for a sensor of this stiffness in N/m.
     fn yielding<S>(self, sensor: S) -> SeriesMatrix<T>
     where
         T: Admittance<S>,
@@ -266,19 +266,19 @@ impl<T> SeriesMatrix<T> {
     }
 }
 
-/// What lies beyond the force sensor, at one frequency and, falling, above it.
+/// Bounds for the part beyond the force sensor, at one frequency and, decreasing, above it.
 pub(super) struct BeyondSensor {
-    /// At most the velocity there over the force through the sensor, where it makes the sensor's
-    /// own deflection less, in m/(s N).
+    /// Largest ratio of the velocity there to the force through the sensor, if it reduces the
+    /// sensor's own deflection, m/(s N).
     pub(super) yielding: f64,
-    /// At most the share of that force which reaches the load, and the output of the plant over it.
+    /// Largest fraction of that force which reaches the load, and the output of the plant over it.
     pub(super) passed: f64,
     pub(super) output: f64,
 }
 
-/// At most the force that passes a mass over the one before it, and the velocity of the mass over
-/// that force; of w m, the impedance of the spring behind it, and the mobility behind that. `None`
-/// at too low a frequency.
+/// Largest ratio of the force that passes a mass to the force before it, and of the velocity of the
+/// mass to that force; from w m, the impedance of the spring behind it, and the mobility behind
+/// that. `None` at too low a frequency.
 fn beyond_mass(inertia: f64, tied: f64, speed: f64) -> Option<(f64, f64)> {
     let left = 1.0 - tied * speed;
     let yielding = 1.0 / (inertia - tied / left);
@@ -286,14 +286,14 @@ fn beyond_mass(inertia: f64, tied: f64, speed: f64) -> Option<(f64, f64)> {
 }
 
 impl LinearSeries {
-    /// Bounds at a frequency w in rad/s; of the load, displacement and velocity per newton. `None`
-    /// where this frequency is too low for them.
+    /// Bounds at a frequency w in rad/s, from displacement and velocity of the load per newton.
+    /// `None` if this frequency is too low for them.
     ///
     /// ```text
     /// v_m = Y F_s,   Y = 1/(m s + Z),   1/Z = s/T + Y_L                  F_L = Z Y F_s
     /// without m   Y = s/T + Y_L: spring and damper yield with the sensor, Im (s/T) >= 0, and F_L = F_s
     /// with m      |Z| <= |T/s|/(1 - |T/s| |Y_L|) = Z_0,   |Y| <= 1/(w m - Z_0)
-    /// oil         the same from plug to plug, |m s + b| >= w m; its first spring yields with the sensor
+    /// oil         likewise from plug to plug, |m s + b| >= w m; its first spring yields with the sensor
     /// ```
     pub(super) fn beyond_sensor(&self, w: f64, [yielding, speed]: [f64; 2]) -> Option<BeyondSensor> {
         let (passed, yielding) = match &self.element {
@@ -316,8 +316,8 @@ impl LinearSeries {
         Some(BeyondSensor { yielding, passed, output })
     }
 
-    /// Above this frequency in rad/s no mode of it lies, on a sensor of this stiffness in N/m;
-    /// `None` for an element that has none.
+    /// Frequency in rad/s above all modes of the element on a sensor of this stiffness in N/m;
+    /// `None` for an element without modes.
     pub(super) fn fastest_rad_per_s(&self, sensor: f64) -> Option<f64> {
         match &self.element {
             LinearElement::Spring(spring) => Some(((sensor + spring.stiffness) / spring.mass?).sqrt()),
@@ -325,15 +325,15 @@ impl LinearSeries {
         }
     }
 
-    /// Below this frequency in rad/s the resistance of a transmission takes less than its springs;
-    /// `None` without one.
+    /// Frequency in rad/s below which the resistance of a transmission is less than its springs;
+    /// `None` without a transmission.
     pub(super) fn slowest_rad_per_s(&self) -> Option<f64> {
         let LinearElement::Oil(column) = &self.element else { return None };
         let resisted = column.damping * column.segments as f64;
         (resisted > 0.0).then(|| column.stiffness() / resisted)
     }
 
-    /// Every number of it: it is passive where none is negative.
+    /// All numbers of the element: it is passive if none is negative.
     pub(super) fn numbers(&self) -> Vec<f64> {
         match &self.element {
             LinearElement::Spring(spring) => {
@@ -345,7 +345,7 @@ impl LinearSeries {
         }
     }
 
-    /// The matrix at s, for a sensor of this stiffness in N/m.
+    /// Matrix at s, for a sensor of this stiffness in N/m.
     fn values<A: Analytic>(&self, s: A, sensor: f64) -> SeriesMatrix<Over<A>> {
         let one = A::from(1.0);
         match &self.element {
@@ -368,7 +368,7 @@ impl LinearSeries {
         }
     }
 
-    /// The paths of a plant without polynomials at s; `driven` includes the spool.
+    /// Paths of a plant without polynomials at s; `driven` includes the spool.
     pub(super) fn responding<A: Analytic>(
         &self,
         plant: &LinearPlant,
@@ -406,7 +406,8 @@ impl LinearSeries {
 }
 
 impl<S: Scalar> LinearPlant<S> {
-    /// [`LinearPlant::coefficients`] with a series element. `driven` is K w^2 N_u, `moved` Q.
+    /// Coefficients as in [`LinearPlant::coefficients`] with a series element. `driven` is K w^2
+    /// N_u, `moved` Q.
     pub(super) fn coefficients_through(
         &self,
         series: &LinearSeries<S>,
@@ -415,8 +416,8 @@ impl<S: Scalar> LinearPlant<S> {
     ) -> PlantCoefficients<S> {
         let shows = &self.velocity_sensor;
         let fed = self.load_velocity_feed_forward.map(|gain| shows.shown(shifted(&scaled(gain, &driven))));
-        // the filter of the velocity that is fed forward, where one is: d_v times every path but
-        // that
+        // the filter of the velocity that is fed forward, if there is one: d_v times every other
+        // path
         let filtered =
             |path: &Vec<S>| if fed.is_some() { shows.filtered(path.clone()) } else { path.clone() };
         let matrix = series.polynomials(self.sensor_stiffness);
@@ -436,7 +437,7 @@ impl<S: Scalar> LinearPlant<S> {
                     command: RationalCoefficients { numerator: command, denominator: held },
                     disturbance: Some(self.beside_motion(ground, denominator)),
                     dead_time_s: S::from(0.0),
-                    // what is shown of the rate of X_0 itself
+                    // measured rate of X_0 itself
                     rate: disturbance.map(|disturbance| RateNumerators {
                         command: vec![S::from(0.0)],
                         disturbance,

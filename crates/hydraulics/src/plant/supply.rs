@@ -8,32 +8,33 @@ use crate::orifice::{regular_root, regular_root_slope};
 use crate::power_unit::PumpLimited;
 use crate::servovalve::{SpoolDirection, supply_coefficients};
 
-/// A supply whose pressure is a state, for small motions. Units: m3/Pa, m3/(s Pa), m3/(s V).
+/// Supply whose pressure is a state, for small motions. Units: m3/Pa, m3/(s Pa), m3/(s V).
 ///
 /// ```text
 /// (C_S s + G_S) p_S = -q_S,    q_S = K_qS U + s_A (p_S - p_A) + s_B (p_S - p_B)     at the valve's ports
 /// q_A = ... + s_A p_S,    q_B = ... + s_B p_S                                       into the chambers
-/// G_S = q_pump/dp_o where the relief valve is open, 0 where it is shut; with it the slope of the tare flow
+/// G_S = q_pump/dp_o if the relief valve is open, 0 if it is shut; plus the slope of the tare flow
 /// ```
 ///
-/// These are [`crate::machine::PowerUnit`] differentiated. Where s_A and s_B are equal, and so are
-/// the chambers, the pressures of a symmetric cylinder rise and fall together with p_S, and the
-/// force does not see it.
+/// These are [`crate::machine::PowerUnit`] differentiated. If s_A equals s_B and the chambers are
+/// equal, both pressures of a symmetric cylinder follow p_S, without effect on the force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct YieldingSupply<S = f64> {
     /// Compliance C_S of the supply line with its accumulator.
     pub compliance: S,
-    /// What relief valve and tare flow take more with the pressure, G_S.
+    /// Conductance G_S of relief valve and tare flow.
     pub conductance: S,
-    /// What the edges from the supply give more with its pressure, s_A and s_B.
+    /// Coefficients s_A and s_B: increase of the flow through the edges from the supply with the
+    /// supply pressure.
     pub edges: [S; 2],
-    /// What they take more with the spool, K_qS.
+    /// Gain K_qS: increase of these flows with the spool position.
     pub flow_gain: S,
 }
 
 impl<S: Scalar> YieldingSupply<S> {
-    /// That of a power unit where supply, valve and chambers settled; `stated` is the pressure in
-    /// Pa that an idle pump holds, and `tare_drop` the one in Pa at which the tare flow is stated.
+    /// Supply of a power unit at an equilibrium of supply, valve and chambers; `stated` is the
+    /// pressure in Pa that an idle pump holds, and `tare_drop` the drop in Pa at which the tare
+    /// flow is stated.
     pub fn new(
         unit: &PumpLimited<S>,
         balance: &Balance<S>,
@@ -59,21 +60,20 @@ impl<S: Scalar> YieldingSupply<S> {
     }
 }
 
-/// What the pressures are found from: admittances of both chambers and of the supply, and how they
-/// are coupled.
+/// Equations of the pressures: admittances of both chambers and of the supply, and their coupling.
 pub(super) struct Coupled<T> {
-    /// Of chamber A, chamber B and the supply, everything that is tied to it but the flow from
-    /// chamber to chamber.
+    /// Own admittances of chamber A, chamber B and the supply: all that is connected to each except
+    /// the flow from chamber to chamber.
     pub(super) own: [T; 3],
-    /// By which the first two are multiplied, and by whose product the result is; `None` for one.
+    /// Factors of the first two, whose product multiplies the result; `None` for one.
     pub(super) passed: Option<[T; 2]>,
-    /// From the supply into each chamber.
+    /// Coupling from the supply into each chamber.
     pub(super) edges: [T; 2],
-    /// What the spool gives to chamber A, takes from chamber B, and takes from the supply.
+    /// Gains of the spool: flow to chamber A, flow from chamber B, and flow from the supply.
     pub(super) gains: [T; 3],
 }
 
-/// What admittances are multiplied and added as.
+/// Quantity that can be multiplied and added as an admittance.
 pub(super) trait Admittance<S>: Sized {
     fn plus(&self, other: &Self) -> Self;
     fn times(&self, other: &Self) -> Self;
@@ -92,7 +92,7 @@ impl<S: Scalar> Admittance<S> for Vec<S> {
     }
 }
 
-/// A value at s, or over a set of such.
+/// Value at s, or over a set of values of s.
 #[derive(Clone, Copy)]
 pub(super) struct Over<A>(pub(super) A);
 
@@ -109,7 +109,7 @@ impl<A: Analytic> Admittance<f64> for Over<A> {
 }
 
 impl<T> Coupled<T> {
-    /// The admittance of both chambers as one.
+    /// Admittance of both chambers as one.
     fn together<S: Scalar>(&self) -> T
     where
         T: Admittance<S>,
@@ -121,7 +121,7 @@ impl<T> Coupled<T> {
         }
     }
 
-    /// D, N_u and N_v of these pressures by Cramer's rule, the areas in m2.
+    /// Polynomials D, N_u and N_v of these pressures by Cramer's rule, the areas in m2.
     ///
     /// ```text
     /// [ a     0   -s_A ] [p_A]   [ K_qA]       [-A_A]
@@ -169,8 +169,8 @@ impl<T> Coupled<T> {
         }
     }
 
-    /// det [A K] of areas and gains, expanded by what is left of the equations without two of them:
-    /// by it the pressures tell more than the force does, see
+    /// Determinant det [A K] of areas and gains, expanded by the minors of the equations: it is the
+    /// information in the pressures beyond the force, see
     /// [`PressureFeedback`](super::PressureFeedback).
     ///
     /// ```text

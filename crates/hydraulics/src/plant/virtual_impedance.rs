@@ -1,4 +1,4 @@
-//! The output of the linear plant with a virtual impedance: y = F_e + Z_v X_L.
+//! Output of the linear plant with a virtual impedance: y = F_e + Z_v X_L.
 
 use phea_dynamics::analytic::Analytic;
 use phea_dynamics::controller::VirtualImpedance;
@@ -15,7 +15,7 @@ fn terms<S: Scalar>(impedance: &VirtualImpedance) -> [Vec<S>; 2] {
 }
 
 impl<S: Scalar> LinearPlant<S> {
-    /// y/X_L where the motion of the load is prescribed, of F_e/X_L as a quotient.
+    /// Path y/X_L for a prescribed motion of the load, from F_e/X_L as a quotient.
     pub(super) fn beside_motion(&self, force: Vec<S>, denominator: Vec<S>) -> RationalCoefficients<S> {
         let Some(impedance) = &self.virtual_impedance else {
             return RationalCoefficients { numerator: force, denominator };
@@ -27,8 +27,8 @@ impl<S: Scalar> LinearPlant<S> {
         }
     }
 
-    /// The plant of a load that yields, of the force and the motion of the load by command and by
-    /// ground, all over one denominator.
+    /// Plant of a load that yields, from the paths of the force and the motion of the load by
+    /// command and by ground, all over one denominator.
     pub(super) fn of_yielding_load(
         &self,
         force: [Vec<S>; 2],
@@ -57,8 +57,8 @@ impl<S: Scalar> LinearPlant<S> {
 }
 
 impl<A: Analytic> Paths<A> {
-    /// The same with y in place of F_e, at s; `ground_of_load` is R of a load that yields, and
-    /// `None` where its motion is prescribed.
+    /// Paths with y in place of F_e, at s; `ground_of_load` is R of a load that yields, and `None`
+    /// if its motion is prescribed.
     pub(super) fn beside(
         self,
         impedance: Option<&VirtualImpedance>,

@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-/// What a pair of coil springs is wound from. Units: 1, Pa, Pa, kg/m3.
+/// Wire of a pair of coil springs. Units: 1, Pa, Pa, kg/m3.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoilWire {
     /// Spring index C: mean diameter of the coil over that of the wire.
@@ -13,8 +13,7 @@ pub struct CoilWire {
     pub density: f64,
 }
 
-/// Two equal coil springs against each other, one of which pushes and one of which pulls the load.
-/// Lengths in m.
+/// Pair of equal coil springs, opposed: one pushes and one pulls the load. Lengths in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoilPair {
     /// Factor K_w by which curvature and shear raise the stress.
@@ -25,25 +24,26 @@ pub struct CoilPair {
     pub coil_diameter: f64,
     /// Active coils n of either spring; two more are closed and ground.
     pub active_coils: f64,
-    /// Length of either spring where its coils touch.
+    /// Length of either spring with its coils in contact.
     pub solid_length: f64,
     /// Length of both in their housing, at rest.
     pub installed_length: f64,
-    /// Mass of both in kg.
+    /// Mass of both, kg.
     pub mass: f64,
 }
 
-/// Fewer active coils than this are not wound: the closed ends would decide the stiffness.
+/// Fewest active coils of a practical spring: with fewer, the closed ends would dominate the
+/// stiffness.
 pub const LEAST_ACTIVE_COILS: f64 = 2.0;
-/// Coils that are closed and ground at both ends together.
+/// Number of closed and ground coils at both ends together.
 const CLOSED_COILS: f64 = 2.0;
-/// Share of its greatest deflection by which a spring stays open, so that no coils touch.
+/// Fraction of its greatest deflection by which a spring stays open, so that no coils touch.
 const CLEARANCE: f64 = 0.15;
 
-/// The pair of coil springs with a stiffness k in N/m that holds a force F in N to either side.
+/// Pair of coil springs with a stiffness k in N/m that holds a force F in N to either side.
 ///
 /// ```text
-/// each spring   k/2, preloaded by F/2 so that neither goes slack: from 0 to F over 2 F/k
+/// each spring   k/2, preloaded by F/2 so that neither becomes slack: from 0 to F over 2 F/k
 /// Wahl          tau = K_w 8 F C/(pi d^2),    K_w = (4 C - 1)/(4 C - 4) + 0.615/C
 /// coils         k/2 = G d/(8 C^3 n)
 /// length        2 ((n + 2) d + 0.15 (2 F/k) + F/k)
@@ -53,7 +53,7 @@ const CLEARANCE: f64 = 0.15;
 /// Source: Wahl (1963), "Mechanical springs", second edition, McGraw-Hill.
 ///
 /// # Example
-/// A wire of that diameter carries the allowed stress, and the coils give the stiffness.
+/// A wire of that diameter carries the allowed stress, and the coils give the stiffness:
 /// ```
 /// use phea_hydraulics::series::{CoilWire, coil_pair};
 /// let wire = CoilWire { index: 4.0, allowed_shear_stress: 6e8, shear_modulus: 81.5e9, density: 7850.0 };

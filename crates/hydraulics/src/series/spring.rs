@@ -4,18 +4,18 @@ use super::ForceFrom;
 use crate::contact::Contact;
 use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
-/// A spring with damper and mass between force sensor and load. Units: N/m, N s/m, kg.
+/// Spring with damper and mass between force sensor and load. Units: N/m, N s/m, kg.
 ///
 /// ```text
 /// F_f(d) = k d (1 + b (d/t)^2)                        spring; b is zero for a linear one
 /// F_L = F_f(d) + c d' + F_ends(d, d')                 on the load, F_ends of Contact beyond the travel t
-/// m dv_m/dt = K_S (x - x_m) - F_L,   d = x_m - x_L    without a mass both forces are the same
+/// m dv_m/dt = K_S (x - x_m) - F_L,   d = x_m - x_L    without a mass both forces are equal
 /// ```
 ///
 /// Source: Pratt and Williamson (1995), "Series elastic actuators", IROS, for the arrangement.
 ///
 /// # Example
-/// Its force grows faster than its deflection, by the progression at the end of the travel.
+/// Its force grows faster than its deflection, by the progression at the end of the travel:
 /// ```
 /// use phea_hydraulics::series::{ForceFrom, SeriesSpring, SeriesTravel};
 /// let travel = SeriesTravel { travel: 0.01, progression: Some(0.5), ends: None };
@@ -27,27 +27,27 @@ use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeriesSpring<S = f64> {
-    /// Stiffness k of the spring, of a progressive one at rest.
+    /// Stiffness k of the spring; of a progressive one at rest.
     pub stiffness: S,
     /// Damping c parallel to the spring; `None` for no damper.
     pub damping: Option<S>,
     /// Mass m between sensor and spring; `None` for a massless connection.
     pub mass: Option<S>,
-    /// How far it yields; `None` for as far as it is pressed.
+    /// Travel of the spring; `None` for unlimited travel.
     pub travel: Option<SeriesTravel<S>>,
-    /// What the measured force is taken from.
+    /// Source of the measured force.
     pub force_from: ForceFrom,
 }
 
-/// The travel of a spring to either side.
+/// Travel of a spring to either side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeriesTravel<S = f64> {
-    /// Travel t in m to either side.
+    /// Travel t to either side, m.
     pub travel: S,
-    /// Progression b: share by which the force at the end of the travel exceeds k t; `None` for a
-    /// linear spring.
+    /// Progression b: fraction by which the force at the end of the travel exceeds k t; `None` for
+    /// a linear spring.
     pub progression: Option<S>,
-    /// What stops it there; `None` where the ends are reported and nothing stops it.
+    /// Stops at the ends; `None` if the ends are only reported.
     pub ends: Option<Contact<S>>,
 }
 
@@ -84,14 +84,14 @@ impl SeriesSpring {
         problems.into_vec()
     }
 
-    /// The deflection in m at which it holds a force in N at rest, its ends included.
+    /// Deflection at which it holds a force in N at rest, including its ends, m.
     ///
     /// ```text
     /// F_f(d) + F_ends(d, 0) = F
     /// ```
     pub fn deflection_under(&self, force: f64) -> f64 {
-        // the force is odd and convex from zero on, so that Newton's steps from beyond the root
-        // come back to it from one side
+        // the force is odd and convex from zero on, so that Newton steps from beyond the root
+        // return to it from one side
         let mut deflection = force / self.stiffness;
         for _ in 0..STEPS_MAXIMUM {
             let step = (self.elastic_force(deflection) - force) / self.elastic_slope(deflection);
@@ -105,14 +105,15 @@ impl SeriesSpring {
     }
 }
 
-/// Newton steps of a deflection: three suffice for a linear spring, about ten for any other.
+/// Largest number of Newton steps for a deflection: three suffice for a linear spring, about ten
+/// for any other.
 const STEPS_MAXIMUM: usize = 60;
 
 phea_dynamics::parameters! { SeriesSpring { stiffness, damping, mass, travel, force_from: kept } }
 phea_dynamics::parameters! { SeriesTravel { travel, progression, ends } }
 
 impl<S: Scalar> SeriesSpring<S> {
-    /// F_f in N at a deflection in m: the spring alone.
+    /// Force F_f of the spring without damper and ends at a deflection in m, N.
     #[inline(always)]
     pub fn spring_force(&self, deflection: S) -> S {
         match self.progressive() {
@@ -124,7 +125,7 @@ impl<S: Scalar> SeriesSpring<S> {
         }
     }
 
-    /// Its slope in N/m.
+    /// Slope of this force, N/m.
     fn spring_slope(&self, deflection: S) -> S {
         match self.progressive() {
             None => self.stiffness,
@@ -140,18 +141,18 @@ impl<S: Scalar> SeriesSpring<S> {
         Some((travel.travel, travel.progression?))
     }
 
-    /// How far beyond the upper and the lower end of the travel it is, in m, and the contact.
+    /// Deflection beyond the upper and the lower end of the travel, m, and the contact.
     fn beyond(&self, deflection: S) -> Option<([S; 2], Contact<S>)> {
         let SeriesTravel { travel, ends, .. } = self.travel?;
         Some(([deflection - travel, -deflection - travel], ends?))
     }
 
-    /// Spring and ends at rest, in N.
+    /// Force of spring and ends at rest, N.
     pub(crate) fn elastic_force(&self, deflection: S) -> S {
         self.spring_force(deflection) + self.ends_force(deflection, S::from(0.0))
     }
 
-    /// Its slope in N/m.
+    /// Slope of this force, N/m.
     pub(crate) fn elastic_slope(&self, deflection: S) -> S {
         let spring = self.spring_slope(deflection);
         let Some((beyond, ends)) = self.beyond(deflection) else { return spring };
@@ -160,13 +161,13 @@ impl<S: Scalar> SeriesSpring<S> {
         spring + pressed(beyond[0]) + pressed(beyond[1])
     }
 
-    /// Of the ends of the travel in N, at a deflection in m that grows at a rate in m/s.
+    /// Force of the ends of the travel at a deflection in m that grows at a rate in m/s, N.
     pub(crate) fn ends_force(&self, deflection: S, rate: S) -> S {
         let Some(([above, below], ends)) = self.beyond(deflection) else { return S::from(0.0) };
         ends.force(above, rate) - ends.force(below, -rate)
     }
 
-    /// The rate of the deflection in m/s at which a damped element without mass holds a force.
+    /// Rate of the deflection at which a damped element without mass holds a force, m/s.
     ///
     /// ```text
     /// c w + K d+ (1 + e w)+ = F - F_f = P         w = min(P/c, (P - K d+)/(c + K d+ e)) at the upper end
@@ -183,7 +184,7 @@ impl<S: Scalar> SeriesSpring<S> {
         S::select(zero.less_than(below), -towards(-left, below), towards(left, above))
     }
 
-    /// Elastic energy of spring and ends in J.
+    /// Elastic energy of spring and ends, J.
     pub(crate) fn stored_energy(&self, deflection: S) -> S {
         let half = S::from(0.5);
         let spring = half * self.stiffness * deflection.squared();
@@ -194,30 +195,31 @@ impl<S: Scalar> SeriesSpring<S> {
         spring + ends.stored_energy(above) + ends.stored_energy(below)
     }
 
-    /// Power in W that damper and ends turn into heat: never negative.
+    /// Power that damper and ends turn into heat, never negative, W.
     pub(crate) fn dissipated(&self, deflection: S, rate: S) -> S {
         let damper = self.damping.map_or(S::from(0.0), |damping| damping * rate.squared());
         let Some(([above, below], ends)) = self.beyond(deflection) else { return damper };
         damper + ends.dissipated(above, rate) + ends.dissipated(below, -rate)
     }
 
-    /// The way left to the nearer end of the travel in m, negative beyond it; one metre without
+    /// Remaining distance to the nearer end of the travel, m; negative beyond it; one metre without
     /// ends.
     pub(crate) fn clearance(&self, deflection: S) -> S {
         self.travel.map_or(S::from(1.0), |travel| travel.travel - deflection.abs())
     }
 
-    /// Stiffness of the spring in N/m for small motions about the deflection at which it holds a
-    /// force in N.
+    /// Stiffness of the spring for small motions about the deflection at which it holds a force in
+    /// N, N/m.
     ///
     /// ```text
     /// k_t = k (1 + 3 b (d/t)^2) = k (r + 1/r - 1),    r^3 = 1 + 2 z^2 + 2 |z| root(1 + z^2),    z = 3 root(3 b) F/(2 k t)
     /// ```
     ///
-    /// This is the solution of the cubic F_f(d) = F by hyperbolic functions: sinh 3w = z, r = e^2w.
+    /// The formula is the solution of the cubic F_f(d) = F by hyperbolic functions: sinh 3w = z, r
+    /// = e^2w.
     ///
     /// # Example
-    /// At the end of its travel a spring with progression 0.5 is 2.5 times as stiff as at rest.
+    /// At the end of its travel a spring with progression 0.5 is 2.5 times as stiff as at rest:
     /// ```
     /// use phea_hydraulics::series::{ForceFrom, SeriesSpring, SeriesTravel};
     /// let travel = SeriesTravel { travel: 0.01, progression: Some(0.5), ends: None };
@@ -233,7 +235,7 @@ impl<S: Scalar> SeriesSpring<S> {
         self.stiffness * (r + one / r - one)
     }
 
-    /// The deflection in m at which the spring alone holds a force in N, by the same solution.
+    /// Deflection at which the spring without its ends holds a force in N, by this solution, m.
     ///
     /// ```text
     /// d = 3 F/(k (1 + r + 1/r))
@@ -244,7 +246,7 @@ impl<S: Scalar> SeriesSpring<S> {
         S::from(3.0) * force / (self.stiffness * (one + r + one / r))
     }
 
-    /// r of [`SeriesSpring::stiffness_under`].
+    /// Variable r of [`SeriesSpring::stiffness_under`].
     fn grown(&self, force: S, travel: S, progression: S) -> S {
         let (one, two) = (S::from(1.0), S::from(2.0));
         let z = S::from(1.5) * (S::from(3.0) * progression).sqrt() * force / (self.stiffness * travel);

@@ -5,11 +5,11 @@ use crate::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, Fluid};
 use crate::line::{Conduit, Line, StiffeningMember};
 use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
-/// Most segments into which the line of a transmission is cut: each adds two states.
+/// Largest number of segments of a transmission's line: each adds two states.
 pub const MOST_SEGMENTS: usize = 8;
 
-/// A hydraulic transmission between force sensor and load: a piston at the rod, a line, and an
-/// equal piston at the load, filled once and closed. Units: m2, m3, Pa.
+/// Hydraulic transmission between force sensor and load: a piston at the rod, a line, and an equal
+/// piston at the load, filled once and closed. Units: m2, m3, Pa.
 ///
 /// ```text
 /// F = A (p - p_0)                                                at either piston, p the pressure there
@@ -21,15 +21,15 @@ pub const MOST_SEGMENTS: usize = 8;
 /// ```
 ///
 /// The far sides of both pistons are kept at the filling pressure p_0, so that no force acts at
-/// rest; a pull lowers the pressure in the oil, which tears off where it comes to that of its
-/// vapour. The pistons have no friction, as rolling diaphragms have none, and no mass of their own:
-/// count that at the rod with the moving mass and that at the load with the load. Friction of the
-/// line is that of steady laminar flow. Source: Buerger (2005), "Stable, high-force, low-impedance
-/// robotic actuators for human-interactive machines", thesis, MIT, for the arrangement; Merritt
-/// (1967) for the elements.
+/// rest; a pull lowers the pressure in the oil, whose column separates when it reaches vapour
+/// pressure. The pistons have no friction, like rolling diaphragms, and no mass of their own: add
+/// the mass at the rod to the moving mass and that at the load to the load. Friction of the line is
+/// that of steady laminar flow. Source: Buerger (2005), "Stable, high-force, low-impedance robotic
+/// actuators for human-interactive machines", thesis, MIT, for the arrangement; Merritt (1967) for
+/// the elements.
 ///
 /// # Example
-/// For slow motions it is a spring: A^2 over all of its compliance.
+/// In slow motions it is a spring of stiffness A^2 over its total compliance:
 /// ```
 /// use phea_hydraulics::line::StiffeningMember;
 /// use phea_hydraulics::reference_rig::{components, hose_line, pipe_line};
@@ -47,13 +47,13 @@ pub const MOST_SEGMENTS: usize = 8;
 pub struct Transmission<S = f64> {
     /// Area A of either piston.
     pub piston_area: S,
-    /// The hose or pipe between them.
+    /// Hose or pipe between them.
     pub line: Line<S>,
-    /// Oil V_e at either end in addition to that of the line.
+    /// Oil volume V_e at either end in addition to that of the line.
     pub end_volume: S,
-    /// Gauge pressure p_0 with which it is filled, at rest and without force.
+    /// Gauge filling pressure p_0, at rest and without force.
     pub filling_pressure: S,
-    /// N, into how many segments the line is cut; from 1 to [`MOST_SEGMENTS`].
+    /// Number N of segments of the line; from 1 to [`MOST_SEGMENTS`].
     pub segments: usize,
 }
 
@@ -85,7 +85,7 @@ impl Transmission {
 }
 
 impl<S: Scalar> Transmission<S> {
-    /// Its oil in motion.
+    /// Oil of the transmission in motion.
     pub fn column(&self, fluid: &Fluid<S>, member: StiffeningMember) -> OilColumn<S> {
         let modulus = fluid.modulus_at(self.filling_pressure);
         let conduit = Conduit::filled(&self.line, fluid, self.filling_pressure, member);
@@ -104,7 +104,7 @@ impl<S: Scalar> Transmission<S> {
         }
     }
 
-    /// All of its oil in m3, at rest.
+    /// Total oil volume at rest, m3.
     pub fn oil_volume(&self) -> S {
         self.line.filled().volume() + S::from(2.0) * self.end_volume
     }

@@ -4,15 +4,15 @@ use super::flow::left;
 use super::{Edges, LeakageModel, Openings, Servovalve, Supply, edge_conductances};
 use crate::orifice::{regular_root, regular_root_slope};
 
-/// The side of null from which slopes are taken where the spool is exactly at null, as other edges
+/// Side of null from which slopes are taken if the spool is exactly at null, since different edges
 /// open on each side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpoolDirection<S = f64> {
-    /// U > 0: supply to A, B to tank.
+    /// Extending, U > 0: supply to A, B to tank.
     Extending,
-    /// U < 0: supply to B, A to tank.
+    /// Retracting, U < 0: supply to B, A to tank.
     Retracting,
-    /// The mean of both, as a small symmetric motion about null sees it.
+    /// Mean of both, for a small symmetric motion about null.
     Mean,
     /// Slopes of chords across null, from -1, retracting, to 1, extending.
     ///
@@ -23,7 +23,7 @@ pub enum SpoolDirection<S = f64> {
 }
 
 impl<S: Scalar> SpoolDirection<S> {
-    /// n of [`SpoolDirection::Between`].
+    /// Number n of [`SpoolDirection::Between`].
     pub(super) fn side(self) -> S {
         match self {
             SpoolDirection::Extending => S::from(1.0),
@@ -42,19 +42,19 @@ impl<S: Scalar> SpoolDirection<S> {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChamberCoefficients<S = f64> {
-    /// K_qA = dq_A/dU.
+    /// Flow gain K_qA = dq_A/dU.
     pub flow_gain_a: S,
-    /// K_cA = -dq_A/dp_A.
+    /// Flow-pressure coefficient K_cA = -dq_A/dp_A.
     pub flow_pressure_a: S,
-    /// K_qB = -dq_B/dU.
+    /// Flow gain K_qB = -dq_B/dU.
     pub flow_gain_b: S,
-    /// K_cB = -dq_B/dp_B.
+    /// Flow-pressure coefficient K_cB = -dq_B/dp_B.
     pub flow_pressure_b: S,
 }
 
 impl<S: Scalar> ChamberCoefficients<S> {
-    /// The same of chambers that also leak to the tank, by this conductance in m3/(s Pa): what
-    /// leaks falls with the pressure as the flow of the valve does.
+    /// Coefficients of chambers that also leak to the tank, by this conductance in m3/(s Pa): the
+    /// net flow falls with the pressure like that of the valve.
     #[must_use]
     pub fn leaking(self, outward: Option<S>) -> ChamberCoefficients<S> {
         let Some(conductance) = outward else { return self };
@@ -74,8 +74,8 @@ impl<S: Scalar> ChamberCoefficients<S> {
 /// K_qB = -G_5' root(p_S - p_B) + G_6' root(p_B - p_T)        K_cB = G_5 root'(p_S - p_B) + G_6 root'(p_B - p_T)
 /// ```
 ///
-/// with primes for d/dU and d/dp; sech' = -(lambda/U_n) sech tanh is the leakage's part, which
-/// thesis (4.21) leaves out. `direction` decides at U = 0 alone.
+/// with primes for d/dU and d/dp; sech' = -(lambda/U_n) sech tanh is the contribution of the
+/// leakage, which thesis (4.21) omits. `direction` matters only at U = 0.
 pub fn chamber_coefficients<S: Scalar>(
     valve: &Servovalve<S>,
     supply: &Supply<S>,
@@ -100,14 +100,14 @@ pub fn chamber_coefficients<S: Scalar>(
     }
 }
 
-/// Derivatives of what the edges take from the supply. Units: m3/(s Pa), m3/(s V).
+/// Derivatives of the flow through the edges from the supply. Units: m3/(s Pa), m3/(s V).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SupplyCoefficients<S = f64> {
-    /// s_A = dq_A/dp_S = -dq_S/dp_A, of the edge from the supply to chamber A.
+    /// Coefficient s_A = dq_A/dp_S = -dq_S/dp_A, of the edge from the supply to chamber A.
     pub edge_a: S,
-    /// s_B, likewise to chamber B.
+    /// Coefficient s_B, likewise to chamber B.
     pub edge_b: S,
-    /// K_qS = dq_S/dU, of both edges.
+    /// Gain K_qS = dq_S/dU, of both edges.
     pub flow_gain: S,
 }
 
@@ -118,7 +118,7 @@ pub struct SupplyCoefficients<S = f64> {
 /// K_qS = G_3' root(p_S - p_A) + G_5' root(p_S - p_B)
 /// ```
 ///
-/// s_A is that part of K_cA which is the supply's.
+/// s_A is the contribution of the supply edge to K_cA.
 pub(crate) fn supply_coefficients<S: Scalar>(
     valve: &Servovalve<S>,
     supply: &Supply<S>,
@@ -138,7 +138,7 @@ pub(crate) fn supply_coefficients<S: Scalar>(
     }
 }
 
-/// dG_i/dU of [`edge_conductances`], in m3/(s Pa^0.5 V).
+/// Slopes dG_i/dU of [`edge_conductances`], m3/(s Pa^0.5 V).
 ///
 /// ```text
 /// G_i' = K_vi u+-' + K_vini sech'                                              each edge
@@ -174,8 +174,8 @@ fn conductance_slopes<S: Scalar>(valve: &Servovalve<S>, spool: S, direction: Spo
     }
 }
 
-/// Slope of what an edge leaks that closes while its partner opens, in one curve; what the partner
-/// is opened, and the secant, each with its slope.
+/// Slope of the leakage of an edge that closes while its partner opens, in one curve; from the
+/// opening of the partner, and the secant, each with its slope.
 fn closing_slope<S: Scalar>(
     [opened, opened_slope]: [S; 2],
     [partner, own]: [S; 2],
@@ -197,9 +197,9 @@ fn closing_slope<S: Scalar>(
 /// Pa).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ControlCoefficients<S = f64> {
-    /// K_qU = dq_vC/dU.
+    /// Flow gain K_qU = dq_vC/dU.
     pub flow_gain: S,
-    /// K_c = -dq_vC/dp_L.
+    /// Flow-pressure coefficient K_c = -dq_vC/dp_L.
     pub flow_pressure_coefficient: S,
 }
 
@@ -213,12 +213,12 @@ pub struct ControlCoefficients<S = f64> {
 ///                      + K_vinp sech/sqrt(8 (p_S - p_T + s p_L))                          thesis (4.22), corrected
 /// ```
 ///
-/// with s = sgn U. As thesis (4.18) has it, p_A and p_B are (p_S + p_T +- p_L)/2, which is where
-/// equal edges settle; the edges may be unequal, the control flow being the mean of both chambers
-/// (4.17): K_qU = (K_qA + K_qB)/2 and K_c = (K_cA + K_cB)/4.
+/// with s = sgn U. As in thesis (4.18), p_A and p_B are (p_S + p_T +- p_L)/2, which is the
+/// equilibrium of equal edges; the edges may be unequal, the control flow being the mean of both
+/// chambers (4.17): K_qU = (K_qA + K_qB)/2 and K_c = (K_cA + K_cB)/4.
 ///
 /// # Example
-/// The null coefficient of Table 6.3
+/// Example: the null coefficient of Table 6.3.
 /// ```
 /// # use phea_hydraulics::servovalve::*;
 /// # let valve = Servovalve {
@@ -248,8 +248,8 @@ pub fn control_coefficients<S: Scalar>(
     }
 }
 
-/// Steady piston speed per volt under a load, leakage neglected, in m/(s V); `None` where the
-/// supply cannot move the load.
+/// Steady piston speed per volt under a load, without leakage, m/(s V); `None` if the supply cannot
+/// move the load.
 ///
 /// ```text
 /// extending:  A_A v = K_v3 u sqrt(p_S - p_A),  A_B v = K_v6 u sqrt(p_B - p_T),  A_A p_A - A_B p_B = F
@@ -263,7 +263,7 @@ pub fn control_coefficients<S: Scalar>(
 /// the rod pushes. `SpoolDirection::Mean` is the mean of both speeds.
 ///
 /// # Example
-/// The edges of Table 5.1 at 70 bar: 6.51e-5 m3/(s V) extending and 4.13e-5 retracting
+/// The edges of Table 5.1 at 70 bar: 6.51e-5 m3/(s V) extending and 4.13e-5 retracting:
 /// ```
 /// # use phea_hydraulics::servovalve::*;
 /// # let valve = Servovalve {

@@ -3,15 +3,15 @@ use phea_dynamics::scalar::Scalar;
 use super::{Edges, Openings, Servovalve, Supply};
 use crate::orifice;
 
-/// Flows through the four edges in m3/s, each positive from its first named port to its second.
+/// Flows through the four edges, each positive from its first named port to its second, m3/s.
 pub type EdgeFlows<S> = Edges<S>;
 
-/// Flows into the two chambers in m3/s.
+/// Flows into the two chambers, m3/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChamberFlows<S> {
-    /// Into chamber A.
+    /// Flow into chamber A.
     pub into_a: S,
-    /// Into chamber B (the thesis counts q_vB the other way round).
+    /// Flow into chamber B (the thesis counts q_vB in the opposite sense).
     pub into_b: S,
 }
 
@@ -30,22 +30,23 @@ pub fn hyperbolic_secant<S: Scalar>(argument: S) -> S {
     S::from(2.0) * decay / (S::from(1.0) + decay.squared())
 }
 
-/// How the leakage follows the spool.
+/// Dependence of the leakage on the spool position.
 ///
-/// The thesis states one curve for the leakage of the whole valve (4.14), and edges that close as
-/// they like (4.2 to 4.9). Both models have the same coefficients and the same flows at null; away
-/// from it a lambda and a K_vin that were found with one mean something else in the other.
+/// The thesis states one curve for the leakage of the whole valve (4.14), and edges that close
+/// independently (4.2 to 4.9). Both models have equal coefficients and flows at null; away from
+/// null, a lambda and a K_vin identified with one model are not valid in the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LeakageModel {
-    /// One secant for each edge: the leakage of every edge goes with sech(lambda u).
+    /// Separate secants: the leakage of every edge is proportional to sech(lambda u).
     #[default]
     EachEdge,
-    /// One curve for the whole valve: with shut ports, what leaks through it goes with sech(lambda
-    /// u).
+    /// Common curve for the whole valve: with shut ports, its leakage is proportional to
+    /// sech(lambda u).
     OneCurve,
 }
 
-/// What each edge passes at a root of one, in m3/(s Pa^0.5), at spool position U_Csp in V.
+/// Conductances of the edges, the flow at a root of one, m3/(s Pa^0.5), at spool position U_Csp in
+/// V.
 ///
 /// ```text
 /// G_i = K_vi u+- + K_vini sech(lambda u)                                    each edge; thesis (4.2) to (4.9)
@@ -55,12 +56,12 @@ pub enum LeakageModel {
 /// ```
 ///
 /// with u+ for edges 3 and 6 and u- for 4 and 5, see [`super::OpeningLaw`], and each edge's own
-/// lambda where they differ. With one curve two edges in series pass k sech
-/// sqrt(p_S - p_T) when their port is shut, wherever the spool is, so that the whole leakage is
-/// that of thesis (4.14) with K_vinp sqrt(2) the sum of both k. At null both are K_vini.
+/// lambda if they differ. With one curve two edges in series pass k sech sqrt(p_S - p_T) when their
+/// port is shut, at any spool position, so that the whole leakage is that of thesis (4.14) with
+/// K_vinp sqrt(2) the sum of both k. At null both are K_vini.
 ///
 /// # Example
-/// The leakage of equal edges away from null: one curve, and sqrt(2) of it.
+/// Leakage of equal edges away from null: one curve, and sqrt(2) times it:
 /// ```
 /// use phea_hydraulics::reference_rig::valve;
 /// use phea_hydraulics::servovalve::{Edges, LeakageModel, Servovalve, edge_conductances, hyperbolic_secant};
@@ -94,17 +95,18 @@ pub fn edge_conductances<S: Scalar>(valve: &Servovalve<S>, spool: S) -> Edges<S>
     }
 }
 
-/// The secant where nothing is divided by it: of edges that are shut for good it moves nothing.
+/// Secant, bounded away from zero so that it can be a divisor: for edges that are permanently shut
+/// the bound has no effect.
 #[inline(always)]
 pub(super) fn left<S: Scalar>(leakage: S) -> S {
     leakage.maximum(S::from(1e-60))
 }
 
-/// Conductances of two edges at one port, from what the spool opens of them and their leakage at
-/// null, where both together leak in one curve.
+/// Conductances of two edges at one port, from their opening by the spool and their leakage at
+/// null, if both together leak in one curve.
 ///
-/// The edge that opens has the same conductance by the rule of the edge that closes, whose partner
-/// then is at its leakage: so nothing depends on the direction.
+/// The rule of the closing edge also gives the conductance of the opening edge, whose partner is
+/// then at its leakage: so the result does not depend on the direction.
 #[inline(always)]
 fn in_series<S: Scalar>([open, shut]: [S; 2], [first, second]: [S; 2], leakage: S) -> [S; 2] {
     let squares = first.squared() + second.squared();
@@ -119,7 +121,7 @@ fn in_series<S: Scalar>([open, shut]: [S; 2], [first, second]: [S; 2], leakage: 
     [open + closing(shut, second), shut + closing(open, first)]
 }
 
-/// Flows through the four edges, in m3/s.
+/// Flows through the four edges, m3/s.
 ///
 /// ```text
 /// q_v3 = G_3 root(p_S - p_A)        thesis (4.2), (4.6)        q_v4 = G_4 root(p_A - p_T)        thesis (4.3), (4.7)
@@ -146,7 +148,7 @@ pub fn edge_flows<S: Scalar>(
     }
 }
 
-/// Flows into both chambers, in m3/s, at spool position U_Csp in V and chamber pressures in Pa.
+/// Flows into both chambers at spool position U_Csp in V and chamber pressures in Pa, m3/s.
 ///
 /// ```text
 /// q_A = q_v3 - q_v4        q_B = q_v5 - q_v6                           thesis (4.10), (4.11)
@@ -155,7 +157,8 @@ pub fn edge_flows<S: Scalar>(
 /// The thesis counts q_vB out of chamber B; here both are positive into their chamber.
 ///
 /// # Example
-/// Equal edges at null and half the supply pressure: what leaks in leaks out.
+/// For equal edges at null and half the supply pressure, the leakage into a chamber equals that out
+/// of it:
 /// ```
 /// use phea_hydraulics::servovalve::{Edges, LeakageModel, LeakageShape, OpeningLaw, Servovalve, Supply, chamber_flows};
 /// let valve = Servovalve {
@@ -181,8 +184,7 @@ pub fn chamber_flows<S: Scalar>(
     ChamberFlows { into_a: edges.supply_to_a - edges.a_to_tank, into_b: edges.supply_to_b - edges.b_to_tank }
 }
 
-/// Control flow q_vC of a valve with equal edges on a symmetric cylinder, in m3/s, positive for U >
-/// 0.
+/// Control flow q_vC of a valve with equal edges on a symmetric cylinder, positive for U > 0, m3/s.
 ///
 /// ```text
 /// q_vC = (q_A - q_B)/2   with  p_A, p_B = (p_S + p_T +- p_L)/2         thesis (4.17), (4.18)

@@ -1,4 +1,4 @@
-//! What static tests of a valve would show for other coefficients, with derivatives.
+//! Predicted results of static tests of a valve for given coefficients, with derivatives.
 
 use std::borrow::Cow;
 
@@ -10,20 +10,20 @@ use super::{
     SpoolImperfection, Supply, WarmOil, blocked_ports, connected_ports, edge_conductances, tare_flow,
 };
 
-/// How many numbers static tests determine of a valve.
+/// Number of coefficients of a valve that static tests determine.
 pub const STATIC_COEFFICIENTS: usize = 18;
 
-/// A number with its derivatives with respect to all static coefficients.
+/// Number with its derivatives with respect to all static coefficients.
 pub type Sensitive = Dual<STATIC_COEFFICIENTS>;
 
-/// The numbers that static tests determine of a valve. Units: m3/(s Pa^0.5), m3/s, V.
+/// Coefficients of a valve that static tests determine. Units: m3/(s Pa^0.5), m3/s, V.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StaticCoefficients<S = f64> {
-    /// K_v3 to K_v6.
+    /// Flow coefficients K_v3 to K_v6.
     pub flow_coefficients: Edges<S>,
-    /// K_vin3 to K_vin6.
+    /// Leakage coefficients K_vin3 to K_vin6.
     pub leakage_coefficients: Edges<S>,
-    /// Shape lambda of the leakage of each edge; that of edge 3 counts for all where
+    /// Shape lambda of the leakage of each edge; that of edge 3 applies to all if
     /// [`ValveTerms::leakage_by_edge`] is not set.
     pub leakage_shapes: Edges<S>,
     /// Tare flow q_tare at the reference drop.
@@ -36,14 +36,15 @@ pub struct StaticCoefficients<S = f64> {
     pub opening: OpeningShape<S>,
 }
 
-/// What a valve under test has beyond edges that open in proportion and leak in one shape.
+/// Optional properties of a valve under test, in addition to edges that open in proportion and leak
+/// in one shape.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ValveTerms {
-    /// The edges have a lap.
+    /// True if the edges have a lap.
     pub lap: bool,
-    /// The openings saturate.
+    /// True if the openings saturate.
     pub saturation: bool,
-    /// The leakage of each edge has a shape of its own.
+    /// True if the leakage of each edge has its own shape.
     pub leakage_by_edge: bool,
 }
 
@@ -78,7 +79,7 @@ impl<S: Copy> StaticCoefficients<S> {
         ]
     }
 
-    /// From the same order.
+    /// Coefficients from numbers in this order.
     pub fn from_array(numbers: [S; STATIC_COEFFICIENTS]) -> StaticCoefficients<S> {
         let [f3, f4, f5, f6, l3, l4, l5, l6, s3, tare, bias, width, positive, negative, c, s4, s5, s6] =
             numbers;
@@ -94,40 +95,39 @@ impl<S: Copy> StaticCoefficients<S> {
     }
 }
 
-/// How the ports are piped in a test.
+/// Piping of the ports in a test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PortCircuit {
-    /// Both shut.
+    /// Both ports shut.
     Blocked,
-    /// Joined through a meter.
+    /// Ports joined through a meter.
     Connected,
 }
 
-/// What acts on the valve in one row of a test. Units: V, Pa.
+/// Conditions of one row of a test. Units: V, Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TestInput {
-    /// Command U_C as it was recorded.
+    /// Recorded command U_C.
     pub command: f64,
-    /// The same without the noise of its record: the memories of the spool follow it.
+    /// Command without the noise of its record: the memories of the spool follow it.
     pub followed_command: f64,
-    /// The command at which it turned on the way from the row before, in V, where that lies beyond
-    /// both.
+    /// Command at which it reversed between the previous row and this one, if that lies beyond
+    /// both, V.
     pub turn: Option<f64>,
     /// Supply and tank pressure.
     pub supply: Supply,
-    /// p_A - p_B across the meter, where the ports are joined.
+    /// Load pressure p_A - p_B across the meter, if the ports are joined.
     pub load_pressure: f64,
-    /// The oil, against that which the coefficients are stated at.
+    /// Oil, relative to that for which the coefficients are stated.
     pub oil: WarmOil,
-    /// Lag z of the torque motor's iron in V that the spool brings along to the first row.
+    /// Lag z of the torque motor's iron at the first row, V.
     pub memory: f64,
-    /// Distance of the spool behind a command that moves, in V: [`super::ramp_delay`] times its
-    /// rate.
+    /// Lag of the spool behind a moving command, V: [`super::ramp_delay`] times its rate.
     pub lag: f64,
 }
 
 impl TestInput {
-    /// A row whose command is known without noise, with the oil that the valve is stated at.
+    /// Row whose command is known without noise, with the oil for which the valve is stated.
     pub fn new(command: f64, supply: Supply, load_pressure: f64) -> TestInput {
         TestInput {
             command,
@@ -142,12 +142,12 @@ impl TestInput {
     }
 }
 
-/// What one row of a test shows. Units: Pa, m3/s.
+/// Results of one row of a test. Units: Pa, m3/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TestOutput<S = f64> {
-    /// p_A.
+    /// Pressure p_A.
     pub pressure_a: S,
-    /// p_B.
+    /// Pressure p_B.
     pub pressure_b: S,
     /// Flow from the supply, tare flow included.
     pub leak_flow: S,
@@ -156,14 +156,14 @@ pub struct TestOutput<S = f64> {
 }
 
 impl TestOutput<Sensitive> {
-    /// A combination of p_A, p_B, leakage and port flow.
+    /// Weighted sum of p_A, p_B, leakage and port flow.
     pub fn combined(&self, weights: [f64; 4]) -> Sensitive {
         let all = [self.pressure_a, self.pressure_b, self.leak_flow, self.port_flow];
         let shown = all.into_iter().zip(weights).filter(|(_, weight)| *weight != 0.0);
         shown.fold(Sensitive::from(0.0), |sum, (signal, weight)| sum + signal.times(weight))
     }
 
-    /// Without derivatives.
+    /// Results without derivatives.
     pub fn values(&self) -> TestOutput {
         TestOutput {
             pressure_a: self.pressure_a.value(),
@@ -174,7 +174,7 @@ impl TestOutput<Sensitive> {
     }
 }
 
-/// What is known of a valve under test before its coefficients are. Units: V, Pa.
+/// Known data of a valve under test before its coefficients are identified. Units: V, Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TestedValve {
     /// Command of full opening U_Cn.
@@ -183,14 +183,15 @@ pub struct TestedValve {
     pub transition_pressure: f64,
     /// Drop at which the tare flow is stated.
     pub tare_reference_drop: f64,
-    /// What lambda and the leakage coefficients mean away from null.
+    /// Meaning of lambda and the leakage coefficients away from null.
     pub leakage_model: LeakageModel,
-    /// What it has beyond edges that open in proportion.
+    /// Optional properties in addition to edges that open in proportion.
     pub terms: ValveTerms,
 }
 
 impl TestedValve {
-    /// What a slow test shows row by row, the spool with the memory that its first row states.
+    /// Predicted results of a slow test row by row, starting from the spool memory stated in the
+    /// first row.
     ///
     /// Equations: [`blocked_ports`], [`connected_ports`], [`tare_flow`],
     /// [`SpoolImperfection::slow_opening`].
@@ -217,13 +218,13 @@ impl TestedValve {
         inputs.iter().zip(openings).map(one).collect()
     }
 
-    /// The same with derivatives with respect to all coefficients, in their order.
+    /// Results with derivatives with respect to all coefficients, in their order.
     ///
-    /// The ports are found over plain numbers; one more step of Newton's method over numbers with
-    /// derivatives brings these.
+    /// Port states are found over plain numbers; one more Newton step over numbers with derivatives
+    /// yields the derivatives.
     ///
     /// # Example
-    /// The whole tare flow is in the leakage, whatever the spool does.
+    /// The leakage contains the whole tare flow, at any spool position:
     /// ```
     /// use phea_hydraulics::servovalve::{
     ///     Edges, LeakageModel, OpeningShape, PortCircuit, StaticCoefficients, Supply, TestInput, TestedValve, ValveTerms,
@@ -297,8 +298,8 @@ impl TestedValve {
     }
 }
 
-/// The valve as this oil flows through it: the valve itself where it is stated at this oil. A copy
-/// of it with derivatives, row by row, takes a fifth of an identification.
+/// Valve with this oil: the valve itself if it is stated for this oil. A copy of it with
+/// derivatives, row by row, takes a fifth of an identification.
 fn valve_in<S: Scalar>(valve: &Servovalve<S>, oil: WarmOil) -> Cow<'_, Servovalve<S>> {
     if oil == WarmOil::STATED { Cow::Borrowed(valve) } else { Cow::Owned(oil.valve(valve)) }
 }

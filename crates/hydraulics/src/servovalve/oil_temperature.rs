@@ -2,26 +2,26 @@ use phea_dynamics::scalar::Scalar;
 
 use super::{Edges, Servovalve};
 
-/// How oil changes with its temperature. Units: 1/degC.
+/// Temperature dependence of oil. Units: 1/degC.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OilLaw {
-    /// Share by which the dynamic viscosity falls with each degree.
+    /// Relative decrease of the dynamic viscosity per degree.
     pub viscosity_slope: f64,
-    /// Share by which the density falls with each degree.
+    /// Relative decrease of the density per degree.
     pub density_slope: f64,
 }
 
-/// Oil at another temperature than the one that a valve is stated at, as ratios; both are one at
+/// Oil at another temperature than that for which a valve is stated, as ratios; both are one at
 /// that temperature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WarmOil {
-    /// Density over that of the stated temperature.
+    /// Ratio of the density to that at the stated temperature.
     pub density_ratio: f64,
-    /// Dynamic viscosity over that of the stated temperature.
+    /// Ratio of the dynamic viscosity to that at the stated temperature.
     pub viscosity_ratio: f64,
 }
 
-/// That of mineral oil, with the viscosity of ISO VG 46 near 40 degC.
+/// Mineral oil with the viscosity of ISO VG 46 near 40 degC.
 impl Default for OilLaw {
     fn default() -> OilLaw {
         OilLaw { viscosity_slope: 0.045, density_slope: 7e-4 }
@@ -29,7 +29,7 @@ impl Default for OilLaw {
 }
 
 impl OilLaw {
-    /// The oil that is warmer by some degrees.
+    /// Oil that is warmer by some degrees.
     ///
     /// ```text
     /// rho/rho_0 = 1 - alpha (t - t_0)        mu/mu_0 = exp(-lambda_mu (t - t_0))             Merritt (1967), chapter 2
@@ -51,32 +51,32 @@ impl OilLaw {
 }
 
 impl WarmOil {
-    /// The oil that the valve is stated at.
+    /// Oil for which the valve is stated.
     pub const STATED: WarmOil = WarmOil { density_ratio: 1.0, viscosity_ratio: 1.0 };
 
-    /// By what a turbulent flow coefficient grows: sqrt(rho_0/rho).
+    /// Factor by which a turbulent flow coefficient grows: sqrt(rho_0/rho).
     pub fn turbulent_ratio(&self) -> f64 {
         (1.0 / self.density_ratio).sqrt()
     }
 
-    /// Kinematic viscosity over that of the stated temperature.
+    /// Ratio of the kinematic viscosity to that at the stated temperature.
     pub fn kinematic_viscosity_ratio(&self) -> f64 {
         self.viscosity_ratio / self.density_ratio
     }
 
-    /// The valve as this oil flows through it.
+    /// Valve with this oil.
     ///
     /// ```text
     /// K_vi, q_tare   proportional to sqrt(rho_0/rho)        turbulent
     /// K_vini         proportional to mu_0/mu                the clearances of the closed edges: laminar
     /// ```
     ///
-    /// Flow through sharp edges and through the nozzles of the first stage is turbulent. What
-    /// passes the clearance around null is laminar (Merritt 1967, chapter 5): in proportion to
-    /// 1/mu. Its dependence on pressure stays that of the model.
+    /// Flow through sharp edges and through the nozzles of the first stage is turbulent. Flow
+    /// through the clearance around null is laminar (Merritt 1967, chapter 5): proportional to
+    /// 1/mu. Its dependence on pressure remains that of the model.
     ///
     /// # Example
-    /// A degree more changes the leakage sixty times as much as the flow.
+    /// A degree more changes the leakage sixty times as much as the flow:
     /// ```
     /// use phea_hydraulics::reference_rig::valve;
     /// use phea_hydraulics::servovalve::OilLaw;

@@ -1,21 +1,21 @@
-//! What the spool opens of the edges.
+//! Opening of the edges by the spool.
 
 use phea_dynamics::scalar::Scalar;
 
 use super::{Edges, Servovalve, SpoolDirection, hyperbolic_secant};
 use crate::parameter::{ParameterRequirement, Problems};
 
-/// How the area of an edge follows the spool.
+/// Dependence of an edge's area on the spool position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum OpeningLaw<S = f64> {
-    /// In proportion, from null.
+    /// Proportional from null.
     ///
     /// ```text
     /// u+ = (|u| + u)/2        u- = (|u| - u)/2                            thesis (4.2) to (4.9)
     /// ```
     #[default]
     Proportional,
-    /// From where its lap ends, and by less and less.
+    /// Opening from the end of the lap, with decreasing slope.
     Shaped(OpeningShape<S>),
 }
 
@@ -23,18 +23,18 @@ pub enum OpeningLaw<S = f64> {
 ///
 /// ```text
 /// s+ = u - l+            s- = -u - l-                      the travel of an edge beyond its lap
-/// a  = (s + sqrt(s^2 + (r l)^2))/2,    r = 1/500           the edge is rounded over a share of its lap
+/// a  = (s + sqrt(s^2 + (r l)^2))/2,    r = 1/500           the edge is rounded over a fraction of its lap
 /// u+ = a/(1 + c a)                                         c the saturation
 /// ```
 ///
 /// All are relative to the travel at the nominal voltage. An overlap is a positive lap: the spool
-/// moves by it before an edge opens. An underlap is a negative lap: the edge is open at null. The
-/// flow coefficients are those of an edge that has just opened, da/du = 1; without lap and
+/// travels this far before an edge opens. An underlap is a negative lap: the edge is open at null.
+/// The flow coefficients are those of an edge that has just opened, da/du = 1; without lap and
 /// saturation the law is that of [`OpeningLaw::Proportional`].
 ///
 /// # Example
 /// Half-way open, an overlap of 1 % is missing; a saturation of 0.5 passes two thirds at full
-/// travel.
+/// travel:
 /// ```
 /// use phea_hydraulics::reference_rig::valve;
 /// use phea_hydraulics::servovalve::{OpeningLaw, OpeningShape, Openings, Servovalve};
@@ -60,31 +60,31 @@ phea_dynamics::parameters! { OpeningLaw = OpeningLaw::Proportional | OpeningLaw:
 
 phea_dynamics::parameters! { OpeningShape { lap_positive, lap_negative, saturation } }
 
-/// How sharply the leakage falls off around null: lambda of sech(lambda U/U_n); the larger the
-/// narrower, 0 keeps the leakage constant.
+/// Decay of the leakage around null: lambda of sech(lambda U/U_n); the larger, the narrower; 0
+/// gives constant leakage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LeakageShape<S = f64> {
-    /// The same for all edges.
+    /// Common to all edges.
     Common(S),
-    /// Of each edge its own; with [`super::LeakageModel::EachEdge`] alone.
+    /// Separate for each edge; with [`super::LeakageModel::EachEdge`] only.
     ByEdge(Edges<S>),
 }
 
 phea_dynamics::parameters! { LeakageShape = LeakageShape::Common(shape) | LeakageShape::ByEdge(shapes) }
 
 impl<S: Scalar> LeakageShape<S> {
-    /// lambda of each edge.
+    /// Values of lambda for each edge.
     pub fn edges(&self) -> Edges<S> {
         self.of_each(|shape| shape)
     }
 
-    /// The least lambda, of the edge whose leakage reaches furthest from null.
+    /// Least lambda, that of the edge whose leakage extends furthest from null.
     pub fn widest(&self) -> S {
         let [first, others @ ..] = self.edges().to_array();
         others.into_iter().fold(first, S::minimum)
     }
 
-    /// What follows from the lambda of each edge, computed once where all are the same.
+    /// Function of the lambda of each edge, computed once if all are equal.
     #[inline(always)]
     fn of_each(&self, of: impl Fn(S) -> S) -> Edges<S> {
         match self {
@@ -94,30 +94,29 @@ impl<S: Scalar> LeakageShape<S> {
     }
 }
 
-/// Share of its lap over which an edge is rounded: the law has a slope everywhere, and differs from
-/// a sharp edge by a thousandth of the lap at most.
+/// Fraction of its lap over which an edge is rounded: the law has a slope everywhere, and differs
+/// from a sharp edge by a thousandth of the lap at most.
 const ROUNDED: f64 = 0.002;
 
-/// Square of a travel that moves nothing: keeps the root of a sharp edge apart from zero.
+/// Square of a negligible travel: separates the root of a sharp edge from zero.
 const NO_TRAVEL: f64 = 1e-60;
 
-/// Relative openings of the edges that the spool moves, and the relative leakage it leaves.
+/// Relative openings of the edges by the spool, and the remaining relative leakage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Openings<S> {
-    /// Of edges 3 and 6, supply to A and B to tank, which U > 0 opens.
+    /// Opening of edges 3 and 6, supply to A and B to tank, for U > 0.
     pub forward: S,
-    /// Of edges 4 and 5, A to tank and supply to B, which U < 0 opens.
+    /// Opening of edges 4 and 5, A to tank and supply to B, for U < 0.
     pub backward: S,
-    /// Leakage of each edge over that at null: sech(lambda U/U_n).
+    /// Leakage of each edge relative to that at null: sech(lambda U/U_n).
     pub leakage: Edges<S>,
 }
 
 impl<S: Scalar> Openings<S> {
-    /// At spool position U_Csp in V.
+    /// Openings at spool position U_Csp in V.
     ///
-    /// The openings are those of [`OpeningLaw`]. The positive part is (U + |U|)/2 and the negative
-    /// (|U| - U)/2, so that a derivative taken exactly at U = 0 is the mean of the two one-sided
-    /// ones.
+    /// The openings follow [`OpeningLaw`]. The positive part is (U + |U|)/2 and the negative (|U| -
+    /// U)/2, so that a derivative taken exactly at U = 0 is the mean of the two one-sided ones.
     #[inline(always)]
     pub fn at(valve: &Servovalve<S>, spool: S) -> Openings<S> {
         let relative = spool / valve.nominal_voltage;
@@ -139,8 +138,8 @@ impl<S: Scalar> Openings<S> {
         }
     }
 
-    /// d/dU of the openings and of the relative leakage, in 1/V. `direction` decides where an edge
-    /// is exactly at its sharp end.
+    /// Derivatives d/dU of the openings and of the relative leakage, 1/V. `direction` selects the
+    /// side if an edge is exactly at its sharp end.
     pub(super) fn slopes(valve: &Servovalve<S>, spool: S, direction: SpoolDirection<S>) -> Openings<S> {
         let one = S::from(1.0);
         let zero = S::from(0.0);
@@ -177,8 +176,8 @@ impl<S: Scalar> Openings<S> {
 }
 
 impl<S: Scalar> OpeningLaw<S> {
-    /// Relative openings at full travel, of the edges that a positive and a negative command open:
-    /// one without lap and saturation.
+    /// Relative openings at full travel, of the edges opened by a positive and by a negative
+    /// command: one without lap and saturation.
     pub fn full(&self) -> [S; 2] {
         match self {
             OpeningLaw::Proportional => [S::from(1.0); 2],
@@ -190,15 +189,15 @@ impl<S: Scalar> OpeningLaw<S> {
 }
 
 impl<S: Scalar> OpeningShape<S> {
-    /// Relative opening of an edge with this lap, the spool being so far on its side.
+    /// Relative opening of an edge with this lap, at this travel of the spool to its side.
     #[inline(always)]
     fn opening(&self, travel: S, lap: S) -> S {
         let [area, _] = rounded(travel, lap);
         area / (S::from(1.0) + self.saturation * area)
     }
 
-    /// Its slope over the relative travel; `side` is -1 to 1 where the edge is exactly at its sharp
-    /// end.
+    /// Slope of the opening over the relative travel; `side` is -1 to 1 if the edge is exactly at
+    /// its sharp end.
     fn slope(&self, travel: S, lap: S, side: S) -> S {
         let [area, apart] = rounded(travel, lap);
         let beyond = travel - lap;

@@ -1,31 +1,32 @@
-//! A servovalve on a test bench: its ports blocked, or connected to each other through a meter.
+//! Servovalve on a test bench: its ports blocked, or connected to each other through a meter.
 
 use phea_dynamics::scalar::{LocalFunction, Parameters, Scalar};
 
 use super::{PortCircuit, Servovalve, Supply, edge_conductances};
 use crate::orifice::{self, regular_root, regular_root_slope};
 
-/// Where a valve at rest settles on a test bench. Units: Pa, m3/s.
+/// Equilibrium of a valve at rest on a test bench. Units: Pa, m3/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PortState<S = f64> {
     /// Pressure p_A at port A.
     pub pressure_a: S,
     /// Pressure p_B at port B.
     pub pressure_b: S,
-    /// Flow through the edges from the supply, q_v3 + q_v5; the tare flow comes on top.
+    /// Flow through the edges from the supply, q_v3 + q_v5, without the tare flow.
     pub supply_flow: S,
-    /// Flow out of port A into port B, q_v3 - q_v4; zero where the ports are blocked.
+    /// Flow out of port A into port B, q_v3 - q_v4; zero if the ports are blocked.
     pub port_flow: S,
 }
 
-/// Steps of Newton's method after a start that is exact for a square root; each squares an error
-/// that is below 1e-4 before the first.
+/// Newton steps after a start that is exact for a square root; each squares an error that is below
+/// 1e-4 before the first.
 const POLISHING_STEPS: usize = 3;
 
-/// Relative conductance of an edge that is shut: it keeps derivatives finite and moves no pressure.
+/// Relative conductance of a shut edge: it keeps derivatives finite without an effect on the
+/// pressures.
 const CLOSED: f64 = 1e-60;
 
-/// Steps where a load pressure keeps the two halves of the valve apart.
+/// Newton steps if a load pressure separates the two halves of the valve.
 const LOADED_STEPS: usize = 6;
 
 /// Ports blocked: the internal leakage test and the pressure gain test of ISO 10770-1.
@@ -38,7 +39,7 @@ const LOADED_STEPS: usize = 6;
 /// to (4.9) with q_vA = q_vB = 0.
 ///
 /// # Example
-/// Equal edges at null hold half the supply pressure in both ports.
+/// Equal edges at null hold half the supply pressure in both ports:
 /// ```
 /// use phea_hydraulics::servovalve::{Edges, LeakageModel, LeakageShape, OpeningLaw, Servovalve, Supply, blocked_ports};
 /// let valve = Servovalve {
@@ -68,10 +69,10 @@ pub fn blocked_ports<S: Scalar>(valve: &Servovalve<S>, supply: &Supply<S>, openi
 /// q_v3(p_A) + q_v5(p_B) = q_v4(p_A) + q_v6(p_B)        p_A - p_B = p_L
 /// ```
 ///
-/// A load pressure beyond the supply's has no meaning here. `opening` as in [`blocked_ports`].
+/// A load pressure beyond the supply's is meaningless here. `opening` as in [`blocked_ports`].
 ///
 /// # Example
-/// Edges 3 and 6 in series pass the flow of 4.12.
+/// Edges 3 and 6 in series pass the flow of 4.12:
 /// ```
 /// use phea_hydraulics::reference_rig::valve;
 /// use phea_hydraulics::servovalve::{Edges, Servovalve, Supply, connected_ports};
@@ -90,7 +91,7 @@ pub fn connected_ports<S: Scalar>(
     let [supply_a, tank_a, supply_b, tank_b] = edges;
     let transition = valve.transition_pressure;
     let half = load_pressure * S::from(0.5);
-    // the drop over the two edges that meter, shared as without a load
+    // drop over the two metering edges, divided as without a load
     let metered = supply.pressure - supply.tank_pressure - load_pressure.abs();
     let start = divided(supply_a + supply_b, tank_a + tank_b, metered, transition);
     let mut mean = supply.tank_pressure + start + half.abs();
@@ -100,20 +101,20 @@ pub fn connected_ports<S: Scalar>(
     state(edges, supply, transition, [mean + half, mean - half], S::from(1.0))
 }
 
-/// Where the ports are, by one step of Newton's method from where they are known to be: over
-/// numbers with derivatives, the derivatives of what the steps above lead to.
+/// Port pressures from one Newton step at their known values: over numbers with derivatives, it
+/// gives the derivatives of the solution.
 pub(super) struct KnownPorts {
-    /// How the ports are piped.
+    /// Piping of the ports.
     pub(super) circuit: PortCircuit,
     /// Supply and tank.
     pub(super) supply: Supply,
-    /// Drop in Pa below which an edge's flow is laminar.
+    /// Drop below which an edge's flow is laminar, Pa.
     pub(super) transition_pressure: f64,
-    /// p_A and p_B in Pa.
+    /// Known pressures p_A and p_B, Pa.
     pub(super) pressures: [f64; 2],
 }
 
-/// Of the four conductances: p_A, p_B, flow from the supply, flow from port to port.
+/// Function of the four conductances: p_A, p_B, flow from the supply, flow from port to port.
 impl LocalFunction<f64, 4, 4> for KnownPorts {
     fn at<T: Scalar>(&self, edges: [T; 4], constant: impl Fn(f64) -> T + Copy) -> [T; 4] {
         let supply = self.supply.convert(&mut |pressure| constant(pressure));
@@ -137,11 +138,10 @@ impl LocalFunction<f64, 4, 4> for KnownPorts {
     }
 }
 
-/// Newton's step of the pressures, moved together, towards a balance of the flows into the ports,
-/// in Pa.
+/// Newton step of the pressures, moved together, towards a balance of the flows into the ports, Pa.
 ///
 /// ```text
-/// (q_4 + q_6 - q_3 - q_5)/(q_4' + q_6' + q_3' + q_5')              primes for the slope over the own drop
+/// (q_4 + q_6 - q_3 - q_5)/(q_4' + q_6' + q_3' + q_5')              primes denote the slope over the edge's own drop
 /// ```
 fn imbalance<S: Scalar>(edges: [S; 4], supply: &Supply<S>, transition: S, [a, b]: [S; 2]) -> S {
     let drops =
@@ -155,7 +155,7 @@ fn imbalance<S: Scalar>(edges: [S; 4], supply: &Supply<S>, transition: S, [a, b]
     surplus / slope
 }
 
-/// Pressure between two edges in series above that behind the second, in Pa.
+/// Pressure between two edges in series relative to that behind the second, Pa.
 ///
 /// ```text
 /// G_1 root(P - p) = G_2 root(p)        solved for the smaller drop d:  root(d) = k root(P - d),  k = G_small/G_large

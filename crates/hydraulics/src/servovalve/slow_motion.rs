@@ -1,15 +1,15 @@
-//! The spool of a test that is so slow that only its memories lag.
+//! Spool in a test so slow that only its memories lag.
 
 use phea_dynamics::scalar::Scalar;
 
 use super::SpoolImperfection;
 use super::spool::STICKING_STIFFNESS;
 
-/// Steps of Newton's method for a spool that sticks; its friction bends one way, so that each step
+/// Newton steps for a sticking spool; its friction curve bends in one direction, so that each step
 /// stays on one side.
 const STICKING_STEPS: usize = 12;
 
-/// What a slowly moved spool remembers. Units: V.
+/// Memory of a slowly moved spool. Units: V.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlowSpool<S = f64> {
     /// Position U of the spool.
@@ -20,14 +20,14 @@ pub struct SlowSpool<S = f64> {
     pub magnetic_lag: S,
 }
 
-/// Time in s by which the spool follows a command late that rises or falls steadily.
+/// Delay of the spool behind a command that rises or falls steadily, s.
 ///
 /// ```text
 /// U'' = w^2 (U_C - U) - 2 xi w U' = 0    ->    U_C - U = (2 xi/w) U'            thesis (4.1)
 /// ```
 ///
 /// # Example
-/// The spool of 175 Hz with a damping ratio of 0.9 is 0.16 mV behind a command of 0.1 V/s.
+/// The spool of 175 Hz with a damping ratio of 0.9 lags a command of 0.1 V/s by 0.16 mV:
 /// ```
 /// use phea_hydraulics::servovalve::ramp_delay;
 /// assert!((0.1 * ramp_delay(1100.0, 0.9) - 1.6363636e-4_f64).abs() < 1e-10);
@@ -37,15 +37,15 @@ pub fn ramp_delay<S: Scalar>(natural_frequency: S, damping_ratio: S) -> S {
 }
 
 impl<S: Scalar> SlowSpool<S> {
-    /// At rest at a command, without memory.
+    /// Spool at rest at a command, without memory.
     pub fn at(command: S) -> SlowSpool<S> {
         SlowSpool { spool: command, friction: S::from(0.0), magnetic_lag: S::from(0.0) }
     }
 }
 
 impl<S: Scalar> SpoolImperfection<S> {
-    /// Position of the edges in V after the command went straight to a new value in V, infinitely
-    /// slowly: [`SpoolImperfection::rates`] integrated along the way.
+    /// Position of the edges in V after the command moved monotonically to a new value in V,
+    /// infinitely slowly: [`SpoolImperfection::rates`] integrated along the path.
     ///
     /// ```text
     /// U + f = U_C                                                     thesis (4.1) at rest
@@ -54,10 +54,10 @@ impl<S: Scalar> SpoolImperfection<S> {
     /// y = U - U_0 - z
     /// ```
     ///
-    /// Commands beyond the nominal voltage are the caller's to avoid.
+    /// The caller must avoid commands beyond the nominal voltage.
     ///
     /// # Example
-    /// Far from a reversal the opening lags by half the width, either way.
+    /// Far from a reversal the opening lags by half the width in either direction:
     /// ```
     /// use phea_hydraulics::servovalve::{SlowSpool, SpoolImperfection};
     /// let spool = SpoolImperfection { null_bias: 0.014, hysteresis_width: Some(0.128), ..Default::default() };

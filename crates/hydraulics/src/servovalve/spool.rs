@@ -3,53 +3,53 @@ use phea_dynamics::scalar::Scalar;
 use super::Servovalve;
 use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
-/// How much stiffer than its own spring a sticking spool is: of a command within the threshold it
-/// follows 1/(1 + this).
+/// Stiffness of a sticking spool relative to its own spring: it follows 1/(1 + this) of a command
+/// within the threshold.
 pub(super) const STICKING_STIFFNESS: f64 = 20.0;
 
-/// What real spools add to the second-order model. Units: V, V/s. [`SpoolImperfection::default`]
-/// adds nothing.
+/// Imperfections of real spools in addition to the second-order model. Units: V, V/s.
+/// [`SpoolImperfection::default`] adds nothing.
 ///
 /// ```text
 /// u = U_C within -U_n and U_n                    the amplifier saturates
 /// dU/dt = r within -R and R                      the first stage delivers no more than the rate limit R
-/// dr/dt = w_nv^2 (u - U - f) - 2 xi_v w_nv r     thesis (4.1) where nothing limits: r = dU/dt
+/// dr/dt = w_nv^2 (u - U - f) - 2 xi_v w_nv r     thesis (4.1) without a limit: r = dU/dt
 /// df/dt = 20 (dU/dt - |dU/dt| f/h_f)             friction of the spool, h_f half the threshold
 /// dz/dt = 1/2 (dU/dt - |dU/dt| z/h_z)            lag of the torque motor's iron, h_z half of width less threshold
-/// y = U - U_0 - z                                where the edges are, U_0 the null bias
+/// y = U - U_0 - z                                position of the edges, U_0 the null bias
 /// ```
 ///
 /// Both memories are of Dahl (1976), "Solid friction damping of mechanical vibrations", AIAA
 /// Journal 14(12): independent of the rate, bounded by their half widths, and without a branch.
-/// Turned round far from null, y does not change while the command covers the threshold, and
+/// After a reversal far from null, y does not change while the command covers the threshold, and
 /// finally lags by the whole width (ISO 10770-1 on hysteresis and threshold).
 ///
-/// Measured on the valve of the thesis (section 5.2.1): null at 0.078 V rising and -0.05 V falling,
-/// so that the bias is 0.014 V and the width 0.128 V. The source does not state the threshold.
+/// Values measured on the valve of the thesis (section 5.2.1): null at 0.078 V rising and -0.05 V
+/// falling, so that the bias is 0.014 V and the width 0.128 V. The source does not state the
+/// threshold.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpoolImperfection<S = f64> {
-    /// Spool position U_0 in V at which the valve is at null.
+    /// Spool position U_0 at which the valve is at null, V.
     pub null_bias: S,
-    /// Greatest difference of two commands in V that give the same opening over a slow full cycle,
-    /// threshold included.
+    /// Greatest difference between two commands that give one opening over a slow full cycle,
+    /// including the threshold, V.
     pub hysteresis_width: Option<S>,
-    /// Change of command in V that a reversal takes.
+    /// Change of command that a reversal requires, V.
     pub threshold: Option<S>,
-    /// Greatest rate R of the spool in V/s.
+    /// Greatest rate R of the spool, V/s.
     pub rate_limit: Option<S>,
 }
 
-/// States of the spool, or their rates. Units: V, V/s; the memories are zero where the valve has
-/// none.
+/// States of the spool, or their rates. Units: V, V/s; the memories are zero if the valve has none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpoolState<S> {
-    /// Spool position U in V.
+    /// Spool position U, V.
     pub spool: S,
-    /// What drives it, r, in V/s: its rate where no limit acts.
+    /// Drive r of the spool, V/s: its rate without a limit.
     pub spool_rate: S,
-    /// Friction f in V.
+    /// Friction f, V.
     pub spool_friction: S,
-    /// Magnetic lag z in V.
+    /// Magnetic lag z, V.
     pub magnetic_lag: S,
 }
 
@@ -82,17 +82,17 @@ phea_dynamics::parameters! {
 }
 
 impl<S: Scalar> SpoolImperfection<S> {
-    /// Position in V that the edges have: the spool's, less null bias and lag.
+    /// Position of the edges: that of the spool less null bias and lag, V.
     #[inline(always)]
     pub fn opening(&self, state: &SpoolState<S>) -> S {
         let unbiased = state.spool - self.null_bias;
         if self.hysteresis_width.is_some() { unbiased - state.magnetic_lag } else { unbiased }
     }
 
-    /// Rates of the spool's states at a command in V: the equations at the top.
+    /// Rates of the spool's states at a command in V: the equations in the type's documentation.
     ///
     /// # Example
-    /// A command beyond the nominal voltage is the nominal voltage.
+    /// A command beyond the nominal voltage acts like the nominal voltage:
     /// ```
     /// use phea_hydraulics::reference_rig::valve;
     /// use phea_hydraulics::servovalve::{SpoolImperfection, SpoolState};

@@ -3,15 +3,15 @@ use phea_dynamics::scalar::Scalar;
 use super::{Servovalve, Supply};
 use crate::orifice::regular_root;
 
-/// Tare flow at a supply, in m3/s, from what the data sheet states at its own pressure drop in Pa.
+/// Tare flow at a supply in m3/s, from the data sheet's value at its own pressure drop in Pa.
 ///
 /// ```text
-/// q(p_S) = q_tare sqrt((p_S - p_T)/p_ref)          with the regular root of the edges: it returns with reversed pressures
+/// q(p_S) = q_tare sqrt((p_S - p_T)/p_ref)          with the regular root of the edges: it reverses with the pressures
 /// ```
 ///
 /// The first stage is two fixed orifices and two nozzles in turbulent flow (Merritt 1967, chapter
-/// 7), so its flow goes with the root of the drop. It runs from supply to tank and takes no part in
-/// the motion, but the pump delivers it.
+/// 7), so its flow is proportional to the root of the drop. It flows from supply to tank and does
+/// not affect the motion, but the pump delivers it.
 ///
 /// # Example
 /// ```

@@ -1,31 +1,32 @@
-//! A test stand around a servovalve: a pump that may give less than the valve takes, and a meter
-//! that takes a part of the pressure.
+//! Test stand of a servovalve: a pump that may deliver less than the valve takes, and a meter with
+//! a pressure drop.
 
 use super::{PortCircuit, PortState, Servovalve, Supply, blocked_ports, connected_ports, tare_flow};
 use crate::orifice::regular_root;
 
-/// A valve on its test stand, ports as the test pipes them. Units: Pa, m3/s, m3/(s Pa^0.5).
+/// Valve on its test stand, with the piping of its ports in the test. Units: Pa, m3/s, m3/(s
+/// Pa^0.5).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TestStand {
     /// The valve.
     pub valve: Servovalve,
-    /// Supply as stated, and tank.
+    /// Stated supply and tank pressures.
     pub supply: Supply,
     /// Drop at which the tare flow is stated.
     pub tare_reference_drop: f64,
-    /// Flow of the pump, and the rise of pressure over which its relief valve opens; `None` of a
-    /// supply that nothing moves.
+    /// Flow of the pump, and the rise of pressure over which its relief valve opens; `None` for a
+    /// constant supply.
     pub pump: Option<[f64; 2]>,
-    /// Flow of the meter between the ports at a drop of 1 Pa; infinite where it takes no pressure.
+    /// Flow of the meter between the ports at a drop of 1 Pa; infinite without a pressure drop.
     pub meter_coefficient: f64,
 }
 
-/// Where a test stand settles. Units: Pa, m3/s.
+/// Equilibrium of a test stand. Units: Pa, m3/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StandState {
-    /// Supply pressure that is left.
+    /// Remaining supply pressure.
     pub supply_pressure: f64,
-    /// Ports and flows.
+    /// Port pressures and flows.
     pub ports: PortState,
     /// Tare flow of the first stage.
     pub tare_flow: f64,
@@ -35,15 +36,15 @@ pub struct StandState {
 const HALVINGS: usize = 40;
 
 impl TestStand {
-    /// Where it settles at a position of the edges in V.
+    /// Equilibrium at a position of the edges in V.
     ///
     /// ```text
     /// q_P = q_v3 + q_v5 + q_tare + q_relief(p_S)        q_relief = q_P (p_S - p_stated + dp_o)/dp_o, not below 0
-    /// q_port = K_m root(p_A - p_B)                       in place of p_A = p_B where the meter takes pressure
+    /// q_port = K_m root(p_A - p_B)                       in place of p_A = p_B if the meter has a pressure drop
     /// ```
     ///
     /// # Example
-    /// The pump of the thesis cannot fill its valve at 30 % of the command.
+    /// The pump of the thesis cannot supply its valve at 30 % of the command:
     /// ```
     /// use phea_hydraulics::reference_rig::valve;
     /// use phea_hydraulics::servovalve::{PortCircuit, Supply, TestStand};
@@ -84,13 +85,13 @@ impl TestStand {
                 self.meter_coefficient * regular_root(load_pressure, self.valve.transition_pressure);
             at(load_pressure).port_flow - metered
         };
-        // the meter never takes all of the pressure: at the ends the valve passes its leakage alone
+        // the meter never takes the whole pressure: at the ends the valve passes only its leakage
         let whole = 0.999 * (supply.pressure - supply.tank_pressure);
         at(falling_zero(surplus, [-whole, whole]))
     }
 }
 
-/// Zero of a falling function between two ends; the nearer end where there is none.
+/// Zero of a falling function between two ends; the nearer end if there is none.
 fn falling_zero(function: impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -> f64 {
     for _ in 0..HALVINGS {
         let middle = f64::midpoint(low, high);

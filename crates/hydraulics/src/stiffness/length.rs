@@ -9,21 +9,19 @@ use crate::line::{Line, StiffeningMember};
 /// Length of each of two equal lines that gives the wanted least stiffness over the stroke.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LineLength {
-    /// This length, in m, of each line.
+    /// Length of each line, m.
     Length(f64),
-    /// The actuator is no stiffer than wanted with no line at all; its least stiffness then, in
-    /// N/m.
+    /// No line needed: even without a line the actuator is no stiffer than wanted.
     NotNeeded {
-        /// Least stiffness over the stroke with lines of no length, in N/m.
+        /// Least stiffness over the stroke without lines, N/m.
         stiffness_without_line: f64,
     },
-    /// No line of this kind softens the actuator so far (none at all reaches a stiffness of zero or
-    /// less).
+    /// Stiffness that no line of this kind makes low enough (none reaches zero or less).
     OutOfReach,
 }
 
 impl LineLength {
-    /// In m: zero where none is needed, infinite where none is enough.
+    /// Length in m: zero if none is needed, infinite if none is sufficient.
     pub fn metres(self) -> f64 {
         match self {
             LineLength::Length(length) => length,
@@ -34,7 +32,7 @@ impl LineLength {
 }
 
 /// Hose length L_ho of each line for a wanted least stiffness K_H, one modulus for hose and
-/// chamber, in m.
+/// chamber, m.
 ///
 /// ```text
 /// L_ho = 8 A^2 r_b beta_0 (pi D^2 + 4 E) / (pi D^2 K_H (4 eps beta_0 + r_b (pi D^2 + 4 E))) - 2 A L/(pi D^2)
@@ -48,8 +46,8 @@ pub fn hose_length_uniform<S: Scalar>(stiffness: S, area: S, stroke: S, bore: S,
     needed * S::from(2.0 / PI) / bore.squared()
 }
 
-/// Hose length L_ho of each line for a wanted least stiffness K_H, the chamber keeping the fluid's
-/// modulus, in m.
+/// Hose length L_ho of each line for a wanted least stiffness K_H, with the fluid's modulus in the
+/// chamber, m.
 ///
 /// ```text
 /// L_ho = (2 A^2/K_H - A L/(2 beta_0)) / (epsilon/r_beta + (A_ho + E(p))/beta_0)      thesis (6.25), corrected
@@ -59,7 +57,7 @@ pub fn hose_length_uniform<S: Scalar>(stiffness: S, area: S, stroke: S, bore: S,
 /// [`crate::line::Hose::compliance_per_length`]; a negative length means that no hose is needed.
 ///
 /// # Example
-/// The thesis' 2.24e6 N/m takes 3.64 m of its hose and not 1.5 m.
+/// The thesis' 2.24e6 N/m requires 3.64 m of its hose, not 1.5 m:
 /// ```
 /// use phea_hydraulics::{line::StiffeningMember, reference_rig::hose, stiffness::hose_length_by_volume};
 /// let metre = hose().compliance_per_length(1.45e9, StiffeningMember::Nominal);
@@ -78,7 +76,7 @@ pub fn hose_length_by_volume<S: Scalar>(
 }
 
 /// Least stiffness K_H over the stroke from the hose length of each line, one modulus for hose and
-/// chamber, in N/m.
+/// chamber, N/m.
 ///
 /// ```text
 /// K_H = 8 r_b beta_0 A^2 (pi D^2 + 4 E) / ((4 eps beta_0 + r_b (pi D^2 + 4 E)) (2 A L + pi D^2 L_ho))
@@ -95,14 +93,14 @@ pub fn stiffness_from_hose_length<S: Scalar>(
         / (S::from(2.0) * area * stroke + S::from(PI) * bore.squared() * length)
 }
 
-/// The factor of the lengths of two lines that brings the least stiffness over the stroke to
-/// `stiffness` in N/m: lines of this proportion, each of its own hose; either model, any cylinder.
+/// Factor of the lengths of two lines that gives the least stiffness `stiffness` in N/m over the
+/// stroke: lines in this proportion, each with its own hose; either model, any cylinder.
 ///
 /// The length of a [`Line::Volume`] is its volume over the given one. Solved by bisection, since
 /// the least stiffness falls strictly as lines grow; agrees with [`hose_length_uniform`] and
-/// [`hose_length_by_volume`] where those apply.
+/// [`hose_length_by_volume`] if these apply.
 ///
-/// Where the softest position lies within the stroke and both have the same compliance c:
+/// If the softest position is within the stroke and both lines have one compliance c:
 ///
 /// ```text
 /// c = (Q^2/K_H - L - k_0A/s_A - k_0B/s_B) / (1/s_A + 1/s_B),    Q = A_A/sqrt(s_A) + A_B/sqrt(s_B)

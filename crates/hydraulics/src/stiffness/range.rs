@@ -15,11 +15,11 @@ use crate::stroke::{ActuatorStroke, Telescope};
 pub struct StrokeStiffness {
     /// Least stiffness.
     pub minimum: f64,
-    /// Where it is; mid stroke for a symmetric cylinder with equal lines.
+    /// Position of the least stiffness; mid stroke for a symmetric cylinder with equal lines.
     pub minimum_position: f64,
     /// Greatest stiffness.
     pub maximum: f64,
-    /// Where it is: at one of the ends.
+    /// Position of the greatest stiffness, at one of the ends.
     pub maximum_position: f64,
 }
 
@@ -30,14 +30,14 @@ impl ChamberCompliance<f64> {
     /// dK_H/dx = 0   <=>   A_A sqrt(slope_a)/C_A(x) = A_B sqrt(slope_b)/C_B(x)        (linear in x)
     /// ```
     ///
-    /// K_H is convex in x, so the greatest is at an end, and the least at the root if it lies
-    /// inside the stroke and at an end otherwise. A telescopic piston is searched on a grid, which
-    /// finds the least and the greatest to a hundred thousandth. With neither dead volume nor line
+    /// K_H is convex in x, so the greatest value is at an end, and the least at the root if that is
+    /// inside the stroke, otherwise at an end. A telescopic piston is searched on a grid, which
+    /// finds the least and the greatest to one part in 100,000. With neither dead volume nor line
     /// the stiffness at the ends is infinite.
     ///
     /// # Example
-    /// The big side is the softer: an asymmetric cylinder is softest on the rod's side of mid
-    /// stroke.
+    /// The larger side is the softer: an asymmetric cylinder is softest on the rod's side of mid
+    /// stroke:
     /// ```
     /// use phea_hydraulics::{stiffness::ChamberCompliance, stroke::ActuatorStroke};
     /// let steel = 1.0 / 1.45e9;
@@ -76,8 +76,8 @@ impl ChamberCompliance<f64> {
         }
     }
 
-    /// The same of a telescopic piston: of a grid over the stroke and over its transitions, where
-    /// K_H changes most.
+    /// Least and greatest stiffness of a telescopic piston, on a grid over the stroke and over its
+    /// transitions, where K_H changes most.
     fn over_stages(&self, telescope: &Telescope) -> StrokeStiffness {
         let over = |from: f64, width: f64| {
             (0..=STEPS_OVER_STAGES).map(move |step| from + width * step as f64 / STEPS_OVER_STAGES as f64)
@@ -102,32 +102,32 @@ impl ChamberCompliance<f64> {
 /// Steps of the grid over a stroke of several stages, and over each transition.
 const STEPS_OVER_STAGES: usize = 2000;
 
-/// The two stiffness models side by side: the numbers of one sentence. Units: N/m, 1.
+/// Comparison of the two stiffness models. Units: N/m, 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelDifference {
-    /// One modulus for line and chamber.
+    /// Stiffness with one modulus for line and chamber.
     pub uniform: StrokeStiffness,
-    /// Each volume with its own modulus.
+    /// Stiffness with separate moduli of the volumes.
     pub by_volume: StrokeStiffness,
-    /// Least stiffness by volume over least stiffness uniform.
+    /// Ratio of the least stiffness by volume to the least stiffness uniform.
     pub minimum_ratio: f64,
-    /// Greatest stiffness by volume over greatest stiffness uniform.
+    /// Ratio of the greatest stiffness by volume to the greatest stiffness uniform.
     pub maximum_ratio: f64,
-    /// Share of the fluid that is in the chambers and not in the lines (piston at the softest
-    /// position): what `uniform` gives the wrong modulus to.
+    /// Fraction of the fluid in the chambers and not in the lines (piston at the softest position),
+    /// for which `uniform` has the wrong modulus.
     pub chamber_volume_share: f64,
-    /// Share of the compliance, by volume, that the lines provide there: what sizing the lines can
-    /// change.
+    /// Fraction of the compliance, by volume, from the lines at this position, which sizing the
+    /// lines can change.
     pub line_compliance_share: f64,
-    /// Share of the compliance, by volume, that the gas of accumulators provides there.
+    /// Fraction of the compliance, by volume, from the gas of accumulators at this position.
     pub gas_compliance_share: f64,
 }
 
-/// Both stiffness models of the same cylinder and lines, and how far they are apart; the fluid's
-/// modulus on either side in Pa, the compliance of an accumulator's gas there in m3/Pa.
+/// Both stiffness models of one cylinder and its lines, and their difference; the fluid's modulus
+/// on either side in Pa, the compliance of an accumulator's gas there in m3/Pa.
 ///
 /// # Example
-/// For 1.5 m of the thesis' hose the thesis' model is less than half as stiff as the truth.
+/// For 1.5 m of the thesis' hose, the thesis' model has less than half the true stiffness:
 /// ```
 /// # use phea_hydraulics::{cylinder::*, line::*, stiffness::*, stroke::ActuatorStroke};
 /// # let cylinder = Cylinder { area_a: 1.58336e-3, area_b: 1.58336e-3, stroke: ActuatorStroke::Limited(0.5), moving_mass: 13.1,

@@ -2,19 +2,19 @@ use phea_dynamics::scalar::Scalar;
 
 use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
-/// The most stages that follow the first.
+/// Largest number of stages after the first.
 pub const FURTHER_STAGES: usize = 3;
 
-/// A stage of a telescopic piston after the first. Units: m, 1.
+/// Stage of a telescopic piston after the first. Units: m, 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PistonStage<S = f64> {
-    /// Position x_k from which it moves.
+    /// Position x_k at which it begins to move.
     pub from: S,
-    /// Areas A_A and A_B there over those of the first stage.
+    /// Ratios of its areas A_A and A_B to those of the first stage.
     pub ratios: [S; 2],
 }
 
-/// A piston whose stages follow each other along the stroke, each with areas of its own.
+/// Piston whose stages follow each other along the stroke, each with its own areas.
 ///
 /// ```text
 /// r(x) = 1 + sum over k of (r_k - r_k-1) b(t_k)
@@ -27,7 +27,7 @@ pub struct PistonStage<S = f64> {
 /// areas blend into each other, so that dV/dx = A everywhere and the areas have a slope. Units: m.
 ///
 /// # Example
-/// The volume that a piston sweeps over a stage of half the area is half as large.
+/// The volume that a piston sweeps over a stage of half the area is half as large:
 /// ```
 /// use phea_hydraulics::stroke::{PistonStage, Telescope};
 /// let half = PistonStage { from: 0.2, ratios: [0.5, 1.0] };
@@ -41,7 +41,7 @@ pub struct PistonStage<S = f64> {
 pub struct Telescope<S = f64> {
     /// Stroke L of all stages together.
     pub stroke: S,
-    /// The stages after the first, in the order in which they follow; those that exist come first.
+    /// Stages after the first, in order; those that exist come first.
     pub stages: [Option<PistonStage<S>>; FURTHER_STAGES],
     /// Width w of the transition from one stage to the next, x_k in its middle.
     pub transition: S,
@@ -50,8 +50,7 @@ pub struct Telescope<S = f64> {
 phea_dynamics::parameters! { Telescope { stroke, stages, transition } }
 phea_dynamics::parameters! { PistonStage { from, ratios } }
 
-/// What the transition to a stage adds, over its share t of the transition: b, db/dt and the
-/// integral of b.
+/// Blend of the transition to a stage, over its fraction t: b, db/dt and the integral of b.
 struct Blend<S> {
     value: S,
     slope: S,
@@ -73,8 +72,8 @@ impl<S: Scalar> Blend<S> {
 }
 
 impl<S: Scalar> Telescope<S> {
-    /// Sums over the stages of both sides, from a start: what `of` takes from the blend to each,
-    /// times the change of the ratio there.
+    /// Sums over the stages of both sides, from a start: the value that `of` selects from the
+    /// blend, times the change of the ratio there.
     #[inline(always)]
     fn summed(&self, x: S, start: S, of: impl Fn(Blend<S>) -> S) -> [S; 2] {
         let (mut sums, mut before) = ([start; 2], [S::from(1.0); 2]);
@@ -88,18 +87,18 @@ impl<S: Scalar> Telescope<S> {
         sums
     }
 
-    /// r_A and r_B at a position in m.
+    /// Ratios r_A and r_B at a position in m.
     pub fn ratios(&self, x: S) -> [S; 2] {
         self.summed(x, S::from(1.0), |blend| blend.value)
     }
 
-    /// Their slopes over the position, in 1/m; zero away from the transitions.
+    /// Slopes of the ratios over the position, 1/m; zero away from the transitions.
     pub fn slopes(&self, x: S) -> [S; 2] {
         self.summed(x, S::from(0.0), |blend| blend.slope / self.transition)
     }
 
-    /// l_A(x) and l_B(L) - l_B(x) in m: how far a piston of the first stage's areas would have
-    /// swept the same volumes.
+    /// Equivalent travels l_A(x) and l_B(L) - l_B(x), m: the travel of a piston with the first
+    /// stage's areas that sweeps equal volumes.
     pub fn travels(&self, x: S) -> [S; 2] {
         let swept = |x: S| self.summed(x, x, |blend| blend.integral * self.transition);
         let ([from_a, from_b], [_, whole]) = (swept(x), swept(self.stroke));
@@ -108,7 +107,7 @@ impl<S: Scalar> Telescope<S> {
 }
 
 impl Telescope {
-    /// The invalid parameters; empty if all are valid.
+    /// Invalid parameters; empty if all are valid.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.positive("stroke", self.stroke);

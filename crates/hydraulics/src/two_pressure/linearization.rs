@@ -9,8 +9,8 @@ use crate::operating_point::OperatingPoint;
 use crate::servovalve::{ChamberCoefficients, SpoolDirection, chamber_coefficients};
 use crate::stiffness::compliance_at;
 
-/// The two-pressure model linearised: everything its transfer functions depend on. Units: m2,
-/// m3/Pa, m3/(s V), m3/(s Pa), kg, N s/m, N/m, rad/s, 1.
+/// Linearised two-pressure model: all parameters of its transfer functions. Units: m2, m3/Pa, m3/(s
+/// V), m3/(s Pa), kg, N s/m, N/m, rad/s, 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoPressureLinearParameters<S = f64> {
     /// Piston areas A_A and A_B.
@@ -31,12 +31,13 @@ pub struct TwoPressureLinearParameters<S = f64> {
     pub valve_damping_ratio: S,
 }
 
-/// Coefficients of the linearised model at an operating point; `direction` decides which edges open
-/// at null.
+/// Coefficients of the linearised model at an operating point; `direction` selects the edges that
+/// open at null.
 ///
-/// Areas and compliances are those of the position, held there: what else depends on the position
-/// is the net flow into the chambers, which vanishes at an equilibrium, and within a transition of
-/// a telescopic piston [`Cylinder::area_stiffness`](crate::cylinder::Cylinder::area_stiffness).
+/// Areas and compliances are those of the position and constant: the other terms that depend on the
+/// position are the net flow into the chambers, which vanishes at an equilibrium, and within a
+/// transition of a telescopic piston
+/// [`Cylinder::area_stiffness`](crate::cylinder::Cylinder::area_stiffness).
 pub fn two_pressure_linear_parameters<S: Scalar>(
     model: &TwoPressureModel<S>,
     point: &OperatingPoint<S>,
@@ -63,13 +64,13 @@ pub fn two_pressure_linear_parameters<S: Scalar>(
     }
 }
 
-/// The linearised model as state space.
+/// Linearised model as state space.
 ///
 /// States as in [`super::TwoPressureState`]; inputs command U_C and load velocity v_L; outputs
 /// force F_e, p_A and p_B; all deviations from the operating point.
 ///
 /// # Errors
-/// A coefficient that is not finite.
+/// Coefficient that is not finite.
 pub fn linearize(parameters: &TwoPressureLinearParameters) -> Result<StateSpace, LinearError> {
     let [area_a, area_b] = parameters.areas;
     let [compliance_a, compliance_b] = parameters.compliances;
@@ -107,7 +108,7 @@ pub fn linearize(parameters: &TwoPressureLinearParameters) -> Result<StateSpace,
     StateSpace::new(a, b, c, DMatrix::zeros(3, 2), TimeDomain::Continuous)
 }
 
-/// The linearised model as rational functions, F_e/U_C and F_e/X_L, over any scalar.
+/// Linearised model as rational functions, F_e/U_C and F_e/X_L, over any scalar.
 ///
 /// ```text
 /// Y_A = C_A s + K_cA        Y_B = C_B s + K_cB        v(s) = s^2 + 2 xi_v w_nv s + w_nv^2
@@ -117,12 +118,12 @@ pub fn linearize(parameters: &TwoPressureLinearParameters) -> Result<StateSpace,
 /// ```
 ///
 /// From the equations at the top of [`crate::two_pressure`]; sixth order. At mid stroke of a
-/// symmetric cylinder with equal edges Y_A = Y_B is a common factor, and what is left is thesis
+/// symmetric cylinder with equal edges Y_A = Y_B is a common factor, and the remainder is thesis
 /// (6.7).
 ///
 /// # Example
-/// Against a load that stands still the flow of each chamber is zero, and its pressure K_q/K_c per
-/// volt: the force per volt is A_A K_qA/K_cA + A_B K_qB/K_cB.
+/// With a stationary load the flow of each chamber is zero, and its pressure K_q/K_c per volt: the
+/// force per volt is A_A K_qA/K_cA + A_B K_qB/K_cB:
 /// ```
 /// use phea_hydraulics::actuator::Actuator;
 /// use phea_hydraulics::line::StiffeningMember;

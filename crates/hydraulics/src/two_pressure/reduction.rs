@@ -7,17 +7,17 @@ use crate::linear::{
 };
 use crate::servovalve::ChamberCoefficients;
 
-/// Effective parameters of the fifth-order model (6.7) that stand for a two-pressure model.
+/// Effective parameters of the fifth-order model (6.7) that represent a two-pressure model.
 ///
 /// ```text
 /// A_u = (A_A + A_B)/2        K_H = A_A^2/C_A + A_B^2/C_B
 /// A_u^2/K_c = A_A^2/K_cA + A_B^2/K_cB        K_qU = (A_u/K_H) (A_A K_qA/C_A + A_B K_qB/C_B)
 /// ```
 ///
-/// K_H and K_qU make the force on fast commands and motions right, K_c the force on slow motions
-/// (the damper A_u^2/K_c). Three numbers cannot also keep the static gain from command to force; it
-/// is right when both chambers have the same corner frequency K_c/C. At mid stroke of a symmetric
-/// cylinder with equal edges the reduction is exact.
+/// With K_H and K_qU the force for fast commands and motions is right, with K_c the force for slow
+/// motions (the damper A_u^2/K_c). Three numbers cannot also preserve the static gain from command
+/// to force; it is right if both chambers have the same corner frequency K_c/C. At mid stroke of a
+/// symmetric cylinder with equal edges the reduction is exact.
 pub fn reduce<S: Scalar>(parameters: &TwoPressureLinearParameters<S>) -> LinearParameters<S> {
     let [area_a, area_b] = parameters.areas;
     let [compliance_a, compliance_b] = parameters.compliances;
@@ -41,12 +41,13 @@ pub fn reduce<S: Scalar>(parameters: &TwoPressureLinearParameters<S>) -> LinearP
     }
 }
 
-/// A reduction and what it costs.
+/// Reduction and its error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reduction {
-    /// The effective parameters.
+    /// Effective parameters.
     pub parameters: LinearParameters,
-    /// Static force per volt of the reduction over that of the two-pressure model; 1 if exact.
+    /// Ratio of the static force per volt of the reduction to that of the two-pressure model; 1 if
+    /// exact.
     pub static_gain_ratio: f64,
     /// Largest differences of the force's response to the command.
     pub command: ResponseDifference,
@@ -57,10 +58,10 @@ pub struct Reduction {
 /// Reduces a two-pressure model to (6.7) and measures the difference at these frequencies in rad/s.
 ///
 /// # Errors
-/// Coefficients that are not finite, or without frequencies.
+/// Coefficients that are not finite, or no frequencies.
 ///
 /// # Example
-/// Exact at mid stroke of the symmetric cylinder where the edges of the valve are equal.
+/// Exact at mid stroke of the symmetric cylinder if the edges of the valve are equal:
 /// ```
 /// use phea_hydraulics::actuator::{Actuator, Components};
 /// use phea_hydraulics::line::StiffeningMember;

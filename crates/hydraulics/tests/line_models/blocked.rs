@@ -1,4 +1,4 @@
-//! A line whose far end is blocked, against closed forms.
+//! A line whose far end is blocked, compared with closed forms.
 
 use num_complex::Complex64;
 use phea_dynamics::portable::{cos, exp, ln, magnitude, pow, sin};
@@ -19,11 +19,11 @@ const HOSE: Conduit = Conduit {
     effective_bulk_modulus: 2.49e8,
 };
 
-/// Without friction a blocked line has the impedance Z_c coth(sT).
+/// A blocked line without friction has the impedance Z_c coth(sT).
 #[test]
 fn a_lossless_line_has_the_closed_form() {
     let conduit = Conduit { kinematic_viscosity: 1e-15, ..HOSE };
-    // the end volumes move the response by their share of the compliance
+    // the end volumes change the response by their fraction of the compliance
     let line = TransmissionLine::of_conduit(&conduit, 1e-7).unwrap();
     let line = BlockedLine::of(DynamicLine::TransmissionLine(line));
     for angle in [0.01, 0.3, 1.0, 1.5, 2.0, 3.0, 4.5, 7.0] {
@@ -38,9 +38,9 @@ fn a_lossless_line_has_the_closed_form() {
     }
 }
 
-/// With friction it is near the exact line, as far as each model is: the entries of the transfer
-/// matrix of waves are within 0.6 % of their root mean square, three times that at most, and
-/// sixteen segments have resonances 0.2 % low up to the quarter wave.
+/// The line with friction agrees with the exact line to the accuracy of each model: the entries of
+/// the transfer matrix of waves are within 0.6 % of their root mean square, three times as much at
+/// most, and sixteen segments have resonances 0.2 % low up to the quarter wave.
 #[test]
 fn a_line_with_friction_is_near_the_exact_one() {
     let waves = DynamicLine::TransmissionLine(TransmissionLine::of_conduit(&HOSE, 1e-6).unwrap());
@@ -59,8 +59,8 @@ fn a_line_with_friction_is_near_the_exact_one() {
     }
 }
 
-/// Air in a lumped pipe: what is pressed in between two pressures is the change of the logarithm of
-/// the mixture's volume, and what the wall takes.
+/// Air in a lumped pipe: the volume pressed in between two pressures is the change of the logarithm
+/// of the mixture's volume, plus that taken by the wall.
 #[test]
 fn a_pipe_with_air_takes_up_what_its_mixture_gives_way() {
     let clean = components(pipe_line(), StiffnessModel::ByVolume).fluid;
@@ -92,8 +92,7 @@ fn a_pipe_with_air_takes_up_what_its_mixture_gives_way() {
     assert!((last / high - 1.0).abs() < 1e-6, "{last}");
 }
 
-/// In time and over frequency it is one line: a slow sine of flow moves the pressure by the
-/// impedance.
+/// Time and frequency models agree: a slow sine of flow moves the pressure by the impedance.
 #[test]
 fn time_and_frequency_agree() {
     let fluid = components(hose_line(), StiffnessModel::ByVolume).fluid;

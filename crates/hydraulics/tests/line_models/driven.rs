@@ -1,4 +1,4 @@
-//! Lines driven by the integrator of the machine: delays kept by its histories.
+//! Lines driven by the integrator of the machine, with delays from its histories.
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{
@@ -61,7 +61,7 @@ impl Fed {
 }
 
 /// Water hammer at a shut valve: a flow that stops leaves -Z_c q, which the constant pressure at
-/// the far end sends back turned round: a square wave of the period 4 T.
+/// the far end reflects with reversed sign: a square wave of the period 4 T.
 #[test]
 fn a_valve_that_shuts_leaves_a_square_wave() {
     let smooth = Conduit { kinematic_viscosity: 1e-12, ..conduit() };
@@ -85,7 +85,8 @@ fn a_valve_that_shuts_leaves_a_square_wave() {
     assert!(seen[0] > 30 && seen[1] > 30);
 }
 
-/// Models of one hose fed slowly agree; none gives energy; each ends with the volume it was given.
+/// Models of one hose filled slowly agree; none supplies energy; each ends with the volume that
+/// entered.
 #[test]
 fn all_models_of_a_hose_take_up_a_slow_flow_alike() {
     let models = [
@@ -115,7 +116,7 @@ fn all_models_of_a_hose_take_up_a_slow_flow_alike() {
         let pressure = result.outcome.end[lines];
         let expected = given / (compliance + fed.chamber);
         assert!((pressure / expected - 1.0).abs() < 2e-3, "{model:?}: {pressure} against {expected}");
-        // half of p V stays in the line, what friction takes is little
+        // half of p V stays in the line, the loss to friction is small
         let stored = 0.5 * compliance * pressure * pressure;
         assert!((energy / stored - 1.0).abs() < 0.01, "{model:?}: {energy} J against {stored} J");
         assert!(result.outcome.work.steps < 4000, "{:?}", result.outcome.work);

@@ -1,4 +1,4 @@
-//! The response of a model at one frequency, found from its equations alone; the thesis' hose; the
+//! Response of a model at one frequency, found only from its equations; the thesis' hose; the
 //! exponential of a matrix.
 
 use nalgebra::{Complex, DMatrix, DVector};
@@ -25,8 +25,8 @@ pub(crate) fn size(z: Complex64) -> f64 {
     z.norm_sqr().sqrt()
 }
 
-/// Everything a line answers to its flow, pressure, state and arriving waves: rates, waves sent,
-/// port pressure, chamber flow.
+/// Outputs of a line for its flow, pressure, state and arriving waves: rates, waves sent, port
+/// pressure, chamber flow.
 fn answer(line: &DynamicLine, given: &[f64]) -> Vec<f64> {
     let (states, waves) = (line.states(), line.delays().len());
     let (flow, pressure) = (given[0], given[1]);
@@ -76,8 +76,8 @@ pub(crate) fn transfer_matrix(line: &DynamicLine, s: Complex64) -> [[Complex64; 
         })
     };
     let ([port_of_flow, chamber_of_flow], [port_of_pressure, chamber_of_pressure]) = (answers(0), answers(1));
-    // (p1, q) from (q1, p2), q what the line delivers; the end volume at the chamber takes s C p2
-    // of it, q2 is left
+    // (p1, q) from (q1, p2), q being the flow delivered by the line; the end volume at the chamber
+    // takes s C p2 of it, and q2 remains
     let taken = s * line.chamber_compliance();
     let t22 = chamber_of_flow.inv();
     let t21 = t22 * (taken - chamber_of_pressure);
@@ -124,13 +124,13 @@ pub(crate) fn impedance_errors(
     [0, 1].map(|index: usize| (error[index] / total[index]).sqrt())
 }
 
-/// The impedances of a model, from its transfer matrix.
+/// Impedances of a model, from its transfer matrix.
 pub(crate) fn impedances(line: &DynamicLine, s: Complex64) -> LineResponse {
     let [[t11, t12], [t21, _]] = transfer_matrix(line, s);
     LineResponse { in_phase: (t11 + 1.0) / t21, in_opposition: t12 / (t11 + 1.0) }
 }
 
-/// The exponential of a matrix by halving, a Taylor series and squaring.
+/// Exponential of a matrix by halving, a Taylor series and squaring.
 pub(crate) fn exponential(matrix: &DMatrix<Complex64>) -> DMatrix<Complex64> {
     let order = matrix.nrows();
     let largest = matrix.iter().map(|entry| size(*entry)).fold(0.0, f64::max);

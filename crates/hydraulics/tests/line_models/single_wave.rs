@@ -1,4 +1,4 @@
-//! Lumped, segments, creep and the transmission line against the exact line.
+//! Lumped lines, segments, creep and the transmission line compared with the exact line.
 
 use num_complex::Complex64;
 use phea_dynamics::scalar::{Lanes, Parameters};
@@ -71,12 +71,12 @@ fn the_transmission_line_follows_the_exact_line() {
         let found = errors(&line, exact(conduit), frequencies(conduit.delay(), 30.0));
         assert!(found[0] < t11 && found[1] < t12 && found[2] < t21, "{viscosity}: {found:?}");
     }
-    // the end volumes cost little up to the first resonances
+    // the end volumes have little effect up to the first resonances
     let found = errors(&transmission_line(&hose, END_SHARE), exact(hose), frequencies(hose.delay(), 3.0));
     assert!(found.iter().all(|error| *error < 0.035), "{found:?}");
 }
 
-/// A line is the same from both ends, and its transfer matrix has the determinant 1: reciprocity.
+/// A line is symmetric between its ends, and its transfer matrix has determinant 1: reciprocity.
 #[test]
 fn every_model_is_symmetric_and_reciprocal() {
     let hose = conduit();
@@ -99,8 +99,8 @@ fn every_model_is_symmetric_and_reciprocal() {
     }
 }
 
-/// At rest every model holds the volume of the lumped line, and lets a steady flow pass as Hagen
-/// and Poiseuille say.
+/// At rest every model has the volume of the lumped line, and a steady flow obeys Hagen and
+/// Poiseuille.
 #[test]
 fn every_model_has_the_compliance_and_the_resistance_of_the_lumped_line() {
     let hose = conduit();
@@ -121,8 +121,8 @@ fn every_model_has_the_compliance_and_the_resistance_of_the_lumped_line() {
     }
 }
 
-/// Whatever the model of its motion, a hose holds at rest what its sheet says at the operating
-/// pressure: what creeps, with the wall at rest, and all else with the dynamic one.
+/// For any dynamic model, a hose contains at rest the volume stated by its sheet at the operating
+/// pressure: creeping walls with the modulus at rest, all others with the dynamic one.
 #[test]
 fn every_model_of_a_hose_keeps_to_its_sheet() {
     // ORIGIN: analytic, dV/dp = epsilon L/r_beta + (A_ho + E(35 bar)) L/beta_0
@@ -190,8 +190,8 @@ fn segments_converge_to_the_exact_line() {
     assert!(found.iter().all(|error| *error < 5e-3), "{found:?}");
 }
 
-/// Impedances in phase and in opposition have no negative real part: whatever is connected gets no
-/// energy out.
+/// Impedances in phase and in opposition have no negative real part: no connected system gains
+/// energy.
 #[test]
 fn the_transmission_line_is_passive_at_every_frequency() {
     let hose = conduit();
@@ -200,8 +200,8 @@ fn the_transmission_line_is_passive_at_every_frequency() {
         let mut frequency = 0.03;
         while frequency < 3e5 {
             let LineResponse { in_phase, in_opposition } = impedances(&line, at(frequency));
-            // what rounding leaves; comparisons/recompute_lines.py holds the impedances themselves
-            // against zero
+            // limit of rounding; comparisons/recompute_lines.py compares the impedances themselves
+            // with zero
             let least = -2e-9 * (size(in_phase) + size(in_opposition));
             assert!(
                 in_phase.re > least && in_opposition.re > least,

@@ -1,4 +1,4 @@
-//! Lines in time, by a small fixed-step method with delays kept as histories.
+//! Lines in time, by a small fixed-step method with delays stored as histories.
 
 use phea_hydraulics::line::{
     Conduit, DynamicLine, END_SHARE, LaminarFriction, Segments, StandardLinearSolid, StiffeningMember,
@@ -28,7 +28,7 @@ impl Run {
         Run { line, chamber, step, time: 0.0, state, pressure, sent, at_rest }
     }
 
-    /// Waves as they arrive at a time: straight between what was sent at the steps.
+    /// Waves on arrival at a time: linear between the values sent at the steps.
     fn arriving(&self, time: f64) -> Vec<f64> {
         let of = |(index, delay): (usize, f64)| {
             let place = (time - delay) / self.step;
@@ -63,7 +63,7 @@ impl Run {
             let pressure = values[states];
             let flow = self.line.rates(inflow, pressure, &values[..states], &arriving, &mut rates[..states]);
             rates[states] = (flow - outflow) / total;
-            // power at the valve port, and what the chamber with its outflow takes
+            // power at the valve port, and power taken by the chamber with its outflow
             let port = self.line.port_pressure(&values[..states], pressure);
             rates[states + 1] = port * inflow - pressure * (outflow + self.chamber * rates[states]);
             rates
@@ -105,7 +105,7 @@ fn models() -> Vec<DynamicLine> {
     ]
 }
 
-/// Joukowsky: a flow that sets in raises the pressure by Z_c q; after T it arrives at the shut end,
+/// Joukowsky: the onset of a flow raises the pressure by Z_c q; after T it arrives at the shut end,
 /// doubled.
 #[test]
 fn a_step_of_flow_rises_and_arrives_as_joukowsky_says() {
@@ -136,7 +136,7 @@ pub(crate) fn next(seed: &mut u64) -> f64 {
     *seed as f64 / 1_073_741_823.5 - 1.0
 }
 
-/// Started at rest without pressure, no line ever gives more energy than it took.
+/// From rest without pressure, no line ever supplies more energy than it received.
 #[test]
 fn random_flows_get_no_energy_out() {
     for (index, line) in models().into_iter().enumerate() {
@@ -161,8 +161,7 @@ fn random_flows_get_no_energy_out() {
     }
 }
 
-/// What flows in and does not flow out is stored: after all has settled, volume over compliance is
-/// the pressure.
+/// Inflow less outflow is stored: after settling, volume over compliance is the pressure.
 #[test]
 fn volume_is_conserved() {
     for line in models() {
@@ -179,7 +178,7 @@ fn volume_is_conserved() {
             let inflow = 6e-4 * part * (1.0 - part);
             given += inflow * run.step;
             run.advance(inflow, 0.0);
-            // what still rings cancels in the mean of both ends over a third of the run
+            // the remaining oscillation cancels in the mean of both ends over a third of the run
             mean += if step < 20_000 { 0.0 } else { (run.pressure + run.port()) / 20_000.0 };
         }
         let expected = 10e5 + given / (conduit.compliance() + crept + chamber);

@@ -1,4 +1,4 @@
-//! The hose with two waves: against the exponential of its four equations, and its limits.
+//! The hose with two waves compared with the exponential of its four equations, and its limits.
 
 use nalgebra::{Complex, DMatrix};
 use num_complex::Complex64;
@@ -85,7 +85,7 @@ fn the_modes_are_those_of_the_four_equations() {
     let inertance: f64 = [slow, fast].iter().map(|wave| wave.impedance / wave.speed * hose.length).sum();
     assert!((elastance * hose.fixed_end_conduit().compliance() - 1.0).abs() < 1e-12);
     assert!((inertance / (hose.density * hose.length / area) - 1.0).abs() < 1e-12);
-    // friction moves fluid against wall; both waves together find all of it
+    // friction acts between fluid and wall; both waves together have all of it
     let together = slow.friction_share + fast.friction_share;
     let both = 1.0 + hose.density * area / hose.wall.mass_per_length;
     assert!((together / both - 1.0).abs() < 1e-12);
@@ -112,8 +112,8 @@ fn the_exact_hose_is_the_exponential_of_its_four_equations() {
     assert!(size(t21 + Complex64::new(2.3202171e-11, 1.1694415e-10)) < 1e-16);
 }
 
-/// Without friction the model in time is the exponential, delays and all; with it, as near as one
-/// wave is.
+/// The model in time without friction equals the exponential, including delays; with friction it is
+/// as accurate as with one wave.
 #[test]
 fn the_model_in_time_follows_the_exact_hose() {
     for hose in [round_hose(), assumed_hose()] {
@@ -134,14 +134,14 @@ fn the_model_in_time_follows_the_exact_hose() {
         let found = errors_of(assumed_hose(), highest);
         assert!(found[0] < in_phase && found[1] < in_opposition, "{highest}: {found:?}");
     }
-    // the slower wave of the round hose takes its wall along (N = 1.14): sharp peaks, between which
-    // all is well
+    // the slower wave of the round hose moves its wall along (N = 1.14): sharp peaks, with good
+    // agreement between them
     let found = errors_of(round_hose(), 500.0);
     assert!(found[0] < 5e-4 && found[1] < 0.04, "{found:?}");
 }
 
-/// Without coupling there is a wave of the fluid, which is all that the ends see, and a wave of the
-/// wall.
+/// An uncoupled hose has a wave of the fluid, which is the only one visible at the ends, and a wave
+/// of the wall.
 #[test]
 fn without_coupling_one_wave_is_left() {
     let mut hose = round_hose();
@@ -159,14 +159,14 @@ fn without_coupling_one_wave_is_left() {
             assert!(size(one - two) < 1e-9 * size(*one), "{one} {two}");
         }
     }
-    // little coupling differs little
+    // weak coupling changes little
     hose.wall.coupling_compliance = -1e-8;
     let [_, near] = hose.waves();
     assert!((near.speed / fluid.speed - 1.0).abs() < 1e-5 && near.modal_ratio.abs() < 1e-2);
 }
 
-/// Slow, the hose between fixed ends is the lumped line `by_volume`, since its braid lies at the
-/// neutral angle.
+/// At low frequency the hose between fixed ends is the lumped line `by_volume`, since its braid is
+/// at the neutral angle.
 #[test]
 fn the_assumed_hose_is_at_rest_as_soft_as_its_catalogue_says() {
     let lumped = hose_line().compliance(1.45e9, StiffeningMember::Nominal);
@@ -202,7 +202,7 @@ fn the_hose_is_passive_at_every_frequency() {
     }
 }
 
-/// Walls, fluids and lengths at random over decades.
+/// Random walls, fluids and lengths over decades.
 #[test]
 fn random_hoses_are_passive() {
     let mut seed = 20_260_101;

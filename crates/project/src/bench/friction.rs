@@ -1,55 +1,56 @@
-//! `[bench.friction]`: runs of the cylinder that its friction is identified from.
+//! Table `[bench.friction]`: runs of the cylinder from which its friction is identified.
 
 use crate::key::{key, plain};
 use crate::visitor::Visitor;
 use phea_quantity::{ANGULAR_FREQUENCY, FORCE, LENGTH, RATIO, TIME, VELOCITY};
 
-/// The runs, and the instrument of the position; the pressures are measured as in the other tests.
+/// Runs, and the instrument of the position; the pressures are measured as in the other tests.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionBench {
-    /// m/s, of the slowest run at a constant velocity.
+    /// Lowest constant velocity, m/s.
     pub slowest: f64,
-    /// m/s, of the fastest.
+    /// Highest constant velocity, m/s.
     pub fastest: f64,
-    /// How many velocities there are, each both ways.
+    /// Number of velocities, each in both directions.
     pub velocities: u32,
-    /// s, that a velocity is kept.
+    /// Duration of a run at one velocity, s.
     pub run_time: f64,
-    /// s, from one velocity to the next.
+    /// Time of the change from one velocity to the next, s.
     pub change_time: f64,
-    /// s, in which the force rises from zero to its peak.
+    /// Time in which the force rises from zero to its peak, s.
     pub ramp_time: f64,
-    /// N, greatest force; absent: 1.3 times the static friction.
+    /// Greatest force, N; if absent, 1.3 times the static friction.
     pub peak_force: Option<f64>,
-    /// How often a part of the static friction is put on slowly and let go quickly before the ramp.
+    /// Number of releases before the ramp: part of the static friction is applied slowly and
+    /// released quickly.
     pub releases: u32,
-    /// s, in which it is let go.
+    /// Time of a release, s.
     pub release_time: f64,
-    /// s, between two rows.
+    /// Time between two rows, s.
     pub sample_time: f64,
-    /// m, root mean square of the noise of the position.
+    /// Root mean square of the noise of the position, m.
     pub position_noise: f64,
-    /// m, steps in which the position is read; zero: none.
+    /// Resolution of the position, m; zero for none.
     pub position_resolution: f64,
-    /// The run that shakes the piston on its bristles.
+    /// Run that shakes the piston on its bristles.
     pub shaken: ShakenFriction,
 }
 
-/// A force of several frequencies, below the static friction, that repeats: the mass rings on its
-/// bristles, and their damping shows.
+/// Periodic force of several frequencies, below the static friction: the mass rings on its
+/// bristles, which reveals their damping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShakenFriction {
-    /// N, greatest force; absent: a third of the static friction.
+    /// Greatest force, N; if absent, a third of the static friction.
     pub force: Option<f64>,
-    /// rad/s, lowest and highest frequency; absent: around that at which the mass rings.
+    /// Lowest and highest frequency, rad/s; if absent, around the ringing frequency of the mass.
     pub frequencies: Option<[f64; 2]>,
-    /// How many frequencies, at most.
+    /// Largest number of frequencies.
     pub lines: u32,
-    /// s, after which the force repeats.
+    /// Period of the force, s.
     pub period: f64,
-    /// How many periods are recorded.
+    /// Number of recorded periods.
     pub periods: u32,
-    /// s, between two rows.
+    /// Time between two rows, s.
     pub sample_time: f64,
 }
 

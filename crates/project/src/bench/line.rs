@@ -1,55 +1,55 @@
-//! `[bench.line]`: the tests of a line whose far end is blocked.
+//! Table `[bench.line]`: the tests of a line whose far end is blocked.
 
 use crate::key::{key, plain};
 use crate::visitor::Visitor;
 use phea_quantity::{ANGULAR_FREQUENCY, FLOW, PRESSURE, RATIO, TIME, VOLUME};
 
-/// The line to one chamber.
+/// Line to one chamber.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LineSide {
-    /// To chamber A.
+    /// Line to chamber A.
     #[default]
     A,
-    /// To chamber B.
+    /// Line to chamber B.
     B,
 }
 
-/// A line on a test stand: a slow rise of the pressure, and a flow of many frequencies.
+/// Line on a test stand: a slow rise of the pressure, and a flow of many frequencies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineBench {
-    /// Which line.
+    /// Tested line.
     pub side: LineSide,
-    /// Pa, between which the pressure rises and falls.
+    /// Pressures between which the pressure rises and falls, Pa.
     pub pressures: [f64; 2],
-    /// s, of the rise.
+    /// Duration of the rise, s.
     pub rise_time: f64,
-    /// s, during which nothing flows, before the rise, above and after the fall.
+    /// Time without flow before the rise, above and after the fall, s.
     pub standstill: f64,
-    /// s, between rows of the rise.
+    /// Time between rows of the rise, s.
     pub rise_sample_time: f64,
-    /// Pa, around which the flow is shaken; absent: midway between supply and tank.
+    /// Mean pressure of the flow test, Pa; if absent, midway between supply and tank.
     pub pressure: Option<f64>,
-    /// rad/s, the lowest and the highest frequency.
+    /// Lowest and highest frequency, rad/s.
     pub frequencies: [f64; 2],
-    /// How many frequencies, at most.
+    /// Largest number of frequencies.
     pub lines: u32,
-    /// Pa, root mean square of the swing of the pressure.
+    /// Root mean square of the pressure oscillation, Pa.
     pub swing: f64,
-    /// s, after which the flow repeats.
+    /// Period of the flow, s.
     pub period: f64,
-    /// How often it repeats.
+    /// Number of periods.
     pub periods: u32,
-    /// s, between rows.
+    /// Time between rows, s.
     pub sample_time: f64,
-    /// m³/s, root mean square of the noise of the flow.
+    /// Root mean square of the noise of the flow, m³/s.
     pub flow_noise: f64,
-    /// m³, root mean square of the noise of the volume.
+    /// Root mean square of the noise of the volume, m³.
     pub volume_noise: f64,
 }
 
-/// One litre per minute.
+/// Flow of one litre per minute, m³/s.
 const LITRE_PER_MINUTE: f64 = 1.0 / 60_000.0;
-/// One hertz.
+/// Frequency of one hertz, rad/s.
 const HERTZ: f64 = 2.0 * std::f64::consts::PI;
 
 impl Default for LineBench {

@@ -1,4 +1,4 @@
-//! The files that come with the workbench.
+//! Files included in the workbench.
 
 /// Path below `catalogue/` and content.
 pub(super) static BUILT_IN: &[(&str, &str)] = &[

@@ -1,4 +1,4 @@
-//! Reads catalogue files.
+//! Reading of catalogue files.
 
 use std::sync::{Arc, OnceLock};
 
@@ -14,10 +14,10 @@ use phea_quantity::RATIO;
 /// Keys of a file that describe the entry rather than the product.
 const HEAD: [&str; 7] = ["schema", "kind", "name", "title", "manufacturer", "source", "sources"];
 
-/// The built-in catalogue and what the given files and folders add or replace.
+/// Built-in catalogue with the additions and replacements of the given files and folders.
 ///
 /// # Errors
-/// [`Refusal`] with everything that is wrong in the files given.
+/// [`Refusal`] with all errors in the given files.
 pub fn load(source: &dyn Source, paths: &[String]) -> Result<Catalogue, Refusal> {
     let mut findings = Findings::default();
     let catalogue = Catalogue::gather(source, paths, &mut findings);
@@ -25,7 +25,7 @@ pub fn load(source: &dyn Source, paths: &[String]) -> Result<Catalogue, Refusal>
 }
 
 impl Catalogue {
-    /// Like [`load`], with the errors among other findings.
+    /// Catalogue as in [`load`], with the errors among other findings.
     pub(crate) fn gather(source: &dyn Source, paths: &[String], findings: &mut Findings) -> Catalogue {
         let mut catalogue = Catalogue { built_in: Some(built_in), own: vec![] };
         for path in paths {
@@ -62,8 +62,7 @@ impl Catalogue {
     }
 }
 
-/// The built-in entries of a kind. Their files are checked by tests, so that no findings arise
-/// here.
+/// Built-in entries of a kind. Tests check their files, so that they cause no findings here.
 fn built_in(kind: CatalogueKind) -> &'static [CatalogueEntry] {
     static READ: [OnceLock<Vec<CatalogueEntry>>; CatalogueKind::ALL.len()] =
         [const { OnceLock::new() }; CatalogueKind::ALL.len()];
@@ -84,7 +83,7 @@ fn built_in(kind: CatalogueKind) -> &'static [CatalogueEntry] {
     })
 }
 
-/// The description of a product in a file.
+/// Description of a product in a file.
 #[derive(Default)]
 struct Head {
     kind: CatalogueKind,
@@ -146,7 +145,7 @@ fn entry(file: &str, root: TreeNode, findings: &mut Findings) -> Option<Catalogu
     })
 }
 
-/// The sources of single numbers. A number without any source is rejected.
+/// Sources of single numbers. A number without any source is rejected.
 fn sources(root: &TreeNode, head: &Head, findings: &mut Findings) -> Vec<(String, String)> {
     let mut sources = Vec::new();
     for entry in root.get("sources").map(|entry| entry.node.entries()).unwrap_or_default() {

@@ -8,22 +8,22 @@ use crate::printer::Printer;
 use crate::visitor::{Variants, Visitor};
 use phea_quantity::{ANGULAR_FREQUENCY, RATIO, TIME};
 
-/// One element of a controller; every kind but gain, `pi`, `pid` and `general` has unit gain at
-/// zero frequency (integrator and differentiator: at 1 rad/s).
+/// Element of a controller; every kind but gain, `pi`, `pid` and `general` has unit gain at zero
+/// frequency (integrator and differentiator: at 1 rad/s).
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeclaredElement {
-    /// Which element.
+    /// Kind of element.
     pub kind: ElementKind,
-    /// Whether it acts; a disabled element stays in the list.
+    /// True if it is active; a disabled element stays in the list.
     pub enabled: bool,
 }
 
-/// Which element, with its numbers: frequencies ω in rad/s, damping ratios ζ.
+/// Kind of element, with its numbers: frequencies ω in rad/s, damping ratios ζ.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ElementKind {
-    /// A factor.
+    /// Factor.
     Gain {
-        /// The factor.
+        /// Value of the factor.
         value: f64,
     },
     /// 1/s.
@@ -113,7 +113,7 @@ impl Default for DeclaredElement {
 }
 
 impl ElementKind {
-    /// As it is written in the project file.
+    /// Word in the project file.
     pub fn name(&self) -> &'static str {
         self.word()
     }
@@ -227,17 +227,17 @@ const PROPORTIONAL: Key = key("proportional_gain", &RATIO, "Of a PI or PID.");
 const INTEGRAL: Key = key("integral_gain", &RATIO, "Of a PI or PID, for each second.");
 
 impl DeclaredElement {
-    /// One that acts.
+    /// Active element of this kind.
     pub fn new(kind: ElementKind) -> DeclaredElement {
         DeclaredElement { kind, enabled: true }
     }
 
-    /// Whether it is written in `z`.
+    /// True if it is written in `z`.
     pub fn is_sampled(&self) -> bool {
         matches!(&self.kind, ElementKind::General(ratio) if ratio.is_sampled())
     }
 
-    /// As an inline table of the project file, which reads back as the same element.
+    /// Element as an inline table of the project file, which reads back as an equal element.
     ///
     /// # Example
     /// ```
@@ -251,7 +251,7 @@ impl DeclaredElement {
         printer.finish_inline().unwrap_or_default()
     }
 
-    /// As the lines of a table of its own.
+    /// Element as the lines of its own table.
     pub fn print_lines(&self) -> String {
         let mut printer = Printer::new(BTreeMap::new());
         self.clone().visit(&mut printer);

@@ -1,37 +1,37 @@
-//! `[controller.impedance]`.
+//! Table `[controller.impedance]`.
 
 use crate::key::{key, plain};
 use crate::visitor::Visitor;
 use phea_quantity::{DAMPING, MASS, STIFFNESS, TIME};
 
-/// The impedance that the loop gives the load: mass, damper and spring between the load and where
-/// it is when the loop begins.
+/// Virtual impedance of the loop at the load: mass, damper and spring between the load and its
+/// initial position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DeclaredImpedance {
-    /// K_v in N/m.
+    /// Stiffness K_v, N/m.
     pub stiffness: f64,
-    /// B_v in N s/m.
+    /// Damping B_v, N s/m.
     pub damping: f64,
-    /// M_v in kg.
+    /// Mass M_v, kg.
     pub mass: f64,
-    /// s; needed for a damper or a mass.
+    /// Filter time constant, s; needed for a damper or a mass.
     pub filter_time: Option<f64>,
-    /// What the transfer function of `[controller]` is.
+    /// Meaning of the transfer function of `[controller]`.
     pub form: ImpedanceForm,
 }
 
-/// What the transfer function of a controller with an impedance is.
+/// Meaning of the transfer function of a controller with an impedance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ImpedanceForm {
-    /// G, of the force.
+    /// Force controller G.
     #[default]
     Impedance,
-    /// C_x, of the position in an inner loop: G = C_x/(M_v s^2 + B_v s + K_v).
+    /// Position controller C_x in an inner loop: G = C_x/(M_v s^2 + B_v s + K_v).
     Admittance,
 }
 
 impl DeclaredImpedance {
-    /// Whether the load feels nothing of it.
+    /// True if it has no effect on the load.
     pub fn is_zero(&self) -> bool {
         self.stiffness == 0.0 && self.damping == 0.0 && self.mass == 0.0
     }

@@ -1,36 +1,36 @@
-//! `[controller.pressure_feedback]`.
+//! Table `[controller.pressure_feedback]`.
 
 use crate::key::{key, plain};
 use crate::visitor::Visitor;
 use phea_quantity::{ANGULAR_FREQUENCY, PRESSURE, RATIO, VOLTAGE_PER_PRESSURE};
 
-/// What its gain is.
+/// Description of its gain.
 pub(crate) const GAIN: &str = "Command per pressure; positive adds damping.";
 
-/// What the controller subtracts from its command for the pressures of the chambers.
+/// Feedback of the chamber pressures that the controller subtracts from its command.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DeclaredPressureFeedback {
-    /// What is made of both pressures.
+    /// Signal formed from both pressures.
     pub signal: PressureSignal,
-    /// A_B/A_A of a load pressure; absent: of the actuator.
+    /// Ratio A_B/A_A of a load pressure; if absent, that of the actuator.
     pub area_ratio: Option<f64>,
-    /// V/Pa; required unless a design finds it.
+    /// Gain, V/Pa; required unless a design finds it.
     pub gain: f64,
-    /// rad/s; absent: the pressure at rest is fed back too.
+    /// Corner of the high pass, rad/s; if absent, the pressure at rest is fed back too.
     pub high_pass: Option<f64>,
-    /// rad/s; absent: no low pass.
+    /// Corner of the low pass, rad/s; none if absent.
     pub low_pass: Option<f64>,
-    /// Pa, root mean square of the white noise of the signal that a sampled controller sees.
+    /// Root mean square of the white noise of the signal at a sampled controller, Pa.
     pub noise: f64,
 }
 
-/// What is made of the pressures of both chambers.
+/// Signal formed from the pressures of both chambers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PressureSignal {
-    /// p_A - p_B A_B/A_A: the force of the pressures over the area A_A.
+    /// Load pressure p_A - p_B A_B/A_A: the force of the pressures over the area A_A.
     #[default]
     LoadPressure,
-    /// p_A - p_B.
+    /// Pressure difference p_A - p_B.
     PressureDifference,
 }
 

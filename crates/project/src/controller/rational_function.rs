@@ -1,16 +1,16 @@
-//! A ratio of polynomials, as polynomials or by its factors.
+//! Ratio of polynomials, as polynomials or by its factors.
 
 use crate::formula::{Formula, Variable};
 use crate::key::{key, plain};
 use crate::visitor::{FormulaShape, Visitor};
 use phea_quantity::RATIO;
 
-/// A ratio of polynomials in s or z: numerator and denominator, or gain, zeros and poles.
+/// Ratio of polynomials in s or z: numerator and denominator, or gain, zeros and poles.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RationalFunction {
-    /// Polynomial in `s`, or in `z` when it is sampled.
+    /// Polynomial in `s`, or in `z` if it is sampled.
     pub numerator: Option<Formula>,
-    /// Polynomial in `s`, or in `z` when it is sampled.
+    /// Polynomial in `s`, or in `z` if it is sampled.
     pub denominator: Option<Formula>,
     /// Leading coefficient k of k Π(s - z)/Π(s - p).
     pub gain: Option<f64>,
@@ -18,20 +18,20 @@ pub struct RationalFunction {
     pub zeros: Vec<[f64; 2]>,
     /// Real and imaginary parts, 1/s.
     pub poles: Vec<[f64; 2]>,
-    /// Whether gain, zeros and poles are in s (absent) or in z.
+    /// Variable of gain, zeros and poles: s if absent, or z.
     pub domain: Option<Variable>,
 }
 
-/// The words of `domain`.
+/// Words of `domain`.
 static DOMAINS: [(&str, Option<Variable>); 2] = [("s", Some(Variable::S)), ("z", Some(Variable::Z))];
 
 impl RationalFunction {
-    /// Whether it is stated in either form.
+    /// True if it is stated in either form.
     pub(crate) fn is_stated(&self) -> bool {
         (self.numerator.is_some() && self.denominator.is_some()) || self.gain.is_some()
     }
 
-    /// Whether it is written in `z`.
+    /// True if it is written in `z`.
     pub fn is_sampled(&self) -> bool {
         let formulas = [&self.numerator, &self.denominator];
         self.domain == Some(Variable::Z)

@@ -26,20 +26,20 @@ pub(super) fn ratio<S: Scalar>(
     values.pop().ok_or_else(|| FormulaError::new("an empty formula", 0..formula.text.len()))
 }
 
-/// Why the coefficients are not plain numbers.
+/// Reason why the coefficients are not plain numbers.
 pub(super) fn not_finite(value: &Ratio<f64>) -> Option<&'static str> {
     let finite = value.numerator.iter().chain(&value.denominator).all(|c| c.is_finite());
     if finite { None } else { Some("a coefficient is too large, or divided by zero") }
 }
 
-/// Without the leading coefficients that are zero; one is kept.
+/// Coefficients without leading zeros; one is kept.
 pub(super) fn trimmed(coefficients: Vec<f64>) -> Vec<f64> {
     let zeros = coefficients.iter().take_while(|c| **c == 0.0).count();
     let kept = zeros.min(coefficients.len().saturating_sub(1));
     coefficients.into_iter().skip(kept).collect()
 }
 
-/// The value of a node whose operands are evaluated.
+/// Value of a node whose operands are evaluated.
 fn of_node<S: Scalar>(
     node: &FormulaNode,
     values: &[Ratio<S>],
@@ -79,7 +79,8 @@ fn scaled<S: Scalar>(a: &Ratio<S>, factor: S) -> Ratio<S> {
     Ratio { numerator, denominator: a.denominator.clone() }
 }
 
-/// A denominator without the variable is one, since such divisors go into the coefficients.
+/// Sum of ratios. A denominator without the variable is one, since such divisors are applied to the
+/// coefficients.
 fn sum<S: Scalar>(a: &Ratio<S>, b: &Ratio<S>) -> Ratio<S> {
     if a.denominator.len() == 1 && b.denominator.len() == 1 {
         return Ratio { numerator: add(&a.numerator, &b.numerator), denominator: a.denominator.clone() };

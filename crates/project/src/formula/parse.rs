@@ -9,7 +9,8 @@ const MAXIMUM_DEPTH: usize = 32;
 /// Highest power.
 pub(super) const MAXIMUM_POWER: usize = 50;
 
-/// `sampled`: whether `z` is the variable of a sampled system, and no parameter.
+/// Formula of a text; `sampled` is true if `z` is the variable of a sampled system, and not a
+/// parameter.
 pub(super) fn formula(text: &str, sampled: bool) -> Result<Formula, FormulaError> {
     if text.len() > MAXIMUM_LENGTH {
         return Err(FormulaError::new("too long for a formula", 0..text.len()));

@@ -8,7 +8,7 @@ use crate::tree::{TreeNode, Value};
 use crate::visitor::Variants;
 use phea_quantity::spelling::nearest;
 
-/// Which variants have a key, as in `it belongs to model "creeping" or "segments"`.
+/// Variants that have a key, as in `it belongs to model "creeping" or "segments"`.
 fn belongs_to<T: Variants>(key: Key, name: &str, all: &[T]) -> String {
     let having = all.iter().filter(|one| keys_of(*one).contains(&name));
     let words: Vec<String> = having.map(|one| format!("\"{}\"", one.word())).collect();
@@ -20,7 +20,7 @@ fn belongs_to<T: Variants>(key: Key, name: &str, all: &[T]) -> String {
 }
 
 impl<'a> Reader<'a> {
-    /// The place of a text among words of which it must be one.
+    /// Index of a text among words of which it must be one.
     pub(super) fn word(&mut self, key: Key, node: &TreeNode, words: &[&'static str]) -> Option<usize> {
         let all = words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ");
         let Value::Text(text) = &node.value else {
@@ -42,7 +42,7 @@ impl<'a> Reader<'a> {
         found
     }
 
-    /// Refuses a value that is neither a word nor a list of tables.
+    /// Rejects a value that is neither a word nor a list of tables.
     pub(super) fn neither(&mut self, key: Key, node: &TreeNode, (kinds, help): (&str, &str)) {
         let is_table = |item: &&TreeNode| matches!(item.value, Value::Table(_));
         let (wrong, expected) = match &node.value {
@@ -57,7 +57,7 @@ impl<'a> Reader<'a> {
         self.findings.push(RawFinding::error(wrong.place, message).help(help));
     }
 
-    /// Remembers that the kind of the present table is unknown.
+    /// Records that the kind of the current table is unknown.
     pub(super) fn leave_unclear(&mut self) {
         if let Some(frame) = self.frames.last().filter(|frame| !frame.path.is_empty()) {
             self.unclear.push(frame.path.clone());
@@ -76,7 +76,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reports keys of other variants that are written nevertheless; their values must be valid.
+    /// Reports keys of other variants in the table; their values must be valid.
     pub(super) fn without_effect<T: Variants>(&mut self, key: Key, chosen: &T, all: &[T]) {
         let mut read = keys_of(chosen);
         for other in all {
@@ -95,8 +95,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Warns about keys read since this number of keys was known, if nothing chose the way that
-    /// they belong to.
+    /// Warns about keys read since this number of keys was known, if their way was not chosen.
     pub(super) fn without_choice(&mut self, chosen_by: &[&'static str], known: usize) {
         let asked =
             self.frames.last().and_then(|frame| frame.asked.get(known..)).unwrap_or_default().to_vec();
@@ -122,12 +121,12 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Whether one of these keys is present, or none is needed.
+    /// True if one of these keys is present, or none is needed.
     pub(super) fn takes_absent_of(&mut self, keys: &[&'static str]) -> bool {
         keys.iter().any(|name| self.is_there(name)) || self.takes_absent()
     }
 
-    /// Whether a key of the present table has a value, from itself or what it inherits.
+    /// True if a key of the current table has a value, from the table or from its layers.
     pub(super) fn is_there(&self, name: &str) -> bool {
         let layers = self.frames.last().map(|frame| frame.layers.as_slice()).unwrap_or_default();
         layers.iter().any(|layer| !layer.hidden.contains(&name) && layer.node.get(name).is_some())
@@ -137,8 +136,8 @@ impl<'a> Reader<'a> {
         self.frames.last().is_some_and(|frame| frame.lost)
     }
 
-    /// Where a key of the present table is written, here or in what it inherits; keys from the
-    /// catalogue are not.
+    /// Place of a key of the current table, in it or in its layers; keys from the catalogue have
+    /// none.
     pub(super) fn written(&self, name: &str) -> Option<Place> {
         let seen = |layer: &&Layer<'_>| layer.entry.is_none() && !layer.hidden.contains(&name);
         let mut layers = self.frames.last()?.layers.iter().filter(seen);

@@ -1,4 +1,4 @@
-//! How each description of a table is read.
+//! Reading of each description of a table.
 
 use super::{Hit, Layer, Reader, not_one};
 use crate::Origin;
@@ -14,8 +14,8 @@ use crate::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visi
 use phea_quantity::spelling::nearest;
 use phea_quantity::{MotionKind, Price, PricedBy};
 
-/// What an entry of the catalogue states and does not apply where the project states the first: a
-/// pressure belongs to the flow that it was stated with, and areas and rods are stated in one way.
+/// Keys of a catalogue entry that are ignored if the project states the first: a pressure belongs
+/// to its flow, and areas and rods are stated in one way.
 const REPLACED: [(&str, &[&str]); 5] = [
     ("tare_flow", &["tare_pressure"]),
     ("rod_diameter", &["rod_diameters"]),

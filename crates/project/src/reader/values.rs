@@ -10,7 +10,7 @@ use phea_quantity::spelling::nearest;
 use phea_quantity::{self as quantity, Price, PricedBy, QuantityError};
 
 impl Reader<'_> {
-    /// The SI value of a number or a quantity in text, within the key's range.
+    /// SI value of a number or a quantity in text, within the key's range.
     pub(super) fn number(&mut self, key: Key, node: &TreeNode) -> Option<f64> {
         let key = key.in_motion(self.motion);
         let value = match &node.value {
@@ -33,14 +33,14 @@ impl Reader<'_> {
         if key.range.contains(value) {
             return Some(value);
         }
-        // A number that f64 cannot hold was rejected where it was read.
+        // a number that f64 cannot hold was rejected when it was read
         if !self.findings.has_error_within(node.place) {
             self.findings.push(RawFinding::error(node.place, objection(key, value)));
         }
         None
     }
 
-    /// The same, or NaN where it was refused: nothing that is compared with it contradicts it.
+    /// SI value, or NaN if it was rejected: NaN causes no contradictions in comparisons.
     pub(super) fn number_or_none(&mut self, key: Key, node: &TreeNode) -> f64 {
         self.number(key, node).unwrap_or_else(|| {
             let path = self.path(key.name);
@@ -49,7 +49,7 @@ impl Reader<'_> {
         })
     }
 
-    /// A price, with its currency in text.
+    /// Price, with its currency in text.
     pub(super) fn read_price(&mut self, key: Key, by: PricedBy, node: &TreeNode) -> Option<Price> {
         let Value::Text(text) = &node.value else {
             let message = format!("`{}` must be a price in text, not {}", key.name, node.kind());
@@ -68,7 +68,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A whole number within the key's range.
+    /// Whole number within the key's range.
     pub(super) fn whole(&mut self, key: Key, node: &TreeNode) -> Option<u32> {
         let number = self.number(key, node)?;
         if number.fract() == 0.0 && number >= 0.0 && number <= f64::from(u32::MAX) {
@@ -79,7 +79,7 @@ impl Reader<'_> {
         None
     }
 
-    /// A number, or a pair of real and imaginary part.
+    /// Number, or a pair of real and imaginary part.
     pub(super) fn complex(&mut self, key: Key, node: &TreeNode) -> Option<[f64; 2]> {
         let Value::List(parts) = &node.value else { return Some([self.number(key, node)?, 0.0]) };
         if let [real, imaginary] = parts.as_slice() {
@@ -90,7 +90,7 @@ impl Reader<'_> {
         None
     }
 
-    /// A formula of that shape; a number is one too.
+    /// Formula of that shape; a number counts as one.
     pub(super) fn read_formula(&mut self, key: Key, shape: FormulaShape, node: &TreeNode) -> Option<Formula> {
         let (formula, text) = match &node.value {
             Value::Text(text) => {
@@ -134,14 +134,14 @@ impl Reader<'_> {
         }
     }
 
-    /// Whether the loop has a computer in it, so that `z` has a meaning of its own.
+    /// True if the loop contains a computer, so that `z` is a variable.
     fn is_sampled(&self) -> bool {
         let sampled =
             |table| self.root_entry(table).is_some_and(|entry| entry.node.get("sample_time").is_some());
         sampled("controller") || sampled("prefilter")
     }
 
-    /// Whether a text is meant as a formula rather than as a number with a unit.
+    /// True if a text is intended as a formula rather than as a number with a unit.
     pub(super) fn reads_as_formula(&self, key: Key, text: &str) -> bool {
         let key = key.in_motion(self.motion);
         if quantity::parse(text, key.dimension).is_ok() {
@@ -200,7 +200,7 @@ impl Reader<'_> {
         false
     }
 
-    /// The position of a part of a decoded text in the file: exact unless the text has escapes.
+    /// Position of a part of a decoded text in the file: exact unless the text has escapes.
     fn inside(&self, node: &TreeNode, text: &str, range: std::ops::Range<usize>) -> Place {
         let Place { text: index, start, end } = node.place;
         let raw = self.findings.content(index).get(start..end).unwrap_or_default();
@@ -214,7 +214,7 @@ impl Reader<'_> {
     }
 }
 
-/// Why a number is outside its key's range.
+/// Message for a number outside its key's range.
 fn objection(key: Key, value: f64) -> String {
     let name = key.name;
     let show = |number: f64| quantity::display(number, key.dimension, 6);

@@ -1,5 +1,5 @@
-//! The elements of a controller or a prefilter written into the file they came from: those that
-//! remain keep their text and their comments.
+//! Writing of the elements of a controller or a prefilter into their file: those that remain keep
+//! their text and their comments.
 
 mod array;
 mod section;
@@ -11,44 +11,44 @@ use crate::text::Findings;
 use crate::tree::{Entry, TreeNode, Value as TreeValue, read as read_tree};
 use crate::{DeclaredElement, Refusal, Transfer};
 
-/// Why elements are not written.
+/// Error for elements that cannot be written.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RewriteError {
-    /// The file cannot be read.
+    /// File that cannot be read.
     #[error("{0}")]
     Refused(Refusal),
     /// Elements in tables with others between them.
     #[error("the elements of [{table}] are separated by other tables: bring them together first")]
     Scattered {
-        /// `controller` or `prefilter`.
+        /// Table, `controller` or `prefilter`.
         table: &'static str,
     },
 }
 
-/// Some bytes of a text and their replacement.
+/// Bytes of a text and their replacement.
 struct Replacement {
     range: Range<usize>,
     text: String,
 }
 
-/// An element as it stands in a file.
+/// Element as written in a file.
 struct WrittenElement<'a> {
-    /// `None` where it cannot be read; it is then rewritten.
+    /// Element; `None` if it cannot be read; it is then rewritten.
     element: Option<DeclaredElement>,
     node: &'a TreeNode,
 }
 
-/// A file that is rewritten.
+/// File that is being rewritten.
 struct Draft<'a> {
     content: &'a str,
-    /// Its end of line.
+    /// Line ending of the file.
     newline: &'static str,
     table: &'static str,
     elements: &'a [DeclaredElement],
 }
 
-/// The bytes of a project file with these elements in `table`, which is `controller` or
-/// `prefilter`; everything else is as it was.
+/// Bytes of a project file with these elements in `table`, which is `controller` or `prefilter`;
+/// all other bytes are unchanged.
 ///
 /// # Errors
 /// [`RewriteError`]
@@ -98,7 +98,7 @@ impl Draft<'_> {
         findings: &mut Findings,
     ) -> Result<Vec<Replacement>, RewriteError> {
         let TreeValue::List(nodes) = &list.node.value else { return Ok(vec![]) };
-        // elements in z need a sample time, whatever its value
+        // elements in z need a sample time, of any value
         let read = |node| WrittenElement { element: DeclaredElement::read(node, Some(1.0), findings), node };
         let written: Vec<WrittenElement<'_>> = nodes.iter().map(read).collect();
         let text = self.content.get(list.node.place.start..).unwrap_or_default();
@@ -112,8 +112,8 @@ impl Draft<'_> {
 }
 
 impl WrittenElement<'_> {
-    /// Its text, from `start`, if it is this element already or differs from it only in `enabled`:
-    /// this key is changed where it is written, or added after the other keys.
+    /// Text of the element, from `start`, if it equals this element or differs from it only in
+    /// `enabled`: this key is changed in place, or added after the other keys.
     fn text_as(
         &self,
         element: &DeclaredElement,
@@ -138,13 +138,13 @@ impl WrittenElement<'_> {
         Some(text)
     }
 
-    /// Where the last of its values ends.
+    /// End of the last of its values.
     fn last_value(&self) -> usize {
         self.node.entries().iter().map(|entry| entry.node.place.end).fold(self.node.place.start, usize::max)
     }
 }
 
-/// For each element the matching one of the file: equal ones in order, then those that differ only
+/// Matching element of the file for each element: equal ones in order, then those that differ only
 /// in `enabled`.
 fn matched(elements: &[DeclaredElement], written: &[WrittenElement<'_>]) -> Vec<Option<usize>> {
     let mut free: Vec<usize> = (0..written.len()).collect();

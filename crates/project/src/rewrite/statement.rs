@@ -1,4 +1,5 @@
-//! A TOML text cut into its statements: headers, keys with their values, and lines without either.
+//! TOML text divided into its statements: headers, keys with their values, and lines without
+//! either.
 
 use std::ops::Range;
 
@@ -8,26 +9,26 @@ use toml_parser::lexer::{Token, TokenKind};
 /// Whole lines of a text.
 pub(super) struct Statement {
     pub(super) content: StatementContent,
-    /// In bytes of the text, its line end included.
+    /// Range in bytes of the text, including its line end.
     pub(super) range: Range<usize>,
 }
 
-/// What a statement contains.
+/// Content of a statement.
 pub(super) enum StatementContent {
     /// Space or a comment.
     Nothing,
-    /// `[a.b]` or `[[a.b]]`.
+    /// Header `[a.b]` or `[[a.b]]`.
     Header(Vec<String>),
-    /// `a.b = value`
+    /// Assignment `a.b = value`.
     Value {
         /// Parts of the key.
         path: Vec<String>,
-        /// In bytes of the statement.
+        /// Range of the value in bytes of the statement.
         value: Range<usize>,
     },
 }
 
-/// The statements of a valid TOML text, in order and without gaps.
+/// Statements of a valid TOML text, in order and without gaps.
 pub(super) fn statements(text: &str) -> Vec<Statement> {
     let mut found = Vec::new();
     let (mut line, mut start, mut depth) = (Vec::new(), 0, 0_usize);
@@ -100,7 +101,7 @@ fn content(text: &str, start: usize, line: &[Token]) -> StatementContent {
     StatementContent::Value { path: path(text, line), value }
 }
 
-/// The names before `=` or between the brackets of a header.
+/// Names before `=` or between the brackets of a header.
 fn path(text: &str, line: &[Token]) -> Vec<String> {
     let names = line
         .iter()

@@ -1,12 +1,12 @@
-//! Removes keys of one table of a text and puts lines in their place. Comments on what is removed
-//! go with it: they would describe what takes its place.
+//! Removal of keys of one table of a text, and insertion of lines in their place. Comments on
+//! removed keys are removed too: they would describe the replacement.
 
 use super::statement::{Statement, StatementContent, entries, statements};
 
 /// Keys with their values as TOML.
 pub(super) type KeyValues = Vec<(String, String)>;
 
-/// The text with these keys of a top-level table removed and these lines in their place.
+/// Text with these keys of a top-level table removed and these lines in their place.
 pub(super) fn replaced(text: &str, table: &str, keys: &[&str], lines: &[(String, String)]) -> String {
     let end = if text.contains("\r\n") { "\r\n" } else { "\n" };
     let mut surgery = Surgery {
@@ -33,21 +33,21 @@ pub(super) fn replaced(text: &str, table: &str, keys: &[&str], lines: &[(String,
     surgery.out
 }
 
-/// A text that is processed statement by statement.
+/// Text that is processed statement by statement.
 struct Surgery<'a> {
     table: &'a str,
-    /// Its keys that are removed.
+    /// Removed keys.
     keys: &'a [&'a str],
     lines: &'a [(String, String)],
-    /// End of a line.
+    /// Line ending.
     end: &'static str,
     out: String,
     inserted: bool,
-    /// Path of the present table.
+    /// Path of the current table.
     section: Vec<String>,
-    /// Whether the text states any key that is removed.
+    /// True if the text states any key that is removed.
     removes: bool,
-    /// Where the comment lines begin that the present statement follows.
+    /// Beginning of the comment lines before the current statement.
     comments: Option<usize>,
 }
 
@@ -111,7 +111,7 @@ impl Surgery<'_> {
         }
     }
 
-    /// Whether a key or table is replaced.
+    /// True if the key or table is replaced.
     fn is_replaced(&self, path: &[String]) -> bool {
         matches!(path, [table, key, ..] if table == self.table && self.keys.contains(&key.as_str()))
     }
@@ -123,7 +123,7 @@ impl Surgery<'_> {
         }
     }
 
-    /// `controller = { ... }`: the remaining and the new entries, in one line.
+    /// Inline table `controller = { ... }`: the remaining and the new entries, in one line.
     fn inline(&mut self, written: &str, value: std::ops::Range<usize>) {
         self.inserted = true;
         let kept = entries(written.get(value.clone()).unwrap_or_default());
@@ -145,7 +145,7 @@ impl Surgery<'_> {
     }
 }
 
-/// A line up to its comment.
+/// Line up to its comment.
 fn without_comment(line: &str) -> &str {
     line.split_once('#').map_or(line, |(before, _)| before.trim_end())
 }
@@ -198,12 +198,12 @@ mod tests {
             rewritten("[x]\r\ny = 1\r\n"),
             "[x]\r\ny = 1\r\n\r\n[controller]\r\ngain = 2\r\npoles = [0]\r\n"
         );
-        // a comment on the table of a controller without a law is one on the table
+        // a comment on the table of a controller without a law belongs to the table
         assert_eq!(
             rewritten("[controller] # sampled\ndelay = 1\n"),
             "[controller] # sampled\ngain = 2\npoles = [0]\ndelay = 1\n"
         );
-        // a table within it stays
+        // a table inside it stays
         assert_eq!(
             rewritten("[controller.q]\ngain = 1\n"),
             "[controller.q]\ngain = 1\n\n[controller]\ngain = 2\npoles = [0]\n"

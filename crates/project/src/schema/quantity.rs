@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 
 use crate::key::Key;
 
-/// Of a number whose dimension depends on what the user names.
+/// Dimension of a number that depends on a name given by the user.
 pub(super) static ANY: Dimension = Dimension {
     name: "a quantity",
     noun: "quantity",
@@ -18,14 +18,14 @@ pub(super) static ANY: Dimension = Dimension {
     si: "SI",
 };
 
-/// The beginning of a text whose number is above zero.
+/// Beginning of a text whose number is above zero.
 const POSITIVE: &str = r"^\s*\+?(?:[0.]*[1-9]|inf)";
-/// The beginning of a text whose number is not below zero; zero may have a sign.
+/// Beginning of a text whose number is not below zero; zero may have a sign.
 const NOT_NEGATIVE: &str = r"^\s*(?:[^-\s]|-[0.]*(?:[^0-9.]|$))";
 
 const COMPOUND: &str = "compound_unit";
 
-/// What the quantities of each dimension are as texts.
+/// Definitions of the quantities of each dimension as texts.
 pub(super) fn definitions() -> Value {
     let mut all = Map::new();
     for dimension in DIMENSIONS {
@@ -37,7 +37,7 @@ pub(super) fn definitions() -> Value {
     Value::Object(all)
 }
 
-/// The noun of a dimension, without characters that a pointer cannot contain.
+/// Noun of a dimension, without characters that a pointer cannot contain.
 fn identifier(dimension: &Dimension) -> String {
     dimension.noun.replace(|c: char| !c.is_ascii_alphanumeric(), "_")
 }
@@ -46,8 +46,8 @@ fn reference(name: &str) -> Value {
     json!({ "$ref": format!("#/definitions/{name}") })
 }
 
-/// A number, bare or in text with its unit. The check of the text follows an empty `if`, since
-/// keywords next to `$ref` would be ignored.
+/// Schema of a number, bare or in text with its unit. The check of the text follows an empty `if`,
+/// since keywords next to `$ref` would be ignored.
 pub(super) fn number(key: Key) -> Value {
     let mut text = reference(&identifier(key.dimension));
     if key.range.infinity {
@@ -69,7 +69,7 @@ pub(super) fn number(key: Key) -> Value {
     members
 }
 
-/// The same, whole: a text is checked for its unit alone.
+/// Schema of a whole number: only the unit of a text is checked.
 pub(super) fn whole(key: Key) -> Value {
     let mut members = number(key);
     members["type"] = json!(["integer", "string"]);
@@ -79,7 +79,7 @@ pub(super) fn whole(key: Key) -> Value {
     members
 }
 
-/// The same with its meaning and its default.
+/// Schema with its meaning and its default.
 pub(super) fn described(key: Key, mut members: Value) -> Value {
     let dimension = key.dimension;
     let bare = if dimension.exponents == Exponents::NONE {
@@ -100,7 +100,7 @@ fn capital(text: &str) -> String {
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// As it would be written in the file.
+/// Default value as written in the file.
 fn default_of(value: f64, dimension: &Dimension) -> Value {
     let text = print(value, dimension);
     match text.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')) {
@@ -109,7 +109,7 @@ fn default_of(value: f64, dimension: &Dimension) -> Value {
     }
 }
 
-/// Whole numbers without a point.
+/// Number in JSON, whole ones without a point.
 pub(super) fn in_json(value: f64) -> Value {
     if value.fract() == 0.0 && value.abs() < 1e15 { json!(value as i64) } else { json!(value) }
 }

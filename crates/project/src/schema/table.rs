@@ -1,25 +1,25 @@
-//! A table of the project file as an object of the schema, while it is put together.
+//! Table of the project file as an object of the schema, during its construction.
 
 use serde_json::{Map, Value, json};
 
-/// A table: its keys, and what is required.
+/// Table: its keys, and its requirements.
 #[derive(Debug)]
 pub(super) struct SchemaTable {
-    /// Each key with every form that its value may have, in the order in which they are read.
+    /// Keys with all possible forms of their values, in the order in which they are read.
     properties: Vec<(&'static str, Vec<Value>)>,
-    /// The schema of the values of all other keys.
+    /// Schema of the values of all other keys.
     pub(super) others: Value,
-    /// The rules, the innermost condition last.
+    /// Rules, the innermost condition last.
     blocks: Vec<ConditionalRequirement>,
-    /// The key that names an entry of the catalogue, and the keys that the entry may have.
+    /// Key that names an entry of the catalogue, and the keys that the entry may have.
     pub(super) catalogue: Option<(&'static str, Vec<&'static str>)>,
 }
 
-/// A rule that applies under a condition.
+/// Rule that applies under a condition.
 #[derive(Debug, Default)]
 struct ConditionalRequirement {
     required: Vec<&'static str>,
-    /// Required unless the catalogue supplies it.
+    /// Keys that are required unless the catalogue supplies them.
     required_or_catalogued: Vec<&'static str>,
     refused: Vec<&'static str>,
     rules: Vec<Value>,
@@ -36,7 +36,7 @@ impl Default for SchemaTable {
     }
 }
 
-/// One of these keys at least.
+/// Requires at least one of these keys.
 pub(super) fn any_of(names: &[&str]) -> Value {
     match names {
         [only] => json!({ "required": [only] }),
@@ -66,7 +66,7 @@ impl SchemaTable {
         }
     }
 
-    /// One of several groups of keys.
+    /// Requires one of several groups of keys.
     pub(super) fn require_one(&mut self, groups: &[&[&'static str]]) {
         let mut all: Vec<Value> = groups.iter().map(|group| json!({ "required": group })).collect();
         if let Some((name, _)) = self
@@ -79,7 +79,7 @@ impl SchemaTable {
         self.rule(json!({ "anyOf": all }));
     }
 
-    /// One of several keys and no other of them; or none, unless one is needed and no entry of the
+    /// Requires exactly one of several keys; or none, unless one is needed and no entry of the
     /// catalogue has it.
     pub(super) fn require_only_one(&mut self, names: &[&str], needed: bool) {
         let each = names.iter().map(|name| json!({ "required": [name] }));
@@ -104,7 +104,7 @@ impl SchemaTable {
         }
     }
 
-    /// Rules added from here on apply only under a condition.
+    /// Begins rules that apply only under a condition.
     pub(super) fn begin_condition(&mut self) {
         self.blocks.push(ConditionalRequirement::default());
     }
@@ -122,24 +122,24 @@ impl SchemaTable {
         self.catalogue.as_ref().is_some_and(|(_, names)| names.contains(&name))
     }
 
-    /// Every key with its forms.
+    /// Keys with their forms.
     pub(super) fn into_properties(self) -> Vec<(&'static str, Vec<Value>)> {
         self.properties
     }
 
-    /// The keys without the rules.
+    /// Keys without the rules.
     pub(super) fn loose(&self) -> Value {
         json!({ "type": "object", "properties": self.properties_in_json(), "additionalProperties": self.others })
     }
 
-    /// What must hold.
+    /// Rules of the table.
     pub(super) fn rules(&self) -> Value {
         let name = self.catalogue.as_ref().map(|(name, _)| *name);
         self.blocks.first().map_or(json!({}), |block| block.schema(name))
     }
 
-    /// The complete schema. Rules follow an empty `if`, because editors do not find keys to offer
-    /// next to an `allOf`.
+    /// Complete schema. Rules follow an empty `if`, because editors do not find keys to offer next
+    /// to an `allOf`.
     pub(super) fn object(&self) -> Value {
         let mut schema = self.loose();
         let mut rules = self.rules();
@@ -153,7 +153,7 @@ impl SchemaTable {
         schema
     }
 
-    /// As an array of its values in the order of its keys.
+    /// Array of its values in the order of its keys.
     pub(super) fn array(&self) -> Value {
         let items: Vec<Value> = self.properties.iter().map(|(_, forms)| one_of(forms)).collect();
         let least = self.blocks.first().map_or(0, |block| block.required.len());
@@ -166,7 +166,7 @@ impl SchemaTable {
     }
 }
 
-/// A value of any of these forms, described as the first is.
+/// Value of any of these forms, with the description of the first.
 fn one_of(forms: &[Value]) -> Value {
     match forms {
         [only] => only.clone(),

@@ -1,4 +1,4 @@
-//! How each description of a table becomes part of the schema.
+//! Conversion of each description of a table into a part of the schema.
 
 use serde_json::{Value, json};
 
@@ -12,25 +12,25 @@ use crate::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visi
 use crate::{DeclaredCylinder, DeclaredPipe, HoseProperties, Valve};
 use phea_quantity::{MotionKind, Price, PricedBy, price_pattern};
 
-/// Puts the schema together, table by table.
+/// Builder of the schema, table by table.
 #[derive(Default)]
 pub(super) struct SchemaWriter {
-    /// The tables that are open, the innermost last.
+    /// Open tables, the innermost last.
     tables: Vec<SchemaTable>,
-    /// The form in which values that have several are described now.
+    /// Form in which values with several forms are currently described.
     form: Option<ValueForm>,
-    /// Whether the present table has such a value.
+    /// True if the current table has such a value.
     has_forms: bool,
-    /// How the rig moves, where the keys that are described belong to one motion.
+    /// Motion of the rig, if the described keys belong to one motion.
     motion: Option<MotionKind>,
-    /// How the load of that rig moves.
+    /// Motion of the load of that rig.
     load_motion: Option<MotionKind>,
 }
 
 const FORMS: [ValueForm; 3] = [ValueForm::Number, ValueForm::Text, ValueForm::Table];
 
 impl SchemaWriter {
-    /// A table, described once for each form of its values.
+    /// Table, described once for each form of its values.
     pub(super) fn table_of(&mut self, mut visit: impl FnMut(&mut Self)) -> SchemaTable {
         let outside = (self.form, self.has_forms);
         self.tables.push(SchemaTable::default());
@@ -59,8 +59,8 @@ impl SchemaWriter {
         self.present(|table| table.rule(rule));
     }
 
-    /// The key of a number in the motion that it belongs to, and the form of a motor in addition to
-    /// that of a cylinder where it is of either.
+    /// Adds the key of a number in the motion to which it belongs, and the form of a motor in
+    /// addition to that of a cylinder if it belongs to either.
     fn numbered(&mut self, key: Key, required: bool, schema: impl Fn(Key) -> Value) {
         let motion = if key.of_load { self.load_motion } else { self.motion };
         let forms = match motion {
@@ -75,7 +75,7 @@ impl SchemaWriter {
         }
     }
 
-    /// A key whose value is described in full by `schema`.
+    /// Adds a key whose value is described completely by `schema`.
     fn property(&mut self, key: Key, mut schema: Value, required: bool) {
         if schema.get("description").is_none() {
             schema["description"] = json!(key.doc);
@@ -89,7 +89,7 @@ impl SchemaWriter {
     }
 }
 
-/// A list, each of whose items is described in full by `schema`.
+/// Schema of a list, each item of which is described completely by `schema`.
 fn list(items: &Value) -> Value {
     json!({ "type": "array", "items": items })
 }
@@ -98,7 +98,7 @@ fn list_of_two(items: &Value) -> Value {
     json!({ "type": "array", "items": items, "minItems": 2, "maxItems": 2 })
 }
 
-/// The keys that an entry of the catalogue may have.
+/// Keys that an entry of the catalogue may have.
 fn keys_of_entry(kind: CatalogueKind) -> Vec<&'static str> {
     let mut listing = Listing::of_everything();
     match kind {
@@ -242,7 +242,7 @@ impl Visitor for SchemaWriter {
         field: &mut Option<T>,
         visit: impl Fn(&mut T, &mut Self),
     ) {
-        // as if nothing chose it, so that the requirement of the alternative is stated
+        // as if none were chosen, so that the requirement of the alternative is stated
         *field = None;
         self.present(SchemaTable::begin_condition);
         visit(&mut T::default(), self);
@@ -295,8 +295,8 @@ impl Visitor for SchemaWriter {
         self.property(key, json!({ "type": "object", "minProperties": 1 }), true);
     }
 
-    /// Each side may have the keys that a table lacks, so that nothing is required where there is a
-    /// side.
+    /// Visits both sides: each may have the keys that a table lacks, so that nothing is required if
+    /// there is a side.
     fn sides<T: Default + Clone + PartialEq>(
         &mut self,
         keys: [Key; 2],

@@ -1,4 +1,4 @@
-//! Accumulators that are adjusted, and what moves their setting.
+//! Adjusted accumulators, and the motion of their setting.
 
 use super::Check;
 use crate::{
@@ -8,7 +8,7 @@ use crate::{
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE as ATMOSPHERE;
 use phea_quantity::{self as quantity, PRESSURE, TIME};
 
-/// The adjustment of the gas at a chamber.
+/// Checks the adjustment of the gas at a chamber.
 pub(super) fn adjustment(
     gas: &DeclaredAccumulator,
     supply: &DeclaredSupply,
@@ -69,7 +69,7 @@ fn moved(
     }
 }
 
-/// The course of the setting in a scenario.
+/// Checks the input schedule of the setting in a scenario.
 pub(super) fn course(
     scenario: &Scenario,
     actuator: &DeclaredActuator,
@@ -105,8 +105,8 @@ pub(super) fn course(
     }
 }
 
-/// A setting stays from 0 to 1. Signals of steps and ramps alone have their extremes where one
-/// begins or ends; for others a simulation reports it.
+/// Warns about a setting that leaves the range from 0 to 1. Signals with only steps and ramps have
+/// their extremes at a beginning or an end; for others a simulation reports it.
 fn leaves_its_way(signals: &[InputSignal], rest: f64, place: &str, check: &mut Check<'_, '_>) {
     let courses: Option<Vec<PartCourse>> = signals.iter().map(PartCourse::of).collect();
     let Some(courses) = courses else { return };
@@ -127,13 +127,13 @@ fn leaves_its_way(signals: &[InputSignal], rest: f64, place: &str, check: &mut C
     check.warning_with_help(&format!("{place}[{index}]"), message, help);
 }
 
-/// What rounding may add to a setting.
+/// Rounding allowance of a setting.
 const ROUNDING: f64 = 1e-9;
 
-/// A signal of steps, or a ramp; zero before it begins.
+/// Signal of steps, or a ramp; zero before it begins.
 struct PartCourse {
     is_ramp: bool,
-    /// Times in s and values.
+    /// Corners: times in s and values.
     corners: Vec<[f64; 2]>,
 }
 
@@ -165,10 +165,10 @@ impl PartCourse {
     }
 }
 
-/// The end of the path of a setting.
+/// End of the path of a setting.
 const SETTING: &str = "accumulator.adjustment.setting";
 
-/// The setting of a valve opens in every plant of a family.
+/// Checks that the setting of a valve opens in every plant of a family.
 pub(super) fn uncertain(
     uncertain: &Uncertain,
     actuator: Option<&DeclaredActuator>,

@@ -1,9 +1,9 @@
-//! The names of alternatives and of load cases.
+//! Names of alternatives and of load cases.
 
 use super::Check;
 use crate::{AS_DECLARED, Alternative, Project};
 
-/// Names must differ, as names of files do: without regard to capitals.
+/// Checks that names differ, as names of files do: without regard to capitals.
 pub(super) fn alternatives(alternatives: &[Alternative], check: &mut Check<'_, '_>) {
     let names: Vec<&str> = alternatives.iter().map(|one| one.name.as_str()).collect();
     names_differ(&names, ("alternative", "an alternative"), check);
@@ -15,7 +15,7 @@ pub(super) fn alternatives(alternatives: &[Alternative], check: &mut Check<'_, '
     }
 }
 
-/// Likewise; what only alternatives are judged under is nothing without them.
+/// Checks the names of load cases likewise; load cases without alternatives have no effect.
 pub(super) fn load_cases(project: &Project, check: &mut Check<'_, '_>) {
     let names: Vec<&str> = project.load_cases.iter().map(|one| one.name.as_str()).collect();
     names_differ(&names, ("load_case", "a load case"), check);

@@ -1,4 +1,4 @@
-//! Prices: all of one project are in one currency.
+//! Prices: all of one project must be in one currency.
 
 use super::Check;
 use crate::{Component, DeclaredActuator, DeclaredLine, DeclaredSeries, LineCost};
@@ -18,7 +18,7 @@ pub(super) fn prices(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     }
 }
 
-/// Every price with its path, in the order of the tables.
+/// All prices with their paths, in the order of the tables.
 fn stated(actuator: &DeclaredActuator, check: &Check<'_, '_>) -> Vec<(String, Price)> {
     let mut found = vec![("valve.price".to_string(), actuator.valve.cost.price)];
     for (side, line) in [("a", &actuator.line.a), ("b", &actuator.line.b)] {
@@ -41,7 +41,7 @@ fn stated(actuator: &DeclaredActuator, check: &Check<'_, '_>) -> Vec<(String, Pr
     found.into_iter().filter_map(|(path, price)| Some((path, price?))).collect()
 }
 
-/// The prices of a hose or pipe, whose keys are at these paths.
+/// Prices of a hose or pipe, whose keys are at these paths.
 fn of_line(line: &DeclaredLine, at: &dyn Fn(&str) -> String) -> Vec<(String, Option<Price>)> {
     let of = |cost: &LineCost, table: &str| {
         [("price", cost.ends.price), ("price_per_length", cost.price_per_length)]

@@ -1,10 +1,10 @@
-//! A valve between the chambers: conditions on its orifice.
+//! Valve between the chambers: conditions on its orifice.
 
 use super::Check;
 use crate::{Component, CrossPortKind, DeclaredActuator, DeclaredLine, DeclaredOrifice, OrificeSize};
 use phea_quantity::{self as quantity, LENGTH};
 
-/// Discharge coefficient by which a flow gives an opening.
+/// Discharge coefficient for the opening that corresponds to a flow.
 const DISCHARGE_COEFFICIENT: f64 = 0.6;
 
 pub(super) fn cross_port(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
@@ -31,13 +31,13 @@ pub(super) fn cross_port(actuator: &DeclaredActuator, check: &mut Check<'_, '_>)
     }
 }
 
-/// An orifice throttles only where it is narrower than the ports of the cylinder: the narrower
-/// line, or the piston where the lines are plain volumes.
+/// Checks the orifice, which throttles only if it is narrower than the ports of the cylinder: the
+/// narrower line, or the piston if the lines are plain volumes.
 fn orifice_within_port(orifice: &DeclaredOrifice, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     let bores = [&actuator.line.a, &actuator.line.b].into_iter().filter_map(bore);
     let port = match bores.reduce(f64::min) {
         Some(bore) => (bore, OF_LINE),
-        // nothing is known of the ports of a motor
+        // the ports of a motor are unknown
         None if actuator.motor.is_some() => return,
         None => (actuator.cylinder.piston_diameter_m(), "the piston"),
     };
@@ -46,7 +46,8 @@ fn orifice_within_port(orifice: &DeclaredOrifice, actuator: &DeclaredActuator, c
 
 const OF_LINE: &str = "the bore of the line";
 
-/// The valve between a chamber and its gas throttles only where it is narrower than the line there.
+/// Checks the valve between a chamber and its gas, which throttles only if it is narrower than the
+/// line there.
 pub(super) fn gas_valves_within_lines(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     for (own, line) in [("line.a", &actuator.line.a), ("line.b", &actuator.line.b)] {
         let Some((bore, gas)) = bore(line).zip(line.accumulator.as_ref()) else { continue };
@@ -67,8 +68,8 @@ pub(super) fn gas_valves_within_lines(actuator: &DeclaredActuator, check: &mut C
     }
 }
 
-/// Reports an orifice in the table at `path` that is no narrower than what leads to it: its
-/// diameter in m, and what it is.
+/// Reports an orifice in the table at `path` that is no narrower than the part leading to it, given
+/// by its diameter in m and its name.
 fn narrower(
     orifice: &DeclaredOrifice,
     density: f64,
@@ -97,7 +98,7 @@ fn narrower(
     check.error_with_help(&format!("{path}.{key}"), message, help);
 }
 
-/// m, of a hose or a pipe.
+/// Bore of a hose or a pipe, m.
 fn bore(line: &DeclaredLine) -> Option<f64> {
     match &line.component {
         Component::Hose { properties, .. } => Some(properties.bore),

@@ -1,10 +1,10 @@
-//! `[design]`.
+//! Table `[design]`.
 
 use super::Check;
 use super::linear_loop::{element_excess, one_element};
 use crate::{DeclaredElement, Project, StructureChoice, StructurePart};
 
-/// Most factors of a structure.
+/// Largest number of factors of a structure.
 const MAXIMUM_PARTS: usize = 40;
 
 pub(super) fn design(project: &Project, check: &mut Check<'_, '_>) {
@@ -70,7 +70,7 @@ fn part(part: &StructurePart, path: &str, check: &mut Check<'_, '_>) {
     }
 }
 
-/// An element that acts, in s as every factor is.
+/// Checks an element that is active, and in s like every factor.
 fn fixed(element: &DeclaredElement, path: &str, check: &mut Check<'_, '_>) {
     if !element.enabled {
         check.error(&format!("{path}.enabled"), "a fixed factor always acts and cannot be disabled");
@@ -82,7 +82,7 @@ fn fixed(element: &DeclaredElement, path: &str, check: &mut Check<'_, '_>) {
     }
 }
 
-/// Zeros less poles of a factor, if known.
+/// Excess of zeros over poles of a factor, if known.
 fn excess(part: &StructurePart) -> i64 {
     match part {
         StructurePart::Integrator | StructurePart::Pole { .. } => -1,

@@ -1,4 +1,4 @@
-//! `[[uncertainty_direction]]`.
+//! Table `[[uncertainty_direction]]`.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ pub(super) fn directions(project: &Project, check: &mut Check<'_, '_>) {
     ends(project, &stated, check);
 }
 
-/// Its name is its own.
+/// Rejects a direction name that is already in use.
 fn name(project: &Project, index: usize, path: &str, check: &mut Check<'_, '_>) {
     let Some(UncertaintyDirection { name, .. }) = project.directions.get(index) else { return };
     let path = format!("{path}.name");
@@ -35,7 +35,7 @@ fn name(project: &Project, index: usize, path: &str, check: &mut Check<'_, '_>) 
     }
 }
 
-/// Every number is stated by the project, and uncertain in one place.
+/// Checks that every number is stated by the project, and uncertain in one place.
 fn moved(
     project: &Project,
     direction: &UncertaintyDirection,
@@ -80,7 +80,7 @@ fn moved(
     }
 }
 
-/// All directions at their ends, each number is one that the project accepts.
+/// Checks that each number is acceptable with all directions at their ends.
 fn ends(project: &Project, stated: &BTreeMap<String, f64>, check: &mut Check<'_, '_>) {
     let mut reach: BTreeMap<&str, (f64, usize)> = BTreeMap::new();
     for (index, direction) in project.directions.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! `[family]`.
+//! Table `[family]`.
 
 use super::Check;
 use crate::{Correlation, DeclaredFamily, IdentifiedUse, OperatingRegion, Project, Uncertain};
@@ -62,7 +62,8 @@ fn measured(family: &DeclaredFamily, check: &mut Check<'_, '_>) {
     }
 }
 
-/// Ranges are in order and contain the declared values, and each number is uncertain in one place.
+/// Checks that ranges are in order and contain the declared values, and that each number is
+/// uncertain in one place.
 fn operating_region(project: &Project, region: &OperatingRegion, check: &mut Check<'_, '_>) {
     let path = "family.operating_region";
     let Some(actuator) = &project.actuator else {
@@ -99,7 +100,7 @@ fn operating_region(project: &Project, region: &OperatingRegion, check: &mut Che
     }
 }
 
-/// Parameters of the linear model that follow from what is uncertain, each with a range.
+/// Checks parameters of the linear model that follow from uncertain numbers, each with a range.
 fn replaces(project: &Project, family: &DeclaredFamily, check: &mut Check<'_, '_>) {
     let identified = project.identify.as_ref().map(|identify| identify.takes);
     let has_directions =
@@ -126,8 +127,8 @@ fn replaces(project: &Project, family: &DeclaredFamily, check: &mut Check<'_, '_
     }
 }
 
-/// A case gives a value to every parameter of a plant's formulas, within the range that
-/// `[uncertainty]` states.
+/// Checks that a case gives a value to every parameter of a plant's formulas, within the range of
+/// `[uncertainty]`.
 fn cases(project: &Project, family: &DeclaredFamily, check: &mut Check<'_, '_>) {
     let formulas = project.plant.as_ref().map(|plant| plant.formulas()).unwrap_or_default();
     let mut used: Vec<&str> = Vec::new();

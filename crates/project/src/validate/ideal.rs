@@ -1,16 +1,16 @@
-//! Limits of a part that textbooks take: what is left out must leave a rig.
+//! Ideal limits of parts as in textbooks: the remaining rig must be valid.
 
 use super::Check;
 use crate::{Component, DeclaredActuator, Project, ValveCoefficients};
 
-/// A line, a leakage or a stiffness of zero.
+/// Checks a line, a leakage or a stiffness of zero.
 pub(super) fn limits(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     valve_on_chamber(actuator, check);
     shut_valve(project, actuator, check);
     free_mass(project, actuator, check);
 }
 
-/// A chamber that is empty where the piston is at its end has no pressure.
+/// Rejects a chamber that is empty with the piston at its end, since it has no pressure.
 fn valve_on_chamber(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     let (one, both, part) = match &actuator.motor {
         Some(motor) => (motor.dead_volume, motor.dead_volumes, "motor"),
@@ -36,8 +36,8 @@ fn valve_on_chamber(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     }
 }
 
-/// Edges that are shut at null leave the pressures of the chambers open, unless all are: an ideal
-/// valve is the limit of equal leakage.
+/// Edges that are shut at null leave the chamber pressures undetermined, unless all are shut: an
+/// ideal valve is the limit of equal leakage.
 fn shut_valve(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     let ValveCoefficients::Edges { edges, .. } = &actuator.valve.leakage else { return };
     let is_shut = |edge: &f64| *edge <= 0.0;
@@ -52,7 +52,7 @@ fn shut_valve(project: &Project, actuator: &DeclaredActuator, check: &mut Check<
     check.error_with_help("valve.leakage_coefficients", message, help);
 }
 
-/// A mass that no stiffness holds takes no force at rest.
+/// Rejects a mass without stiffness, which takes no force at rest.
 fn free_mass(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     if !project.has_free_load() {
         return;

@@ -1,4 +1,4 @@
-//! `[[identify.recording]]`.
+//! Table `[[identify.recording]]`.
 
 use super::Check;
 use crate::{
@@ -7,7 +7,7 @@ use crate::{
 };
 use phea_quantity::{self as quantity, Dimension, RATIO};
 
-/// Files that are there twice, units that do not fit, and signals that a test does not have.
+/// Rejects files that occur twice, unsuitable units, and signals that a test does not have.
 pub(super) fn identify(identify: &Identify, check: &mut Check<'_, '_>) {
     for (index, recorded) in identify.recordings.iter().enumerate() {
         let path = format!("identify.recording[{index}]");
@@ -34,7 +34,8 @@ pub(super) fn identify(identify: &Identify, check: &mut Check<'_, '_>) {
     }
 }
 
-/// A test under the declared controller needs one, whose command follows from the force alone.
+/// Checks that a test under the declared controller has one whose command follows only from the
+/// force.
 pub(super) fn controllers_of_tests(project: &Project, identify: &Identify, check: &mut Check<'_, '_>) {
     for (index, recorded) in identify.responses.iter().enumerate() {
         let path = format!("identify.response[{index}].controller");
@@ -80,7 +81,7 @@ fn separator(stated: Option<&str>, path: &str, check: &mut Check<'_, '_>) {
     }
 }
 
-/// What is taken from recordings needs some, and a valve whose place it takes.
+/// Checks that values taken from recordings have recordings, and a valve to replace.
 pub(super) fn in_use(project: &Project, identify: &Identify, check: &mut Check<'_, '_>) {
     let path = "identify.use";
     if identify.takes == IdentifiedUse::Nothing || check.refused("identify.recording") {
@@ -120,7 +121,7 @@ fn columns(recorded: &RecordedTest, path: &str, check: &mut Check<'_, '_>) {
     }
 }
 
-/// Times, pressures and temperatures have one sign.
+/// Rejects reversed times, pressures and temperatures, which have one sign.
 fn reversed(column: &RecordedColumn, may_reverse: bool, path: &str, check: &mut Check<'_, '_>) {
     if column.reversed && !may_reverse {
         let message = "only a command, a flow or a force can be reversed";
@@ -129,7 +130,7 @@ fn reversed(column: &RecordedColumn, may_reverse: bool, path: &str, check: &mut 
     }
 }
 
-/// An accuracy that can be read, of a signal whose errors are counted.
+/// Checks that an accuracy can be read, and belongs to a signal whose errors are considered.
 fn accuracy(column: &RecordedColumn, of: Option<&'static Dimension>, path: &str, check: &mut Check<'_, '_>) {
     let Some(text) = &column.accuracy else { return };
     let path = format!("{path}.accuracy");

@@ -1,4 +1,4 @@
-//! `[controller.impedance]`: what has to fit controller, samples and load.
+//! Table `[controller.impedance]`: consistency with controller, samples and load.
 
 use std::f64::consts::PI;
 
@@ -33,7 +33,7 @@ pub(super) fn impedance(project: &Project, check: &mut Check<'_, '_>) {
     }
 }
 
-/// The filter makes damper and mass proper, and acts before the samples.
+/// Checks the filter, which makes damper and mass proper, and acts before the samples.
 fn filter(declared: &DeclaredImpedance, sample_time: Option<f64>, check: &mut Check<'_, '_>) {
     let place = format!("{PLACE}.filter_time");
     let Some(filter_time) = declared.filter_time else {
@@ -56,7 +56,7 @@ fn filter(declared: &DeclaredImpedance, sample_time: Option<f64>, check: &mut Ch
     }
 }
 
-/// An inner position loop: its law with the impedance is that of the force.
+/// Checks an inner position loop: its law with the impedance is a force law.
 fn admittance(declared: &DeclaredImpedance, controller: &DeclaredController, check: &mut Check<'_, '_>) {
     let place = format!("{PLACE}.form");
     if declared.is_zero() {

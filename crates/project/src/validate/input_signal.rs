@@ -1,9 +1,9 @@
-//! The functions of time of a scenario.
+//! Functions of time of a scenario.
 
 use super::Check;
 use crate::{Amplitudes, InputSignal, InputUnit, Multisine};
 
-/// Most sines of a multisine.
+/// Largest number of sines of a multisine.
 const MOST_SINES: usize = 1000;
 
 /// Checks every part of the signal under this key of a scenario with this duration in s.

@@ -1,4 +1,4 @@
-//! Models of lines in motion: which model is possible for which line.
+//! Models of lines in motion: valid combinations of model and line.
 
 use super::Check;
 use crate::text::RawFinding;
@@ -23,7 +23,8 @@ pub(super) fn motion(line: &DeclaredLine, path: &str, check: &mut Check<'_, '_>)
     creeps(line, path, check);
 }
 
-/// A volume has nothing that moves, and the wall of a pipe neither creeps nor moves along its axis.
+/// Rejects models that do not fit: a volume has no dynamics, and the wall of a pipe neither creeps
+/// nor moves along its axis.
 fn fits(line: &DeclaredLine, path: &str, check: &mut Check<'_, '_>) {
     let motion = &line.motion;
     let (at, model) = (format!("{path}.model"), motion.model());
@@ -49,7 +50,7 @@ fn fits(line: &DeclaredLine, path: &str, check: &mut Check<'_, '_>) {
     }
 }
 
-/// A wall that is as stiff at rest as in motion does not creep.
+/// Warns about creep of a wall that is as stiff at rest as in motion.
 fn creeps(line: &DeclaredLine, path: &str, check: &mut Check<'_, '_>) {
     let stiffening = line.dynamic_stiffening.map_or(1.0, |stiffening| stiffening.nominal);
     if line.motion.relaxation_time().is_some() && line.hose().is_some() && stiffening == 1.0 {
@@ -58,7 +59,7 @@ fn creeps(line: &DeclaredLine, path: &str, check: &mut Check<'_, '_>) {
     }
 }
 
-/// Keys of [line] that belong to a model have no effect where both sides choose their own.
+/// Warns about keys of [line] for a model, which have no effect if both sides choose their own.
 pub(super) fn nobody_inherits(check: &mut Check<'_, '_>) {
     let Some(line) = check.reader.root_entry("line") else { return };
     let chooses = |side: &str| line.node.get(side).is_some_and(|side| side.node.get("model").is_some());

@@ -9,7 +9,7 @@ use phea_dynamics::controller::AntiWindup;
 use phea_dynamics::linear::Discretization;
 use phea_quantity::{ANGULAR_FREQUENCY, display};
 
-/// Most zeros, poles or elements of a transfer function.
+/// Largest number of zeros, poles or elements of a transfer function.
 const MAXIMUM_ORDER: usize = 50;
 
 pub(super) fn controllers(project: &Project, check: &mut Check<'_, '_>) {
@@ -52,7 +52,7 @@ pub(super) fn controllers(project: &Project, check: &mut Check<'_, '_>) {
     velocity_sensor(project, check);
 }
 
-/// The frequency at which Tustin's rule is exact.
+/// Checks the frequency at which Tustin's rule is exact.
 fn exact_at(controller: &DeclaredController, discrete: bool, check: &mut Check<'_, '_>) {
     let Some(frequency) = controller.discretization_frequency else { return };
     let place = "controller.discretization_frequency";
@@ -156,7 +156,8 @@ pub(super) fn is_discrete(transfer: &Transfer) -> bool {
         || transfer.elements.iter().any(|element| element.enabled && element.is_sampled())
 }
 
-/// A controller that states its timing but no transfer function is to be designed.
+/// Checks a transfer function; a controller that states its timing but no transfer function must be
+/// designed.
 fn transfer(
     transfer: &Transfer,
     path: &str,
@@ -198,7 +199,7 @@ fn transfer(
     }
 }
 
-/// Polynomials or factors, whichever of them is written.
+/// Checks polynomials or factors, whichever are written.
 fn rational_form(
     ratio: &RationalFunction,
     path: &str,
@@ -259,12 +260,12 @@ fn sample_time_of_z(
     }
 }
 
-/// Powers of all numerators less those of all denominators, if known.
+/// Excess of the numerator powers over the denominator powers, if known.
 fn excess(transfer: &Transfer) -> Option<i64> {
     transfer.as_elements().iter().filter(|element| element.enabled).map(element_excess).sum()
 }
 
-/// Zeros less poles of an element, if known.
+/// Excess of zeros over poles of an element, if known.
 pub(super) fn element_excess(element: &DeclaredElement) -> Option<i64> {
     let power = |count: usize| i64::try_from(count).ok();
     Some(match &element.kind {
@@ -284,7 +285,7 @@ pub(super) fn element_excess(element: &DeclaredElement) -> Option<i64> {
     })
 }
 
-/// Complex numbers must come with their conjugates, since coefficients are real.
+/// Rejects complex numbers without their conjugates, since coefficients are real.
 pub(super) fn conjugates(roots: &[[f64; 2]], path: &str, check: &mut Check<'_, '_>) {
     if roots.len() > MAXIMUM_ORDER {
         return check.error(path, format!("more than {MAXIMUM_ORDER} roots"));
@@ -298,7 +299,7 @@ pub(super) fn conjugates(roots: &[[f64; 2]], path: &str, check: &mut Check<'_, '
     }
 }
 
-/// One element at `path`, wherever it is written.
+/// Checks one element at `path`.
 pub(super) fn one_element(
     element: &DeclaredElement,
     path: &str,

@@ -1,4 +1,4 @@
-//! A linkage: whether it closes over the stroke, and what phea does not yet do with one.
+//! Linkage: its closure over the stroke, and features that phea does not yet support with one.
 
 use super::Check;
 use super::motor::keys_of_files;
@@ -30,7 +30,7 @@ pub(super) fn linkage(project: &Project, actuator: &DeclaredActuator, check: &mu
     certain(project, check);
 }
 
-/// Reports what keeps the linkage from existing.
+/// Reports a linkage that cannot exist.
 fn closes(linkage: &DeclaredLinkage, stroke: f64, check: &mut Check<'_, '_>) {
     let keys = ["cylinder_pivot", "rod_pivot", "retracted_length", "fixed_link", "input_link", "coupler"];
     let more = ["output_link", "extensions", "angles", "tolerance", "angle_offset", "input_angle", "kind"];
@@ -59,7 +59,7 @@ fn closes(linkage: &DeclaredLinkage, stroke: f64, check: &mut Check<'_, '_>) {
     }
 }
 
-/// Where, why and how to repair it.
+/// Key, reason and remedy of an error.
 fn refusal(error: &LinkageError) -> (&'static str, String, String) {
     let mm = |length: f64| quantity::display(length, &LENGTH, 4);
     match *error {
@@ -131,7 +131,7 @@ fn refusal_of_table(error: &LinkageError) -> (&'static str, String, String) {
     }
 }
 
-/// Parts that take the load for one that moves with the rod.
+/// Rejects parts that assume a load which moves with the rod.
 fn not_yet(project: &Project, check: &mut Check<'_, '_>) {
     let impedance = project.controller.as_ref().is_some_and(|controller| controller.impedance.is_some());
     let absent = [
@@ -153,7 +153,7 @@ fn not_yet(project: &Project, check: &mut Check<'_, '_>) {
     }
 }
 
-/// Columns of files have the names and units of a load that moves with the rod.
+/// Rejects files, whose columns have the names and units of a load that moves with the rod.
 fn files(scenario: &Scenario, path: &str, check: &mut Check<'_, '_>) {
     let message =
         "with a [linkage] this file is not read yet: its columns say force and position, and the load turns";
@@ -163,7 +163,7 @@ fn files(scenario: &Scenario, path: &str, check: &mut Check<'_, '_>) {
     }
 }
 
-/// The polynomial of a linkage is found before any number of a family is.
+/// Rejects uncertain numbers of a linkage: its polynomial is found before any number of a family.
 fn certain(project: &Project, check: &mut Check<'_, '_>) {
     let is_weight = |name: &str| ["linkage.weight.mass", "linkage.weight.centre_distance"].contains(&name);
     let is_of_linkage =

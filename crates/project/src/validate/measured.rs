@@ -1,10 +1,10 @@
-//! `[[scenario.measured]]`.
+//! Table `[[scenario.measured]]`.
 
 use super::Check;
 use crate::MeasuredFile;
 use phea_quantity::{self as quantity, Dimension, TIME};
 
-/// Invalid units, and signals that occur twice.
+/// Rejects invalid units, and signals that occur twice.
 pub(super) fn measured(files: &[MeasuredFile], path: &str, check: &mut Check<'_, '_>) {
     for (number, declared) in files.iter().enumerate() {
         let path = format!("{path}.measured[{number}]");

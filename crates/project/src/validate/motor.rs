@@ -1,4 +1,5 @@
-//! A motor in place of the cylinder: what it needs, and what phea does not yet do with one.
+//! Motor in place of the cylinder: its requirements, and features that phea does not yet support
+//! with one.
 
 use super::Check;
 use crate::{DeclaredActuator, InputSignal, MotionShape, Project, Scenario};
@@ -25,7 +26,7 @@ pub(super) fn motor(project: &Project, actuator: &DeclaredActuator, check: &mut 
     }
 }
 
-/// Columns of files have the names and units of linear motion.
+/// Rejects files, whose columns have the names and units of linear motion.
 fn files(scenario: &Scenario, path: &str, check: &mut Check<'_, '_>) {
     let message = "files of a rig with a [motor] are not read yet: their columns say force and position";
     for key in keys_of_files(scenario) {
@@ -33,7 +34,7 @@ fn files(scenario: &Scenario, path: &str, check: &mut Check<'_, '_>) {
     }
 }
 
-/// The keys of a scenario that name files.
+/// Keys of a scenario that name files.
 pub(super) fn keys_of_files(scenario: &Scenario) -> impl Iterator<Item = &'static str> {
     let has_file = |all: &[InputSignal]| all.iter().any(|signal| matches!(signal, InputSignal::File { .. }));
     let motion = scenario.load_motion.as_ref();

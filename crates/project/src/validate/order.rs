@@ -5,14 +5,14 @@ use crate::toml_text::quoted;
 use crate::{Bench, BoundedNumber};
 
 impl Check<'_, '_> {
-    /// A value as the file or the setting has it, without quotes; empty where it is not stated.
+    /// Value as in the file or the setting, without quotes; empty if it is not stated.
     fn written(&self, path: &str) -> String {
         let place = self.reader.places.get(path).copied().unwrap_or_default();
         let text = self.reader.findings.content(place.text).get(place.start..place.end);
         text.unwrap_or_default().trim_matches(['"', '\'']).to_string()
     }
 
-    /// That the value of one key is above or below that of another, each as written.
+    /// Message that the value of one key is above or below that of another, each as written.
     fn compared(&self, path: &str, word: &str, other: &str) -> String {
         let other = match self.written(other) {
             written if written.is_empty() => format!("the default of `{}`", last(other)),
@@ -21,7 +21,7 @@ impl Check<'_, '_> {
         format!("`{}`, {}, is {word} {other}", last(path), self.written(path))
     }
 
-    /// The two values of a list as written.
+    /// Two values of a list as written.
     fn written_pair(&self, path: &str) -> Option<[String; 2]> {
         let written = self.written(path);
         let (first, second) = written.trim_matches(['[', ']']).split_once(',')?;
@@ -29,7 +29,7 @@ impl Check<'_, '_> {
         Some([bare(first), bare(second)])
     }
 
-    /// Two numbers of one list must be in order.
+    /// Checks that two numbers of one list are in order.
     pub(super) fn ascending(&mut self, path: &str, pair: Option<[f64; 2]>) {
         if let Some([low, high]) = pair
             && low > high
@@ -38,7 +38,7 @@ impl Check<'_, '_> {
         }
     }
 
-    /// The same of numbers that may not be equal either.
+    /// Checks that two numbers are in order and not equal.
     pub(super) fn strictly_ascending(&mut self, path: &str, pair: Option<[f64; 2]>) {
         match pair {
             Some([low, high]) if low == high => {
@@ -62,8 +62,8 @@ impl Check<'_, '_> {
         }
     }
 
-    /// The cure of two keys in the wrong order: both are exchanged, or the one that is stated goes
-    /// to the other side of a default.
+    /// Remedy for two keys in the wrong order: both are exchanged, or the stated one moves to the
+    /// other side of a default.
     fn exchanged(&self, lower: &str, upper: &str) -> String {
         let [low, high] = [lower, upper].map(|path| self.written(path));
         let [least, most] = [last(lower), last(upper)];
@@ -77,8 +77,8 @@ impl Check<'_, '_> {
         }
     }
 
-    /// Two numbers of one table must be in order, each with its path; refused at the first one, or
-    /// at the second where that one alone is stated.
+    /// Checks that two numbers of one table are in order, each with its path; the error is at the
+    /// first one, or at the second if only that one is stated.
     pub(super) fn in_order(&mut self, [lower, upper]: [&str; 2], [low, high]: [f64; 2]) {
         if low > high && !self.refused(lower) && !self.refused(upper) {
             let (at, word, other) = match self.declared(lower) {
@@ -89,13 +89,13 @@ impl Check<'_, '_> {
         }
     }
 
-    /// A number between two, each stated.
+    /// Checks a number between two others, each stated.
     pub(super) fn interval(&mut self, path: &str, interval: Option<BoundedNumber>) {
         let Some(BoundedNumber { nominal, minimum, maximum }) = interval else { return };
         self.bounds(path, [minimum, nominal, maximum]);
     }
 
-    /// Minimum, nominal and maximum in order.
+    /// Checks that minimum, nominal and maximum are in order.
     pub(super) fn bounds(&mut self, path: &str, [minimum, nominal, maximum]: [f64; 3]) {
         let parts = ["minimum", "nominal", "maximum"].map(|name| format!("{path}.{name}"));
         let [least, usual, most] = [&parts[0], &parts[1], &parts[2]];
@@ -116,13 +116,13 @@ impl Check<'_, '_> {
     }
 }
 
-/// A value as it was written, without quotes, as TOML takes it.
+/// Value as written, without quotes, in TOML.
 fn in_toml_as_written(value: &str) -> String {
     let is_bare = value.replace('_', "").parse::<f64>().is_ok();
     if is_bare { value.to_string() } else { quoted(value) }
 }
 
-/// Ranges of the virtual bench.
+/// Checks ranges of the virtual bench.
 pub(super) fn bench(bench: &Bench, check: &mut Check<'_, '_>) {
     let low_flow = bench.low_flow_meter.as_ref().map(|small| small.meter);
     let meters = [

@@ -1,4 +1,4 @@
-//! Implausible numbers: nearly always a unit was intended and not written.
+//! Implausible numbers: in nearly all cases a unit was intended and not written.
 
 use super::Check;
 use crate::Project;
@@ -38,13 +38,13 @@ const USUAL: [(&str, f64, f64, &str); 30] = [
     ("series.line.length", 0.05, 30.0, "lines"),
     ("series.line.bore", 0.003, 0.08, "hoses"),
 ];
-/// Factor below or above the range at which a number is called implausible.
+/// Factor below or above the range at which a number counts as implausible.
 const BEYOND: f64 = 10.0;
 /// Typical factors of a pressure whose unit is missing or wrong: bar, mega, kilo, giga.
 const SLIPS_OF_PRESSURE: [f64; 5] = [1e5, 1e6, 1e3, 1e9, 1e-3];
-/// The same of a ratio: percent.
+/// Typical factor of a ratio: percent.
 const SLIPS_OF_RATIO: [f64; 1] = [1e-2];
-/// The same for other quantities: milli, centi, L/min, kilo, mega, micro.
+/// Typical factors of other quantities: milli, centi, L/min, kilo, mega, micro.
 const SLIPS: [f64; 6] = [1e-3, 1e-2, 1e-3 / 60.0, 1e3, 1e6, 1e-6];
 
 /// Warns about every implausible number that is declared.

@@ -1,4 +1,4 @@
-//! `[controller.pressure_feedback]`: what has to fit samples and rig.
+//! Table `[controller.pressure_feedback]`: consistency with samples and rig.
 
 use std::f64::consts::PI;
 
@@ -70,17 +70,17 @@ pub(super) fn pressure_feedback(project: &Project, check: &mut Check<'_, '_>) {
     }
 }
 
-/// True where a design finds the feedback.
+/// True if a design finds the feedback.
 fn is_free(project: &Project) -> bool {
     project.design.as_ref().is_some_and(|design| design.pressure_feedback == FeedbackChoice::Free)
 }
 
-/// True where the plants are measured responses.
+/// True if the plants are measured responses.
 fn is_measured(project: &Project) -> bool {
     project.family.as_ref().is_some_and(|family| !family.measured.is_empty())
 }
 
-/// What a free feedback needs.
+/// Requirements of a free feedback.
 fn free(project: &Project, check: &mut Check<'_, '_>) {
     const PLACE: &str = "design.pressure_feedback";
     if is_measured(project) {

@@ -1,4 +1,4 @@
-//! The actuator: conditions of geometry and physics.
+//! Actuator: conditions of geometry and physics.
 
 use super::{Check, adjustment, cross_port, line_motion};
 use crate::{
@@ -39,8 +39,8 @@ fn supply(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     }
 }
 
-/// Whether the supply's pressure is above the precharge of this gas; otherwise an error with what
-/// follows from it.
+/// True if the supply's pressure is above the precharge of this gas; otherwise reports an error
+/// with its consequence.
 fn is_reached(
     gas: &DeclaredAccumulator,
     supply: &DeclaredSupply,
@@ -62,7 +62,7 @@ fn is_reached(
     false
 }
 
-/// The gas at a chamber: its precharge lies below what the supply can give.
+/// Checks the gas at a chamber: its precharge must be below the supply pressure.
 fn accumulator(gas: &DeclaredAccumulator, supply: &DeclaredSupply, path: &str, check: &mut Check<'_, '_>) {
     if gas.thermal_time_constant.is_some() && check.declared(&format!("{path}.polytropic_exponent")) {
         let message = "`polytropic_exponent` and `thermal_time_constant` both describe the heat between gas and wall: state one of them";
@@ -75,14 +75,14 @@ fn accumulator(gas: &DeclaredAccumulator, supply: &DeclaredSupply, path: &str, c
     if check.refused(&format!("{path}.precharge_pressure")) {
         return;
     }
-    // compressed most where its precharge is least
+    // compressed most at its least precharge
     let [first, last] = gas.ends();
     let most = if last.precharge_pressure < first.precharge_pressure { last } else { first };
     pressure_ratio(&most, supply, &format!("{path}.maximum_pressure_ratio"), check);
 }
 
-/// The ends of the ranges of a precharge: the supply reaches the highest, and the lowest is not
-/// compressed beyond the maker's limit.
+/// Checks the ends of the ranges of a precharge: the supply must reach the highest, and must not
+/// compress the lowest beyond the maker's limit.
 pub(super) fn precharge_ranges(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     let range_of = |name: &str| project.uncertainty.iter().find(|one| one.name == name);
     let most = range_of("supply.pressure").map_or(actuator.supply.pressure, |range| range.maximum);
@@ -115,7 +115,8 @@ pub(super) fn precharge_ranges(project: &Project, actuator: &DeclaredActuator, c
     }
 }
 
-/// A range of the supply pressure that goes below the precharge of the supply's own accumulator.
+/// Rejects a range of the supply pressure that extends below the precharge of the supply's own
+/// accumulator.
 fn supply_falls_short(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     let range = project.uncertainty.iter().find(|one| one.name == "supply.pressure");
     let SupplyModel::PumpLimited(Pump { accumulator: Some(gas), .. }) = &actuator.supply.model else {
@@ -123,7 +124,7 @@ fn supply_falls_short(project: &Project, actuator: &DeclaredActuator, check: &mu
     };
     let working = gas.working_precharge(ATMOSPHERE);
     let stated = actuator.supply.pressure;
-    // without a stated pressure above the precharge the pressure itself is refused
+    // without a stated pressure above the precharge the pressure itself is rejected
     let Some(range) = range.filter(|range| range.minimum <= working && working < stated) else { return };
     let [pressure, precharge] =
         [range.minimum, working].map(|pressure| quantity::display(pressure, &PRESSURE, 4));
@@ -134,8 +135,8 @@ fn supply_falls_short(project: &Project, actuator: &DeclaredActuator, check: &mu
     check.error_with_help("uncertainty.supply.pressure.minimum", message, help);
 }
 
-/// The maker's limit of the compression of the gas, at the highest pressure that the supply gives;
-/// `path` is where the error is.
+/// Checks the maker's limit of the compression of the gas, at the highest supply pressure; `path`
+/// is the place of the error.
 fn pressure_ratio(gas: &DeclaredAccumulator, supply: &DeclaredSupply, path: &str, check: &mut Check<'_, '_>) {
     let Some(limit) = gas.maximum_pressure_ratio else { return };
     let precharge = gas.working_precharge(ATMOSPHERE) + ATMOSPHERE;
@@ -198,7 +199,7 @@ fn valve(valve: &Valve, supply: &DeclaredSupply, check: &mut Check<'_, '_>) {
 
 fn cylinder(cylinder: &DeclaredCylinder, check: &mut Check<'_, '_>) {
     piston(cylinder, check);
-    // an area has its rods subtracted already
+    // rods are already subtracted from an area
     let by_area = cylinder.piston_area.is_some() || cylinder.piston_areas.is_some();
     let written =
         ["rod_diameter", "rod_diameters"].iter().any(|name| check.declared(&format!("cylinder.{name}")));
@@ -215,7 +216,7 @@ fn cylinder(cylinder: &DeclaredCylinder, check: &mut Check<'_, '_>) {
     stages(cylinder, check);
 }
 
-/// The stages of a telescopic piston follow each other within the stroke.
+/// Checks that the stages of a telescopic piston follow each other within the stroke.
 fn stages(cylinder: &DeclaredCylinder, check: &mut Check<'_, '_>) {
     if cylinder.stages.is_empty() && check.declared("cylinder.stage_transition") {
         check.warning(
@@ -264,7 +265,7 @@ fn stages(cylinder: &DeclaredCylinder, check: &mut Check<'_, '_>) {
     }
 }
 
-/// A single area suffices only for a rod through both chambers.
+/// Checks the piston: a single area suffices only for a rod through both chambers.
 fn piston(cylinder: &DeclaredCylinder, check: &mut Check<'_, '_>) {
     let [rod_a, rod_b] = cylinder.rod_diameters_m();
     if cylinder.piston_area.is_some() && (rod_a - rod_b).abs() > 0.0 {
@@ -298,8 +299,8 @@ fn friction(friction: &DeclaredFriction, part: &str, check: &mut Check<'_, '_>) 
     }
 }
 
-/// The levels of one direction, of keys in the first table where they are there, otherwise in the
-/// second.
+/// Checks the levels of one direction, with keys in the first table if they are there, otherwise in
+/// the second.
 fn levels(
     friction: &DeclaredFriction,
     (own, other): (&str, &str),
@@ -327,7 +328,7 @@ fn levels(
     }
 }
 
-/// The next number with three significant digits.
+/// Next higher number with three significant digits.
 fn rounded_up(value: f64) -> String {
     let place = portable::pow(10.0, portable::log10(value).floor() - 2.0);
     quantity::significant((value / place).ceil() * place, 3)
@@ -362,7 +363,7 @@ fn lines(actuator: &DeclaredActuator, lines: &DeclaredLines, check: &mut Check<'
     }
 }
 
-/// The expansion of a hose is known up to the pressure it is stated at.
+/// Checks the expansion of a hose, which is known up to the pressure of its measurement.
 fn expansion(line: &DeclaredLine, supply: f64, path: &str, check: &mut Check<'_, '_>) {
     let Some(stated) = line.expansion_stated_at().filter(|stated| supply > stated * (1.0 + 1e-9)) else {
         return;
@@ -393,14 +394,14 @@ pub(super) fn line(line: &DeclaredLine, path: &str, check: &mut Check<'_, '_>) {
             return check.error(&format!("{path}.{at}"), format!("a line is {ways}: only one of them"));
         }
     }
-    // a key that one side does not use may be for the other
+    // a key that one side does not use may belong to the other
     let [length, stiffening] =
         ["length", "dynamic_stiffening"].map(|key| path == "line" && check.declared(&format!("line.{key}")));
     if length && matches!(line.component, Component::Volume(_)) {
         check.warning("line.length", "`length` has no effect together with `volume`");
     }
     let sized = ["time_constant", "settling_time"].iter().any(|key| check.declared(&format!("sizing.{key}")));
-    // [sizing] takes it for the hoses that it looks at
+    // [sizing] uses it for the hoses that it examines
     if stiffening && line.hose().is_none() && !sized {
         check.warning("line.dynamic_stiffening", "`dynamic_stiffening` has no effect without a hose");
     }
@@ -416,10 +417,10 @@ pub(super) fn line(line: &DeclaredLine, path: &str, check: &mut Check<'_, '_>) {
     check.interval(&format!("{path}.dynamic_stiffening"), line.dynamic_stiffening);
 }
 
-/// Part of the outer diameter by which bore and walls may differ from it: data sheets round.
+/// Tolerance of the outer diameter relative to bore and walls: data sheets round.
 const OUTER_ROUNDED: f64 = 0.02;
 
-/// The outer diameter of a pipe is its bore and both walls.
+/// Checks that the outer diameter of a pipe is its bore plus both walls.
 fn outer_diameter(pipe: &DeclaredPipe, path: &str, check: &mut Check<'_, '_>) {
     let (Some(outer), Some(wall)) = (pipe.outer_diameter, &pipe.wall) else { return };
     let made = pipe.bore + 2.0 * wall.thickness;

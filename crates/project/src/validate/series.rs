@@ -1,4 +1,4 @@
-//! The spring between force sensor and load: its keys together, and whether it holds the force of
+//! Spring between force sensor and load: consistency of its keys, and its capacity for the force of
 //! the cylinder.
 
 use super::Check;
@@ -17,7 +17,7 @@ pub(super) fn series(project: &Project, actuator: &DeclaredActuator, check: &mut
     }
 }
 
-/// The line between two pistons, and whether its oil withstands the force of the cylinder.
+/// Checks the line between two pistons, and the capacity of its oil for the force of the cylinder.
 fn transmission(actuator: &DeclaredActuator, declared: &DeclaredTransmission, check: &mut Check<'_, '_>) {
     if check.declared("series.line") {
         rig::line(&declared.line, "series.line", check);
@@ -75,17 +75,17 @@ fn transmission(actuator: &DeclaredActuator, declared: &DeclaredTransmission, ch
     }
 }
 
-/// Pa, beyond which no filling is proposed.
+/// Largest filling pressure that is proposed, Pa.
 const MOST_FILLING: f64 = 500e5;
 
-/// The greatest push and the greatest pull in N that the supply gives the piston.
+/// Greatest push and greatest pull that the supply gives the piston, N.
 fn stall_forces(actuator: &DeclaredActuator) -> [f64; 2] {
     let [area_a, area_b] = actuator.cylinder.effective_areas_m2();
     let [supply, tank] = [actuator.supply.pressure, actuator.supply.tank_pressure];
     [area_a * supply - area_b * tank, area_b * supply - area_a * tank]
 }
 
-/// The greatest force in N that the supply gives the piston, in either direction.
+/// Greatest force that the supply gives the piston, in either direction, N.
 fn stall_force(actuator: &DeclaredActuator) -> f64 {
     let [push, pull] = stall_forces(actuator);
     push.max(pull)
@@ -122,7 +122,8 @@ fn spring(
     vanishing(project, check);
 }
 
-/// Without a damper and a mass nothing but the force decides how fast the spring moves.
+/// Requires a damper or a mass with stops: otherwise only the force determines the velocity of the
+/// spring.
 fn damped_stops(series: &DeclaredSpring, check: &mut Check<'_, '_>) {
     if series.stop_damping == 0.0 {
         return;
@@ -138,7 +139,7 @@ fn damped_stops(series: &DeclaredSpring, check: &mut Check<'_, '_>) {
     }
 }
 
-/// The force at which the cylinder stalls must lie within the travel.
+/// Checks that the stall force of the cylinder is within the travel.
 fn bottoms_out(
     actuator: &DeclaredActuator,
     series: &DeclaredSpring,
@@ -170,7 +171,7 @@ fn bottoms_out(
     check.error_with_help(place, message, help);
 }
 
-/// The next number above with three digits, so that what a message proposes is enough.
+/// Next higher number with three digits, so that the proposal of a message is sufficient.
 fn round_up(value: f64) -> f64 {
     let mut unit = 1.0;
     while value / unit >= 1000.0 {
@@ -182,7 +183,8 @@ fn round_up(value: f64) -> f64 {
     (value / unit).ceil() * unit
 }
 
-/// A damper or a mass that may vanish would change the order of the plant within one family.
+/// Rejects a damper or a mass that may vanish, which would change the order of the plant within one
+/// family.
 fn vanishing(project: &Project, check: &mut Check<'_, '_>) {
     for key in ["series.damping", "series.mass"] {
         let in_range = project.uncertainty.iter().any(|one| one.name == key && one.minimum <= 0.0);

@@ -1,4 +1,4 @@
-//! `[[specification]]`.
+//! Table `[[specification]]`.
 
 use super::Check;
 use crate::{
@@ -122,7 +122,7 @@ fn one_limit(limit: &DeclaredLimit, kind: ClosedLoop, name: &str, path: &str, ch
     }
 }
 
-/// None of the forms of a limit is present, perhaps because something in it was rejected.
+/// Reports a limit without any of its forms, perhaps because a part of it was rejected.
 fn nothing(path: &str, check: &mut Check<'_, '_>) {
     let found = ["values", "denominator"].iter().find(|name| check.declared(&format!("{path}.{name}")));
     let message = match found {
@@ -140,7 +140,7 @@ const MARGIN_KEYS: &[&str] =
 const RESPONSE_KEYS: &[&str] =
     &["overshoot_percent", "settling_time", "settling_band_percent", "zero", "pole", "rule"];
 
-/// Keys that are present but should not be.
+/// Rejects keys that are present but should not be.
 fn refuse(names: &[&str], because: &str, path: &str, check: &mut Check<'_, '_>) {
     for name in names {
         let at = format!("{path}.{name}");

@@ -15,12 +15,12 @@ use phea_quantity::significant;
 use phea_quantity::spelling::nearest;
 use phea_quantity::{self as quantity, RATIO};
 
-/// Most rows of all scenarios together: four gigabytes of tables.
+/// Largest number of rows of all scenarios together: four gigabytes of tables.
 const MAXIMUM_ROWS: f64 = 1e7;
-/// If a step is shorter than this, s, it is the cause of too many rows, otherwise the duration.
+/// Output step below which the step is the cause of too many rows, otherwise the duration, s.
 const ORDINARY_STEP: f64 = 1e-3;
 
-/// Tables that only a project with an actuator may have.
+/// Checks tables that only a project with an actuator may have.
 pub(super) fn with_actuator(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     if let Some(wanted) = &project.sizing {
         sizing(wanted, check);
@@ -82,7 +82,7 @@ fn operating_point(project: &Project, actuator: &DeclaredActuator, check: &mut C
     }
 }
 
-/// Rejected at the scenario that exceeds the limit.
+/// Rejects the scenario that exceeds the limit of rows.
 fn rows(scenarios: &[Scenario], check: &mut Check<'_, '_>) {
     let mut before = 0.0;
     for (index, scenario) in scenarios.iter().enumerate() {
@@ -197,7 +197,7 @@ fn campaign(project: &Project, campaign: &Campaign, check: &mut Check<'_, '_>) {
     }
 }
 
-/// What needs an actuator.
+/// Rejects tables that need an actuator.
 pub(super) fn without_actuator(project: &Project, check: &mut Check<'_, '_>) {
     let foreign = [
         ("sizing", project.sizing.is_some()),
@@ -218,7 +218,7 @@ pub(super) fn without_actuator(project: &Project, check: &mut Check<'_, '_>) {
     }
 }
 
-/// Tables that only a project with a plant may have.
+/// Checks tables that only a project with a plant may have.
 pub(super) fn with_plant(project: &Project, plant: &DeclaredPlant, check: &mut Check<'_, '_>) {
     let formulas = plant.formulas();
     let used: Vec<&str> =
@@ -230,7 +230,7 @@ pub(super) fn with_plant(project: &Project, plant: &DeclaredPlant, check: &mut C
             check.warning(&format!("uncertainty.{}", uncertain.name), message);
         }
     }
-    // one that is missing is reported as such
+    // a missing formula is reported as such
     for (path, formula) in formulas {
         if check.declared(path) {
             nominal_formula(project, formula, path, check);
@@ -244,7 +244,7 @@ pub(super) fn with_plant(project: &Project, plant: &DeclaredPlant, check: &mut C
     }
 }
 
-/// The formula must have a value at the nominal plant.
+/// Checks that the formula has a value at the nominal plant.
 fn nominal_formula(project: &Project, formula: &Formula, path: &str, check: &mut Check<'_, '_>) {
     let first = project.family.as_ref().and_then(|family| family.cases.first());
     let value = |name: &str| {
@@ -306,7 +306,8 @@ fn is_sampled(project: &Project) -> bool {
     controller.or(project.prefilter.as_ref().and_then(|prefilter| prefilter.sample_time)).is_some()
 }
 
-/// Filter, delay and noise of the velocity sensor are those of one device: no family has several.
+/// Rejects uncertain filter, delay and noise of the velocity sensor: they are those of one device,
+/// of which no family has several.
 pub(super) fn of_one_sensor(name: &str, path: &str, check: &mut Check<'_, '_>) {
     if name.starts_with("velocity_sensor.") && name != "velocity_sensor.gain_error" {
         let message =
@@ -315,7 +316,7 @@ pub(super) fn of_one_sensor(name: &str, path: &str, check: &mut Check<'_, '_>) {
     }
 }
 
-/// A number for both lines together with the same number for one line would be set twice.
+/// Rejects a number for both lines together with that for one line, which would be set twice.
 fn both_sides(table: &str, how: &str, name: &str, all: &[&str], check: &mut Check<'_, '_>) {
     let Some(key) = name.strip_prefix("line.") else { return };
     for side in ["line.a", "line.b"] {
@@ -327,7 +328,7 @@ fn both_sides(table: &str, how: &str, name: &str, all: &[&str], check: &mut Chec
     }
 }
 
-/// The nominal value of a path should equal the number that the project states there.
+/// Checks that the nominal value of a path equals the number that the project states there.
 fn stated_elsewhere(uncertain: &Uncertain, stated: Option<f64>, check: &mut Check<'_, '_>) {
     let Some(stated) = stated else { return };
     if (stated - uncertain.nominal).abs() > 1e-9 * stated.abs() {
@@ -342,8 +343,8 @@ fn stated_elsewhere(uncertain: &Uncertain, stated: Option<f64>, check: &mut Chec
     }
 }
 
-/// A linear parameter together with a path from which it is derived would include the same
-/// uncertainty twice.
+/// Rejects a linear parameter together with a path from which it is derived, which would include
+/// one uncertainty twice.
 fn depends(uncertain: &Uncertain, project: &Project, check: &mut Check<'_, '_>) {
     let Some(parameter) = linear_parameter(&uncertain.name) else {
         return hidden(&uncertain.name, project, check);
@@ -365,7 +366,8 @@ fn depends(uncertain: &Uncertain, project: &Project, check: &mut Check<'_, '_>) 
     }
 }
 
-/// An uncertain path has no effect if `[linear]` states every linear parameter that depends on it.
+/// Warns about an uncertain path without effect, because `[linear]` states every linear parameter
+/// that depends on it.
 fn hidden(name: &str, project: &Project, check: &mut Check<'_, '_>) {
     let depends = |parameter: &&LinearParameter| parameter.follows_from(name);
     let mut reached = LINEAR_PARAMETERS.iter().filter(depends).peekable();

@@ -1,5 +1,5 @@
-//! The response of a held and sampled plant at single points, from its modes alone: exact as that
-//! from its states, without zeros, for a fraction of the work.
+//! Response of a held and sampled plant at single points from its modes: exact like that from its
+//! states, without zeros, for a fraction of the work.
 //!
 //! ```text
 //! P(s) = D + sum r_i/(s - p_i),      r_i = N(p_i)/prod over k of (p_i - p_k)
@@ -8,8 +8,9 @@
 //! G_0 = h F(p_i h),   G_1 = e^(p_i h) f F(p_i f),   F(x) = (e^x - 1)/x,   h = T - f
 //! ```
 //!
-//! Modes of opposite sign cancel where poles lie close together, and far above the poles; all of it
-//! is done in twice the working precision, and what would be lost even so is refused.
+//! Modes of opposite sign cancel if poles are close together, and far above the poles; all
+//! operations are in twice the working precision, and results that lose too many digits even then
+//! are rejected.
 
 use num_complex::Complex64;
 use pulp::{Arch, Simd, WithSimd};
@@ -20,11 +21,11 @@ use crate::linear::discretization::{exponential_of, split_dead_time};
 use crate::linear::double_double::{ComplexDoubleDouble, DoubleDouble};
 use crate::portable::{cos, magnitude, sin};
 
-/// Terms of the series of F: beyond them 1e-33 is left at 1/16.
+/// Number of terms of the series of F: the remainder at 1/16 is 1e-33.
 const TERMS: usize = 16;
-/// Poles nearer to each other than by this share of their magnitude are not told apart.
+/// Relative distance below which poles are not separated.
 const APART: f64 = 1e-4;
-/// A response below this share of the sum of its modes is not known well enough.
+/// Ratio of a response to the sum of the magnitudes of its modes below which it is too inaccurate.
 const CANCELLED: f64 = 1e-14;
 
 /// A continuous plant before its hold: N(s) (s - z_1).../((s - p_1)...) e^(-s T_d).
@@ -32,7 +33,7 @@ const CANCELLED: f64 = 1e-14;
 pub struct HeldFactors<'a> {
     /// Coefficients of N, highest power first.
     pub numerator: &'a [f64],
-    /// A factor.
+    /// Additional factor.
     pub gain: f64,
     /// Further zeros, in conjugate pairs.
     pub zeros: &'a [Complex64],
@@ -42,14 +43,14 @@ pub struct HeldFactors<'a> {
     pub dead_time_s: f64,
 }
 
-/// A held and sampled plant with single poles, ready to be evaluated at points of the unit circle.
+/// Held and sampled plant with single poles, ready to be evaluated at points of the unit circle.
 #[derive(Clone, Debug)]
 pub struct HeldModes {
     sections: Vec<ModeSection>,
     feedthrough: f64,
     poles: Vec<Complex64>,
     sample_time_s: f64,
-    /// True where a fraction of a sample is left of the dead time, which adds a pole at z = 0.
+    /// True if the dead time includes a fraction of a sample, which adds a pole at z = 0.
     has_fraction: bool,
     whole_s: f64,
 }
@@ -59,11 +60,11 @@ pub struct HeldModes {
 pub struct HeldPoint {
     /// P(z), dead time included.
     pub response: Complex64,
-    /// The product over the poles, that of a fraction of a sample of dead time included.
+    /// Product over the poles, including the pole from a fraction of a sample of dead time.
     pub denominator: Complex64,
 }
 
-/// A real mode or a pair of them.
+/// Real mode or pair of modes.
 ///
 /// ```text
 /// (b_1 z + b_0)/(z + a_0),     (b_2 z^2 + b_1 z + b_0)/(z^2 + a_1 z + a_0)
@@ -76,8 +77,8 @@ struct ModeSection {
 }
 
 impl HeldModes {
-    /// The modes of a plant that is held and sampled; `None` where its poles are not apart, grow
-    /// beyond the range of numbers within a sample, or are fewer than its zeros.
+    /// Modes of a held and sampled plant; `None` if its poles are not separate, grow beyond the
+    /// range of numbers within a sample, or are fewer than its zeros.
     ///
     /// # Example
     /// 2/(s + 1), held for 0.5 s: 2 (1 - e^-0.5)/(z - e^-0.5).
@@ -116,7 +117,7 @@ impl HeldModes {
         .filter(|found| found.sections.iter().all(finite))
     }
 
-    /// The same of a factored plant.
+    /// Modes of a factored plant.
     pub fn of(plant: &TransferFunction, sample_time_s: f64) -> Option<HeldModes> {
         let plant = HeldFactors {
             numerator: &[1.0],
@@ -128,7 +129,7 @@ impl HeldModes {
         HeldModes::new(plant, sample_time_s)
     }
 
-    /// At a frequency; `None` at a pole, and where the modes cancel so far that too little is left.
+    /// Response at a frequency; `None` at a pole, and if the modes cancel too far.
     pub fn at(&self, frequency_rad_per_s: f64) -> Option<HeldPoint> {
         let angle = frequency_rad_per_s * self.sample_time_s;
         let z = Complex64::new(cos(angle), sin(angle));
@@ -141,7 +142,7 @@ impl HeldModes {
     }
 }
 
-/// True where no pole is so close to another that their modes nearly cancel.
+/// True if no two poles are so close that their modes nearly cancel.
 fn are_apart(poles: &[Complex64]) -> bool {
     poles.iter().enumerate().all(|(index, one)| {
         let apart = |other: &Complex64| {
@@ -152,7 +153,7 @@ fn are_apart(poles: &[Complex64]) -> bool {
     })
 }
 
-/// All modes of a plant, with the instructions of the processor at hand.
+/// All modes of a plant, with the vector instructions of the processor.
 struct AllModes<'a> {
     plant: HeldFactors<'a>,
     sample_time_s: f64,
@@ -187,7 +188,7 @@ impl WithSimd for AllModes<'_> {
     }
 }
 
-/// r
+/// Residue r.
 #[inline(always)]
 fn residue(plant: &HeldFactors<'_>, index: usize, pole: Complex64) -> ComplexDoubleDouble {
     let point = ComplexDoubleDouble::from(pole);
@@ -208,7 +209,7 @@ fn residue(plant: &HeldFactors<'_>, index: usize, pole: Complex64) -> ComplexDou
     value.divided_by(others)
 }
 
-/// e^x and F(x) for x = p h, by the series of F at x/2^n and doubling.
+/// Exponential e^x and F(x) for x = p h, by the series of F at x/2^n and doubling.
 ///
 /// ```text
 /// e^x = 1 + x F(x),     F(2x) = F(x) (e^x + 1)/2
@@ -241,7 +242,7 @@ fn exponential(
 }
 
 impl ModeSection {
-    /// (c_1 z + c_0)/(z - image), with its conjugate where it is one of a pair.
+    /// Section (c_1 z + c_0)/(z - image), with its conjugate for a pair.
     #[inline(always)]
     fn of(
         image: ComplexDoubleDouble,
@@ -280,7 +281,7 @@ impl ModeSection {
     }
 }
 
-/// z^f P(z), with the instructions of the processor at hand.
+/// Sum z^f P(z), with the vector instructions of the processor.
 struct ModeSum<'a> {
     modes: &'a HeldModes,
     z: Complex64,

@@ -1,4 +1,4 @@
-//! From values of the numerator to its leading coefficient and zeros.
+//! Leading coefficient and zeros of the numerator, from its values.
 
 use num_complex::Complex64;
 
@@ -8,31 +8,31 @@ use super::super::{LinearError, Polynomial, roots};
 use super::Held;
 use crate::portable::{cos, magnitude, sin};
 
-/// Leading coefficients below this share of the largest are what is left of rounding in twice the
-/// working precision.
+/// Relative size of leading coefficients below which they are rounding in twice the working
+/// precision.
 const NEGLIGIBLE: f64 = 1e-26;
-/// Zeros nearer to the origin, or farther, count on the unit circle as if they were there, and keep
-/// their first guess.
+/// Magnitudes of zeros that are refined. Zeros nearer to the origin, or farther, act on the unit
+/// circle as if they were there, and stay at their first guess.
 const REFINED: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
-/// By what share of itself the numerator may miss the response on the unit circle.
+/// Largest relative deviation of the numerator from the response on the unit circle.
 const AGREEMENT: f64 = 1e-8;
-/// Nearer to a zero than this the response is not compared more closely than here.
+/// Relative distance from a zero within which the response is not compared more closely.
 const BESIDE_ZERO: f64 = 1e-3;
-/// Below this angle the factors themselves are rounded too coarsely to be compared.
+/// Angle below which the factors are rounded too coarsely to be compared.
 const LEAST_ANGLE: f64 = 1e-3;
 
-/// The numerator N at a point of the unit circle.
+/// Numerator N at a point of the unit circle.
 struct NumeratorSample {
     z: Complex64,
     numerator: Complex64,
 }
 
 impl Held {
-    /// Leading coefficient and zeros of N, where `poles` are those of the plant as it is sampled;
-    /// `None` where factors that agree with the response were not found.
+    /// Leading coefficient and zeros of N, where `poles` are those of the sampled plant; `None` if
+    /// no factors agree with the response.
     ///
     /// # Errors
-    /// Those of [`roots::guessed`].
+    /// Errors of [`roots::guessed`].
     pub(in super::super) fn factors(
         &self,
         poles: &[Complex64],
@@ -53,7 +53,7 @@ impl Held {
         Ok(agree.then_some((gain, zeros)))
     }
 
-    /// Whether a gain and zeros agree with the response along the unit circle.
+    /// True if a gain and zeros agree with the response along the unit circle.
     pub(in super::super) fn agrees_with(&self, gain: f64, zeros: &[Complex64], poles: &[Complex64]) -> bool {
         let samples = self.interpolated().map(|(_, samples)| samples).unwrap_or_default();
         let mut samples = samples.into_iter().chain(self.beside_slow_poles(poles)).peekable();
@@ -85,7 +85,7 @@ impl Held {
 
     /// N at the angles of the slow poles, between z = 1 and the points above.
     fn beside_slow_poles(&self, poles: &[Complex64]) -> Vec<NumeratorSample> {
-        // of a pair one counts for both
+        // one of a pair counts for both
         let upper = poles.iter().filter(|pole| pole.im >= 0.0);
         let angles = upper.map(|pole| magnitude(pole - 1.0));
         let within = angles.filter(|angle| (LEAST_ANGLE..1.0).contains(angle));
@@ -96,7 +96,7 @@ impl Held {
         within.filter_map(sample).collect()
     }
 
-    /// N/N' from the response; nothing at a pole that cancels.
+    /// Newton step N/N' from the response; `None` at a pole that cancels.
     fn newton_step(&self, poles: &[Complex64], z: Complex64) -> Option<Complex64> {
         if poles.iter().any(|pole| magnitude(pole - z) <= 1e-6 * magnitude(z)) {
             return None;
@@ -112,9 +112,8 @@ impl Held {
     }
 }
 
-/// The gain with which the zeros give the samples; the leading coefficient itself, unless the zero
-/// of a coefficient that is small compared with the others has been found better than that
-/// coefficient.
+/// Gain with which the zeros reproduce the samples; the leading coefficient unless a relatively
+/// small coefficient's zero is known more accurately than that coefficient.
 fn matched(leading: f64, zeros: &[Complex64], samples: &[NumeratorSample]) -> f64 {
     let shape = |z: Complex64| zeros.iter().map(|zero| z - zero).product::<Complex64>();
     let shapes = samples.iter().map(|sample| (shape(sample.z), sample.numerator));
@@ -132,7 +131,7 @@ fn agrees(gain: f64, zeros: &[Complex64], sample: &NumeratorSample) -> bool {
     magnitude(found - sample.numerator) <= AGREEMENT * size
 }
 
-/// Equal guesses moved a little away from each other: together they would stay.
+/// Separates equal guesses slightly: together they would stay equal.
 fn apart(mut roots: Vec<Complex64>) -> Vec<Complex64> {
     for index in 1..roots.len() {
         let (earlier, rest) = roots.split_at_mut(index);

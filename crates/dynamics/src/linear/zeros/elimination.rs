@@ -2,9 +2,9 @@
 //! output directly.
 //!
 //! Emami-Naeini and Van Dooren (1982) for one input and output, with elimination in place of
-//! reflections so that structural zeros stay exact. It runs in twice the working precision; whether
-//! a number in it counts as zero is judged by what rounding the inputs could change in it, which no
-//! change of units affects.
+//! reflections so that structural zeros stay exact. It runs in twice the working precision; a
+//! number counts as zero if rounding the inputs could explain it, a criterion that does not depend
+//! on units.
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
@@ -12,8 +12,8 @@ use super::super::StateSpace;
 use super::super::double_double::DoubleDouble;
 use super::super::structure::balance;
 
-/// A number in twice the working precision, with what rounding every input by one unit could change
-/// in it: `scale` times the working precision, to first order.
+/// Number in twice the working precision, with the change that rounding every input by one unit
+/// could cause: `scale` times the working precision, to first order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Traced {
     value: DoubleDouble,
@@ -29,7 +29,7 @@ impl Traced {
         self.value.abs().value()
     }
 
-    /// self + factor * other
+    /// Sum self + factor * other.
     fn plus(self, factor: Traced, other: Traced) -> Self {
         Traced {
             value: self.value + factor.value * other.value,
@@ -47,14 +47,14 @@ impl Traced {
         Traced { value: -self.value, scale: self.scale }
     }
 
-    /// Whether roundings of the inputs by this many units explain the number.
+    /// True if roundings of the inputs by this many units explain the number.
     fn is_zero(self, roundings: f64) -> bool {
         self.size() <= roundings * f64::EPSILON * self.scale
     }
 }
 
-/// The leading coefficient, and the matrix whose eigenvalues are the zeros; none when the channel
-/// is zero everywhere.
+/// Leading coefficient, and the matrix whose eigenvalues are the zeros; `None` if the channel is
+/// zero everywhere.
 pub(super) fn reduce(system: &StateSpace, roundings: f64) -> (f64, Option<DMatrix<f64>>) {
     let mut balanced = system.a().clone();
     let units = balance(&mut balanced);

@@ -1,5 +1,5 @@
-//! The error between the ends of a step: where its ends say nothing of it, and where a rate has a
-//! kink.
+//! Error inside a step: for cases in which the error at the end does not show it, and at kinks of a
+//! rate.
 
 use super::{Drive, set_lane};
 use crate::simulation::kernel::Kernel;
@@ -7,14 +7,15 @@ use crate::simulation::method::LOOKED_AT;
 use crate::simulation::slot::Slot;
 use crate::simulation::{Lane, Observer};
 
-/// Halvings in which a kink within a step is found: to the ten-thousandth.
+/// Halvings by which a kink within a step is located: to one ten-thousandth.
 const HALVINGS: usize = 14;
 
 impl<S: Lane, O: Observer> Drive<'_, S, O> {
-    /// The error of the step with that between its ends, in lanes where the first may not be all: a
-    /// step over a kink is looked at there, where what a polynomial cannot follow is largest, and
-    /// late, where a kink near its begin or its end shows. One of the three sees it: together they
-    /// are at least half of the error that a kink causes anywhere in the step.
+    /// Error of the step combined with that inside it, in lanes whose end error may not be
+    /// sufficient: a step over a kink is checked at the kink, where the part that a polynomial
+    /// cannot follow is largest, and late in the step, where a kink near its beginning or its end
+    /// shows. One of the three checks detects it: together they are at least half of the error that
+    /// a kink causes anywhere in the step.
     pub(super) fn look_between(&mut self, system: &dyn Kernel<S>, error: S) -> S {
         let mut late = [false; MOST_LANES];
         for (lane, late) in late.iter_mut().enumerate().take(S::COUNT) {
@@ -28,15 +29,15 @@ impl<S: Lane, O: Observer> Drive<'_, S, O> {
         self.look_at(system, with_late, |_, kink| kink)
     }
 
-    /// Whether the error at its end lets the step of a lane pass, made by the method that knows
-    /// more of it.
+    /// True if the error at the end lets the step of a lane pass, for the method that has more
+    /// information about it.
     fn passes(&self, lane: usize, error: S) -> bool {
         let by_method = self.slots[lane].as_ref().is_some_and(|slot| !slot.propagated);
         by_method && self.method.linearized().is_some() && error.lane(lane) <= 1.0
     }
 
-    /// The error with that at a part of the step, in lanes that have one; `part` is given the lane
-    /// and its kink.
+    /// Error combined with that at a fraction of the step, in lanes that have one; `part` receives
+    /// the lane and its kink.
     fn look_at(
         &mut self,
         system: &dyn Kernel<S>,
@@ -62,8 +63,8 @@ impl<S: Lane, O: Observer> Drive<'_, S, O> {
         S::select(S::from(0.0).less_than(looked), (error.squared() + between.squared()).sqrt(), error)
     }
 
-    /// The part of the step of a lane just after its first kink; `None` where the marks have the
-    /// same signs at both ends.
+    /// Fraction of the step of a lane just after its first kink; `None` if the marks have equal
+    /// signs at both ends.
     fn kink(&mut self, system: &dyn Kernel<S>, lane: usize) -> Option<f64> {
         let is_other = |(before, after): (&S, &S)| (before.lane(lane) > 0.0) != (after.lane(lane) > 0.0);
         if !self.marks.iter().zip(&self.between.marks).any(is_other) {
@@ -81,5 +82,5 @@ impl<S: Lane, O: Observer> Drive<'_, S, O> {
     }
 }
 
-/// The most lanes that there are.
+/// Largest number of lanes.
 const MOST_LANES: usize = crate::scalar::LANES;

@@ -1,4 +1,4 @@
-//! Lanes that go from sample to sample by matrices found once.
+//! Lanes that advance from sample to sample by precomputed matrices.
 
 use super::Drive;
 use crate::simulation::kernel::{Kernel, StepTrial};
@@ -6,13 +6,12 @@ use crate::simulation::passage::Passage;
 use crate::simulation::slot::Slot;
 use crate::simulation::{Attention, Lane, Observer, UnfollowedCause, UnfollowedKinks};
 
-/// Largest error of a step with known matrices, in units of the tolerance: such errors have one
-/// sign for many samples and add up.
+/// Largest error of a step with precomputed matrices, in units of the tolerance: such errors have
+/// one sign for many samples and accumulate.
 const PROPAGATED: f64 = 0.1;
 
 impl<S: Lane, O: Observer> Drive<'_, S, O> {
-    /// Carries the error of the lanes whose bits are set over the step that they have taken by the
-    /// method.
+    /// Propagates the error of the lanes whose bits are set over the step that the method took.
     pub(super) fn carry(&mut self, system: &dyn Kernel<S>, taken: u32) {
         if taken == 0 || self.marks.is_empty() {
             return;
@@ -38,8 +37,8 @@ impl<S: Lane, O: Observer> Drive<'_, S, O> {
         }
     }
 
-    /// The kinks of a run along which [`Drive::carry`] carried nothing: one alone has none to
-    /// amplify what it leaves.
+    /// Kinks of a run along which [`Drive::carry`] propagated nothing; a single kink is excluded,
+    /// since no other amplifies its error.
     pub(super) fn unfollowed(&self, passage: &Passage<'_>, sampled: bool) -> Option<UnfollowedKinks> {
         let explicit = self.method.linearized().is_none();
         let causes = [
@@ -51,7 +50,7 @@ impl<S: Lane, O: Observer> Drive<'_, S, O> {
         (passage.passed_kinks > 1).then_some(UnfollowedKinks { steps: passage.passed_kinks, cause })
     }
 
-    /// Which lanes have matrices for the step to their next break.
+    /// Selects the lanes that have matrices for the step to their next break.
     pub(super) fn choose_propagated(&mut self) {
         for lane in 0..S::COUNT {
             let Some(slot) = &mut self.slots[lane] else { continue };
@@ -60,9 +59,9 @@ impl<S: Lane, O: Observer> Drive<'_, S, O> {
         }
     }
 
-    /// Asks now and then for the modes of lanes that go by their matrices. These are exact for a
-    /// mode that grows as long as friction feeds it as it did when they were found; where it does
-    /// not they are found anew. Whether everything has been linearised for it.
+    /// Evaluates the modes of lanes with precomputed matrices now and then. Their growth is exact
+    /// as long as friction feeds a growing mode as it did when the matrices were found; otherwise
+    /// they are found anew. Returns true if everything has been linearised for this purpose.
     pub(super) fn watch_propagated(&mut self, system: &dyn Kernel<S>, fresh: bool) -> bool {
         let due = |slot: &Slot<'_, O>| slot.propagated && slot.is_due();
         if !self.slots.iter().flatten().any(due) {
@@ -86,7 +85,8 @@ impl<S: Lane, O: Observer> Drive<'_, S, O> {
         true
     }
 
-    /// Takes a step with known matrices in every lane that has them; whether this was so in all.
+    /// Takes a step with precomputed matrices in every lane that has them; returns true if all
+    /// lanes have.
     pub(super) fn propagate(&mut self, system: &dyn Kernel<S>) -> bool {
         if !self.slots.iter().flatten().any(|slot| slot.propagated) {
             return false;
@@ -128,7 +128,7 @@ impl<S: Lane, O: Observer> Drive<'_, S, O> {
         all
     }
 
-    /// Whether the observer of a lane wants to know the step with known matrices more exactly.
+    /// True if the observer of a lane requires the step with precomputed matrices more accurately.
     fn looks_closer(&mut self, lane: usize) -> bool {
         let asks = |slot: &Slot<'_, O>| slot.propagated && slot.passage.attention == Attention::Steps;
         if !self.slots[lane].as_ref().is_some_and(asks) {

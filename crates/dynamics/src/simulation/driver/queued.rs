@@ -1,4 +1,4 @@
-//! A queue of systems, driven until none is left.
+//! Simulation of a queue of systems.
 
 use super::Drive;
 use crate::range::RequiredRange;
@@ -10,15 +10,16 @@ use crate::simulation::task::Queue;
 use crate::simulation::vector::can_drive;
 use crate::simulation::{Lane, SimulationNumber, System};
 
-/// Drives every machine of a queue to its end. A lane that is done takes the next machine; each has
-/// its own time, step and breaks, and its outcome does not depend on its neighbours.
+/// Simulates every machine of a queue to its end. A lane whose machine is finished takes the next
+/// one; each machine has its own time, step and breaks, and its outcome does not depend on its
+/// neighbours.
 ///
 /// # Errors
 /// [`SimulationError`] when a task does not fit the system.
 ///
 /// # Example
 /// Two decays at 1/s and 2/s, one after the other in a single lane: after a second exp(-1) and
-/// exp(-2) are left.
+/// exp(-2) remain.
 /// ```
 /// use phea_dynamics::scalar::Scalar;
 /// use phea_dynamics::simulation::{

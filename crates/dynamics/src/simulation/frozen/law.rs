@@ -1,4 +1,4 @@
-//! The loop from sample to sample.
+//! Loop from sample to sample.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -8,7 +8,7 @@ use crate::linear::working_eigenvalues;
 use crate::portable;
 use crate::simulation::propagator::first_function;
 
-/// A sampled controller, linearised at a sample: memory z, command u, signals m of the plant.
+/// Sampled controller, linearised at a sample: memory z, command u, signals m of the plant.
 ///
 /// ```text
 /// z_(k+1) = F z_k + G m_k,     u_k = H z_k + J m_k,     u_k acts from k T + d on
@@ -17,25 +17,25 @@ use crate::simulation::propagator::first_function;
 pub struct SampledLaw {
     sample_time_s: f64,
     delay_s: f64,
-    /// F.
+    /// Matrix F.
     memory: DMatrix<f64>,
-    /// G: a column for each signal.
+    /// Matrix G: a column for each signal.
     taken: DMatrix<f64>,
-    /// H.
+    /// Row H.
     command: DVector<f64>,
-    /// J.
+    /// Row J.
     direct: DVector<f64>,
-    /// Each signal over the states of the plant.
+    /// Rows of the signals over the states of the plant.
     signals: Vec<DVector<f64>>,
 }
 
-/// Displacement of a memory or a signal, as a part of its magnitude or of one.
+/// Displacement of a memory or a signal, relative to its magnitude or to one.
 const DISPLACED: f64 = 1e-5;
 
 impl SampledLaw {
-    /// A controller whose command acts after a delay in s, before a sample at which it reads the
-    /// filtered reference, the measurement and the inner signal; without its limit, which stops a
-    /// growth but does not make a loop stable.
+    /// Controller whose command acts after a delay in s, before a sample at which it reads the
+    /// filtered reference, the measurement and the inner signal. Its limit is omitted: a limit
+    /// stops growth but does not make a loop stable.
     pub fn new(
         controller: &SampledController,
         delay_s: f64,
@@ -85,7 +85,7 @@ impl SampledLaw {
         law
     }
 
-    /// The same reading these rows over the states of the plant, as [`Frozen::row`] gives them:
+    /// Law that reads these rows over the states of the plant, as [`Frozen::row`] returns them:
     /// filtered reference, measurement and inner signal.
     #[must_use]
     pub fn reading(mut self, rows: [Vec<f64>; 3]) -> SampledLaw {
@@ -93,7 +93,7 @@ impl SampledLaw {
         self
     }
 
-    /// The same with a signal of the plant fed forward to the command, times a gain.
+    /// Law with a signal of the plant fed forward to the command, times a gain.
     #[must_use]
     pub fn fed(mut self, gain: f64, row: Vec<f64>) -> SampledLaw {
         let signals = self.signals.len();
@@ -104,12 +104,13 @@ impl SampledLaw {
     }
 }
 
-/// Delays that differ from a whole number of samples by this part of one do not.
+/// Fraction of a sample by which a delay may differ from a whole number of samples and still count
+/// as one.
 const SAME: f64 = 1e-9;
-/// Smaller growth from one sample to the next is the error of an eigenvalue that is one.
+/// Growth per sample below which it is the error of an eigenvalue of one.
 const LEAST_GROWTH: f64 = 1e-6;
 
-/// A plant over some time under a command that is held: x + D x + g u.
+/// Plant over a time under a constant command: x + D x + g u.
 struct HeldPlant {
     difference: DMatrix<f64>,
     driven: DVector<f64>,
@@ -122,7 +123,7 @@ impl HeldPlant {
 }
 
 impl Frozen {
-    /// The plant over some time, its first input held.
+    /// Plant over a time, its first input held.
     ///
     /// ```text
     /// x(t + h) = x + h phi_1(h A) (A x + b u)
@@ -132,11 +133,11 @@ impl Frozen {
         HeldPlant { difference: &first * &self.a, driven: &first * self.b.column(0) }
     }
 
-    /// The least stable mode from sample to sample of this plant, whose first input is the command
-    /// of a sampled controller; `None` where there is none.
+    /// Least stable mode from sample to sample of this plant, whose first input is the command of a
+    /// sampled controller; `None` if there is none.
     ///
     /// # Example
-    /// An integrator under a proportional law of gain k, every 0.1 s and a sample late:
+    /// An integrator under a proportional law of gain k, every 0.1 s with a delay of one sample:
     /// z^2 - z + k T = 0.
     /// ```
     /// use phea_dynamics::controller::{Compensator, Controller, Element};

@@ -1,25 +1,25 @@
-//! When the modes of a frozen loop are evaluated, and what has grown.
+//! Schedule of the evaluations of a linearised loop's modes, and their growth.
 
 use super::FrozenMode;
 use crate::simulation::Amplification;
 use crate::simulation::growth::Amplifying;
 
-/// Steps between two evaluations while something grows.
+/// Steps between two evaluations while a mode grows.
 const GROWING: u64 = 32;
-/// Steps between two evaluations without growth: each interval is four times the one before, from
+/// Steps between two evaluations without growth: each interval is four times the previous one, from
 /// the first up to the last.
 const CALM: [u64; 2] = [64, 4096];
 
-/// Growth between two evaluations, as a logarithm.
+/// Growth since the last evaluation, as a logarithm, that requires the next one.
 const MOST_GROWN: f64 = 0.5;
 
-/// The growth of the least stable mode along a run.
+/// Growth of the least stable mode along a run.
 ///
 /// ```text
-/// between two evaluations the mean of both growths, or nothing where one grows and the other decays
+/// between two evaluations the mean of both growths, or zero if one grows and the other decays
 /// ```
 ///
-/// A mode that grows for an instant, as friction makes it at one velocity, so counts for nothing.
+/// A mode that grows only for an instant, as friction causes at one velocity, is not counted.
 #[derive(Clone, Debug)]
 pub struct FrozenWatch {
     steps: u64,
@@ -39,26 +39,26 @@ impl Default for FrozenWatch {
 }
 
 impl FrozenWatch {
-    /// Counts steps until a time in s; whether the modes are to be evaluated now.
+    /// Counts steps until a time in s; returns true if the modes are to be evaluated now.
     pub fn passes(&mut self, steps: u64, time_s: f64) -> bool {
         self.steps += steps;
         self.steps > self.due || self.grows_until(time_s) > MOST_GROWN
     }
 
-    /// The same where they are evaluated for another reason too, as long as nothing grows.
+    /// Counts steps if the modes are also evaluated for another reason, as long as nothing grows.
     pub(in crate::simulation) fn grows(&mut self, steps: u64, time_s: f64) -> bool {
         self.passes(steps, time_s) && self.grows_until(time_s) > 0.0
     }
 
-    /// Growth since the last evaluation, as a logarithm, if it has not changed.
+    /// Growth since the last evaluation, as a logarithm, if its rate has not changed.
     fn grows_until(&self, time_s: f64) -> f64 {
         self.before.map_or(0.0, |(before_s, growth)| growth * (time_s - before_s))
     }
 
-    /// Takes the least stable mode at a time in s.
+    /// Records the least stable mode at a time in s.
     ///
     /// # Example
-    /// A growth of 3 1/s for two seconds; one that is seen once is none.
+    /// A growth of 3 1/s for two seconds; a growth seen only once does not count.
     /// ```
     /// use phea_dynamics::simulation::{FrozenMode, FrozenWatch};
     /// let mode = |growth_per_s| Some(FrozenMode { growth_per_s, frequency_rad_per_s: 40.0 });
@@ -81,8 +81,8 @@ impl FrozenWatch {
         self.due = self.steps + self.interval.max(GROWING);
     }
 
-    /// What has grown most by the end of a run, in s: a mode that grew at the last two evaluations
-    /// goes on to it.
+    /// Largest amplification by the end of a run, in s: a mode that grew at the last two
+    /// evaluations is continued to the end.
     pub(in crate::simulation) fn amplification_at_end(&self, end_s: f64) -> Option<Amplification> {
         let mut growing = self.growing;
         if let (Some([growth, frequency_rad_per_s]), Some((before_s, _))) = (self.grows_on, self.before) {
@@ -91,7 +91,7 @@ impl FrozenWatch {
         growing.largest()
     }
 
-    /// What has grown most.
+    /// Largest amplification.
     pub fn amplification(&self) -> Option<Amplification> {
         self.growing.largest()
     }

@@ -1,14 +1,14 @@
-//! Functions of time made of others.
+//! Combinations of functions of time.
 
 use super::Profile;
 use super::piece::{PieceShape, ProfilePiece};
 use crate::order::sorted_distinct;
 
 impl Profile {
-    /// The sum of functions; nothing sums to zero. It breaks where one of them does.
+    /// Sum of functions; zero without any. A break of any function is a break of the sum.
     ///
     /// # Example
-    /// A sine around a step
+    /// A sine around a step:
     /// ```
     /// use phea_dynamics::simulation::Profile;
     /// let step = Profile::steps(0.0, &[(1.0, 4000.0)])?;
@@ -30,7 +30,7 @@ impl Profile {
         Profile { first: total(&|profile| profile.first.clone()), later: later.collect() }
     }
 
-    /// The function up to a time, and from then on the value it has there.
+    /// Function that is constant from a time on, at its value there.
     ///
     /// # Example
     /// ```
@@ -47,7 +47,7 @@ impl Profile {
         self
     }
 
-    /// Zero up to a time, and from then on the function.
+    /// Function that is zero before a time.
     ///
     /// # Example
     /// ```
@@ -64,7 +64,7 @@ impl Profile {
         Profile { later, ..Profile::constant(0.0) }
     }
 
-    /// The value just before a time: at a break, that of the piece which ends there.
+    /// Value just before a time: at a break, that of the piece which ends there.
     ///
     /// # Example
     /// ```

@@ -1,9 +1,9 @@
-//! Cubics through points that keep their shape.
+//! Shape-preserving cubics through points.
 
 use super::Profile;
 use super::piece::{PieceShape, ProfilePiece};
 
-/// Between two neighbouring points.
+/// Interval between two neighbouring points.
 #[derive(Clone, Copy)]
 struct InterpolationInterval {
     start_s: f64,
@@ -17,7 +17,7 @@ impl InterpolationInterval {
         (self.to - self.from) / self.length_s
     }
 
-    /// The cubic with the values of the points and these slopes at them.
+    /// Cubic through the two points with these slopes.
     fn cubic(self, [left, right]: [f64; 2]) -> ProfilePiece {
         let (rise, left, right) = (self.to - self.from, left * self.length_s, right * self.length_s);
         let [square, cube] = [3.0 * rise - 2.0 * left - right, left + right - 2.0 * rise];
@@ -30,7 +30,7 @@ impl InterpolationInterval {
     }
 }
 
-/// The interpolant through at least two points whose times rise.
+/// Interpolant through at least two points at increasing times.
 pub(super) fn through(times_s: &[f64], values: &[f64]) -> Profile {
     let points: Vec<(f64, f64)> = times_s.iter().copied().zip(values.iter().copied()).collect();
     let between = |pair: &[(f64, f64)]| match pair {
@@ -51,7 +51,7 @@ pub(super) fn through(times_s: &[f64], values: &[f64]) -> Profile {
     Profile { first: constant(points.first().map_or(0.0, |point| point.1)), later }
 }
 
-/// The slope at each point.
+/// Slopes at the points.
 fn slopes(intervals: &[InterpolationInterval]) -> Vec<f64> {
     let inner = intervals.windows(2).map(|pair| match pair {
         [before, after] => inner_slope(*before, *after),
@@ -69,7 +69,7 @@ fn slopes(intervals: &[InterpolationInterval]) -> Vec<f64> {
     std::iter::once(first).chain(inner).chain([last]).collect()
 }
 
-/// The weighted harmonic mean of the slopes on both sides; zero at an extreme point.
+/// Weighted harmonic mean of the slopes on both sides; zero at an extreme point.
 fn inner_slope(before: InterpolationInterval, after: InterpolationInterval) -> f64 {
     let [steep_before, steep_after] = [before.slope(), after.slope()];
     if steep_before * steep_after <= 0.0 {
@@ -80,8 +80,8 @@ fn inner_slope(before: InterpolationInterval, after: InterpolationInterval) -> f
     (weight_before + weight_after) / (weight_before / steep_before + weight_after / steep_after)
 }
 
-/// The slope of the parabola through the three points nearest to an end, limited so that the shape
-/// is kept.
+/// Slope of the parabola through the three points nearest to an end, limited so that the shape is
+/// preserved.
 fn end_slope(nearest: InterpolationInterval, next: InterpolationInterval) -> f64 {
     let [steep, steep_next] = [nearest.slope(), next.slope()];
     let parabola = ((2.0 * nearest.length_s + next.length_s) * steep - nearest.length_s * steep_next)

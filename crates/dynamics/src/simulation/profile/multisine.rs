@@ -1,4 +1,4 @@
-//! Several sines at once.
+//! Sum of several sines.
 
 use super::piece::{PieceShape, ProfilePiece};
 use super::{Profile, ProfileError, ProfileNumber, finite, positive};
@@ -6,11 +6,11 @@ use super::{Profile, ProfileError, ProfileNumber, finite, positive};
 /// One sine of a multisine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Harmonic {
-    /// In the unit of the function.
+    /// Amplitude, in the unit of the function.
     pub amplitude: f64,
-    /// rad/s.
+    /// Frequency, rad/s.
     pub frequency_rad_per_s: f64,
-    /// rad, where it begins.
+    /// Phase at the start, rad.
     pub phase_rad: f64,
 }
 
@@ -21,12 +21,13 @@ pub struct Harmonic {
 /// phi_k = -2 pi sum over n < k of (k - n) p_n,      p_n = a_n^2/(sum of all a^2);      equal amplitudes: -pi k (k - 1)/N
 /// ```
 ///
-/// The first is zero, so that a single sine begins as a sine does. Meant for frequencies at equal
-/// distances. Source: Schroeder 1970, synthesis of low-peak-factor signals and binary sequences
-/// with low autocorrelation.
+/// The first phase is zero, as for a single sine. Intended for equidistant frequencies. Source:
+/// Schroeder 1970, synthesis of low-peak-factor signals and binary sequences with low
+/// autocorrelation.
 ///
 /// # Example
-/// Twenty equal sines: begun together they come to 14.8 times the amplitude of one, so to 6.0
+/// The peak of twenty equal sines is 14.8 times one amplitude with equal phases, and 6.0 times with
+/// these:
 /// ```
 /// use phea_dynamics::simulation::{Harmonic, Profile, schroeder_phases};
 /// let phases = schroeder_phases(&[1.0; 20]);

@@ -1,34 +1,34 @@
 use crate::portable;
 
-/// One smooth piece of a [`super::Profile`]: an analytic function, defined beyond its ends as well.
+/// Smooth piece of a [`super::Profile`]: an analytic function, also defined beyond its ends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfilePiece {
-    /// The terms added to the offset; a piece without terms is constant.
+    /// Terms added to the offset; a piece without terms is constant.
     terms: Vec<PieceShape>,
     offset: f64,
 }
 
-/// A function of time at one time.
+/// Values of a function at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
-    /// Its value.
+    /// Value.
     pub value: f64,
-    /// Its first derivative, per second.
+    /// First derivative, per second.
     pub rate: f64,
-    /// Its second derivative, per second squared.
+    /// Second derivative, per second squared.
     pub acceleration: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum PieceShape {
-    /// A value.
+    /// Constant value.
     Constant { value: f64 },
-    /// Sum over k of c_k s^k, s = (t - origin)/span; lowest power first.
+    /// Polynomial: sum over k of c_k s^k, s = (t - origin)/span; lowest power first.
     Polynomial { origin_s: f64, span_s: f64, coefficients: [f64; 6] },
-    /// d (1 - exp(-(t - origin)/tau)).
+    /// Exponential d (1 - exp(-(t - origin)/tau)).
     Exponential { origin_s: f64, time_constant_s: f64, distance: f64 },
-    /// a sin(omega tau + r tau^2/2 + phi), tau = t - origin; the frequency omega + r tau holds up
-    /// to the span.
+    /// Sine a sin(omega tau + r tau^2/2 + phi), tau = t - origin; the frequency omega + r tau
+    /// applies up to the span.
     Sine {
         origin_s: f64,
         amplitude: f64,
@@ -47,23 +47,23 @@ impl ProfilePiece {
         }
     }
 
-    /// The sum of shapes that move.
+    /// Piece that is the sum of these shapes.
     pub(super) fn of(terms: Vec<PieceShape>) -> ProfilePiece {
         ProfilePiece { terms, offset: 0.0 }
     }
 
-    /// The piece with a number added to its values.
+    /// Piece with a number added to its values.
     pub(super) fn shifted(self, by: f64) -> ProfilePiece {
         ProfilePiece { offset: self.offset + by, ..self }
     }
 
-    /// The sum of two pieces.
+    /// Sum of two pieces.
     pub(super) fn plus(mut self, other: &ProfilePiece) -> ProfilePiece {
         self.terms.extend_from_slice(&other.terms);
         self.shifted(other.offset)
     }
 
-    /// The function, its rate and its acceleration at a time.
+    /// Value, rate and acceleration at a time.
     #[inline(always)]
     pub fn at(&self, time_s: f64) -> Moment {
         let [mut value, mut rate, mut acceleration] = [0.0; 3];
@@ -112,7 +112,7 @@ impl PieceShape {
 }
 
 impl ProfilePiece {
-    /// The value of a piece that does not change.
+    /// Value of a constant piece.
     ///
     /// # Example
     /// ```
@@ -125,7 +125,7 @@ impl ProfilePiece {
         self.terms.is_empty().then_some(self.offset)
     }
 
-    /// A quarter of the shortest period within the piece, in s; none without a swing.
+    /// Quarter of the shortest period within the piece, in s; `None` without oscillation.
     pub(super) fn quarter_period_s(&self) -> Option<f64> {
         let quarter = |shape: &PieceShape| match *shape {
             PieceShape::Sine { frequency_rad_per_s, sweep_rad_per_s2, span_s, .. } => {
@@ -138,7 +138,7 @@ impl ProfilePiece {
     }
 }
 
-/// Horner's scheme, for the polynomial and both derivatives at once.
+/// Polynomial and both derivatives by Horner's scheme.
 #[inline(always)]
 fn polynomial(coefficients: [f64; 6], s: f64, span_s: f64) -> Moment {
     let (mut value, mut first, mut half_second) = (0.0, 0.0, 0.0);

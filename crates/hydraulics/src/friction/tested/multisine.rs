@@ -1,7 +1,7 @@
 use phea_dynamics::portable;
 
-/// A force over the rows of a recording that is a sum of sines, on a mean that drifts slowly.
-/// Units: N, rad/s, s.
+/// Force over the rows of a recording: a sum of sines on a slowly drifting mean. Units: N, rad/s,
+/// s.
 ///
 /// ```text
 /// F(t) = F_0 + F_1 tau + F_2 (3 tau^2 - 1)/2 + sum over k of (a_k cos(omega_k t) + b_k sin(omega_k t))
@@ -9,26 +9,26 @@ use phea_dynamics::portable;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct MultisineForce {
-    /// How many rows there are.
+    /// Number of rows.
     pub rows: usize,
-    /// omega of each sine.
+    /// Frequency omega of each sine.
     pub frequencies: Vec<f64>,
-    /// T, from the first row to the last.
+    /// Duration T, from the first row to the last.
     pub duration: f64,
-    /// F_0, F_1 and F_2; then a and b of each sine.
+    /// Sizes F_0, F_1 and F_2; then a and b of each sine.
     pub sizes: Vec<f64>,
 }
 
-/// How many sizes a mean that drifts has.
+/// Number of sizes of a drifting mean.
 pub const TRENDS: usize = 3;
 
-/// What they are multiplied by, at a place between -1 and 1: the polynomials of Legendre.
+/// Factors of these sizes at a position between -1 and 1: the Legendre polynomials.
 pub fn trends(place: f64) -> [f64; TRENDS] {
     [1.0, place, 1.5 * place * place - 0.5]
 }
 
 impl MultisineForce {
-    /// The force at equal distances in s from the first row.
+    /// Force at equal distances in s from the first row.
     ///
     /// # Example
     /// ```
@@ -43,7 +43,7 @@ impl MultisineForce {
         self.shapes(count, distance).times(&self.sizes)
     }
 
-    /// What each size is multiplied by, at equal distances in s from the first row.
+    /// Factors of the sizes, at equal distances in s from the first row.
     pub fn shapes(&self, count: usize, distance: f64) -> MultisineShapes {
         let sizes = TRENDS + 2 * self.frequencies.len();
         let mut shapes = Vec::with_capacity(count * sizes);
@@ -59,8 +59,8 @@ impl MultisineForce {
     }
 }
 
-/// The sines of a multisine force, and the mean that drifts, for sizes of 1: forces of the same
-/// frequencies and duration share them.
+/// Sines of a multisine force, and the drifting mean, for sizes of 1: common to forces with equal
+/// frequencies and duration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MultisineShapes {
     sizes: usize,
@@ -68,22 +68,22 @@ pub struct MultisineShapes {
 }
 
 impl MultisineShapes {
-    /// The force in N at each time, for sizes in N.
+    /// Force at each time for sizes in N, N.
     pub fn times(&self, sizes: &[f64]) -> Vec<f64> {
         self.rows().map(|row| row.iter().zip(sizes).map(|(shape, size)| shape * size).sum()).collect()
     }
 
-    /// What each size is multiplied by, time after time.
+    /// Factors of the sizes, time after time.
     pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
         self.shapes.chunks_exact(self.sizes)
     }
 
-    /// How many sizes there are.
+    /// Number of sizes.
     pub fn sizes(&self) -> usize {
         self.sizes
     }
 
-    /// The same as [`MultisineShapes::rows`], one after the other.
+    /// Factors as in [`MultisineShapes::rows`], one after the other.
     pub(super) fn flat(&self) -> &[f64] {
         &self.shapes
     }

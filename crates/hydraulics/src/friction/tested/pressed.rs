@@ -9,44 +9,44 @@ use stick_step::StickStep;
 /// Index of the stiffness of the bristles among the coefficients.
 const STIFFNESS: usize = 5;
 
-/// A mass on bristles that a force presses, at rest at first. Units: kg, s.
+/// Mass on bristles, initially at rest, pressed by a force. Units: kg, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PressedMass {
     /// Moving mass M.
     pub mass: f64,
     /// Time between two rows of the force.
     pub time_step: f64,
-    /// Steps of the integration between two rows.
+    /// Integration steps between two rows.
     pub substeps: usize,
 }
 
-/// A force over the rows of a recording that is straight between its knots. Unit: N.
+/// Force over the rows of a recording, linear between its knots. Unit: N.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KnottedForce {
     /// Rows of the knots, rising; the first is row 0.
     pub knots: Vec<usize>,
-    /// The force there.
+    /// Force at each knot.
     pub forces: Vec<f64>,
 }
 
 /// Displacements, and their derivatives over the coefficients of the friction, in the order of
-/// [`LuGre::to_array`], and over what else they depend on (the force at each knot; or the start and
+/// [`LuGre::to_array`], and over the further variables (the force at each knot; or the start and
 /// the sizes of the sines), row by row.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SensitiveDisplacement {
-    /// m, of each row from the first.
+    /// Displacement of each row from the first, m.
     pub displacements: Vec<f64>,
-    /// For each row as many as there are coefficients and further variables.
+    /// Derivatives: for each row as many as there are coefficients and further variables.
     pub gradients: Vec<f64>,
 }
 
 impl KnottedForce {
-    /// How many rows there are.
+    /// Number of rows.
     pub fn rows(&self) -> usize {
         self.knots.last().map_or(0, |last| last + 1)
     }
 
-    /// Of each row, the knot before it and the share of the knot after it.
+    /// Knot before each row, and the weight of the knot after it.
     pub fn shares(&self) -> Vec<(usize, f64)> {
         let mut shares = Vec::with_capacity(self.rows());
         for (index, ends) in self.knots.windows(2).enumerate() {
@@ -60,7 +60,7 @@ impl KnottedForce {
         shares
     }
 
-    /// The force at each row, and how it depends on what is at the knots.
+    /// Force at each row, and its derivatives with respect to the forces at the knots.
     fn along(&self) -> (Vec<f64>, Vec<f64>) {
         let (mut forces, mut slopes) = (Vec::new(), Vec::new());
         for (knot, share) in self.shares() {
@@ -77,19 +77,20 @@ impl KnottedForce {
 }
 
 impl PressedMass {
-    /// Displacement in m from the first row, for a force in N at each row.
+    /// Displacement from the first row, for a force in N at each row, m.
     ///
     /// ```text
     /// M dv/dt = F - F_fr(v, z),   dz/dt = v - w,   w = sigma_0 |v| z/g(v)      F_fr as thesis (4.32)
     /// v(0) = 0,   sigma_0 z(0) = F(0)
     /// ```
     ///
-    /// Without w the equations are linear, and are solved exactly for a force that is straight
-    /// between rows; w, the slip of the bristles, is taken as straight within a step, from a first
-    /// solution with its value at the beginning (Cox and Matthews 2002, ETD2RK). A step is good
-    /// while the bristles slip by little more than their deflection in it: it suits the time before
-    /// the piston breaks away, and its beginning. Of a friction that differs by direction g does so
-    /// here, and sigma_2, which is small next to sigma_1, is that of positive velocity.
+    /// Without w the equations are linear, and are solved exactly for a force that is linear
+    /// between rows; w, the slip of the bristles, is assumed linear within a step, from a first
+    /// solution with its value at the beginning (Cox and Matthews 2002, ETD2RK). A step is accurate
+    /// while the bristles slip in it by little more than their deflection: this covers the time
+    /// before the piston breaks away, and the beginning of its motion. For friction that differs by
+    /// direction, g differs here; sigma_2, which is small compared with sigma_1, is that of
+    /// positive velocity.
     ///
     /// # Example
     /// A slow force F that stays below F_S moves the piston by -(F_S/sigma_0) ln(1 - F/F_S).
@@ -130,7 +131,7 @@ impl PressedMass {
         })
     }
 
-    /// The same for a force with knots, with derivatives.
+    /// Displacement for a force with knots, with derivatives.
     pub fn sensitive_displacements(&self, lugre: &LuGre, force: &KnottedForce) -> SensitiveDisplacement {
         let (forces, of_forces) = force.along();
         let along = LinearForce { force: &forces, slopes: &of_forces, variables: force.forces.len() };
@@ -145,18 +146,17 @@ impl PressedMass {
         self.carried(lugre, ([0.0, deflection], slopes), along, 1)
     }
 
-    /// Displacement in m from the first row, in motion at first, with derivatives over the
+    /// Displacement from the first row for a mass initially in motion, m, with derivatives over the
     /// coefficients, the velocity and the deflection at the first row, and the sizes of the force.
     ///
-    /// As [`PressedMass::displacements`], but that the velocity and the deflection of the bristles
-    /// at the first row are given, in m/s and m, and that the force is a sum of sines: it is
-    /// evaluated at each step of the integration, not only at the rows, and is straight within a
-    /// step. It is given by its sizes in N, and by what [`PressedMass::shapes`] of the same mass
-    /// multiplies them by.
+    /// Unlike in [`PressedMass::displacements`], the velocity and the deflection of the bristles at
+    /// the first row are given, in m/s and m, and the force is a sum of sines: it is evaluated at
+    /// each step of the integration, not only at the rows, and is linear within a step. It is given
+    /// by its sizes in N, and by their factors from [`PressedMass::shapes`] of the same mass.
     ///
     /// # Example
-    /// A small force shakes the mass as it would on a spring and a damper:
-    /// X = F/(sigma_0 - M omega^2 + j omega (sigma_1 + sigma_2)).
+    /// A small force shakes the mass as on a spring and a damper: X = F/(sigma_0 - M omega^2 + j
+    /// omega (sigma_1 + sigma_2)).
     /// ```
     /// use phea_hydraulics::friction::{LuGre, MultisineForce, PressedMass};
     /// let lugre = LuGre::same_both_ways([80.0, 120.0, 0.01, 2.0, 100.0, 1e7, 2e3]);
@@ -185,18 +185,18 @@ impl PressedMass {
         steps.carried(lugre, ([velocity, deflection], slopes), along, substeps)
     }
 
-    /// What the sizes of a force are multiplied by at each step of the integration, up to the last
-    /// row: what [`PressedMass::shaken`] needs of it.
+    /// Factors of the sizes of a force at each step of the integration, up to the last row, for
+    /// [`PressedMass::shaken`].
     pub fn shapes(&self, force: &MultisineForce) -> MultisineShapes {
         force.shapes(force.rows.saturating_sub(1) * self.substeps.max(1) + 1, self.step())
     }
 
-    /// Of a step, in s.
+    /// Length of a step, s.
     fn step(&self) -> f64 {
         self.time_step / self.substeps.max(1) as f64
     }
 
-    /// How often the argument of the series is halved.
+    /// Number of halvings of the argument of the series.
     fn doublings(&self, lugre: &LuGre) -> u32 {
         let step = self.step();
         let damping = (lugre.bristle_damping + lugre.curve.viscous) / (2.0 * self.mass);

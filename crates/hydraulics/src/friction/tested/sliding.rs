@@ -3,8 +3,8 @@ use phea_dynamics::scalar::{Dual, Scalar};
 use super::FRICTION_COEFFICIENTS;
 use crate::friction::LuGre;
 
-/// What the force over a block depends on: the coefficients, and what is left of the force that the
-/// bristles had when the velocity became constant.
+/// Number of variables of the force over a block: the coefficients, and the bristle force remaining
+/// from the time when the velocity became constant.
 pub const SLIDING_VARIABLES: usize = FRICTION_COEFFICIENTS + 1;
 
 /// Rows of a recording over which a piston slides at a constant velocity, taken together. Units: m,
@@ -20,19 +20,20 @@ pub struct SlidBlock {
 }
 
 impl SlidBlock {
-    /// Mean friction force over the block in N.
+    /// Mean friction force over the block, N.
     ///
     /// ```text
     /// F = sign(v) g(v) + sigma_2 v + c e^(-k d) sinh(k h)/(k h)        k = sigma_0/g(v)
     /// ```
     ///
     /// with d the distance to the middle of the block and 2 h its length. At a constant velocity
-    /// dz/dt = v - sigma_0 |v| z/g(v) is linear in z: what the bristles bring along, c in N, decays
-    /// with the distance slid, by a factor of e on each g/sigma_0; the last term is its mean.
-    /// Source: Canudas de Wit, Olsson, Astrom and Lischinsky (1995), equations 2 and 4, solved.
+    /// dz/dt = v - sigma_0 |v| z/g(v) is linear in z: the initial excess force of the bristles, c
+    /// in N, decays with the distance slid, by a factor of e on each g/sigma_0; the last term is
+    /// its mean. Source: Canudas de Wit, Olsson, Astrom and Lischinsky (1995), equations 2 and 4,
+    /// solved.
     ///
     /// # Example
-    /// Far from a reversal nothing but the steady curve is left.
+    /// Far from a reversal only the steady curve remains.
     /// ```
     /// use phea_hydraulics::friction::{LuGre, SlidBlock};
     /// let lugre = LuGre::same_both_ways([80.0, 120.0, 0.01, 2.0, 100.0, 1e7, 2e3]);
@@ -52,8 +53,8 @@ impl SlidBlock {
         lugre.curve.steady_force(velocity) + left * mean
     }
 
-    /// The same with its derivatives over the coefficients, in the order of [`LuGre::to_array`],
-    /// and over c.
+    /// Force with its derivatives over the coefficients, in the order of [`LuGre::to_array`], and
+    /// over c.
     pub fn sensitive_force(&self, lugre: &LuGre, left: f64) -> (f64, [f64; SLIDING_VARIABLES]) {
         type SlidingSlope = Dual<SLIDING_VARIABLES>;
         let numbers = lugre.to_array();

@@ -3,19 +3,19 @@ use phea_dynamics::scalar::Scalar;
 use super::super::laminar_friction::UNSTEADY_FRICTION;
 use super::{Creep, Segments};
 
-/// The content of a line, without the capacity that belongs to its chamber.
+/// Content of a line, without the capacity that belongs to its chamber.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LineContent<T> {
-    /// Volume that it has taken up since zero gauge pressure, in m3.
+    /// Volume taken up since zero gauge pressure, m3.
     pub(crate) oil: T,
-    /// Energy in J.
+    /// Energy, J.
     pub(crate) energy: T,
-    /// What it turns into heat, in W.
+    /// Dissipation into heat, W.
     pub(crate) heat: T,
 }
 
 impl<S: Scalar> Segments<S> {
-    /// The content of the line at a pressure of its chamber in Pa.
+    /// Content of the line at a chamber pressure in Pa.
     ///
     /// ```text
     /// capacity   C p             C p^2/2                                      each but that of the chamber
@@ -24,7 +24,7 @@ impl<S: Scalar> Segments<S> {
     /// friction   0               (4 m/n) I u^2/2      4 m (nu/R^2) I (q - u)^2     each lag an inertance parallel to a resistance
     /// ```
     ///
-    /// A line is linear and hands on volumes, so that these squares are exact. In steady flow plug
+    /// A line is linear and passes on volumes, so that these squares are exact. In steady flow plug
     /// and lags together hold 4/3 of I q^2/2, the kinetic energy of Poiseuille's parabola.
     pub(crate) fn content<T: Scalar + From<S>>(&self, chamber_pressure: T, state: &[T]) -> LineContent<T> {
         let (zero, half) = (<T as From<f64>>::from(0.0), <T as From<f64>>::from(0.5));
@@ -73,8 +73,8 @@ mod tests {
     use super::super::{Conduit, LaminarFriction};
     use super::*;
 
-    /// The kinetic energy of a parabolic profile, which is not among the conditions of the fit:
-    /// half of rho times the integral of v^2 is 4/3 of that of a plug.
+    /// The kinetic energy of a parabolic profile, which is not a condition of the fit: half of rho
+    /// times the integral of v^2 is 4/3 of that of a plug.
     #[test]
     fn steady_flow_has_the_energy_of_a_parabola() {
         let conduit = Conduit {

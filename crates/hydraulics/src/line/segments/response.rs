@@ -8,9 +8,9 @@ use crate::line::TransferMatrix;
 use crate::line::laminar_friction::UNSTEADY_FRICTION;
 
 impl Segments {
-    /// See [`crate::line::DynamicLine::transfer_matrix`]: N equal sections, each an impedance z
-    /// along the line between two halves of an admittance y across it, with the Chebyshev
-    /// polynomials T_N and U_(N-1) by their roots:
+    /// Transfer matrix as in [`crate::line::DynamicLine::transfer_matrix`]: N equal sections, each
+    /// an impedance z along the line between two halves of an admittance y across it, with the
+    /// Chebyshev polynomials T_N and U_(N-1) by their roots:
     ///
     /// ```text
     /// x = 1 + z y/2:     a = d = T_N(x),   b = z U_(N-1)(x),   c = y (1 + z y/4) U_(N-1)(x)
@@ -30,7 +30,7 @@ impl Segments {
         let one = A::from(1.0);
         let x = one + product.scaled(0.5);
         // cos(j pi/(2 N)) by cos((j + 1) a) = 2 cos(a) cos(j a) - cos((j - 1) a): roots of T_N and
-        // U_(N-1) in turn
+        // U_(N-1) alternately
         let first = cos(PI / (2.0 * sections));
         let (mut before, mut root) = (1.0, first);
         let (mut own, mut other) = (A::from(0.5), one);
@@ -48,7 +48,7 @@ impl Segments {
         whole.across(s.scaled(-0.5 * self.share()))
     }
 
-    /// Inertance and friction of the whole length, in Pa s/m3.
+    /// Inertance and friction of the whole length, Pa s/m3.
     fn impedance<A: Analytic>(&self, s: A) -> A {
         let mut sum = s.scaled(self.inertance) + A::from(self.resistance);
         for (corner, weight) in UNSTEADY_FRICTION.into_iter().take(self.lags()) {
@@ -69,23 +69,23 @@ impl Segments {
         if self.count == 0 { 0.0 } else { self.resistance }
     }
 
-    /// What yields at once, in m3/Pa.
+    /// Immediate compliance, m3/Pa.
     pub(in crate::line) fn elastic_compliance(&self) -> f64 {
         self.compliance
     }
 
-    /// A frequency above all of its modes, rad/s: 2 N/sqrt(I C).
+    /// Frequency above all modes of the line, 2 N/sqrt(I C), rad/s.
     pub(in crate::line) fn fastest_rad_per_s(&self) -> f64 {
         let product = self.inertance * self.compliance;
         if self.count > 0 && product > 0.0 { 2.0 * self.count as f64 / product.sqrt() } else { 0.0 }
     }
 
-    /// The delayed compliance of a creeping wall, in m3/Pa.
+    /// Delayed compliance of a creeping wall, m3/Pa.
     pub(in crate::line) fn creep_compliance(&self) -> f64 {
         self.creep.map_or(0.0, |creep| creep.compliance)
     }
 
-    /// The same line, fluid and wall stiffer by a factor.
+    /// Line with fluid and wall stiffer by a factor.
     pub(in crate::line) fn stiffened(mut self, factor: f64) -> Segments {
         self.compliance /= factor;
         if let Some(creep) = &mut self.creep {

@@ -1,4 +1,4 @@
-//! The transfer matrix of a line with travelling waves and friction.
+//! Transfer matrix of a line with travelling waves and friction.
 
 use phea_dynamics::analytic::Analytic;
 
@@ -6,21 +6,21 @@ use super::{TravellingWaves, Wave};
 use crate::line::TransferMatrix;
 use crate::line::attenuation::CORNERS;
 
-/// A wave at s: the terms of its impedances in phase and in opposition.
+/// Response of a wave at s: the terms of its impedances in phase and in opposition.
 struct WaveResponse<A> {
-    /// Z_i(s)
+    /// Impedance Z_i(s).
     impedance: A,
-    /// 1 + E_i
+    /// Sum 1 + E_i.
     sum: A,
-    /// (1 - E_i)/(s T_i)
+    /// Ratio (1 - E_i)/(s T_i).
     decay: A,
-    /// s T_i
+    /// Angle s T_i.
     angle: A,
 }
 
 impl<const M: usize> TravellingWaves<M> {
-    /// See [`crate::line::DynamicLine::transfer_matrix`]. With E_i = e^(-s T_i) A_i(s) the waves
-    /// see
+    /// Transfer matrix as in [`crate::line::DynamicLine::transfer_matrix`]. With E_i = e^(-s T_i)
+    /// A_i(s) the impedances of the waves are
     ///
     /// ```text
     /// in phase        p/q = R_0/2 b_1/(b_1 + s T_1) + sum of Z_i(s) (1 + E_i)/(1 - E_i) = n/(s d)
@@ -29,8 +29,8 @@ impl<const M: usize> TravellingWaves<M> {
     /// a = d = (n e + s d m)/D,   b = 2 n m/D,   c = 2 s d e/D,      D = n e - s d m
     /// ```
     ///
-    /// Without friction and with one wave D is Z/T 4 e^(-sT): nothing else is divided by, so that a
-    /// resonance of the line is an ordinary point.
+    /// Without friction and with one wave D is Z/T 4 e^(-sT): no other quantity is a divisor, so
+    /// that a resonance of the line is an ordinary point.
     pub(in crate::line) fn transfer_matrix<A: Analytic>(&self, s: A) -> TransferMatrix<A> {
         let first = self.waves.first().map_or(0.0, |wave| wave.delay);
         let steady = A::from(self.half_resistance * CORNERS[0]) / (A::from(CORNERS[0]) + s.scaled(first));
@@ -65,12 +65,12 @@ impl<const M: usize> TravellingWaves<M> {
         }
     }
 
-    /// Steady resistance of the line, Pa s/m3: waves at rest resist nothing.
+    /// Steady resistance of the line, Pa s/m3: waves at rest add none.
     pub(in crate::line) fn resistance(&self) -> f64 {
         2.0 * self.half_resistance
     }
 
-    /// What yields at once, in m3/Pa.
+    /// Immediate compliance, m3/Pa.
     ///
     /// ```text
     /// C = 2 C_end + 1/sum of Z_i/T_i
@@ -80,7 +80,7 @@ impl<const M: usize> TravellingWaves<M> {
         2.0 * self.end_compliance + 1.0 / stiffness
     }
 
-    /// The same line, fluid and wall stiffer by a factor: its inertia and its friction stay.
+    /// Line with fluid and wall stiffer by a factor: its inertia and its friction are unchanged.
     pub(in crate::line) fn stiffened(mut self, factor: f64) -> TravellingWaves<M> {
         let root = factor.sqrt();
         self.end_compliance /= factor;
@@ -93,7 +93,7 @@ impl<const M: usize> TravellingWaves<M> {
 }
 
 impl Wave<f64> {
-    /// A wave over s.
+    /// Response of a wave at s.
     ///
     /// ```text
     /// E = e^(-s T) (1 - s T l(s)),     l(s) = sum over i of w_i/(c_i + s T)

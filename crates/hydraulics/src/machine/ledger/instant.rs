@@ -11,56 +11,56 @@ use crate::accumulator::{HeatedGas, MovedGas};
 use crate::line::{DynamicLine, LineContent};
 use crate::stroke::ActuatorStroke;
 
-/// Everything that the accounts of a rig are made of, at one instant.
+/// Quantities of all accounts of a rig at one instant.
 pub(super) struct Instant<T> {
     pub(super) state: MachineState<T>,
     pub(super) load: Motion<T>,
-    /// The end of the rod that the load moves with.
+    /// End of the rod that moves with the load.
     pub(super) end: Motion<T>,
     pub(super) ground: Motion<T>,
     pub(super) joint: Joint<T>,
     /// States of the oil of a transmission.
     pub(super) columns: Vec<T>,
-    /// Power of the force from outside on the load, in W.
+    /// Power of the external force on the load, W.
     pub(super) external_power: T,
     pub(super) flows: Flows<T>,
-    /// What a motor that turns on passes from side A to side B, in m3/s; zero with a stroke, where
-    /// a chamber grows instead.
+    /// Flow that a motor with unlimited rotation passes from side A to side B, m3/s; zero with a
+    /// stroke, where a chamber grows instead.
     pub(super) turned: T,
-    /// Chambers, with their lines where these are lumped.
+    /// Chambers, with their lines if these are lumped.
     pub(super) sides: [Volume<T>; 2],
     pub(super) lines: [LineInstant<T>; 2],
-    /// Accumulators at the chambers; empty where there are none.
+    /// Accumulators at the chambers; empty if there are none.
     pub(super) gas: [GasInstant<T>; 2],
-    /// Their necks; empty where there are none.
+    /// Necks of these accumulators; empty if there are none.
     pub(super) necks: [NeckInstant<T>; 2],
     pub(super) supply: SupplyInstant<T>,
 }
 
-/// The gas of an accumulator.
+/// Gas of an accumulator.
 pub(super) struct GasInstant<T> {
-    /// The flow against it, in m3/s.
+    /// Flow into the gas, m3/s.
     pub(super) inflow: T,
-    /// The flow that the chamber gives for it, in m3/s: that through the neck, where there is one.
+    /// Flow that the chamber supplies for it, m3/s: that through the neck, if there is one.
     pub(super) taken: T,
-    /// Its pressure in Pa.
+    /// Pressure, Pa.
     pressure: T,
-    /// The volume that has entered, in m3, and the energy of the gas, in J.
+    /// Oil volume that has entered, m3, and the energy of the gas, J.
     oil: T,
     energy: T,
-    /// What it gives to its wall, in W.
+    /// Heat flow to its wall, W.
     pub(super) heat: T,
-    /// Power of its adjustment, in W.
+    /// Power of its adjustment, W.
     pub(super) work: T,
 }
 
-/// A neck between a chamber and its gas.
+/// Neck between a chamber and its gas.
 pub(super) struct NeckInstant<T> {
     pub(super) oil: Account<T>,
     pub(super) energy: Account<T>,
 }
 
-/// A line between the valve's port and the chamber; empty where it is lumped.
+/// Line between the valve's port and the chamber; empty if it is lumped.
 pub(super) struct LineInstant<T> {
     pub(super) port_pressure: T,
     pub(super) into_chamber: T,
@@ -69,18 +69,18 @@ pub(super) struct LineInstant<T> {
     content: LineContent<T>,
 }
 
-/// The supply line and its accumulator. Flows in m3/s.
+/// Supply line and its accumulator. Flows in m3/s.
 pub(super) struct SupplyInstant<T> {
     pub(super) line: Volume<T>,
-    /// The flow from the power unit into both, without the valve's tare flow.
+    /// Flow from the power unit into both, without the valve's tare flow.
     pub(super) fed: T,
-    /// It receives the share of the gas in `fed` and in the flow through the edges.
+    /// Gas, which receives its fraction of `fed` and of the flow through the edges.
     pub(super) gas: GasInstant<T>,
     taken: T,
 }
 
 impl<T: Scalar> Instant<T> {
-    /// Into chambers A and B, less what leaves them other than by their growth, in m3/s.
+    /// Flows into chambers A and B, less those that leave them other than by their growth, m3/s.
     pub(super) fn chamber_flows(&self) -> [T; 2] {
         let [line_a, line_b] = &self.lines;
         let [gas_a, gas_b] = &self.gas;
@@ -93,7 +93,7 @@ impl<T: Scalar> Instant<T> {
 }
 
 impl<T: Scalar> GasInstant<T> {
-    /// The gas at this pressure in Pa, which receives a flow in proportion to its share of the
+    /// Gas at this pressure in Pa, which receives a flow in proportion to its fraction of the
     /// compliance: the flow is `arriving` in m3/s, the compliance parallel to it `beside` in m3/Pa.
     fn of(gas: Option<Accumulator<T>>, pressure: T, arriving: T, beside: T) -> GasInstant<T> {
         let zero = T::from(0.0);
@@ -114,7 +114,7 @@ impl<T: Scalar> GasInstant<T> {
         GasInstant { inflow, taken: inflow, pressure, oil, energy, heat: zero, work: zero }
     }
 
-    /// The same of gas that is adjusted.
+    /// Gas that is adjusted, likewise.
     fn moved(moved: &MovedGas<T>, pressure: T, arriving: T, beside: T) -> GasInstant<T> {
         let (compliance, held) = (moved.gas.compliance(pressure), moved.oil_rate(pressure));
         let inflow = compliance * (arriving - held) / (compliance + beside) + held;
@@ -123,7 +123,7 @@ impl<T: Scalar> GasInstant<T> {
         GasInstant { inflow, taken: inflow, pressure, oil, energy, heat: T::from(0.0), work }
     }
 
-    /// The same of gas that exchanges heat.
+    /// Gas that exchanges heat, likewise.
     fn heated(gas: &HeatedGas<T>, pressure: T, arriving: T, beside: T) -> GasInstant<T> {
         let rate = (arriving - gas.compliance * gas.cooling) / (gas.compliance + beside);
         let inflow = gas.flow(rate);
@@ -142,7 +142,7 @@ impl<T: Scalar> GasInstant<T> {
 }
 
 impl<T: Scalar> LineInstant<T> {
-    /// A line between the pressures of port and chamber; `None` with waves.
+    /// Line between the pressures of port and chamber; `None` with waves.
     fn of<S: Scalar>(
         line: &DynamicLine<S>,
         [port_pressure, chamber_pressure]: [T; 2],
@@ -172,14 +172,14 @@ impl<T: Scalar> LineInstant<T> {
 }
 
 impl<T: Scalar> SupplyInstant<T> {
-    /// The flow into the compliance of the oil in the supply line, in m3/s.
+    /// Flow into the compliance of the oil in the supply line, m3/s.
     pub(super) fn line_flow(&self) -> T {
         self.fed - self.taken - self.gas.inflow
     }
 }
 
 impl<S: Scalar> Machine<S> {
-    /// `None` where waves travel along a line.
+    /// Quantities at an instant; `None` if waves travel along a line.
     pub(super) fn instant<T: Scalar + From<S>>(&self, vector: &[T], inputs: &[T]) -> Option<Instant<T>> {
         let (state, states) = (self.layout.read(vector), self.layout.read_gas(vector));
         let ground = ground_of(inputs);
@@ -252,7 +252,7 @@ impl<S: Scalar> Machine<S> {
         }
     }
 
-    /// What enters a chamber and not its growing volume divides between oil and gas.
+    /// Divides the flow into a chamber, net of its growing volume, between oil and gas.
     fn gas_instants<T: Scalar + From<S>>(
         &self,
         (state, states, setting): (&MachineState<T>, &GasStates<T>, [T; 2]),
@@ -285,7 +285,7 @@ impl<S: Scalar> Machine<S> {
         [of(0, into_a, oil_a), of(1, into_b, oil_b)]
     }
 
-    /// Necks and valves with the oil in them, which shares their flow with the gas.
+    /// Necks and valves with the oil in them, which takes part of their flow to the gas.
     fn neck_instants<T: Scalar + From<S>>(
         &self,
         state: &MachineState<T>,

@@ -13,53 +13,52 @@ use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 /// rho' = rho/beta(p),  (p + w)' = 1 + (p + w)/beta(p),  rho(0) = 1,  w(0) = 0,       p + w = rho integral of dp/rho
 /// ```
 ///
-/// All integrals are from zero gauge pressure. V is the volume of fluid, W the yielding of
-/// everything else.
+/// All integrals are from zero gauge pressure. V is the volume of fluid, W the compliance of all
+/// other parts.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Volume<T> {
-    /// V in m3.
+    /// Volume V, m3.
     pub(super) fluid: T,
-    /// W in m3/Pa.
+    /// Compliance W, m3/Pa.
     pub(super) beside: T,
-    /// p in Pa gauge.
+    /// Pressure p, Pa gauge.
     pub(super) pressure: T,
-    /// beta(p).
+    /// Law beta(p).
     pub(super) law: DensityLaw<T>,
 }
 
-/// How the density follows the pressure.
+/// Dependence of the density on the pressure.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum DensityLaw<T> {
-    /// A constant modulus in Pa: rho = exp(p/beta), w = beta (exp(p/beta) - 1 - p/beta).
+    /// Constant modulus in Pa: rho = exp(p/beta), w = beta (exp(p/beta) - 1 - p/beta).
     Constant(T),
     /// Fluid with air.
     Mixture(Mixture<T>),
 }
 
-/// Fluid with air, and the part of the wall's compliance that grows with it.
+/// Fluid with air, and the part of the wall's compliance that grows with the fluid.
 ///
 /// ```text
 /// 1/beta(p) = s/beta_mixture(P) + k        1/rho = v(P)^s exp(-k p)        v = (1 - a) exp(-p/beta_0) + a (p_atm/P)^(1/n)
 /// ```
 ///
 /// v is the volume of the mixture over that at atmospheric pressure, whose tangent modulus is
-/// beta_mixture (so it holds down to 1 Pa absolute, below which the chambers keep their modulus); s
-/// is 1 where the chamber holds the mixture and 0 where its modulus is stated. No elementary
-/// function is the integral of rho, nor with k that of 1/rho; all are taken by Gauss and Legendre's
-/// rule of twelve points over ln P, exact to 1e-13 up to 70 bar and 1e-9 up to 700 bar.
+/// beta_mixture (so it is valid down to 1 Pa absolute, below which the modulus of the chambers is
+/// constant); s is 1 if the chamber contains the mixture and 0 if its modulus is stated. Neither
+/// the integral of rho nor, with k, that of 1/rho is elementary; all are taken by Gauss and
+/// Legendre's rule of twelve points over ln P, exact to 1e-13 up to 70 bar and 1e-9 up to 700 bar.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mixture<T> {
     bulk_modulus: T,
     volume_fraction: T,
     polytropic_exponent: T,
-    /// s.
+    /// Factor s.
     share: T,
-    /// k in 1/Pa.
+    /// Wall compliance k, 1/Pa.
     wall: T,
 }
 
-/// Nodes and weights of the rule of Gauss and Legendre for 12 points from -1 to 1, the positive
-/// half.
+/// Nodes and weights of the Gauss-Legendre rule for 12 points from -1 to 1, the positive half.
 // ORIGIN: analytic
 const GAUSS_LEGENDRE: [(f64, f64); 6] = [
     (0.1252334085114689, 0.2491470458134028),
@@ -71,10 +70,10 @@ const GAUSS_LEGENDRE: [(f64, f64); 6] = [
 ];
 
 impl<T: Scalar> Volume<T> {
-    /// A side of a cylinder of this piston area in m2 whose fluid carries air, its piston `travel`
-    /// in m away from the end.
+    /// Side of a cylinder of this piston area in m2 whose fluid contains air, with the piston at a
+    /// distance `travel` in m from the end.
     ///
-    /// Of the constant compliance V/beta_mixture + W, the part k V that grows with V like the
+    /// Within the constant compliance V/beta_mixture + W, the part k V that grows with V like the
     /// chamber belongs to its modulus.
     pub(super) fn aerated(
         chambers: &AeratedChambers<T>,
@@ -99,12 +98,12 @@ impl<T: Scalar> Volume<T> {
         }
     }
 
-    /// Density over that at zero gauge pressure.
+    /// Ratio of the density to that at zero gauge pressure.
     pub(super) fn density(&self) -> T {
         self.law.density(self.pressure)
     }
 
-    /// Energy of compression per volume, w, in Pa.
+    /// Energy of compression per volume, w, Pa.
     pub(super) fn compression(&self) -> T {
         self.law.port_energy(self.pressure) - self.pressure
     }
@@ -127,7 +126,7 @@ impl<T: Scalar> Volume<T> {
 }
 
 impl<T: Scalar> DensityLaw<T> {
-    /// rho.
+    /// Density rho.
     pub(super) fn density(&self, pressure: T) -> T {
         match self {
             DensityLaw::Constant(modulus) => (pressure / *modulus).exp(),
@@ -135,7 +134,7 @@ impl<T: Scalar> DensityLaw<T> {
         }
     }
 
-    /// p + w in Pa.
+    /// Sum p + w, Pa.
     fn port_energy(&self, pressure: T) -> T {
         match self {
             DensityLaw::Constant(modulus) => *modulus * (self.density(pressure) - T::from(1.0)),
@@ -146,7 +145,7 @@ impl<T: Scalar> DensityLaw<T> {
         }
     }
 
-    /// Integral of rho over the pressure, in Pa.
+    /// Integral of rho over the pressure, Pa.
     fn density_integral(&self, pressure: T) -> T {
         match self {
             DensityLaw::Constant(_) => self.port_energy(pressure),
@@ -154,7 +153,7 @@ impl<T: Scalar> DensityLaw<T> {
         }
     }
 
-    /// Integral of p + w over the pressure, in Pa2.
+    /// Integral of p + w over the pressure, Pa2.
     fn port_energy_integral(&self, pressure: T) -> T {
         match self {
             DensityLaw::Constant(modulus) => *modulus * (self.port_energy(pressure) - pressure),
@@ -164,7 +163,7 @@ impl<T: Scalar> DensityLaw<T> {
 }
 
 impl<T: Scalar> Mixture<T> {
-    /// 1/rho.
+    /// Specific volume 1/rho.
     fn specific_volume(&self, pressure: T) -> T {
         let atmosphere = T::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
         let liquid = (T::from(1.0) - self.volume_fraction) * (-pressure / self.bulk_modulus).exp();
@@ -174,8 +173,8 @@ impl<T: Scalar> Mixture<T> {
     }
 }
 
-/// Integral from zero gauge pressure to `pressure`, evenly in the logarithm of the absolute
-/// pressure.
+/// Integral from zero gauge pressure to `pressure`, with equal steps in the logarithm of the
+/// absolute pressure.
 fn integral<T: Scalar>(pressure: T, of: impl Fn(T) -> T) -> T {
     let atmosphere = T::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
     let half = T::from(0.5) * ((pressure + atmosphere) / atmosphere).ln();
@@ -207,7 +206,7 @@ mod tests {
         })
     }
 
-    /// Without a wall the integral of the volumes of liquid and gas is elementary.
+    /// Rigid wall: the integral of the volumes of liquid and gas is elementary.
     #[test]
     fn energy_of_the_mixture_is_that_of_its_liquid_and_its_gas() {
         let atmosphere = ATMOSPHERIC_PRESSURE_ABSOLUTE;
@@ -227,7 +226,7 @@ mod tests {
         }
     }
 
-    /// Without air the mixture has the constant modulus of liquid and wall in series.
+    /// Mixture without air: it has the constant modulus of liquid and wall in series.
     #[test]
     fn a_mixture_without_air_has_a_constant_modulus() {
         let wall = 1.0 / 3e8;

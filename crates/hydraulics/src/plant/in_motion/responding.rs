@@ -1,4 +1,4 @@
-//! The interface of a plant without polynomials for robust design.
+//! Interface of a plant without polynomials for robust design.
 
 use std::f64::consts::PI;
 
@@ -12,19 +12,22 @@ use super::super::series::BeyondSensor;
 use super::super::{ChamberDynamics, LinearLoad, LinearPlant, LinearSeries, Paths, YieldingSupply};
 use super::{ChamberSide, PlantInMotion};
 
-/// How far below the slowest and above the fastest thing of a plant its response is its own.
+/// Factors from the slowest and the fastest characteristic frequencies of a plant to the ends of
+/// its frequency range.
 const BELOW: f64 = 0.01;
 const ABOVE_SPOOL: f64 = 20.0;
 const ABOVE_QUARTER_WAVE: f64 = 40.0;
 const ABOVE_SERIES_MASS: f64 = 5.0;
-/// How far beyond that a count of its own poles extends, and its steps.
+/// Factor beyond this range to which a count of its open-loop poles extends, and the steps of the
+/// count.
 const FAR: f64 = 100.0;
 const STEPS_MAXIMUM: usize = 100_000;
 const SMALL_TURN: f64 = 0.5;
 const LARGE_STEP: f64 = 1.05;
-/// A smaller feedback cannot reach one within a step.
+/// Magnitude of a feedback below which it cannot reach one within a step.
 const SMALL_FED: f64 = 0.25;
-/// A pressure signal that differs from the load pressure by less, relative to it, is that.
+/// Relative difference from the load pressure below which a pressure signal counts as the load
+/// pressure.
 const SAME_READING: f64 = 1e-9;
 
 impl RespondingPlant for PlantInMotion {
@@ -48,14 +51,14 @@ impl RespondingPlant for PlantInMotion {
         })
     }
 
-    /// The rig at rest: lines pass flow through their steady resistance R, and have yielded all
-    /// that they ever do.
+    /// Rig at rest: lines pass flow through their steady resistance R, and have yielded completely.
     ///
     /// ```text
     /// p_port = p + R q,   q = K_q U - K_c p_port      so that q = K_q/(1 + K_c R) U - K_c/(1 + K_c R) p
     /// ```
     ///
-    /// in addition to what the chamber leaks, and the edges of a supply that yields likewise.
+    /// in addition to the chamber's leakage; the edges of a supply that yields are treated
+    /// likewise.
     fn slow(&self) -> PlantCoefficients<f64> {
         let of = |value: fn(&ChamberSide) -> f64| [value(&self.sides[0]), value(&self.sides[1])];
         let passing = |side: &ChamberSide| 1.0 + side.flow_pressure * side.line.resistance();
@@ -86,26 +89,26 @@ impl RespondingPlant for PlantInMotion {
         LinearPlant { chambers, supply, ..self.plant }.coefficients()
     }
 
-    /// Everything after the valve is passive, so that the piston receives at most what a source
-    /// with the conductance K_c can deliver, and the piston moves no faster than its friction
-    /// spends that:
+    /// All parts after the valve are passive, so that the piston receives at most the power that a
+    /// source with the conductance K_c can deliver, and it moves no faster than its friction
+    /// dissipates that power:
     ///
     /// ```text
     /// f_v |v|^2 <= (K_qA^2/K_cA + K_qB^2/K_cB)/4 |U_sp|^2
     /// F_e = K_e (x_C - x_L) = v/(s/K_e + Y_L)                     Y_L: velocity of the load over its force
-    /// |P(jw)| <= |v/U_sp| w_n^2/(w^2 - w_n^2) / (w/K_e - w/(M_L w^2 - K_L))       each factor falls from where it is positive
+    /// |P(jw)| <= |v/U_sp| w_n^2/(w^2 - w_n^2) / (w/K_e - w/(M_L w^2 - K_L))       each factor falls from the frequency on at which it is positive
     /// ```
     ///
     /// A limited supply is a third port, `power_per_volt`. The feed-forward of a load that can move
     /// multiplies this by at most 1/(1 - (1 + e) K_x |H_v| |P Y_L|), and feedback of the load
-    /// pressure F_h/A_A, of which no more is known than that
+    /// pressure F_h/A_A, for which only this bound is known,
     ///
     /// ```text
     /// F_h = (M s + f_v + k_A/s) v + F_e
     /// ```
     ///
     /// by at most 1/(1 - |H| |F_h/U_C|/A_A); with another reading of the pressures there is no
-    /// bound. A series element lies between K_e and Y_L: `LinearSeries::beyond_sensor`.
+    /// bound. A series element is between K_e and Y_L: `LinearSeries::beyond_sensor`.
     fn roll_off(&self, frequency_rad_per_s: f64) -> Option<f64> {
         let friction = self.plant.viscous_friction;
         let w = frequency_rad_per_s;
@@ -139,7 +142,7 @@ impl RespondingPlant for PlantInMotion {
         let peak = self.plant.velocity_sensor.filter.peak();
         let fed = self.fed_gain().map_or(0.0, |gain| gain.abs() * peak * bound * passed * speed);
         let falls = spool > 0.0 && held > 0.0 && yielding >= 0.0 && fed < 0.5 && back < 0.5;
-        // y = F_e + Z_v X_L, and |X_L| of what reaches the load
+        // y = F_e + Z_v X_L, and a bound of |X_L| from the force that reaches the load
         let beside = self.plant.virtual_impedance.map_or(0.0, |impedance| {
             let yields = self.plant.load != LinearLoad::Prescribed;
             if yields { impedance.bound() * passed * speed / w } else { 0.0 }
@@ -158,7 +161,7 @@ impl RespondingPlant for PlantInMotion {
         {
             return Some(0);
         }
-        // 1 less what is fed forward and back, for a plant that is stable without it: Nyquist
+        // 1 less the feed-forward and feedback, for a plant that is stable without them: Nyquist
         let alone = self.fed_forward(None).fed_back(None, 0.0);
         let difference = |frequency: f64| {
             let [own, alone] = [self, &alone].map(|plant| {
@@ -246,8 +249,8 @@ impl RespondingPlant for PlantInMotion {
 }
 
 impl PlantInMotion {
-    /// Whether 1 less the feedback cannot have turned around zero between these two points: a delay
-    /// turns it in proportion to the frequency, which counts where the feedback is large.
+    /// True if 1 less the feedback cannot have encircled zero between these two points: a delay
+    /// turns it in proportion to the frequency, which matters if the feedback is large.
     fn is_near(&self, [here, next]: [(f64, Complex64); 2]) -> bool {
         let turned = (next.0 - here.0) * self.lateness.max(self.feedback_delay_s);
         let fed = [here, next].map(|(_, difference)| (difference - 1.0).norm_sqr());
@@ -255,16 +258,16 @@ impl PlantInMotion {
         next.0 < LARGE_STEP * here.0 && (turned < SMALL_TURN || is_small)
     }
 
-    /// Where dynamic pressure feedback turns, from its capacity with those of the chambers next to
-    /// it to its restrictor between the chambers alone, in rad/s.
+    /// Corner frequencies of dynamic pressure feedback: from its capacity together with those of
+    /// the adjacent chambers to its restrictor between the chambers, rad/s.
     fn feedback_rad_per_s(&self) -> [f64; 2] {
         let Some(feedback) = &self.plant.dynamic_feedback else { return [f64::INFINITY, 0.0] };
         let chambers: f64 = self.sides.iter().map(|side| 1.0 / side.compliance).sum();
         [feedback.corner(), feedback.corner() + feedback.conductance * chambers]
     }
 
-    /// The most power in W that can leave valve and supply for the square of a volt: their sources
-    /// k less their conductances G,
+    /// Largest power that can leave valve and supply per square of a volt, W: their sources k less
+    /// their conductances G,
     ///
     /// ```text
     /// max over p of k.p - p.G p = k.G^-1 k/4,      p = (p_A, p_B, p_S),   k = (K_qA, -K_qB, -K_qS)

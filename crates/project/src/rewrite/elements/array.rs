@@ -1,11 +1,11 @@
-//! `elements = [{ ... }, { ... }]`
+//! Array `elements = [{ ... }, { ... }]`.
 
 use std::ops::Range;
 
 use super::{Draft, WrittenElement, matched};
 use crate::DeclaredElement;
 
-/// An element in an array, with the comments that belong to it.
+/// Element in an array, with the comments that belong to it.
 #[derive(Default)]
 struct ArrayElement {
     /// Comments on lines of their own above it.
@@ -15,10 +15,10 @@ struct ArrayElement {
     behind: Option<String>,
 }
 
-/// Longest array that is written on one line.
+/// Width of the longest array that is written on one line.
 const LINE_WIDTH: usize = 90;
 
-/// An array of new elements only.
+/// Array of new elements only.
 pub(super) fn fresh(draft: &Draft<'_>) -> String {
     let rows = draft
         .elements
@@ -27,7 +27,7 @@ pub(super) fn fresh(draft: &Draft<'_>) -> String {
     array(rows.collect(), vec![], false, draft.newline)
 }
 
-/// The array with its elements changed: those that remain keep their text and their comments.
+/// Array with its elements changed: those that remain keep their text and their comments.
 pub(super) fn rewritten(draft: &Draft<'_>, range: &Range<usize>, written: &[WrittenElement<'_>]) -> String {
     let part = |from: usize, to: usize| draft.content.get(from..to).unwrap_or_default();
     let mut rows: Vec<Option<ArrayElement>> = Vec::new();
@@ -74,7 +74,7 @@ fn array(rows: Vec<ArrayElement>, foot: Vec<String>, several_lines: bool, newlin
     lines.join(newline)
 }
 
-/// The comments between two elements: the one after the first, and those above the second.
+/// Comments between two elements: the one after the first, and those above the second.
 fn comments(gap: &str, behind_another: bool) -> (Option<String>, Vec<String>) {
     let mut lines = gap.lines();
     let first = if behind_another { lines.next().and_then(comment) } else { None };
@@ -82,7 +82,7 @@ fn comments(gap: &str, behind_another: bool) -> (Option<String>, Vec<String>) {
     (behind, lines.filter_map(comment).map(|(_, text)| text.to_string()).collect())
 }
 
-/// The comment of a line that otherwise contains only a comma and spaces, and the text before it.
+/// Comment of a line that otherwise contains only a comma and spaces, and the text before it.
 fn comment(line: &str) -> Option<(&str, &str)> {
     line.find('#').map(|at| line.trim_end().split_at(at))
 }

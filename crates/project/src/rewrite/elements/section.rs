@@ -1,18 +1,18 @@
-//! `[[controller.elements]]`, a table for each element.
+//! Tables `[[controller.elements]]`, one for each element.
 
 use super::{Draft, Replacement, RewriteError, WrittenElement, matched};
 use crate::DeclaredElement;
 use crate::tree::TreeNode;
 
-/// An element's table in the file.
+/// Table of an element in the file.
 struct ElementTable<'a> {
     /// Empty lines and comments before it.
     above: &'a str,
-    /// All its lines, the last with its end.
+    /// All its lines, including the last line end.
     text: String,
 }
 
-/// The tables with their elements changed: those that remain keep their text and the comments above
+/// Tables with their elements changed: those that remain keep their text and the comments above
 /// them.
 pub(super) fn rewritten(
     draft: &Draft<'_>,
@@ -60,7 +60,7 @@ fn fresh(draft: &Draft<'_>, element: &DeclaredElement) -> String {
     format!("[[{}.elements]]{}{lines}", draft.table, draft.newline)
 }
 
-/// An empty list, below the header of the table if it has one.
+/// Empty list, below the header of the table if it has one.
 fn none_left(draft: &Draft<'_>, table: &TreeNode, range: std::ops::Range<usize>) -> Vec<Replacement> {
     let Draft { newline, table: name, .. } = *draft;
     let header = draft.content.get(table.place.start..table.place.end).unwrap_or_default();
@@ -72,7 +72,7 @@ fn none_left(draft: &Draft<'_>, table: &TreeNode, range: std::ops::Range<usize>)
     vec![Replacement { range, text: format!("[{name}]{newline}elements = []{newline}") }]
 }
 
-/// Where the next line begins.
+/// Beginning of the next line.
 fn end_of_line(content: &str, at: usize) -> usize {
     content.get(at..).and_then(|rest| rest.find('\n')).map_or(content.len(), |end| at + end + 1)
 }

@@ -1,5 +1,5 @@
-//! Derivatives of the displacement: those of one step by dual numbers, carried along from step to
-//! step by the chain rule.
+//! Derivatives of the displacement: those of one step by dual numbers, propagated from step to step
+//! by the chain rule.
 
 use phea_dynamics::scalar::Dual;
 
@@ -8,26 +8,26 @@ use super::{PressedMass, SensitiveDisplacement};
 use crate::friction::LuGre;
 use crate::friction::tested::FRICTION_COEFFICIENTS;
 
-/// A force at each step that is linear in some variables.
+/// Force at each step that is linear in some variables.
 #[derive(Clone, Copy)]
 pub(super) struct LinearForce<'a> {
-    /// N.
+    /// Force, N.
     pub(super) force: &'a [f64],
     /// Derivatives over the variables, step by step.
     pub(super) slopes: &'a [f64],
-    /// How many they are.
+    /// Number of variables.
     pub(super) variables: usize,
 }
 
-/// What a step depends on: the coefficients of the friction, velocity and deflection before it, the
-/// force, and by how much it rises.
+/// Number of variables of a step: the coefficients of the friction, velocity and deflection before
+/// it, the force, and its rise.
 const OF_STEP: usize = FRICTION_COEFFICIENTS + 4;
 pub(super) const STATE: usize = FRICTION_COEFFICIENTS;
 const FORCE: usize = FRICTION_COEFFICIENTS + 2;
 
 type StepSlope = Dual<OF_STEP>;
 
-/// Derivatives of the velocity, the deflection, and the way that the bristles have slipped.
+/// Derivatives of the velocity, the deflection, and the slip distance of the bristles.
 pub(super) struct CarriedSlopes {
     pub(super) velocity: Vec<f64>,
     pub(super) deflection: Vec<f64>,
@@ -35,19 +35,19 @@ pub(super) struct CarriedSlopes {
 }
 
 impl CarriedSlopes {
-    /// Over so many variables, all zero.
+    /// Derivatives over this number of variables, all zero.
     pub(super) fn zero(count: usize) -> CarriedSlopes {
         let [velocity, deflection, slipped] = [(); 3].map(|()| vec![0.0; count]);
         CarriedSlopes { velocity, deflection, slipped }
     }
 
-    /// Those after a step, from those before it.
+    /// Propagates the derivatives over one step.
     ///
     /// ```text
     /// dy' = (dy'/dc) dc + (dy'/dy) dy + (dy'/dF) dF + (dy'/dr) dr          r: rise of the force
     /// ```
     ///
-    /// `forced` has dF and dr, of the variables from the one with index `first` on.
+    /// Argument `forced` has dF and dr, for the variables from the one with index `first` on.
     fn carry(&mut self, after: [StepSlope; 3], forced: impl Iterator<Item = [f64; 2]>, first: usize) {
         let CarriedSlopes { velocity, deflection, slipped } = self;
         let [of_velocity, of_deflection, of_slip] = after.map(|one| *one.gradient());
@@ -76,7 +76,8 @@ impl CarriedSlopes {
 }
 
 impl PressedMass {
-    /// Displacements of every so many rows, with their derivatives, from a state with its own on.
+    /// Displacements at every `every`-th row, with their derivatives, from a state with its
+    /// derivatives.
     pub(super) fn carried(
         &self,
         lugre: &LuGre,

@@ -1,19 +1,19 @@
-//! A step of a mass on bristles that hardly slip.
+//! Step of a mass on bristles that hardly slip.
 
 use phea_dynamics::scalar::Scalar;
 
 use super::PressedMass;
 use crate::friction::LuGre;
 
-/// A step of the linear part: y = (v, z), dy/dt = A y + b_F F + b_w w.
+/// Step of the linear part: y = (v, z), dy/dt = A y + b_F F + b_w w.
 pub(super) struct StickStep<S> {
-    /// h in s.
+    /// Length h, s.
     length: f64,
-    /// e^(A h).
+    /// Transition matrix e^(A h).
     transition: [[S; 2]; 2],
     /// Effect of a constant force, and of one that rises by 1 within the step.
     of_force: [[S; 2]; 2],
-    /// The same of the slip.
+    /// Effect of the slip, likewise.
     of_slip: [[S; 2]; 2],
 }
 
@@ -24,8 +24,8 @@ impl<S: Scalar> StickStep<S> {
     /// G_1 = A^-1 (e^(A h) - I),   G_2 = A^-1 (G_1 - h I)
     /// ```
     ///
-    /// cosh and sinh by their series at h/2^n, doubled n times: they are the same for a ringing
-    /// mass (r^2 negative) and for one that creeps.
+    /// cosh and sinh by their series at h/2^n, doubled n times: valid for a ringing mass (r^2
+    /// negative) and for one that creeps.
     pub(super) fn over(lugre: &LuGre<S>, pressed: &PressedMass, doublings: u32) -> StickStep<S> {
         const TERMS: u32 = 9;
         let (mass, step) = (pressed.mass, pressed.step());
@@ -63,8 +63,7 @@ impl<S: Scalar> StickStep<S> {
         }
     }
 
-    /// The state after a step under a force that rises, and how far the bristles have slipped in
-    /// it.
+    /// State after a step under a rising force, and the slip distance of the bristles in it.
     pub(super) fn with_slip(&self, lugre: &LuGre<S>, state: [S; 2], force: [S; 2]) -> ([S; 2], S) {
         let slip = |[velocity, deflection]: [S; 2]| {
             lugre.bristle_stiffness * velocity.abs() * deflection / lugre.curve.sliding_force(velocity)
@@ -75,7 +74,7 @@ impl<S: Scalar> StickStep<S> {
         (self.corrected(tried, change), (before + change.times(0.5)).times(self.length))
     }
 
-    /// The state after a step under a force that rises and a slip that stays.
+    /// State after a step under a rising force and a constant slip.
     fn step(&self, state: [S; 2], [force, rise]: [S; 2], slip: S) -> [S; 2] {
         let mut after = applied(self.transition, state);
         let parts = [(self.of_force[0], force), (self.of_force[1], rise), (self.of_slip[0], slip)];
@@ -85,7 +84,7 @@ impl<S: Scalar> StickStep<S> {
         after
     }
 
-    /// The same where the slip changes by this within the step.
+    /// State corrected for a change of the slip within the step.
     fn corrected(&self, [velocity, deflection]: [S; 2], change: S) -> [S; 2] {
         let [of_velocity, of_deflection] = self.of_slip[1];
         [velocity + of_velocity * change, deflection + of_deflection * change]
