@@ -126,8 +126,8 @@ impl PoleSweep {
             legend.push(LegendEntry::line("bandwidth of the loop", series_stroke(BANDWIDTH)));
         }
         let symbol = self.motion.symbols().stiffness;
-        legend.push(LegendEntry::line(&format!("least {symbol}"), series_stroke(LEAST)));
-        legend.push(LegendEntry::line(&format!("greatest {symbol}"), series_stroke(GREATEST)));
+        legend.push(LegendEntry::line(format!("least {symbol}"), series_stroke(LEAST)));
+        legend.push(LegendEntry::line(format!("greatest {symbol}"), series_stroke(GREATEST)));
         legend
     }
 }

@@ -4,8 +4,6 @@
 mod circuit;
 mod colours;
 mod drawn;
-#[path = "../src/family_steps/edge.rs"]
-mod edge;
 #[path = "../examples/figures/gallery.rs"]
 mod gallery;
 mod hostile;

@@ -1,5 +1,4 @@
-//! Rigs with any combination of parts: the linear plant compared with the machine for small
-//! motions.
+//! Rigs with any combination of parts: the linear plant and the machine for small motions.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -367,8 +366,7 @@ fn linear_load(load: &LoadModel, linkage: Option<&Linkage>, force: f64, angle: f
     (own, end.map_or(1.0, |end| 1.0 / end.lever_arm))
 }
 
-/// Feedback of the pressure difference, the load pressure or another reading, with each filter or
-/// without.
+/// Feedback of pressure difference, load pressure or another reading, with any filter or none.
 fn pressure_feedback(draw: &mut Draw, actuator: &Actuator) -> Option<PressureFeedback> {
     if !draw.part("pressure feedback", 0.6) {
         return None;
@@ -431,8 +429,8 @@ fn closed(
     })
 }
 
-/// Largest relative difference between plant and machine over frequency: in the force measured, as
-/// polynomials and as a response, in the force on the load, and in its velocity if it yields.
+/// Largest relative difference between plant and machine over frequency: in measured force, force
+/// on the load, velocity of a load that yields, as polynomials and as responses.
 fn apart(rig: &Drawn) -> f64 {
     let Drawn { machine, rest, turned, plant, behind, .. } = rig;
     let on_load = plant.series.map(|series| LinearSeries { output: SeriesOutput::OnLoad, ..series });

@@ -17,6 +17,7 @@ mod derived_statements;
 mod design_contract;
 mod design_explanation;
 mod design_factors;
+mod design_in_time;
 mod design_printing;
 mod design_truth;
 mod entrained_air;

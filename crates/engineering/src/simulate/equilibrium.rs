@@ -85,17 +85,29 @@ pub enum MovingState {
     Other,
 }
 
+/// Name of a state in an error.
+#[derive(Debug, thiserror::Error)]
+enum NamedState {
+    #[error("the {0}")]
+    Part(&'static str),
+    #[error("the pressure of chamber {0}")]
+    ChamberPressure(char),
+    #[error("a state other than {0}, pressures and spool")]
+    OtherThan(&'static str),
+}
+
 impl MovingState {
-    /// What it is called on a rig that moves so.
+    /// Name of the state on a rig of this motion.
     pub fn words(self, motion: MotionKind) -> String {
         let MotionWords { force, piston, .. } = motion.words();
-        match self {
-            MovingState::Spool => "the spool".to_string(),
-            MovingState::ChamberPressure(side) => format!("the pressure of chamber {side}"),
-            MovingState::Force => format!("the {force}"),
-            MovingState::Piston => format!("the {piston}"),
-            MovingState::Other => format!("a state other than {force}, pressures and spool"),
-        }
+        let named = match self {
+            MovingState::Spool => NamedState::Part("spool"),
+            MovingState::ChamberPressure(side) => NamedState::ChamberPressure(side),
+            MovingState::Force => NamedState::Part(force),
+            MovingState::Piston => NamedState::Part(piston),
+            MovingState::Other => NamedState::OtherThan(force),
+        };
+        named.to_string()
     }
 
     fn of(place: usize) -> MovingState {

@@ -34,7 +34,8 @@ const UNSTABLE: f64 = 1.0;
 /// of the samples.
 ///
 /// # Example
-/// Limit |1/(1+L)| <= 2 at 1 rad/s for 1/s and 4/s with a gain k: the worst plant is 1/s, for which it is w/|j w + k|.
+/// Limit |1/(1+L)| <= 2 at 1 rad/s for 1/s and 4/s with a gain k: the worst plant is 1/s, for which
+/// it is w/|j w + k|.
 /// ```
 /// # use phea_dynamics::controller::Timing;
 /// # use phea_dynamics::linear::TransferFunction;

@@ -30,8 +30,7 @@ pub(crate) fn json(loaded: &Loaded, view: &ProjectAudit) -> String {
 /// An audit in JSON, without the keys of every object.
 pub(crate) fn body(view: &ProjectAudit) -> Object {
     let (audit, names) = (&view.audit, &view.names);
-    let stability = &audit.stability;
-    let margin = audit.delay_margin.as_ref();
+    let (stability, margin) = (&audit.stability, audit.delay_margin.as_ref());
     let of_stability = Object::new()
         .with("verdict", verdict_key(stability.verdict))
         .with("evidence", evidence_key(stability.evidence))

@@ -70,8 +70,7 @@ const NO_HEAT: &str = "a polytropic exponent gives no temperature: state `therma
 
 fn scenario(run: &ScenarioRun, state_file: String) -> Object {
     let motion = run.record.units.motion;
-    let stopped = run.stopped();
-    let mode = stopped.and_then(|stopped| stopped.mode).map(|mode| {
+    let mode = run.stopped().and_then(|stopped| stopped.mode).map(|mode| {
         Object::new()
             .with("frequency_rad_per_s", mode.frequency_rad_per_s)
             .with("growth_per_s", mode.growth_per_s)
