@@ -53,7 +53,7 @@ pub enum StepSize {
     Reversed,
     /// As a scenario of the project makes it.
     Scenario,
-    /// The largest within reach that meets no limit: see [`REACH`].
+    /// The largest within reach that meets no limit: see [`super::REACH`].
     Largest,
     /// As a requirement in time states it.
     Required,
