@@ -23,6 +23,7 @@ impl JudgedAlternative {
 
     fn impedance(&self, frequency: f64) -> Vec<AlternativeColumn> {
         let linearization = self.linearization.as_ref().map_err(|reason| NoNumber::from(reason.clone()));
+        let damping = self.loaded.project.motion().dimension(&DAMPING);
         let open = linearization.clone().map(|found| &found.open_loop);
         let closed = linearization.clone().and_then(|found| {
             let reason = || NoNumber::NoClosedLoop(found.closed_loop_absent);
@@ -32,11 +33,11 @@ impl JudgedAlternative {
         let asked = asked.map(|asked| {
             let s = Complex64::new(0.0, frequency);
             let asked = portable::magnitude(asked.unfiltered().response(s) / s);
-            column(ColumnKey::ImpedanceAsked, fitting(asked, &DAMPING), 3, Ok(asked))
+            column(ColumnKey::ImpedanceAsked, fitting(asked, damping), 3, Ok(asked))
         });
         let [open, closed] = [open, closed]
             .map(|view| view.map(|view| portable::magnitude(view.impedance.at_frequency(frequency))));
-        let unit = |value: &Result<f64, NoNumber>| fitting(value.clone().unwrap_or_default(), &DAMPING);
+        let unit = |value: &Result<f64, NoNumber>| fitting(value.clone().unwrap_or_default(), damping);
         let found = [
             column(ColumnKey::ImpedanceOpen, unit(&open), 3, open),
             column(ColumnKey::ImpedanceClosed, unit(&closed), 3, closed),
