@@ -14,7 +14,8 @@ use std::time::Instant;
 
 use phea_dynamics::simulation::{InputSchedule, Profile, SimulationSettings, Status, Task};
 use phea_engineering::simulate::{
-    Cause, Metrics, PassAgreement, PassPlan, PassResult, PassSpread, Repetition, Window, moved, repeated,
+    Cause, Metrics, PassAgreement, PassPlan, PassResult, PassSpread, Repetition, Unmeasured, Window, moved,
+    repeated,
 };
 use phea_machine::{Control as Loop, Watcher};
 
@@ -24,7 +25,7 @@ use crate::rig::{OUTPUT_STEP_S, Rig};
 
 /// Percent of a step within which the force is settled.
 const BAND: f64 = 1.0;
-const NONE: &str = "not of this event";
+const NONE: Unmeasured = Unmeasured::NoStep;
 
 /// A run with its force at each row.
 #[derive(Clone)]
