@@ -106,9 +106,10 @@ fn carded(words: &str) -> Markup {
     PreEscaped(prose(words).into_string().replace('_', "_<wbr>"))
 }
 
-/// A text, whose long names may be broken where they are joined.
+/// A text, whose long names may be broken where they are joined, and no torque within its unit.
 fn breakable(text: &str) -> Markup {
-    PreEscaped(prose(text).into_string().replace('_', "_<wbr>").replace('.', ".<wbr>"))
+    let broken = prose(text).into_string().replace('_', "_<wbr>").replace('.', ".<wbr>");
+    PreEscaped(broken.replace("N.<wbr>m", "N.m"))
 }
 
 impl Cell {
