@@ -318,7 +318,7 @@ fn driven(
     Ok(simulate_project(source, setup?, watch)?)
 }
 
-/// Why there is nothing of a machine.
+/// Reason why there is nothing of a machine.
 fn no_rig() -> NoNumber {
     NoNumber::NotJudged(RigError::NoActuator.into())
 }

@@ -44,7 +44,7 @@ use crate::source::Source;
 use crate::specification::{NamedSpecification, SpecificationName};
 use phea_dynamics::watch::{Stopped, Watch, part, unwatched};
 
-/// Why there is nothing to audit.
+/// Reason why there is nothing to audit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AuditError {
     /// There is no controller.
@@ -146,7 +146,7 @@ pub struct ProjectAudit {
     pub members: usize,
     /// Whether everything between them belongs to the family.
     pub whole_box: bool,
-    /// Why its plants have no polynomials; `None` where they have them.
+    /// Reason why its plants have no polynomials; `None` where they have them.
     pub without_polynomials: Option<NoPolynomials>,
     /// Paths that the delay margin delays with the controller; gain, phase and modulus margins are
     /// those of the force loop around them.

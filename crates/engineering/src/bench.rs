@@ -103,7 +103,7 @@ pub struct BenchRun {
     pub reversals: Option<ReversalReading>,
 }
 
-/// Why there are no tests.
+/// Reason why there are no tests.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BenchError {
     /// The valve cannot be computed with.
@@ -166,7 +166,7 @@ pub enum BenchError {
     Stopped,
 }
 
-/// Why there are no tests of a line.
+/// Reason why there are no tests of a line.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BenchLineError {
     /// The project has no line to test.

@@ -41,7 +41,7 @@ use crate::quantity;
 use crate::simulate::{self, SimulateError, shortest_number};
 use crate::specification::SpecificationError;
 
-/// Why a valid project has no campaign.
+/// Reason why a valid project has no campaign.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CampaignError {
     /// It declares none.

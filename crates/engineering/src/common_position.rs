@@ -10,7 +10,7 @@ pub struct CommonPosition {
     pub position: f64,
     /// The length of the stroke.
     pub stroke: f64,
-    /// How the rig moves.
+    /// Motion of the rig.
     pub units: Units,
 }
 

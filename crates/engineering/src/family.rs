@@ -34,7 +34,7 @@ pub(crate) use gain_slopes::gain_slopes;
 pub use shut_gas::{NumberAt, ShutGas, shut_gas};
 pub use visited_box::{Extreme, VisitedRange, visited_box};
 
-/// Why a project has no uncertain plant.
+/// Reason why a project has no uncertain plant.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ProjectFamilyError {
     /// The rig cannot be computed with.
@@ -105,7 +105,7 @@ pub enum ProjectFamilyError {
         member: String,
         /// The names of these parameters.
         numbers: Vec<String>,
-        /// Why it does not exist.
+        /// Reason why it does not exist.
         reason: NoOperatingPoint,
     },
     /// A region that the flow of the pump does not reach.
@@ -125,7 +125,7 @@ pub enum ProjectFamilyError {
     Path {
         /// The path.
         path: String,
-        /// Why it does not affect the linear model.
+        /// Reason why it does not affect the linear model.
         reason: NoEffect,
     },
 }
@@ -157,7 +157,7 @@ pub enum NoEffect {
     /// The project states a parameter of the linear model that would follow from it.
     #[error("what the project states goes before what would follow from it")]
     StatedInstead,
-    /// It affects only the waves in the lines, which are those of the declared oil.
+    /// Effect only on the waves in the lines, which are those of the declared oil.
     #[error(
         "it does not enter the linear model but through the waves in the lines, which are those of the declared oil: verify other oils one by one, `--set {path}=...`"
     )]

@@ -21,7 +21,7 @@ pub enum Impossibility {
     CrossedLimits(SpecificationError),
     /// A step.
     Step(ImpossibleStep),
-    /// What a few plants forbid, with the path of the key that states it.
+    /// Requirement that a few plants forbid, with the path of its key.
     Plants(String, Finding),
 }
 

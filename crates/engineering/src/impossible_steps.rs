@@ -23,7 +23,7 @@ const COORDINATES_MAXIMUM: usize = 8;
 /// A required step that no controller makes on the rig.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ImpossibleStep {
-    /// It is to settle before the force can move.
+    /// Step that is to settle before the force can move.
     BeforeForceMoves {
         /// Number of the specification, from 1.
         number: usize,
@@ -34,9 +34,9 @@ pub enum ImpossibleStep {
         /// Times that pass before the force moves.
         still: StillTimes,
     },
-    /// It is beyond the piston or the force sensor.
+    /// Step beyond the piston or the force sensor.
     BeyondReach(BeyondReach),
-    /// It is beyond the valve.
+    /// Step beyond the valve.
     TooSlow(SlowStep),
 }
 

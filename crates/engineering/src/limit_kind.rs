@@ -86,7 +86,7 @@ impl DesignLimitKind {
     }
 }
 
-/// Why a limit has its value.
+/// Reason why a limit has its value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitOrigin {
     /// The project states it.

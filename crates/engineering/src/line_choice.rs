@@ -82,7 +82,7 @@ fn choice(source: &dyn Source, project: &Project, question: LoopInQuestion) -> O
     Some(ChosenLines { with_waves: is_near && hindrance.is_none(), quarter_wave_rad_per_s, reach, hindrance })
 }
 
-/// Why a rig is not computed with waves.
+/// Reason why a rig is not computed with waves.
 fn hindrance(project: &Project) -> Option<WavesHindrance> {
     if project.has_free_load() {
         return Some(WavesHindrance::FreeLoad);

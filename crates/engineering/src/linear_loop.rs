@@ -82,7 +82,7 @@ pub struct StepView {
     pub metrics: StepMetrics,
 }
 
-/// Why there is no linear loop.
+/// Reason why there is no linear loop.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LoopError {
     /// A system cannot be built.

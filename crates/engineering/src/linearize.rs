@@ -49,7 +49,7 @@ const COMPARISON_END: f64 = 1000.0;
 /// All linear models and properties of a rig.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linearization {
-    /// How the rig moves.
+    /// Motion of the rig.
     pub motion: MotionKind,
     /// Stiffness over the stroke by the project's model: nominal, softest and stiffest wall.
     pub stiffness: [StrokeStiffness; 3],
@@ -98,7 +98,7 @@ pub struct Linearization {
     /// The impedance at the load with the given controller, if it is continuous and without dead
     /// time.
     pub closed_loop: Option<PortView>,
-    /// Why there is no closed loop.
+    /// Reason why there is no closed loop.
     pub closed_loop_absent: Option<NoClosedImpedance>,
     /// What a virtual impedance asks of the port, and what the loop shows there; `None` without
     /// one, or without a controller.

@@ -48,7 +48,7 @@ pub enum PartKind {
     Servovalve,
 }
 
-/// Why a sum over the parts of a rig is not known.
+/// Reason why a sum over the parts of a rig is not known.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PartsUnknown {
     /// No part states a price.

@@ -115,7 +115,7 @@ pub struct Rig {
     pub virtual_impedance: Option<VirtualImpedance>,
 }
 
-/// Why a project has no rig.
+/// Reason why a project has no rig.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RigError {
     /// The project describes another plant.

@@ -59,7 +59,7 @@ pub struct RobustProblem {
     /// The rig itself as a family of one, where the family does not contain it, and what of it is
     /// outside.
     pub rig_outside: Option<(Family, Vec<OutsideParameter>)>,
-    /// Why the plants of the family have no polynomials; `None` where they have them.
+    /// Reason why the plants of the family have no polynomials; `None` where they have them.
     pub without_polynomials: Option<NoPolynomials>,
     /// Noise of the velocity that a sampled controller feeds forward, m/s rms; zero without.
     pub velocity_noise: f64,
@@ -69,7 +69,7 @@ pub struct RobustProblem {
     pub tolerance_db: f64,
     /// Position of every plant; `None` where they differ in it or its stiffness, and without a rig.
     pub position: Option<CommonPosition>,
-    /// How the rig moves.
+    /// Motion of the rig.
     pub units: Units,
     /// Declared effects that none of this includes.
     pub caveats: Vec<Caveat>,
@@ -94,7 +94,7 @@ pub struct DesignFrequency {
     pub filled_placement: Placement,
 }
 
-/// Why a project is not a problem of the robust method.
+/// Reason why a project is not a problem of the robust method.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RobustError {
     /// The controller, prefilter or sensor is not a transfer function.
@@ -111,7 +111,7 @@ pub enum RobustError {
     Specification(#[from] SpecificationError),
 }
 
-/// Why templates or bounds cannot be computed.
+/// Reason why templates or bounds cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BoundsError {
     /// A template.

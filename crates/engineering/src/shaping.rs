@@ -48,7 +48,7 @@ impl Shaped {
     }
 }
 
-/// Why a controller cannot be shaped.
+/// Reason why a controller cannot be shaped.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ShapingError {
     /// A change that cannot be made.

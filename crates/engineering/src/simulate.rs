@@ -105,7 +105,7 @@ use crate::setup::Setup;
 use crate::source::{Destination, Source, WriteError};
 use phea_dynamics::watch::{Progress, Watch};
 
-/// Why a valid project is not simulated.
+/// Reason why a valid project is not simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SimulateError {
     /// The rig cannot be computed.
@@ -172,7 +172,7 @@ pub enum SimulateError {
         what.words(*motion)
     )]
     NoRest {
-        /// How the rig moves.
+        /// Motion of the rig.
         motion: MotionKind,
         /// Name of the scenario.
         name: String,
@@ -203,7 +203,7 @@ pub enum SimulateError {
         display(*reference_n, motion.dimension(&FORCE), 6), display(*command_v, &VOLTAGE, 4), display(*limit_v, &VOLTAGE, 6)
     )]
     RestBeyondLimit {
-        /// How the rig moves.
+        /// Motion of the rig.
         motion: MotionKind,
         /// Name of the scenario.
         name: String,

@@ -19,7 +19,7 @@ pub(crate) use self::rounding::of_rounding;
 use crate::project::{self, FormulaError, Project};
 use crate::quantity::significant;
 
-/// Why a declared specification cannot be used.
+/// Reason why a declared specification cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("[[specification]] {number}, `{key}`: {reason}")]
 pub struct SpecificationError {

@@ -43,7 +43,7 @@ use phea_dynamics::linear::LinearError;
 use phea_dynamics::time_response::TimeResponseError;
 use phea_dynamics::watch::{Stopped, Watch, within};
 
-/// Why a verdict cannot be tried on the machine.
+/// Reason why a verdict cannot be tried on the machine.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TrialError {
     /// The rig cannot be computed with.

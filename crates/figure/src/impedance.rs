@@ -32,7 +32,7 @@ pub struct AsymptoteLine {
 /// Impedances with their asymptotes and bands.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImpedanceDiagram {
-    /// How the load moves.
+    /// Motion of the load.
     pub motion: MotionKind,
     /// Impedances in N.s/m, such as open and closed loop.
     pub series: Vec<FrequencySeries>,

@@ -31,7 +31,7 @@ pub struct PoleSweep {
     pub quantity: String,
     /// Its unit.
     pub unit: DisplayUnit,
-    /// How the rig moves.
+    /// Motion of the rig.
     pub motion: MotionKind,
     /// The unit of K_H.
     pub stiffness_unit: DisplayUnit,

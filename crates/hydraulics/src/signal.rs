@@ -64,7 +64,7 @@ macro_rules! signals {
                 }
             }
 
-            /// That name without the unit.
+            /// Name without the unit.
             const fn stem(self) -> &'static str {
                 match self {
                     $(Signal::$signal => $stem,)*

@@ -217,7 +217,7 @@ fn settled_commands(controller: &Controller, quantization: &Quantization) -> Vec
 }
 
 /// Single precision would move the integrator of (z - 1)(z - p): 1 + p and p are not rounded alike.
-/// It remains an integrator, and the limit of the loop at zero frequency is unchanged.
+/// A rounded integrator remains one, and the limit of the loop at zero frequency is unchanged.
 #[test]
 fn an_integrator_stays_one() {
     for frequency in [3.0, 11.0, 70.0, 500.0] {

@@ -1,4 +1,4 @@
-//! Why a command has no answer: the one error of everything that the workbench computes.
+//! Reason why a command has no answer: the one error of everything that the workbench computes.
 
 mod place;
 mod tables;
@@ -33,7 +33,7 @@ use crate::identify::ValveInUseError;
 use crate::project::{Diagnostic, Loaded, Refusal, Severity, refused};
 use crate::source::Source;
 
-/// Why a valid project has no answer.
+/// Reason why a valid project has no answer.
 #[derive(Debug, thiserror::Error)]
 pub enum CommandError {
     /// The rig cannot be computed with.

@@ -26,7 +26,7 @@ pub(crate) fn late_of(
     })
 }
 
-/// What a few plants forbid, with the first of them.
+/// Requirement that a few plants forbid, with the first of them.
 fn of_plants(path: &str, finding: &Finding, problem: &RobustProblem) -> LateError {
     let explanation = Explanation::of(finding, problem);
     let plant = explanation.plants.first().map(|plant| plant_text(&problem.names, plant));
@@ -35,7 +35,7 @@ fn of_plants(path: &str, finding: &Finding, problem: &RobustProblem) -> LateErro
     LateError { path: path.to_string(), message, help: cure(problem, finding) }
 }
 
-/// What would satisfy a requirement that a finding forbids.
+/// Remedy for a requirement that a finding forbids.
 fn cure(problem: &RobustProblem, finding: &Finding) -> String {
     match finding {
         Finding::SumBelowOne { frequency_rad_per_s, sensitivity, complementary, .. } => {

@@ -14,7 +14,7 @@ pub(crate) fn verdict_key(verdict: Verdict) -> &'static str {
     }
 }
 
-/// The same for people.
+/// Words of a verdict for people.
 pub(crate) fn verdict_words(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::NotProven => "not proven",

@@ -24,7 +24,7 @@ pub struct AskedAlternative {
     pub loaded: Loaded,
     /// The rig of that project.
     pub rig: Result<Rig, RigError>,
-    /// Why `[sizing]` finds no hose, where it asks for one.
+    /// Reason why `[sizing]` finds no hose, where it asks for one.
     pub no_hose: Option<NoHose>,
     /// The ranges of `[uncertainty]` that were moved.
     pub moved: Vec<MovedRange>,

@@ -43,7 +43,7 @@ impl OtherPart {
     /// The settings that size it for the project as it is declared.
     ///
     /// # Errors
-    /// Why it cannot be sized.
+    /// Reason why it cannot be sized.
     pub(super) fn settings(
         self,
         declared: &AskedAlternative,

@@ -183,7 +183,7 @@ fn energy_from_supply(run: &ScenarioRun) -> Result<f64, NoNumber> {
     Ok(steps.map(|(times, powers)| 0.5 * (powers[0] + powers[1]) * (times[1] - times[0])).sum())
 }
 
-/// Why a run has no numbers of the machine; `None` if it has.
+/// Reason why a run has no numbers of the machine; `None` if it has.
 fn without_result(run: &ScenarioRun) -> Option<NoNumber> {
     if let Some(StoppedRun { time_s, status, .. }) = run.stopped() {
         return Some(NoNumber::Stopped { time_s, status });

@@ -9,7 +9,7 @@ use crate::setup::ControlError;
 use crate::simulate::SimulateError;
 use crate::sizing::{OtherMeansError, SizingError};
 
-/// Why no alternatives are judged.
+/// Reason why no alternatives are judged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AlternativesError {
     /// There is only the project itself.
@@ -31,12 +31,12 @@ pub enum AlternativesError {
     Alternative {
         /// Its name.
         name: String,
-        /// Why it cannot be prepared, and what to do.
+        /// Reason why it cannot be prepared, and the remedy.
         reason: PrepareError,
     },
 }
 
-/// Why an alternative cannot be prepared.
+/// Reason why an alternative cannot be prepared.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PrepareError {
     /// The rig cannot be computed with.
@@ -89,7 +89,7 @@ pub enum PrepareError {
     },
 }
 
-/// Why a part of what is found about an alternative is missing.
+/// Reason why a part of what is found about an alternative is missing.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum JudgeError {
     /// The rig cannot be computed with.
@@ -98,7 +98,7 @@ pub enum JudgeError {
     /// Its controller is no transfer function.
     #[error(transparent)]
     Control(#[from] ControlError),
-    /// It has no hose of the size that it asks for.
+    /// No hose of the requested size.
     #[error(transparent)]
     NoHose(#[from] NoHose),
     /// No hose can be sized.
@@ -118,7 +118,7 @@ pub enum JudgeError {
     Simulate(#[from] SimulateError),
 }
 
-/// Why `[sizing]` finds no hose for an alternative that takes the one it finds.
+/// Reason why `[sizing]` finds no hose for an alternative that takes the one it finds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoHose {
     /// Something rejects each of them.

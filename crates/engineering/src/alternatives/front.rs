@@ -87,23 +87,23 @@ pub struct FrontValue {
     pub digits: usize,
 }
 
-/// Why it is not known whether a point satisfies every specification.
+/// Reason why it is not known whether a point satisfies every specification.
 #[derive(Clone, Debug)]
 pub enum FeasibilityUnknown {
     /// The alternative cannot be prepared with this value.
     NotPrepared(AlternativesError),
-    /// It has no design.
+    /// No design.
     NotDesigned(JudgeError),
     /// Its design does not decide it.
     Undecided(DesignVerdict),
 }
 
-/// Why a point has no value in a column.
+/// Reason why a point has no value in a column.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoFrontValue {
     /// The alternative cannot be prepared with the value that is swept.
     NotPrepared(AlternativesError),
-    /// It has no such column.
+    /// No such column.
     NoColumn,
     /// The column has no number.
     NoNumber(NoNumber),
@@ -141,7 +141,7 @@ impl FrontPlan {
     }
 }
 
-/// Why the columns of a front are invalid.
+/// Reason why the columns of a front are invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 enum FrontColumnsError {
     #[error("a front has two or three columns, such as disturbance_peak_n,swept")]

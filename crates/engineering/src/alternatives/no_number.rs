@@ -5,7 +5,7 @@ use crate::linearize::NoClosedImpedance;
 use crate::parts::PartsUnknown;
 use crate::simulate::{RunStatus, Unmeasured};
 
-/// Why a column of an alternative has no number.
+/// Reason why a column of an alternative has no number.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoNumber {
     /// The part of the alternative that it is of is missing.
@@ -54,7 +54,7 @@ impl From<JudgeError> for NoNumber {
     }
 }
 
-/// Why the retracted length of an actuator is not known.
+/// Reason why the retracted length of an actuator is not known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LengthUnknown {
     /// A motor has none.

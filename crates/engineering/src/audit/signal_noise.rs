@@ -25,7 +25,7 @@ pub struct SignalNoise {
     pub signal: NoisySignal,
     /// m/s or Pa rms: noise and rounding of the velocity together, noise of the pressure signal.
     pub rms: f64,
-    /// How the rig moves.
+    /// Motion of the rig.
     pub units: Units,
     /// The largest effects in the family, or why they are not known.
     pub effect: Result<SignalNoiseEffect, UnknownNoiseEffect>,

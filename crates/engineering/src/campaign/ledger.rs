@@ -90,26 +90,26 @@ pub trait RowStore {
     /// All of it.
     ///
     /// # Errors
-    /// Why it cannot be read.
+    /// Reason why it cannot be read.
     fn kept(&mut self) -> Result<String, String>;
 
     /// Keeps this number of bytes from its beginning and drops the rest.
     ///
     /// # Errors
-    /// Why it cannot be cut.
+    /// Reason why it cannot be cut.
     fn cut(&mut self, bytes: usize) -> Result<(), String>;
 
     /// Adds to its end.
     ///
     /// # Errors
-    /// Why it cannot be written.
+    /// Reason why it cannot be written.
     fn append(&mut self, text: &str) -> Result<(), String>;
 
     /// Rows that wait for an earlier one, as stored by [`RowStore::keep_ahead`]; anything else
     /// there is ignored.
     ///
     /// # Errors
-    /// Why they cannot be read.
+    /// Reason why they cannot be read.
     fn ahead(&mut self) -> Result<String, String> {
         Ok(String::new())
     }
@@ -118,7 +118,7 @@ pub trait RowStore {
     /// interruption. A ledger may store none.
     ///
     /// # Errors
-    /// Why they cannot be written.
+    /// Reason why they cannot be written.
     fn keep_ahead(&mut self, _text: &str) -> Result<(), String> {
         Ok(())
     }
@@ -126,7 +126,7 @@ pub trait RowStore {
     /// Deletes them: all are in the table.
     ///
     /// # Errors
-    /// Why they cannot be removed.
+    /// Reason why they cannot be removed.
     fn forget_ahead(&mut self) -> Result<(), String> {
         Ok(())
     }

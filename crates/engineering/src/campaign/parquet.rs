@@ -30,7 +30,7 @@ enum ParquetColumn {
     Single(Vec<Option<f32>>),
 }
 
-/// Why the table cannot be written.
+/// Reason why the table cannot be written.
 #[derive(Debug, thiserror::Error)]
 enum TableError {
     /// Error of the format's library.

@@ -33,7 +33,7 @@ pub(super) struct Prepared {
     log: RefCell<ControllerSamples>,
 }
 
-/// Why a run cannot start.
+/// Reason why a run cannot start.
 #[derive(Debug, thiserror::Error)]
 enum DrawError {
     /// A drawn number is none that the project accepts.

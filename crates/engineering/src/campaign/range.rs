@@ -46,7 +46,7 @@ impl VariedRange {
         }
     }
 
-    /// Why the project would not accept this number.
+    /// Reason why the project would not accept this number.
     pub(super) fn problem(&self, value: f64) -> Option<OutsideRange> {
         let Key { range, dimension, .. } = self.key;
         let outside = || OutsideRange { path: self.path.clone(), value, range, dimension };

@@ -47,7 +47,7 @@ const OF_A_REFERENCE: [Metric; 6] = [
 /// Hexadecimal digits of the sum that ends a row.
 const CHECK_LENGTH: usize = 8;
 
-/// Why a line is not a row that was written here.
+/// Reason why a line is not a row that was written here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NoRow {
     /// It belongs to another campaign, or to none.
@@ -227,7 +227,7 @@ impl CampaignColumns {
     /// The row that a line contains.
     ///
     /// # Errors
-    /// Why it holds none.
+    /// Reason why it holds none.
     pub(super) fn row(&self, line: &str) -> Result<Row, NoRow> {
         let (text, sum) = line.rsplit_once(',').ok_or(NoRow::Other)?;
         if text.split(',').nth(1) != Some(self.mark.as_str()) {

@@ -15,11 +15,11 @@ pub struct OutsideFamily {
 /// Verdict on the loop with the rig itself.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LoopWithRig {
-    /// It is stable and satisfies every specification.
+    /// Stable; every specification is satisfied.
     Satisfied,
-    /// It is unstable.
+    /// Unstable.
     Unstable,
-    /// It violates these specifications, each with its number, from 1, and name.
+    /// Violated specifications, each with its number, from 1, and name.
     Violates(Vec<(usize, SpecificationName)>),
     /// Nothing is proven.
     NotProven,

@@ -74,7 +74,7 @@ pub struct MissingPlants {
     pub count: usize,
     /// Of how many.
     pub of: usize,
-    /// Why the first of them has none.
+    /// Reason why the first of them has none.
     pub reason: DesignError,
 }
 

@@ -137,7 +137,7 @@ impl ProjectDesign {
 /// Reason not to use a designed controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum UnusableController {
-    /// It makes a plant of the family unstable.
+    /// A plant of the family becomes unstable.
     UnstablePlant,
     /// Largest factor by which its prefilter multiplies the reference.
     PrefilterGain(f64),

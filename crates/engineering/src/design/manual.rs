@@ -100,7 +100,7 @@ pub enum ManualPart {
     },
 }
 
-/// Why a law has no such words.
+/// Reason why a law has no such words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ManualGap {
     /// It is a function of z.

@@ -281,7 +281,7 @@ pub(super) fn is_linear(name: &str) -> bool {
     LINEAR_PARAMETERS.iter().any(|parameter| parameter.key.name == name)
 }
 
-/// Why a number does not affect the plant.
+/// Reason why a number does not affect the plant.
 fn reason(path: &str, project: &Project) -> NoEffect {
     if LINEAR_PARAMETERS.iter().any(|parameter| parameter.follows_from(path)) {
         return NoEffect::StatedInstead;

@@ -180,7 +180,7 @@ fn refused(text: &str, problem: &SweepProblem) -> OptionError {
     OptionError { option: "sweep", text: text.to_string(), message: problem.to_string() }
 }
 
-/// What is invalid about a sweep.
+/// Fault of a requested sweep.
 #[derive(Debug, thiserror::Error)]
 enum SweepProblem {
     #[error("a sweep has the form KEY=FROM..TO, such as line.length=0.5 m..3 m")]

@@ -79,7 +79,7 @@ pub struct LeftOut {
     pub reason: Unusable,
 }
 
-/// Why a frequency is left out.
+/// Reason why a frequency is left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unusable {
     /// The input has no power there.

@@ -45,7 +45,7 @@ impl EmptyAccumulator {
     }
 }
 
-/// What is wrong with a precharge, and what to do about it.
+/// Fault of a precharge, and its remedy.
 #[derive(Debug, thiserror::Error)]
 enum EmptyGas {
     #[error(

@@ -54,7 +54,7 @@ impl fmt::Display for LawPlace {
     }
 }
 
-/// Why a declared controller or prefilter is not a transfer function.
+/// Reason why a declared controller or prefilter is not a transfer function.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ControlError {
     /// The text is not a ratio of polynomials.

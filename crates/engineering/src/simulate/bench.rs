@@ -44,7 +44,7 @@ pub struct ControlledMachine {
     pub line_limits: [LineLimits; 2],
     /// Pa absolute, below which the oil cavitates.
     pub vapour_pressure_pa: f64,
-    /// How the rig moves.
+    /// Motion of the rig.
     pub units: Units,
 }
 

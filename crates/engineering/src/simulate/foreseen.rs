@@ -64,7 +64,7 @@ fn files_of(index: usize, scenario: &Scenario) -> Vec<(String, &str)> {
     files
 }
 
-/// What no controller can bring about in a scenario, or a recording that is absent.
+/// Signal of a scenario that no controller can produce, or an absent recording.
 #[derive(Clone, Debug)]
 pub enum Foreseen {
     /// A recording that no command uses and that is not there.
@@ -75,7 +75,7 @@ pub enum Foreseen {
         index: usize,
         /// Name of the scenario.
         name: String,
-        /// What the rig cannot follow.
+        /// Signal that the rig cannot follow.
         beyond: BeyondRig,
     },
 }

@@ -47,7 +47,7 @@ pub struct FrequencyRequest {
 /// Responses of a machine at its operating point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MachineResponses {
-    /// How the rig moves.
+    /// Motion of the rig.
     pub units: Units,
     /// Equilibrium position of the piston, m.
     pub position_m: f64,

@@ -135,7 +135,7 @@ fn of_file(
     Some(declared.signals.iter().zip(numbers).map(measurement).collect())
 }
 
-/// What is wrong with a file of measurements, and what its scenario says of its times.
+/// Fault of a file of measurements, and a remark on its times.
 #[derive(Debug, thiserror::Error)]
 enum MeasuredProblem {
     #[error("no row lies within the scenario")]

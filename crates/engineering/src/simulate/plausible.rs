@@ -10,7 +10,7 @@ const BEYOND: f64 = 10.0;
 /// The range of what would be plausible, over what the rig holds.
 const USUAL: [f64; 2] = [1e-3, 1.5];
 
-/// What holds a quantity in a rig, as a clause before its value.
+/// Part that bounds a quantity of a rig, as a clause before the bound.
 #[derive(Clone, Copy, Debug, thiserror::Error)]
 enum Holder {
     #[error("the motor holds")]
@@ -37,7 +37,7 @@ struct ImplausibleColumn {
     held: String,
 }
 
-/// What to do about such a column.
+/// Remedy for such a column.
 #[derive(Debug, thiserror::Error)]
 enum ColumnCure {
     #[error("is it the right column, in the unit that its heading says?")]
@@ -50,7 +50,7 @@ enum ColumnCure {
     OtherUnitOfSmall(String),
 }
 
-/// What the rig holds of a quantity, in SI, and the part of it.
+/// Bound of a quantity on this rig, SI, and the part that sets it.
 fn held(actuator: &DeclaredActuator, dimension: &Dimension) -> Option<(f64, Holder)> {
     let is = |one: &Dimension| std::ptr::eq(dimension, one);
     let pressure = actuator.supply.pressure;

@@ -16,7 +16,7 @@ pub struct ScenarioRequirement {
     pub reached: Result<ReachedStep, NotJudged>,
 }
 
-/// Why runs say nothing of a requirement.
+/// Reason why runs say nothing of a requirement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotJudged {
     /// The scenario has no step of the reference, or none of the required size.

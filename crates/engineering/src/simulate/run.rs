@@ -166,7 +166,7 @@ impl ScenarioRun {
         self.run_status() == RunStatus::Completed
     }
 
-    /// Why and when it ended early or diverged; `None` if it did neither.
+    /// Reason and time of an early end or a divergence; `None` if there is neither.
     pub fn stopped(&self) -> Option<StoppedRun> {
         StoppedRun::of(self.status).or_else(|| self.divergence.as_ref().map(StoppedRun::diverged))
     }

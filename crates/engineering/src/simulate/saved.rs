@@ -55,7 +55,7 @@ pub enum NotSaved {
     Motor,
     /// The states of a rig with a linkage are not saved.
     Linkage,
-    /// What is in transit in a delay or along a line is not a state.
+    /// A signal is in transit in a delay or along a line, which is not a state.
     InTransit,
     /// The run ends between two samples of the controller.
     BetweenSamples,
@@ -197,7 +197,7 @@ fn moved_before(root: &TreeNode) -> Option<(f64, Place)> {
     }
 }
 
-/// What is wrong with a saved state.
+/// Fault of a saved state.
 #[derive(Debug, thiserror::Error)]
 enum SavedProblem {
     #[error(

@@ -137,7 +137,7 @@ impl TrackingWish {
         Some(reached <= most + ROUNDED * most.max(1.0))
     }
 
-    /// The same of the settling time; `None` also where the two bands differ.
+    /// True where the settling time satisfies it; `None` also where the two bands differ.
     pub fn settling_satisfied(&self, metrics: &Metrics) -> Option<bool> {
         let most = self.settling_time_s?;
         metrics.overshoot_percent.ok()?;

@@ -28,7 +28,7 @@ const ROUNDED: f64 = 1.001;
 /// Acceptable length of a line where the project states none, m.
 const HOSE_LENGTH: [f64; 2] = [0.1, 10.0];
 
-/// Why a project cannot be sized.
+/// Reason why a project cannot be sized.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SizingError {
     /// The rig cannot be computed with.

@@ -125,7 +125,7 @@ pub enum SizingReason {
     SteadyStateGain {
         /// Steady-state gain K_SS at the null flow-pressure coefficient.
         at_null: f64,
-        /// The same at its largest.
+        /// Steady-state gain at the largest flow-pressure coefficient.
         at_largest: f64,
     },
 }

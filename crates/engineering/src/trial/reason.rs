@@ -1,4 +1,4 @@
-//! What a run of a machine shows against its linear loop, and which machine it was, as facts.
+//! Findings on the runs of a machine against its linear loop, as facts.
 
 use super::run::Leg;
 use crate::plant_names::NamedPlant;
@@ -24,7 +24,7 @@ pub enum TrialMachine {
     },
 }
 
-/// What a plant is the worst of.
+/// Criterion by which a plant is the worst.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum WorstOf {
     /// A specification.
@@ -35,10 +35,10 @@ pub enum WorstOf {
     RequiredStep,
 }
 
-/// What a run shows against the linear loop, and the cause of a difference.
+/// Result of a run compared with the linear loop, and the cause of a difference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrialReason {
-    /// What it shows.
+    /// Result.
     pub finding: TrialFinding,
     /// The cause of a difference, where it was sought and found.
     pub cause: Option<DifferenceCause>,
@@ -50,7 +50,7 @@ impl From<TrialFinding> for TrialReason {
     }
 }
 
-/// What a run of a machine shows against the linear loop.
+/// Result of a run compared with the linear loop.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TrialFinding {
     /// Neither the linear loop nor the machine settles.
@@ -73,7 +73,7 @@ pub enum TrialFinding {
     Unsettled {
         /// The step after which it does not.
         leg: Leg,
-        /// What it does in the end; `None` where that is not known.
+        /// Final behaviour; `None` where it is not known.
         end: Option<UnsettledEnd>,
     },
     /// The machine overshoots.
@@ -84,7 +84,7 @@ pub enum TrialFinding {
         leg: Leg,
         /// Overshoot of the linear loop, percent; `None` where it is not known.
         linear: Option<f64>,
-        /// What else counts.
+        /// Remark on the run.
         note: OvershootNote,
     },
     /// The settling time differs.
@@ -99,21 +99,21 @@ pub enum TrialFinding {
     },
 }
 
-/// What a force that does not settle does in the end.
+/// Final behaviour of a force that does not settle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum UnsettledEnd {
-    /// It comes to rest off its reference.
+    /// Rest off the reference.
     AtRest {
         /// Force, N.
         force: f64,
         /// Distance from the reference, percent of the step.
         off_percent: f64,
     },
-    /// It swings between these forces, N.
+    /// Oscillation between these forces, N.
     Swings([f64; 2]),
 }
 
-/// What counts about a run that overshoots.
+/// Remark on a run that overshoots.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum OvershootNote {
     /// The overshoot alone.
@@ -135,7 +135,7 @@ pub enum DifferenceCause {
     Waves {
         /// Frequency at which a line is a quarter wave long, rad/s.
         quarter_wave: f64,
-        /// How a wall of these lines may be declared to damp; `None` where none can.
+        /// Declaration by which a wall of these lines damps; `None` where none does.
         wall: Option<DampingWall>,
     },
     /// Something other than waves: with lumped lines the same steps differ as well.
@@ -153,23 +153,23 @@ pub enum DampingWall {
     SegmentsWithRelaxationTime,
 }
 
-/// What a trial does not drive.
+/// Plant or step that a trial does not simulate.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NotDriven {
     /// A plant without a rig.
     Plant {
-        /// What it is the worst of.
+        /// Criterion by which the plant is the worst.
         of: WorstOf,
         /// The plant.
         plant: NamedPlant,
-        /// Why it has no rig.
+        /// Reason why it has no rig.
         reason: NoRig,
     },
     /// A smaller step of a scenario, from one force to the other, N.
     SmallerStep([f64; 2]),
 }
 
-/// Why a plant has no rig.
+/// Reason why a plant has no rig.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NoRig {
     /// The plant is one in motion.

@@ -117,7 +117,7 @@ pub struct TrialRun {
     pub machine_response: StepResponse,
     /// The judgement.
     pub agreement: Agreement,
-    /// What the run shows, and the cause of a difference.
+    /// Result of the run, and the cause of a difference.
     pub reason: TrialReason,
     /// Where the lines of a machine with waves begin to oscillate, rad/s; `None` for one without.
     pub quarter_wave_rad_per_s: Option<f64>,

@@ -70,7 +70,7 @@ pub(super) fn judge_error_words(error: &JudgeError) -> String {
     }
 }
 
-/// Why a column has no number.
+/// Reason why a column has no number.
 pub(super) fn no_number_words(reason: &NoNumber) -> String {
     let fixed = match reason {
         NoNumber::NotJudged(error) => return judge_error_words(error),
@@ -113,7 +113,7 @@ pub(super) fn is_unstated(reason: &NoNumber) -> bool {
     }
 }
 
-/// Why the retracted length of an actuator is not known.
+/// Reason why the retracted length of an actuator is not known.
 fn length_unknown_words(reason: LengthUnknown) -> &'static str {
     match reason {
         LengthUnknown::Motor => "a motor has no retracted length",
@@ -124,7 +124,7 @@ fn length_unknown_words(reason: LengthUnknown) -> &'static str {
     }
 }
 
-/// Why the parts of a rig have no known sum.
+/// Reason why the parts of a rig have no known sum.
 pub(super) fn parts_unknown_words(reason: &PartsUnknown) -> String {
     match reason {
         PartsUnknown::NoPrice => "no part states a price".to_string(),
@@ -154,7 +154,7 @@ fn part_name(part: &UnstatedPart) -> String {
     }
 }
 
-/// Why it is not known whether an alternative satisfies every specification.
+/// Reason why it is not known whether an alternative satisfies every specification.
 pub(super) fn undecided_words(one: &JudgedAlternative) -> String {
     match &one.design {
         Ok(view) => verdict_sentence(&view.verdict(), one.loaded.project.motion()),
@@ -162,7 +162,7 @@ pub(super) fn undecided_words(one: &JudgedAlternative) -> String {
     }
 }
 
-/// The same of a point of a front.
+/// Reason why it is not known whether a point of a front satisfies every specification.
 pub(super) fn unknown_words(reason: &FeasibilityUnknown, motion: MotionKind) -> String {
     match reason {
         FeasibilityUnknown::NotPrepared(error) => error.to_string(),
@@ -171,7 +171,7 @@ pub(super) fn unknown_words(reason: &FeasibilityUnknown, motion: MotionKind) -> 
     }
 }
 
-/// Why a point of a front has no value in a column.
+/// Reason why a point of a front has no value in a column.
 pub(super) fn no_front_value_words(reason: &NoFrontValue) -> String {
     match reason {
         NoFrontValue::NotPrepared(error) => error.to_string(),

@@ -30,7 +30,7 @@ pub(crate) fn body_of_lines(lines: &ChosenLines, motion: MotionKind) -> Object {
         .maybe("hindrance", lines.hindrance.as_ref().map(|one| hindrance_words(one, motion)))
 }
 
-/// Why no model with waves is computed.
+/// Reason why no model with waves is computed.
 pub(crate) fn hindrance_words(hindrance: &WavesHindrance, motion: MotionKind) -> &str {
     match hindrance {
         WavesHindrance::FreeLoad => {

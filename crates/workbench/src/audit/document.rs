@@ -178,7 +178,7 @@ fn allowed_words(tolerance_db: f64) -> String {
     format!(", within the {tolerance_db} dB allowed")
 }
 
-/// Why claims are neither proven nor refuted, each reason once.
+/// Reason why claims are neither proven nor refuted, each reason once.
 fn not_proven(view: &ProjectAudit, proof: &Proof) -> Vec<String> {
     let named = proof
         .specifications

@@ -100,7 +100,7 @@ pub(crate) fn position_words(taken: &CommonPosition) -> String {
     format!("{position} of {stroke} of stroke")
 }
 
-/// The same, with what includes other positions.
+/// Position of the plants, and the key that includes other positions.
 pub(super) fn position_sentence(taken: &CommonPosition) -> String {
     format!(
         "{}: every plant is taken at {}. Elsewhere the oil is stiffer or softer: nothing is said of a loop there, unless `position` in [family.operating_region] includes it.",

@@ -92,7 +92,7 @@ pub(crate) fn missed(finding: &TimeFinding) -> Vec<String> {
     missed
 }
 
-/// Why no step was computed.
+/// Reason why no step was computed.
 pub(crate) fn unexamined_words(why: &Unexamined) -> String {
     match why {
         Unexamined::NoPrefilter => {

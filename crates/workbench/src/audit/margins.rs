@@ -8,11 +8,11 @@ use crate::document::{Cell, Table};
 use crate::plant_names::PlantNames;
 use crate::quantity::{DisplayUnit, significant};
 
-/// Why there are none of the nominal loop.
+/// Reason why there are none of the nominal loop.
 pub(super) const NO_NOMINAL: &str = "no margin: the nominal loop is not known to be stable";
-/// Why there are none of the family.
+/// Reason why there are none of the family.
 const NO_FAMILY: &str = "no margin: not every plant is known to be stable";
-/// Why there is no frequency.
+/// Reason why there is no frequency.
 const UNLIMITED: &str = "nothing limits it";
 
 /// The worst of the family, and the same keys of both.

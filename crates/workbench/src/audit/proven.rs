@@ -1,4 +1,4 @@
-//! What is proven, and why a claim is not, in words.
+//! Proven claims, and the reasons why others are not, in words.
 
 use phea_qft::proof::{NotProven, Proof, ProofRegion, Standing};
 
@@ -73,7 +73,7 @@ fn part_of(view: &ProjectAudit, proof: &Proof, region: &ProofRegion) -> String {
     if sides.is_empty() { String::new() } else { format!(", for {}", sides.join(", ")) }
 }
 
-/// Where the operating point of each plant is sought: a remark on why it is not enclosed.
+/// Remark on the operating point of each plant, which is not enclosed.
 fn sought_point(view: &ProjectAudit) -> &'static str {
     let headings = view.names.headings();
     let sought = ["operating_point.load_force", "operating_point.load_pressure", "operating_point.velocity"];

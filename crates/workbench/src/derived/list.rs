@@ -5,7 +5,7 @@ use crate::quantity::{Dimension, MotionKind};
 pub(super) struct List {
     entries: Vec<Derived>,
     group: &'static str,
-    /// How the rig moves.
+    /// Motion of the rig.
     pub(super) motion: MotionKind,
 }
 

@@ -5,7 +5,7 @@ pub struct Derived {
     pub group: &'static str,
     /// Name, unique, with dots between its parts.
     pub name: String,
-    /// The same in words, without its group.
+    /// Name in words, without its group.
     pub words: String,
     /// Symbol as in the notation, such as `K_H`.
     pub symbol: &'static str,

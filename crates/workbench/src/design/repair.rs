@@ -69,7 +69,7 @@ fn added(view: &ProjectDesign, repair: &Repair) -> Vec<String> {
     sentences
 }
 
-/// Why the steps of the nearest controller did not lead to it, where they are missed.
+/// Reason why the steps of the nearest controller did not lead to it, where they are missed.
 fn not_led(found: &ProjectDesign) -> Option<String> {
     let misses = found.designed.view.misses_in_time() || found.exceeded_command().is_some();
     misses.then(|| {

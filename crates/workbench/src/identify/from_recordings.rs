@@ -22,7 +22,7 @@ use crate::project::{
 };
 use crate::source::{Memory, Source};
 
-/// Why the valve of a project is not taken from its recordings.
+/// Reason why the valve of a project is not taken from its recordings.
 #[derive(Debug, thiserror::Error)]
 pub enum ValveInUseError {
     /// Nothing was identified.

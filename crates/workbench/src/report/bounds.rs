@@ -145,7 +145,7 @@ pub(super) fn group<'a>(name: &str, bounds: &'a [Bound]) -> Vec<BoundGroup<'a>> 
     if bounds.is_empty() { vec![] } else { vec![group] }
 }
 
-/// Why a loop that is met may lie beyond a bound.
+/// Reason why a loop that is met may lie beyond a bound.
 pub(super) const WITHIN_TOLERANCE: &str = " Bounds are drawn without the tolerance of the verdict: where one is steep, a loop that is met within it may lie some decibels beyond.";
 
 /// L0 over the frequencies around those of the design; `None` without a controller or a nominal

@@ -39,7 +39,7 @@ pub(super) fn is_asked_for(project: &Project) -> bool {
 /// The result of the design.
 pub(super) enum Designed {
     Found(Box<FoundDesign>),
-    /// Why there is none, in sentences.
+    /// Reason why there is none, in sentences.
     Nothing(Vec<String>),
     /// Required steps that no controller makes on the rig, in sentences.
     Impossible(Vec<String>),

@@ -1,4 +1,4 @@
-//! Why no element passes the point that is asked for, in words.
+//! Reason why no element passes the point that is asked for, in words.
 
 use phea_dynamics::portable;
 use phea_qft::manual_shaping::{ElementPattern, NeededCoordinate, PassError, Reach};
@@ -20,7 +20,7 @@ pub(super) fn element_words(pattern: ElementPattern) -> &'static str {
     }
 }
 
-/// Why no element is found.
+/// Reason why no element is found.
 pub fn pass_words(error: &PassError) -> String {
     match error {
         PassError::Frequency { frequency_rad_per_s } => {

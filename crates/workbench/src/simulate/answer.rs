@@ -63,7 +63,7 @@ fn adjustment(run: &ScenarioRun) -> Object {
 
 const NOT_AMPLIFIED: &str = "no mode grew so much that errors within the tolerance may be visible";
 const FOLLOWED: &str = "a deviation was carried along the run, or fewer than two steps pass a kink";
-/// Why there is no work of an adjustment, or no temperature.
+/// Reason why there is no work of an adjustment, or no temperature.
 const NOT_ADJUSTED: &str = "no setting of an accumulator moves, and no valve leads to its gas";
 const NO_GAS_VALVE: &str = "no valve lies between a chamber and its gas";
 const NO_HEAT: &str = "a polytropic exponent gives no temperature: state `thermal_time_constant`";

@@ -163,7 +163,7 @@ pub(super) fn tracking_error(record: &Record) -> Vec<f64> {
     pairs.map(|(reference, force)| reference - force).collect()
 }
 
-/// What the axis of that error is called.
+/// Label of the axis of that error.
 pub(super) fn error_title(motion: MotionKind) -> &'static str {
     motion.either("F_ref - F_e", "T_ref - T_e")
 }

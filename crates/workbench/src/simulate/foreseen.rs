@@ -1,11 +1,11 @@
-//! What a rig cannot follow of its scenarios, in sentences.
+//! Signals of scenarios that a rig cannot follow, in sentences.
 
 use super::force_limits::{exceeded_force, force};
 use super::{BeyondRig, Foreseen};
 use crate::project::LateError;
 use crate::quantity::{LENGTH, TIME, Units, display};
 
-/// What is foreseen, at its key.
+/// Foreseen obstacle, at its key.
 pub(crate) fn foreseen_late(foreseen: Foreseen, units: &Units) -> LateError {
     match foreseen {
         Foreseen::AbsentRecording(error) => error,

@@ -4,7 +4,7 @@ use super::{NotJudged, ScenarioRequirement, ScenarioRun, reached_words, required
 use crate::answer::Object;
 use crate::project::Project;
 
-/// Why runs say nothing of a requirement.
+/// Reason why runs say nothing of a requirement.
 pub(crate) fn not_judged_words(why: NotJudged) -> &'static str {
     match why {
         NotJudged::NoStep => "the scenario has no such step of the reference",

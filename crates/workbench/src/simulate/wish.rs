@@ -25,7 +25,7 @@ pub(crate) fn required_words(wish: &TrackingWish) -> String {
     all.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
-/// What a step reaches of what is required.
+/// Values that a step reaches of the required ones.
 pub(crate) fn reached_words(wish: &TrackingWish, reached: &ReachedStep) -> String {
     if reached.overshoot_percent == f64::INFINITY {
         return "stopped before the end of the run".to_string();

@@ -51,7 +51,7 @@ pub(super) fn setting_words(influence: &Influence) -> String {
     unit.with_symbol(influence.values.map(|value| unit.number(value, 4)).join(" · "))
 }
 
-/// Why it is not known how a spring is wound.
+/// Reason why it is not known how a spring is wound.
 pub(crate) fn coil_unknown_words(reason: CoilUnknown) -> &'static str {
     match reason {
         CoilUnknown::NotStated => "not stated: sizing.other_means.coil",

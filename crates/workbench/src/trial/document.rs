@@ -230,7 +230,7 @@ fn remaining_words(run: &TrialRun, amplitude_n: f64) -> String {
     format!("±{}", run.units.force.short(if is_nothing { 0.0 } else { amplitude_n }, 2))
 }
 
-/// Why a machine does not behave like the linear loop, and which plants were not driven.
+/// Reason why a machine does not behave like the linear loop, and which plants were not driven.
 fn reasons(trial: &Trial) -> Vec<String> {
     let others = trial.runs.iter().filter(|run| run.agreement != Agreement::Agrees);
     let told = others.map(|run| format!("{}: {}", run_name(run), reason_words(&run.reason, run.units)));

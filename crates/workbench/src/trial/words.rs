@@ -81,7 +81,7 @@ pub(crate) fn percent_words(percent: f64) -> String {
     if percent < 0.01 { "0 %".to_string() } else { format!("{} %", significant(percent, 3)) }
 }
 
-/// What a run shows, with the cause of a difference.
+/// Result of a run, with the cause of a difference.
 pub(crate) fn reason_words(reason: &TrialReason, units: Units) -> String {
     let finding = finding_words(&reason.finding, units);
     match &reason.cause {
@@ -90,7 +90,7 @@ pub(crate) fn reason_words(reason: &TrialReason, units: Units) -> String {
     }
 }
 
-/// What a run shows, without the range in which its force swings and without the frequency of the
+/// Result of a run, without the range in which its force swings and without the frequency of the
 /// waves in its lines.
 pub(crate) fn brief_reason(reason: &TrialReason, units: Units) -> String {
     let finding = match &reason.finding {
@@ -117,7 +117,7 @@ fn milliseconds(time_s: f64) -> String {
 
 const NEITHER_SETTLES: &str = "neither the linear loop nor the nonlinear simulation settles";
 
-/// What a run shows against its linear loop.
+/// Result of a run compared with its linear loop.
 pub(crate) fn finding_words(finding: &TrialFinding, units: Units) -> String {
     match finding {
         TrialFinding::NeitherSettles { overshoots: None } => NEITHER_SETTLES.to_string(),
@@ -220,7 +220,7 @@ fn cause_of_difference(cause: &DifferenceCause) -> String {
     }
 }
 
-/// What a trial does not drive.
+/// Plant or step that a trial does not simulate.
 fn not_driven_words(one: &NotDriven, units: Units) -> String {
     match one {
         NotDriven::Plant { of, plant, reason } => {

@@ -40,7 +40,7 @@ pub(super) struct ProbedPlants {
     pub(super) plants: Vec<InnerPlant>,
     /// Their parameters.
     values: Vec<Vec<f64>>,
-    /// Why others have no responses.
+    /// Reason why others have no responses.
     refused: Vec<DesignError>,
 }
 
@@ -108,7 +108,7 @@ impl ProbedPlants {
     /// The same where every plant has responses.
     ///
     /// # Errors
-    /// Why the first of the others has none.
+    /// Reason why the first of the others has none.
     pub(super) fn complete(mut self) -> Result<ProbedPlants, DesignError> {
         if self.refused.is_empty() { Ok(self) } else { Err(self.refused.swap_remove(0)) }
     }
