@@ -2,9 +2,9 @@
 
 use super::DeclaredActuator;
 use super::cross_port::DeclaredOrifice;
-use super::key::{key, plain};
-use super::visitor::{Variants, Visitor};
 use phea_quantity::{PRESSURE, RATIO, VOLUME};
+use phea_table::{Variants, Visitor};
+use phea_table::{key, plain};
 
 /// Adjusted part of an accumulator, with a setting from 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,7 +1,7 @@
 //! Table `[[alternative]]`: the project with other values, for comparison.
 
-use super::key::plain;
-use super::visitor::Visitor;
+use phea_table::Visitor;
+use phea_table::plain;
 
 /// Name under which the project itself is judged among its alternatives.
 pub const AS_DECLARED: &str = "as declared";

@@ -8,9 +8,9 @@ mod line;
 
 pub use line::{LineBench, LineSide};
 
-use super::key::{Key, key, plain};
-use super::visitor::Visitor;
 use phea_quantity::{FLOW, PRESSURE, RATIO, TEMPERATURE, TEMPERATURE_COEFFICIENT, TIME, VOLTAGE};
+use phea_table::Visitor;
+use phea_table::{Key, key, plain};
 
 /// Waveform of the command over a cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,8 +1,8 @@
 //! Table `[campaign]`: the variations of a Monte Carlo campaign.
 
-use super::key::{Key, key, plain};
-use super::visitor::Visitor;
 use phea_quantity::RATIO;
+use phea_table::Visitor;
+use phea_table::{Key, key, plain};
 
 /// Varied numbers and their distributions.
 #[derive(Clone, Debug, Default, PartialEq)]

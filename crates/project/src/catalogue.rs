@@ -22,4 +22,4 @@ pub use dash_size::DASH_SIZES;
 pub use read::load;
 
 pub use crate::catalogue_entry::{Catalogue, CatalogueEntry};
-pub use crate::catalogue_kind::CatalogueKind;
+pub use phea_table::CatalogueKind;

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use super::catalogue_kind::CatalogueKind;
 use super::line::HoseProperties;
 use super::tree::TreeNode;
+use phea_table::CatalogueKind;
 
 /// Components by name.
 #[derive(Clone, Debug, Default)]

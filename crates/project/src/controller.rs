@@ -11,15 +11,15 @@ pub(crate) use pressure_feedback::GAIN as GAIN_OF_PRESSURES;
 pub use pressure_feedback::{DeclaredPressureFeedback, PressureSignal};
 pub use rational_function::RationalFunction;
 
-use super::key::{key, plain};
 use super::reader::Reader;
 use super::text::Findings;
 use super::tree::TreeNode;
-use super::visitor::Visitor;
 use crate::catalogue_entry::Catalogue;
 use phea_dynamics::controller::{AntiWindup, CoefficientFormat};
 use phea_dynamics::linear::Discretization;
 use phea_quantity::{ANGULAR_FREQUENCY, FORCE, RATIO, TIME, VOLTAGE, VOLTAGE_PER_VELOCITY};
+use phea_table::Visitor;
+use phea_table::{key, plain};
 
 /// Transfer function: a ratio of polynomials, or elements in series.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,9 +1,9 @@
 //! Costs and masses of parts: `price` and `mass` in the declaration of a part, for a line also per
 //! length.
 
-use super::key::{key, plain};
-use super::visitor::Visitor;
 use phea_quantity::{MASS, MASS_PER_LENGTH, Price, PricedBy};
+use phea_table::Visitor;
+use phea_table::{key, plain};
 
 /// Stated cost and mass of a part.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

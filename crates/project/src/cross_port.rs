@@ -1,9 +1,9 @@
 //! Table `[cross_port]`: a valve between the chambers.
 
 use super::cost::PartCost;
-use super::key::{Key, key, plain};
-use super::visitor::{Variants, Visitor};
 use phea_quantity::{CAPACITY, FLOW, FLOW_PRESSURE_COEFFICIENT, LENGTH, PRESSURE, RATIO, STIFFNESS};
+use phea_table::{Key, key, plain};
+use phea_table::{Variants, Visitor};
 
 /// Valve between the chambers, at the cylinder.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -2,14 +2,14 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use super::key::{key, plain};
 use super::misfit::DeclaredMisfit;
-use super::visitor::{Variants, Visitor};
-use crate::catalogue_kind::CatalogueKind;
 use phea_quantity::{
     AREA, DAMPING, FLOW_PRESSURE_COEFFICIENT, FORCE, INVERSE_VELOCITY, LENGTH, MASS, RATIO, STIFFNESS,
     VELOCITY, VOLUME,
 };
+use phea_table::CatalogueKind;
+use phea_table::{Variants, Visitor};
+use phea_table::{key, plain};
 
 /// Cylinder; `a` is the end x = 0, and x grows from A to B.
 #[derive(Clone, Debug, Default, PartialEq)]

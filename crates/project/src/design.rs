@@ -1,10 +1,10 @@
 //! Table `[design]`: the design of a controller.
 
 use super::controller::DeclaredElement;
-use super::key::{key, plain};
-use super::visitor::{Variants, Visitor};
 use phea_dynamics::controller::{NamedStructure, Objective};
 use phea_quantity::{ANGULAR_FREQUENCY, GAIN, RATIO, TIME};
+use phea_table::{Variants, Visitor};
+use phea_table::{key, plain};
 
 /// Objective of a design, and the set of controllers.
 #[derive(Clone, Debug, PartialEq)]

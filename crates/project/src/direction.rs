@@ -1,10 +1,10 @@
 //! Table `[[uncertainty_direction]]`: numbers that are uncertain together.
 
 use super::Uncertain;
-use super::key::{AcceptedRange, Key, key, plain};
-use super::visitor::Visitor;
 use phea_dynamics::uncertain_plant::Spacing;
 use phea_quantity::RATIO;
+use phea_table::Visitor;
+use phea_table::{AcceptedRange, Key, key, plain};
 
 /// Variable z of a direction.
 pub const DIRECTION: Key = key("direction", &RATIO, "Standard deviations along a direction.");

@@ -1,10 +1,10 @@
 //! Tables `[force_sensor]`, `[velocity_sensor]` and `[load]`.
 
-use super::key::{key, plain};
-use super::visitor::{Variants, Visitor};
 use phea_quantity::{
     ANGULAR_FREQUENCY, DAMPING, FORCE, INVERSE_VELOCITY, LENGTH, MASS, RATIO, STIFFNESS, TIME, VELOCITY,
 };
+use phea_table::{Variants, Visitor};
+use phea_table::{key, plain};
 
 /// Load cell.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,9 +1,9 @@
 //! Table `[family]`: the examined plants of the box, or measured plants.
 
 use super::Uncertain;
-use super::key::{key, plain};
-use super::visitor::Visitor;
 use phea_quantity::{FORCE, LENGTH, RATIO, VELOCITY};
+use phea_table::Visitor;
+use phea_table::{key, plain};
 
 /// Members of the family. By default the grid of `[uncertainty]`.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -2,11 +2,11 @@
 
 use super::adjustment::{AdjustmentKind, DeclaredAdjustment};
 use super::cost::PartCost;
-use super::key::{key, plain};
-use super::visitor::{Variants, Visitor};
 use phea_quantity::{
     DENSITY, FLOW, KINEMATIC_VISCOSITY, LENGTH, PRESSURE, RATIO, TEMPERATURE, TIME, VOLUME, ZERO_CELSIUS,
 };
+use phea_table::{Variants, Visitor};
+use phea_table::{key, plain};
 
 /// Oil.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,13 +1,13 @@
 //! Table `[identify]`: recorded static tests of the servovalve and the contents of their columns;
 //! recordings of a line and of the cylinder.
 
-use super::key::{key, plain};
-use super::visitor::Visitor;
 use phea_hydraulics::servovalve::{OilLaw, PortCircuit};
 use phea_quantity::{
     self as quantity, Dimension, FLOW, FORCE, PRESSURE, RATIO, TEMPERATURE, TEMPERATURE_COEFFICIENT, TIME,
     VOLTAGE,
 };
+use phea_table::Visitor;
+use phea_table::{key, plain};
 
 /// Static test of ISO 10770-1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

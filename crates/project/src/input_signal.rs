@@ -1,10 +1,10 @@
 //! Functions of time in a scenario: a reference force, an open-loop command, an external force, the
 //! setting of accumulators.
 
-use super::key::{Key, key, plain};
 use super::published::Published;
-use super::visitor::{Variants, Visitor};
 use phea_quantity::{ANGLE, ANGULAR_FREQUENCY, Dimension, FORCE, RATIO, TIME, VOLTAGE};
+use phea_table::{Key, key, plain};
+use phea_table::{Variants, Visitor};
 
 /// Part of a function of time; the parts add up, each zero before it begins. Values and amplitudes
 /// are in the unit of the signal, times in s, frequencies in rad/s. It begins immediately without a

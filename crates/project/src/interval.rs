@@ -1,7 +1,7 @@
 //! Number known within bounds: `5`, or `{ nominal = 5, minimum = 4, maximum = 5 }`.
 
-use super::key::Key;
-use super::visitor::{ValueForm, Visitor};
+use phea_table::Key;
+use phea_table::{ValueForm, Visitor};
 
 /// Number known within bounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,11 +1,11 @@
 //! Keys `limit`, `upper` and `lower` of a specification, in each of their forms.
 
-use super::formula::Formula;
-use super::key::{Key, key, plain};
 use super::plant::Rational;
-use super::visitor::{FormulaShape, ValueForm, Visitor};
 use phea_dynamics::time_response::SettlingRule;
 use phea_quantity::{ANGLE, ANGULAR_FREQUENCY, GAIN, PERCENT, RATIO, TIME};
+use phea_table::Formula;
+use phea_table::{FormulaShape, ValueForm, Visitor};
+use phea_table::{Key, key, plain};
 
 /// Limit over frequency.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,13 +3,13 @@
 use super::cost::LineCost;
 use super::fluid::DeclaredAccumulator;
 use super::interval::BoundedNumber;
-use super::key::{key, plain};
 use super::line_motion::LineMotion;
 use super::misfit::DeclaredMisfit;
-use super::visitor::{Kinds, Visitor};
-use crate::catalogue_kind::CatalogueKind;
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_quantity::{DENSITY, EXPANSION_SLOPE, LENGTH, PRESSURE, RATIO, VOLUME, VOLUME_PER_LENGTH};
+use phea_table::CatalogueKind;
+use phea_table::{Kinds, Visitor};
+use phea_table::{key, plain};
 
 /// Lines between the valve and the chambers.
 #[derive(Clone, Debug, Default, PartialEq)]

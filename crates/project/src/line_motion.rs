@@ -1,9 +1,9 @@
 //! Dynamic model of a line: `model` of `[line]`, and its keys.
 
-use super::key::{Key, key, plain};
-use super::visitor::{Kinds, Variants, Visitor};
 use phea_hydraulics::line::LaminarFriction;
 use phea_quantity::{MASS_PER_LENGTH, RATIO, STRAIN_PER_FORCE, STRAIN_PER_PRESSURE, TIME};
+use phea_table::{Key, key, plain};
+use phea_table::{Kinds, Variants, Visitor};
 
 /// Dynamic model of a line with its parameters.
 #[derive(Clone, Debug, Default, PartialEq)]

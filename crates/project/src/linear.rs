@@ -1,10 +1,10 @@
 //! Table `[linear]`: the linear model's parameters.
 
-use super::key::{Key, key};
-use super::visitor::Visitor;
 use phea_quantity::{
     ANGULAR_FREQUENCY, AREA, DAMPING, FLOW_GAIN, FLOW_PRESSURE_COEFFICIENT, MASS, RATIO, STIFFNESS,
 };
+use phea_table::Visitor;
+use phea_table::{Key, key};
 
 /// Parameters of the linear model that are stated directly.
 #[derive(Clone, Debug, Default, PartialEq)]

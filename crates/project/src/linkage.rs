@@ -1,11 +1,11 @@
 //! Table `[linkage]`: a linkage between the rod and a load that turns about a joint.
 
-use super::key::{key, plain};
-use super::visitor::{Variants, Visitor};
 use phea_hydraulics::linkage::{
     FourBar, LinkageError, LinkageGeometry, LinkageTable, PivotTriangle, ReducedLinkage, STANDARD_GRAVITY,
 };
 use phea_quantity::{ANGLE, LENGTH, MASS};
+use phea_table::{Variants, Visitor};
+use phea_table::{key, plain};
 
 /// Linkage: the angle of the joint grows while the rod extends.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use super::formula::Formula;
-use super::key::{Key, Motions};
-use super::visitor::{FormulaShape, Kinds, NamedNumber, Variants, Visitor};
-use crate::catalogue_kind::CatalogueKind;
 use phea_quantity::{MotionKind, Price, PricedBy};
+use phea_table::CatalogueKind;
+use phea_table::Formula;
+use phea_table::{FormulaShape, Kinds, NamedNumber, Variants, Visitor};
+use phea_table::{Key, Motions};
 
 /// Walks a project without changing it, except for the numbers to be set.
 #[derive(Default)]

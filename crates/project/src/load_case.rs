@@ -1,8 +1,8 @@
 //! Table `[[load_case]]`: other values under which the project and its alternatives are judged
 //! again, such as another load.
 
-use super::key::plain;
-use super::visitor::Visitor;
+use phea_table::Visitor;
+use phea_table::plain;
 
 /// Named settings of the project and of every alternative.
 #[derive(Clone, Debug, Default, PartialEq)]

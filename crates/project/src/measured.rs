@@ -1,9 +1,9 @@
 //! Table `[[scenario.measured]]`: measurements on the rig, for comparison with the simulation.
 
-use super::key::{key, plain};
-use super::visitor::Visitor;
 use phea_hydraulics::signal::Signal;
 use phea_quantity::TIME;
+use phea_table::Visitor;
+use phea_table::{key, plain};
 
 /// File with measured signals.
 #[derive(Clone, Debug, Default, PartialEq)]

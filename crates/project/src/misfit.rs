@@ -1,9 +1,9 @@
 //! Key `misfit` of the valve, of its lines and of the friction: the residual of recordings with the
 //! identified numbers.
 
-use super::key::{key, plain};
-use super::visitor::Visitor;
 use phea_quantity::{RATIO, significant};
+use phea_table::Visitor;
+use phea_table::{key, plain};
 
 /// Greatest misfit of the numbers of a part that were identified from recordings.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -2,9 +2,9 @@
 
 use phea_quantity::{ANGLE, DISPLACEMENT, FLOW_PRESSURE_COEFFICIENT, INERTIA, MotionKind, VOLUME};
 
-use super::key::{Motions, key, plain};
-use super::visitor::Visitor;
 use super::{DeclaredActuator, DeclaredFriction, EndStops};
+use phea_table::Visitor;
+use phea_table::{Motions, key, plain};
 
 /// Hydraulic motor or vane actuator; its angle grows while oil enters chamber A.
 #[derive(Clone, Debug, Default, PartialEq)]

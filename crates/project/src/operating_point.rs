@@ -3,12 +3,12 @@
 
 use std::collections::BTreeMap;
 
-use super::key::{Key, key, plain};
 use super::listing::Listing;
-use super::visitor::Visitor;
 use super::{DeclaredActuator, OperatingRegion, Project, Uncertain, UncertaintyDirection};
 use phea_dynamics::uncertain_plant::Spacing;
 use phea_quantity::{FORCE, LENGTH, PRESSURE, RATIO, VELOCITY, VOLTAGE};
+use phea_table::Visitor;
+use phea_table::{Key, key, plain};
 
 /// Operating point of the linear model; absent parts are mid stroke and null.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,9 +1,9 @@
 //! Table `[plant]`: a plant given as a transfer function instead of an actuator.
 
-use super::formula::Formula;
-use super::key::{Key, key, plain};
-use super::visitor::{FormulaShape, ValueForm, Visitor};
 use phea_quantity::{RATIO, TIME};
+use phea_table::Formula;
+use phea_table::{FormulaShape, ValueForm, Visitor};
+use phea_table::{Key, key, plain};
 
 /// Transfer function in `s` and named parameters.
 #[derive(Clone, Debug, Default, PartialEq)]

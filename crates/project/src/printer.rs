@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::formula::Formula;
-use super::key::{Key, Motions};
 use super::toml_text::{bare_or_quoted, inline, list, quoted};
-use super::visitor::{FormulaShape, Kinds, NamedNumber, Variants, Visitor};
-use crate::catalogue_kind::CatalogueKind;
 use phea_quantity::{self as quantity, MotionKind, Price, PricedBy};
+use phea_table::CatalogueKind;
+use phea_table::Formula;
+use phea_table::{FormulaShape, Kinds, NamedNumber, Variants, Visitor};
+use phea_table::{Key, Motions};
 
 /// Printer of tables; the innermost is the last of `open`.
 pub(crate) struct Printer {

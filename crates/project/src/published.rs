@@ -1,8 +1,8 @@
 //! Published values for a simulated step.
 
-use super::key::{key, plain};
-use super::visitor::Visitor;
 use phea_quantity::{PERCENT, TIME};
+use phea_table::Visitor;
+use phea_table::{key, plain};
 
 /// Published metrics of a step.
 #[derive(Clone, Debug, Default, PartialEq)]

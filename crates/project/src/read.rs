@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use sha2::{Digest, Sha256};
 
 use super::diagnostic::{LateError, Refusal, Severity};
-use super::key::{Key, Motions, key};
 use super::linear::LINEAR_PARAMETERS;
 use super::listing::{KeyEntry, Listing};
 use super::operating_point::operating_numbers;
@@ -20,6 +19,7 @@ use crate::catalogue_entry::Catalogue;
 use crate::source::Source;
 use phea_quantity::spelling::nearest;
 use phea_quantity::{Dimension, MotionKind, RATIO, display};
+use phea_table::{Key, Motions, key};
 
 /// Reads a project file, applies `path=value` settings, and finds names in the catalogue, to which
 /// the given files and folders are added.

@@ -6,7 +6,6 @@ mod values;
 
 use std::collections::BTreeMap;
 
-use super::key::{Key, Motions};
 use super::listing::KeyEntry;
 use super::text::{Findings, Place, RawFinding};
 use super::tree::{Entry, TreeNode, Value};
@@ -14,6 +13,7 @@ use super::{Origin, Provenance};
 use crate::catalogue_entry::Catalogue;
 use phea_quantity::MotionKind;
 use phea_quantity::spelling::nearest;
+use phea_table::{Key, Motions};
 
 /// Reader of the tables of one file.
 pub(crate) struct Reader<'a> {

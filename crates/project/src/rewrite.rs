@@ -17,8 +17,8 @@ use std::collections::BTreeMap;
 use self::surgery::{KeyValues, replaced};
 use super::listing::keys_of_table;
 use super::printer::Printer;
-use super::visitor::Variants;
 use super::{ChosenLines, DeclaredController, DeclaredPressureFeedback, Motions, Prefilter, Transfer};
+use phea_table::Variants;
 
 /// Keys of [controller] and [prefilter] that form a transfer function.
 fn law_keys() -> Vec<&'static str> {

@@ -1,10 +1,10 @@
 //! Table `[[scenario]]`: a simulation.
 
 use super::input_signal::{InputSignal, InputUnit};
-use super::key::{Key, key, plain};
 use super::measured::MeasuredFile;
-use super::visitor::{Variants, Visitor};
 use phea_quantity::{ANGULAR_FREQUENCY, FORCE, LENGTH, PERCENT, PRESSURE, TIME, VELOCITY, VOLTAGE};
+use phea_table::{Key, key, plain};
+use phea_table::{Variants, Visitor};
 
 /// Simulation of the rig.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,9 +1,9 @@
 //! Table `[sensor]`: the dynamics between the controlled output and the input of the controller.
 
-use super::key::key;
 use super::plant::Rational;
-use super::visitor::Visitor;
 use phea_quantity::TIME;
+use phea_table::Visitor;
+use phea_table::key;
 
 /// Dynamics H of the sensor; if absent, 1.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -4,12 +4,12 @@
 use phea_hydraulics::series::{ForceFrom, MOST_SEGMENTS};
 
 use super::cost::PartCost;
-use super::key::{key, plain};
 use super::line::DeclaredLine;
-use super::visitor::{Variants, Visitor};
 use phea_quantity::{
     AREA, DAMPING, DENSITY, INVERSE_VELOCITY, LENGTH, MASS, PRESSURE, PricedBy, RATIO, STIFFNESS, VOLUME,
 };
+use phea_table::{Variants, Visitor};
+use phea_table::{key, plain};
 
 /// Element between force sensor and load.
 #[derive(Clone, Debug, PartialEq)]

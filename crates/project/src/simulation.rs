@@ -1,9 +1,9 @@
 //! Table `[simulation]`: the accuracy of simulations.
 
-use super::key::{key, plain};
-use super::visitor::Visitor;
 use phea_dynamics::simulation::Method;
 use phea_quantity::RATIO;
+use phea_table::Visitor;
+use phea_table::{key, plain};
 
 /// Method, accuracy, random numbers and largest effort.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,12 +1,12 @@
 //! Tables `[sizing]` and `[sizing.other_means]`.
 
-use super::key::{key, plain};
 use super::series::SpringCoil;
-use super::visitor::Visitor;
 use phea_quantity::{
     FLOW_GAIN, FLOW_PRESSURE_COEFFICIENT, FORCE, LENGTH, PERCENT, RATIO, STIFFNESS, TIME, VELOCITY,
     VOLTAGE_PER_FORCE,
 };
+use phea_table::Visitor;
+use phea_table::{key, plain};
 
 /// Requirements on the compliant component.
 #[derive(Clone, Debug, Default, PartialEq)]

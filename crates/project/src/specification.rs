@@ -1,10 +1,10 @@
 //! Table `[[specification]]`: a requirement on the closed loop.
 
-use super::key::{key, plain};
 use super::limit::DeclaredLimit;
-use super::visitor::Visitor;
 use phea_dynamics::closed_loop::ClosedLoop;
 use phea_quantity::{ANGULAR_FREQUENCY, FORCE, PERCENT, TIME};
+use phea_table::Visitor;
+use phea_table::{key, plain};
 
 /// Subject of a specification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,9 +1,9 @@
 //! Table `[uncertainty]`: the uncertain numbers, and the grid over them.
 
-use super::key::{Key, key, plain};
-use super::visitor::Visitor;
 use phea_dynamics::uncertain_plant::Spacing;
 use phea_quantity::RATIO;
+use phea_table::Visitor;
+use phea_table::{Key, key, plain};
 
 /// Uncertain number.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -25,12 +25,12 @@ mod specification;
 mod wishes;
 
 use super::catalogue_entry::Catalogue;
-use super::key::plain;
 use super::reader::Reader;
 use super::text::{Findings, Place, RawFinding};
 use super::tree::{Entry, TreeNode, Value};
-use super::visitor::Visitor;
 use super::{DeclaredElement, LINEAR_PARAMETERS, LateError, Project};
+use phea_table::Visitor;
+use phea_table::plain;
 
 /// Reports all contradictions between values.
 pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {

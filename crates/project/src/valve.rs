@@ -1,13 +1,13 @@
 //! Table `[valve]`.
 
-use super::key::{key, plain};
-use super::visitor::Visitor;
 use super::{DeclaredMisfit, DeclaredSupply, PartCost};
-use crate::catalogue_kind::CatalogueKind;
 use phea_hydraulics::servovalve::LeakageModel;
 use phea_quantity::{
     ANGULAR_FREQUENCY, FLOW, FLOW_COEFFICIENT, PRESSURE, RATIO, TIME, VOLTAGE, VOLTAGE_RATE,
 };
+use phea_table::CatalogueKind;
+use phea_table::Visitor;
+use phea_table::{key, plain};
 
 /// Words of `leakage_model`.
 pub static LEAKAGE_MODELS: [(&str, LeakageModel); 2] =

@@ -1,8 +1,8 @@
 //! Table `[verification]`: the judgement of a controller.
 
-use super::key::key;
-use super::visitor::Visitor;
 use phea_quantity::GAIN;
+use phea_table::Visitor;
+use phea_table::key;
 
 /// Settings of the verification.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,8 +1,8 @@
 //! Table `[bench.friction]`: runs of the cylinder from which its friction is identified.
 
-use crate::key::{key, plain};
-use crate::visitor::Visitor;
 use phea_quantity::{ANGULAR_FREQUENCY, FORCE, LENGTH, RATIO, TIME, VELOCITY};
+use phea_table::Visitor;
+use phea_table::{key, plain};
 
 /// Runs, and the instrument of the position; the pressures are measured as in the other tests.
 #[derive(Clone, Copy, Debug, PartialEq)]

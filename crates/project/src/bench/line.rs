@@ -1,8 +1,8 @@
 //! Table `[bench.line]`: the tests of a line whose far end is blocked.
 
-use crate::key::{key, plain};
-use crate::visitor::Visitor;
 use phea_quantity::{ANGULAR_FREQUENCY, FLOW, PRESSURE, RATIO, TIME, VOLUME};
+use phea_table::Visitor;
+use phea_table::{key, plain};
 
 /// Line to one chamber.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

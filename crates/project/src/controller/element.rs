@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::RationalFunction;
-use crate::key::{Key, key, plain};
 use crate::printer::Printer;
-use crate::visitor::{Variants, Visitor};
 use phea_quantity::{ANGULAR_FREQUENCY, RATIO, TIME};
+use phea_table::{Key, key, plain};
+use phea_table::{Variants, Visitor};
 
 /// Element of a controller; every kind but gain, `pi`, `pid` and `general` has unit gain at zero
 /// frequency (integrator and differentiator: at 1 rad/s).

@@ -1,8 +1,8 @@
 //! Table `[controller.impedance]`.
 
-use crate::key::{key, plain};
-use crate::visitor::Visitor;
 use phea_quantity::{DAMPING, MASS, STIFFNESS, TIME};
+use phea_table::Visitor;
+use phea_table::{key, plain};
 
 /// Virtual impedance of the loop at the load: mass, damper and spring between the load and its
 /// initial position.

@@ -1,8 +1,8 @@
 //! Table `[controller.pressure_feedback]`.
 
-use crate::key::{key, plain};
-use crate::visitor::Visitor;
 use phea_quantity::{ANGULAR_FREQUENCY, PRESSURE, RATIO, VOLTAGE_PER_PRESSURE};
+use phea_table::Visitor;
+use phea_table::{key, plain};
 
 /// Description of its gain.
 pub(crate) const GAIN: &str = "Command per pressure; positive adds damping.";

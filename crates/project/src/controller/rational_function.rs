@@ -1,9 +1,9 @@
 //! Ratio of polynomials, as polynomials or by its factors.
 
-use crate::formula::{Formula, Variable};
-use crate::key::{key, plain};
-use crate::visitor::{FormulaShape, Visitor};
 use phea_quantity::RATIO;
+use phea_table::{Formula, Variable};
+use phea_table::{FormulaShape, Visitor};
+use phea_table::{key, plain};
 
 /// Ratio of polynomials in s or z: numerator and denominator, or gain, zeros and poles.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,12 +1,12 @@
 //! Variants and ways: their choice, and the keys of those that were not chosen.
 
 use super::{Layer, Reader};
-use crate::key::Key;
 use crate::listing::keys_of;
 use crate::text::{Place, RawFinding};
 use crate::tree::{TreeNode, Value};
-use crate::visitor::Variants;
 use phea_quantity::spelling::nearest;
+use phea_table::Key;
+use phea_table::Variants;
 
 /// Variants that have a key, as in `it belongs to model "creeping" or "segments"`.
 fn belongs_to<T: Variants>(key: Key, name: &str, all: &[T]) -> String {

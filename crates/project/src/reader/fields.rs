@@ -2,17 +2,17 @@
 
 use super::{Hit, Layer, Reader, not_one};
 use crate::Origin;
-use crate::catalogue_kind::CatalogueKind;
-use crate::formula::Formula;
-use crate::key::{Key, Motions};
 use crate::listing::keys_of;
 use crate::setting;
 use crate::text::RawFinding;
 use crate::toml_text::in_toml;
 use crate::tree::{TreeNode, Value};
-use crate::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
 use phea_quantity::spelling::nearest;
 use phea_quantity::{MotionKind, Price, PricedBy};
+use phea_table::CatalogueKind;
+use phea_table::Formula;
+use phea_table::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
+use phea_table::{Key, Motions};
 
 /// Keys of a catalogue entry that are ignored if the project states the first: a pressure belongs
 /// to its flow, and areas and rods are stated in one way.

@@ -1,13 +1,13 @@
 //! Numbers and formulas, and their errors.
 
 use super::{Hit, Reader};
-use crate::formula::{Formula, Ratio};
-use crate::key::Key;
 use crate::text::{Place, RawFinding};
 use crate::tree::{TreeNode, Value};
-use crate::visitor::FormulaShape;
 use phea_quantity::spelling::nearest;
 use phea_quantity::{self as quantity, Price, PricedBy, QuantityError};
+use phea_table::FormulaShape;
+use phea_table::Key;
+use phea_table::{Formula, Ratio};
 
 impl Reader<'_> {
     /// SI value of a number or a quantity in text, within the key's range.

@@ -6,7 +6,7 @@ use phea_quantity::{
 };
 use serde_json::{Map, Value, json};
 
-use crate::key::Key;
+use phea_table::Key;
 
 /// Dimension of a number that depends on a name given by the user.
 pub(super) static ANY: Dimension = Dimension {

@@ -4,13 +4,13 @@ use serde_json::{Value, json};
 
 use super::quantity::{ANY, described, number, whole};
 use super::table::{SchemaTable, any_of};
-use crate::catalogue_kind::CatalogueKind;
-use crate::formula::Formula;
-use crate::key::{Key, Motions};
 use crate::listing::{Listing, keys_of};
-use crate::visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
 use crate::{DeclaredCylinder, DeclaredPipe, HoseProperties, Valve};
 use phea_quantity::{MotionKind, Price, PricedBy, price_pattern};
+use phea_table::CatalogueKind;
+use phea_table::Formula;
+use phea_table::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor};
+use phea_table::{Key, Motions};
 
 /// Builder of the schema, table by table.
 #[derive(Default)]

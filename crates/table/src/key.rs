@@ -35,7 +35,7 @@ pub struct Motions {
 
 impl Motions {
     /// Motion of a load that moves with its rig.
-    pub(crate) const fn both(motion: MotionKind) -> Motions {
+    pub const fn both(motion: MotionKind) -> Motions {
         Motions { rig: motion, load: motion }
     }
 }
@@ -77,25 +77,25 @@ impl AcceptedRange {
 }
 
 /// Key whose numbers have a dimension.
-pub(crate) const fn key(name: &'static str, dimension: &'static Dimension, doc: &'static str) -> Key {
+pub const fn key(name: &'static str, dimension: &'static Dimension, doc: &'static str) -> Key {
     Key { name, dimension, range: AcceptedRange::ANY, default: None, of_motion: false, of_load: false, doc }
 }
 
 /// Key without a dimension: a table, a list, a text or a choice.
-pub(crate) const fn plain(name: &'static str, doc: &'static str) -> Key {
+pub const fn plain(name: &'static str, doc: &'static str) -> Key {
     key(name, &RATIO, doc)
 }
 
 impl Key {
     /// Key whose numbers measure the motion of the rig: `dimension` is that of a cylinder.
-    pub(crate) const fn of_motion(mut self) -> Key {
+    pub const fn of_motion(mut self) -> Key {
         self.of_motion = true;
         self
     }
 
     /// Key whose numbers measure the motion of the load: `dimension` is that of a cylinder without
     /// a linkage.
-    pub(crate) const fn of_load(mut self) -> Key {
+    pub const fn of_load(mut self) -> Key {
         self.of_load = true;
         self
     }
@@ -112,51 +112,51 @@ impl Key {
     }
 
     /// Accepts numbers above zero.
-    pub(crate) const fn positive(self) -> Key {
+    pub const fn positive(self) -> Key {
         self.above(0.0)
     }
 
     /// Accepts zero and above.
-    pub(crate) const fn not_negative(self) -> Key {
+    pub const fn not_negative(self) -> Key {
         self.at_least(0.0)
     }
 
     /// Accepts numbers above `minimum`.
-    pub(crate) const fn above(mut self, minimum: f64) -> Key {
+    pub const fn above(mut self, minimum: f64) -> Key {
         self.range.minimum = minimum;
         self.range.above_minimum = true;
         self
     }
 
     /// Accepts `minimum` and above.
-    pub(crate) const fn at_least(mut self, minimum: f64) -> Key {
+    pub const fn at_least(mut self, minimum: f64) -> Key {
         self.range.minimum = minimum;
         self.range.above_minimum = false;
         self
     }
 
     /// Accepts `maximum` and below.
-    pub(crate) const fn at_most(mut self, maximum: f64) -> Key {
+    pub const fn at_most(mut self, maximum: f64) -> Key {
         self.range.maximum = maximum;
         self.range.below_maximum = false;
         self
     }
 
     /// Accepts numbers below `maximum`.
-    pub(crate) const fn below(mut self, maximum: f64) -> Key {
+    pub const fn below(mut self, maximum: f64) -> Key {
         self.range.maximum = maximum;
         self.range.below_maximum = true;
         self
     }
 
     /// Accepts `inf` too.
-    pub(crate) const fn or_infinite(mut self) -> Key {
+    pub const fn or_infinite(mut self) -> Key {
         self.range.infinity = true;
         self
     }
 
     /// Sets the value of an absent key, SI.
-    pub(crate) const fn or(mut self, default: f64) -> Key {
+    pub const fn or(mut self, default: f64) -> Key {
         self.default = Some(default);
         self
     }

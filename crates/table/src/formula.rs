@@ -104,7 +104,7 @@ impl Formula {
     ///
     /// # Example
     /// ```
-    /// use phea_project::Formula;
+    /// use phea_table::Formula;
     /// let formula = Formula::parse("2116*(s + 75)/75")?;
     /// assert_eq!(formula.polynomial(), Some(vec![2116.0 / 75.0, 2116.0]));
     /// assert_eq!(Formula::parse("2*s + k*").unwrap_err().message, "the formula ends where a number or name should follow");
@@ -121,7 +121,7 @@ impl Formula {
     ///
     /// # Example
     /// ```
-    /// use phea_project::Formula;
+    /// use phea_table::Formula;
     /// let formula = Formula::parse_continuous("s^2 + 2*z*s + 1")?;
     /// assert_eq!(formula.parameters(), [("z", 8..9)]);
     /// # Ok::<(), phea_project::FormulaError>(())

@@ -1,12 +1,12 @@
 //! Single description of every table for reading, printing and listing.
 //!
-//! Each type of the project has one `visit` function that names its keys with its fields. A
+//! Each type has one `visit` function that names its keys with its fields. A
 //! reader fills the fields from the file, a printer writes them, a listing collects the possible
 //! keys: so each key is defined in one place.
 
-use super::formula::Formula;
-use super::key::Key;
 use crate::catalogue_kind::CatalogueKind;
+use crate::formula::Formula;
+use crate::key::Key;
 use phea_quantity::{MotionKind, Price, PricedBy};
 
 /// Word of a value, in the table of a choice; empty for a value that has none.
@@ -14,8 +14,8 @@ pub fn word_of<T: PartialEq>(words: &[(&'static str, T)], value: &T) -> &'static
     words.iter().find(|(_, known)| known == value).map_or("", |(word, _)| word)
 }
 
-/// Choice with keys of its own for each of its variants.
-pub(crate) trait Variants: Clone {
+/// Choice with keys of its own for each of its variants, whose numbers are of the type `S`.
+pub trait Variants<S: Copy = f64>: Clone {
     /// True if a key of another variant is an error, and not a warning.
     const STRICT: bool = false;
     /// All variants, before they are read.
@@ -27,11 +27,11 @@ pub(crate) trait Variants: Clone {
         false
     }
     /// Visits the keys of this variant.
-    fn visit<V: Visitor>(&mut self, v: &mut V);
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V);
 }
 
-/// Operations on the description of a table.
-pub(crate) trait Visitor: Sized {
+/// Operations on the description of a table whose numbers are of the type `S`.
+pub trait Visitor<S: Copy = f64>: Sized {
     /// True if keys are listed that a reader reads only together with others.
     fn names_everything(&self) -> bool {
         false
@@ -42,13 +42,13 @@ pub(crate) trait Visitor: Sized {
     /// Sets the motion of the load, if it differs from that of the rig.
     fn load_moves(&mut self, _motion: Option<MotionKind>) {}
     /// Number; required unless the key has a default.
-    fn quantity(&mut self, key: Key, field: &mut f64);
+    fn quantity(&mut self, key: Key, field: &mut S);
     /// Number that may be absent.
-    fn optional(&mut self, key: Key, field: &mut Option<f64>);
+    fn optional(&mut self, key: Key, field: &mut Option<S>);
     /// Two numbers in order, or absent.
-    fn pair(&mut self, key: Key, field: &mut Option<[f64; 2]>);
+    fn pair(&mut self, key: Key, field: &mut Option<[S; 2]>);
     /// List of numbers; required if `required`.
-    fn quantities(&mut self, key: Key, field: &mut Vec<f64>, required: bool);
+    fn quantities(&mut self, key: Key, field: &mut Vec<S>, required: bool);
     /// List of complex numbers: a number, or a pair of real and imaginary part.
     fn complexes(&mut self, key: Key, field: &mut Vec<[f64; 2]>);
     /// Whole number; required unless the key has a default.
@@ -77,7 +77,7 @@ pub(crate) trait Visitor: Sized {
     );
     /// Word that chooses a variant, whose own keys follow in the current table; those of the other
     /// variants have no effect. If absent, the field keeps its variant unless `required`.
-    fn variant<T: Variants>(&mut self, key: Key, field: &mut T, required: bool);
+    fn variant<T: Variants<S>>(&mut self, key: Key, field: &mut T, required: bool);
     /// Formula; required if `required`.
     fn formula(&mut self, key: Key, shape: FormulaShape, field: &mut Option<Formula>, required: bool);
     /// Name of a catalogue entry, whose values apply if the table states none.
@@ -168,25 +168,25 @@ pub(crate) trait Visitor: Sized {
 
 /// Kinds of which one is chosen.
 #[derive(Debug)]
-pub(crate) struct Kinds {
+pub struct Kinds {
     /// Keys that choose.
-    pub(crate) chosen_by: &'static [&'static str],
+    pub chosen_by: &'static [&'static str],
     /// Keys that belong to single kinds; a side that chooses its own kind inherits none of them.
-    pub(crate) keys: &'static [&'static str],
+    pub keys: &'static [&'static str],
 }
 
 /// Number of the project, named by the user.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct NamedNumber<'a> {
+pub struct NamedNumber<'a> {
     /// Name as written.
-    pub(crate) name: &'a str,
+    pub name: &'a str,
     /// Dimension and range.
-    pub(crate) key: Key,
+    pub key: Key,
 }
 
 /// Accepted shapes of a formula.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum FormulaShape {
+pub enum FormulaShape {
     /// Polynomial in `s` or `z`.
     Polynomial,
     /// Polynomial with parameters.
@@ -199,7 +199,7 @@ pub(crate) enum FormulaShape {
 
 /// Form of a value, if more than one is accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum ValueForm {
+pub enum ValueForm {
     /// Number, bare or with its unit in text.
     Number,
     /// Text that is not a quantity.

@@ -1,0 +1,15 @@
+//! Tables of keys: how a type that is written in a file names its fields.
+//!
+//! A component of a rig, and every other part of a project file, states each of its keys once,
+//! next to its field: name, dimension, accepted range, default and meaning. Reading and writing
+//! files is left to `phea_project`.
+
+mod catalogue_kind;
+mod formula;
+mod key;
+mod visitor;
+
+pub use catalogue_kind::CatalogueKind;
+pub use formula::{Formula, FormulaError, Ratio, Variable};
+pub use key::{AcceptedRange, Key, Motions, key, plain};
+pub use visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor, word_of};
