@@ -3,58 +3,58 @@
 use super::DeclaredActuator;
 use super::cross_port::DeclaredOrifice;
 use phea_quantity::{PRESSURE, RATIO, VOLUME};
-use phea_table::{Variants, Visitor};
+use phea_table::{TableNumber, Variants, Visitor};
 use phea_table::{key, plain};
 
 /// Adjusted part of an accumulator, with a setting from 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct DeclaredAdjustment {
+pub struct DeclaredAdjustment<S = f64> {
     /// Part that the setting moves.
-    pub kind: AdjustmentKind,
+    pub kind: AdjustmentKind<S>,
     /// Value at rest.
-    pub setting: f64,
+    pub setting: S,
 }
 
 /// Part that a setting moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum AdjustmentKind {
+pub enum AdjustmentKind<S = f64> {
     /// Gas that is added and removed: the declared accumulator is that at setting 0.
-    Gas(GasAtOne),
+    Gas(GasAtOne<S>),
     /// Valve between chamber and gas: shut at setting 0.
-    Valve(DeclaredGasValve),
+    Valve(DeclaredGasValve<S>),
 }
 
 /// Gas at setting 1, if different from setting 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct GasAtOne {
+pub struct GasAtOne<S = f64> {
     /// Gas volume at its precharge, m³.
-    pub gas_volume: Option<f64>,
+    pub gas_volume: Option<S>,
     /// Precharge pressure, Pa gauge.
-    pub precharge_pressure: Option<f64>,
+    pub precharge_pressure: Option<S>,
 }
 
 /// Valve between chamber and gas.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct DeclaredGasValve {
+pub struct DeclaredGasValve<S = f64> {
     /// Orifice of the fully open valve.
-    pub orifice: DeclaredOrifice,
+    pub orifice: DeclaredOrifice<S>,
     /// Volume of the oil between valve and gas, m³; if absent, a hundredth of the gas volume.
-    pub dead_volume: Option<f64>,
+    pub dead_volume: Option<S>,
 }
 
 /// Default ratio of the oil volume between valve and gas to the gas volume.
 const DEAD_SHARE: f64 = 0.01;
 
-impl Default for AdjustmentKind {
+impl<S: Default> Default for AdjustmentKind<S> {
     fn default() -> Self {
         AdjustmentKind::Gas(GasAtOne::default())
     }
 }
 
-impl Variants for AdjustmentKind {
+impl<S: TableNumber> Variants<S> for AdjustmentKind<S> {
     const STRICT: bool = true;
 
-    fn all(&self) -> Vec<AdjustmentKind> {
+    fn all(&self) -> Vec<AdjustmentKind<S>> {
         vec![AdjustmentKind::default(), AdjustmentKind::Valve(DeclaredGasValve::default())]
     }
 
@@ -65,7 +65,7 @@ impl Variants for AdjustmentKind {
         }
     }
 
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         match self {
             AdjustmentKind::Gas(gas) => {
                 let k = key("gas_volume", &VOLUME, "At setting 1; absent: that of the accumulator.");
@@ -88,18 +88,20 @@ impl Variants for AdjustmentKind {
 }
 
 impl DeclaredAdjustment {
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        v.variant(plain("kind", "What the setting moves."), &mut self.kind, true);
-        let k = key("setting", &RATIO, "Its value at rest, from 0, as declared or shut, to 1.");
-        v.quantity(k.at_least(0.0).at_most(1.0).or(0.0), &mut self.setting);
-    }
-
     /// Valve of the adjustment, if it has one.
     pub fn valve(&self) -> Option<&DeclaredGasValve> {
         match &self.kind {
             AdjustmentKind::Valve(valve) => Some(valve),
             AdjustmentKind::Gas(_) => None,
         }
+    }
+}
+
+impl<S: TableNumber> DeclaredAdjustment<S> {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
+        v.variant(plain("kind", "What the setting moves."), &mut self.kind, true);
+        let k = key("setting", &RATIO, "Its value at rest, from 0, as declared or shut, to 1.");
+        v.quantity(k.at_least(0.0).at_most(1.0).or(0.0), &mut self.setting);
     }
 }
 

@@ -2,38 +2,38 @@
 //! length.
 
 use phea_quantity::{MASS, MASS_PER_LENGTH, Price, PricedBy};
-use phea_table::Visitor;
+use phea_table::{TableNumber, Visitor};
 use phea_table::{key, plain};
 
 /// Stated cost and mass of a part.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PartCost {
+pub struct PartCost<S = f64> {
     /// Price of the part.
     pub price: Option<Price>,
     /// Mass of the part, kg.
-    pub mass: Option<f64>,
+    pub mass: Option<S>,
 }
 
 /// Cost and mass of a hose or a pipe: of both its ends, and per metre.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct LineCost {
+pub struct LineCost<S = f64> {
     /// Cost and mass of the ends of one line, in addition to those of its length.
-    pub ends: PartCost,
+    pub ends: PartCost<S>,
     /// Price of a metre.
     pub price_per_length: Option<Price>,
     /// Mass per length without the oil, kg/m.
-    pub mass_per_length: Option<f64>,
+    pub mass_per_length: Option<S>,
 }
 
-impl PartCost {
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> PartCost<S> {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         v.price(plain("price", "What the part costs."), PricedBy::Piece, &mut self.price);
         v.optional(key("mass", &MASS, "Mass of the part.").not_negative(), &mut self.mass);
     }
 }
 
-impl LineCost {
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> LineCost<S> {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = plain("price", "Of one line, in addition to `price_per_length`: its fittings, or all of it.");
         v.price(k, PricedBy::Piece, &mut self.ends.price);
         let k = plain("price_per_length", "Of a metre of it.");

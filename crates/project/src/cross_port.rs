@@ -2,88 +2,88 @@
 
 use super::cost::PartCost;
 use phea_quantity::{CAPACITY, FLOW, FLOW_PRESSURE_COEFFICIENT, LENGTH, PRESSURE, RATIO, STIFFNESS};
-use phea_table::{Key, key, plain};
-use phea_table::{Variants, Visitor};
+use phea_table::{Key, key, once_read, plain};
+use phea_table::{TableNumber, Variants, Visitor};
 
 /// Valve between the chambers, at the cylinder.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct DeclaredCrossPort {
+pub struct DeclaredCrossPort<S = f64> {
     /// Kind of valve.
-    pub kind: CrossPortKind,
+    pub kind: CrossPortKind<S>,
     /// Cost and mass.
-    pub cost: PartCost,
+    pub cost: PartCost<S>,
 }
 
 /// Kinds of valves between the chambers.
 #[derive(Clone, Debug, PartialEq)]
-pub enum CrossPortKind {
+pub enum CrossPortKind<S = f64> {
     /// Laminar: flow proportional to the pressure difference.
     Laminar {
         /// Conductance, m³/(s·Pa).
-        conductance: f64,
+        conductance: S,
     },
     /// Sharp edge.
-    Orifice(DeclaredOrifice),
+    Orifice(DeclaredOrifice<S>),
     /// Restrictor in series with a capacity.
     DynamicPressureFeedback {
         /// Restrictor.
-        restrictor: DeclaredRestrictor,
+        restrictor: DeclaredRestrictor<S>,
         /// Capacity.
-        capacity: DeclaredCapacity,
+        capacity: DeclaredCapacity<S>,
     },
 }
 
 /// Restrictor of dynamic pressure feedback.
 #[derive(Clone, Debug, PartialEq)]
-pub enum DeclaredRestrictor {
+pub enum DeclaredRestrictor<S = f64> {
     /// Laminar: flow proportional to the drop.
     Laminar {
         /// Conductance, m³/(s·Pa).
-        conductance: f64,
+        conductance: S,
     },
     /// Sharp edge.
-    Orifice(DeclaredOrifice),
+    Orifice(DeclaredOrifice<S>),
 }
 
 /// Sharp edge.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DeclaredOrifice {
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DeclaredOrifice<S = f64> {
     /// Size.
-    pub size: OrificeSize,
+    pub size: OrificeSize<S>,
     /// Pressure drop below which the square root is regularised, Pa.
-    pub transition_pressure: f64,
+    pub transition_pressure: S,
 }
 
 /// Size of an orifice.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum OrificeSize {
+pub enum OrificeSize<S = f64> {
     /// Size by diameter.
     Diameter {
         /// Diameter, m.
-        diameter: f64,
+        diameter: S,
         /// Discharge coefficient C_d.
-        discharge_coefficient: f64,
+        discharge_coefficient: S,
     },
     /// Size by flow.
     Flow {
         /// Flow, m³/s.
-        flow: f64,
+        flow: S,
         /// Pressure drop at this flow, Pa.
-        pressure_drop: f64,
+        pressure_drop: S,
     },
 }
 
 /// Capacity of dynamic pressure feedback.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum DeclaredCapacity {
+pub enum DeclaredCapacity<S = f64> {
     /// Stated capacity, m³/Pa.
-    Stated(f64),
+    Stated(S),
     /// Piston between springs.
     Piston {
         /// Diameter of the piston, m.
-        diameter: f64,
+        diameter: S,
         /// Stiffness of all springs together, N/m.
-        stiffness: f64,
+        stiffness: S,
     },
 }
 
@@ -92,21 +92,20 @@ const DISCHARGE_COEFFICIENT: f64 = 0.6;
 /// Transition pressure as of the edges of a servovalve, Pa.
 const TRANSITION_PRESSURE: f64 = 1e3;
 
-impl Default for CrossPortKind {
+impl<S: Default> Default for CrossPortKind<S> {
     fn default() -> Self {
-        CrossPortKind::Laminar { conductance: 0.0 }
+        CrossPortKind::Laminar { conductance: S::default() }
     }
 }
 
-impl Default for DeclaredOrifice {
+impl<S: Default> Default for OrificeSize<S> {
     fn default() -> Self {
-        let size = OrificeSize::Diameter { diameter: 0.0, discharge_coefficient: DISCHARGE_COEFFICIENT };
-        DeclaredOrifice { size, transition_pressure: TRANSITION_PRESSURE }
+        OrificeSize::Diameter { diameter: S::default(), discharge_coefficient: S::default() }
     }
 }
 
-impl DeclaredOrifice {
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> DeclaredOrifice<S> {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         v.one_of(&["diameter", "flow"], true);
         let mut parts = OrificeParts::of(Some(self));
         parts.visit(v);
@@ -115,11 +114,6 @@ impl DeclaredOrifice {
 }
 
 impl DeclaredCrossPort {
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        v.variant(plain("kind", "What lies between the chambers."), &mut self.kind, true);
-        self.cost.visit(v);
-    }
-
     /// Orifice of the valve, if it has one.
     pub fn orifice(&self) -> Option<&DeclaredOrifice> {
         match &self.kind {
@@ -133,14 +127,21 @@ impl DeclaredCrossPort {
     }
 }
 
-impl Variants for CrossPortKind {
-    fn all(&self) -> Vec<CrossPortKind> {
+impl<S: TableNumber> DeclaredCrossPort<S> {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
+        v.variant(plain("kind", "What lies between the chambers."), &mut self.kind, true);
+        self.cost.visit(v);
+    }
+}
+
+impl<S: TableNumber> Variants<S> for CrossPortKind<S> {
+    fn all(&self) -> Vec<CrossPortKind<S>> {
         vec![
             CrossPortKind::default(),
             CrossPortKind::Orifice(DeclaredOrifice::default()),
             CrossPortKind::DynamicPressureFeedback {
-                restrictor: DeclaredRestrictor::Laminar { conductance: 0.0 },
-                capacity: DeclaredCapacity::Stated(0.0),
+                restrictor: DeclaredRestrictor::Laminar { conductance: S::default() },
+                capacity: DeclaredCapacity::Stated(S::default()),
             },
         ]
     }
@@ -153,7 +154,7 @@ impl Variants for CrossPortKind {
         }
     }
 
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         match self {
             CrossPortKind::Laminar { conductance } => v.quantity(conductance_key(), conductance),
             CrossPortKind::Orifice(orifice) => {
@@ -173,13 +174,10 @@ fn conductance_key() -> Key {
     key("conductance", &FLOW_PRESSURE_COEFFICIENT, "Of a laminar restrictor: flow over the drop.").positive()
 }
 
-impl DeclaredRestrictor {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
-        // a conductance is positive, unless it is not read yet
+impl<S: TableNumber> DeclaredRestrictor<S> {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let (mut conductance, orifice) = match self {
-            DeclaredRestrictor::Laminar { conductance } => {
-                (Some(*conductance).filter(|value| *value > 0.0), None)
-            }
+            DeclaredRestrictor::Laminar { conductance } => (once_read(*conductance), None),
             DeclaredRestrictor::Orifice(orifice) => (None, Some(&*orifice)),
         };
         let mut parts = OrificeParts::of(orifice);
@@ -192,10 +190,10 @@ impl DeclaredRestrictor {
     }
 }
 
-impl DeclaredCapacity {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> DeclaredCapacity<S> {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let (mut capacity, mut diameter, mut stiffness) = match *self {
-            DeclaredCapacity::Stated(capacity) => (Some(capacity).filter(|value| *value > 0.0), None, None),
+            DeclaredCapacity::Stated(capacity) => (once_read(capacity), None, None),
             DeclaredCapacity::Piston { diameter, stiffness } => (None, Some(diameter), Some(stiffness)),
         };
         let k = key("piston_diameter", &LENGTH, "Of the piston between springs that takes the oil.");
@@ -209,7 +207,7 @@ impl DeclaredCapacity {
             (None, Some(_), None) => {
                 let ways = [&["piston_diameter", "spring_stiffness"][..], &["capacity"]];
                 v.lacks(&ways, "`spring_stiffness`, which goes with `piston_diameter`,");
-                DeclaredCapacity::Stated(0.0)
+                DeclaredCapacity::Stated(S::default())
             }
             (capacity, ..) => DeclaredCapacity::Stated(capacity.unwrap_or_default()),
         };
@@ -218,23 +216,25 @@ impl DeclaredCapacity {
 
 /// Keys of an orifice.
 #[derive(Default)]
-struct OrificeParts {
-    diameter: Option<f64>,
-    discharge_coefficient: Option<f64>,
-    flow: Option<f64>,
-    pressure_drop: Option<f64>,
-    transition_pressure: Option<f64>,
+struct OrificeParts<S = f64> {
+    diameter: Option<S>,
+    discharge_coefficient: Option<S>,
+    flow: Option<S>,
+    pressure_drop: Option<S>,
+    transition_pressure: Option<S>,
 }
 
-impl OrificeParts {
-    fn of(orifice: Option<&DeclaredOrifice>) -> OrificeParts {
+impl<S: TableNumber> OrificeParts<S> {
+    fn of(orifice: Option<&DeclaredOrifice<S>>) -> OrificeParts<S> {
         let Some(DeclaredOrifice { size, transition_pressure }) = orifice.copied() else {
             return OrificeParts::default();
         };
         let parts =
             OrificeParts { transition_pressure: Some(transition_pressure), ..OrificeParts::default() };
         match size {
-            OrificeSize::Diameter { diameter: 0.0, .. } => OrificeParts::default(),
+            OrificeSize::Diameter { diameter, .. } if once_read(diameter).is_none() => {
+                OrificeParts::default()
+            }
             OrificeSize::Diameter { diameter, discharge_coefficient } => OrificeParts {
                 diameter: Some(diameter),
                 discharge_coefficient: Some(discharge_coefficient),
@@ -245,8 +245,10 @@ impl OrificeParts {
             }
         }
     }
+}
 
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> OrificeParts<S> {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("diameter", &LENGTH, "Diameter of the orifice.").positive();
         v.optional(k, &mut self.diameter);
         let k = key("discharge_coefficient", &RATIO, "C_d, with `diameter`; absent: 0.6, of a sharp edge.");
@@ -264,11 +266,11 @@ impl OrificeParts {
     }
 
     /// Orifice; `None` if nothing states its size.
-    fn orifice<V: Visitor>(&self, v: &mut V) -> Option<DeclaredOrifice> {
+    fn orifice<V: Visitor<S>>(&self, v: &mut V) -> Option<DeclaredOrifice<S>> {
         let size = match *self {
             OrificeParts { diameter: Some(diameter), discharge_coefficient, .. } => OrificeSize::Diameter {
                 diameter,
-                discharge_coefficient: discharge_coefficient.unwrap_or(DISCHARGE_COEFFICIENT),
+                discharge_coefficient: discharge_coefficient.unwrap_or(S::from(DISCHARGE_COEFFICIENT)),
             },
             OrificeParts { flow: Some(flow), pressure_drop: Some(pressure_drop), .. } => {
                 OrificeSize::Flow { flow, pressure_drop }
@@ -282,7 +284,7 @@ impl OrificeParts {
             }
             _ => return None,
         };
-        let transition_pressure = self.transition_pressure.unwrap_or(TRANSITION_PRESSURE);
+        let transition_pressure = self.transition_pressure.unwrap_or(S::from(TRANSITION_PRESSURE));
         Some(DeclaredOrifice { size, transition_pressure })
     }
 }

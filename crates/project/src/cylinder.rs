@@ -8,56 +8,56 @@ use phea_quantity::{
     VELOCITY, VOLUME,
 };
 use phea_table::CatalogueKind;
-use phea_table::{Variants, Visitor};
+use phea_table::{TableNumber, Variants, Visitor};
 use phea_table::{key, plain};
 
 /// Cylinder; `a` is the end x = 0, and x grows from A to B.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct DeclaredCylinder {
+pub struct DeclaredCylinder<S = f64> {
     /// Name of the catalogue's cylinder, if it supplied piston and rod.
     pub model: Option<String>,
     /// Piston diameter, m; this or `piston_area`.
-    pub piston_diameter: Option<f64>,
+    pub piston_diameter: Option<S>,
     /// Effective area, equal in both chambers, with rods already subtracted, m².
-    pub piston_area: Option<f64>,
+    pub piston_area: Option<S>,
     /// Effective areas in chamber A and in chamber B, m².
-    pub piston_areas: Option<[f64; 2]>,
+    pub piston_areas: Option<[S; 2]>,
     /// Diameter of the rod through both chambers, m; this or `rod_diameters`.
-    pub rod_diameter: Option<f64>,
+    pub rod_diameter: Option<S>,
     /// Diameters of the rod in chamber A and in chamber B, m; zero without a rod.
-    pub rod_diameters: Option<[f64; 2]>,
+    pub rod_diameters: Option<[S; 2]>,
     /// Stroke, m.
-    pub stroke: f64,
+    pub stroke: S,
     /// Further stages of a telescopic piston, after the first.
-    pub stages: Vec<DeclaredStage>,
+    pub stages: Vec<DeclaredStage<S>>,
     /// Distance over which the areas of one stage blend into those of the next, m.
-    pub stage_transition: f64,
+    pub stage_transition: S,
     /// Mass of piston, rod and the parts that move with them, kg.
-    pub moving_mass: f64,
+    pub moving_mass: S,
     /// Length of the retracted actuator from mount to mount in addition to its stroke, m.
-    pub dead_length: Option<f64>,
+    pub dead_length: Option<S>,
     /// Volume in each chamber in addition to the swept volume and the line, m³; this or
     /// `dead_volumes`.
-    pub dead_volume: Option<f64>,
+    pub dead_volume: Option<S>,
     /// Volumes in chamber A and in chamber B, m³.
-    pub dead_volumes: Option<[f64; 2]>,
+    pub dead_volumes: Option<[S; 2]>,
     /// Laminar leakage across the piston, m³/(s·Pa).
-    pub internal_leakage: Option<f64>,
+    pub internal_leakage: Option<S>,
     /// End stops of the piston; if absent, the ends are only reported.
-    pub end_stops: Option<EndStops>,
+    pub end_stops: Option<EndStops<S>>,
     /// Friction of seals and bearings.
-    pub friction: Option<DeclaredFriction>,
+    pub friction: Option<DeclaredFriction<S>>,
 }
 
 /// Further stage of a telescopic piston.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct DeclaredStage {
+pub struct DeclaredStage<S = f64> {
     /// Position of the piston from which this stage moves, m.
-    pub from: f64,
+    pub from: S,
     /// Effective area, equal in both chambers, m²; this or `piston_areas`.
-    pub piston_area: Option<f64>,
+    pub piston_area: Option<S>,
     /// Effective areas in chamber A and in chamber B, m².
-    pub piston_areas: Option<[f64; 2]>,
+    pub piston_areas: Option<[S; 2]>,
 }
 
 impl DeclaredStage {
@@ -66,8 +66,10 @@ impl DeclaredStage {
         let area = self.piston_area.unwrap_or(0.0);
         self.piston_areas.unwrap_or([area, area])
     }
+}
 
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> DeclaredStage<S> {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("from", &LENGTH, "Position of the piston from which this stage moves.").positive();
         v.quantity(k, &mut self.from);
         let k = key("piston_area", &AREA, "Area the pressure acts on in each chamber; or `piston_areas`.");
@@ -80,15 +82,15 @@ impl DeclaredStage {
 
 /// End stops at both ends of the stroke.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct EndStops {
+pub struct EndStops<S = f64> {
     /// Stiffness, N/m.
-    pub stiffness: f64,
+    pub stiffness: S,
     /// Damping relative to the elastic force, s/m.
-    pub relative_damping: f64,
+    pub relative_damping: S,
 }
 
-impl EndStops {
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> EndStops<S> {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         v.quantity(key("stiffness", &STIFFNESS, "Of each stop.").of_motion().positive(), &mut self.stiffness);
         let k =
             key("relative_damping", &INVERSE_VELOCITY, "Damping relative to the elastic force.").of_motion();
@@ -123,8 +125,10 @@ impl DeclaredCylinder {
         let lengths = ends.scan(0.0, |before, end| Some(end - std::mem::replace(before, end)));
         lengths.fold(0.0, f64::max)
     }
+}
 
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> DeclaredCylinder<S> {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = plain("model", "Name of a cylinder of the catalogue.");
         v.catalogue(k, CatalogueKind::Cylinder, &mut self.model);
         let k =
@@ -176,26 +180,26 @@ impl DeclaredCylinder {
 
 /// Friction of seals and bearings.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct DeclaredFriction {
+pub struct DeclaredFriction<S = f64> {
     /// Law of its non-viscous part.
-    pub law: FrictionLaw,
+    pub law: FrictionLaw<S>,
     /// Slope at high velocity (σ₂ of LuGre), N·s/m.
-    pub viscous: f64,
+    pub viscous: S,
     /// Levels in retraction, if different.
-    pub retracting: Option<RetractingFriction>,
+    pub retracting: Option<RetractingFriction<S>>,
     /// Residual of the recordings from which it was identified.
-    pub misfit: Option<DeclaredMisfit>,
+    pub misfit: Option<DeclaredMisfit<S>>,
 }
 
 /// Levels of friction in retraction; absent ones equal those in extension.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct RetractingFriction {
+pub struct RetractingFriction<S = f64> {
     /// Sliding friction F_C, N.
-    pub coulomb: Option<f64>,
+    pub coulomb: Option<S>,
     /// Breakaway friction F_S, N.
-    pub static_friction: Option<f64>,
+    pub static_friction: Option<S>,
     /// Slope at high velocity, N·s/m.
-    pub viscous: Option<f64>,
+    pub viscous: Option<S>,
 }
 
 impl RetractingFriction {
@@ -203,8 +207,10 @@ impl RetractingFriction {
     pub fn each_mut(&mut self) -> impl Iterator<Item = &mut f64> {
         [&mut self.coulomb, &mut self.static_friction, &mut self.viscous].into_iter().flatten()
     }
+}
 
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> RetractingFriction<S> {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("coulomb", &FORCE, "Sliding friction F_C; absent: as while it extends.").of_motion();
         v.optional(k.positive(), &mut self.coulomb);
         let k = key("static", &FORCE, "Breakaway friction F_S; absent: as while it extends.").of_motion();
@@ -216,43 +222,43 @@ impl RetractingFriction {
 
 /// Friction law, without its viscous part.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub enum FrictionLaw {
+pub enum FrictionLaw<S = f64> {
     /// No other part: proportional to velocity.
     #[default]
     Viscous,
     /// Coulomb and breakaway friction as a function of velocity.
     Stribeck {
         /// Curve over velocity.
-        curve: StribeckCurve,
+        curve: StribeckCurve<S>,
         /// Velocity that smooths the jump at standstill for simulation, m/s.
-        regular_velocity: Option<f64>,
+        regular_velocity: Option<S>,
     },
     /// Bristles with a state of their own.
     LuGre {
         /// Friction at constant velocity.
-        curve: StribeckCurve,
+        curve: StribeckCurve<S>,
         /// Bristle stiffness σ₀, N/m.
-        bristle_stiffness: f64,
+        bristle_stiffness: S,
         /// Bristle damping σ₁, N·s/m.
-        bristle_damping: f64,
+        bristle_damping: S,
     },
 }
 
 /// Friction that falls from breakaway to sliding.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct StribeckCurve {
+pub struct StribeckCurve<S = f64> {
     /// Sliding friction F_C, N.
-    pub coulomb: f64,
+    pub coulomb: S,
     /// Breakaway friction F_S, N.
-    pub static_friction: f64,
+    pub static_friction: S,
     /// Stribeck velocity, m/s.
-    pub stribeck_velocity: f64,
+    pub stribeck_velocity: S,
     /// Exponent.
-    pub stribeck_exponent: f64,
+    pub stribeck_exponent: S,
 }
 
-impl StribeckCurve {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> StribeckCurve<S> {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("coulomb", &FORCE, "Sliding friction F_C.").of_motion().positive();
         v.quantity(k, &mut self.coulomb);
         v.quantity(
@@ -267,13 +273,13 @@ impl StribeckCurve {
     }
 }
 
-impl Variants for FrictionLaw {
-    fn all(&self) -> Vec<FrictionLaw> {
+impl<S: TableNumber> Variants<S> for FrictionLaw<S> {
+    fn all(&self) -> Vec<FrictionLaw<S>> {
         let curve = StribeckCurve::default();
         vec![
             FrictionLaw::Viscous,
             FrictionLaw::Stribeck { curve, regular_velocity: None },
-            FrictionLaw::LuGre { curve, bristle_stiffness: 0.0, bristle_damping: 0.0 },
+            FrictionLaw::LuGre { curve, bristle_stiffness: S::default(), bristle_damping: S::default() },
         ]
     }
 
@@ -285,7 +291,7 @@ impl Variants for FrictionLaw {
         }
     }
 
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         match self {
             FrictionLaw::Viscous => {}
             FrictionLaw::Stribeck { curve, regular_velocity } => {
@@ -309,8 +315,8 @@ impl Variants for FrictionLaw {
     }
 }
 
-impl DeclaredFriction {
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> DeclaredFriction<S> {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         v.variant(plain("model", "Which friction law."), &mut self.law, true);
         let k = key("viscous", &DAMPING, "Slope of friction over velocity, σ₂ of LuGre.")
             .of_motion()
@@ -319,7 +325,7 @@ impl DeclaredFriction {
     }
 
     /// Visits the friction of a cylinder, which is identified from recordings.
-    pub(crate) fn visit_of_cylinder<V: Visitor>(&mut self, v: &mut V) {
+    pub(crate) fn visit_of_cylinder<V: Visitor<S>>(&mut self, v: &mut V) {
         self.visit(v);
         let k = plain("retracting", "What differs while the rod retracts; absent: the same both ways.");
         v.table(k, &mut self.retracting, RetractingFriction::visit);

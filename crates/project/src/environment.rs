@@ -3,23 +3,23 @@
 use phea_quantity::{
     ANGULAR_FREQUENCY, DAMPING, FORCE, INVERSE_VELOCITY, LENGTH, MASS, RATIO, STIFFNESS, TIME, VELOCITY,
 };
-use phea_table::{Variants, Visitor};
+use phea_table::{TableNumber, Variants, Visitor};
 use phea_table::{key, plain};
 
 /// Load cell.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct DeclaredForceSensor {
+pub struct DeclaredForceSensor<S = f64> {
     /// Stiffness K_S, N/m: of the cell in series with its environment if the load is a prescribed
     /// motion.
-    pub stiffness: f64,
+    pub stiffness: S,
     /// Root mean square of the white noise at a sampled controller, N.
-    pub noise: f64,
+    pub noise: S,
     /// Largest permitted force in both directions, N.
-    pub capacity: Option<f64>,
+    pub capacity: Option<S>,
 }
 
-impl DeclaredForceSensor {
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> DeclaredForceSensor<S> {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("stiffness", &STIFFNESS, "K_S: with a prescribed load motion, of cell and environment.")
             .of_motion();
         v.quantity(k.positive(), &mut self.stiffness);
@@ -35,23 +35,23 @@ impl DeclaredForceSensor {
 
 /// Sensor of the load velocity, which a controller may feed forward.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct DeclaredVelocitySensor {
+pub struct DeclaredVelocitySensor<S = f64> {
     /// Ratio of measured to true velocity, less one.
-    pub gain_error: f64,
+    pub gain_error: S,
     /// Delay of the measured velocity, s.
-    pub delay: f64,
+    pub delay: S,
     /// Corner frequency of its filter, rad/s; no filter if absent.
-    pub filter_frequency: Option<f64>,
+    pub filter_frequency: Option<S>,
     /// Damping ratio of a second-order filter; first order if absent.
-    pub filter_damping_ratio: Option<f64>,
+    pub filter_damping_ratio: Option<S>,
     /// Root mean square of the white noise at a sampled controller, m/s.
-    pub noise: f64,
+    pub noise: S,
     /// Resolution at a sampled controller, m/s; zero without rounding.
-    pub resolution: f64,
+    pub resolution: S,
 }
 
-impl DeclaredVelocitySensor {
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> DeclaredVelocitySensor<S> {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("gain_error", &RATIO, "Shown velocity over the true one, less one.").above(-1.0);
         v.quantity(k.or(0.0), &mut self.gain_error);
         let k = key("delay", &TIME, "From the velocity until it is shown.").not_negative();
@@ -72,47 +72,47 @@ impl DeclaredVelocitySensor {
 
 /// Load on which the force acts.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub enum Load {
+pub enum Load<S = f64> {
     /// Motion prescribed by the scenario, for any force.
     #[default]
     Prescribed,
     /// Mass, spring and damper.
     SpringMassDamper {
         /// Mass, kg.
-        mass: f64,
+        mass: S,
         /// Stiffness, N/m.
-        stiffness: f64,
+        stiffness: S,
         /// Damping, N·s/m.
-        damping: f64,
+        damping: S,
     },
     /// Guided mass; free up to the gap, then the wall.
     Wall {
         /// Mass, kg; needed only for a load that moves freely.
-        mass: Option<f64>,
+        mass: Option<S>,
         /// Damping of its guide, N·s/m.
-        damping: f64,
+        damping: S,
         /// Stiffness of the wall, N/m.
-        stiffness: f64,
+        stiffness: S,
         /// Free play before the wall is touched, m.
-        gap: f64,
+        gap: S,
         /// Damping of the wall relative to its elastic force, s/m.
-        relative_damping: f64,
+        relative_damping: S,
     },
 }
 
-impl Load {
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> Load<S> {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         v.variant(plain("model", "Which load."), self, false);
     }
 }
 
-impl Variants for Load {
-    fn all(&self) -> Vec<Load> {
-        let (damping, stiffness) = (0.0, 0.0);
+impl<S: TableNumber> Variants<S> for Load<S> {
+    fn all(&self) -> Vec<Load<S>> {
+        let (damping, stiffness) = (S::default(), S::default());
         vec![
             Load::Prescribed,
-            Load::SpringMassDamper { mass: 0.0, stiffness, damping },
-            Load::Wall { mass: None, damping, stiffness, gap: 0.0, relative_damping: 0.0 },
+            Load::SpringMassDamper { mass: S::default(), stiffness, damping },
+            Load::Wall { mass: None, damping, stiffness, gap: S::default(), relative_damping: S::default() },
         ]
     }
 
@@ -124,7 +124,7 @@ impl Variants for Load {
         }
     }
 
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let kilograms = key("mass", &MASS, "Mass of the load.").of_load().positive();
         let spring = key("stiffness", &STIFFNESS, "Stiffness of the load or of the wall.").of_load();
         let damper =

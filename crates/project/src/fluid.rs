@@ -5,28 +5,28 @@ use super::cost::PartCost;
 use phea_quantity::{
     DENSITY, FLOW, KINEMATIC_VISCOSITY, LENGTH, PRESSURE, RATIO, TEMPERATURE, TIME, VOLUME, ZERO_CELSIUS,
 };
-use phea_table::{Variants, Visitor};
+use phea_table::{TableNumber, Variants, Visitor};
 use phea_table::{key, plain};
 
 /// Oil.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct DeclaredFluid {
+pub struct DeclaredFluid<S = f64> {
     /// Bulk modulus of the liquid without air, Pa.
-    pub bulk_modulus: f64,
+    pub bulk_modulus: S,
     /// Density, kg/m³.
-    pub density: f64,
+    pub density: S,
     /// Kinematic viscosity, m²/s.
-    pub kinematic_viscosity: Option<f64>,
+    pub kinematic_viscosity: Option<S>,
     /// Volume of free air over total volume at atmospheric pressure; `None` and zero mean none.
-    pub entrained_air: Option<f64>,
+    pub entrained_air: Option<S>,
     /// Polytropic exponent of the entrained air.
-    pub polytropic_exponent: f64,
+    pub polytropic_exponent: S,
     /// Absolute pressure below which a chamber is reported to cavitate, Pa.
-    pub vapour_pressure: f64,
+    pub vapour_pressure: S,
 }
 
-impl DeclaredFluid {
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> DeclaredFluid<S> {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("bulk_modulus", &PRESSURE, "Bulk modulus of the liquid without air.").positive();
         v.quantity(k, &mut self.bulk_modulus);
         let k = key("density", &DENSITY, "Density of the liquid.").positive();
@@ -44,76 +44,78 @@ impl DeclaredFluid {
 
 /// Pressure supply.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct DeclaredSupply {
+pub struct DeclaredSupply<S = f64> {
     /// Behaviour of the pressure under load.
-    pub model: SupplyModel,
+    pub model: SupplyModel<S>,
     /// Supply pressure, Pa gauge.
-    pub pressure: f64,
+    pub pressure: S,
     /// Tank pressure, Pa gauge.
-    pub tank_pressure: f64,
+    pub tank_pressure: S,
 }
 
 /// Gas-charged accumulator.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct DeclaredAccumulator {
+pub struct DeclaredAccumulator<S = f64> {
     /// Volume of the gas at its precharge, m³.
-    pub gas_volume: f64,
+    pub gas_volume: S,
     /// Precharge pressure, Pa gauge.
-    pub precharge_pressure: f64,
+    pub precharge_pressure: S,
     /// Polytropic exponent of the gas; without effect if it has a thermal time constant.
-    pub polytropic_exponent: f64,
+    pub polytropic_exponent: S,
     /// Time constant of the heat exchange between gas and wall at a chamber, s. `None` for
     /// polytropic gas.
-    pub thermal_time_constant: Option<f64>,
+    pub thermal_time_constant: Option<S>,
     /// Temperatures at which the precharge is stated and at which the gas works; `None` if they are
     /// equal.
-    pub temperatures: Option<GasTemperatures>,
+    pub temperatures: Option<GasTemperatures<S>>,
     /// Highest permitted pressure over the precharge, both absolute, if stated.
-    pub maximum_pressure_ratio: Option<f64>,
+    pub maximum_pressure_ratio: Option<S>,
     /// Neck between a chamber and the gas; if absent, the gas has the pressure of the chamber.
-    pub neck: Option<DeclaredNeck>,
+    pub neck: Option<DeclaredNeck<S>>,
     /// Adjustment in operation, at a chamber.
-    pub adjustment: Option<DeclaredAdjustment>,
+    pub adjustment: Option<DeclaredAdjustment<S>>,
     /// Cost and mass, at a chamber.
-    pub cost: PartCost,
+    pub cost: PartCost<S>,
 }
 
 /// Temperatures of the gas of an accumulator, in degC.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct GasTemperatures {
+pub struct GasTemperatures<S = f64> {
     /// Temperature at which the precharge is stated.
-    pub precharge: f64,
+    pub precharge: S,
     /// Temperature of the gas at its wall in operation.
-    pub working: f64,
+    pub working: S,
 }
 
 impl GasTemperatures {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let doc = "At which `precharge_pressure` was measured; absent: at that in operation.";
-        v.quantity(key("precharge_temperature", &TEMPERATURE, doc).above(-ZERO_CELSIUS), &mut self.precharge);
-        let doc = "Of the gas in operation, which changes its precharge in proportion, both absolute.";
-        v.quantity(key("working_temperature", &TEMPERATURE, doc).above(-ZERO_CELSIUS), &mut self.working);
-    }
-
     /// Both temperatures, K.
     pub fn absolute(&self) -> [f64; 2] {
         [self.precharge, self.working].map(|celsius| celsius + ZERO_CELSIUS)
     }
 }
 
-/// Neck of an accumulator at a chamber.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct DeclaredNeck {
-    /// Diameter, m.
-    pub diameter: f64,
-    /// Length, m.
-    pub length: f64,
-    /// Loss at both its ends, over the velocity head.
-    pub loss_coefficient: f64,
+impl<S: TableNumber> GasTemperatures<S> {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
+        let doc = "At which `precharge_pressure` was measured; absent: at that in operation.";
+        v.quantity(key("precharge_temperature", &TEMPERATURE, doc).above(-ZERO_CELSIUS), &mut self.precharge);
+        let doc = "Of the gas in operation, which changes its precharge in proportion, both absolute.";
+        v.quantity(key("working_temperature", &TEMPERATURE, doc).above(-ZERO_CELSIUS), &mut self.working);
+    }
 }
 
-impl DeclaredNeck {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+/// Neck of an accumulator at a chamber.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DeclaredNeck<S = f64> {
+    /// Diameter, m.
+    pub diameter: S,
+    /// Length, m.
+    pub length: S,
+    /// Loss at both its ends, over the velocity head.
+    pub loss_coefficient: S,
+}
+
+impl<S: TableNumber> DeclaredNeck<S> {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("neck_diameter", &LENGTH, "Diameter of the neck to the gas; absent: no neck.").positive();
         v.quantity(k, &mut self.diameter);
         v.quantity(key("neck_length", &LENGTH, "Length of that neck.").positive(), &mut self.length);
@@ -145,9 +147,11 @@ impl DeclaredAccumulator {
         let precharge_pressure = last.precharge_pressure.unwrap_or(self.precharge_pressure);
         [*self, DeclaredAccumulator { gas_volume, precharge_pressure, ..*self }]
     }
+}
 
+impl<S: TableNumber> DeclaredAccumulator<S> {
     /// Visits an accumulator at a chamber, which may have a neck, exchange heat and be adjusted.
-    pub(crate) fn visit_at_chamber<V: Visitor>(&mut self, v: &mut V) {
+    pub(crate) fn visit_at_chamber<V: Visitor<S>>(&mut self, v: &mut V) {
         let doc = "Of the heat between gas and wall, in place of `polytropic_exponent`: slow isothermal, fast adiabatic.";
         v.optional(key("thermal_time_constant", &TIME, doc).positive(), &mut self.thermal_time_constant);
         self.visit(v);
@@ -157,7 +161,7 @@ impl DeclaredAccumulator {
         self.cost.visit(v);
     }
 
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("gas_volume", &VOLUME, "Volume of the gas at its precharge.").positive();
         v.quantity(k, &mut self.gas_volume);
         let k = key("precharge_pressure", &PRESSURE, "Pressure of the gas without oil, gauge.").positive();
@@ -182,39 +186,39 @@ impl DeclaredAccumulator {
 /// Behaviour of the supply pressure under load.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(clippy::large_enum_variant, reason = "a project has one supply")]
-pub enum SupplyModel {
+pub enum SupplyModel<S = f64> {
     /// Constant pressure as declared.
     Constant {
         /// Flow of the pump, which limits sizing and the operating region, m³/s.
-        flow: Option<f64>,
+        flow: Option<S>,
     },
     /// Pressure that falls when the demand exceeds the pump's flow.
-    PumpLimited(Pump),
+    PumpLimited(Pump<S>),
 }
 
 /// Limited pump with the line to the valve.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Pump {
+pub struct Pump<S = f64> {
     /// Maximum flow, m³/s.
-    pub flow: f64,
+    pub flow: S,
     /// Rise of pressure over which the relief valve opens for the pump's whole flow, Pa.
-    pub relief_override: f64,
+    pub relief_override: S,
     /// Volume of the supply line, m³.
-    pub volume: f64,
+    pub volume: S,
     /// Effective bulk modulus of the supply line, Pa; if absent, that of the fluid.
-    pub effective_bulk_modulus: Option<f64>,
+    pub effective_bulk_modulus: Option<S>,
     /// Accumulator on the supply line.
-    pub accumulator: Option<DeclaredAccumulator>,
+    pub accumulator: Option<DeclaredAccumulator<S>>,
 }
 
-impl Default for SupplyModel {
+impl<S: Default> Default for SupplyModel<S> {
     fn default() -> Self {
         SupplyModel::Constant { flow: None }
     }
 }
 
-impl Variants for SupplyModel {
-    fn all(&self) -> Vec<SupplyModel> {
+impl<S: TableNumber> Variants<S> for SupplyModel<S> {
+    fn all(&self) -> Vec<SupplyModel<S>> {
         vec![SupplyModel::default(), SupplyModel::PumpLimited(Pump::default())]
     }
 
@@ -225,7 +229,7 @@ impl Variants for SupplyModel {
         }
     }
 
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("flow", &FLOW, "Flow the pump can give.").positive();
         match self {
             SupplyModel::Constant { flow } => v.optional(k, flow),
@@ -237,8 +241,8 @@ impl Variants for SupplyModel {
     }
 }
 
-impl Pump {
-    fn visit_line<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> Pump<S> {
+    fn visit_line<V: Visitor<S>>(&mut self, v: &mut V) {
         let k =
             key("relief_override", &PRESSURE, "Rise over which the relief valve opens for all of `flow`.");
         v.quantity(k.positive().or(5e5), &mut self.relief_override);
@@ -259,8 +263,10 @@ impl DeclaredSupply {
             SupplyModel::PumpLimited(pump) => Some(pump.flow),
         }
     }
+}
 
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> DeclaredSupply<S> {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = plain("model", "How the pressure behaves under load; `pump_limited` uses `flow`.");
         v.variant(k, &mut self.model, false);
         let k = key("pressure", &PRESSURE, "Supply pressure, gauge.").positive();

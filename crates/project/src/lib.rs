@@ -123,7 +123,7 @@ pub use verification::*;
 
 pub(crate) use input_signal::InputUnit;
 pub use phea_table::{AcceptedRange, Formula, FormulaError, Key, Motions, Ratio, Variable, word_of};
-pub(crate) use phea_table::{Visitor, key, plain};
+pub(crate) use phea_table::{TableNumber, Visitor, key, plain};
 pub(crate) use reader::Reader;
 pub use rewrite::{RewriteError, snippet, with_elements, with_laws, with_line_model, with_pressure_feedback};
 pub use text::{Findings, Place, RawFinding};
@@ -251,31 +251,31 @@ impl Project {
 
 /// Hydraulic actuator and its load.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct DeclaredActuator {
+pub struct DeclaredActuator<S = f64> {
     /// Oil.
-    pub fluid: DeclaredFluid,
+    pub fluid: DeclaredFluid<S>,
     /// Pressure supply.
-    pub supply: DeclaredSupply,
+    pub supply: DeclaredSupply<S>,
     /// Servovalve.
-    pub valve: Valve,
+    pub valve: Valve<S>,
     /// Cylinder; the default value if the rig has a motor.
-    pub cylinder: DeclaredCylinder,
+    pub cylinder: DeclaredCylinder<S>,
     /// Motor in place of the cylinder.
-    pub motor: Option<DeclaredMotor>,
+    pub motor: Option<DeclaredMotor<S>>,
     /// Lines between valve and cylinder.
-    pub line: DeclaredLines,
+    pub line: DeclaredLines<S>,
     /// Valve between the chambers, if there is one.
-    pub cross_port: Option<DeclaredCrossPort>,
+    pub cross_port: Option<DeclaredCrossPort<S>>,
     /// Load cell.
-    pub force_sensor: DeclaredForceSensor,
+    pub force_sensor: DeclaredForceSensor<S>,
     /// Sensor of the load velocity; if absent, the true velocity is known immediately.
-    pub velocity_sensor: Option<DeclaredVelocitySensor>,
+    pub velocity_sensor: Option<DeclaredVelocitySensor<S>>,
     /// Element between load cell and load; if absent, the cell acts directly on the load.
-    pub series: Option<DeclaredSeries>,
+    pub series: Option<DeclaredSeries<S>>,
     /// Linkage between rod and load; if absent, the load moves with the rod.
-    pub linkage: Option<DeclaredLinkage>,
+    pub linkage: Option<DeclaredLinkage<S>>,
     /// Load on which the force acts.
-    pub load: Load,
+    pub load: Load<S>,
 }
 
 impl DeclaredActuator {
@@ -286,7 +286,14 @@ impl DeclaredActuator {
     /// Optional tables.
     const OPTIONAL: [&'static str; 5] = ["cross_port", "velocity_sensor", "series", "linkage", "load"];
 
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+    /// All tables with their names.
+    fn tables() -> impl Iterator<Item = &'static str> + Clone {
+        Self::REQUIRED.into_iter().chain(Self::MOVING).chain(Self::OPTIONAL)
+    }
+}
+
+impl<S: TableNumber> DeclaredActuator<S> {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         required(plain("fluid", "The oil."), &mut self.fluid, DeclaredFluid::visit, v);
         required(plain("supply", "The pressure supply."), &mut self.supply, DeclaredSupply::visit, v);
         required(plain("valve", "The servovalve."), &mut self.valve, Valve::visit, v);
@@ -313,14 +320,9 @@ impl DeclaredActuator {
         v.table_or_default(plain("load", "What the force acts on."), &mut self.load, Load::visit);
     }
 
-    /// All tables with their names.
-    fn tables() -> impl Iterator<Item = &'static str> + Clone {
-        Self::REQUIRED.into_iter().chain(Self::MOVING).chain(Self::OPTIONAL)
-    }
-
     /// Visits the moving part: a motor, or otherwise a cylinder. The keys of all other tables
     /// measure its motion.
-    fn visit_moving<V: Visitor>(&mut self, v: &mut V) {
+    fn visit_moving<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = plain("motor", "A rotary actuator in place of the cylinder.");
         v.table(k, &mut self.motor, DeclaredMotor::visit);
         v.moves(Some(MotionKind::Linear));
@@ -332,7 +334,12 @@ impl DeclaredActuator {
 }
 
 /// Table that a schema marks as required in addition to that of the plant.
-fn required<T: Default, V: Visitor>(key: Key, field: &mut T, visit: impl Fn(&mut T, &mut V), v: &mut V) {
+fn required<S: TableNumber, T: Default, V: Visitor<S>>(
+    key: Key,
+    field: &mut T,
+    visit: impl Fn(&mut T, &mut V),
+    v: &mut V,
+) {
     let mut table = Some(std::mem::take(field));
     v.table(key, &mut table, visit);
     *field = table.unwrap_or_default();

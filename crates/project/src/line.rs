@@ -8,146 +8,146 @@ use super::misfit::DeclaredMisfit;
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_quantity::{DENSITY, EXPANSION_SLOPE, LENGTH, PRESSURE, RATIO, VOLUME, VOLUME_PER_LENGTH};
 use phea_table::CatalogueKind;
-use phea_table::{Kinds, Visitor};
+use phea_table::{Kinds, TableNumber, Visitor};
 use phea_table::{key, plain};
 
 /// Lines between the valve and the chambers.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct DeclaredLines {
+pub struct DeclaredLines<S = f64> {
     /// Volume to which the line's effective bulk modulus applies.
     pub compliance: StiffnessModel,
     /// Line to chamber A.
-    pub a: DeclaredLine,
+    pub a: DeclaredLine<S>,
     /// Line to chamber B.
-    pub b: DeclaredLine,
+    pub b: DeclaredLine<S>,
 }
 
 /// Single line.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct DeclaredLine {
+pub struct DeclaredLine<S = f64> {
     /// Component of the line.
-    pub component: Component,
+    pub component: Component<S>,
     /// Ratio r_β of dynamic to static modulus of the hose.
-    pub dynamic_stiffening: Option<BoundedNumber>,
+    pub dynamic_stiffening: Option<BoundedNumber<S>>,
     /// Dynamic model.
-    pub motion: LineMotion,
+    pub motion: LineMotion<S>,
     /// Accumulator at its chamber end.
-    pub accumulator: Option<DeclaredAccumulator>,
+    pub accumulator: Option<DeclaredAccumulator<S>>,
     /// Residual of the recordings from which it was identified.
-    pub misfit: Option<DeclaredMisfit>,
+    pub misfit: Option<DeclaredMisfit<S>>,
 }
 
 /// Component of a line.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Component {
+pub enum Component<S = f64> {
     /// Hose with volumetric expansion.
     Hose {
         /// Name of the catalogue's hose, if it is from there.
         name: Option<String>,
         /// Data of the hose, from the catalogue or stated here.
-        properties: HoseProperties,
+        properties: HoseProperties<S>,
         /// Length of this one line, m.
-        length: f64,
+        length: S,
     },
     /// Pipe.
     Pipe {
         /// Dimensions and wall.
-        pipe: DeclaredPipe,
+        pipe: DeclaredPipe<S>,
         /// Length of this one line, m.
-        length: f64,
+        length: S,
     },
     /// Volume stated directly.
-    Volume(LineVolume),
+    Volume(LineVolume<S>),
 }
 
 /// Volume with its modulus.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct LineVolume {
+pub struct LineVolume<S = f64> {
     /// Volume, m³.
-    pub volume: f64,
+    pub volume: S,
     /// Effective bulk modulus, Pa.
-    pub effective_bulk_modulus: f64,
+    pub effective_bulk_modulus: S,
 }
 
 /// Data of a hose.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct HoseProperties {
+pub struct HoseProperties<S = f64> {
     /// Inner diameter of the hose, m.
-    pub bore: f64,
+    pub bore: S,
     /// Volumetric expansion under pressure.
-    pub expansion: HoseExpansion,
+    pub expansion: HoseExpansion<S>,
     /// Minimum bend radius, m.
-    pub minimum_bend_radius: Option<f64>,
+    pub minimum_bend_radius: Option<S>,
     /// Working pressure, Pa.
-    pub working_pressure: Option<f64>,
+    pub working_pressure: Option<S>,
     /// Burst pressure, Pa.
-    pub burst_pressure: Option<f64>,
+    pub burst_pressure: Option<S>,
     /// Cost and mass.
-    pub cost: LineCost,
+    pub cost: LineCost<S>,
 }
 
 /// Volumetric expansion of a hose under pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum HoseExpansion {
+pub enum HoseExpansion<S = f64> {
     /// Expansion by its slope.
     Slope {
         /// Slope, m³/(m·Pa).
-        slope: f64,
+        slope: S,
         /// Measured value, if stated, m³/m.
-        measured: Option<f64>,
+        measured: Option<S>,
         /// Pressure of the measurement, Pa.
-        pressure: Option<f64>,
+        pressure: Option<S>,
     },
     /// Expansion from the measured value, on a straight line through zero.
     Measured {
         /// Measured value, m³/m.
-        measured: f64,
+        measured: S,
         /// Pressure of the measurement, Pa.
-        pressure: f64,
+        pressure: S,
     },
 }
 
 /// Pipe with an elastic wall.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct DeclaredPipe {
+pub struct DeclaredPipe<S = f64> {
     /// Name of the catalogue's pipe, if it is from there.
     pub model: Option<String>,
     /// Inner diameter, m.
-    pub bore: f64,
+    pub bore: S,
     /// Data of the wall; rigid if absent.
-    pub wall: Option<ElasticWall>,
+    pub wall: Option<ElasticWall<S>>,
     /// Poisson's ratio of the wall.
-    pub poisson_ratio: f64,
+    pub poisson_ratio: S,
     /// Outer diameter, m.
-    pub outer_diameter: Option<f64>,
+    pub outer_diameter: Option<S>,
     /// Working pressure, Pa.
-    pub working_pressure: Option<f64>,
+    pub working_pressure: Option<S>,
     /// Burst pressure, Pa.
-    pub burst_pressure: Option<f64>,
+    pub burst_pressure: Option<S>,
     /// Cost and mass.
-    pub cost: LineCost,
+    pub cost: LineCost<S>,
 }
 
 /// Elastic wall of a pipe.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ElasticWall {
+pub struct ElasticWall<S = f64> {
     /// Thickness, m.
-    pub thickness: f64,
+    pub thickness: S,
     /// Young's modulus, Pa.
-    pub youngs_modulus: f64,
+    pub youngs_modulus: S,
     /// Density, from which the mass follows, kg/m³.
-    pub density: Option<f64>,
+    pub density: Option<S>,
 }
 
-impl Default for Component {
+impl<S: Default> Default for Component<S> {
     fn default() -> Self {
         Component::Volume(LineVolume::default())
     }
 }
 
-impl Default for HoseExpansion {
+impl<S: Default> Default for HoseExpansion<S> {
     fn default() -> Self {
-        HoseExpansion::Slope { slope: 0.0, measured: None, pressure: None }
+        HoseExpansion::Slope { slope: S::default(), measured: None, pressure: None }
     }
 }
 
@@ -203,19 +203,21 @@ impl DeclaredLine {
     pub fn expansion_stated_at(&self) -> Option<f64> {
         self.hose().and_then(|hose| hose.expansion.pressure())
     }
+}
 
+impl<S: TableNumber> DeclaredLine<S> {
     /// Visits a hose or pipe that ends at no chamber.
-    pub(crate) fn visit_alone<V: Visitor>(&mut self, v: &mut V) {
+    pub(crate) fn visit_alone<V: Visitor<S>>(&mut self, v: &mut V) {
         self.component.visit(false, v);
         self.visit_stiffening(v);
     }
 
-    fn visit_stiffening<V: Visitor>(&mut self, v: &mut V) {
+    fn visit_stiffening<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("dynamic_stiffening", &RATIO, "r_β, the hose's dynamic over its static modulus.");
         BoundedNumber::visit(v, k.at_least(1.0), &mut self.dynamic_stiffening);
     }
 
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         self.component.visit(true, v);
         self.visit_stiffening(v);
         v.variant(plain("model", "What of the line moves."), &mut self.motion, false);
@@ -231,10 +233,12 @@ impl Component {
         ["hose", "bore", "volumetric_expansion", "volumetric_expansion_slope"];
     /// Keys any of which makes the line a directly stated volume.
     pub(crate) const VOLUME: [&'static str; 2] = ["volume", "effective_bulk_modulus"];
+}
 
+impl<S: TableNumber> Component<S> {
     /// Visits the line, also as a directly stated volume if `or_volume`.
-    fn visit<V: Visitor>(&mut self, or_volume: bool, v: &mut V) {
-        let (mut name, mut hose, mut pipe, mut volume, mut length) = (None, None, None, None, 0.0);
+    fn visit<V: Visitor<S>>(&mut self, or_volume: bool, v: &mut V) {
+        let (mut name, mut hose, mut pipe, mut volume, mut length) = (None, None, None, None, S::default());
         match std::mem::take(self) {
             Component::Hose { name: of, properties, length: m } => {
                 (name, hose, length) = (of, Some(properties), m);
@@ -267,8 +271,8 @@ impl Component {
     }
 }
 
-impl LineVolume {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> LineVolume<S> {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let doc = "Volume of the line, instead of a hose or pipe; zero: the valve is on the chamber.";
         let k = key("volume", &VOLUME, doc).not_negative();
         v.quantity(k, &mut self.volume);
@@ -285,9 +289,11 @@ impl HoseExpansion {
             HoseExpansion::Measured { measured, pressure } => measured / pressure,
         }
     }
+}
 
+impl<S: TableNumber> HoseExpansion<S> {
     /// Measured value, if stated, m³/m.
-    pub fn measured(&self) -> Option<f64> {
+    pub fn measured(&self) -> Option<S> {
         match *self {
             HoseExpansion::Slope { measured, .. } => measured,
             HoseExpansion::Measured { measured, .. } => Some(measured),
@@ -295,18 +301,18 @@ impl HoseExpansion {
     }
 
     /// Pressure of the measurement, Pa.
-    pub fn pressure(&self) -> Option<f64> {
+    pub fn pressure(&self) -> Option<S> {
         match *self {
             HoseExpansion::Slope { pressure, .. } => pressure,
             HoseExpansion::Measured { pressure, .. } => Some(pressure),
         }
     }
 
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let (mut measured, mut pressure) = (self.measured(), self.pressure());
         // a slope is positive, unless an expansion is not read yet
         let mut slope = match *self {
-            HoseExpansion::Slope { slope, .. } if slope > 0.0 => Some(slope),
+            HoseExpansion::Slope { slope, .. } if slope != S::default() => Some(slope),
             HoseExpansion::Slope { .. } | HoseExpansion::Measured { .. } => None,
         };
         let k = key("volumetric_expansion", &VOLUME_PER_LENGTH, "Volume gained by a metre of hose.");
@@ -328,9 +334,9 @@ impl HoseExpansion {
     }
 }
 
-impl HoseProperties {
+impl<S: TableNumber> HoseProperties<S> {
     /// Visits the keys of a hose in the catalogue.
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("bore", &LENGTH, "Inner diameter of the hose.").positive();
         v.quantity(k, &mut self.bore);
         self.expansion.visit(v);
@@ -344,9 +350,9 @@ impl HoseProperties {
     }
 }
 
-impl DeclaredPipe {
+impl<S: TableNumber> DeclaredPipe<S> {
     /// Visits the keys of a pipe, also in the catalogue.
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = plain("model", "Name of a pipe of the catalogue.");
         v.catalogue(k, CatalogueKind::Pipe, &mut self.model);
         v.quantity(key("bore", &LENGTH, "Inner diameter of the pipe.").positive(), &mut self.bore);
@@ -364,8 +370,8 @@ impl DeclaredPipe {
     }
 }
 
-impl ElasticWall {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> ElasticWall<S> {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("wall_thickness", &LENGTH, "Thickness of the wall; absent: the wall is rigid.");
         v.quantity(k.positive(), &mut self.thickness);
         let k = key("youngs_modulus", &PRESSURE, "Young's modulus of the wall.").positive();
@@ -375,8 +381,8 @@ impl ElasticWall {
     }
 }
 
-impl DeclaredLines {
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> DeclaredLines<S> {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = plain("compliance", "To which volume the line's effective bulk modulus applies.");
         let words = &[("by_volume", StiffnessModel::ByVolume), ("uniform", StiffnessModel::Uniform)];
         v.choice(k, words, &mut self.compliance, false);

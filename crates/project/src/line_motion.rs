@@ -3,11 +3,11 @@
 use phea_hydraulics::line::LaminarFriction;
 use phea_quantity::{MASS_PER_LENGTH, RATIO, STRAIN_PER_FORCE, STRAIN_PER_PRESSURE, TIME};
 use phea_table::{Key, key, plain};
-use phea_table::{Kinds, Variants, Visitor};
+use phea_table::{Kinds, TableNumber, Variants, Visitor};
 
 /// Dynamic model of a line with its parameters.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub enum LineMotion {
+pub enum LineMotion<S = f64> {
     /// Model chosen by the frequency range of loop and requirements; lumped until it is chosen.
     #[default]
     Automatic,
@@ -16,47 +16,47 @@ pub enum LineMotion {
     /// Single pressure, and a wall that creeps.
     Creeping {
         /// Time constant in which pressure relaxes at constant volume, s.
-        relaxation_time: f64,
+        relaxation_time: S,
     },
     /// Alternating capacities and inertances.
-    Segments(LineSegments),
+    Segments(LineSegments<S>),
     /// Fluid waves.
     TransmissionLine {
         /// Fraction of the line's compliance that is a plain volume at each end; if absent,
         /// `phea_hydraulics::line::END_SHARE`.
-        end_share: Option<f64>,
+        end_share: Option<S>,
     },
     /// Fluid and wall waves, coupled.
     TwoWave {
         /// Fraction as for a transmission line.
-        end_share: Option<f64>,
+        end_share: Option<S>,
         /// Data of a wall that moves along its axis.
-        wall: Option<LineWall>,
+        wall: Option<LineWall<S>>,
     },
 }
 
 /// Line divided into segments.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct LineSegments {
+pub struct LineSegments<S = f64> {
     /// Number of segments; if absent, [`LineSegments::COUNT`].
     pub count: Option<u32>,
     /// Friction of the flow; frequency-dependent if absent.
     pub friction: Option<LaminarFriction>,
     /// Relaxation time of a wall that creeps, s; elastic if absent.
-    pub relaxation_time: Option<f64>,
+    pub relaxation_time: Option<S>,
 }
 
 /// Data of a hose's wall that moves along its axis; absent values are assumed.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct LineWall {
+pub struct LineWall<S = f64> {
     /// Mass per length, kg/m.
-    pub mass_per_length: Option<f64>,
+    pub mass_per_length: Option<S>,
     /// Area strain per pressure without tension, 1/Pa.
-    pub pressure_compliance: Option<f64>,
+    pub pressure_compliance: Option<S>,
     /// Area strain per tension, 1/N.
-    pub coupling_compliance: Option<f64>,
+    pub coupling_compliance: Option<S>,
     /// Axial strain per tension, 1/N.
-    pub axial_compliance: Option<f64>,
+    pub axial_compliance: Option<S>,
 }
 
 static FRICTIONS: [(&str, Option<LaminarFriction>); 2] = [
@@ -71,14 +71,14 @@ const RELAXATION: Key = key(
 )
 .positive();
 
-impl Variants for LineMotion {
+impl<S: TableNumber> Variants<S> for LineMotion<S> {
     const STRICT: bool = true;
 
-    fn all(&self) -> Vec<LineMotion> {
+    fn all(&self) -> Vec<LineMotion<S>> {
         vec![
             LineMotion::Automatic,
             LineMotion::Lumped,
-            LineMotion::Creeping { relaxation_time: 0.0 },
+            LineMotion::Creeping { relaxation_time: S::default() },
             LineMotion::Segments(LineSegments::default()),
             LineMotion::TransmissionLine { end_share: None },
             LineMotion::TwoWave { end_share: None, wall: None },
@@ -100,7 +100,7 @@ impl Variants for LineMotion {
         *self == LineMotion::Automatic
     }
 
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let share = key("end_share", &RATIO, "Share of the compliance at each end of a line with waves.");
         let share = share.positive().below(0.5);
         match self {
@@ -171,11 +171,13 @@ impl LineSegments {
         // a wall creeps at both ends of each segment
         (Self::MOST_STATES - creeping) / (2 + lags + creeping)
     }
+}
 
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> LineSegments<S> {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("segments", &RATIO, "How many segments; absent: 8.")
             .at_least(1.0)
-            .at_most(f64::from(Self::MOST_STATES / 2));
+            .at_most(f64::from(LineSegments::<f64>::MOST_STATES / 2));
         v.optional_count(k, &mut self.count);
         let k = plain("friction", "Laminar friction in segments; absent: \"frequency_dependent\".");
         v.choice(k, &FRICTIONS, &mut self.friction, false);
@@ -183,8 +185,8 @@ impl LineSegments {
     }
 }
 
-impl LineWall {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> LineWall<S> {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("mass_per_length", &MASS_PER_LENGTH, "Mass of a metre of wall.").positive();
         v.optional(k, &mut self.mass_per_length);
         let k = key("pressure_compliance", &STRAIN_PER_PRESSURE, "Area strain per pressure, no tension.");

@@ -4,78 +4,78 @@ use phea_hydraulics::linkage::{
     FourBar, LinkageError, LinkageGeometry, LinkageTable, PivotTriangle, ReducedLinkage, STANDARD_GRAVITY,
 };
 use phea_quantity::{ANGLE, LENGTH, MASS};
-use phea_table::{Variants, Visitor};
+use phea_table::{TableNumber, Variants, Visitor};
 use phea_table::{key, plain};
 
 /// Linkage: the angle of the joint grows while the rod extends.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct DeclaredLinkage {
+pub struct DeclaredLinkage<S = f64> {
     /// Kind of linkage.
-    pub kind: LinkageKind,
+    pub kind: LinkageKind<S>,
     /// Weight of the load; if absent, gravity exerts no torque.
-    pub weight: Option<DeclaredWeight>,
+    pub weight: Option<DeclaredWeight<S>>,
 }
 
 /// Weight of a load that turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct DeclaredWeight {
+pub struct DeclaredWeight<S = f64> {
     /// Mass of all parts that turn with the joint, kg.
-    pub mass: f64,
+    pub mass: S,
     /// Distance from the joint to the centre of mass, m.
-    pub centre_distance: f64,
+    pub centre_distance: S,
     /// Angle of the joint at which the centre is level with it and rises, rad.
-    pub level_angle: f64,
+    pub level_angle: S,
 }
 
 /// Kinds of linkages.
 #[derive(Clone, Debug, PartialEq)]
-pub enum LinkageKind {
+pub enum LinkageKind<S = f64> {
     /// Cylinder between two pivots on either side of the joint.
-    Triangle(CylinderTriangle),
+    Triangle(CylinderTriangle<S>),
     /// Cylinder that turns the input link of a four-bar linkage.
     FourBar {
         /// Triangle about the joint of the input link.
-        triangle: CylinderTriangle,
+        triangle: CylinderTriangle<S>,
         /// Fixed, input and output link, and coupler.
-        links: DeclaredLinks,
+        links: DeclaredLinks<S>,
     },
     /// Measured table.
     Table {
         /// Positions of the piston, m.
-        extensions: Vec<f64>,
+        extensions: Vec<S>,
         /// Angles of the joint, rad.
-        angles: Vec<f64>,
+        angles: Vec<S>,
         /// Largest distance of the polynomial from a row, m.
-        tolerance: f64,
+        tolerance: S,
     },
 }
 
 /// Triangle of a joint and both pivots of a cylinder.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct CylinderTriangle {
+pub struct CylinderTriangle<S = f64> {
     /// Distance from the joint to the pivot of the cylinder's body, m.
-    pub cylinder_pivot: f64,
+    pub cylinder_pivot: S,
     /// Distance from the joint to the pivot of the rod, m.
-    pub rod_pivot: f64,
+    pub rod_pivot: S,
     /// Distance from pivot to pivot at position zero, m.
-    pub retracted_length: f64,
+    pub retracted_length: S,
     /// Difference between the angle of the geometry and that of the joint, rad.
-    pub angle_offset: f64,
+    pub angle_offset: S,
 }
 
 /// Links of a four-bar linkage.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct DeclaredLinks {
+pub struct DeclaredLinks<S = f64> {
     /// Lead of the input link over the triangle's angle, rad.
-    pub input_angle: f64,
+    pub input_angle: S,
     /// Distance from joint to joint, m.
-    pub fixed_link: f64,
+    pub fixed_link: S,
     /// Length of the input link, m.
-    pub input_link: f64,
+    pub input_link: S,
     /// Length of the coupler, m.
-    pub coupler: f64,
+    pub coupler: S,
     /// Length of the output link, with which the load turns, m.
-    pub output_link: f64,
+    pub output_link: S,
     /// Assembly of the links.
     pub branch: FourBarBranch,
 }
@@ -93,19 +93,13 @@ pub enum FourBarBranch {
 /// Default tolerance, m.
 const TOLERANCE: f64 = 1e-4;
 
-impl Default for LinkageKind {
+impl<S: Default> Default for LinkageKind<S> {
     fn default() -> Self {
         LinkageKind::Triangle(CylinderTriangle::default())
     }
 }
 
 impl DeclaredLinkage {
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        v.variant(plain("kind", "What the linkage is made of."), &mut self.kind, true);
-        let k = plain("weight", "The weight of the load, which gravity turns about the joint; absent: none.");
-        v.table(k, &mut self.weight, DeclaredWeight::visit);
-    }
-
     /// Reduced form for the equations, over a stroke in m.
     ///
     /// # Errors
@@ -145,13 +139,23 @@ impl DeclaredLinkage {
     }
 }
 
+impl<S: TableNumber> DeclaredLinkage<S> {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
+        v.variant(plain("kind", "What the linkage is made of."), &mut self.kind, true);
+        let k = plain("weight", "The weight of the load, which gravity turns about the joint; absent: none.");
+        v.table(k, &mut self.weight, DeclaredWeight::visit);
+    }
+}
+
 impl DeclaredWeight {
     /// Moment of gravity when the centre is level with the joint, N m.
     pub fn moment(&self) -> f64 {
         self.mass * self.centre_distance * STANDARD_GRAVITY
     }
+}
 
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> DeclaredWeight<S> {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("mass", &MASS, "Mass of all that turns with the joint.").not_negative();
         v.quantity(k, &mut self.mass);
         let k = key("centre_distance", &LENGTH, "From the joint to the centre of that mass.");
@@ -170,8 +174,10 @@ impl CylinderTriangle {
             retracted_length: self.retracted_length,
         }
     }
+}
 
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> CylinderTriangle<S> {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("cylinder_pivot", &LENGTH, "From the joint to the pivot of the cylinder's body.");
         v.quantity(k.positive(), &mut self.cylinder_pivot);
         let k = key("rod_pivot", &LENGTH, "From the joint to the pivot of the rod.");
@@ -183,8 +189,8 @@ impl CylinderTriangle {
     }
 }
 
-impl DeclaredLinks {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> DeclaredLinks<S> {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let doc =
             "By which the input link, seen from the fixed link, is ahead of the angle between both pivots.";
         v.quantity(key("input_angle", &ANGLE, doc).or(0.0), &mut self.input_angle);
@@ -201,14 +207,14 @@ impl DeclaredLinks {
     }
 }
 
-impl Variants for LinkageKind {
+impl<S: TableNumber> Variants<S> for LinkageKind<S> {
     const STRICT: bool = true;
 
-    fn all(&self) -> Vec<LinkageKind> {
+    fn all(&self) -> Vec<LinkageKind<S>> {
         vec![
             LinkageKind::default(),
             LinkageKind::FourBar { triangle: CylinderTriangle::default(), links: DeclaredLinks::default() },
-            LinkageKind::Table { extensions: Vec::new(), angles: Vec::new(), tolerance: TOLERANCE },
+            LinkageKind::Table { extensions: Vec::new(), angles: Vec::new(), tolerance: S::from(TOLERANCE) },
         ]
     }
 
@@ -220,7 +226,7 @@ impl Variants for LinkageKind {
         }
     }
 
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         match self {
             LinkageKind::Triangle(triangle) => triangle.visit(v),
             LinkageKind::FourBar { triangle, links } => {

@@ -2,14 +2,14 @@
 //! identified numbers.
 
 use phea_quantity::{RATIO, significant};
-use phea_table::Visitor;
+use phea_table::{TableNumber, Visitor};
 use phea_table::{key, plain};
 
 /// Greatest misfit of the numbers of a part that were identified from recordings.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct DeclaredMisfit {
+pub struct DeclaredMisfit<S = f64> {
     /// Root mean square over the range of the signal.
-    pub share: f64,
+    pub share: S,
     /// Signal and recording, and the location in it.
     pub at: Option<String>,
 }
@@ -32,9 +32,11 @@ impl DeclaredMisfit {
         let at = self.at.iter().map(|at| format!("at = \"{}\"", at.replace(['"', '\\'], "/")));
         [format!("share = {}", significant(self.share, 3))].into_iter().chain(at).collect()
     }
+}
 
+impl<S: TableNumber> DeclaredMisfit<S> {
     /// Visits the key `misfit` of a part.
-    pub(crate) fn visit<V: Visitor>(misfit: &mut Option<DeclaredMisfit>, v: &mut V) {
+    pub(crate) fn visit<V: Visitor<S>>(misfit: &mut Option<DeclaredMisfit<S>>, v: &mut V) {
         let k = plain("misfit", "What these numbers leave unexplained of recordings, as identified.");
         v.table(k, misfit, |misfit, v| {
             let k = key("share", &RATIO, "Root mean square of the misfit, over the range of the signal.");

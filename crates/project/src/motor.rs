@@ -3,36 +3,36 @@
 use phea_quantity::{ANGLE, DISPLACEMENT, FLOW_PRESSURE_COEFFICIENT, INERTIA, MotionKind, VOLUME};
 
 use super::{DeclaredActuator, DeclaredFriction, EndStops};
-use phea_table::Visitor;
 use phea_table::{Motions, key, plain};
+use phea_table::{TableNumber, Visitor};
 
 /// Hydraulic motor or vane actuator; its angle grows while oil enters chamber A.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct DeclaredMotor {
+pub struct DeclaredMotor<S = f64> {
     /// Displacement of a chamber per angle, m³/rad.
-    pub displacement: f64,
+    pub displacement: S,
     /// Stroke from end to end, rad; if absent, it rotates without limit, and its chamber volumes
     /// are constant.
-    pub stroke: Option<f64>,
+    pub stroke: Option<S>,
     /// Inertia of shaft, rotor and the parts that turn with them, kg·m².
-    pub inertia: f64,
+    pub inertia: S,
     /// Volume in each chamber in addition to the swept volume and the line, m³; this or
     /// `dead_volumes`.
-    pub dead_volume: Option<f64>,
+    pub dead_volume: Option<S>,
     /// Volumes in chamber A and in chamber B, m³.
-    pub dead_volumes: Option<[f64; 2]>,
+    pub dead_volumes: Option<[S; 2]>,
     /// Laminar leakage from chamber to chamber, m³/(s·Pa).
-    pub internal_leakage: Option<f64>,
+    pub internal_leakage: Option<S>,
     /// Laminar leakage of each chamber through the case to the tank, m³/(s·Pa).
-    pub case_leakage: Option<f64>,
+    pub case_leakage: Option<S>,
     /// End stops; if absent, the ends are only reported.
-    pub end_stops: Option<EndStops>,
+    pub end_stops: Option<EndStops<S>>,
     /// Friction of seals and bearings.
-    pub friction: Option<DeclaredFriction>,
+    pub friction: Option<DeclaredFriction<S>>,
 }
 
-impl DeclaredMotor {
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> DeclaredMotor<S> {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         v.moves(Some(MotionKind::Rotary));
         let k = key("displacement", &DISPLACEMENT, "What a chamber takes for an angle; torque per pressure.");
         v.quantity(k.positive(), &mut self.displacement);
@@ -65,7 +65,7 @@ impl DeclaredMotor {
     }
 }
 
-impl DeclaredActuator {
+impl<S> DeclaredActuator<S> {
     /// Motion of the actuator.
     ///
     /// # Example
@@ -91,6 +91,18 @@ impl DeclaredActuator {
         Motions { rig: self.motion(), load: self.load_motion() }
     }
 
+    /// Table that describes the moving part.
+    pub fn moving_part(&self) -> &'static str {
+        if self.motor.is_some() { "motor" } else { "cylinder" }
+    }
+
+    /// Friction of seals and bearings.
+    pub fn friction(&self) -> Option<&DeclaredFriction<S>> {
+        self.motor.as_ref().map_or(self.cylinder.friction.as_ref(), |motor| motor.friction.as_ref())
+    }
+}
+
+impl DeclaredActuator {
     /// Stroke in m or rad; `None` for a motor that rotates without limit.
     pub fn stroke(&self) -> Option<f64> {
         self.motor.as_ref().map_or(Some(self.cylinder.stroke), |motor| motor.stroke)
@@ -99,11 +111,6 @@ impl DeclaredActuator {
     /// True if a position in m or rad is beyond the end of the stroke.
     pub(crate) fn is_beyond(&self, position: f64) -> bool {
         self.stroke().is_some_and(|stroke| stroke > 0.0 && position > stroke)
-    }
-
-    /// Friction of seals and bearings.
-    pub fn friction(&self) -> Option<&DeclaredFriction> {
-        self.motor.as_ref().map_or(self.cylinder.friction.as_ref(), |motor| motor.friction.as_ref())
     }
 
     /// Friction of seals and bearings, mutable.
@@ -120,10 +127,5 @@ impl DeclaredActuator {
             Some(motor) => &mut motor.inertia,
             None => &mut self.cylinder.moving_mass,
         }
-    }
-
-    /// Table that describes the moving part.
-    pub fn moving_part(&self) -> &'static str {
-        if self.motor.is_some() { "motor" } else { "cylinder" }
     }
 }

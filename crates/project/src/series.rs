@@ -8,75 +8,75 @@ use super::line::DeclaredLine;
 use phea_quantity::{
     AREA, DAMPING, DENSITY, INVERSE_VELOCITY, LENGTH, MASS, PRESSURE, PricedBy, RATIO, STIFFNESS, VOLUME,
 };
-use phea_table::{Variants, Visitor};
+use phea_table::{TableNumber, Variants, Visitor};
 use phea_table::{key, plain};
 
 /// Element between force sensor and load.
 #[derive(Clone, Debug, PartialEq)]
-pub enum DeclaredSeries {
+pub enum DeclaredSeries<S = f64> {
     /// Spring.
-    Spring(DeclaredSpring),
+    Spring(DeclaredSpring<S>),
     /// Two pistons with a line between them.
-    Transmission(Box<DeclaredTransmission>),
+    Transmission(Box<DeclaredTransmission<S>>),
 }
 
 /// Spring between force sensor and load, with its damper, the mass before it and the ends of its
 /// travel.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct DeclaredSpring {
+pub struct DeclaredSpring<S = f64> {
     /// Stiffness of the spring, N/m; of a progressive one at rest.
-    pub stiffness: f64,
+    pub stiffness: S,
     /// Damping in parallel with the spring, N·s/m.
-    pub damping: f64,
+    pub damping: S,
     /// Mass between force sensor and spring, kg.
-    pub mass: f64,
+    pub mass: S,
     /// Travel to either side, m; unlimited if absent.
-    pub travel: Option<f64>,
+    pub travel: Option<S>,
     /// Fraction by which the force at the end of the travel exceeds that of a linear spring.
-    pub progression: f64,
+    pub progression: S,
     /// Stiffness of the stops at both ends of the travel, N/m; if absent, the ends are only
     /// reported.
-    pub stop_stiffness: Option<f64>,
+    pub stop_stiffness: Option<S>,
     /// Damping of the stops relative to their elastic force, s/m.
-    pub stop_damping: f64,
+    pub stop_damping: S,
     /// Source of the measured force.
     pub force_from: ForceFrom,
     /// Coil of the spring.
-    pub coil: Option<SpringCoil>,
+    pub coil: Option<SpringCoil<S>>,
     /// Cost and mass of the spring with its housing; the default mass is that of its coils.
-    pub cost: PartCost,
+    pub cost: PartCost<S>,
 }
 
 /// Hydraulic transmission between force sensor and load, filled once and closed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct DeclaredTransmission {
+pub struct DeclaredTransmission<S = f64> {
     /// Area of either piston, m².
-    pub piston_area: f64,
+    pub piston_area: S,
     /// Filling pressure at rest and without force, Pa gauge.
-    pub filling_pressure: f64,
+    pub filling_pressure: S,
     /// Oil volume at either piston in addition to that of the line, m³.
-    pub end_volume: f64,
+    pub end_volume: S,
     /// Number of segments of the line.
     pub segments: u32,
     /// Hose or pipe between the pistons.
-    pub line: DeclaredLine,
+    pub line: DeclaredLine<S>,
     /// Length of either of its cylinders, m; unknown if absent.
-    pub cylinder_length: Option<f64>,
+    pub cylinder_length: Option<S>,
     /// Cost and mass of both cylinders together.
-    pub cylinders: PartCost,
+    pub cylinders: PartCost<S>,
 }
 
 /// Winding of a coil spring.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SpringCoil {
+pub struct SpringCoil<S = f64> {
     /// Mean diameter of the coil over that of the wire.
-    pub index: f64,
+    pub index: S,
     /// Greatest shear stress in the wire, Pa.
-    pub allowed_shear_stress: f64,
+    pub allowed_shear_stress: S,
     /// Shear modulus of the wire, Pa.
-    pub shear_modulus: f64,
+    pub shear_modulus: S,
     /// Density of the wire, kg/m³.
-    pub density: f64,
+    pub density: S,
 }
 
 /// Shear modulus in Pa and density in kg/m³ of spring steel (EN 10270-1).
@@ -86,18 +86,18 @@ const STEEL_DENSITY: f64 = 7850.0;
 /// Default number of segments of a transmission: its first wave, half a wave long, is 3 % slow.
 const SEGMENTS: u32 = 4;
 
-impl Default for DeclaredSeries {
+impl<S: Default> Default for DeclaredSeries<S> {
     fn default() -> Self {
         DeclaredSeries::Spring(DeclaredSpring::default())
     }
 }
 
-impl Default for DeclaredTransmission {
+impl<S: Default> Default for DeclaredTransmission<S> {
     fn default() -> Self {
         DeclaredTransmission {
-            piston_area: 0.0,
-            filling_pressure: 0.0,
-            end_volume: 0.0,
+            piston_area: S::default(),
+            filling_pressure: S::default(),
+            end_volume: S::default(),
             segments: SEGMENTS,
             line: DeclaredLine::default(),
             cylinder_length: None,
@@ -107,10 +107,6 @@ impl Default for DeclaredTransmission {
 }
 
 impl DeclaredSeries {
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        v.variant(plain("kind", "What lies between force sensor and load."), self, false);
-    }
-
     /// The spring, if it is one.
     pub fn spring(&self) -> Option<&DeclaredSpring> {
         if let DeclaredSeries::Spring(spring) = self { Some(spring) } else { None }
@@ -122,8 +118,14 @@ impl DeclaredSeries {
     }
 }
 
-impl Variants for DeclaredSeries {
-    fn all(&self) -> Vec<DeclaredSeries> {
+impl<S: TableNumber> DeclaredSeries<S> {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
+        v.variant(plain("kind", "What lies between force sensor and load."), self, false);
+    }
+}
+
+impl<S: TableNumber> Variants<S> for DeclaredSeries<S> {
+    fn all(&self) -> Vec<DeclaredSeries<S>> {
         vec![DeclaredSeries::default(), DeclaredSeries::Transmission(Box::default())]
     }
 
@@ -134,7 +136,7 @@ impl Variants for DeclaredSeries {
         }
     }
 
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         match self {
             DeclaredSeries::Spring(spring) => spring.visit(v),
             DeclaredSeries::Transmission(transmission) => transmission.visit(v),
@@ -142,8 +144,8 @@ impl Variants for DeclaredSeries {
     }
 }
 
-impl DeclaredTransmission {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> DeclaredTransmission<S> {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("piston_area", &AREA, "Of either piston of the transmission.").positive();
         v.quantity(k, &mut self.piston_area);
         let k = key("filling_pressure", &PRESSURE, "Of its oil, at rest and without force.").positive();
@@ -166,8 +168,8 @@ impl DeclaredTransmission {
     }
 }
 
-impl DeclaredSpring {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> DeclaredSpring<S> {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("stiffness", &STIFFNESS, "Of the spring between force sensor and load, at rest.");
         v.quantity(k.positive(), &mut self.stiffness);
         let k = key("damping", &DAMPING, "Damping parallel to the spring.").not_negative();
@@ -208,8 +210,8 @@ impl DeclaredSpring {
     }
 }
 
-impl SpringCoil {
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> SpringCoil<S> {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("index", &RATIO, "Mean diameter of the coil over the diameter of the wire.");
         v.quantity(k.at_least(3.0).at_most(20.0), &mut self.index);
         let k =

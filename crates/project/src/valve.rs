@@ -6,7 +6,7 @@ use phea_quantity::{
     ANGULAR_FREQUENCY, FLOW, FLOW_COEFFICIENT, PRESSURE, RATIO, TIME, VOLTAGE, VOLTAGE_RATE,
 };
 use phea_table::CatalogueKind;
-use phea_table::Visitor;
+use phea_table::{TableNumber, Visitor};
 use phea_table::{key, plain};
 
 /// Words of `leakage_model`.
@@ -15,70 +15,70 @@ pub static LEAKAGE_MODELS: [(&str, LeakageModel); 2] =
 
 /// Servovalve, by coefficients of its four edges or by its data sheet.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Valve {
+pub struct Valve<S = f64> {
     /// Name of the catalogue entry of the values.
     pub model: Option<String>,
     /// Command of full opening, V.
-    pub nominal_voltage: f64,
+    pub nominal_voltage: S,
     /// Natural frequency of the spool, rad/s.
-    pub natural_frequency: f64,
+    pub natural_frequency: S,
     /// Damping ratio of the spool's dynamics.
-    pub damping_ratio: f64,
+    pub damping_ratio: S,
     /// Shape λ of sech(λ U/U_n) in the leakage; zero gives constant leakage.
-    pub leakage_shape: f64,
+    pub leakage_shape: S,
     /// Shape λ of each edge, in place of the common one.
-    pub leakage_shapes: Option<EdgeCoefficients>,
+    pub leakage_shapes: Option<EdgeCoefficients<S>>,
     /// Meaning of λ and the leakage coefficients away from null.
     pub leakage_model: LeakageModel,
     /// Pilot stage flow from supply to tank, m³/s.
-    pub tare_flow: f64,
+    pub tare_flow: S,
     /// Pressure drop from supply to tank at which the tare flow is stated, Pa; if absent, that of
     /// the supply.
-    pub tare_pressure: Option<f64>,
+    pub tare_pressure: Option<S>,
     /// Spool position at which the valve is at null, V.
-    pub null_bias: f64,
+    pub null_bias: S,
     /// Width of the loop over a slow full cycle, including the threshold, V.
-    pub hysteresis: Option<f64>,
+    pub hysteresis: Option<S>,
     /// Change of command that a reversal requires, V.
-    pub threshold: Option<f64>,
+    pub threshold: Option<S>,
     /// Greatest rate of the spool, V/s.
-    pub rate_limit: Option<f64>,
+    pub rate_limit: Option<S>,
     /// Pressure drop below which the square root is smoothed, Pa.
-    pub transition_pressure: f64,
+    pub transition_pressure: S,
     /// Flow coefficients K_v3 to K_v6, or the data from which they follow.
-    pub flow: ValveCoefficients<RatedFlow>,
+    pub flow: ValveCoefficients<RatedFlow<S>, S>,
     /// Leakage coefficients K_vin3 to K_vin6, or the data from which they follow.
-    pub leakage: ValveCoefficients<NullLeakage>,
+    pub leakage: ValveCoefficients<NullLeakage<S>, S>,
     /// Overlap of the edges, or, if negative, underlap.
-    pub lap: Option<ValveLap>,
+    pub lap: Option<ValveLap<S>>,
     /// Saturation of the opening, c of u/(1 + c u).
-    pub saturation: f64,
+    pub saturation: S,
     /// Step response time of the data sheet, for information, s.
-    pub response_time: Option<f64>,
+    pub response_time: Option<S>,
     /// Residual of the recordings from which its coefficients were identified.
-    pub misfit: Option<DeclaredMisfit>,
+    pub misfit: Option<DeclaredMisfit<S>>,
     /// Cost and mass.
-    pub cost: PartCost,
+    pub cost: PartCost<S>,
 }
 
 /// Lap of the edges over the travel of full opening: positive for an overlap, negative for an
 /// underlap.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ValveLap {
+pub struct ValveLap<S = f64> {
     /// Lap of edges 3 and 6, which a positive command opens.
-    pub positive: f64,
+    pub positive: S,
     /// Lap of edges 4 and 5, which a negative command opens.
-    pub negative: f64,
+    pub negative: S,
 }
 
 /// Coefficients of the edges as declared, or the data sheet values from which they follow, equal
 /// for all edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ValveCoefficients<R> {
+pub enum ValveCoefficients<R, S = f64> {
     /// Coefficients declared for each edge, m³/(s·√Pa).
     Edges {
         /// Declared coefficients.
-        edges: EdgeCoefficients,
+        edges: EdgeCoefficients<S>,
         /// Additional data sheet values.
         rating: Option<R>,
     },
@@ -88,33 +88,33 @@ pub enum ValveCoefficients<R> {
 
 /// Rated flow of a data sheet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct RatedFlow {
+pub struct RatedFlow<S = f64> {
     /// Flow, m³/s.
-    pub flow: f64,
+    pub flow: S,
     /// Pressure drop over both edges at this flow, Pa.
-    pub pressure_drop: f64,
+    pub pressure_drop: S,
 }
 
 /// Leakage at null of a data sheet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct NullLeakage {
+pub struct NullLeakage<S = f64> {
     /// Leakage including the tare flow, m³/s; the lowest of a range.
-    pub flow: f64,
+    pub flow: S,
     /// Highest leakage including the tare flow, if the data sheet prints a range, m³/s.
-    pub maximum: Option<f64>,
+    pub maximum: Option<S>,
     /// Supply pressure of the measurement, Pa.
-    pub pressure: f64,
+    pub pressure: S,
 }
 
-impl<R: Default> Default for ValveCoefficients<R> {
+impl<R: Default, S> Default for ValveCoefficients<R, S> {
     fn default() -> Self {
         ValveCoefficients::Rated(R::default())
     }
 }
 
-impl<R> ValveCoefficients<R> {
+impl<R, S> ValveCoefficients<R, S> {
     /// Coefficients of each edge, if declared.
-    pub fn edges(&self) -> Option<&EdgeCoefficients> {
+    pub fn edges(&self) -> Option<&EdgeCoefficients<S>> {
         if let ValveCoefficients::Edges { edges, .. } = self { Some(edges) } else { None }
     }
 
@@ -126,14 +126,14 @@ impl<R> ValveCoefficients<R> {
         }
     }
 
-    fn into_parts(self) -> (Option<EdgeCoefficients>, Option<R>) {
+    fn into_parts(self) -> (Option<EdgeCoefficients<S>>, Option<R>) {
         match self {
             ValveCoefficients::Edges { edges, rating } => (Some(edges), rating),
             ValveCoefficients::Rated(rating) => (None, Some(rating)),
         }
     }
 
-    fn of_parts(edges: Option<EdgeCoefficients>, rating: Option<R>) -> Option<ValveCoefficients<R>> {
+    fn of_parts(edges: Option<EdgeCoefficients<S>>, rating: Option<R>) -> Option<ValveCoefficients<R, S>> {
         match (edges, rating) {
             (Some(edges), rating) => Some(ValveCoefficients::Edges { edges, rating }),
             (None, rating) => rating.map(ValveCoefficients::Rated),
@@ -141,16 +141,16 @@ impl<R> ValveCoefficients<R> {
     }
 }
 
-impl RatedFlow {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> RatedFlow<S> {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         v.quantity(key("nominal_flow", &FLOW, "Rated flow of the data sheet.").positive(), &mut self.flow);
         let k = key("nominal_pressure_drop", &PRESSURE, "Drop over both edges together at the rated flow.");
         v.quantity(k.positive(), &mut self.pressure_drop);
     }
 }
 
-impl ValveLap {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> ValveLap<S> {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("positive", &RATIO, "Of edges 3 and 6, over full travel; negative: underlap.");
         v.quantity(k, &mut self.positive);
         let k = key("negative", &RATIO, "Of edges 4 and 5, over full travel; negative: underlap.");
@@ -158,8 +158,8 @@ impl ValveLap {
     }
 }
 
-impl NullLeakage {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> NullLeakage<S> {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("null_leakage", &FLOW, "Leakage at null, tare flow included; the lowest of a range.");
         v.quantity(k.not_negative(), &mut self.flow);
         let k =
@@ -172,19 +172,31 @@ impl NullLeakage {
 
 /// Set of one number for each edge of a four-way spool.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct EdgeCoefficients {
+pub struct EdgeCoefficients<S = f64> {
     /// Edge 3.
-    pub supply_to_a: f64,
+    pub supply_to_a: S,
     /// Edge 4.
-    pub a_to_tank: f64,
+    pub a_to_tank: S,
     /// Edge 5.
-    pub supply_to_b: f64,
+    pub supply_to_b: S,
     /// Edge 6.
-    pub b_to_tank: f64,
+    pub b_to_tank: S,
 }
 
 impl EdgeCoefficients {
-    fn visit_shapes<V: Visitor>(&mut self, v: &mut V) {
+    /// All four numbers, mutable.
+    pub fn each_mut(&mut self) -> [&mut f64; 4] {
+        [&mut self.supply_to_a, &mut self.a_to_tank, &mut self.supply_to_b, &mut self.b_to_tank]
+    }
+
+    /// Numbers in the order of edges 3, 4, 5, 6.
+    pub fn in_order(&self) -> [f64; 4] {
+        [self.supply_to_a, self.a_to_tank, self.supply_to_b, self.b_to_tank]
+    }
+}
+
+impl<S: TableNumber> EdgeCoefficients<S> {
+    fn visit_shapes<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("supply_to_a", &RATIO, "λ of edge 3, from supply to chamber A.").not_negative();
         v.quantity(k, &mut self.supply_to_a);
         let k = key("a_to_tank", &RATIO, "λ of edge 4, from chamber A to tank.").not_negative();
@@ -195,17 +207,7 @@ impl EdgeCoefficients {
         v.quantity(k, &mut self.b_to_tank);
     }
 
-    /// All four numbers, mutable.
-    pub fn each_mut(&mut self) -> [&mut f64; 4] {
-        [&mut self.supply_to_a, &mut self.a_to_tank, &mut self.supply_to_b, &mut self.b_to_tank]
-    }
-
-    /// Numbers in the order of edges 3, 4, 5, 6.
-    pub fn in_order(&self) -> [f64; 4] {
-        [self.supply_to_a, self.a_to_tank, self.supply_to_b, self.b_to_tank]
-    }
-
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
+    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("supply_to_a", &FLOW_COEFFICIENT, "Edge 3, from supply to chamber A.").not_negative();
         v.quantity(k, &mut self.supply_to_a);
         let k = key("a_to_tank", &FLOW_COEFFICIENT, "Edge 4, from chamber A to tank.").not_negative();
@@ -222,8 +224,10 @@ impl Valve {
     pub fn tare_drop(&self, supply: &DeclaredSupply) -> f64 {
         self.tare_pressure.unwrap_or(supply.pressure - supply.tank_pressure)
     }
+}
 
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> Valve<S> {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         v.catalogue(
             plain("model", "Name of a valve of the catalogue."),
             CatalogueKind::Valve,
@@ -252,7 +256,7 @@ impl Valve {
         self.cost.visit(v);
     }
 
-    fn visit_coefficients<V: Visitor>(&mut self, v: &mut V) {
+    fn visit_coefficients<V: Visitor<S>>(&mut self, v: &mut V) {
         let (mut edges, mut rating) = std::mem::take(&mut self.flow).into_parts();
         let (mut leaking_edges, mut leakage) = std::mem::take(&mut self.leakage).into_parts();
         let flows = plain("flow_coefficients", "K_v3 to K_v6: a table, or an array in this order.");
@@ -278,7 +282,7 @@ impl Valve {
         });
     }
 
-    fn visit_imperfections<V: Visitor>(&mut self, v: &mut V) {
+    fn visit_imperfections<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("tare_pressure", &PRESSURE, "Drop at which `tare_flow` is stated; absent: the supply's.");
         v.optional(k.positive(), &mut self.tare_pressure);
         let k = key("null_bias", &VOLTAGE, "Spool position at which the valve is at null.").or(0.0);

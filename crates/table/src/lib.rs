@@ -12,4 +12,6 @@ mod visitor;
 pub use catalogue_kind::CatalogueKind;
 pub use formula::{Formula, FormulaError, Ratio, Variable};
 pub use key::{AcceptedRange, Key, Motions, key, plain};
-pub use visitor::{FormulaShape, Kinds, NamedNumber, ValueForm, Variants, Visitor, word_of};
+pub use visitor::{
+    FormulaShape, Kinds, NamedNumber, TableNumber, ValueForm, Variants, Visitor, once_read, word_of,
+};

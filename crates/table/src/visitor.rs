@@ -9,13 +9,23 @@ use crate::formula::Formula;
 use crate::key::Key;
 use phea_quantity::{MotionKind, Price, PricedBy};
 
+/// Number that a table holds: as a file states it, or one of another type in its place.
+pub trait TableNumber: Copy + Default + PartialEq + From<f64> {}
+
+impl<S: Copy + Default + PartialEq + From<f64>> TableNumber for S {}
+
+/// The number, once it has been read: before, a number that must be positive is zero.
+pub fn once_read<S: TableNumber>(number: S) -> Option<S> {
+    (number != S::default()).then_some(number)
+}
+
 /// Word of a value, in the table of a choice; empty for a value that has none.
 pub fn word_of<T: PartialEq>(words: &[(&'static str, T)], value: &T) -> &'static str {
     words.iter().find(|(_, known)| known == value).map_or("", |(word, _)| word)
 }
 
 /// Choice with keys of its own for each of its variants, whose numbers are of the type `S`.
-pub trait Variants<S: Copy = f64>: Clone {
+pub trait Variants<S: TableNumber = f64>: Clone {
     /// True if a key of another variant is an error, and not a warning.
     const STRICT: bool = false;
     /// All variants, before they are read.
@@ -31,7 +41,7 @@ pub trait Variants<S: Copy = f64>: Clone {
 }
 
 /// Operations on the description of a table whose numbers are of the type `S`.
-pub trait Visitor<S: Copy = f64>: Sized {
+pub trait Visitor<S: TableNumber = f64>: Sized {
     /// True if keys are listed that a reader reads only together with others.
     fn names_everything(&self) -> bool {
         false
