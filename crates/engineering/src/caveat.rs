@@ -110,11 +110,9 @@ fn progression(setup: &Setup<'_>) -> Option<Caveat> {
         return None;
     }
     let declared = setup.project.actuator.as_ref()?.series.as_ref()?.spring()?;
-    if declared.progression == 0.0 {
-        return None;
-    }
+    let progression = declared.progression?;
     let counted = setup.rig().ok()?.plant.series?.stiffness();
-    let stiffest = declared.stiffness * (1.0 + 3.0 * declared.progression);
+    let stiffest = declared.stiffness * (1.0 + 3.0 * progression);
     Some(Caveat::noted(UncountedEffect::ProgressiveSpring { counted, at_rest: declared.stiffness, stiffest }))
 }
 
@@ -136,7 +134,7 @@ fn fixed_setting(project: &Project) -> Option<UncountedEffect> {
 fn beside_spring(project: &Project) -> Option<UncountedEffect> {
     match project.actuator.as_ref()?.series.as_ref()? {
         DeclaredSeries::Spring(spring) => {
-            let (damping, mass) = (spring.damping > 0.0, spring.mass > 0.0);
+            let (damping, mass) = (spring.damping.is_some(), spring.mass.is_some());
             (damping || mass).then_some(UncountedEffect::SeriesParts { damping, mass })
         }
         DeclaredSeries::Transmission(_) => Some(UncountedEffect::TransmissionAsSpring),
@@ -252,9 +250,9 @@ fn adjustment(setup: &Setup<'_>) -> Option<Caveat> {
     let settings = match (range, adjusted) {
         (Some(range), _) => CountedSettings::Range([range.minimum, range.maximum]),
         (None, [Some(a), Some(b)]) if a.setting != b.setting => {
-            CountedSettings::OfSides([a.setting, b.setting])
+            CountedSettings::OfSides([a, b].map(|one| one.setting.unwrap_or(0.0)))
         }
-        (None, _) => CountedSettings::OfRest(first.setting),
+        (None, _) => CountedSettings::OfRest(first.setting.unwrap_or(0.0)),
     };
     let moves_gas = adjusted.into_iter().flatten().any(|one| one.valve().is_none());
     Some(Caveat::noted(UncountedEffect::Adjustment { settings, moves_gas }))

@@ -11,8 +11,8 @@ use phea_table::{key, plain};
 pub struct DeclaredAdjustment<S = f64> {
     /// Part that the setting moves.
     pub kind: AdjustmentKind<S>,
-    /// Value at rest.
-    pub setting: S,
+    /// Value at rest; absent if zero.
+    pub setting: Option<S>,
 }
 
 /// Part that a setting moves.
@@ -101,7 +101,7 @@ impl<S: TableNumber> DeclaredAdjustment<S> {
     pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         v.variant(plain("kind", "What the setting moves."), &mut self.kind, true);
         let k = key("setting", &RATIO, "Its value at rest, from 0, as declared or shut, to 1.");
-        v.quantity(k.at_least(0.0).at_most(1.0).or(0.0), &mut self.setting);
+        v.unless_zero(k.at_least(0.0).at_most(1.0).or(0.0), &mut self.setting);
     }
 }
 

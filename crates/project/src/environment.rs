@@ -36,8 +36,8 @@ impl<S: TableNumber> DeclaredForceSensor<S> {
 /// Sensor of the load velocity, which a controller may feed forward.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredVelocitySensor<S = f64> {
-    /// Ratio of measured to true velocity, less one.
-    pub gain_error: S,
+    /// Ratio of measured to true velocity, less one; absent if zero.
+    pub gain_error: Option<S>,
     /// Delay of the measured velocity, s.
     pub delay: S,
     /// Corner frequency of its filter, rad/s; no filter if absent.
@@ -53,7 +53,7 @@ pub struct DeclaredVelocitySensor<S = f64> {
 impl<S: TableNumber> DeclaredVelocitySensor<S> {
     pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("gain_error", &RATIO, "Shown velocity over the true one, less one.").above(-1.0);
-        v.quantity(k.or(0.0), &mut self.gain_error);
+        v.unless_zero(k.or(0.0), &mut self.gain_error);
         let k = key("delay", &TIME, "From the velocity until it is shown.").not_negative();
         v.quantity(k.or(0.0), &mut self.delay);
         let doc = "Corner frequency of its low-pass filter; absent: it has none.";

@@ -26,14 +26,15 @@ pub enum DeclaredSeries<S = f64> {
 pub struct DeclaredSpring<S = f64> {
     /// Stiffness of the spring, N/m; of a progressive one at rest.
     pub stiffness: S,
-    /// Damping in parallel with the spring, N·s/m.
-    pub damping: S,
-    /// Mass between force sensor and spring, kg.
-    pub mass: S,
+    /// Damping in parallel with the spring, N·s/m; absent if zero.
+    pub damping: Option<S>,
+    /// Mass between force sensor and spring, kg; absent if zero.
+    pub mass: Option<S>,
     /// Travel to either side, m; unlimited if absent.
     pub travel: Option<S>,
-    /// Fraction by which the force at the end of the travel exceeds that of a linear spring.
-    pub progression: S,
+    /// Fraction by which the force at the end of the travel exceeds that of a linear spring;
+    /// absent if zero.
+    pub progression: Option<S>,
     /// Stiffness of the stops at both ends of the travel, N/m; if absent, the ends are only
     /// reported.
     pub stop_stiffness: Option<S>,
@@ -173,9 +174,9 @@ impl<S: TableNumber> DeclaredSpring<S> {
         let k = key("stiffness", &STIFFNESS, "Of the spring between force sensor and load, at rest.");
         v.quantity(k.positive(), &mut self.stiffness);
         let k = key("damping", &DAMPING, "Damping parallel to the spring.").not_negative();
-        v.quantity(k.or(0.0), &mut self.damping);
+        v.unless_zero(k.or(0.0), &mut self.damping);
         let k = key("mass", &MASS, "Mass between force sensor and spring.").not_negative();
-        v.quantity(k.or(0.0), &mut self.mass);
+        v.unless_zero(k.or(0.0), &mut self.mass);
         let k = key("travel", &LENGTH, "Travel of the spring to either side; absent: not limited.");
         v.optional(k.positive(), &mut self.travel);
         let k = key(
@@ -183,7 +184,7 @@ impl<S: TableNumber> DeclaredSpring<S> {
             &RATIO,
             "Share by which the force at the end of the travel exceeds `stiffness` times `travel`; needs `travel`.",
         );
-        v.quantity(k.not_negative().or(0.0), &mut self.progression);
+        v.unless_zero(k.not_negative().or(0.0), &mut self.progression);
         let k = key(
             "stop_stiffness",
             &STIFFNESS,

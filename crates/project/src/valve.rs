@@ -51,8 +51,8 @@ pub struct Valve<S = f64> {
     pub leakage: ValveCoefficients<NullLeakage<S>, S>,
     /// Overlap of the edges, or, if negative, underlap.
     pub lap: Option<ValveLap<S>>,
-    /// Saturation of the opening, c of u/(1 + c u).
-    pub saturation: S,
+    /// Saturation of the opening, c of u/(1 + c u); absent if zero.
+    pub saturation: Option<S>,
     /// Step response time of the data sheet, for information, s.
     pub response_time: Option<S>,
     /// Residual of the recordings from which its coefficients were identified.
@@ -266,7 +266,7 @@ impl<S: TableNumber> Valve<S> {
         let k = plain("lap", "Overlap of the edges, positive and negative command; below zero: underlap.");
         v.record(k, &mut self.lap, ValveLap::visit);
         let k = key("saturation", &RATIO, "c of the opening u/(1 + c u), beyond the lap; 0: in proportion.");
-        v.quantity(k.not_negative().or(0.0), &mut self.saturation);
+        v.unless_zero(k.not_negative().or(0.0), &mut self.saturation);
         self.visit_imperfections(v);
         v.way(&["nominal_flow"], &mut rating, RatedFlow::visit);
         v.way(&["null_leakage"], &mut leakage, NullLeakage::visit);

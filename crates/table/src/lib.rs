@@ -7,11 +7,13 @@
 mod catalogue_kind;
 mod formula;
 mod key;
+mod open_table;
 mod visitor;
 
 pub use catalogue_kind::CatalogueKind;
 pub use formula::{Formula, FormulaError, Ratio, Variable};
 pub use key::{AcceptedRange, Key, Motions, key, plain};
+pub use open_table::{OpenTable, OpenTableReader, OpenTableWriter};
 pub use visitor::{
     FormulaShape, Kinds, NamedNumber, TableNumber, ValueForm, Variants, Visitor, once_read, word_of,
 };

@@ -53,6 +53,13 @@ pub trait Visitor<S: TableNumber = f64>: Sized {
     fn load_moves(&mut self, _motion: Option<MotionKind>) {}
     /// Number; required unless the key has a default.
     fn quantity(&mut self, key: Key, field: &mut S);
+    /// Number whose absence means zero: zero is read as absence, so that a part of size zero is left
+    /// out.
+    fn unless_zero(&mut self, key: Key, field: &mut Option<S>) {
+        let mut number = field.unwrap_or_default();
+        self.quantity(key, &mut number);
+        *field = once_read(number);
+    }
     /// Number that may be absent.
     fn optional(&mut self, key: Key, field: &mut Option<S>);
     /// Two numbers in order, or absent.

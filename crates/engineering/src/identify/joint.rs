@@ -143,7 +143,7 @@ pub fn with_valve(project: &Project, found: &Identification) -> Option<Project> 
     valve.leakage_shapes = found.tested.terms.leakage_by_edge.then_some(shapes);
     let OpeningShape { lap_positive: positive, lap_negative: negative, saturation } = all.opening;
     valve.lap = found.tested.terms.lap.then_some(ValveLap { positive, negative });
-    valve.saturation = if found.tested.terms.saturation { saturation } else { 0.0 };
+    valve.saturation = found.tested.terms.saturation.then_some(saturation);
     valve.leakage_model = found.tested.leakage_model;
     valve.transition_pressure = found.tested.transition_pressure;
     valve.nominal_voltage = found.tested.nominal_voltage;

@@ -127,8 +127,7 @@ fn transmission<S: Scalar>(declared: &DeclaredTransmission, numbers: &Numbers<'_
 /// A damper, a mass or a progression of zero is left out.
 fn spring<S: Scalar>(declared: &DeclaredSpring, numbers: &Numbers<'_, S>) -> SeriesSpring<S> {
     let at = |key: &str, value: f64| numbers.at(key, value);
-    let where_any =
-        |key: &str, value: f64| (value > 0.0 || numbers.is_open(key)).then(|| numbers.at(key, value));
+    let where_any = |key: &str, value: Option<f64>| numbers.get(key).or(value.map(S::from));
     SeriesSpring {
         stiffness: at("stiffness", declared.stiffness),
         damping: where_any("damping", declared.damping),
@@ -216,15 +215,15 @@ fn valve<S: Scalar>(declared: &project::Valve, numbers: &Numbers<'_, S>, supply_
 
 /// How the declared edges open: in proportion where neither lap nor saturation is stated.
 fn opening<S: Scalar>(declared: &project::Valve, numbers: &Numbers<'_, S>) -> OpeningLaw<S> {
-    let saturates = declared.saturation != 0.0 || numbers.is_open("saturation");
-    if declared.lap.is_none() && !saturates {
+    let saturation = numbers.get("saturation").or(declared.saturation.map(S::from));
+    if declared.lap.is_none() && saturation.is_none() {
         return OpeningLaw::Proportional;
     }
     let lap = declared.lap.unwrap_or_default();
     OpeningLaw::Shaped(OpeningShape {
         lap_positive: numbers.at("lap.positive", lap.positive),
         lap_negative: numbers.at("lap.negative", lap.negative),
-        saturation: numbers.at("saturation", declared.saturation),
+        saturation: saturation.unwrap_or(S::from(0.0)),
     })
 }
 

@@ -38,7 +38,8 @@ fn warm<S: Scalar>(declared: &DeclaredAccumulator, numbers: &Numbers<'_, S>) -> 
 }
 
 fn setting<S: Scalar>(declared: &DeclaredAccumulator, numbers: &Numbers<'_, S>) -> S {
-    numbers.at("accumulator.adjustment.setting", declared.adjustment.map_or(0.0, |of| of.setting))
+    numbers
+        .at("accumulator.adjustment.setting", declared.adjustment.map_or(0.0, |of| of.setting.unwrap_or(0.0)))
 }
 
 /// What the setting adds to the gas from 0 to 1, which is `first` at 0: volume in m3, precharge in
@@ -119,7 +120,7 @@ fn gas_valve<S: Scalar>(
 ) -> GasValve<S> {
     let [table, inner] = TABLE;
     let within = numbers.within(table).within(inner);
-    let is_shut = declared.adjustment.is_some_and(|of| of.setting == 0.0);
+    let is_shut = declared.adjustment.is_some_and(|of| of.setting.is_none());
     let [flow_coefficient, transition_pressure] = edge(&valve.orifice, &within, fluid.density);
     GasValve {
         flow_coefficient,

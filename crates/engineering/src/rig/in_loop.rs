@@ -231,7 +231,7 @@ pub(crate) fn with_controller_of(mut project: Project, rig: &Rig) -> Project {
 pub(crate) fn velocity_gain<S: Scalar>(declared: &DeclaredActuator, numbers: &Numbers<'_, S>) -> Option<S> {
     let sensor = declared.velocity_sensor.as_ref()?;
     let open = numbers.get(GAIN_ERROR);
-    let stated = (sensor.gain_error != 0.0).then(|| S::from(sensor.gain_error));
+    let stated = sensor.gain_error.map(S::from);
     open.or(stated).map(|error| S::from(1.0) + error)
 }
 

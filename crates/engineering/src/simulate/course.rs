@@ -213,7 +213,7 @@ fn within_its_way(project: &Project, scenario: &Scenario, change: &Profile) -> R
     let mut farthest: Option<(f64, f64)> = None;
     for time_s in evenly.chain(breaks) {
         for one in adjusted.into_iter().flatten() {
-            let setting = one.setting + change.value(time_s);
+            let setting = one.setting.unwrap_or(0.0) + change.value(time_s);
             let before = farthest.map_or(BEYOND, |(setting, _)| beyond(setting));
             if beyond(setting) > before || setting.is_nan() {
                 farthest = Some((setting, time_s));

@@ -88,7 +88,7 @@ pub(super) fn course(
         let help = "state [line.accumulator.adjustment], or leave out `setting_change`";
         return check.error_with_help(&place, message, help);
     }
-    for rest in adjusted.iter().map(|one| one.setting) {
+    for rest in adjusted.iter().map(|one| one.setting.unwrap_or(0.0)) {
         leaves_its_way(signals, rest, &place, check);
     }
     let is_unclear = check.reader.unclear.iter().any(|table| table.ends_with(".adjustment"));

@@ -98,9 +98,10 @@ fn spring(
     check: &mut Check<'_, '_>,
 ) {
     if series.travel.is_none() {
-        for (key, needs) in
-            [("progression", series.progression > 0.0), ("stop_stiffness", series.stop_stiffness.is_some())]
-        {
+        for (key, needs) in [
+            ("progression", series.progression.is_some()),
+            ("stop_stiffness", series.stop_stiffness.is_some()),
+        ] {
             let path = format!("series.{key}");
             if needs && !check.refused("series.travel") {
                 let message =
@@ -109,7 +110,7 @@ fn spring(
             }
         }
     }
-    if series.coil.is_some() && series.progression > 0.0 {
+    if series.coil.is_some() && series.progression.is_some() {
         let message = "a coil of constant pitch is linear: it has no `progression`";
         check.error_with_help("series.coil", message, "take out one of the two");
     }
@@ -132,7 +133,7 @@ fn damped_stops(series: &DeclaredSpring, check: &mut Check<'_, '_>) {
         let message = "`stop_damping` damps stops that are not there";
         return check.error_with_help("series.stop_damping", message, "state `stop_stiffness`");
     }
-    if series.damping == 0.0 && series.mass == 0.0 {
+    if series.damping.is_none() && series.mass.is_none() {
         let message = "`stop_damping` needs `damping` or `mass`: a massless spring without a damper jumps from any speed to any other";
         let help = "state the `damping` of the spring, or the `mass` between sensor and spring";
         check.error_with_help("series.stop_damping", message, help);
@@ -148,7 +149,7 @@ fn bottoms_out(
 ) {
     let Some(travel) = series.travel else { return };
     let stall = stall_force(actuator);
-    let holds = stiffness * travel * (1.0 + series.progression);
+    let holds = stiffness * travel * (1.0 + series.progression.unwrap_or(0.0));
     if ["series.stiffness", "series.travel", "supply.pressure"].iter().any(|path| check.refused(path))
         || !(stall > holds && holds > 0.0)
     {
@@ -162,7 +163,7 @@ fn bottoms_out(
         force(holds),
         force(stall)
     );
-    let factor = 1.0 + series.progression;
+    let factor = 1.0 + series.progression.unwrap_or(0.0);
     let help = format!(
         "give it a `travel` of at least {}, or a `stiffness` of at least {}, or lower the supply pressure",
         quantity::display(round_up(stall / (stiffness * factor)), &LENGTH, 4),

@@ -192,16 +192,14 @@ fn transmission_words(transmission: &project::DeclaredTransmission) -> String {
 }
 
 fn spring_words(series: &project::DeclaredSpring) -> String {
-    let not_zero =
-        |value: f64, dimension: &'static Dimension| Some(shown(value, dimension)).filter(|_| value > 0.0);
     let measured = (series.force_from == ForceFrom::Deflection).then(|| "measures the force".to_string());
-    let grown = Some(format!("{} % progressive", quantity::significant(100.0 * series.progression, 3)));
+    let progressive = |fraction: f64| format!("{} % progressive", quantity::significant(100.0 * fraction, 3));
     let parts = [
         Some(shown(series.stiffness, &STIFFNESS)),
-        not_zero(series.damping, &quantity::DAMPING),
-        not_zero(series.mass, &MASS),
+        series.damping.map(|damping| shown(damping, &quantity::DAMPING)),
+        series.mass.map(|mass| shown(mass, &MASS)),
         series.travel.map(|travel| format!("±{}", shown(travel, &LENGTH))),
-        grown.filter(|_| series.progression > 0.0),
+        series.progression.map(progressive),
         measured,
     ];
     parts.into_iter().flatten().collect::<Vec<String>>().join(", ")

@@ -122,6 +122,7 @@ fn line_symbol(declared: &DeclaredLine) -> LineSymbol {
 fn gas_at_rest(gas: &DeclaredAccumulator) -> String {
     let [mut volume, mut precharge] = [gas.gas_volume, gas.precharge_pressure];
     if let Some(DeclaredAdjustment { kind: AdjustmentKind::Gas(one), setting }) = gas.adjustment {
+        let setting = setting.unwrap_or(0.0);
         let at = |zero: f64, one: Option<f64>| one.map_or(zero, |one| zero + setting * (one - zero));
         [volume, precharge] = [at(volume, one.gas_volume), at(precharge, one.precharge_pressure)];
     }
@@ -131,7 +132,7 @@ fn gas_at_rest(gas: &DeclaredAccumulator) -> String {
 
 /// Where the setting is, and between what it is adjusted.
 fn adjustment_rows(gas: &DeclaredAccumulator, adjustment: &DeclaredAdjustment) -> Vec<String> {
-    let setting = shown(adjustment.setting, &quantity::RATIO);
+    let setting = shown(adjustment.setting.unwrap_or(0.0), &quantity::RATIO);
     match adjustment.kind {
         AdjustmentKind::Valve(_) => vec![format!("valve, setting {setting}")],
         AdjustmentKind::Gas(one) => {
@@ -179,7 +180,7 @@ pub(super) fn line_words(declared: &DeclaredLine) -> String {
 fn series_symbol(series: &DeclaredSeries) -> SeriesSymbol {
     match series {
         DeclaredSeries::Spring(spring) => SeriesSymbol {
-            kind: if spring.damping > 0.0 { SeriesKind::DampedSpring } else { SeriesKind::Spring },
+            kind: if spring.damping.is_some() { SeriesKind::DampedSpring } else { SeriesKind::Spring },
             words: shown(spring.stiffness, &STIFFNESS),
         },
         DeclaredSeries::Transmission(transmission) => SeriesSymbol {
