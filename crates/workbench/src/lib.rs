@@ -1,7 +1,7 @@
 //! The output for the engineer: commands on a project, with the text, JSON, files and figures of
 //! their answers, and the report.
 //!
-//! A shell hands in text and bytes through [`source::Source`] and prints what an [`answer::Answer`]
+//! A shell passes text and bytes through [`source::Source`] and prints what an [`answer::Answer`]
 //! holds. [`command::answer_into`] is the way from one to the other:
 //!
 //! ```text
@@ -21,7 +21,7 @@
 //!
 //! The module X of a procedure has the name of that procedure's module in `phea_engineering`, and
 //! exports its values beside their output, so that a caller finds both in one place. The list of
-//! `derived` quantities is output alone: no procedure reads it.
+//! `derived` quantities is output only: no procedure reads it.
 
 pub mod alternatives;
 pub mod answer;
