@@ -99,7 +99,7 @@ pub(super) fn no_number_words(reason: &NoNumber) -> String {
     fixed.to_string()
 }
 
-/// True where the project should state a number.
+/// True if the project should state a number.
 pub(super) fn is_unstated(reason: &NoNumber) -> bool {
     match reason {
         NoNumber::Parts(PartsUnknown::NotStated(_)) => true,
