@@ -6,12 +6,12 @@ use super::{Identification, Recording, SignalFit, SignalKind};
 use crate::figure::{Curve, CurveChart, CurvePanel, CurveStyle, Figure, TestCircuit, TestPorts, Words};
 use crate::quantity::{DisplayUnit, PRESSURE, display};
 
-/// Commands around null that the leakage is drawn over, percent of the nominal voltage.
+/// Range of commands around null over which the leakage is drawn, percent of the nominal voltage.
 const AROUND_NULL: f64 = 6.0;
-/// Commands around null that the flow gain is drawn over, percent of the nominal voltage.
+/// Range of commands around null over which the flow gain is drawn, percent of the nominal voltage.
 const NEAR_NULL: f64 = 4.0;
-/// Commands around null that the pressure sensitivity is drawn over, percent of the nominal
-/// voltage.
+/// Range of commands around null over which the pressure sensitivity is drawn, percent of the
+/// nominal voltage.
 const CLOSE_TO_NULL: f64 = 2.5;
 
 const COMMAND: &str = "Command U_C (% of nominal)";
@@ -107,7 +107,7 @@ fn port_pressures(recording: &Recording, row: usize) -> Option<[f64; 2]> {
     Some([at(SignalKind::PressureA)?, at(SignalKind::PressureB)?])
 }
 
-/// The signal of a flow, and what it is called.
+/// The signal of a flow, and its name.
 fn flow_signal(recording: &Recording) -> Option<(SignalKind, &'static str)> {
     let kinds = [
         (SignalKind::LeakFlow, "Leakage (L/min)"),
@@ -159,7 +159,8 @@ fn series(found: &Identification, index: usize, recording: &Recording) -> Figure
     chart.draw(&Words::new(format!("series_{}_{name}", index + 1), title, caption))
 }
 
-/// Command in percent, and what `of` says of a row, of each branch one way.
+/// Curve of each branch in one direction: the command in percent, and the value that `of` returns
+/// for a row.
 fn over_command(
     found: &Identification,
     recording: &Recording,
@@ -177,7 +178,7 @@ fn lines(branches: Vec<Vec<(f64, f64)>>, series: usize) -> impl Iterator<Item = 
     branches.into_iter().map(move |points| Curve::line(points, series))
 }
 
-/// A chart over the command, to this far on either side of zero, percent.
+/// A chart over the command, up to this distance on either side of zero, percent.
 fn over_commands(reach: f64, panels: Vec<CurvePanel>, legend: Vec<(String, CurveStyle)>) -> CurveChart {
     CurveChart { x_title: COMMAND.to_string(), x_range: [-reach, reach], panels, legend }
 }
@@ -188,7 +189,7 @@ fn greatest_command(found: &Identification) -> f64 {
     percent(found, commands.fold(0.0, f64::max)).ceil()
 }
 
-/// Both nulls as marks.
+/// Marks at both nulls.
 fn null_marks(found: &Identification) -> Vec<(f64, String)> {
     let nulls = found.simple.nulls.into_iter().zip(["rising", "falling"]);
     nulls
