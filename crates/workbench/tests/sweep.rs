@@ -55,7 +55,7 @@ fn each_value_is_that_of_linearize() {
     }
 }
 
-/// The stated parameters hold the plant where it is, and that is told.
+/// The stated parameters fix the plant, and this is reported.
 #[test]
 fn a_key_that_the_plant_does_not_follow_is_told() {
     let swept = swept(HOSE, "line.length=0.5..3", 3);
