@@ -3,7 +3,7 @@ use std::io::{ErrorKind, Read};
 
 use phea_workbench::source::{Source, SourceError};
 
-/// Size of the largest file that is read, in bytes; reading an endless device ends here.
+/// Size of the largest file that is read, in bytes; it ends the reading of an endless device.
 const LARGEST_FILE: u64 = 256 << 20;
 
 /// The file system as the workbench's source.
@@ -56,7 +56,7 @@ fn folder_reason(path: &str) -> String {
     }
 }
 
-/// The usual reasons in words that are the same on every system.
+/// The usual reasons, in words that are equal on every system.
 pub(crate) fn reason(error: &std::io::Error) -> String {
     match error.kind() {
         ErrorKind::NotFound => "no such file or folder".to_string(),
