@@ -3,9 +3,9 @@
 use std::process::{Command, Stdio};
 use std::sync::{Mutex, PoisonError};
 
-/// Ensures that this works, by these commands if need be; reports what is missing if it cannot.
+/// Ensures that a tool works, by these commands if necessary; reports the missing tool otherwise.
 fn ensure(what: &str, works: impl Fn() -> bool, install: &[&str]) -> Result<(), String> {
-    // Needed by two stages at once, it is installed once.
+    // If two stages need the tool at once, it is installed once.
     static INSTALLING: Mutex<()> = Mutex::new(());
     let _installing = INSTALLING.lock().unwrap_or_else(PoisonError::into_inner);
     if works() || (install.iter().all(|line| succeeds(line)) && works()) {
@@ -33,7 +33,7 @@ pub(super) fn sundials() -> Result<(), String> {
     ensure("SUNDIALS", works, &["apt-get update -qq", "apt-get install -y -qq libsundials-dev"])
 }
 
-/// Python's module for virtual environments, which Debian has in a package of its own.
+/// Python's module for virtual environments, which is in a separate package on Debian.
 pub(super) fn python() -> Result<(), String> {
     let works = || succeeds("python3 -m ensurepip --version");
     ensure("python3-venv", works, &["apt-get update -qq", "apt-get install -y -qq python3-venv"])
