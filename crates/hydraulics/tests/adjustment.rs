@@ -187,8 +187,8 @@ fn a_swinging_stiffness_pumps_half_its_rate_times_the_square() {
     }
 }
 
-/// Oil and gas behind a valve, with a flow into the oil: both pressures, and the work of flow and
-/// valve.
+/// Oil and gas separated by a valve, with a flow into the oil: both pressures, and the work of flow
+/// and valve.
 fn switched(
     start: [f64; 2],
     compliance: f64,
@@ -285,8 +285,8 @@ fn a_frozen_opening_is_passive() {
     }
 }
 
-/// In the linear plant a valve without resistance has no effect, and one that passes no flow
-/// removes the accumulator.
+/// The linear plant has two limits: a valve without resistance has no effect, and one that passes
+/// no flow removes the accumulator.
 #[test]
 fn its_conductance_has_two_limits() {
     let gas = GAS.compliance(35e5);

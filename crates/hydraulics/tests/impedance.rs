@@ -63,7 +63,7 @@ fn published_closed_loop_fails_between_447_and_921_rad_per_s() {
     }
 }
 
-/// All three conditions, and the band found by the passivity test.
+/// Passivity conditions, all three, and the band found by the passivity test.
 #[test]
 fn passivity_of_open_and_published_closed_loop() {
     let open = passivity(&open_loop_impedance(&model()).unwrap()).unwrap();
@@ -97,7 +97,7 @@ fn asymptote(kind: AsymptoteKind, controller: Option<&TransferFunction>) -> Asym
     *all.iter().find(|asymptote| asymptote.kind == kind).unwrap()
 }
 
-/// Each asymptote compared with the model, far into its range.
+/// Asymptotes compared with the model, each far into its range.
 #[test]
 fn model_follows_its_asymptotes() {
     let proportional = TransferFunction::gain_only(2.73e-4);
@@ -195,7 +195,7 @@ fn load_step_leaves_no_force() {
     // a gain of one, as in the proof, is unstable for this plant: there is no final value
     let unstable = closed(&TransferFunction::gain_only(1.0));
     assert_eq!(final_force_after_load_step(&unstable, 5e-3), None);
-    // ORIGIN: analytic, without leakage and feedback the springs keep K_eq x
+    // ORIGIN: analytic, without leakage and feedback the springs hold K_eq x
     let tight = LinearParameters { flow_pressure_coefficient: 0.0, ..nominal_plant() };
     let force = final_force_after_load_step(&linear_model(&tight).unwrap().load_position, 5e-3).unwrap();
     assert!((force / (-2.24e6 * 2e7 / 2.224e7 * 5e-3) - 1.0).abs() < 1e-9);

@@ -161,7 +161,7 @@ fn leaking_points_are_where_the_machine_rests() {
         let actuator = draw.rig();
         let steady = draw.steady(&actuator);
         if let Steady::Moving { load: SteadyLoad::Pressure(_), .. } = steady {
-            continue; // the machine keeps a force
+            continue; // the machine holds a force
         }
         let leakage = draw.factor(1e-14, 1e-10);
         let leaky = Actuator::new(leaking(*actuator.components(), leakage)).unwrap();
