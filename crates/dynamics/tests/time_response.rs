@@ -271,7 +271,7 @@ fn exact_settling_times() {
         for band in [0.1, 1.0, 2.0, 5.0, 20.0] {
             let model = SecondOrder::new(7.0, ratio).unwrap();
             let settled = model.settling_time_s(band).unwrap().unwrap();
-            // on the band there, inside it ever after
+            // on the band there, and inside it afterwards
             close((model.step_value(settled) - 1.0).abs(), band / 100.0, 1e-9);
             for step in 1..2000 {
                 let later = settled * (1.0 + 1e-3 * f64::from(step));

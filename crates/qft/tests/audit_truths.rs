@@ -19,7 +19,7 @@ use phea_qft::verification::{
     Audit, AuditProblem, PlantPoint, StabilityReason, TOLERANCE_DB, TrackingJudgement, Verdict,
 };
 
-/// Name, nominal value, least, greatest.
+/// Name of a parameter, nominal value, least, greatest.
 type Range = (&'static str, f64, f64, f64);
 
 fn family<F>(ranges: &[Range], spacing: Spacing, plant: F) -> Family

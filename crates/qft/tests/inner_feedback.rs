@@ -141,7 +141,7 @@ impl Drawn {
         }
     }
 
-    /// Both outputs from one input.
+    /// State space of both outputs from one input.
     fn states(&self) -> StateSpace {
         let mut a = DMatrix::zeros(4, 4);
         for index in 0..4 {

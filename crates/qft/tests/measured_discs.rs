@@ -137,8 +137,8 @@ fn noise_makes_no_verdict_false_and_few_impossible() {
     assert!(resolved >= 50 && met >= 10 && violated >= 10, "{outcomes:?}");
 }
 
-/// Each closed loop over a disc: the worst and the certain margin correspond to the greatest and
-/// the least magnitude of plants sampled within it.
+/// Closed loops over a disc: the worst and the certain margin correspond to the greatest and the
+/// least magnitude of plants sampled within it.
 #[test]
 fn a_disc_is_judged_like_its_plants() {
     // ORIGIN: analytic, images and supports of a circle, sampled
