@@ -69,7 +69,7 @@ use verify::verify_answer;
 pub enum Request {
     /// Every derived quantity.
     Check,
-    /// The hose, for a gain or a length in text where given.
+    /// The hose, for a gain or a length as text, if given.
     Size {
         /// K_p, such as `2.7e-4`.
         gain: Option<String>,

@@ -57,7 +57,7 @@ pub enum CommandError {
     /// The catalogue, or a project that was changed, cannot be read.
     #[error("{0}")]
     Refused(Refusal),
-    /// The project does not state what to size for.
+    /// The quantity to size for is not stated in the project.
     #[error("{0}")]
     Sizing(#[from] SizingError),
     /// No alternatives are judged.
@@ -78,7 +78,7 @@ pub enum CommandError {
     /// Templates or bounds cannot be computed.
     #[error(transparent)]
     Bounds(BoundsError),
-    /// The family cannot be compared with what it replaces.
+    /// The family cannot be compared with the ranges that it replaces.
     #[error(transparent)]
     Replaced(#[from] ReplacedError),
     /// A controller cannot be shaped in this way.

@@ -2,7 +2,7 @@
 //! their answers, and the report.
 //!
 //! A shell passes text and bytes through [`source::Source`] and prints what an [`answer::Answer`]
-//! holds. [`command::answer_into`] is the way from one to the other:
+//! holds. [`command::answer_into`] turns one into the other:
 //!
 //! ```text
 //! command::Request, project::Loaded     what is asked, of which project

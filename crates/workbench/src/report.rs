@@ -77,12 +77,12 @@ pub struct Report {
 /// The fact on the linear step, which the first page states for the machine instead.
 const NOMINAL_LOOP: &str = "Nominal linear loop";
 
-/// Band of the settling time where no scenario states one, percent.
+/// Band of the settling time if no scenario states one, percent.
 const SETTLING_BAND: f64 = 1.0;
 
 /// The report of a project: the page that decides, then rig, sizing, simulation, campaign,
 /// specifications, audit and design; in the appendix derived quantities, stiffness, linear models,
-/// impedance, the linear step, what happens inside the machine, its sensitivity, templates and
+/// impedance, the linear step, the signals inside the machine, its sensitivity, templates and
 /// bounds, provenance. For a plant given as a transfer function, only the robust part. If the
 /// project has `[design]`, or gives no controller, one is designed, and everything is shown for
 /// both.
@@ -314,7 +314,7 @@ fn rig_part(
 }
 
 /// The verdict of the audit in a few words. A required step counts as a specification, and limits
-/// that follow from a requirement in time count as met where its steps satisfy it too.
+/// that follow from a requirement in time count as met only if its steps satisfy it too.
 fn audit_words(view: &ProjectAudit) -> String {
     let findings = &view.audit.specifications;
     let keeps = |(index, finding): &(usize, &SpecificationFinding)| {

@@ -101,7 +101,7 @@ fn impedances(found: &Alternatives) -> Option<Figure> {
 fn table(file: &str, groups: &[(&str, &[JudgedAlternative])]) -> OutputFile {
     let all: Vec<AlternativeColumns> =
         groups.iter().flat_map(|(_, judged)| judged.iter().map(JudgedAlternative::columns)).collect();
-    // all alternatives of a project have one kind of motion: none replaces its cylinder by a motor
+    // alternatives of a project have one kind of motion: none replaces its cylinder by a motor
     let mut judged = groups.iter().flat_map(|(_, judged)| judged.iter());
     let motion = judged.next().map(|one| one.loaded.project.motion()).unwrap_or_default();
     let mut named: Vec<(ColumnPart, ColumnKey)> = Vec::new();

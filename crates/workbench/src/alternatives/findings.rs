@@ -93,8 +93,8 @@ fn missing(one: &JudgedAlternative) -> Vec<String> {
     runs.iter().flat_map(missed).collect()
 }
 
-/// Alternatives that meet every specification, those that miss some and by how much, and other
-/// outcomes of a design.
+/// Sentences on alternatives that meet every specification, on those that miss some and by how
+/// much, and on other outcomes of a design.
 fn specifications(judged: &[JudgedAlternative], not_reached: usize) -> Vec<String> {
     let named = |which: &dyn Fn(&JudgedAlternative) -> Option<String>| {
         judged.iter().filter_map(which).collect::<Vec<_>>()

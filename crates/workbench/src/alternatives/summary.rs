@@ -10,8 +10,8 @@ use crate::verdict_words::agreement_word;
 /// Name of the group of the project's declared load, if there are load cases too.
 pub(super) const DECLARED_LOAD: &str = "declared load";
 
-/// Columns for a decision at a glance, with their names for people. The worst value counts
-/// where a column exists for several scenarios.
+/// Columns for a decision at a glance, with their names for people. The worst value counts if a
+/// column exists for several scenarios.
 const COMPARED_AT_A_GLANCE: [(ColumnKey, &str); 9] = [
     (ColumnKey::Order, "order of G"),
     (ColumnKey::DelayMargin, "delay tolerated"),

@@ -62,7 +62,7 @@ pub(super) fn measure_name(key: ColumnKey, motion: MotionKind) -> &'static str {
 /// Entry of a table for a number that the project should state.
 pub(super) const NOT_STATED: &str = "not stated";
 
-/// The error of a part of what is found about an alternative.
+/// The error of a missing finding on an alternative.
 pub(super) fn judge_error_words(error: &JudgeError) -> String {
     match error {
         JudgeError::Design(error) => design_error_words(error),

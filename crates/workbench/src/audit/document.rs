@@ -21,8 +21,7 @@ use crate::specification::{name_words, numbered};
 use crate::trial::{self, Trial};
 use crate::verdict_words::verdict_words;
 
-/// The tables and sentences of `verify` for people, with the trial on the machine where there is
-/// one.
+/// The tables and sentences of `verify` for people, with the trial on the machine if there is one.
 pub fn output(view: &ProjectAudit, tried: Option<&Trial>) -> Document {
     let mut out = document(view, vec![]);
     out.append(proven(view, "What is proven"));
@@ -100,7 +99,7 @@ fn delayed_words(paths: DelayedPaths) -> &'static str {
     }
 }
 
-/// A margin, and where.
+/// A margin, and its frequency.
 fn margin_at(worst: Option<&SpecificationMargin>) -> [Cell; 2] {
     match worst {
         Some(worst) => [Cell::margin(worst.margin_db), Cell::frequency(worst.frequency_rad_per_s)],

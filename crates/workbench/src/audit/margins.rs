@@ -15,7 +15,8 @@ const NO_FAMILY: &str = "no margin: not every plant is known to be stable";
 /// Reason why there is no frequency.
 const UNLIMITED: &str = "nothing limits it";
 
-/// The worst margins of the family, and the keys of the nominal loop.
+/// The worst margins of the family, and objects with the margins of the nominal loop and of the
+/// family.
 pub(super) fn object(view: &ProjectAudit) -> Object {
     let margins = &view.margins;
     let own = values(margins.family.as_ref(), NO_FAMILY);
@@ -55,7 +56,7 @@ fn places(view: &ProjectAudit, set: &MarginSet) -> Object {
     })
 }
 
-/// A row for each margin; empty where there are none.
+/// A row for each margin; empty if there are none.
 pub(super) fn table(view: &ProjectAudit) -> Table {
     let (nominal, family) = (view.margins.nominal.as_ref(), view.margins.family.as_ref());
     if nominal.is_none() && family.is_none() {
@@ -138,7 +139,7 @@ fn has_discs(view: &ProjectAudit) -> bool {
 }
 
 /// The decrease of the gain that the nominal loop tolerates, which a loop around an unstable plant
-/// needs; `None` where the gain may vanish.
+/// needs; `None` if the gain may vanish.
 pub(super) fn reduction_sentence(margins: &NominalMargins) -> Option<String> {
     let db = margins.gain_reduction_db;
     db.is_finite().then(|| {
@@ -149,13 +150,14 @@ pub(super) fn reduction_sentence(margins: &NominalMargins) -> Option<String> {
     })
 }
 
-/// `40.9 rad/s`; `none` where |L| does not fall below 1.
+/// `40.9 rad/s`; `none` if |L| does not fall below 1.
 pub fn crossover_words(crossovers: &Crossovers) -> String {
     let first = crossovers.first_rad_per_s;
     first.map_or("none".to_string(), |rad_per_s| format!("{} rad/s", significant(rad_per_s, 3)))
 }
 
-/// `between 655 and 681 rad/s`, where |L| is above 1 again; `None` where it remains below.
+/// `between 655 and 681 rad/s`, the range in which |L| is above 1 again; `None` if it remains
+/// below.
 pub fn above_one_again_words(crossovers: &Crossovers) -> Option<String> {
     let [low, high] = crossovers.again_rad_per_s?;
     let low = significant(low, 3);

@@ -50,7 +50,7 @@ fn without(metric: Metric, spread: Option<Spread>, driven: usize) -> Option<Stri
     (missing > 0).then(|| format!("{missing} of {driven} {words}"))
 }
 
-/// The scenarios of the project that a campaign leaves out; `None` where it has no other.
+/// The scenarios of the project that a campaign leaves out; `None` if it has no other.
 pub(crate) fn left_out(plan: &Plan) -> Option<String> {
     let others: Vec<String> = plan.other_scenarios().iter().map(|name| format!("\"{name}\"")).collect();
     (!others.is_empty()).then(|| {

@@ -24,7 +24,7 @@ pub(super) fn feed_forward(measured: bool, yields: bool) -> String {
     )
 }
 
-/// Name of the loop that a verdict concerns if it lacks a path of the load.
+/// Words for the loop of a verdict that lacks a path of the load.
 fn without_load(yields: bool) -> &'static str {
     match yields {
         true => "this is the loop without it, and only a simulation is of the loop with it",

@@ -25,7 +25,7 @@ pub struct CampaignRequest {
 /// Selection of the runs of a campaign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CampaignRuns {
-    /// All runs, or a part of them.
+    /// The whole campaign, or a part of its runs.
     All(RequestedRuns),
     /// The run with this index, in full.
     One(u64),

@@ -33,7 +33,7 @@ pub(super) fn check(
         Err(RigError::NoActuator) => vec![],
         Err(error) => return Err(error.into()),
     };
-    // all errors of measured plants, and not only the first missing file
+    // every error of measured plants, and not only the first missing file
     let underived = derived.is_empty().then(|| without_derived(source, &setup)).transpose()?;
     let of_alternatives = read_alternatives(source, loaded, catalogues)?;
     let impossible = Impossible::all(source, loaded, &setup)?;

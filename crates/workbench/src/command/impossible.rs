@@ -18,7 +18,7 @@ pub(super) struct Impossible {
 }
 
 impl Impossible {
-    /// All such requirements of a project.
+    /// The requirements of a project that no loop can satisfy.
     ///
     /// # Errors
     /// [`SpecificationError`] for a limit that is absent or not a function of frequency.

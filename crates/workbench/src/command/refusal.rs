@@ -1,4 +1,4 @@
-//! The JSON where a command has no answer.
+//! The JSON if a command has no answer.
 
 use super::{CommandError, Request};
 use crate::answer::{Object, SCHEMA};

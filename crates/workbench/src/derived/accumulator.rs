@@ -45,8 +45,8 @@ fn of_branch(branch: &GasBranch, name: &impl Fn(&str) -> String, list: &mut List
     }
 }
 
-/// The stiffness at other settings of adjustable accumulators: shut, or at 0 without the added
-/// volume.
+/// The stiffness at other settings of adjustable accumulators; at 0 the valves are shut, or the
+/// added gas is absent.
 fn at_settings(
     components: &Components,
     stiffness: &impl Fn(&Components, &OperatingPoint) -> f64,

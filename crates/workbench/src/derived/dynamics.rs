@@ -59,7 +59,7 @@ pub(super) fn dynamics(rig: &Rig, list: &mut List) {
     modes(rig, list);
 }
 
-/// The piston held by its force sensor, and the effect that its mass hides.
+/// The piston held by its force sensor, and the frequency above which a mass hides the compliance.
 fn held_still(rig: &Rig, list: &mut List) {
     let factors = decompose(&rig.leaking(), MechanicalDamping::Corrected);
     let frequency = factors.mechanical_square.sqrt();

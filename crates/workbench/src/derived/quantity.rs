@@ -15,7 +15,7 @@ pub struct Derived {
     pub unit: &'static str,
     /// Equation from which it follows.
     pub equation: &'static str,
-    /// The value in use instead, where the project states one.
+    /// The value in use instead, if the project states one.
     pub stated: Option<Stated>,
 }
 
@@ -26,7 +26,7 @@ pub struct Stated {
     pub value: f64,
     /// Table that states it, such as `[linear]`, `[uncertainty]` or `[sizing]`.
     pub place: &'static str,
-    /// Bounds, where stated.
+    /// Bounds, if stated.
     pub bounds: Option<[f64; 2]>,
 }
 

@@ -33,7 +33,7 @@ pub(super) struct ComparedFigure {
     pub(super) cell: Cell,
 }
 
-/// All criteria by which a controller is compared: verdicts first, then size, then margins. The
+/// The criteria by which a controller is compared: verdicts first, then size, then margins. The
 /// gain is in V per the unit of the controlled quantity, if the plant has units.
 pub(super) fn compared(side: &AuditedController, per: Option<&str>) -> Vec<ComparedFigure> {
     let verdict = side.view.verdict();

@@ -166,8 +166,8 @@ fn not_led_sentence(view: &ProjectDesign) -> Option<String> {
     })
 }
 
-/// The consequences of the machine's contradiction, with the controllers that come nearest to what
-/// cannot be achieved.
+/// The consequences of the machine's contradiction, with the controllers that come nearest to the
+/// goal that cannot be achieved.
 fn repaired(loaded: &Loaded, view: &ProjectDesign, repair: &Repair) -> Result<Document, LinearError> {
     let mut out = Document::default();
     out.heading(format!("Repair: {}", repair_words(repair.status)));

@@ -215,13 +215,13 @@ fn stable_with_waves(run: &TrialRun) -> String {
     )
 }
 
-/// No controller at all.
+/// Sentence for a repair without any controller.
 fn nothing_found() -> String {
     "that plant was added, and the search ended without a controller that makes every plant stable"
         .to_string()
 }
 
-/// Deviations that no linear plant explains, run by run, and what to change.
+/// Deviations that no linear plant explains, run by run, and the changes to make.
 fn left<'a>(runs: impl Iterator<Item = &'a TrialRun>) -> Vec<String> {
     let contradicting = runs.filter(|run| run.agreement == Agreement::Contradicts);
     let others = contradicting.filter(|run| run.quarter_wave_rad_per_s.is_none());

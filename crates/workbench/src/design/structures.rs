@@ -15,7 +15,7 @@ use crate::quantity::DisplayUnit;
 /// Outcome of a structure whose gain over another one was not worth its poles.
 const GIVEN_UP: &str = "given up";
 
-/// A table of the structures; empty where none has a name.
+/// A table of the structures; empty if none has a name.
 pub(crate) fn document(view: &ProjectDesign) -> Document {
     let mut out = Document::default();
     if view.structures.iter().all(|one| one.name.is_none()) {
@@ -194,13 +194,13 @@ fn row(view: &ProjectDesign, one: &ReachedStructure) -> Vec<Cell> {
     cells
 }
 
-/// True where a rise time is required.
+/// True if a rise time is required.
 fn requires_rise(view: &ProjectDesign) -> bool {
     let required = view.designed.view.in_time.first();
     required.is_some_and(|finding| finding.requirement.wish.rise_time_s.is_some())
 }
 
-/// A time in s; infinite if the response never comes to that.
+/// A time in s; infinite if the response does not settle or rise that far.
 fn time_words(time_s: f64, never: &str) -> String {
     if time_s.is_finite() { DisplayUnit::MILLISECOND.text(time_s, 3) } else { never.to_string() }
 }
@@ -234,7 +234,7 @@ fn reached_steps(view: &ProjectDesign, one: &ReachedStructure) -> Option<[Option
     ])
 }
 
-/// True where linear steps of a structure miss what is required in time.
+/// True if linear steps of a structure miss a requirement in time.
 fn has_late_steps(view: &ProjectDesign, one: &ReachedStructure) -> bool {
     let Some((reached, finding)) = one.steps.zip(view.designed.view.in_time.first()) else { return false };
     finding.requirement.follows && finding.requirement.wish.excess(&reached) > 1.0
@@ -245,7 +245,7 @@ fn misses_in_time(view: &ProjectDesign, one: &ReachedStructure) -> bool {
     one.ending == StructureEnding::Met && has_late_steps(view, one)
 }
 
-/// True where a run on the nonlinear rig missed what is required, and the linear steps did not.
+/// True if a run on the nonlinear rig misses the requirement, and the linear steps do not.
 fn misses_on_rig_alone(view: &ProjectDesign, one: &ReachedStructure) -> bool {
     let misses = one.misses_on_rig || one.is_chosen && view.misses_on_rig();
     misses && !has_late_steps(view, one)

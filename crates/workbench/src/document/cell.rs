@@ -74,7 +74,7 @@ pub(crate) enum Cell {
     Equation(String),
     /// A unit.
     Unit(Cow<'static, str>),
-    /// A number with its unit, which is empty where the heading has it.
+    /// A number with its unit; the unit is empty if the heading has it.
     Quantity { value: f64, precision: Precision, unit: &'static str },
     /// A good or bad result, with its mark.
     Status(StatusMark, Box<Cell>),
@@ -82,7 +82,7 @@ pub(crate) enum Cell {
     Strong(Box<Cell>),
     /// Cells that follow each other directly, in one.
     Joined(Vec<Cell>),
-    /// No such thing.
+    /// A missing value.
     #[default]
     Missing,
 }

@@ -96,7 +96,7 @@ impl Table {
     }
 }
 
-/// The items of these columns; true for each whose column is one of numbers.
+/// The items of these columns, each with true if its column is numeric.
 fn placed<'i, Item>(items: &'i [Item], columns: &[(usize, bool)]) -> Vec<(bool, &'i Item)> {
     columns.iter().filter_map(|(column, is_number)| Some((*is_number, items.get(*column)?))).collect()
 }

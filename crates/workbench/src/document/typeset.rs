@@ -28,7 +28,7 @@ pub fn typeset(equation: &str) -> Markup {
     }
 }
 
-/// A single letter is a quantity; a longer word is a function's name or prose and stays upright.
+/// A single letter is a quantity; a longer word is a function's name or prose and is set upright.
 fn line(text: &str) -> Markup {
     let letters: Vec<char> = text.chars().collect();
     let words = letters.chunk_by(|one, next| one.is_alphabetic() && next.is_alphabetic());

@@ -66,7 +66,7 @@ fn pressed(found: &FrictionIdentification, index: usize, press: &PressedRows) ->
     Some(over_time(words, &curve, recording.time_step, press.rows))
 }
 
-/// Rows of a shaken piston that are drawn, so that each period can be seen.
+/// Number of drawn rows of a shaken piston, so that each period can be seen.
 const SHAKEN_ROWS: usize = 500;
 
 /// Force and position of the first rows of a piston that is shaken.

@@ -33,7 +33,7 @@ pub(crate) fn document(
     out
 }
 
-/// Model of the leakage, coefficients with their intervals, and those found by hand.
+/// Model of the leakage, coefficients with their intervals, and those computed by hand.
 pub(crate) fn write_coefficients(found: &Identification, out: &mut Document) {
     out.heading("Model of the leakage");
     out.sentences(leakage(found));

@@ -217,7 +217,7 @@ fn leakage(found: &Identification, recording: &Recording) -> Figure {
     chart.draw(&Words::new("leakage_both_ways", "Internal leakage both ways", caption))
 }
 
-/// Flow with the direction that the model gives it where the meter does not indicate it.
+/// Flow with its direction according to the model if the meter does not indicate it.
 fn signed_flow(recording: &Recording, outputs: &[TestOutput], row: usize) -> Option<f64> {
     let (kind, _) = flow_signal(recording)?;
     let value = recording.signal(kind)?.values.get(row).copied()??;
@@ -304,7 +304,7 @@ fn pressure_sensitivity(found: &Identification) -> Option<Figure> {
 /// A recorded signal, the unit it is shown in, and its value in the model.
 type ShownSignal = (SignalKind, DisplayUnit, fn(&TestOutput) -> f64);
 
-/// A leakage test against the model, one way, with residuals.
+/// A leakage test compared with the model, in one direction, with residuals.
 fn against_model(found: &Identification, index: usize, (way, rising): (&str, bool)) -> Figure {
     let (bar, litre) = (DisplayUnit::BAR, DisplayUnit::LITRE_PER_MINUTE);
     let outputs = found.shown(index, &found.coefficients);

@@ -4,8 +4,8 @@
 //! project, recordings -> coefficients, family -> settings of the project -> the project, read again
 //! ```
 //!
-//! Identified numbers go through the reader as any other number of the project does, so that
-//! every condition between values is checked, and nothing below sees two rigs.
+//! Identified numbers pass through the reader like any other number of the project, so that every
+//! condition between values is checked, and no later code has to handle two rigs.
 
 use phea_dynamics::watch::Watch;
 
@@ -71,8 +71,8 @@ pub fn recorded_files(project: &Project) -> Vec<RecordedTest> {
 /// another recording is another project.
 ///
 /// # Errors
-/// [`ValveInUseError`] where files are refused, where the recordings do not determine a coefficient
-/// that the plant depends on, and where what they determine contradicts the project.
+/// [`ValveInUseError`] if files are rejected, if the recordings do not determine a coefficient on
+/// which the plant depends, and if their result contradicts the project.
 pub fn in_use(
     source: &dyn Source,
     loaded: &Loaded,
@@ -153,7 +153,7 @@ fn region(found: &Identification, project: &Project) -> Result<JointRegion, Valv
     Ok(joint_region(found, project, SMALLEST_EFFECT)?)
 }
 
-/// Numbers in place of declared ones, and numbers that stay as declared.
+/// Numbers that replace declared ones, and numbers that remain as declared.
 fn numbers(found: &Identification, project: &Project) -> (Vec<IdentifiedNumber>, Vec<KeptNumber>) {
     let (mut numbers, mut kept) = (Vec::new(), Vec::new());
     let of = |index: usize| Some((*COEFFICIENT_NAMES.get(index)?, *found.estimates.get(index)?));
@@ -243,7 +243,7 @@ fn direction(direction: &UncertaintyDirection) -> String {
     )
 }
 
-/// The project with what was identified; a setting of the user must not contradict it.
+/// The project with the identified values; a setting of the user must not contradict them.
 fn read_again(
     source: &dyn Source,
     loaded: &Loaded,

@@ -38,7 +38,7 @@ pub(super) struct SimpleBody {
     pressure_sensitivity_pa_per_v: Option<f64>,
     /// Absent for edges with a lap, whose flow gain at null is not the one that is read.
     flow_pressure_coefficient: Option<f64>,
-    /// Confidence intervals, where there are any.
+    /// Confidence intervals of the numbers that have one.
     confidence_95: BTreeMap<&'static str, [f64; 2]>,
 }
 

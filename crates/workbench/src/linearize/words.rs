@@ -1,4 +1,4 @@
-//! Stiffness over the stroke, and reasons for what a linearisation lacks, in words.
+//! Stiffness over the stroke, and reasons for missing parts of a linearisation, in words.
 
 use super::{HidingMass, Linearization, NoBandwidth, NoClosedImpedance};
 use phea_hydraulics::stiffness::StrokeStiffness;

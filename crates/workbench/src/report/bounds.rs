@@ -1,5 +1,5 @@
-//! The chapter on templates and bounds: the plants at each design frequency, where the nominal loop
-//! may not be, and the position of the given loop among the bounds.
+//! The chapter on templates and bounds: the plants at each design frequency, the regions forbidden
+//! to the nominal loop, and the position of the given loop among the bounds.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::LinearError;
@@ -100,7 +100,7 @@ const BESIDE_DEGREES: [f64; 9] = [0.0, -10.0, 10.0, -20.0, 20.0, -30.0, 30.0, -4
 const DEGREES_PER_DECIBEL: f64 = 4.0;
 
 /// The bounds of all specifications at the frequencies at which one of these loops comes nearest to
-/// them, in rising order; true if others are left out.
+/// them, in order of frequency; true if others are left out.
 pub(super) fn nearest_bounds(found: &[DesignFrequency], loops: &[&RobustProblem]) -> (Vec<Bound>, bool) {
     let distance = |one: &DesignFrequency| {
         let of = |problem: &&RobustProblem| {

@@ -17,7 +17,7 @@ use crate::project::{Distribution, Loaded};
 use crate::simulate::{Cause, Metric, PerMetric, Window, cause_words, shown_in, status_words};
 use crate::source::Source;
 
-/// Number of runs where the project states none, and their seed.
+/// Number of runs if the project states none, and their seed.
 const RUNS: u64 = 200;
 const SEED: u32 = 1;
 /// Runs from which the work of all is estimated.
@@ -58,7 +58,7 @@ pub(super) struct CampaignStep {
 /// without `[campaign]`.
 ///
 /// # Errors
-/// [`CommandError::Stopped`] where the watch stops it.
+/// [`CommandError::Stopped`] if the watch stops it.
 pub(super) fn driven(
     source: &dyn Source,
     (loaded, is_designed): (&Loaded, bool),

@@ -33,9 +33,9 @@ fn span(specification: &Specification, finding: &SpecificationFinding) -> [f64; 
     if ends.is_empty() { [0.01, 1000.0] } else { [low / MARGIN_OF_FREQUENCY, high * MARGIN_OF_FREQUENCY] }
 }
 
-/// The family of plants within one loop, and what its audit found.
+/// The family of plants within one loop, and the findings of its audit.
 pub(super) struct LoopFamily<'a> {
-    /// Name of the loop; empty where there is one.
+    /// Name of the loop; empty if there is only one.
     name: &'static str,
     problem: &'a RobustProblem,
     view: &'a ProjectAudit,
@@ -80,9 +80,9 @@ impl<'a> LoopFamily<'a> {
     }
 }
 
-/// A specification in these loops, with every member in the first of them, and whether it is shown
-/// by the spread of the family, which a prefilter does not change. `None` if no loop has a margin
-/// to it.
+/// A specification in these loops, with every member in the first of them; true if it is shown by
+/// the spread of the family, which a prefilter does not change. `None` if no loop has a margin to
+/// it.
 pub(super) fn magnitudes(
     loops: &[LoopFamily<'_>],
     index: usize,

@@ -1,5 +1,5 @@
 //! The chapter on the design: the designed controller compared with the given one, in figures of
-//! both, and what the specifications cost.
+//! both, and the cost of the specifications.
 
 mod loops;
 mod magnitudes;
@@ -77,7 +77,7 @@ pub(super) fn designed(
 }
 
 impl Designed {
-    /// The design, where one was found.
+    /// The design, if one was found.
     pub(super) fn found(&self) -> Option<&ProjectDesign> {
         match self {
             Designed::Found(found) => Some(&found.view),

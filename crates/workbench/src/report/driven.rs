@@ -13,7 +13,7 @@ use phea_dynamics::watch::{Stopped, Watch};
 
 /// Name of the controller that the project gives.
 pub(super) const GIVEN: &str = "given";
-/// Name of the one that was designed.
+/// Name of the designed controller.
 pub(super) const DESIGNED: &str = "designed";
 
 /// The runs of the machine in every scenario.
@@ -96,7 +96,7 @@ impl MachineChapter {
         named
     }
 
-    /// The runs of one controller; `None` where it was not driven.
+    /// The runs of one controller; `None` if it was not driven.
     pub(super) fn runs_of(&self, name: &str) -> Option<&[ScenarioRun]> {
         let side = self.sides.iter().find(|side| side.name == name)?;
         side.runs.as_deref().ok()

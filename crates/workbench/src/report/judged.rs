@@ -63,7 +63,7 @@ pub(super) fn judged(
 }
 
 impl Judged {
-    /// The design, where one was found.
+    /// The design, if one was found.
     pub(super) fn found(&self) -> Option<&ProjectDesign> {
         self.designed.as_ref()?.found()
     }

@@ -13,7 +13,7 @@ use crate::over_time::{Trace, chart, measured_force, panel, trace};
 use crate::project::{LoadMotion, MotionShape, Project};
 use crate::quantity::Units;
 
-/// The motion that is shown where no scenario moves the load: 1 mm in 0.1 s.
+/// Motion of the load if no scenario moves it: 1 mm in 0.1 s.
 const MOTION: (f64, f64) = (1e-3, 0.1);
 
 /// Samples of the motion; straight between them.
@@ -29,7 +29,7 @@ fn motion(project: &Project) -> (f64, f64) {
         MotionShape::SmoothStep { duration, distance } => Some((distance, duration)),
         _ => None,
     };
-    // with a linkage, a scenario turns the joint
+    // a scenario turns the joint if there is a linkage
     let turns = project.actuator.as_ref().is_some_and(|actuator| actuator.linkage.is_some());
     project
         .scenarios

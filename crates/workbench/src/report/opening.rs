@@ -1,5 +1,5 @@
-//! The first page: the specifications, how well the given and the designed controller satisfy them,
-//! the main numbers, force over time, the loop in its Nichols chart, and the next steps.
+//! The first page: the specifications, the verdicts on the given and the designed controller, the
+//! main numbers, force over time, the loop in its Nichols chart, and the next steps.
 
 mod next;
 mod side;
@@ -40,9 +40,9 @@ pub(super) struct Contents<'a> {
 /// The content of the page for programs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Decision {
-    /// The controller that the project gives; absent where it gives none.
+    /// The controller that the project gives; absent if it gives none.
     pub given: Option<Decided>,
-    /// The one that was designed.
+    /// The designed controller.
     pub designed: Option<Decided>,
     /// The next steps, a sentence each.
     pub next: Vec<String>,

@@ -34,7 +34,7 @@ fn shown(value: f64, dimension: &Dimension) -> String {
 /// Text or drawing next to which the cylinder is described.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Beside {
-    /// A drawing, which shows at which end a rod comes out.
+    /// A drawing, which shows the end at which a rod comes out.
     Drawing,
     /// Words only.
     Words,
@@ -258,7 +258,7 @@ fn facts(actuator: &project::DeclaredActuator, rig: &Rig) -> Table {
     Table::new(["component", "declared"]).with(rows.into_iter().map(|(name, text)| [name.to_string(), text]))
 }
 
-/// A valve between the chambers in a few words, with its flow at rest.
+/// A valve between the chambers in a few words, with its flow and loss at rest.
 fn cross_port_words(found: &CrossPortAtPoint) -> String {
     let conductance = quantity::significant(found.conductance, 3);
     let kind = match (found.valve.restrictor, found.valve.capacity) {

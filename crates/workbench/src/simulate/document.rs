@@ -80,7 +80,7 @@ fn why(stopped: &StoppedRun) -> String {
     told.to_string()
 }
 
-/// Metrics that have a column only where some window has them.
+/// Metrics that have a column only if some window has them.
 const RARE: [Metric; 2] = [Metric::TrackingErrorPeak, Metric::ForcePeak];
 
 /// The metrics of each event of a run, judged by the requirement in time. Next to published values

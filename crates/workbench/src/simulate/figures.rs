@@ -42,8 +42,8 @@ pub(crate) fn pictures(run: &ScenarioRun, number: usize) -> Vec<Figure> {
     figures
 }
 
-/// Words for the span of an overview: the whole scenario, or the time in which a repeating event
-/// has occurred twice.
+/// Words for the span of an overview: the whole scenario, or its first part, after which it
+/// repeats.
 pub(super) fn shown_words(run: &ScenarioRun, end_s: f64) -> String {
     match span_of_events(run, end_s)[1] {
         shown if shown < end_s => {
@@ -78,7 +78,7 @@ fn overlaid(run: &ScenarioRun, number: usize, span_s: [f64; 2]) -> Option<Figure
     (!panels.is_empty()).then(|| chart(panels, legend, &events, span_s).draw(&words))
 }
 
-/// Everything at a glance.
+/// Overview of all signals.
 fn overview(words: &Words, run: &ScenarioRun, span_s: [f64; 2]) -> Figure {
     let record = &run.record;
     let mut panels = vec![measured(record, 190.0)];
@@ -298,7 +298,7 @@ fn drawn(run: &ScenarioRun, panels: Vec<CurvePanel>, span_s: [f64; 2]) -> CurveC
     chart(panels, [], &instants(&run.windows, span_s, run.record.units.motion), span_s)
 }
 
-/// The events that have a figure of their own, with their indices among all.
+/// The events that have their own figure, with their indices among all.
 pub(super) fn enlarged(windows: &[(Window, Metrics)], end_s: f64) -> Vec<(usize, &Window)> {
     let begun = windows.iter().map(|(window, _)| window).enumerate();
     let begun: Vec<(usize, &Window)> = begun.filter(|(_, window)| window.start_s < end_s).collect();

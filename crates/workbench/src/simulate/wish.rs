@@ -19,7 +19,7 @@ pub(crate) fn required_rise(wish: &TrackingWish) -> Option<String> {
     wish.rise_time_s.map(|time_s| format!("risen from 10 to 90 % in {time_s} s"))
 }
 
-/// Everything that is required of a step.
+/// The requirements on a step.
 pub(crate) fn required_words(wish: &TrackingWish) -> String {
     let all = [required_overshoot(wish), required_settling(wish), required_rise(wish)];
     all.into_iter().flatten().collect::<Vec<_>>().join(", ")

@@ -110,7 +110,7 @@ fn cells(run: &TrialRun) -> [Cell; 8] {
     ]
 }
 
-/// The runs, those of the worst corners only where no other run has their plant and step.
+/// The runs; those of the worst corners only if no other run has their plant and step.
 fn distinct(trial: &Trial) -> impl Iterator<Item = &TrialRun> {
     trial.runs.iter().filter(|run| repeated(trial, run).is_none())
 }

@@ -1,4 +1,4 @@
-//! Machines of a trial and what their runs show, in words.
+//! Machines of a trial and the results of their runs, in words.
 
 use super::{
     Agreement, DampingWall, DifferenceCause, Leg, NotDriven, OvershootNote, REACH, StepSize, Trial,
@@ -233,12 +233,12 @@ fn not_driven_words(one: &NotDriven, units: Units) -> String {
     }
 }
 
-/// The units of what a trial drives.
+/// The units of the machines that a trial drives.
 pub(super) fn units_of(trial: &Trial) -> Units {
     trial.runs.first().map_or_else(Units::default, |run| run.units)
 }
 
-/// Everything that a trial does not drive.
+/// Parts that a trial does not drive.
 pub(crate) fn not_driven(trial: &Trial) -> Vec<String> {
     let units = units_of(trial);
     trial.not_driven.iter().map(|one| not_driven_words(one, units)).collect()

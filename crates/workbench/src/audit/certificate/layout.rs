@@ -49,7 +49,7 @@ pub(super) struct File {
     claims: Vec<StatedClaim>,
 }
 
-/// A recording that a value of the plant comes from.
+/// A recording from which a value of the plant comes.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StatedRecording {

@@ -152,7 +152,7 @@ fn missed_words(view: &ProjectAudit) -> String {
     missed.join(" and ")
 }
 
-/// The plant, if a few words suffice; otherwise where it is listed.
+/// The plant, if a few words suffice; otherwise the place where it is listed.
 fn plant_words(view: &ProjectAudit, plant: &phea_qft::verification::PlantPoint) -> String {
     match view.names.headings().len() {
         0 => String::new(),

@@ -1,6 +1,6 @@
-//! Every step of the reference that the report has of one controller, compared with what is
-//! required in time: the scenarios, the machines of the trial, the linear steps over the family,
-//! and the runs of the campaign.
+//! Every step of the reference that the report has of one controller, compared with its requirement
+//! in time: the scenarios, the machines of the trial, the linear steps over the family, and the
+//! runs of the campaign.
 
 use std::collections::BTreeSet;
 
@@ -18,7 +18,7 @@ use crate::trial::{Trial, TrialRun, have_one_name, run_name};
 /// Property of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum StepProperty {
-    /// Percent of the step.
+    /// Overshoot, percent of the step.
     Overshoot,
     /// Settling time, s; infinite if the step does not settle.
     Settling,
@@ -27,7 +27,7 @@ pub(super) enum StepProperty {
 }
 
 impl StepProperty {
-    /// All properties.
+    /// Every property.
     pub(super) const ALL: [StepProperty; 3] =
         [StepProperty::Overshoot, StepProperty::Settling, StepProperty::Rise];
 }
@@ -61,7 +61,7 @@ pub(super) struct AllSteps {
 /// Words for a step that does not settle, and for one that does not rise to 90 percent.
 pub(super) const NEVER_SETTLED: &str = "not settled";
 pub(super) const NEVER_RISEN: &str = "not risen to 90 %";
-/// Tolerance relative to what is required: printed numbers have three digits.
+/// Tolerance relative to the required value: printed numbers have three digits.
 const ROUNDED: f64 = 1e-6;
 /// Deviation of a linear step that counts as none, percent.
 const ACCURACY_PERCENT: f64 = 0.01;
@@ -85,7 +85,7 @@ pub(super) fn steps(side: &Side<'_>, required: &TimeRequirement, property: StepP
         let windows = run.windows.iter().map(|(window, metrics)| (window, metrics));
         steps.extend(windows.filter(|(window, _)| concerns(required, window)).filter_map(of));
     }
-    // a requirement with a step of its own is about no other
+    // a requirement with its own step applies to no other
     let is_about = |run: &TrialRun| {
         let mut numbers = run.requirements.iter().map(|held| held.number);
         !required.steps.are_stated() || numbers.any(|number| number == required.number)
@@ -227,7 +227,7 @@ impl AllSteps {
         self.steps.iter().max_by(|one, other| one.value.total_cmp(&other.value))
     }
 
-    /// The worst value with its place, and how many of which steps are above.
+    /// The worst value with its place, and the number and kinds of steps above the requirement.
     pub(super) fn words(&self) -> String {
         let Some(worst) = self.worst() else { return String::new() };
         let value = self.value_words(worst);
@@ -240,7 +240,7 @@ impl AllSteps {
         for (origin, what) in counts {
             let own = || self.steps.iter().filter(|step| step.origin == origin);
             let (count, above) = match origin {
-                // a run has several steps, and misses what is required by one of them
+                // a run has several steps, and misses the requirement in one of them
                 StepOrigin::Campaign => {
                     let runs = |all: &mut dyn Iterator<Item = &OneStep>| -> usize {
                         all.map(|step| step.place.as_str()).collect::<BTreeSet<_>>().len()
