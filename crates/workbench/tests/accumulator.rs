@@ -161,7 +161,7 @@ fn gas_that_is_shut_off_at_the_operating_point_is_refused() {
     }
 }
 
-/// The refusal is at the key, in the file or in the alternative that sets it.
+/// Gas that is shut off is rejected at the key, in the file or in the alternative that sets it.
 #[test]
 fn what_shuts_off_the_gas_is_refused_at_its_place() {
     let line_of = |text: &str, key: &str| 1 + text.lines().position(|line| line.contains(key)).unwrap();

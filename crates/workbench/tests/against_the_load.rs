@@ -70,7 +70,7 @@ fn response(factors: &Value, frequency: f64) -> Complex64 {
     number(factors, "gain") * product(roots("zeros")) / product(roots("poles"))
 }
 
-/// Between its slow pole and its modes the plant integrates with the rate gain of `check`, and a
+/// The plant integrates between its slow pole and its modes with the rate gain of `check`, and a
 /// moved ground acts on the springs in series.
 #[test]
 fn rate_gain_and_stiffness_are_those_of_the_plant() {
@@ -84,7 +84,7 @@ fn rate_gain_and_stiffness_are_those_of_the_plant() {
         near(derived(&told, "dynamics.equivalent_stiffness"), held, 0.015);
         assert_eq!(linear["load_step_moves"], "ground");
     }
-    // without a load nothing has changed: both springs in series
+    // nothing has changed without a load: both springs in series
     let alone = check(RIG, &[]);
     let [k_h, k_s] =
         ["linear.hydraulic_stiffness", "linear.sensor_stiffness"].map(|name| derived(&alone, name));
@@ -150,8 +150,8 @@ fn models(settings: &[&str]) -> Linearization {
     linearized(setup.rig().unwrap(), setup.controller.as_ref(), &setup.sensor).unwrap()
 }
 
-/// The moved ground of a specimen acts on K_H, K_S and the specimen in series, and with the loop
-/// closed by a gain on 1/(1 + K P) of that; a prescribed load acts on the port itself.
+/// The moved ground of a specimen acts on K_H, K_S and the specimen in series; with the loop closed
+/// by a gain K the stiffness is 1/(1 + K P) of that. A prescribed load acts on the port itself.
 #[test]
 fn a_moved_ground_meets_the_specimen_in_series() {
     let load = specimen("15 kN/mm");

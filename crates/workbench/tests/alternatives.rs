@@ -141,8 +141,8 @@ fn lengths_and_losses_are_those_of_the_rig() {
     }
 }
 
-/// With a spring on the rod, the length is that of the rig as declared and of the coils that
-/// `check` computes; without coils, or with too few of them, there is a reason.
+/// Length with a spring on the rod: that of the rig as declared and of the coils that `check`
+/// computes; without coils, or with too few of them, there is a reason.
 #[test]
 fn a_spring_on_the_rod_has_a_length() {
     let length = |coil: &str| {

@@ -224,8 +224,8 @@ fn kept(loaded: &Loaded, request: &CampaignRequest, page: &mut Page) -> Result<S
     command::campaign_watched(&source(), loaded, &[], request, (Some(page), None), &mut |_| true)
         .map(|answer| answer.json)
 }
-/// Over 200 runs half of all stay within 0.02 N of those at a tolerance of 1e-10, and all but two
-/// within 0.2 N.
+/// Errors of 200 runs: half of all stay within 0.02 N of the runs at a tolerance of 1e-10, and all
+/// but two within 0.2 N.
 #[test]
 fn the_force_is_as_exact_as_the_campaign_says() {
     let of = |settings: &[&str]| {

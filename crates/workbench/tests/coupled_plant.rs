@@ -43,7 +43,7 @@ fn overshoot(project: &Project) -> f64 {
     closed.step.unwrap().metrics.overshoot_percent
 }
 
-/// A yielding load turns a loop without overshoot into one that overshoots by a quarter, and the
+/// Yielding load: it turns a loop without overshoot into one that overshoots by a quarter, and the
 /// linear plant predicts this. The machine, which has friction, overshoots a little less.
 #[test]
 fn a_load_that_yields_is_in_the_loop() {
@@ -70,7 +70,7 @@ fn leakage_across_the_piston_moves_the_slow_pole() {
     assert!((slowest(&["cylinder.internal_leakage=1e-11"]) - 8.5508).abs() < 1e-4);
 }
 
-/// The load feels the leakage too: slow motions meet a damper of A^2/(K_c + G) and the friction.
+/// The load feels the leakage too: slow motions act on a damper of A^2/(K_c + G) and the friction.
 /// The impedance at the load does not contain the load itself.
 #[test]
 fn the_load_feels_the_leakage_and_not_itself() {
@@ -154,8 +154,8 @@ fn a_prefilter_before_the_samples_acts_in_continuous_time() {
     assert!(problem.caveats.is_empty(), "{:?}", problem.caveats);
 }
 
-/// A limited pump that delivers the flow taken is included, and a supply about which only a
-/// simulation of larger steps can decide is reported.
+/// A limited pump that delivers the flow taken is in the linear loop; a caveat reports that only a
+/// simulation shows larger steps.
 #[test]
 fn a_limited_pump_is_counted() {
     let view = audited(&satisfied(&["supply.model=pump_limited"]));
@@ -264,7 +264,7 @@ fn a_sampled_feed_forward_is_in_the_loop() {
     }
 }
 
-/// For a prescribed load a delayed feed-forward is a path of its motion: P_d + K s P, P delayed or
+/// Delayed feed-forward of a prescribed load is a path of its motion: P_d + K s P, P delayed or
 /// sampled, and the loop itself is unchanged.
 #[test]
 fn a_late_feed_forward_of_a_prescribed_load_is_a_path_of_its_motion() {
@@ -292,7 +292,7 @@ fn a_late_feed_forward_of_a_prescribed_load_is_a_path_of_its_motion() {
     }
 }
 
-/// An effect that changes no specification is reported, and the verdict is unchanged.
+/// A path that no specification limits is reported, but the verdict is unchanged.
 #[test]
 fn a_path_that_no_specification_limits_decides_nothing() {
     for (settings, told) in

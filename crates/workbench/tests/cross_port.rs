@@ -133,7 +133,7 @@ fn the_machine_agrees_with_the_linear_loop() {
         "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1e-10, capacity = 1e-12 }",
     ] {
         let request = Request::Verify { proof: false, on_machine: true };
-        // with integral action that exceeds the leak the loop settles in 0.3 s
+        // the loop settles in 0.3 s with integral action that exceeds the leak
         let said = answer(&pipe, &[port, VISCOUS, "controller.numerator=0.001*s + 0.1"], &[], &request);
         let object: serde_json::Value = serde_json::from_str(&said.json).unwrap();
         let run = &object["machine"]["runs"][0];

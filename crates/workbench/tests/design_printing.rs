@@ -304,7 +304,7 @@ fn elements_are_a_published_law() {
     );
 }
 
-/// With rounded coefficients the rounded controller is audited, here and by `verify`.
+/// Rounded controllers are audited, here and by `verify`.
 #[test]
 fn what_the_computer_rounds_is_part_of_the_design() {
     let timing = "sample_time = \"2 ms\"\nquantization = { command_bits = 12, command_range = [-10, 10], coefficients = \"f32\" }\n";
@@ -348,7 +348,7 @@ fn what_a_setting_says_beside_the_law_is_written_with_it() {
         loaded.settings = settings.iter().map(|setting| setting.to_string()).collect();
         String::from_utf8(files(&loaded, &view).remove(0).bytes).unwrap()
     };
-    // without a setting the text states it already
+    // the text without a setting states it already
     assert_eq!(written(&[]), text.replace("gain = 1", "gain = 2"));
     let set = written(&["controller.sample_time=1e-3", "prefilter.continuous=true"]);
     for line in

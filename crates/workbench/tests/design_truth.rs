@@ -1,6 +1,6 @@
-//! Designs of whole projects with known truth: an independent search has found that the rig can be
-//! met at all, and by how much. The design of the rig in a computer takes longer and is a task of
-//! `benches/design.rs`.
+//! Designs of whole projects with known truth: an independent search has found that the
+//! specifications of the rig can be met, and with what margin. The design of the rig in a computer
+//! takes longer and is a task of `benches/design.rs`.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]

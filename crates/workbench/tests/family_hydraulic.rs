@@ -17,7 +17,7 @@ fn loaded(text: &str) -> Project {
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 
-/// The plant of the family, with few members: their grid may be large.
+/// The plant of the family, recorded with few members: their grid may be large.
 fn recorded(project: &Project) -> Result<UncertainPlant, ProjectFamilyError> {
     let few = project::DeclaredFamily {
         random: Some(Random { count: 1, seed: 1 }),
@@ -55,7 +55,7 @@ fn the_recorded_rig_is_the_linear_model() {
         }
         let rig = Setup::rig_of(&stated).unwrap();
         assert_eq!(plant.coefficients(&values), Some(rig.plant.coefficients()));
-        // with a prescribed load and without leakage this is thesis (6.7)
+        // thesis (6.7) for a prescribed load without leakage
         let published = linear_model_coefficients(&rig.linear).command;
         let own = plant.coefficients(&values).unwrap().command;
         let all = |one: &RationalCoefficients<f64>| [&one.numerator[..], &one.denominator[..]].concat();

@@ -84,7 +84,7 @@ fn what_is_left_grows_with_the_lag() {
     }
 }
 
-/// The real part of Z, for the loop with feed-forward, changes its sign at low frequency where (1 -
+/// Real part of Z for the loop with feed-forward: it changes its sign at low frequency where (1 -
 /// a)(K_p + K_c/(A K_qU)) = tau K_i.
 #[test]
 fn a_little_less_than_the_gain_is_passive() {

@@ -78,8 +78,8 @@ fn small_sines_give_the_linear_plant() {
     }
 }
 
-/// As the amplitude decreases, the terms that the derivatives leave out vanish, and the harmonics
-/// with them.
+/// Terms that the derivatives leave out vanish as the amplitude decreases, and the harmonics with
+/// them.
 #[test]
 fn the_amplitude_goes_to_zero_and_with_it_the_difference() {
     let loaded = smooth(&[]);
@@ -180,7 +180,7 @@ fn a_supply_that_yields_is_in_the_linear_plant() {
     }
 }
 
-/// In a sampled loop, the fundamental between the samples is that of the held command.
+/// The fundamental between the samples of a sampled loop is that of the held command.
 #[test]
 fn a_sampled_loop_is_that_of_the_linear_plant_behind_its_hold() {
     for settings in [

@@ -56,7 +56,7 @@ fn a_zero_error_of_a_pressure_is_found_next_to_the_friction() {
     assert!((zero - 3e4 * area).abs() < 0.5, "{zero}");
     assert_eq!(found["converged"], true);
     holds(&found, 0..6);
-    // it is found from the breakaways only, too
+    // found from the breakaways only, too
     let pressed = self::found(&shifted, &PRESSED);
     let zero = pressed["force_zero_n"]["value"].as_f64().unwrap();
     assert!((zero - 3e4 * area).abs() < 5.0, "{zero}");

@@ -93,8 +93,8 @@ fn the_steady_curve_comes_back_without_noise() {
     }
 }
 
-/// With noise and all three recordings, everything except the damping of the bristles is
-/// determined, and the intervals contain the truth: three standard deviations here, because six
+/// Coefficients from noise and all three recordings: everything except the damping of the bristles
+/// is determined, and the intervals contain the truth: three standard deviations here, because six
 /// numbers are checked.
 #[test]
 fn a_noisy_bench_tells_all_but_the_damper() {
@@ -103,7 +103,7 @@ fn a_noisy_bench_tells_all_but_the_damper() {
     holds_the_truth(&found, &TRUTH[..6]);
 }
 
-/// All coefficients are determined with all four recordings.
+/// Every coefficient is determined with all four recordings.
 #[test]
 fn a_noisy_bench_tells_all_of_the_friction() {
     let answer = from_all();

@@ -50,7 +50,7 @@ fn a_position_that_is_read_in_steps_tells_it_too() {
     tells(&found(&settings, &[SLIDING, SHAKEN]), 0.1);
 }
 
-/// With very little noise the damping is recovered, except for the effect of the integration's
+/// The damping is recovered with very little noise, except for the effect of the integration's
 /// steps.
 #[test]
 fn the_damping_comes_back_with_next_to_no_noise() {

@@ -91,7 +91,7 @@ fn the_port_tends_to_what_is_asked() {
     assert!(last < 1e-4, "{last}");
 }
 
-/// At low frequencies the spring of a lagging loop is active by -K_v tau; a damper of that size
+/// The spring of a lagging loop is active by -K_v tau at low frequencies; a damper of that size
 /// compensates for it.
 ///
 /// ```text
@@ -141,8 +141,8 @@ fn what_is_shown_is_the_port() {
     assert!((port.final_force_n.unwrap() / -100.0 - 1.0).abs() < 1e-6);
 }
 
-/// With a spring of k on its ground, F_e = F_r/(1 + K_v/k) at the end; verdict and machine agree on
-/// stability.
+/// A spring of k on the ground of the load: F_e = F_r/(1 + K_v/k) at the end; verdict and machine
+/// agree on stability.
 #[test]
 fn a_load_that_yields_changes_the_loop() {
     let impedance = |stiffness: &str| format!("controller.impedance={{ stiffness = \"{stiffness}\" }}");
@@ -211,8 +211,8 @@ fn an_admittance_is_an_impedance() {
     }
 }
 
-/// With a load whose motion is prescribed, only the verdict on load_motion changes; with one that
-/// yields, all do.
+/// Prescribed motion of the load changes only the verdict on load_motion; a load that yields
+/// changes all verdicts.
 #[test]
 fn the_verdict_speaks_of_the_loop_that_exists() {
     let margins = |settings: &[&str]| {
@@ -335,8 +335,8 @@ filter_time = "5 ms"
     )
 }
 
-/// For a load that yields, the proof is of the loop with its impedance, and the machine steps as
-/// this loop predicts.
+/// A load that yields: the proof is of the loop with its impedance, and the machine steps as this
+/// loop predicts.
 #[test]
 fn a_proof_and_a_trial_are_of_the_loop_with_it() {
     let text = yielding();

@@ -63,7 +63,7 @@ fn a_step_beyond_the_stall_force_is_told_once() {
     assert_eq!(words.matches("the piston stalls at").count(), 1, "{words}");
 }
 
-/// Because S + T = 1, limits of 0.5 on |T| and of less than 0.5 on |S| leave no loop.
+/// Limits of 0.5 on |T| and of less than 0.5 on |S| leave no loop, because S + T = 1.
 #[test]
 fn limits_of_s_and_t_that_add_up_to_less_than_one() {
     let of = |sensitivity: f64| {

@@ -101,8 +101,8 @@ pub(crate) fn found(record: LineRecord, known: &KnownLine) -> LineIdentification
     identify_line(vec![record], known.clone(), &SETTINGS, &mut |_| true).unwrap()
 }
 
-/// With two per cent of air in the oil, both the air and the modulus with it at 35 bar are within
-/// their intervals as often as 95 % allows, and no polynomial replaces the air.
+/// Oil with two per cent of air: both the air and the modulus with it at 35 bar are within their
+/// intervals as often as 95 % allows, and no polynomial replaces the air.
 #[test]
 fn free_air_is_found_with_the_modulus() {
     let loaded = project(&WAVES);
@@ -168,7 +168,7 @@ pub(crate) fn response(known: &KnownLine, [speed, end_share]: [f64; 2], seed: u6
         .map(|omega| {
             let s = Complex64::new(0.0, *omega);
             let root = sqrt_complex(inertia(s, viscosity / (bore * bore / 4.0)));
-            // without its end volumes the line is stiffer, and its wave faster
+            // the line without its end volumes is stiffer, and its wave faster
             let within = speed / (1.0 - 2.0 * end_share).sqrt();
             let passed = exp_complex(-2.0 * s * length / within * root);
             let tanh = (1.0 - passed) / (1.0 + passed);

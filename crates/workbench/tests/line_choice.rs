@@ -177,7 +177,8 @@ fn what_is_not_computed_with_waves_stays_lumped() {
     assert_eq!(found["hindrance"], "the load is a mass without stiffness");
 }
 
-/// If the quarter wave is the limit of a design, the reason does not compare it with itself.
+/// The reason of a design limited by the quarter wave does not compare the quarter wave with
+/// itself.
 #[test]
 fn a_quarter_wave_that_limits_the_bandwidth_is_not_compared_with_itself() {
     let rig = rig_to_be_designed();

@@ -133,7 +133,7 @@ fn a_weight_is_held_at_rest() {
     let weight =
         "[linkage.weight]\nmass = \"4 kg\"\ncentre_distance = \"0.3 m\"\nlevel_angle = \"40 deg\"\n\n[load]";
     let text = KNEE.replacen("[load]", weight, 1).replacen("load_force = \"600 N\"\n", "", 1);
-    // as soft as the weight on its lever arm
+    // a spring as soft as the weight on its lever arm
     let soft =
         "series={ stiffness = \"20 N/mm\", damping = \"80 N.s/m\", travel = \"400 mm\", progression = 0.5 }";
     for settings in [

@@ -306,7 +306,7 @@ fn a_region_is_the_points_that_the_rig_visits() {
     let (grid, crossings) = family.members().split_at(55);
     let command = |values: &Vec<f64>| {
         let names = family.plant().parameters().iter().map(|one| one.name.as_str());
-        // all except the friction, a parameter of the linear model
+        // every number except the friction, a parameter of the linear model
         let numbers: Vec<(&str, f64)> = names.zip(values.iter().copied()).skip(1).collect();
         let stated = Project { family: None, uncertainty: vec![], ..project.clone() };
         Setup::rig_of(&stated.with_numbers(&numbers).unwrap()).unwrap().point.command
@@ -333,7 +333,7 @@ fn a_region_is_the_points_that_the_rig_visits() {
         let mut stated = project.clone();
         stated.family = None;
         stated.uncertainty.clear();
-        // all except the friction, a parameter of the linear model
+        // every number except the friction, a parameter of the linear model
         for (parameter, value) in family.plant().parameters().iter().zip(&values).skip(1) {
             stated = stated.with_number(&parameter.name, *value).unwrap();
         }
@@ -353,8 +353,8 @@ fn a_region_is_the_points_that_the_rig_visits() {
     }
 }
 
-/// With equal edges, the box of Table 6.3 is the region of a pump of 19 L/min with up to two thirds
-/// of the supply's pressure on the piston.
+/// The box of Table 6.3 is, with equal edges, the region of a pump of 19 L/min with up to two
+/// thirds of the supply's pressure on the piston.
 #[test]
 fn the_box_of_the_thesis_is_that_of_an_operating_region() {
     let edges = "{ supply_to_a = 3e-7, a_to_tank = 3e-7, supply_to_b = 3e-7, b_to_tank = 3e-7 }";

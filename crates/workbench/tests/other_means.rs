@@ -73,7 +73,7 @@ fn gas_has_that_stiffness_where_it_is_declared() {
         "line={{ pipe = {{ bore = \"12.7 mm\" }}, length = 1e-9, compliance = \"by_volume\", accumulator = {{ gas_volume = {volume:?}, \
          precharge_pressure = {precharge:?}, polytropic_exponent = 1.4 }} }}"
     );
-    // without force the stiffness is greatest, and at 250 mm it is softest
+    // the stiffness is greatest without force, and softest at 250 mm
     let settings = [line.as_str(), "operating_point.load_force=0 N", "operating_point.position=\"250 mm\""];
     near(derived(&check(COMPLIANCE, &settings), "stiffness.with_accumulators"), stiff, 1e-8);
     // the fraction of the lowest chamber pressure over these forces

@@ -56,7 +56,7 @@ fn boxes_and_margins_of_regions_are_those_of_dense_samples() {
 /// it are members, from which every search starts.
 #[test]
 fn both_sides_of_a_jump_are_members() {
-    // ORIGIN: analytic, a wall is in contact where the force presses on it
+    // ORIGIN: analytic, a wall is in contact if the force presses on it
     let wall = "[load]\nmodel = \"wall\"\nmass = 50\nstiffness = 1e6\ngap = 0.001\n";
     let region = "[family.operating_region]\nload_force = [-2000, 6000]\nposition = [0.1, 0.4]\n";
     let (start, rest) = HOSE.split_once("[sizing]").unwrap();
@@ -316,8 +316,8 @@ fn compared(found: &Audit, sampled: &Audit) -> Vec<String> {
     faults
 }
 
-/// The table of the part that switches, and the keys of the supply: for a fraction, at this supply
-/// pressure in Pa and flow in m3/s.
+/// The table of the part that switches, and the keys of the supply; `share` places the switch, for
+/// this supply pressure in Pa and flow in m3/s.
 fn chosen(choosing: Choosing, share: f64, supply: f64, flow: f64) -> [String; 2] {
     let constant = "model = \"constant\"\n".to_string();
     match choosing {

@@ -33,9 +33,8 @@ fn worst_margin(audit: &Value) -> f64 {
     findings.iter().map(|finding| number(finding, "worst_margin_db")).fold(f64::INFINITY, f64::min)
 }
 
-/// Over the box of Table 6.3 and with waves in the rig itself, order 4 is not sufficient: the
-/// limits must be relaxed, and with the controller for wider limits the machine with waves comes to
-/// rest.
+/// Order 4 is not sufficient over the box of Table 6.3 and with waves in the rig itself: the limits
+/// must be relaxed, and with the controller for wider limits the machine with waves comes to rest.
 #[test]
 fn what_cannot_be_had_with_waves_is_told() {
     let said = designed_hose();
@@ -46,7 +45,8 @@ fn what_cannot_be_had_with_waves_is_told() {
     assert_eq!((&object["status"], &object["machine"]["verdict"]), (&"met".into(), &"contradicts".into()));
     assert_eq!((&repair["status"], &repair["plant_before"]["stable"]), (&"infeasible".into(), &false.into()));
     assert_eq!(repair["taken_in"], "the rig with waves in its lines");
-    // the printed controller is as near as printed, to the family and to the plant with waves
+    // the printed controller satisfies the limits to the printed relaxation, for the family and for
+    // the plant with waves
     let relaxation = number(repair, "relaxation_db");
     assert!(relaxation > 0.01, "{relaxation} dB");
     let both = [&repair["nearest"]["verification"], &repair["plant_after"]];
@@ -89,7 +89,7 @@ fn wider() -> String {
     })
 }
 
-/// Only the specifications, which must be met to a thousandth of a decibel.
+/// Settings that leave only the specifications, which must be met to a thousandth of a decibel.
 const EXACT: [&str; 3] = [UNLIMITED[0], UNLIMITED[1], "verification.tolerance=0.001 dB"];
 
 /// A controller that the machine with waves contradicts is replaced by one suitable for both.
@@ -111,7 +111,7 @@ fn a_design_is_repaired_where_it_can_be() {
     // the first design is printed in addition
     assert_eq!(repair["before"]["controller"], first["controller"]);
     assert!(said.text.contains("before the repair"), "{}", said.text);
-    // its verdicts with waves in every plant are those of the audit of the project that declares
+    // the verdicts with waves in every plant are those of the audit of the project that declares
     // them
     let written = file(&said, DESIGNED_PROJECT).unwrap();
     let declared = json(

@@ -72,7 +72,7 @@ fn a_family_with_lines_in_motion_has_its_steps_drawn() {
     assert!(report.figures.iter().any(|found| found.name == "family_steps"));
 }
 
-/// Everything between `<name` and `</name>`, the tags included.
+/// Text between `<name` and `</name>`, the tags included.
 fn elements<'a>(page: &'a str, name: &str) -> Vec<&'a str> {
     let (open, close) = (format!("<{name}"), format!("</{name}>"));
     let mut found = Vec::new();
@@ -193,8 +193,8 @@ fn every_chapter_is_there() {
     ] {
         assert!(headings.contains(words), "{words}: {headings}");
     }
-    // Tables: the poles of every model, the asymptotes, the candidates with their reasons, what was
-    // assumed.
+    // Tables: the poles of every model, the asymptotes, the candidates with their reasons, the
+    // assumptions.
     for words in [
         "6.12",
         "6.13",
@@ -412,7 +412,7 @@ fn a_plant_with_specifications_has_the_robust_chapters() {
 fn a_project_without_sizing_or_controller_has_the_other_chapters() {
     let (start, rest) = HOSE.split_once("[sizing]").unwrap();
     let (_, rest) = rest.split_once("[uncertainty]").unwrap();
-    // with specifications a controller would be designed
+    // a controller would be designed if there were specifications
     let end = rest.split("[[specification]]").next().unwrap();
     let page = plain_report(&format!("{start}[uncertainty]{end}")).html;
     assert!(!page.contains("id=\"sizing\""));

@@ -174,7 +174,7 @@ fn assumptions_are_those_of_the_rig() {
     assert!(!volumes.contains("no waves travel in it") && volumes.contains("by its viscous part alone"));
 }
 
-/// With compliance by volume a hose holds its oil at the mean pressure, and a stated settling time
+/// A hose with compliance by volume holds its oil at the mean pressure, and a stated settling time
 /// gives the time constant by its band.
 #[test]
 fn assumptions_follow_from_what_is_stated() {

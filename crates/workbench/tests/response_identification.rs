@@ -129,7 +129,7 @@ fn the_machine_shaken_by_a_multisine_shows_the_linear_plant() {
     for repetition in 0..40 {
         let mut state = stream(7, repetition);
         let noisy: Vec<f64> = outputs.iter().map(|force| force + 2.0 * normal(&mut state)).collect();
-        // the last five periods and one that is left out
+        // the last five periods and an omitted one
         let last = times.len() - 6 * 1280..;
         let table =
             table("time_s,command_v,force_n", [&times[last.clone()], &inputs[last.clone()], &noisy[last]]);
@@ -235,8 +235,7 @@ fn what_is_identified_is_a_family_that_verify_audits() {
     assert!(verdict.text.contains("within the discs that hold all measured responses"), "{}", verdict.text);
 }
 
-/// A signal whose output begins with noise only has incoherent frequencies, which are listed with
-/// the reason.
+/// Frequencies at which noise hides the output are incoherent, and are listed with the reason.
 #[test]
 fn what_noise_hides_is_left_out_with_the_reason() {
     let mut state = stream(3, 0);

@@ -90,7 +90,7 @@ fn asymmetric(text: &str) -> String {
     format!("{before}{unequal}\nstroke{after}")
 }
 
-/// The pressures that the open valve would leave differ by more than a kilonewton.
+/// The pressures that the open valve would leave cause a force of more than a kilonewton.
 #[test]
 fn leakage_across_an_asymmetric_piston_is_held() {
     check_still(&asymmetric(&still(EXAMPLES[1], "")), &[], 0.0);
@@ -158,8 +158,7 @@ fn machines_of_all_components_rest() {
     }
 }
 
-/// States that are indeterminate with valve memory, a yielding pump and a distant wall do not move;
-/// noise aside.
+/// A machine with valve memory, a yielding pump and a distant wall stays at rest, apart from noise.
 #[test]
 fn a_machine_with_everything_rests_against_its_wall() {
     let quiet = ["force_sensor.noise=0 N", "simulation.method=rosenbrock"];

@@ -113,7 +113,7 @@ fn a_region_of_positions_alone_states_its_force() {
     assert_eq!(said(HOSE, &[none, &positions, one, other]), None);
     let one_rod = HOSE.replace("rod_diameter = \"22 mm\"", "rod_diameters = [\"0 mm\", \"22 mm\"]");
     assert!(said(&one_rod, &[none, &positions, one, other]).unwrap().contains("kN"));
-    // with a force, or a velocity, or a stated zero force
+    // regions with a force, or a velocity, or a stated zero force
     let at_rest = "operating_point.load_force=0";
     assert_eq!(said(HOSE, &[none, &positions, at_rest]), None);
     let moving = "family.operating_region={ position = [\"50 mm\", \"400 mm\"], velocity = [0, \"1 mm/s\"] }";

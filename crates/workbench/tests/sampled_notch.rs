@@ -45,8 +45,8 @@ fn a_moved_notch_is_reported_and_can_be_kept() {
         assert!(!answer(LOOP, &[kept], &[], &VERIFY).text.contains("moves the zero"), "{kept}");
         assert_eq!(json(LOOP, &[kept], &[], &VERIFY)["stable"], true, "{kept}");
     }
-    // with a sample time short compared with the notch nothing moves by more than two percent: (w
-    // T/2)^2/3
+    // nothing moves by more than two percent if the sample time is short compared with the notch:
+    // (w T/2)^2/3
     let fast = answer(LOOP, &["controller.sample_time=\"0.4 ms\""], &[], &VERIFY);
     assert!(!fast.text.contains("moves the zero"), "{}", fast.text);
     // a frequency elsewhere moves it in the other direction

@@ -216,7 +216,7 @@ fn an_open_loop_does_not_know_its_controller() {
 
 const SPRUNG: &str = "[load]\nmodel = \"spring_mass_damper\"\nmass = \"20 kg\"\nstiffness = \"2 MN/m\"\ndamping = \"3 kN.s/m\"\n";
 
-/// At rest a load on a spring is where F_e + F_x holds it, and the loop maintains F_e.
+/// Equilibrium of a load on a spring is where F_e + F_x holds it, and the loop maintains F_e.
 #[test]
 fn a_force_from_outside_moves_the_load_by_its_spring() {
     let of = |outside: &str| {

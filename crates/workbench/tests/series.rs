@@ -225,7 +225,7 @@ fn metrics_are_those_of_the_rows() {
         text.replace("damping = \"300 N.s/m\"\nmass = \"1.5 kg\"\n", "").replace("stop_damping = 0.3\n", "")
     };
     let sensed = |text: &str| text.replace("force_from = \"deflection\"\n", "");
-    // without anything else that a family needs
+    // the project without everything else that a family needs
     let plain = STIFFENING.split_once("[uncertainty]").unwrap();
     let plain = format!("{}[controller]{}", plain.0, plain.1.split_once("[controller]").unwrap().1);
     let even = |text: &str| text.replace("progression = 0.2\n", "");

@@ -15,7 +15,7 @@ use phea_workbench::shaping::{Change, RequestedChange, Shaped, pass_words};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
-/// An integrator with a gain of 1 to 4, and what is demanded of it; the controller follows.
+/// An integrator with a gain of 1 to 4, and its specifications; the controller follows.
 const SERVO: &str = "schema = 1\ntitle = \"x\"\n[plant]\nnumerator = \"k\"\ndenominator = \"s\"\n[uncertainty]\n\
     k = { nominal = 1, minimum = 1, maximum = 4, points = 3, spacing = \"log\" }\n[[specification]]\n\
     kind = \"robust_stability\"\nlimit = 1.3\nfrequencies = [1, 10, 100]\n[[specification]]\nkind = \"sensitivity\"\n\

@@ -158,7 +158,7 @@ fn a_step_at_a_sample_is_not_a_sample_late() {
     }
 }
 
-/// At rest the machine stays at rest, sampled or not, with all its imperfections.
+/// A machine at rest stays at rest, sampled or not, with all its imperfections.
 #[test]
 fn an_equilibrium_is_kept() {
     let everything = include_str!("../../project/tests/valid/simulation.toml");
@@ -345,7 +345,7 @@ fn the_answer_has_the_keys_that_stay() {
     assert!(table.lines().nth(1).unwrap().starts_with("0,0,0,0,0,3500000,3500000,0.25,"));
 }
 
-/// If the run is stopped, the rows so far are printed and the answer is no.
+/// The rows of a stopped run are printed and the answer is no.
 #[test]
 fn a_run_that_is_stopped_keeps_what_it_has() {
     let loaded = load(BENCHMARK, &[]);
@@ -369,7 +369,7 @@ fn a_run_that_is_stopped_keeps_what_it_has() {
     assert!(!held.into_files()[0].bytes.is_empty());
 }
 
-/// For a scenario of hours not every quarter of a millisecond is stored for drawing, and this is
+/// Scenarios of hours are not stored for drawing at every quarter of a millisecond, and this is
 /// reported.
 #[test]
 fn a_long_scenario_says_how_often_it_was_looked_at() {

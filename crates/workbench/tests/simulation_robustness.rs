@@ -225,7 +225,7 @@ fn twenty_millimetres_in_ten_milliseconds() {
     }
 }
 
-/// If the last row is before the end, a scenario is complete nevertheless: its metrics are those of
+/// A scenario with its last row before the end is complete nevertheless: its metrics are those of
 /// rows that reach the end.
 #[test]
 fn rows_that_do_not_divide_the_scenario() {

@@ -272,7 +272,7 @@ fn the_influences_are_those_of_the_settings_themselves() {
         // A change that stiffens the hose lengthens it.
         assert!(stiffness.is_sorted() == length.is_sorted(), "{row}");
     }
-    // More expansion is softer.
+    // More expansion makes the hose softer.
     let expansion = row("expansion");
     assert!(number(&expansion, "stiffness_n_per_m.2") < number(&expansion, "stiffness_n_per_m.0"));
 }

@@ -1,4 +1,4 @@
-//! `linearize --sweep`: each value is what `linearize` states of the project with that value.
+//! `linearize --sweep`: each value agrees with `linearize` for the project with that value.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 

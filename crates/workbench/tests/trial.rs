@@ -63,8 +63,8 @@ fn the_nominal_machine_is_the_linear_loop() {
     assert_eq!(object["machine"]["not_driven"], Value::from(Vec::<Value>::new()));
 }
 
-/// With 1.5 m of hose a wave takes 2.8 ms: the loop has gain beyond the quarter wave, and a verdict
-/// that is met with lumped lines is contradicted by waves.
+/// A wave takes 2.8 ms through 1.5 m of hose: the loop has gain beyond the quarter wave, and a
+/// verdict that is met with lumped lines is contradicted by waves.
 #[test]
 fn a_met_verdict_that_waves_contradict_is_no() {
     let by_volume = ["line.compliance=by_volume"];
@@ -273,7 +273,7 @@ fn waves_are_blamed_only_where_lumped_lines_agree_better() {
     let [lumped, waves] = reasons("controller.numerator=3e-4*s + 3e-3");
     assert_eq!([lumped.0.as_str(), waves.0.as_str()], ["differs", "differs"]);
     assert!(waves.1.contains("waves are not the cause") && !waves.1.contains("quarter wave"), "{waves:?}");
-    // with more gain only the rig with waves oscillates
+    // only the rig with waves oscillates if the gain is higher
     let [lumped, waves] = reasons("controller.delay=0");
     assert_eq!([lumped.0.as_str(), waves.0.as_str()], ["agrees_but_for_settling", "differs"]);
     assert!(waves.1.contains("quarter wave") && !waves.1.contains("not the cause"), "{waves:?}");

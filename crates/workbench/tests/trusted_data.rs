@@ -137,7 +137,7 @@ fn the_gap_counts_from_the_equilibrium() {
         .remove(0);
     let load = run.record.signal(Signal::LoadPosition).to_vec();
     let (start, end) = (load[0], *load.last().unwrap());
-    // its position before the step, plus 2 mm and the deflection of 20 MN/m under 500 N
+    // position before the step, plus 2 mm and the deflection of 20 MN/m under 500 N
     assert!((load[400] - start).abs() < 1e-6, "{} m", load[400] - start);
     within(end - start, 2e-3 + 500.0 / 20e6, 3e-6);
 }

@@ -92,9 +92,9 @@ fn changes(region: &JointRegion) -> DMatrix<f64> {
     })
 }
 
-/// All nine directions are the rotated covariance: the product of their changes with its transpose
-/// gives it again, and 95 % of draws from it are in the family, whose box is smaller than that of
-/// independent intervals.
+/// Nine directions, all of them, are the rotated covariance: the product of their changes with its
+/// transpose gives it again, and 95 % of draws from it are in the family, whose box is smaller than
+/// that of independent intervals.
 #[test]
 fn the_family_has_ninety_five_of_a_hundred_valves_that_the_recordings_allow() {
     let found = identification();

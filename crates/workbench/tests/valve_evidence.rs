@@ -162,7 +162,7 @@ fn a_hysteresis_that_may_be_none_is_a_comment() {
     assert!(answer.text.contains("These may be zero: hysteresis"), "{}", answer.text);
 }
 
-/// If the model is right, both methods for an interval agree.
+/// Methods for an interval agree if the model is right.
 #[test]
 fn the_bootstrap_agrees_with_the_linearised_intervals() {
     let files = recorded(&[FEW_ROWS]);

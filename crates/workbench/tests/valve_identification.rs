@@ -110,7 +110,7 @@ fn the_lag_of_the_spool_is_no_hysteresis() {
     assert!(error.abs() < 3.0 * half, "{error} V at {half}");
     let (error, half) = of(&["valve.natural_frequency=\"1000 Hz\"", "valve.damping_ratio=0.9"]);
     // ORIGIN: analytic, twice (2 xi/w - 2 xi/w_wrong) times the greatest rate of a sine over 240 s,
-    // of 0.5 V where the pressures are measured and of 3 V in the other tests
+    // of 0.5 V if the pressures are measured and of 3 V in the other tests
     let widened = [0.5, 3.0].map(|amplitude| 2.0 * (1.8 / 188.5 - 1.8 / 6283.2) * amplitude * TAU / 240.0);
     assert!((widened[0]..widened[1]).contains(&(error + half)), "{error} V for {widened:?}");
     assert!(error > 2.0 * half, "{error} V at {half}");
@@ -149,7 +149,7 @@ fn commands_that_stand_out_are_left_out() {
                 if index > 0 && (index % 97 == 40 || index % 97 == 41 && index % 2 == 0) {
                     let command: f64 = cells[1].parse().unwrap();
                     let wrong = if index % 3 == 0 { 0.0 } else { -0.7 * command + 0.2 };
-                    // as far away as a spike must be to change the memory
+                    // the distance that a spike needs to change the memory
                     let far = (wrong - command).abs() > 0.3;
                     cells[1] = if far { wrong } else { command + 0.4 }.to_string();
                 }
@@ -172,8 +172,8 @@ fn commands_that_stand_out_are_left_out() {
     assert!(left_out(&clean) == 0 && left_out(&found) >= 4, "{}", found["tests"][0]);
 }
 
-/// In a metering test only, none of the tare flow passes through the meter, nor leakage below its
-/// resolution.
+/// A metering test without others: none of the tare flow passes through the meter, nor leakage
+/// below its resolution.
 #[test]
 fn metering_alone_does_not_tell_the_leakage() {
     let files: Vec<_> = recorded(&[]).into_iter().filter(|(name, _)| name == "metering.csv").collect();
@@ -203,7 +203,7 @@ fn metering_alone_does_not_tell_the_leakage() {
     assert!(flow[0] <= 3.2e-7 && flow[1] >= 3.2e-7 && flow[1] < 1.2 * flow[0], "{flow:?}");
 }
 
-/// From the flow only, without pressures, edges in series cannot be distinguished: only K_3
+/// Edges in series cannot be distinguished from the flow only, without pressures: only K_3
 /// K_6/sqrt(K_3^2 + K_6^2) passes the meter.
 #[test]
 fn a_flow_alone_does_not_tell_edges_in_series_apart() {

@@ -121,7 +121,7 @@ fn the_optimised_valve_agrees_where_it_can() {
 /// begin.
 #[test]
 fn nulls_and_what_follows_from_them_have_intervals() {
-    // ORIGIN: thesis section 5.2.1, and the null between both ways of it
+    // ORIGIN: thesis section 5.2.1, and the null between its two directions
     const TRUTH: [(&str, f64); 4] = [
         ("null_rising_v", 0.078),
         ("null_falling_v", -0.05),

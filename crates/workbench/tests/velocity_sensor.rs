@@ -132,9 +132,8 @@ fn with_family(settings: &[&str]) -> Loaded {
     loaded(&text, &[settings, &[range, specification, "linear={}"]].concat())
 }
 
-/// With a filter the plants remain quotients of polynomials: the result of the search is proven
-/// over every error of the gain. With a delay they do not, and the verdict with proof reports this
-/// and is not met.
+/// Filters leave the plants quotients of polynomials: the result of the search is proven over every
+/// error of the gain. A delay does not, and the verdict with proof reports this and is not met.
 #[test]
 fn it_is_proven_where_the_plants_are_quotients() {
     let filter = "velocity_sensor={ filter_frequency = \"200 Hz\" }";
@@ -222,8 +221,7 @@ fn noise_reaches_command_and_force_as_the_verdict_says() {
         let told = view.velocity_noise.as_ref().unwrap();
         assert!((told.rms - 1e-3 * (13.0_f64 / 12.0).sqrt()).abs() < 1e-12);
         let effect = told.effect.as_ref().unwrap();
-        // with a prescribed load at rest, K times the noise passes, and the controller reacts
-        // little
+        // K times the noise passes with a prescribed load at rest, and the controller reacts little
         if load != SPRUNG {
             assert!((effect.command_rms_v / (20.0 * told.rms) - 1.0).abs() < 0.02, "{effect:?}");
         }

@@ -79,8 +79,8 @@ impl RowStore for Pages {
     }
 }
 
-/// Pending rows that follow a slower run are not simulated again; torn ones, those of other
-/// campaigns and those already in the table are skipped.
+/// Rows ahead of a slower run are not simulated again; torn ones, those of other campaigns and
+/// those already in the table are skipped.
 #[test]
 fn rows_that_waited_are_not_driven_again() {
     let loaded = load(&SHORT);

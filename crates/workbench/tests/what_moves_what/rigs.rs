@@ -175,7 +175,7 @@ fn on_springs() -> Vec<(String, Vec<&'static str>)> {
             without_uncertainty(TRANSMISSION),
             vec!["fluid.kinematic_viscosity=46 cSt", "cylinder.dead_length=300 mm"],
         ),
-        // its mass follows from that of its wall
+        // the mass of the line follows from that of its wall
         (
             TRANSMISSION_PIPE.replace(
                 "mass = \"0.4 kg\"\nmass_per_length = \"0.3 kg/m\"",
@@ -347,8 +347,8 @@ const STATED: [(&str, &str); 89] = [
     ("linear.sensor_stiffness", "1.5e7"),
 ];
 
-/// Other values of a key that the rig states, and whether one accepted value is enough: each other
-/// word, a number a hundredth larger or, if that is rejected, smaller.
+/// Other values of a key that the rig states: each other word, a number a hundredth larger or, if
+/// that is rejected, smaller; true if one accepted value is enough.
 pub(super) fn others(entry: &KeyEntry, project: &Project) -> (Vec<String>, bool) {
     if let Some(words) = entry.takes.strip_prefix("one of ") {
         return (words.split(", ").map(|word| word.trim_matches('"').to_string()).collect(), false);
