@@ -46,7 +46,7 @@ fn refused(path: &str, error: &std::io::Error) -> SourceError {
     SourceError { path: path.to_string(), reason: reason(error) }
 }
 
-/// A folder where a file was expected; if it contains one project, that is suggested.
+/// A folder instead of a file; if it contains one project, that is suggested.
 fn folder_reason(path: &str) -> String {
     let inside = FileSystem.list(path).ok().flatten().unwrap_or_default();
     let projects: Vec<&String> = inside.iter().filter(|file| file.ends_with(".toml")).collect();

@@ -117,7 +117,7 @@ fn is_one_file(one: &Metadata, other: &Metadata) -> bool {
     (one.dev(), one.ino()) == (other.dev(), other.ino())
 }
 
-/// On systems that give files no number, other names of a file are not known.
+/// Systems that give files no number: other names of a file are not known.
 #[cfg(not(unix))]
 fn is_one_file(_one: &Metadata, _other: &Metadata) -> bool {
     false

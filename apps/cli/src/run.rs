@@ -269,8 +269,8 @@ fn answered(
     expect_kept(&inputs, (request, &loaded), [common.out.as_deref(), save.or(page.as_deref())])?;
     expect_folders([common.out.as_deref(), save.and_then(Path::parent)]).map_err(explain)?;
     let mut line = ProgressLine::default();
-    // commands that can return their best result so far are told to stop; all others have nothing
-    // to save
+    // commands that can return their best result so far receive a stop request; all others have
+    // nothing to save
     let keeps = matches!(request, Request::Design { .. } | Request::Simulate(_) | Request::Alternatives(_));
     let interruption = keeps.then(Interruption::listen);
     let tables = common.out.as_deref().map(|folder| Folder::new(folder, &inputs));

@@ -61,8 +61,8 @@ fn spread(start: u32) -> f64 {
     (f64::from(start) * 0.5 * (5.0_f64.sqrt() - 1.0)).fract()
 }
 
-/// After any kill, every file with its final name is complete, and repeating the command produces
-/// all of them.
+/// Files with their final names are complete after any kill, and repeating the command produces all
+/// of them.
 #[test]
 fn a_campaign_goes_on_after_any_kill_to_the_same_bytes() {
     let folder = folder();

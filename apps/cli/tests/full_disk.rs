@@ -64,8 +64,8 @@ fn a_file_that_does_not_fit_is_not_there() {
     assert_eq!(self::names(&folder.join("rig")), [] as [String; 0]);
 }
 
-/// If no one ignores the signal of a file that grows too large, it is an error of the write and
-/// does not end the process; the message has the folder of a table that is written row by row.
+/// A file that grows too large is an error of the write and does not end the process, if no one
+/// ignores its signal; the message has the folder of a table that is written row by row.
 #[test]
 fn a_signal_about_a_large_file_is_an_error() {
     let folder = folder("full_disk_signal");

@@ -238,7 +238,7 @@ fn specification_formulas() {
         assert!(model.step_value(peak) > model.step_value(0.99 * peak).max(model.step_value(1.01 * peak)));
         close(damping_ratio_from_overshoot(model.overshoot_percent()).unwrap(), ratio, 1e-13);
     }
-    // as printed, (3.9) has no real value at 1 %: ln^2(0.01) = 21.2 > pi^2
+    // (3.9), as printed, has no real value at 1 %: ln^2(0.01) = 21.2 > pi^2
     close(damping_ratio_from_overshoot(1.0).unwrap(), 0.826_085, 1e-6);
     assert_eq!(damping_ratio_from_overshoot(0.0), Ok(1.0));
 }

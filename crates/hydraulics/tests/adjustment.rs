@@ -83,7 +83,7 @@ fn a_frozen_setting_is_the_declared_accumulator() {
                 machine.rates(&states[0], 1.0, &[0.25, 0.05, change, 0.0], &mut rates[0]);
                 declared.rates(&states[1], 1.0, &[0.25, 0.05], &mut rates[1]);
                 for (rates, of) in rates.iter_mut().zip(bladders.into_iter().flatten()) {
-                    // that of the oil pressure
+                    // oil pressure
                     rates[7] /= of.rate(pressure, [1.0, 0.0]);
                 }
                 for (one, other) in rates[0].iter().zip(&rates[1]) {
@@ -238,7 +238,7 @@ fn switching_loses_what_two_compliances_lose() {
     assert_eq!(kept, [50e5, 20e5, 0.0, 0.0]);
 }
 
-/// For any flow at a constant opening, the output energy never exceeds the input.
+/// Output energy never exceeds the input for any flow at a constant opening.
 #[test]
 fn a_frozen_opening_is_passive() {
     for number in 0..24 {

@@ -116,7 +116,7 @@ fn model_follows_its_asymptotes() {
         assert!(near(ratio(AsymptoteKind::LowFrequency, 1e-5), 1e-3), "{controller:?}");
         assert!(near(ratio(AsymptoteKind::SensorLimit, 1e6), 1e-4), "{controller:?}");
     }
-    // the plateau is between the loop's bandwidth and the frequency where the mass takes over.
+    // the plateau is between the loop's bandwidth and the frequency above which the mass dominates.
     let open = open_loop_impedance(&model()).unwrap();
     let plateau = asymptote(AsymptoteKind::CompliancePlateau, None);
     assert_eq!((plateau.power, plateau.to), (-1, compliance_hidden_above(2.24e6, 13.1)));
@@ -159,7 +159,7 @@ fn asymptotes_that_are_nearest_nowhere_are_left_out() {
     let all = [AsymptoteKind::LowFrequency, AsymptoteKind::CompliancePlateau, AsymptoteKind::SensorLimit];
     let nominal = nominal_plant();
     assert_eq!(kinds(&nominal, None), all);
-    // without leakage the spring applies from the lowest frequency
+    // the spring applies from the lowest frequency if there is no leakage
     let tight = LinearParameters { flow_pressure_coefficient: 0.0, ..nominal };
     assert_eq!(kinds(&tight, None), all[1..]);
     // a loop faster than sqrt(K_H/M) leaves no plateau: its damper A/(K_qU K_p) crosses the spring
@@ -168,7 +168,7 @@ fn asymptotes_that_are_nearest_nowhere_are_left_out() {
     assert_eq!(kinds(&nominal, Some(&fast)), [all[0], all[2]]);
 }
 
-/// Above sqrt(K_H/M) a softer fluid no longer softens the contact.
+/// A softer fluid no longer softens the contact above sqrt(K_H/M).
 #[test]
 fn mass_hides_the_compliance() {
     let at = |hydraulic_stiffness, frequency| {

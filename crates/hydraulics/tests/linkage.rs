@@ -223,7 +223,7 @@ fn swings(rig: Components, expected: [[f64; 3]; 3]) {
     let start = StartValues { position: 0.02, pressure_a: 30e5, pressure_b: 15e5, ..StartValues::default() };
     let beginning = machine.start(&start).unwrap();
     let mut state = beginning.state.clone();
-    // with a spring that is relaxed at 0.8 rad
+    // the spring is relaxed at 0.8 rad
     let relaxed = 0.8;
     state[6] += beginning.inputs[0] - relaxed;
     let signal =

@@ -254,7 +254,8 @@ fn it_is_empty_at_the_pressure_of_its_gas() {
     }
 }
 
-/// While the gas is shut off and oil leaves the neck, its pressure may fall below vapour pressure.
+/// The pressure in a neck may fall below vapour pressure while the gas is shut off and oil leaves
+/// the neck.
 #[test]
 fn oil_in_a_neck_cavitates() {
     let gas = Accumulator { gas_volume: 2e-5, precharge_pressure: 20e5, polytropic_exponent: 1.4 };

@@ -249,8 +249,8 @@ fn valves_between_the_chambers_are_passive() {
     }
 }
 
-/// Gas that is compressed from below its precharge on, where it contains no oil; small steps while
-/// its bladder lifts, and its compliance begins.
+/// Gas that is compressed from below its precharge, where it contains no oil; small steps while its
+/// bladder lifts and its compliance begins.
 #[test]
 fn polytropic_gas_is_lossless() {
     for number in 0..RUNS / 2 {
@@ -392,7 +392,7 @@ fn a_linkage_is_lossless_before_a_load_with_weight() {
     }
 }
 
-/// Through both transitions of its areas, seen from the force at its rest.
+/// Telescopic piston through both transitions of its areas, seen from the force at its rest.
 #[test]
 fn a_telescopic_piston_is_lossless() {
     for number in 0..RUNS {

@@ -332,7 +332,7 @@ fn poles_of_a_late_plant_are_counted() {
             .command
             .denominator;
         let back = Polynomial::new(fed).sum(&alone.scaled(-1.0));
-        // with a filter the count is that of a longer product of polynomials
+        // the count with a filter is that of a longer product of polynomials
         let filter = RateFilter::FirstOrder { frequency_rad_per_s: 30.0 };
         let lag = Polynomial::new(filter.denominator());
         for delay in [0.0, 1e-3, 1e-2, 4e-2] {

@@ -17,7 +17,7 @@ use phea_hydraulics::reference_rig::{components, cylinder, hose_line, leaking, v
 use phea_hydraulics::servovalve::{Edges, LeakageModel, LeakageShape, OpeningLaw, Servovalve, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
 
-/// Over a box of supply pressures, loads and commands the pressures at standstill are enclosed
+/// The pressures at standstill over a box of supply pressures, loads and commands are enclosed
 /// between tank and supply, for any width of the box.
 #[test]
 fn pressures_at_rest_are_enclosed_between_tank_and_supply() {

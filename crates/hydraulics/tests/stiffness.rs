@@ -136,8 +136,8 @@ fn softest_position_leaves_the_stroke_when_one_line_is_long() {
         )
         .over_stroke()
     };
-    // with chamber B as the only spring, the stiffness is least when that chamber is largest: at
-    // the A end
+    // the stiffness with chamber B as the only spring is least when that chamber is largest: at the
+    // A end
     assert_eq!((at([&long, &short]).minimum_position, at([&long, &short]).maximum_position), (0.0, 0.5));
     assert_eq!((at([&short, &long]).minimum_position, at([&short, &long]).maximum_position), (0.5, 0.0));
 }

@@ -95,7 +95,7 @@ fn a_stage_of_the_same_areas_is_none() {
     }
 }
 
-/// Away from transitions K_H is that of the areas and the volumes swept by the stages there.
+/// K_H away from transitions is that of the areas and the volumes swept by the stages there.
 #[test]
 fn stiffness_is_that_of_each_stage() {
     let rig = with(three(1e-6), asymmetric());

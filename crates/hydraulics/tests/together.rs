@@ -240,7 +240,7 @@ struct Drawn {
     /// Motion of its ground for one metre of the rod's end.
     turned: f64,
     plant: LinearPlant,
-    /// Lines with dynamics of their own.
+    /// Lines with dynamics.
     behind: Option<BehindLines>,
     parts: Vec<&'static str>,
 }

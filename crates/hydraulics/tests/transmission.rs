@@ -322,7 +322,7 @@ fn ledgers_close() {
             check(&machine_of(Components { valve, ..parts }, &options), &motion, &start, 0.1, 5e-6);
         }
     }
-    // with the rig's lines in segments
+    // the rig's lines are in segments
     let parts = rig(transmission(2));
     let model = LineModel::Segments { count: 3, friction: LaminarFriction::Steady, relaxation_time: None };
     let line = DynamicLine::new(&hose_line(), &parts.fluid, 35e5, StiffeningMember::Nominal, &model).unwrap();
@@ -381,8 +381,8 @@ fn the_port_of_a_loop_counts_what_the_oil_holds_back() {
     }
 }
 
-/// Above all resonances only the oil at the load's own piston acts on the load, and the line states
-/// the frequency limit.
+/// The only impedance at the load above all resonances is that of the oil at its own piston, and
+/// the line states the frequency limit.
 #[test]
 fn at_last_the_load_meets_the_oil_at_its_piston() {
     for number in (0..40).filter(|number| number % 5 < 2) {

@@ -104,7 +104,7 @@ fn it_is_the_closed_form_of_two_lags() {
     let late = Timing { rate_feed_forward: 1.0, delay_s: 0.1, ..Timing::default() };
     let refused = compensation(late, vec![], TransferFunction::gain_only(1.0)).member(plant.clone());
     assert!(matches!(refused, Err(LinearError::NotRational { .. })));
-    // without delay it is a quotient in continuous time
+    // the path is a quotient in continuous time if there is no delay
     let at_once = Timing { rate_feed_forward: 2.0, ..Timing::default() };
     let around = compensation(at_once, vec![], TransferFunction::gain_only(1.0));
     let s = Complex64::new(0.0, 7.0);
@@ -158,7 +158,7 @@ fn a_sensor_of_the_rate_is_a_path_of_its_own() {
             }
         }
     }
-    // without delay it is a quotient in continuous time
+    // the path is a quotient in continuous time if there is no delay
     let rate_sensor = RateSensor { filter, delay_s: 0.0 };
     let at_once = |rate_sensor| Timing { rate_feed_forward: 2.0, rate_sensor, ..Timing::default() };
     let around = |timing| compensation(timing, vec![], TransferFunction::gain_only(1.0));

@@ -94,7 +94,7 @@ fn drawn(state: &mut u64, integrators: usize) -> TransferFunction {
 fn noise_makes_no_verdict_false_and_few_impossible() {
     let frequencies = logarithmic_grid(0.1, 300.0, 200).unwrap();
     let (noise, rows) = (0.03, 200.0);
-    // with 1 - 0.05/n each row is inside, with 95 % probability all of them
+    // 1 - 0.05/n puts each row inside, with 95 % probability all of them
     let wide = noise * (rows / 0.05_f64).ln().sqrt();
     let (mut resolved, mut outcomes) = (0, [0; 3]);
     for draw in 0..60 {

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::{Outcome, Runner, tools};
 
-/// Folders and first letters of the scripts that are run.
+/// Folders, and the beginnings of the names of the scripts to run.
 const BEGINNINGS: [(&str, &str); 3] =
     [("comparisons", "compare_"), ("comparisons", "recompute_"), ("book", "recompute_")];
 

@@ -1,4 +1,4 @@
-//! Tools that a stage needs and a machine may lack, installed where that is possible.
+//! Tools that a stage needs and a machine may lack, installed if possible.
 
 use std::process::{Command, Stdio};
 use std::sync::{Mutex, PoisonError};
@@ -27,7 +27,7 @@ pub(super) fn target(name: &str) -> Result<(), String> {
     ensure(name, works, &[&format!("rustup target add {name}")])
 }
 
-/// SUNDIALS, where it can be linked; root installs it on Debian.
+/// SUNDIALS, if it can be linked; root installs it on Debian.
 pub(super) fn sundials() -> Result<(), String> {
     let works = || succeeds("cc -fsyntax-only -include cvode/cvode.h -x c /dev/null");
     ensure("SUNDIALS", works, &["apt-get update -qq", "apt-get install -y -qq libsundials-dev"])

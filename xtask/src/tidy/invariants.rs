@@ -1,5 +1,5 @@
-//! Invariants of ARCHITECTURE.md name what enforces them, and that exists: a tidy check, a stage of
-//! the test command, a file or a test.
+//! Invariants of ARCHITECTURE.md name their enforcement, which exists: a tidy check, a stage of the
+//! test command, a file or a test.
 
 use super::links::{code_spans, prose_lines};
 use super::{CHECKS, Violation};

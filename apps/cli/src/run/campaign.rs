@@ -71,7 +71,7 @@ pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answ
         table.iter().for_each(LockedTable::leave_no_trace);
         refused(&loaded, &request, (&error, line.stage()))
     })?;
-    // the table stays locked until all other files are written
+    // the table remains locked until all other files are written
     let mut written: Vec<PathBuf> = table.iter().map(|table| table.path.clone()).collect();
     written.extend(tables.map(Folder::into_begun).unwrap_or_default());
     if let Some(folder) = &common.out {
@@ -124,7 +124,7 @@ impl LockedTable {
         }
     }
 
-    /// The file, next to the table, with rows that come after one that is not complete.
+    /// The file, next to the table, with rows of runs that were completed before an earlier one.
     fn beside(&self) -> PathBuf {
         let mut name = self.path.clone().into_os_string();
         name.push(".ahead");

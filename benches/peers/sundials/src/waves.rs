@@ -59,7 +59,7 @@ impl Waves {
         }
     }
 
-    /// These times, and the times at which their effects return.
+    /// Breaks, and the times at which their effects return.
     pub(crate) fn echoes(&self, breaks: &[f64], duration: f64) -> Vec<f64> {
         let mut delays = self.delays.clone();
         delays.sort_by(f64::total_cmp);

@@ -71,7 +71,8 @@ fn a_burst_is_looked_for_in_the_windows_around() {
     assert!(elsewhere.fault().is_some(), "{elsewhere:?}");
 }
 
-/// If CVODE's own runs differ, the strength is not judged, but there must be ringing.
+/// Ringing whose strength differs between CVODE's own runs is not judged by its strength, but there
+/// must be ringing.
 #[test]
 fn ringing_that_hangs_on_rounding_is_asked_for_at_all() {
     let (reference, kicked) = (force(10.0, 0.0, 0.5), force(28.0, 0.0, 0.5));

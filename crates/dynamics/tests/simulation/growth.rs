@@ -284,7 +284,7 @@ fn an_oscillation_that_was_not_there_is_seen_when_it_comes_up() {
         let run = simulate(&Loosening, &begin, &course, None, &settings, &mut |_| true).unwrap();
         assert_eq!(run.outcome.status, Status::Completed);
         let [x, y, _] = run.outcome.end[..] else { panic!("three states") };
-        // it grows by e^100, from the little that friction and rounding leave; the motion without
+        // growth by e^100, from the little that friction and rounding leave; the motion without
         // growth gives 1e-6
         let amplitude = portable::ln(portable::hypot(x, y));
         assert!(amplitude > 30.0, "{tolerance:e}: {amplitude}");

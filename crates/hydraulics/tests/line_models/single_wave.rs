@@ -58,8 +58,7 @@ fn the_exact_line_is_that_of_bessel_functions() {
     }
 }
 
-/// Up to ten half waves, and at the dissipation numbers of a hose, a short pipe and a long thin
-/// one.
+/// Ten half waves, and the dissipation numbers of a hose, a short pipe and a long thin one.
 #[test]
 fn the_transmission_line_follows_the_exact_line() {
     let hose = conduit();

@@ -32,7 +32,8 @@ pub(crate) const JUDGED: f64 = 1e-7;
 const KICKS: Kicks = Kicks { period_s: 1e-2, size: 1e-8, seed: 1 };
 /// Allowed error of a solver between two kicks, in units of the tolerance.
 pub(crate) const ERRORS: f64 = 10.0;
-/// Growth of kicks above which the largest error cannot be satisfied.
+/// Growth of kicks at which the largest allowed errors of a solver reach the largest error of the
+/// force.
 const SEPARATED: f64 = crate::LARGEST_ERROR / (ERRORS * TOLERANCE);
 /// Tolerance of CVODE, and the fraction of the peak to which it must agree with the other reference
 /// for a rig to count as well posed.

@@ -202,7 +202,7 @@ type Outcome = Result<(Described, Compared), String>;
 struct Described {
     control: Control,
     features: Vec<&'static str>,
-    /// For an ill-posed rig that fails: its outcome at [`FINER`] too.
+    /// Outcome of an ill-posed rig that fails, at [`FINER`] too.
     at_finer: Option<Result<(), String>>,
 }
 

@@ -39,13 +39,13 @@ pub(crate) struct Roughness {
     /// Smallest ratio to CVODE's smallest ringing, or to the threshold of ringing; 1 if CVODE rings
     /// in no window.
     pub(crate) least: f64,
-    /// Largest ratio to CVODE's largest ringing, where that is known; 1 if neither rings.
+    /// Largest ratio to CVODE's largest ringing, if that is known; 1 if neither rings.
     pub(crate) most: f64,
 }
 
 impl Roughness {
-    /// Compares a run's force, with rows at this distance that separate after this number; `None`
-    /// if they do not.
+    /// Compares a run's force with those of CVODE, on rows `step_s` apart that separate after
+    /// `rows` of them; `None` if they do not separate.
     pub(crate) fn compared(
         force: &[f64],
         references: &[&[f64]],

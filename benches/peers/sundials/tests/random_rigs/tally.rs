@@ -22,7 +22,7 @@ pub(crate) struct Tally {
     features: BTreeMap<&'static str, usize>,
     hunting: usize,
     rough: usize,
-    /// Fractions of their rows that are compared.
+    /// Fractions of compared rows, for rigs whose trajectories separate.
     separating: Vec<f64>,
     errors: Vec<f64>,
     /// Number of rigs whose error exceeds the largest in any row, separated or not.
