@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! rows      largest difference of the force over its peak; reported by every run that was repeated
-//! metrics   as two passes are compared; reported by every repetition but one whose passes agree
+//! metrics   compared between two passes; reported by every repetition except one whose passes agree
 //! ```
 //!
 //! There is no truth if CVODE's results at 1e-11 and at 1e-13 differ by as much: a run must then
