@@ -1,15 +1,14 @@
-//! Times what is promised of the command, measured and never asserted: `report` and its siblings on
-//! the example rigs, and with `build` the release build from scratch.
+//! Measures, but does not assert, the run times that the documents promise: `report` and its
+//! siblings on the example rigs, and with `build` the release build from scratch.
 //!
-//! A plain stopwatch around the command itself: what a user waits for is its start, reading,
-//! arithmetic, drawing and writing together, which a statistics harness inside one process would
-//! not see.
+//! A plain stopwatch around the command itself: the user's time is the sum of its start, reading,
+//! arithmetic, drawing and writing, which a statistics harness inside one process would not see.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Runs of each command; the fastest and the median are shown.
+/// Number of runs of each command; the fastest and the median are shown.
 const RUNS: usize = 15;
 
 const COMMANDS: [&[&str]; 7] = [
@@ -22,8 +21,8 @@ const COMMANDS: [&[&str]; 7] = [
     &["report", "examples/ybitu/pipe.toml"],
 ];
 
-/// Benches in a target folder of its own; `from_scratch` empties it first and times the build.
-/// Returns whether all went well.
+/// Runs the benches in a separate target folder; `from_scratch` empties it first and times the
+/// build. Returns true if everything succeeded.
 pub(crate) fn run(root: &Path, from_scratch: bool) -> bool {
     let target = root.join("target").join("bench");
     if from_scratch && target.exists() && std::fs::remove_dir_all(&target).is_err() {
@@ -67,7 +66,7 @@ fn bench(root: &Path, binary: &Path, scratch: &Path, arguments: &[&str]) -> bool
     true
 }
 
-/// One run. Status 1 is an answer too: no.
+/// Runs the command once. Status 1 counts as an answer too: no.
 fn once(root: &Path, binary: &Path, scratch: &Path, arguments: &[&str]) -> Option<Duration> {
     std::fs::create_dir_all(scratch).ok()?;
     let arguments: Vec<std::path::PathBuf> = arguments

@@ -1,7 +1,7 @@
-//! The test command: what a build needs first, then the tests, and in parallel with them the stages
-//! that need less of the processors; the time of each in a table at the end.
+//! The test command: the files that a build needs first, then the tests, and in parallel with them
+//! the stages that need fewer processors; a table at the end shows the time of each.
 //!
-//! A stage that fails does not stop the later ones, so that one run shows everything that has to be
+//! A stage that fails does not stop the later ones, so that one run shows everything that must be
 //! mended.
 
 mod comparisons;
@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 /// Outcome of a stage.
 enum Outcome {
     Passed,
-    /// Something is wrong: what, in a few words.
+    /// Failure, with the reason in a few words.
     Failed(String),
     /// The stage could not be run here, for a reason outside the project.
     Skipped(String),
@@ -38,7 +38,7 @@ impl Outcome {
         }
     }
 
-    /// The first of the two that is not passed.
+    /// The first of the two outcomes that is not a pass.
     fn and(self, other: impl FnOnce() -> Outcome) -> Outcome {
         if matches!(self, Outcome::Passed) { other() } else { self }
     }
@@ -47,7 +47,7 @@ impl Outcome {
 /// A stage by its name.
 type Stage = (&'static str, fn(&Runner) -> Outcome);
 
-/// The stages that run one after the other before the tests: cheap and informative ones first.
+/// The stages that run one after the other before the tests: the cheap and informative ones first.
 const FIRST: [Stage; 5] = [
     ("formatting", formatting),
     ("tidy", tidy),
@@ -58,12 +58,12 @@ const FIRST: [Stage; 5] = [
 
 const TESTS: [Stage; 1] = [("tests", tests)];
 
-/// The stages that run one after the other in parallel with the tests, which do not keep all
-/// processors busy; what they print is shown at the end.
+/// Stages that run one after the other in parallel with the tests, which do not occupy all
+/// processors; their output is shown at the end.
 const ASIDE: [Stage; 4] =
     [("doctests", doctests), ("peers", peers), ("comparisons", comparisons::run), ("wasm32", wasm32)];
 
-/// The stages that run only where they are named.
+/// The stages that run only if they are named.
 const NAMED: [Stage; 2] = [("mutation", mutation), ("soak", soak)];
 
 /// The names of all stages.
@@ -71,8 +71,8 @@ pub(crate) fn stage_names() -> impl Iterator<Item = &'static str> {
     [&FIRST[..], &TESTS, &ASIDE, &NAMED].into_iter().flatten().map(|(name, _)| *name)
 }
 
-/// Runs the named stages or, if none is named, all except those that run only where they are named;
-/// returns whether nothing failed.
+/// Runs the named stages or, if none is named, all except those that run only if they are named;
+/// returns true if nothing failed.
 ///
 /// A stage that had to be skipped fails the run if the variable `CI` is set.
 pub(crate) fn run(root: &Path, wanted: &[&str]) -> bool {
@@ -114,8 +114,9 @@ fn target(root: &Path) -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or(root.join("target"), |folder| root.join(folder))
 }
 
-/// Settings of cargo for a build from scratch, which is faster if nothing is kept for a second one
-/// and each package is compiled in one piece; none where cargo has kept something of phea already.
+/// Settings of cargo for a build from scratch, which is faster if nothing is stored for a second
+/// one and each package is compiled in one piece; empty if cargo has already stored something of
+/// phea.
 fn settings(target: &Path) -> &'static [(&'static str, &'static str)] {
     let kept = std::fs::read_dir(target.join("debug").join("incremental"));
     let mut names = kept.into_iter().flatten().flatten().map(|entry| entry.file_name());
@@ -147,7 +148,7 @@ struct Runner<'a> {
 }
 
 impl Runner<'_> {
-    /// The outcomes of these stages, each with the time that it took.
+    /// The outcomes of these stages, each with its duration.
     fn all(&self, stages: &[Stage]) -> Vec<(&'static str, Outcome, Duration)> {
         let mut results = Vec::new();
         for (name, stage) in stages {
@@ -163,7 +164,7 @@ impl Runner<'_> {
     fn print(&self, line: &str) {
         match self.log {
             None => println!("{line}"),
-            // A line that cannot be written is missing in the log, no more.
+            // A line that cannot be written is only missing in the log.
             Some(mut log) => drop(writeln!(log, "{line}")),
         }
     }
@@ -193,7 +194,7 @@ impl Runner<'_> {
         self.execute(&format!("cargo {line}").split(' ').collect::<Vec<_>>(), variables)
     }
 
-    /// Runs a command of cargo for all packages; without the one that links CVODE where CVODE is
+    /// Runs a command of cargo for all packages, except the one that links CVODE if CVODE is
     /// missing.
     fn workspace(&self, command: &str, arguments: &str) -> Outcome {
         let peers = if tools::sundials().is_ok() { "" } else { " --exclude sundials" };
@@ -212,7 +213,7 @@ fn tidy(runner: &Runner) -> Outcome {
     if crate::tidy::is_tidy(runner.root) { Outcome::Passed } else { Outcome::Failed("see above".to_string()) }
 }
 
-/// All targets, with the lints of clippy.
+/// Lints all targets with clippy.
 fn clippy(runner: &Runner) -> Outcome {
     match tools::component("clippy", "clippy") {
         Ok(()) => runner.workspace("clippy", "--all-targets -- -D warnings"),
@@ -238,7 +239,7 @@ fn doctests(runner: &Runner) -> Outcome {
     runner.workspace("test", "--doc --no-fail-fast")
 }
 
-/// The crates that only compute build for the browser.
+/// Builds for the browser the crates that only compute.
 fn wasm32(runner: &Runner) -> Outcome {
     const TARGET: &str = "wasm32-unknown-unknown";
     match tools::target(TARGET) {
@@ -249,7 +250,7 @@ fn wasm32(runner: &Runner) -> Outcome {
     }
 }
 
-/// Fifty rigs of each family that phea and CVODE solve both. The other tests of the package that
+/// Solves fifty rigs of each family with both phea and CVODE. The other tests of the package that
 /// links CVODE run with those of all packages.
 fn peers(runner: &Runner) -> Outcome {
     match tools::sundials() {
@@ -258,26 +259,26 @@ fn peers(runner: &Runner) -> Outcome {
     }
 }
 
-/// Twenty times as many mutated projects as the tests read: of [`soak`] too.
+/// Reads twenty times as many mutated projects as the tests do; part of [`soak`] too.
 fn mutation(runner: &Runner) -> Outcome {
     runner.cargo("test --workspace --test all -- --ignored mutation::")
 }
 
-/// Tests that take too long for every commit, before a release: all of them, so that one run shows
-/// everything that has to be mended.
+/// Tests, before a release, that take too long for every commit: all of them, so that one run shows
+/// everything that must be mended.
 fn soak(runner: &Runner) -> Outcome {
-    // A hundred kills of campaigns on one, two and four threads, and two gigabytes of rows: what
-    // was lost, and how fast it was, is printed.
+    // A hundred kills of campaigns on one, two and four threads, and two gigabytes of rows: the
+    // losses and the speed are printed.
     let killed = "test --release -p phea-cli --test all -- campaign_killed:: streamed_rows:: \
                   --include-ignored --nocapture --test-threads=1";
-    // Four hundred valves, lines and frictions, identified from recordings of one each: how often
-    // the intervals cover the truth; three hundred operating regions; and the alternatives of the
-    // book under each of its loads, and over the length of its hose.
+    // Four hundred valves, lines and frictions, each identified from its own recordings: the
+    // coverage of the truth by the intervals; three hundred operating regions; and the alternatives
+    // of the book under each of its loads, and over the length of its hose.
     let identified = "test --release -p phea-workbench --test all -- --ignored --nocapture \
                       --test-threads=1 coverage::soak alternatives::soak alternatives_front::soak";
     // Certificates of random problems against eleven million plants, and designs from other seeds.
     let robust = "test --release -p phea-qft --test all -- --ignored";
-    // A thousand rigs of each family that phea and CVODE solve both.
+    // A thousand rigs of each family, solved with both phea and CVODE.
     let rigs = "test --release --workspace --test random_rigs -- 1000 --test-threads=1";
     let ended = [
         mutation(runner),

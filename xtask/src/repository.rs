@@ -7,12 +7,13 @@ use std::path::Path;
 
 use crate::rust_file::RustFile;
 
-/// Names that hold nothing of ours (`.git` is a file in a linked checkout).
+/// Names of files and folders that are not part of the project (`.git` is a file in a linked
+/// checkout).
 const IGNORED: [&str; 6] = ["target", ".git", "out", ".venv", "__pycache__", "node_modules"];
 
 /// Every file below the root.
 pub(crate) struct Repository {
-    /// The texts by their path with forward slashes; empty where a file is not UTF-8.
+    /// The texts by their path with forward slashes; empty if a file is not UTF-8.
     texts: BTreeMap<String, String>,
     /// The Rust files among them.
     pub(crate) rust_files: Vec<RustFile>,
@@ -25,7 +26,7 @@ impl Repository {
         Repository { texts, rust_files }
     }
 
-    /// Reads everything below `root` but what is ignored.
+    /// Reads everything below `root` except the ignored names.
     pub(crate) fn read(root: &Path) -> io::Result<Repository> {
         let mut texts = BTreeMap::new();
         let mut folders = vec![root.to_path_buf()];
@@ -52,7 +53,7 @@ impl Repository {
         self.texts.get(path).map(String::as_str)
     }
 
-    /// All files in this folder whose path ends so, in the order of their paths.
+    /// Files in this folder whose path has this ending, in the order of their paths.
     pub(crate) fn texts<'a>(
         &'a self,
         folder: &'a str,
@@ -62,7 +63,7 @@ impl Repository {
         texts.filter(move |(path, _)| path.starts_with(folder) && path.ends_with(ending))
     }
 
-    /// Returns whether a file or folder of this path exists.
+    /// Returns true if a file or folder of this path exists.
     pub(crate) fn exists(&self, path: &str) -> bool {
         let path = path.trim_end_matches('/');
         let folder = format!("{path}/");

@@ -1,27 +1,27 @@
-//! A Rust source file by its lines, as `cargo fmt` leaves them: what of a line is code, and which
-//! lines are compiled for tests only.
+//! Lines of a Rust source file as `cargo fmt` leaves them: the code in each, and a mark if the line
+//! is compiled for tests only.
 
-/// One line of a Rust file.
+/// A line of a Rust file.
 pub(crate) struct Line {
-    /// Its number, from 1.
+    /// Number of the line, from 1.
     pub(crate) number: usize,
     /// The whole line.
     pub(crate) text: String,
-    /// The line without comments and without the contents of texts.
+    /// The line without comments and without the contents of string literals.
     pub(crate) code: String,
-    /// The contents of its texts, each ended by a null character.
+    /// Contents of the string literals in the line, with a null character after each.
     pub(crate) texts: String,
-    /// True if it begins inside a text.
+    /// True if the line begins inside a string literal.
     pub(crate) is_continued: bool,
-    /// True if it is compiled for tests only: `#[test]`, `#[cfg(test)]`.
+    /// True if the line is compiled for tests only: `#[test]`, `#[cfg(test)]`.
     pub(crate) is_test: bool,
 }
 
-/// One Rust source file.
+/// A Rust source file.
 pub(crate) struct RustFile {
     /// Path from the repository's root.
     pub(crate) path: String,
-    /// Its lines.
+    /// Lines of the file.
     pub(crate) lines: Vec<Line>,
 }
 
@@ -40,13 +40,13 @@ impl RustFile {
         file
     }
 
-    /// Returns whether the whole file is test code, or an example, by its folder.
+    /// Returns true if the whole file is test code, or an example, by its folder.
     pub(crate) fn is_test_file(&self) -> bool {
         let folder = |name: &str| self.path.contains(&format!("/{name}/"));
         ["tests", "benches", "fuzz", "examples"].into_iter().any(folder) || self.path.ends_with("/tests.rs")
     }
 
-    /// Returns whether the file belongs to a library or an application, tests left out.
+    /// Returns true if the file belongs to a library or an application, tests excluded.
     pub(crate) fn is_shipped(&self) -> bool {
         ["crates/", "apps/"].iter().any(|folder| self.path.starts_with(folder)) && !self.is_test_file()
     }
@@ -89,7 +89,7 @@ enum Inside {
     Code,
     Comment,
     Text,
-    /// A text without escapes, by the number of its `#`.
+    /// A raw string literal, with the number of its `#`.
     RawText(usize),
 }
 
@@ -105,7 +105,7 @@ fn lines(text: &str) -> Vec<Line> {
     lines
 }
 
-/// The code and the texts of a line that begins inside this.
+/// The code and the string literals of a line that begins in this state.
 fn code_and_texts_of(line: &str, inside: &mut Inside) -> (String, String) {
     let chars: Vec<char> = line.chars().collect();
     let (mut code, mut texts) = (String::new(), String::new());
@@ -153,7 +153,7 @@ pub(crate) fn words(code: &str) -> impl Iterator<Item = &str> {
     code.split(|c: char| !(c.is_alphanumeric() || c == '_')).filter(|word| !word.is_empty())
 }
 
-/// Paths such as `std::fs::read` with the number of their line, the groups of `use` written out.
+/// Paths such as `std::fs::read` with their line numbers; groups of `use` are expanded.
 pub(crate) fn paths<'a>(lines: impl Iterator<Item = &'a Line>) -> Vec<(String, usize)> {
     let mut found = Vec::new();
     let mut prefixes: Vec<String> = Vec::new();
@@ -179,7 +179,7 @@ pub(crate) fn paths<'a>(lines: impl Iterator<Item = &'a Line>) -> Vec<(String, u
     found
 }
 
-/// The numbers of a line of code as they are written.
+/// The numbers of a line of code, as written.
 pub(crate) fn numbers(code: &str) -> impl Iterator<Item = &str> {
     let words = code.split(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.')));
     let words = words.flat_map(|word| word.split(".."));

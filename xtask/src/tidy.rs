@@ -1,4 +1,4 @@
-//! The rules of the house that neither the compiler nor clippy knows, each one a function from the
+//! The rules of the project that neither the compiler nor clippy knows, each a function from the
 //! repository's files to the places that break it.
 
 mod book;
@@ -27,7 +27,7 @@ use std::path::Path;
 
 use crate::repository::Repository;
 
-/// One place that breaks a rule.
+/// A place that breaks a rule.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Violation {
     path: String,
@@ -36,7 +36,7 @@ pub(crate) struct Violation {
 }
 
 impl Violation {
-    /// A violation at a line counted from 1; 0 stands for the file as a whole.
+    /// A violation at a line counted from 1; line 0 is the file as a whole.
     fn new(path: &str, line: usize, message: impl Into<String>) -> Violation {
         Violation { path: path.to_string(), line, message: message.into() }
     }
@@ -75,7 +75,7 @@ const CHECKS: &[(&str, Check)] = &[
     ("wrapping", wrapping::check),
 ];
 
-/// Prints all violations below the root, in the order of the checks; whether there is none.
+/// Prints all violations below the root, in the order of the checks; returns true if there is none.
 pub(crate) fn is_tidy(root: &Path) -> bool {
     let repository = match Repository::read(root) {
         Ok(repository) => repository,

@@ -3,7 +3,7 @@
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches};
 use phea_workbench::shaping::{Change, RequestedChange};
 
-/// Every change that was asked for, in order.
+/// Requested changes, in order.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Changes(pub(crate) Vec<RequestedChange>);
 

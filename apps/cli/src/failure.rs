@@ -1,36 +1,36 @@
-//! Why a command failed, and its exit status.
+//! Failure of a command, and its exit status.
 
-/// Why there is no answer, or not all of it was written.
+/// Reason why there is no answer, or why not all of it was written.
 #[derive(Debug)]
 pub(crate) struct Failure {
     pub(crate) status: u8,
-    /// For people.
+    /// Text for people.
     pub(crate) text: String,
-    /// One JSON object, if it was requested; otherwise empty.
+    /// JSON object, if requested; otherwise empty.
     pub(crate) json: String,
 }
 
-/// The answer is yes.
+/// Exit status if the answer is yes.
 pub(crate) const DONE: u8 = 0;
-/// The answer is no, or there is none since the command was stopped.
+/// Exit status if the answer is no, or there is none because the command was stopped.
 pub(crate) const NO: u8 = 1;
-/// The request is invalid.
+/// Exit status of an invalid request.
 pub(crate) const WRONG_INPUT: u8 = 2;
-/// Something could not be written.
+/// Exit status if something could not be written.
 const NOT_WRITTEN: u8 = 3;
 
 impl Failure {
-    /// The request is invalid.
+    /// Failure of an invalid request.
     pub(crate) fn wrong_input(text: impl Into<String>) -> Failure {
         Failure { status: WRONG_INPUT, text: text.into(), json: String::new() }
     }
 
-    /// The command was stopped before it had an answer.
+    /// Failure of a command that was stopped before it had an answer.
     pub(crate) fn stopped(message: &str) -> Failure {
         Failure { status: NO, text: message.to_string(), json: String::new() }
     }
 
-    /// The request is valid, but something could not be written.
+    /// Failure of a valid request whose result could not be written.
     pub(crate) fn not_written(message: &str) -> Failure {
         Failure { status: NOT_WRITTEN, text: format!("error: {message}"), json: String::new() }
     }

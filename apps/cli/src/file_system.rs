@@ -3,7 +3,7 @@ use std::io::{ErrorKind, Read};
 
 use phea_workbench::source::{Source, SourceError};
 
-/// Size of the largest file that is read, in bytes; reading an endless device ends here.
+/// Size of the largest file that is read, in bytes; it ends the reading of an endless device.
 const LARGEST_FILE: u64 = 256 << 20;
 
 /// The file system as the workbench's source.
@@ -46,7 +46,7 @@ fn refused(path: &str, error: &std::io::Error) -> SourceError {
     SourceError { path: path.to_string(), reason: reason(error) }
 }
 
-/// A folder where a file was expected; if it contains one project, that is suggested.
+/// A folder instead of a file; if it contains one project, that is suggested.
 fn folder_reason(path: &str) -> String {
     let inside = FileSystem.list(path).ok().flatten().unwrap_or_default();
     let projects: Vec<&String> = inside.iter().filter(|file| file.ends_with(".toml")).collect();
@@ -56,7 +56,7 @@ fn folder_reason(path: &str) -> String {
     }
 }
 
-/// The usual reasons in words that are the same on every system.
+/// The usual reasons, in words that are equal on every system.
 pub(crate) fn reason(error: &std::io::Error) -> String {
     match error.kind() {
         ErrorKind::NotFound => "no such file or folder".to_string(),

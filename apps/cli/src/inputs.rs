@@ -7,15 +7,15 @@ use phea_workbench::project::Loaded;
 
 use crate::file_system::FileSystem;
 
-/// Files that must stay as they are.
+/// Files that must remain unchanged.
 #[derive(Debug, Default)]
 pub(crate) struct Inputs(Vec<KeptFile>);
 
 #[derive(Debug)]
 struct KeptFile {
-    /// As the user or the project writes it.
+    /// Path as written by the user or the project.
     named: String,
-    /// Its path without links, and its name in its own folder, which a link may have.
+    /// Path without links, and the name in its own folder, which may be a link.
     places: [PathBuf; 2],
     metadata: Metadata,
 }
@@ -26,19 +26,19 @@ impl Inputs {
         Inputs(paths.into_iter().filter_map(KeptFile::of).collect())
     }
 
-    /// The files of projects, and those that they name.
+    /// The files of projects, and the files that those name.
     pub(crate) fn of_projects<'a>(projects: impl IntoIterator<Item = &'a Loaded>) -> Inputs {
         Inputs::of(projects.into_iter().flat_map(|loaded| loaded.named_files(&FileSystem)))
     }
 
-    /// The same and those of further paths.
+    /// Adds further paths.
     pub(crate) fn and(mut self, paths: impl IntoIterator<Item = String>) -> Inputs {
         self.0.extend(Inputs::of(paths).0);
         self
     }
 
-    /// Refuses a path at which a file would replace one of these: by the same name, by one that
-    /// differs in case alone, through a link, or as another name of the same file.
+    /// Rejects a path at which a file would replace one of these: by an equal name, by one that
+    /// differs only in case, through a link, or as another name of an input file.
     pub(crate) fn expect_kept(&self, output: &Path) -> Result<(), String> {
         let place = resolved(output);
         let metadata = fs::metadata(&place).ok().filter(Metadata::is_file);
@@ -55,14 +55,14 @@ impl Inputs {
         ))
     }
 
-    /// Refuses a folder in which one of the files that may be written, by their names, would
+    /// Rejects a folder in which one of the files that may be written, by their names, would
     /// replace one of these.
     pub(crate) fn expect_kept_in(
         &self,
         folder: &Path,
         may_write: impl Fn(&str) -> bool,
     ) -> Result<(), String> {
-        // a folder that does not exist holds no input
+        // a folder that does not exist contains no input
         for entry in fs::read_dir(resolved(folder)).into_iter().flatten().flatten() {
             let name = entry.file_name();
             if name.to_str().is_some_and(&may_write) {

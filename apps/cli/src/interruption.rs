@@ -1,19 +1,19 @@
-//! Signals: Ctrl-C during a command that can stop with what it has, and a file that grows beyond
-//! the largest size that is permitted.
+//! Signals: Ctrl-C during a command that can return its result so far, and a file that grows beyond
+//! the largest permitted size.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Exit status of a command that was interrupted twice, as shells count it: 128 and the number of
-/// the signal.
+/// Exit status of a command that was interrupted twice, in the convention of shells: 128 plus the
+/// number of the signal.
 const INTERRUPTED: i32 = 130;
 
-/// Whether the command was asked to stop.
+/// Flag that is set if the command was requested to stop.
 pub(crate) struct Interruption(Arc<AtomicBool>);
 
 impl Interruption {
-    /// Listens from now on. The first Ctrl-C asks the command to stop with what it has, the second
-    /// ends it at once.
+    /// Installs the handler. The first Ctrl-C requests the command to stop with its result so far,
+    /// the second ends it at once.
     pub(crate) fn listen() -> Interruption {
         let asked = Arc::new(AtomicBool::new(false));
         let heard = Arc::clone(&asked);
@@ -31,8 +31,8 @@ impl Interruption {
     }
 }
 
-/// Makes a write beyond the largest permitted size of a file (`ulimit -f`) an error of that write,
-/// where it would end the process.
+/// Turns a write beyond the largest permitted size of a file (`ulimit -f`) into an error of that
+/// write, which would otherwise end the process.
 #[cfg(unix)]
 pub(crate) fn survive_large_files() {
     let unread = Arc::new(AtomicBool::new(false));

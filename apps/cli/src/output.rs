@@ -1,6 +1,6 @@
-//! The files that a command writes. A file receives its name only when it is complete: until then
-//! it has a temporary name in the same folder. After an error the temporary file is removed; only a
-//! killed process leaves it behind.
+//! Files that a command writes. A file receives its name only when it is complete: until then it
+//! has a temporary name in its final folder. After an error the temporary file is removed; only a
+//! killed process leaves it there.
 
 use std::cell::RefCell;
 use std::fs::{self, File, OpenOptions};
@@ -14,7 +14,7 @@ use phea_workbench::source::{Destination, Unfinished, WriteError};
 use crate::file_system::reason;
 use crate::inputs::Inputs;
 
-/// Bytes that are collected before they are written.
+/// Number of bytes that are collected before they are written.
 const COLLECTED: usize = 1 << 18;
 
 /// A folder for long files, which are written as they are produced.
@@ -30,7 +30,7 @@ impl<'f> Folder<'f> {
         Folder { path, inputs, begun: RefCell::default() }
     }
 
-    /// Every file that was begun, once, in order; all are complete if nothing failed.
+    /// Every begun file, once, in order; all are complete if nothing failed.
     pub(crate) fn into_begun(self) -> Vec<PathBuf> {
         self.begun.into_inner()
     }
@@ -57,7 +57,7 @@ impl Destination for Folder<'_> {
 /// A file that is not complete yet.
 struct Pending {
     path: PathBuf,
-    /// Its temporary path; `None` if it has none.
+    /// The temporary path; `None` if there is none.
     temporary: Option<Temporary>,
     file: BufWriter<File>,
 }
@@ -67,19 +67,19 @@ struct Temporary(PathBuf);
 
 impl Drop for Temporary {
     fn drop(&mut self) {
-        // nothing is there once it has its name
+        // the path does not exist any more once the file has its name
         let _ = fs::remove_file(&self.0);
     }
 }
 
-/// A file that is complete on the disk, and has its name where it has no temporary one.
+/// A file that is complete on the disk, and already has its name if it was not temporary.
 struct Complete {
     path: PathBuf,
     temporary: Option<Temporary>,
 }
 
 impl Complete {
-    /// Gives it its name.
+    /// Gives the file its name.
     fn name(self) -> io::Result<()> {
         self.temporary.map_or(Ok(()), |temporary| fs::rename(&temporary.0, &self.path))
     }
@@ -116,7 +116,7 @@ impl Pending {
         self.file.flush()?;
         let Pending { path, temporary, file } = self;
         if temporary.is_some() {
-            // on a file system without such an order nothing is lost
+            // on a file system that does not support this, nothing is lost
             match file.get_ref().sync_all() {
                 Err(error) if !matches!(error.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => {
                     return Err(error);
@@ -128,13 +128,13 @@ impl Pending {
     }
 }
 
-/// Unique to this process, and short, however long the name of the file is.
+/// A name that is unique to this process, and short, however long the name of the file is.
 fn temporary_name() -> String {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     format!(".phea-{}-{}.part", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed))
 }
 
-/// The same error in plain words.
+/// An error with its reason in plain words.
 fn plainly(error: &io::Error) -> io::Error {
     io::Error::new(error.kind(), reason(error))
 }
@@ -155,8 +155,8 @@ impl Unfinished for Pending {
     }
 }
 
-/// Refuses a folder that can neither be nor be created, before the work whose result it would not
-/// take.
+/// Rejects a folder that neither exists nor can be created, before the work whose result could not
+/// be written.
 pub(crate) fn expect_folder(folder: &Path) -> Result<(), String> {
     let existing = folder.ancestors().find_map(|part| fs::metadata(part).ok());
     match existing {
@@ -165,9 +165,9 @@ pub(crate) fn expect_folder(folder: &Path) -> Result<(), String> {
     }
 }
 
-/// Writes files into a folder, drawings as SVG and as PNG, none in place of an input; returns their
-/// paths. All of them receive their names once all are complete: after an error none is there that
-/// was not there before.
+/// Writes files into a folder, drawings as SVG and as PNG, never over an input; returns their
+/// paths. All files receive their names once all are complete: after an error the folder has no new
+/// file.
 pub(crate) fn write(folder: &Path, files: &[OutputFile], inputs: &Inputs) -> Result<Vec<PathBuf>, String> {
     let mut complete = Vec::new();
     for file in files {
@@ -193,13 +193,13 @@ fn completed(path: &Path, bytes: &[u8], inputs: &Inputs) -> Result<(PathBuf, Com
 }
 
 /// Writes a file to the given path, creating its folder if needed, and returns the path. The path
-/// of an input is refused.
+/// of an input is rejected.
 pub(crate) fn write_as(path: &Path, file: &OutputFile, inputs: &Inputs) -> Result<PathBuf, String> {
     let (path, complete) = completed(path, &file.bytes, inputs)?;
     complete.name().map_err(|error| unwritten(&path, &error)).map(|()| path)
 }
 
-/// Why a file or folder cannot be written.
+/// Message for a file or folder that cannot be written.
 pub(crate) fn unwritten(path: &Path, error: &io::Error) -> String {
     format!("cannot write {}: {}", path.display(), reason(error))
 }

@@ -109,7 +109,7 @@ pub(crate) fn misused(error: &clap::Error) -> ExitCode {
     ExitCode::from(WRONG_INPUT)
 }
 
-/// The usage error of a value that is no number, with its cure; `None` of any other error.
+/// The usage error of a value that is not a number, with the remedy; `None` for any other error.
 fn misread_number(error: &clap::Error) -> Option<String> {
     let context = |kind: ContextKind| error.get(kind).map(ToString::to_string);
     let reason = std::error::Error::source(error)?.to_string();
@@ -140,7 +140,7 @@ fn ended(outcome: Result<u8, Failure>) -> ExitCode {
 fn new(folder: &Path) -> Result<u8, Failure> {
     let occupied = match folder.read_dir() {
         Ok(mut entries) => entries.next().is_some(),
-        // a folder that cannot be listed may hold a project
+        // a folder that cannot be listed may contain a project
         Err(_) => folder.symlink_metadata().is_ok(),
     };
     if occupied {
@@ -154,10 +154,10 @@ fn new(folder: &Path) -> Result<u8, Failure> {
     Ok(DONE)
 }
 
-/// The key by which a JSON Schema is known.
+/// The key that identifies a JSON Schema.
 const SCHEMA_KEY: &str = "\"$schema\"";
 
-/// The schema of the project file, printed or written into a folder, where it replaces nothing but
+/// Prints the schema of the project file, or writes it into a folder, where it replaces nothing but
 /// a schema.
 fn schema(out: Option<&Path>) -> Result<u8, Failure> {
     let file = command::schema();
@@ -178,7 +178,7 @@ fn schema(out: Option<&Path>) -> Result<u8, Failure> {
     Ok(DONE)
 }
 
-/// A certificate, checked again.
+/// Checks a certificate again.
 fn checked(Certified { file, project, settings, .. }: &Certified) -> Result<(Answer, Vec<PathBuf>), Failure> {
     let explain = |reason: String| {
         let message = format!("{}: {reason}", file.display());
@@ -198,13 +198,13 @@ fn checked(Certified { file, project, settings, .. }: &Certified) -> Result<(Ans
     Ok((answer.map_err(|error| explain(error.to_string()))?, vec![]))
 }
 
-/// Answers a request on a project; the designed or shaped project or the certificate is written to
-/// a file of its own too where one is named.
+/// Answers a request on a project; if a path is named, the designed or shaped project or the
+/// certificate is also written to it.
 fn on_project(common: &Common, request: &Request, save: Option<&Path>) -> Result<u8, Failure> {
     told(common.json, answered(common, request, save))
 }
 
-/// Prints an answer with the files that were written, or why there is none.
+/// Prints an answer with the files that were written, or the reason why there is none.
 fn told(json: bool, outcome: Result<(Answer, Vec<PathBuf>), Failure>) -> Result<u8, Failure> {
     match outcome {
         Ok((answer, _)) if json => say(&format!("{}\n", answer.json)).map(|()| status(&answer)),
@@ -255,7 +255,7 @@ fn status(answer: &Answer) -> u8 {
     if answer.affirmative { DONE } else { NO }
 }
 
-/// The answer, and the files that were written.
+/// Returns the answer, and the files that were written.
 fn answered(
     common: &Common,
     request: &Request,
@@ -269,8 +269,8 @@ fn answered(
     expect_kept(&inputs, (request, &loaded), [common.out.as_deref(), save.or(page.as_deref())])?;
     expect_folders([common.out.as_deref(), save.and_then(Path::parent)]).map_err(explain)?;
     let mut line = ProgressLine::default();
-    // commands that can return their best result so far are asked to stop; all others have nothing
-    // to save
+    // commands that can return their best result so far receive a stop request; all others have
+    // nothing to save
     let keeps = matches!(request, Request::Design { .. } | Request::Simulate(_) | Request::Alternatives(_));
     let interruption = keeps.then(Interruption::listen);
     let tables = common.out.as_deref().map(|folder| Folder::new(folder, &inputs));
@@ -300,7 +300,7 @@ fn answered(
     Ok((answer, written))
 }
 
-/// Refuses the folders of `--out` and `--save` that cannot be.
+/// Rejects the folders of `--out` and `--save` that cannot be created.
 fn expect_folders(folders: [Option<&Path>; 2]) -> Result<(), String> {
     folders.into_iter().flatten().try_for_each(expect_folder)
 }
@@ -317,7 +317,7 @@ fn load(path: &str, settings: &[String], catalogues: &[String], command: &str) -
     Ok(loaded)
 }
 
-/// Why there is no answer; `stage` is the one that was reported last.
+/// Failure of a request without an answer; `stage` is the last reported one.
 fn refused(loaded: &Loaded, request: &Request, (error, stage): (&CommandError, Option<&str>)) -> Failure {
     if let CommandError::Stopped(_) = error {
         let message = command::stopped_text(request, stage);
@@ -332,7 +332,7 @@ fn refused(loaded: &Loaded, request: &Request, (error, stage): (&CommandError, O
     failure.with_json(command::error_json(loaded, request, error))
 }
 
-/// Something could not be written.
+/// Failure of writing.
 fn failed(request: &Request, loaded: &Loaded, message: &str) -> Failure {
     let json = command::failure_json(Some(request.name()), Some(&loaded.sha256), message);
     Failure::not_written(message).with_json(json)
@@ -349,14 +349,14 @@ fn written_sentence(written: &[PathBuf]) -> String {
     }
 }
 
-/// The report is written even without `--out`, as one page named after the project.
+/// Path of a report without `--out`: one page named after the project.
 fn page_alone(common: &Common, request: &Request) -> Option<PathBuf> {
     let alone = common.out.is_none() && matches!(request, Request::Report { .. });
     let stem = common.project.file_stem().unwrap_or_default().to_string_lossy();
     alone.then(|| Path::new(".").join(format!("{stem}-report.html")))
 }
 
-/// Refuses, before any work, a folder or a file in which the answer would replace an input.
+/// Rejects, before any work, a folder or a file in which the answer would replace an input.
 fn expect_kept(
     inputs: &Inputs,
     (request, loaded): (&Request, &Loaded),

@@ -1,4 +1,4 @@
-//! The messages of the command, and where they go.
+//! Messages of the command and the streams they are written to.
 
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::time::{Duration, Instant};
@@ -8,8 +8,8 @@ use phea_workbench::command::Progress;
 use crate::failure::Failure;
 use crate::file_system::reason;
 
-/// Prints to standard output. A reader that has closed the pipe (`phea check rig.toml | head`) has
-/// what it wanted.
+/// Prints to standard output. A closed pipe (`phea check rig.toml | head`) is not an error: its
+/// reader has read enough.
 pub(crate) fn say(text: &str) -> Result<(), Failure> {
     let mut stream = io::stdout().lock();
     match stream.write_all(text.as_bytes()).and_then(|()| stream.flush()) {
@@ -20,7 +20,7 @@ pub(crate) fn say(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Prints to standard error; a failure of that cannot be reported.
+/// Prints to standard error; a failure to do so cannot be reported.
 pub(crate) fn complain(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", text.trim_end());
 }
@@ -28,26 +28,26 @@ pub(crate) fn complain(text: &str) {
 /// Time after which progress is shown, and between two updates.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// The same without a terminal, where lines remain in a log.
+/// Time between lines of progress without a terminal, where they remain in a log.
 const PATIENCE_OF_LOGS: Duration = Duration::from_secs(5);
 
-/// The variable of the environment that keeps progress out of logs, and its value.
+/// The environment variable that suppresses progress in logs, and its value.
 const KEEP_OUT: (&str, &str) = ("PHEA_PROGRESS", "never");
 
 /// Longest remaining time that is shown, s.
 const LONGEST_S: f64 = 1e9;
 
-/// Follows a long command on standard error: one line that changes on a terminal, a line every few
-/// seconds elsewhere.
+/// Shows the progress of a long command on standard error: one line that changes on a terminal, a
+/// line every few seconds elsewhere.
 pub(crate) struct ProgressLine {
     begun: Instant,
     next: Option<Instant>,
     terminal: bool,
-    /// The line that was shown last; empty before the first.
+    /// The last line that was shown; empty before the first.
     shown: String,
-    /// The stage that was reported last.
+    /// The last reported stage.
     stage: Option<&'static str>,
-    /// Time and share of the first report, for work that proceeds evenly.
+    /// Time and completed fraction of the first report, for work that proceeds evenly.
     even: Option<(Instant, f64)>,
 }
 
@@ -65,7 +65,7 @@ impl Default for ProgressLine {
 }
 
 impl ProgressLine {
-    /// The same for work that proceeds evenly, with the remaining time.
+    /// Shows the progress and the remaining time, for work that proceeds evenly.
     pub(crate) fn show_evenly(&mut self, progress: Progress) {
         let now = Instant::now();
         let (start, share) = *self.even.get_or_insert((now, progress.share));
@@ -80,7 +80,7 @@ impl ProgressLine {
         self.write(progress, &format!(", {hours}:{minutes:02}:{seconds:02} left"));
     }
 
-    /// The stage that was reported last; `None` before the first.
+    /// The last reported stage; `None` before the first.
     pub(crate) fn stage(&self) -> Option<&'static str> {
         self.stage
     }
@@ -89,7 +89,7 @@ impl ProgressLine {
         if self.terminal { PATIENCE } else { PATIENCE_OF_LOGS }
     }
 
-    /// Shows the progress, not too often.
+    /// Shows the progress, but not too often.
     pub(crate) fn show(&mut self, progress: Progress) {
         self.write(progress, "");
     }
@@ -114,7 +114,7 @@ impl ProgressLine {
         }
     }
 
-    /// Takes the line away; in a log the last one is the time that it took.
+    /// Removes the line; in a log, the last line states the total time.
     pub(crate) fn clear(&mut self) {
         match self.terminal {
             _ if self.shown.is_empty() => {}

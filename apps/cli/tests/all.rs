@@ -1,4 +1,4 @@
-//! The command from outside: what it prints, writes and returns.
+//! Tests of the command from outside: its output, its files and its exit status.
 #![cfg(test)]
 
 mod campaign;

@@ -1,5 +1,4 @@
-//! A campaign's table on the disk: one writer at a time, and nothing of one part over that of
-//! another.
+//! A campaign's table on the disk: one writer at a time, and no part is written over another.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -32,8 +31,8 @@ fn complaint(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// A second one is refused while the first has the table, leaves it as it is, and goes on as soon
-/// as the first is gone.
+/// A second writer is rejected while the first has the table, leaves it unchanged, and continues as
+/// soon as the first has ended.
 #[test]
 fn a_table_has_one_writer() {
     let folder = folder("campaign_lock");
@@ -54,7 +53,7 @@ fn a_table_has_one_writer() {
     assert_eq!(fs::read(&path).expect("a table"), before);
 }
 
-/// Torn on the disk, it goes on to the same bytes.
+/// A table that was torn on the disk continues to the bytes of an intact one.
 #[test]
 fn a_torn_table_is_made_whole() {
     let folder = folder("campaign_torn");
@@ -102,8 +101,8 @@ fn what_is_in_the_way_and_what_cannot_be_is_said_plainly() {
     }
 }
 
-/// Refused for what the project lacks, a campaign leaves neither an empty table nor a lock, and a
-/// table of another kind stays as it was.
+/// A campaign that is rejected because the project lacks something leaves neither an empty table
+/// nor a lock, and a table of another kind remains unchanged.
 #[test]
 fn a_refused_campaign_leaves_no_table() {
     let folder = folder("campaign_refused");

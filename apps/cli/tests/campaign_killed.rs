@@ -1,8 +1,8 @@
-//! Campaigns that are killed at any time, and go on to the bytes of one that never was.
+//! Campaigns that are killed at any time continue to the bytes of one that was never killed.
 //!
-//! A kill is one that nothing can catch (SIGKILL). Twelve in the test command; `PHEA_KILLS=100`
-//! makes a hundred, and says with `--nocapture` how many rows each left, and how many seconds of
-//! work went.
+//! The kill signal cannot be caught (SIGKILL). The test command sends twelve; `PHEA_KILLS=100`
+//! sends a hundred, and prints with `--nocapture` the number of rows that each left and the seconds
+//! of work that were lost.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
@@ -35,7 +35,7 @@ fn campaign(folder: &Path, threads: &str) -> Child {
         .expect("phea starts")
 }
 
-/// Every file of a campaign but what a killed process left unfinished, with its bytes.
+/// Every file of a campaign with its bytes, except those that a killed process left incomplete.
 fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let entries = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
     let name = |path: &Path| path.file_name().expect("a name").to_string_lossy().into_owned();
@@ -46,7 +46,7 @@ fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     files
 }
 
-/// Runs whose rows are on the disk, in the table or ahead of it.
+/// Number of runs whose rows are on the disk, in the table or ahead of it.
 fn rows(folder: &Path) -> usize {
     let lines = |name: &str| fs::read_to_string(folder.join(name)).unwrap_or_default();
     let (table, ahead) = (lines("runs.csv"), lines("runs.csv.ahead"));
@@ -56,13 +56,13 @@ fn rows(folder: &Path) -> usize {
     whole.saturating_sub(1) + beyond.collect::<std::collections::BTreeSet<_>>().len()
 }
 
-/// Between 0 and 1, evenly over all starts: multiples of the golden section.
+/// Fraction between 0 and 1, spread evenly over all starts: multiples of the golden section.
 fn spread(start: u32) -> f64 {
     (f64::from(start) * 0.5 * (5.0_f64.sqrt() - 1.0)).fract()
 }
 
-/// Whatever a kill leaves, every file that has its name is whole, and the same command makes all of
-/// them.
+/// Files with their final names are complete after any kill, and repeating the command produces all
+/// of them.
 #[test]
 fn a_campaign_goes_on_after_any_kill_to_the_same_bytes() {
     let folder = folder();

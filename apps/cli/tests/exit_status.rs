@@ -1,13 +1,12 @@
-//! The exit status of every kind of outcome, and that `--json` prints one JSON object and nothing
-//! else on standard output.
+//! The exit status of every kind of outcome; with `--json`, standard output has one JSON object and
+//! nothing else.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-/// A folder with the example project, a binary file, an empty one, and a file where a folder is
-/// wanted.
+/// A folder with the example project, a binary file, an empty one, and a file instead of a folder.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ = std::fs::remove_dir_all(&folder);
@@ -24,7 +23,7 @@ fn folder(name: &str) -> PathBuf {
     let measured = "schema = 1\n[family]\nmeasured = [\"drive.csv\", \"absent.csv\"]\n";
     let rows = "frequency_hz,magnitude_db,phase_deg\n1,0,0\n2,loud,0\n3,0,0,0\n";
     let timed = closed.replace("numerator = \"1\"\ndenominator = \"s\"\n[[", "sample_time = \"1 ms\"\n[[");
-    // nothing that takes its time
+    // nothing that takes long
     let (driven, _) = text.split_once("[design]").expect("it has a [design]");
     let files: [(&str, &[u8]); 11] = [
         ("driven.toml", driven.as_bytes()),
@@ -131,7 +130,7 @@ const OUTCOMES: &[(&[&str], i32)] = &[
     (&["check", "hose.toml", "--catalogue", "hose.toml"], 2),
     (&["check", "hose.toml", "--out", "empty.toml"], 3),
     (&["report", "hose.toml", "--out", "empty.toml/sub"], 3),
-    // options of another subject, and a line that is not there
+    // options for another kind of recording, and a line that does not exist
     (&["identify", "--of", "friction", "hose.toml", "drive.csv", "--starts", "3"], 2),
     (&["identify", "--of", "line", "hose.toml", "drive.csv", "--leakage-model", "one_curve"], 2),
     (&["identify", "--of", "response", "drive.csv", "--side", "B"], 2),
@@ -142,8 +141,8 @@ const OUTCOMES: &[(&[&str], i32)] = &[
     (&["chek", "hose.toml"], 2),
 ];
 
-/// Each outcome is run once, as programs ask for it: what standard error says and the status are
-/// the same for people.
+/// Each outcome is run once, as a program would request it; for people, the text on standard error
+/// and the status are identical.
 #[test]
 fn every_outcome_has_its_exit_status_and_one_json_object() {
     let folder = folder("exit_status");
@@ -163,7 +162,7 @@ fn every_outcome_has_its_exit_status_and_one_json_object() {
     }
 }
 
-/// People find a refusal on standard error alone, and an answer on standard output.
+/// A refusal is printed to standard error only, and an answer to standard output.
 #[test]
 fn people_are_told_of_a_refusal_on_standard_error() {
     let folder = folder("people");
@@ -185,7 +184,7 @@ fn people_are_told_of_a_refusal_on_standard_error() {
     }
 }
 
-/// What is wrong with a measured response is reported with its place, to people and to programs.
+/// An error in a measured response is reported with its place, to people and to programs.
 #[test]
 fn a_bad_row_of_a_measurement_has_its_place() {
     let folder = folder("measurement");
@@ -205,8 +204,8 @@ fn a_bad_row_of_a_measurement_has_its_place() {
     assert!(complaint.contains("--> drive.csv:3:3"), "{complaint}");
 }
 
-/// Changes are made in the order of the command line; the file is written where it is said, and the
-/// same bytes where nothing changes.
+/// Changes are made in the order of the command line; the file is written to the stated path, and
+/// is identical if nothing changes.
 #[test]
 fn shape_writes_what_was_asked_for_and_nothing_else() {
     let folder = folder("shape");
@@ -237,7 +236,7 @@ fn shape_writes_what_was_asked_for_and_nothing_else() {
     assert_eq!((text("loop.toml"), files(".")), (before.clone(), there));
     assert_eq!(phea(&folder, &["shape", "loop.toml", "--out", "out"]).status.code(), Some(0));
     assert_eq!(files("out"), ["margins.csv", "shaped.toml"]);
-    // a project is not written over, but beside it
+    // a project is not overwritten; the new one is written next to it
     let here = ["shape", "loop.toml", "--add", pole, "--save", "loop.toml"];
     assert_eq!((phea(&folder, &here).status.code(), text("loop.toml")), (Some(2), before));
     assert_eq!(saved(&["--add", pole]).matches(r#"{ kind = "pole", frequency = "3 rad/s" }"#).count(), 1);
@@ -258,7 +257,7 @@ fn a_reader_that_goes_away_is_no_error() {
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// Ctrl-C while runs are under way: what is done is kept, and the same command goes on to the bytes
+/// Ctrl-C during the runs: completed runs are stored, and repeating the command leads to the bytes
 /// of a campaign that was never interrupted.
 #[cfg(unix)]
 #[test]
@@ -302,7 +301,7 @@ fn a_campaign_goes_on_after_ctrl_c() {
 fn new_writes_a_project_that_passes_and_never_over_another() {
     let folder = folder("new");
     assert_eq!(phea(&folder, &["new", "rig"]).status.code(), Some(0));
-    // the working pressure of its hose is for the user to state
+    // the user must state the working pressure of the hose
     let stated = ["--set", "line.working_pressure=140 bar"];
     for command in ["check", "size", "linearize"] {
         let arguments = [&[command, "rig/project.toml"], &stated[..]].concat();

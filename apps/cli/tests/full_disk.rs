@@ -1,4 +1,4 @@
-//! A disk that takes no more: the exit status says so, and no file is there that is not whole.
+//! Full disk: the exit status reports it, and no incomplete file is left.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
@@ -16,13 +16,13 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// The command where no file may be longer than this number of blocks of a shell, 512 or 1024
-/// bytes: writing beyond fails.
+/// Runs the command under a limit on the length of files, in blocks of a shell, 512 or 1024 bytes:
+/// writing beyond it fails.
 fn limited(folder: &Path, blocks: u32, arguments: &[&str]) -> Output {
     under("trap '' XFSZ; ", folder, blocks, arguments)
 }
 
-/// The same after the command of a shell.
+/// Runs the command after another command in a shell.
 fn under(before: &str, folder: &Path, blocks: u32, arguments: &[&str]) -> Output {
     let script = format!("{before}ulimit -f {blocks}; exec \"$0\" \"$@\"");
     let mut command = Command::new("sh");
@@ -54,7 +54,7 @@ fn a_file_that_does_not_fit_is_not_there() {
         assert_eq!(names(&folder.join("out")), [] as [String; 0]);
         assert_eq!(String::from_utf8_lossy(&output.stdout).contains("\"errors\""), !more.is_empty());
     }
-    // what was there before stays as it was
+    // existing files remain unchanged
     fs::write(folder.join("out/step and load motion.csv"), "before").unwrap();
     not_written(&limited(&folder, 64, &simulate));
     let names = names(&folder.join("out"));
@@ -64,8 +64,8 @@ fn a_file_that_does_not_fit_is_not_there() {
     assert_eq!(self::names(&folder.join("rig")), [] as [String; 0]);
 }
 
-/// Where nobody ignores the signal of a file that grows too large, it is an error of the write, and
-/// not the end of the process; the message has the folder of a table that is written row by row.
+/// A file that grows too large is an error of the write and does not end the process, if no one
+/// ignores its signal; the message has the folder of a table that is written row by row.
 #[test]
 fn a_signal_about_a_large_file_is_an_error() {
     let folder = folder("full_disk_signal");
@@ -83,8 +83,8 @@ fn a_signal_about_a_large_file_is_an_error() {
     }
 }
 
-/// The files of a command receive their names together: none is there where one does not fit, and
-/// those of an earlier run stay.
+/// The files of a command receive their names together: if one does not fit, none is there, and
+/// those of an earlier run remain.
 #[test]
 fn files_of_which_one_does_not_fit_are_not_there() {
     let folder = folder("full_disk_together");
@@ -108,7 +108,7 @@ fn files_of_which_one_does_not_fit_are_not_there() {
     assert!(written.iter().all(is_kept) && names(&folder.join("out")).len() == written.len());
 }
 
-/// A campaign has whole rows alone, and goes on where there is room again.
+/// A campaign has complete rows only, and continues once there is room again.
 #[test]
 fn a_campaign_on_a_full_disk_goes_on_where_there_is_room_again() {
     let folder = folder("full_disk_campaign");

@@ -1,5 +1,5 @@
-//! No command replaces a file that it read or that its project names, by any route: it is refused
-//! before any work, with the names of both.
+//! Inputs are never replaced: a command that would write over a file that it reads or that its
+//! project names, by any route, is rejected before any work, with both names.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
@@ -12,7 +12,7 @@ use std::process::{Command, Output};
 
 const EXAMPLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples");
 
-/// A loop that is audited, shaped and designed in no time.
+/// A loop that is audited, shaped and designed quickly.
 const LOOP: &str = "schema = 1\n[plant]\nnumerator = \"1\"\ndenominator = \"s + 1\"\n[controller]\nnumerator = \"1\"\n\
      denominator = \"s\"\n[[specification]]\nkind = \"robust_stability\"\nlimit = 1.2\nfrequencies = [1]\n\
      band = [0, inf]\n";
@@ -69,7 +69,7 @@ fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     found
 }
 
-/// A command is refused with both names, and changes nothing at all.
+/// Expects that a command is rejected with both names, and changes nothing at all.
 #[track_caller]
 fn refused(folder: &Path, arguments: &[&str], names: [&str; 2]) {
     let before = contents(folder);
@@ -115,7 +115,7 @@ fn input<'a>(arguments: &[&'a str]) -> &'a str {
     arguments.iter().copied().find(|one| one.ends_with(".toml")).unwrap_or("drive.csv")
 }
 
-/// The written name is a link to the input, another name of the same file, or differs in case.
+/// The written name is a link to the input, another name of the input file, or differs in case.
 #[test]
 fn no_command_writes_through_a_name_of_its_input() {
     for (index, (arguments, name)) in WRITTEN.iter().enumerate() {
@@ -132,7 +132,8 @@ fn no_command_writes_through_a_name_of_its_input() {
         fs::copy(folder.join(input), folder.join(&upper)).unwrap();
         let renamed: Vec<&str> =
             arguments.iter().map(|one| if *one == input { upper.as_str() } else { one }).collect();
-        // a project is known by its ending, and a record of another name has another response
+        // a project is identified by its ending, and a record with another name has another
+        // response
         if arguments[0] != "identify" {
             refused(&folder, &[&renamed, &["--out", "cased"][..]].concat(), [&upper, "cased/"]);
         }
@@ -188,7 +189,7 @@ fn what_was_not_read_is_written() {
     assert_eq!(fs::read_to_string(folder.join("loop.toml")).unwrap(), LOOP);
 }
 
-/// A starter goes into no folder that may hold something, and a schema replaces only a schema.
+/// A starter is written only into an empty folder, and a schema replaces only a schema.
 #[test]
 fn starter_and_schema_replace_nothing_else() {
     let folder = folder("starter");

@@ -1,9 +1,9 @@
 //! The stories of `examples/` and `examples/qft/` and the README are run: each `console` block is
-//! executed and must print what it shows.
+//! executed and must print the output that it shows.
 //!
-//! Each story has a folder of its own, with a copy of the example projects in it, so that what a
-//! command writes disturbs neither the repository nor another story. `phea` in a story is the
-//! binary that was just built.
+//! Each story has its own folder, with a copy of the example projects in it, so that its files
+//! disturb neither the repository nor another story. `phea` in a story is the binary that was just
+//! built.
 
 use std::env;
 use std::fs;
@@ -47,8 +47,8 @@ fn program(name: &str) -> Option<PathBuf> {
     env::split_paths(&env::var_os("PATH")?).map(|folder| folder.join(name)).find(|path| path.is_file())
 }
 
-/// Every story with the folder it runs in: `NAME.in` is what it starts from, `NAME.out` makes it
-/// run in a copy of that.
+/// Every story with the folder in which it runs: `NAME.in` has its initial files, and with
+/// `NAME.out` it runs in a copy of them.
 fn laid_out(examples: &Path, sandbox: &Path) -> io::Result<Vec<PathBuf>> {
     if sandbox.exists() {
         fs::remove_dir_all(sandbox)?;

@@ -1,7 +1,8 @@
-//! Rows are written as they come and never held: gigabytes of them take the memory of a page.
+//! Rows are written as they are computed and never stored in memory: gigabytes of them need the
+//! memory of a page.
 //!
-//! `cargo xtask ci soak` asks for it, with `PHEA_KILLS=100`; `--nocapture` prints how much was
-//! written, in what time, and within what memory.
+//! `cargo xtask ci soak` requests it, with `PHEA_KILLS=100`; `--nocapture` prints the bytes
+//! written, the time and the memory.
 
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
@@ -18,7 +19,7 @@ const FINE: &str = "output_step = \"1 us\"";
 const LEAST_BYTES: u64 = 2_000_000_000;
 const MOST_MEMORY_KB: u64 = 200_000;
 
-/// The most memory in kB that a process has held until now; nothing once it is gone.
+/// The most memory in kB that a process has used so far; `None` once it has ended.
 fn most_memory_kb(process: u32) -> Option<u64> {
     let status = fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;

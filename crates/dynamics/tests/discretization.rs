@@ -129,7 +129,7 @@ fn matched_maps_each_root() {
         let image = c(cos(pole.im * step), sin(pole.im * step)) * exp(pole.re * step);
         assert!(sampled.poles().iter().any(|found| magnitude(found - image) < 1e-15));
     }
-    // integrators and differentiators keep their low-frequency asymptote
+    // integrators and differentiators preserve their low-frequency asymptote
     let integral = factored(3.0, &[c(-4.0, 0.0)], &[c(0.0, 0.0), c(0.0, 0.0), c(-9.0, 0.0)]);
     let sampled = integral.discretized(1e-2, Discretization::Matched).unwrap();
     let w = 1e-3;
@@ -163,7 +163,7 @@ fn states_and_factors_are_sampled_alike() {
 
 #[test]
 fn stiff_systems_keep_their_slow_pole() {
-    // seven decades inside one sample: exp(-1e6) underflows, the slow pole must not notice
+    // seven decades inside one sample: exp(-1e6) underflows, which must not affect the slow pole
     let system = factored(1e6 * 0.1, &[], &[c(-0.1, 0.0), c(-1e6, 0.0)]);
     let states = StateSpace::from_transfer_function(&system).unwrap();
     let sampled = states.discretized(1.0, Discretization::ZeroOrderHold).unwrap();

@@ -228,7 +228,7 @@ fn an_actuator_in_its_own_units() {
     assert!((poles[0].re + 0.336).abs() < 1e-3, "{}", poles[0]);
     assert!(magnitude(poles[2] - c(-989.1, 479.0)) < 0.1, "{}", poles[2]);
     assert!(magnitude(poles[4] - c(-11.41, 2757.0)) < 1.0, "{}", poles[4]);
-    // the valve is a block of its own: its poles are exact
+    // the valve is a separate block: its poles are exact
     let valve = c(-0.9 * 1099.0, 1099.0 * (1.0_f64 - 0.81).sqrt());
     assert!(relative(poles[2], valve) < 1e-15);
     // characteristic polynomial of the mechanical part, from the equations:
@@ -306,7 +306,7 @@ fn dense_coordinates_keep_poles_and_zeros() {
 
 #[test]
 fn modes_that_do_not_reach_the_output_cancel() {
-    // two lags side by side, only the first is driven
+    // two parallel lags, of which only the first is driven
     let a = DMatrix::from_row_slice(2, 2, &[-1.0, 0.0, 0.0, -5.0]);
     let (b, c_row) = (DMatrix::from_row_slice(2, 1, &[2.0, 0.0]), DMatrix::from_row_slice(1, 2, &[1.0, 1.0]));
     let system = StateSpace::new(a, b, c_row, DMatrix::zeros(1, 1), TimeDomain::Continuous).unwrap();

@@ -39,7 +39,7 @@ fn the_transform_is_the_sum_of_its_definition_for_every_length() {
     }
 }
 
-/// Parseval: sum |x|^2 = sum |X|^2 / N.
+/// Parseval's theorem: sum |x|^2 = sum |X|^2 / N.
 #[test]
 fn the_transform_keeps_the_power() {
     for length in [256, 1000, 1009] {
@@ -340,7 +340,8 @@ fn feedback_is_seen_where_noise_returns() {
     }
 }
 
-/// An output that follows the input of its own row indicates feedback if no plant could be as fast.
+/// Feedback is indicated by an output that follows the input of its own row if no plant could be as
+/// fast.
 #[test]
 fn an_input_that_is_held_cannot_act_within_its_row() {
     for seed in 0..4 {
@@ -355,7 +356,7 @@ fn an_input_that_is_held_cannot_act_within_its_row() {
     }
 }
 
-/// Input and output as in the closed loop, but with independent noise: nothing returns.
+/// Signals of the closed loop's input and output, but with independent noise: nothing returns.
 #[test]
 fn an_open_loop_has_no_feedback_whatever_its_input_is() {
     for seed in 0..20 {

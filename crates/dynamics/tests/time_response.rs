@@ -238,7 +238,7 @@ fn specification_formulas() {
         assert!(model.step_value(peak) > model.step_value(0.99 * peak).max(model.step_value(1.01 * peak)));
         close(damping_ratio_from_overshoot(model.overshoot_percent()).unwrap(), ratio, 1e-13);
     }
-    // as printed, (3.9) has no real value at 1 %: ln^2(0.01) = 21.2 > pi^2
+    // (3.9), as printed, has no real value at 1 %: ln^2(0.01) = 21.2 > pi^2
     close(damping_ratio_from_overshoot(1.0).unwrap(), 0.826_085, 1e-6);
     assert_eq!(damping_ratio_from_overshoot(0.0), Ok(1.0));
 }
@@ -271,7 +271,7 @@ fn exact_settling_times() {
         for band in [0.1, 1.0, 2.0, 5.0, 20.0] {
             let model = SecondOrder::new(7.0, ratio).unwrap();
             let settled = model.settling_time_s(band).unwrap().unwrap();
-            // on the band there, inside it ever after
+            // on the band there, and inside it afterwards
             close((model.step_value(settled) - 1.0).abs(), band / 100.0, 1e-9);
             for step in 1..2000 {
                 let later = settled * (1.0 + 1e-3 * f64::from(step));

@@ -115,8 +115,8 @@ fn a_linkage_is_a_lever_about_a_joint() {
     assert!(circles(&circuit(|_| {})).iter().all(|circle| circle.x < 450.0), "no lever without a linkage");
 }
 
-/// An additional triangle is the head of an arrow through the gas; a valve has two of its own,
-/// which meet in one point between the chamber's port and the gas.
+/// An additional triangle is the head of an arrow through the gas; a valve itself has two, which
+/// meet in one point between the chamber's port and the gas.
 #[test]
 fn an_arrow_goes_through_what_is_adjusted() {
     let with = |kind: Option<AccumulatorSymbol>| circuit(|schematic| schematic.line_a.accumulator = kind);

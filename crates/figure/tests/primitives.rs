@@ -97,8 +97,8 @@ fn a_point_out_of_range_or_not_a_number_splits_the_line() {
 
 #[test]
 fn a_cut_polygon_has_the_area_of_the_intersection() {
-    // ORIGIN: analytic. A square of side 40 about the corner (110, 90) shares 20 x 20 with the
-    // frame.
+    // ORIGIN: analytic. A square of side 40 about the corner (110, 90) has 20 x 20 in common with
+    // the frame.
     let square = [point(90.0, 70.0), point(130.0, 70.0), point(130.0, 110.0), point(90.0, 110.0)];
     let inside = clip::polygon(&square, &FRAME);
     let area: f64 =

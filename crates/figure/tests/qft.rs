@@ -54,7 +54,7 @@ fn area(edge: &Boundary) -> f64 {
 }
 
 /// |T| <= M for one plant forbids exactly the inside of the contour of M (its discriminant is that of the quadratic in the
-/// gain), so the traced edge and the contour are two ways to the same curve, tips included.
+/// gain), so the traced edge and the contour are two computations of one curve, tips included.
 #[test]
 fn the_bound_of_one_plant_is_the_contour() {
     let limit: f64 = 1.2;

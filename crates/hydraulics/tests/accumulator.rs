@@ -41,8 +41,8 @@ fn ten_millilitres_of_gas_do_the_work_of_the_hose() {
     assert!((loaded / idle - 1.028_21).abs() < 1e-5, "{}", loaded / idle);
 }
 
-/// All results of the machine at a state as the gas volume tends to zero: proportionally those of
-/// the rig without it.
+/// Results of the machine at a state as the gas volume tends to zero: proportionally those of the
+/// rig without it.
 #[test]
 fn without_gas_it_is_the_rig_without_accumulator() {
     let rates = |gas_volume: Option<f64>| {

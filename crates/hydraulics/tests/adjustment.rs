@@ -83,7 +83,7 @@ fn a_frozen_setting_is_the_declared_accumulator() {
                 machine.rates(&states[0], 1.0, &[0.25, 0.05, change, 0.0], &mut rates[0]);
                 declared.rates(&states[1], 1.0, &[0.25, 0.05], &mut rates[1]);
                 for (rates, of) in rates.iter_mut().zip(bladders.into_iter().flatten()) {
-                    // that of the oil pressure
+                    // oil pressure
                     rates[7] /= of.rate(pressure, [1.0, 0.0]);
                 }
                 for (one, other) in rates[0].iter().zip(&rates[1]) {
@@ -187,8 +187,8 @@ fn a_swinging_stiffness_pumps_half_its_rate_times_the_square() {
     }
 }
 
-/// Oil and gas behind a valve, with a flow into the oil: both pressures, and the work of flow and
-/// valve.
+/// Oil and gas separated by a valve, with a flow into the oil: both pressures, and the work of flow
+/// and valve.
 fn switched(
     start: [f64; 2],
     compliance: f64,
@@ -238,7 +238,7 @@ fn switching_loses_what_two_compliances_lose() {
     assert_eq!(kept, [50e5, 20e5, 0.0, 0.0]);
 }
 
-/// For any flow at a constant opening, the output energy never exceeds the input.
+/// Output energy never exceeds the input for any flow at a constant opening.
 #[test]
 fn a_frozen_opening_is_passive() {
     for number in 0..24 {
@@ -285,8 +285,8 @@ fn a_frozen_opening_is_passive() {
     }
 }
 
-/// In the linear plant a valve without resistance has no effect, and one that passes no flow
-/// removes the accumulator.
+/// The linear plant has two limits: a valve without resistance has no effect, and one that passes
+/// no flow removes the accumulator.
 #[test]
 fn its_conductance_has_two_limits() {
     let gas = GAS.compliance(35e5);

@@ -69,7 +69,7 @@ pub(super) fn gas_valves(number: u64) -> [Option<Adjustment>; 2] {
     })
 }
 
-/// Compliances in m3/Pa less that of gas behind necks and with heat.
+/// Compliances in m3/Pa less that of gas with necks and with heat exchange.
 pub(super) fn without_branches(
     components: &Components,
     pressures: [f64; 2],
@@ -122,7 +122,7 @@ pub(super) fn yielding(
     Some(YieldingSupply::new(unit, &balance, drops, &settled, SpoolDirection::Extending))
 }
 
-/// The second number is the gain from the load's velocity to the command, V s/m.
+/// Machine, and the gain from the load's velocity to the command, V s/m.
 pub(super) struct Commanded(pub(super) Machine, pub(super) f64);
 
 impl System<f64> for Commanded {

@@ -200,8 +200,8 @@ fn harder_back() -> LuGre {
     LuGre { curve: Stribeck { retracting, ..curve() }, bristle_stiffness: 1e7, bristle_damping: 200.0 }
 }
 
-/// Each direction has the curve of a friction with its levels both ways, and at a reversal neither
-/// force nor rate of the bristles jumps, for any deflection.
+/// Friction by direction has in each direction the curve of a friction with its levels in both
+/// directions, and at a reversal neither force nor rate of the bristles jumps, for any deflection.
 #[test]
 fn friction_by_direction_is_one_friction_for_each_and_continuous_between_them() {
     let both = harder_back();
@@ -219,8 +219,8 @@ fn friction_by_direction_is_one_friction_for_each_and_continuous_between_them() 
     assert!((more - less).abs() < 1e-5, "{more} {less}");
 }
 
-/// In slow reciprocation the bristles carry -g of retracting and g of extending alternately; the
-/// energy of a whole cycle is the sum of both over the distance.
+/// Bristles in slow reciprocation carry -g of retracting and g of extending alternately; the energy
+/// of a whole cycle is the sum of both over the distance.
 #[test]
 fn a_slow_cycle_takes_the_friction_of_each_direction() {
     let both = harder_back();

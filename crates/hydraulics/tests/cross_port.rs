@@ -126,7 +126,7 @@ fn the_impedance_stays_passive() {
     }
 }
 
-/// All results of the machine as the valve vanishes: those of the machine without it.
+/// Results of the machine for a vanishing valve: those of the machine without it.
 #[test]
 fn a_valve_that_is_shut_is_none() {
     let rates = |cross_port: Option<CrossPort>| {

@@ -50,8 +50,8 @@ fn driven(
     *state.first_chunk().unwrap()
 }
 
-/// In the linear plant a short time constant gives isothermal gas, a long one adiabatic gas, and
-/// one between them neither.
+/// The time constant has two limits in the linear plant: a short one gives isothermal gas, a long
+/// one adiabatic gas, and one between them neither.
 #[test]
 fn the_time_constant_has_two_limits() {
     let isothermal = GAS.compliance(35e5);
@@ -93,8 +93,8 @@ fn small_motions_are_a_lead_of_gamma() {
     assert!((later.time / (1.4 * 3.0) - 1.0).abs() < 1e-12);
 }
 
-/// At constant volume the gas approaches the temperature of its wall exponentially, and its
-/// pressure with it.
+/// Gas at constant volume approaches the temperature of its wall exponentially, and its pressure
+/// with it.
 #[test]
 fn held_gas_cools_exponentially() {
     let gas = RelaxingGas { gas: GAS, time_constant: 0.7 };
@@ -179,8 +179,7 @@ fn a_machine_with_fast_gas_is_the_polytropic_one() {
     assert!(heated[6].abs() > 1e-3);
 }
 
-/// For any flow, no more energy leaves the gas than enters it: with the pressure counted from its
-/// rest.
+/// Gas under any flow: no more energy leaves than enters, with the pressure counted from its rest.
 #[test]
 fn it_is_passive_under_random_flows() {
     for number in 0..64 {
@@ -262,7 +261,7 @@ fn too_much_pressure_is_told() {
     assert!(refused.contains("line.b.accumulator.maximum_pressure"), "{refused}");
 }
 
-/// A zero time constant, and gas with an exponent of its own as well, are rejected by their path.
+/// A zero time constant, and gas with a stated exponent in addition, are rejected by their path.
 #[test]
 fn impossible_heat_is_refused() {
     let polytropic = Accumulator { polytropic_exponent: 1.4, ..GAS };

@@ -63,7 +63,7 @@ fn published_closed_loop_fails_between_447_and_921_rad_per_s() {
     }
 }
 
-/// All three conditions, and the band found by the passivity test.
+/// Passivity conditions, all three, and the band found by the passivity test.
 #[test]
 fn passivity_of_open_and_published_closed_loop() {
     let open = passivity(&open_loop_impedance(&model()).unwrap()).unwrap();
@@ -97,7 +97,7 @@ fn asymptote(kind: AsymptoteKind, controller: Option<&TransferFunction>) -> Asym
     *all.iter().find(|asymptote| asymptote.kind == kind).unwrap()
 }
 
-/// Each asymptote compared with the model, far into its range.
+/// Asymptotes compared with the model, each far into its range.
 #[test]
 fn model_follows_its_asymptotes() {
     let proportional = TransferFunction::gain_only(2.73e-4);
@@ -116,7 +116,7 @@ fn model_follows_its_asymptotes() {
         assert!(near(ratio(AsymptoteKind::LowFrequency, 1e-5), 1e-3), "{controller:?}");
         assert!(near(ratio(AsymptoteKind::SensorLimit, 1e6), 1e-4), "{controller:?}");
     }
-    // the plateau is between the loop's bandwidth and the frequency where the mass takes over.
+    // the plateau is between the loop's bandwidth and the frequency above which the mass dominates.
     let open = open_loop_impedance(&model()).unwrap();
     let plateau = asymptote(AsymptoteKind::CompliancePlateau, None);
     assert_eq!((plateau.power, plateau.to), (-1, compliance_hidden_above(2.24e6, 13.1)));
@@ -159,7 +159,7 @@ fn asymptotes_that_are_nearest_nowhere_are_left_out() {
     let all = [AsymptoteKind::LowFrequency, AsymptoteKind::CompliancePlateau, AsymptoteKind::SensorLimit];
     let nominal = nominal_plant();
     assert_eq!(kinds(&nominal, None), all);
-    // without leakage the spring applies from the lowest frequency
+    // the spring applies from the lowest frequency if there is no leakage
     let tight = LinearParameters { flow_pressure_coefficient: 0.0, ..nominal };
     assert_eq!(kinds(&tight, None), all[1..]);
     // a loop faster than sqrt(K_H/M) leaves no plateau: its damper A/(K_qU K_p) crosses the spring
@@ -168,7 +168,7 @@ fn asymptotes_that_are_nearest_nowhere_are_left_out() {
     assert_eq!(kinds(&nominal, Some(&fast)), [all[0], all[2]]);
 }
 
-/// Above sqrt(K_H/M) a softer fluid no longer softens the contact.
+/// A softer fluid no longer softens the contact above sqrt(K_H/M).
 #[test]
 fn mass_hides_the_compliance() {
     let at = |hydraulic_stiffness, frequency| {
@@ -195,7 +195,7 @@ fn load_step_leaves_no_force() {
     // a gain of one, as in the proof, is unstable for this plant: there is no final value
     let unstable = closed(&TransferFunction::gain_only(1.0));
     assert_eq!(final_force_after_load_step(&unstable, 5e-3), None);
-    // ORIGIN: analytic, without leakage and feedback the springs keep K_eq x
+    // ORIGIN: analytic, without leakage and feedback the springs hold K_eq x
     let tight = LinearParameters { flow_pressure_coefficient: 0.0, ..nominal_plant() };
     let force = final_force_after_load_step(&linear_model(&tight).unwrap().load_position, 5e-3).unwrap();
     assert!((force / (-2.24e6 * 2e7 / 2.224e7 * 5e-3) - 1.0).abs() < 1e-9);

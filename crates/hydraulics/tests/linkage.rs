@@ -98,7 +98,7 @@ fn a_triangle_is_the_law_of_cosines() {
     }
 }
 
-/// Both branches, the joint's angle counted in the sense in which it grows.
+/// Closure of a four-bar on both branches, with the joint's angle counted in its growing direction.
 #[test]
 fn a_four_bar_closes() {
     // ORIGIN: recomputed by comparisons/recompute_linkage.py
@@ -223,7 +223,7 @@ fn swings(rig: Components, expected: [[f64; 3]; 3]) {
     let start = StartValues { position: 0.02, pressure_a: 30e5, pressure_b: 15e5, ..StartValues::default() };
     let beginning = machine.start(&start).unwrap();
     let mut state = beginning.state.clone();
-    // behind a spring that is relaxed at 0.8 rad
+    // the spring is relaxed at 0.8 rad
     let relaxed = 0.8;
     state[6] += beginning.inputs[0] - relaxed;
     let signal =

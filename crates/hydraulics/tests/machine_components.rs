@@ -59,7 +59,7 @@ fn load_step(time: f64) -> [f64; 2] {
 /// Closed loop of 5 s for the comparison of solvers: PI controller and prefilter, 4 kN at 2 s, 5 mm
 /// of load at 3 s.
 ///
-/// ORIGIN: other tool, CVODE at a tolerance of 1e-12 on the same equations written in C
+/// ORIGIN: other tool, CVODE at a tolerance of 1e-12 on equal equations written in C
 #[test]
 fn the_benchmark_runs_as_the_reference_says() {
     let machine = machine_of(benchmark_components(), &MachineOptions::default());
@@ -127,7 +127,7 @@ fn spool_run(imperfection: &SpoolImperfection, duration: f64, command: impl Fn(f
     track
 }
 
-/// From 0 up to 1, down to -1 and up again, four times a period.
+/// Triangle from 0 up to 1, down to -1 and up again, four times a period.
 fn triangle(phase: f64) -> f64 {
     let phase = (phase + 0.25).rem_euclid(1.0);
     1.0 - 4.0 * (phase - 0.5).abs()
@@ -151,8 +151,8 @@ fn a_slow_cycle_finds_null_at_bias_and_half_width() {
 }
 
 /// A slow test and the machine have equal openings: that of the memories less the lag of the spool
-/// behind a steadily moving command. The memories of the machine follow the late spool: next to a
-/// reversal that changes the opening by up to twice the lag.
+/// relative to a steadily moving command. The memories of the machine follow the lagging spool:
+/// next to a reversal that changes the opening by up to twice the lag.
 #[test]
 fn the_machine_is_as_late_as_a_slow_test_says() {
     let spool = measured_spool();

@@ -127,7 +127,7 @@ pub(super) fn machine_of(components: Components, options: &MachineOptions) -> Ma
 pub(super) fn check(machine: &Machine, motion: &Motion, start: &StartValues, duration: f64, width: f64) {
     let beginning = machine.start(start).unwrap();
     let motion = Motion { ground: beginning.inputs[0], ..*motion };
-    // heat flows both ways between gas and wall
+    // heat flows in both directions between gas and wall
     let mut heats = false;
     for Closing { name, gap, throughput, lost, least_loss } in
         run(machine, &motion, &beginning.state, duration, width)
@@ -276,7 +276,7 @@ pub(super) fn check_instant(name: &str, machine: &Machine, state: &[f64], comman
         let size = growth.abs().max(inflow.abs()).max(lost.abs());
         assert!(gap.abs() <= 1e-9 * size, "{account} of {name}: {gap} of {size}");
         if index >= OIL_ACCOUNTS.len() {
-            // heat flows both ways between gas and wall
+            // heat flows in both directions between gas and wall
             let only_lost = !(account.starts_with("gas_heat") || name.contains("heat") && *account == "rig");
             assert!(stored.value() >= 0.0, "{account} of {name}: {stored:?}");
             assert!(!only_lost || lost >= -1e-12 * size, "{account} of {name}: {lost}");

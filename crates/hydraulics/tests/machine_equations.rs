@@ -277,7 +277,7 @@ fn forces_that_are_told_accelerate_the_piston() {
     assert!(stopped > 20, "{stopped}");
 }
 
-/// At an operating point nothing moves, for any options of the machine.
+/// Machines at an operating point do not move, for any of their options.
 #[test]
 fn rests_do_not_move() {
     for machine in machines() {

@@ -18,7 +18,7 @@ use phea_hydraulics::two_pressure::{TwoPressureModel, linearize, two_pressure_li
 use crate::machine_equations::{Noise, machines, rates_of, some_state};
 
 /// State, command and inputs with the derivatives of the first, of the next and so on by
-/// themselves: a few from this one on.
+/// themselves: a few, beginning with this one.
 fn seeded(
     (state, command, inputs): (&[f64], f64, &[f64]),
     first: usize,

@@ -14,9 +14,9 @@ use phea_hydraulics::plant::{
 
 use super::plant_in_motion::drawn;
 
-/// A filter, an error of the gain and a delay of the measured velocity: the machine's own
-/// derivatives with K_x (1 + e) H_v e^(-s tau), behind lines in motion; with lumped lines and
-/// without delay the quotient of polynomials, which without error equals that without sensor.
+/// A filter, a gain error and a delay of the measured velocity: the machine's own derivatives with
+/// K_x (1 + e) H_v e^(-s tau), with lines in motion; with lumped lines and without delay the
+/// quotient of polynomials, which without error equals that without sensor.
 #[test]
 fn a_measured_feed_forward_is_the_machine_with_what_its_sensor_shows() {
     for number in 0..36 {

@@ -238,7 +238,7 @@ fn turning_machines() -> Vec<(&'static str, Machine)> {
     let at_chambers = |rig| Components { accumulators: [gas(2e-5, 8e5, 1.4), gas(5e-6, 3e5, 1.0)], ..rig };
     let seeping = Cylinder { external_leakage: Some(2e-12), ..rig.cylinder };
     let vane = Components { cylinder: seeping, ..rig };
-    // such a motor discharges on one side the flow that it takes in on the other
+    // a motor of this kind discharges on one side the flow that it takes in on the other
     let turning = Cylinder { area_b: seeping.area_a, stroke: ActuatorStroke::Unlimited, ..seeping };
     let motor = Components { cylinder: turning, ..rig };
     let air = Some(EntrainedAir { volume_fraction: 0.02, polytropic_exponent: 1.4 });

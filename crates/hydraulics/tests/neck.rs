@@ -29,14 +29,14 @@ fn machine(gas: [Option<Accumulator>; 2], necks: [Option<Neck>; 2]) -> Machine {
     machine_of(Components { accumulators: gas, necks, ..rig }, &MachineOptions::default())
 }
 
-/// Bladder of gas behind a neck.
+/// Bladder of gas with a neck.
 pub(super) fn bladder(gas: &Accumulator, neck: &Neck) -> Bladder {
     let absolute = gas.precharge_pressure + 101_325.0;
     let softness = neck.compliance * gas.polytropic_exponent * absolute / gas.gas_volume;
     Bladder { precharge_pressure: gas.precharge_pressure, softness }
 }
 
-/// Plants with these compliances and this gas behind necks: lumped, and without polynomials; with a
+/// Plants with these compliances and this gas with necks: lumped, and without polynomials; with a
 /// constant supply and with one that yields.
 pub(super) fn responses(
     compliances: [f64; 2],
@@ -65,8 +65,8 @@ pub(super) fn responses(
         .collect()
 }
 
-/// Largest relative difference between the plants of a chamber A with gas behind a neck of this
-/// length, and with these compliances.
+/// Largest relative difference between the plant of a chamber A with gas behind a neck of this
+/// length, and the plant with these compliances.
 fn apart(length: f64, compliances: [f64; 2], frequency: f64) -> f64 {
     let gas = GasBranch::of(3e-12, None, Some(&Neck::round([6e-3, length], OIL, 1.5)));
     let with = responses([8e-13, 9e-13], [Some(gas), None], frequency);
@@ -74,8 +74,8 @@ fn apart(length: f64, compliances: [f64; 2], frequency: f64) -> f64 {
     gaps.map(|(with, without)| (with / without - 1.0).norm_sqr().sqrt()).fold(0.0, f64::max)
 }
 
-/// A neck whose length tends to zero has no effect; one whose length tends to infinity shuts its
-/// gas off; between them it does neither.
+/// Limits of a neck: if its length tends to zero it has no effect; if it tends to infinity the gas
+/// is shut off; between them it does neither.
 #[test]
 fn a_neck_has_two_limits() {
     let (lumped, alone) = ([8e-13 + 3e-12, 9e-13], [8e-13, 9e-13]);
@@ -100,7 +100,7 @@ fn without_inertance_and_resistance_there_is_none() {
     }
 }
 
-/// At a chamber of constant pressure, gas and neck are a damped oscillator.
+/// Gas and neck are a damped oscillator at a chamber of constant pressure.
 #[test]
 fn it_rings_at_the_helmholtz_resonance() {
     let gas = Accumulator { gas_volume: 2e-5, precharge_pressure: 10e5, polytropic_exponent: 1.4 };
@@ -136,7 +136,7 @@ fn it_rings_at_the_helmholtz_resonance() {
     }
 }
 
-/// Gas and neck of either side, of any size and index.
+/// Gas and neck of either side, with any size and index.
 fn drawn(number: u64) -> [(Accumulator, Neck); 2] {
     let mut state = stream(44, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
@@ -171,9 +171,9 @@ impl Shaking {
     }
 }
 
-/// For any drive at the port: energy that has entered neck and gas, less the increase of their
-/// content, has been lost, and this loss only grows while the gas is in use, as it is in these
-/// motions.
+/// Loss of neck and gas for any drive at the port: energy that has entered, less the increase of
+/// their content, has been lost, and this loss only grows while the gas is in use, as it is in
+/// these motions.
 #[test]
 fn it_is_passive_under_random_pressures_of_its_port() {
     let places = ["neck_a", "accumulator_a", "neck_b", "accumulator_b"]
@@ -254,7 +254,8 @@ fn it_is_empty_at_the_pressure_of_its_gas() {
     }
 }
 
-/// While the gas is shut off and oil leaves the neck, its pressure may fall below vapour pressure.
+/// The pressure in a neck may fall below vapour pressure while the gas is shut off and oil leaves
+/// the neck.
 #[test]
 fn oil_in_a_neck_cavitates() {
     let gas = Accumulator { gas_volume: 2e-5, precharge_pressure: 20e5, polytropic_exponent: 1.4 };

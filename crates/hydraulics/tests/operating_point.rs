@@ -82,7 +82,7 @@ fn every_equilibrium_balances() {
     }
 }
 
-/// At full opening leakage hardly matters, and the speed is that of two edges in series.
+/// Leakage hardly matters at full opening, and the speed is that of two edges in series.
 #[test]
 fn speed_at_full_opening_is_the_velocity_gain() {
     for actuator in [Actuator::new(rig()).unwrap(), asymmetric()] {

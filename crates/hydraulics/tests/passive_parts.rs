@@ -45,7 +45,7 @@ fn line(compliance: f64) -> Line {
     Line::Volume { volume: 2e8 * compliance, effective_bulk_modulus: 2e8 }
 }
 
-/// Cylinder of the reference rig behind a valve without flow, without friction.
+/// Cylinder of the reference rig with a valve without flow, without friction.
 fn closed(compliances: [f64; 2]) -> Components {
     let [line_a, line_b] = compliances.map(line);
     let rig = components(line_a, StiffnessModel::ByVolume);
@@ -143,7 +143,7 @@ struct Passed {
 }
 
 /// Run from rest under these strokes of the ground: the power into a port in W, and the energy
-/// stored behind it in J.
+/// stored in the part in J.
 fn run(
     machine: &Machine,
     start: &StartValues,
@@ -226,7 +226,7 @@ fn at_rest(pressure: f64) -> StartValues {
 
 const RUNS: u64 = 8;
 
-/// Both ports of a valve between the chambers: flow from one enters the other.
+/// Flow that enters one port of a valve between the chambers leaves the other.
 #[test]
 fn valves_between_the_chambers_are_passive() {
     for number in 0..2 * RUNS {
@@ -249,8 +249,8 @@ fn valves_between_the_chambers_are_passive() {
     }
 }
 
-/// Gas that is compressed from below its precharge on, where it contains no oil; small steps while
-/// its bladder lifts, and its compliance begins.
+/// Gas that is compressed from below its precharge, where it contains no oil; small steps while its
+/// bladder lifts and its compliance begins.
 #[test]
 fn polytropic_gas_is_lossless() {
     for number in 0..RUNS / 2 {
@@ -313,7 +313,7 @@ fn gas_with_heat_is_passive() {
     }
 }
 
-/// At a constant opening, seen from a chamber at rest.
+/// Gas valve at a constant opening, seen from a chamber at rest.
 #[test]
 fn a_gas_valve_is_passive() {
     for number in 0..RUNS {
@@ -349,7 +349,7 @@ fn with_stroke(stroke: ActuatorStroke) -> Components {
     Components { cylinder: Cylinder { stroke, ..rig.cylinder }, ..rig }
 }
 
-/// Joint of a knee whose angle is prescribed, its torque by the law of cosines.
+/// Joint of a knee whose angle is prescribed, with its torque by the law of cosines.
 #[test]
 fn a_linkage_is_lossless_at_its_joint() {
     let PivotTriangle { cylinder_pivot: a, rod_pivot: b, retracted_length } = knee();
@@ -370,8 +370,8 @@ fn a_linkage_is_lossless_at_its_joint() {
     }
 }
 
-/// Load that oscillates with its weight on a spring, whose ground is moved: linkages of every kind
-/// between it and the oil.
+/// Load that oscillates with its weight on a spring, whose ground is moved, with linkages of every
+/// kind between it and the oil.
 #[test]
 fn a_linkage_is_lossless_before_a_load_with_weight() {
     let stiffness = 8e3;
@@ -392,7 +392,7 @@ fn a_linkage_is_lossless_before_a_load_with_weight() {
     }
 }
 
-/// Through both transitions of its areas, seen from the force at its rest.
+/// Telescopic piston through both transitions of its areas, seen from the force at its rest.
 #[test]
 fn a_telescopic_piston_is_lossless() {
     for number in 0..RUNS {

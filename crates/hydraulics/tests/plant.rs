@@ -229,7 +229,7 @@ fn it_is_the_machine_for_small_motions() {
     }
 }
 
-/// At the equilibrium of a limited pump the machine rests, if the pump delivers the flow taken
+/// A limited pump is in equilibrium where the machine rests, if the pump delivers the flow taken
 /// there; the pressure of the others has fallen lower.
 #[test]
 fn a_limited_pump_settles_where_the_machine_rests() {

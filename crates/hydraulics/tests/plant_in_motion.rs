@@ -1,5 +1,5 @@
-//! The plant behind dynamic lines compared with the machine's own derivatives, delays included, and
-//! with lumped lines.
+//! Plant with dynamic lines compared with the machine's own derivatives, delays included, and with
+//! lumped lines.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -65,9 +65,9 @@ fn loads(number: u64, mass: f64, stiffness: f64, damping: f64) -> (LoadModel, Li
     (sprung, LinearLoad::Yielding { mass, damping, stiffness })
 }
 
-/// Plant behind these lines at the rest of its machine, its piston at a position in m: the leakage
-/// flows through the lines, so that the pressures at the valve's ports differ slightly from those
-/// of the chambers.
+/// Plant with these lines when its machine is at rest, with its piston at a position in m: the
+/// leakage flows through the lines, so that the pressures at the valve's ports differ slightly from
+/// those of the chambers.
 pub(super) fn plant_behind(
     actuator: &Actuator,
     (machine, unit): (&Machine, &PowerUnit),
@@ -133,7 +133,7 @@ fn parts(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> (Components, 
         adjustments: gas_valves(number),
         ..leaking(parts, leakage)
     };
-    // every fifth leaks to the tank as well, from behind its lines
+    // every fifth leaks to the tank as well, from the chamber side of its lines
     let external_leakage = (number % 5 == 3).then_some(1e-14 * pow(1e3, number as f64 / 108.0));
     let parts = Components { cylinder: Cylinder { external_leakage, ..parts.cylinder }, ..parts };
     (parts, models)
@@ -332,7 +332,7 @@ fn poles_of_a_late_plant_are_counted() {
             .command
             .denominator;
         let back = Polynomial::new(fed).sum(&alone.scaled(-1.0));
-        // with a filter the count is that of a longer product of polynomials
+        // the count with a filter is that of a longer product of polynomials
         let filter = RateFilter::FirstOrder { frequency_rad_per_s: 30.0 };
         let lag = Polynomial::new(filter.denominator());
         for delay in [0.0, 1e-3, 1e-2, 4e-2] {

@@ -30,7 +30,7 @@ fn roots(path: &RationalCoefficients<f64>) -> Vec<Complex64> {
     TransferFunction::from_polynomials(&over, &under).unwrap().poles().to_vec()
 }
 
-/// For a fixed load and a fast valve, the oscillating pole w^2 = (K_S + K_H)/M is damped by the
+/// The oscillating pole w^2 = (K_S + K_H)/M is damped, for a fixed load and a fast valve, by the
 /// flow K_qU k p_L, if that is small:
 ///
 /// ```text
@@ -76,7 +76,7 @@ fn a_high_pass_leaves_the_rest_alone() {
     assert!((at_rest(Some(fixed)) / at_rest(None) / expected - 1.0).abs() < 1e-5);
 }
 
-/// Both signs, with each filter or without, of any reading of the pressures.
+/// Feedback with either sign, with each filter or without, of any reading of the pressures.
 fn any(number: u64) -> PressureFeedback {
     let mut state = stream(62, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
@@ -90,8 +90,8 @@ fn any(number: u64) -> PressureFeedback {
     PressureFeedback { filter, ratio: spread(0.3, 2.0) }
 }
 
-/// Late by d, it is H e^(-s d) around the plant without it: the comparison with the machine's
-/// derivatives is in `together`.
+/// Feedback with a delay d is H e^(-s d) around the plant without it: the comparison with the
+/// machine's derivatives is in `together`.
 #[test]
 fn a_delay_turns_what_is_fed_back() {
     for number in 0..24 {
@@ -116,7 +116,7 @@ fn a_delay_turns_what_is_fed_back() {
 
 /// Pressure signal that a loop around the plant samples: closed around the plant without feedback,
 /// it gives the plant with the feedback inside, by command and by the motion of the load or its
-/// ground, as polynomials and behind lines in motion, with a series element and a virtual impedance
+/// ground, as polynomials and with lines in motion, with a series element and a virtual impedance
 /// too.
 #[test]
 fn the_signal_closes_to_the_feedback() {

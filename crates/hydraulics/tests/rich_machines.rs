@@ -153,8 +153,8 @@ fn adjusted_machines() -> [(&'static str, Machine); 3] {
     let at_chambers = |rig| Components { accumulators: [gas(2e-5, 8e5, 1.4), gas(5e-6, 3e5, 1.0)], ..rig };
     let isothermal = Components { accumulators: [gas(2e-5, 8e5, 1.0), gas(5e-6, 3e5, 1.0)], ..by_volume };
     let neck = Some(Neck::round([6e-3, 0.04], [870.0, 46e-6, 1.45e9], 1.5));
-    // gas that is moved, at one chamber behind a neck, and gas behind valves, at one chamber with
-    // heat
+    // gas that is moved, at one chamber with a neck, and gas with valves, at one chamber with heat
+    // exchange
     let adjustment = |part| Some(Adjustment { setting: 0.5, part });
     let more = AdjustedPart::Gas { gas_volume: 8e-6, precharge_pressure: -2e5 };
     let less = AdjustedPart::Gas { gas_volume: -3e-6, precharge_pressure: 1e5 };

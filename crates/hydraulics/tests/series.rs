@@ -386,8 +386,8 @@ pub(super) fn closes_at_any_state(name: &str, machine: &Machine, seed: &mut u64)
     }
 }
 
-/// For any motion of its two ends: from rest, the energy that has entered is never less than the
-/// energy returned.
+/// Element under any motion of its two ends: from rest, the energy that has entered is never less
+/// than the energy returned.
 #[test]
 fn it_is_passive_under_random_motions_of_its_ports() {
     for number in 0..16 {
@@ -409,7 +409,8 @@ fn it_is_passive_under_random_motions_of_its_ports() {
     }
 }
 
-/// From rest, with random motions of both ports of the series element, drawn by this seed.
+/// Checks passivity from rest, with random motions of both ports of the series element, drawn by
+/// this seed.
 pub(super) fn stays_passive(machine: &Machine, seed: u64, number: u64) {
     let series = ENERGY_ACCOUNTS.iter().position(|name| *name == "series").unwrap();
     let mut state = stream(seed, number);

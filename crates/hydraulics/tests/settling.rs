@@ -17,7 +17,7 @@ use phea_hydraulics::reference_rig::{components, cylinder, hose_line, leaking, v
 use phea_hydraulics::servovalve::{Edges, LeakageModel, LeakageShape, OpeningLaw, Servovalve, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
 
-/// Over a box of supply pressures, loads and commands the pressures at standstill are enclosed
+/// The pressures at standstill over a box of supply pressures, loads and commands are enclosed
 /// between tank and supply, for any width of the box.
 #[test]
 fn pressures_at_rest_are_enclosed_between_tank_and_supply() {
@@ -161,7 +161,7 @@ fn leaking_points_are_where_the_machine_rests() {
         let actuator = draw.rig();
         let steady = draw.steady(&actuator);
         if let Steady::Moving { load: SteadyLoad::Pressure(_), .. } = steady {
-            continue; // the machine keeps a force
+            continue; // the machine holds a force
         }
         let leakage = draw.factor(1e-14, 1e-10);
         let leaky = Actuator::new(leaking(*actuator.components(), leakage)).unwrap();

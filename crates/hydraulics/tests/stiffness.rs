@@ -35,7 +35,7 @@ fn modulus_chain_of_the_thesis() {
 
 #[test]
 fn stiffness_of_hose_and_pipe_in_both_models() {
-    // ORIGIN: recomputed by comparisons/recompute_rig.py; thesis 6.4.1 prints 2.24e6 and Table 6.3
+    // ORIGIN: recomputed by comparisons/recompute_rig.py; thesis 6.4.1 prints 2.24e6, and Table 6.3
     // 4.11e6
     let uniform = over_stroke(StiffnessModel::Uniform, &hose_line(), StiffeningMember::Nominal);
     check("uniform centre", uniform.minimum, 2.233e6, 1e3);
@@ -136,8 +136,8 @@ fn softest_position_leaves_the_stroke_when_one_line_is_long() {
         )
         .over_stroke()
     };
-    // with chamber B as the only spring, the stiffness is least when that chamber is largest: at
-    // the A end
+    // the stiffness with chamber B as the only spring is least when that chamber is largest: at the
+    // A end
     assert_eq!((at([&long, &short]).minimum_position, at([&long, &short]).maximum_position), (0.0, 0.5));
     assert_eq!((at([&short, &long]).minimum_position, at([&short, &long]).maximum_position), (0.5, 0.0));
 }
@@ -265,7 +265,7 @@ fn no_hose_is_needed_when_the_chambers_are_soft_enough() {
             stiffness,
         )
     };
-    // ORIGIN: analytic, the wanted stiffness far above 4 beta_0 A/L
+    // ORIGIN: analytic, the required stiffness far above 4 beta_0 A/L
     assert!(matches!(solve(1e9), LineLength::NotNeeded { .. }));
     assert_eq!(solve(0.0), LineLength::OutOfReach);
     assert_eq!(solve(f64::NAN), LineLength::OutOfReach);

@@ -35,8 +35,8 @@ fn with(telescope: Telescope, rig: Components) -> Components {
     Components { cylinder: Cylinder { stroke: ActuatorStroke::Telescopic(telescope), ..rig.cylinder }, ..rig }
 }
 
-/// dV_A/dx = A_A and dV_B/dx = -A_B at every position, within transitions too; likewise the slopes
-/// of the areas.
+/// Derivatives dV_A/dx = A_A and dV_B/dx = -A_B at every position, within transitions too; likewise
+/// the slopes of the areas.
 #[test]
 fn areas_are_the_slopes_of_the_volumes() {
     let cylinder = with(three(0.05), asymmetric()).cylinder;
@@ -95,7 +95,7 @@ fn a_stage_of_the_same_areas_is_none() {
     }
 }
 
-/// Away from transitions K_H is that of the areas and the volumes swept by the stages there.
+/// K_H away from transitions is that of the areas and the volumes swept by the stages there.
 #[test]
 fn stiffness_is_that_of_each_stage() {
     let rig = with(three(1e-6), asymmetric());

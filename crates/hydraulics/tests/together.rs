@@ -240,12 +240,12 @@ struct Drawn {
     /// Motion of its ground for one metre of the rod's end.
     turned: f64,
     plant: LinearPlant,
-    /// Lines with dynamics of their own.
+    /// Lines with dynamics.
     behind: Option<BehindLines>,
     parts: Vec<&'static str>,
 }
 
-/// Actuator whose piston is at a position in m at the rest of its machine.
+/// Actuator whose piston is at a position in m when its machine is at rest.
 struct Resting {
     actuator: Actuator,
     lines: Option<[DynamicLine; 2]>,
@@ -256,7 +256,7 @@ struct Resting {
     rest: InitialCondition,
 }
 
-/// Parts of a rig, and its gas, whose parts count if it is in use.
+/// Parts of a rig, and its gas, whose parts count if the gas is in use.
 fn parts(draw: &mut Draw, number: u64, kinds: &[Linkage; 4]) -> (Components, [Draw; 2]) {
     let motor = draw.part("motor", 0.25);
     let linkage = if motor { None } else { linkage(draw, kinds) };

@@ -136,7 +136,7 @@ fn held_back(transmission: Transmission) -> Vec<f64> {
     LinearSeries::of_components(&rig(transmission), 0.0).unwrap().held_back().unwrap()
 }
 
-/// p_rod = b q + ... of a line with segments behind a valve: F_s = ... + A^2 s b X_L.
+/// Pressure p_rod = b q + ... of a line with segments and a valve: F_s = ... + A^2 s b X_L.
 #[test]
 fn its_line_is_the_line_in_segments() {
     for number in 0..60 {
@@ -241,8 +241,8 @@ fn slow_motions_meet_all_of_its_compliance() {
     }
 }
 
-/// In steady motion all oil moves at one velocity, and its resistance takes R_0 A^2 v from the
-/// force, and R_0 A v from the pressure.
+/// Steady motion: all oil moves at one velocity, and its resistance takes R_0 A^2 v from the force,
+/// and R_0 A v from the pressure.
 #[test]
 fn steady_motion_costs_the_resistance_of_the_line() {
     for number in 0..12 {
@@ -322,7 +322,7 @@ fn ledgers_close() {
             check(&machine_of(Components { valve, ..parts }, &options), &motion, &start, 0.1, 5e-6);
         }
     }
-    // with the rig's lines in segments
+    // the rig's lines are in segments
     let parts = rig(transmission(2));
     let model = LineModel::Segments { count: 3, friction: LaminarFriction::Steady, relaxation_time: None };
     let line = DynamicLine::new(&hose_line(), &parts.fluid, 35e5, StiffeningMember::Nominal, &model).unwrap();
@@ -342,8 +342,8 @@ fn what_is_stored_changes_by_what_enters_and_is_lost() {
     }
 }
 
-/// For any motion of its two ends: from rest, the energy that has entered is never less than the
-/// energy returned.
+/// Transmission under any motion of its two ends: from rest, the energy that has entered is never
+/// less than the energy returned.
 #[test]
 fn it_is_passive_under_random_motions_of_its_ports() {
     for number in 0..12 {
@@ -381,8 +381,8 @@ fn the_port_of_a_loop_counts_what_the_oil_holds_back() {
     }
 }
 
-/// Above all resonances the load meets only the oil at its own piston, and the line states the
-/// frequency limit.
+/// The only impedance at the load above all resonances is that of the oil at its own piston, and
+/// the line states the frequency limit.
 #[test]
 fn at_last_the_load_meets_the_oil_at_its_piston() {
     for number in (0..40).filter(|number| number % 5 < 2) {

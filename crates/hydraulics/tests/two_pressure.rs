@@ -127,7 +127,7 @@ fn rates_of_the_nonlinear_model() {
     }
 }
 
-/// Run with recorded numbers the equations become data that give identical bits.
+/// Recorded equations, run with numbers, become data that give identical bits.
 #[test]
 fn recorded_rates_are_the_rates() {
     let actuator = Actuator::new(rigs()[2]).unwrap();
@@ -151,7 +151,7 @@ fn recorded_rates_are_the_rates() {
     }
 }
 
-/// A passive actuator stays passive for any edges, areas and position: leakage and friction only
+/// A passive actuator remains passive for any edges, areas and position: leakage and friction only
 /// absorb energy.
 #[test]
 fn open_loop_impedance_of_the_two_pressure_model_is_passive() {

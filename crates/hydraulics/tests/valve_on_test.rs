@@ -10,7 +10,7 @@ use phea_hydraulics::servovalve::{
 
 const SUPPLY: Supply = Supply { pressure: 70e5, tank_pressure: 2e5 };
 
-/// From far below null to far above, with fine steps over the leakage.
+/// Openings from far below null to far above, with fine steps over the leakage.
 fn openings() -> Vec<f64> {
     let fine = (-100..=100).map(|step| f64::from(step) * 5e-3);
     fine.chain((-20..=20).map(|step| f64::from(step) * 0.5)).collect()

@@ -44,8 +44,8 @@ fn check(found: Complex64, expected: Complex64, what: &str) {
     assert!(error < 1e-7, "{what}: {error}");
 }
 
-/// Behind dynamic lines, and with the velocity of the load fed forward with a delay: force and
-/// motion from the machine's derivatives.
+/// Output of a rig with dynamic lines, and with the velocity of the load fed forward with a delay:
+/// force and motion from the machine's derivatives.
 #[test]
 fn the_output_is_that_of_the_machine() {
     for number in 0..36 {

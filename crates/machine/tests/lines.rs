@@ -1,5 +1,5 @@
-//! The machine behind dynamic lines: their limits, and comparison with each other, by the
-//! production method.
+//! The machine with dynamic lines: their limits, and comparison with each other, by the production
+//! method.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -64,8 +64,8 @@ fn largest_difference(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// A capacity without segments behind the valve equals the lumped line, for any stiffness model of
-/// the chamber.
+/// A single capacity at the valve, without segments, equals the lumped line, for any stiffness
+/// model of the chamber.
 #[test]
 fn one_capacity_is_the_lumped_line() {
     let compliance = hose_line().compliance(1.45e9, StiffeningMember::Nominal);
@@ -79,7 +79,7 @@ fn one_capacity_is_the_lumped_line() {
     assert_eq!(lumped.ledger(&state, &[0.31, 0.01]), capacity.ledger(&state, &[0.31, 0.01]));
 }
 
-/// In slow motion every line acts as its compliance; in fast motion they differ.
+/// Lines in slow motion act as their compliance; in fast motion they differ.
 #[test]
 fn slow_motions_see_the_lumped_line() {
     let compare = |line: DynamicLine, motion_s: f64| {

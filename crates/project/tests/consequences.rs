@@ -13,7 +13,7 @@ use std::path::Path;
 use phea_project::source::Memory;
 use phea_project::{self as project, Severity};
 
-/// All valid projects of the corpus, and the examples.
+/// Valid projects of the corpus, and the examples.
 fn projects() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut found = Vec::new();
@@ -57,7 +57,7 @@ fn a_refused_number_is_the_only_error() {
     assert!(wrong.is_empty(), "{} of {count}\n{}", wrong.len(), wrong.join("\n"));
 }
 
-/// All projects of a folder and of its subfolders.
+/// Adds the projects of a folder and of its subfolders.
 fn below(folder: &Path, found: &mut Vec<(String, String)>) {
     for file in std::fs::read_dir(folder).unwrap() {
         let path = file.unwrap().path();

@@ -16,8 +16,8 @@ fn the_schema_beside_the_book_is_what_the_command_prints() {
     assert!(same, "write it anew: cargo run -p phea-cli -- schema --out book/src");
 }
 
-/// All keys below a schema, by name, and the words of every choice; without the names of signals,
-/// which are columns of the simulation's table.
+/// Adds the keys below a schema, by name, and the words of every choice; without the names of
+/// signals, which are columns of the simulation's table.
 fn names(schema: &Value, found: &mut BTreeSet<String>) {
     match schema {
         Value::Object(members) => {

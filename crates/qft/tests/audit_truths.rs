@@ -19,7 +19,7 @@ use phea_qft::verification::{
     Audit, AuditProblem, PlantPoint, StabilityReason, TOLERANCE_DB, TrackingJudgement, Verdict,
 };
 
-/// Name, nominal value, least, greatest.
+/// Name of a parameter, nominal value, least, greatest.
 type Range = (&'static str, f64, f64, f64);
 
 fn family<F>(ranges: &[Range], spacing: Spacing, plant: F) -> Family
@@ -309,7 +309,7 @@ fn a_gain_at_infinity_that_passes_one_inside_the_box_is_met() {
     let found = audit(&build(0.1), &controller, &specifications);
     assert_eq!(found.stability.verdict, Verdict::Violated);
     assert!((value(&found.stability.plant) - 0.37).abs() < 0.001_f64.sqrt());
-    // without dead time (1 + g) s + 3 + 2 g = 0 has one stable pole
+    // (1 + g) s + 3 + 2 g = 0 has one stable pole without dead time
     let found = audit(&build(0.0), &controller, &specifications);
     assert_eq!(found.verdict, Verdict::Met);
 }

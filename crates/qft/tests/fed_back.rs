@@ -63,9 +63,9 @@ fn close(found: Complex64, expected: Complex64, tolerance: f64) {
     assert!(error < tolerance, "{found} is not {expected}: {error:e}");
 }
 
-/// Plants P = 1/((s + a)(s + b)), P_v = c s P and V_d = s (s + 1) P by partial fractions: P' =
-/// P/(1 - K P_v), Pd' = Pd + K V_d P', with delays of fractions of a sample, of whole samples, and
-/// with a sensor whose delay completes a sample.
+/// Plants P = 1/((s + a)(s + b)), P_v = c s P and V_d = s (s + 1) P by partial fractions, with P' =
+/// P/(1 - K P_v) and Pd' = Pd + K V_d P': with delays of fractions of a sample, of whole samples,
+/// and with a sensor whose delay completes a sample.
 #[test]
 fn it_is_the_closed_form_of_two_lags() {
     let (a, b, c, w) = (4.0, 30.0, 3.0, 90.0);
@@ -104,7 +104,7 @@ fn it_is_the_closed_form_of_two_lags() {
     let late = Timing { rate_feed_forward: 1.0, delay_s: 0.1, ..Timing::default() };
     let refused = compensation(late, vec![], TransferFunction::gain_only(1.0)).member(plant.clone());
     assert!(matches!(refused, Err(LinearError::NotRational { .. })));
-    // without delay it is a quotient in continuous time
+    // the path is a quotient in continuous time if there is no delay
     let at_once = Timing { rate_feed_forward: 2.0, ..Timing::default() };
     let around = compensation(at_once, vec![], TransferFunction::gain_only(1.0));
     let s = Complex64::new(0.0, 7.0);
@@ -158,7 +158,7 @@ fn a_sensor_of_the_rate_is_a_path_of_its_own() {
             }
         }
     }
-    // without delay it is a quotient in continuous time
+    // the path is a quotient in continuous time if there is no delay
     let rate_sensor = RateSensor { filter, delay_s: 0.0 };
     let at_once = |rate_sensor| Timing { rate_feed_forward: 2.0, rate_sensor, ..Timing::default() };
     let around = |timing| compensation(timing, vec![], TransferFunction::gain_only(1.0));
@@ -214,7 +214,8 @@ impl Drawn {
         }
     }
 
-    /// Both outputs from one input, with the rate after a lag w/(s + w) if there is one.
+    /// State space of both outputs from one input, with the rate after a lag w/(s + w) if there is
+    /// one.
     fn states(&self, lag: Option<f64>) -> StateSpace {
         let count = if lag.is_some() { 5 } else { 4 };
         let mut a = DMatrix::zeros(count, count);
@@ -410,7 +411,7 @@ fn hidden_polynomials_fold_onto_the_same() {
     }
 }
 
-/// The audit of a family finds the result of a dense grid of responses.
+/// The audit of a family finds the worst case of a dense grid of responses.
 #[test]
 fn an_audit_sees_it() {
     let gains = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 1.0, maximum: 2.0 };

@@ -91,7 +91,7 @@ fn it_is_the_closed_form_of_two_lags() {
             }
         }
     }
-    // with a rate that the command also moves there are two paths, which it does not close
+    // the rate that the command also moves gives two paths, which it does not close
     let rate = plant.rate.clone().map(|rate| RateNumerators { command: vec![1.0, 0.0], ..rate });
     let feedback = InnerFeedback { gain: 1.0, ..InnerFeedback::default() };
     let both = Timing { rate_feed_forward: 2.0, ..timing(feedback, 0.0) };
@@ -141,7 +141,7 @@ impl Drawn {
         }
     }
 
-    /// Both outputs from one input.
+    /// State space of both outputs from one input.
     fn states(&self) -> StateSpace {
         let mut a = DMatrix::zeros(4, 4);
         for index in 0..4 {

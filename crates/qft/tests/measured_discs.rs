@@ -94,7 +94,7 @@ fn drawn(state: &mut u64, integrators: usize) -> TransferFunction {
 fn noise_makes_no_verdict_false_and_few_impossible() {
     let frequencies = logarithmic_grid(0.1, 300.0, 200).unwrap();
     let (noise, rows) = (0.03, 200.0);
-    // with 1 - 0.05/n each row is inside, with 95 % probability all of them
+    // 1 - 0.05/n puts each row inside, with 95 % probability all of them
     let wide = noise * (rows / 0.05_f64).ln().sqrt();
     let (mut resolved, mut outcomes) = (0, [0; 3]);
     for draw in 0..60 {
@@ -137,8 +137,8 @@ fn noise_makes_no_verdict_false_and_few_impossible() {
     assert!(resolved >= 50 && met >= 10 && violated >= 10, "{outcomes:?}");
 }
 
-/// Each closed loop over a disc: the worst and the certain margin correspond to the greatest and
-/// the least magnitude of plants sampled within it.
+/// Closed loops over a disc: the worst and the certain margin correspond to the greatest and the
+/// least magnitude of plants sampled within it.
 #[test]
 fn a_disc_is_judged_like_its_plants() {
     // ORIGIN: analytic, images and supports of a circle, sampled

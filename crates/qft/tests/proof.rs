@@ -161,7 +161,7 @@ fn timing(state: &mut u64, sampled: bool) -> Timing {
     Timing { sample_time_s, continuous_prefilter: share(state) < 0.3, ..Timing::default() }
 }
 
-/// One specification of each kind.
+/// A specification of each kind.
 fn six_specifications() -> Vec<Specification> {
     let whole = [0.0, f64::INFINITY];
     let specification = |requirement, band_rad_per_s| Specification {
@@ -280,7 +280,7 @@ fn never_contradicted(random: &RandomProblem, proof: &Proof, values: &[f64], fre
     }
 }
 
-/// One hundred random problems with 500 random plants and frequencies each: no point contradicts a
+/// Random problems, one hundred with 500 random plants and frequencies each: no point contradicts a
 /// proof.
 #[test]
 fn no_plant_contradicts_a_proof() {
@@ -343,7 +343,7 @@ fn a_certificate_that_was_tampered_with_is_rejected() {
             }
         }
     };
-    // a gap, a truncated tree, a reversed direction, dead time where there is none
+    // a gap, a truncated tree, a reversed direction, dead time in a loop without any
     assert!(altered(&|other| each_panel(other, &|panels| drop(panels.remove(1)))));
     assert!(altered(&|other| each_panel(other, &|panels| panels[0].tree.truncate(4))));
     assert!(altered(&|other| each_panel(other, &|panels| {

@@ -197,8 +197,8 @@ fn a_coarse_command_makes_a_limit_cycle() {
     }
 }
 
-/// The last commands of a loop whose reference is a level of the measurement, between two levels of
-/// a coarse command.
+/// Last commands of a loop whose reference is a level of the measurement, between two levels of a
+/// coarse command.
 fn settled_commands(controller: &Controller, quantization: &Quantization) -> Vec<f64> {
     let sampled = controller.sampled(SAMPLE).unwrap();
     let mut state = sampled.at_rest();

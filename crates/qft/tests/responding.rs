@@ -176,7 +176,7 @@ fn poles_are_counted_as_those_of_the_polynomials() {
     assert!(found[0] > 100 && found[1] > 100 && found[2] > 1, "{found:?}");
 }
 
-/// A search counts the poles from a table of the plant that is accurate to 3 %. For every loop
+/// Poles counted by a search from a table of the plant that is accurate to 3 %. For every loop
 /// whose stability such an error cannot change, the result equals that of the polynomials, if the
 /// range of the plant covers the loop below and above its crossovers; otherwise no unstable loop is
 /// called stable. More detailed results from the table agree.

@@ -71,7 +71,7 @@ impl Random {
         roots
     }
 
-    /// A plant of up to six poles whose gain is one at some frequency.
+    /// A plant with up to six poles whose gain is one at some frequency.
     fn plant(&mut self, dead_time_s: f64) -> PlantCoefficients<f64> {
         let poles = 1 + self.below(6);
         let zeros = self.below(poles);
@@ -82,7 +82,7 @@ impl Random {
         plant(numerator.coefficients(), denominator.coefficients(), dead_time_s)
     }
 
-    /// A controller of up to four poles with a gain between 0.01 and 10.
+    /// A controller with up to four poles and a gain between 0.01 and 10.
     fn controller(&mut self) -> TransferFunction {
         let poles = self.below(5);
         let zeros = self.below(poles + 1);
@@ -103,7 +103,7 @@ struct Tally {
     unresolved: usize,
 }
 
-/// One plant in a loop whose controller changes, evaluated in both ways.
+/// A plant in a loop whose controller changes, evaluated by both methods.
 fn compare(member: &Member, compensation: &Compensation, tally: &mut Tally) {
     let status = member_stability(member, compensation).status;
     let other =
@@ -113,7 +113,7 @@ fn compare(member: &Member, compensation: &Compensation, tally: &mut Tally) {
     tally.asked += 1;
     tally.undecided += judgement.undecided_tables;
     match status {
-        // such as a pole at the origin
+        // for example a pole at the origin
         StabilityStatus::NotResolved(_) => {
             assert_eq!(judgement.unstable_plants, 1);
             tally.unresolved += 1;

@@ -191,7 +191,7 @@ fn the_delay_limit_allows_no_loop_more_delay_than_it_bears() {
         let closed = open.feedback(&TransferFunction::gain_only(1.0)).unwrap();
         assert!(closed.is_stable());
         let true_margin = margins(&open).delay_margin_s();
-        // the longest delay whose limit it satisfies, by bisection
+        // the longest delay whose limit is satisfied, by bisection
         let keeps = |delay: f64| {
             let limit = delay_margin_limit(delay).unwrap();
             grid.iter().all(|w| complementary(open.at_frequency(*w)) <= limit.magnitude(*w).unwrap())

@@ -217,7 +217,7 @@ fn rules_of_thumb_follow_the_thesis_and_keep_to_their_band() {
 #[test]
 fn a_root_too_slow_is_refused_at_its_own_settling_time() {
     let lower = |pole: f64| tracking_lower(&LOWER, ExtraRoot::At { rad_per_s: pole }, Translation::Exact);
-    // the lag by itself would settle after ln(100)/p
+    // the lag without the other poles would settle after ln(100)/p
     let fastest = ln(100.0) / LOWER.settling_time_s;
     assert!(lower(fastest * (1.0 + 1e-4)).is_ok());
     assert!(matches!(lower(fastest * (1.0 - 1e-4)), Err(TimeDomainError::ExtraRootTooSlow { .. })));

@@ -102,7 +102,7 @@ fn dead_time_around_a_gain_at_infinity() {
     assert_eq!(status(0.49, 1.0), StabilityStatus::Stable);
     assert_eq!(status(0.51, 1.0), StabilityStatus::Unstable(Instability::GainAtInfinity));
     assert_eq!(status(0.5, 1.0), StabilityStatus::NotResolved(Irresolution::GainAtInfinity));
-    // without dead time it is stable, and tolerates none
+    // the loop without dead time is stable, and tolerates none
     let prompt = found(&[4.0, 2.0], &[1.0, 1.0], 0.0);
     assert_eq!(
         (prompt.status.clone(), prompt.critical_delay.unwrap().delay_s),

@@ -116,7 +116,8 @@ fn what_the_points_do_not_show_is_not_resolved() {
     assert_eq!(status, StabilityStatus::NotResolved(Irresolution::UndampedController));
 }
 
-/// One unstable plant among measured ones is named; no claim is made between them.
+/// Measured families are judged plant by plant: one unstable plant is named; no claim is made
+/// between them.
 #[test]
 fn a_measured_family_is_judged_plant_by_plant() {
     let third_order = |gain: f64| measured(&function(&[gain], &[1.0, 3.0, 3.0, 1.0]), 1e-3, 1e3, 2000);

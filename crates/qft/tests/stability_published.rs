@@ -120,8 +120,8 @@ fn fifth_order<S: Scalar>(p: &[S]) -> PlantCoefficients<S> {
 fn the_published_controller_is_stable_for_the_whole_of_its_table() {
     let found = audited(&thesis_family([3, 3, 5, 3, 3, 3]), &controller(&[0.001, 0.008], &[1.0, 0.0], 0.0));
     assert_eq!((found.finding.verdict, found.finding.evidence), (Verdict::Met, Evidence::Search));
-    // ORIGIN: recomputed independently, a search of the peak of |L/(1+L)| over the box; S + T = 1
-    // keeps |S| within one of it
+    // ORIGIN: recomputed independently, a search of the peak of |L/(1+L)| over the box; because S +
+    // T = 1, |S| is within one of it
     let (peak, frequency, stiffness) = (11.887, 1304.4, 3.71e6);
     assert!((found.finding.largest_real_part.unwrap() + 2.9).abs() < 0.05);
     let closest = found.finding.closest_approach.unwrap();

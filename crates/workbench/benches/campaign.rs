@@ -1,11 +1,11 @@
-//! A campaign on one core beside a loop over CVODE:
-//! `cargo bench -p phea-workbench --bench campaign -- [RUNS]`.
+//! Benchmark of a campaign on one core next to a loop over CVODE: `cargo bench -p phea-workbench
+//! --bench campaign -- [RUNS]`.
 //!
-//! The runs of examples/benchmark/campaign.toml, seed 1: time a run in lanes, one by one, and of
-//! CVODE (BDF with stability-limit detection, 1e-6, the program of benches/peers) on the same
-//! draws, in processor time. The force of 200 runs against the same at tolerance 1e-10, and that
-//! against CVODE at 1e-12. Values are compared, and fail the bench; times are printed and never
-//! asserted. Where CVODE cannot be compiled (Debian: libsundials-dev), only phea is timed.
+//! The runs are those of examples/benchmark/campaign.toml, seed 1: processor time per run in lanes,
+//! one by one, and of CVODE (BDF with stability-limit detection, 1e-6, the program of
+//! benches/peers) on equal draws. The force of 200 runs is compared with that at tolerance 1e-10,
+//! and that with CVODE at 1e-12. Values are compared, and fail the bench; times are printed and
+//! never asserted. If CVODE cannot be compiled (Debian: libsundials-dev), only phea is timed.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a bench talks to the person who started it")]
 #![allow(missing_docs, reason = "a program of its own")]
 
@@ -21,18 +21,17 @@ use phea_workbench::source::Memory;
 
 const CAMPAIGN: &str = include_str!("../../../examples/benchmark/campaign.toml");
 
-/// Runs in lanes; a tenth of them one by one.
+/// Number of runs in lanes; a tenth of them are repeated one by one.
 const RUNS: u64 = 10_000;
-/// Runs that are repeated more exactly.
+/// Number of runs that are repeated more accurately.
 const REPEATED: u64 = 200;
-/// Runs of CVODE, and those at 1e-12.
+/// Number of runs of CVODE, and of those at 1e-12.
 const PEER_RUNS: u64 = 100;
 const PEER_CHECKS: u64 = 5;
-/// Largest error of the force in N that is asked for, of the median run and of all but one in a
-/// hundred.
+/// Largest permitted error of the force in N, for the median run and for all but one in a hundred.
 const MEDIAN_ERROR: f64 = 0.02;
 const RARE_ERROR: f64 = 0.2;
-/// Largest difference in N between two solvers at their most exact.
+/// Largest difference in N between two solvers at their highest accuracy.
 const AGREEMENT: f64 = 5e-3;
 
 /// Parameters of the peer for each path.
@@ -96,7 +95,7 @@ fn bench(runs: u64) -> Result<bool, Box<dyn Error>> {
 
 const ONE_BY_ONE: Effort = Effort { threads: 1, lanes: false };
 
-/// Times of CVODE beside those of phea, and whether the two agree where both are most exact.
+/// Times of CVODE next to those of phea, and the agreement of the two at their highest accuracy.
 fn beside(
     program: &Path,
     plan: &Plan,
@@ -134,7 +133,7 @@ fn plan(settings: &[String]) -> Result<Plan, Box<dyn Error>> {
     Ok(Plan::new(&source, &loaded, 1)?)
 }
 
-/// Processor time of one of so many runs, of this process with all its threads.
+/// Processor time per run of this number of runs, for this process with all its threads.
 fn milliseconds<E: Error + 'static>(
     runs: u64,
     work: impl FnOnce() -> Result<(), E>,
@@ -148,7 +147,7 @@ fn milliseconds<E: Error + 'static>(
     Ok(1e3 * seconds / runs as f64)
 }
 
-/// As Linux counts it, in ticks of a hundredth.
+/// Processor time in the units of Linux, ticks of a hundredth of a second.
 fn processor_seconds() -> Option<f64> {
     let text = fs::read_to_string("/proc/self/stat").ok()?;
     let fields: Vec<&str> = text.rsplit_once(')')?.1.split_whitespace().collect();
@@ -156,7 +155,7 @@ fn processor_seconds() -> Option<f64> {
     Some((ticks(11)? + ticks(12)?) / 100.0)
 }
 
-/// The program of benches/peers; `None` where it cannot be compiled.
+/// The program of benches/peers; `None` if it cannot be compiled.
 fn peer() -> Result<Option<PathBuf>, Box<dyn Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let folder = root.join("target/peers");
@@ -191,7 +190,7 @@ fn cvode(program: &Path, plan: &Plan, run: u64, tolerance: &str) -> Result<(f64,
     Ok((time.parse()?, force.collect::<Result<_, _>>()?))
 }
 
-/// Largest difference; infinite where one is shorter.
+/// Largest difference; infinite if one series is shorter.
 fn largest(one: &[f64], other: &[f64]) -> f64 {
     if one.len() != other.len() {
         return f64::INFINITY;

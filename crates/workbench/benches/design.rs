@@ -1,9 +1,10 @@
-//! The designs of the rig of the examples, timed on one core:
-//! `cargo bench -p phea-workbench --bench design`.
+//! Benchmark of designs for the rig of the examples on one core: `cargo bench -p phea-workbench
+//! --bench design`.
 //!
-//! With hoses, with hoses and sampled at 1 kHz with 0.5 ms of delay, and with steel pipes: from the
-//! project file to the answer, audits included. Every design must be met and, made a second time
-//! from the same seed, be the same bytes; or the bench fails. Times are printed and never asserted.
+//! The rig has hoses, hoses with sampling at 1 kHz and 0.5 ms of delay, and steel pipes; the time
+//! is that from the project file to the answer, audits included. Every design must be met and,
+//! repeated with an equal seed, give identical bytes; otherwise the bench fails. Times are printed
+//! and never asserted.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a bench talks to the person who started it")]
 #![allow(missing_docs, reason = "a program of its own")]
 
@@ -50,7 +51,7 @@ fn main() -> ExitCode {
     if all_well { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// Designs twice, and prints the shorter time with what was found.
+/// Designs twice, and prints the shorter time with the result.
 fn design(task: &Task) -> Result<(), String> {
     let (first_seconds, first) = timed(task)?;
     let (second_seconds, second) = timed(task)?;

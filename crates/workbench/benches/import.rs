@@ -1,14 +1,14 @@
-//! A recorded test of a million rows, imported as `phea identify` imports it:
-//! `cargo bench -p phea-workbench --bench import`.
+//! A recorded test of a million rows, imported as `phea identify` imports it: `cargo bench -p
+//! phea-workbench --bench import`.
 //!
 //! Six columns (time, command, supply pressure, both port pressures, leakage) as text with commas
-//! and as Parquet, in the folder for temporary files. Each is read by a process of its own, from
-//! the file to numbers in SI with every check of the reader. Prints the size of the file, the best
-//! and the median time of several processes, and the most memory one of them had (`VmHWM`, the
-//! file's own bytes among it). Times are printed and never asserted; fails where a number differs
-//! between both files, or where more than 200 MB were needed.
+//! and as Parquet, in the folder for temporary files. Each is read by a separate process, from the
+//! file to numbers in SI with every check of the reader. The output has the size of the file, the
+//! best and the median time of several processes, and the largest memory of one of them (`VmHWM`,
+//! the file's own bytes included). Times are printed and never asserted; the bench fails if a
+//! number differs between both files, or if more than 200 MB were needed.
 //!
-//! As a program it takes `read FILE`.
+//! Its arguments are `read FILE`.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a bench talks to the person who started it")]
 #![allow(missing_docs, reason = "a program of its own")]
 
@@ -48,7 +48,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Writes both files and has each read.
+/// Writes both files and starts a process that reads each.
 fn measured() -> Result<(), Fault> {
     let folder = std::env::temp_dir().join(format!("phea-import-{}", std::process::id()));
     std::fs::create_dir_all(&folder)?;
@@ -92,7 +92,7 @@ fn of_format(folder: &Path, format: TableFormat) -> Result<String, Fault> {
     Ok(sums)
 }
 
-/// A leakage test with noise, its numbers as the bench writes them: with all of their digits.
+/// A leakage test with noise, with its numbers as the bench writes them: with all their digits.
 fn written(file: &PathBuf, format: TableFormat) -> Result<(), Fault> {
     let sink = BufWriter::new(File::create(file)?);
     let mut table = NumberTable::new(sink, format, &COLUMNS)?;
@@ -116,7 +116,7 @@ fn written(file: &PathBuf, format: TableFormat) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Files as they are.
+/// Source that reads files from the disk unchanged.
 struct Disk;
 
 impl Source for Disk {
@@ -144,7 +144,7 @@ fn read(file: &str) -> Result<(), Fault> {
     Ok(())
 }
 
-/// The most memory this process had, as Linux tells it.
+/// The largest memory of this process, as reported by Linux.
 fn peak_megabytes() -> Result<f64, Fault> {
     let status = std::fs::read_to_string("/proc/self/status")?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).ok_or("no VmHWM")?;

@@ -1,5 +1,5 @@
-//! Proofs of the rig of the examples, timed on one core:
-//! `taskset -c 0 cargo bench -p phea-workbench --bench proof`.
+//! Benchmark of proofs for the rig of the examples on one core: `taskset -c 0 cargo bench -p
+//! phea-workbench --bench proof`.
 //!
 //! The published controller and two designs, continuous and sampled: seconds of the search, of the
 //! proof and of checking its certificate again, leaves, bytes. Every claim about a design must be
@@ -20,7 +20,7 @@ use phea_workbench::source::Memory;
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 
-/// Runs of each; the fastest counts.
+/// Number of runs of each; the fastest counts.
 const RUNS: usize = 5;
 
 type Failure = Box<dyn std::error::Error>;

@@ -1,15 +1,14 @@
-//! The closed loop of the examples simulated and timed on one core:
-//! `cargo bench -p phea-workbench --bench simulation`.
+//! Benchmark of the closed loop of the examples on one core: `cargo bench -p phea-workbench --bench
+//! simulation`.
 //!
-//! The machine and its controller as the project files of `examples/benchmark` state them; the
-//! force alone is looked at, as a campaign looks at its runs. Prints time per run, the best and the
-//! mean of many, the largest error of the force against the golden reference, and the work; fails
-//! where that error is above 0.02 N at the file's own tolerance. Times are printed and never
+//! Machine and controller are those of the project files of `examples/benchmark`; only the force is
+//! sampled, as in the runs of a campaign. The output has the time per run, the best and the mean of
+//! many, the largest error of the force relative to the golden reference, and the work; the bench
+//! fails if that error exceeds 0.02 N at the file's own tolerance. Times are printed and never
 //! asserted.
 //!
-//! As a program it takes the words of the drivers in `benches/peers`, which `closed_loop_times.py`
-//! runs in turn with it: `closed_loop|closed_loop_sampled TOLERANCE|file [repeats=N]
-//! [output=FILE]`.
+//! Its arguments are those of the drivers in `benches/peers`, which `closed_loop_times.py` runs in
+//! turn with it: `closed_loop|closed_loop_sampled TOLERANCE|file [repeats=N] [output=FILE]`.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a bench talks to the person who started it")]
 #![allow(missing_docs, reason = "a program of its own")]
 
@@ -43,7 +42,7 @@ const CASES: [Case; 2] = [
         include_str!("../tests/golden/closed_loop_sampled.csv"),
     ),
 ];
-/// Deflection of the load cell among the machine's states.
+/// Index of the load cell's deflection among the machine's states.
 const DEFLECTION: usize = 4;
 const LARGEST_ERROR_N: f64 = 0.02;
 
@@ -88,7 +87,7 @@ struct Timed {
     forces: Vec<[f64; 2]>,
 }
 
-/// Runs a case again and again, and prints the best and the mean time of a run.
+/// Runs a case repeatedly, and prints the best and the mean time of a run.
 fn time(case: &Case, tolerance: Option<f64>, repeats: u32) -> Result<Timed, Fault> {
     let project = read(case.1)?;
     let tolerance = tolerance.unwrap_or(project.simulation.tolerance);
@@ -122,7 +121,7 @@ fn read(text: &str) -> Result<Project, Fault> {
     Ok(loaded.project)
 }
 
-/// What runs of one project share: the kernel that the command runs, compiled as for the command.
+/// Data common to the runs of one project: the kernel of the command, compiled as for the command.
 struct Bench {
     control: Control,
     settings: SimulationSettings,
@@ -180,7 +179,7 @@ impl Bench {
     }
 }
 
-/// Looks at the force alone.
+/// Records only the force.
 struct Force {
     stiffness: f64,
     rows: Vec<[f64; 2]>,
@@ -214,11 +213,11 @@ fn error_n(forces: &[[f64; 2]], reference: &str) -> Result<f64, Fault> {
     Ok(worst)
 }
 
-/// The rows as the drivers in C write them.
+/// The rows in the format of the drivers in C.
 fn table(forces: &[[f64; 2]]) -> String {
     let mut text = "time_s,force_n\n".to_string();
     for [time_s, force_n] in forces {
-        // writing to a string does not fail
+        // writing to a string cannot fail
         let _ = writeln!(text, "{time_s:.15e},{force_n:.15e}");
     }
     text

@@ -17,7 +17,7 @@ pub use answer::files;
 pub(crate) use document::document;
 pub(crate) use line::line_files;
 
-/// What the tests leave out of the project, in sentences; none where nothing is left out.
+/// Parts of the project that the tests leave out, in sentences; none if nothing is left out.
 pub(crate) fn remarks(setup: &Setup<'_>) -> Vec<&'static str> {
     let takes = setup.project.identify.as_ref().map(|identify| identify.takes).unwrap_or_default();
     let valve = (takes != IdentifiedUse::Nothing).then_some(

@@ -21,7 +21,7 @@ pub(crate) fn sentences(caveats: &[Caveat], units: &Units) -> Vec<String> {
     caveats.iter().map(|caveat| sentence(&caveat.effect, units)).collect()
 }
 
-/// The sentences of what no linear model of a project includes.
+/// The sentences on effects that no linear model of a project includes.
 pub(crate) fn of_models_in_words(setup: &Setup<'_>) -> Vec<String> {
     let units = &setup.project.units;
     of_models(setup).iter().map(|effect| sentence(effect, units)).collect()

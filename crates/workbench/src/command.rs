@@ -69,7 +69,7 @@ use verify::verify_answer;
 pub enum Request {
     /// Every derived quantity.
     Check,
-    /// The hose, for a gain or a length in text where given.
+    /// The hose, for a gain or a length as text, if given.
     Size {
         /// K_p, such as `2.7e-4`.
         gain: Option<String>,
@@ -83,30 +83,30 @@ pub enum Request {
     },
     /// The audit of the given controller.
     Verify {
-        /// Whether it is proven.
+        /// True if the verdict is to be proven.
         proof: bool,
-        /// True where it is tested in nonlinear simulation.
+        /// True if the controller is to be tested in nonlinear simulation.
         on_machine: bool,
     },
     /// Shaping by hand, elements changed in order.
     Shape {
-        /// What is shaped.
+        /// The transfer function that is shaped: controller or prefilter.
         shaped: Shaped,
         /// The changes.
         changes: Vec<RequestedChange>,
     },
     /// A controller that satisfies the specifications.
     Design {
-        /// In place of the project's.
+        /// Seed of the search, instead of the project's.
         seed: Option<u32>,
-        /// Whether every stage is wanted as files, and not only the designed project.
+        /// True if every stage is requested as files, and not only the designed project.
         stages: bool,
-        /// Whether the design continues if the machine contradicts it.
+        /// True if the design continues when the machine contradicts it.
         repair: bool,
     },
     /// The nonlinear model through every scenario, or its frequency response.
     Simulate(SimulateRequest),
-    /// The same scenarios of this project and others side by side.
+    /// Identical scenarios of this project and others, compared side by side.
     Compare,
     /// The project and each of its alternatives: sized, designed, audited and driven.
     Alternatives(AlternativesRequest),
@@ -116,10 +116,10 @@ pub enum Request {
     Bench,
     /// The page with every chapter.
     Report {
-        /// Whether every figure is wanted as a file too.
+        /// True if every figure is requested as a file too.
         files: bool,
-        /// Whether it has a chapter on the alternatives of the project, each of which is designed
-        /// for.
+        /// True if the report has a chapter on the alternatives of the project, with a design for
+        /// each.
         alternatives: bool,
     },
 }
@@ -146,13 +146,13 @@ impl Request {
 
 pub use phea_dynamics::watch::{Progress, Watch};
 
-/// Share of the progress in which the valve is identified from recordings, where it is.
+/// Fraction of the progress spent on identifying the valve from recordings, if it is identified.
 const IDENTIFYING: f64 = 0.3;
 
 /// Answers a request on a project; `catalogues` are the user's files and folders.
 ///
 /// # Errors
-/// Those of [`answer_into`] but those of writing.
+/// Errors of [`answer_into`], except those of writing.
 pub fn answer(
     source: &dyn Source,
     loaded: &Loaded,
@@ -165,8 +165,8 @@ pub fn answer(
     Ok(answer)
 }
 
-/// The same, reporting its progress. The tables of simulated scenarios are written to a destination
-/// as they come, if there is one; all other files are in the answer.
+/// Answers a request and reports progress. The tables of simulated scenarios are written to the
+/// destination, if there is one, while they are computed; all other files are in the answer.
 ///
 /// # Errors
 /// [`CommandError`] if the project lacks something that the command needs, something in it cannot
@@ -179,8 +179,8 @@ pub fn answer_into(
     destination: Option<&dyn Destination>,
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
-    // these three know their own way: the bench tests the declared valve, whose recordings may not
-    // be there yet
+    // these three requests treat the valve in their own way: the bench tests the declared valve,
+    // whose recordings may not exist yet
     let mut rising = rising(watch);
     let identified = motor::refuse(loaded, request).and_then(|()| match request {
         Request::Bench | Request::Compare | Request::Campaign(_) => Ok(None),
@@ -196,8 +196,8 @@ pub fn answer_into(
     answer.map_err(|error| error.into_refusal(source, loaded))
 }
 
-/// The robust problem of a project, its valve as identified from its recordings where it asks for
-/// that.
+/// The robust problem of a project, with the valve identified from its recordings if the project
+/// requires that.
 ///
 /// # Errors
 /// [`CommandError`] for a project that is no such problem.
@@ -215,7 +215,7 @@ pub fn robust_problem_of(
     problem.map_err(|error| error.into_refusal(source, loaded))
 }
 
-/// The project with its valve as identified from its recordings, where it asks for that.
+/// The project, with the valve identified from its recordings if the project requires that.
 fn with_recordings(
     source: &dyn Source,
     loaded: &Loaded,
@@ -284,7 +284,7 @@ fn question(gain: Option<&str>, length: Option<&str>) -> Result<Question, Comman
     })
 }
 
-/// A positive number in SI, a part of the text of an option, bare or with its unit.
+/// A positive number in SI, parsed from a part of the text of an option, with or without a unit.
 fn positive(
     option: &'static str,
     text: &str,
@@ -300,7 +300,7 @@ fn positive(
     if value > 0.0 { Ok(value) } else { Err(refuse("must be positive".to_string())) }
 }
 
-/// The error of a quantity, and what is expected.
+/// The error of a quantity, and the expected dimension.
 fn error_words(error: &quantity::QuantityError, dimension: &quantity::Dimension) -> String {
     let help = error.help.as_ref().map_or(String::new(), |help| format!("; {help}"));
     format!("{error}; write {}, such as {}{help}", dimension.name, dimension.examples)
@@ -369,8 +369,8 @@ fn design_answer(
     })
 }
 
-/// The same scenarios of several projects side by side, with `figures` as files, reporting
-/// progress. The answer is yes if every run was completed.
+/// Compares identical scenarios of several projects, with `figures` as files, and reports progress.
+/// The answer is yes if every run was completed.
 ///
 /// # Errors
 /// [`CommandError`] if a project cannot be simulated.

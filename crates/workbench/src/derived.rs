@@ -1,4 +1,4 @@
-//! The output of `check`: every quantity that follows from what a project declares, with its
+//! The output of `check`: every quantity that follows from the declarations of a project, with its
 //! equation, and any contradiction with a declared one, as text, JSON and files.
 
 mod accumulator;

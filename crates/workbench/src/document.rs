@@ -20,21 +20,21 @@ pub struct Document {
     blocks: Vec<Block>,
 }
 
-/// One part of a document. In every text, words such as `K_H` are symbols, and text between
-/// backticks is code.
+/// A part of a document. In every text, words such as `K_H` are symbols, and text between backticks
+/// is code.
 #[derive(Clone, Debug)]
 enum Block {
-    /// A sentence that stands before everything.
+    /// A sentence printed before everything else.
     Warning(String),
-    /// A line by itself.
+    /// A line of text.
     Line(String),
     /// An empty line of a terminal.
     Gap,
     /// Begins a section.
     Heading(String),
-    /// The same, for which a terminal prints only an empty line.
+    /// A heading of the page, for which a terminal prints only an empty line.
     HeadingOnPage(String),
-    /// Above figures.
+    /// A heading above figures.
     HeadingOfFigures(String),
     /// Begins a section with its result; the sentences give the reasons.
     Verdict { mark: StatusMark, title: String, sentences: Vec<String> },
@@ -42,35 +42,35 @@ enum Block {
     Explanation(String),
     /// A sentence each, the decisive ones with a mark.
     Sentences(Vec<(Option<StatusMark>, String)>),
-    /// One in each line.
+    /// Equations, one in each line.
     Equations(Vec<String>),
     /// Rows of cells.
     Table(Table),
-    /// On the page alone.
+    /// A figure, shown on the page only.
     Figure(Box<Figure>),
     /// Details that the page shows on request.
     Folded(String, Table),
-    /// What was asked, and what became of it: the first column has the words.
+    /// Requests and their outcomes: the first column has the words.
     Asked(Table),
     /// Facts by name, each on a card; those of results are small on paper.
     Cards { facts: Vec<(String, String)>, are_results: bool },
     /// A sentence that must not be overlooked.
     Callout(StatusMark, String),
-    /// What to do, in this order, below its title.
+    /// Steps to take, in this order, below their title.
     Steps { title: String, steps: Vec<String> },
     /// Blocks that the page shows side by side.
     Beside(Document),
-    /// Lines as they are.
+    /// Lines that are printed unchanged.
     Preformatted(String),
 }
 
 impl Document {
-    /// Sentences that stand before everything.
+    /// Adds sentences that are printed before everything else.
     pub(crate) fn warnings(&mut self, sentences: impl IntoIterator<Item = String>) {
         self.blocks.extend(sentences.into_iter().map(Block::Warning));
     }
 
-    /// A line by itself.
+    /// A line of text.
     pub(crate) fn line(&mut self, text: impl Into<String>) {
         self.blocks.push(Block::Line(text.into()));
     }
@@ -110,7 +110,7 @@ impl Document {
         self.marked(sentences.into_iter().map(|sentence| (None, sentence)));
     }
 
-    /// The same, some of them with a mark.
+    /// Sentences, some of them with a mark.
     pub(crate) fn marked(&mut self, sentences: impl IntoIterator<Item = (Option<StatusMark>, String)>) {
         let sentences: Vec<_> = sentences.into_iter().collect();
         if !sentences.is_empty() {
@@ -128,7 +128,7 @@ impl Document {
         self.blocks.push(Block::Table(table));
     }
 
-    /// Tables, those that have rows.
+    /// Tables; those without rows are omitted.
     pub(crate) fn tables(&mut self, tables: impl IntoIterator<Item = Table>) {
         self.blocks.extend(tables.into_iter().filter(|table| !table.is_empty()).map(Block::Table));
     }
@@ -146,7 +146,7 @@ impl Document {
         self.blocks.push(Block::Folded(summary.into(), table));
     }
 
-    /// A table of what was asked, and what became of it; omitted if it has no rows.
+    /// A table of requests and their outcomes; omitted if it has no rows.
     pub(crate) fn asked(&mut self, table: Table) {
         if !table.is_empty() {
             self.blocks.push(Block::Asked(table));
@@ -165,7 +165,7 @@ impl Document {
         self.blocks.extend(sentences.into_iter().map(|sentence| Block::Callout(mark, sentence)));
     }
 
-    /// What to do, in this order; omitted if there is nothing to do.
+    /// Steps to take, in this order; omitted if there are none.
     pub(crate) fn steps(&mut self, title: &str, steps: Vec<String>) {
         if !steps.is_empty() {
             self.blocks.push(Block::Steps { title: title.to_string(), steps });
@@ -182,7 +182,7 @@ impl Document {
         self.blocks.extend(figures.into_iter().map(|figure| Block::Figure(Box::new(figure))));
     }
 
-    /// The same below their heading, which a terminal leaves out too.
+    /// Figures below their heading; a terminal leaves out both.
     pub(crate) fn figures_below(&mut self, title: &str, figures: Vec<Figure>) {
         if !figures.is_empty() {
             self.blocks.push(Block::HeadingOfFigures(title.to_string()));
@@ -190,7 +190,7 @@ impl Document {
         }
     }
 
-    /// Lines as they are.
+    /// Lines that are printed unchanged.
     pub(crate) fn preformatted(&mut self, text: impl Into<String>) {
         self.blocks.push(Block::Preformatted(text.into()));
     }
@@ -200,7 +200,7 @@ impl Document {
         self.blocks.extend(other.blocks);
     }
 
-    /// Its figures in their order.
+    /// The figures of the document, in order.
     pub(crate) fn into_figures(self) -> Vec<Figure> {
         let figures = self.blocks.into_iter().flat_map(|block| match block {
             Block::Figure(figure) => vec![*figure],

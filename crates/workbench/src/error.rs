@@ -57,19 +57,19 @@ pub enum CommandError {
     /// The catalogue, or a project that was changed, cannot be read.
     #[error("{0}")]
     Refused(Refusal),
-    /// The project does not say what to size for.
+    /// The quantity to size for is not stated in the project.
     #[error("{0}")]
     Sizing(#[from] SizingError),
     /// No alternatives are judged.
     #[error(transparent)]
     Alternatives(AlternativesError),
-    /// There is nothing to audit.
+    /// Nothing to audit.
     #[error(transparent)]
     Audit(AuditError),
-    /// There is nothing to design for, or nothing was found.
+    /// Nothing to design for, or no design was found.
     #[error("{}", design_error_words(.0))]
     Design(DesignError),
-    /// There is no family of plants.
+    /// No family of plants.
     #[error(transparent)]
     Family(#[from] ProjectFamilyError),
     /// A specification cannot be met by any loop, or is contradictory.
@@ -78,7 +78,7 @@ pub enum CommandError {
     /// Templates or bounds cannot be computed.
     #[error(transparent)]
     Bounds(BoundsError),
-    /// The family cannot be compared with what it replaces.
+    /// The family cannot be compared with the ranges that it replaces.
     #[error(transparent)]
     Replaced(#[from] ReplacedError),
     /// A controller cannot be shaped in this way.
@@ -92,16 +92,16 @@ pub enum CommandError {
     Compare {
         /// Path of the project.
         path: String,
-        /// Why not.
+        /// Reason why it cannot be simulated.
         error: SimulateError,
     },
     /// The valve cannot be tested.
     #[error(transparent)]
     Bench(#[from] BenchError),
-    /// There is no campaign.
+    /// No campaign.
     #[error(transparent)]
     Campaign(#[from] CampaignError),
-    /// The recordings of the project say nothing of its valve.
+    /// The recordings of the project give no information on its valve.
     #[error("{0}")]
     Identify(IdentifyError),
     /// The recordings of the project give no valve in place of the declared one.
@@ -117,7 +117,7 @@ pub enum CommandError {
         "`phea {command}` is for a [cylinder], and this project has a [motor]: check, linearize, verify, design, simulate, compare, campaign, alternatives and report accept one"
     )]
     OfCylinders {
-        /// As it is called.
+        /// Name of the command.
         command: &'static str,
     },
     /// Projects side by side of which some move along a line and others turn.
@@ -136,8 +136,8 @@ pub enum CommandError {
 }
 
 impl CommandError {
-    /// The same error as the refusal of the project, at the first key or table that it names and
-    /// that the project has; at the end of the file where all of them are absent.
+    /// Converts the error into a refusal of the project, at the first key or table that the error
+    /// names and that the project has; at the end of the file if the project has none of them.
     pub(crate) fn into_refusal(self, source: &dyn Source, loaded: &Loaded) -> CommandError {
         let mut at_the_end = None;
         for late in place::late(&self, &loaded.project) {
@@ -170,7 +170,7 @@ impl CommandError {
         }
     }
 
-    /// Whether a file could not be written or read back, although the request was valid.
+    /// True if a file could not be written or read back, although the request was valid.
     pub fn is_of_files(&self) -> bool {
         matches!(
             self,
@@ -182,12 +182,12 @@ impl CommandError {
     }
 }
 
-/// Whether a finding points behind everything that the project file has.
+/// True if a finding points past the last entry of the project file.
 fn is_at_the_end(found: &Diagnostic, loaded: &Loaded) -> bool {
     found.file == loaded.path && found.span.start >= loaded.bytes.len()
 }
 
-// The error of a smaller procedure within another is that of the smaller one.
+// The error of an inner procedure is returned unchanged.
 
 impl From<RobustError> for CommandError {
     fn from(error: RobustError) -> CommandError {

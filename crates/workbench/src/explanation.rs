@@ -36,7 +36,7 @@ fn limit_name(limit: &ExplainedLimit) -> String {
     }
 }
 
-/// To four significant digits, for a reader.
+/// A number rounded to four significant digits, for a reader.
 fn rounded(value: f64) -> f64 {
     portable::rounded(value, 4)
 }

@@ -63,7 +63,7 @@ fn in_words(reason: NotIdentifiableFriction) -> String {
     }
 }
 
-/// Each coefficient with the path of its key below `[cylinder.friction]`, and its unit.
+/// The coefficients, each with the path of its key below `[cylinder.friction]`, and its unit.
 pub(crate) fn coefficients(
     found: &FrictionIdentification,
 ) -> impl Iterator<Item = (String, &'static str, &Result<Estimate, OpenCoefficient>)> {
@@ -89,7 +89,7 @@ pub(crate) fn misfit_in_words(found: &FrictionIdentification, misfit: &FrictionM
     )
 }
 
-/// The greatest misfit as `[cylinder.friction]` has it.
+/// The greatest misfit in the form of `[cylinder.friction]`.
 pub(crate) fn declared_misfit(found: &FrictionIdentification) -> Option<DeclaredMisfit> {
     let misfit = found.misfits.first()?;
     let file = found.recordings.get(misfit.recording).map_or("", |one| one.file.as_str());

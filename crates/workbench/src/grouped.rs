@@ -1,4 +1,4 @@
-//! What belongs to the same, together.
+//! Groups items by equal keys.
 
 /// Items by their keys, both in the order of first sight.
 pub(crate) fn grouped<Key: PartialEq, Item>(

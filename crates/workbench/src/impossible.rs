@@ -1,4 +1,4 @@
-//! Requirements that no loop can satisfy, in sentences, each with what would satisfy it.
+//! Requirements that no loop can satisfy, in sentences, each with the change that would satisfy it.
 
 use phea_engineering::design::Explanation;
 use phea_engineering::impossible::Impossibility;
@@ -12,8 +12,8 @@ use crate::quantity::{Units, significant};
 use crate::robust::RobustProblem;
 use crate::specification::{self, stated};
 
-/// A requirement of a project that no loop can satisfy, at its key; `None` for what plants forbid
-/// where there is no robust problem.
+/// A requirement of a project that no loop can satisfy, at its key; `None` for a requirement that
+/// plants forbid if there is no robust problem.
 pub(crate) fn late_of(
     one: &Impossibility,
     problem: Option<&RobustProblem>,

@@ -1,5 +1,5 @@
-//! Required steps that no controller makes on the rig, in sentences, each with what would satisfy
-//! it.
+//! Required steps that no controller makes on the rig, in sentences, each with the change that
+//! would satisfy it.
 
 use phea_engineering::impossible::{ImpossibleStep, ImpossibleSteps, SlowStep, StillTimes};
 

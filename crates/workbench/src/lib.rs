@@ -1,12 +1,12 @@
 //! The output for the engineer: commands on a project, with the text, JSON, files and figures of
 //! their answers, and the report.
 //!
-//! A shell hands in text and bytes through [`source::Source`] and prints what an [`answer::Answer`]
-//! holds. [`command::answer_into`] is the way from one to the other:
+//! A shell passes text and bytes through [`source::Source`] and prints what an [`answer::Answer`]
+//! holds. [`command::answer_into`] turns one into the other:
 //!
 //! ```text
-//! command::Request, project::Loaded     what is asked, of which project
-//!   identify::in_use -> Loaded          read again with what its recordings tell
+//! command::Request, project::Loaded     the request, and the project
+//!   identify::in_use -> Loaded          the project with the values from its recordings
 //!   line_choice -> Loaded               lines without a stated model get one
 //!   setup::Setup                        the rig, the controller, the sensor: the input of every procedure
 //!   engineering procedure -> values     ProjectAudit, Linearization, ScenarioRun, ...
@@ -15,13 +15,13 @@
 //!     X/figures.rs  -> figure::Figure       drawn as SVG, as files and on the page
 //!     report.rs     -> chapters             Documents and Figures, one after another on a page
 //!   command::unprinted::Unprinted { document: Document, body: Object, files, affirmative }
-//!     printed below what recordings gave, of a rig that turns with its names for programs (motion.rs)
+//!     printed below the values from recordings; a rig that turns has its own names for programs (motion.rs)
 //! answer::Answer { text, json, files, affirmative }
 //! ```
 //!
 //! The module X of a procedure has the name of that procedure's module in `phea_engineering`, and
-//! exports its values beside their output, so that a caller finds both in one place. The list of
-//! `derived` quantities is output alone: no procedure reads it.
+//! exports its values next to their output, so that a caller finds both in one place. The list of
+//! `derived` quantities is output only: no procedure reads it.
 
 pub mod alternatives;
 pub mod answer;

@@ -1,4 +1,4 @@
-//! The limits of what may be built in words.
+//! Limits on what may be built, in words.
 
 use phea_engineering::limit_kind::{DesignLimitKind, LimitOrigin};
 

@@ -6,7 +6,7 @@ use crate::project::{ChosenLines, Loaded, ReachedBy};
 use crate::quantity::{DisplayUnit, MotionKind};
 use phea_engineering::line_choice::LUMPED_FROM;
 
-/// What precedes the answer of every command; nothing where no model was chosen.
+/// Text above the answer of every command; empty if no model was chosen.
 pub(crate) fn chosen_above(loaded: &Loaded) -> Document {
     let mut out = Document::default();
     if let Some(sentence) = sentence(loaded) {
@@ -16,7 +16,7 @@ pub(crate) fn chosen_above(loaded: &Loaded) -> Document {
     out
 }
 
-/// The model with what it follows from, and the key that states another; `None` where none was
+/// The model with the basis of its choice, and the key that states another; `None` if none was
 /// chosen.
 pub(crate) fn sentence(loaded: &Loaded) -> Option<String> {
     let lines = loaded.lines.as_ref()?;
@@ -51,12 +51,12 @@ fn chosen_words(lines: &ChosenLines, motion: MotionKind) -> String {
     }
 }
 
-/// Whether a frequency is the quarter wave itself, which limits a design by default.
+/// True if a frequency is the quarter wave itself, which limits a design by default.
 fn is_quarter_wave(reached: f64, lines: &ChosenLines) -> bool {
     (reached / lines.quarter_wave_rad_per_s - 1.0).abs() < SAME
 }
 
-/// Relative difference below which two frequencies are one.
+/// Relative difference below which two frequencies count as equal.
 const SAME: f64 = 1e-9;
 
 fn is_near(lines: &ChosenLines) -> bool {

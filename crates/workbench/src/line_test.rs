@@ -23,7 +23,7 @@ pub(crate) fn remark(known: &KnownLine) -> Option<&'static str> {
     )
 }
 
-/// Reason for which a number is not determined.
+/// Reason why a number is not determined.
 pub(crate) fn because(reason: NotIdentifiableLine) -> String {
     let hertz = |frequency: f64| significant(DisplayUnit::HERTZ.of(frequency), 4);
     let text = match reason {
@@ -89,7 +89,7 @@ pub(crate) fn misfit_in_words(misfit: &LineMisfit) -> String {
     }
 }
 
-/// The numbers of a line in the order in which they are printed: key, what it is, and the number.
+/// The numbers of a line in the order in which they are printed: key, name, and number.
 pub(crate) fn numbers(
     found: &LineIdentification,
 ) -> [(&'static str, &'static str, &Result<Estimate, NotIdentifiableLine>); 9] {

@@ -19,7 +19,7 @@ pub(crate) fn panel(quantity: &str, unit: DisplayUnit, height: f64, lines: Vec<T
     CurvePanel::new(unit.title(quantity), height, lines.collect())
 }
 
-/// The panel with a name for each of its lines, which it shows itself.
+/// The panel with a name for each of its lines, shown in the panel itself.
 pub(crate) fn named<'n>(panel: CurvePanel, names: impl IntoIterator<Item = &'n str>) -> CurvePanel {
     let names = names.into_iter().enumerate();
     let named =
@@ -28,7 +28,7 @@ pub(crate) fn named<'n>(panel: CurvePanel, names: impl IntoIterator<Item = &'n s
     CurvePanel { named, ..panel }
 }
 
-/// The panel with further lines behind those that it has.
+/// The panel with further lines, drawn beneath those that it has.
 pub(crate) fn behind(
     mut panel: CurvePanel,
     unit: DisplayUnit,
@@ -44,13 +44,13 @@ fn shown(trace: Trace, unit: DisplayUnit) -> impl Iterator<Item = (f64, f64)> {
     trace.into_iter().map(move |(time, value)| (time, unit.of(value)))
 }
 
-/// Whether a panel has a line of this style.
+/// True if a panel has a line of this style.
 pub(crate) fn has(panel: &CurvePanel, style: CurveStyle) -> bool {
     panel.curves.iter().any(|curve| curve.style == style)
 }
 
-/// Panels on one time axis: what the lines of each place are called, and events with their words,
-/// which are in the tallest panel, where there is most room next to the curves.
+/// Panels on one time axis, with the names of the lines and with events; the words of the events
+/// are in the tallest panel, which has most room next to the curves.
 pub(crate) fn chart(
     mut panels: Vec<CurvePanel>,
     names: impl IntoIterator<Item = String>,
@@ -71,7 +71,7 @@ pub(crate) fn chart(
     CurveChart { x_title: "Time (s)".to_string(), x_range: span_s, panels, legend }
 }
 
-/// The measured force or torque with its symbol, as axes call it.
+/// The measured force or torque with its symbol, for the labels of axes.
 pub(crate) fn measured_force(motion: MotionKind) -> String {
     format!("{} {}", capital(motion.words().force), motion.symbols().measured)
 }
@@ -79,24 +79,24 @@ pub(crate) fn measured_force(motion: MotionKind) -> String {
 /// Force after a step of the reference, and the command.
 pub(crate) struct ForceStep<'a> {
     pub(crate) times_s: &'a [f64],
-    /// N
+    /// Reference, N
     pub(crate) reference: &'a [f64],
-    /// N
+    /// Force, N
     pub(crate) force: &'a [f64],
-    /// N
+    /// Reference after the prefilter, N
     pub(crate) filtered_reference: &'a [f64],
-    /// V
+    /// Command, V
     pub(crate) command: &'a [f64],
     /// The motion and the unit of forces.
     pub(crate) units: Units,
-    /// Where the force has to settle, N.
+    /// Band in which the force has to settle, N.
     pub(crate) settling_band: Option<SettlingBand>,
-    /// When it has settled, s, in words.
+    /// Settling time, s, with its words.
     pub(crate) settled: Option<(f64, String)>,
 }
 
 impl ForceStep<'_> {
-    /// The chart of it.
+    /// The chart of the step.
     pub(crate) fn chart(self) -> CurveChart {
         let of = |values: &[f64]| trace(self.times_s, values);
         let Units { motion, force: unit, .. } = self.units;

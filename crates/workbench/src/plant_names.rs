@@ -49,8 +49,8 @@ const DIGITS: usize = 4;
 /// a hundred-millionth of its range.
 const READS_BACK: f64 = 1e-9;
 
-/// The value of a parameter; of a number of the project, such as `operating_point.velocity`, with
-/// as many digits as it takes to read back as the same plant: its coefficients may jump there.
+/// The value of a parameter. A number of the project, such as `operating_point.velocity`, gets as
+/// many digits as are needed to read back as an identical plant: its coefficients may jump there.
 fn value_words(name: &str, value: f64, dimension: &'static Dimension) -> String {
     if !name.contains('.') {
         return display(value, dimension, DIGITS);

@@ -64,25 +64,25 @@ use page::Page;
 pub struct Report {
     /// The page.
     pub html: String,
-    /// Its figures, in order.
+    /// The figures, in order.
     pub figures: Vec<Figure>,
-    /// Its data as tables for other programs.
+    /// The data as tables for other programs.
     pub tables: Vec<OutputFile>,
-    /// Its content in a few numbers.
+    /// The content in a few numbers.
     pub summary: Vec<(&'static str, String)>,
-    /// What its first page says.
+    /// The statements of the first page.
     pub decision: Decision,
 }
 
 /// The fact on the linear step, which the first page states for the machine instead.
 const NOMINAL_LOOP: &str = "Nominal linear loop";
 
-/// Band of the settling time where no scenario states one, percent.
+/// Band of the settling time if no scenario states one, percent.
 const SETTLING_BAND: f64 = 1.0;
 
 /// The report of a project: the page that decides, then rig, sizing, simulation, campaign,
 /// specifications, audit and design; in the appendix derived quantities, stiffness, linear models,
-/// impedance, the linear step, what happens inside the machine, its sensitivity, templates and
+/// impedance, the linear step, the signals inside the machine, its sensitivity, templates and
 /// bounds, provenance. For a plant given as a transfer function, only the robust part. If the
 /// project has `[design]`, or gives no controller, one is designed, and everything is shown for
 /// both.
@@ -106,10 +106,10 @@ fn recordings(source: &dyn Source, loaded: &Loaded, watch: Watch<'_>) -> Result<
     Ok(of_valve.into_iter().chain(of_friction).collect())
 }
 
-/// The same with the chapter on the alternatives of the project, if they were judged.
+/// The report, with the chapter on the alternatives of the project if they were judged.
 ///
 /// # Errors
-/// As [`report`].
+/// Errors of [`report`].
 pub(crate) fn report_beside(
     source: &dyn Source,
     loaded: &Loaded,
@@ -179,7 +179,7 @@ pub(crate) fn report_beside(
     Ok(Report { html, figures, tables, summary: facts, decision })
 }
 
-/// What the sizing procedure needs, or why it does not apply to the rig.
+/// The input of the sizing procedure, or the reason why it does not apply to the rig.
 pub type ProblemOfSizing = Result<SizingProblem, SizingError>;
 
 /// The campaign of a project; of one without a controller under the designed one.
@@ -198,7 +198,7 @@ fn campaign_of(
     }
 }
 
-/// Whether a project gives a controller.
+/// True if a project gives a controller.
 fn has_law(project: &Project) -> bool {
     project.controller.as_ref().is_some_and(|controller| controller.has_law())
 }
@@ -206,7 +206,7 @@ fn has_law(project: &Project) -> bool {
 /// The report in a few numbers: name and text.
 type Facts = Vec<(&'static str, String)>;
 
-/// Nichols charts: the one of the first page, and the one of the given loop alone if it is
+/// Nichols charts: the one of the first page, and the one of the given loop only, if it is
 /// different.
 #[derive(Default)]
 struct Charts {
@@ -314,7 +314,7 @@ fn rig_part(
 }
 
 /// The verdict of the audit in a few words. A required step counts as a specification, and limits
-/// that follow from a requirement in time count as met where its steps satisfy it too.
+/// that follow from a requirement in time count as met only if its steps satisfy it too.
 fn audit_words(view: &ProjectAudit) -> String {
     let findings = &view.audit.specifications;
     let keeps = |(index, finding): &(usize, &SpecificationFinding)| {
@@ -392,7 +392,7 @@ fn summary(
     facts
 }
 
-/// The linear loop in a few words: its step, or that there is none.
+/// The linear loop in a few words: its step, or the statement that there is none.
 fn loop_words(given: &LinearLoop) -> String {
     match (&given.stability, &given.step) {
         (LoopStability::Unstable, _) => "unstable".to_string(),

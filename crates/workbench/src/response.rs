@@ -29,21 +29,22 @@ const OPPOSITE: f64 = -0.5;
 /// Degrees by which a reversed force lags the opposite of its command.
 const REVERSED_LAG: [f64; 2] = [-15.0, 105.0];
 
-/// Size of an output at lines that are not excited, over that at the excited ones, from which on it
-/// is reported.
+/// Ratio of the output at lines that are not excited to that at the excited ones, above which it is
+/// reported.
 const DISTORTED: f64 = 0.01;
 
 /// A member, and the linear plant of a project at its frequencies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compared {
-    /// From the record.
+    /// The member estimated from the record.
     pub member: ResponseMember,
-    /// By the project; absent without one, and for signals other than command and force.
+    /// Response of the project's plant; absent without a project, and for signals other than
+    /// command and force.
     pub plant: Option<Vec<Complex64>>,
 }
 
 impl Compared {
-    /// With the plant of a rig.
+    /// Compares a member with the plant of a rig.
     pub(crate) fn with(member: ResponseMember, rig: Option<&Rig>) -> Compared {
         let is_plant = member.units == ["V", "N"];
         let plant = rig.filter(|_| is_plant);
@@ -52,9 +53,9 @@ impl Compared {
         Compared { member, plant }
     }
 
-    /// True where the output goes against the input at the lowest frequencies: with a plant, in
-    /// comparison with it; without, a valve that fills a chamber leads to a force that lags its
-    /// command by 0 to 90 degrees, and a reversed one by 180 degrees more.
+    /// True if the output is opposite to the input at the lowest frequencies. With a plant, the two
+    /// are compared. Without one: a valve that fills a chamber leads to a force that lags its
+    /// command by 0 to 90 degrees, and a reversed valve to one that lags by 180 degrees more.
     pub(crate) fn is_reversed(&self) -> bool {
         let lowest = self.member.points.iter().take(LOWEST);
         let is_opposite = |(index, point): (usize, &phea_dynamics::spectrum::SpectralPoint)| {
@@ -106,7 +107,7 @@ impl Compared {
         ))
     }
 
-    /// Discs that hold the plant, and how far it is away at most, in dB.
+    /// Number of discs that contain the plant, and its largest distance from the estimate, dB.
     pub(crate) fn agreement(&self) -> Option<(usize, f64)> {
         let both = || self.member.points.iter().zip(self.plant.iter().flatten());
         let apart = |(point, plant): (&phea_dynamics::spectrum::SpectralPoint, &Complex64)| {
@@ -118,7 +119,7 @@ impl Compared {
     }
 }
 
-/// Rows that were moved to even ones.
+/// Rows that were resampled to even ones.
 pub(crate) fn resampling(member: &ResponseMember) -> Option<String> {
     let resampled = member.resampled?;
     let milliseconds = |seconds: f64| DisplayUnit::MILLISECOND.number(seconds, 3);
@@ -131,7 +132,7 @@ pub(crate) fn resampling(member: &ResponseMember) -> Option<String> {
     ))
 }
 
-/// Why a frequency is left out, in words.
+/// Reason why a frequency is left out, in words.
 pub(crate) fn because(reason: Unusable) -> &'static str {
     match reason {
         Unusable::NotExcited => "the input does not excite this frequency",

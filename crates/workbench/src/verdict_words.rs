@@ -22,7 +22,7 @@ pub(crate) fn verdict_words(verdict: Verdict) -> &'static str {
     }
 }
 
-/// `4.31 dB`, with its sign; the zero of a limit that is just reached without one.
+/// `4.31 dB`, with its sign; zero, for a limit that is just reached, without sign.
 pub(crate) fn margin_words(margin_db: f64) -> String {
     match margin_db {
         _ if margin_db == f64::INFINITY => "unlimited".to_string(),

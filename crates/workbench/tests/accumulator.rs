@@ -1,5 +1,5 @@
-//! Accumulators at the chambers as an engineer meets them: what `check` derives, what a verdict
-//! says first, what a run reports, and what is refused.
+//! Accumulators at the chambers from the user's side: quantities derived by `check`, warnings above
+//! a verdict, reports of a run, and refusals.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -18,13 +18,13 @@ const SWITCHED: &str = include_str!("../../../examples/ybitu/switched_gas.toml")
 const BOTH: &str = include_str!("../../project/tests/valid/accumulators.toml");
 const ATMOSPHERE: f64 = 101_325.0;
 
-/// By the polytropic law, at a gauge pressure.
+/// Compliance by the polytropic law, at a gauge pressure.
 fn gas_compliance(gas_volume: f64, precharge: f64, index: f64, pressure: f64) -> f64 {
     let ratio = (precharge + ATMOSPHERE) / (pressure + ATMOSPHERE);
     gas_volume / (index * (precharge + ATMOSPHERE)) * ratio.powf(1.0 + 1.0 / index)
 }
 
-/// The gas of each side at the pressure of its own chamber, its two sides apart.
+/// The gas of each side at the pressure of its own chamber, with the two sides different.
 #[test]
 fn check_derives_what_the_gas_yields_and_the_stiffness_with_and_without() {
     let told = check(BOTH, &["operating_point.load_force=1 kN"]);
@@ -42,8 +42,8 @@ fn check_derives_what_the_gas_yields_and_the_stiffness_with_and_without() {
     near(derived(&told, "linear.hydraulic_stiffness"), stiffness(expected), 1e-10);
 }
 
-/// The force at which `check` says that the gas is shut off is one that brings a chamber down to
-/// its precharge.
+/// The force at which `check` reports that the gas is shut off brings a chamber down to its
+/// precharge.
 #[test]
 fn at_the_limits_of_force_a_chamber_stands_just_above_its_precharge() {
     let told = check(GAS, &[]);
@@ -60,11 +60,11 @@ fn at_the_limits_of_force_a_chamber_stands_just_above_its_precharge() {
     }
 }
 
-/// The stiffness over the force is that of the rig which declares the force, and ends where `check`
-/// says that the gas is shut off.
+/// The stiffness over the force is that of the rig that declares the force, and ends where `check`
+/// reports that the gas is shut off.
 #[test]
 fn stiffness_over_the_force_is_that_of_the_rig_under_this_force() {
-    // a pump that gives way to leakage has another pressure at each force
+    // a pump that yields to leakage has another pressure at each force
     let pump = "accumulator = { gas_volume = \"1 L\", precharge_pressure = \"50 bar\", maximum_pressure_ratio = 4 }\n";
     let both = BOTH.replace("pump_limited", "constant").replace(pump, "");
     for text in [GAS, &both] {
@@ -87,7 +87,7 @@ fn stiffness_over_the_force_is_that_of_the_rig_under_this_force() {
         stiffness_over_force(&Setup::rig_of(&project_of(text, settings)).unwrap())
     };
     assert_eq!(of(HOSE, &[]), None, "without gas");
-    // a shut valve leaves no gas, an open one that of the same rig without a valve
+    // a shut valve leaves no gas, an open one that of the rig without a valve
     let shut = "line.accumulator.adjustment.setting=0";
     assert_eq!(of(SWITCHED, &[shut]), None);
     let [open, bare] = [of(SWITCHED, &[]).unwrap(), of(GAS, &[]).unwrap()];
@@ -97,7 +97,7 @@ fn stiffness_over_the_force_is_that_of_the_rig_under_this_force() {
     }
 }
 
-/// The report draws it where there is gas, and only there.
+/// The report draws it if there is gas, and only then.
 #[test]
 fn the_report_draws_the_stiffness_over_the_force() {
     let drawn = |text: &str| {
@@ -108,8 +108,8 @@ fn the_report_draws_the_stiffness_over_the_force() {
     assert!(drawn(BOTH) && !drawn(include_str!("../../project/tests/valid/telescopic.toml")));
 }
 
-/// The example is as soft as the thesis wished, and a verdict names the forces beyond which its gas
-/// is shut off.
+/// The example is as soft as the thesis requires, and a verdict names the forces beyond which its
+/// gas is shut off.
 #[test]
 fn a_verdict_names_the_forces_beyond_which_the_gas_is_shut_off() {
     let told = json(GAS, &[], &[], &Request::Verify { proof: false, on_machine: false });
@@ -135,7 +135,7 @@ fn families_have_the_stiffness_of_their_gas() {
     }
 }
 
-/// Driven to a force beyond the limit, the run says when the gas is shut off and when it is in use
+/// A run driven to a force beyond the limit reports when the gas is shut off and when it is in use
 /// again.
 #[test]
 fn a_run_reports_where_the_gas_is_shut_off() {
@@ -161,7 +161,7 @@ fn gas_that_is_shut_off_at_the_operating_point_is_refused() {
     }
 }
 
-/// The refusal stands at the key, in the file or in the alternative that sets it.
+/// Gas that is shut off is rejected at the key, in the file or in the alternative that sets it.
 #[test]
 fn what_shuts_off_the_gas_is_refused_at_its_place() {
     let line_of = |text: &str, key: &str| 1 + text.lines().position(|line| line.contains(key)).unwrap();
@@ -184,8 +184,8 @@ fn what_shuts_off_the_gas_is_refused_at_its_place() {
     assert!(message.contains("alternative `thesis`"), "{message}");
 }
 
-/// A family whose precharge goes beyond the pressure of a chamber states at how many of its plants;
-/// one that does not says nothing.
+/// A family whose precharge exceeds the pressure of a chamber states at how many of its plants;
+/// otherwise it states nothing.
 #[test]
 fn a_verdict_tells_at_how_many_plants_the_gas_is_shut_off() {
     let caveat = |most: f64| {
@@ -194,7 +194,7 @@ fn a_verdict_tells_at_how_many_plants_the_gas_is_shut_off() {
         );
         json(GAS, &[&range], &[], &Request::Verify { proof: false, on_machine: false }).to_string()
     };
-    // chamber B of the example stands below the 30 bar that one of three points of the range has
+    // chamber B of the example is below the 30 bar of one of the three points of the range
     let told = check(GAS, &[]);
     assert!(derived(&told, "operating_point.pressure_b") < 30e5);
     let said = caveat(30e5);
@@ -203,14 +203,14 @@ fn a_verdict_tells_at_how_many_plants_the_gas_is_shut_off() {
     assert!(!caveat(20e5).contains("it is shut off"));
 }
 
-/// The sizing of a hose leaves gas out, and says so rather than answer.
+/// The sizing of a hose does not include gas, and reports this instead of an answer.
 #[test]
 fn sizing_refuses_gas() {
     let gas = "line.accumulator={ gas_volume = \"1 mL\", precharge_pressure = \"10 bar\" }";
     let said = try_answer(HOSE, &[gas], &[], &size_request(None, None)).unwrap_err().to_string();
     assert!(said.contains("counts no gas"), "{said}");
     assert!(number(&json(HOSE, &[], &[], &size_request(None, None)), "candidates.0.length_m") > 0.0);
-    // a report has a sentence in the place of the chapter
+    // a report has a sentence instead of the chapter
     let found = answer(
         HOSE,
         &["specification=[]", "scenario=[]", gas],

@@ -1,5 +1,5 @@
-//! An accumulator that is adjusted, from the project's keys to plant, family, verdict, simulation
-//! and output.
+//! An adjustable accumulator, from the project's keys to plant, family, verdict, simulation and
+//! output.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -25,7 +25,7 @@ fn at(adjustment: &str, setting: f64) -> String {
     accumulator("6 mL", "15 bar", &adjustment.replace("SETTING", &setting.to_string()))
 }
 
-/// What the plants are compared with: two pressures, one that is stated, a limited pump, and lines
+/// Rigs with which the plants are compared: two pressures, a stated one, a limited pump, and lines
 /// with waves.
 const RIGS: [&[&str]; 4] = [
     &[],
@@ -42,8 +42,8 @@ fn widest(one: &phea_workbench::project::Project, other: &phea_workbench::projec
     gaps.fold(0.0, f64::max)
 }
 
-/// A fixed setting is the accumulator declared with what the setting stands for, in every form of
-/// the plant.
+/// A fixed setting is equivalent to an accumulator declared with the corresponding values, in every
+/// form of the plant.
 #[test]
 fn a_setting_is_the_declared_accumulator() {
     let text = without_uncertainty(GAS);
@@ -58,7 +58,7 @@ fn a_setting_is_the_declared_accumulator() {
     }
 }
 
-/// A valve that is shut leaves the rig without an accumulator; one that opens does not.
+/// A shut valve leaves the rig without an accumulator; an opening one does not.
 #[test]
 fn a_shut_valve_is_no_accumulator() {
     let text = without_uncertainty(GAS);
@@ -73,7 +73,7 @@ fn a_shut_valve_is_no_accumulator() {
     }
 }
 
-/// The nominal member of the recorded family is the rig, the setting open.
+/// The nominal member of the recorded family is the rig, with the setting open.
 #[test]
 fn the_family_is_the_rig_at_its_nominal() {
     for adjustment in [MOVED, VALVE] {
@@ -87,7 +87,8 @@ fn the_family_is_the_rig_at_its_nominal() {
     }
 }
 
-/// Stiffness at both ends of the setting and between them: those of the accumulators declared so.
+/// Stiffness at both ends of the setting and between them: that of accumulators declared with these
+/// values.
 #[test]
 fn check_derives_the_stiffness_of_each_setting() {
     let text = without_uncertainty(GAS);
@@ -104,7 +105,7 @@ fn check_derives_the_stiffness_of_each_setting() {
     near(derived(&valve, "stiffness.at_setting_1"), derived(&valve, "stiffness.with_accumulators"), 1e-12);
 }
 
-/// What a verdict does not cover is said.
+/// Settings that a verdict does not cover are reported.
 #[test]
 fn a_verdict_says_that_settings_stand() {
     let text = without_uncertainty(GAS);
@@ -121,8 +122,7 @@ fn a_verdict_says_that_settings_stand() {
     assert!(models.contains("the valve of line.accumulator.adjustment is counted in the plant"), "{models}");
 }
 
-/// A simulation of a setting that moves states its work; one of a setting that leaves its way is
-/// refused.
+/// A simulation of a moving setting states its work; one of a setting beyond its range is rejected.
 #[test]
 fn a_simulation_tells_the_work_of_a_setting() {
     let text = without_uncertainty(GAS);
@@ -167,7 +167,7 @@ fn rows_of(settings: &[&str]) -> (serde_json::Value, Vec<std::collections::BTree
     (serde_json::from_str(&found.json).unwrap(), lines.map(row).collect())
 }
 
-/// What the valves throttle is the integral of their drops times their flows, which the rows give
+/// The loss in the valves is the integral of their drops times their flows, which the rows contain
 /// too.
 #[test]
 fn the_loss_of_switching_is_told() {
@@ -203,8 +203,8 @@ fn the_loss_of_switching_is_told() {
     assert!(text.contains("the valves between chambers and gas throttle"), "{text}");
 }
 
-/// Peaks of gas are those of the solution; of gas too fast for heat its temperature follows the
-/// adiabate.
+/// Peaks of gas are those of the solution; the temperature of gas too fast for heat exchange
+/// follows the adiabate.
 #[test]
 fn peaks_of_gas_are_told() {
     let scenario = "scenario=[{ name = \"moves\", duration = \"0.5 s\", output_step = \"0.1 ms\", reference = [{ at = 0, force = \"1 kN\" }, \
@@ -228,7 +228,7 @@ fn peaks_of_gas_are_told() {
         near(number("temperature_peak_ratio"), theta(peak), 1e-5);
         near(number("temperature_least_ratio"), theta(least), 1e-5);
     }
-    // an exponent says nothing of temperatures, and no gas nothing at all
+    // a rig with an exponent has no temperatures, and one without gas has none of these values
     let (found, _) = rows_of(&[&accumulator("14 mL", "15 bar", ""), scenario]);
     assert!(found["scenarios"][0]["gas"][0]["temperature_peak_ratio"].is_null());
 }

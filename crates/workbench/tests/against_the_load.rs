@@ -1,5 +1,5 @@
-//! Everything that is printed of a rig is of the declared rig, its specimen and its leakage
-//! included, or names what it leaves out.
+//! Printed values of a rig are those of the declared rig, its specimen and its leakage included, or
+//! name the parts that they leave out.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -13,7 +13,7 @@ use phea_workbench::linearize::{Linearization, linearize as linearized};
 use phea_workbench::setup::Setup;
 use serde_json::Value;
 
-/// A differential cylinder, nothing of whose linear model is stated.
+/// A differential cylinder without any stated value of its linear model.
 pub(crate) const RIG: &str = r#"
 schema = 1
 title = "Press on a specimen"
@@ -70,8 +70,8 @@ fn response(factors: &Value, frequency: f64) -> Complex64 {
     number(factors, "gain") * product(roots("zeros")) / product(roots("poles"))
 }
 
-/// Between its slow pole and its modes the plant integrates with the rate gain of `check`, and a
-/// moved ground meets the springs in series.
+/// The plant integrates between its slow pole and its modes with the rate gain of `check`, and a
+/// moved ground acts on the springs in series.
 #[test]
 fn rate_gain_and_stiffness_are_those_of_the_plant() {
     for stiffness in ["5 kN/mm", "15 kN/mm", "30 kN/mm", "400 kN/mm"] {
@@ -84,14 +84,14 @@ fn rate_gain_and_stiffness_are_those_of_the_plant() {
         near(derived(&told, "dynamics.equivalent_stiffness"), held, 0.015);
         assert_eq!(linear["load_step_moves"], "ground");
     }
-    // without a load nothing has changed: both springs in series
+    // nothing has changed without a load: both springs in series
     let alone = check(RIG, &[]);
     let [k_h, k_s] =
         ["linear.hydraulic_stiffness", "linear.sensor_stiffness"].map(|name| derived(&alone, name));
     near(derived(&alone, "dynamics.equivalent_stiffness"), k_h * k_s / (k_h + k_s), 1e-12);
 }
 
-/// Each mode of the plant is listed with its damping, and the shares are those of its poles.
+/// Modes of the plant are listed with their damping, and the participations are those of its poles.
 #[test]
 fn modes_and_dominance_are_those_of_the_plant() {
     let settings: [&[&str]; 3] =
@@ -114,7 +114,7 @@ fn modes_and_dominance_are_those_of_the_plant() {
     }
 }
 
-/// Without a load the two-pressure model is the plant, whatever leaks across the piston.
+/// The two-pressure model without a load is the plant, whatever the leakage across the piston.
 #[test]
 fn the_two_pressure_model_leaks() {
     for leakage in ["1e-13", "1e-12", "2e-11"] {
@@ -129,7 +129,7 @@ fn the_two_pressure_model_leaks() {
     }
 }
 
-/// The models that hold the load still say so, in text, JSON and table.
+/// Models that hold the load still are named as such, in text, JSON and table.
 #[test]
 fn what_holds_the_load_still_is_named() {
     let load = specimen("15 kN/mm");
@@ -150,8 +150,8 @@ fn models(settings: &[&str]) -> Linearization {
     linearized(setup.rig().unwrap(), setup.controller.as_ref(), &setup.sensor).unwrap()
 }
 
-/// The moved ground of a specimen meets K_H, K_S and the specimen in series, and with the loop
-/// closed by a gain 1/(1 + K P) of that; a prescribed load meets the port itself.
+/// The moved ground of a specimen acts on K_H, K_S and the specimen in series; with the loop closed
+/// by a gain K the stiffness is 1/(1 + K P) of that. A prescribed load acts on the port itself.
 #[test]
 fn a_moved_ground_meets_the_specimen_in_series() {
     let load = specimen("15 kN/mm");
@@ -167,14 +167,15 @@ fn a_moved_ground_meets_the_specimen_in_series() {
         assert!((-at(&open.open_loop.by_motion) / expected - 1.0).norm_sqr() < 1e-18);
         let by_loop = -at(&closed.closed_loop.as_ref().unwrap().by_motion);
         assert!((by_loop / (expected / (1.0 + gain * plant)) - 1.0).norm_sqr() < 1e-18);
-        // the port is that of the actuator, the same whatever its load
+        // the port is that of the actuator, whatever its load
         let ports = [&open, &prescribed].map(|models| at(&models.open_loop.impedance));
         assert!((ports[0] / ports[1] - 1.0).norm_sqr() < 1e-18);
         assert!((at(&prescribed.open_loop.by_motion) / ports[1] - 1.0).norm_sqr() < 1e-24);
     }
 }
 
-/// A specimen in series takes gain, and stiffness of the hose, in closed form, in both branches.
+/// A specimen in series reduces the gain, and the stiffness of the hose, in closed form, in both
+/// branches.
 ///
 /// ```text
 /// K_p(k) = K_p + A/(tau k K_qU)           1/K_H(k) = 1/K_H - 1/k
@@ -206,7 +207,8 @@ fn sizing_has_the_specimen_in_series() {
     }
 }
 
-/// The same of a piston with one rod, of another time constant, and behind a spring on the rod.
+/// A piston with one rod, with another time constant, and with a spring on the rod: the specimen
+/// reduces the gain too.
 #[test]
 fn a_specimen_takes_its_gain_whatever_the_rig() {
     let one_rod = HOSE.replace("rod_diameter = \"22 mm\"", "rod_diameters = [\"22 mm\", \"0 mm\"]");
@@ -229,7 +231,7 @@ fn a_specimen_takes_its_gain_whatever_the_rig() {
     }
 }
 
-/// A load that no stiffness holds is not in series with anything, and this is said.
+/// A load that no stiffness holds is not in series with anything, and this is reported.
 #[test]
 fn a_free_mass_is_held_still_and_named() {
     let load =

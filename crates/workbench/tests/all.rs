@@ -1,4 +1,4 @@
-//! The procedures from outside: what a project says, what is answered, and what is drawn.
+//! Tests of the procedures from outside: texts of projects, answers, and drawings.
 #![cfg(test)]
 
 mod accumulator;

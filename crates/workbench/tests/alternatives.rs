@@ -1,4 +1,4 @@
-//! `alternatives` says of each what the single commands say of it.
+//! Alternatives: `alternatives` reports for each the results of the single commands.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -86,7 +86,7 @@ pub(super) fn parsed(answer: &Answer) -> Value {
     serde_json::from_str(&answer.json).unwrap()
 }
 
-/// The rig with its files, once for all tests.
+/// The answer for the rig, computed once for all tests.
 pub(super) fn judged() -> &'static (Answer, Value) {
     static JUDGED: OnceLock<(Answer, Value)> = OnceLock::new();
     JUDGED.get_or_init(|| {
@@ -96,7 +96,7 @@ pub(super) fn judged() -> &'static (Answer, Value) {
     })
 }
 
-/// Sizing, rig and scenario of each, and nothing without a reason.
+/// Sizing, rig and scenario of each alternative, and no absence without a reason.
 #[test]
 fn every_alternative_has_its_columns_and_reasons() {
     for json in [&judged().1, &parsed(&answer(LOOP, &[], &[], &asked(false)))] {
@@ -116,12 +116,13 @@ fn every_alternative_has_its_columns_and_reasons() {
     // ORIGIN: analytic, 2 pi/4 (10.5 mm)^2 0.35 m
     assert!((pipe["lines_volume_m3"].as_f64().unwrap() - 6.0613e-5).abs() < 1e-9);
     assert_eq!(pipe["lines_length_m"], 0.7);
-    // what the hose is there for
+    // the purpose of the hose
     let least = |columns: &Value| columns["stiffness_minimum_n_per_m"].as_f64().unwrap();
     assert!(least(pipe) > 5.0 * least(hose));
 }
 
-/// What is not stated is not zero; what the valve takes at rest is what a run at rest takes.
+/// A number that is not stated is not zero; the flow that the valve takes at rest is that of a run
+/// at rest.
 #[test]
 fn lengths_and_losses_are_those_of_the_rig() {
     let columns = |index: usize| &judged().1["alternatives"][index]["columns"];
@@ -140,8 +141,8 @@ fn lengths_and_losses_are_those_of_the_rig() {
     }
 }
 
-/// With a spring on the rod, that of the rig as declared and of the coils that `check` winds;
-/// without coils, or with too few of them, the reason.
+/// Length with a spring on the rod: that of the rig as declared and of the coils that `check`
+/// computes; without coils, or with too few of them, there is a reason.
 #[test]
 fn a_spring_on_the_rod_has_a_length() {
     let length = |coil: &str| {
@@ -168,7 +169,8 @@ fn a_spring_on_the_rod_has_a_length() {
     assert_eq!(unstated, LengthUnknown::NoDeadLength);
 }
 
-/// Under a load case each is designed for as with its settings, the alternative's own set last.
+/// Under a load case each alternative is designed with the settings of the case; the alternative's
+/// own settings come last.
 #[test]
 fn a_load_case_is_what_set_makes_of_every_alternative() {
     let text =
@@ -203,8 +205,8 @@ fn a_load_case_is_what_set_makes_of_every_alternative() {
     );
 }
 
-/// The impedance is what `linearize` finds for the written project, and tends to the damper of the
-/// leakage at low frequencies.
+/// The impedance is that which `linearize` computes for the written project, and tends to the
+/// damper of the leakage at low frequencies.
 #[test]
 fn impedances_are_those_of_the_written_project() {
     let (found, json) = judged();
@@ -234,7 +236,7 @@ fn impedances_are_those_of_the_written_project() {
     }
 }
 
-/// Every number by which alternatives are compared can be asked for in a front.
+/// Every number by which alternatives are compared can be requested in a front.
 #[test]
 fn every_column_has_a_sense() {
     fn keys(value: &Value, found: &mut Vec<String>) {
@@ -270,7 +272,8 @@ fn every_column_has_a_name() {
     assert!(text.contains("oil in both lines") && printed.is_empty(), "{printed:?}");
 }
 
-/// The ranges of the rig that an alternative changes, and only these; without it the check says so.
+/// The ranges of the rig that an alternative changes, and only these; without the option the check
+/// reports this.
 #[test]
 fn ranges_follow_the_rig_where_that_is_asked() {
     let pipe = "\n[[alternative]]\nname = \"pipe\"\nRECENTRE\n[alternative.set]\n\
@@ -315,7 +318,7 @@ fn a_sized_alternative_has_the_hose_of_size() {
     assert_eq!(refused, "alternative `p`: `size` finds the hoses of both sides: its [line] must have them");
 }
 
-/// The design of an alternative is that of the project with the same settings.
+/// The design of an alternative is that of the project with identical settings.
 #[test]
 fn each_design_is_that_of_design_with_set() {
     let json = parsed(&answer(LOOP, &[], &[], &asked(false)));
@@ -333,7 +336,7 @@ fn each_design_is_that_of_design_with_set() {
     }
 }
 
-/// The written project is the alternative with its controller: `simulate` finds the same numbers.
+/// The written project is the alternative with its controller: `simulate` gives identical numbers.
 #[test]
 fn each_written_project_is_the_one_that_was_driven() {
     let (found, json) = judged();
@@ -365,7 +368,7 @@ fn each_written_project_is_the_one_that_was_driven() {
     );
 }
 
-/// What is finished when the watch stops is kept; the rest is named.
+/// Results that are finished when the watch stops are returned; the rest is named.
 #[test]
 fn a_stop_keeps_what_is_finished() {
     let mut watch = |progress: phea_workbench::command::Progress| progress.share < 0.34;
@@ -377,7 +380,7 @@ fn a_stop_keeps_what_is_finished() {
     assert!(!stopped.affirmative && stopped.text.contains("late: not reached"));
 }
 
-/// The report judges the alternatives where that is asked, and otherwise says how to.
+/// The report judges the alternatives if requested, and otherwise states how to request it.
 #[test]
 fn the_report_names_or_judges_the_alternatives() {
     let page = |request: &Request| {
@@ -395,21 +398,21 @@ fn the_report_names_or_judges_the_alternatives() {
 
 pub(super) const BOOK: &str = include_str!("../../../book/src/theory/compliance_compared.md");
 
-/// The rows of the book's tables of that many columns, each as its words in a line.
+/// The rows of the book's tables with that many columns, each as its words in a line.
 pub(super) fn rows_of_the_book(columns: usize) -> Vec<String> {
     let rows = BOOK.lines().filter(|line| line.starts_with("| ") && line.split(" | ").count() == columns);
     let rows = rows.map(|row| row.trim_matches(['|', ' ']).replace(" | ", " "));
     rows.filter(|row| !row.contains("specifications")).collect()
 }
 
-/// A row of the book stands in a line of an output, its numbers and words in their order.
+/// True if a row of the book is in a line of an output, its numbers and words in order.
 pub(super) fn stands_in(row: &str, output: &str) -> bool {
     let lines = output.lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "));
     lines.map(|line| format!("{line} ")).any(|line| line.contains(&format!("{row} ")))
 }
 
-/// The ways that story and book share stand in both, and the story's output is compared with the
-/// command's.
+/// The commands that story and book have in common are in both, and the story's output is compared
+/// with the command's.
 #[test]
 fn the_book_says_what_the_story_shows() {
     let story = include_str!("../../../examples/13_alternatives.md");

@@ -1,4 +1,4 @@
-//! Fronts over a swept number; that over the length of a hose which the book shows.
+//! Fronts over a swept number, among them the front over the length of a hose in the book.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -10,7 +10,7 @@ use super::alternatives::{BOOK, LOOP, parsed, rows_of_the_book, stands_in};
 use super::ask::{HOSE, answer};
 
 const FIGURE: &str = include_str!("../../../book/src/images/hose_length_front.svg");
-/// What the book passes to the command.
+/// Settings that the book passes to the command.
 const BY_VOLUME: &str =
     r#"alternative=[{ name = "by volume", recentre = true, set = { "line.compliance" = "by_volume" } }]"#;
 const COLUMNS: &str = "swept,disturbance_peak_n,stiffness_minimum_n_per_m:less";
@@ -63,7 +63,7 @@ fn front(columns: &str, sweep: &str) -> Request {
     })
 }
 
-/// Dominance of the points, compared with its definition; the same bytes in two threads at once.
+/// Dominance of the points, compared with its definition; identical bytes from two threads at once.
 #[test]
 fn a_front_is_what_nothing_dominates() {
     let request = front("high_frequency_gain_db,swept:more", "plant.delay=1 ms..20 ms");
@@ -101,8 +101,8 @@ fn a_front_is_what_nothing_dominates() {
     assert!(found.files.iter().any(|file| file.name == "front.svg"));
 }
 
-/// Feasibility as a column is the relaxation: 0 where all is satisfied, and those that miss are
-/// compared.
+/// Feasibility as a column is the relaxation: 0 if all specifications are satisfied; the points
+/// that miss some are compared by it.
 #[test]
 fn a_front_may_go_over_feasibility() {
     let text = LOOP.replace("limit = 2", "limit = 1.5")
@@ -130,7 +130,7 @@ fn a_front_may_go_over_feasibility() {
     assert!(ends(true) >= 2, "{found}");
 }
 
-/// Refused before anything is designed.
+/// A request that is rejected before anything is designed.
 #[test]
 fn a_front_that_cannot_be_says_why() {
     let refused = |columns: &str, sweep: &str| {

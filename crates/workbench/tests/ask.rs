@@ -1,4 +1,4 @@
-//! Asks a command about a project held in memory and reads its JSON, as another program would.
+//! Runs a command on a project in memory and reads its JSON, as another program would.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::sync::OnceLock;
@@ -17,7 +17,7 @@ pub(crate) const PIPE: &str = include_str!("../../../examples/ybitu/pipe.toml");
 pub(crate) const CONTRADICTORY: &str =
     include_str!("../../../examples/qft/mistakes/contradictory_bounds.toml");
 
-/// A folder of hoses that do not exist, and a file that gives another body to a built-in name.
+/// A folder of fictitious hoses, and a file that gives another body to a built-in name.
 pub(crate) const FICTITIOUS: &str = "fictitious";
 pub(crate) const OVERRIDE: &str = "override/eaton_synflex_3130_08.toml";
 
@@ -39,7 +39,7 @@ pub(crate) fn source(project: &str) -> Memory {
         .with("rig.toml", project)
 }
 
-/// From mount to mount, as `alternatives` tells it.
+/// Length from mount to mount, as reported by `alternatives`.
 pub(crate) fn retracted_length(project: &Project) -> Result<f64, LengthUnknown> {
     let rig = Setup::rig_of(project).unwrap();
     alternatives::retracted_length(project.actuator.as_ref().unwrap(), &rig)
@@ -82,25 +82,25 @@ pub(crate) fn json(project: &str, settings: &[&str], catalogues: &[&str], reques
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text}"))
 }
 
-/// What a design of the hose answers, with its repair: made once for all tests that ask for it.
+/// Answer of a design of the hose, with its repair: computed once for all tests that need it.
 pub(crate) fn designed_hose() -> &'static Answer {
     static ANSWER: OnceLock<Answer> = OnceLock::new();
     let request = Request::Design { seed: None, stages: false, repair: true };
     ANSWER.get_or_init(|| answer(HOSE, &UNLIMITED, &[], &request))
 }
 
-/// The same design within what may be built, once for all tests.
+/// Answer of the design within the limits of what may be built, computed once for all tests.
 pub(crate) fn built_hose() -> &'static Answer {
     static ANSWER: OnceLock<Answer> = OnceLock::new();
     let request = Request::Design { seed: None, stages: false, repair: true };
     ANSWER.get_or_init(|| answer(HOSE, &[], &[], &request))
 }
 
-/// The settings that leave a design nothing but its specifications.
+/// The settings that leave only the specifications to a design.
 pub(crate) const UNLIMITED: [&str; 2] = ["design.limits=none", "design.structure=free"];
 
-/// The report of a project whose specifications no controller satisfies: made once for all tests
-/// that ask for it.
+/// The report of a project whose specifications no controller satisfies: computed once for all
+/// tests that need it.
 pub(crate) fn contradictory_report() -> &'static Report {
     static REPORT: OnceLock<Report> = OnceLock::new();
     let make = || {
@@ -167,7 +167,7 @@ pub(crate) fn candidates<'a>(size: &'a Value, hose: &str, compliance: &str) -> V
     all.filter(|row| row["hose"] == hose && row["compliance"] == compliance).collect()
 }
 
-/// The only one of them.
+/// The only such candidate.
 #[track_caller]
 pub(crate) fn candidate<'a>(size: &'a Value, hose: &str, compliance: &str) -> &'a Value {
     let found = candidates(size, hose, compliance);
@@ -175,14 +175,14 @@ pub(crate) fn candidate<'a>(size: &'a Value, hose: &str, compliance: &str) -> &'
     found[0]
 }
 
-/// The reasons of a candidate, one a line.
+/// The reasons of a candidate, one per line.
 pub(crate) fn reasons(candidate: &Value) -> String {
     let lines: Vec<&str> =
         candidate["reasons"].as_array().unwrap().iter().map(|line| line.as_str().unwrap()).collect();
     lines.join("\n")
 }
 
-/// That an identification is refused with a message that has every part.
+/// Checks that an identification is rejected with a message that has every part.
 #[track_caller]
 pub(crate) fn refused(outcome: Result<Answer, IdentifyError>, expected: &[&str]) {
     let message = match outcome {

@@ -1,5 +1,5 @@
-//! The closed loop that phea is measured on, at the tolerance that its project files state, against
-//! the golden reference.
+//! The closed loop of the performance benchmark, at the tolerance that its project files state,
+//! compared with the golden reference.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -50,7 +50,7 @@ fn at_its_tolerance_the_force_is_right_to_twenty_millinewtons() {
     }
 }
 
-/// It is no luck: tolerances nearby do as well, and a small one comes ten times nearer.
+/// Other tolerances nearby give equal accuracy, and a small one is ten times more accurate.
 #[test]
 fn other_tolerances_do_as_well_or_better() {
     let cases = [

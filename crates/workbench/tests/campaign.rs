@@ -1,5 +1,5 @@
-//! Campaigns: the same rows however they are computed, wherever they are interrupted, and each run
-//! as `simulate` has it.
+//! Campaigns: rows that do not depend on the way in which they are computed or on interruptions,
+//! and runs as `simulate` has them.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -23,7 +23,7 @@ use serde_json::Value;
 
 const CAMPAIGN: &str = include_str!("../../../examples/benchmark/campaign.toml");
 
-/// Short enough for many runs: one step of the force, and a load that moves.
+/// Settings that make a run short: one step of the force, and a load that moves.
 const SHORT: [&str; 4] = [
     "scenario.0.duration=0.4 s",
     "scenario.0.reference.0.at=0.05 s",
@@ -51,8 +51,8 @@ fn lanes(threads: usize) -> Effort {
     Effort { threads, lanes: true }
 }
 
-/// Every machine has its bits alone, in lanes, and whatever the threads; so do those that end
-/// early.
+/// Every machine has identical bits in a single run, in lanes, and on any number of threads; so do
+/// those that stop early.
 #[test]
 fn rows_are_the_same_in_lanes_one_by_one_and_on_any_number_of_threads() {
     let sampled = ["controller.sample_time=1 ms", "force_sensor.noise=2 N"];
@@ -96,8 +96,8 @@ fn open_loop() -> (Memory, Loaded) {
     (source, loaded)
 }
 
-/// Machines that a stated command drives: the same rows in lanes and alone, and each as `simulate`
-/// has it.
+/// Machines driven by a stated command: identical rows in lanes and in single runs, and each as
+/// `simulate` has it.
 #[test]
 fn an_open_loop_is_drawn_as_a_closed_one_is() {
     let (source, loaded) = open_loop();
@@ -108,7 +108,7 @@ fn an_open_loop_is_drawn_as_a_closed_one_is() {
         let rows = plan.rows(0..45, lanes(threads)).unwrap();
         assert_eq!(plan.table(&rows), plan.table(&expected), "{threads} threads");
     }
-    // a force is asked for by nobody, whatever begins
+    // no event requests a force
     let header = plan.table(&[]);
     for (event, metric) in [(1, "force_peak_n"), (2, "force_peak_n"), (2, "control_rms_v")] {
         assert!(header.contains(&format!(",event{event}_{metric}")), "{header}");
@@ -158,8 +158,8 @@ fn batches_come_in_their_order_on_any_number_of_threads() {
     }
 }
 
-/// A run, written as settings, is the same machine for `simulate`: where both look as often, the
-/// same bits of the force.
+/// A run, written as settings, is an identical machine for `simulate`: if both have equal output
+/// steps, the bits of the force are identical.
 #[test]
 fn a_run_is_what_simulate_makes_of_its_settings() {
     let often = "scenario.0.output_step=0.25 ms";
@@ -185,7 +185,7 @@ fn a_run_is_what_simulate_makes_of_its_settings() {
                 let of = |metric: Metric| numbers[metric];
                 assert_eq!(metrics.disturbance_peak_n.ok(), of(Metric::DisturbancePeak));
                 assert_eq!(metrics.rise_time_s.ok(), of(Metric::RiseTime));
-                // the command is the same sum in another order
+                // the command is an equal sum in another order
                 let peaks = metrics.control_peak_v.ok().zip(of(Metric::ControlPeak));
                 assert!(peaks.is_some_and(|(one, other)| (one - other).abs() < 1e-9 * one), "{peaks:?}");
             }
@@ -224,8 +224,8 @@ fn kept(loaded: &Loaded, request: &CampaignRequest, page: &mut Page) -> Result<S
     command::campaign_watched(&source(), loaded, &[], request, (Some(page), None), &mut |_| true)
         .map(|answer| answer.json)
 }
-/// Over 200 runs half of all stay within 0.02 N of the same at a tolerance of 1e-10, and all but
-/// two within 0.2 N.
+/// Errors of 200 runs: half of all stay within 0.02 N of the runs at a tolerance of 1e-10, and all
+/// but two within 0.2 N.
 #[test]
 fn the_force_is_as_exact_as_the_campaign_says() {
     let of = |settings: &[&str]| {
@@ -245,7 +245,7 @@ fn the_force_is_as_exact_as_the_campaign_says() {
     assert!(0.5 * (errors[99] + errors[100]) <= 0.02 && errors[197] <= 0.2, "{errors:?}");
 }
 
-/// A mass drawn below zero, and static friction drawn below Coulomb's, are rows that say so.
+/// A mass drawn below zero, and static friction drawn below Coulomb's, give rows with the reason.
 #[test]
 fn impossible_draws_are_told_by_their_index() {
     let mass = "campaign.parameters.\"cylinder.moving_mass\"={ minimum = 1, maximum = 9, distribution = \"normal\" }";
@@ -279,7 +279,7 @@ fn impossible_draws_are_told_by_their_index() {
     );
 }
 
-/// The lumps of a draw are those that `linearize` finds with its settings.
+/// The lumped parameters of a draw are those that `linearize` finds with its settings.
 #[test]
 fn lumps_are_those_of_the_drawn_linear_model() {
     let plan = plan(&[]);
@@ -345,7 +345,7 @@ fn the_answer_keeps_its_keys() {
     assert!(names.contains(&"runs.parquet") && names.contains(&"campaign-bands.svg"), "{names:?}");
 }
 
-/// Cell by cell, refused draws included.
+/// The tables agree cell by cell, rejected draws included.
 #[test]
 fn the_parquet_table_says_what_the_text_says() {
     let mass = "campaign.parameters.\"cylinder.moving_mass\"={ minimum = 0.001, maximum = 3, distribution = \"normal\" }";
@@ -386,7 +386,7 @@ fn the_parquet_table_says_what_the_text_says() {
 }
 
 /// Quantiles are of the runs that have a number; those that do not settle within their window are
-/// counted where the quantiles stand.
+/// counted next to the quantiles.
 #[test]
 fn runs_that_do_not_settle_are_told_beside_the_quantiles() {
     let loaded = load(&SHORT);
@@ -415,8 +415,8 @@ const OVERSHOOTING: [&str; 4] = [
     "scenario.0.settling_band_percent=1e-6",
 ];
 
-/// Runs none of which settles tie in the time to settle: the worst of them is the one that
-/// overshoots most.
+/// Runs none of which settles are equal in settling time: the worst of them is the one with the
+/// largest overshoot.
 #[test]
 fn the_worst_of_runs_that_do_not_settle_overshoots_most() {
     let band = "settling_band_percent = 1e-6";
@@ -441,7 +441,7 @@ fn the_worst_of_runs_that_do_not_settle_overshoots_most() {
     assert_eq!((reached.overshoot_percent, overshoots[run as usize]), (most, most));
 }
 
-/// What is wrong with `[campaign]` is reported once, in the text that says it.
+/// Errors in `[campaign]` are reported once, at their place in the text.
 #[test]
 fn what_is_refused_of_a_campaign_has_its_place_and_a_hint() {
     let refused = |settings: &[&str]| {
@@ -470,8 +470,8 @@ fn what_is_refused_of_a_campaign_has_its_place_and_a_hint() {
     assert!(!loaded.warnings.iter().any(|warning| warning.message.contains("`spread`")));
 }
 
-/// What is drawn is compared with the box number by number: a range within it is not mentioned, a
-/// wider one with both ranges, a number that is not in it as such.
+/// Drawn numbers are compared with the box one by one: a range within it is not mentioned, a wider
+/// one with both ranges, and a number that is not in it is reported as such.
 #[test]
 fn numbers_that_are_drawn_beyond_the_box_are_named() {
     const RIG: &str = include_str!("../../../examples/structural/rig.toml");

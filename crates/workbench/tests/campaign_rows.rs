@@ -1,4 +1,4 @@
-//! A run of a campaign by itself: what its row holds, to the last bit, whatever the rig.
+//! A repeated run of a campaign has the values of its row, to the last bit, for every rig.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -14,7 +14,7 @@ const CAMPAIGN: &str = include_str!("../../../examples/benchmark/campaign.toml")
 
 const KNEE: &str = include_str!("../../../examples/leg/knee.toml");
 
-/// One step of the force, and a load that moves.
+/// Settings for one step of the force, and a load that moves.
 const SHORT: [&str; 4] = [
     "scenario.0.duration=0.4 s",
     "scenario.0.reference.0.at=0.05 s",
@@ -22,7 +22,7 @@ const SHORT: [&str; 4] = [
     "scenario.0.load_motion.duration=50 ms",
 ];
 
-/// The row of a run in a campaign of a few, and the same run by itself.
+/// Checks the row of a run in a campaign of a few against the repeated run.
 fn agree(more: &[&str]) {
     agree_of(CAMPAIGN, &[&SHORT[..], more].concat());
 }
@@ -74,7 +74,7 @@ fn a_continuous_loop_is_repeated_to_the_bit() {
 #[test]
 fn a_sampled_loop_is_repeated_to_the_bit() {
     agree(&["controller.sample_time=1 ms"]);
-    // rows between the samples, and a command that arrives between them
+    // rows between the samples, and a command that takes effect between them
     agree(&["controller.sample_time=0.7 ms", "controller.delay=0.4 ms", "scenario.0.output_step=0.3 ms"]);
     agree(&["controller.sample_time=2 ms", "force_sensor.noise=2 N"]);
 }
@@ -99,7 +99,7 @@ fn a_load_that_yields_is_repeated_to_the_bit() {
     agree(&[sprung, fed, "controller.sample_time=1 ms"]);
 }
 
-/// A joint that the cylinder turns: its load is stated about the joint, its rows are moments.
+/// A joint turned by the cylinder: its load is stated about the joint, its rows are moments.
 #[test]
 fn a_joint_is_repeated_to_the_bit() {
     let campaign = "[campaign]\nparameters = { \"supply.pressure\" = { spread = \"10 %\" } }\n";

@@ -1,5 +1,5 @@
-//! The command that a step of the reference takes: closed forms, a plant known by its response
-//! alone, and the nonlinear run.
+//! The command for a step of the reference: closed forms, a plant known only by its response, and
+//! the nonlinear run.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -25,7 +25,7 @@ const PLANT: f64 = 20.0;
 const POLE: f64 = 5.0;
 const SAMPLE_TIME_S: f64 = 1e-3;
 
-/// A gain with the prefilter (s/10 + 1)/(s/40 + 1), or none.
+/// A gain with the prefilter (s/10 + 1)/(s/40 + 1), or without one.
 fn around(sample_time_s: Option<f64>, has_prefilter: bool) -> Compensation {
     let lead = vec![Element::RealZero { frequency: 10.0 }, Element::RealPole { frequency: 40.0 }];
     let controller = Controller {
@@ -37,7 +37,7 @@ fn around(sample_time_s: Option<f64>, has_prefilter: bool) -> Compensation {
     Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap()
 }
 
-/// 20/(s + 5)
+/// The plant 20/(s + 5).
 fn lag() -> PlantCoefficients<f64> {
     let command = RationalCoefficients { numerator: vec![PLANT], denominator: vec![1.0, POLE] };
     PlantCoefficients { command, disturbance: None, dead_time_s: 0.0, rate: None }
@@ -49,7 +49,8 @@ fn command(around: &Compensation) -> Vec<(f64, f64)> {
     found.times_s.into_iter().zip(found.values).collect()
 }
 
-/// u = K (1 - y) with y = K k/(a + K k) (1 - exp(-(a + K k) t)); sampled, y(k+1) = d y(k) + b u(k).
+/// Command u = K (1 - y) with y = K k/(a + K k) (1 - exp(-(a + K k) t)); sampled, y(k+1) = d y(k) +
+/// b u(k).
 #[test]
 fn a_gain_around_a_lag_in_closed_form() {
     let closed = POLE + GAIN * PLANT;
@@ -67,7 +68,7 @@ fn a_gain_around_a_lag_in_closed_form() {
     }
 }
 
-/// The first command is K F(inf), of the continuous prefilter and of the sampled one.
+/// The first command is K F(inf), for the continuous prefilter and for the sampled one.
 #[test]
 fn the_first_command_is_what_passes_at_once() {
     within(command(&around(None, true))[0].1, GAIN * 40.0 / 10.0, 1e-9);
@@ -77,7 +78,7 @@ fn the_first_command_is_what_passes_at_once() {
     within(command(&sampled)[0].1, GAIN * passes, 1e-9);
 }
 
-/// The lag, known by its response alone.
+/// The lag, known only by its response.
 #[derive(Debug)]
 struct Drawn;
 
@@ -105,7 +106,7 @@ impl RespondingPlant for Drawn {
     }
 }
 
-/// Commands of 1/1000 of those before, too: a response is as accurate in any unit.
+/// Commands a thousand times smaller, too: a response has equal accuracy in any unit.
 #[test]
 fn a_plant_known_by_its_response_takes_the_same_command() {
     let around = around(None, true);
@@ -116,8 +117,8 @@ fn a_plant_known_by_its_response_takes_the_same_command() {
     }
 }
 
-/// The rig with hoses alone: without dry friction, without load, with the same gain to both sides
-/// of its null, and without scenarios.
+/// The rig with only hoses: without dry friction, without load, with equal gain on both sides of
+/// its null, and without scenarios.
 pub(crate) fn simple_rig() -> String {
     let between = |text: &str, from: &str, to: &str, other: &str| {
         let (before, rest) = text.split_once(from).unwrap();
@@ -140,8 +141,8 @@ pub(crate) fn simple_rig() -> String {
     between(&text, "[valve.flow_coefficients]", "[cylinder]", &edges)
 }
 
-/// The largest command of the nonlinear run of a small step is that of the operating point with
-/// the linear one.
+/// The largest command of the nonlinear run of a small step is that of the operating point plus the
+/// linear one.
 #[test]
 fn a_small_step_of_the_nonlinear_rig_takes_the_linear_command() {
     let text = simple_rig();
@@ -163,10 +164,10 @@ fn a_small_step_of_the_nonlinear_rig_takes_the_linear_command() {
     within(peak, (rest_v + largest * step_n).abs(), 0.05 * largest * step_n);
 }
 
-/// The command that a design for limits of tracking takes free of any limit, then held to 85 % of
-/// it; and to less than holds the force, which no controller does. The sensor ends before the valve
-/// does.
-// ORIGIN: analytic, fractions of what the free design takes
+/// The command of a design for limits of tracking without a limit on it, then with a limit of 85 %
+/// of it; and with a limit below the command that holds the force, which no controller satisfies.
+/// The sensor's capacity is reached before the valve's.
+// ORIGIN: analytic, fractions of the command of the unlimited design
 #[test]
 fn a_design_keeps_the_command_of_its_step() {
     let text = simple_rig();

@@ -1,5 +1,5 @@
-//! The plant of every verdict is that of the declared rig, with its load and its leakage; what it
-//! does not count is reported first.
+//! The plant of every verdict is that of the declared rig, with its load and its leakage; effects
+//! that it does not include are reported first.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -28,7 +28,7 @@ const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 const SPRUNG: [&str; 4] =
     ["load.model=spring_mass_damper", "load.mass=100", "load.stiffness=2e5", "load.damping=500"];
 
-/// A capacity of the sensor that leaves no room for larger steps than a tenth of the force.
+/// A capacity of the sensor that leaves no room for steps larger than a tenth of the force.
 const TENTH_ALONE: &str = "force_sensor.capacity=3.4 kN";
 
 fn linearized(project: &Project) -> Linearization {
@@ -43,8 +43,8 @@ fn overshoot(project: &Project) -> f64 {
     closed.step.unwrap().metrics.overshoot_percent
 }
 
-/// The load alone makes a loop that overshoots by nothing overshoot by a quarter, and the linear
-/// plant says so. The machine, which has friction, overshoots a little less.
+/// Yielding load: it turns a loop without overshoot into one that overshoots by a quarter, and the
+/// linear plant predicts this. The machine, which has friction, overshoots a little less.
 #[test]
 fn a_load_that_yields_is_in_the_loop() {
     let [prescribed, sprung] = [project_of(HOSE, &[]), project_of(HOSE, &SPRUNG)];
@@ -58,8 +58,7 @@ fn a_load_that_yields_is_in_the_loop() {
     assert!((25.0..expected[1]).contains(&machine), "{machine}");
 }
 
-/// Leakage across the piston adds to the valve's: the slow pole is (K_c + G) times what it was over
-/// K_c.
+/// Leakage across the piston adds to the valve's: the slow pole moves by the factor (K_c + G)/K_c.
 #[test]
 fn leakage_across_the_piston_moves_the_slow_pole() {
     let slowest = |settings: &[&str]| {
@@ -71,8 +70,8 @@ fn leakage_across_the_piston_moves_the_slow_pole() {
     assert!((slowest(&["cylinder.internal_leakage=1e-11"]) - 8.5508).abs() < 1e-4);
 }
 
-/// The load feels the leakage too: slow motions meet a damper of A^2/(K_c + G) and the friction.
-/// The load is not in what it feels.
+/// The load feels the leakage too: slow motions act on a damper of A^2/(K_c + G) and the friction.
+/// The impedance at the load does not contain the load itself.
 #[test]
 fn the_load_feels_the_leakage_and_not_itself() {
     let damper = |settings: &[&str]| {
@@ -91,7 +90,7 @@ fn the_load_feels_the_leakage_and_not_itself() {
     }
 }
 
-/// The hose with this specification alone, which the given controller satisfies over its family.
+/// The hose with this specification only, which the given controller satisfies over its family.
 fn satisfied(settings: &[&str]) -> Project {
     let mut project = project_of(HOSE, settings);
     project.specifications.truncate(1);
@@ -103,7 +102,7 @@ fn audited(project: &Project) -> ProjectAudit {
     audit_project(&Memory::default(), &Setup::new(project).unwrap(), &mut |_| true).unwrap()
 }
 
-/// What is declared and not in the linear loop stands above everything else that is said, and no
+/// Declared effects that are not in the linear loop are reported above everything else, and no
 /// verdict is met.
 #[test]
 fn what_is_not_counted_is_told_first() {
@@ -134,8 +133,8 @@ fn what_is_not_counted_is_told_first() {
     }
 }
 
-/// A prefilter before the samples: a step of 910/(s^2 + 83 s + 910), as it is between any two
-/// samples, reaches the loop.
+/// A prefilter before the samples: a step of 910/(s^2 + 83 s + 910) reaches the loop with its value
+/// between any two samples.
 #[test]
 fn a_prefilter_before_the_samples_acts_in_continuous_time() {
     let project = project_of(HOSE, &["controller.sample_time=5 ms", "prefilter.continuous=true"]);
@@ -155,8 +154,8 @@ fn a_prefilter_before_the_samples_acts_in_continuous_time() {
     assert!(problem.caveats.is_empty(), "{:?}", problem.caveats);
 }
 
-/// A limited pump that gives what is taken is counted, and what that says no more than a simulation
-/// of larger steps is told.
+/// A limited pump that delivers the flow taken is in the linear loop; a caveat reports that only a
+/// simulation shows larger steps.
 #[test]
 fn a_limited_pump_is_counted() {
     let view = audited(&satisfied(&["supply.model=pump_limited"]));
@@ -167,21 +166,21 @@ fn a_limited_pump_is_counted() {
     assert!(taken < delivered && !pump.unproven, "{pump:?}");
     let rig = Setup::rig_of(&project_of(HOSE, &["supply.model=pump_limited"])).unwrap();
     let found = rig.supply.unwrap();
-    // what the pump gives above what is taken goes through a relief valve that opens over 5 bar
+    // the flow of the pump above the flow taken goes through a relief valve that opens over 5 bar
     let falls = 5e5 * found.taken / (9.8e-3 / 60.0);
     assert!((found.supply.pressure - (70e5 - falls)).abs() < 1e-3, "{found:?}");
 }
 
-/// The hose as one rig.
+/// The hose as a single rig without uncertainty.
 fn without_uncertainty() -> String {
     let (start, rest) = HOSE.split_once("[uncertainty]").unwrap();
     let (_, specifications) = rest.split_once("[[specification]]").unwrap();
     format!("{start}[[specification]]{specifications}")
 }
 
-/// A load that yields and is fed forward swings up once the gain is too large, with lumped lines as
-/// with waves in them, sampled as at once: so do the machines of theory/feed_forward.md, 0.7 and
-/// 1.3 times A/K_qU.
+/// A load that yields and is fed forward becomes unstable once the gain is too large, with lumped
+/// lines and with waves in them, sampled and continuous: so do the machines of
+/// theory/feed_forward.md, 0.7 and 1.3 times A/K_qU.
 #[test]
 fn a_load_velocity_that_is_fed_forward_is_in_the_loop() {
     let certain = without_uncertainty();
@@ -204,9 +203,9 @@ fn a_load_velocity_that_is_fed_forward_is_in_the_loop() {
     }
 }
 
-/// A load that yields and is fed forward late: the loop is unstable behind 8.5 ms, stable behind 10
-/// and unstable behind 13 again, where without the feed-forward none of them is stable, and so is
-/// the machine with viscous friction.
+/// A load that yields and is fed forward with delay: the loop is unstable after 8.5 ms, stable
+/// after 10 and unstable after 13 again; without the feed-forward none of them is stable. The
+/// machine with viscous friction agrees.
 #[test]
 fn a_late_feed_forward_is_in_the_loop() {
     let text = without_uncertainty();
@@ -237,8 +236,8 @@ fn a_late_feed_forward_is_in_the_loop() {
     }
 }
 
-/// A load that yields and is fed forward in samples, with viscous friction: the machine says what
-/// the loop in z does.
+/// A load that yields and is fed forward in samples, with viscous friction: the machine agrees with
+/// the loop in z.
 #[test]
 fn a_sampled_feed_forward_is_in_the_loop() {
     let text = without_uncertainty();
@@ -265,8 +264,8 @@ fn a_sampled_feed_forward_is_in_the_loop() {
     }
 }
 
-/// Beside a prescribed load a late feed-forward is a path of its motion: P_d + K s P, P late or of
-/// the samples, and the loop itself stays.
+/// Delayed feed-forward of a prescribed load is a path of its motion: P_d + K s P, P delayed or
+/// sampled, and the loop itself is unchanged.
 #[test]
 fn a_late_feed_forward_of_a_prescribed_load_is_a_path_of_its_motion() {
     let limit = "[[specification]]\nkind = \"load_motion\"\nlimit = 1e6\nfrequencies = [1, 10, 100]\n\n[[specification]]";
@@ -293,7 +292,7 @@ fn a_late_feed_forward_of_a_prescribed_load_is_a_path_of_its_motion() {
     }
 }
 
-/// What changes no specification is reported, and the verdict stays.
+/// A path that no specification limits is reported, but the verdict is unchanged.
 #[test]
 fn a_path_that_no_specification_limits_decides_nothing() {
     for (settings, told) in
@@ -305,7 +304,7 @@ fn a_path_that_no_specification_limits_decides_nothing() {
     }
 }
 
-/// The box of Table 6.3 begins above the K_c that the edges of Table 5.1 make: what the loop does
+/// The box of Table 6.3 begins above the K_c of the edges of Table 5.1: the behaviour of the loop
 /// with that rig is reported.
 // ORIGIN: thesis, Table 6.3, and K_c of the edges of Table 5.1
 #[test]
@@ -322,7 +321,7 @@ fn a_family_that_does_not_contain_the_rig_says_so_first() {
     );
     assert!((coefficient.value / 5.929e-13 - 1.0).abs() < 1e-4, "{coefficient:?}");
     assert_eq!(*with_rig, LoopWithRig::Satisfied);
-    // half the flow gain of the rig, and a limit that holds for that alone
+    // half the flow gain of the rig, and a limit that is satisfied for that gain only
     let range = "uncertainty.flow_gain={ nominal = 2.5e-5, minimum = 2.4e-5, maximum = 2.6e-5 }";
     let mut far = satisfied(&[range]);
     far.uncertainty.retain(|uncertain| uncertain.name == "flow_gain");

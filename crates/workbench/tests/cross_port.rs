@@ -1,5 +1,5 @@
-//! A valve between the chambers as an engineer meets it: what `check` derives, what a verdict says
-//! first, how the linear plant and the machine agree, and what is refused.
+//! A valve between the chambers from the user's side: quantities derived by `check`, warnings above
+//! a verdict, agreement of linear plant and machine, and refusals.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -37,7 +37,7 @@ fn check_derives_what_a_valve_costs_at_rest() {
     near(derived(&check(PIPE, &[&stated, loaded]), "cross_port.flow_coefficient"), coefficient, 1e-12);
 }
 
-/// The static error of a controller without integral action, and none of one that integrates.
+/// The static error of a controller without integral action, and none for one that integrates.
 #[test]
 fn check_tells_the_static_error() {
     let proportional = ["controller.numerator=0.0005", "controller.denominator=1"];
@@ -52,8 +52,8 @@ fn check_tells_the_static_error() {
     assert_eq!(derived(&check(PIPE, &[LAMINAR]), "cross_port.static_error"), 0.0);
 }
 
-/// Feedback: capacity of a piston on its springs, corner, and nothing lost at rest, whatever the
-/// load.
+/// Feedback: capacity of a piston on its springs, corner frequency, and no loss at rest, whatever
+/// the load.
 #[test]
 fn feedback_costs_nothing_at_rest() {
     let told = check(FEEDBACK, &["operating_point.load_force=2 kN"]);
@@ -104,8 +104,8 @@ fn an_orifice_without_a_drop_is_told_first() {
     assert!(!told.to_string().contains("cross_port is counted"), "{told}");
 }
 
-/// What the caveat says of an oscillation: its mean slope is that of a transition pressure of 0.81
-/// times its amplitude.
+/// The caveat on an oscillation: its mean slope is that of a transition pressure of 0.81 times its
+/// amplitude.
 #[test]
 fn an_oscillation_has_the_slope_of_a_transition_pressure() {
     let orifice = Restrictor::Orifice { flow_coefficient: 1e-8, transition_pressure: 1.0 };
@@ -121,7 +121,7 @@ fn an_oscillation_has_the_slope_of_a_transition_pressure() {
     near(mean, alike.conductance(0.0), 1e-4);
 }
 
-/// The step of the linear loop is that of the machine, with every kind of valve, of one rig.
+/// The step of the linear loop is that of the machine, with every kind of valve, for one rig.
 #[test]
 fn the_machine_agrees_with_the_linear_loop() {
     let (before, rest) = PIPE.split_once("[uncertainty]").unwrap();
@@ -133,7 +133,7 @@ fn the_machine_agrees_with_the_linear_loop() {
         "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1e-10, capacity = 1e-12 }",
     ] {
         let request = Request::Verify { proof: false, on_machine: true };
-        // with integral action that outruns the leak the loop settles in 0.3 s
+        // the loop settles in 0.3 s with integral action that exceeds the leak
         let said = answer(&pipe, &[port, VISCOUS, "controller.numerator=0.001*s + 0.1"], &[], &request);
         let object: serde_json::Value = serde_json::from_str(&said.json).unwrap();
         let run = &object["machine"]["runs"][0];
@@ -141,8 +141,8 @@ fn the_machine_agrees_with_the_linear_loop() {
     }
 }
 
-/// Sizing counts what leaks from chamber to chamber in K_c, and refuses a capacity that would share
-/// the work of the hose.
+/// Sizing includes leakage between the chambers in K_c, and rejects a capacity that would take over
+/// part of the hose's work.
 #[test]
 fn sizing_counts_a_leak_and_refuses_a_capacity() {
     let request = size_request(None, None);
@@ -159,7 +159,8 @@ fn sizing_counts_a_leak_and_refuses_a_capacity() {
     assert!(said.contains("counts no capacity between the chambers"), "{said}");
 }
 
-/// The models of a linearisation that leave feedback out say so; a laminar valve is in all of them.
+/// Models of a linearisation that leave feedback out report this; a laminar valve is in all of
+/// them.
 #[test]
 fn models_without_feedback_say_so() {
     let text = |settings: &[&str]| answer(PIPE, settings, &[], &Request::Linearize { sweep: None }).text;
@@ -176,9 +177,9 @@ fn models_without_feedback_say_so() {
     );
 }
 
-/// `check` states the damping of the plant with the valve in it: without one about that of the
-/// decomposed model, with the feedback of the comparison in the book the 0.09 that it was sized
-/// for, where the decomposed model has not changed.
+/// `check` states the damping of the plant with the valve in it: without a valve about that of the
+/// decomposed model, with the feedback of the comparison in the book the 0.09 for which it was
+/// sized, while the decomposed model has not changed.
 #[test]
 fn check_tells_the_damping_with_the_valve_in_it() {
     let feedback = "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1.07644e-10, piston_diameter = \"12 mm\", spring_stiffness = \"30 N/mm\" }";

@@ -1,4 +1,4 @@
-//! `check`: where each number comes from, and what the project states against itself.
+//! `check`: the source of each number, and contradictions in the project.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]

@@ -1,5 +1,5 @@
-//! What `design` takes and answers: the section of the project, a controller that gives its timing
-//! alone, and the keys other programs read.
+//! Input and answer of `design`: the section of the project, a controller that states only its
+//! timing, and the keys that other programs read.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -43,10 +43,10 @@ fn the_section_becomes_what_a_design_begins_with() {
         matches!(&parts[2], StructureFactor::ZeroPair { natural_frequency, .. } if *natural_frequency == pair)
     );
     assert_eq!(parts[3], StructureFactor::RealPole { frequency: [10.0, 2000.0] });
-    // around the design frequencies, 0.1 and 1 rad/s, where the project says nothing
+    // around the design frequencies, 0.1 and 1 rad/s, if the project states nothing
     let StructureFactor::RealZero { frequency: [low, high] } = parts[1] else { panic!("{parts:?}") };
     assert!(low < 0.1 && high > 1.0, "{low} {high}");
-    // a prefilter with a controller without a law is kept
+    // a prefilter with a controller without a law is retained
     let PrefilterChoice::Given(kept) = &options.prefilter else { panic!("{options:?}") };
     assert_eq!((kept.gain(), kept.poles()[0].re), (0.1, 0.9));
     assert_eq!(begun(TIMED, &[], Some(3)).1.seed, 3);
@@ -69,7 +69,7 @@ fn without_the_section_names_come_first_and_tracking_decides_on_a_prefilter() {
     assert_eq!((plain.prefilter, plain.seed), (PrefilterChoice::Grow { maximum_order: 3 }, 1));
     let (head, tail) = HOSE.split_once("[[specification]]\nkind = \"tracking\"").unwrap();
     let untracked = format!("{head}[controller]{}", tail.split_once("[controller]").unwrap().1);
-    // nothing asks for the prefilter, and so nothing takes it away
+    // nothing requires the prefilter, and so nothing removes it
     let given = |text: &str| begun(text, &[], None).1.prefilter;
     assert!(matches!(given(&untracked), PrefilterChoice::Given(_)));
     let bare = untracked.split("[controller]").next().unwrap();
@@ -83,8 +83,8 @@ fn without_the_section_names_come_first_and_tracking_decides_on_a_prefilter() {
     );
 }
 
-/// The gain of a structure that says nothing of it lies around 1/|P0| at the design frequencies,
-/// its sign opposes the plant.
+/// The default gain of a structure is around 1/|P0| at the design frequencies, with the sign
+/// opposite to the plant's.
 #[test]
 fn the_gain_of_a_structure_is_wide_and_of_the_right_sign() {
     let text = |numerator: &str| {
@@ -134,8 +134,8 @@ const CONVERTED: &str = "schema = 1\n[plant]\nnumerator = \"k\"\ndenominator = \
     [design]\nobjective = \"best_worst_margin\"\nprefilter_maximum_order = 0\ngain = [1, 300]\n\
     structure = [{ kind = \"integrator\" }, { kind = \"zero\", frequency = [0.1, 100] }]\n";
 
-/// What the converters may do are two specifications more: for `verify` and for `design`, with
-/// words of their own. The less they may do, the less gain the controller has.
+/// Allowed errors of the converters are two further specifications, for `verify` and for `design`,
+/// with their own words. The smaller the allowed errors, the lower the gain of the controller.
 #[test]
 fn allowed_errors_of_the_converters_are_specifications() {
     let verified = |settings: &[&str]| {
@@ -148,15 +148,15 @@ fn allowed_errors_of_the_converters_are_specifications() {
     let rows = both["specifications"].as_array().unwrap();
     let told = |row: &serde_json::Value| (row["kind"].clone(), row["name"].clone(), row["verdict"].clone());
     assert!(rows[0]["name"].is_null());
-    // |P/(1+L)| of up to 1/14 makes at most 0.56 mN of half a step of 1/64
+    // |P/(1+L)| of up to 1/14 turns half a step of 1/64 into 0.56 mN at most
     let names = ["force error of the rounded command", "command error of the rounded measurement"];
     assert_eq!(told(&rows[2]), ("plant_input_disturbance".into(), names[0].into(), "met".into()));
     assert_eq!(told(&rows[3]), ("control_effort".into(), names[1].into(), "met".into()));
-    // ORIGIN: analytic, the limits are the allowed errors over half of 8/512; towards infinite
-    // frequency, pi/T, |G S| is a little above 12
+    // ORIGIN: analytic, the limits are the allowed errors divided by half of 8/512; towards
+    // infinite frequency, pi/T, |G S| is a little above 12
     assert_eq!(rows[2]["reached"]["limit"], 0.128);
     assert_eq!(rows[3]["reached"]["limit"], 32.0);
-    // those frequencies at which bounds are drawn that lie below pi/T
+    // the frequencies at which bounds are drawn and that are below pi/T
     assert_eq!(rows[2]["at_design_frequencies"].as_array().unwrap().len(), 4);
     let tight = verified(&[force, "controller.quantization.allowed_command_error=0.05"]);
     assert_eq!(tight["specifications"][3]["verdict"], "violated");
@@ -180,15 +180,15 @@ fn allowed_errors_of_the_converters_are_specifications() {
     assert!(text.contains("\n  command error of the rounded measurement is"), "{text}");
 }
 
-/// The law of an answer is the one whose coefficients the computer keeps, and its verification is
-/// that law's.
+/// The law in an answer is the one with the coefficients stored in the computer, and its
+/// verification is that law's.
 #[test]
 fn the_answer_is_what_is_deployed() {
     let single = json(CONVERTED, &["controller.quantization.coefficients=\"f32\""], &[], &DESIGN);
     assert_eq!(single["status"], "met");
     assert_eq!(single["controller"]["domain"], "z");
     assert_eq!(single["continuous_law"]["controller"]["domain"], "s");
-    // k (s/z + 1)/s by Tustin's rule: of one section, whose first coefficient is the gain
+    // k (s/z + 1)/s by Tustin's rule: one section, whose first coefficient is the gain
     let gain = single["controller"]["gain"].as_f64().unwrap();
     assert_eq!(gain, f64::from(gain as f32));
     let exact = json(CONVERTED, &[], &[], &DESIGN)["controller"]["gain"].as_f64().unwrap();
@@ -203,7 +203,8 @@ fn two_limits_that_no_loop_keeps_together_are_explained() {
     let findings = diagnose(&design_problem(&Setup::new(&project).unwrap(), &given));
     let found: Vec<Explanation> = findings.iter().map(|one| Explanation::of(one, &given)).collect();
     let impossible = found.iter().find(|one| one.is_impossible && one.specifications == [0, 1]).unwrap();
-    // |S| <= w/|jw + 30| up to 10 rad/s and |T| <= 5/|jw + 5| from 8 rad/s: both hold there alone
+    // limits |S| <= w/|jw + 30| up to 10 rad/s and |T| <= 5/|jw + 5| from 8 rad/s: only there do
+    // both apply
     assert!((8.0..=10.0).contains(&impossible.frequency_rad_per_s.unwrap()), "{impossible:?}");
     assert!(impossible.relaxation_db.unwrap() > 0.0 && explanation_sentence(impossible).contains("rad/s"));
     assert!(!impossible.plants.is_empty());

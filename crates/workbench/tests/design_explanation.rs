@@ -1,4 +1,4 @@
-//! What a diagnosis found, as sentences.
+//! Sentences on the findings of a diagnosis.
 #![cfg(test)]
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -11,7 +11,7 @@ use phea_workbench::command::Request;
 use phea_workbench::design::{ExplainedFact, ExplainedLimit, Explanation, explanation_sentence};
 use phea_workbench::specification::{NamedSpecification, SpecificationName};
 
-/// The sentence of a finding, of limits on the sensitivity, numbered from 3.
+/// The sentence of a finding on limits of the sensitivity, numbered from 3.
 fn sentence(finding: Finding) -> String {
     let name = |index: &usize| {
         let name = SpecificationName::ClosedLoop(ClosedLoop::Sensitivity);
@@ -29,7 +29,7 @@ fn sentence(finding: Finding) -> String {
     })
 }
 
-/// The sentences name frequencies, the specifications, and what it would take.
+/// The sentences name frequencies, the specifications, and the change that would be necessary.
 #[test]
 fn findings_read_as_sentences() {
     let plant = PlantPoint::Parameters(vec![]);
@@ -61,7 +61,7 @@ fn findings_read_as_sentences() {
     }
 }
 
-/// A double pole at 1 rad/s under an integrator alone is not stable at any gain.
+/// A double pole at 1 rad/s, which under a pure integrator is not stable at any gain.
 const UNSTABLE: &str = r#"schema = 1
 title = "unstable"
 [plant]
@@ -77,8 +77,8 @@ limit = 1.3
 frequencies = [0.1, 1, 10]
 "#;
 
-/// A controller that leaves a plant unstable is not printed to be pasted, and its file begins with
-/// the reason; a later design of that project does not keep the words.
+/// A controller that leaves a plant unstable is not printed for use, and its file begins with the
+/// reason; a later design of that project removes the words.
 #[test]
 fn a_controller_that_is_not_stable_is_not_to_be_used() {
     let design = Request::Design { seed: None, stages: false, repair: false };

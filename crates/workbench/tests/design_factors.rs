@@ -1,4 +1,4 @@
-//! Transfer functions by their factors.
+//! Factored transfer functions.
 #![cfg(test)]
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 

@@ -1,4 +1,4 @@
-//! Requirements in time in what is printed of a design.
+//! Requirements in time in the output of a design.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -9,13 +9,13 @@ use phea_workbench::trial::{self, Agreement, HeldRequirement, Leg, StepSize, Tri
 
 use super::design_printing::{PROJECT, object, view};
 
-/// The drive of which a step is required, designed as it is.
+/// The drive with a required step, designed without changes.
 fn with_step(timing: &str) -> ProjectDesign {
     let step = "[[specification]]\nkind = \"step\"\novershoot_percent = 5\nsettling_time = \"1.5 s\"\n";
     view(&format!("{}\n{step}", PROJECT.replace("TIMING\n", timing)), DesignStatus::Met).2
 }
 
-/// A structure that keeps its limits is met where its steps are within what is required, and one
+/// A structure that satisfies its limits is met if its steps are within the requirement, and one
 /// that does not is missed, whatever its steps.
 // ORIGIN: written by hand, within and beyond 5 % and 1.5 s
 #[test]
@@ -89,7 +89,7 @@ fn run(view: &ProjectDesign, satisfied: &[bool]) -> TrialRun {
     }
 }
 
-/// One requirement that one run misses is enough; a run of which nothing is required misses
+/// A requirement that one run misses is missed by the design; a run without a requirement misses
 /// nothing.
 #[test]
 fn a_design_misses_on_the_rig_where_a_run_does() {

@@ -1,4 +1,4 @@
-//! What is printed and written of a design, whatever found it: a design made by hand.
+//! Output of a design, however it was found: here, a design made by hand.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -30,7 +30,7 @@ use phea_workbench::robust::robust_problem;
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
-/// k/(s (s + 10)) with two specifications and a law that is too slow for the second.
+/// Plant k/(s (s + 10)) with two specifications and a law that is too slow for the second.
 pub(super) const PROJECT: &str = "schema = 1\ntitle = \"drive\"\n\n[plant]\nnumerator = \"k\"\ndenominator = \"s*(s + 10)\"\n\n\
     [uncertainty]\nk = { nominal = 10, minimum = 10, maximum = 20, points = 2 }\n\n\
     [[specification]]\nkind = \"robust_stability\"\nlimit = 1.3\nfrequencies = [1, 10]\nband = [0, inf]\n\n\
@@ -53,8 +53,8 @@ fn loaded(text: &str) -> (Memory, Loaded) {
     (source, loaded)
 }
 
-/// 5 (s/50 + 1)/(s/500 + 1) and a prefilter of first order, as if a search had found them for
-/// coefficients that are kept so.
+/// The law 5 (s/50 + 1)/(s/500 + 1) and a prefilter of first order, as if a search had found them
+/// for coefficients in this format.
 fn design(problem: &DesignProblem, coefficients: CoefficientFormat, status: DesignStatus) -> Design {
     let lead = Element::LeadLag { zero_frequency: 50.0, pole_frequency: 500.0 };
     let law = Controller {
@@ -178,7 +178,7 @@ fn programs_read_the_keys_that_stay() {
     assert_eq!(object["prefilter"]["poles"], serde_json::json!([[-6.0, 0.0]]));
     assert_eq!(object["structure"]["parts"][1]["frequency_rad_per_s"], serde_json::json!([10.0, 1000.0]));
     assert_eq!(object["seed"], 7);
-    // the same object that `verify` prints, in addition to what every object carries
+    // the object that `verify` prints, in addition to the common keys
     let designed = String::from_utf8(files(&loaded, &view).remove(0).bytes).unwrap();
     let (source, loaded) = self::loaded(&designed);
     let verified =
@@ -190,7 +190,7 @@ fn programs_read_the_keys_that_stay() {
     assert!(object["published"]["verification"]["verdict"].is_string());
 }
 
-/// The project that is written says what was designed, and everything else as it was written.
+/// The written project contains the designed controller, and everything else unchanged.
 #[test]
 fn a_sampled_design_is_written_as_it_was_found_and_told_as_it_is_deployed() {
     let timing = "sample_time = \"2 ms\"\ndelay = \"1 ms\"\ndiscretization = \"matched\"\n";
@@ -224,8 +224,8 @@ fn a_sampled_design_is_written_as_it_was_found_and_told_as_it_is_deployed() {
     assert_eq!(written, expected);
 }
 
-/// What the project says of its prefilter in addition to the law holds for the designed one too, in
-/// the file and in what is pasted.
+/// Keys of the prefilter in addition to its law apply to the designed one too, in the file and in
+/// the printed tables.
 #[test]
 fn a_prefilter_that_acts_between_samples_goes_on_doing_so() {
     let sampled = PROJECT.replace("TIMING\n", "sample_time = \"2 ms\"\n");
@@ -260,7 +260,7 @@ fn every_stage_is_a_file() {
     let expected = decibels(50.0 * 1.0004_f64.sqrt() / 101.0_f64.sqrt() / 1.000_004_f64.sqrt());
     assert!((row[1].parse::<f64>().unwrap() - expected).abs() < 1e-9, "{row:?}");
     assert!(["true", "false"].contains(&row[3]), "{row:?}");
-    // what is left above and below the band adds up to the band less the spread
+    // the distances above and below the band add up to the band less the spread
     for line in content("prefilter_band.csv").lines().skip(1) {
         let row: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
         assert!((row[6] + row[7] - ((row[5] - row[2]) - (row[4] - row[3]))).abs() < 1e-9, "{line}");
@@ -273,8 +273,8 @@ fn every_stage_is_a_file() {
     assert!(text(&loaded, &view).starts_with("Design: stopped: this is the best controller found so far"));
 }
 
-/// A published law of elements is the product of those that act, and all of them go where the
-/// designed one comes.
+/// A published law of elements is the product of those that act, and all of them are replaced by
+/// the designed one.
 #[test]
 fn elements_are_a_published_law() {
     let elements = "elements = [\n  { kind = \"gain\", value = 3 },  # loud\n  { kind = \"pi\", proportional_gain = 2, integral_gain = 4 },\n  \
@@ -304,7 +304,7 @@ fn elements_are_a_published_law() {
     );
 }
 
-/// With rounded coefficients it is the rounded controller that is audited, here and by `verify`.
+/// Rounded controllers are audited, here and by `verify`.
 #[test]
 fn what_the_computer_rounds_is_part_of_the_design() {
     let timing = "sample_time = \"2 ms\"\nquantization = { command_bits = 12, command_range = [-10, 10], coefficients = \"f32\" }\n";
@@ -314,9 +314,8 @@ fn what_the_computer_rounds_is_part_of_the_design() {
     assert_eq!(pole, f64::from(pole as f32));
     let effect = &object["rounding"]["effects"][0];
     assert_eq!((effect["of"].as_str(), effect["on"].as_str()), (Some("command"), Some("output")));
-    // no rounding does less than it would at rest: half a step of 20 V/4096 through 1/G(z = 1),
-    // where the plant integrates
-    // ORIGIN: analytic, 20/4096/2/5
+    // rounding has at least its effect at rest: half a step of 20 V/4096 through 1/G(z = 1), where
+    // the plant integrates ORIGIN: analytic, 20/4096/2/5
     assert!(effect["peak"].as_f64().unwrap() >= 0.999 * 20.0 / 4096.0 / 2.0 / 5.0, "{effect}");
     assert!(effect["peak_plant"]["k"].is_number());
     assert!(text(&loaded, &view).contains("the rounded command moves the output by "));
@@ -349,7 +348,7 @@ fn what_a_setting_says_beside_the_law_is_written_with_it() {
         loaded.settings = settings.iter().map(|setting| setting.to_string()).collect();
         String::from_utf8(files(&loaded, &view).remove(0).bytes).unwrap()
     };
-    // without a setting the text says it already
+    // the text without a setting states it already
     assert_eq!(written(&[]), text.replace("gain = 1", "gain = 2"));
     let set = written(&["controller.sample_time=1e-3", "prefilter.continuous=true"]);
     for line in
@@ -364,7 +363,7 @@ fn what_a_setting_says_beside_the_law_is_written_with_it() {
     assert!(pasted.contains("[prefilter]\ngain = 2\ncontinuous = true\n\n"), "{pasted}");
 }
 
-/// 5 (s/50 + 1)/(s/500 + 1) tends to 50, sampled or not.
+/// The law 5 (s/50 + 1)/(s/500 + 1) tends to 50, sampled or not.
 // ORIGIN: analytic
 #[test]
 fn the_high_frequency_gain_of_a_sampled_loop_is_that_of_the_continuous_law() {
@@ -384,7 +383,7 @@ fn the_high_frequency_gain_of_a_sampled_loop_is_that_of_the_continuous_law() {
     }
 }
 
-/// A loop that touches no limit over frequency was led by something else, which is named.
+/// A loop that touches no limit over frequency had another objective, which is named.
 #[test]
 fn what_led_a_design_is_named_where_it_touches_no_limit() {
     let (_, loaded, mut view) = view(&PROJECT.replace("TIMING\n", ""), DesignStatus::Met);

@@ -1,6 +1,6 @@
-//! Designs of whole projects whose truth is known: that the rig can be met at all, and with how
-//! much, was found by an independent search. The rig in a computer takes longer and is a task of
-//! `benches/design.rs`.
+//! Designs of whole projects with known truth: an independent search has found that the
+//! specifications of the rig can be met, and with what margin. The design of the rig in a computer
+//! takes longer and is a task of `benches/design.rs`.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -16,7 +16,7 @@ const UNSTABLE: &str = include_str!("../../../examples/qft/unstable_plant.toml")
 const LEAST_GAIN: &str = include_str!("../../../examples/qft/design/servo_least_gain.toml");
 const DESIGN: Request = Request::Design { seed: None, stages: false, repair: false };
 
-/// The design, and what `verify` says of the project that it writes.
+/// The design, and the result of `verify` for the project that it writes.
 fn designed_and_verified(project: &str, settings: &[&str]) -> (Value, Value) {
     with_verified(&answer(project, settings, &[], &DESIGN))
 }
@@ -30,8 +30,8 @@ fn with_verified(answer: &Answer) -> (Value, Value) {
     )
 }
 
-/// That every specification is met over the band and the family that the project declares, and that
-/// the project which is written says so too.
+/// Checks that every specification is met over the band and the family that the project declares,
+/// and that the written project confirms it.
 fn assert_met(design: &Value, verified: &Value, orders: [f64; 2]) {
     assert_eq!(design["status"], "met", "{}", design["rounds"]);
     assert_eq!(design["relaxation_db"], Value::Null);
@@ -54,7 +54,7 @@ fn assert_met(design: &Value, verified: &Value, orders: [f64; 2]) {
 }
 
 /// Table 6.3 with the hose: met by a controller of third order and a prefilter of second, for which
-/// the least lim s G was found by an independent search as well.
+/// an independent search found the least lim s G as well.
 // ORIGIN: recomputed by comparisons/recompute_design.py
 #[test]
 fn the_rig_with_hoses_is_met() {
@@ -67,8 +67,8 @@ fn the_rig_with_hoses_is_met() {
     assert_eq!(verified["timing"]["sample_time_s"], Value::Null);
 }
 
-/// Table 6.3 with steel pipes, K_H up to 1.24e8: met by a controller of fourth order; of third
-/// order all limits have to give by 0.03 dB.
+/// Table 6.3 with steel pipes, K_H up to 1.24e8: met by a controller of fourth order; with third
+/// order all limits must be relaxed by 0.03 dB.
 #[test]
 fn the_rig_with_pipes_is_met() {
     let (design, verified) = designed_and_verified(PIPE, &UNLIMITED);
@@ -76,9 +76,9 @@ fn the_rig_with_pipes_is_met() {
     assert_eq!(number(&design, "figures.order"), 4.0);
 }
 
-/// What may be built: the least distance from -1, the bandwidth below the quarter wave of the hoses
-/// and the delay that is tolerated are those of the controller that is written, when it is verified
-/// against them alone; and the nonlinear rig agrees with it, with waves in its hoses too.
+/// Limits on what may be built: the least distance from -1, the bandwidth below the quarter wave of
+/// the hoses and the tolerated delay are those of the written controller when it is verified
+/// against these limits only; and the nonlinear rig agrees with it, with waves in its hoses too.
 #[test]
 fn the_rig_with_hoses_is_met_within_what_may_be_built() {
     let (design, verified) = with_verified(built_hose());
@@ -122,7 +122,7 @@ fn the_same_seed_gives_the_same_bytes() {
     assert_eq!(serde_json::from_str::<Value>(&first.json).unwrap()["seed"], 3);
 }
 
-/// (s + a)/(s^2 - 2.5) has a negative gain at rest and is stabilised by a positive one.
+/// The plant (s + a)/(s^2 - 2.5) has a negative gain at rest and is stabilised by a positive one.
 #[test]
 fn an_unstable_plant_gets_its_gain() {
     let (design, verified) = designed_and_verified(UNSTABLE, &[]);
@@ -131,8 +131,7 @@ fn an_unstable_plant_gets_its_gain() {
     within(number(&design, "controller.gain"), 525.0 / 11.0, 0.01);
 }
 
-/// Example D as a project, with what the project does not say chosen for it: within 0.1 dB of the
-/// least gain.
+/// Example D as a project, with defaults for unstated values: within 0.1 dB of the least gain.
 #[test]
 fn the_least_gain_of_the_servo_is_found_as_a_project() {
     let (design, verified) = designed_and_verified(LEAST_GAIN, &["design.prefilter_maximum_order=0"]);

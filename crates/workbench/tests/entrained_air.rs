@@ -1,5 +1,5 @@
 //! Fluid with entrained air, or gas, makes the plant depend on the pressures of its chambers: over
-//! a range of supply pressures its stability is decided all the same.
+//! a range of supply pressures its stability is decided nevertheless.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -25,7 +25,7 @@ delay = "1 ms"
 elements = [{ kind = "pi", proportional_gain = 3e-5, integral_gain = 4.5e-5 }]
 "#;
 
-/// With air under a load and at null, and with gas at the chambers; as without any of them.
+/// Air under a load and at null, gas at the chambers, and neither of them.
 #[test]
 fn stability_is_decided_over_a_range_of_supply_pressures() {
     let verify = Request::Verify { proof: false, on_machine: false };
@@ -41,7 +41,8 @@ fn stability_is_decided_over_a_range_of_supply_pressures() {
         assert_eq!(found["stable"], true, "{settings:?}: {found}");
         number(&found, "delay_margin_s")
     });
-    // a half percent of air is three percent of the stiffness: the margin is nearly that without
+    // half a percent of air is three percent of the stiffness: the margin is nearly that without
+    // air
     assert!((margins[1] / margins[0] - 1.0).abs() < 0.05, "{margins:?}");
     // the override of the pump's relief valve takes a fortieth of a bar of the pressure
     assert!((margins[4] / margins[1] - 1.0).abs() < 1e-2, "{margins:?}");
@@ -49,8 +50,8 @@ fn stability_is_decided_over_a_range_of_supply_pressures() {
 
 const MOVING: &str = "operating_point.velocity=\"20 mm/s\"";
 
-/// While the piston moves, enclosures of its pressures are too wide: a search decides, and names
-/// what moves the leading coefficient.
+/// The enclosures of the pressures are too wide while the piston moves: a search decides, and names
+/// the parameters that move the leading coefficient.
 #[test]
 fn where_a_search_decides_the_parameters_are_named() {
     let verify = Request::Verify { proof: false, on_machine: false };
@@ -58,17 +59,17 @@ fn where_a_search_decides_the_parameters_are_named() {
     let found = json(&format!("{RIG}{LOOP}"), &settings, &[], &verify);
     let searched = &found["stability"]["leading_coefficient"];
     assert_eq!(searched["parameters"][0], "supply.pressure", "{searched}");
-    // the stiffer the oil, the less: at the highest pressure, by a percent of so little air
+    // the stiffer the oil, the smaller: at the highest pressure, by one percent for so little air
     assert_eq!(searched["plant"]["supply.pressure"], 220e5, "{searched}");
     let share = number(searched, "least_share_of_nominal");
     assert!((0.95..1.0).contains(&share), "{searched}");
-    // where the enclosures decide, nothing is searched for
+    // if the enclosures decide, nothing is searched for
     let still = json(&format!("{RIG}{LOOP}"), &settings[..1], &[], &verify);
     assert!(still["stability"]["leading_coefficient"].is_null());
 }
 
-/// Over other ranges, of air itself and of the force, and around a continuous controller: as a
-/// dense sample of the range has it.
+/// Stability over other ranges, of air itself and of the force, and with a continuous controller:
+/// as in a dense sample of the range.
 #[test]
 fn stability_is_decided_over_other_ranges_of_a_fluid_with_air() {
     let verify = Request::Verify { proof: false, on_machine: false };

@@ -1,4 +1,4 @@
-//! Limits of the rig that a simulation goes beyond, reported with their times.
+//! Limits of the rig that a simulation exceeds, reported with their times.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -9,7 +9,7 @@ use super::ask::answer;
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 
-/// What the first scenario, a step to 4 kN at 2 s, exceeds; and the text.
+/// Limits exceeded in the first scenario, a step to 4 kN at 2 s; and the text.
 fn exceeded(text: &str, settings: &[&str]) -> (Vec<Value>, String) {
     let said = answer(text, settings, &[], &Request::Simulate(Default::default()));
     let object: Value = serde_json::from_str(&said.json).unwrap();
@@ -32,7 +32,8 @@ fn an_overloaded_sensor_is_told_from_when_on() {
     assert!(text.contains("the force sensor is overloaded: its capacity is 3 kN"), "{text}");
 }
 
-/// Rods of 22 mm in a cylinder of 50 mm, 70 bar against the tank: A p_S = 11.08 kN, either way.
+/// Stall force of rods of 22 mm in a cylinder of 50 mm, with 70 bar relative to the tank: A p_S =
+/// 11.08 kN, in either direction.
 #[test]
 fn a_reference_that_no_supply_reaches_is_told() {
     let area = std::f64::consts::FRAC_PI_4 * (0.05 * 0.05 - 0.022 * 0.022);
@@ -48,7 +49,7 @@ fn a_reference_that_no_supply_reaches_is_told() {
 #[test]
 fn a_command_that_nothing_limits_is_told() {
     let unlimited = HOSE.replace("saturation = \"10 V\"\n", "");
-    // 0.01 V/N on 4 kN, which no prefilter softens, are 40 V at once
+    // 0.01 V/N on 4 kN, which no prefilter reduces, are 40 V at once
     let settings = ["controller.numerator=0.01*s + 0.08", "prefilter.numerator=1", "prefilter.denominator=1"];
     let (found, _) = exceeded(&unlimited, &settings);
     let command = found.iter().find(|one| one["what"] == "nominal_voltage").unwrap();
@@ -57,8 +58,8 @@ fn a_command_that_nothing_limits_is_told() {
     assert!((40.0..41.0).contains(&command["peak"].as_f64().unwrap()), "{command}");
 }
 
-/// A pump of less flow than the valve takes: its relief valve is shut at 205 bar, and the supply
-/// falls below while the rig moves; with enough flow nothing is told.
+/// A pump with less flow than the valve takes: its relief valve is shut at 205 bar, and the supply
+/// falls below that while the rig moves; with enough flow nothing is reported.
 #[test]
 fn a_pump_that_cannot_follow_is_told() {
     let rig = include_str!("../../../examples/structural/rig.toml");

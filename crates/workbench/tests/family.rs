@@ -1,4 +1,4 @@
-//! Families of projects against the equations they come from.
+//! Families of projects compared with the equations from which they come.
 
 #![allow(
     clippy::expect_used,
@@ -70,7 +70,7 @@ fn the_family_is_the_grid_where_nothing_else_is_chosen() {
     assert_eq!(grid.members()[0], [2.0, 3.0, 5.0, 0.0]);
     for (chosen, members) in [
         ("vertices = true", 16 + 1),
-        ("grid = true\nvertices = true", 81 + 1), // a grid has the corners already
+        ("grid = true\nvertices = true", 81 + 1), // a grid contains the corners
         ("vertices = true\nrandom = { count = 10, seed = 1 }", 16 + 10 + 1),
         ("cases = [{ k = 2, a = 3, b = 5, T = 0 }]\nvertices = true", 16 + 1), // the case is the nominal plant
     ] {
@@ -79,7 +79,8 @@ fn the_family_is_the_grid_where_nothing_else_is_chosen() {
     }
 }
 
-/// Cases alone are all there is; the first is the nominal plant where nothing else states one.
+/// A family of explicit cases has only these; the first is the nominal plant if nothing else states
+/// one.
 #[test]
 fn cases_alone_are_the_family() {
     let cases = "[family]\ncases = [{ k = 10, a = 1 }, { k = 1, a = 5 }, { k = 3, a = 2 }]\n";
@@ -92,8 +93,8 @@ fn cases_alone_are_the_family() {
     assert_eq!(family.members(), [[5.0, 5.0], [10.0, 1.0], [1.0, 5.0], [3.0, 2.0]]);
 }
 
-/// A group is one coordinate of the box: its parameters are at the same share of their ranges,
-/// opposed ones at the rest of it.
+/// A group is one coordinate of the box: its parameters are at equal fractions of their ranges,
+/// opposed ones at the complement.
 #[test]
 fn correlated_parameters_move_together() {
     let text = format!(

@@ -1,4 +1,4 @@
-//! The family of an actuator against the linear model of its rig.
+//! The family of an actuator compared with the linear model of its rig.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -17,7 +17,7 @@ fn loaded(text: &str) -> Project {
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 
-/// The plant of the family, of which few members are looked at: their grid may be large.
+/// The plant of the family, recorded with few members: their grid may be large.
 fn recorded(project: &Project) -> Result<UncertainPlant, ProjectFamilyError> {
     let few = project::DeclaredFamily {
         random: Some(Random { count: 1, seed: 1 }),
@@ -40,8 +40,8 @@ fn points(plant: &UncertainPlant) -> Vec<Vec<f64>> {
     (0..50).map(|_| plant.parameters().iter().map(&mut value).collect()).collect()
 }
 
-/// The recorded coefficients are those of the equations run with numbers, inside the box and at its
-/// corners.
+/// The recorded coefficients are those of the equations evaluated with numbers, inside the box and
+/// at its corners.
 #[test]
 fn the_recorded_rig_is_the_linear_model() {
     let project = loaded(HOSE);
@@ -55,7 +55,7 @@ fn the_recorded_rig_is_the_linear_model() {
         }
         let rig = Setup::rig_of(&stated).unwrap();
         assert_eq!(plant.coefficients(&values), Some(rig.plant.coefficients()));
-        // with a prescribed load and without leakage that is thesis (6.7)
+        // thesis (6.7) for a prescribed load without leakage
         let published = linear_model_coefficients(&rig.linear).command;
         let own = plant.coefficients(&values).unwrap().command;
         let all = |one: &RationalCoefficients<f64>| [&one.numerator[..], &one.denominator[..]].concat();
@@ -78,13 +78,14 @@ fn with_uncertain(text: &str, ranges: &[(&str, [f64; 3])]) -> String {
     format!("{}[uncertainty]\n{lines}{}", &text[..start], &text[end..])
 }
 
-/// Every path, recorded, gives what the whole rig gives when the project itself states the number.
+/// Checks that every path, recorded, gives the values of the whole rig when the project itself
+/// states the number.
 #[track_caller]
 fn follows_the_rig(text: &str, ranges: &[(&str, [f64; 3])]) {
     follows_the_rig_within(1e-12, text, ranges);
 }
 
-/// The same where the pressures are found by other steps in the rig.
+/// Checks the paths to a tolerance, for a rig that finds its pressures by other steps.
 #[track_caller]
 fn follows_the_rig_within(tolerance: f64, text: &str, ranges: &[(&str, [f64; 3])]) {
     let project = loaded(&with_uncertain(text, ranges));
@@ -168,8 +169,8 @@ fn physical_paths_reach_the_model_as_through_the_rig() {
     );
 }
 
-/// A supply that yields moves its own pressure, those of the chambers, and what the force sees of
-/// it: each plant of the box is that of the rig with these numbers.
+/// A supply that yields changes its own pressure, those of the chambers, and their effect on the
+/// force: each plant of the box is that of the rig with these numbers.
 #[test]
 fn a_supply_that_yields_is_recorded() {
     let pump = HOSE.replace("model = \"constant\"", "model = \"pump_limited\"");
@@ -196,7 +197,7 @@ fn a_supply_that_yields_is_recorded() {
         ("supply.accumulator.polytropic_exponent", [1.0, 1.2, 1.4]),
     ];
     follows_the_rig_within(1e-8, &with(&[gas, pressed].concat()), &of_gas);
-    // what moves no pressure leaves those of the declared rig as they are
+    // numbers that move no pressure leave those of the declared rig unchanged
     follows_the_rig(
         &pump,
         &[("supply.volume", [2e-4, 1e-3, 5e-3]), ("cylinder.moving_mass", [10.0, 13.1, 20.0])],
@@ -204,7 +205,7 @@ fn a_supply_that_yields_is_recorded() {
 }
 
 // ORIGIN: written by hand, the numbers are those of examples/ybitu/hose.toml
-/// What does not reach the plant is refused, and says why.
+/// A number that does not enter the plant is rejected with the reason.
 #[test]
 fn a_number_that_does_not_enter_the_plant_is_refused() {
     let refused = |text: &str, path: &str, value: f64| {
@@ -220,7 +221,7 @@ fn a_number_that_does_not_enter_the_plant_is_refused() {
     );
 }
 
-/// Each field of the linear model belongs to one key, and each key has one.
+/// Fields of the linear model correspond to keys one to one.
 #[test]
 fn every_parameter_of_the_project_has_its_field() {
     let mut project = loaded(HOSE);
@@ -258,7 +259,7 @@ fn every_parameter_of_the_project_has_its_field() {
 }
 
 /// Areas, volumes and pressures of a telescopic piston follow its position through a transition,
-/// and an uncertain first stage leaves the areas of the others as they are stated.
+/// and an uncertain first stage leaves the areas of the others as stated.
 #[test]
 fn stages_are_those_of_the_position() {
     follows_the_rig_within(

@@ -1,5 +1,5 @@
-//! Measured frequency responses: what is read is what was written, and every unsound row is named
-//! with its place.
+//! Measured frequency responses: the values that are read are those that were written, and every
+//! invalid row is named with its place.
 
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 #![allow(
@@ -35,7 +35,7 @@ fn measured(csv: impl Into<Vec<u8>>) -> MeasuredFamily {
     }
 }
 
-/// 40 e^(-0.02 s)/(s^2 + 0.4 s + 4) and the load motion's -s/(s + 1).
+/// Responses 40 e^(-0.02 s)/(s^2 + 0.4 s + 4), and -s/(s + 1) for the load motion.
 fn truth(frequency: f64) -> [Complex64; 2] {
     let s = Complex64::new(0.0, frequency);
     [40.0 * portable::exp_complex(-s * 0.02) / (s * s + 0.4 * s + 4.0), -s / (s + 1.0)]
@@ -64,8 +64,8 @@ fn same(csv: impl Into<Vec<u8>>, with_load_motion: bool) {
     }
 }
 
-/// Every way to write a response gives it back to 1e-12: units, wrapped and unwrapped phases,
-/// comments, line ends, byte order mark, quotes and spaces.
+/// A response is recovered to 1e-12 from every way to write it: units, wrapped and unwrapped
+/// phases, comments, line ends, byte order mark, quotes and spaces.
 #[test]
 fn what_is_written_is_read() {
     let rows = |header: &str, row: &dyn Fn(f64, [Complex64; 2], f64) -> String| {
@@ -225,7 +225,7 @@ fn a_limit_on_load_motion_needs_its_columns() {
     assert_eq!(error, ProjectFamilyError::LoadMotion("a.csv".to_string()));
 }
 
-/// `check` reads the files too, and says what it found.
+/// Output of `check`, which reads the files too, on their contents.
 #[test]
 fn check_reads_what_was_measured() {
     let checked = |csv: &str| {
@@ -239,9 +239,9 @@ fn check_reads_what_was_measured() {
     assert!(checked("frequency_hz,real,imaginary\n1,x,0\n").unwrap_err().contains("rigs/a.csv:2:3"));
 }
 
-/// `integrators` are those of each plant, and the radii of `confidence_95` are widened until all of
-/// n rows hold at once with 95 %: for a normal error by sqrt(ln(20 n)/ln 20), and where the
-/// standard deviation states two blocks, F(2, 2), by sqrt((20 n - 1)/19).
+/// The value of `integrators` is that of each plant, and the radii of `confidence_95` are widened
+/// until all n rows hold at once with 95 %: for a normal error by sqrt(ln(20 n)/ln 20), and if the
+/// standard deviation comes from two blocks, F(2, 2), by sqrt((20 n - 1)/19).
 #[test]
 fn integrators_and_discs_are_read() {
     let read_with = |extra: &str, csv: &str| match read(&format!("{PROJECT}{extra}"), csv) {
@@ -276,9 +276,9 @@ fn verified(family: &str, csv: &str, rest: &str) -> phea_workbench::answer::Answ
     answer(&source, &loaded, &[], &request).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// 4/(s (s + 4)) around 1: |T| is at most 1. Within discs of 20 % the limit of 1.6 is met; with a
-/// limit between the best and the worst plant of the discs it is not proven, in text and JSON; the
-/// stated tolerance is that of the verdict.
+/// The loop 4/(s (s + 4)) around 1: |T| is at most 1. Within discs of 20 % the limit of 1.6 is met;
+/// with a limit between the best and the worst plant of the discs it is not proven, in text and
+/// JSON; the stated tolerance is that of the verdict.
 #[test]
 fn discs_and_tolerance_decide_the_verdict() {
     let csv = |radius: f64| {

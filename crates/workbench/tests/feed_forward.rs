@@ -1,5 +1,5 @@
-//! The page on the feed-forward of the load's velocity: its equations against the linear model, its
-//! tables against the machine.
+//! The page on the feed-forward of the load's velocity: its equations compared with the linear
+//! model, its tables with the machine.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -26,12 +26,12 @@ fn load(line: &str, settings: &[String]) -> Project {
     project::read(&source, "rig.toml", settings, &[]).unwrap_or_else(|report| panic!("{report}")).project
 }
 
-/// A/K_qU in V s/m: what an absent gain is.
+/// Default gain A/K_qU, V s/m.
 fn static_gain(parameters: &LinearParameters) -> f64 {
     parameters.useful_area / parameters.flow_gain
 }
 
-/// K_x(s) of the page.
+/// Exact gain K_x(s) of the page.
 fn exact_gain(parameters: &LinearParameters, s: Complex64) -> Complex64 {
     let LinearParameters { useful_area: area, valve_natural_frequency: frequency, .. } = *parameters;
     let spool = frequency * frequency
@@ -41,7 +41,7 @@ fn exact_gain(parameters: &LinearParameters, s: Complex64) -> Complex64 {
         / spool
 }
 
-/// tau of the page, s.
+/// Lag tau of the page, s.
 fn lag(parameters: &LinearParameters) -> f64 {
     let area = parameters.useful_area;
     2.0 * parameters.valve_damping_ratio / parameters.valve_natural_frequency
@@ -64,7 +64,7 @@ fn the_exact_gain_is_what_cancels_the_load_in_the_linear_model() {
     }
 }
 
-/// What remains of the force of a slow motion is 1 - a + a tau s.
+/// The remaining fraction of the force of a slow motion is 1 - a + a tau s.
 #[test]
 fn what_is_left_grows_with_the_lag() {
     // ORIGIN: recomputed by book/recompute_theory.py
@@ -78,14 +78,14 @@ fn what_is_left_grows_with_the_lag() {
         let s = Complex64::new(0.0, frequency);
         let left = 1.0 - share * static_gain(&parameters) / exact_gain(&parameters, s);
         let first_order = 1.0 - share + share * tau * s;
-        // the next term is (tau s)^2, and the leakage of a piston with friction 3e-5
+        // the next term is (tau s)^2, and the leakage of a piston with friction gives 3e-5
         let next = 2.0 * tau * tau * frequency * frequency + 4e-5;
         assert!((left - first_order).norm_sqr() < next * next, "{share}, {frequency}: {left} {first_order}");
     }
 }
 
-/// Re Z of the loop with feed-forward changes its sign at low frequency where (1 - a)(K_p + K_c/(A
-/// K_qU)) = tau K_i.
+/// Real part of Z for the loop with feed-forward: it changes its sign at low frequency where (1 -
+/// a)(K_p + K_c/(A K_qU)) = tau K_i.
 #[test]
 fn a_little_less_than_the_gain_is_passive() {
     for (line, proportional, integral, less_percent, filtered_percent) in
@@ -106,10 +106,10 @@ fn a_little_less_than_the_gain_is_passive() {
         let leak = parameters.flow_pressure_coefficient / (parameters.useful_area * parameters.flow_gain);
         let less = lag(&parameters) * integral / (proportional + leak);
         assert!((100.0 * less - less_percent).abs() < 0.05, "{line}: {less}");
-        // friction in addition to leakage makes the gain at rest 3e-5 more than A/K_qU
+        // friction in addition to leakage makes the gain at rest 3e-5 greater than A/K_qU
         assert!(resistance(1.0 - less - 1e-4) > 0.0 && resistance(1.0 - less + 1e-4) < 0.0, "{line}");
         assert!(resistance(1.0) < 0.0 && resistance(0.0) > 0.0, "{line}");
-        // the lag T of a filter asks for more: (1 - a)(K_p + K_c/(A K_qU)) = (tau + a T) K_i
+        // the lag T of a filter requires more: (1 - a)(K_p + K_c/(A K_qU)) = (tau + a T) K_i
         let filter = RateFilter::FirstOrder { frequency_rad_per_s: 100.0 };
         let through = |share: f64| {
             let s = Complex64::new(0.0, frequency);
@@ -124,7 +124,7 @@ fn a_little_less_than_the_gain_is_passive() {
     }
 }
 
-/// What a load that moves by itself does from there on.
+/// Metrics of the force after a prescribed motion of the load.
 fn of_the_motion(line: &str, settings: &[String]) -> Metrics {
     let mut project = load(line, settings);
     project.scenarios.truncate(1);
@@ -137,8 +137,7 @@ fn of_the_motion(line: &str, settings: &[String]) -> Metrics {
     metrics
 }
 
-/// The rows of the page's table whose head begins so: labels and numbers, and the labels of the
-/// columns.
+/// Rows of the page's table with this heading: labels and numbers, and the labels of the columns.
 fn table(head: &str) -> (Vec<String>, Vec<(String, Vec<f64>)>) {
     let cells = |line: &str| -> Vec<String> {
         line.trim_matches('|').split('|').map(|cell| cell.trim().to_string()).collect()
@@ -158,7 +157,7 @@ fn gain(share: f64) -> String {
     format!("controller.load_velocity_feed_forward.gain={:e}", share * static_gain(&parameters))
 }
 
-/// What a part of a row's label sets.
+/// Settings for a part of a row's label.
 fn settings_of(part: &str) -> Vec<String> {
     let owned = |texts: &[&str]| texts.iter().map(|text| (*text).to_string()).collect();
     match part {

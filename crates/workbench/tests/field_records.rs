@@ -1,5 +1,4 @@
-//! Records as people of the trade write them: read as their plain form is, or refused as what they
-//! are.
+//! Records as practitioners write them: read like their plain form, or rejected by name.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -19,7 +18,7 @@ fn sample(time: f64) -> [f64; 2] {
     [0.02 * swing(0.31), 12.0 * swing(0.47)]
 }
 
-/// A table of 200 rows: `line` writes the row of this number and time.
+/// A table of 200 rows: `line` writes the row with this number and time.
 fn table(head: &str, step: f64, line: impl Fn(usize, f64) -> String) -> String {
     (0..200).fold(head.to_string(), |text, row| text + &line(row, row as f64 * step) + "\n")
 }
@@ -92,7 +91,7 @@ fn a_chart_is_named_as_what_it_is() {
     assert!(found.len() == 1 && found[0].message.contains("chart") && found[0].line == 1, "{found:?}");
 }
 
-/// The columns that a project names are those of a record with its own headings.
+/// Columns named by a project are those of a record with its own headings.
 #[test]
 fn headings_of_another_language_are_chosen_in_the_project() {
     let text = table("Versuch 12;;\nZeit [ms];Stellgr\u{f6}\u{df}e [V];Kraft [kN]\n", 1e-3, |_, time| {
@@ -113,7 +112,7 @@ fn headings_of_another_language_are_chosen_in_the_project() {
     assert!(read("m.csv", text, RecordedResponse::default()).is_err());
 }
 
-/// Stamps in whole milliseconds, cut off or rounded, of rows that are even.
+/// Stamps in whole milliseconds, truncated or rounded, of rows that are even.
 #[test]
 fn rounded_stamps_of_even_rows_are_even() {
     let stamped = |step: f64, stamp: fn(f64) -> f64| {
@@ -128,7 +127,7 @@ fn rounded_stamps_of_even_rows_are_even() {
             assert!((found.time_step / step - 1.0).abs() < 1e-2, "{step} {}", found.time_step);
         }
     }
-    // a row that is missing is no rounding, and late rows are none
+    // a missing row is not a rounding, and neither are late rows
     let even = stamped(1e-3, f64::round);
     let lines: Vec<&str> = even.lines().collect();
     let missing: String = [&lines[..90], &lines[91..]].concat().join("\n");
@@ -137,13 +136,14 @@ fn rounded_stamps_of_even_rows_are_even() {
         let [command, force] = sample(time);
         format!("{:.0},{command:.6},{force:.6}", 1e3 * time + f64::from(u8::from(row % 3 == 0)) * 4.0)
     });
-    // which are taken on lines between them, and said to be
+    // late rows are interpolated between their neighbours, and this is reported
     let found = accepted(late);
     let resampled = found.resampled.expect("late rows");
     assert!((found.time_step - 1e-2).abs() < 1e-5 && (resampled.longest - 1.4e-2).abs() < 1e-9);
 }
 
-/// A time of the day with a date or without, over midnight too, is the time since the first row.
+/// A time of day, with or without a date, even over midnight, is converted to the time since the
+/// first row.
 #[test]
 fn stamps_of_a_clock_are_times() {
     let stamped = |name: &str, stamp: fn(f64) -> String| {
@@ -182,7 +182,7 @@ fn stamps_of_a_clock_are_times() {
     assert!(late[0].help.as_deref().unwrap_or("").contains("2026-11-27T10:00:00.001"), "{late:?}");
 }
 
-/// A stamp that is late is named itself, and not the row after it, which is early against it.
+/// A late stamp is named itself, and not the row after it, which is early relative to it.
 #[test]
 fn the_first_wrong_stamp_is_named() {
     for late in [0.3e-3, 0.9e-3, 2.5e-3] {
@@ -222,7 +222,7 @@ fn a_run_of_the_cylinder_may_have_late_rows() {
     }
 }
 
-/// A file of a scenario that is read in another unit than it was written in.
+/// A file of a scenario that is read in another unit than that in which it was written.
 #[test]
 fn numbers_that_no_rig_of_this_size_has_are_refused_with_their_unit() {
     let scenario =
@@ -267,7 +267,7 @@ fn numbers_that_no_rig_of_this_size_has_are_refused_with_their_unit() {
     }
 }
 
-/// Frequency responses headed as analysers and people head them are the same plant.
+/// Frequency responses with the headings of analysers and of people give an identical plant.
 #[test]
 fn a_response_is_read_by_its_usual_headings() {
     let rows = |head: &str, form: fn(f64) -> [f64; 3]| {
@@ -296,7 +296,7 @@ fn a_response_is_read_by_its_usual_headings() {
         assert_eq!(nominal(rows(head, in_hertz)).unwrap(), right, "{head}");
     }
     assert!(nominal(rows("Omega (rad/s)\tPhase (rad)\tGain\n", |k| [k, -0.01 * k, 1.0 / k])).is_ok());
-    // each heading that is not read is named in the same run
+    // each heading that is not read is named in one run
     let all = nominal(rows("Frequency (Hz)\tPhase (deg)\tLautheit (sone)\tQ\n", in_hertz)).unwrap_err();
     assert!(all.contains("Lautheit") && all.contains("`Q`"), "{all}");
     let one = nominal(rows("Frequency (Hz)\tPhase (turns)\tGain (dB)\n", in_hertz)).unwrap_err();
@@ -308,7 +308,7 @@ fn places(text: &str, settings: &[&str], request: &Request) -> Vec<Diagnostic> {
     error.refusal().unwrap_or_else(|| panic!("without a place: {error}")).diagnostics.clone()
 }
 
-/// What is wrong only once the rig is computed has the line of its key.
+/// An error that is found only when the rig is computed has the line of its key.
 #[test]
 fn errors_of_the_computed_rig_have_a_place() {
     let line_of = |text: &str, key: &str| text.lines().position(|line| line.starts_with(key)).unwrap() + 1;
@@ -337,8 +337,8 @@ fn errors_of_the_computed_rig_have_a_place() {
     assert!(found[0].line > line_of(&start, "duration = \"0.1 s\"") - 3, "{found:?}");
 }
 
-/// A table that a command needs and that is absent would be at the end of the file; one that the
-/// command refuses has its line.
+/// An absent table that a command needs is reported at the end of the file; one that the command
+/// rejects has its line.
 #[test]
 fn errors_about_absent_tables_have_a_place() {
     let simulate = Request::Simulate(SimulateRequest::default());
@@ -376,7 +376,7 @@ fn without(text: &str, table: &str) -> String {
     kept.collect::<Vec<_>>().join("\n")
 }
 
-/// K_c of the leakiest valve of a data sheet's range is that of a valve with this leakage.
+/// K_c of the leakiest valve in a data sheet's range is that of a valve with this leakage.
 #[test]
 fn check_prints_the_slope_of_the_leakiest_valve() {
     let of = |settings: &[&str], name: &str| {

@@ -1,4 +1,4 @@
-//! What `check` says of scenarios before any of them is run.
+//! Output of `check` on scenarios before any of them is run.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -8,7 +8,7 @@ use phea_workbench::source::Memory;
 
 use crate::ask::HOSE;
 
-/// The example with this scenario in place of its own.
+/// The example with this scenario instead of its own.
 fn with_scenario(lines: &str) -> String {
     let (before, _) = HOSE.split_once("[[scenario]]").unwrap();
     format!("{before}[[scenario]]\nname = \"only\"\nduration = \"2 s\"\n{lines}\n")
@@ -39,7 +39,7 @@ fn a_reference_beyond_the_stall_force_is_warned_of() {
     let beyond = "the reference goes to 11.2 kN at 1 s, and at a supply of 70 bar the piston stalls at 11.08 kN: no controller reaches it";
     assert_eq!(told(&at("11.2 kN"), &[]), [beyond]);
     assert!(told(&at("-11.2 kN"), &[])[0].starts_with("the reference goes to -11.2 kN at 1 s"));
-    // a sine on a ramp goes as far as their sum
+    // a sine on a ramp reaches the sum of both
     let sum = with_scenario(
         "reference = [{ kind = \"ramp\", force = \"8 kN\", duration = \"0.5 s\" }, \
          { kind = \"sine\", start = \"1 s\", amplitude = \"3.5 kN\", frequency = \"1 Hz\" }]",

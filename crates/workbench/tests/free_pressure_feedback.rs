@@ -1,4 +1,4 @@
-//! A pressure feedback that a design finds: the rest of the design, and the project that it writes,
+//! A pressure feedback found by a design: the rest of the design, and the project that it writes,
 //! are those of the damped rig.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
@@ -33,7 +33,7 @@ fn without_step() -> String {
     format!("{text}\n[design]\nstructure = \"p\"\n")
 }
 
-/// The same with specimens alone that differ.
+/// The rig with only different specimens as its family.
 fn few_plants() -> String {
     let text = without_step();
     let certain = ["\"supply.pressure\" =", "\"fluid.bulk_modulus\" =", "\"cylinder.friction.viscous\" ="];
@@ -47,7 +47,7 @@ fn designed(loaded: &Loaded) -> ProjectDesign {
 }
 
 /// The given controller is judged with its own rig, the designed one with the damped rig, and the
-/// written project says the same of it as the design.
+/// results for the written project equal those of the design.
 #[test]
 fn the_design_is_that_of_the_damped_rig() {
     let sampled = ["controller.sample_time=1 ms", "design.structure=pi", FREE];
@@ -79,8 +79,8 @@ fn the_design_is_that_of_the_damped_rig() {
 }
 
 /// The audit of proportional loops around the rig with lumped lines and with waves, without and
-/// with the feedback that was found: up to the gains that were foretold they keep the limits of a
-/// design, but for plants between those that it was found with; a tenth beyond they do not.
+/// with the feedback that was found: up to the predicted gains they satisfy the limits of a design,
+/// except for plants between those used in the design; a tenth beyond they do not.
 #[test]
 fn proportional_loops_have_the_gains_that_were_foretold() {
     let text = few_plants();
@@ -115,8 +115,8 @@ fn proportional_loops_have_the_gains_that_were_foretold() {
     }
 }
 
-/// A table without a gain feeds nothing back until a design has found one, which every command is
-/// told; a stated gain is fed back as it stands.
+/// A table without a gain feeds nothing back until a design has found one, which every command
+/// reports; a stated gain is fed back unchanged.
 #[test]
 fn a_feedback_that_is_still_to_be_found_is_told() {
     let feedback = "controller.pressure_feedback={ signal = \"load_pressure\" }";
@@ -130,7 +130,7 @@ fn a_feedback_that_is_still_to_be_found_is_told() {
 }
 
 /// A bore of 1 mm over 3 m has a dissipation number nu L/(c R^2) of 46e-6 3/(c 0.25e-6) = 552/c
-/// with c in m/s: it is above 0.1 for any oil, so that the family cannot be built with waves.
+/// with c in m/s: this exceeds 0.1 for any oil, so that the family cannot be built with waves.
 ///
 /// ORIGIN: analytic.
 #[test]
@@ -152,7 +152,7 @@ fn plants_with_waves_that_are_missing_are_stated() {
     assert!(json.contains("\"missing_with_waves\""), "{json}");
 }
 
-/// Where every plant has its waves, none is stated to be missing.
+/// No plant is reported as missing if all have waves.
 #[test]
 fn no_plant_with_waves_is_missing_from_the_structural_rig() {
     let loaded = loaded(&few_plants(), &[FREE]);

@@ -1,5 +1,5 @@
-//! The machine shaken by sines, against linear systems that it must agree with where motions are
-//! small.
+//! The machine excited by sines, compared with linear systems with which it must agree for small
+//! motions.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
@@ -48,7 +48,7 @@ fn shaken(loaded: &Loaded, frequencies: &[f64], amplitudes: [f64; 2]) -> Machine
     found
 }
 
-/// What is left between two complex numbers, over the second.
+/// Relative difference of two complex numbers.
 fn apart(one: Complex64, other: Complex64) -> f64 {
     (one / other - 1.0).norm_sqr().sqrt()
 }
@@ -57,8 +57,8 @@ fn worst(points: &[ResponsePoint], of: impl Fn(&ResponsePoint) -> f64) -> f64 {
     points.iter().map(of).fold(0.0, f64::max)
 }
 
-/// Small sines: the machine is its own derivatives, these are the linearised two-pressure model,
-/// and the loop that the linear plant closes is that of the machine.
+/// Small sines: the machine agrees with its derivatives, these with the linearised two-pressure
+/// model, and the closed loop of the linear plant with that of the machine.
 #[test]
 fn small_sines_give_the_linear_plant() {
     let loaded = smooth(&[]);
@@ -78,7 +78,8 @@ fn small_sines_give_the_linear_plant() {
     }
 }
 
-/// With the amplitude what the derivatives leave out becomes small too, and the harmonics with it.
+/// Terms that the derivatives leave out vanish as the amplitude decreases, and the harmonics with
+/// them.
 #[test]
 fn the_amplitude_goes_to_zero_and_with_it_the_difference() {
     let loaded = smooth(&[]);
@@ -92,8 +93,8 @@ fn the_amplitude_goes_to_zero_and_with_it_the_difference() {
     }
 }
 
-/// Waves in the lines, a late command and a sensor that lags: what is linearised has delays, and
-/// still is what small sines see.
+/// Waves in the lines, a delayed command and a sensor that lags: the linearised machine has delays,
+/// and agrees with small sines.
 #[test]
 fn delays_are_part_of_what_is_linearised() {
     let line = "line={ hose = \"eaton_synflex_3130_08\", length = \"1.5 m\", model = \"transmission_line\" }";
@@ -105,13 +106,13 @@ fn delays_are_part_of_what_is_linearised() {
     for point in found.open_loop.points.iter().chain(&closed.points) {
         assert!(apart(point.machine, point.linearised_machine.unwrap()) < 2e-3, "{point:?}");
     }
-    // a lumped line is what the linear plant has: at 30 rad/s waves are far away, and delay and
-    // sensor are in both
+    // the linear plant has lumped lines: at 30 rad/s waves are far away, and delay and sensor are
+    // in both
     assert!(apart(closed.points[0].linearised_machine.unwrap(), closed.points[0].linear_plant) < 0.05);
 }
 
-/// The velocity of a load that yields, fed forward, closes a loop of its own: the linear loop has
-/// it, with lumped lines and with waves.
+/// The velocity of a load that yields, fed forward, closes a further loop, which the linear loop
+/// contains, with lumped lines and with waves.
 #[test]
 fn a_load_velocity_that_is_fed_forward_is_in_the_linear_loop() {
     let sprung = "load={ model = \"spring_mass_damper\", mass = 100, stiffness = \"200 kN/m\", damping = \"500 N.s/m\" }";
@@ -132,8 +133,8 @@ fn a_load_velocity_that_is_fed_forward_is_in_the_linear_loop() {
     }
 }
 
-/// The same in samples: the fundamental of the force between them is that of the command with what
-/// is fed back within it.
+/// Sampled feed-forward: the fundamental of the force between the samples is that of the command,
+/// with the feedback included.
 #[test]
 fn a_load_velocity_that_is_sampled_is_in_the_linear_loop() {
     let sprung = "load={ model = \"spring_mass_damper\", mass = 100, stiffness = \"200 kN/m\", damping = \"500 N.s/m\" }";
@@ -150,8 +151,8 @@ fn a_load_velocity_that_is_sampled_is_in_the_linear_loop() {
     }
 }
 
-/// A pump that gives little more than what leaks, an override of 40 bar and a load that the piston
-/// presses: the force sees the supply's pressure move, and the linear plant has it.
+/// A pump that gives little more than the leakage, an override of 40 bar and a load that the piston
+/// presses: the supply pressure acts on the force, and the linear plant includes this.
 #[test]
 fn a_supply_that_yields_is_in_the_linear_plant() {
     let pump = [
@@ -179,7 +180,7 @@ fn a_supply_that_yields_is_in_the_linear_plant() {
     }
 }
 
-/// Sampled, the fundamental between the samples is that of the held command.
+/// The fundamental between the samples of a sampled loop is that of the held command.
 #[test]
 fn a_sampled_loop_is_that_of_the_linear_plant_behind_its_hold() {
     for settings in [
@@ -198,8 +199,8 @@ fn a_sampled_loop_is_that_of_the_linear_plant_behind_its_hold() {
     }
 }
 
-/// Waves under a sampled controller: the loop is that of the plant in motion, the images of its
-/// response folded onto one another.
+/// Waves under a sampled controller: the loop is that of the plant in motion, with the images of
+/// its response folded onto one another.
 #[test]
 fn a_sampled_loop_around_waves_is_that_of_their_response() {
     let waves =
@@ -218,8 +219,8 @@ fn a_sampled_loop_around_waves_is_that_of_their_response() {
     }
 }
 
-/// A progressive spring under load is stiffer than at rest: alone, damped, and before a mass, what
-/// is linearised is the machine where it is loaded.
+/// A progressive spring under load is stiffer than at rest: without other parts, with a damper, and
+/// in front of a mass, the linearised machine is that of the loaded state.
 #[test]
 fn a_preloaded_progressive_spring_is_linearised_under_its_load() {
     for more in ["", ", damping = 500", ", damping = 500, mass = 2"] {
@@ -236,8 +237,8 @@ fn a_preloaded_progressive_spring_is_linearised_under_its_load() {
     }
 }
 
-/// A sensor that shows twice the force: the loop rests where the controller sees twice the force of
-/// the operating point, and is linearised there.
+/// A sensor with a DC gain of 2: the loop rests where the sensor reads twice the force of the
+/// operating point, and is linearised there.
 #[test]
 fn a_loop_rests_at_what_its_sensor_shows() {
     let sensor = "sensor={ numerator = \"4000\", denominator = \"s + 2000\" }";
@@ -252,9 +253,9 @@ fn a_loop_rests_at_what_its_sensor_shows() {
     }
 }
 
-/// Bristles hold the piston: below their break-away the machine is stiffer than any plant of
-/// viscous friction, and the sines see it. A spring of 1e7 N/m in addition to the load cell of 2e7
-/// N/m leaves two thirds of the force.
+/// Bristles hold the piston: below their break-away the machine is stiffer than any plant with
+/// viscous friction, and the sines show this. A spring of 1e7 N/m in addition to the load cell of
+/// 2e7 N/m leaves two thirds of the force.
 #[test]
 fn sines_below_break_away_see_the_bristles() {
     let found = shaken(&load(&SMOOTH[1..]), &[20.0], [1e-4, 1.0]);
@@ -323,7 +324,7 @@ fn options_that_are_none_are_refused() {
     }
 }
 
-/// Without a controller the machine is shaken all the same.
+/// A machine without a controller can be excited as well.
 #[test]
 fn an_open_loop_needs_no_controller() {
     let bare = BENCHMARK.split("[controller]").next().unwrap();

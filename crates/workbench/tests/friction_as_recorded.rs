@@ -1,5 +1,5 @@
-//! Recordings of friction as test benches make them: zeros that are off, pistons that stick and
-//! slip, velocities that are fast. Truth is that of the rig, whose friction drives the bench.
+//! Recordings of friction with the faults of test benches: zero errors, pistons that stick and
+//! slip, high velocities. The true values are those of the rig, whose friction drives the bench.
 
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
@@ -30,7 +30,8 @@ fn found(source: &Memory, files: &[&str]) -> Value {
     serde_json::from_str(&answer.json).unwrap()
 }
 
-/// Each interval of these coefficients holds the truth, with three standard deviations for two.
+/// Checks that each interval of these coefficients contains the truth, with three standard
+/// deviations instead of two.
 #[track_caller]
 fn holds(found: &Value, coefficients: std::ops::Range<usize>) {
     for (key, truth) in &TRUTH[coefficients] {
@@ -55,13 +56,13 @@ fn a_zero_error_of_a_pressure_is_found_next_to_the_friction() {
     assert!((zero - 3e4 * area).abs() < 0.5, "{zero}");
     assert_eq!(found["converged"], true);
     holds(&found, 0..6);
-    // from the breakaways alone it is found too
+    // found from the breakaways only, too
     let pressed = self::found(&shifted, &PRESSED);
     let zero = pressed["force_zero_n"]["value"].as_f64().unwrap();
     assert!((zero - 3e4 * area).abs() < 5.0, "{zero}");
 }
 
-/// Fast runs and both breakaways: the fall between them has no run, and its shape stays open.
+/// Fast runs and both breakaways: the fall between them has no run, and its shape is undetermined.
 #[test]
 fn fast_runs_and_breakaways_leave_the_shape_of_the_fall_open() {
     let source =
@@ -74,8 +75,8 @@ fn fast_runs_and_breakaways_leave_the_shape_of_the_fall_open() {
     is_open(&found, "stribeck_velocity_m_per_s", "too few runs slide on the fall");
 }
 
-/// Three speeds are three numbers, and the curve has five: what they do not determine has no value,
-/// and an interval that holds the truth.
+/// Three speeds are three numbers, and the curve has five: coefficients that they do not determine
+/// have no value, but an interval that contains the truth.
 #[test]
 fn three_speeds_determine_what_three_speeds_can() {
     for slowest in ["2 mm/s", "5 mm/s", "20 mm/s"] {
@@ -90,7 +91,7 @@ fn three_speeds_determine_what_three_speeds_can() {
 }
 
 /// A piston on a spring whose other end moves at 4 mm/s, below the Stribeck velocity: it sticks and
-/// slips. Rows of 1 ms of position in mm and pressures in bar, with noise of 1 um and 5 kPa.
+/// slips. Rows every 1 ms with position in mm and pressures in bar, with noise of 1 um and 5 kPa.
 ///
 /// ```text
 /// M dv/dt = k (u - x) - F_fr,   dz/dt = v - sigma_0 |v| z/g        F_fr = sigma_0 z + sigma_1 dz/dt + sigma_2 v
@@ -128,7 +129,7 @@ fn stick_slip() -> String {
     text
 }
 
-/// A run whose velocity is constant on average alone is reported and left out.
+/// A run whose velocity is constant only on average is reported and left out.
 #[test]
 fn a_run_that_sticks_and_slips_is_no_constant_velocity() {
     let bench = "bench.friction={ velocities = 8, slowest = \"2 mm/s\", fastest = \"200 mm/s\" }";

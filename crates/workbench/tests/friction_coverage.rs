@@ -1,4 +1,4 @@
-//! How often the intervals of an identified friction cover its truth.
+//! Coverage of the truth by the intervals of an identified friction.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::print_stdout, reason = "how often and how wide is worth reading")]
@@ -25,15 +25,16 @@ fn intervals_of_the_steady_curve_cover_the_truth() {
     check(40, &SLIDES, &[SLIDING], 0..5, 33..=40);
 }
 
-/// Those of the stiffness and the damping of the bristles do too, from a piston that is shaken.
+/// Intervals of the stiffness and the damping of the bristles cover the truth as often, from a
+/// piston that is shaken.
 #[test]
 fn intervals_of_the_bristles_cover_the_truth() {
     // ORIGIN: analytic, 12 trials at 95 %: 9 or more with a probability of 99.8 %
     check(12, &SHAKES, &[SLIDING, SHAKEN], 5..7, 9..=12);
 }
 
-/// The same of four hundred, by `cargo xtask ci soak`; and all coefficients from all recordings of
-/// the default bench at once.
+/// Coverage over four hundred recordings, by `cargo xtask ci soak`; and all coefficients from all
+/// recordings of the default bench at once.
 #[test]
 #[ignore = "takes minutes"]
 fn soak_four_hundred_intervals_cover_the_truth() {
@@ -44,7 +45,7 @@ fn soak_four_hundred_intervals_cover_the_truth() {
     check(40, &["bench.friction={}"], &[SLIDING, PRESSED[0], PRESSED[1], SHAKEN], 0..7, 33..=40);
 }
 
-/// These coefficients, of recordings with as many seeds.
+/// Checks the coverage of these coefficients, over recordings with this number of seeds.
 #[track_caller]
 fn check(
     repetitions: u32,
@@ -75,8 +76,8 @@ fn check(
             told.len(),
             100.0 * half / truth
         );
-        // noise may look like a force that is too quick, which leaves the stiffness open: one that
-        // is open counts as covered as often as an interval should
+        // noise may resemble a force that is too quick, which leaves the stiffness open: an open
+        // one counts as covered as often as an interval should
         let open = repetitions as usize - told.len();
         if open > repetitions as usize / 10 || !allowed.contains(&(covered + (19 * open + 10) / 20)) {
             wrong.push(*key);

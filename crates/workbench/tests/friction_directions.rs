@@ -1,5 +1,5 @@
-//! Friction that differs by direction: declared, recorded by the bench, identified, and what a
-//! verdict on the linear loop says of it.
+//! Friction that differs by direction: declared, recorded by the bench, identified, and reported
+//! with a verdict on the linear loop.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -14,8 +14,8 @@ use crate::friction_identification::{SLIDING, TRUTH, identified, recorded};
 const BACK: &str =
     "cylinder.friction.retracting={ coulomb = \"95 N\", static = \"150 N\", viscous = \"140 N.s/m\" }";
 
-/// Without noise, the bench's runs of a friction with other levels on the way back give all of
-/// them, and the fragment gives back the friction.
+/// The bench's noise-free runs of a friction with other levels on the way back give all of them,
+/// and the fragment recovers the friction.
 #[test]
 fn levels_of_both_directions_come_back_from_the_bench() {
     let settings = [
@@ -39,7 +39,7 @@ fn levels_of_both_directions_come_back_from_the_bench() {
     let start = ask::HOSE.find("[cylinder.friction]").unwrap();
     let end = ask::HOSE.find("[line]").unwrap();
     let whole = format!("{}{text}{}", &ask::HOSE[..start], &ask::HOSE[end..]);
-    // what the runs may leave open is a comment there
+    // coefficients that the runs may leave open are comments there
     let bristles = ["cylinder.friction.bristle_stiffness=1e7", "cylinder.friction.bristle_damping=2000"];
     let read = ask::load(&whole, &bristles, &[]).project;
     let declared = read.actuator.unwrap().cylinder.friction.unwrap().retracting.unwrap();
@@ -69,13 +69,13 @@ fn a_family_without_the_viscous_friction_of_one_direction_is_told() {
         let (verdict, text) = verify(&[BACK, &without]);
         assert!(verdict == "not_proven" && text.contains(said), "{text}");
     }
-    // other levels alone are in no linear plant
+    // different levels only are in no linear plant
     let levels = "cylinder.friction.retracting={ coulomb = \"95 N\", static = \"150 N\" }";
     let (verdict, text) = verify(&[levels, &range(100.0, 100.5)]);
     assert!(verdict == "met" && !text.contains("retracting"), "{text}");
 }
 
-/// Levels that no friction has, or that a model does not have, are refused with their key.
+/// Impossible levels, and levels that a model does not have, are rejected with their key.
 #[test]
 fn impossible_levels_of_a_direction_are_refused() {
     let refused = |setting: &str| {

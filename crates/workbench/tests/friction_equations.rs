@@ -1,5 +1,5 @@
-//! Recordings of friction from its equations, written down here again: what a bench with a known
-//! friction records, with the errors of its instruments.
+//! Recordings of friction from its equations, which are written here again: the records of a bench
+//! with known friction, with the errors of its instruments.
 //!
 //! ```text
 //! dz/dt = v - sigma_0 |v| z/g(v)        F = sigma_0 z + sigma_1 dz/dt + sigma_2 v
@@ -14,12 +14,12 @@ use phea_dynamics::random::{normal, stream};
 
 pub(crate) const MASS: f64 = 13.1;
 
-/// m2, of both chambers.
+/// Area of both chambers, m2.
 pub(crate) fn area() -> f64 {
     std::f64::consts::FRAC_PI_4 * (0.05 * 0.05 - 0.022 * 0.022)
 }
 
-/// Levels in N, N and N s/m.
+/// Levels of Coulomb and static friction, N, and viscous friction, N s/m.
 #[derive(Clone, Copy)]
 pub(crate) struct Levels {
     pub(crate) coulomb: f64,
@@ -27,7 +27,7 @@ pub(crate) struct Levels {
     pub(crate) viscous: f64,
 }
 
-/// A friction that is known: levels of extending and of retracting, and what both share.
+/// A known friction: levels for extending and for retracting, and the parameters common to both.
 #[derive(Clone, Copy)]
 pub(crate) struct TrueFriction {
     pub(crate) levels: [Levels; 2],
@@ -40,7 +40,7 @@ pub(crate) struct TrueFriction {
 /// Position in m and force in N of each row, as instruments without errors would show them.
 pub(crate) type Rows = Vec<(f64, f64)>;
 
-/// s between rows.
+/// Time between rows, s.
 const STEP: f64 = 1e-3;
 
 impl TrueFriction {
@@ -54,14 +54,14 @@ impl TrueFriction {
         self.levels[usize::from(velocity < 0.0)]
     }
 
-    /// g(v) in N.
+    /// Level g(v), N.
     fn carried(&self, velocity: f64) -> f64 {
         let Levels { coulomb, breaking, .. } = self.of(velocity);
         coulomb + (breaking - coulomb) * (-(velocity.abs() / self.stribeck).powf(self.exponent)).exp()
     }
 
-    /// Constant velocities of half a second both ways, with ramps of 50 ms between them. The
-    /// bristles are solved exactly for the velocity of each part of a row.
+    /// Constant velocities of half a second in both directions, with ramps of 50 ms between them.
+    /// The bristles are solved exactly for the velocity of each part of a row.
     pub(crate) fn sliding(&self, speeds: &[f64]) -> Rows {
         let mut velocities = vec![0.0; 50];
         for target in speeds.iter().flat_map(|speed| [*speed, -speed]) {
@@ -86,7 +86,7 @@ impl TrueFriction {
         rows
     }
 
-    /// From rest, a force that rises by 1.3 times the static friction in 3 s, until the piston has
+    /// A force that rises from rest by 1.3 times the static friction in 3 s, until the piston has
     /// moved by half a millimetre.
     pub(crate) fn breakaway(&self, way: f64) -> Rows {
         let rise = 1.3 * self.of(way).breaking / 3.0;
@@ -126,13 +126,13 @@ impl TrueFriction {
 /// Errors of the instruments.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Errors {
-    /// bar, of the zeros of both pressures.
+    /// Errors of the zeros of both pressures, bar.
     pub(crate) zeros: [f64; 2],
     /// Seed of the noise of 5 kPa and 1 um; 0 for none.
     pub(crate) seed: u64,
 }
 
-/// Rows as they are recorded: the mean of both pressures stays at 30 bar.
+/// Rows as recorded: the mean of both pressures is 30 bar throughout.
 pub(crate) fn table(rows: &Rows, errors: Errors) -> String {
     let mut chance = stream(errors.seed, 11);
     let size = if errors.seed > 0 { 1.0 } else { 0.0 };

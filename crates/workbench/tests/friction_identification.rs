@@ -1,5 +1,4 @@
-//! From a cylinder whose friction is known, through the files that the bench writes, back to the
-//! friction.
+//! Identification of a cylinder's known friction from the files that the bench writes.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -12,7 +11,7 @@ use phea_workbench::project;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
-/// The coefficients of the rig, as the answer calls them.
+/// The coefficients of the rig, with their names in the answer.
 pub(crate) const TRUTH: [(&str, f64); 7] = [
     ("coulomb_n", 80.0),
     ("static_n", 120.0),
@@ -27,13 +26,13 @@ pub(crate) const SLIDING: &str = "sliding.csv";
 pub(crate) const PRESSED: [&str; 2] = ["breakaway.csv", "breakaway_back.csv"];
 pub(crate) const SHAKEN: &str = "shaken.csv";
 
-/// The tests of the valve take no time.
+/// Setting with which the tests of the valve take no time.
 pub(crate) const SHORT: &str = "bench.duration=1 s";
 
-/// No noise, and converters that convert nothing.
+/// No noise, and ideal converters.
 const EXACT: [&str; 2] = ["bench.pressure_noise=0", "bench.converter_bits=0"];
 
-/// Eight velocities, and all else as the bench has it.
+/// Eight velocities, and the bench's defaults for everything else.
 const NOISY: &str = "bench.friction={ velocities = 8 }";
 
 /// The friction of that bench from all four recordings, and from those without the shaken piston:
@@ -51,7 +50,7 @@ fn without_the_shaken() -> &'static Answer {
     &ANSWER
 }
 
-/// The files of a bench with these settings, and one whose text is given besides.
+/// The files of a bench with these settings, and one with the given text in addition.
 pub(crate) fn recorded(settings: &[&str]) -> Memory {
     let files = answer(HOSE, &[&[SHORT], settings].concat(), &[], &Request::Bench).files;
     files.into_iter().fold(Memory::default(), |source, file| {
@@ -83,7 +82,7 @@ pub(crate) fn is_open(found: &Value, key: &str, reason: &str) {
     assert!(one["reason"].as_str().is_some_and(|said| said.contains(reason)), "{key}: {one}");
 }
 
-/// Without noise, the steady curve comes back to the rounding of what the bench writes.
+/// The steady curve is recovered without noise, to the rounding of the files.
 #[test]
 fn the_steady_curve_comes_back_without_noise() {
     let settings = [&EXACT[..], &["bench.friction={ velocities = 8, position_noise = 0 }"]].concat();
@@ -94,8 +93,9 @@ fn the_steady_curve_comes_back_without_noise() {
     }
 }
 
-/// With noise and all three recordings, all but the damping of the bristles are determined, and
-/// their intervals hold the truth: three standard deviations here, as six are looked at.
+/// Coefficients from noise and all three recordings: everything except the damping of the bristles
+/// is determined, and the intervals contain the truth: three standard deviations here, because six
+/// numbers are checked.
 #[test]
 fn a_noisy_bench_tells_all_but_the_damper() {
     let found: Value = serde_json::from_str(&without_the_shaken().json).unwrap();
@@ -103,7 +103,7 @@ fn a_noisy_bench_tells_all_but_the_damper() {
     holds_the_truth(&found, &TRUTH[..6]);
 }
 
-/// With all four recordings all is determined.
+/// Every coefficient is determined with all four recordings.
 #[test]
 fn a_noisy_bench_tells_all_of_the_friction() {
     let answer = from_all();
@@ -123,13 +123,13 @@ fn holds_the_truth(found: &Value, truths: &[(&str, f64)]) {
     }
 }
 
-/// What nothing in the recordings depends on is open, with the reason.
+/// A coefficient on which nothing in the recordings depends is open, with the reason.
 #[test]
 fn what_the_recordings_do_not_tell_is_open() {
     let settings = ["bench.friction={ velocities = 6, releases = 0 }"];
     let sliding = found(&settings, &[SLIDING]);
     is_open(&sliding, "bristle_damping_n_s_per_m", "slow runs do not show it");
-    // a slow force alone never moves the damper
+    // a slow force never moves the damper
     let slow = found(&settings, &[SLIDING, PRESSED[0]]);
     is_open(&slow, "bristle_damping_n_s_per_m", "slow runs do not show it");
     assert!(slow["friction"]["bristle_stiffness_n_per_m"]["value"].is_f64(), "{slow}");
@@ -140,14 +140,14 @@ fn what_the_recordings_do_not_tell_is_open() {
 }
 
 /// A force that changes within a few rows is not known between them, and the stiffness is open
-/// rather than wrong.
+/// instead of wrong.
 #[test]
 fn a_quick_force_leaves_the_stiffness_open() {
     let found = found(&["bench.friction={ velocities = 6, releases = 2 }"], &[SLIDING, PRESSED[0]]);
     is_open(&found, "bristle_stiffness_n_per_m", "record one that rises slowly");
 }
 
-/// The pressures have an error of their zero: both ways separate it from friction.
+/// Zero errors of the pressures: runs in both directions separate them from friction.
 #[test]
 fn an_error_of_the_zero_is_no_friction() {
     let source = recorded(&["bench.friction={ velocities = 6 }"]);
@@ -168,7 +168,7 @@ fn an_error_of_the_zero_is_no_friction() {
     assert!(low < 80.5 && 79.5 < high, "{found}");
 }
 
-/// The fragment is a table of a project, but for what is open.
+/// The fragment is a table of a project, except for open coefficients.
 #[test]
 fn the_fragment_is_a_table_of_a_project() {
     let open = "# bristle_damping: not determined, slow runs do not show it";
@@ -215,7 +215,7 @@ fn files_that_are_no_runs_are_refused_with_their_places() {
         "time_s,position_mm,force_n\n0,1,2\n0.1,1,2\n",
         &["2 rows are too few for a run of the cylinder"],
     );
-    // a piston that rests shows nothing
+    // a piston at rest shows nothing
     let rest: String = (0..200).map(|row| format!("{},5,0\n", f64::from(row) * 0.01)).collect();
     refused(&format!("time_s,position_mm,force_n\n{rest}"), &["no recording determines the friction"]);
 }

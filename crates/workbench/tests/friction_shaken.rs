@@ -1,5 +1,5 @@
 //! The damping of the bristles from a piston that is shaken on them: recordings of the bench, of
-//! equations that are written and integrated here, and of the whole machine.
+//! equations that are written and integrated here, and of the complete machine.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -16,7 +16,8 @@ use serde_json::Value;
 const STIFFNESS: &str = "bristle_stiffness_n_per_m";
 const DAMPING: &str = "bristle_damping_n_s_per_m";
 
-/// Stiffness and damping are within 1.5 half widths of what they are, and determined to this share.
+/// Checks that stiffness and damping are within 1.5 half widths of their true values, and
+/// determined to this relative accuracy.
 #[track_caller]
 fn tells(found: &Value, share: f64) {
     for (key, truth) in &TRUTH[5..] {
@@ -42,15 +43,15 @@ fn a_shaken_piston_tells_the_damping_of_its_bristles() {
     tells(&found(&["bench.friction={ velocities = 8 }"], &[SLIDING, SHAKEN]), 0.1);
 }
 
-/// A scale of 1 um resolution reads no worse than its noise.
+/// A scale with a resolution of 1 um gives readings no worse than its noise.
 #[test]
 fn a_position_that_is_read_in_steps_tells_it_too() {
     let settings = ["bench.friction={ velocities = 8, position_resolution = \"1 um\" }"];
     tells(&found(&settings, &[SLIDING, SHAKEN]), 0.1);
 }
 
-/// With next to no noise the damping comes back but for what the steps of the integration leave
-/// out.
+/// The damping is recovered with very little noise, except for the effect of the integration's
+/// steps.
 #[test]
 fn the_damping_comes_back_with_next_to_no_noise() {
     let shaken = "shaken = { periods = 6 }";
@@ -63,7 +64,7 @@ fn the_damping_comes_back_with_next_to_no_noise() {
     }
 }
 
-/// Frequencies of no common period, over a time that is no multiple of any.
+/// Frequencies without a common period, over a time that is no multiple of any.
 const SINES: [(f64, f64, f64); 6] = [
     (71.3, 8.0, 0.3),
     (104.9, 6.0, 2.1),
@@ -80,7 +81,8 @@ fn shaking_force(time: f64) -> f64 {
     3.0 + SINES.iter().map(sine).sum::<f64>()
 }
 
-/// Rates of velocity, deflection and position: LuGre as it is printed, for the rig's coefficients.
+/// Rates of velocity, deflection and position: the LuGre model as published, with the rig's
+/// coefficients.
 fn rates([velocity, deflection, _]: [f64; 3], force: f64) -> [f64; 3] {
     let over = velocity / 0.01;
     let curve = 80.0 + 40.0 * portable::exp(-over * over);
@@ -113,7 +115,7 @@ fn integrated(rows: usize) -> Vec<[f64; 2]> {
 }
 
 /// A table of a machine that moves the rod: times in s, positions in m and the forces on the piston
-/// in N, with noise of the position in um and of the force in N, of a stream of its own for each
+/// in N, with noise of the position in um and of the force in N, from a separate stream for each
 /// seed.
 fn table(rows: &[[f64; 2]], noise: [f64; 2], seed: u64) -> String {
     let mut state = stream(seed, 0);
@@ -125,7 +127,7 @@ fn table(rows: &[[f64; 2]], noise: [f64; 2], seed: u64) -> String {
     format!("time_s,position_um,force_n\n{}", rows.iter().enumerate().map(row).collect::<String>())
 }
 
-/// The sum of sines needs no common period, and begins in motion: the first 100 rows are not
+/// A sum of sines needs no common period, and may begin in motion: the first 100 rows are not
 /// recorded.
 #[test]
 fn equations_of_another_hand_come_back() {
@@ -135,8 +137,8 @@ fn equations_of_another_hand_come_back() {
     tells(&parsed(&source, &[SLIDING, "own.csv"]), 0.08);
 }
 
-/// A load cell and its environment hold the rod of the whole machine, whose valve is shaken:
-/// chambers, hoses, spool and load cell take part.
+/// The rod of the complete machine is held by a load cell and its environment, and its valve is
+/// shaken: chambers, hoses, spool and load cell take part.
 #[test]
 fn the_whole_machine_tells_the_damping_of_its_bristles() {
     let (before, _) = HOSE.split_once("[[scenario]]").unwrap();
@@ -167,15 +169,15 @@ command = [
     }
     let source = recorded(&["bench.friction={ velocities = 8 }"]).with("machine.csv", table);
     let found = parsed(&source, &[SLIDING, "machine.csv"]);
-    // a valve excites more than the sines of its command, of which the noise hides a part: over six
-    // seeds of the noise the stiffness came out 4 % too low at most, and the damping 20 % too high
+    // a valve excites more than the sines of its command, partly hidden by the noise: over six
+    // seeds of the noise the stiffness was 4 % too low at most, and the damping 20 % too high
     for ((key, truth), share) in TRUTH[5..].iter().zip([0.06, 0.3]) {
         let value = found["friction"][key]["value"].as_f64().unwrap_or_else(|| panic!("{key}: {found}"));
         assert!((value / truth - 1.0).abs() < share, "{key}: {value}");
     }
 }
 
-/// A recording that does not determine them says what would.
+/// A recording that does not determine them is reported with the change that would.
 #[test]
 fn a_shaken_piston_that_tells_too_little_says_what_would() {
     let files = [SLIDING, SHAKEN];
@@ -186,12 +188,12 @@ fn a_shaken_piston_that_tells_too_little_says_what_would() {
     is_open(&slow, DAMPING, "too few rows in a period of its ringing: record one every 870 us or oftener");
     let weak = with("{ force = \"10 N\", frequencies = [\"15 Hz\", \"25 Hz\"] }");
     is_open(&weak, DAMPING, "noise hides it: a force");
-    // nothing is seen of it
+    // none of it is visible
     let nothing = with("{ force = \"0.5 N\" }");
     is_open(&nothing, DAMPING, "slow runs do not show it: shake the piston below the static friction of");
 }
 
-/// A force that is no sum of sines is not known between its rows.
+/// A force that is not a sum of sines is not known between its rows.
 #[test]
 fn a_blow_is_no_sum_of_sines() {
     let mut rows = integrated(1000);
@@ -211,7 +213,7 @@ fn a_blow_is_no_sum_of_sines() {
     is_open(&found, STIFFNESS, "record one that rises slowly");
 }
 
-/// The files of `[identify]` are those that are read where none is named.
+/// The files of `[identify]` are read if none is named.
 #[test]
 fn the_project_may_name_the_recordings() {
     let source = recorded(&["bench.friction={ velocities = 6 }"]);

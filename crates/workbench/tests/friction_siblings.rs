@@ -1,5 +1,6 @@
-//! Frictions and faults of recordings next to those that were once identified wrongly: other sizes,
-//! other speeds and other truths, from equations that share no code with the model.
+//! Frictions and faults of recordings similar to those that were once identified wrongly: other
+//! sizes, other speeds and other true values, from equations that have no code in common with the
+//! model.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -35,7 +36,7 @@ fn all_of(friction: &TrueFriction, speeds: &[f64], errors: Errors) -> [(&'static
     ]
 }
 
-/// The intervals hold, with three standard deviations for two.
+/// Checks that the intervals contain the truth, with three standard deviations instead of two.
 #[track_caller]
 fn hold(friction: &Value, truths: &[(&str, f64)]) {
     for (key, truth) in truths {
@@ -47,7 +48,7 @@ fn hold(friction: &Value, truths: &[(&str, f64)]) {
     }
 }
 
-/// Levels and curve of a friction that is the same both ways, without the stiffness.
+/// Levels and curve of a friction that is equal in both directions, without the stiffness.
 fn curve_of(friction: &TrueFriction) -> [(&'static str, f64); 5] {
     let [Levels { coulomb, breaking, viscous }, _] = friction.levels;
     [
@@ -88,7 +89,7 @@ fn a_zero_error_of_a_third_of_a_bar_at_b() {
     a_zero_error_holds([0.0, 0.3], 2);
 }
 
-/// 158 N, more than the static friction.
+/// Zero error of 158 N, more than the static friction.
 #[test]
 fn a_zero_error_of_a_bar_below_at_a() {
     a_zero_error_holds([-1.0, 0.0], 3);
@@ -125,8 +126,8 @@ fn stick_slip_on_a_stiffer_spring() {
     slips_are_left_out(3e-3, 2e5, 6);
 }
 
-/// Fast runs without noise and both breakaways, of another friction each. The steps of this
-/// generator are worth a thousandth of the friction.
+/// Fast runs without noise and both breakaways, each with another friction. The steps of this
+/// generator contribute a thousandth of the friction.
 #[track_caller]
 fn clean_fast_runs_hold(friction: &TrueFriction) {
     let found = found(&all_of(friction, &FAST, Errors::default()));
@@ -161,7 +162,8 @@ fn clean_fast_runs_of_a_seal_that_hardly_falls() {
     clean_fast_runs_hold(&of_levels(100.0, 110.0, 60.0));
 }
 
-/// Three speeds both ways leave the fall open, with intervals that hold.
+/// Three speeds in both directions leave the fall undetermined, with intervals that contain the
+/// truth.
 #[track_caller]
 fn three_speeds_hold(friction: &TrueFriction, speeds: [f64; 3], seed: u64) {
     let errors = Errors { seed, ..Errors::default() };
@@ -186,7 +188,7 @@ fn three_speeds_of_a_soft_seal() {
     three_speeds_hold(&of_levels(35.0, 60.0, 250.0), [3e-3, 2e-2, 0.2], 9);
 }
 
-/// The levels of both directions are found, and no misfit is left.
+/// The levels of both directions are found, and no misfit remains.
 #[track_caller]
 fn directions_hold(friction: &TrueFriction, with_breakaways: bool, seed: u64) {
     let errors = Errors { seed, ..Errors::default() };

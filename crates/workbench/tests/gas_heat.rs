@@ -1,5 +1,5 @@
-//! Heat and temperature of accumulators from the project's keys to plant, family, verdict, runs and
-//! output.
+//! Heat and temperature of accumulators, from the project's keys to plant, family, verdict, runs
+//! and output.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -19,7 +19,7 @@ const LIMIT: &str =
     "specification=[{ kind = \"robust_stability\", limit = 1000, frequencies = [1, 10, 100] }]";
 const ATMOSPHERE: f64 = 101_325.0;
 
-/// What the plants are compared with: two pressures, one that is stated, a limited pump, a neck,
+/// Rigs with which the plants are compared: two pressures, a stated one, a limited pump, a neck,
 /// and lines with waves.
 const RIGS: [&[&str]; 6] = [
     &[],
@@ -30,7 +30,7 @@ const RIGS: [&[&str]; 6] = [
     &["line.model=transmission_line", "linear.hydraulic_stiffness=2e6"],
 ];
 
-/// The example without what it leaves open, and with gas of this exponent or time constant.
+/// The example without its open values, and with gas of this exponent or time constant.
 fn with_gas(own: &str) -> String {
     let text = without_uncertainty(GAS);
     let lines = text.lines().map(|line| if line.starts_with("polytropic_exponent") { own } else { line });
@@ -39,7 +39,7 @@ fn with_gas(own: &str) -> String {
     text
 }
 
-/// Gas that keeps its temperature is that of the exponent 1, in every form of the plant; at a time
+/// Gas at constant temperature is that of exponent 1, in every form of the plant; with a time
 /// constant of seconds it is not.
 #[test]
 fn heat_without_delay_is_isothermal() {
@@ -72,8 +72,8 @@ fn the_family_is_the_rig_at_its_nominal() {
     }
 }
 
-/// Compliance at rest, that without time for heat, and where one becomes the other; the precharge
-/// at both temperatures.
+/// Compliance at rest, compliance without heat exchange, and the frequency between them; the
+/// precharge at both temperatures.
 #[test]
 fn check_derives_both_compliances_and_both_precharges() {
     let told = check(HEAT, &["line.b.accumulator.thermal_time_constant=0.6"]);
@@ -91,7 +91,7 @@ fn check_derives_both_compliances_and_both_precharges() {
     }
 }
 
-/// The same gas, stated at one temperature or at the other, is the same machine and the same plant.
+/// Gas stated at one temperature or at the other gives one machine and one plant.
 #[test]
 fn a_precharge_may_be_stated_at_either_temperature() {
     let cold = "line.b.accumulator={ gas_volume = \"6 mL\", precharge_pressure = \"10 bar\", precharge_temperature = \"20 degC\", working_temperature = \"45 degC\" }";
@@ -106,7 +106,7 @@ fn a_precharge_may_be_stated_at_either_temperature() {
     }
 }
 
-/// Warm gas that is shut off at the operating point is refused, with both of its precharges.
+/// Warm gas that is shut off at the operating point is rejected, with both of its precharges.
 #[test]
 fn a_precharge_that_is_too_high_when_warm_is_refused() {
     let gas = "line.b.accumulator={ gas_volume = \"6 mL\", precharge_pressure = \"30 bar\", precharge_temperature = \"0 degC\", working_temperature = \"80 degC\" }";
@@ -121,7 +121,7 @@ fn a_precharge_that_is_too_high_when_warm_is_refused() {
     }
 }
 
-/// What the reduced models leave out is said.
+/// Effects that the reduced models leave out are reported.
 #[test]
 fn what_does_not_count_it_is_told() {
     let text = with_gas("thermal_time_constant = \"2 s\"");
@@ -134,7 +134,7 @@ fn what_does_not_count_it_is_told() {
     );
 }
 
-/// Every frequency of every plant of the box is proven or refuted with it as without.
+/// Every frequency of every plant of the box is proven or refuted with heat as without.
 #[test]
 fn verify_answers_with_heat() {
     let opened = "uncertainty={ \"line.accumulator.thermal_time_constant\" = { nominal = \"2 s\", minimum = \"1 s\", maximum = \"6 s\", points = 2 } }";
@@ -143,10 +143,11 @@ fn verify_answers_with_heat() {
     assert_eq!(told["stable"].as_bool(), Some(true), "{told}");
 }
 
-/// No precharge below the declared one, for which the limit of the maker would not hold.
+/// No precharge below the declared one, for which the maker's limit would not apply.
 const CERTAIN: &str = "uncertainty.\"line.accumulator.precharge_pressure\".minimum=15 bar";
 
-/// Pressed beyond what the maker permits, which the supply alone does not do, a run says when.
+/// A run reports the time at which the gas exceeds the maker's limit, which the supply pressure
+/// does not do.
 #[test]
 fn a_run_tells_where_the_limit_of_the_maker_is_passed() {
     let scenario = "scenario=[{ name = \"pressed\", duration = \"0.6 s\", load_motion = { kind = \"smooth_step\", start = \"0.1 s\", duration = \"20 ms\", distance = \"-20 mm\" } }]";
@@ -164,18 +165,18 @@ fn a_run_tells_where_the_limit_of_the_maker_is_passed() {
     assert!(page.contains("the gas at chamber A is above its maximum_pressure_ratio"));
 }
 
-/// What a run of the rig with this gas at chamber A behind its neck and at B shows.
+/// A run of the rig with this gas at chamber A, behind a neck, and at B.
 fn run_of(settings: &[&str]) -> ScenarioRun {
     let loaded = load(HEAT, settings, &[]);
     let setup = Setup::new(&loaded.project).unwrap();
     simulate_project(&source(HEAT), &setup, &mut |_| true).unwrap().remove(0)
 }
 
-/// A load that is moved, without a chamber falling below its precharge.
+/// A load that is moved without a chamber falling below its precharge.
 const PRESSED: &str = "scenario=[{ name = \"pressed\", duration = \"0.4 s\", load_motion = { kind = \"smooth_step\", start = \"0.1 s\", duration = \"20 ms\", distance = \"-0.7 mm\" } }]";
 
-/// Gas without time for heat is as warm as its pressure says, behind a neck and without; at rest it
-/// has the pressure of its chamber and the temperature of its wall.
+/// Gas without time for heat exchange has the adiabatic temperature of its pressure, with a neck
+/// and without; at rest it has the pressure of its chamber and the temperature of its wall.
 #[test]
 fn the_gas_of_a_run_is_adiabatic_where_it_has_no_time_for_heat() {
     let slow = ["line.accumulator.thermal_time_constant=1e9", "line.b.accumulator.thermal_time_constant=1e9"];
@@ -204,13 +205,13 @@ fn the_gas_of_a_run_is_adiabatic_where_it_has_no_time_for_heat() {
     for (celsius, ratio) in celsius_b.iter().zip(&ratio_b) {
         assert!((celsius + 273.15 - 318.15 * ratio).abs() < 1e-9);
     }
-    // chamber B has no neck, and the project does not state how warm the gas at A is
+    // chamber B has no neck, and the project does not state the temperature of the gas at A
     for signal in [Signal::GasPressureB, Signal::GasTemperatureA] {
         assert!(record.signal(signal).is_empty(), "{signal:?}");
     }
 }
 
-/// Figures have the gas of a rig that has such gas, side by side, and of no other.
+/// Figures show the gas of a rig that has such gas, side by side, and of no other.
 #[test]
 fn figures_have_the_gas_that_is_there() {
     let request = Request::Simulate(SimulateRequest { figures: true, ..SimulateRequest::default() });

@@ -1,8 +1,8 @@
-//! The published rig: what `check`, `size` and `linearize` say of it, against what is printed and
-//! what was recomputed.
+//! The published rig: results of `check`, `size` and `linearize`, compared with printed and
+//! recomputed values.
 //!
-//! Against the thesis the tolerance is one unit of its last printed digit, against recomputed
-//! numbers half the last digit that stands here.
+//! The tolerance is one unit of the last printed digit for the thesis, and half of the last digit
+//! written here for recomputed numbers.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -14,7 +14,7 @@ use serde_json::Value;
 
 const EATON: &str = "eaton_synflex_3130_08";
 
-/// The parameters of section 6.2 in place of those of the rig.
+/// The parameters of section 6.2, replacing those of the rig.
 const SECTION_6_2: [&str; 3] = [
     "linear.viscous_friction=299",
     // ORIGIN: thesis Table 6.1: 5.7e-13 gives its poles, 5.71e-13 a real pole of -2.963
@@ -66,8 +66,8 @@ fn areas_and_moduli_of_the_hose_rig() {
 fn stiffness_of_the_pipe_rig() {
     let linear = linearize(PIPE, &[]);
     for range in ["by_volume", "uniform"] {
-        // A rigid wall leaves the fluid's own modulus everywhere, so that both models agree.
-        // ORIGIN: recomputed by comparisons/recompute_rig.py
+        // A rigid wall leaves the fluid's modulus everywhere, so that both models agree. ORIGIN:
+        // recomputed by comparisons/recompute_rig.py
         within(number(&linear, &format!("stiffness.{range}.0")), 17_060_791.0, 0.5);
         within(number(&linear, &format!("stiffness.{range}.1")), 1.2437026e8, 5.0);
     }
@@ -93,12 +93,12 @@ fn stiffness_of_the_hose_rig() {
     for (name, value) in expected {
         within(number(&linear, &format!("stiffness.{name}")), value, 0.05);
     }
-    // The other model on demand.
+    // The other model on request.
     let other = linearize(HOSE, &["line.compliance=by_volume"]);
     within(number(&other, "stiffness.minimum_n_per_m"), 4_630_311.5, 0.05);
 }
 
-/// K_p as it is given to the command, K_H and L_ho of Table 6.2.
+/// K_H and L_ho of Table 6.2 for a gain K_p given on the command line.
 fn table_6_2_row(settings: &[&str], gain: &str) -> (f64, f64) {
     let size = size_for_gain(HOSE, settings, gain);
     let found = candidate(&size, EATON, "uniform");
@@ -158,7 +158,7 @@ fn the_pole_of_the_gain_and_what_a_proportional_loop_reaches() {
     within(number(&size, "pole_gain_v_per_n"), 2.0959013e-5, 5e-13);
     let bought = ask::size_for_length(HOSE, &[], "1.5 m");
     let bought = candidate(&bought, EATON, "uniform");
-    // The gain is 2.733e-4 here and 2.73e-4 there.
+    // The gain is 2.733e-4 here and 2.73e-4 in the thesis.
     within(number(bought, "steady_state_gain.0"), 0.974, 5e-4);
     within(number(bought, "steady_state_gain.1"), 0.26, 5e-3);
 }
@@ -166,8 +166,8 @@ fn the_pole_of_the_gain_and_what_a_proportional_loop_reaches() {
 #[test]
 fn a_negative_length_means_that_no_hose_is_needed() {
     // ORIGIN: recomputed by comparisons/recompute_rig.py: without a hose K_H is 3.3048496e6
-    // (uniform) and 1.8367007e7 (by_volume) at mid stroke; K_p = 1e-4 asks for 7.1288871e6,
-    // K_p = 3e-5 for 6.2324420e7.
+    // (uniform) and 1.8367007e7 (by_volume) at mid stroke; K_p = 1e-4 requires 7.1288871e6, K_p =
+    // 3e-5 requires 6.2324420e7.
     let size = size_for_gain(HOSE, &[], "1e-4");
     let uniform = candidate(&size, EATON, "uniform");
     near(number(uniform, "iterations.0.stiffness_n_per_m"), 7.1288871e6, 5e-8);
@@ -235,7 +235,7 @@ fn table_6_1() {
 
 #[test]
 fn table_6_1_as_printed() {
-    // ORIGIN: thesis Table 6.1. Its real pole of -2.963 wants K_c = 5.71e-13, its other two rows
+    // ORIGIN: thesis Table 6.1. Its real pole of -2.963 requires K_c = 5.71e-13, its other two rows
     // 5.7e-13 as well.
     for (stiffness, real, mechanical) in [
         ("1.5e7", (-2.963, 0.001), ((-11.6, 0.1), 2.93e3)),

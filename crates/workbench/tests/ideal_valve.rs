@@ -1,4 +1,4 @@
-//! A valve without leakage: the limit of equal leakage that vanishes.
+//! A valve without leakage: the limit of equal leakage that tends to zero.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -13,7 +13,8 @@ const EDGES: &str =
     "valve.flow_coefficients={ supply_to_a = 3e-7, a_to_tank = 3e-7, supply_to_b = 3e-7, b_to_tank = 3e-7 }";
 
 fn rig(leakage: [f64; 4], settings: &[&str]) -> Result<Rig, String> {
-    // what `[uncertainty]` states of the linear model would go before what follows from the valve
+    // values of the linear model stated in `[uncertainty]` would replace those that follow from the
+    // valve
     let (start, rest) = HOSE.split_once("[uncertainty]").unwrap();
     let (_, end) = rest.split_once("[[specification]]").unwrap();
     let source = Memory::default().with("p.toml", format!("{start}[[specification]]{end}"));
@@ -24,8 +25,8 @@ fn rig(leakage: [f64; 4], settings: &[&str]) -> Result<Rig, String> {
     Setup::rig_of(&read.project).map_err(|error| error.to_string())
 }
 
-/// p_A and p_B at null are halfway between supply and tank, K_c vanishes, and
-/// K_qU = K_v root((p_S - p_T)/2)/U_Cn; under a load p_A + p_B = p_S + p_T.
+/// Null of an ideal valve: p_A and p_B are halfway between supply and tank, K_c vanishes, and K_qU
+/// = K_v root((p_S - p_T)/2)/U_Cn; under a load p_A + p_B = p_S + p_T.
 #[test]
 fn an_ideal_valve_is_the_limit_of_equal_leakage() {
     for (tank, supply) in [(0.0, 70e5), (4e5, 100e5)] {
@@ -69,8 +70,8 @@ fn ideal_project() -> String {
     format!("{start}[[specification]]{end}")
 }
 
-/// Everything printed of an ideal valve is the limit: zero where the leakage is a factor, infinite
-/// where something is divided by it, and no number of its stand-in.
+/// Printed values for an ideal valve are the limits: zero if the leakage is a factor, infinite if
+/// something is divided by it, and no number of its stand-in.
 #[test]
 fn no_command_prints_the_stand_in_of_an_ideal_valve() {
     let text = ideal_project();
@@ -100,7 +101,7 @@ fn no_command_prints_the_stand_in_of_an_ideal_valve() {
     }
 }
 
-/// All numbers of an answer.
+/// Numbers in an answer.
 fn numbers(value: &Value) -> Vec<f64> {
     match value {
         Value::Number(number) => vec![number.as_f64().unwrap()],
@@ -110,7 +111,7 @@ fn numbers(value: &Value) -> Vec<f64> {
     }
 }
 
-/// Some edges that leak and some that do not have no such limit.
+/// A valve of which only some edges leak has no such limit.
 #[test]
 fn one_edge_without_leakage_is_refused() {
     let refused = rig([2e-9, 0.0, 2e-9, 2e-9], &[]).unwrap_err();

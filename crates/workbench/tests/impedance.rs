@@ -1,5 +1,5 @@
-//! A virtual impedance in the loop: its limits, its port, the load that yields to it, and the
-//! position loop that is the same.
+//! A virtual impedance in the loop: its limits, its port, a load that yields to it, and the
+//! equivalent position loop.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -91,8 +91,8 @@ fn the_port_tends_to_what_is_asked() {
     assert!(last < 1e-4, "{last}");
 }
 
-/// At low frequencies a spring that a lagging loop shows is active by -K_v tau; a damper of that
-/// size makes up for it.
+/// The spring of a lagging loop is active by -K_v tau at low frequencies; a damper of that size
+/// compensates for it.
 ///
 /// ```text
 /// G = K_p + K_i/s:   Re Z(0) = B_v - K_v (1/(K_i P(0)) + n tau_f)        n the order of the filter
@@ -119,7 +119,7 @@ fn a_damper_makes_a_late_spring_passive() {
     }
 }
 
-/// The view of `linearize` is the port that its band and its points refer to.
+/// The values printed by `linearize` are those of the port to which its band and its points refer.
 #[test]
 fn what_is_shown_is_the_port() {
     let project = read(
@@ -141,8 +141,8 @@ fn what_is_shown_is_the_port() {
     assert!((port.final_force_n.unwrap() / -100.0 - 1.0).abs() < 1e-6);
 }
 
-/// With a spring of k on its ground, F_e = F_r/(1 + K_v/k) in the end; verdict and machine agree on
-/// what is stable.
+/// A spring of k on the ground of the load: F_e = F_r/(1 + K_v/k) at the end; verdict and machine
+/// agree on stability.
 #[test]
 fn a_load_that_yields_changes_the_loop() {
     let impedance = |stiffness: &str| format!("controller.impedance={{ stiffness = \"{stiffness}\" }}");
@@ -172,8 +172,8 @@ fn a_load_that_yields_changes_the_loop() {
     }
 }
 
-/// u = C_x (x_r - x), x_r = x_0 + (F_r - F_e)/(M_v s^2 + B_v s + K_v), x behind the filter: closed
-/// by hand, and as it is declared.
+/// Admittance u = C_x (x_r - x), x_r = x_0 + (F_r - F_e)/(M_v s^2 + B_v s + K_v), x after the
+/// filter: closed by hand, and as declared.
 #[test]
 fn an_admittance_is_an_impedance() {
     let [spring, damper, filter] = [1e5, 2e3, 2e-3];
@@ -211,8 +211,8 @@ fn an_admittance_is_an_impedance() {
     }
 }
 
-/// With a load whose motion is prescribed every verdict but that of load_motion is the same; with
-/// one that yields it is not.
+/// Prescribed motion of the load changes only the verdict on load_motion; a load that yields
+/// changes all verdicts.
 #[test]
 fn the_verdict_speaks_of_the_loop_that_exists() {
     let margins = |settings: &[&str]| {
@@ -230,8 +230,8 @@ fn the_verdict_speaks_of_the_loop_that_exists() {
     assert!(without.iter().zip(&with).any(|(one, other)| (one - other).abs() > 0.1), "{without:?} {with:?}");
 }
 
-/// Active and passive compliance in one table: a pipe whose loop shows a spring and a damper, next
-/// to hose and pipe.
+/// Active and passive compliance in one table: a pipe whose loop has a virtual spring and damper,
+/// next to hose and pipe.
 #[test]
 fn alternatives_state_what_is_asked_beside_what_is_shown() {
     let (head, _) = HOSE.split_once("[uncertainty]").unwrap();
@@ -285,10 +285,10 @@ name = "pipe with an inner position loop"
     assert!((at(2, "impedance_asked_n_s_per_m").unwrap() / asked - 1.0).abs() < 1e-12);
     assert_eq!((at(0, "impedance_asked_n_s_per_m"), at(1, "impedance_asked_n_s_per_m")), (None, None));
     let shown = [1, 2].map(|index| at(index, "impedance_closed_n_s_per_m").unwrap());
-    // as far as 1/(1 + L), at most 1/|1 - 5j| there, lets it differ, and what the pipe shows
+    // to within 1/(1 + L), at most 1/|1 - 5j| there, and the impedance of the pipe
     assert!((shown[1] / asked - 1.0).abs() < 0.2 + shown[0] / asked, "{shown:?}, {asked}");
     assert!(shown[0] < 0.5 * asked, "{shown:?}, {asked}");
-    // the load does not yield: the loop to be designed is the same
+    // the load does not yield: the loop to be designed is unchanged
     for key in ["order", "modulus_margin", "delay_margin_s"] {
         let [pipe, spring] = [1, 2].map(|index| columns(index)[key].as_f64().unwrap());
         assert!((spring / pipe - 1.0).abs() < 1e-3, "{key}: {pipe}, {spring}");
@@ -335,8 +335,8 @@ filter_time = "5 ms"
     )
 }
 
-/// Of a load that yields, the proof is of the loop with its impedance, and the machine steps as
-/// this loop predicts.
+/// A load that yields: the proof is of the loop with its impedance, and the machine steps as this
+/// loop predicts.
 #[test]
 fn a_proof_and_a_trial_are_of_the_loop_with_it() {
     let text = yielding();
@@ -360,8 +360,8 @@ fn a_proof_and_a_trial_are_of_the_loop_with_it() {
     assert!((margin(&found) - margin(&without)).abs() > 0.1, "{} {}", margin(&found), margin(&without));
 }
 
-/// Report, linear models and derived quantities state it; what states the controller of a position
-/// is not designed.
+/// Report, linear models and derived quantities state the impedance; a controller that is stated
+/// for the position is not designed.
 #[test]
 fn every_answer_speaks_of_it() {
     let position = "controller.impedance.form=admittance";

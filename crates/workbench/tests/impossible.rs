@@ -1,4 +1,5 @@
-//! Requirements that no loop can satisfy are stated by `check` and `verify`, from where they begin.
+//! Requirements that no loop can satisfy are stated by `check` and `verify`, with the value at
+//! which they begin.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -24,7 +25,7 @@ fn limit(kind: &str, limit: &str, band: &str) -> String {
     format!("[[specification]]\nkind = \"{kind}\"\nlimit = {limit}\nfrequencies = [1, 1.5]\nband = {band}\n")
 }
 
-/// What `check` and `verify` say, which is one and the same.
+/// Statements of `check` and `verify`, which are identical.
 fn said(project: &str) -> Vec<Value> {
     let [one, other] = [Request::Check, Request::Verify { proof: false, on_machine: false }]
         .map(|request| json(project, &[], &[], &request)["impossible"].as_array().unwrap().clone());
@@ -43,7 +44,7 @@ fn assert_begins(of: impl Fn(f64) -> String, possible: f64, impossible: f64, key
     assert!(own["line"].as_u64().unwrap() > 0);
 }
 
-/// A sentence on two specifications names them as the file does.
+/// Sentences on two specifications name them as the file does.
 #[test]
 fn specifications_in_conflict_are_named_by_their_tables() {
     let step = "[[specification]]\nkind = \"step\"\nsettling_time = \"10 s\"\n".to_string();
@@ -54,7 +55,7 @@ fn specifications_in_conflict_are_named_by_their_tables() {
     assert!(words.contains(named) && words.contains("raise the limit of [[specification]] 2"), "{words}");
 }
 
-/// A step beyond the rig is told once by `check`, with its line.
+/// A step beyond the rig is reported once by `check`, with its line.
 #[test]
 fn a_step_beyond_the_stall_force_is_told_once() {
     let text = rig("settling_time = \"5 s\"\namplitude = \"60 kN\"\n");
@@ -62,7 +63,7 @@ fn a_step_beyond_the_stall_force_is_told_once() {
     assert_eq!(words.matches("the piston stalls at").count(), 1, "{words}");
 }
 
-/// S + T = 1: limits of 0.5 on |T| and of less than 0.5 on |S| leave no loop.
+/// Limits of 0.5 on |T| and of less than 0.5 on |S| leave no loop, because S + T = 1.
 #[test]
 fn limits_of_s_and_t_that_add_up_to_less_than_one() {
     let of = |sensitivity: f64| {
@@ -89,7 +90,7 @@ fn a_delay_and_an_unstable_pole() {
     assert_begins(of, 1.66, 1.63, "specification[0].limit", &["raise its limits"]);
 }
 
-/// No step settles before the dead time has passed.
+/// No step settles within the dead time.
 #[test]
 fn a_settling_time_shorter_than_the_dead_time() {
     let of = |time: f64| {
@@ -176,8 +177,8 @@ fn rig(required: &str) -> String {
     format!("{RIG}{required}")
 }
 
-/// (70^2 - 30^2) mm^2 pi/4 at 150 bar is 47.12 kN: a step to more is none of this rig, and no
-/// verdict on it is met. The sensor ends at 48 kN.
+/// The stall force (70^2 - 30^2) mm^2 pi/4 at 150 bar is 47.12 kN: a step beyond it is impossible
+/// for this rig, and no verdict on it is met. The sensor ends at 48 kN.
 #[test]
 fn a_step_beyond_the_stall_force_or_the_sensor() {
     let to = |most: f64| {
@@ -189,7 +190,7 @@ fn a_step_beyond_the_stall_force_or_the_sensor() {
     let key = "specification[0].amplitude";
     assert_begins(to, 47.1, 47.2, key, &["goes to 47.2 kN", "stalls at 47.12 kN", "150 bar"]);
     assert_begins(to, 47.1, 48.1, key, &["48.1 kN"]);
-    // beyond the declared supply too: what is reached is that of the lowest
+    // beyond the declared supply too: the limit is that of the lowest pressure
     assert_begins(
         to,
         47.1,
@@ -207,7 +208,7 @@ fn a_step_beyond_the_stall_force_or_the_sensor() {
     assert_eq!((verdict(47.1).as_str(), verdict(47.2).as_str()), ("met", "not_proven"));
 }
 
-/// A step that no controller makes ends `design` with its line before any search, and stands on the
+/// A step that no controller makes stops `design` with its line before any search, and is on the
 /// first page of the report.
 #[test]
 fn an_impossible_step_ends_a_design_at_once() {
@@ -245,12 +246,12 @@ fn a_step_that_the_whole_voltage_does_not_bring_in_time() {
     let parts = [slowest, "of the 20 kN"];
     assert_begins(|time| in_time(-time), -1.0, -0.002, key, &parts);
     assert_begins(|time| in_time(-time), -1.0, -0.01, key, &["times the flow"]);
-    // no valve makes up for the time of a wave through the lines
+    // no valve compensates for the travel time of a wave through the lines
     let before_the_wave = said(&in_time(0.0003));
     let words = format!("{before_the_wave:?}");
     assert!(words.contains("no step settles") && !words.contains("times the flow"), "{words}");
     assert!(words.contains("or shorten the line"), "{words}");
-    // a requirement of every step is that of the scenarios' steps
+    // a requirement of every step applies to the scenarios' steps
     let scenario = |time: f64, to: f64| {
         let steps = format!("{{ at = \"0 s\", force = \"8 kN\" }}, {{ at = \"1 s\", force = \"{to} kN\" }}");
         let required = rig(&format!("settling_time = \"{time} s\"\n"));

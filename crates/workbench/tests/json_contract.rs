@@ -1,4 +1,4 @@
-//! The JSON objects that other programs read: their keys, their shapes, and what they do with
+//! The JSON objects that other programs read: their keys, their structure, and their treatment of
 //! numbers that do not exist.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
@@ -29,7 +29,7 @@ fn requests() -> [Request; 8] {
     ]
 }
 
-/// Those of a rig with these settings: machines are driven where the settings concern them.
+/// Requests for a rig with these settings: machines are driven only if the settings concern them.
 fn requests_of(settings: &[&str]) -> Vec<Request> {
     let linear_alone = ["line.compliance", "linear.", "uncertainty."];
     let is_linear =
@@ -67,7 +67,7 @@ fn answered() -> Vec<(String, Value)> {
     ];
     let mut answers = Vec::new();
     for (name, project) in [("hose", HOSE), ("pipe", PIPE)] {
-        // what is odd is so of both
+        // an odd rig is odd for both
         let settings_of = if name == "hose" { &odd[..] } else { &odd[..1] };
         for settings in settings_of {
             for request in &requests_of(settings) {
@@ -88,7 +88,7 @@ fn answered() -> Vec<(String, Value)> {
 
 #[test]
 fn every_object_says_what_it_is_and_of_which_file() {
-    // the report need not design a controller and simulate for this
+    // the report need not design a controller or simulate for this
     let (project, _) = HOSE.split_once("[design]").unwrap();
     for request in requests() {
         let object = json(project, &[], &[], &request);
@@ -116,7 +116,8 @@ fn the_hash_is_of_the_bytes_and_settings_stand_beside_it() {
     assert_eq!(plain["derived"], json(&windows, &[], &[], &Request::Check)["derived"]);
 }
 
-/// Nulls without a reason next to them. A reason is under `reason` or under the key with `_reason`.
+/// Paths of nulls without a reason next to them. A reason is under `reason` or under the key with
+/// `_reason`.
 pub(crate) fn unexplained(path: &str, value: &Value, found: &mut Vec<String>) {
     match value {
         Value::Object(fields) => {
@@ -167,7 +168,7 @@ fn no_string_is_a_number_in_disguise_but_infinity() {
     }
     for (label, object) in everything() {
         let mut object = object.clone();
-        // A dash size and a unit of one are words.
+        // A dash size and a unit of one are strings.
         let mut found = Vec::new();
         object.as_object_mut().unwrap().retain(|key, _| key != "bores");
         walk(&object, &mut found);
@@ -210,8 +211,8 @@ fn check_says_where_a_stated_value_contradicts_the_derived_one() {
     ask::within(number(row, "declared.difference_percent"), expected, 1e-5);
 }
 
-/// (6.28) overshoots by 2.2 % where 1 % was wished; nine tenths of it never settle within 1 % of
-/// the reference.
+/// Limit (6.28) overshoots by 2.2 % while 1 % is required; nine tenths of it never settle within 1
+/// % of the reference.
 #[test]
 fn check_holds_tracking_limits_against_their_wishes() {
     let wishes = |settings: &[&str]| json(HOSE, settings, &[], &Request::Check)["wishes"].clone();
@@ -329,7 +330,7 @@ fn warnings_of_the_reading_are_repeated() {
     let told: Vec<&str> =
         object["warnings"].as_array().unwrap().iter().map(|one| one.as_str().unwrap()).collect();
     assert!(loaded.warnings.iter().all(|warning| told.contains(&warning.message.as_str())), "{told:?}");
-    // and before them what no verdict counts
+    // and before them the effects that no verdict includes
     assert!(
         told.len() == loaded.warnings.len() + 1 && told[0].starts_with("the family does not contain the rig")
     );

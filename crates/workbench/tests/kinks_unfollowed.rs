@@ -1,5 +1,5 @@
-//! Runs along which no deviation is carried from kink to kink say so, and those that are judged
-//! otherwise do not need to.
+//! Runs in which no deviation can be followed from kink to kink report this; those that are judged
+//! otherwise need not.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -43,7 +43,7 @@ fn a_run_without_a_carried_deviation_says_so() {
     assert!(!text.contains(SAID), "{text}");
 }
 
-/// A line with waves holds a part of a deviation; the same rig with a lumped line does not.
+/// A line with waves contains a part of a deviation; a rig with a lumped line does not.
 #[test]
 fn waves_hold_a_part_of_a_deviation() {
     let scenario = "scenario=[{ name = \"there and back\", duration = 0.4, reference = [{ at = 0.02, force = 1000 }, { at = 0.2, force = -500 }] }]";

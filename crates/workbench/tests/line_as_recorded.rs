@@ -1,5 +1,5 @@
-//! Recordings of lines as they are, by equations that are written down here again: oil with free
-//! air in it, and the exact wave in a hose.
+//! Recordings of real lines, by equations that are written again here: oil with free air in it, and
+//! the exact wave in a hose.
 
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
@@ -17,10 +17,10 @@ use crate::line_coverage::{WAVES, known, project};
 const SETTINGS: ResponseSettings =
     ResponseSettings { period: None, settling: None, segment: None, coherence: 0.0 };
 
-/// Pa, the modulus of oil and wall without air, as a fast wave in the hose has it.
+/// Modulus of oil and wall without air, as in a fast wave in the hose, Pa.
 const MODULUS: f64 = 2.49e8;
 
-/// Pa.
+/// Atmospheric pressure, Pa.
 const ATMOSPHERE: f64 = 101_325.0;
 
 /// Compliance in 1/Pa of oil with a fraction of air at a gauge pressure, compressed at constant
@@ -33,7 +33,7 @@ pub(crate) fn compliance(fraction: f64, pressure: f64) -> f64 {
     1.0 / MODULUS - 1.0 / oil + (liquid / oil + gas / absolute) / (liquid + gas)
 }
 
-/// Compliance of air that is a fraction of the volume of the line.
+/// Compliance of air that is a fraction of the line's volume.
 pub(crate) fn of_oil(fraction: f64, pressure: f64) -> f64 {
     let absolute = pressure + ATMOSPHERE;
     1.0 / MODULUS + fraction * ATMOSPHERE / (absolute * absolute)
@@ -52,7 +52,7 @@ pub(crate) enum OfVolume {
 #[derive(Clone, Copy)]
 pub(crate) struct Rise {
     pub(crate) fraction: f64,
-    /// Pa.
+    /// Initial and final pressure, Pa.
     pub(crate) pressures: [f64; 2],
     pub(crate) of: OfVolume,
 }
@@ -101,8 +101,8 @@ pub(crate) fn found(record: LineRecord, known: &KnownLine) -> LineIdentification
     identify_line(vec![record], known.clone(), &SETTINGS, &mut |_| true).unwrap()
 }
 
-/// Two per cent of air in the oil: both the air and the modulus with it at 35 bar are within their
-/// intervals as often as 95 % allows, and no polynomial stands in for the air.
+/// Oil with two per cent of air: both the air and the modulus with it at 35 bar are within their
+/// intervals as often as 95 % allows, and no polynomial replaces the air.
 #[test]
 fn free_air_is_found_with_the_modulus() {
     let loaded = project(&WAVES);
@@ -123,7 +123,7 @@ fn free_air_is_found_with_the_modulus() {
     assert!(covered.iter().all(|count| *count >= 33), "{covered:?}");
 }
 
-/// Without air none is found.
+/// No air is found in oil without air.
 #[test]
 fn no_air_is_found_where_there_is_none() {
     let loaded = project(&WAVES);
@@ -146,8 +146,8 @@ fn inertia(s: Complex64, rate: f64) -> Complex64 {
     1.0 / (1.0 - 2.0 * ratio / z)
 }
 
-/// Flow and pressure of an exact hose with a wave speed in m/s, of whose compliance a fraction is a
-/// volume at each end, in periods of 0.25 s.
+/// Flow and pressure of an exact hose with a wave speed in m/s, recorded in periods of 0.25 s; a
+/// fraction of its compliance is a volume at each end.
 ///
 /// ```text
 /// Z = p/q = 1/(1/Z_in + s f C)        Z_in = Z_c (Z_end + Z_c tanh(Gamma))/(Z_c + Z_end tanh(Gamma)),  Z_end = 1/(s f C)
@@ -168,7 +168,7 @@ pub(crate) fn response(known: &KnownLine, [speed, end_share]: [f64; 2], seed: u6
         .map(|omega| {
             let s = Complex64::new(0.0, *omega);
             let root = sqrt_complex(inertia(s, viscosity / (bore * bore / 4.0)));
-            // without its ends the line is stiffer, and its wave faster
+            // the line without its end volumes is stiffer, and its wave faster
             let within = speed / (1.0 - 2.0 * end_share).sqrt();
             let passed = exp_complex(-2.0 * s * length / within * root);
             let tanh = (1.0 - passed) / (1.0 + passed);
@@ -205,8 +205,8 @@ pub(crate) fn response(known: &KnownLine, [speed, end_share]: [f64; 2], seed: u6
     })
 }
 
-/// The speed of an exact wave, in a line declared with waves and in one declared as lumped: no
-/// volume at its ends shifts the resonances, and none of the misfit is left.
+/// The speed of an exact wave, in a line declared with waves and in one declared as lumped: volumes
+/// at its ends do not shift the resonances, and no misfit remains.
 #[test]
 fn the_speed_of_an_exact_wave_is_within_its_interval() {
     for settings in [&WAVES[..], &["line.model=\"lumped\"", "bench.line.periods=5"]] {
@@ -225,13 +225,13 @@ fn the_speed_of_an_exact_wave_is_within_its_interval() {
     }
 }
 
-/// A line whose compliance jumps at 20 bar, as of a hose that rests against its sleeve: no smooth
-/// compliance explains it, and that is reported.
+/// A line whose compliance jumps at 20 bar, like that of a hose that touches its sleeve: no smooth
+/// compliance explains it, and this is reported.
 #[test]
 fn a_compliance_that_jumps_is_a_misfit() {
     let loaded = project(&WAVES);
     let known = known(&loaded);
-    // nor does the noise of the first row, from which the volumes count, look like a misfit
+    // the noise of the first row, from which the volumes count, does not appear as a misfit either
     for seed in 1..=20 {
         let smooth = found(rise(&known, 0.02, seed), &known);
         assert!(smooth.misfits().is_empty(), "{seed}: {:?}", smooth.misfits());

@@ -1,4 +1,4 @@
-//! The model of lines whose project states none.
+//! The model of lines for which the project states none.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -19,7 +19,7 @@ fn open_rig() -> String {
     format!("{before}[[specification]]{after}").replace("model = \"lumped\"\n", "")
 }
 
-/// The same without the law of its controller.
+/// The rig without the law of its controller.
 fn rig_to_be_designed() -> String {
     open_rig().replace("elements = [{ kind = \"pi\", proportional_gain = 3e-5, integral_gain = 1e-5 }]\n", "")
 }
@@ -48,13 +48,13 @@ fn the_boundary_is_a_tenth_of_the_quarter_wave() {
     let found = chosen(&rig, &[&bandwidth(1.01), "line.length=1.5 m"]);
     assert_eq!(found["model"], "lumped");
     assert!((number(&found["quarter_wave_rad_per_s"]) / (2.0 * quarter) - 1.0).abs() < 1e-6);
-    // the slower of both
+    // the slower of the two
     let found = chosen(&rig, &[&bandwidth(1.01), "line.a.length=1.5 m"]);
     assert_eq!(found["model"], "transmission_line");
 }
 
-/// What is required within a time needs a bandwidth, ln(100/band)/t for settling; limits that
-/// require feedback need it up to their design frequencies, those that protect the top do not.
+/// A requirement in time needs a bandwidth, ln(100/band)/t for settling; limits that require
+/// feedback need it up to their design frequencies, and limits at high frequencies do not.
 #[test]
 fn requirements_reach_frequencies() {
     let rig = rig_to_be_designed();
@@ -72,7 +72,7 @@ fn requirements_reach_frequencies() {
     assert_eq!((number(&found["reached_rad_per_s"]), &found["model"]), (60.0, &"transmission_line".into()));
 }
 
-/// The crossover of a given loop: that which `verify` finds with lumped lines.
+/// The crossover of a given loop is that which `verify` finds with lumped lines.
 #[test]
 fn a_given_loop_reaches_its_crossover() {
     let found = chosen(&open_rig(), &["controller.elements.0.proportional_gain=2e-4"]);
@@ -86,7 +86,7 @@ fn a_given_loop_reaches_its_crossover() {
     assert_eq!((&found["model"], &found["reached_by"]), (&"lumped".into(), &"required_time".into()));
 }
 
-/// A stated model stays, of one side too, whatever is reached.
+/// A stated model is never changed, not even that of one side, whatever the frequencies.
 #[test]
 fn a_stated_model_is_never_changed() {
     let fast = "controller.elements.0.proportional_gain=2e-4";
@@ -102,13 +102,13 @@ fn a_stated_model_is_never_changed() {
     let object: Value = serde_json::from_str(&one_side.json).unwrap();
     assert_eq!(object["line_model"]["model"], "transmission_line");
     assert_eq!(object["margins"], stated["margins"]);
-    // stated as the choice would be, all but the choice is the same
+    // if the project states the model that would be chosen, only the choice differs
     let all = json(&open_rig(), &[fast, "line.model=transmission_line"], &[], &VERIFY);
     let chosen = json(&open_rig(), &[fast], &[], &VERIFY);
     assert_eq!(all["margins"], chosen["margins"]);
 }
 
-/// Every command has the model in its first lines and in JSON, and it is one.
+/// Every command has the model in its first lines and in JSON, and all have one model.
 #[test]
 fn every_command_names_the_chosen_model() {
     let rig = open_rig() + "\n[campaign.parameters]\n\"supply.pressure\" = { spread = \"5 %\" }\n";
@@ -140,9 +140,9 @@ fn every_command_names_the_chosen_model() {
     assert!(found.iter().all(|one| one["model"] == "transmission_line" && *one == found[0]), "{found:?}");
 }
 
-/// A designed project states the model that was chosen for the design: by its crossover alone
-/// another might be chosen, and its margins would be those of other plants. Margins of the nominal
-/// loop are told with waves too, once as they are of the design and once in the audit.
+/// A designed project states the model that was chosen for the design: from its crossover another
+/// model could be chosen, and its margins would be those of other plants. Margins of the nominal
+/// loop are reported with waves too, once for the design and once in the audit.
 #[test]
 fn a_designed_project_states_the_chosen_model() {
     let design = Request::Design { seed: None, stages: false, repair: false };
@@ -168,7 +168,7 @@ fn a_designed_project_states_the_chosen_model() {
     }
 }
 
-/// A mass that nothing holds is not computed behind waves: its lines stay lumped, with the reason.
+/// A free mass cannot be computed with waves: its lines remain lumped, with the reason.
 #[test]
 fn what_is_not_computed_with_waves_stays_lumped() {
     let settings = ["load.stiffness=0", "operating_point.load_force=0", "design.highest_bandwidth=300"];
@@ -177,7 +177,8 @@ fn what_is_not_computed_with_waves_stays_lumped() {
     assert_eq!(found["hindrance"], "the load is a mass without stiffness");
 }
 
-/// Where the quarter wave is what limits a design, the reason is not that it lies near itself.
+/// The reason of a design limited by the quarter wave does not compare the quarter wave with
+/// itself.
 #[test]
 fn a_quarter_wave_that_limits_the_bandwidth_is_not_compared_with_itself() {
     let rig = rig_to_be_designed();
@@ -191,8 +192,8 @@ fn a_quarter_wave_that_limits_the_bandwidth_is_not_compared_with_itself() {
     assert!(stated.contains("within 10 times the 60.0 rad/s"), "{stated}");
 }
 
-/// A design whose bandwidth nothing limits may go as far as it would by default, though nothing
-/// asks for so much.
+/// A design without a limit on its bandwidth may use the default bandwidth, although nothing
+/// requires it.
 #[test]
 fn a_design_without_a_limit_on_its_bandwidth_has_waves_where_the_rig_leaves_it_as_much() {
     let rig = rig_to_be_designed();

@@ -1,4 +1,4 @@
-//! How often the intervals of an identified line cover its truth.
+//! Coverage of the truth by the intervals of an identified line.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::print_stdout, reason = "how often and how wide is worth reading")]
@@ -14,7 +14,7 @@ use phea_workbench::project::{Bench, Loaded};
 use phea_workbench::response::{ResponseSettings, SampledPair};
 use phea_workbench::setup::Setup;
 
-/// A hose whose wall creeps, one pressure in it.
+/// A hose whose wall creeps, with one pressure in it.
 pub(crate) const CREEPING: [&str; 5] = [
     "line.model=\"creeping\"",
     "line.relaxation_time=\"20 ms\"",
@@ -23,7 +23,7 @@ pub(crate) const CREEPING: [&str; 5] = [
     "bench.line.periods=5",
 ];
 
-/// The same hose with waves and an elastic wall.
+/// A hose with waves and an elastic wall.
 pub(crate) const WAVES: [&str; 8] = [
     "line.model=\"transmission_line\"",
     "bench.line.frequencies=[\"4 Hz\", \"200 Hz\"]",
@@ -38,7 +38,7 @@ pub(crate) const WAVES: [&str; 8] = [
 const SETTINGS: ResponseSettings =
     ResponseSettings { period: None, settling: None, segment: None, coherence: 0.0 };
 
-/// Requirements on an identification, and what is true.
+/// Number required of an identification, and its true value.
 type Sought = (&'static str, fn(&LineIdentification) -> &Result<Estimate, NotIdentifiableLine>, f64);
 
 /// Each 95 % interval covers the truth as often as a binomial distribution allows.
@@ -63,7 +63,7 @@ fn intervals_from_a_flow_meter_cover_the_truth() {
     check_metered(40, &loaded, truth, 33..=40);
 }
 
-/// The same with four hundred, by `cargo xtask ci soak`.
+/// Coverage over four hundred recordings, by `cargo xtask ci soak`.
 #[test]
 #[ignore = "takes a minute"]
 fn soak_four_hundred_intervals_of_a_line_cover_the_truth() {
@@ -115,7 +115,7 @@ fn of_waves(known: &KnownLine) -> Vec<Sought> {
     ]
 }
 
-/// What a run is to the identification.
+/// Record of a run, as input of the identification.
 pub(crate) fn record(run: &LineRun) -> LineRecord {
     let (file, pressures) = (run.series.name().to_string(), run.pressures.clone());
     match run.series {
@@ -142,7 +142,7 @@ pub(crate) fn record(run: &LineRun) -> LineRecord {
     }
 }
 
-/// The identifications of as many recordings of one line, by as many threads as there are
+/// The identifications of this number of recordings of one line, by as many threads as there are
 /// processors.
 fn study<T: Send>(repetitions: u32, of: impl Fn(u32) -> T + Sync) -> Vec<T> {
     let threads = std::thread::available_parallelism().map_or(1, |count| count.get() as u32);

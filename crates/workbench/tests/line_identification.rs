@@ -1,4 +1,5 @@
-//! From recordings of a blocked line to its modulus, and back into the project.
+//! Identification of the modulus from recordings of a blocked line, and the way back into the
+//! project.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -14,7 +15,7 @@ use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
-/// What `bench` writes of the line of a project to chamber A.
+/// Files that `bench` writes for the line of a project to chamber A.
 fn benched(project: &str, settings: &[&str]) -> Vec<(String, String)> {
     benched_side(project, settings, "a")
 }
@@ -66,25 +67,26 @@ fn open(line: &Value, key: &str, expected: &str) {
     assert!(reason.contains(expected), "{key}: {reason}");
 }
 
-/// The whole way: `bench` records, `identify` writes a fragment, and the project with the fragment
-/// in place of what it had records the same again.
+/// The complete path: `bench` records, `identify` writes a fragment, and the project with the
+/// fragment replacing its values gives equal recordings.
 #[test]
 fn the_fragment_makes_the_project_record_the_same() {
     let without_noise = ["bench.pressure_noise=0", "bench.converter_bits=0", "bench.line.flow_noise=0"];
     let settings = [&CREEPING[..], &without_noise, &["bench.line.volume_noise=0"]].concat();
     let files = benched(HOSE, &settings);
-    // the project of whom only the catalogue is known: a wall without stiffening, another time
+    // a project for which only the catalogue is known: a wall without stiffening, another
+    // relaxation time
     let known_before =
         ["line.dynamic_stiffening=1", "line.model=\"creeping\"", "line.relaxation_time=\"5 ms\""];
     let answer = identified(HOSE, &known_before, &files).unwrap();
     let found = line(&answer);
-    // the wall lags behind the rise by theta = 0.1 s of 20 s: 0.5 % one way, as much the other way
-    // back
+    // the wall lags the rise by theta = 0.1 s of 20 s: 0.5 % one way, and as much on the way back
     near(value(&found, "dynamic_stiffening"), 5.0, 1e-4);
     near(value(&found, "relaxation_time_s"), 20e-3, 1e-4);
     let fragment = answer.files.iter().find(|file| file.name == "line.toml").expect("a fragment");
     let fragment = String::from_utf8(fragment.bytes.clone()).unwrap();
-    // each key of the fragment in place of the project's, without the lag, which it calls a misfit
+    // each key of the fragment replaces the project's, without the lag, which it reports as a
+    // misfit
     let (keys, misfit) = fragment.split_once("[line.misfit]").unwrap();
     assert!(misfit.contains("share = 0.003"), "{misfit}");
     let merged: Vec<String> = keys
@@ -107,7 +109,7 @@ fn the_fragment_makes_the_project_record_the_same() {
     }
 }
 
-/// Two roads to one line: its waves in time, and the response of the fit, with the same volumes at
+/// Two methods for one line: its waves in time, and the response of the fit, with equal volumes at
 /// its ends.
 #[test]
 fn without_noise_the_waves_of_a_line_give_its_speed_and_the_density_of_its_oil() {
@@ -128,7 +130,7 @@ fn without_noise_the_waves_of_a_line_give_its_speed_and_the_density_of_its_oil()
     near(value(&found, "density_kg_per_m3"), known.fluid.density, 1e-5);
 }
 
-/// A rig whose line to chamber B has a wall of its own: the answer and the keys are of that line.
+/// A rig whose line to chamber B has a different wall: answer and keys are those of that line.
 #[test]
 fn one_of_two_unequal_lines_is_identified_and_written_for_its_side() {
     let unequal = [&CREEPING[..], &["line.b={ dynamic_stiffening = 3 }"]].concat();
@@ -139,7 +141,7 @@ fn one_of_two_unequal_lines_is_identified_and_written_for_its_side() {
     assert!(answer.text.contains("The line to chamber B at "), "{}", answer.text);
     let fragment = answer.files.iter().find(|file| file.name == "line.toml").expect("a fragment");
     let fragment = String::from_utf8(fragment.bytes.clone()).unwrap();
-    // how the wall creeps is declared of both lines
+    // the creep of the wall is declared for both lines
     let (both, own) = fragment.split_once("\n[line.b]\n").expect("a table of the side");
     assert!(both.contains("\n[line]\nrelaxation_time = ") && !own.contains("relaxation_time"), "{fragment}");
     assert!(
@@ -148,7 +150,8 @@ fn one_of_two_unequal_lines_is_identified_and_written_for_its_side() {
     );
 }
 
-/// An accumulator stays at its chamber: test and result are those of the line alone, and say so.
+/// An accumulator remains at its chamber: test and result are those of the line only, and this is
+/// reported.
 #[test]
 fn an_accumulator_is_said_to_be_left_out() {
     let gas = "line.accumulator={ gas_volume = \"10 mL\", precharge_pressure = \"15 bar\" }";
@@ -219,7 +222,7 @@ fn what_a_recording_does_not_tell_is_not_determined_with_the_reason() {
     let fast = of("response");
     open(&fast, "effective_bulk_modulus_pa", "no slow pressure rise");
     open(&fast, "relaxation_time_s", "the declared model of the line has no creep");
-    // the wall of the project does not creep, and that of the record does
+    // the wall of the project does not creep, but that of the record does
     let answer = identified(HOSE, &[], &files).unwrap();
     assert!(answer.text.contains("does not explain this response"), "{}", answer.text);
     // far below the quarter wave nothing determines the inertance
@@ -235,7 +238,7 @@ fn what_a_recording_does_not_tell_is_not_determined_with_the_reason() {
     near(value(&found, "effective_bulk_modulus_pa"), 1e9, 0.02);
 }
 
-/// A recording by hand: no time, a position that a piston's area makes a volume.
+/// A recording made by hand: no time, and a position that a piston's area converts into a volume.
 #[test]
 fn a_position_counts_by_the_area_of_the_piston() {
     let loaded = load(HOSE, &[], &[]);

@@ -1,4 +1,5 @@
-//! Limits of lines and chambers, watched at every node over the solution, and accounts that close.
+//! Limits of lines and chambers, monitored at every node over the solution, and balances of oil and
+//! energy that close.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -8,8 +9,8 @@ use serde_json::Value;
 
 use super::ask::{HOSE, json};
 
-/// A valve that shuts within a millisecond at the end of a pipe of 10 m: the column of oil behind
-/// it is torn off.
+/// A valve that shuts within a millisecond at the end of a pipe of 10 m: the column of oil in the
+/// pipe is torn off.
 const HAMMER: &str = include_str!("projects/hammer.toml");
 
 fn run(settings: &[&str]) -> Value {
@@ -33,8 +34,8 @@ fn begins(run: &Value, kind: &str) -> Option<f64> {
 const SEGMENTS: &str = "line.model=segments";
 const WAVES: &str = "line.model=transmission_line";
 
-/// Shut at once, the oil behind the valve falls by rho c v (Joukowsky 1898): with 100 L/min in a
-/// bore of 10 mm by far more than the pressure that there is, in segments and in waves.
+/// Shut at once, the pressure at the valve falls by rho c v (Joukowsky 1898): with 100 L/min in a
+/// bore of 10 mm far below zero, in segments and in waves.
 #[test]
 fn a_line_that_is_shut_cavitates_at_its_valve() {
     for model in [SEGMENTS, WAVES] {
@@ -44,7 +45,7 @@ fn a_line_that_is_shut_cavitates_at_its_valve() {
         assert_eq!(found["limit"].as_f64().unwrap(), -101325.0);
         assert!(found["peak"].as_f64().unwrap() < -50e5, "{found}");
         let first = found["first_time_s"].as_f64().unwrap();
-        // 0.4 s and the milliseconds in which the spool moves
+        // 0.4 s plus the milliseconds in which the spool moves
         assert!((0.4..0.402).contains(&first), "{found}");
         assert_eq!(found["distance_m"], Value::from(0.0));
         assert_eq!(begins(&run, "cavitation_line_a"), Some(first));
@@ -56,7 +57,7 @@ fn a_line_that_is_shut_cavitates_at_its_valve() {
     assert_eq!(calm["status"], "completed");
 }
 
-/// Re = 4 q/(pi d nu): the bore and the viscosity at which the same flow is laminar.
+/// Re = 4 q/(pi d nu): the bore and the viscosity at which an equal flow is laminar.
 #[test]
 fn flow_beyond_laminar_is_reported_where_laminar_friction_is_computed() {
     for model in [SEGMENTS, WAVES] {
@@ -69,12 +70,12 @@ fn flow_beyond_laminar_is_reported_where_laminar_friction_is_computed() {
         let thick = run(&[model, "fluid.kinematic_viscosity=200 cSt"]);
         assert!(exceeded(&thick, "laminar_flow", "line_a").is_none());
     }
-    // one pressure has no friction
+    // a line with one pressure has no friction
     assert!(exceeded(&run(&["line.model=lumped"]), "laminar_flow", "line_a").is_none());
 }
 
-/// Pressures that a pipe bears, at every node: they are reported where they are lower than the peak
-/// that a run without them shows.
+/// Permissible pressures of a pipe, at every node: they are reported if they are below the peak of
+/// a run without them.
 #[test]
 fn pressures_that_a_pipe_bears_are_watched() {
     let free = run(&[SEGMENTS]);
@@ -95,14 +96,14 @@ fn pressures_that_a_pipe_bears_are_watched() {
             .map(|one| one["peak"].as_f64().unwrap())
             .fold(0.0, f64::max)
     };
-    // the supply has 100 bar, and the surge goes beyond it
+    // the supply has 100 bar, and the surge exceeds it
     let bears = with("1000 bar", "2000 bar");
     assert_eq!((any(&bears, "working_pressure"), any(&bears, "burst_pressure")), (0.0, 0.0));
     let yields = with("40 bar", "45 bar");
     let peak = any(&yields, "working_pressure");
     assert!(peak > 45e5 && any(&yields, "burst_pressure") == peak, "{yields}");
     assert!(begins(&yields, "working_pressure_a") <= begins(&yields, "burst_pressure_a"));
-    // a chamber without a node of its own is watched as well
+    // a chamber without a separate node is monitored as well
     let lumped = run(&["line.model=lumped", "line.pipe.working_pressure=40 bar"]);
     assert!(exceeded(&lumped, "working_pressure", "chamber_a").is_some(), "{lumped}");
 }
@@ -156,7 +157,7 @@ fn flow_in_necks_and_transmissions_is_watched() {
     }
 }
 
-/// A campaign lists them with the other occurrences of a run, as the run by itself has them.
+/// A campaign lists them with the other occurrences of a run, as the single run has them.
 #[test]
 fn a_campaign_lists_limits_of_lines() {
     let text = format!(
@@ -173,8 +174,8 @@ fn a_campaign_lists_limits_of_lines() {
     assert_eq!((&all["statuses"]["outside_model"], &all["statuses"]["completed"]), (&2.into(), &0.into()));
 }
 
-/// What went into each part less what it lost is what it holds more, to a millionth of what went
-/// through; energy that is lost is positive.
+/// The inflow of each part minus its losses is its change of content, to a millionth of the total;
+/// energy that is lost is positive.
 #[test]
 fn accounts_of_oil_and_energy_close() {
     for run in [scenario(HOSE, &[], true), scenario(HAMMER, &[SEGMENTS], true)] {
@@ -188,8 +189,7 @@ fn accounts_of_oil_and_energy_close() {
                 assert!(
                     (error - number("closing_error")).abs() <= 1e-12 * (held[1].abs() + number("lost").abs())
                 );
-                // of parts through which hardly anything goes the tolerance of the run is more of
-                // it
+                // for parts with very little flow, the tolerance of the run is a larger fraction
                 let most = if row["part"] == "rig" { 1e-6 } else { 1e-5 };
                 assert!(number("relative_error") < most, "{row}");
             }

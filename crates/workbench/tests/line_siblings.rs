@@ -1,5 +1,6 @@
-//! Lines next to those that were once identified wrongly: other fractions of air, other pressures,
-//! other wave speeds and end volumes, from equations that share no code with the model.
+//! Lines similar to those that were once identified wrongly: other fractions of air, other
+//! pressures, other wave speeds and end volumes, from equations that have no code in common with
+//! the model.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -9,7 +10,7 @@ use phea_workbench::line_test::NotIdentifiableLine;
 use crate::line_as_recorded::{OfVolume, Rise, compliance, found, of_oil, response, rise_of};
 use crate::line_coverage::{WAVES, known, project};
 
-/// Holds the truth, with three standard deviations for two.
+/// Checks that a number contains the truth, with three standard deviations instead of two.
 #[track_caller]
 fn holds(number: &Result<Estimate, NotIdentifiableLine>, truth: f64) {
     let Estimate { value, interval: [low, high] } = *number.as_ref().unwrap_or_else(|why| panic!("{why:?}"));
@@ -44,8 +45,8 @@ fn two_per_cent_of_air_between_other_pressures() {
     air_is_found(0.02, [5.0, 40.0], 3);
 }
 
-/// A fraction of the oil that fills the line at its pressure, rather than of the mixture at
-/// atmospheric pressure: 2 % of the one are 1.96 % of the other, and the modulus is the same.
+/// A fraction of the oil that fills the line at its pressure, instead of the mixture at atmospheric
+/// pressure: 2 % of the one are 1.96 % of the other, and the moduli are equal.
 #[test]
 fn air_is_a_fraction_of_the_mixture_at_atmospheric_pressure() {
     let loaded = project(&WAVES);
@@ -62,8 +63,8 @@ fn air_is_a_fraction_of_the_mixture_at_atmospheric_pressure() {
     }
 }
 
-/// The speed of a wave in a line of which a fraction of the compliance is at each end, within
-/// three thousandths.
+/// The speed of a wave in a line with a fraction of the compliance at each end, within three
+/// thousandths.
 #[track_caller]
 fn the_speed_is_found(
     settings: &[&str],

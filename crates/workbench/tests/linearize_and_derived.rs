@@ -1,5 +1,5 @@
-//! `check` and `linearize` look at one rig: they agree with each other, with closed forms, and with
-//! what is set.
+//! Agreement of `check` and `linearize` on one rig: with each other, with closed forms, and with
+//! the settings.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -8,7 +8,7 @@ use crate::ask::{HOSE, PIPE, check, derived, linearize, near, number, within};
 use num_complex::Complex64;
 use serde_json::Value;
 
-/// One rod, unequal lines, dead volumes: nothing is symmetric.
+/// A rig without symmetry: one rod, unequal lines, dead volumes.
 fn lopsided() -> String {
     let project = HOSE
         .replace(
@@ -24,7 +24,7 @@ fn lopsided() -> String {
     project
 }
 
-/// The pump drives a rod on one side faster in than out, and a rod through both ends alike.
+/// The pump drives a rod on one side faster in than out, and a rod through both ends equally fast.
 #[test]
 fn the_pump_drives_the_piston_in_both_directions() {
     let pump = ["supply.model=pump_limited", "supply.flow=9.8 L/min"];
@@ -46,15 +46,15 @@ fn the_pump_drives_the_piston_in_both_directions() {
     assert_eq!(row(&alike, "supply.piston_speed_retracting"), None);
 }
 
-/// Stiffness by the compliance of each volume; hose A of this length, hose B of that.
+/// Stiffness by the compliance of each volume, for these lengths of hose A and hose B.
 fn stiffness(x: f64, lengths: [f64; 2], uniform: bool) -> f64 {
     let quarter = std::f64::consts::FRAC_PI_4;
     let areas = [quarter * 0.05 * 0.05, quarter * (0.05 * 0.05 - 0.028 * 0.028)];
     let section = quarter * 0.0127_f64.powi(2);
     let effective = 1.0 / (1.0 / 1.45e9 + 2.236e-12 / (5.0 * (section + 1.56e-5)));
     let chamber = if uniform { effective } else { 1.45e9 };
-    // by volume a hose gives what its sheet says, and holds the oil of its bore at half the supply
-    // pressure
+    // by volume a hose expands as in its data sheet, and holds the oil of its bore at half the
+    // supply pressure
     let held = section + 1.56e-5 - 2.236e-12 * 35e5;
     let volumes = [areas[0] * x + 20e-6, areas[1] * (0.5 - x) + 5e-6];
     (0..2)
@@ -126,7 +126,7 @@ fn what_is_set_comes_before_what_is_uncertain_before_what_is_derived() {
     assert_eq!(number(&set, "declared.value"), 5e-5);
     assert_eq!(number(&set, "value"), number(&uncertain, "value"));
     assert!(place(&[], "moving_mass")["declared"].is_null());
-    // The models follow what holds: the slow pole of 6.13 is proportional to K_c.
+    // The models follow the value in use: the slow pole of 6.13 is proportional to K_c.
     let pole = |settings: &[&str]| number(&linearize(HOSE, settings), "poles.first_order.0.0");
     near(pole(&["linear.flow_pressure_coefficient=6.42e-12"]) / pole(&[]), 10.0, 1e-12);
 }
@@ -221,7 +221,7 @@ fn one_pressure_is_enough_in_the_middle_of_a_symmetric_rig() {
     };
     let (magnitude, phase) = error(&even);
     assert!(magnitude < 1e-8 && phase < 1e-7, "{magnitude} dB, {phase} deg");
-    // Out of the middle two pressures move apart.
+    // Away from the middle the two pressures differ.
     let off = error(&[even[0], even[1], "operating_point.position=\"0.1 m\""]);
     let further = error(&[even[0], even[1], "operating_point.position=\"0 m\""]);
     assert!(magnitude < off.0 && off.0 < further.0 && phase < off.1 && off.1 < further.1);
@@ -266,7 +266,7 @@ fn the_shares_of_the_modes_add_up() {
     for project in [HOSE, PIPE] {
         let modes = linearize(project, &[])["dominance"].clone();
         let modes = modes.as_array().unwrap();
-        // The slow pole makes the step response, and nothing decays slower.
+        // The slow pole determines the step response, and nothing decays slower.
         let decay: Vec<f64> = modes.iter().map(|mode| number(mode, "decay_ratio")).collect();
         assert!(decay.iter().all(|ratio| *ratio >= 1.0) && decay.contains(&1.0), "{decay:?}");
         let slowest = modes.iter().find(|mode| number(mode, "decay_ratio") == 1.0).unwrap();

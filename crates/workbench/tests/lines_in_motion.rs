@@ -1,5 +1,5 @@
-//! Models of lines in motion, chosen in a project: what they tend to, what they are refused with,
-//! and what a campaign varies.
+//! Models of lines in motion, chosen in a project: their limits, their refusals, and the numbers
+//! that a campaign varies.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -15,7 +15,7 @@ use serde_json::Value;
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 
 /// Half the published gain, whose margin leaves no room for waves; half a second of motion. The
-/// volumes of line and chamber apart.
+/// volumes of line and chamber are separate.
 const SHORT: [&str; 7] = [
     "line.compliance=by_volume",
     "controller.numerator=0.0005*s + 0.004",
@@ -55,8 +55,8 @@ fn largest(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
 }
 
-/// More segments come nearer to each other by the square of their length, and to the line with
-/// exact delay as far as the fit of its attenuation goes.
+/// Models with more segments approach each other with the square of the segment length, and the
+/// line with exact delay to within the fit of its attenuation.
 #[test]
 fn segments_tend_to_the_transmission_line() {
     let waves = force(&["line.model=transmission_line", "line.end_share=0.001"]);
@@ -74,7 +74,8 @@ fn segments_tend_to_the_transmission_line() {
     assert!(found.iter().all(|apart| *apart < 0.1 * lumped && *apart < 3e-3 * peak), "{found:?}, {lumped} N");
 }
 
-/// What may be written can be simulated, and the next whole number is refused.
+/// The largest permitted number of segments can be simulated, and the next whole number is
+/// rejected.
 #[test]
 fn the_most_segments_there_may_be() {
     for (most, more) in [
@@ -105,8 +106,8 @@ fn the_most_segments_there_may_be() {
     }
 }
 
-/// What is left out is what the guide says: 8 segments, friction that depends on frequency, a
-/// hundredth at each end.
+/// Defaults are those of the guide: 8 segments, friction that depends on frequency, a hundredth of
+/// the volume at each end.
 #[test]
 fn absent_keys_are_the_defaults() {
     let segments = force(&["line.model=segments"]);
@@ -121,7 +122,7 @@ fn absent_keys_are_the_defaults() {
     }
 }
 
-/// A wall that creeps at once is as soft as the catalogue says, one that never does as stiff as was
+/// A wall that creeps at once is as soft as in the catalogue, one that never creeps as stiff as
 /// measured in motion; and so in segments.
 #[test]
 fn a_wall_that_creeps_lies_between_its_moduli() {
@@ -146,8 +147,8 @@ fn a_wall_that_creeps_lies_between_its_moduli() {
     }
 }
 
-/// The wall that is assumed, written out, is the same wall; what is not stated follows from the
-/// catalogue's expansion.
+/// The default wall, written out, is the default; unstated values follow from the catalogue's
+/// expansion.
 #[test]
 fn the_wall_of_two_waves_is_assumed_or_stated() {
     let assumed = force(&["line.model=two_wave"]);
@@ -162,9 +163,9 @@ fn the_wall_of_two_waves_is_assumed_or_stated() {
     assert!(written < 1e-3, "{written} N");
     let heavy = largest(&assumed, &of(&["line.wall.mass_per_length=1 kg/m"]));
     assert!(heavy > 0.1, "{heavy} N");
-    // a wall without coupling has one wave, whose compliance is that of a lumped line; its own is
-    // as fast, for the steady resistance lags as the faster of both does
-    // ORIGIN: analytic, 1/(535.002^2 1e-9) kg/m
+    // a wall without coupling has one wave, whose compliance is that of a lumped line; the wave of
+    // the wall is equally fast, because the steady resistance lags like the faster of both. ORIGIN:
+    // analytic, 1/(535.002^2 1e-9) kg/m
     let uncoupled = [
         "line.wall.coupling_compliance=1e-12",
         "line.wall.axial_compliance=1e-9",
@@ -189,7 +190,7 @@ fn sides_move_in_their_own_ways() {
     assert!(again.unwrap_or_else(|report| panic!("{report}")).project == project, "{text}");
     let both = force(&["line.model=segments", "line.segments=12"]);
     assert!(largest(&both, &force(&a)) > 0.01);
-    // what one side chooses, the other does not have to unsay
+    // a choice for one side need not be reverted for the other
     let one = load(&["line.model=creeping", "line.relaxation_time=0.1 s", "line.b.model=lumped"]).project;
     let lines = one.actuator.unwrap().line;
     let creeping = LineMotion::Creeping { relaxation_time: 0.1 };
@@ -231,7 +232,7 @@ fn what_does_not_fit_is_refused_at_its_key() {
     assert!(giving.to_string().contains("[line] model: fixed_end_modulus is"), "{giving}");
 }
 
-/// Relaxation times, walls and shares vary in a campaign as any number; how many states there are
+/// Relaxation times, walls and fractions vary in a campaign like any number; the number of states
 /// does not.
 #[test]
 fn a_campaign_varies_what_is_no_count() {
@@ -266,8 +267,8 @@ fn a_campaign_varies_what_is_no_count() {
     }
 }
 
-/// How a line moves is nothing to the linear model: not counted twice with its stiffness, and no
-/// coordinate of a family.
+/// The motion of a line does not affect the linear model: it is not counted twice with its
+/// stiffness, and is not a coordinate of a family.
 #[test]
 fn the_linear_model_knows_no_motion() {
     let linear = |settings: &[&str]| {

@@ -1,5 +1,5 @@
-//! A linkage from the project's keys to the family that follows the position, to the machine and to
-//! what is written.
+//! A linkage, from the project's keys to the family that follows the position, to the machine and
+//! to the output.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -21,7 +21,7 @@ use super::ask::{HOSE, load, project_of, try_answer};
 const KNEE: &str = include_str!("../../../examples/leg/knee.toml");
 const FREQUENCIES: [f64; 6] = [0.1, 3.0, 30.0, 300.0, 2000.0, 9000.0];
 
-/// Largest relative difference of both paths.
+/// Largest relative difference of the two plants.
 fn difference(one: &PlantCoefficients<f64>, other: &PlantCoefficients<f64>) -> f64 {
     let paths = |plant: &PlantCoefficients<f64>, w: f64| {
         [plant.command.at_frequency(w), plant.disturbance.as_ref().unwrap().at_frequency(w)]
@@ -33,14 +33,14 @@ fn difference(one: &PlantCoefficients<f64>, other: &PlantCoefficients<f64>) -> f
     FREQUENCIES.into_iter().map(at).fold(0.0, f64::max)
 }
 
-/// Everywhere in its box of positions and forces the family is the rig that declares them, lever
+/// The family is, everywhere in its box of positions and forces, the rig that declares them, lever
 /// arm and geometric stiffness included.
 #[test]
 fn the_family_follows_the_position() {
     follows_the_position(KNEE);
 }
 
-/// With a payload that is uncertain, too.
+/// The family with an uncertain payload.
 #[test]
 fn the_family_follows_a_payload() {
     let weight =
@@ -51,8 +51,8 @@ fn the_family_follows_a_payload() {
     follows_the_position(&text);
 }
 
-/// With a progressive spring or a transmission on the rod, which takes its deflection from the
-/// position of the joint.
+/// The family with a progressive spring or a transmission on the rod, whose deflection follows from
+/// the position of the joint.
 #[test]
 fn the_family_follows_what_lies_in_series() {
     for series in SERIES {
@@ -102,7 +102,7 @@ fn follows_the_position(text: &str) {
     assert!(arms[0] < 0.04 && arms[1] > 0.0499, "{arms:?}");
 }
 
-/// The machine rests at the operating point with the lever arm that the plant has.
+/// The machine rests at the operating point with the lever arm of the plant.
 #[test]
 fn the_machine_rests_where_the_plant_is() {
     let other = ["operating_point.position=\"12 mm\"", "operating_point.load_force=\"1.1 kN\""];
@@ -127,13 +127,13 @@ fn the_machine_rests_where_the_plant_is() {
     }
 }
 
-/// Without a stated load, a load that yields rests against its weight.
+/// A load that yields rests against its weight if no load force is stated.
 #[test]
 fn a_weight_is_held_at_rest() {
     let weight =
         "[linkage.weight]\nmass = \"4 kg\"\ncentre_distance = \"0.3 m\"\nlevel_angle = \"40 deg\"\n\n[load]";
     let text = KNEE.replacen("[load]", weight, 1).replacen("load_force = \"600 N\"\n", "", 1);
-    // as soft as the weight on its lever arm
+    // a spring as soft as the weight on its lever arm
     let soft =
         "series={ stiffness = \"20 N/mm\", damping = \"80 N.s/m\", travel = \"400 mm\", progression = 0.5 }";
     for settings in [
@@ -154,7 +154,7 @@ fn a_weight_is_held_at_rest() {
     }
 }
 
-/// What `linearize` and the report say of the impedance about the joint, for a spring K in place of
+/// Output of `linearize` and the report on the impedance about the joint, for a spring K instead of
 /// Z s: the torque F g' of a force F_0 - K (x - x_0) falls with the angle by r^2 (K + k_g).
 #[test]
 fn the_impedance_about_the_joint_is_told() {
@@ -185,7 +185,7 @@ fn run(project: &Project) -> ScenarioRun {
     simulate_project(&Memory::default(), &Setup::new(project).unwrap(), &mut |_| true).unwrap().remove(0)
 }
 
-/// Behind a linkage a run starts at rest where the operating point is, and nowhere else.
+/// A run with a linkage starts at rest only at the operating point.
 #[test]
 fn a_run_starts_at_the_operating_point() {
     for settings in [&[][..], &["operating_point.position=\"15 mm\"", "load.stiffness=400"]] {
@@ -203,7 +203,7 @@ fn a_run_starts_at_the_operating_point() {
     }
 }
 
-/// A table that is a straight line: the same plant and the same run as a load in linear quantities.
+/// A table that is a straight line gives the plant and the run of a load in linear quantities.
 #[test]
 fn a_straight_table_is_a_load_in_other_units() {
     let (before, rest) = KNEE.split_once("[linkage]").unwrap();

@@ -1,5 +1,5 @@
-//! Measured plants with noise in every row: what their discs hold, and how many verdicts they leave
-//! open.
+//! Measured plants with noise in every row: contents of their discs, and the number of verdicts
+//! that they leave undecided.
 
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
@@ -30,7 +30,7 @@ fn function(numerator: &[f64], denominator: &[f64]) -> TransferFunction {
     TransferFunction::from_polynomials(&polynomial(numerator), &polynomial(denominator)).unwrap()
 }
 
-/// k (s/z + 1)^(m - 1 or 0)/(s^m (s/60 + 1)(s/80 + 1)), its sign and gain drawn.
+/// Plants k (s/z + 1)^(m - 1 or 0)/(s^m (s/60 + 1)(s/80 + 1)), with sign and gain drawn.
 fn drawn(state: &mut u64, integrators: usize) -> TransferFunction {
     let sign = if share(state) < 0.25 { -1.0 } else { 1.0 };
     let crossover = exp(3.5 * share(state));
@@ -92,7 +92,7 @@ fn audited(family: &Family, compensation: &Compensation, limit: f64) -> Audit {
     audit(&problem, &mut unwatched).unwrap()
 }
 
-/// The same with the discs of single rows, each widened for all rows to hold at once.
+/// The verdict with the discs of single rows, each widened so that all rows hold at once.
 fn judged_by_rows(csv: &str, limit: f64) -> Verdict {
     let rows: Vec<Vec<f64>> = csv
         .lines()
@@ -109,7 +109,7 @@ fn judged_by_rows(csv: &str, limit: f64) -> Verdict {
     audited(&family, &unity(), limit).verdict
 }
 
-/// Of sixty measurements, with limits that are up to 6 dB off the true peak, or 3 dB, none gets a
+/// Sixty measurements, with limits that are up to 6 dB or 3 dB from the true peak: none gets a
 /// false verdict, and at least fifty get one. The truth is that of the poles and closed forms.
 #[test]
 fn noise_leaves_few_verdicts_open_and_makes_none_false() {
@@ -140,7 +140,7 @@ fn noise_leaves_few_verdicts_open_and_makes_none_false() {
     }
 }
 
-/// A smooth response, two resonances or dips of any damping, a double integrator.
+/// A smooth response, two resonances or dips with any damping, or a double integrator.
 fn response_of(state: &mut u64, kind: usize) -> impl Fn(f64) -> Complex64 + use<> {
     let delay = 0.02 * share(state);
     let mut drawn = |low: f64, high: f64| low * exp(share(state) * (high / low).ln());
@@ -160,8 +160,8 @@ fn response_of(state: &mut u64, kind: usize) -> impl Fn(f64) -> Complex64 + use<
     }
 }
 
-/// The narrowed discs of all rows hold the true response about as often as they state: in 95 of a
-/// hundred records, whether the response is smooth, has modes between its rows, or few rows.
+/// The narrowed discs of all rows contain the true response about as often as stated: in 95 of a
+/// hundred records, whether the response is smooth, has modes between its rows, or has few rows.
 #[test]
 fn narrowed_discs_hold_the_response() {
     let mut all = (0, 0);
@@ -189,7 +189,7 @@ fn narrowed_discs_hold_the_response() {
             let relative = |(row, w): (usize, &f64)| plant.radii[row] / (wide * magnitude(truth(*w)));
             narrowing += frequencies.iter().enumerate().map(relative).sum::<f64>() / rows as f64;
         }
-        // fewer rows next to each other, and narrower modes, narrow less
+        // fewer adjacent rows, and narrower modes, reduce the discs by less
         let most = if rows == 60 { 0.9 } else { 0.8 };
         assert!(narrowing < most * records as f64, "{kind} {rows} {noise}: {narrowing}");
         all = (all.0 + held, all.1 + records as usize);

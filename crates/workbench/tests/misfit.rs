@@ -1,4 +1,4 @@
-//! What the model of a valve does not explain of its recordings reaches every verdict on the valve.
+//! Misfit of the valve's model with its recordings, which reaches every verdict on the valve.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -21,8 +21,8 @@ const RECORDED: [(&str, &str); 4] = [
 const COMMAND: usize = 1;
 const FLOW: usize = 5;
 
-/// The recordings with the flows of the metering tests changed: a function of the share of the
-/// test that is over, the command in V and the flow in L/min.
+/// The recordings with the flows of the metering tests changed: a function of the completed
+/// fraction of the test, the command in V and the flow in L/min.
 fn identified(change: impl Fn(f64, f64, f64) -> f64) -> Identification {
     let mut source = Memory::default();
     for (name, text) in RECORDED {
@@ -44,16 +44,16 @@ fn identified(change: impl Fn(f64, f64, f64) -> f64) -> Identification {
     identify(read.recordings, &known, Search::default(), &mut phea_dynamics::watch::unwatched).unwrap()
 }
 
-/// Recordings of the model itself leave noise alone.
+/// Recordings of the model itself leave only noise.
 #[test]
 fn recordings_of_the_model_have_no_misfit() {
     let found = identified(|_, _, flow| flow);
     assert!(found.misfits().is_empty(), "{:?}", found.misfits());
 }
 
-/// A flow that ends at what the supply gives; a meter whose gain drifts by a tenth over the test; a
-/// meter that loses a constant flow, which the pressures do not show: in each the flow is named,
-/// and what is left of it comes to the size of the change that no coefficients make.
+/// A flow that ends at the flow of the supply; a meter whose gain drifts by a tenth over the test;
+/// a meter that loses a constant flow, which the pressures do not show: in each case the flow is
+/// named, and its residual has the size of the change that no coefficients produce.
 #[test]
 fn a_flow_that_no_valve_of_the_model_has_is_told() {
     let limited = identified(|_, _, flow| flow.min(9.0));
@@ -69,7 +69,7 @@ fn a_flow_that_no_valve_of_the_model_has_is_told() {
             "{what}: {first:?}"
         );
     }
-    // what is lost is greatest where the flow is
+    // the loss is greatest where the flow is
     let misfits = limited.misfits();
     let place = misfits[0].place.unwrap();
     let inputs = &limited.recordings[misfits[0].recording].inputs;
@@ -79,7 +79,7 @@ fn a_flow_that_no_valve_of_the_model_has_is_told() {
     assert!(place.fraction > 0.0, "the model shows more there: {place:?}");
 }
 
-/// A verdict stands beside a small misfit, which is told, and not beside a large one.
+/// A small misfit is reported next to a verdict that is met; with a large one no verdict is met.
 #[test]
 fn no_verdict_on_a_valve_of_a_large_misfit_is_met() {
     let anything =
@@ -108,8 +108,8 @@ fn judged(settings: &[&str]) -> (Value, String) {
     (serde_json::from_str::<Value>(&answer.json).unwrap()["verdict"].clone(), answer.text)
 }
 
-/// The moduli of the lines are in every plant; of a friction the plant has `viscous`, unless the
-/// project states its viscous friction, as the example does by an interval.
+/// The moduli of the lines are in every plant; of a friction the plant contains `viscous`, unless
+/// the project states its viscous friction, as the example does by an interval.
 #[test]
 fn misfits_of_line_and_friction_reach_the_verdicts_that_rest_on_them() {
     let (verdict, text) = judged(&["line.misfit={ share = \"0.2 %\", at = \"volume of rise.csv\" }"]);
@@ -129,7 +129,7 @@ fn misfits_of_line_and_friction_reach_the_verdicts_that_rest_on_them() {
     assert!(text.contains("(cylinder.friction.misfit, force of runs.csv)"), "{text}");
 }
 
-/// Runs of the machine, which have all of a friction, warn of its misfit.
+/// Runs of the machine, which include all of a friction, warn of its misfit.
 #[test]
 fn runs_of_the_machine_warn_of_a_misfit() {
     let settings = [
@@ -151,7 +151,8 @@ fn a_misfit_of_friction_is_in_its_fragment() {
     let table = String::from_utf8(recorded(&[bench]).read(SLIDING).unwrap()).unwrap();
     let (heading, rows) = table.split_once('\n').unwrap();
     let count = rows.lines().count();
-    // each velocity, out and back, with seals that are a tenth harder or softer than at the last
+    // each velocity, out and back, with seals that are a tenth harder or softer than at the
+    // previous one
     let changed = |(row, line): (usize, &str)| {
         let mut cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
         let way = if (8 * row / count).is_multiple_of(2) { 0.1 } else { -0.1 };

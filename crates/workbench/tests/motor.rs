@@ -1,5 +1,5 @@
-//! A motor in place of the cylinder: its verdict is that of a cylinder on a lever, and nothing that
-//! is said of it is in newtons or millimetres.
+//! A motor instead of the cylinder: its verdict is that of a cylinder on a lever, and no output is
+//! in newtons or millimetres.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -23,7 +23,7 @@ fn answered(project: &str, request: &Request) -> Answer {
     try_answer(project, &[], &[], request).unwrap()
 }
 
-/// A rig in the words of a cylinder (arm 1) or of the motor that it is on a lever of this arm.
+/// A rig with a cylinder (arm 1), or with the equivalent motor of a lever with this arm.
 fn rig(arm: Option<f64>) -> String {
     let r = arm.unwrap_or(1.0);
     let (square, area) = (r * r, 1.6e-3);
@@ -88,7 +88,7 @@ fn close(one: f64, other: f64, what: &str) {
     assert!((one - other).abs() <= 1e-9 * one.abs().max(other.abs()), "{what}: {one} and {other}");
 }
 
-/// The same verdict, margin and frequency; and the same numbers of the linear models.
+/// Verdict, margin and frequency are equal, and so are the numbers of the linear models.
 #[test]
 fn the_verdict_is_that_of_the_cylinder_on_its_lever() {
     let arm = 0.04;
@@ -124,8 +124,7 @@ fn the_verdict_is_that_of_the_cylinder_on_its_lever() {
     assert!((rise / turned - 1.0).abs() < 1e-4, "{rise} {turned}");
 }
 
-/// What leaks to the tank flows through a narrow line to get there, and the valve does not: without
-/// motion
+/// Leakage to the tank flows through a narrow line, and the valve does not: without motion
 ///
 /// ```text
 /// T_e = D (K_qA/(K_cA + G_e (1 + K_cA R)) + K_qB/(K_cB + G_e (1 + K_cB R))) U_C,     R = 128 rho nu L/(pi d^4)
@@ -155,7 +154,7 @@ fn it_leaks_behind_its_lines() {
     }
 }
 
-/// Medians of a campaign and the columns of alternatives are those of the cylinder, times the arm.
+/// Medians of a campaign and the columns of alternatives are those of the cylinder times the arm.
 #[test]
 fn campaigns_and_alternatives_are_those_of_the_cylinder_on_its_lever() {
     let arm = 0.04;
@@ -189,7 +188,8 @@ fn campaigns_and_alternatives_are_those_of_the_cylinder_on_its_lever() {
     }
 }
 
-/// What no sentence, axis or heading of a rotary rig may have: units and words of linear motion.
+/// Units and words of linear motion, which no sentence, axis or heading of a rotary rig may
+/// contain.
 fn of_linear_motion(text: &str) -> Vec<String> {
     let units =
         ["kN", "MN", "N", "N/m", "MN/m", "kN/mm", "N/mm", "N.s/m", "N·s/m", "V/N", "N/V", "mm/s", "kg"];
@@ -197,7 +197,7 @@ fn of_linear_motion(text: &str) -> Vec<String> {
         ["force", "forces", "piston", "pistons", "cylinder", "rod", "newton", "newtons", "mass", "cell"];
     let separators = |c: char| c.is_whitespace() || matches!(c, '(' | ')' | ',' | ';' | ':' | '"' | '|');
     let mut found = Vec::new();
-    // oil and parts have a mass, whatever the rig does
+    // oil and parts have a mass in every rig
     let of_matter = |line: &&str| line.contains("mass of that oil") || line.contains("mass of its parts");
     let lines = text.lines().filter(|line| !of_matter(line)).collect::<Vec<_>>().join("\n");
     for word in lines.split(separators).map(|word| word.trim_end_matches(['.', '?'])) {
@@ -208,13 +208,13 @@ fn of_linear_motion(text: &str) -> Vec<String> {
     found
 }
 
-/// Symbols of a cylinder in a text, also where tags separate a letter from its subscript.
+/// Symbols of a cylinder in a text, even where tags separate a letter from its subscript.
 fn symbols_of_a_cylinder(text: &str) -> Vec<String> {
     const SYMBOLS: [&str; 9] = ["K_H", "F_e", "F_H", "F_ref", "A_A", "A_B", "A_u", "x_p", "x_L"];
     let mut plain = String::new();
     for (index, part) in text.replace("</i><sub>", "_<").split('<').enumerate() {
         let (tag, shown) = if index == 0 { ("", part) } else { part.split_once('>').unwrap_or(("", part)) };
-        // a drawing goes down to a subscript, and back up
+        // a drawing moves down to a subscript, and up again
         plain.push_str(match tag {
             "" | "/tspan" => "",
             _ if tag.starts_with("tspan") => {
@@ -232,7 +232,7 @@ fn symbols_of_a_cylinder(text: &str) -> Vec<String> {
     plain.split(|c| !of_name(c)).filter(|word| SYMBOLS.contains(word)).map(str::to_string).collect()
 }
 
-/// Texts of the user stay as they are, whatever words are in them.
+/// Texts of the user are unchanged, whatever words are in them.
 #[test]
 fn texts_of_the_user_stay() {
     let text = rig(Some(0.04)).replace(
@@ -248,8 +248,8 @@ fn texts_of_the_user_stay() {
     assert!(page.contains("force of the piston"), "{page}");
 }
 
-/// What leaks through the case is the rig's and not the servovalve's: the slopes of the valve are
-/// listed without it, and the K_c of the rig has it in both chambers.
+/// Case leakage belongs to the rig and not to the servovalve: the slopes of the valve are listed
+/// without it, and the K_c of the rig includes it in both chambers.
 #[test]
 fn leakage_through_the_case_is_not_the_valves() {
     for case in [1e-13, 1e-12, 1e-11] {
@@ -270,8 +270,8 @@ fn leakage_through_the_case_is_not_the_valves() {
     }
 }
 
-/// The equations of `check` are those of a motor, and so are the symbols everywhere; of a cylinder
-/// they are found, so that the test would see them.
+/// The equations of `check` are those of a motor, and so are the symbols everywhere; those of a
+/// cylinder are found for a cylinder, so that the test would detect them.
 #[test]
 fn equations_and_symbols_are_those_of_a_motor() {
     let equation = |name: &str| {
@@ -312,7 +312,7 @@ fn equations_and_symbols_are_those_of_a_motor() {
     assert!(found("circuit.svg").iter().any(|one| one == "F_e"));
 }
 
-/// A motor has no length from mount to mount, and is not asked for one.
+/// A motor has no length from mount to mount, and none is requested.
 #[test]
 fn a_motor_has_no_retracted_length() {
     let answer = answered(VANE, &Request::Alternatives(AlternativesRequest::default()));
@@ -340,11 +340,11 @@ fn text_of(markup: &str) -> String {
     text + rest
 }
 
-/// Names of lengths and masses, whatever the rig does.
+/// Names of lengths and masses that occur for all rigs.
 const OF_ALL_RIGS: [&str; 6] =
     ["lines_length_m", "sized_length_m", "actuator_length_m", "oil_mass_kg", "parts_mass_kg", "distance_m"];
 
-/// Keys of JSON that say a unit of linear motion.
+/// Keys of JSON that contain a unit of linear motion.
 fn keys_of_linear_motion(value: &Value) -> Vec<String> {
     match value {
         Value::Object(members) => members
@@ -443,7 +443,7 @@ fn what_does_not_treat_a_motor_refuses_it() {
     assert!(load(VANE, &[], &[]).project.motion().is_rotary());
 }
 
-/// Errors with a place in the file use the words of a motor too.
+/// Errors with a place in the file use the words for a motor too.
 #[test]
 fn a_load_that_cannot_be_held_is_a_torque() {
     let settings = ["operating_point.load_force=\"9 kN.m\""];

@@ -1,4 +1,4 @@
-//! The neck of an accumulator from the project's keys to plant, family, verdict and output.
+//! The neck of an accumulator, from the project's keys to plant, family, verdict and output.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -17,7 +17,7 @@ const NECKS: [&str; 2] =
 const SHORT: [&str; 2] =
     ["line.accumulator.neck_diameter=\"6 mm\"", "line.accumulator.neck_length=\"1e-9 mm\""];
 
-/// What the plants are compared with: two pressures, one that is stated, both with a limited pump,
+/// Rigs with which the plants are compared: two pressures, a stated one, both with a limited pump,
 /// and lines with waves.
 const RIGS: [&[&str]; 6] = [
     &[],
@@ -28,8 +28,8 @@ const RIGS: [&[&str]; 6] = [
     &["line.model=transmission_line", "linear.hydraulic_stiffness=2e6"],
 ];
 
-/// A neck that becomes short has no effect, in every form of the plant; the one of an example is
-/// not short.
+/// A neck whose length tends to zero has no effect, in every form of the plant; the one of an
+/// example is not short.
 #[test]
 fn a_short_neck_is_none() {
     let text = without_uncertainty(GAS);
@@ -60,7 +60,7 @@ fn the_family_is_the_rig_at_its_nominal() {
     }
 }
 
-/// Its resonance and damping ratio are printed, and nothing at rest changes.
+/// The resonance and damping ratio of a neck are printed, and nothing at rest changes.
 #[test]
 fn check_derives_the_resonance_of_a_neck() {
     let own = ["line.b.accumulator.neck_diameter=\"4 mm\"", "line.b.accumulator.neck_length=\"20 mm\""];
@@ -81,7 +81,7 @@ fn check_derives_the_resonance_of_a_neck() {
     }
 }
 
-/// What a verdict and the reduced models leave out is said, and nothing where nothing is.
+/// Effects that a verdict and the reduced models leave out are reported, and nothing otherwise.
 #[test]
 fn what_does_not_count_it_is_told() {
     let lossless = "line.accumulator.neck_loss_coefficient=0";
@@ -105,7 +105,7 @@ fn what_does_not_count_it_is_told() {
 }
 
 /// The controller of the example stabilises every plant of its family with the gas at the chamber,
-/// and not with a neck before it.
+/// but not with a neck between them.
 #[test]
 fn a_verdict_sees_the_resonance() {
     let stable = |necks: &[&str]| {

@@ -1,4 +1,4 @@
-//! What a sampled controller sees of the force: noise, converters, and the filter behind them.
+//! Force as seen by a sampled controller: noise, converters, and the filter after them.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -9,11 +9,11 @@ use phea_workbench::simulate::simulate_project;
 use phea_workbench::source::Memory;
 
 const BENCHMARK: &str = include_str!("../../../examples/simulation/benchmark.toml");
-/// V/N, so little that the machine stays at rest whatever the noise.
+/// Controller gain, V/N, so small that the machine remains at rest with any noise.
 const OPEN: f64 = 1e-9;
 const SAMPLE_TIME_S: f64 = 1e-3;
 
-/// The benchmark at rest, with equal edges: without a command it stays so.
+/// The benchmark at rest, with equal edges: without a command it remains at rest.
 fn still(settings: &[&str]) -> Project {
     let (rig, _) = BENCHMARK.split_once("[[scenario]]").unwrap();
     let rig = rig.replace("[3.2e-7, 2.5e-7, 2.0e-7, 3.85e-7]", "[3e-7, 3e-7, 3e-7, 3e-7]");
@@ -37,13 +37,13 @@ fn samples(settings: &[&str]) -> (Vec<f64>, Vec<f64>) {
     (commands, forces)
 }
 
-/// A controller of this gain, sampled, with more in its table.
+/// A sampled controller with this gain and further keys in its table.
 fn sampled(gain: f64, more: &str) -> String {
     let gain = format!("{{ kind = \"gain\", value = {gain:e} }}");
     format!("controller={{ sample_time = \"1 ms\", elements = [{gain}{more} }}")
 }
 
-/// What the controller saw, from what it answered: u = -G m.
+/// Measurement of the controller, from its command: u = -G m.
 fn seen(more: &str, noise: &str) -> (Vec<f64>, Vec<f64>) {
     let (commands, forces) = samples(&[&sampled(OPEN, more), noise]);
     (commands.iter().map(|command| -command / OPEN).collect(), forces)
@@ -76,8 +76,8 @@ fn the_noise_is_white_and_has_the_stated_rms() {
     }
 }
 
-/// The same noise with and without a converter of the measurement: a whole number of steps, at most
-/// half a step away, uniformly.
+/// The noise with and without a converter of the measurement: a whole number of steps, at most half
+/// a step away, uniformly distributed.
 #[test]
 fn the_measurement_is_rounded_to_its_levels() {
     let converter = "], quantization = { measurement_bits = 16, measurement_range = [-1e4, 1e4] }";
@@ -96,7 +96,8 @@ fn the_measurement_is_rounded_to_its_levels() {
     assert!((found - 1.0).abs() < allowed, "{found}");
 }
 
-/// 16 bits over 10 V to either side are steps of 20 V/65536, and their ends are ends.
+/// A converter with 16 bits over 10 V on either side has steps of 20 V/65536, and its ends limit
+/// the command.
 #[test]
 fn the_command_is_rounded_to_its_levels() {
     let converter = "], quantization = { command_bits = 16, command_range = [-10, 10] }";
@@ -112,7 +113,7 @@ fn the_command_is_rounded_to_its_levels() {
     assert!(commands.iter().any(|command| *command != 0.0));
 }
 
-/// 1/(1 + tau s) by Tustin's rule leaves sqrt(T/(2 tau + T)) of white noise.
+/// A filter 1/(1 + tau s) by Tustin's rule leaves sqrt(T/(2 tau + T)) of white noise.
 #[test]
 fn a_filter_leaves_its_share_of_the_noise() {
     for frequency in [100.0, 400.0] {
@@ -120,8 +121,8 @@ fn a_filter_leaves_its_share_of_the_noise() {
         let (filtered, _) = seen(&filter, "force_sensor.noise=20 N");
         let lag = 1.0 / frequency;
         let share = (SAMPLE_TIME_S / (2.0 * lag + SAMPLE_TIME_S)).sqrt();
-        // neighbours that resemble each other by a = (2 tau - T)/(2 tau + T) say less of the rms,
-        // by (1 + a^2)/(1 - a^2)
+        // neighbours with a correlation of a = (2 tau - T)/(2 tau + T) carry less information on
+        // the rms, by (1 + a^2)/(1 - a^2)
         let alike = (2.0 * lag - SAMPLE_TIME_S) / (2.0 * lag + SAMPLE_TIME_S);
         let fewer = (1.0 + alike * alike) / (1.0 - alike * alike);
         let allowed = 5.0 * (fewer / (2.0 * filtered.len() as f64)).sqrt();
@@ -130,7 +131,7 @@ fn a_filter_leaves_its_share_of_the_noise() {
     }
 }
 
-/// The force takes sqrt(w_c T/2) of the noise through a loop that is nearly of first order.
+/// The force contains sqrt(w_c T/2) of the noise, for a loop that is nearly of first order.
 #[test]
 fn the_force_takes_what_the_bandwidth_lets_through() {
     let gain = 2e-4;

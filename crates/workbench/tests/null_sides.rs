@@ -18,10 +18,10 @@ use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 const SIDE: &str = "operating_point.spool_side";
-/// Radians per second, from below the hydraulic pole to above the piston on its load cell.
+/// Frequencies from below the hydraulic pole to above the piston on its load cell, rad/s.
 const FREQUENCIES: [f64; 5] = [0.01, 3.0, 80.0, 1300.0, 6000.0];
 
-/// The hose without `[sizing]` and `[uncertainty]`, with these tables instead.
+/// The hose with these tables instead of `[sizing]` and `[uncertainty]`.
 fn loaded(tables: &str, settings: &[&str]) -> Project {
     changed(HOSE, tables, settings)
 }
@@ -58,7 +58,7 @@ fn response(plant: &UncertainPlant, values: &[f64], frequency: f64) -> [f64; 2] 
 }
 
 /// The ends of the side are the plants of rigs whose spool is a little above and a little below
-/// null, where there is no side to choose: by a load that differs a little from the one at null.
+/// null, where there is no side to choose: their load differs a little from the one at null.
 #[track_caller]
 fn ends_are_both_limits(project: &Project) {
     let family = family_of(project);
@@ -104,7 +104,7 @@ fn lines_in_motion_have_both_sides() {
     ends_are_both_limits(&loaded("", &["line.model=\"transmission_line\""]));
 }
 
-/// A side is added where it changes a plant, and where nobody states it.
+/// A side is added if it changes a plant and is not stated.
 #[test]
 fn nothing_is_added_where_nothing_jumps() {
     let names = |project: &Project| -> Vec<String> {
@@ -171,7 +171,7 @@ fn the_verdict_is_that_of_the_worse_side() {
     assert_eq!(worst_of(&between, &[]).2, Verdict::Violated);
 }
 
-/// What `check` prints has both sides as its ends.
+/// The box printed by `check` has both sides as its ends.
 #[test]
 fn the_box_that_is_printed_has_both_sides() {
     let project = loaded("", &[]);
@@ -183,7 +183,7 @@ fn the_box_that_is_printed_has_both_sides() {
     assert!(gain.minimum.at.iter().any(|(name, _)| name == SIDE));
 }
 
-/// The members of a family next to null read back from what is printed as the same plants: with
+/// The members of a family next to null read back from the printed values as identical plants: with
 /// four digits half of them would be on the other side, where K_qU differs by a quarter.
 #[test]
 fn a_place_next_to_null_reads_back_on_its_own_side() {

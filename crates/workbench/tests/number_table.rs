@@ -1,4 +1,4 @@
-//! Tables of numbers, read back from what was written.
+//! Tables of numbers, read back after writing.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -23,7 +23,7 @@ fn numbers_read_back() {
     }
 }
 
-/// What is read from the one is what is read from the other, over several groups of rows.
+/// Both formats give identical numbers, over several groups of rows.
 #[test]
 fn both_formats_hold_the_same_numbers() {
     // ORIGIN: written by hand, three rows beyond a group

@@ -14,7 +14,7 @@ use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
-/// Radians per second, from below the hydraulic pole to above the piston on its load cell.
+/// Frequencies from below the hydraulic pole to above the piston on its load cell, rad/s.
 const FREQUENCIES: [f64; 7] = [0.01, 0.3, 5.0, 80.0, 700.0, 1300.0, 6000.0];
 
 /// The hose with other `[uncertainty]`, these lines instead of `[sizing]`, and in `[cylinder]`.
@@ -65,7 +65,7 @@ fn rebuilt(project: &Project, plant: &UncertainPlant, values: &[f64]) -> Rig {
     Setup::rig_of(&stated).unwrap()
 }
 
-/// Largest relative difference of both paths over the frequencies.
+/// Largest relative difference of the two plants over the frequencies.
 fn difference(one: &PlantCoefficients<f64>, other: &PlantCoefficients<f64>) -> f64 {
     let path = |plant: &PlantCoefficients<f64>, w: f64| {
         let moved = plant.disturbance.as_ref().unwrap().at_frequency(w);
@@ -78,8 +78,8 @@ fn difference(one: &PlantCoefficients<f64>, other: &PlantCoefficients<f64>) -> f
     FREQUENCIES.into_iter().map(at).fold(0.0, f64::max)
 }
 
-/// At every member, every corner and at points drawn within the box: the recorded plant against the
-/// rig rebuilt from the project. The signs of the commands that were visited come back.
+/// Compares, at every member, every corner and at points drawn within the box, the recorded plant
+/// with the rig rebuilt from the project. Returns the signs of the commands that were visited.
 #[track_caller]
 fn follows_the_rig(project: &Project) -> [usize; 2] {
     let family = members(project);
@@ -183,7 +183,7 @@ fn valves_between_the_chambers_follow() {
     follows_the_rig(&loaded(&equal));
 }
 
-/// Gas behind a neck, and the numbers of both.
+/// Gas accumulators with a neck, and the numbers of both.
 #[test]
 fn necks_follow() {
     let gas = "[line.accumulator]\ngas_volume = \"14 mL\"\nprecharge_pressure = \"10 bar\"\nneck_diameter = \"6 mm\"\nneck_length = \"40 mm\"\n";
@@ -215,7 +215,8 @@ fn heat_follows() {
     follows_the_rig(&loaded(&text(&ranges(&polytropic), &without, "")));
 }
 
-/// One rod: unequal areas, which are uncertain too; and a wall whose contact depends on the force.
+/// A cylinder with one rod: unequal areas, which are uncertain too; and a wall whose contact
+/// depends on the force.
 #[test]
 fn unequal_areas_and_a_wall_follow() {
     let region = [
@@ -232,8 +233,8 @@ fn unequal_areas_and_a_wall_follow() {
     follows_the_rig(&loaded(&text));
 }
 
-/// A family that reaches where nothing balances is refused with the place and the reason, never
-/// made silently wrong.
+/// A family that contains a point without equilibrium is rejected with the place and the reason,
+/// and never silently wrong.
 #[test]
 fn points_without_balance_are_refused_by_name() {
     let refused = |lines: &[(&str, [f64; 3])]| {
@@ -261,7 +262,7 @@ fn points_without_balance_are_refused_by_name() {
     );
 }
 
-/// The refusal points to what names the point that nothing balances, with a cure.
+/// The refusal points to the key that names the point without equilibrium, with a remedy.
 #[test]
 fn a_point_without_balance_has_its_place_and_a_cure() {
     let refused = |text: &str| {
@@ -291,8 +292,8 @@ fn range<'a>(ranges: &'a [VisitedRange], name: &str) -> &'a VisitedRange {
 const REGION: &str = "[family.operating_region]\nposition = [\"0 mm\", \"500 mm\"]\nload_force = [\"-4 kN\", \"6 kN\"]\n\
                       velocity = [\"-1 m/s\", \"1 m/s\"]\n";
 
-/// The region is a box of operating points cut to what the pump gives; the box of linear parameters
-/// encloses all of them.
+/// The region is a box of operating points limited to the flow of the pump; the box of linear
+/// parameters encloses all of them.
 #[test]
 fn a_region_is_the_points_that_the_rig_visits() {
     let friction =
@@ -300,11 +301,12 @@ fn a_region_is_the_points_that_the_rig_visits() {
     let project = loaded(&text(friction, REGION, ""));
     let family = members(&project);
     assert_eq!(family.extent(), Extent::Box);
-    // two frictions, three of everything else, and the nominal plant, whose force is none of these
+    // two frictions, three values of everything else, and the nominal plant, whose force is none of
+    // these
     let (grid, crossings) = family.members().split_at(55);
     let command = |values: &Vec<f64>| {
         let names = family.plant().parameters().iter().map(|one| one.name.as_str());
-        // all but the friction, a parameter of the linear model
+        // every number except the friction, a parameter of the linear model
         let numbers: Vec<(&str, f64)> = names.zip(values.iter().copied()).skip(1).collect();
         let stated = Project { family: None, uncertainty: vec![], ..project.clone() };
         Setup::rig_of(&stated.with_numbers(&numbers).unwrap()).unwrap().point.command
@@ -331,7 +333,7 @@ fn a_region_is_the_points_that_the_rig_visits() {
         let mut stated = project.clone();
         stated.family = None;
         stated.uncertainty.clear();
-        // all but the friction, a parameter of the linear model
+        // every number except the friction, a parameter of the linear model
         for (parameter, value) in family.plant().parameters().iter().zip(&values).skip(1) {
             stated = stated.with_number(&parameter.name, *value).unwrap();
         }
@@ -351,8 +353,8 @@ fn a_region_is_the_points_that_the_rig_visits() {
     }
 }
 
-/// With equal edges, the region of a pump of 19 L/min and two thirds of the supply's pressure on
-/// the piston is the box of Table 6.3.
+/// The box of Table 6.3 is, with equal edges, the region of a pump of 19 L/min with up to two
+/// thirds of the supply's pressure on the piston.
 #[test]
 fn the_box_of_the_thesis_is_that_of_an_operating_region() {
     let edges = "{ supply_to_a = 3e-7, a_to_tank = 3e-7, supply_to_b = 3e-7, b_to_tank = 3e-7 }";
@@ -376,8 +378,8 @@ fn the_box_of_the_thesis_is_that_of_an_operating_region() {
         let project = read(&text("", &region, ""), &settings).unwrap_or_else(|report| panic!("{report}"));
         visited_box(&Setup::new(&project).unwrap()).unwrap().unwrap()
     };
-    // K_v/U_n sqrt(p_S/2) without load; the same over sqrt(3) with two thirds of the supply's
-    // pressure on the piston
+    // K_v/U_n sqrt(p_S/2) without load; divided by sqrt(3) with two thirds of the supply's pressure
+    // on the piston
     let full = 3e-8 * 35e5_f64.sqrt();
     let speed = 10.0 * full / 3.0_f64.sqrt() / 1.583_362_697_4e-3;
     let rich = boxed("20 L/min", 0.999 * speed);
@@ -395,7 +397,7 @@ fn the_box_of_the_thesis_is_that_of_an_operating_region() {
     assert!(range(&poor, "flow_pressure_coefficient").maximum.value < 0.55 * 7e-11);
 }
 
-/// A range that is refused is no absent one: its own error alone is told.
+/// An invalid range is not an absent one: only its own error is reported.
 #[test]
 fn a_wrong_range_is_one_error() {
     for value in ["position = [\"1 kg\", 0.2]", "load_force = \"2 kN\"", "velocity = [0, \"fast\"]"] {
@@ -406,7 +408,7 @@ fn a_wrong_range_is_one_error() {
     }
 }
 
-/// What contradicts itself is refused where it stands.
+/// Contradictions are rejected at the place where they are stated.
 #[test]
 fn contradictions_are_refused() {
     let refused = |uncertainty: &str, tables: &str| read(&text(uncertainty, tables, ""), &[]).unwrap_err();

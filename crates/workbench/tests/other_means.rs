@@ -1,5 +1,5 @@
 //! The stiffness of the hose by other means: pipe, gas, spring and a valve between the chambers,
-//! against closed forms and rigs that declare what was found.
+//! compared with closed forms and with rigs that declare the results.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -38,8 +38,8 @@ fn a_pipe_is_long() {
     near(number(&told, "chambers_n_per_m"), 2.0 * area * area * 1.45e9 / chamber, 1e-12);
 }
 
-/// Chambers and spring in series have the stiffness of the hose; the coils hold the stall force, as
-/// those of `[series.coil]`.
+/// Chambers and spring in series have the stiffness of the hose; the coils hold the stall force,
+/// like those of `[series.coil]`.
 #[test]
 fn a_spring_stands_in_series() {
     let told = found(&[]);
@@ -58,8 +58,8 @@ fn a_spring_stands_in_series() {
     near(number(&told, "spring.actuator_length_m"), 0.8 + length, 1e-12);
 }
 
-/// A rig that declares the gas has the stiffness that was asked where it is stiffest, and its gas
-/// is in use at all forces.
+/// The rig that declares the gas has the required stiffness at its stiffest point, and its gas is
+/// in use at all forces.
 #[test]
 fn gas_has_that_stiffness_where_it_is_declared() {
     let told = found(&[]);
@@ -73,10 +73,10 @@ fn gas_has_that_stiffness_where_it_is_declared() {
         "line={{ pipe = {{ bore = \"12.7 mm\" }}, length = 1e-9, compliance = \"by_volume\", accumulator = {{ gas_volume = {volume:?}, \
          precharge_pressure = {precharge:?}, polytropic_exponent = 1.4 }} }}"
     );
-    // without force the stiffness is the greatest, and at 250 mm it is softest
+    // the stiffness is greatest without force, and softest at 250 mm
     let settings = [line.as_str(), "operating_point.load_force=0 N", "operating_point.position=\"250 mm\""];
     near(derived(&check(COMPLIANCE, &settings), "stiffness.with_accumulators"), stiff, 1e-8);
-    // the share of the lowest chamber pressure over these forces
+    // the fraction of the lowest chamber pressure over these forces
     let ends = ["-4 kN", "4 kN"].map(|force| {
         let told = check(COMPLIANCE, &[&format!("operating_point.load_force={force}")]);
         derived(&told, "operating_point.pressure_a").min(derived(&told, "operating_point.pressure_b"))
@@ -84,8 +84,8 @@ fn gas_has_that_stiffness_where_it_is_declared() {
     near(precharge + 101_325.0, 0.9 * (ends[0].min(ends[1]) + 101_325.0), 1e-9);
 }
 
-/// With the linear parameters of Table 6.3, the hose of 2.24 MN/m and the pipe of 17.1 MN/m.
-/// ORIGIN: recomputed by comparisons/recompute_cross_port.py
+/// Linear parameters of Table 6.3, with the hose of 2.24 MN/m and the pipe of 17.1 MN/m. ORIGIN:
+/// recomputed by comparisons/recompute_cross_port.py
 #[test]
 fn a_valve_damps_the_load_cell() {
     let hose = "linear.hydraulic_stiffness=2.24e6";
@@ -102,7 +102,8 @@ fn a_valve_damps_the_load_cell() {
     near(number(&pipe, "valves.0.loss_w"), conductance * (4e3_f64 / area).powi(2), 1e-9);
 }
 
-/// What is not asked or cannot be has its reason; without the table nothing is said of other means.
+/// A part that is not requested or is impossible has its reason; without the table there is no
+/// statement on other means.
 #[test]
 fn what_cannot_be_has_its_reason() {
     let alone = "sizing.other_means={ stiffness = \"30 MN/m\", force_range = [\"-20 kN\", \"4 kN\"] }";
@@ -122,8 +123,8 @@ fn what_cannot_be_has_its_reason() {
     assert!(text.contains("of the hose by other means") && text.contains("spring on the rod"), "{text}");
 }
 
-/// An alternative that is sized takes the gas, spring, pipe or valve that `size` finds for the
-/// declared project.
+/// A sized alternative has the gas, spring, pipe or valve that `size` finds for the declared
+/// project.
 #[test]
 fn an_alternative_takes_what_is_found() {
     let told = found(&[]);

@@ -1,4 +1,4 @@
-//! The names that a command may write are known before it runs: every file that it writes has one.
+//! The names that a command may write are known before it runs, for every file that it writes.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 

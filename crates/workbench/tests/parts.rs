@@ -1,4 +1,4 @@
-//! What the parts of a rig cost and weigh, against sums by hand.
+//! Cost and mass of the parts of a rig, compared with sums by hand.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -39,8 +39,7 @@ fn a_sum_is_that_of_its_parts() {
     assert!((value("parts.mass") / (parts + oil) - 1.0).abs() < 1e-12);
 }
 
-/// A stated mass of a pipe counts in place of that of its wall; coils weigh what they are wound
-/// from.
+/// A stated mass of a pipe replaces that of its wall; coils have the mass of their wire.
 #[test]
 fn masses_follow_from_walls_and_coils() {
     let value = |settings: &[&str], name: &str| of(&derived(COSTS, settings), name)["value"].as_f64();
@@ -51,7 +50,7 @@ fn masses_follow_from_walls_and_coils() {
     assert!(coil > 1.0 && part == coil);
 }
 
-/// A part that states nothing is named, and nothing is summed without it; where no part states
+/// A part that states nothing is named, and nothing is summed without it; if no part states
 /// anything there is no chapter.
 #[test]
 fn a_part_that_is_missing_is_named() {
@@ -75,7 +74,7 @@ fn prices_in_two_currencies_are_refused() {
     assert!(refused.contains("pipe") && refused.contains("USD where others are in EUR"), "{refused}");
 }
 
-/// Both lines with their ends and metres, the oil in them, and what is to be said of it.
+/// Both lines with their ends and metres, the oil in them, and the remarks on it.
 #[test]
 fn parts_cost_and_weigh_what_they_state() {
     let columns = |index: usize| &judged().1["alternatives"][index]["columns"];

@@ -1,4 +1,4 @@
-//! The plant of every verdict, for tests of what accumulators add to it.
+//! The plant of every verdict, for tests of the effects of accumulators.
 
 use num_complex::Complex64;
 use phea_qft::family::Family;
@@ -7,7 +7,7 @@ use phea_workbench::project::Project;
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
-/// F_e/U_C and F_e/X_0 at a frequency in rad/s.
+/// Responses F_e/U_C and F_e/X_0 at a frequency in rad/s.
 pub(crate) fn responses(project: &Project, frequency: f64) -> [Complex64; 2] {
     let setup = Setup::new(project).unwrap();
     let rig = setup.rig().unwrap();

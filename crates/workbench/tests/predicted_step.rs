@@ -1,4 +1,4 @@
-//! The predicted step of a loop with rational plant shows everything that leads out of its band.
+//! The predicted step of a loop with rational plant is shown until it no longer leaves its band.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Controller, Element};
@@ -9,7 +9,7 @@ use phea_engineering::linear_loop::linear_loop;
 
 const SAMPLE_TIME_S: f64 = 1e-3;
 
-/// P = k/(s + b) with G = (s + 1)/s.
+/// Loop of P = k/(s + b) with G = (s + 1)/s.
 fn loop_settles(k: f64, b: f64, sample_time_s: Option<f64>, band_percent: f64) -> (Settling, f64) {
     let real = |root: f64| Complex64::new(root, 0.0);
     let plant = TransferFunction::from_factors(k, vec![], vec![real(-b)]).unwrap();
@@ -21,8 +21,8 @@ fn loop_settles(k: f64, b: f64, sample_time_s: Option<f64>, band_percent: f64) -
     (step.metrics.settling, step.metrics.rise_time_10_90_s.unwrap())
 }
 
-/// T = k (s + 1)/(s^2 + (b + k) s + k) has the slow pole p2 close to its zero; its step is
-/// 1 - c1 exp(-p1 t) - c2 exp(-p2 t) with c2 = k (1 - p2)/((p1 - p2) p2).
+/// Closed loop T = k (s + 1)/(s^2 + (b + k) s + k) has the slow pole p2 close to its zero; its step
+/// is 1 - c1 exp(-p1 t) - c2 exp(-p2 t) with c2 = k (1 - p2)/((p1 - p2) p2).
 #[test]
 fn a_small_tail_that_leads_out_of_the_band_is_shown() {
     let (k, b) = (40.0_f64, 2.6_f64);
@@ -36,14 +36,14 @@ fn a_small_tail_that_leads_out_of_the_band_is_shown() {
         let (settling, rise_s) = loop_settles(k, b, sample_time_s, 2.0);
         let found = settling.time_s().expect("settles");
         assert!((found - settles_s).abs() < 3e-3, "{found} {settles_s} {sample_time_s:?}");
-        // As fine as where nothing is slow; the tail hardly changes meanwhile.
+        // The resolution is that of a loop without slow poles; the tail hardly changes meanwhile.
         let expected = ln((0.9 - tail) / (0.1 - tail)) / p1;
         assert!((rise_s / expected - 1.0).abs() < 0.05, "{rise_s} {expected}");
     }
 }
 
-/// In z, the slow pole and the zero of a sampled loop are as close as 1 in a thousand whatever
-/// their rates: what counts is how fast they decay.
+/// The slow pole and the zero of a sampled loop are, in z, within 1 in a thousand whatever their
+/// rates: the decay rate decides.
 #[test]
 fn a_sampled_loop_is_shown_as_long_as_the_continuous_one() {
     for (k, b) in [(10.0, 1.5), (100.0, 10.0), (200.0, 30.0)] {

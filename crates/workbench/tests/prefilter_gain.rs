@@ -1,5 +1,5 @@
-//! A designed prefilter that amplifies no more than it may, so that the loop does by itself what
-//! the reference asks for.
+//! A designed prefilter whose amplification is limited, so that the loop itself follows the
+//! reference.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -8,8 +8,8 @@ use crate::ask::{json, number};
 use phea_workbench::command::Request;
 use serde_json::Value;
 
-/// One plant, 1/(s (s/50 + 1)), whose response is to settle in 0.8 s: the least gain at high
-/// frequencies leaves all of it to the prefilter.
+/// A single plant, 1/(s (s/50 + 1)), whose response must settle in 0.8 s: the least gain at high
+/// frequencies leaves everything to the prefilter.
 const SERVO: &str = r#"schema = 1
 title = "one plant"
 [plant]
@@ -46,7 +46,7 @@ fn designed(settings: &[&str], further: &str) -> Value {
     )
 }
 
-/// The largest |F| from 1e-3 to 1e5 rad/s, from gain, zeros and poles of the answer.
+/// The largest |F| from 1e-3 to 1e5 rad/s, computed from gain, zeros and poles of the answer.
 fn largest_gain(design: &Value) -> f64 {
     let of = |key: &str| -> Vec<[f64; 2]> {
         let roots = design["prefilter"][key].as_array().unwrap().iter();
@@ -61,8 +61,8 @@ fn largest_gain(design: &Value) -> f64 {
     (0..=8000).map(|place| size(10f64.powf(-3.0 + f64::from(place) / 1000.0))).fold(0.0, f64::max)
 }
 
-/// Without a limit the loop crosses over far below what the response needs; with one the prefilter
-/// keeps it, and the loop is fast enough.
+/// The loop without a limit has a crossover far below that of the response; with a limit the
+/// prefilter satisfies it, and the loop is fast enough.
 #[test]
 fn a_prefilter_keeps_its_gain_and_the_loop_does_the_work() {
     let free = designed(&[], "");
@@ -76,22 +76,22 @@ fn a_prefilter_keeps_its_gain_and_the_loop_does_the_work() {
     assert_eq!((&limit["key"], &limit["kept"]), (&"prefilter_gain".into(), &true.into()));
 }
 
-/// What is required of one plant alone, a prefilter could do without a loop: that is told until
-/// something limits what a disturbance leaves.
+/// A prefilter without a loop could satisfy the requirements on a single plant: this is reported
+/// until something limits the effect of a disturbance.
 #[test]
 fn that_nothing_asks_for_feedback_is_told() {
     let tells = |design: &Value| design["explanations"].to_string().contains("nothing asks for feedback");
     assert!(tells(&designed(&[], "")));
     let limit = "[[specification]]\nkind = \"sensitivity\"\nlimit = 0.5\nfrequencies = [1]\nband = [0, 1]\n";
     assert!(!tells(&designed(&[], limit)));
-    // plants that differ by more than the limits allow need one
+    // plants that differ by more than the limits allow need feedback
     let uncertain = "[uncertainty]\nk = { nominal = 1, minimum = 0.5, maximum = 2, points = 3 }\n";
     let settings = ["plant.numerator=\"50*k\""];
     assert!(!tells(&designed(&settings, uncertain)));
 }
 
-/// Torque control of a motor of 80 cm3 against a torsional specimen, its friction a tenth of the
-/// torque.
+/// Torque control of a motor of 80 cm3 against a torsional specimen, with a friction of a tenth of
+/// the torque.
 const MOTOR: &str = r#"schema = 1
 title = "motor"
 [fluid]
@@ -148,8 +148,8 @@ saturation = "10 V"
 maximum_order = 3
 "#;
 
-/// The requirements of the servo above on a motor: the loop does the work itself, and where
-/// friction delays the nonlinear rig, the design leaves room for it.
+/// The requirements of the servo above for a motor: the loop itself follows the reference, and if
+/// friction delays the nonlinear rig, the design allows for it.
 #[test]
 fn a_motor_that_friction_delays_satisfies_what_is_required() {
     let requirements = &SERVO[SERVO.find("[[specification]]").unwrap()..];
@@ -162,8 +162,9 @@ fn a_motor_that_friction_delays_satisfies_what_is_required() {
     assert_ne!(found["machine"]["verdict"], "contradicts");
 }
 
-/// A gain alone is tried behind a prefilter of gain 1/T(0), and taken where it satisfies: of
-/// k/(s + 1) with k from 1 to 1.1 a gain of 10 makes |T(0)| from 0.909 to 0.917, well within 5 %.
+/// A pure gain is tested with a prefilter of gain 1/T(0), and taken if it satisfies the
+/// requirements: for k/(s + 1) with k from 1 to 1.1 a gain of 10 gives |T(0)| from 0.909 to 0.917,
+/// well within 5 %.
 #[test]
 fn a_gain_alone_is_taken_where_it_satisfies() {
     let text = "schema = 1\ntitle = \"lag\"\n[plant]\nnumerator = \"k\"\ndenominator = \"s + 1\"\n\

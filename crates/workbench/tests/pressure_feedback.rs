@@ -1,4 +1,4 @@
-//! Pressures that are fed back: the loop that the linear plant closes is that of the machine.
+//! Pressure feedback: the loop closed by the linear plant is that of the machine.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -61,7 +61,7 @@ fn apart(one: Complex64, other: Complex64) -> f64 {
 }
 
 /// The machine under its controller, by its exact derivatives to 1e-7 and by small sines, is the
-/// loop that the linear plant closes; the feedback moves that loop.
+/// loop closed by the linear plant; the feedback changes that loop.
 fn check(settings: &[&str]) {
     let settings = [&SMOOTH[..], &[GENTLE], settings].concat();
     let plain = shaken(&read(BENCHMARK, &settings)).closed_loop.unwrap();
@@ -111,7 +111,8 @@ fn of_loop(settings: &[&str], hertz: u32) -> Complex64 {
     own.load_motion / (1.0 + own.plant * own.sensor * compensation.feedback().at_frequency(frequency))
 }
 
-/// A load that moves finds the rig that the linear loop says, at once, late, sampled, with waves.
+/// The loop that acts on a moving load is that of the linear model, without delay, with delay,
+/// sampled, and with waves.
 #[test]
 fn a_load_that_moves_finds_the_loop() {
     let mut moved = 0.0_f64;
@@ -134,8 +135,8 @@ fn a_load_that_moves_finds_the_loop() {
     assert!(moved > 0.01, "{moved}");
 }
 
-/// A machine that rests under a controller that does not integrate: what is fed back at rest is
-/// part of its command.
+/// A machine that rests under a controller without integral action: the feedback at rest is part of
+/// its command.
 #[test]
 fn it_rests_with_what_is_fed_back() {
     let proportional = ["controller.numerator=0.0005", "controller.denominator=1"];
@@ -164,8 +165,8 @@ fn it_rests_with_what_is_fed_back() {
     }
 }
 
-/// Enough of it the wrong way around makes the loop unstable, without delay as with it and with
-/// waves, and the machine swings up as the verdict says.
+/// Enough feedback with the wrong sign makes the loop unstable, without delay, with delay and with
+/// waves, and the machine swings up as predicted.
 #[test]
 fn it_is_part_of_the_stability_of_the_loop() {
     let (start, rest) = HOSE.split_once("[uncertainty]").unwrap();
@@ -193,7 +194,7 @@ fn it_is_part_of_the_stability_of_the_loop() {
     }
 }
 
-/// Over the box of the hose the verdict is that of the plants with their feedback.
+/// The verdict over the box of the hose is that of the plants with their feedback.
 #[test]
 fn it_is_part_of_the_family() {
     let margin = |settings: &[&str]| {
@@ -208,9 +209,9 @@ fn it_is_part_of_the_family() {
     assert!((with - plain).abs() > 0.01, "{plain} {with}");
 }
 
-/// The delay that is tolerated delays the controller and the paths within its loop alike: a little
-/// less of it leaves the family stable, a little more does not: with pressure feedback, with waves
-/// in the lines too, and with the velocity of the load fed forward.
+/// The tolerated delay acts on the controller and on the paths within its loop equally: with a
+/// little less the family is stable, with a little more it is not: with pressure feedback, with
+/// waves in the lines too, and with the velocity of the load fed forward.
 #[test]
 fn the_delay_margin_is_that_of_all_loops() {
     let high_pass = "controller.pressure_feedback.high_pass=60 Hz";

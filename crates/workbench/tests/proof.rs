@@ -21,8 +21,8 @@ fn proven(project: &str, settings: &[&str]) -> (Value, String) {
     (serde_json::from_str(&answer.json).unwrap(), text.unwrap_or_default())
 }
 
-/// Whether a specification is proven, and that the enclosure of its worst excess over the limit is
-/// narrow and has this number in it, dB.
+/// Checks the verdict on a specification, and that the enclosure of its worst excess over the limit
+/// is narrow and contains this number, dB.
 fn encloses(row: &Value, proven: bool, truth: f64) {
     assert_eq!(row["proven"], proven, "{row:#}");
     let [least, most] = [0, 1].map(|end| row["enclosure_db"][end].as_f64().unwrap());
@@ -40,8 +40,8 @@ macro_rules! example {
     };
 }
 
-/// Six published designs: the excess over the limit that dense grids find lies in the enclosure;
-/// the sixth is unstable.
+/// Six published designs: the excess over the limit found on dense grids is in the enclosure; the
+/// sixth is unstable.
 // ORIGIN: recomputed by comparisons/recompute_audit.py
 #[test]
 fn published_examples_lie_in_their_enclosures() {
@@ -70,8 +70,8 @@ fn published_examples_lie_in_their_enclosures() {
     assert!(check_certificate(&certificate).unwrap().affirmative);
 }
 
-/// Dead time that is uncertain, parameters that move together by equal factors, a sensor with a
-/// delay of its own, a limit as a table.
+/// Uncertain dead time, parameters that move together by equal factors, a sensor with its own
+/// delay, a limit as a table.
 // ORIGIN: recomputed by comparisons/recompute_audit.py
 #[test]
 fn dead_time_and_correlated_parameters_are_covered() {
@@ -84,8 +84,8 @@ fn dead_time_and_correlated_parameters_are_covered() {
     assert!(check_certificate(&certificate).unwrap().affirmative);
 }
 
-/// The pressures in both chambers follow from that of the supply by iterations: their coefficients
-/// are no polynomials of it.
+/// The pressures in both chambers follow from the supply pressure by iteration: their coefficients
+/// are not polynomials of it.
 #[test]
 fn an_uncertain_supply_is_in_the_proof() {
     let family = "uncertainty={ \"supply.pressure\" = { nominal = 7e6, minimum = 6.5e6, maximum = 7.5e6, points = 2 }, \"line.length\" = { nominal = 1.5, minimum = 1.4, maximum = 1.6, points = 2 } }";
@@ -105,8 +105,8 @@ fn an_uncertain_supply_is_in_the_proof() {
     }
 }
 
-/// The plant of the machine: a sprung load whose mass and stiffness are uncertain, and leakage
-/// across the piston.
+/// Plant of the machine: a sprung load whose mass and stiffness are uncertain, and leakage across
+/// the piston.
 #[test]
 fn loads_and_leakage_are_in_the_proof() {
     let load = "load={ model = \"spring_mass_damper\", mass = \"80 kg\", stiffness = \"2 kN/mm\", damping = \"500 N.s/m\" }";
@@ -146,7 +146,7 @@ fn a_certificate_is_read_as_it_was_written_and_refused_where_it_is_none() {
     assert!(answer.affirmative && answer.text.contains("Every claim holds"));
     let object: Value = serde_json::from_str(&answer.json).unwrap();
     assert_eq!(object["claims"].as_array().map(Vec::len), Some(7));
-    // a claim that is not true: the ratio that is not exceeded is lowered
+    // a claim that is not true: the ratio that is not exceeded is reduced
     let lowered = text.replacen("\"ratio\":0.99", "\"ratio\":0.89", 2);
     assert_ne!(lowered, text);
     let rejected = check_certificate(&lowered).unwrap();
@@ -160,8 +160,8 @@ fn a_certificate_is_read_as_it_was_written_and_refused_where_it_is_none() {
     assert!(matches!(check_certificate(&torn), Err(CertificateError::Meaning(_))));
 }
 
-/// What is false is rejected: certificates that were written to deceive a checker, the reason in
-/// the title of each.
+/// False certificates are rejected: each was written to deceive a checker, and has the reason in
+/// its title.
 #[test]
 fn certificates_that_deceive_are_rejected() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/false_certificates");
@@ -174,8 +174,8 @@ fn certificates_that_deceive_are_rejected() {
     }
 }
 
-/// The dead time of a sensor is in the loop and not in the plant: what is proven of |P/(1 + L)|
-/// agrees with what the search finds.
+/// The dead time of a sensor is in the loop and not in the plant: the proven bounds of |P/(1 + L)|
+/// agree with the search.
 #[test]
 fn the_delay_of_a_sensor_is_not_that_of_the_plant() {
     let project = |limit: f64, delay: f64, band: [f64; 2]| {
@@ -219,8 +219,8 @@ const COMPARED: &str = "schema = 1\n[plant]\nnumerator = \"k\"\ndenominator = \"
     [controller]\nnumerator = \"1\"\ndenominator = \"1\"\n\
     [prefilter]\nnumerator = \"1\"\ndenominator = \"s/20 + 1\"\n";
 
-/// A certificate is that of its project, and of no project with another plant, box, controller,
-/// prefilter or specification: each is named, though every claim holds.
+/// A certificate belongs to its project, and to no project with another plant, box, controller,
+/// prefilter or specification: each difference is named, though every claim holds.
 #[test]
 fn a_certificate_is_compared_with_a_project() {
     let (verdict, text) = proven(COMPARED, &[]);
@@ -261,8 +261,8 @@ fn a_certificate_is_compared_with_a_project() {
     }
 }
 
-/// Without its claim of stability a certificate still holds, and both its text and its JSON say
-/// that nothing is claimed of stability.
+/// A certificate holds without its claim of stability, and then both its text and its JSON state
+/// that stability is not claimed.
 #[test]
 fn a_certificate_without_stability_says_so() {
     let (_, text) = proven(COMPARED, &[]);
@@ -279,8 +279,8 @@ fn a_certificate_without_stability_says_so() {
     assert!(compared.text.contains("does not claim that every plant is stable"), "{}", compared.text);
 }
 
-/// 1/(s + 1) closed, whose magnitude is 1 at low frequencies, against a limit that is lower by half
-/// of what the tolerance allows.
+/// Closed loop 1/(s + 1), whose magnitude is 1 at low frequencies, with a limit that is lower by
+/// half of the tolerance.
 // ORIGIN: analytic, 20 log10(1/0.9994) = 0.0052 dB
 #[test]
 fn what_is_proven_within_the_tolerance_says_so() {

@@ -1,6 +1,6 @@
-//! Proofs of families whose operating points hold a load force, or a velocity: the coefficients
-//! follow from a balance that is solved, and every plant of dense samples lies within what is
-//! proven.
+//! Proofs of families whose operating points have a load force, or a velocity: the coefficients
+//! follow from an equilibrium that is solved, and every plant of dense samples is within the proven
+//! bounds.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -48,7 +48,7 @@ fn range(name: &str, [low, high]: [f64; 2]) -> String {
 }
 
 /// Proves stability and the limit of |T| over a region; its certificate holds, and no plant of a
-/// dense grid exceeds what is proven.
+/// dense grid exceeds the proven bounds.
 fn proven(uncertainty: &str) -> Certificate {
     let problem = problem(uncertainty);
     let request = request(&problem);
@@ -83,12 +83,12 @@ fn proven(uncertainty: &str) -> Certificate {
     certificate
 }
 
-/// From ten newtons to thousands, on one side of null.
+/// Regions of force from ten newtons to thousands, on one side of null.
 #[test]
 fn regions_of_force_are_proven() {
     for ends in [[1995.0, 2005.0], [1000.0, 1400.0], [-5.0, 5.0], [-3000.0, 1500.0]] {
         let certificate = proven(&range("load_force", ends));
-        // a coefficient that is forged is of no plant, and its claims are refused
+        // a forged coefficient belongs to no plant, and its claims are rejected
         let mut forged = certificate.clone();
         for segments in &mut forged.plant.boxes {
             for segment in segments.iter_mut().filter(|one| one.variable.is_some()) {

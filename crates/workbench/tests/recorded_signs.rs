@@ -1,5 +1,5 @@
-//! Recordings of a valve whose signs contradict each other: what is named, and the setting that
-//! turns it.
+//! Recordings of a valve whose signs contradict each other: the columns that are named, and the
+//! setting that reverses them.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -27,7 +27,7 @@ struct Factors {
 
 const RIGHT: Factors = Factors { command: 1.0, flow: 1.0, drop: 1.0 };
 
-/// A flow of 4 L/min for each volt, and a meter whose drop is 0.02 bar at 1 L/min.
+/// A flow of 4 L/min per volt, and a meter whose drop is 0.02 bar at 1 L/min.
 fn metering(factors: Factors, indicates_direction: bool) -> String {
     let mut text =
         String::from("time_s,command_v,supply_pressure_bar,pressure_a_bar,pressure_b_bar,flow_l_per_min\n");
@@ -86,8 +86,8 @@ fn one_wrong_sign_is_named_and_the_proposed_setting_turns_it() {
     }
 }
 
-/// Without both port pressures the drop of the meter is not known: it is warned of, and with both
-/// it is not.
+/// The drop of the meter is not known without both port pressures: a warning is given, and none if
+/// both are recorded.
 #[test]
 fn a_drop_that_was_not_recorded_is_warned_of() {
     let told = |text: &str| -> Vec<String> {
@@ -104,7 +104,7 @@ fn a_drop_that_was_not_recorded_is_warned_of() {
     assert!(both.starts_with("without `pressure_a` and `pressure_b` the drop"), "{both}");
 }
 
-/// The table of what a file holds says which column was turned, in its own range.
+/// The table of a file's contents states which column was reversed, with its own range.
 #[test]
 fn a_column_that_is_reversed_is_described_so() {
     let read = read(&metering(Factors { flow: -1.0, ..RIGHT }, true), "flow = { reversed = true }").unwrap();
@@ -117,7 +117,8 @@ fn a_column_that_is_reversed_is_described_so() {
     assert_eq!(reversed, ["flow_l_per_min"]);
 }
 
-/// Without the direction of the flow, two causes explain a drop that falls with the command.
+/// Two causes explain a drop that falls with the command, if the direction of the flow is not
+/// indicated.
 #[test]
 fn a_meter_without_direction_leaves_two_causes_open() {
     for factors in [Factors { command: -1.0, ..RIGHT }, Factors { drop: -1.0, ..RIGHT }] {
@@ -130,7 +131,7 @@ fn a_meter_without_direction_leaves_two_causes_open() {
 }
 
 /// A drift of the transducers over one sine has a correlation of sqrt(6)/pi with the command, and
-/// says nothing of signs.
+/// gives no information on signs.
 #[test]
 fn a_drift_is_not_a_wrong_sign() {
     for drift in [0.5, -0.5] {
@@ -153,7 +154,7 @@ fn a_drift_is_not_a_wrong_sign() {
     }
 }
 
-/// A run of the cylinder that slides both ways at 20 mm/s against 100 N, and its signs.
+/// A run of the cylinder that slides in both directions at 20 mm/s against 100 N, and its signs.
 struct Run {
     position: f64,
     velocity: f64,
@@ -205,7 +206,7 @@ fn a_run_against_its_own_force_is_refused_with_the_signals() {
     }
 }
 
-/// A force F = k/(1 + s T) U, sampled over four periods of five sines after it has settled.
+/// A force F = k/(1 + s T) U, sampled over four periods of five sines after settling.
 fn shaken(sign: f64) -> String {
     let (gain, lag, period, rows) = (500.0, 0.3, 2.0, 200);
     let mut text = String::from("time_s,command_v,force_n\n");
@@ -243,7 +244,7 @@ fn a_force_against_its_command_is_warned_of_with_the_key() {
     assert_eq!(warnings(-1.0, "command = { reversed = true }"), [""; 0]);
 }
 
-/// The flow that the valve of the example passes at each command, times a factor.
+/// The flow of the example's valve at each command, times a factor.
 #[test]
 fn a_flow_that_the_declared_valve_does_not_pass_is_named_with_its_unit() {
     // K of edges 3 and 6 in series, and of 5 and 4. ORIGIN: thesis Table 5.1
@@ -272,7 +273,7 @@ fn a_flow_that_the_declared_valve_does_not_pass_is_named_with_its_unit() {
     assert!(refusal.to_string().contains("unit = \"mL/min\""), "{refusal}");
 }
 
-/// Blocked ports go from tank to supply pressure: a transducer that reads 0.5 bar too little is
+/// Blocked ports vary from tank to supply pressure: a transducer that reads 0.5 bar too little is
 /// below the atmosphere for half of the test, and one that reads 2 bar too little below a vacuum.
 #[test]
 fn a_gauge_below_the_atmosphere_is_warned_of_and_below_a_vacuum_refused() {

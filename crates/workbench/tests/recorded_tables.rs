@@ -1,9 +1,9 @@
-//! Recorded tests of every kind: each file of the corpus is read as the reference, to the last bit,
-//! or refused with what is written next to it.
+//! Recorded tests of every kind: each file of the corpus is read like the reference, to the last
+//! bit, or rejected with the text next to it.
 //!
-//! `NAME.expect` begins with what is read, and has a line for each finding: severity, line, column
-//! and message, and indented below it what was expected and what helps. `NAME.toml` is what a
-//! project says of the file.
+//! `NAME.expect` begins with the data that are read, and has a line for each finding: severity,
+//! line, column and message, and indented below it the expected value and the remedy. `NAME.toml`
+//! contains the keys of a project for the file.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -29,7 +29,7 @@ fn name(file: &Path) -> String {
     file.file_name().unwrap().to_string_lossy().into_owned()
 }
 
-/// What a project says of the file.
+/// Keys of a project for the file.
 fn declared(file: &Path) -> RecordedTest {
     let Ok(keys) = std::fs::read_to_string(file.with_extension("toml")) else {
         return RecordedTest::of(&name(file));
@@ -45,8 +45,8 @@ fn read(file: &Path) -> Result<RecordedFiles, Box<Refusal>> {
     recordings(&source, &[declared(file)], &Known::default())
 }
 
-/// The reference as the first line of an expectation changes it: `without rows 2 3`, `pressure_a
-/// not in rows 4`.
+/// The reference with the changes in the first line of an expectation: `without rows 2 3`,
+/// `pressure_a not in rows 4`.
 fn changed(reference: &Recording, said: &str) -> Recording {
     let mut changed = reference.clone();
     let rows = |text: &str| -> Vec<usize> {
@@ -72,7 +72,7 @@ fn changed(reference: &Recording, said: &str) -> Recording {
     changed
 }
 
-/// The inputs as they were read, without the corners that rows left out make between the others.
+/// The inputs as read, without the corners that omitted rows cause between the others.
 fn read_rows(recording: &Recording) -> Vec<TestInput> {
     recording.inputs.iter().map(|input| TestInput { turn: None, ..*input }).collect()
 }

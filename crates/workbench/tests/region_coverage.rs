@@ -1,4 +1,4 @@
-//! Random operating regions against dense samples of them: every box that is printed encloses its
+//! Random operating regions compared with dense samples of them: every printed box encloses its
 //! region, and every margin is the least of the region or on the safe side.
 
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -18,30 +18,31 @@ use phea_workbench::robust::robust_problem;
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
-/// Points of a region that are drawn evenly, and those at which the spool is next to null.
+/// Number of points of a region that are drawn evenly, and of those at which the spool is next to
+/// null.
 const EVENLY: usize = 150;
 const NEAR_NULL: usize = 25;
-/// Distances from null at which plants are sampled, as shares of the range of velocity or force.
+/// Distances from null at which plants are sampled, fractions of the range of velocity or force.
 const BESIDE: [f64; 7] = [-3e-2, -5e-3, -1e-9, 1e-9, 1e-3, 5e-3, 3e-2];
-/// Plants whose loops are judged.
+/// Number of plants whose loops are judged.
 const JUDGED: usize = 160;
 /// Largest error of a margin on the unsafe side, dB.
 const ERROR_DB: f64 = 0.01;
 /// Largest relative error of an end of a printed box.
 const ERROR: f64 = 1e-4;
 
-/// A number of a rig that changes its sign where an equation chooses.
+/// A quantity of a rig that changes its sign where an equation switches.
 type RigSign = Box<dyn Fn(&Rig) -> f64>;
 
-/// Where the equations choose, in addition to null of the spool.
+/// Points at which the equations switch, in addition to null of the spool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Choosing {
     Nothing,
-    /// A wall that the load leaves where the force pulls.
+    /// A wall that the load leaves when the force pulls.
     Wall,
     /// Gas at both chambers that is shut off below its precharge.
     Gas,
-    /// A pump with a relief valve that closes where the valve takes all of its flow.
+    /// A pump with a relief valve that closes when the valve takes all of its flow.
     Pump,
 }
 
@@ -51,11 +52,11 @@ fn boxes_and_margins_of_regions_are_those_of_dense_samples() {
     assert!(covered(0..6, Choosing::Nothing) > 3);
 }
 
-/// The force at a wall between contact and none is that of no corner: the plants on both sides of
+/// The force at a wall, between contact and none, occurs at no corner: the plants on both sides of
 /// it are members, from which every search starts.
 #[test]
 fn both_sides_of_a_jump_are_members() {
-    // ORIGIN: analytic, a wall is touched where the force presses on it
+    // ORIGIN: analytic, a wall is in contact if the force presses on it
     let wall = "[load]\nmodel = \"wall\"\nmass = 50\nstiffness = 1e6\ngap = 0.001\n";
     let region = "[family.operating_region]\nload_force = [-2000, 6000]\nposition = [0.1, 0.4]\n";
     let (start, rest) = HOSE.split_once("[sizing]").unwrap();
@@ -73,14 +74,14 @@ fn both_sides_of_a_jump_are_members() {
     assert!(pulls >= 2 && presses >= 2, "{next_to:?}");
 }
 
-/// Regions with a wall that the load leaves, as those without.
+/// Regions with a wall that the load leaves satisfy the conditions of those without.
 #[test]
 fn regions_across_a_jump_are_those_of_dense_samples() {
     // ORIGIN: analytic, the first regions of the soak
     assert!(covered(0..2, Choosing::Wall) > 0);
 }
 
-/// The same with three hundred, by `cargo xtask ci soak`.
+/// Random regions: three hundred, by `cargo xtask ci soak`.
 #[test]
 #[ignore = "takes minutes"]
 fn soak_three_hundred_regions_against_dense_samples() {
@@ -89,7 +90,7 @@ fn soak_three_hundred_regions_against_dense_samples() {
     assert!(judged >= 300);
 }
 
-/// The same with thirty where a wall, gas or a pump has its equations choose.
+/// Random regions: thirty, in which a wall, gas or a pump makes the equations switch.
 #[test]
 #[ignore = "takes minutes"]
 fn soak_regions_across_jumps_against_dense_samples() {
@@ -104,15 +105,15 @@ fn soak_regions_across_jumps_against_dense_samples() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Compares the regions of these seeds, and returns how many have an operating point everywhere.
+/// Compares the regions of these seeds, and returns the number of those that have an operating
+/// point everywhere.
 fn covered(seeds: std::ops::Range<u64>, choosing: Choosing) -> usize {
     let (judged, wrong) = judged(seeds, choosing);
     assert!(wrong.is_empty(), "{} of {judged}\n{}", wrong.len(), wrong.join("\n"));
     judged
 }
 
-/// The number of regions of these seeds that have an operating point everywhere, and what is wrong
-/// with some.
+/// The number of regions of these seeds that have an operating point everywhere, and the failures.
 fn judged(seeds: std::ops::Range<u64>, choosing: Choosing) -> (usize, Vec<String>) {
     let (mut judged, mut wrong) = (0, Vec::new());
     for seed in seeds {
@@ -135,7 +136,7 @@ struct Region {
 }
 
 impl Region {
-    /// `None` where some corner of it has no operating point.
+    /// Returns `None` if some corner of it has no operating point.
     fn drawn(seed: u64, choosing: Choosing) -> Option<Region> {
         let mut state = stream(48, seed);
         let text = text(&mut state, choosing);
@@ -178,7 +179,7 @@ impl Region {
         samples
     }
 
-    /// Each number is at one of its ends as often as not.
+    /// Draws a point; each number is at one of its ends in half of the cases.
     fn point(&mut self) -> Vec<f64> {
         let state = &mut self.state;
         let mut drawn = |low: f64, high: f64| match (4.0 * share(state)) as u8 {
@@ -189,7 +190,7 @@ impl Region {
         self.family.plant().parameters().iter().map(|one| drawn(one.minimum, one.maximum)).collect()
     }
 
-    /// What changes its sign where an equation chooses.
+    /// Quantities that change their sign where an equation switches.
     fn signs(&self) -> Vec<RigSign> {
         let gas = self.project.actuator.as_ref().and_then(|declared| declared.line.a.accumulator.as_ref());
         let precharge = gas.map_or(0.0, |gas| gas.precharge_pressure);
@@ -207,8 +208,8 @@ impl Region {
         }
     }
 
-    /// The points around the place along one number where a quantity changes its sign; none where
-    /// it does not.
+    /// The points around the place along one number where a quantity changes its sign; none if it
+    /// does not.
     fn next_to(&self, from: &[f64], along: usize, sign: impl Fn(&Rig) -> f64) -> Vec<Vec<f64>> {
         let one = &self.family.plant().parameters()[along];
         let at = |value: f64| {
@@ -233,8 +234,8 @@ impl Region {
         BESIDE.iter().map(|part| at(low + part * (one.maximum - one.minimum))).collect()
     }
 
-    /// The rig that declares these numbers; without gas, which moves no pressure at rest and is
-    /// refused in a rig where it is shut off.
+    /// The rig that declares these numbers; without gas, which changes no pressure at rest and is
+    /// rejected in a rig where it is shut off.
     fn rig(&self, values: &[f64]) -> Rig {
         let mut stated = self.project.clone();
         if let Some(declared) = &mut stated.actuator {
@@ -247,7 +248,7 @@ impl Region {
         Setup::rig_of(&stated.with_numbers(&numbers).unwrap()).unwrap_or_else(|error| panic!("{error}"))
     }
 
-    /// Rigs whose parameters are outside of the printed box.
+    /// Rigs whose parameters are outside the printed box.
     fn outside_of_box(&self, samples: &[Vec<f64>]) -> Vec<String> {
         let ranges = visited_box(&Setup::new(&self.project).unwrap()).unwrap().unwrap_or_default();
         let sampled: Vec<_> = samples.iter().map(|values| self.rig(values).linear).collect();
@@ -315,8 +316,8 @@ fn compared(found: &Audit, sampled: &Audit) -> Vec<String> {
     faults
 }
 
-/// The table of what chooses, and the keys of the supply: by a share, at this supply pressure in Pa
-/// and flow in m3/s.
+/// The table of the part that switches, and the keys of the supply; `share` places the switch, for
+/// this supply pressure in Pa and flow in m3/s.
 fn chosen(choosing: Choosing, share: f64, supply: f64, flow: f64) -> [String; 2] {
     let constant = "model = \"constant\"\n".to_string();
     match choosing {

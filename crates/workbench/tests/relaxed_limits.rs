@@ -1,4 +1,4 @@
-//! What relaxing a limit would buy, against closed forms and against designs for the relaxed limit.
+//! Gain from relaxing a limit, compared with closed forms and with designs for the relaxed limit.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -9,7 +9,7 @@ use serde_json::Value;
 
 const DESIGN: Request = Request::Design { seed: None, stages: false, repair: false };
 
-/// k/s under a gain, with |1/(1+L)| at most LIMIT at up to 1 rad/s.
+/// Plant k/s under a gain, with |1/(1+L)| at most LIMIT at up to 1 rad/s.
 const GAIN: &str = r#"schema = 1
 title = "an integrator under a gain"
 [plant]
@@ -27,7 +27,7 @@ limits = "none"
 structure = "p"
 "#;
 
-/// 1/(s (s/50 + 1)) under a gain and a pole: the modulus margin needs a fast pole.
+/// Plant 1/(s (s/50 + 1)) under a gain and a pole: the modulus margin needs a fast pole.
 const LAG: &str = r#"schema = 1
 title = "a servo under a gain and a pole"
 [plant]
@@ -60,7 +60,7 @@ fn relaxation(design: &Value, name: &str) -> f64 {
     )
 }
 
-/// |1/(1 + g/j)| = limit needs g^2 = 1/limit^2 - 1 of the plant 1/s at 1 rad/s.
+/// Sensitivity |1/(1 + g/j)| = limit needs g^2 = 1/limit^2 - 1 for the plant 1/s at 1 rad/s.
 #[test]
 fn a_gain_falls_as_its_sensitivity_limit_allows() {
     let gain_db = |limit: f64| 10.0 * (1.0 / (limit * limit) - 1.0).log10();
@@ -69,7 +69,7 @@ fn a_gain_falls_as_its_sensitivity_limit_allows() {
     within(relaxation(&design, "1 sensitivity"), gain_db(0.5) - gain_db(0.55), 0.02);
 }
 
-/// Each of two limits that bind, against a design for the relaxed one.
+/// Two limits that bind, each compared with a design for the relaxed one.
 #[test]
 fn a_relaxed_limit_buys_what_a_design_for_it_reaches() {
     let design = designed(LAG, &[]);
@@ -89,7 +89,7 @@ fn a_relaxed_limit_buys_what_a_design_for_it_reaches() {
     within(number(limit, "relaxed.objective_gained_db"), bought[0], 1e-12);
 }
 
-/// Where nothing meets both limits: |S| and |T| of an integrator under a gain at 1 rad/s.
+/// Two limits that no loop satisfies: |S| and |T| of an integrator under a gain at 1 rad/s.
 #[test]
 fn a_relaxed_limit_returns_a_part_of_what_is_missing() {
     let both = |sensitivity: &str| {

@@ -1,4 +1,4 @@
-//! What a design does when the machine contradicts it.
+//! Repair of a design that the machine contradicts.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -33,21 +33,20 @@ fn worst_margin(audit: &Value) -> f64 {
     findings.iter().map(|finding| number(finding, "worst_margin_db")).fold(f64::INFINITY, f64::min)
 }
 
-/// Over the box of Table 6.3 and with waves in the rig itself, order 4 does not do: the limits have
-/// to give, and the controller for wider ones is one with which the machine with waves comes to
-/// rest.
+/// Order 4 is not sufficient over the box of Table 6.3 and with waves in the rig itself: the limits
+/// must be relaxed, and with the controller for wider limits the machine with waves comes to rest.
 #[test]
 fn what_cannot_be_had_with_waves_is_told() {
     let said = designed_hose();
     let object = object(said);
     let repair = &object["repair"];
-    // the design is that of the declared family, as it was
+    // the design is the original one, for the declared family
     assert!(!said.affirmative);
     assert_eq!((&object["status"], &object["machine"]["verdict"]), (&"met".into(), &"contradicts".into()));
     assert_eq!((&repair["status"], &repair["plant_before"]["stable"]), (&"infeasible".into(), &false.into()));
     assert_eq!(repair["taken_in"], "the rig with waves in its lines");
-    // the controller that is printed comes as near as is printed, to the family and to the plant
-    // with waves
+    // the printed controller satisfies the limits to the printed relaxation, for the family and for
+    // the plant with waves
     let relaxation = number(repair, "relaxation_db");
     assert!(relaxation > 0.01, "{relaxation} dB");
     let both = [&repair["nearest"]["verification"], &repair["plant_after"]];
@@ -56,7 +55,7 @@ fn what_cannot_be_had_with_waves_is_told() {
     let runs = repair["nearest_machine"]["runs"].as_array().unwrap();
     let waves = runs.iter().find(|run| run["what"] == repair["taken_in"]).unwrap();
     assert_eq!(waves["agreement"], "agrees");
-    // the project that is written with it says the same
+    // the project written with it gives equal results
     let written = json(
         file(said, NEAREST_PROJECT).unwrap(),
         &[],
@@ -74,8 +73,8 @@ fn what_cannot_be_had_with_waves_is_told() {
     }
 }
 
-/// The hose with limits so much wider that a controller of order 4 serves waves too; at the corners
-/// of its box and in between.
+/// The hose with limits so much wider that a controller of order 4 is suitable for waves too; at
+/// the corners of its box and in between.
 fn wider() -> String {
     let changes = [
         ("\nlimit = 1.3\n", "\nlimit = 1.36\n"),
@@ -90,10 +89,10 @@ fn wider() -> String {
     })
 }
 
-/// Nothing but the specifications, which are to be met to a thousandth of a decibel.
+/// Settings that leave only the specifications, which must be met to a thousandth of a decibel.
 const EXACT: [&str; 3] = [UNLIMITED[0], UNLIMITED[1], "verification.tolerance=0.001 dB"];
 
-/// A controller that the machine with waves contradicts is replaced by one that serves both.
+/// A controller that the machine with waves contradicts is replaced by one suitable for both.
 #[test]
 fn a_design_is_repaired_where_it_can_be() {
     let first = object(&answer(&wider(), &EXACT, &[], &LEFT));
@@ -104,15 +103,16 @@ fn a_design_is_repaired_where_it_can_be() {
     let object = object(&said);
     let repair = &object["repair"];
     assert_eq!((&object["status"], &repair["status"]), (&"met".into(), &"met".into()), "{repair}");
-    // steps of a tenth end beside the band for longer than a run, and overshoot by more than linear
+    // steps of a tenth end outside the band for longer than a run, and overshoot by more than the
+    // linear ones
     assert_ne!(object["machine"]["verdict"], "contradicts", "{:#}", object["machine"]);
     assert!(said.affirmative);
     assert_eq!(repair["plant_after"]["verdict"], "met");
-    // the first design is printed with it
+    // the first design is printed in addition
     assert_eq!(repair["before"]["controller"], first["controller"]);
     assert!(said.text.contains("before the repair"), "{}", said.text);
-    // what it does with waves in every plant is what the audit of the same project says that
-    // declares them
+    // the verdicts with waves in every plant are those of the audit of the project that declares
+    // them
     let written = file(&said, DESIGNED_PROJECT).unwrap();
     let declared = json(
         written,
@@ -126,8 +126,8 @@ fn a_design_is_repaired_where_it_can_be() {
     assert_eq!(file(&said, NEAREST_PROJECT), None);
 }
 
-/// A command that reaches its limit at once is in no linear plant: nothing is taken in, and the
-/// answer says what to change.
+/// A command that reaches its limit at once is in no linear plant: no plant is added, and the
+/// answer states the change to make.
 #[test]
 fn what_no_plant_explains_is_told() {
     let settings = [
@@ -148,7 +148,7 @@ fn what_no_plant_explains_is_told() {
     );
 }
 
-/// A repair that is stopped leaves the design as it was.
+/// A repair that is stopped leaves the design unchanged.
 #[test]
 fn a_repair_may_be_stopped() {
     let loaded = load(&wider(), &EXACT, &[]);

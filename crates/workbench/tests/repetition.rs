@@ -1,4 +1,4 @@
-//! Runs whose errors may be visible are repeated; runs that diverge say so.
+//! Runs whose errors may be visible are repeated; runs that diverge are reported.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -27,8 +27,8 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
-/// Friction feeds the ringing of the load cell in a slow motion: at the usual tolerance the peak is
-/// wrong by a tenth.
+/// Friction feeds the ringing of the load cell in a slow motion: at the default tolerance the peak
+/// is wrong by a tenth.
 #[test]
 fn a_peak_that_errors_move_is_made_right() {
     let (run, answer) = simulated(
@@ -38,7 +38,7 @@ fn a_peak_that_errors_move_is_made_right() {
     let peak = number(&run["events"][1]["metrics"]["disturbance_peak_n"]);
     let repetition = &run["repetition"];
     let spread = number(&repetition["spread"]["part"]);
-    // ORIGIN: other tool, CVODE at 1e-11 on a model of its own
+    // ORIGIN: other tool, CVODE at 1e-11 on a separate model
     let truth = 192.2;
     assert!((peak / truth - 1.0).abs() < spread.max(1e-3) + 1e-3, "{peak} {repetition}");
     assert!((peak / truth - 1.0).abs() < 5e-3, "{peak}");
@@ -56,7 +56,7 @@ fn a_peak_that_errors_move_is_made_right() {
     assert!(answer.text.contains("of the last two passes"), "{}", answer.text);
 }
 
-/// A run in which nothing grows is made once.
+/// A run without growth of errors is made once.
 #[test]
 fn a_calm_run_is_made_once() {
     for text in [CONTINUOUS, SAMPLED] {
@@ -67,7 +67,7 @@ fn a_calm_run_is_made_once() {
 }
 
 /// A sampled loop that is unstable grows from rounding: the logarithm of the growth is that of the
-/// force itself, and no solver determines when it is large.
+/// force itself, and no solver determines the time at which it is large.
 #[test]
 fn an_unstable_sampled_loop_is_reported() {
     let (run, answer) = simulated(SAMPLED, &["controller.numerator=0.03*s+0.1", "scenario.0.duration=2.5 s"]);
@@ -84,14 +84,14 @@ fn an_unstable_sampled_loop_is_reported() {
     assert!(number(&run["errors_amplified"]["growth_logarithm"]) > 30.0, "{run}");
     assert_eq!(run["repetition"]["status"], "undetermined", "{run}");
     assert!(answer.text.contains("no solver determines"), "{}", answer.text);
-    // numbers that rounding decides are no result
+    // numbers that rounding decides are not results
     let (run, answer) = simulated(include_str!("projects/unstable_rest_sampled.toml"), &[]);
     assert_eq!(run["errors_amplified"]["cause"], "closed_loop");
     assert_eq!(run["repetition"]["status"], "undetermined");
     assert_eq!((&run["status"], answer.affirmative), (&"undetermined".into(), false));
 }
 
-/// A step of 1 uN excites the unstable loop: the force grows as the frozen loop says.
+/// A step of 1 uN excites the unstable loop: the force grows like that of the frozen loop.
 #[test]
 fn the_growth_of_a_sampled_loop_is_that_of_its_force() {
     for more in [&[][..], &["controller.delay=0.7 ms"], &["controller.delay=2 ms"]] {
@@ -148,8 +148,8 @@ fn a_run_that_diverges_says_so() {
     assert_eq!(run["divergence"]["kind"], "command_swings");
 }
 
-/// A command that is at its limit on the way to the reference, and then leaves it, diverges from
-/// nothing, and neither does a load that shakes a small reference.
+/// A command that is at its limit on the way to the reference and then leaves it is no divergence,
+/// and neither is a load that shakes a small reference.
 #[test]
 fn saturation_on_the_way_is_no_divergence() {
     let (run, answer) = simulated(CONTINUOUS, &["controller.saturation=0.2 V"]);

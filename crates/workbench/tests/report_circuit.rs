@@ -1,4 +1,4 @@
-//! The circuit of a report says what the project declares, uncut.
+//! Circuits of a report show the declarations of the project, uncut.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -13,13 +13,14 @@ const ADJUSTED: &str = include_str!("../../../examples/ybitu/variable_impedance.
 const TELESCOPIC: &str = include_str!("../../project/tests/valid/telescopic.toml");
 const TURNING: &str = include_str!("../../project/tests/valid/motor_turning.toml");
 
-/// The project without what its drawing does not show, so that nothing is verified or simulated.
+/// The project without the parts that its drawing does not show, so that nothing is verified or
+/// simulated.
 fn drawn(project: &str) -> &str {
     let ends = ["[uncertainty]", "[[specification]]", "[[scenario]]"].map(|table| project.find(table));
     &project[..ends.into_iter().flatten().min().unwrap_or(project.len())]
 }
 
-/// The texts of the drawing, sub- and superscripts joined to what they belong to.
+/// The texts of the drawing, with sub- and superscripts joined to their letters.
 fn texts(project: &str, settings: &[&str]) -> Vec<String> {
     let answer =
         try_answer(drawn(project), settings, &[], &Request::Report { files: true, alternatives: false })
@@ -42,7 +43,7 @@ fn texts(project: &str, settings: &[&str]) -> Vec<String> {
     texts
 }
 
-/// The chapter on the impedance says where it is.
+/// The chapter on the impedance states its location.
 #[test]
 fn the_impedance_of_a_linkage_is_told_at_the_rod_and_about_the_joint() {
     let page = |project: &str| {
@@ -82,7 +83,7 @@ fn a_lever_has_its_kind_and_its_arm() {
     says(&texts(TABLE, &[]), &["table", "arm r", "θ0"]);
 }
 
-/// The gas is that of the setting of rest: between both ends in proportion to the setting.
+/// The gas at the setting of rest: between both ends in proportion to the setting.
 #[test]
 fn adjusted_gas_is_told_where_it_rests() {
     for (setting, volume) in [("0", "3.5 mL"), ("0.5", "8.85 mL"), ("1", "14.2 mL")] {

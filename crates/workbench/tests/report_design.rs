@@ -1,5 +1,5 @@
-//! The chapter on the design: when there is one, and that it says of both controllers what their
-//! audits found.
+//! The chapter on the design: its presence, and its values for both controllers, which are those of
+//! their audits.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -12,7 +12,7 @@ use phea_workbench::source::Memory;
 const PROCESS: &str = include_str!("../../../examples/qft/dead_time.toml");
 const UNSTABLE: &str = include_str!("../../../examples/qft/unstable_plant.toml");
 
-/// One plant and tracking between two lags, with a controller that is given.
+/// A single plant and tracking between two lags, with a given controller.
 const LAG: &str = r#"
 schema = 1
 title = "Lag"
@@ -77,7 +77,7 @@ fn row(chapter: &str, name: &str) -> Vec<String> {
     found.next().unwrap_or_else(|| panic!("no row {name}"))
 }
 
-/// A project that gives a law and says nothing of a design is audited, and no more.
+/// A project that gives a law and requests no design is audited only.
 #[test]
 fn a_design_is_part_of_the_report_where_it_is_asked_for_or_no_law_is_given() {
     let (bare, _) = LAG.split_once("[design]").unwrap();
@@ -101,8 +101,8 @@ fn both_controllers_stand_side_by_side_as_their_audits_found_them() {
     assert_eq!(row(chapter, "crossover of the nominal loop")[1], "10.0 rad/s");
     assert_eq!(row(chapter, "phase margin of the nominal loop")[1], "90.0 deg");
     assert_eq!(row(chapter, "order of controller and prefilter")[1], "1 and 1");
-    // of the family the one with k = 20 tolerates least delay: pi/2 over its crossover of 20 rad/s.
-    // ORIGIN: analytic
+    // the plant of the family with k = 20 tolerates least delay: pi/2 over its crossover of 20
+    // rad/s. ORIGIN: analytic
     assert_eq!(row(chapter, "delay margin of the family")[1], "78.5 ms");
     // |1 + k/s| is nowhere below 1 and tends to it
     let distance: f64 = row(chapter, "modulus margin of the family")[1].parse().unwrap();
@@ -133,7 +133,7 @@ fn both_controllers_stand_side_by_side_as_their_audits_found_them() {
 }
 
 /// A sampled loop shows its law as it runs, and next to it the design that was made without
-/// samples: that of the same project when it is continuous.
+/// samples: that of the project when it is continuous.
 #[test]
 fn a_sampled_loop_is_shown_with_what_sampling_changes() {
     let settings = ["controller.sample_time=\"5 ms\"", "controller.delay=\"2 ms\""];
@@ -172,7 +172,7 @@ fn a_search_that_ends_with_nothing_leaves_the_report() {
     assert!(fact(&report).is_some());
 }
 
-/// Dead time, a rational plant that has none of the figures of tracking.
+/// Dead time: a rational plant has none of the figures of tracking.
 #[test]
 fn without_tracking_there_is_neither_prefilter_nor_step() {
     let report = report_of(PROCESS, &["design.maximum_order=1"]);

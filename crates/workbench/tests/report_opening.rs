@@ -1,5 +1,5 @@
-//! The page that decides: what it says is what the commands say, of both controllers, and what to
-//! do next follows from it.
+//! The first page: it repeats the results of the commands for both controllers, and the next steps
+//! follow from them.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -38,7 +38,7 @@ fn opening(report: &Report) -> String {
     rest.split("</section>").next().unwrap().to_string()
 }
 
-/// The texts of the cells in the rows below a text that begin with this one.
+/// The texts of the cells in the rows below a text that begin with another one.
 fn rows(page: &str, first: &str) -> Vec<Vec<String>> {
     let cells = |row: &str| -> Vec<String> {
         let row = row.split("</tr>").next().unwrap();
@@ -58,8 +58,8 @@ fn without(text: &str, first: &str, until: &str) -> String {
     format!("{before}{until}{}", rest.split_once(until).unwrap().1)
 }
 
-/// The hose with what was measured of its first scenario: what the machine does under the given
-/// controller, 30 N too large.
+/// The hose with a measurement of its first scenario: the simulation under the given controller,
+/// with 30 N added.
 fn measured_hose() -> (Memory, f64) {
     let plain = Memory::default().with("rig.toml", HOSE);
     let run = runs(&plain, &load(&plain, &[])).remove(0);
@@ -83,13 +83,13 @@ fn runs(source: &Memory, loaded: &Loaded) -> Vec<ScenarioRun> {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Whether the proof of an audit holds in every part, in its JSON.
+/// True if the proof of an audit holds in every part, in its JSON.
 fn is_all_proven(answer: &Value) -> bool {
     let each = answer["specifications"].as_array().unwrap().iter().map(|own| &own["proven"]);
     std::iter::once(&answer["proof"]["stable"]["proven"]).chain(each).all(|proven| proven == true)
 }
 
-/// The verdict of the nonlinear simulation as the page has it.
+/// The verdict of the nonlinear simulation in the words of the page.
 fn agreement_words(answer: &Value) -> &str {
     match answer["machine"]["verdict"].as_str().unwrap() {
         "agrees_but_for_settling" => "agrees but for the settling",
@@ -97,8 +97,8 @@ fn agreement_words(answer: &Value) -> &str {
     }
 }
 
-/// One report of the hose against the commands that it repeats: verdicts of `verify` and `design`,
-/// numbers of `simulate`.
+/// One report of the hose compared with the commands that it repeats: verdicts of `verify` and
+/// `design`, numbers of `simulate`.
 #[test]
 fn both_controllers_stand_there_as_the_commands_tell_them() {
     let (source, nrmse) = measured_hose();
@@ -107,7 +107,7 @@ fn both_controllers_stand_there_as_the_commands_tell_them() {
     let page = opening(&told);
 
     let verified = json(&source, &loaded, &Request::Verify { proof: false, on_machine: true });
-    // what was measured does not take part in a design
+    // the measurement has no part in a design
     let designed: Value = serde_json::from_str(&built_hose().json).unwrap();
     let both = [&verified, &designed["verification"]];
     let verdict = designed["verification"]["verdict"].as_str().unwrap();
@@ -135,7 +135,7 @@ fn both_controllers_stand_there_as_the_commands_tell_them() {
         (designed["verification"]["verdict"].as_str(), designed["machine"]["verdict"].as_str())
     );
 
-    // the designed project, driven by itself, does what the report says of the designed controller
+    // the designed project, simulated separately, agrees with the report on the designed controller
     let file = told.tables.iter().find(|file| file.name == "designed.toml").unwrap();
     let of_design = source.clone().with("rig.toml", std::str::from_utf8(&file.bytes).unwrap());
     let driven = [runs(&source, &loaded), runs(&of_design, &load(&of_design, &[]))];
@@ -161,8 +161,8 @@ fn both_controllers_stand_there_as_the_commands_tell_them() {
     curves(&told);
 }
 
-/// Both controllers and what was measured are in the figures that compare, each controller in those
-/// of the inside.
+/// Both controllers and the measurement are in the figures that compare, and each controller in
+/// those of the machine's signals.
 fn curves(report: &Report) {
     let drawing = |name: &str| {
         let found = report.figures.iter().find(|figure| figure.name == name);
@@ -204,7 +204,7 @@ fn what_to_do_next_follows_from_the_results() {
     );
     assert!(given[0].contains("and 2 more") && given[0].contains("add `[design]`"), "{given:?}");
     assert!(given.iter().any(|step| step.contains("`[[scenario.measured]]`")), "{given:?}");
-    // the family does not hold the rig as it is derived
+    // the family does not contain the derived rig
     assert!(given.iter().any(|step| step.contains("flow_pressure_coefficient is 5.929e-13")), "{given:?}");
 
     let (still, _) = undesigned.split_once("[[scenario]]").unwrap();
@@ -224,7 +224,7 @@ fn what_to_do_next_follows_from_the_results() {
     );
 }
 
-/// A page of a rig without a controller has no columns and says so.
+/// A page for a rig without a controller has no columns and states this.
 #[test]
 fn cards_tell_load_lines_and_hose() {
     let (rig, _) = HOSE.split_once("[uncertainty]").unwrap();

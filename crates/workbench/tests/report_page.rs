@@ -1,4 +1,4 @@
-//! The report: one page that needs nothing else, whatever its project is called, always the same.
+//! The report: one self-contained page, whatever the title of its project, and reproducible.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -19,16 +19,16 @@ fn ask_for_report(project: &str) -> Answer {
     answer(&without_design(project), &[], &[], &Request::Report { files: true, alternatives: false })
 }
 
-/// The project without its section [design]: a search takes its time, and most questions are about
-/// other chapters.
+/// The project without its section [design]: a search takes time, and most tests are about other
+/// chapters.
 fn without_design(project: &str) -> String {
     let Some((start, rest)) = project.split_once("[design]") else { return project.to_string() };
     let end = rest.find("\n[").map_or("", |end| &rest[end..]);
     format!("{start}{end}")
 }
 
-/// The rig and its controller without specifications, design and scenarios: all that questions
-/// about the nominal loop need.
+/// The rig and its controller without specifications, design and scenarios: all that tests of the
+/// nominal loop need.
 pub(crate) fn nominal() -> String {
     let (rig, rest) = HOSE.split_once("[[specification]]").unwrap();
     let (_, rest) = rest.split_once("[controller]").unwrap();
@@ -52,18 +52,18 @@ fn page(answer: &Answer) -> &str {
     std::str::from_utf8(&file.bytes).unwrap()
 }
 
-/// The report of the hose without its sizing chapter and its pictures, made once.
+/// The report of the hose without its sizing chapter and its pictures, computed once.
 fn plain_hose() -> &'static Report {
     static REPORT: OnceLock<Report> = OnceLock::new();
     REPORT.get_or_init(|| plain_report(HOSE))
 }
 
-/// The report without its sizing chapter and its pictures, which is all that many questions need.
+/// The report without its sizing chapter and its pictures, which is all that many tests need.
 fn plain_report(project: &str) -> Report {
     report_of(&without_design(project), &[])
 }
 
-/// Families with lines in motion have no polynomials, and step responses all the same.
+/// Families with lines in motion have no polynomials, but have step responses.
 #[test]
 fn a_family_with_lines_in_motion_has_its_steps_drawn() {
     let settings = ["line.model=segments", "line.segments=4", "line.relaxation_time=0.3 ms"];
@@ -72,7 +72,7 @@ fn a_family_with_lines_in_motion_has_its_steps_drawn() {
     assert!(report.figures.iter().any(|found| found.name == "family_steps"));
 }
 
-/// Everything between `<name` and `</name>`, the tags included.
+/// Text between `<name` and `</name>`, the tags included.
 fn elements<'a>(page: &'a str, name: &str) -> Vec<&'a str> {
     let (open, close) = (format!("<{name}"), format!("</{name}>"));
     let mut found = Vec::new();
@@ -107,7 +107,7 @@ fn a_page_needs_nothing_else() {
             let target = target.trim_start_matches(['"', '\'']);
             assert!(target.starts_with('#') || target.starts_with("data:"), "url({}", &target[..40]);
         }
-        // The one address is a name: that of the SVG language.
+        // The only address is a name: that of the SVG language.
         for address in
             page.split("http").skip(1).filter(|rest| rest.starts_with("://") || rest.starts_with("s://"))
         {
@@ -129,7 +129,7 @@ fn every_link_of_the_page_has_its_place() {
     assert_eq!(places.len(), all, "an id is used twice");
 }
 
-/// HTML's void elements, which XML wants closed.
+/// HTML's void elements, which XML requires to be closed.
 fn as_xml(page: &str) -> String {
     // HTML knows attributes without a value, XML does not.
     let mut xml = page
@@ -149,7 +149,7 @@ fn as_xml(page: &str) -> String {
         closed.push_str(rest);
         xml = closed;
     }
-    // A style sheet has characters of its own.
+    // A style sheet has characters that XML does not allow.
     xml.replace("<style>", "<style><![CDATA[").replace("</style>", "]]></style>")
 }
 
@@ -193,8 +193,8 @@ fn every_chapter_is_there() {
     ] {
         assert!(headings.contains(words), "{words}: {headings}");
     }
-    // Tables: the poles of every model, the asymptotes, the candidates with their reasons, what was
-    // assumed.
+    // Tables: the poles of every model, the asymptotes, the candidates with their reasons, the
+    // assumptions.
     for words in [
         "6.12",
         "6.13",
@@ -217,7 +217,8 @@ fn demands(page: &str) -> String {
     text(chapter)
 }
 
-/// |T| <= 1.3 tolerates 1 + 1/1.3 and 1 - 1/1.3 of the gain, 2 asin(1/2.6) of phase, and keeps 1/2.3 away from -1.
+/// Limit |T| <= 1.3 tolerates 1 + 1/1.3 and 1 - 1/1.3 of the gain, 2 asin(1/2.6) of phase, and
+/// guarantees a distance of 1/2.3 from -1.
 #[test]
 fn what_is_demanded_is_said_with_what_it_means() {
     let chapter = demands(page(hose()));
@@ -235,8 +236,8 @@ fn what_is_demanded_is_said_with_what_it_means() {
     assert_eq!(chapter.matches("A stable loop").count(), 1, "s/(s + 15) guarantees no margin: {chapter}");
 }
 
-/// The lags 1/(s + 1) below and 0.1 above meet at sqrt(99) rad/s; towards zero they are 20 dB the
-/// wrong way round.
+/// The lags 1/(s + 1) below and 0.1 above intersect at sqrt(99) rad/s; towards zero they are 20 dB
+/// in the wrong order.
 #[test]
 fn limits_that_cross_are_told() {
     let project = format!(
@@ -344,11 +345,11 @@ fn another_plant_is_checked_and_refused_elsewhere_with_the_reason() {
     }
 }
 
-/// What the machine does under the controller stands in its chapter with a figure, and among the
+/// The behaviour of the machine under the controller is in its chapter with a figure, and among the
 /// first facts, its edge by its word.
 #[test]
 fn controllers_are_shown_on_the_machine() {
-    // what `design` finds for the hose with lumped lines
+    // the result of `design` for the hose with lumped lines
     let report = report_with(&[
         "line.compliance=by_volume",
         "controller.numerator=0.7217*(s + 23.992)*(s + 2148.5)",
@@ -411,7 +412,7 @@ fn a_plant_with_specifications_has_the_robust_chapters() {
 fn a_project_without_sizing_or_controller_has_the_other_chapters() {
     let (start, rest) = HOSE.split_once("[sizing]").unwrap();
     let (_, rest) = rest.split_once("[uncertainty]").unwrap();
-    // with specifications a controller would be designed
+    // a controller would be designed if there were specifications
     let end = rest.split("[[specification]]").next().unwrap();
     let page = plain_report(&format!("{start}[uncertainty]{end}")).html;
     assert!(!page.contains("id=\"sizing\""));
@@ -444,8 +445,8 @@ fn only_models_of_the_same_parameters_are_drawn_against_each_other() {
         assert!(reduction.contains(name), "{name}");
     }
     assert!(!reduction.contains("(6.12)") && !reduction.contains("(6.13)"));
-    // Derived K_H of the hose at mid stroke is softer than the value that holds: the table names
-    // both fifth orders.
+    // Derived K_H of the hose at mid stroke is softer than the value in use: the table names both
+    // fifth orders.
     let text = answer(HOSE, &[], &[], &Request::Linearize { sweep: None }).text;
     for row in
         ["two-pressure, derived parameters", "fifth order, derived parameters", "6.7 instead of two-pressure"]

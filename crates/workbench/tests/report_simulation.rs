@@ -1,4 +1,4 @@
-//! The chapters of the report that the nonlinear machine is driven for: scenarios, sensitivity,
+//! The chapters of the report for which the nonlinear machine is driven: scenarios, sensitivity,
 //! campaign.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
@@ -12,7 +12,7 @@ use phea_workbench::source::Memory;
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 const CAMPAIGN: &str = include_str!("../../../examples/benchmark/campaign.toml");
 
-/// A report without its specifications, which these chapters do not ask for.
+/// A report without its specifications, which these chapters do not need.
 fn reported(text: &str, settings: &[&str]) -> Report {
     let settings: Vec<String> = settings.iter().map(|text| (*text).to_string()).collect();
     let source = Memory::default().with("rig.toml", text);
@@ -26,7 +26,7 @@ fn without(text: &str, first: &str, until: &str) -> String {
     format!("{before}{until}{}", rest.split_once(until).unwrap().1)
 }
 
-/// What stands between the anchor of a chapter and the end of it.
+/// Text between the anchor of a chapter and its end.
 fn chapter<'a>(report: &'a Report, anchor: &str) -> &'a str {
     let start = report.html.find(&format!("<section id=\"{anchor}\">")).expect("the chapter is there");
     let rest = &report.html[start..];
@@ -43,8 +43,8 @@ fn row(chapter: &str, first: &str) -> Vec<String> {
     cells.map(|cell| cell.trim_end_matches("</td>").to_string()).collect()
 }
 
-/// Every step of a reference has a row of its own, published numbers stand below theirs, and what
-/// was not published is said once.
+/// Every step of a reference has its own row, with published numbers below; unpublished numbers are
+/// mentioned once.
 #[test]
 fn every_event_has_its_row_and_what_was_published() {
     let text = without(HOSE, "[[specification]]", "[controller] ");
@@ -73,7 +73,7 @@ fn every_event_has_its_row_and_what_was_published() {
         assert!(0.1 < rise && rise < settling && settling < 0.5, "{cells:?}");
     }
     assert_eq!(chapter.matches("these steps were chosen").count(), 1);
-    // the whole and two events of the first scenario; of seven steps the greatest alone
+    // the whole and two events of the first scenario; of seven steps only the greatest
     let names: Vec<&str> = report.figures.iter().map(|figure| figure.name.as_str()).collect();
     let drawn: Vec<&&str> = names.iter().filter(|name| name.starts_with("simulation-")).collect();
     let expected = [
@@ -84,7 +84,7 @@ fn every_event_has_its_row_and_what_was_published() {
         "simulation-2-event-7",
     ];
     assert_eq!(drawn, expected.iter().collect::<Vec<_>>());
-    // what is enlarged shows both forces, and where the load moves positions too
+    // enlarged figures show both forces, and positions too if the load moves
     let shows = |name: &str, text: &str| {
         let figure = report.figures.iter().find(|figure| figure.name == name).unwrap();
         figure.to_svg_standalone().contains(text)
@@ -100,7 +100,7 @@ fn every_event_has_its_row_and_what_was_published() {
     assert!(!sensitivity.contains("K_S"));
 }
 
-/// Bands, spreads and the worst runs with the command that drives one of them again.
+/// Bands, spreads and the worst runs with the command that repeats one of them.
 #[test]
 fn a_campaign_has_its_chapter() {
     let report = reported(CAMPAIGN, &["scenario.0.duration=3.3 s"]);
@@ -109,14 +109,14 @@ fn a_campaign_has_its_chapter() {
     let overshoot = row(chapter, "overshoot (%)");
     let quantiles: Vec<f64> = overshoot[1..6].iter().map(|cell| number(cell)).collect();
     assert!(quantiles.is_sorted() && number(&overshoot[6]) >= quantiles[4], "{overshoot:?}");
-    // the run that is worst in most comes first
+    // the run that is worst in most metrics comes first
     let peak = row(chapter, "disturbance peak (kN)");
     let worst = peak[6].split_once('(').unwrap().1.trim_end_matches(')').to_string();
     let of = &row(chapter, &worst)[1];
     assert!(of.contains("load motion at 3 s: disturbance peak") && of.contains("control rms"), "{of}");
     assert!(chapter.contains(&format!("phea campaign PROJECT.toml --seed 1 --run {worst}")));
     assert!(chapter.find(&format!(">{worst}</td>")) < chapter.find(": overshoot</td>"));
-    // a drawn number lies where it is drawn from
+    // a drawn number is within its range
     let pressure = row(chapter, "<code>supply.<wbr>pressure</code>");
     assert_eq!((pressure[1].as_str(), pressure.len()), ("<span class=\"unit\">bar</span>", 8));
     let [from, to] = [number(&pressure[2]), number(&pressure[3])];
@@ -124,8 +124,8 @@ fn a_campaign_has_its_chapter() {
     assert!(pressure[4..].iter().all(|cell| (from..=to).contains(&number(cell))), "{pressure:?}");
 }
 
-/// A sine is drawn for two of its cycles, whatever the scenario lasts; other references as long as
-/// they move.
+/// A sine is drawn for two of its cycles, whatever the duration of the scenario; other references
+/// as long as they move.
 #[test]
 fn a_sine_is_shown_for_two_cycles() {
     let text = without(HOSE, "[[specification]]", "[controller] ");
@@ -149,7 +149,7 @@ fn a_sine_is_shown_for_two_cycles() {
     assert!(chapter(&report, "simulation").contains("over the whole scenario"));
 }
 
-/// The project states how many runs its report makes.
+/// The project states the number of runs in its report.
 #[test]
 fn the_number_of_runs_is_that_of_the_project() {
     for runs in [12, 20] {
@@ -160,7 +160,7 @@ fn the_number_of_runs_is_that_of_the_project() {
     }
 }
 
-/// The assumptions speak of what the rig has: no hose, no words on hoses; a supply that stays.
+/// The assumptions are those of the rig: no hose, no words on hoses; a supply of constant pressure.
 #[test]
 fn assumptions_are_those_of_the_rig() {
     let hose = reported(&without(HOSE, "[[specification]]", "[controller] "), &[]);
@@ -174,8 +174,8 @@ fn assumptions_are_those_of_the_rig() {
     assert!(!volumes.contains("no waves travel in it") && volumes.contains("by its viscous part alone"));
 }
 
-/// By volume a hose holds its oil at the mean pressure, and a stated settling time gives the time
-/// constant by its band.
+/// A hose with compliance by volume holds its oil at the mean pressure, and a stated settling time
+/// gives the time constant by its band.
 #[test]
 fn assumptions_follow_from_what_is_stated() {
     let text = without(HOSE, "[[specification]]", "[controller] ");
@@ -195,8 +195,8 @@ const IN_TIME: &str = "[[specification]]\nkind = \"tracking\"\nfrequencies = [0.
     [specification.upper]\novershoot_percent = 1\nsettling_time = \"0.4 s\"\nsettling_band_percent = 1\nzero = \"60 rad/s\"\n\
     [specification.lower]\nsettling_time = \"0.8 s\"\nsettling_band_percent = 1\npole = \"60 rad/s\"\n";
 
-/// What the first page says of a requirement in time is the worst over the runs of the campaign
-/// too, of a sampled loop and of a late one as of a continuous one, and over other numbers.
+/// The first page reports for a requirement in time the worst over the runs of the campaign too,
+/// for a sampled loop and a delayed one as for a continuous one, and over other numbers.
 #[test]
 fn the_first_page_takes_the_worst_of_the_campaign() {
     let text = format!("{CAMPAIGN}\n{IN_TIME}");
@@ -218,12 +218,13 @@ fn the_first_page_takes_the_worst_of_the_campaign() {
     }
 }
 
-/// A step in the required band of a settling time that no step keeps.
+/// A settling time, in the required band, that no step satisfies.
 const STEP: &str =
     "[[specification]]\nkind = \"step\"\nsettling_time = \"10 ms\"\nsettling_band_percent = 1e-6\n";
 
-/// A run of several steps is one run; that a step does not settle is known of its window alone; and
-/// the advice is for a project with a required step, which has no limits of tracking to tighten.
+/// A run of several steps counts once; a step that does not settle is known over its window only;
+/// and the advice is for a project with a required step, which has no limits of tracking to
+/// tighten.
 #[test]
 fn runs_are_counted_and_the_advice_is_for_a_required_step() {
     let settings = [
@@ -246,8 +247,8 @@ fn runs_are_counted_and_the_advice_is_for_a_required_step() {
     assert!(!tracking.iter().any(|step| step.contains("of kind `step`")), "{tracking:?}");
 }
 
-/// A report makes as many runs as its steps of integration suffice for, judged by the first of
-/// them, and these at least.
+/// A report has as many runs as its budget of integration steps permits, estimated from the first
+/// of them, and at least these.
 #[test]
 fn a_campaign_keeps_its_budget_of_steps() {
     // ORIGIN: analytic, ten million steps over those of a run

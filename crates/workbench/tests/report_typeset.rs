@@ -1,4 +1,4 @@
-//! Equations of plain text as a page sets them.
+//! Equations of plain text as set on a page.
 
 use phea_workbench::document::typeset;
 

@@ -1,5 +1,4 @@
-//! Specifications of the kind `step`: what is required in time by itself, of every plant and in
-//! every run.
+//! Specifications of the kind `step`: requirements in time only, for every plant and in every run.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -38,8 +37,8 @@ fn refusal(text: &str) -> String {
     phea_workbench::project::read(&source, "rig.toml", &[], &[]).unwrap_err().to_string()
 }
 
-/// k/s closed is a lag of 1/k: risen from 10 to 90 % in ln(9)/k, settled to 5 % after ln(20)/k, and
-/// never beyond its reference. The plant is the slowest. No prefilter is given: it is 1.
+/// Closed, k/s is a lag of 1/k: it rises from 10 to 90 % in ln(9)/k, settles to 5 % after ln(20)/k,
+/// and never exceeds its reference. The slowest plant is the worst. No prefilter is given: it is 1.
 #[test]
 fn a_lag_rises_and_settles_in_closed_form() {
     for (rise_s, verdict) in [(2.0, "violated"), (2.5, "met")] {
@@ -62,9 +61,9 @@ fn a_lag_rises_and_settles_in_closed_form() {
     }
 }
 
-/// Settled means within the band that is required, however narrow: a lag of 1/k is within 0.02 %
-/// after ln(5000)/k, and 8.3 s are too short for k = 1. A swing that leaves the band late counts,
-/// wherever the requirement ends.
+/// A step is settled within the required band, however narrow: a lag of 1/k is within 0.02 % after
+/// ln(5000)/k, and 8.3 s are too short for k = 1. A swing that leaves the band late counts,
+/// whatever the end of the requirement.
 #[test]
 fn settling_is_judged_in_the_band_itself_and_to_its_end() {
     let settled = |found: &Value| number(&found["specifications"][1], "worst_settling_time_s");
@@ -76,7 +75,7 @@ fn settling_is_judged_in_the_band_itself_and_to_its_end() {
         assert_eq!(found["verdict"], verdict, "{found:#}");
         ask::near(settled(&found), 5000_f64.ln(), 5e-3);
     }
-    // k/(s (s + 0.2)) closed swings at 1.4 rad/s within e^(-0.1 t)
+    // closed, k/(s (s + 0.2)) swings at 1.4 rad/s within e^(-0.1 t)
     let swing = |time: &str| {
         let text = format!(
             "schema = 1\ntitle = \"swing\"\n[plant]\nnumerator = \"k\"\ndenominator = \"s*(s + 0.2)\"\n\
@@ -88,13 +87,14 @@ fn settling_is_judged_in_the_band_itself_and_to_its_end() {
     };
     let late = swing("20 s");
     for time in ["3.5 s", "3.8 s", "4.1 s"] {
-        // the last swing that leaves the band does so by so little that the grid of points decides
+        // the last swing leaves the band by so little that the grid of points decides
         ask::near(swing(time), late, 6e-2);
     }
 }
 
-/// k/s closed settles after ln(50)/k, here forty thousand times as long as is required: the time is
-/// found all the same. A plant of 1/(s + 1) in a loop of gain 1 ends at 0.5, and never settles.
+/// Closed, k/s settles after ln(50)/k, here forty thousand times the required time: the settling
+/// time is found nevertheless. A plant of 1/(s + 1) in a loop of gain 1 ends at 0.5, and never
+/// settles.
 #[test]
 fn a_loop_far_slower_than_required_has_its_settling_time() {
     let step = "[[specification]]\nkind = \"step\"\nsettling_time = \"1 ms\"\n";
@@ -110,8 +110,8 @@ fn a_loop_far_slower_than_required_has_its_settling_time() {
     assert!(words.contains("not settled"), "{words}");
 }
 
-/// A rig whose lines have waves is slow by its controller: its settling time is the same whatever
-/// is required, and near that of lumped lines.
+/// A rig whose lines have waves is slow because of its controller: its settling time is independent
+/// of the requirement, and near that of lumped lines.
 #[test]
 fn a_slow_loop_around_lines_with_waves_has_its_settling_time() {
     let settled = |time: &str, model: &str| {
@@ -122,13 +122,13 @@ fn a_slow_loop_around_lines_with_waves_has_its_settling_time() {
         number(&found, "specifications.0.worst_settling_time_s")
     };
     let waves = ["5 ms", "0.3 s"].map(|time| settled(time, "transmission_line"));
-    // far beyond ten times what is required
+    // far beyond ten times the requirement
     assert!(waves[0] > 0.1, "{waves:?}");
     ask::near(waves[0], waves[1], 1e-2);
     ask::near(waves[0], settled("0.3 s", "lumped"), 5e-2);
 }
 
-/// The number of a specification is that of the file, whatever is declared before it.
+/// Specifications are numbered as in the file, whatever is declared before them.
 #[test]
 fn specifications_have_their_numbers_in_the_file() {
     let step = "[[specification]]\nkind = \"step\"\nsettling_time = \"5 s\"\n";
@@ -164,7 +164,7 @@ fn a_required_step_is_counted() {
     }
 }
 
-/// A step that is required alone is judged like one beside limits, sampled or not.
+/// A step that is the only requirement is judged like one next to limits, sampled or not.
 #[test]
 fn a_step_needs_no_limit_beside_it() {
     let step = "[[specification]]\nkind = \"step\"\nsettling_time = \"4 s\"\n";
@@ -193,7 +193,7 @@ fn what_belongs_to_a_step_and_what_does_not_is_told() {
     assert!(misplaced.contains("`rise_time` belongs to `kind = \"step\"`"), "{misplaced}");
 }
 
-/// The ends of Wilson's interval are where |k/n - p| = z sqrt(p (1 - p)/n).
+/// The ends of Wilson's interval are the solutions of |k/n - p| = z sqrt(p (1 - p)/n).
 #[test]
 fn the_interval_of_a_share_satisfies_its_equation() {
     let z = 1.959_963_984_540_054_f64;
@@ -208,13 +208,13 @@ fn the_interval_of_a_share_satisfies_its_equation() {
     assert_eq!(SatisfiedRuns { satisfied: 5, runs: 5, worst: None }.confidence_95()[1], 1.0);
 }
 
-/// The example rig under its controller with a step required of it.
+/// The example rig under its controller, with a required step.
 fn rig(step: &str) -> String {
     let text = include_str!("../../../examples/benchmark/campaign.toml");
     format!("{text}\n[[specification]]\nkind = \"step\"\n{step}")
 }
 
-/// A campaign counts the runs whose steps satisfy what is required: all with a loose requirement,
+/// A campaign counts the runs whose steps satisfy the requirement: all with a loose requirement,
 /// none with one that nothing satisfies, and those in the table of quantiles in between.
 #[test]
 fn a_campaign_counts_the_runs_that_satisfy() {
@@ -237,7 +237,8 @@ fn a_campaign_counts_the_runs_that_satisfy() {
     assert!(other["requirements"][0]["satisfied_reason"].as_str().unwrap().contains("another band"));
 }
 
-/// The nonlinear rig is driven by the step that is required, and every run is held against it.
+/// The nonlinear rig is driven by the required step, and every run is compared with the
+/// requirement.
 #[test]
 fn every_run_is_held_against_the_required_step() {
     let request = Request::Verify { proof: false, on_machine: true };
@@ -256,14 +257,14 @@ fn every_run_is_held_against_the_required_step() {
             let worst = number(run, "machine.settling_time_s");
             ask::near(number(&run["requirements"][0], "settling_time_s"), worst, 1e-12);
         }
-        // a step of another size is not what was required
+        // a step of another size is not the required one
         let largest = runs.iter().filter(|run| run["step"] == "largest_unsaturated");
         assert!(largest.into_iter().all(|run| run["requirements"].as_array().unwrap().is_empty()));
     }
 }
 
-/// Requirements of every step are tested the other way too, and in the three largest steps of the
-/// scenarios, each pair of references once; a step of a size of its own is tested alone.
+/// Requirements on every step are tested in both directions, and in the three largest steps of the
+/// scenarios, each pair of references once; a step with its own size is tested only with that.
 #[test]
 fn a_requirement_of_every_step_is_tried_both_ways_and_in_scenarios() {
     let request = Request::Verify { proof: false, on_machine: true };
@@ -300,7 +301,7 @@ fn a_requirement_of_every_step_is_tried_both_ways_and_in_scenarios() {
     assert_eq!(*left, serde_json::json!(["a smaller step of a scenario, 150 N to 100 N"]));
     let stated = of("settling_time = 30\namplitude = \"300 N\"\n");
     assert!(stated.iter().all(|(size, _)| ["required", "largest_unsaturated"].contains(&size.as_str())));
-    // a force before the step alone leaves its direction open
+    // an initial force without a final one leaves the direction open
     let from = of("settling_time = 30\ninitial_force = \"100 N\"\n");
     let required: Vec<[f64; 2]> =
         from.iter().filter(|(size, _)| size == "required").map(|(_, ends)| *ends).collect();
@@ -308,9 +309,9 @@ fn a_requirement_of_every_step_is_tried_both_ways_and_in_scenarios() {
     ask::near(one[1] - 100.0, 100.0 - other[1], 1e-12);
 }
 
-/// Corners of the box are driven where all other runs satisfy what is required, and the worst of
-/// them is told: that of the rigs that are declared as these corners. A step of which nothing is
-/// required has no worst.
+/// Corners of the box are driven if all other runs satisfy the requirement, and the worst of them
+/// is reported; it equals the worst of rigs declared with these corners. A step without a
+/// requirement has no worst corner.
 #[test]
 fn the_worst_corner_is_that_of_rigs_declared_as_corners() {
     let request = Request::Verify { proof: false, on_machine: true };
@@ -338,12 +339,12 @@ fn the_worst_corner_is_that_of_rigs_declared_as_corners() {
     };
     let all = ends[0].into_iter().flat_map(|bar| ends[1].map(|viscous| declared(bar, viscous)));
     ask::near(number(&told[0]["requirements"][0], "settling_time_s"), all.fold(0.0, f64::max), 1e-4);
-    // one run that misses tells as much
+    // one run that misses is sufficient evidence
     let missed = boxed.replace("settling_time = 30\n", "settling_time = 0.0001\n");
     assert!(of_corners(&runs(&missed)).is_empty());
 }
 
-/// A scenario is held against what is required too: the worst of its steps is that of its events.
+/// A scenario is compared with the requirement too: the worst of its steps is that of its events.
 #[test]
 fn a_simulated_scenario_is_held_against_what_is_required() {
     let of = |step: &str| {
@@ -364,7 +365,7 @@ fn a_simulated_scenario_is_held_against_what_is_required() {
     assert!(other["verdict_reason"].as_str().unwrap().contains("no such step"), "{other}");
 }
 
-/// `size` says where a requirement settles sooner than what is sized for.
+/// `size` reports a requirement that settles sooner than the time constant of the sizing.
 #[test]
 fn sizing_names_a_requirement_that_settles_sooner() {
     let text = include_str!("../../../examples/ybitu/hose.toml");
@@ -379,8 +380,8 @@ fn sizing_names_a_requirement_that_settles_sooner() {
     assert!(!of("100 s").contains("requires it in"));
 }
 
-/// w^2/(s^2 + 2 d w s) closed is a lag of second order: its peak is exp(-pi d/sqrt(1 - d^2)), and
-/// lies 50 times sooner than the settling time that is required.
+/// Closed, w^2/(s^2 + 2 d w s) is a lag of second order: its peak is exp(-pi d/sqrt(1 - d^2)), and
+/// occurs 50 times sooner than the required settling time.
 #[test]
 fn the_peak_of_a_fast_swing_is_not_missed() {
     let plant = "schema = 1\ntitle = \"swing\"\n[plant]\nnumerator = \"w^2\"\ndenominator = \"s^2 + 0.2*w*s\"\n\
@@ -394,9 +395,9 @@ fn the_peak_of_a_fast_swing_is_not_missed() {
     assert_eq!(object["verdict"], "met", "{words}");
 }
 
-/// A gain that varies by six beside a lag that varies by two: a tunnel in frequency that leads to
-/// 1 % of overshoot leads to 1.8 %, and to a step that settles sooner than it has to. The design
-/// that is written satisfies its step when it is verified by itself.
+/// A gain that varies by six in addition to a lag that varies by two: tracking limits derived from
+/// 1 % of overshoot lead to 1.8 %, and to a step that settles sooner than required. The design that
+/// is written satisfies its step when it is verified separately.
 #[test]
 fn steps_lead_where_limits_of_tracking_do_not() {
     let text = "schema = 1\ntitle = \"steps\"\n[plant]\nnumerator = \"k*a\"\ndenominator = \"(s + 0.5)*(s + a)\"\n\
@@ -422,9 +423,9 @@ fn steps_lead_where_limits_of_tracking_do_not() {
     assert!(number(found, "worst_settling_time_s") <= 1.5, "{words}");
 }
 
-/// What is told of the structure that is taken is of the controller that is printed: the least
-/// margin that its audit found, and its largest gain from noise to command, of G/(1 + L) with the
-/// nominal plant at k = 1, a = 8.
+/// Values reported for the selected structure are those of the printed controller: the least margin
+/// that its audit found, and its largest gain from noise to command, of G/(1 + L) with the nominal
+/// plant at k = 1, a = 8.
 fn of_its_own(object: &Value) {
     let structures = object["structures"].as_array().unwrap();
     let taken = structures.iter().find(|one| one["taken"] == true).unwrap();
@@ -451,8 +452,8 @@ fn of_its_own(object: &Value) {
 
 /// The sum of the poles of the closed loop is that of the plant, -20 rad/s, for every gain, so that
 /// the slowest of the three decays to exp(-20/3 0.25) = 0.19 in the required time at best: no P
-/// settles within 2 %. The limits that lead there are tightened until there are none any more.
-/// Those of a narrow band begin with faster roots.
+/// settles within 2 %. The limits that lead the search are tightened until no controller satisfies
+/// them. The limits of a narrow band begin with faster roots.
 ///
 /// ORIGIN: analytic.
 #[test]
@@ -472,8 +473,8 @@ fn a_step_that_no_gain_satisfies_is_answered() {
 }
 
 /// A resonance of 25 rad/s whose gain is known to a factor of four: a PID with filter satisfies a
-/// step of 0.5 s, and misses the limits of tracking that lead a search there. It is moved by its
-/// steps, and no longer structure is taken.
+/// step of 0.5 s, but not the limits of tracking that begin the search. The search then follows its
+/// steps, and no longer structure is selected.
 #[test]
 fn the_shortest_structure_is_led_by_its_steps() {
     let step = "[[specification]]\nkind = \"step\"\novershoot_percent = 10\nsettling_time = \"0.5 s\"\n";

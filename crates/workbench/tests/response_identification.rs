@@ -1,5 +1,5 @@
-//! From recorded signals to a measured family: the response of the nonlinear machine, shaken by a
-//! multisine and by noise, is its linear plant.
+//! Identification of a measured family from recorded signals: the response of the nonlinear
+//! machine, excited by a multisine and by noise, is its linear plant.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
@@ -22,7 +22,7 @@ use serde_json::Value;
 const BENCHMARK: &str = include_str!("../../../examples/benchmark/closed_loop.toml");
 
 /// Viscous friction and four equal edges, so that the plant is the machine's derivative at null.
-/// Steps of the solver that are right to 1e-8.
+/// Steps of the solver are accurate to 1e-8.
 const SMOOTH: [&str; 5] = [
     "simulation.tolerance=1e-8",
     "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }",
@@ -92,7 +92,7 @@ fn member(answer: &Answer) -> Value {
     json["response"]["members"][0].clone()
 }
 
-/// rad/s, response, radius.
+/// Frequency in rad/s, response, radius.
 fn points(member: &Value) -> Vec<(f64, Complex64, f64)> {
     let rows = member["frequencies"].as_array().unwrap();
     let point = |row: &Value| {
@@ -103,9 +103,9 @@ fn points(member: &Value) -> Vec<(f64, Complex64, f64)> {
     rows.iter().map(point).collect()
 }
 
-/// Two roads to one response: the nonlinear machine in time, and the linear plant of its project.
-/// Without noise they meet in the limit of small commands; with noise in the force, over 40
-/// recordings, the discs hold the response without it as often as they state.
+/// Two methods for one response: the nonlinear machine in time, and the linear plant of its
+/// project. Without noise they agree in the limit of small commands; with noise in the force, over
+/// 40 recordings, the discs contain the noise-free response at the stated rate.
 #[test]
 fn the_machine_shaken_by_a_multisine_shows_the_linear_plant() {
     let [loaded, gently] = [AMPLITUDE, AMPLITUDE / 2.0].map(rig);
@@ -129,7 +129,7 @@ fn the_machine_shaken_by_a_multisine_shows_the_linear_plant() {
     for repetition in 0..40 {
         let mut state = stream(7, repetition);
         let noisy: Vec<f64> = outputs.iter().map(|force| force + 2.0 * normal(&mut state)).collect();
-        // the last five periods and one that is left out
+        // the last five periods and an omitted one
         let last = times.len() - 6 * 1280..;
         let table =
             table("time_s,command_v,force_n", [&times[last.clone()], &inputs[last.clone()], &noisy[last]]);
@@ -146,11 +146,11 @@ fn the_machine_shaken_by_a_multisine_shows_the_linear_plant() {
     assert!(all >= 200 && (held as f64 - 0.95 * all as f64).abs() < 10.5, "{held} of {all}");
 }
 
-/// How far 2 G(a/2) - G(a) may be from the plant, as a share of it: what is left of the curvature,
-/// of the beginning, and of the solver's steps.
+/// Largest relative deviation of 2 G(a/2) - G(a) from the plant: the remainders of the curvature,
+/// of the initial state, and of the solver's steps.
 ///
 /// Below its hydraulic resonance the plant is K/(s + p), p by the flow-pressure coefficient. That
-/// grows by the share m = K_v |u|/(2 K_vin U_n) with the edge that opens, and falls by (lambda
+/// grows by the fraction m = K_v |u|/(2 K_vin U_n) with the edge that opens, and falls by (lambda
 /// u/U_n)^2/2 with the leakage, so that
 ///
 /// ```text
@@ -159,7 +159,7 @@ fn the_machine_shaken_by_a_multisine_shows_the_linear_plant() {
 ///
 /// three times the mean squares, because the pressure moves with the command (the cubic of a normal
 /// signal). The line through both amplitudes takes k_1 and leaves half of k_2 a^2. From rest, the
-/// pole has the forced response to forget: over n periods T its transform, over that of a line, is
+/// transient of the pole must decay: its transform over n periods T, divided by that of a line, is
 /// at most
 ///
 /// ```text
@@ -174,15 +174,15 @@ fn remainder(frequency: f64, pole: f64) -> f64 {
     let lines = LINES.map(|line| 2.0 * std::f64::consts::PI * line / PERIOD);
     let forgotten =
         (-pole * SETTINGS.settling.unwrap()).exp() * lines.map(|w| 1.0 / lag(w)).iter().sum::<f64>();
-    // the force of all lines is nearly that of the first: both amplitudes err by a share of it
+    // the force of all lines is nearly that of the first: both amplitudes err by a fraction of it
     let of_solver = 3.0 * 1e-8 * lag(frequency) / lag(lines[0]);
     0.5 * curvature + 2.0 / (5.0 * PERIOD) * forgotten + of_solver
 }
 
-/// The whole way: what is identified is a family that `verify` audits.
+/// The complete path: the identification gives a family that `verify` audits.
 #[test]
 fn what_is_identified_is_a_family_that_verify_audits() {
-    // ten periods of 0.2 s of lines 1, 2, 4, 9 through 5/(0.05 s + 1), and more of it
+    // ten periods of 0.2 s of lines 1, 2, 4, 9 through 5/(0.05 s + 1), and some more
     let times: Vec<f64> = (0..2000).map(|n| f64::from(n) * 1e-3).collect();
     let plant = |w: f64, gain: f64| gain / Complex64::new(1.0, 0.05 * w);
     let line = |k: f64| 2.0 * std::f64::consts::PI * k / 0.2;
@@ -228,21 +228,20 @@ fn what_is_identified_is_a_family_that_verify_audits() {
     let json: Value = serde_json::from_str(&verdict.json).unwrap();
     assert_eq!(json["command"], "verify");
     assert!(!json["specifications"].as_array().unwrap().is_empty(), "{json}");
-    // the discs of the records are in the family, each widened for all rows to hold at once
+    // the discs of the records are in the family, each enlarged so that all rows hold at once
     let stated =
         |member: &MeasuredPlant| member.radii.len() == 4 && member.radii.iter().all(|one| *one > 0.0);
     assert!(read.plants().iter().all(stated));
     assert!(verdict.text.contains("within the discs that hold all measured responses"), "{}", verdict.text);
 }
 
-/// A signal that starts with nothing but noise in its output has incoherent frequencies, which are
-/// listed with the reason.
+/// Frequencies at which noise hides the output are incoherent, and are listed with the reason.
 #[test]
 fn what_noise_hides_is_left_out_with_the_reason() {
     let mut state = stream(3, 0);
     let times: Vec<f64> = (0..4096).map(|n| f64::from(n) * 2e-3).collect();
     let inputs: Vec<f64> = times.iter().map(|_| normal(&mut state)).collect();
-    // what follows the mean of two neighbours vanishes at half of the sampling frequency
+    // the mean of two neighbours vanishes at half of the sampling frequency
     let means = std::iter::once(0.0).chain(inputs.windows(2).map(|pair| (pair[0] + pair[1]) / 2.0));
     let outputs: Vec<f64> = means.map(|mean| mean + 0.1 * normal(&mut state)).collect();
     let text = table("time [s],input,output", [&times, &inputs, &outputs]);
@@ -296,7 +295,7 @@ fn records_that_give_no_response_are_refused_with_the_place_and_the_reason() {
 }
 
 /// u = 0.004 (r - y), held for a row, around 1000/(0.1 s + 1), with a disturbance of the force that
-/// returns through the controller: time, reference, command and force.
+/// acts through the controller: time, reference, command and force.
 fn closed_loop(rows: usize, moves: f64) -> [Vec<f64>; 4] {
     let mut state = stream(5, 0);
     let decay = (-0.01_f64).exp();
@@ -324,7 +323,7 @@ fn with_reference([times, references, inputs, outputs]: &[Vec<f64>; 4]) -> Strin
     text
 }
 
-/// A closed loop is refused without its reference, and with it shows the plant instead of -1/C.
+/// A closed loop is rejected without its reference, and with it gives the plant instead of -1/C.
 #[test]
 fn a_closed_loop_shows_its_plant_by_the_reference_alone() {
     let usual = ResponseSettings::default();
@@ -353,7 +352,7 @@ fn a_closed_loop_shows_its_plant_by_the_reference_alone() {
     assert!(all > 20 && held as f64 > expected - 3.1 * (0.05 * expected).sqrt(), "{held} of {all}");
 }
 
-/// What a project states of the loop is taken: an open one is not tested, a closed one needs its
+/// The loop stated in a project is used: an open one is not tested, a closed one needs its
 /// reference.
 #[test]
 fn the_project_may_state_the_loop() {
@@ -371,7 +370,7 @@ fn the_project_may_state_the_loop() {
     assert_eq!(member(&stated("open").unwrap())["method"], "local_polynomials");
 }
 
-/// The answer on a record of a closed loop whose reference it lacks, with this `[controller]`.
+/// The answer for a record of a closed loop without its reference, with this `[controller]`.
 fn by_controller(signals: &[Vec<f64>; 4], controller: &str) -> Result<Answer, IdentifyError> {
     let [times, _, inputs, outputs] = signals;
     let project = format!(
@@ -383,7 +382,7 @@ fn by_controller(signals: &[Vec<f64>; 4], controller: &str) -> Result<Answer, Id
     response_watched(&source, Some(&loaded), &ResponseRequest::default(), &mut |_| true)
 }
 
-/// By a controller that is a gain, the reference that was not recorded is the one that was.
+/// A controller that is a gain reconstructs the reference that was not recorded.
 #[test]
 fn a_declared_controller_takes_the_place_of_the_reference() {
     let law =
@@ -409,7 +408,7 @@ fn a_declared_controller_takes_the_place_of_the_reference() {
     ask::refused(by_controller(&signals, &limited), &["`command` is at the limit of [controller] in"]);
 }
 
-/// A controller that integrates, acts in every fourth row and two rows late: the discs hold the
+/// A controller that integrates, acts in every fourth row and two rows late: the discs contain the
 /// plant from row to row.
 #[test]
 fn a_declared_controller_has_its_samples_and_its_delay() {
@@ -447,7 +446,7 @@ fn a_declared_controller_has_its_samples_and_its_delay() {
     assert!(all > 20 && held as f64 > expected - 3.1 * (0.05 * expected).sqrt(), "{held} of {all}");
 }
 
-/// Rows that come early and late throughout are moved to even ones, which is said.
+/// Rows that are early and late throughout are resampled to even ones, and this is reported.
 #[test]
 fn uneven_rows_are_moved_and_said_to_be() {
     let mut state = stream(8, 0);

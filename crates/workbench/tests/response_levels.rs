@@ -1,5 +1,5 @@
-//! Records of one plant at two amplitudes: a linear plant is hardly ever reported as not linear,
-//! and a saturation is, with the size that its describing function has.
+//! Records of one plant at two amplitudes: a linear plant is hardly ever reported as nonlinear, but
+//! a saturation is, with the size of its describing function.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
@@ -44,7 +44,7 @@ fn white(seed: u64, size: f64, count: usize) -> Vec<f64> {
     (0..count).map(|_| size * normal(&mut state)).collect()
 }
 
-/// A resonance of 32 Hz with a damping of 0.1, its input held.
+/// A resonance of 32 Hz with a damping ratio of 0.1, with its input held.
 fn resonance(input: &[f64]) -> Vec<f64> {
     let [mut last, mut before, mut given] = [0.0; 3];
     let next = |now: &f64| {
@@ -65,8 +65,8 @@ fn multisine(amplitude: f64) -> Vec<f64> {
     (0..1200).map(|n| amplitude * (1..=20).map(|k| line(n, k)).sum::<f64>()).collect()
 }
 
-/// Of a linear plant 5 % of the pairs of records are reported where the noise of one dominates, and
-/// no more where both have as much.
+/// False reports for a linear plant: 5 % of the pairs of records if the noise of one dominates, and
+/// no more if both have equal noise.
 #[test]
 fn a_linear_plant_is_reported_as_often_as_stated() {
     let alarms = |levels: [f64; 2]| {
@@ -82,7 +82,7 @@ fn a_linear_plant_is_reported_as_often_as_stated() {
         };
         (0..300).map(one).sum::<usize>()
     };
-    // ORIGIN: analytic, 300 of 0.05, and 99.8 % of a binomial distribution: 3.1 deviations
+    // ORIGIN: analytic, 300 times 0.05, and 99.8 % of a binomial distribution: 3.1 deviations
     let spread = 3.1 * (300.0_f64 * 0.05 * 0.95).sqrt();
     let dominated = alarms([0.1, 1.0]);
     assert!((dominated as f64 - 15.0).abs() < spread, "{dominated} of 300");
@@ -90,7 +90,7 @@ fn a_linear_plant_is_reported_as_often_as_stated() {
     assert!((alike as f64) < 15.0 + spread, "{alike} of 300");
 }
 
-/// Records of noise that are not equally long are compared between their frequencies.
+/// Records of noise with different lengths are compared between their frequencies.
 #[test]
 fn records_of_different_length_are_compared_between_their_frequencies() {
     let one = |seed: u64| {
@@ -105,7 +105,7 @@ fn records_of_different_length_are_compared_between_their_frequencies() {
         usize::from(is_reported(&found[0]))
     };
     let alarms: usize = (0..60).map(one).sum();
-    // ORIGIN: analytic, 60 of 0.05: 3, and 3.1 standard deviations of a binomial distribution
+    // ORIGIN: analytic, 60 times 0.05: 3, and 3.1 standard deviations of a binomial distribution
     assert!((alarms as f64) < 3.0 + 3.1 * (60.0_f64 * 0.05 * 0.95).sqrt(), "{alarms} of 60");
 }
 
@@ -142,7 +142,7 @@ fn a_saturation_is_found_with_the_gain_it_has_for_noise() {
     assert!(found > frequencies.len() / 2, "{found} of {}", frequencies.len());
 }
 
-/// A sine of twice the limit: N = 2/pi (asin(1/2) + 1/2 sqrt(3/4)).
+/// A sine with twice the amplitude of the limit: N = 2/pi (asin(1/2) + 1/2 sqrt(3/4)).
 #[test]
 fn the_answer_has_the_describing_function_of_a_saturation() {
     let text = |seed: u64, amplitude: f64| {

@@ -1,5 +1,5 @@
-//! A scenario that states no start begins with the closed loop at rest: nothing moves until
-//! something happens.
+//! A scenario that states no start begins with the closed loop at rest: nothing moves until an
+//! event.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -19,7 +19,7 @@ const EXAMPLES: [&str; 5] = [
     include_str!("../../../examples/ybitu/pipe.toml"),
 ];
 
-/// A project with this scenario in the place of its own.
+/// A project with this scenario instead of its own.
 fn still(text: &str, reference: &str) -> String {
     let before = text.split("[[scenario]]").next().unwrap();
     let settings = text.find("[simulation]").map_or("", |place| &text[place..]);
@@ -38,8 +38,8 @@ fn run(text: &str, settings: &[String]) -> Result<ScenarioRun, SimulateError> {
         .map(|mut runs| runs.remove(0))
 }
 
-/// What no signal may move by in a second, as its name ends: a part in a hundred thousand of what a
-/// run moves it by.
+/// Largest permitted change of a signal in a second, by the ending of its name: a part in a hundred
+/// thousand of its change in a run.
 fn allowed(name: &str) -> f64 {
     let of_a_joint = [("_rad_per_s", 1e-6), ("_rad", 1e-8), ("_n_m", 1e-3)];
     let of_gas = [("_ratio", 1e-6), ("_w", 1e-6)];
@@ -81,7 +81,7 @@ fn every_example_rests_at_its_reference() {
     }
 }
 
-/// The benchmark with a rod on one side alone and leakage across its piston.
+/// The benchmark with a rod on one side only and leakage across its piston.
 fn asymmetric(text: &str) -> String {
     let Some((before, after)) = text.split_once("piston_area = \"1.583e-3 m2\"") else { panic!("{text}") };
     let after = after.split_once("stroke").unwrap().1;
@@ -90,7 +90,7 @@ fn asymmetric(text: &str) -> String {
     format!("{before}{unequal}\nstroke{after}")
 }
 
-/// Between the pressures that the open valve would leave there is more than a kilonewton.
+/// The pressures that the open valve would leave cause a force of more than a kilonewton.
 #[test]
 fn leakage_across_an_asymmetric_piston_is_held() {
     check_still(&asymmetric(&still(EXAMPLES[1], "")), &[], 0.0);
@@ -144,7 +144,7 @@ const OTHERS: [&[&str]; 4] = [
 fn machines_of_all_components_rest() {
     for number in 0..36 {
         let chosen = [
-            // some of these loops are unstable: what rounding leaves has no time to grow
+            // some of these loops are unstable: rounding errors have no time to grow
             ["controller.numerator=0.0002*s + 0.002", "scenario.0.duration=0.2 s"].as_slice(),
             LINES[number % 6],
             SUPPLIES[number % 3],
@@ -158,15 +158,14 @@ fn machines_of_all_components_rest() {
     }
 }
 
-/// What a valve with memory, a pump that yields and a wall at some distance leave open stays where
-/// it is; noise aside.
+/// A machine with valve memory, a yielding pump and a distant wall stays at rest, apart from noise.
 #[test]
 fn a_machine_with_everything_rests_against_its_wall() {
     let quiet = ["force_sensor.noise=0 N", "simulation.method=rosenbrock"];
     let of = |force_n: f64| format!("reference = [{{ at = 0, force = {force_n} }}]");
     for force_n in [0.0, 1e3] {
         let text = still(EVERYTHING, &of(force_n));
-        // converters give the command in steps: without them
+        // converters give the command in steps, so they are removed
         let text = text.replace("[controller.quantization]", "[unused]");
         let text = match text.split_once("[unused]") {
             Some((before, after)) => format!("{before}{}", &after[after.find("[prefilter]").unwrap()..]),
@@ -176,8 +175,8 @@ fn a_machine_with_everything_rests_against_its_wall() {
     }
 }
 
-/// Without an integral part the loop rests with an error: it is the equilibrium of the closed loop
-/// that it begins in.
+/// A loop without an integral part rests with an error: it begins in the equilibrium of the closed
+/// loop.
 ///
 /// ```text
 /// u = k (r - F)
@@ -205,12 +204,12 @@ fn a_proportional_controller_rests_with_its_error() {
 
 #[test]
 fn where_there_is_no_rest_it_is_said_why() {
-    // more than the supply can push
+    // more than the supply can provide
     let text = still(BENCHMARK, "reference = [{ at = 0, force = \"50 kN\" }]");
     let error = run(&text, &[]).unwrap_err();
     assert!(matches!(error, SimulateError::NoRest { .. }), "{error}");
     assert!(error.to_string().contains("has no equilibrium at its reference of 50 kN"), "{error}");
-    // a command beyond what the controller may give
+    // a command beyond the limit of the controller
     let limited = settings(&["controller.saturation=1 mV"]);
     let error = run(&asymmetric(&still(EXAMPLES[1], "")), &limited).unwrap_err();
     let SimulateError::RestBeyondLimit { command_v, limit_v, .. } = error else { panic!("{error}") };
@@ -218,7 +217,7 @@ fn where_there_is_no_rest_it_is_said_why() {
     assert!(error.to_string().ends_with("beyond the limit of 1 mV"), "{error}");
 }
 
-/// What acts at time zero and is no reference acts from there: rest is before it.
+/// An input at time zero that is not a reference acts from there: rest is before it.
 #[test]
 fn a_step_later_is_a_step() {
     let text =

@@ -1,5 +1,4 @@
-//! One and the same run is the same wherever it is asked for, however long it goes on and whenever
-//! it begins.
+//! Runs of one kind are identical in every command, for every duration and every beginning.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -32,8 +31,8 @@ const SLOW: [&str; 3] = [
     "scenario.0.load_motion.distance=0.004",
 ];
 
-/// What is repeated at smaller tolerances is what a run at the smallest one gives, and every
-/// command reports the same.
+/// A run repeated at smaller tolerances gives the result of a run at the smallest one, and every
+/// command reports it.
 #[test]
 fn a_repeated_run_is_that_of_the_smallest_tolerance_in_every_command() {
     let repeated = simulated(CONTINUOUS, &SLOW);
@@ -41,14 +40,14 @@ fn a_repeated_run_is_that_of_the_smallest_tolerance_in_every_command() {
     let exact = simulated(CONTINUOUS, &[&SLOW[..], &["simulation.tolerance=1e-10"]].concat());
     let spread = repeated["repetition"]["spread"]["part"].as_f64().unwrap();
     assert!((peak(&repeated) / peak(&exact) - 1.0).abs() < spread.max(1e-3), "{repeated}");
-    // side by side with another
+    // compared with another project
     let projects = [SLOW[1], "scenario.0.load_motion.duration=0.3"]
         .map(|duration| load(CONTINUOUS, &[SLOW[0], duration, SLOW[2]], &[]));
     let compared = command::compare_watched(&Memory::default(), &projects, false, &mut |_| true).unwrap();
     let compared: Value = serde_json::from_str(&compared.json).unwrap();
     let side_by_side = &compared["projects"][0]["scenarios"][0];
     assert_eq!((peak(side_by_side), &side_by_side["repetition"]), (peak(&repeated), &repeated["repetition"]));
-    // and as the run of a campaign that varies next to nothing
+    // and as the run of a campaign whose variation is negligible
     let campaign = format!(
         "{CONTINUOUS}\n[campaign.parameters]\n\"supply.tank_pressure\" = {{ minimum = 0, maximum = 1e-3 }}\n"
     );
@@ -84,7 +83,7 @@ fn alike(one: &[Option<f64>; 4], other: &[Option<f64>; 4], part: f64) {
 }
 
 /// A sampled loop, an open one, a motor and a line with waves have the peaks of their first seconds
-/// however long they go on.
+/// for every duration.
 #[test]
 fn peaks_do_not_depend_on_how_long_a_run_goes_on() {
     let open = "scenario=[{ name = \"open\", duration = 1, start = { position = \"100 mm\" }, command = [{ at = 0.1, voltage = \"50 mV\" }, { at = 0.2, voltage = 0 }] }]";
@@ -114,7 +113,7 @@ fn peaks_do_not_depend_on_how_long_a_run_goes_on() {
     }
 }
 
-/// A step at a sample acts there, whatever number of samples it is at: of the reference, and of the
+/// A step at a sample acts there, whatever the number of the sample: for the reference, and for the
 /// motion of the load, with a delay of the controller and without.
 #[test]
 fn a_run_that_begins_some_samples_later_is_the_same() {
@@ -130,7 +129,7 @@ fn a_run_that_begins_some_samples_later_is_the_same() {
             "simulation.tolerance=1e-9".to_string(),
         ];
         let settings: Vec<&str> = settings.iter().map(String::as_str).chain(more.iter().copied()).collect();
-        // from rest: nothing but the steps moves
+        // from rest: only the steps move
         run_of(&CONTINUOUS.replace("start = {", "# {"), &settings).windows
     };
     for (sample_tenths, samples, more) in [
@@ -146,7 +145,7 @@ fn a_run_that_begins_some_samples_later_is_the_same() {
     }
 }
 
-/// The text of a comparison has what a run by itself says of its repetition.
+/// The text of a comparison contains the statement of a single run on its repetition.
 #[test]
 fn a_comparison_says_what_a_run_says() {
     let said = answer(CONTINUOUS, &SLOW, &[], &Request::Simulate(SimulateRequest::default())).text;

@@ -1,5 +1,5 @@
-//! What a verdict rests on, in words: every delay of the loop, the force of a region that states
-//! none, and a valve that leaks most beside null.
+//! Basis of a verdict, in words: every delay of the loop, the force of a region that states none,
+//! and a valve that leaks most next to null.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -51,7 +51,7 @@ fn the_position_of_all_plants_is_named() {
     }
 }
 
-/// Dead time of plant, sensor, controller and lines, each where it is.
+/// Dead time of plant, sensor, controller and lines, each named at its place.
 #[test]
 fn every_delay_of_a_loop_is_named() {
     let sensor = "sensor={ numerator = \"1\", denominator = \"0.01*s + 1\", delay = \"20 ms\" }";
@@ -85,8 +85,8 @@ fn every_delay_of_a_loop_is_named() {
 
 const ALONE: &str = "family.operating_region has positions alone";
 
-/// A region of positions alone is one of a piston that is blocked at null; its force is stated, and
-/// zero force is another one.
+/// A region that has positions only is that of a piston blocked at null; its force is stated, and
+/// zero force is a different region.
 #[test]
 fn a_region_of_positions_alone_states_its_force() {
     let region = |text: &str| format!("family.operating_region={{ position = {text} }}");
@@ -113,7 +113,7 @@ fn a_region_of_positions_alone_states_its_force() {
     assert_eq!(said(HOSE, &[none, &positions, one, other]), None);
     let one_rod = HOSE.replace("rod_diameter = \"22 mm\"", "rod_diameters = [\"0 mm\", \"22 mm\"]");
     assert!(said(&one_rod, &[none, &positions, one, other]).unwrap().contains("kN"));
-    // with a force, or a velocity, or zero force that is stated
+    // regions with a force, or a velocity, or a stated zero force
     let at_rest = "operating_point.load_force=0";
     assert_eq!(said(HOSE, &[none, &positions, at_rest]), None);
     let moving = "family.operating_region={ position = [\"50 mm\", \"400 mm\"], velocity = [0, \"1 mm/s\"] }";
@@ -128,11 +128,11 @@ fn a_region_of_positions_alone_states_its_force() {
 
 const BESIDE: &str = "the valve leaks most beside null";
 
-/// Two humps of the leakage are stated with the numbers of the blocked valve, of a cylinder's and
-/// of a motor's; one that is highest at null says nothing.
+/// Two humps of the leakage are stated with the numbers of the blocked valve, for a cylinder and
+/// for a motor; a leakage that is highest at null is not mentioned.
 #[test]
 fn a_valve_that_leaks_most_beside_null_is_told() {
-    // every command on the linear loop says it, as `check` does
+    // every command on the linear loop states it, like `check`
     let humps = "valve.leakage_shape=40";
     for request in [Request::Check, VERIFY, Request::Linearize { sweep: None }] {
         let said = json(HOSE, &[humps], &[], &request);

@@ -1,4 +1,4 @@
-//! A notch that sampling moves is reported, and one that is to stay does.
+//! A notch that sampling moves is reported, and one that is held at its frequency is not moved.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -28,8 +28,8 @@ elements = [
 const KEPT: &str = "controller.discretization_frequency=\"1000 rad/s\"";
 const VERIFY: Request = Request::Verify { proof: false, on_machine: false };
 
-/// Tustin's rule takes w to 2/T atan(w T/2), which makes the loop unstable and is said; with the
-/// frequency stated, or matched roots, it is stable and nothing is said.
+/// Tustin's rule moves w to 2/T atan(w T/2), which makes the loop unstable and is reported; with
+/// the frequency stated, or matched roots, it is stable and nothing is reported.
 #[test]
 fn a_moved_notch_is_reported_and_can_be_kept() {
     let moved = answer(LOOP, &[], &[], &VERIFY);
@@ -45,16 +45,17 @@ fn a_moved_notch_is_reported_and_can_be_kept() {
         assert!(!answer(LOOP, &[kept], &[], &VERIFY).text.contains("moves the zero"), "{kept}");
         assert_eq!(json(LOOP, &[kept], &[], &VERIFY)["stable"], true, "{kept}");
     }
-    // fast against the notch nothing moves by more than two percent: (w T/2)^2/3
+    // nothing moves by more than two percent if the sample time is short compared with the notch:
+    // (w T/2)^2/3
     let fast = answer(LOOP, &["controller.sample_time=\"0.4 ms\""], &[], &VERIFY);
     assert!(!fast.text.contains("moves the zero"), "{}", fast.text);
-    // a frequency elsewhere moves it the other way
+    // a frequency elsewhere moves it in the other direction
     let beyond = answer(LOOP, &["controller.discretization_frequency=\"1300 rad/s\""], &[], &VERIFY);
     assert!(beyond.text.contains("moves the zero") && beyond.text.contains("keeps one frequency alone"));
 }
 
-/// The controller of every command is the sampled one whose response is that of the continuous one
-/// at the stated frequency.
+/// Commands use the sampled controller, whose response is that of the continuous one at the stated
+/// frequency.
 #[test]
 fn the_response_is_kept_at_the_stated_frequency() {
     for frequency in [200.0, 777.0, 1500.0] {
@@ -72,7 +73,7 @@ fn the_response_is_kept_at_the_stated_frequency() {
     }
 }
 
-/// A stated frequency that cannot be kept is refused, or reported to have no effect.
+/// A stated frequency that cannot be preserved is rejected, or reported to have no effect.
 #[test]
 fn a_frequency_that_cannot_be_kept() {
     let read = |settings: &[&str]| {

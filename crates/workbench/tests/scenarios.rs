@@ -1,4 +1,4 @@
-//! What drives a scenario: kinds of reference, open-loop commands, forces from outside.
+//! Inputs of a scenario: kinds of reference, open-loop commands, external forces.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -17,7 +17,7 @@ use serde_json::Value;
 
 const BENCHMARK: &str = include_str!("../../../examples/simulation/benchmark.toml");
 
-/// The benchmark with this scenario in place of its own.
+/// The benchmark with this scenario instead of its own.
 fn rig(scenario: &str) -> String {
     let (rig, rest) = BENCHMARK.split_once("[[scenario]]").unwrap();
     let simulation = &rest[rest.find("[simulation]").unwrap()..];
@@ -52,8 +52,8 @@ fn last(values: Vec<f64>) -> f64 {
 }
 
 // ORIGIN: analytic, the sum of the parts
-/// The parts add up: steps hold until the next, all else is added from its start on and holds what
-/// it ends with.
+/// Parts of a reference add up: steps hold until the next, all others are added from their start on
+/// and hold their final value.
 #[test]
 fn a_reference_is_the_sum_of_its_parts() {
     let scenario = format!(
@@ -76,7 +76,7 @@ fn a_reference_is_the_sum_of_its_parts() {
         steps + ramp + sine
     };
     for (time, reference) in run.record.times_s.iter().zip(&run.record.reference_n) {
-        // a look that rounding brings to a break has either side
+        // a sample that rounding moves to a break has either side
         let at_break = [0.1, 0.4].iter().any(|brk| (time - brk).abs() < 1e-9);
         assert!(at_break || (reference - expected(*time)).abs() < 1e-9, "{time}: {reference}");
     }
@@ -90,7 +90,7 @@ fn a_reference_is_the_sum_of_its_parts() {
             Cause::ReferenceMotion { kind: "sine" },
         ]
     );
-    // a sine has no overshoot; what follows it has an error, and the largest is that of its rows
+    // a sine has no overshoot; the part after it has an error, and the largest is that of its rows
     let (window, metrics) = &run.windows[3];
     assert_eq!(metrics.overshoot_percent, Err(Unmeasured::ReferenceMoves));
     let from = row(&run, window.start_s);
@@ -101,7 +101,7 @@ fn a_reference_is_the_sum_of_its_parts() {
     assert!(metrics.steady_state_error_n.is_ok() && run.windows[0].1.tracking_error_peak_n.is_err());
 }
 
-/// The same function of time in two forms gives the same run, byte for byte.
+/// A function of time in two forms gives one run, byte for byte.
 #[test]
 fn forms_of_one_reference_give_one_run() {
     let pairs = [
@@ -122,7 +122,7 @@ fn forms_of_one_reference_give_one_run() {
     }
 }
 
-/// Points on a straight line are a ramp, held at its end.
+/// Points on a straight line are a ramp that holds its end.
 #[test]
 fn a_recorded_reference_is_followed_like_what_was_recorded() {
     let source = Memory::default()
@@ -135,8 +135,8 @@ fn a_recorded_reference_is_followed_like_what_was_recorded() {
     let file = of("{ kind = \"file\", start = \"0.1 s\", file = \"ramp.csv\" }");
     let forces = ramp.record.signal(Signal::Force).into_iter().zip(file.record.signal(Signal::Force));
     let apart = forces.map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
-    // ORIGIN: analytic, the cubic bends where the ramp ends, by at most 4/27 of the 50 N that the
-    // last interval rises
+    // ORIGIN: analytic, the cubic bends at the end of the ramp, by at most 4/27 of the 50 N by
+    // which the last interval rises
     assert!(apart < 50.0 * 4.0 / 27.0, "{apart}");
     let end = |run: &ScenarioRun| last(run.record.signal(Signal::Force));
     assert!((end(&ramp) - end(&file)).abs() < 1.0, "{} {}", end(&ramp), end(&file));
@@ -151,9 +151,9 @@ fn a_recorded_reference_is_followed_like_what_was_recorded() {
     );
 }
 
-// ORIGIN: analytic, the command of the one run is that of the other
-/// The command of a closed loop, played back to the machine alone, gives the force of the closed
-/// loop.
+// ORIGIN: analytic, the command of one run is that of the other
+/// The command of a closed loop, played back to the machine without the controller, gives the force
+/// of the closed loop.
 #[test]
 fn a_command_played_back_gives_the_force_it_was_recorded_with() {
     let closed = run(&format!(
@@ -165,7 +165,7 @@ fn a_command_played_back_gives_the_force_it_was_recorded_with() {
     }
     let text =
         rig(&format!("duration = \"1 s\"\n{START}\ncommand = {{ kind = \"file\", file = \"command.csv\" }}"));
-    // nobody controls: the law is not there at all
+    // no control: the law is absent
     let (before, rest) = text.split_once("[controller]").unwrap();
     let text = format!("{before}{}", &rest[rest.find("[[scenario]]").unwrap()..]);
     let open = run_with(&text, &Memory::default().with("command.csv", recorded));
@@ -182,8 +182,8 @@ fn a_command_played_back_gives_the_force_it_was_recorded_with() {
     assert!(found >= largest && found < 1.001 * largest, "{found} {largest}");
 }
 
-/// Neither the limit of a controller nor its samples act on a stated command, and the answer says
-/// so.
+/// Neither the limit of a controller nor its samples act on a stated command, and the answer
+/// reports this.
 #[test]
 fn an_open_loop_does_not_know_its_controller() {
     let scenario =
@@ -209,14 +209,14 @@ fn an_open_loop_does_not_know_its_controller() {
     assert_eq!(run["events"][0]["metrics"]["overshoot_percent"], Value::Null);
     let table = String::from_utf8(answer.files[0].bytes.clone()).unwrap();
     let [names, second] = [0, 1].map(|line| table.lines().nth(line).unwrap().split(',').collect::<Vec<_>>());
-    // no reference, before or behind a prefilter
+    // no reference, before or after a prefilter
     assert_eq!((names[1], names[21]), ("reference_n", "filtered_reference_n"));
     assert_eq!((second[1], second[21]), ("", ""));
 }
 
 const SPRUNG: &str = "[load]\nmodel = \"spring_mass_damper\"\nmass = \"20 kg\"\nstiffness = \"2 MN/m\"\ndamping = \"3 kN.s/m\"\n";
 
-/// At rest a load on a spring stands where F_e + F_x holds it, and the loop keeps F_e.
+/// Equilibrium of a load on a spring is where F_e + F_x holds it, and the loop maintains F_e.
 #[test]
 fn a_force_from_outside_moves_the_load_by_its_spring() {
     let of = |outside: &str| {
@@ -240,7 +240,7 @@ fn a_force_from_outside_moves_the_load_by_its_spring() {
     let (window, metrics) = pushed.windows.last().unwrap();
     assert_eq!((window.cause, window.start_s), (Cause::ExternalForce { about_joint: false }, 1.0));
     assert!(metrics.disturbance_peak_n.unwrap() > 1.0);
-    // before it begins nothing of it is known
+    // no effect before it begins
     let before = row(&alone, 0.9);
     let known = |run: &ScenarioRun| run.record.signal(Signal::Force)[before];
     assert!((known(&alone) - known(&pushed)).abs() < 0.1, "{} {}", known(&alone), known(&pushed));
@@ -259,7 +259,7 @@ fn a_campaign_takes_an_open_loop_and_other_references() {
     assert_eq!(plan(sine).unwrap().windows()[0].cause, Cause::ReferenceMotion { kind: "sine" });
 }
 
-/// Goes on from the end of another run: with its state file in the source.
+/// Continues from the end of another run, with its state file in the source.
 fn continued(first: &str, second: &str, change: impl Fn(String) -> String) -> [ScenarioRun; 2] {
     let text = change(rig(first));
     let loaded = load(&text, &Memory::default());
@@ -271,8 +271,8 @@ fn continued(first: &str, second: &str, change: impl Fn(String) -> String) -> [S
     [run, run_with(&change(rig(second)), &source)]
 }
 
-/// Two seconds at once, and the second half gone on with: the same within what the tolerance
-/// leaves.
+/// Two seconds at once, and two halves of which the second continues the first: equal within the
+/// tolerance.
 fn halves_are_the_whole(change: impl Fn(String) -> String + Copy, tolerance_n: f64) {
     let start = format!("output_step = \"1 ms\"\n{START}");
     let step = "reference = [{ at = \"0.1 s\", force = \"4 kN\" }, { at = \"0.55 s\", force = \"3 kN\" }]";
@@ -280,14 +280,14 @@ fn halves_are_the_whole(change: impl Fn(String) -> String + Copy, tolerance_n: f
     let whole =
         run_with(&change(rig(&format!("duration = \"1 s\"\n{start}\n{step}\n{motion}"))), &Memory::default());
     let first = format!("duration = \"0.5 s\"\n{start}\n{step}\n{motion}");
-    // from its own time zero: the reference as it stands, and its step
+    // from its own time zero: the reference as written, and its step
     let second = "duration = \"0.5 s\"\noutput_step = \"1 ms\"\nstart = { file = \"one.state.toml\" }\n\
                   reference = [{ at = 0, force = \"4 kN\" }, { at = \"0.05 s\", force = \"3 kN\" }]";
     let [one, other] = continued(&first, second, change);
     let forces = whole.record.signal(Signal::Force);
     let half = row(&whole, 0.5);
     let looks = |run: &ScenarioRun| run.record.signal(Signal::Force);
-    // steps that end at another break than those of the whole
+    // steps that end at other breaks than those of the whole run
     let first = forces.iter().zip(looks(&one)).map(|(whole, half)| (whole - half).abs()).fold(0.0, f64::max);
     assert!(first < tolerance_n, "{first}");
     let apart = |signal: Signal| {
@@ -298,7 +298,7 @@ fn halves_are_the_whole(change: impl Fn(String) -> String + Copy, tolerance_n: f
     assert!(apart(Signal::Force) < tolerance_n, "{} N", apart(Signal::Force));
     assert!(apart(Signal::LoadPosition) < 1e-12, "{}", apart(Signal::LoadPosition));
     assert!(apart(Signal::PressureA) < 1e3 * tolerance_n, "{} Pa", apart(Signal::PressureA));
-    // at the first instant nothing has been integrated yet: the bits are those of the end
+    // nothing is integrated yet at the first instant: the bits are those of the end
     assert_eq!(other.record.samples[0].machine, one.record.samples.last().unwrap().machine);
     let command = |run: &ScenarioRun| run.record.signal(Signal::Control);
     let difference =
@@ -313,7 +313,7 @@ fn a_saved_state_goes_on_as_if_nothing_had_been() {
     halves_are_the_whole(tight, 0.02);
 }
 
-/// A setting that moves across the end of a run goes on from where it was, and is refused
+/// A setting that moves across the end of a run continues from its value, and is rejected
 /// elsewhere.
 #[test]
 fn a_setting_goes_on_from_where_it_was() {
@@ -381,7 +381,7 @@ fn a_sampled_controller_goes_on_with_what_it_knows() {
         )
     };
     halves_are_the_whole(sampled, 0.02);
-    // of noise, so that its random numbers go on too
+    // noise, so that its random numbers continue too
     let noisy = |text: String| sampled(text).replace("[force_sensor]", "[force_sensor]\nnoise = \"5 N\"");
     halves_are_the_whole(noisy, 0.02);
 }
@@ -433,8 +433,8 @@ fn a_state_is_refused_where_it_does_not_fit_and_not_written_where_it_would_not_b
     assert_eq!(unsaved(&late), NotSaved::CommandDelayed);
 }
 
-/// The expansion of a hose is known up to the pressure it is stated at: beyond, supply and chambers
-/// are reported with both numbers.
+/// The expansion of a hose is known up to the pressure at which it is stated: beyond it, supply and
+/// chambers are reported with both numbers.
 #[test]
 fn an_expansion_is_carried_on_beyond_its_pressure_with_a_warning() {
     let hose = include_str!("../../../examples/ybitu/hose.toml");

@@ -1,4 +1,4 @@
-//! The linear loop and the impedance of a rig whose force is seen through a sensor.
+//! The linear loop and the impedance of a rig whose force is measured through a sensor.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -17,7 +17,7 @@ fn rational(numerator: &[f64], denominator: &[f64]) -> TransferFunction {
     TransferFunction::from_polynomials(&polynomial(numerator), &polynomial(denominator)).unwrap()
 }
 
-/// P = 1/s, G = 2, H = 10/(s + 10): Y/R = 2 (s + 10)/(s^2 + 10 s + 20) and U/R = s Y/R.
+/// Loop with P = 1/s, G = 2, H = 10/(s + 10): Y/R = 2 (s + 10)/(s^2 + 10 s + 20) and U/R = s Y/R.
 #[test]
 fn the_step_goes_around_the_sensor() {
     let feedback = Compensator::new(vec![Element::Gain(2.0)]);
@@ -32,7 +32,7 @@ fn the_step_goes_around_the_sensor() {
     }
     assert_eq!(step.command_v_per_n[0], 2.0);
 
-    // Sampled fast the loop is nearly the same; the sensor is held with the plant.
+    // Sampled fast, the loop is nearly the continuous one; the sensor is held with the plant.
     let timing = Timing { sample_time_s: Some(1e-4), ..Timing::default() };
     let sampled =
         linear_loop(&plant, &Controller { feedback, timing, ..Controller::default() }, &sensor, 1.0);
@@ -55,7 +55,7 @@ fn stability_is_that_of_the_loop_with_its_sensor() {
     }
 }
 
-/// Z = Z_open/(1 + P G H) at every frequency.
+/// Impedance Z = Z_open/(1 + P G H) at every frequency.
 #[test]
 fn impedance_is_closed_through_the_sensor() {
     let hose = include_str!("../../../examples/ybitu/hose.toml");

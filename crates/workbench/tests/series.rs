@@ -64,8 +64,8 @@ fn the_family_is_the_rig_at_its_nominal() {
     }
 }
 
-/// Every number of the element may be uncertain and moves the family: one that did not would be
-/// refused.
+/// Every number of the element may be uncertain and moves the family; a number that did not would
+/// be rejected.
 #[test]
 fn its_numbers_may_be_uncertain() {
     let more = "\"series.mass\" = { nominal = \"2 kg\", minimum = \"1 kg\", maximum = \"3 kg\", points = 2 }\n\
@@ -83,7 +83,7 @@ fn its_numbers_may_be_uncertain() {
     assert_eq!(of_series.count(), 5);
 }
 
-/// Stiffness to infinity: verdict's plant, impedance and the reduced models are those of the rig
+/// Infinite stiffness: verdict's plant, impedance and the reduced models are those of the rig
 /// without a spring.
 #[test]
 fn a_rigid_spring_is_none() {
@@ -112,7 +112,7 @@ fn without_series() -> String {
     format!("{before}[uncertainty]{}", kept.join("\n"))
 }
 
-/// K_eq of oil, sensor and spring in series, where it is said and where it is used.
+/// K_eq of oil, sensor and spring in series, where it is printed and where it is used.
 #[test]
 fn the_spring_is_in_the_equivalent_stiffness_and_in_the_sizing() {
     let project = project_of(SERIES, &[]);
@@ -124,7 +124,7 @@ fn the_spring_is_in_the_equivalent_stiffness_and_in_the_sizing() {
     let expected = 1.0 / (1.0 / stiffness + 1.0 / 20e6 + 1.0 / 2.24e6);
     assert!((value("dynamics.equivalent_stiffness") / expected - 1.0).abs() < 1e-12);
     assert!((value("series.deflection_at_stall") - value("cylinder.stall_force") / 2.24e6).abs() < 1e-12);
-    // the wire's formula by hand: C = 4, K_w = 15/12 + 0.615/4
+    // the formula for the wire by hand: C = 4, K_w = 15/12 + 0.615/4
     let wahl = 1.25 + 0.153_75;
     let wire = (8.0 * wahl * value("cylinder.stall_force") * 4.0 / (std::f64::consts::PI * 6e8)).sqrt();
     assert!((value("series.coil.wire_diameter") / wire - 1.0).abs() < 1e-12);
@@ -136,9 +136,9 @@ fn the_spring_is_in_the_equivalent_stiffness_and_in_the_sizing() {
     assert!((problem.linear.sensor_stiffness / in_series - 1.0).abs() < 1e-12);
 }
 
-/// What the load meets at high frequencies is the spring and its damper, in open and closed loop;
-/// the impedance closes over what is measured, which is shown at single frequencies from the paths
-/// themselves.
+/// The impedance at the load at high frequencies is that of the spring and its damper, in open and
+/// closed loop; the loop is closed over the measured force, which is verified at single frequencies
+/// from the paths themselves.
 #[test]
 fn the_impedance_is_that_at_the_load() {
     use phea_hydraulics::plant::{LinearPlant, LinearSeries, SeriesOutput};
@@ -174,8 +174,8 @@ fn the_impedance_is_that_at_the_load() {
     }
 }
 
-/// Audit of the linear loop and the machine under the same controller: both stable, with the same
-/// overshoot of a small step.
+/// Audit of the linear loop and simulation of the machine under one controller: both stable, with
+/// equal overshoot of a small step.
 #[test]
 fn the_machine_follows_its_linear_loop() {
     let viscous = "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }";
@@ -205,8 +205,8 @@ fn lines_in_motion_and_the_spring_go_together() {
     assert!((told / own - 1.0).norm_sqr() < 1e-18, "{told} {own}");
 }
 
-/// A progressive spring is reported before the verdict; what the reduced models leave out is
-/// reported with them.
+/// A progressive spring is reported before the verdict; effects that the reduced models leave out
+/// are reported with them.
 #[test]
 fn what_is_not_counted_is_told() {
     let spring =
@@ -217,15 +217,15 @@ fn what_is_not_counted_is_told() {
     assert!(said.text.contains("series.damping and series.mass are counted in the plant"), "{}", said.text);
 }
 
-/// The force of a spring that stiffens, or that comes to its end, is no multiple of a state: the
-/// metrics of a run are those of its rows all the same.
+/// The force of a spring that stiffens, or that reaches its end, is not a multiple of a state: the
+/// metrics of a run are those of its rows nevertheless.
 #[test]
 fn metrics_are_those_of_the_rows() {
     let alone = |text: &str| {
         text.replace("damping = \"300 N.s/m\"\nmass = \"1.5 kg\"\n", "").replace("stop_damping = 0.3\n", "")
     };
     let sensed = |text: &str| text.replace("force_from = \"deflection\"\n", "");
-    // with nothing else that a family needs
+    // the project without everything else that a family needs
     let plain = STIFFENING.split_once("[uncertainty]").unwrap();
     let plain = format!("{}[controller]{}", plain.0, plain.1.split_once("[controller]").unwrap().1);
     let even = |text: &str| text.replace("progression = 0.2\n", "");

@@ -1,5 +1,5 @@
-//! The load of a controlled machine shaken by small sines, its velocity fed forward late or in
-//! samples: the force is that of the linear loop.
+//! The load of a controlled machine shaken by small sines, with its velocity fed forward, delayed
+//! or sampled: the force is that of the linear loop.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
@@ -13,13 +13,13 @@ use phea_workbench::setup::Setup;
 const GENTLE: &str = "controller.numerator=0.0002*s + 0.0016";
 const SPRUNG: &str =
     "load={ model = \"spring_mass_damper\", mass = 100, stiffness = \"200 kN/m\", damping = \"500 N.s/m\" }";
-/// Of the velocity of the load: its errors in the gain, its delay, its filter.
+/// Errors of the velocity sensor: gain, delay, filter.
 const SHOWN: [&str; 3] = [
     "velocity_sensor={ gain_error = \"-20 %\", delay = \"0.7 ms\" }",
     "velocity_sensor={ gain_error = \"10 %\", filter_frequency = \"60 Hz\" }",
     "velocity_sensor={ filter_frequency = \"40 Hz\", filter_damping_ratio = 0.6, delay = \"3.2 ms\" }",
 ];
-/// (Pd + K V_d P)/(1 + L) of the linear loop.
+/// Response (Pd + K V_d P)/(1 + L) of the linear loop.
 fn of_loop(settings: &[&str], hertz: u32) -> Complex64 {
     let project = loaded(settings, &[]);
     let setup = Setup::new(&project).unwrap();
@@ -31,7 +31,7 @@ fn of_loop(settings: &[&str], hertz: u32) -> Complex64 {
     found.load_motion / (1.0 + found.plant * found.sensor * feedback)
 }
 
-/// The same with each sensor of the velocity, which changes the force as the linear loop says.
+/// Checks each sensor of the velocity, which changes the force as predicted by the linear loop.
 fn check_shown(settings: &[&str], hertz: u32) {
     for shown in SHOWN {
         check(&[settings, &[shown]].concat(), &[hertz]);
@@ -40,7 +40,7 @@ fn check_shown(settings: &[&str], hertz: u32) {
     }
 }
 
-/// What is fed forward changes the force, and the linear loop says by how much.
+/// Checks that the feed-forward changes the force by the amount that the linear loop predicts.
 fn check(settings: &[&str], hertz: &[u32]) {
     for &hertz in hertz {
         let fed = [settings, &["controller.load_velocity_feed_forward.gain=20"]].concat();

@@ -14,13 +14,14 @@ use phea_workbench::setup::Setup;
 const GENTLE: &str = "controller.numerator=0.0004*s + 0.0032";
 const SPRUNG: &str =
     "load={ model = \"spring_mass_damper\", mass = 100, stiffness = \"200 kN/m\", damping = \"5000 N.s/m\" }";
-/// A spring alone, with a damper, and with a mass too.
+/// Impedances: a spring, a spring with a damper, and both with a mass.
 const IMPEDANCES: [&str; 3] = [
     "controller.impedance={ stiffness = \"200 kN/m\" }",
     "controller.impedance={ stiffness = \"100 kN/m\", damping = \"2000 N.s/m\", filter_time = \"2 ms\" }",
     "controller.impedance={ stiffness = \"20 kN/m\", damping = \"2500 N.s/m\", mass = \"80 kg\", filter_time = \"5 ms\" }",
 ];
-/// Pd + P u of the force, u = -G H (y/X)/(1 + L) of the linear loop around y = F_e + Z_v X_L.
+/// Response Pd + P u of the force, u = -G H (y/X)/(1 + L) of the linear loop around y = F_e + Z_v
+/// X_L.
 fn of_loop(settings: &[&str], hertz: u32) -> Complex64 {
     let project = loaded(settings, &[]);
     let setup = Setup::new(&project).unwrap();
@@ -34,8 +35,8 @@ fn of_loop(settings: &[&str], hertz: u32) -> Complex64 {
     force.load_motion + force.plant * command
 }
 
-/// Impedances change the force, one of them at least five times as much as they may disagree, and
-/// the linear loop says by how much.
+/// Checks that impedances change the force by the amount that the linear loop predicts; one of them
+/// by at least five times the permitted difference.
 fn check(settings: &[&str], hertz: &[u32]) {
     let mut largest = 0.0_f64;
     for impedance in IMPEDANCES {

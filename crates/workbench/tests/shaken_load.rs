@@ -19,8 +19,7 @@ use phea_workbench::simulate::simulate_project;
 use phea_workbench::source::Memory;
 
 const BENCHMARK: &str = include_str!("../../../examples/benchmark/closed_loop.toml");
-/// Viscous friction and four equal edges: nothing has a kink. The controller has nothing to do,
-/// which starts at rest.
+/// Viscous friction and four equal edges: nothing has a kink. The controller starts at rest.
 const SMOOTH: [&str; 6] = [
     "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }",
     "valve.flow_coefficients=[3e-7, 3e-7, 3e-7, 3e-7]",
@@ -33,9 +32,9 @@ pub(crate) const WAVES: &str =
     "line={ hose = \"eaton_synflex_3130_08\", length = \"1.5 m\", model = \"transmission_line\" }";
 pub(crate) const SENSOR: &str =
     "sensor={ numerator = \"2000\", denominator = \"s + 2000\", delay = \"0.5 ms\" }";
-/// m/s
+/// Amplitude of the velocity, m/s.
 const SPEED: f64 = 2e-5;
-/// What is looked at is the last second of these, s: periods and samples are whole in it.
+/// Duration, s, of which the last second is evaluated: it contains whole periods and samples.
 const DURATION: f64 = 3.0;
 
 pub(crate) fn loaded(settings: &[&str], more: &[String]) -> Project {
@@ -46,8 +45,8 @@ pub(crate) fn loaded(settings: &[&str], more: &[String]) -> Project {
     project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}")).project
 }
 
-/// Force over motion of the load or its ground in N/m at this number of hertz, as the machine
-/// answers at the samples.
+/// Force over motion of the load or its ground in N/m, at this frequency in Hz, from the machine's
+/// samples.
 pub(crate) fn of_machine(settings: &[&str], hertz: u32) -> Complex64 {
     let frequency = TAU * f64::from(hertz);
     let amplitude = SPEED / frequency;
@@ -74,7 +73,7 @@ pub(crate) fn of_machine(settings: &[&str], hertz: u32) -> Complex64 {
     sum * Complex64::I * 2.0 / count / amplitude
 }
 
-/// What the linear plant of a rig answers at a frequency in rad/s.
+/// Response of the linear plant of a rig at a frequency in rad/s.
 pub(crate) fn response(compensation: &Compensation, rig: Rig, frequency: f64) -> MemberResponse {
     let member = match rig.in_motion {
         Some(moving) => compensation.responding(Arc::new(moving)),

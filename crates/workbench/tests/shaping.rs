@@ -15,7 +15,7 @@ use phea_workbench::shaping::{Change, RequestedChange, Shaped, pass_words};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
-/// An integrator with a gain of 1 to 4, and what is demanded of it; the controller follows.
+/// An integrator with a gain of 1 to 4, and its specifications; the controller follows.
 const SERVO: &str = "schema = 1\ntitle = \"x\"\n[plant]\nnumerator = \"k\"\ndenominator = \"s\"\n[uncertainty]\n\
     k = { nominal = 1, minimum = 1, maximum = 4, points = 3, spacing = \"log\" }\n[[specification]]\n\
     kind = \"robust_stability\"\nlimit = 1.3\nfrequencies = [1, 10, 100]\n[[specification]]\nkind = \"sensitivity\"\n\
@@ -80,8 +80,8 @@ fn changes_are_made_in_the_order_in_which_they_stand() {
     assert!((magnitude - 20.0 * (0.3 / 1.0025_f64.sqrt()).log10()).abs() < 1e-9, "{magnitude}");
 }
 
-/// Without a change a file stays as it is, whatever form its controller has; with one, only the
-/// lines of the controller differ, and the controller reads back as what was shown.
+/// A file without a change remains as it is, whatever the form of its controller; with a change,
+/// only the lines of the controller differ, and the controller reads back as printed.
 #[test]
 fn everything_else_stays_byte_for_byte() {
     let lead = (Change::Add, "{ kind = \"lead\", zero_frequency = 5, pole_frequency = 50 }");
@@ -131,7 +131,7 @@ fn everything_else_stays_byte_for_byte() {
         assert_eq!(saved.contains('\r'), text.contains('\r'));
         let bare = saved.replace("\r\n", "");
         assert!(!text.contains('\r') || !bare.contains(['\r', '\n']), "{saved:?}");
-        // comments on the law go with it
+        // comments on the law are removed with it
         let is_kept = |line: &&str| {
             !line.contains("controller") && !is_controller(line) && !line.trim_start().starts_with('#')
         };
@@ -194,7 +194,7 @@ fn polynomials_become_a_general_element_and_lose_nothing() {
     assert!(controller.ends_with(rest), "{controller}");
 }
 
-/// A law in z, as it is deployed, stays in z; and rounded coefficients are those of the shaped law.
+/// A law in z, as deployed, remains in z; and rounded coefficients are those of the shaped law.
 #[test]
 fn a_law_in_z_is_shaped_in_z() {
     let law =
@@ -209,7 +209,7 @@ fn a_law_in_z_is_shaped_in_z() {
 
 const DEPLOYED: &str = r#"{ kind = "general", gain = 0.5, poles = [0.9], domain = "z" }"#;
 
-/// Each solved element, in a continuous and in a sampled loop, and in place of another element: the
+/// Solved elements, in a continuous and in a sampled loop, and replacing another element: the
 /// nominal loop passes the point.
 #[test]
 fn the_loop_passes_the_wanted_point() {
@@ -233,7 +233,7 @@ fn the_loop_passes_the_wanted_point() {
             ("notch with frequency = 4 Hz", Some(-4.0), Some(-30.0)),
         ] {
             if controller == sampled && wish.starts_with("complex_zeros") {
-                continue; // two zeros cannot be sampled behind one pole
+                continue; // two zeros cannot be sampled with one pole
             }
             if wish == "zero" && controller == sampled {
                 continue;
@@ -266,7 +266,7 @@ fn the_loop_passes_the_wanted_point() {
     assert!((reached - 3.0).abs() < 1e-9 && (turned + 70.0).abs() < 1e-9, "{reached} {turned}");
 }
 
-/// k/(s) with k from 1 to 4 behind a gain g: |T| = 4g/|jw + 4g| and |S| = w/|jw + g| by hand.
+/// Plant k/s with k from 1 to 4 and a gain g: |T| = 4g/|jw + 4g| and |S| = w/|jw + g| by hand.
 #[test]
 fn margins_are_those_of_the_worst_plant_the_worst_first() {
     let (found, _) = shaped(SERVO, &[(Change::Add, "{ kind = \"gain\", value = 1.5 }")]);
@@ -282,7 +282,7 @@ fn margins_are_those_of_the_worst_plant_the_worst_first() {
     assert!((margin(0) - decibels(0.5 * (1.0 + 1.5_f64 * 1.5).sqrt())).abs() < 1e-9);
     assert!((margin(1) - decibels(1.3 * 37.0_f64.sqrt() / 6.0)).abs() < 1e-9);
     assert_eq!((&margins[0]["plant"]["k"], &margins[1]["plant"]["k"]), (&1.0.into(), &4.0.into()));
-    // |S| = 1/2 takes a gain of sqrt 3
+    // |S| = 1/2 requires a gain of sqrt 3
     let change = margins[0]["gain_change_db"].as_f64().unwrap();
     assert!((change - decibels(3.0_f64.sqrt() / 1.5)).abs() < 1e-6, "{change}");
     assert_eq!((&margins[0]["allowed"], &margins[1]["allowed"]), (&false.into(), &true.into()));
@@ -304,7 +304,7 @@ fn the_prefilter_is_shaped_by_itself() {
     );
     let saved = String::from_utf8(answer(&project, &[], &[], &request).files[0].bytes.clone()).unwrap();
     let prefilter = read(&saved).project.prefilter.unwrap();
-    // -63.4 degrees of 1/(s + 1) leave 26.6, which a pole at 4 rad/s gives at 2 rad/s
+    // the -63.4 degrees of 1/(s + 1) leave 26.6, which a pole at 4 rad/s gives at 2 rad/s
     let ElementKind::Pole { frequency: pole } = prefilter.transfer.elements[1].kind else { panic!() };
     assert!((pole - 4.0).abs() < 1e-9, "{pole}");
     assert!(saved.contains(POLYNOMIALS) && saved.contains("[prefilter]\n"));
@@ -312,7 +312,7 @@ fn the_prefilter_is_shaped_by_itself() {
     assert!(matches!(refused, Err(CommandError::Shaping(_))));
 }
 
-/// Message, column and help of a change that is refused.
+/// Message, column and help of a change that is rejected.
 fn refusal(change: Change, text: &str) -> (String, usize, String) {
     let request = request(Shaped::Controller, &[(change, text)]);
     let project = format!("{SERVO}{POLYNOMIALS}");

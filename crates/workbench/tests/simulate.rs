@@ -69,7 +69,7 @@ fn at(run: &ScenarioRun, signal: Signal, time_s: f64) -> f64 {
 #[test]
 fn the_benchmark_gives_the_force_of_its_reference_solution() {
     let run = run_of(BENCHMARK, &["simulation.tolerance=1e-8"]);
-    // ORIGIN: other tool, CVODE BDF at 1e-12 on the same equations in C
+    // ORIGIN: other tool, CVODE BDF at 1e-12 on equal equations in C
     for (time_s, force_n) in REFERENCE {
         let found = at(&run, Signal::Force, time_s);
         assert!((found - force_n).abs() < 0.02, "{time_s} s: {found} N, not {force_n}");
@@ -89,8 +89,8 @@ fn sampled_with_a_continuous_prefilter_it_gives_that_of_the_sampled_loop() {
     }
 }
 
-/// Rows decide nothing: the same metrics to the last bit, whether there are a hundred thousand or
-/// ten.
+/// Metrics do not depend on the rows: they agree to the last bit for a hundred thousand rows and
+/// for ten.
 #[test]
 fn metrics_do_not_depend_on_the_rows() {
     for more in
@@ -133,8 +133,8 @@ fn metrics_do_not_depend_on_how_long_it_goes_on() {
     }
 }
 
-/// A step at seventeen samples of 0.7 ms, which as numbers are not the decimal fraction, acts there
-/// as one at sixteen does.
+/// A step at seventeen samples of 0.7 ms, a number that is not the decimal fraction, acts there
+/// like one at sixteen.
 #[test]
 fn a_step_at_a_sample_is_not_a_sample_late() {
     let of = |samples: u32| {
@@ -147,7 +147,7 @@ fn a_step_at_a_sample_is_not_a_sample_late() {
             "simulation.tolerance=1e-9".to_string(),
         ];
         let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
-        // from rest: nothing but the step moves
+        // from rest: only the step moves
         let run = run_of(&BENCHMARK.replace("start = {", "# {"), &settings);
         let (_, metrics) = run.windows[0];
         [metrics.overshoot_percent, metrics.rise_time_s, metrics.control_peak_v].map(|value| value.unwrap())
@@ -158,7 +158,7 @@ fn a_step_at_a_sample_is_not_a_sample_late() {
     }
 }
 
-/// At rest the machine stays at rest, sampled or not, with all its imperfections.
+/// A machine at rest stays at rest, sampled or not, with all its imperfections.
 #[test]
 fn an_equilibrium_is_kept() {
     let everything = include_str!("../../project/tests/valid/simulation.toml");
@@ -249,7 +249,7 @@ fn with_motion(content: &str) -> (Memory, Project) {
     (Memory::default().with("motion.csv", content), load(BENCHMARK, &settings).project)
 }
 
-/// The quintic step of the benchmark as a table of 101 points moves the load the same way.
+/// The quintic step of the benchmark as a table of 101 points moves the load in an equal way.
 #[test]
 fn a_measured_motion_is_that_motion() {
     let mut text = "# a quintic step\ntime_ms, position_mm\n".to_string();
@@ -345,7 +345,7 @@ fn the_answer_has_the_keys_that_stay() {
     assert!(table.lines().nth(1).unwrap().starts_with("0,0,0,0,0,3500000,3500000,0.25,"));
 }
 
-/// Stopped after a while, what there is is printed and the answer is no.
+/// The rows of a stopped run are printed and the answer is no.
 #[test]
 fn a_run_that_is_stopped_keeps_what_it_has() {
     let loaded = load(BENCHMARK, &[]);
@@ -369,7 +369,8 @@ fn a_run_that_is_stopped_keeps_what_it_has() {
     assert!(!held.into_files()[0].bytes.is_empty());
 }
 
-/// Of a scenario of hours not every quarter of a millisecond is held to be drawn: it says so.
+/// Scenarios of hours are not stored for drawing at every quarter of a millisecond, and this is
+/// reported.
 #[test]
 fn a_long_scenario_says_how_often_it_was_looked_at() {
     for (duration, look_s, told) in [("5 s", 0.25e-3, false), ("2000 s", 5e-3, true)] {
@@ -410,8 +411,8 @@ fn projects_stand_side_by_side() {
     assert!(overloads[0].contains("its capacity is 3 kN"), "{}", answer.text);
 }
 
-/// Peaks of the force deviation for a load that moves by 5 mm as a first-order lag, hose and pipe
-/// with the controller of each.
+/// Peaks of the force deviation for a load that moves by 5 mm as a first-order lag, for hose and
+/// pipe, each with its own controller.
 #[test]
 fn the_hose_lets_less_force_through_than_the_pipe() {
     let hose = ["line.volume=1.9e-4", "line.effective_bulk_modulus=2.609e8"];
@@ -422,7 +423,7 @@ fn the_hose_lets_less_force_through_than_the_pipe() {
         "prefilter.numerator=484",
         "prefilter.denominator=s^2 + 44*s + 484",
     ];
-    // ORIGIN: other tool, independent runs of the same equations, which differ by up to 3 %
+    // ORIGIN: other tool, independent runs of equal equations, which differ by up to 3 %
     let cases = [("20 ms", 5810.0, 8900.0), ("50 ms", 2800.0, 4500.0), ("100 ms", 1600.0, 2550.0)];
     for (time_constant, with_hose, with_pipe) in cases {
         let motion = format!(
@@ -439,8 +440,8 @@ fn the_hose_lets_less_force_through_than_the_pipe() {
     }
 }
 
-/// A measurement that comes late and a command that comes late are one delay in the loop: the load
-/// feels no difference.
+/// A delayed measurement and a delayed command are one delay in the loop: the load feels no
+/// difference.
 #[test]
 fn a_late_sensor_is_a_late_command() {
     let motion_of = |settings: &[&str]| {
@@ -457,7 +458,7 @@ fn a_late_sensor_is_a_late_command() {
     };
     assert!(largest(&sensor, &command) < 0.1, "{}", largest(&sensor, &command));
     assert!(largest(&sensor, &none) > 5.0);
-    // a filter of 1/20000 s is as late as its time constant, as far as the loop is concerned
+    // a filter of 1/20000 s delays by its time constant, as far as the loop is concerned
     let fast = motion_of(&["sensor={ numerator = \"20000\", denominator = \"s + 20000\" }"]);
     let late = motion_of(&["controller.delay=50 us"]);
     assert!(largest(&fast, &late) < 0.1 * largest(&fast, &none), "{}", largest(&fast, &late));
@@ -465,8 +466,9 @@ fn a_late_sensor_is_a_late_command() {
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 
-/// Waves in the hose are faster than a loop of half the published gain: it sees little more of them
-/// than a lumped line has. (The published one rings for seconds, its margin used up.)
+/// Waves in the hose are faster than a loop of half the published gain: it is little more affected
+/// by them than by a lumped line. (The loop with the published gain rings for seconds, because its
+/// margin is exhausted.)
 #[test]
 fn waves_in_the_lines_change_little_for_the_loop() {
     let metrics_of = |model: &str| {

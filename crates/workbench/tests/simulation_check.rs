@@ -12,7 +12,7 @@ use serde_json::Value;
 
 const BENCHMARK: &str = include_str!("../../../examples/simulation/benchmark.toml");
 const SHORT: &str = "scenario.0.duration=3.2 s";
-/// The piston follows where its friction falls, and feeds a ringing that any error moves.
+/// The piston follows where its friction falls, and feeds a ringing that any error changes.
 const SLOW: [&str; 2] = ["scenario.0.load_motion.duration=1.5 s", "scenario.0.load_motion.distance=10 mm"];
 
 fn load(settings: &[&str]) -> Loaded {
@@ -44,8 +44,8 @@ fn apart(one: &ScenarioRun, other: &ScenarioRun) -> f64 {
     one.iter().zip(&other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
 }
 
-/// The run that is printed is the one without a check, and what is printed of it is the difference
-/// to a run at a tenth.
+/// The printed run is the one without a check, and the printed difference is that to a run at a
+/// tenth of the tolerance.
 #[test]
 fn a_check_is_the_difference_of_two_runs() {
     let run_checked = checked(&[SHORT, "simulation.tolerance=1e-5"]);
@@ -69,7 +69,7 @@ fn a_check_is_the_difference_of_two_runs() {
     assert_eq!(differences[Metric::Overshoot], run_checked.windows[1].1.overshoot_percent);
 }
 
-/// Twice the estimate covers the error against a run that is exact for all that matters here.
+/// Twice the estimate covers the error relative to a run that is exact for this purpose.
 #[test]
 fn the_estimate_covers_the_error() {
     let exact = run(&[SHORT, "simulation.tolerance=1e-10"]);
@@ -107,7 +107,7 @@ fn an_answer_tells_the_check_where_it_was_asked_for() {
     let named = |name: &str| signals.iter().find(|signal| signal["name"] == name).unwrap();
     assert_eq!(named("force_n")["difference"], check["force_difference_n"]);
     assert!(named("control_v")["part_of_peak"].is_f64());
-    // repeated until its metrics agree, it passes the check too
+    // repeated until its metrics agree, the run passes the check too
     let (right, text) = ask(&SLOW, &with_check());
     assert!(right["check"]["part_of_peak"].as_f64().unwrap() < 1e-3 && !text.contains(doubt), "{text}");
     // too few steps for a second pass
@@ -122,8 +122,8 @@ fn an_answer_tells_the_check_where_it_was_asked_for() {
     assert!(text.contains("could not be confirmed"), "{text}");
 }
 
-/// Without a check, too, it is reported where errors may have grown until they are visible: within
-/// the motion that lets the piston follow, at a frequency of the piston on the load cell, and not
+/// A run without a check also reports where errors may have grown until they are visible: within
+/// the motion in which the piston follows, at a frequency of the piston on the load cell, and not
 /// where nothing grows.
 #[test]
 fn a_run_reports_where_errors_may_be_visible() {
@@ -150,7 +150,7 @@ fn a_run_reports_where_errors_may_be_visible() {
     assert!((frequency / on_the_cell - 1.0).abs() < 0.3, "{frequency} rad/s, {on_the_cell} without oil");
 }
 
-/// What is stopped while it is checked keeps its run, and says how far the check came.
+/// A run that is stopped during its check is returned, with the time that the check reached.
 #[test]
 fn a_check_that_is_stopped_compares_what_there_is() {
     let project = load(&[SHORT]).project;

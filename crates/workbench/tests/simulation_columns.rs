@@ -1,4 +1,4 @@
-//! What the columns of a scenario's table are: each against what defines it.
+//! Columns of a scenario's table, each compared with its definition.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -27,8 +27,8 @@ fn apart(one: &[f64], other: &[f64]) -> (f64, f64) {
     (largest(&mut one.iter().zip(other).map(|(one, other)| one - other)), largest(&mut one.iter().copied()))
 }
 
-/// y = U - U_0 - z: without hysteresis the opening is the spool less the null bias, with it the
-/// spool leads or lags.
+/// Lead or lag y = U - U_0 - z: without hysteresis the opening is the spool less the null bias,
+/// with it the spool leads or lags.
 #[test]
 fn spool_and_opening_differ_by_bias_and_hysteresis() {
     let of = |settings: &[&str]| {
@@ -46,15 +46,15 @@ fn spool_and_opening_differ_by_bias_and_hysteresis() {
     assert_eq!(spool, opening);
 }
 
-/// What comes to the valve is what the controller gave out a delay ago.
+/// The command at the valve is the controller's output one delay earlier.
 #[test]
 fn the_command_behind_the_delay_is_that_before_it_later() {
     let looks = 8;
-    // a look each quarter of a millisecond
+    // a sample every quarter of a millisecond
     let continuous = record_of(&["controller.delay=2 ms", "simulation.tolerance=1e-9"]);
     let sampled = record_of(&["controller.delay=2 ms", "controller.sample_time=1 ms"]);
     for (record, tolerance) in [(continuous, 1e-5), (sampled, 0.0)] {
-        // between two samples, where rounding of times decides nothing
+        // between two samples, where rounding of times has no effect
         let between = |values: &[f64]| values.iter().skip(2).step_by(4).copied().collect::<Vec<_>>();
         let (before, behind) = (&record.signal(Signal::Control), record.signal(Signal::Command));
         let (difference, most) = apart(&between(&behind[looks..]), &between(&before[..before.len() - looks]));
@@ -65,8 +65,8 @@ fn the_command_behind_the_delay_is_that_before_it_later() {
     assert_eq!(without.signal(Signal::Control), without.signal(Signal::Command));
 }
 
-/// u = K_p e + the integral part, of a law K_p + K_i/s; sampled by the bilinear rule, half a
-/// sample's integral goes with K_p.
+/// Command u = K_p e + the integral part, for a law K_p + K_i/s; sampled by the bilinear rule, half
+/// a sample's integral belongs to K_p.
 #[test]
 fn proportional_and_integral_part_are_the_command() {
     for (sample_time_s, setting) in [(0.0, None), (1e-3, Some("controller.sample_time=1 ms"))] {
@@ -101,8 +101,8 @@ fn the_limit_is_all_between_the_unlimited_command_and_that_given_out() {
     }
 }
 
-/// H = 1 measures the force itself; 1/(tau s + 1) what its own equation makes of it, here by the
-/// trapezoid rule.
+/// A sensor H = 1 measures the force itself; with 1/(tau s + 1) the measurement satisfies its
+/// equation, here by the trapezoid rule.
 #[test]
 fn the_measurement_is_the_force_behind_the_sensor() {
     let plain = record_of(&[]);
@@ -119,8 +119,8 @@ fn the_measurement_is_the_force_behind_the_sensor() {
     assert!(largest < 0.5 && apart(&force, &measured).0 > 20.0, "{largest} N");
 }
 
-/// A lumped line has one pressure, that of its chamber; segments have another at the valve while
-/// oil flows.
+/// A lumped line has one pressure, that of its chamber; with segments the pressure at the valve
+/// differs while oil flows.
 #[test]
 fn pressures_at_both_ends_of_a_line() {
     let [port, chamber] =

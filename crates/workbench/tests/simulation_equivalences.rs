@@ -1,5 +1,5 @@
-//! The simulated machine against models that it must agree with: its own linearisation, the static
-//! friction curve, and hose next to pipe as they were computed independently.
+//! The simulated machine compared with models with which it must agree: its linearisation, the
+//! static friction curve, and independent computations for hose and pipe.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
@@ -53,16 +53,16 @@ impl Observer for Forces {
     }
 }
 
-/// What moves the machine about its rest.
+/// Input that excites the machine about its rest.
 enum Shaken {
-    /// Its command in V.
+    /// Command, V.
     Command,
-    /// Its load in m.
+    /// Load position, m.
     Load,
 }
 
-/// The force per command in N/V, or per load position in N/m, of the machine itself: a small sine
-/// until all that decays is gone, and then the fundamental of the force over whole periods.
+/// Force per command in N/V, or per load position in N/m, of the machine itself: a small sine until
+/// all transients have decayed, then the fundamental of the force over whole periods.
 fn small_signal(rig: &Rig, shaken: &Shaken, amplitude: f64, frequency: f64) -> Complex64 {
     const ROWS_PER_PERIOD: f64 = 32.0;
     let machine = Machine::new(&rig.actuator, &MachineOptions::default()).unwrap();
@@ -78,7 +78,7 @@ fn small_signal(rig: &Rig, shaken: &Shaken, amplitude: f64, frequency: f64) -> C
     let none = Input::Value(Profile::constant(0.0));
     let inputs = vec![Input::Value(command), none, Input::Value(ground.clone()), Input::Rate(ground)];
     let period = TAU / frequency;
-    // the slowest pole lies near 0.5 rad/s
+    // the slowest pole is near 0.5 rad/s
     let settled = (25.0 / period).ceil();
     let course = InputSchedule {
         duration_s: (settled + 2.5) * period,
@@ -112,7 +112,7 @@ fn small_signal(rig: &Rig, shaken: &Shaken, amplitude: f64, frequency: f64) -> C
 
 #[test]
 fn small_motions_are_those_of_the_linearised_rig() {
-    // Equal edges, or the flow gain at null would be one for each direction; out of the middle two
+    // Equal edges, or the flow gain at null would differ by direction; away from the middle two
     // pressures are needed.
     let project = load(&[
         "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }",
@@ -136,8 +136,8 @@ fn small_motions_are_those_of_the_linearised_rig() {
 }
 
 /// A load that moves to and fro at 5 mm/s at most: bristles and the smoothed curve both give the
-/// static friction. So much viscous friction that the curve never falls, or the piston would
-/// vibrate on its sensor, and nothing would be slow.
+/// static friction. The viscous friction is so large that the curve never falls; otherwise the
+/// piston would vibrate on its sensor, and nothing would be slow.
 #[test]
 fn at_slow_velocity_bristles_give_the_static_curve() {
     let slow = [
@@ -162,9 +162,9 @@ fn at_slow_velocity_bristles_give_the_static_curve() {
     }
 }
 
-/// Between hydraulic and measured force lie friction and acceleration: over the motion of the load
-/// their impulses are the change of the piston's momentum, and at rest friction alone is left,
-/// which the bristles still hold.
+/// The difference between hydraulic and measured force is friction and acceleration: over the
+/// motion of the load their impulse is the change of the piston's momentum, and at rest only the
+/// friction remains, which the bristles still hold.
 #[test]
 fn friction_lies_between_hydraulic_and_measured_force() {
     const MOVING_MASS_KG: f64 = 13.1;
@@ -195,7 +195,7 @@ fn friction_lies_between_hydraulic_and_measured_force() {
 }
 
 const HOSE: [&str; 0] = [];
-/// 0.35 m of 10.5 mm bore, and the controller that the thesis gives it.
+/// 0.35 m of 10.5 mm bore, with its controller of the thesis.
 const PIPE: [&str; 5] = [
     "line.volume=\"3.03e-5 m3\"",
     "line.effective_bulk_modulus=\"1.45 GPa\"",
@@ -204,7 +204,7 @@ const PIPE: [&str; 5] = [
     "prefilter.denominator=\"s^2 + 44*s + 484\"",
 ];
 
-/// What a load step of 5 mm with this time constant does to a force of 4 kN.
+/// Effect of a load step of 5 mm with this time constant on a force of 4 kN.
 fn disturbed(line: &[&str], time_constant_s: f64) -> (ScenarioRun, Metrics) {
     let motion = format!(
         "scenario.0.load_motion={{ kind = \"first_order\", start = \"3 s\", time_constant = \"{time_constant_s} s\", \
@@ -217,7 +217,7 @@ fn disturbed(line: &[&str], time_constant_s: f64) -> (ScenarioRun, Metrics) {
     (run, metrics)
 }
 
-/// How often the force crosses 4 kN while it is more than one percent off between crossings.
+/// Number of crossings of 4 kN with a deviation of more than one percent between them.
 fn swings(run: &ScenarioRun) -> usize {
     let force = run.record.signal(Signal::Force);
     let after = run.record.times_s.iter().zip(&force).filter(|(time, _)| **time >= 3.0);
@@ -228,7 +228,7 @@ fn swings(run: &ScenarioRun) -> usize {
 
 #[test]
 fn a_hose_feels_load_steps_less_than_a_pipe() {
-    // ORIGIN: other tool, Runge-Kutta in fixed steps on the same equations, written independently:
+    // ORIGIN: other tool, Runge-Kutta in fixed steps on equal equations, written independently:
     // peaks in N
     let expected = [(0.02, 5813.0, 8901.0), (0.05, 2803.0, 4527.0), (0.1, 1604.0, 2546.0)];
     for (time_constant_s, of_hose, of_pipe) in expected {
@@ -240,8 +240,8 @@ fn a_hose_feels_load_steps_less_than_a_pipe() {
         }
         let softening = pipe.disturbance_peak_n.unwrap() / hose.disturbance_peak_n.unwrap();
         assert!((1.5..=1.9).contains(&softening), "{softening}");
-        // Not what one might think: the hose's command works harder, and its force swings longer.
-        // Its gain is twice the pipe's.
+        // Contrary to expectation, the hose's command is larger, and its force swings longer. Its
+        // gain is twice the pipe's.
         assert!(hose.control_rms_v.unwrap() > 1.1 * pipe.control_rms_v.unwrap());
         assert!(swings(&hose_run) > swings(&pipe_run));
     }

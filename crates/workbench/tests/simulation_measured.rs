@@ -1,5 +1,5 @@
-//! Measured curves on simulated ones: what is made of a simulation's own table has an error that is
-//! known.
+//! Measured curves on simulated ones: a measurement made from a simulation's own table has a known
+//! error.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -15,7 +15,7 @@ use serde_json::Value;
 
 const BENCHMARK: &str = include_str!("../../../examples/simulation/benchmark.toml");
 
-/// The benchmark's first 2.5 s, with this put after its scenario and this file next to it.
+/// The benchmark's first 2.5 s, with these lines after its scenario and this file next to it.
 fn rig(measured: &str, content: &str) -> (Memory, project::Loaded) {
     let text = format!("{BENCHMARK}\n{measured}");
     let source = Memory::default().with("rig.toml", text.as_str()).with("bench.csv", content);
@@ -35,7 +35,7 @@ fn run(measured: &str, content: &str) -> ScenarioRun {
 const MAPPED: &str = "[[scenario.measured]]\nfile = \"bench.csv\"\ntime_column = \"t\"\ntime_unit = \"ms\"\noffset = \"1 s\"\n\
                       signals = [{ signal = \"force_n\", column = \"F\", unit = \"kN\" }, { signal = \"pressure_a_pa\", unit = \"bar\" }]\n";
 
-/// Force 25 N too large, pressure as it is; in other units, from a second before the scenario's
+/// Force 25 N too large, pressure unchanged; in other units, from a second before the scenario's
 /// start to after its end, every 0.7 ms.
 #[test]
 fn what_is_off_by_a_constant_has_its_nrmse() {

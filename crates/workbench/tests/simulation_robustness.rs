@@ -1,5 +1,5 @@
-//! Whole projects driven to where they hardly hold: right, or refused by name, never without end
-//! and never without a number.
+//! Whole projects driven to their limits: the result is right or rejected by name, and never
+//! endless or without a number.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -13,7 +13,7 @@ use phea_workbench::source::Memory;
 const BENCHMARK: &str = include_str!("../../../examples/simulation/benchmark.toml");
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 
-/// Steps that no case takes: several times what the worst of them does.
+/// Steps that no case exceeds: several times those of the worst.
 const MOST_STEPS: u64 = 60_000;
 
 fn read(text: &str, settings: &[&str]) -> Result<Loaded, Refusal> {
@@ -21,7 +21,7 @@ fn read(text: &str, settings: &[&str]) -> Result<Loaded, Refusal> {
     project::read(&Memory::default().with("rig.toml", text), "rig.toml", &settings, &[])
 }
 
-/// The project with its first scenario alone.
+/// The project with its first scenario only.
 #[track_caller]
 fn first_scenario(text: &str, settings: &[&str]) -> Project {
     let mut project = read(text, settings).unwrap_or_else(|report| panic!("{report}")).project;
@@ -29,7 +29,7 @@ fn first_scenario(text: &str, settings: &[&str]) -> Project {
     project
 }
 
-/// The first scenario, in which every number is one.
+/// The first scenario; checks that every number is finite.
 #[track_caller]
 fn run(text: &str, settings: &[&str]) -> ScenarioRun {
     let project = first_scenario(text, settings);
@@ -49,7 +49,7 @@ fn completed(text: &str, settings: &[&str]) -> ScenarioRun {
     run
 }
 
-/// The findings on a project that is refused.
+/// The findings on a project that is rejected.
 #[track_caller]
 fn refused(text: &str, settings: &[&str]) -> String {
     read(text, settings).map(|_| ()).expect_err("refused").to_string()
@@ -63,7 +63,7 @@ fn last(run: &ScenarioRun, signal: Signal) -> f64 {
     *run.record.signal(signal).last().unwrap()
 }
 
-/// The load moves by that much in that time, and the reference stays zero.
+/// The load moves by this distance in this time, and the reference stays zero.
 fn moved(distance: &str, duration: &str) -> String {
     format!(
         "scenario.0.load_motion={{ kind = \"smooth_step\", start = 0.5, distance = \"{distance}\", duration = \"{duration}\" }}"
@@ -72,7 +72,8 @@ fn moved(distance: &str, duration: &str) -> String {
 
 const QUIET: [&str; 2] = ["scenario.0.reference=[]", "scenario.0.duration=1.5 s"];
 
-/// Ten seconds without a command: leakage decides the pressures, and then nothing moves any more.
+/// Ten seconds without a command: leakage determines the pressures, and then nothing moves any
+/// more.
 #[test]
 fn a_valve_that_is_shut_for_ten_seconds() {
     let text = BENCHMARK.replace("load_motion =", "# load_motion =");
@@ -99,7 +100,7 @@ fn a_supply_that_is_lost() {
     assert!(refusal.contains("missing `flow` in [supply]"), "{refusal}");
 }
 
-/// Chambers above the supply give oil back to it; a tank above the supply is refused.
+/// Chambers above the supply return oil to it; a tank above the supply is rejected.
 #[test]
 fn pressures_that_are_reversed() {
     let above = ["scenario.0.start.pressure_a=90 bar", "scenario.0.start.pressure_b=85 bar"];
@@ -130,7 +131,7 @@ fn a_load_beyond_the_end_of_the_stroke() {
     }
 }
 
-/// A hose of no length is refused at its key; almost none of it is a stiff machine.
+/// A hose of no length is rejected at its key; a very short one is a stiff machine.
 #[test]
 fn hoses_without_length() {
     for (text, setting, words) in [
@@ -166,8 +167,8 @@ fn apart(text: &str, settings: &[&str]) -> f64 {
     implicit.iter().zip(&explicit).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
 }
 
-/// A microsecond between samples is as good as none; a tenth of a second is far too long for this
-/// loop, and still ends.
+/// A microsecond between samples is practically continuous; a tenth of a second is far too long for
+/// this loop, and the run still ends.
 #[test]
 fn samples_of_a_microsecond_and_of_a_tenth_of_a_second() {
     let early = ["scenario.0.reference=[{ at = 0.01, force = 4000 }]", "scenario.0.duration=0.05 s"];
@@ -185,8 +186,8 @@ fn samples_of_a_microsecond_and_of_a_tenth_of_a_second() {
     assert!(apart(BENCHMARK, &slowly) < 1e-5 * 4000.0);
 }
 
-/// 20 mm in 10 ms, there with every load and line: as the load says, and by an explicit method the
-/// same force.
+/// Motion of 20 mm in 10 ms, with every load and line: it follows the load, and an explicit method
+/// gives an equal force.
 #[test]
 fn twenty_millimetres_in_ten_milliseconds() {
     let torn = moved("20 mm", "10 ms");
@@ -224,8 +225,8 @@ fn twenty_millimetres_in_ten_milliseconds() {
     }
 }
 
-/// Where the last row falls short of the end, a scenario is whole all the same: its metrics are
-/// those of rows that reach it.
+/// A scenario with its last row before the end is complete nevertheless: its metrics are those of
+/// rows that reach the end.
 #[test]
 fn rows_that_do_not_divide_the_scenario() {
     let settling = |step: &str| -> Vec<f64> {
@@ -245,8 +246,8 @@ fn rows_that_do_not_divide_the_scenario() {
     }
 }
 
-/// A scenario whose table no disk could hold is refused at its key, with what is asked for and what
-/// there may be.
+/// A scenario whose table no disk could hold is rejected at its key, with the requested and the
+/// allowed size.
 #[test]
 fn more_rows_than_are_held() {
     for (setting, asked) in [

@@ -1,5 +1,4 @@
-//! The sizing procedure over hoses that do not exist: each has one thing wrong with it, and one has
-//! nothing.
+//! The sizing procedure over fictitious hoses: each has one fault, and one has none.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -32,7 +31,7 @@ fn one_rod() -> String {
     project
 }
 
-/// Hose, model, then K_H least and greatest and K_p at 1.5 m, then L_ho for K_p = 4e-4.
+/// Hose, model, then least and greatest K_H and K_p at 1.5 m, then L_ho for K_p = 4e-4.
 type Row = (&'static str, &'static str, [f64; 3], f64);
 
 // ORIGIN: recomputed by comparisons/recompute_rig.py
@@ -72,7 +71,7 @@ fn both_branches_of_every_hose(project: &str, rows: &[Row]) {
     for (hose, model, [least, greatest, gain], length) in rows {
         let found = candidate(&by_length, hose, model);
         assert_eq!(found["branch"], "by_length");
-        // Eight printed digits, a trailing zero left out.
+        // Eight printed digits, without trailing zeros.
         near(number(found, "stiffness_n_per_m"), *least, 5e-8);
         near(number(found, "stiffness_maximum_n_per_m"), *greatest, 5e-8);
         near(number(found, "proportional_gain_v_per_n"), *gain, 5e-8);
@@ -121,8 +120,8 @@ fn what_is_accepted_has_nothing_against_it() {
 #[test]
 fn accepted_ones_come_first_and_shorter_ones_before_longer_ones() {
     for size in [size(HOSE, None, None), size(HOSE, Some("4e-4"), None), size(HOSE, Some("1.5e-4"), None)] {
-        // The example declares `uniform`: of accepted and of refused ones its own model comes
-        // first.
+        // The example declares `uniform`: among accepted and among rejected candidates its own
+        // model comes first.
         let order: Vec<(bool, bool, bool, f64)> = size["candidates"]
             .as_array()
             .unwrap()
@@ -138,7 +137,7 @@ fn accepted_ones_come_first_and_shorter_ones_before_longer_ones() {
     }
 }
 
-/// Every candidate of a hose is or is not accepted, and has a reason with these words in it.
+/// Checks that every candidate of a hose has this acceptance, and a reason with these words.
 #[track_caller]
 fn says(size: &Value, hose: &str, accepted: bool, words: &[&str]) {
     for model in MODELS {
@@ -169,7 +168,7 @@ fn every_rejection_and_warning_names_its_numbers() {
             let text = reasons(row);
             assert!(!text.contains("bar") && !text.contains("m/s") && !text.contains("mm"), "{text}");
         }
-        // By length the gain is below the floor; by gain the floor takes more hose than there is.
+        // By length the gain is below the floor; by gain the floor needs more hose than available.
         for row in candidates(&size, "fictitious_rigid", model) {
             assert_eq!(row["accepted"], false);
             let words = if row["branch"] == "by_length" { "below the practical" } else { "the stock is 3 m" };
@@ -178,8 +177,8 @@ fn every_rejection_and_warning_names_its_numbers() {
     }
 }
 
-/// A hose is accepted once its working pressure is stated and bears supply and surge; above the
-/// pressure at which its expansion is stated it is extrapolated, which is said.
+/// A hose is accepted once its working pressure is stated and exceeds supply and surge; above the
+/// pressure at which its expansion is stated it is extrapolated, which is reported.
 #[test]
 fn no_hose_is_accepted_without_its_working_pressure() {
     let of = |settings: &[&str]| {

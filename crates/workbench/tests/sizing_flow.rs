@@ -1,4 +1,4 @@
-//! The largest flow of the lines, which the bores are sized for.
+//! The largest flow of the lines, for which the bores are sized.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -83,7 +83,7 @@ fn a_line_carries_the_return_flow_of_the_larger_area() {
     assert!(text.contains("the pump's 9.800 L/min times the ratio of the areas"), "{text}");
 }
 
-/// The accumulator of the supply gives more than the pump for a time.
+/// The accumulator of the supply delivers more than the pump for a time.
 #[test]
 fn with_an_accumulator_the_pump_limits_nothing() {
     let pump = "supply.model=pump_limited";

@@ -1,5 +1,5 @@
-//! What sizing must obey whatever the numbers: its branches agree, and more of a cause gives more
-//! of its effect.
+//! Laws of sizing for all numbers: its branches agree, and more of a cause gives more of its
+//! effect.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -31,7 +31,7 @@ fn the_length_found_for_a_gain_needs_that_gain() {
             let length = number(row, "length_m");
             let (hose, model) = (row["hose"].as_str().unwrap(), row["compliance"].as_str().unwrap());
             if length == 0.0 {
-                // Without a hose the actuator is softer than this gain asks for.
+                // The actuator without a hose is softer than this gain requires.
                 assert!(number(row, "stiffness_n_per_m") <= number(row, "iterations.0.stiffness_n_per_m"));
                 continue;
             }
@@ -43,8 +43,8 @@ fn the_length_found_for_a_gain_needs_that_gain() {
     }
 }
 
-/// Hoses that differ between the sides, at unequal rods: the rig that has both lengths has the
-/// stiffness that was asked for, and both lines have one compliance.
+/// Hoses that differ between the sides, at unequal rods: the rig with both lengths has the required
+/// stiffness, and both lines have equal compliance.
 #[test]
 fn unequal_lines_are_sized_each_for_its_side() {
     let text = HOSE.replace("rod_diameter = \"22 mm\"", "rod_diameters = [\"22 mm\", \"34 mm\"]");
@@ -85,7 +85,7 @@ fn unequal_lines_are_sized_each_for_its_side() {
     assert!(sized >= 3, "{sized}");
 }
 
-/// An alternative with unequal hoses takes the length that `size` finds for each side.
+/// An alternative with unequal hoses has the length that `size` finds for each side.
 #[test]
 fn a_sized_alternative_keeps_its_unequal_hoses() {
     let other = "line.b={ bore = \"11 mm\", dynamic_stiffening = 4 }";
@@ -109,7 +109,7 @@ fn a_sized_alternative_keeps_its_unequal_hoses() {
 
 #[test]
 fn the_search_ends_at_the_length_there_is() {
-    // The largest gain takes the longest hose that can be had: half the stock, or the longest
+    // The largest gain requires the longest available hose: half the stock, or the longest
     // acceptable line.
     for (settings, length) in [
         (&[][..], 1.5),
@@ -128,8 +128,7 @@ fn the_search_ends_at_the_length_there_is() {
     }
 }
 
-/// Where the floor of the gain lies between two halvings must not matter while the answer lies
-/// above it.
+/// The floor of the gain between two halvings must not matter if the answer is above it.
 #[test]
 fn the_floor_of_the_gain_does_not_hide_an_answer_above_it() {
     for floor in ["1e-4", "1.2e-4", "1.3e-4", "1.4e-4"] {
@@ -147,8 +146,8 @@ fn the_floor_of_the_gain_does_not_hide_an_answer_above_it() {
     assert!(rows.iter().all(|row| row["rejections"] != Value::Array(vec![])), "{rows:?}");
 }
 
-/// A hose is cut to whole increments, never longer than there is, and the gain is the one that the
-/// cut length needs.
+/// A hose is cut to whole increments, never longer than available, and the gain is that of the cut
+/// length.
 #[test]
 fn commercial_lengths_are_whole_increments() {
     for (increment, length) in [("0.4 m", 1.2), ("0.5 m", 1.5), ("0.7 m", 1.4)] {
@@ -166,7 +165,7 @@ fn the_loop_has_the_desired_time_constant() {
     let size = ask::size(HOSE, &[]);
     for row in size["candidates"].as_array().unwrap() {
         near(number(row, "time_constant_s.0"), 0.05, 1e-9);
-        // Stiffer towards the ends of the stroke, and faster.
+        // The rig is stiffer towards the ends of the stroke, and faster.
         assert!(number(row, "time_constant_s.1") < 0.05);
         assert!(number(row, "stiffness_maximum_n_per_m") > number(row, "stiffness_n_per_m"));
     }
@@ -224,7 +223,8 @@ fn at_the_pole_of_the_gain_the_stiffness_is_infinite() {
     };
     let above: Vec<f64> = [1e-1, 1e-3, 1e-6, 1e-9].map(|part| stiffness(pole * (1.0 + part))).to_vec();
     assert!(strictly_increasing(&above), "{above:?}");
-    // 6.16 has a simple pole there: a thousandth of the distance is a thousand times the stiffness.
+    // Equation 6.16 has a simple pole there: a thousandth of the distance gives a thousand times
+    // the stiffness.
     near(above[2] / above[1], 1e3, 1e-6);
     near(above[3] / above[2], 1e3, 1e-4);
     assert_eq!(stiffness(pole * (1.0 - 1e-9)), f64::INFINITY);
@@ -242,7 +242,7 @@ fn a_wall_that_does_not_give_leaves_the_oil_alone() {
     let volume = std::f64::consts::FRAC_PI_4 * 0.0127_f64.powi(2) * 1.5;
     let expected = 4.0 * 1.45e9 * area * area / (area * 0.5 + 2.0 * volume);
     near(rigid("uniform"), expected, 1e-6);
-    // What it was measured to have swollen by, it holds too: 1.56e-5 m3 a metre.
+    // The measured expansion belongs to the volume too: 1.56e-5 m3 per metre.
     let held = volume + 1.56e-5 * 1.5;
     near(rigid("by_volume"), 4.0 * 1.45e9 * area * area / (area * 0.5 + 2.0 * held), 1e-6);
 }
@@ -269,10 +269,10 @@ fn the_influences_are_those_of_the_settings_themselves() {
         assert!(three("values").is_sorted());
         near(three("length_m")[1], 1.5, 1e-9);
         let (stiffness, length) = (three("stiffness_n_per_m"), three("length_m"));
-        // What stiffens the hose lengthens it.
+        // A change that stiffens the hose lengthens it.
         assert!(stiffness.is_sorted() == length.is_sorted(), "{row}");
     }
-    // More expansion, softer.
+    // More expansion makes the hose softer.
     let expansion = row("expansion");
     assert!(number(&expansion, "stiffness_n_per_m.2") < number(&expansion, "stiffness_n_per_m.0"));
 }

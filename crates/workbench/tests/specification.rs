@@ -1,4 +1,4 @@
-//! Limits of every form against what they state.
+//! Limits of every form, compared with their values.
 
 #![allow(
     clippy::expect_used,
@@ -33,7 +33,8 @@ fn limit(kind: &str, text: &str) -> Limit {
     one(kind, &format!("limit = {text}")).unwrap().requirement.limits().1.clone()
 }
 
-/// Every kind with a number, and the closed loop it limits: for P = 3, Pd = 8, G = 1, F = 2, H = 1.
+/// Every kind with a number, and the closed loop that it limits: for P = 3, Pd = 8, G = 1, F = 2, H
+/// = 1.
 #[test]
 fn every_kind_limits_its_closed_loop() {
     let real = |value: f64| Complex64::new(value, 0.0);
@@ -58,8 +59,8 @@ fn every_kind_limits_its_closed_loop() {
     assert!((tracking - 20.0 * portable::log10(1.5)).abs() < 1e-12);
 }
 
-/// s/(s + 15) as a text, as polynomials and as a table that holds its values is the same limit
-/// where they meet.
+/// The limit s/(s + 15) as a text, as polynomials and as a table of its values is one limit at
+/// common frequencies.
 #[test]
 fn a_limit_is_the_same_however_it_is_written() {
     let exact = |w: f64| w / (w * w + 225.0).sqrt();
@@ -76,7 +77,7 @@ fn a_limit_is_the_same_however_it_is_written() {
     assert!((limit("sensitivity", "\"-20 dB\"").magnitude(3.0).unwrap() - 0.1).abs() < 1e-16);
 }
 
-/// The band is the declared one, which need not hold the frequencies, or their span.
+/// The band is the declared one, which need not contain the frequencies, or their span.
 #[test]
 fn the_band_is_declared_or_the_span_of_the_frequencies() {
     let band = |text: &str| one("sensitivity", &format!("limit = 2\n{text}")).unwrap().band_rad_per_s;
@@ -100,7 +101,7 @@ fn margins_become_limits() {
         ("sensitivity", "{ gain_reduction = 0.5 }", 1.0),
         ("robust_stability", "{ modulus_margin = 0.5 }", 1.0),
         ("sensitivity", "{ modulus_margin = 0.5 }", 2.0),
-        ("robust_stability", "{ gain_margin = 3, phase_margin = \"50 deg\" }", 0.5), // the strictest decides
+        ("robust_stability", "{ gain_margin = 3, phase_margin = \"50 deg\" }", 0.5), // strictest
     ] {
         assert!((constant(kind, text) / expected - 1.0).abs() < 1e-14, "{kind} {text}");
     }
@@ -108,8 +109,8 @@ fn margins_become_limits() {
     assert!((delay.magnitude(250.0).unwrap() - 2.0).abs() < 1e-14);
 }
 
-/// The thesis' limits (6.28, 6.29) with their wishes do what the errata say; wished outright they
-/// are met.
+/// The thesis' limits (6.28, 6.29) with their requirements in time behave as stated in the errata;
+/// required directly, they are met.
 #[test]
 fn wishes_in_time_are_checked() {
     let given = "[[specification]]\nkind = \"tracking\"\nfrequencies = [1]\n\
@@ -148,7 +149,7 @@ fn a_wish_without_a_limit_is_told_with_its_place() {
     assert!(error.to_string().starts_with("[[specification]] 1, `lower`: "), "{error}");
 }
 
-/// As many digits as it takes to see the difference.
+/// Printed digits suffice to show the difference.
 // ORIGIN: written by hand
 #[test]
 fn checks_of_wishes_read_as_sentences() {

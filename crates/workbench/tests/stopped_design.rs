@@ -1,5 +1,5 @@
-//! A design that the watch stops in one of its stages: what was found until then remains, and the
-//! answer lists what it lacks.
+//! A design that the watch stops in one of its stages: its results until then remain, and the
+//! answer lists the missing parts.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use phea_workbench::answer::Answer;
@@ -11,8 +11,8 @@ use crate::command_of_steps::simple_rig;
 
 const REQUEST: Request = Request::Design { seed: None, stages: true, repair: true };
 
-/// The design of a simple rig under a watch that stops it from a stage on, and the stages that it
-/// was told of.
+/// The design of a simple rig under a watch that stops it from a stage on, and the stages that were
+/// reported.
 fn stopped_in(stage: &str) -> (Result<Answer, CommandError>, Vec<&'static str>) {
     let text = simple_rig();
     let (rig, _) = text.split_once("[controller]").unwrap();
@@ -32,8 +32,8 @@ fn names(answer: &Answer) -> Vec<&str> {
     answer.files.iter().map(|file| file.name.as_str()).collect()
 }
 
-/// Stopped in the trial, in what follows, and in the files alone: each answer has the controller
-/// and lists every part from there on, and none is affirmative.
+/// A design stopped in the trial, in the later stages, and only in the files: each answer has the
+/// controller and lists every missing part, and none is affirmative.
 // ORIGIN: written by hand, the stages in their order
 #[test]
 fn a_stopped_design_lists_what_it_lacks() {
@@ -61,8 +61,8 @@ fn a_stopped_design_lists_what_it_lacks() {
     }
 }
 
-/// Stopped in the first stage, it has no answer, unless the search had a controller by then, which
-/// is the best so far; the reason names the stage and what was not begun.
+/// A design stopped in the first stage has no answer, unless the search already had a controller,
+/// which is the best so far; the reason names the stage and the parts that were not begun.
 #[test]
 fn a_design_that_is_stopped_at_once_says_what_was_not_begun() {
     let (_, stages) = stopped_in("no stage at all");

@@ -1,4 +1,4 @@
-//! `linearize --sweep`: each value is what `linearize` states of the project with that value.
+//! `linearize --sweep`: each value agrees with `linearize` for the project with that value.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -55,7 +55,7 @@ fn each_value_is_that_of_linearize() {
     }
 }
 
-/// The stated parameters hold the plant where it is, and that is told.
+/// The stated parameters fix the plant, and this is reported.
 #[test]
 fn a_key_that_the_plant_does_not_follow_is_told() {
     let swept = swept(HOSE, "line.length=0.5..3", 3);

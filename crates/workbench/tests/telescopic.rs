@@ -1,5 +1,5 @@
-//! A telescopic piston as an engineer meets it: what `check` derives, one controller for all its
-//! stages, the machine within a transition, and what is refused.
+//! A telescopic piston from the user's side: quantities derived by `check`, one controller for all
+//! its stages, the machine within a transition, and refusals.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -12,7 +12,7 @@ use crate::ask::{HOSE, answer, check, derived, load, near, retracted_length, siz
 
 const TELESCOPIC: &str = include_str!("../../../examples/ybitu/telescopic.toml");
 const VISCOUS: &str = "cylinder.friction={ model = \"viscous\", viscous = \"1 kN.s/m\" }";
-/// The slope of a symmetric motion about null, the one that the example was designed for.
+/// The slope of a symmetric motion about null, for which the example was designed.
 const MIDDLE: &str = "operating_point.spool_side=0";
 /// A second stage for a rig that has none.
 const STAGE: &str = "cylinder.stage=[{ from = \"300 mm\", piston_area = \"10 cm2\" }]";
@@ -77,7 +77,7 @@ fn the_machine_agrees_with_the_linear_loop() {
     }
 }
 
-/// Likewise behind a linkage.
+/// The machine agrees with a linkage, too.
 #[test]
 fn behind_a_linkage_the_machine_agrees_too() {
     let rig = include_str!("../../project/tests/valid/linkage.toml");
@@ -94,7 +94,7 @@ fn behind_a_linkage_the_machine_agrees_too() {
     }
 }
 
-/// A steady motion through a transition is in no linear plant, and no specification is proven then.
+/// A steady motion through a transition is in no linear plant, and then no specification is proven.
 #[test]
 fn a_steady_motion_through_a_transition_is_not_proven() {
     let verdict = |settings: &[&str]| {
@@ -108,7 +108,7 @@ fn a_steady_motion_through_a_transition_is_not_proven() {
     assert!(text.contains("their change at a steady velocity"), "{text}");
 }
 
-/// What has one pair of areas refuses several.
+/// Parts that accept one pair of areas only reject several.
 #[test]
 fn one_pair_of_areas_is_told_apart_from_several() {
     let said = try_answer(HOSE, &[STAGE], &[], &size_request(None, None)).unwrap_err().to_string();

@@ -1,4 +1,4 @@
-//! The limits that textbooks take: a free mass, a valve on the cylinder, and plants by their zeros,
+//! Limiting cases of textbooks: a free mass, a valve on the cylinder, and plants by their zeros,
 //! poles and gain.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
@@ -71,8 +71,8 @@ fn the_hydraulic_natural_frequency() {
     }
 }
 
-/// A constant command moves a free mass at a constant velocity, for which its damper takes a force;
-/// no position is among the poles.
+/// A constant command moves a free mass at a constant velocity, at which its damper takes a force;
+/// the poles do not include the position.
 ///
 /// ```text
 /// F = c v,    K_qU U = A v + K_c (f_v + c) v/A
@@ -105,7 +105,7 @@ fn refused(text: &str, settings: &[&str]) -> String {
     project::read(&source(text), "rig.toml", &settings, &[]).unwrap_err().to_string()
 }
 
-/// What leaves no rig is refused at its place, with a cure.
+/// A limit that leaves no rig is rejected at its place, with a remedy.
 #[test]
 fn limits_without_a_rig_have_a_place_and_a_cure() {
     let empty = refused(&MASS.replace("dead_volume = \"20 mL\"\n", ""), &[]);
@@ -132,7 +132,7 @@ numerator = "3"
 denominator = "1"
 "#;
 
-/// The same plant by factors and by polynomials.
+/// A plant by factors and its equivalent by polynomials.
 #[test]
 fn a_plant_by_its_zeros_poles_and_gain() {
     let polynomials = "numerator = \"2*(s + 30)\"\ndenominator = \"s*(s + 2)*(s^2 + 2*s + 26)\"";
@@ -147,8 +147,8 @@ fn a_plant_by_its_zeros_poles_and_gain() {
     }
 }
 
-/// A form that is incomplete, or mixed, is refused with what is missing and nothing that follows
-/// from it.
+/// A form that is incomplete, or mixed, is rejected with the missing part, and without
+/// consequential errors.
 #[test]
 fn an_incomplete_plant_is_refused_once() {
     let without = refused(&FACTORS.replace("gain = 2\n", ""), &[]);

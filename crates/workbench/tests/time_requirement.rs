@@ -1,4 +1,4 @@
-//! Requirements in time that limits of tracking follow from: the verdict includes the linear steps
+//! Requirements in time from which limits of tracking follow: the verdict includes the linear steps
 //! of the plants, whose closed forms are known here.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
@@ -8,8 +8,8 @@ use crate::ask::{self, number};
 use phea_workbench::command::Request;
 use serde_json::Value;
 
-/// One plant in a loop with gain 1 and a prefilter of 1, whose limits hold at the one frequency
-/// that they are required at.
+/// A single plant in a loop with gain 1 and a prefilter of 1, whose limits are satisfied at their
+/// only frequency.
 fn project(plant: &str, uncertainty: &str, controller: &str, lower: &str) -> String {
     format!(
         "schema = 1\ntitle = \"time\"\n[plant]\n{plant}\n[uncertainty]\n{uncertainty}\n\
@@ -36,8 +36,8 @@ fn lower(settling_s: f64) -> String {
 
 const GAINS: &str = "k = { nominal = 2, minimum = 1, maximum = 4, points = 3 }";
 
-/// k/s closed is 1/(s/k + 1): settled to 2 % after ln(50)/k, last for the least k. Within the
-/// limits over frequency either way.
+/// Plant k/s closed is 1/(s/k + 1): settled to 2 % after ln(50)/k, last for the least k. It is
+/// within the limits over frequency in either case.
 #[test]
 fn a_lag_that_settles_too_late_is_not_met() {
     let latest = 50.0_f64.ln();
@@ -58,8 +58,8 @@ fn a_lag_that_settles_too_late_is_not_met() {
     }
 }
 
-/// k/s closed settles after ln(50)/k, here after forty times the requirement: a stable step is
-/// computed until it settles, and its worst plant is the slowest.
+/// Plant k/s closed settles after ln(50)/k, here after forty times the requirement: a stable step
+/// is computed until it settles, and its worst plant is the slowest.
 #[test]
 fn a_step_far_beyond_the_requirement_is_computed_until_it_settles() {
     let slow = "k = { nominal = 0.2, minimum = 0.1, maximum = 0.4, points = 3 }";
@@ -81,8 +81,8 @@ fn a_stated_limit_is_not_replaced_by_what_was_required_of_it() {
     assert_eq!(found["part_of_verdict"], false);
 }
 
-/// w^2/(s (s + 2 zeta w)) closed overshoots by exp(-pi zeta/sqrt(1 - zeta^2)), most for the least
-/// zeta.
+/// Plant w^2/(s (s + 2 zeta w)) closed overshoots by exp(-pi zeta/sqrt(1 - zeta^2)), most for the
+/// least zeta.
 #[test]
 fn the_overshoot_of_the_worst_plant_is_found() {
     let damping = "z = { nominal = 0.6, minimum = 0.3, maximum = 0.9, points = 2 }";
@@ -95,8 +95,8 @@ fn the_overshoot_of_the_worst_plant_is_found() {
     assert_eq!(object["verdict"], "violated");
 }
 
-/// Dead time by the method of steps and by samples that are short: the same settling time; without
-/// the dead time another.
+/// Dead time by the method of steps and by short samples gives equal settling times; without the
+/// dead time the settling time differs.
 #[test]
 fn steps_of_delayed_and_of_sampled_loops_agree() {
     let gains = "k = { nominal = 1, minimum = 1, maximum = 1.0001, points = 2 }";
@@ -108,14 +108,15 @@ fn steps_of_delayed_and_of_sampled_loops_agree() {
     };
     let delayed = settled("delay = \"200 ms\"");
     let sampled = settled("delay = \"200 ms\"\nsample_time = \"1 ms\"");
-    // a zero-order hold is late by half a sample
+    // a zero-order hold delays by half a sample
     assert!((delayed - sampled).abs() < 5e-3, "{delayed} {sampled}");
     let at_once = settled("");
     ask::near(at_once, 50.0_f64.ln(), 2e-3);
     assert!((delayed - at_once).abs() > 0.1, "{delayed} {at_once}");
 }
 
-/// F = (10 s + 1)/(0.1 s + 1) rises by a factor of a hundred, 40 dB; a lag amplifies nothing.
+/// Prefilter F = (10 s + 1)/(0.1 s + 1) rises by a factor of a hundred, 40 dB; a lag amplifies
+/// nothing.
 #[test]
 fn a_prefilter_that_amplifies_is_told() {
     let plain = project("numerator = \"k\"\ndenominator = \"s\"", GAINS, "", &lower(5.0));

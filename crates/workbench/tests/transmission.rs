@@ -1,5 +1,5 @@
-//! A hydraulic transmission as an engineer meets it: what `check` derives, the verdict of the
-//! example and its machine, cavitation, alternatives, and what is refused.
+//! A hydraulic transmission from the user's side: quantities derived by `check`, the verdict of the
+//! example and its machine, cavitation, alternatives, and refusals.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -12,7 +12,7 @@ use serde_json::Value;
 use crate::ask::{answer, check, derived, load, near, retracted_length};
 
 const TRANSMISSION: &str = include_str!("../../../examples/ybitu/transmission.toml");
-/// As long as one with a hose, whose numbers are known by hand.
+/// A transmission with a pipe as long as the hose of the other, whose numbers are known by hand.
 const PIPE: &str = "series={ kind = \"transmission\", piston_area = \"20 cm2\", filling_pressure = \"60 bar\", \
                     end_volume = \"20 cm3\", line = { pipe = { bore = \"10 mm\" }, length = \"2 m\" } }";
 
@@ -20,7 +20,7 @@ fn parsed(text: &str) -> Value {
     serde_json::from_str(text).unwrap()
 }
 
-/// The example without what is uncertain of its hose.
+/// The example without the uncertainty of its hose.
 fn certain() -> String {
     let lines: Vec<&str> = TRANSMISSION.lines().filter(|line| !line.starts_with("\"series.")).collect();
     lines.join("\n")
@@ -46,8 +46,8 @@ fn check_derives_its_oil() {
     near(derived(&told, "dynamics.equivalent_stiffness"), softened, 1e-12);
 }
 
-/// Its controller satisfies every specification, stability is proven, and the machine does as the
-/// linear loop says.
+/// The controller of the example satisfies every specification, stability is proven, and the
+/// machine agrees with the linear loop.
 #[test]
 fn the_example_is_met_and_the_machine_agrees() {
     let said =
@@ -72,8 +72,8 @@ fn the_example_is_met_and_the_machine_agrees() {
     assert_eq!(said["proof"]["stable"]["proven"], true, "{}", said["proof"]);
 }
 
-/// Every load, and waves in the lines of the rig as well. The capacity of the sensor leaves no room
-/// for larger steps.
+/// Small steps with every load, and with waves in the lines of the rig as well. The capacity of the
+/// sensor leaves no room for larger steps.
 #[test]
 fn small_steps_on_the_machine_are_those_of_the_linear_loop() {
     let viscous = "cylinder.friction={ model = \"viscous\", viscous = \"1 kN.s/m\" }";
@@ -95,8 +95,8 @@ fn small_steps_on_the_machine_are_those_of_the_linear_loop() {
     }
 }
 
-/// A pull of 2 kN on oil that is filled with 2 bar tears it off, which is an event of the run and a
-/// warning before it.
+/// A pull of 2 kN on oil with a filling pressure of 2 bar tears it off, which is an event of the
+/// run and a warning before it.
 #[test]
 fn a_run_says_where_the_oil_tears_off() {
     let scenario = "scenario=[{ name = \"pull\", duration = \"1 s\", reference = [{ at = \"0.1 s\", force = \"-2 kN\" }] }]";
@@ -114,7 +114,7 @@ fn a_run_says_where_the_oil_tears_off() {
     assert!(warned.iter().any(|one| one.message.contains("the oil tears off at a pull of")), "{warned:?}");
 }
 
-/// Length, price and mass of an alternative count both cylinders, the hose and its oil.
+/// Length, price and mass of an alternative include both cylinders, the hose and its oil.
 #[test]
 fn what_it_costs_and_weighs() {
     let length = |settings: &[&str]| retracted_length(&load(TRANSMISSION, settings, &[]).project);
@@ -142,7 +142,7 @@ fn what_it_costs_and_weighs() {
     );
 }
 
-/// The models with one load pressure have its oil as a spring, and say so.
+/// Models with one load pressure treat its oil as a spring, and report this.
 #[test]
 fn the_reduced_models_say_what_they_leave_out() {
     let page = answer(TRANSMISSION, &["series.segments=1"], &[], &Request::Linearize { sweep: None });
@@ -155,7 +155,7 @@ fn the_reduced_models_say_what_they_leave_out() {
     );
 }
 
-/// A motor has no place for it; a linkage has.
+/// A motor cannot have a transmission; a linkage can.
 #[test]
 fn a_motor_has_no_place_for_it() {
     let read = |rig: &str| {

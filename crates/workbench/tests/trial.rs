@@ -1,4 +1,4 @@
-//! Verdicts tried on the machine.
+//! Verdicts tested on the machine.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -12,7 +12,7 @@ use super::ask::{answer, project_of, source, try_answer};
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 const PLANT: &str = include_str!("../../../examples/qft/servo.toml");
-/// What `design` finds for the hose, and calls met over its family.
+/// Result of `design` for the hose, which it reports as met over its family.
 const DESIGNED: [&str; 4] = [
     "controller.numerator=0.7217*(s + 23.992)*(s + 2148.5)",
     "controller.denominator=s*(s^2 + 624.8*s + 1077500)",
@@ -25,7 +25,7 @@ fn on_machine(settings: &[&str]) -> (bool, Value, String) {
     (said.affirmative, serde_json::from_str(&said.json).unwrap(), said.text)
 }
 
-/// The run that this machine made.
+/// The run of this machine.
 fn run<'a>(object: &'a Value, what: &str) -> &'a Value {
     let runs = object["machine"]["runs"].as_array().unwrap();
     runs.iter()
@@ -37,14 +37,14 @@ fn overshoot(run: &Value, of: &str) -> f64 {
     run[of]["overshoot_percent"].as_f64().unwrap()
 }
 
-/// Of the first step from rest.
+/// Value for the first step from rest.
 fn first_step(run: &Value, key: &str) -> f64 {
     assert_eq!(run["steps"][0]["step"], "there");
     run["steps"][0][key].as_f64().unwrap()
 }
 
-/// Small steps of the published loop: the nominal machine does what the linear loop does, friction,
-/// leakage and all.
+/// Small steps of the published loop: the nominal machine behaves like the linear loop, friction
+/// and leakage included.
 #[test]
 fn the_nominal_machine_is_the_linear_loop() {
     let (_, object, _) = on_machine(&[]);
@@ -55,7 +55,7 @@ fn the_nominal_machine_is_the_linear_loop() {
     let linear_s = nominal["linear"]["settling_time_s"].as_f64().unwrap();
     let times = [first_step(nominal, "settling_time_s"), linear_s];
     assert!((times[0] / times[1] - 1.0).abs() < 0.02, "{times:?}");
-    // each worst plant was made into a rig, which it names
+    // each worst plant was converted into a rig, which it names
     for (index, kind) in ["1 robust stability", "2 sensitivity", "3 tracking"].into_iter().enumerate() {
         let worst = run(&object, &format!("the worst plant of {kind}"));
         assert_eq!(worst["plant"], object["specifications"][index]["plant"]);
@@ -63,8 +63,8 @@ fn the_nominal_machine_is_the_linear_loop() {
     assert_eq!(object["machine"]["not_driven"], Value::from(Vec::<Value>::new()));
 }
 
-/// With 1.5 m of hose a wave takes 2.8 ms: the loop has gain beyond the quarter wave, and what is
-/// met with lumped lines swings with waves.
+/// A wave takes 2.8 ms through 1.5 m of hose: the loop has gain beyond the quarter wave, and a
+/// verdict that is met with lumped lines is contradicted by waves.
 #[test]
 fn a_met_verdict_that_waves_contradict_is_no() {
     let by_volume = ["line.compliance=by_volume"];
@@ -80,15 +80,15 @@ fn a_met_verdict_that_waves_contradict_is_no() {
     assert!(overshoot(waves, "machine") > 100.0, "{waves}");
     // ORIGIN: analytic, pi c/(2 L) with the wave's speed in the hose at 35 bar
     assert!(waves["reason"].as_str().unwrap().contains("a quarter wave long at 560 rad/s"), "{waves}");
-    // what a transmission line does not take is not recommended for it
+    // a key that a transmission line does not have is not recommended for it
     assert!(
         waves["reason"].as_str().unwrap().contains("(line.model = \"segments\" with line.relaxation_time)")
     );
-    // the rig with lumped lines, which is what was promised
+    // the rig with lumped lines, which the verdict concerns
     assert_eq!(run(&object, "the rig as declared")["agrees"], Value::from(true));
 }
 
-/// Waves that are declared are in the verdict and in the machine, which swings as the verdict says.
+/// Declared waves are in the verdict and in the machine, which swings as predicted.
 #[test]
 fn declared_waves_are_the_rig() {
     let waves = ["line.compliance=by_volume", "line.model=transmission_line"];
@@ -99,7 +99,7 @@ fn declared_waves_are_the_rig() {
     let first = &object["machine"]["runs"][0];
     assert_eq!((&first["agrees"], &first["linear"]), (&Value::from(true), &Value::Null));
     assert_eq!(first["reason"], "neither the linear loop nor the nonlinear simulation settles");
-    // the first step of each machine decides: no other follows, and none that is larger
+    // the first step of each machine decides: no other follows, and no larger one
     let runs = object["machine"]["runs"].as_array().unwrap();
     for run in runs {
         assert_eq!(
@@ -109,7 +109,7 @@ fn declared_waves_are_the_rig() {
     }
 }
 
-/// A load that yields is in both; the leakage as well.
+/// A load that yields is in both; so is the leakage.
 #[test]
 fn load_and_leakage_are_in_both() {
     let load = ["load.model=spring_mass_damper", "load.mass=100", "load.stiffness=2e5", "load.damping=500"];
@@ -129,7 +129,7 @@ fn a_plant_without_a_machine_is_refused() {
     );
 }
 
-/// One rig under a slow loop that its only specification admits.
+/// A rig under a slow loop that its only specification permits.
 fn slow_rig() -> String {
     let (rig, _) = HOSE.split_once("[uncertainty]").unwrap();
     format!(
@@ -144,7 +144,7 @@ fn tried(settings: &[&str]) -> Value {
     serde_json::from_str(&said.json).unwrap()
 }
 
-/// A run of its own with these steps of the reference.
+/// A separate run with these steps of the reference.
 fn simulated(settings: &[&str], steps: &[(f64, f64)], duration_s: f64) -> ScenarioRun {
     let steps: Vec<String> =
         steps.iter().map(|(at, force)| format!("{{ at = {at}, force = {force} }}")).collect();
@@ -169,8 +169,8 @@ fn references(run: &Value) -> [f64; 2] {
     [0, 1].map(|end| run["reference_n"][end].as_f64().unwrap())
 }
 
-/// A lost motion of the spool shows on the way back, which a step from rest does not; and the
-/// greatest overshoot and what remains of a swing are those of a run of its own.
+/// A lost motion of the spool is visible on the way back, but not in a step from rest; and the
+/// greatest overshoot and the remaining oscillation are those of a separate run.
 #[test]
 fn lost_motion_shows_on_the_way_back() {
     for (threshold, agreement) in
@@ -207,8 +207,8 @@ fn lost_motion_shows_on_the_way_back() {
     }
 }
 
-/// A worst plant that differs from the declared rig by the side of null alone has another linear
-/// loop, and the machine of the declared rig.
+/// A worst plant that differs from the declared rig only by the side of null has another linear
+/// loop, but the machine of the declared rig.
 #[test]
 fn a_side_of_null_is_no_other_machine() {
     let object = tried(&["valve.hysteresis=0.4", "valve.threshold=0.02"]);
@@ -221,8 +221,8 @@ fn a_side_of_null_is_no_other_machine() {
     assert_ne!(declared["linear"], worst["linear"]);
 }
 
-/// A spool of limited speed: a tenth of the force is reached as the linear loop predicts, and the
-/// largest step at which nothing saturates is not.
+/// A spool of limited speed: a tenth of the force is reached as the linear loop predicts, but not
+/// the largest step at which nothing saturates.
 #[test]
 fn a_slow_spool_shows_in_the_largest_step() {
     let object = tried(&["valve.rate_limit=40 V/s"]);
@@ -234,11 +234,11 @@ fn a_slow_spool_shows_in_the_largest_step() {
     assert_eq!(run(&unlimited, "the rig as declared, largest step")["agreement"], "agrees");
 }
 
-/// The largest step stays within command and sensor, and one that is a quarter larger would not.
+/// The largest step is within command and sensor, and one that is a quarter larger would not be.
 #[test]
 fn the_largest_step_stays_within_command_and_sensor() {
     let object = tried(&["force_sensor.capacity=5 kN"]);
-    // ORIGIN: analytic, the stated capacity, less what the force overshoots
+    // ORIGIN: analytic, the stated capacity, less the overshoot of the force
     let [_, to] = references(run(&object, "the rig as declared, largest step"));
     assert!((3500.0..5000.0).contains(&to), "{to}");
     let narrow = ["controller.saturation=3 V", "prefilter.denominator=s/200 + 1"];
@@ -251,9 +251,9 @@ fn the_largest_step_stays_within_command_and_sensor() {
     assert!(!limited(1.0) && limited(1.25), "{from} {to}");
 }
 
-/// Waves are blamed for a step that the rig with lumped lines makes as predicted, and not for one
-/// that it does not make either: through a valve that leaks a lot in the middle, a large step is
-/// faster than the linear loop about null, with waves or without.
+/// Waves are named as the cause if the rig with lumped lines makes a step as predicted, but not if
+/// it does not make it either: with a valve that leaks a lot in the middle, a large step is faster
+/// than the linear loop about null, with waves or without.
 #[test]
 fn waves_are_blamed_only_where_lumped_lines_agree_better() {
     let edges = ["supply_to_a", "a_to_tank", "supply_to_b", "b_to_tank"];
@@ -273,7 +273,7 @@ fn waves_are_blamed_only_where_lumped_lines_agree_better() {
     let [lumped, waves] = reasons("controller.numerator=3e-4*s + 3e-3");
     assert_eq!([lumped.0.as_str(), waves.0.as_str()], ["differs", "differs"]);
     assert!(waves.1.contains("waves are not the cause") && !waves.1.contains("quarter wave"), "{waves:?}");
-    // with more gain only the rig with waves oscillates
+    // only the rig with waves oscillates if the gain is higher
     let [lumped, waves] = reasons("controller.delay=0");
     assert_eq!([lumped.0.as_str(), waves.0.as_str()], ["agrees_but_for_settling", "differs"]);
     assert!(waves.1.contains("quarter wave") && !waves.1.contains("not the cause"), "{waves:?}");

@@ -1,5 +1,5 @@
-//! Data as a sheet gives it: flows at their own pressures, leakage that is counted, names that may
-//! be used, and the cure of what is refused.
+//! Data in the form of a data sheet: flows at their own pressures, leakage that is included,
+//! permitted names, and the remedy for each refusal.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -12,7 +12,7 @@ use phea_workbench::source::Memory;
 
 use crate::ask::{HOSE, candidate, check, derived, linearize, load, near, number, size_for_length, within};
 
-/// The example with lines of its text left out.
+/// The example without some lines of its text.
 fn without(names: &[&str]) -> String {
     let kept = |line: &&str| names.iter().all(|name| !line.starts_with(name));
     HOSE.lines().filter(kept).collect::<Vec<_>>().join("\n")
@@ -25,8 +25,8 @@ fn the_tare_flow_counts_at_the_pressure_it_was_stated_at() {
     // ORIGIN: recomputed by comparisons/recompute_rig.py
     within(rated(HOSE), 1.906e-9, 0.5e-12);
     within(tare(HOSE), 7.55e-6, 1e-12);
-    // A flow of the project's own is that of its supply, whatever pressure the catalogue states its
-    // own at.
+    // A flow stated by the project is at its supply pressure, whatever pressure the catalogue
+    // states for its own.
     let own = without(&["tare_pressure"]);
     within(rated(&own), 1.906e-9, 0.5e-12);
     within(tare(&own), 7.55e-6, 1e-12);
@@ -84,7 +84,7 @@ fn a_damping_ratio_may_be_called_z_where_nothing_samples() {
     let read =
         |text: &str| project::read(&Memory::default().with("plant.toml", text), "plant.toml", &[], &[]);
     let loaded = read(CONTINUOUS).unwrap_or_else(|report| panic!("{report}"));
-    // the same plant under another name has the same verdict
+    // an identical plant under another name has an equal verdict
     let verdict = |text: &str| {
         let json =
             crate::ask::answer(text, &[], &[], &Request::Verify { proof: false, on_machine: false }).json;
@@ -112,7 +112,7 @@ fn an_area_needs_no_rod() {
     within(derived(&check(&unequal, &[]), "cylinder.area_b"), 1.5e-3, 1e-12);
 }
 
-/// A name with dots, written without quotes, is answered with how to quote it.
+/// A name with dots, written without quotes, is answered with the way to quote it.
 #[test]
 fn a_name_that_was_not_quoted_is_told_how() {
     let setting =
@@ -124,7 +124,7 @@ fn a_name_that_was_not_quoted_is_told_how() {
     load(HOSE, &["uncertainty.\"cylinder.moving_mass\"={ nominal = 13.1, minimum = 12, maximum = 14 }"], &[]);
 }
 
-/// Without `start` the loop rests, and from there the load has its gap before it.
+/// The loop rests if there is no `start`, and the load has its gap in front of it from there.
 #[test]
 fn the_gap_counts_from_the_equilibrium() {
     let first = HOSE.find("[[scenario]]").unwrap();
@@ -137,12 +137,12 @@ fn the_gap_counts_from_the_equilibrium() {
         .remove(0);
     let load = run.record.signal(Signal::LoadPosition).to_vec();
     let (start, end) = (load[0], *load.last().unwrap());
-    // where it stands before the step, and 2 mm on with what 500 N press into 20 MN/m
+    // position before the step, plus 2 mm and the deflection of 20 MN/m under 500 N
     assert!((load[400] - start).abs() < 1e-6, "{} m", load[400] - start);
     within(end - start, 2e-3 + 500.0 / 20e6, 3e-6);
 }
 
-/// Return and suction lines have a velocity of their own.
+/// Return and suction lines have their own velocities.
 #[test]
 fn return_and_suction_lines_get_their_bores() {
     let said =
@@ -151,7 +151,7 @@ fn return_and_suction_lines_get_their_bores() {
     assert!(said(HOSE).contains(
         "bores of 13.2 to 18.6 mm for the return line of 9.800 L/min, of 13.2 to 18.6 mm for suction"
     ));
-    // ORIGIN: analytic, the same with 50^2/(50^2 - 22^2) of the flow
+    // ORIGIN: analytic, these bores with 50^2/(50^2 - 22^2) of the flow
     let one_rod = HOSE.replace("rod_diameter = \"22 mm\"", "rod_diameters = [\"22 mm\", \"0 mm\"]");
     assert!(said(&one_rod).contains("bores of 14.7 to 20.7 mm for the return line of 12.15 L/min"));
 }

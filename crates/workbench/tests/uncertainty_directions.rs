@@ -1,5 +1,5 @@
-//! Numbers that are uncertain together: the family of an identified valve against draws from its
-//! covariance, and what a project file may say of directions.
+//! Numbers that are uncertain together: the family of an identified valve compared with draws from
+//! its covariance, and the directions that a project file may state.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -24,7 +24,7 @@ use phea_workbench::robust::robust_problem;
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
-/// Coefficients that the plant depends on.
+/// Number of coefficients on which the plant depends.
 const COUNT: usize = 9;
 
 fn read(text: &str) -> Result<Project, String> {
@@ -32,7 +32,7 @@ fn read(text: &str) -> Result<Project, String> {
     project::read(&source, "p.toml", &[], &[]).map(|read| read.project).map_err(|report| report.to_string())
 }
 
-/// The rig with nothing uncertain but its operating point.
+/// The rig with no uncertainty except its operating point.
 fn rig() -> Project {
     let (start, rest) = HOSE.split_once("[uncertainty]").unwrap();
     let (_, end) = rest.split_once("[[specification]]").unwrap();
@@ -41,7 +41,7 @@ fn rig() -> Project {
     read(&format!("{start}{region}\n[[specification]]{end}")).unwrap()
 }
 
-/// The valve of Table 5.1, from a bench with much noise.
+/// The valve of Table 5.1, identified from a noisy bench.
 fn identification() -> &'static Identification {
     static FOUND: OnceLock<Identification> = OnceLock::new();
     FOUND.get_or_init(|| {
@@ -92,9 +92,9 @@ fn changes(region: &JointRegion) -> DMatrix<f64> {
     })
 }
 
-/// All nine directions are the covariance, turned: their changes times themselves are it again, and
-/// of draws from it 95 % lie within the family, whose box is smaller than that of independent
-/// intervals.
+/// Nine directions, all of them, are the rotated covariance: the product of their changes with its
+/// transpose gives it again, and 95 % of draws from it are in the family, whose box is smaller than
+/// that of independent intervals.
 #[test]
 fn the_family_has_ninety_five_of_a_hundred_valves_that_the_recordings_allow() {
     let found = identification();
@@ -115,7 +115,7 @@ fn the_family_has_ninety_five_of_a_hundred_valves_that_the_recordings_allow() {
     let independent: f64 = found.deviations[..COUNT].iter().product();
     let share = changes.determinant().abs() / independent;
     assert!(share < 0.1, "{share}");
-    // drawn by the factor of Cholesky, which knows nothing of directions
+    // drawn with the Cholesky factor, which is independent of the directions
     let scaled = DMatrix::from_fn(COUNT, COUNT, |i, j| {
         covariance[(i, j)] / (found.deviations[i] * found.deviations[j])
     });
@@ -133,8 +133,8 @@ fn the_family_has_ninety_five_of_a_hundred_valves_that_the_recordings_allow() {
     assert!((3745..=3855).contains(&inside), "{inside}");
 }
 
-/// K_qU and K_c of valves within the region lie within the box that the family visits, also where
-/// most directions are left out, up to what was left out.
+/// K_qU and K_c of valves within the region are within the box that the family visits, even if most
+/// directions are left out, up to the omitted part.
 #[test]
 fn directions_that_are_left_out_matter_little() {
     let found = identification();
@@ -168,7 +168,7 @@ fn directions_that_are_left_out_matter_little() {
     }
 }
 
-/// A valve that is known exactly is one valve: the family is that of its operating region alone.
+/// A valve that is known exactly is one valve: the family is only that of its operating region.
 #[test]
 fn what_is_known_exactly_has_no_directions() {
     let mut found = identification().clone();
@@ -200,7 +200,7 @@ fn no_family_is_written_of_what_the_recordings_do_not_determine() {
     assert_eq!(joint_region(identification(), &alone, 0.0), Err(JointRegionError::NoRig));
 }
 
-/// Each member is the plant of the project with these numbers declared, to rounding.
+/// Members are the plants of the project with these numbers declared, to rounding.
 #[test]
 fn a_member_is_the_plant_of_its_coefficients() {
     let project = with_directions(&joint_region(identification(), &rig(), 0.001).unwrap());
@@ -217,7 +217,7 @@ fn a_member_is_the_plant_of_its_coefficients() {
             assert!((one / other - 1.0).norm_sqr().sqrt() < 1e-9, "{values:?}");
         }
     }
-    // and a project that is printed is read back as it was
+    // and a printed project is read back unchanged
     let printed = project::print(&project);
     assert_eq!(read(&printed).unwrap().directions, project.directions);
 }
@@ -271,8 +271,8 @@ fn a_direction_moves_numbers_that_exist_and_are_uncertain_nowhere_else() {
     }
 }
 
-/// How much of Table 6.3 the region of the example reaches: not all of its leakage, and more than
-/// its gain. Nothing else is computed with what is replaced.
+/// The part of Table 6.3 that the region of the example reaches: not all of its leakage, and more
+/// than its gain. Replaced ranges are used for nothing else.
 #[test]
 fn ranges_that_are_replaced_are_compared_and_nothing_else() {
     let replaces = "[family.replaces]\nflow_pressure_coefficient = { nominal = 6.42e-13, minimum = 6.42e-13, maximum = 7e-11, spacing = \"log\" }\nflow_gain = { nominal = 5.4e-5, minimum = 3.23e-5, maximum = 5.61e-5 }\n";
@@ -286,8 +286,8 @@ fn ranges_that_are_replaced_are_compared_and_nothing_else() {
     let visited = visited_box(&setup).unwrap().unwrap();
     let ranges = replaced_ranges(&project, &visited);
     let [leakage, gain] = ranges.as_slice() else { panic!("{ranges:?}") };
-    // the pump stops the rig a quarter of the way to 7e-11; the unequal edges have more gain than
-    // Table 6.3
+    // the pump limits the rig to a quarter of the range up to 7e-11; the unequal edges have more
+    // gain than Table 6.3
     assert!(leakage.visited[1] < 0.3 * 7e-11 && gain.visited[1] > 1.3 * 5.61e-5, "{ranges:?}");
     let logarithm = |value: f64| value.ln();
     let share = logarithm(leakage.visited[1] / 6.42e-13) / logarithm(7e-11 / 6.42e-13);

@@ -1,5 +1,5 @@
-//! The unit in which a quantity is printed: the one in which the text of the project writes it, in
-//! every table, sentence and figure.
+//! The unit in which a quantity is printed: the one used in the text of the project, in every
+//! table, sentence and figure.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -17,13 +17,13 @@ fn rig(force: &str) -> String {
     format!("{text}{DRAWN}")
 }
 
-/// The texts of a page or of its figures, one a line.
+/// The texts of a page or of its figures, one per line.
 fn texts(markup: &str) -> String {
     let texts = markup.split('<').map(|part| part.split_once('>').map_or("", |(_, text)| text));
     texts.collect::<Vec<_>>().join("\n").replace(['\u{a0}', '\u{202f}'], " ")
 }
 
-/// The places where a unit is a word of its own: not part of another such as N/m.
+/// The places where a unit is a separate word: not part of another such as N/m.
 fn places(text: &str, unit: &str) -> Vec<String> {
     let is_part = |c: char| c.is_alphanumeric() || matches!(c, '_' | '/' | '.' | '·' | '^');
     let words = text.match_indices(unit).filter(|(at, _)| {
@@ -59,7 +59,7 @@ fn is_printed_in(project: &str, unit: &str, other: &str) {
     }
 }
 
-/// Friction in N leaves forces in kN alone: it is a small part of them.
+/// Friction in N leaves only forces in kN: it is a small part of them.
 #[test]
 fn a_project_in_kilonewtons_is_printed_in_kilonewtons() {
     is_printed_in(&rig("4 kN"), "kN", "N");

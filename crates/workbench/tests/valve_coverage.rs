@@ -1,5 +1,5 @@
-//! How often the intervals of an identified valve cover its truth, and how wide they are compared
-//! with the Cramer-Rao bound.
+//! Coverage of the truth by the intervals of an identified valve, and their width compared with the
+//! Cramer-Rao bound.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::print_stdout, reason = "how often and how wide is worth reading")]
@@ -19,7 +19,7 @@ use phea_workbench::source::Memory;
 const COUNT: usize = 12;
 
 /// Each 95 % interval covers the truth as often as a binomial distribution allows, and is as narrow
-/// as the information in the recordings lets it be. Fewer rows than a bench records, so that forty
+/// as the information in the recordings permits. Fewer rows than a bench records, so that forty
 /// take a few seconds.
 #[test]
 fn intervals_cover_the_truth_and_are_narrow() {
@@ -27,7 +27,8 @@ fn intervals_cover_the_truth_and_are_narrow() {
     check(40, "bench.sample_time=2", 33..=40);
 }
 
-/// The same with four hundred: a minute in the release profile, by `cargo xtask ci soak`.
+/// Coverage over four hundred recordings: a minute in the release profile, by `cargo xtask ci
+/// soak`.
 #[test]
 #[ignore = "takes minutes"]
 fn soak_four_hundred_intervals_cover_the_truth_and_are_narrow() {
@@ -35,7 +36,7 @@ fn soak_four_hundred_intervals_cover_the_truth_and_are_narrow() {
     check(400, "bench.sample_time=500 ms", 366..=391);
 }
 
-/// A recording of more than 20,000 rows, which is searched over averages first, has the
+/// A recording of more than 20,000 rows, which is searched over averages first, gives the
 /// coefficients and intervals of one that lacks ten of them and is searched over all rows.
 #[test]
 fn many_rows_are_identified_as_a_few_fewer_are() {
@@ -51,7 +52,7 @@ fn many_rows_are_identified_as_a_few_fewer_are() {
         };
         intervals_from(files.iter().enumerate().map(of).collect())
     };
-    // rows of the greatest command, each of which says little
+    // rows of the greatest command, each of which carries little information
     let [many, fewer] = [0..0, 5_000..5_010].map(without);
     for (index, (path, _)) in TRUTH.iter().enumerate() {
         let [one, other] = [many[index], fewer[index]].map(|[low, high]| [high + low, high - low]);
@@ -76,7 +77,7 @@ fn check(repetitions: u32, setting: &str, allowed: std::ops::RangeInclusive<usiz
             "{path:40} covered {covered} of {repetitions}, half width {:.3} %, {over_known:.2} and {over_read:.2} of the bound",
             100.0 * half_width / truth
         );
-        // below the bound, the intervals would claim more than anybody can know
+        // below the bound, the intervals would claim more than the data allow
         if !allowed.contains(&covered) || !(0.85..1.5).contains(&over_read) || over_known > 1.5 {
             wrong.push(*path);
         }
@@ -84,9 +85,9 @@ fn check(repetitions: u32, setting: &str, allowed: std::ops::RangeInclusive<usiz
     assert!(wrong.is_empty(), "{wrong:?}");
 }
 
-/// What came of many recordings of one valve.
+/// Results over many recordings of one valve.
 struct Study {
-    /// How often each interval covered.
+    /// Number of times that each interval covered the truth.
     covered: [usize; COUNT],
     /// Median half widths.
     half_widths: [f64; COUNT],
@@ -145,10 +146,10 @@ fn intervals_from(recorded: Vec<(String, String)>) -> [[f64; 2]; COUNT] {
 /// sqrt((I^-1)_ii)        I = sum over rows of J' C^-1 J
 /// ```
 ///
-/// with J the derivatives of what the valve truly shows in a row and C the covariance of the
-/// bench's noise. Where `pressures_are_known`, supply and load pressure are those that truly acted;
-/// otherwise they are unknown in each row as well, read with the noise of the other pressures,
-/// which adds to C what they change.
+/// with J the derivatives of the valve's true signals in a row and C the covariance of the bench's
+/// noise. If `pressures_are_known`, supply and load pressure are the true ones; otherwise they are
+/// unknown in each row as well, read with the noise of the other pressures, and their effect is
+/// added to C.
 fn cramer_rao(bench: &Bench, pressures_are_known: bool) -> [f64; COUNT] {
     let numbers = TRUTH.map(|(_, truth)| truth);
     let mut information = DMatrix::<f64>::zeros(COUNT, COUNT);
@@ -165,15 +166,15 @@ fn cramer_rao(bench: &Bench, pressures_are_known: bool) -> [f64; COUNT] {
             information += derivatives.transpose() * covariance.try_inverse().unwrap() * &derivatives;
         }
     }
-    // over the truth, so that the matrix is of order one
+    // divided by the truth, so that the matrix is of order one
     let scale = DMatrix::from_diagonal(&DVector::from_row_slice(&numbers));
     let inverse = (&scale * information * &scale).try_inverse().unwrap();
     std::array::from_fn(|index| numbers[index] * inverse[(index, index)].sqrt())
 }
 
-/// Of each row of a test and each of its signals: noise, derivatives over the coefficients, and
-/// derivatives over supply pressure and, of a load pressure that is the difference of two, over the
-/// root of two of it.
+/// Rows of a test, for each of its signals: noise, derivatives with respect to the coefficients,
+/// and derivatives with respect to supply pressure and load pressure; a load pressure that is the
+/// difference of two is divided by the square root of two.
 fn rows(bench: &Bench, test: StaticTest) -> Vec<(Vec<f64>, Vec<f64>, Vec<f64>)> {
     let tested = TestedValve {
         nominal_voltage: 10.0,
@@ -219,7 +220,7 @@ fn rows(bench: &Bench, test: StaticTest) -> Vec<(Vec<f64>, Vec<f64>, Vec<f64>)> 
     rows
 }
 
-/// What a test records: weights of p_A, p_B, leakage and port flow, and the noise.
+/// Signals that a test records: weights of p_A, p_B, leakage and port flow, and the noise.
 fn signals(bench: &Bench, test: StaticTest, port_flow: f64) -> Vec<([f64; 4], f64)> {
     let pressure = bench.pressure_noise;
     let [a, b] = [([1.0, 0.0, 0.0, 0.0], pressure), ([0.0, 1.0, 0.0, 0.0], pressure)];
@@ -234,7 +235,7 @@ fn signals(bench: &Bench, test: StaticTest, port_flow: f64) -> Vec<([f64; 4], f6
     }
 }
 
-/// What truly acts on the valve: the supply as stated, and between the ports the drop of the meter.
+/// True inputs of the valve: the supply as stated, and the drop of the meter between the ports.
 fn true_inputs(
     bench: &Bench,
     test: StaticTest,

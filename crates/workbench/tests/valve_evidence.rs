@@ -1,5 +1,5 @@
-//! What recordings of a valve say beyond the coefficients: which model of the leakage, what may be
-//! zero, and how sure the bootstrap is.
+//! Evidence in recordings of a valve beyond the coefficients: the model of the leakage, quantities
+//! that may be zero, and the confidence of the bootstrap.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -10,10 +10,11 @@ use phea_workbench::source::Memory;
 use serde_json::Value;
 
 const ONE_CURVE: &str = "valve.leakage_model=\"one_curve\"";
-/// Enough to distinguish both models, and quick.
+/// Sample time that is short enough to distinguish both models, and quick.
 const FEW_ROWS: &str = "bench.sample_time=2";
 
-/// Recordings of either model speak for it, and its coefficients are the truth of the table.
+/// Recordings made with either model support it, and its coefficients are the true ones of the
+/// table.
 #[test]
 fn recordings_speak_for_the_model_that_made_them() {
     for (settings, model) in [(vec![FEW_ROWS], "each_edge"), (vec![FEW_ROWS, ONE_CURVE], "one_curve")] {
@@ -34,8 +35,8 @@ fn recordings_speak_for_the_model_that_made_them() {
 }
 
 /// ORIGIN: analytic, thesis (4.14): one curve for the whole valve and edges that leak by one secant
-/// each have the same leakage far from null only if K_vin differs by sqrt(2); fitted with the wrong
-/// model, the same recordings give other numbers.
+/// each have equal leakage far from null only if K_vin differs by sqrt(2); fitted with the wrong
+/// model, the recordings give other numbers.
 #[test]
 fn the_wrong_model_says_so_first() {
     let files = recorded(&[FEW_ROWS, ONE_CURVE]);
@@ -50,7 +51,7 @@ fn the_wrong_model_says_so_first() {
     assert!(!(low..=high).contains(&100.0), "{low} {high}");
 }
 
-/// The fragment states its model, and the project that takes it computes with it.
+/// The fragment states its model, and a project with the fragment uses that model.
 #[test]
 fn the_fragment_is_for_the_model_it_names() {
     let files = recorded(&[FEW_ROWS, ONE_CURVE]);
@@ -64,12 +65,12 @@ fn the_fragment_is_for_the_model_it_names() {
             |name: &str| derived.iter().find(|one| one["name"] == name).unwrap()["value"].as_f64().unwrap();
         of("linear.flow_gain") / of("linear.flow_pressure_coefficient")
     };
-    // one curve: what one edge opens at null the other closes
+    // one curve: the leakage that one edge opens at null is closed by the other
     let ratio = gain(&[ONE_CURVE]) / gain(&[]);
     assert!((1.5..2.5).contains(&ratio), "{ratio}");
 }
 
-/// Metering alone with a coarse meter: the models differ where it reads zero.
+/// Metering only, with a coarse meter: the models differ where it reads zero.
 #[test]
 fn recordings_that_do_not_decide_say_so() {
     let coarse = ["bench.flow_meter.minimum=\"3 L/min\"", "bench.pressure_noise=\"2 bar\"", FEW_ROWS];
@@ -81,10 +82,10 @@ fn recordings_that_do_not_decide_say_so() {
     assert_eq!(found["leakage_model"], "each_edge");
 }
 
-/// What is not there has an interval from zero, not a confident one away from it.
+/// A quantity that may be absent has an interval from zero, not a confident one away from it.
 #[test]
 fn what_may_be_zero_has_a_bound_from_above() {
-    // a meter that does not indicate the direction shows the magnitude of its own noise
+    // a meter that does not indicate the direction shows the magnitude of its noise
     let cases = [
         ("valve.hysteresis=\"1e-9 V\"", "/hysteresis_v", 0.0, 2e-3),
         ("valve.leakage_coefficients.supply_to_b=1e-15", "/leakage_coefficients/supply_to_b", 1e-15, 1e-10),
@@ -102,10 +103,10 @@ fn what_may_be_zero_has_a_bound_from_above() {
     }
 }
 
-/// A valve without tare flow, as a direct-driven one, by meters that indicate the direction, that
-/// show the magnitude of their own noise where nothing flows, and that stand still there: most rows
-/// of the leakage then say nothing, or nothing but noise. The tare flow has a bound from above, and
-/// the leakage is still found.
+/// A valve without tare flow, such as a direct-driven one, measured by meters that indicate the
+/// direction, by meters that show the magnitude of their noise where nothing flows, and by meters
+/// that do not move there: most rows of the leakage then carry no information, or only noise. The
+/// tare flow has an upper bound, and the leakage is still found.
 #[test]
 fn a_valve_without_tare_flow_has_a_bound_from_above_by_every_meter() {
     let cases = [
@@ -134,7 +135,7 @@ fn a_valve_without_tare_flow_has_a_bound_from_above_by_every_meter() {
 }
 
 /// A converter of ten bits rounds most pressures to that of the supply: half of all residuals are
-/// zero, and say nothing of the noise of the others.
+/// zero, and carry no information on the noise of the others.
 #[test]
 fn coarse_converters_do_not_make_the_noise_vanish() {
     let found =
@@ -151,7 +152,7 @@ fn coarse_converters_do_not_make_the_noise_vanish() {
     }
 }
 
-/// The fragment has no hysteresis that may be none.
+/// The fragment does not state a hysteresis that may be absent.
 #[test]
 fn a_hysteresis_that_may_be_none_is_a_comment() {
     let files = recorded(&["valve.hysteresis=\"1e-9 V\"", FEW_ROWS]);
@@ -161,7 +162,7 @@ fn a_hysteresis_that_may_be_none_is_a_comment() {
     assert!(answer.text.contains("These may be zero: hysteresis"), "{}", answer.text);
 }
 
-/// Where the model is right, both ways to an interval agree.
+/// Methods for an interval agree if the model is right.
 #[test]
 fn the_bootstrap_agrees_with_the_linearised_intervals() {
     let files = recorded(&[FEW_ROWS]);
@@ -181,7 +182,7 @@ fn the_bootstrap_agrees_with_the_linearised_intervals() {
     assert_eq!(answer, again);
 }
 
-/// A valve with a threshold, which the model lacks: what neighbouring residuals have in common
+/// A valve with a threshold, which the model lacks: the correlation of neighbouring residuals
 /// widens the intervals.
 #[test]
 fn the_bootstrap_sees_what_the_model_leaves_unexplained() {

@@ -1,5 +1,5 @@
-//! The coefficients of a valve from recorded tests: truth recovered within its intervals, what is
-//! left open, files of every kind, and the way back into a project.
+//! Coefficients of a valve from recorded tests: true values within their intervals, undetermined
+//! coefficients, files of every kind, and the way back into a project.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -12,7 +12,7 @@ use phea_workbench::command::{IdentifyError, IdentifyRequest, Request, identify_
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
-/// Of the valve on the bench.
+/// Settings of the valve on the bench.
 pub(crate) const VALVE: [&str; 3] =
     ["valve.null_bias=\"14 mV\"", "valve.hysteresis=\"128 mV\"", "bench.sample_time=\"500 ms\""];
 
@@ -88,9 +88,9 @@ fn without_noise_the_valve_is_found_to_what_the_converters_leave() {
     assert_eq!(found["converged"], true);
 }
 
-/// A slow spool lags behind its command by 2 xi/w times the rate, as hysteresis does. With the
-/// spool of the project that is counted; with another one it is taken for hysteresis, by twice the
-/// lag.
+/// A slow spool lags behind its command by 2 xi/w times the rate, like hysteresis. With the spool
+/// of the project the lag is taken into account; with another one it counts as hysteresis, by twice
+/// the lag.
 #[test]
 fn the_lag_of_the_spool_is_no_hysteresis() {
     let slow = ["valve.natural_frequency=\"30 Hz\"", "valve.damping_ratio=0.9"];
@@ -110,7 +110,7 @@ fn the_lag_of_the_spool_is_no_hysteresis() {
     assert!(error.abs() < 3.0 * half, "{error} V at {half}");
     let (error, half) = of(&["valve.natural_frequency=\"1000 Hz\"", "valve.damping_ratio=0.9"]);
     // ORIGIN: analytic, twice (2 xi/w - 2 xi/w_wrong) times the greatest rate of a sine over 240 s,
-    // of 0.5 V where the pressures are measured and of 3 V in the other tests
+    // of 0.5 V if the pressures are measured and of 3 V in the other tests
     let widened = [0.5, 3.0].map(|amplitude| 2.0 * (1.8 / 188.5 - 1.8 / 6283.2) * amplitude * TAU / 240.0);
     assert!((widened[0]..widened[1]).contains(&(error + half)), "{error} V for {widened:?}");
     assert!(error > 2.0 * half, "{error} V at {half}");
@@ -135,9 +135,9 @@ fn outliers_are_not_believed() {
     }
 }
 
-/// A command that is recorded wrong in single rows, or in two next to each other, did not move the
-/// valve: such rows are left out, and said so. Without them the numbers are the same as those of
-/// the whole files, within their intervals.
+/// A command that is recorded wrong in single rows, or in two adjacent ones, did not move the
+/// valve: such rows are left out, and reported. The numbers without them agree with those of the
+/// complete files, within their intervals.
 #[test]
 fn commands_that_stand_out_are_left_out() {
     let files = recorded(&[]);
@@ -149,7 +149,7 @@ fn commands_that_stand_out_are_left_out() {
                 if index > 0 && (index % 97 == 40 || index % 97 == 41 && index % 2 == 0) {
                     let command: f64 = cells[1].parse().unwrap();
                     let wrong = if index % 3 == 0 { 0.0 } else { -0.7 * command + 0.2 };
-                    // as far away as a spike has to be that moves a memory
+                    // the distance that a spike needs to change the memory
                     let far = (wrong - command).abs() > 0.3;
                     cells[1] = if far { wrong } else { command + 0.4 }.to_string();
                 }
@@ -172,8 +172,8 @@ fn commands_that_stand_out_are_left_out() {
     assert!(left_out(&clean) == 0 && left_out(&found) >= 4, "{}", found["tests"][0]);
 }
 
-/// A metering test alone passes nothing of the tare flow through its meter, and leakage below what
-/// the meter shows.
+/// A metering test without others: none of the tare flow passes through the meter, nor leakage
+/// below its resolution.
 #[test]
 fn metering_alone_does_not_tell_the_leakage() {
     let files: Vec<_> = recorded(&[]).into_iter().filter(|(name, _)| name == "metering.csv").collect();
@@ -198,13 +198,13 @@ fn metering_alone_does_not_tell_the_leakage() {
     let of_tare_by_leakage = not_identifiable.iter().filter(of_tare).all(by_leakage);
     assert!(of_tare_by_leakage && not_identifiable.iter().any(by_leakage), "{not_identifiable:?}");
     assert!(answer.text.contains("a test of leakage"));
-    // what it does determine
+    // a coefficient that it does determine
     let flow = interval(&found, "/flow_coefficients/supply_to_a").unwrap();
     assert!(flow[0] <= 3.2e-7 && flow[1] >= 3.2e-7 && flow[1] < 1.2 * flow[0], "{flow:?}");
 }
 
-/// Without pressures, edges in series cannot be distinguished: only K_3 K_6/sqrt(K_3^2 + K_6^2)
-/// passes the meter.
+/// Edges in series cannot be distinguished from the flow only, without pressures: only K_3
+/// K_6/sqrt(K_3^2 + K_6^2) passes the meter.
 #[test]
 fn a_flow_alone_does_not_tell_edges_in_series_apart() {
     let files = recorded(&["bench.flow_meter.pressure_drop=0"]);
@@ -215,8 +215,8 @@ fn a_flow_alone_does_not_tell_edges_in_series_apart() {
     };
     let bare = text.lines().map(columns).collect::<Vec<_>>().join("\n");
     let found = identified(&[("flow.csv".to_string(), bare)]);
-    // each edge alone may be anything; how they hang together depends on where the search ends in
-    // the valley
+    // each single edge may have any value; their relation depends on the end of the search in the
+    // valley
     for path in ["/flow_coefficients/supply_to_a", "/flow_coefficients/b_to_tank"] {
         assert!(interval(&found, path).is_none(), "{path}");
     }
@@ -228,7 +228,7 @@ fn a_flow_alone_does_not_tell_edges_in_series_apart() {
     assert!((series / 2.4609e-7 - 1.0).abs() < 5e-3, "{series}");
 }
 
-/// Semicolons, decimal commas, a preamble, units in a row of their own: the same numbers.
+/// Semicolons, decimal commas, a preamble, units in a separate row: all give identical numbers.
 #[test]
 fn files_of_every_kind_say_the_same() {
     let files = recorded(&[]);
@@ -302,7 +302,8 @@ fn files_that_are_no_tests_are_refused_with_their_place() {
     assert!(short.contains("9 rows are too few"), "{short}");
 }
 
-/// The fragment in place of the project's own table is a sound project with the same valve.
+/// The fragment, replacing the project's own table, gives a valid project with the identified
+/// valve.
 #[test]
 fn the_identified_valve_goes_back_into_a_project() {
     let answer = try_identify(&recorded(&[]), 1).unwrap();

@@ -1,5 +1,4 @@
-//! A project that takes its valve from its recordings: every command computes with what `identify`
-//! finds.
+//! A project that takes its valve from its recordings: every command uses the result of `identify`.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -19,7 +18,7 @@ const RECORDED: [(&str, &str); 4] = [
     ("recorded/pressure_gain.csv", include_str!("../../../examples/ybitu/recorded/pressure_gain.csv")),
 ];
 
-/// The project and as many of its recordings as this.
+/// The project with this number of its recordings.
 fn source(text: &str, files: usize) -> Memory {
     let all = RECORDED.iter().take(files);
     all.fold(Memory::default().with("rig.toml", text), |source, (name, text)| source.with(name, *text))
@@ -37,7 +36,7 @@ fn refusal(source: &Memory, settings: &[&str]) -> String {
     }
 }
 
-/// The bench records the declared valve, and says so: its recordings may not be there yet.
+/// The bench records the declared valve, and reports this: its recordings may not exist yet.
 #[test]
 fn the_bench_says_that_its_valve_is_the_declared_one() {
     let quick = "bench={ sample_time = \"10 s\" }";
@@ -55,22 +54,22 @@ fn the_bench_says_that_its_valve_is_the_declared_one() {
     assert!(!told(&[quick, "identify.use=nothing"]).json.contains("\"remarks\""));
 }
 
-/// What `check` computes with is the truth of the bench that made the files; the hash is that of
-/// the project followed by them.
+/// Values used by `check` are the truth of the bench that made the files; the hash is that of the
+/// project followed by them.
 #[test]
 fn every_number_that_is_used_is_the_truth_of_the_bench() {
     let source = source(IDENTIFIED, 4);
     let loaded = read(&source, &[]);
     let answer = command::answer(&source, &loaded, &[], &Request::Check).unwrap();
     let json: Value = serde_json::from_str(&answer.json).unwrap();
-    // ORIGIN: thesis, Table 5.1, which examples/ybitu/bench.toml has: the valve whose tests were
+    // ORIGIN: thesis, Table 5.1, used in examples/ybitu/bench.toml: the valve whose tests were
     // recorded
     let truth = [3.2e-7, 2.5e-7, 2.0e-7, 3.85e-7, 2.35e-9, 2.2e-9, 1.7e-9, 2.35e-9];
     let values = json["identified"]["values"].as_array().unwrap();
     assert_eq!(values.len(), 12, "{values:?}");
     for (value, truth) in values.iter().zip(truth) {
         let path = value["path"].as_str().unwrap();
-        // three half widths, 5.9 deviations: beyond it is one in 250 million
+        // three half widths, 5.9 deviations: exceeded once in 250 million
         let ends = value["confidence_95"].as_array().unwrap();
         let [low, high] = [0, 1].map(|index| ends[index].as_f64().unwrap());
         let middle = 0.5 * (low + high);
@@ -85,8 +84,8 @@ fn every_number_that_is_used_is_the_truth_of_the_bench() {
     assert_eq!(json["identified"]["files"][0]["sha256"], sha256(&first).as_str());
 }
 
-/// The tare flow goes with the root of the pressure, and the table says at which it holds: here
-/// that of the data sheet, 3000 psi, where the tests were made at 70 bar.
+/// The tare flow varies with the root of the pressure, and the table states the pressure for which
+/// it holds: here that of the data sheet, 3000 psi, while the tests were made at 70 bar.
 #[test]
 fn the_tare_flow_has_its_pressure() {
     let source = source(IDENTIFIED, 4);
@@ -104,8 +103,8 @@ fn the_tare_flow_has_its_pressure() {
     assert!(answer.text.contains(words), "{}", answer.text);
 }
 
-/// Port pressures alone determine ratios of the coefficients: the command refuses and says which
-/// are open.
+/// Port pressures determine only ratios of the coefficients: the command rejects them and names the
+/// open coefficients.
 #[test]
 fn a_valve_that_the_recordings_do_not_determine_is_refused() {
     let [start, end] = ["[[identify.recording]]", "[cylinder] "].map(|at| IDENTIFIED.find(at).unwrap());
@@ -116,8 +115,8 @@ fn a_valve_that_the_recordings_do_not_determine_is_refused() {
     assert!(message.contains("identify.use"), "{message}");
 }
 
-/// What contradicts the recordings, or the family that they leave, is refused; a file that is
-/// missing too.
+/// A setting that contradicts the recordings, or the family that they leave, is rejected; so is a
+/// missing file.
 #[test]
 fn what_contradicts_the_recordings_is_refused() {
     let all = source(IDENTIFIED, 4);
@@ -126,7 +125,8 @@ fn what_contradicts_the_recordings_is_refused() {
     assert!(refusal(&source(IDENTIFIED, 3), &[]).contains("pressure_gain.csv"));
 }
 
-/// As declared where nothing is taken: the answer is that of the project without its recordings.
+/// The declared valve is used if nothing is taken from recordings: the answer is that of the
+/// project without them.
 #[test]
 fn nothing_is_taken_where_nothing_is_wanted() {
     let source = source(IDENTIFIED, 0);

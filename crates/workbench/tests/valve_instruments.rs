@@ -1,4 +1,4 @@
-//! The coefficients of a valve from recordings as instruments make them: noise on the command, oil
+//! The coefficients of a valve from recordings with instrument errors: noise on the command, oil
 //! that warms, coarse converters.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::valve_identification::{TRUTH, identified, interval, recorded, value};
 
-/// How many of the twelve intervals of each seed hold the truth.
+/// Number of the twelve intervals of each seed that contain the truth.
 pub(crate) fn covered(settings: &[&str], seeds: std::ops::Range<usize>) -> usize {
     let of_seed = |seed: usize| {
         let seed = format!("bench.seed={seed}");
@@ -27,7 +27,7 @@ fn off(found: &Value, path: &str) -> f64 {
 }
 
 /// 2 mV rms on a command of 10 V: a memory that follows the record finds a hysteresis of twice the
-/// width. What is left is the noise of the flow that the command's noise makes.
+/// width. The noise of the flow that the command's noise causes remains.
 #[test]
 fn noise_of_the_command_does_not_widen_the_hysteresis() {
     for noise in ["0.5 mV", "2 mV", "5 mV"] {
@@ -41,8 +41,9 @@ fn noise_of_the_command_does_not_widen_the_hysteresis() {
     }
 }
 
-/// Of 96 intervals of 95 % as many hold as of recordings with an exact command: about 91, less than
-/// 82 once in a thousand were they independent; those of one recording are not.
+/// The number of 95 % intervals, of 96, that contain the truth is that of recordings with an exact
+/// command: about 91; less than 82 once in a thousand if they were independent, but those of one
+/// recording are not.
 #[test]
 fn intervals_hold_with_noise_of_the_command() {
     let held = covered(&["bench.command_noise=\"2 mV\""], 1..9);
@@ -50,7 +51,7 @@ fn intervals_hold_with_noise_of_the_command() {
 }
 
 /// Oil that warms by 2 degC raises the leakage by 9 %; coefficients are those at the mean, and
-/// hold.
+/// their intervals contain the truth.
 #[test]
 fn the_recorded_temperature_is_in_the_model() {
     let warm = ["bench.oil_temperature={ start = \"36 degC\", end = \"38 degC\", reference = \"37 degC\" }"];
@@ -75,7 +76,7 @@ fn the_recorded_temperature_is_in_the_model() {
     assert!(covered(&warm, 1..9) >= 80);
 }
 
-/// Coefficients at a stated temperature: the leakage goes with the viscosity, the flow with the
+/// Coefficients at a stated temperature: the leakage varies with the viscosity, the flow with the
 /// root of the density.
 #[test]
 fn coefficients_are_stated_at_a_temperature() {
@@ -98,7 +99,7 @@ fn coefficients_are_stated_at_a_temperature() {
     assert!((ratio("/flow_coefficients/supply_to_a") * (1.0 - 7e-3_f64).sqrt() - 1.0).abs() < 5e-5);
 }
 
-/// Rounding is alike in neighbouring rows where a signal changes by less than a step: blocks of
+/// Rounding is correlated in neighbouring rows if a signal changes by less than a step: blocks of
 /// them count as one row.
 #[test]
 fn intervals_hold_with_coarse_converters() {
@@ -106,8 +107,9 @@ fn intervals_hold_with_coarse_converters() {
     assert!(held >= 80, "{held}");
 }
 
-/// Of a meter that may be wrong by 1 % of its reading the flow coefficients are known to that, and
-/// no better; of one that is, the intervals hold the truth, which those by noise alone do not.
+/// Accuracy of the flow coefficients with a meter that may be wrong by 1 % of its reading: they are
+/// known to 1 %, and no better; with a meter that is wrong by that, these intervals contain the
+/// truth, but those from noise only do not.
 #[test]
 fn a_stated_accuracy_is_in_the_intervals() {
     use crate::ask::{HOSE, load};
@@ -142,14 +144,14 @@ fn a_stated_accuracy_is_in_the_intervals() {
     // GUM: 1.96 times 1 % over the root of three
     let half = (high - low) / 2.0 / value(&found, path);
     assert!((half / (0.0196 / 3.0_f64.sqrt()) - 1.0).abs() < 0.1, "{half}");
-    // the zero and the span of a transducer of 0.3 bar
+    // the zero and the span of a transducer with 0.3 bar
     let pressures = asked(", pressure_a = { accuracy = \"0.3 bar\" }");
     let width = |found: &Value| interval(found, "/null_bias_v").map_or(0.0, |[low, high]| high - low);
     assert!(width(&pressures) > width(&asked("")));
 }
 
-/// A transducer that reads 0.3 bar too much leaves a misfit where nothing is said of it, and none
-/// where its accuracy allows for it; one that reads 3 bar too much is beyond that.
+/// A transducer that reads 0.3 bar too much leaves a misfit if no accuracy is stated, and none if
+/// its stated accuracy covers the error; 3 bar are beyond that.
 #[test]
 fn what_a_stated_accuracy_explains_is_no_misfit() {
     use crate::ask::{HOSE, load};

@@ -1,10 +1,11 @@
-//! Tests that begin after other cycles: the spool brings their memory along.
+//! Tests that begin after other cycles: the spool still has their memory.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
 use crate::valve_identification::{TRUTH, identified, recorded};
 
-/// The files without their first rows: what is left begins with the memory of what is gone.
+/// The files without their first rows: the remaining ones begin with the memory of the removed
+/// ones.
 fn cut(files: &[(String, String)], share: f64) -> Vec<(String, String)> {
     let of = |(name, text): &(String, String)| {
         let rows = text.lines().count() - 1;
@@ -15,10 +16,10 @@ fn cut(files: &[(String, String)], share: f64) -> Vec<(String, String)> {
     files.iter().map(of).collect()
 }
 
-/// The lag of the spool after the commands that are gone, in V.
+/// The lag of the spool after the removed commands, in V.
 ///
-/// ORIGIN: analytic, each way of the command draws it to half the width of 128 mV, over a travel of
-/// the width.
+/// ORIGIN: analytic, the command draws it in each direction to half the width of 128 mV, over a
+/// travel of the width.
 fn lag_after(text: &str, share: f64) -> f64 {
     let commands: Vec<f64> =
         text.lines().skip(1).map(|row| row.split(',').nth(1).unwrap().parse().unwrap()).collect();
@@ -31,11 +32,12 @@ fn lag_after(text: &str, share: f64) -> f64 {
 }
 
 /// A test of two cycles without its beginning: its memory is found, the truth is in the intervals,
-/// and nothing is left unexplained.
+/// and no misfit remains.
 #[test]
 fn a_test_after_other_cycles_is_explained() {
     let mut held = 0;
-    // the second is cut just after the command has turned: the lag is still that of the way before
+    // the second is cut just after a reversal of the command: the lag is still that of the
+    // direction before
     for (seed, share) in (1..).zip([0.1, 0.13, 0.25, 0.45]) {
         let seed = format!("bench.seed={seed}");
         let files = recorded(&["bench.cycles=2", "bench.duration=\"480 s\"", &seed]);

@@ -1,5 +1,5 @@
-//! The numbers of section 5.2 of the thesis, read off recorded tests: the published ones where the
-//! valve is the published one, and the derived ones of the same valve.
+//! Numbers of section 5.2 of the thesis, read from recorded tests: the published ones for the
+//! published valve, and those derived from the declaration of that valve.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -22,12 +22,12 @@ const IDEAL: [&str; 7] = [
 const MEASURED: [&str; 4] = [
     "valve.null_bias=\"14 mV\"",
     "valve.hysteresis=\"128 mV\"",
-    // two cycles, so that null is passed both ways
+    // two cycles, so that null is passed in both directions
     "bench.duration=\"480 s\"",
     "bench.cycles=2",
 ];
 
-/// The same coefficient for every edge, and the rated flow as the thesis rounds it.
+/// One coefficient for all edges, and the rated flow as rounded in the thesis.
 fn equal_edges() -> Vec<String> {
     let edges = ["supply_to_a", "a_to_tank", "supply_to_b", "b_to_tank"];
     let each = edges.into_iter().flat_map(|edge| {
@@ -40,7 +40,7 @@ fn equal_edges() -> Vec<String> {
     each.chain(rated.map(str::to_string)).collect()
 }
 
-/// The whole answer of `identify` to the tests of the bench.
+/// The complete answer of `identify` to the tests of the bench.
 fn identified(settings: &[&str]) -> phea_workbench::answer::Answer {
     let recorded = answer(HOSE, settings, &[], &Request::Bench).files;
     let files: Vec<String> = recorded.iter().map(|file| file.name.clone()).collect();
@@ -62,8 +62,8 @@ fn near(numbers: &Value, name: &str, expected: f64, share: f64) {
     assert!((found / expected - 1.0).abs() < share, "{name}: {found:e} is not {expected:e}");
 }
 
-/// The first column of Table 5.1 with one curve for the whole leakage, as equations 4.12 to 4.14
-/// take it: the calculations lead back to every number that section 5.2 prints.
+/// The first column of Table 5.1 with one curve for the whole leakage, as in equations 4.12 to
+/// 4.14: the calculations return every number printed in section 5.2.
 #[test]
 fn the_published_numbers_come_back_from_the_valve_they_describe() {
     let edges = equal_edges();
@@ -84,7 +84,7 @@ fn the_published_numbers_come_back_from_the_valve_they_describe() {
 }
 
 /// The optimised column of Table 5.1 on the bench of the example, with its instruments. Tare flow
-/// and nulls agree with what the thesis reads off its curves. The others cannot: the optimised
+/// and nulls agree with those read from the curves of the thesis. The others cannot: the optimised
 /// edges are unequal, and two of them in series pass less than a mean of the four; and its leakage
 /// coefficients are all below the 2.488e-9 of the peak.
 #[test]
@@ -92,7 +92,8 @@ fn the_optimised_valve_agrees_where_it_can() {
     let found = numbers(&MEASURED);
     // ORIGIN: thesis section 5.2.1
     near(&found, "tare_flow_m3_per_s", 7.55e-6, 5e-3);
-    // the curve of unequal edges is not even about null: its centre lies 8 mV below, both ways
+    // the curve of unequal edges is not even about null: its centre is 8 mV below, in both
+    // directions
     for (name, published) in [("null_rising_v", 0.078), ("null_falling_v", -0.05)] {
         let offset: f64 = found[name].as_f64().unwrap() - published;
         assert!((-0.016..0.0).contains(&offset), "{name}: {offset}");
@@ -106,7 +107,7 @@ fn the_optimised_valve_agrees_where_it_can() {
     let mean = f64::midpoint(number("flow_coefficient_extending"), number("flow_coefficient_retracting"));
     assert!((0.95..0.965).contains(&(mean / 2.97e-7)), "4 % below the published one: {mean:e}");
     assert!((0.90..0.96).contains(&(number("null_leakage_m3_per_s") / 9.31e-6)));
-    // an interval holds the truth that it is of
+    // an interval contains its true value
     let interval = |name: &str| -> [f64; 2] {
         serde_json::from_value(found["confidence_95"][name].clone()).unwrap_or_else(|_| panic!("{name}"))
     };
@@ -114,13 +115,13 @@ fn the_optimised_valve_agrees_where_it_can() {
     assert!(low <= 7.56e-6 && high >= 7.54e-6 && high - low < 2e-8, "{low:e} {high:e}");
 }
 
-/// What is read of nulls and hysteresis by the leakage has an interval that holds the truth, and so
-/// has a reading by the flow or the pressures alone an interval, whatever the reading is worth:
-/// straight lines through the flow see null 8 mV too high, because the spool still remembers the
-/// reversal where they begin.
+/// Intervals of nulls and hysteresis read from the leakage contain the truth. Readings from the
+/// flow or the pressures only have an interval too, whatever their accuracy: straight lines through
+/// the flow give a null 8 mV too high, because the spool still remembers the reversal where they
+/// begin.
 #[test]
 fn nulls_and_what_follows_from_them_have_intervals() {
-    // ORIGIN: thesis section 5.2.1, and the null between both ways of it
+    // ORIGIN: thesis section 5.2.1, and the null between its two directions
     const TRUTH: [(&str, f64); 4] = [
         ("null_rising_v", 0.078),
         ("null_falling_v", -0.05),
@@ -176,8 +177,8 @@ fn read_from(files: &[&str], settings: &[&str], seed: u32) -> Value {
     found["simple_calculations"].clone()
 }
 
-/// Flow gain, and flow-pressure coefficient from it and the pressure sensitivity, are those that
-/// the linear model of the same valve is made of.
+/// The flow gain, and the flow-pressure coefficient computed from it and the pressure sensitivity,
+/// are those of the linear model of the identified valve.
 #[test]
 fn slopes_at_null_are_those_of_the_linear_model() {
     let edges = equal_edges();
@@ -197,9 +198,9 @@ fn slopes_at_null_are_those_of_the_linear_model() {
     near(&found, "flow_pressure_coefficient", derived("valve.flow_pressure_coefficient_extending"), 1e-2);
 }
 
-/// The pressure sensitivity of valves that leak less and less, the less the fewer rows about null:
-/// ORIGIN: analytic, p_A - p_B with shut ports by both pairs of edges as dividers, its slope where
-/// both pressures are equal.
+/// The pressure sensitivity of valves that leak less and less, with fewer and fewer rows about
+/// null: ORIGIN: analytic, p_A - p_B with shut ports by both pairs of edges as dividers, its slope
+/// where both pressures are equal.
 #[test]
 fn the_pressure_sensitivity_is_that_of_the_dividers() {
     let [flow, leak] = [[3.2e-7, 2.5e-7, 2.0e-7, 3.85e-7], [2.35e-9, 2.2e-9, 1.7e-9, 2.35e-9]];
@@ -226,14 +227,14 @@ fn the_pressure_sensitivity_is_that_of_the_dividers() {
         let value = found["pressure_sensitivity_pa_per_v"].as_f64().unwrap();
         let interval = &found["confidence_95"]["pressure_sensitivity_pa_per_v"];
         let [low, high] = [0, 1].map(|end| interval[end].as_f64().unwrap());
-        // the curve is not quite a cubic with a kink: that leaves 1 %
+        // the curve is not quite a cubic with a kink: 1 % remains
         assert!((value / truth - 1.0).abs() < 0.02, "{share}: {truth}, {value}");
         assert!((0.98 * low..1.02 * high).contains(&truth) && high - low < 0.2 * truth, "{low} {high}");
     }
 }
 
-/// The flow gain of a valve with an overlap is that beyond it, and is not called that at null: K_c
-/// at null does not follow from it.
+/// The flow gain of a valve with an overlap is that beyond the overlap, and is not called the gain
+/// at null: K_c at null does not follow from it.
 #[test]
 fn the_numbers_of_a_valve_with_lap_say_where_they_are_read() {
     let overlap = "valve.lap={ positive = 0.003, negative = 0.003 }";
@@ -262,7 +263,7 @@ fn the_numbers_of_a_valve_with_lap_say_where_they_are_read() {
     assert!(without.text.contains("flow gain at null K_qU, positive command"), "{}", without.text);
 }
 
-/// People read the numbers with their equations and what the thesis prints.
+/// The numbers are printed with their equations and the published values.
 #[test]
 fn the_table_stands_beside_the_published_numbers() {
     let text = identified(&MEASURED).text;
@@ -273,7 +274,7 @@ fn the_table_stands_beside_the_published_numbers() {
 }
 
 /// The recordings next to the example are those of its bench, byte for byte; every figure of
-/// chapter 5 is drawn of them, and the identified valve is the one that made them.
+/// chapter 5 is drawn from them, and the identified valve is the one that produced them.
 #[test]
 fn the_recordings_of_the_example_are_made_by_its_bench() {
     const BENCH: &str = include_str!("../../../examples/ybitu/bench.toml");

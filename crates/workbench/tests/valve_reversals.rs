@@ -32,7 +32,7 @@ fn column(text: &str, name: &str) -> Vec<f64> {
     lines.map(|line| line.split(',').nth(index).unwrap().parse().unwrap()).collect()
 }
 
-/// What the reversals show: threshold and hysteresis in V, each with its interval.
+/// Results of the reversals: threshold and hysteresis in V, each with its interval.
 fn shown(settings: &[&str]) -> [(f64, [f64; 2]); 2] {
     let found: Value = serde_json::from_str(&bench(settings).json).unwrap();
     let tests = found["tests"].as_array().unwrap();
@@ -44,7 +44,7 @@ fn shown(settings: &[&str]) -> [(f64, [f64; 2]); 2] {
     })
 }
 
-/// Without noise the reversals show what the valve was given, whatever the null bias.
+/// The reversals without noise show the declared values, whatever the null bias.
 #[test]
 fn ideal_reversals_show_the_declared_threshold_and_hysteresis() {
     for (threshold, width) in [(0.04, 0.128), (0.05, 0.055)] {
@@ -62,7 +62,7 @@ fn ideal_reversals_show_the_declared_threshold_and_hysteresis() {
     }
 }
 
-/// With the noise of the instruments the intervals hold the truth and are narrow enough to be
+/// Intervals with the noise of the instruments contain the truth and are narrow enough to be
 /// useful.
 #[test]
 fn noisy_reversals_tell_the_threshold() {
@@ -75,8 +75,8 @@ fn noisy_reversals_tell_the_threshold() {
     }
 }
 
-/// A temperature that does not move adds its column and changes nothing else, and neither does any
-/// of the further tests change the others.
+/// A constant temperature adds its column and changes nothing else, and none of the further tests
+/// changes the others.
 #[test]
 fn a_steady_temperature_changes_no_other_byte() {
     let usual = bench(&[]);
@@ -92,7 +92,7 @@ fn a_steady_temperature_changes_no_other_byte() {
     assert_eq!(usual.files.len() + 1, steady.files.len());
 }
 
-/// Oil that is warmer by ten degrees all the time: flow by the root of the density, leakage by the
+/// Oil that is always ten degrees warmer: flow by the root of the density, leakage by the
 /// viscosity.
 #[test]
 fn warm_oil_flows_by_its_density_and_leaks_by_its_viscosity() {
@@ -121,7 +121,7 @@ fn warm_oil_flows_by_its_density_and_leaks_by_its_viscosity() {
     assert!(((warm_null - warm_base) / (cold_null - cold_base) / laminar - 1.0).abs() < 1e-4);
 }
 
-/// The small meter takes more of the pressure, and shows where the large one reads zero.
+/// The small meter takes more of the pressure, and reads flows where the large one reads zero.
 #[test]
 fn two_meters_see_two_ranges() {
     let found = bench(&[

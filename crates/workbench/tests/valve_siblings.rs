@@ -1,5 +1,5 @@
-//! Three recordings each of the kinds that were once identified wrongly: oil that warms or cools,
-//! coarse converters, instruments with an error that is stated.
+//! Three recordings for each kind that was once identified wrongly: oil that warms or cools, coarse
+//! converters, instruments with a stated error.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -10,7 +10,8 @@ use phea_workbench::command::{IdentifyRequest, identify_watched};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
-/// Of 36 intervals of 95 % about 34 hold; fewer than 30 would once in 500, were they independent.
+/// Least number of 36 intervals of 95 % that must contain the truth: about 34 do; fewer than 30
+/// would once in 500, if they were independent.
 const LEAST_OF_THREE: usize = 30;
 
 /// Coefficients are those at the mean temperature, at which the bench states its own here.
@@ -32,7 +33,8 @@ fn coarse_converters() {
     }
 }
 
-/// The recordings of the bench with one column changed, and the twelve intervals that hold.
+/// The recordings of the bench with one column changed, and the number of the twelve intervals that
+/// contain the truth.
 fn with_error(file: &str, heading: &str, error: impl Fn(f64) -> f64, accuracy: &str, seed: u32) -> usize {
     let files = recorded(&[&format!("bench.seed={seed}")]);
     let source = files.iter().fold(Memory::default(), |source, (name, text)| {
@@ -62,9 +64,9 @@ fn with_error(file: &str, heading: &str, error: impl Fn(f64) -> f64, accuracy: &
     TRUTH.iter().filter(holds).count()
 }
 
-/// An instrument that is wrong by half of what is stated: the intervals of its accuracy hold, those
-/// of the noise alone do not. Of a supply pressure that is known to 0.8 % the flow coefficients
-/// are known to 0.4 %.
+/// An instrument that is wrong by half of the stated error: the intervals with its accuracy contain
+/// the truth, those from the noise only do not. For a supply pressure known to 0.8 % the flow
+/// coefficients are known to 0.4 %.
 #[test]
 fn instruments_whose_error_is_stated() {
     let cases = [

@@ -1,5 +1,5 @@
-//! Valves with lap, saturation and leakage by edge, recorded on the virtual bench: what the
-//! recordings ask for is taken, and nothing else.
+//! Valves with lap, saturation and leakage by edge, recorded on the virtual bench: terms that the
+//! recordings require are taken, and no others.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -10,20 +10,21 @@ use phea_workbench::project;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
-/// The terms that are taken, in the order in which they are.
+/// The terms that are taken, in their order.
 fn taken(found: &Value) -> Vec<&str> {
     let terms = found["terms"].as_array().unwrap();
     terms.iter().filter(|one| one["taken"] == true).map(|one| one["term"].as_str().unwrap()).collect()
 }
 
-/// How far an estimate lies from the truth, in half widths of its interval.
+/// Distance of an estimate from the truth, in half widths of its interval.
 fn off(found: &Value, path: &str, truth: f64) -> f64 {
     let interval = found.pointer(&format!("{path}/confidence_95")).unwrap();
     let [low, high] = [0, 1].map(|end| interval[end].as_f64().unwrap());
     (value(found, path) - truth).abs() / (0.5 * (high - low))
 }
 
-/// Each coefficient of the valve within three half widths, 5.9 deviations, and most within one.
+/// Checks that each coefficient of the valve is within three half widths, 5.9 deviations, and most
+/// within one.
 fn check(settings: &[&str], terms: &[&str], more: &[(&str, f64)]) {
     let found = identified(&recorded(settings));
     assert_eq!(taken(&found), terms, "{settings:?}");
@@ -33,7 +34,7 @@ fn check(settings: &[&str], terms: &[&str], more: &[(&str, f64)]) {
     let off: Vec<f64> = off.collect();
     assert!(off.iter().all(|one| *one < 3.0), "{settings:?} {off:?}");
     let held = off.iter().filter(|one| **one <= 1.0).count();
-    // ORIGIN: analytic, of 18 intervals of 95 % fewer than 13 hold once in 1900
+    // ORIGIN: analytic, fewer than 13 of 18 intervals of 95 % contain the truth once in 1900
     assert!(held + 5 >= all.len(), "{settings:?} {off:?}");
 }
 
@@ -73,9 +74,9 @@ fn leakage_by_edge_is_identified() {
     check(&[shapes], &["leakage_by_edge"], &more);
 }
 
-/// Edges of one command that open one after the other: with blocked ports each port shows its own
+/// Edges of one pair that open one after the other: with blocked ports each port shows its own
 /// edges, so that the pressure at A is that of a valve with an overlap and the one at B that of a
-/// valve without. No lap of the model explains both, which is told, with the reason.
+/// valve without. No lap of the model explains both, which is reported with the reason.
 #[test]
 fn laps_that_differ_within_a_pair_are_told() {
     let lapped = recorded(&["valve.lap={ positive = 0.004, negative = 0.004 }"]);
@@ -89,7 +90,7 @@ fn laps_that_differ_within_a_pair_are_told() {
         let row = |(own, other): (&str, &str)| {
             let mut own = cells(own);
             own[a] = cells(other)[a].clone();
-            // both ports together make the leakage
+            // the leakage is the sum of both ports
             flow.into_iter().for_each(|flow| drop(own.remove(flow)));
             own.join(",")
         };
@@ -102,7 +103,7 @@ fn laps_that_differ_within_a_pair_are_told() {
     assert!(!found["misfits"].as_array().unwrap().is_empty(), "{}", found["signals"]);
     assert!(taken(&found).contains(&"lap"), "{}", found["terms"]);
     assert!(answer.text.contains("the laps of the two differ"), "{}", answer.text);
-    // laps that are alike are explained, and nothing is said of others
+    // equal laps are explained, and no others are mentioned
     let alike = try_asked(&lapped, &files_of(&lapped)).unwrap_or_else(|error| panic!("{error}"));
     assert!(!alike.text.contains("the laps of the two differ"), "{}", alike.text);
 }
@@ -118,7 +119,8 @@ fn lap_and_saturation_are_told_apart() {
     assert!(off(&found, "/lap/positive", 0.004) < 3.0 && off(&found, "/saturation", 0.5) < 3.0);
 }
 
-/// What no recording asks for is not taken: the valve of the thesis by other seeds and noise.
+/// A term that no recording requires is not taken: the valve of the thesis with other seeds and
+/// noise.
 #[test]
 fn nothing_is_taken_of_a_valve_without_terms() {
     for settings in [
@@ -135,8 +137,8 @@ fn nothing_is_taken_of_a_valve_without_terms() {
     }
 }
 
-/// A project that takes its valve from recordings takes its lap too, the family that they leave
-/// ranges over it, and a declared one that the recordings do not have is gone.
+/// A project that takes its valve from recordings takes its lap too, the remaining family ranges
+/// over it, and a declared lap that is not in the recordings is removed.
 #[test]
 fn a_project_takes_the_lap_of_its_recordings() {
     let with_lap = recorded(&["valve.lap={ positive = -0.004, negative = -0.003 }"]);
@@ -167,7 +169,7 @@ fn a_project_takes_the_lap_of_its_recordings() {
     let positive = lap.iter().find(|one| one["path"] == "valve.lap.positive").expect("the lap is used");
     assert!((positive["value"].as_f64().unwrap() + 0.004).abs() < 2e-4, "{positive}");
     assert!(!paths(&used(&without, "")).iter().any(|path| path.contains("lap")));
-    // declared and not recorded: the valve is the same as without it
+    // declared but not recorded: the valve is the one without it
     let gone = used(&without, "valve.lap={ positive = 0.02, negative = 0.02 }");
     assert_eq!(gone["parameters"], used(&without, "")["parameters"]);
 }

@@ -1,4 +1,4 @@
-//! Static tests of the valve: what a virtual bench records.
+//! Static tests of the valve: the records of a virtual bench.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -33,7 +33,7 @@ fn most(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Thesis (4.13) backwards at null, and two edges in series at full amplitude.
+/// Thesis (4.13) inverted at null, and two edges in series at full amplitude.
 #[test]
 fn ideal_instruments_show_the_closed_forms() {
     let found = tested(&IDEAL);
@@ -68,7 +68,7 @@ fn a_small_pump_lets_the_pressure_fall_and_a_meter_stands_still() {
     assert_eq!(flow[0], 0.0);
 }
 
-/// The leakage is greatest at null: it is passed by half the width later, either way.
+/// The leakage is greatest at null: null is passed late by half the width, in either direction.
 #[test]
 fn null_is_passed_late_both_ways() {
     let mut settings = IDEAL.to_vec();
@@ -84,7 +84,8 @@ fn null_is_passed_late_both_ways() {
         .filter(|row| (a[*row] - b[*row] > 0.0) != (a[row + 1] - b[row + 1] > 0.0))
         .map(|row| command[row])
         .collect();
-    // equal pressures lie away from null where the edges differ, by the same either way
+    // equal pressures occur away from null if the edges differ, by an equal distance in either
+    // direction
     assert_eq!(crossings.len(), 1, "{crossings:?}");
     let [falling, rising] = [crossings[0], {
         let back = tested(&[settings.as_slice(), &["bench.cycles=2", "bench.duration=\"480 s\""]].concat());

@@ -27,7 +27,7 @@ fn loaded(text: &str, settings: &[&str]) -> Loaded {
     project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"))
 }
 
-/// The rig of the hose alone, with one specification.
+/// The rig of the hose with only one specification.
 fn rig(settings: &[&str]) -> Project {
     let specification = "specification=[{ kind = \"load_motion\", limit = 1e7, frequencies = [1, 20, 100], band = [0.1, 300] }]";
     loaded(HOSE, &[settings, &[specification]].concat()).project.without_uncertainty()
@@ -46,8 +46,7 @@ fn worst(project: &Project) -> f64 {
     audited(project).audit.specifications[0].worst.as_ref().unwrap().margin_db
 }
 
-/// A sensor that shows what is true changes no bit of a run and of a verdict; one that does not
-/// changes both.
+/// A sensor without error changes no bit of a run and of a verdict; one with an error changes both.
 #[test]
 fn a_sensor_without_error_is_none() {
     for settings in [vec![FED], vec![FED, SPRUNG], [&[FED], &SAMPLED[..]].concat()] {
@@ -66,8 +65,8 @@ fn a_sensor_without_error_is_none() {
     }
 }
 
-/// The error of its gain is that of the gain: K (1 + e). With static friction a load that yields
-/// would oscillate until a last bit shows.
+/// The error of the sensor's gain acts as an error of the feed-forward gain: K (1 + e). With static
+/// friction a load that yields would oscillate until the last bit differs.
 #[test]
 fn its_gain_error_is_one_of_the_gain() {
     for settings in [vec![], vec![SPRUNG], SAMPLED.to_vec(), vec!["controller.delay=1 ms", SPRUNG]] {
@@ -83,9 +82,9 @@ fn its_gain_error_is_one_of_the_gain() {
     }
 }
 
-/// The force by a prescribed motion is a straight line over e, so that the worst of a range is one
-/// of its ends; with a load that yields no error of the range is worse than what the verdict over
-/// it says, and one of them is as bad.
+/// The force due to a prescribed motion is linear in e, so that the worst of a range is one of its
+/// ends; with a load that yields no error of the range is worse than the verdict over the range,
+/// and one of them is as bad.
 #[test]
 fn its_gain_error_is_a_coordinate_of_the_family() {
     let range = "uncertainty={ \"velocity_sensor.gain_error\" = { nominal = 0, minimum = -0.3, maximum = 0.2, points = 3 } }";
@@ -121,7 +120,7 @@ fn its_gain_error_is_a_coordinate_of_the_family() {
     }
 }
 
-/// The rig of the hose with this in place of its family.
+/// The rig of the hose with these settings instead of its family.
 fn with_family(settings: &[&str]) -> Loaded {
     let (before, rest) = HOSE.split_once("[uncertainty]").unwrap();
     let (_, after) = rest.split_once("[[specification]]").unwrap();
@@ -133,8 +132,8 @@ fn with_family(settings: &[&str]) -> Loaded {
     loaded(&text, &[settings, &[range, specification, "linear={}"]].concat())
 }
 
-/// A filter keeps the plants quotients of polynomials: what was searched is proven over every error
-/// of the gain. A delay does not, and the verdict with proof says so and is not met.
+/// Filters leave the plants quotients of polynomials: the result of the search is proven over every
+/// error of the gain. A delay does not, and the verdict with proof reports this and is not met.
 #[test]
 fn it_is_proven_where_the_plants_are_quotients() {
     let filter = "velocity_sensor={ filter_frequency = \"200 Hz\" }";
@@ -158,7 +157,7 @@ fn it_is_proven_where_the_plants_are_quotients() {
     }
 }
 
-/// The machine of the worst plant has that plant's error, and does what its linear loop does.
+/// The machine of the worst plant has that plant's error, and behaves like its linear loop.
 #[test]
 fn the_worst_error_is_tried_on_the_machine() {
     let sensor = "velocity_sensor={ filter_frequency = \"200 Hz\", delay = \"0.5 ms\" }";
@@ -195,7 +194,7 @@ fn rms(values: &[f64]) -> f64 {
     (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// Commands and forces of the machine at the samples, without what it begins with.
+/// Commands and forces of the machine at the samples, minus their initial values.
 fn samples(project: &Project) -> [Vec<f64>; 2] {
     let run = simulated(project);
     assert_eq!(run.stopped(), None);
@@ -208,8 +207,8 @@ fn samples(project: &Project) -> [Vec<f64>; 2] {
 }
 
 /// Command and force of the machine have the rms that `verify` states: the command within five
-/// standard errors of 19,000 samples that are nearly independent, the force, whose samples resemble
-/// each other over some 20 ms, of a twentieth as many.
+/// standard errors of 19,000 samples that are nearly independent, the force, whose samples are
+/// correlated over some 20 ms, of a twentieth as many.
 #[test]
 fn noise_reaches_command_and_force_as_the_verdict_says() {
     let control = "controller={ numerator = \"0.0002*s + 0.002\", denominator = \"s\", sample_time = \"1 ms\", delay = \"0.5 ms\", load_velocity_feed_forward = { gain = 20 } }";
@@ -222,8 +221,7 @@ fn noise_reaches_command_and_force_as_the_verdict_says() {
         let told = view.velocity_noise.as_ref().unwrap();
         assert!((told.rms - 1e-3 * (13.0_f64 / 12.0).sqrt()).abs() < 1e-12);
         let effect = told.effect.as_ref().unwrap();
-        // a prescribed load that stands still lets K times the noise through, and the controller
-        // answers little
+        // K times the noise passes with a prescribed load at rest, and the controller reacts little
         if load != SPRUNG {
             assert!((effect.command_rms_v / (20.0 * told.rms) - 1.0).abs() < 0.02, "{effect:?}");
         }
@@ -239,7 +237,8 @@ fn noise_reaches_command_and_force_as_the_verdict_says() {
     }
 }
 
-/// So has the noise of pressures that are fed back, which reaches the command through its filters.
+/// Noise of pressures that are fed back, which reaches the command through its filters, has the
+/// stated rms too.
 #[test]
 fn noise_of_pressures_reaches_command_and_force_as_the_verdict_says() {
     let control = "controller={ numerator = \"0.0002*s + 0.002\", denominator = \"s\", sample_time = \"1 ms\", delay = \"0.5 ms\" }";
@@ -253,7 +252,7 @@ fn noise_of_pressures_reaches_command_and_force_as_the_verdict_says() {
         assert_eq!((told.rms, view.velocity_noise.is_none()), (0.2e5, true));
         let effect = told.effect.as_ref().unwrap();
         if filters.is_empty() {
-            // little comes back within a sample: k n
+            // little returns within a sample: k n
             assert!((effect.command_rms_v / 0.02 - 1.0).abs() < 0.1, "{effect:?}");
         }
         let [commands, forces] = samples(&project);
@@ -268,8 +267,8 @@ fn noise_of_pressures_reaches_command_and_force_as_the_verdict_says() {
     }
 }
 
-/// Samples are rounded to whole steps after the noise; equal seeds give equal bits, and other seeds
-/// others.
+/// Samples are rounded to whole steps after the noise is added; equal seeds give equal bits, and
+/// other seeds others.
 #[test]
 fn what_it_shows_is_rounded_and_reproducible() {
     let control = "controller={ elements = [{ kind = \"gain\", value = 1e-15 }], sample_time = \"1 ms\", load_velocity_feed_forward = { gain = 20 } }";
@@ -288,8 +287,8 @@ fn what_it_shows_is_rounded_and_reproducible() {
     assert!(steps.iter().any(|step| step.abs() > 0.02));
 }
 
-/// Each machine of a campaign has its own error of the gain, alone as in lanes, and a seed of its
-/// own where there is noise.
+/// Each machine of a campaign has its own gain error, in a single run and in lanes, and its own
+/// seed if there is noise.
 #[test]
 fn a_campaign_draws_the_gain_error() {
     let short = [

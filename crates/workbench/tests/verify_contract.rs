@@ -1,5 +1,5 @@
-//! What `verify` answers: the keys other programs read, and what the audit of the thesis'
-//! controller finds.
+//! Answer of `verify`: the keys that other programs read, and the findings of the audit of the
+//! thesis' controller.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -19,7 +19,7 @@ fn close(value: &Value, expected: f64, relative: f64) {
     assert!((value - expected).abs() <= relative * expected.abs(), "{value} instead of {expected}");
 }
 
-/// One plant, k/s, closed with gain 1.
+/// A single plant, k/s, closed with gain 1.
 const INTEGRATOR: &str = "schema = 1\ntitle = \"integrator\"\n[plant]\nnumerator = \"k\"\ndenominator = \"s\"\n\
     [uncertainty]\nk = { nominal = 1, minimum = 1, maximum = 2, points = 2 }\n[controller]\nnumerator = \"1\"\n\
     denominator = \"1\"\n[[specification]]\nkind = \"robust_stability\"\nlimit = 1.1\nfrequencies = [1, 5]\nband = [0, inf]\n";
@@ -69,14 +69,14 @@ fn the_audit_of_the_thesis_finds_what_its_grid_hid() {
 
 #[test]
 fn what_cannot_be_met_is_not_called_met() {
-    // unstable: no specification is met by it
+    // unstable: it meets no specification
     let unstable = verify(INTEGRATOR, &["controller.numerator=\"-1\"", "specification.0.limit=1000"]);
     assert_eq!((unstable["verdict"].as_str(), unstable["stable"].as_bool()), (Some("violated"), Some(false)));
     assert!(unstable["delay_margin_s"].is_null() && unstable["delay_margin_s_reason"].is_string());
     let row = &unstable["specifications"][0];
     assert_eq!(row["verdict"], "violated");
     assert!(row["worst_margin_db"].is_null() && row["reason"].is_string());
-    // a negative margin within the tolerance is met, one beyond it is violated
+    // a negative margin within the tolerance counts as met, one beyond it as violated
     for (limit, verdict) in [("0.9995", "met"), ("0.99", "violated")] {
         let setting = format!("specification.0.limit={limit}");
         assert_eq!(verify(INTEGRATOR, &[&setting])["verdict"], verdict, "{limit}");
@@ -93,8 +93,8 @@ fn the_text_says_the_verdict_first_and_what_it_rests_on() {
     }
 }
 
-/// What a simulation adds to the command and a model does not know of is said by every command on
-/// that model.
+/// An effect that a simulation adds to the command and that a model does not include is reported by
+/// every command on that model.
 #[test]
 fn a_feed_forward_is_told_to_be_left_out() {
     let words = "that [controller] feeds forward";
@@ -167,8 +167,7 @@ fn a_number_set_outside_of_its_own_range_is_refused_with_the_cure() {
     }
 }
 
-/// The numbers of a plant have the units of the keys that they are, and none where the project does
-/// not know them.
+/// The numbers of a plant have the units of their keys, and none if the project does not know them.
 #[test]
 fn plants_are_named_with_the_units_of_their_numbers() {
     let hose = include_str!("../../../examples/ybitu/hose.toml");
@@ -184,7 +183,7 @@ fn plants_are_named_with_the_units_of_their_numbers() {
     assert_eq!(plant_text(&names, &plant), expected);
 }
 
-/// k/(s - 1) closed with gain 2 is stable for k above 1/2: from k = 4 its gain may fall to an
+/// Plant k/(s - 1) closed with gain 2 is stable for k above 1/2: from k = 4 its gain may fall to an
 /// eighth. An integrator may lose all of it, and has no such sentence.
 #[test]
 fn a_loop_around_an_unstable_plant_states_how_far_its_gain_may_fall() {

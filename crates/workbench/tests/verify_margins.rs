@@ -1,4 +1,4 @@
-//! Margins of the nominal loop and the worst of the family, against closed forms.
+//! Margins of the nominal loop and the worst of the family, compared with closed forms.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -17,7 +17,7 @@ fn close(value: &Value, expected: f64) {
     assert!((number - expected).abs() <= 1e-5 * expected.abs(), "{number} instead of {expected}");
 }
 
-/// k/s with a dead time, k from 1 to 4.
+/// Plant k/s with a dead time, k from 1 to 4.
 const DELAYED: &str = "schema = 1\ntitle = \"delayed\"\n[plant]\nnumerator = \"k\"\ndenominator = \"s\"\n\
     delay = \"0.1 s\"\n[uncertainty]\nk = { nominal = 2, minimum = 1, maximum = 4, points = 3 }\n[controller]\n\
     numerator = \"1\"\ndenominator = \"1\"\n[[specification]]\nkind = \"robust_stability\"\nlimit = 2\n\
@@ -64,7 +64,8 @@ fn the_worst_of_a_family_of_gains_is_at_the_largest() {
     }
 }
 
-/// 8/(s - 1) needs its gain: |L| = 8 at zero frequency, |1 + L| = |jw + 7|/|jw - 1| falls to 1.
+/// The plant 8/(s - 1) needs its gain: |L| = 8 at zero frequency, |1 + L| = |jw + 7|/|jw - 1| falls
+/// to 1.
 #[test]
 fn around_an_unstable_plant_the_gain_may_not_fall() {
     let unstable = DELAYED
@@ -84,8 +85,8 @@ fn around_an_unstable_plant_the_gain_may_not_fall() {
     assert_eq!(at["gain_reduction_db"]["plant"]["k"], 8.0);
 }
 
-/// k e^(-s T)/s is stable up to k = pi/(2 T): a family beyond it has no margins, a nominal loop
-/// below it has its own.
+/// The loop k e^(-s T)/s is stable up to k = pi/(2 T): a family beyond that has no margins, a
+/// nominal loop below it has some.
 #[test]
 fn an_unstable_family_has_no_margins_and_says_why() {
     let beyond = DELAYED.replace("maximum = 4", "maximum = 16");
@@ -116,7 +117,7 @@ fn loops_without_polynomials_have_margins_too() {
     }
 }
 
-/// The limits that a loop does not keep, by key.
+/// The limits that a loop exceeds, by key.
 fn below(project: &str, settings: &[&str]) -> Vec<Value> {
     json(project, settings, &[], &VERIFY)["below_design"].as_array().unwrap().clone()
 }
@@ -125,8 +126,8 @@ fn of_key<'a>(below: &'a [Value], key: &str) -> Option<&'a Value> {
     below.iter().find(|one| one["key"] == key)
 }
 
-/// The modulus margin of the audit against the limit of a design, by default or as stated; a plant
-/// of polynomials has no default.
+/// The modulus margin of the audit compared with the limit of a design, by default or as stated; a
+/// plant of polynomials has no default.
 #[test]
 fn a_loop_says_which_limits_of_a_design_it_does_not_keep() {
     let said = answer(HOSE, &[], &[], &VERIFY);
@@ -135,7 +136,7 @@ fn a_loop_says_which_limits_of_a_design_it_does_not_keep() {
     let modulus = of_key(found, "modulus_margin").unwrap();
     assert_eq!(modulus["value"], object["margins"]["modulus"]);
     assert_eq!((&modulus["limit"], &modulus["origin"]), (&0.5.into(), &"default".into()));
-    // it tolerates 2 ms where half a millisecond is enough
+    // the loop tolerates 2 ms and half a millisecond is enough
     assert!(of_key(found, "minimum_delay_margin").is_none());
     assert!(said.text.contains("`phea design` would refuse this loop"), "{}", said.text);
     let explained = said.text.contains("The bandwidth is the frequency above which |L/(1+L)| of every plant");
@@ -153,7 +154,7 @@ fn a_loop_says_which_limits_of_a_design_it_does_not_keep() {
     assert!(below(DELAYED, &[]).is_empty());
 }
 
-/// k/s under a gain of 1: |1 + L| is 1 at least, and the phase may lag by a right angle.
+/// Plant k/s under a gain of 1: |1 + L| is 1 at least, and the phase may lag by a right angle.
 #[test]
 fn a_loop_that_keeps_the_limits_of_a_design_says_which() {
     let plant = DELAYED.replace("delay = \"0.1 s\"\n", "");
@@ -170,8 +171,8 @@ fn a_loop_that_keeps_the_limits_of_a_design_says_which() {
     assert!(!nothing.text.contains("`[design]`"), "{}", nothing.text);
 }
 
-/// What noise takes of the command is reached where a limit just above it is kept and one just
-/// below it is not.
+/// The noise in the command equals its value at the limit if a limit just above it is satisfied and
+/// one just below it is not.
 #[test]
 fn the_noise_that_a_loop_passes_to_its_command_is_that_of_its_limit() {
     let rig = include_str!("../../../examples/structural/rig.toml");
@@ -181,8 +182,8 @@ fn the_noise_that_a_loop_passes_to_its_command_is_that_of_its_limit() {
     close(&of_key(&at(99.0 * reached), "noise_to_command").unwrap()["value"], reached);
 }
 
-/// |L| = e^p(w) crosses 1 where p has its roots: the crossover is where it falls through 1 for the
-/// first time, whatever lies beyond.
+/// The loop |L| = e^p(w) crosses 1 at the roots of p: the crossover is where it falls through 1 for
+/// the first time, whatever is beyond.
 #[test]
 fn the_crossover_is_the_first_fall_through_one() {
     let of = |roots: &[f64], sign: f64| {
@@ -198,7 +199,7 @@ fn the_crossover_is_the_first_fall_through_one() {
     assert_eq!(twice.again_rad_per_s, Some([3.0, 9.0]));
     // a peak that touches 1 is no crossing: e^-(w - 2)^2
     assert_eq!(of(&[1.0, 2.0, 2.0], 1.0).again_rad_per_s, None);
-    // below 1 at zero frequency, and above 1 from then on
+    // below 1 at zero frequency, and then above 1
     let resonance = of(&[2.0, 4.0], -1.0);
     assert_eq!((resonance.first_rad_per_s, resonance.again_rad_per_s), (Some(4.0), None));
     assert_eq!(of(&[2.0], -1.0), Crossovers::default());

@@ -1,5 +1,5 @@
-//! Verdicts of rigs whose lines move: their responses, their stability, and their steps compared
-//! with the machine's.
+//! Verdicts on rigs with waves in their lines: their responses, their stability, and their steps
+//! compared with the machine's.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::ask::answer;
 
-/// The hose, its chambers by volume, without its family: one rig.
+/// The hose, with its chambers by volume, without its family: one rig.
 fn one_rig() -> String {
     let text = include_str!("../../../examples/ybitu/hose.toml");
     let (before, rest) = text.split_once("[uncertainty]").unwrap();
@@ -37,8 +37,8 @@ fn unstable(object: &Value) -> usize {
     before.map_or(0, |before| before.rsplit(' ').next().unwrap().parse().unwrap())
 }
 
-/// The published loop has gain beyond the quarter wave of its hoses: four poles grow, two where the
-/// wall moves along too, and a wall that creeps fast enough saves it.
+/// The published loop has gain beyond the quarter wave of its hoses: four poles are unstable, two
+/// if the wall moves along too, and none with a wall that creeps fast enough.
 #[test]
 fn the_published_loop_is_unstable_with_waves() {
     let count =
@@ -57,7 +57,7 @@ fn the_published_loop_is_unstable_with_waves() {
     }
 }
 
-/// Where the loop is stable, its predicted step is the machine's.
+/// The predicted step is the machine's, if the loop is stable.
 #[test]
 fn the_step_that_is_predicted_is_the_machines() {
     let object = asked(
@@ -75,7 +75,7 @@ fn the_step_that_is_predicted_is_the_machines() {
 }
 
 /// A valve that leaks leaves a loop with a tail that is slower than anything in the plant: waves
-/// hardly change it, and it belongs to the predicted step all the same.
+/// hardly change it, but it is part of the predicted step.
 #[test]
 fn a_tail_slower_than_the_plant_is_predicted() {
     let predicted = |settings: [&str; 2]| {
@@ -104,8 +104,8 @@ fn a_tail_slower_than_the_plant_is_predicted() {
     }
 }
 
-/// For the one rig there is a loop below the quarter wave of its hoses that satisfies everything,
-/// and the machine agrees.
+/// A loop below the quarter wave of the hoses satisfies everything for the one rig, and the machine
+/// agrees.
 #[test]
 fn one_rig_with_waves_is_designed_for() {
     let object = asked(
@@ -114,12 +114,12 @@ fn one_rig_with_waves_is_designed_for() {
     );
     assert_eq!(object["status"], Value::from("met"));
     assert_eq!(object["verification"]["verdict"], Value::from("met"));
-    // a step six times as large settles more slowly than the linear loop, and is told as that
+    // a step six times as large settles more slowly than the linear loop, and is reported as such
     assert_ne!(object["machine"]["verdict"], Value::from("contradicts"), "{}", object["machine"]);
     assert_eq!(object["machine"]["runs"][0]["agreement"], Value::from("agrees"), "{}", object["machine"]);
 }
 
-/// A family with lines in motion names its plants by their parameters, as every other family does.
+/// A family with lines in motion names its plants by their parameters, like every other family.
 #[test]
 fn worst_plants_have_their_parameters() {
     let text = include_str!("../../../examples/ybitu/hose.toml");
@@ -132,8 +132,8 @@ fn worst_plants_have_their_parameters() {
     assert!(said.text.contains("every plant by its response with lines in motion"), "{}", said.text);
 }
 
-/// With lines in motion a box is searched between its members too: no rig that is declared anywhere
-/// in it is worse than what was found, and what was found is worse than any corner.
+/// A box with lines in motion is searched between its members too: no rig that is declared anywhere
+/// in it is worse than the worst plant found, which is worse than any corner.
 #[test]
 fn a_box_is_searched_between_its_members() {
     let (start, specifications) = {

@@ -1,5 +1,5 @@
-//! Which key of the project moves which part: every key changed on several rigs, and the table of
-//! the guide that says so.
+//! Keys of the project and the parts that they move: every key changed on several rigs, and the
+//! corresponding table of the guide.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -43,7 +43,7 @@ const TABLES: [&str; 16] = [
     "controller",
     "prefilter",
 ];
-/// What a key may move, in the order of the columns.
+/// Parts that a key may move, in the order of the columns.
 const PARTS: [&str; 5] = ["sizing", "plant", "loop", "sensor", "machine"];
 
 fn loaded(text: &str, settings: &[String]) -> Option<Loaded> {
@@ -51,8 +51,8 @@ fn loaded(text: &str, settings: &[String]) -> Option<Loaded> {
     project::read(&source, "rig.toml", settings, &[]).ok()
 }
 
-/// What is computed of a project: one text for each part, `None` for a part that it does not have,
-/// or that is not asked for; and the parameters of its linear model.
+/// Computed parts of a project: one text for each part, `None` for a part that it does not have or
+/// that is not requested; and the parameters of its linear model.
 fn computed(
     project: &Project,
     asked: [bool; PARTS.len()],
@@ -72,7 +72,7 @@ fn computed(
         let compensation = setup.compensation(setup.controller.as_ref()?).ok()?;
         Some(format!("{compensation:?} {:?}", setup.prefilter))
     };
-    // the machine of a bench stands behind its rig, and before what a scenario adds
+    // the machine of a bench is after its rig, and before the additions of a scenario
     let machine = || {
         let all = format!("{:?}", ControlledMachine::new(&setup).ok()?);
         Some(all[all.find(", machine: ").unwrap()..].to_string())
@@ -88,16 +88,16 @@ fn computed(
     (found, setup.rig().map(|rig| rig.parameters.clone()).unwrap_or_default())
 }
 
-/// What changing a key changes, as far as it was tried.
+/// Effects of changing a key, as far as tested.
 #[derive(Default)]
 struct Changes {
     parts: BTreeSet<&'static str>,
-    /// Of each parameter of the linear model that is derived, the largest relative change.
+    /// Largest relative change of each derived parameter of the linear model.
     linear: BTreeMap<&'static str, f64>,
 }
 
 impl Changes {
-    /// Whether nothing more can be learned of a key.
+    /// True if no further effect of a key can be found.
     fn are_known(&self, path: &str, asked: [bool; PARTS.len()]) -> bool {
         asked == [false; PARTS.len()] && sources(path).all(|name| self.linear.contains_key(name))
     }
@@ -111,7 +111,7 @@ fn sources(path: &str) -> impl Iterator<Item = &'static str> {
     from.map(|parameter| parameter.key.name)
 }
 
-/// Every key of the tables above that is changed by itself.
+/// Keys of the tables above that are changed one at a time.
 fn keys() -> Vec<KeyEntry> {
     project::keys()
         .into_iter()
@@ -120,7 +120,7 @@ fn keys() -> Vec<KeyEntry> {
         .collect()
 }
 
-/// Takes the rigs one by one, by as many threads as there are processors.
+/// Processes the rigs one by one, with as many threads as there are processors.
 fn on_every_rig(take: impl Fn(&str, &[String]) + Sync) {
     let rigs = Mutex::new(rigs().into_iter());
     std::thread::scope(|scope| {
@@ -136,13 +136,13 @@ fn on_every_rig(take: impl Fn(&str, &[String]) + Sync) {
     });
 }
 
-/// Changes each key of one rig, and adds what it moves.
+/// Changes each key of one rig, and adds the parts that it moves.
 fn try_keys(text: &str, settings: &[String], keys: &[KeyEntry], moved: &Mutex<Moved>) {
     let Some(own) = loaded(text, settings) else { panic!("{settings:?}") };
     let (before, derived) = computed(&own.project, [true; PARTS.len()]);
     let absent = absent_tables(keys, &own.project);
     for entry in keys.iter().filter(|entry| !is_within(entry, &absent)) {
-        // what is known to move is not tried again
+        // parts that are known to move are not tested again
         let asked = {
             let moved = moved.lock().unwrap();
             let known = moved.get(&entry.path);
@@ -186,8 +186,8 @@ fn row(key: &str, moves: &BTreeSet<&str>) -> String {
     format!("| `{key}` | {} |", cells.join(" | "))
 }
 
-/// The guide's table is what happens, key by key; of a key that moves nothing it says why, and a
-/// command must answer differently because of it.
+/// The guide's table agrees with the computed effects, key by key; for a key that moves nothing it
+/// states the reason, and a command must answer differently because of it.
 #[test]
 fn the_table_of_the_guide_is_what_happens() {
     let keys = keys();
@@ -196,7 +196,7 @@ fn the_table_of_the_guide_is_what_happens() {
     let moved = moved.into_inner().unwrap();
     let untried: BTreeSet<&str> =
         keys.iter().map(|entry| entry.path.as_str()).filter(|path| !moved.contains_key(*path)).collect();
-    // items that begin with keys; what they say of them follows a colon
+    // items that begin with keys; their explanation follows a colon
     let items = GUIDE.split("\n- `").skip(1).filter_map(|item| item.split_once(':')).map(|(keys, _)| keys);
     let apart: BTreeSet<&str> =
         items.flat_map(|keys| keys.split('`').step_by(2)).filter(|key| !key.is_empty()).collect();

@@ -1,5 +1,4 @@
-//! Pressure within a line along which waves travel: the exact line between the pressures of its
-//! ends.
+//! Pressure within a line with waves: the exact line between the pressures of its ends.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
@@ -15,22 +14,22 @@ use phea_workbench::source::Memory;
 
 use super::ask::{json, project_of};
 
-/// Two pulses that meet within a line of 10 m with a bore of 10 mm, full of oil of 850 kg/m3 and
+/// Two pulses that meet within a line of 10 m with a bore of 10 mm, full of oil with 850 kg/m3 and
 /// 1.4 GPa.
 const PULSES: &str = include_str!("projects/meeting_pulses.toml");
 const LENGTH_M: f64 = 10.0;
 const RADIUS_M: f64 = 5e-3;
 const START_PA: f64 = 17.5e5;
-/// What is left of the first row at the end of the transform's window.
+/// Remaining fraction of the first row at the end of the transform's window.
 const LEFT: f64 = 1e-7;
 
-/// The least pressure within the line, and where it is, m from the valve.
+/// The least pressure within the line, and its distance from the valve, m.
 ///
 /// ```text
 /// p(x) = [p_valve sinh Gamma (1 - x) + p_chamber sinh Gamma x]/sinh Gamma,    Gamma = s T sqrt(N(s R^2/nu))
 /// ```
 ///
-/// along s = sigma + jw, so that the transform of a row that ends is that of one that goes on.
+/// along s = sigma + jw, so that the transform of a row that ends is that of an infinite one.
 fn exact(times_s: &[f64], ends: [Vec<f64>; 2], viscosity: f64) -> [f64; 2] {
     let (rows, step_s) = (times_s.len(), times_s[1] - times_s[0]);
     let count = 4 * rows;
@@ -77,8 +76,8 @@ fn exact(times_s: &[f64], ends: [Vec<f64>; 2], viscosity: f64) -> [f64; 2] {
     least
 }
 
-/// The depth of a fall within a line is that of the exact line to two percent of the fall, and
-/// rather deeper, for thin oil and for thick.
+/// The depth of a pressure drop within a line is that of the exact line to two percent, and rather
+/// deeper, for thin oil and for thick.
 #[test]
 fn a_fall_within_a_line_is_as_deep_as_in_the_exact_line() {
     for viscosity_cst in [5.0, 20.0, 60.0] {
@@ -107,7 +106,7 @@ fn a_fall_within_a_line_is_as_deep_as_in_the_exact_line() {
     }
 }
 
-/// Neither the tolerance nor the length of steps has a part in it.
+/// The depth depends neither on the tolerance nor on the length of steps.
 #[test]
 fn a_fall_between_the_steps_is_found() {
     let of = |tolerance: &str| {

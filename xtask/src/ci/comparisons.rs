@@ -1,11 +1,11 @@
-//! Comparisons with other tools and recomputed numbers, in Python, in a virtual environment of
-//! their own.
+//! Comparisons with other tools and recomputed numbers, in Python, in their own virtual
+//! environment.
 
 use std::path::Path;
 
 use super::{Outcome, Runner, tools};
 
-/// The scripts that are run: all that begin so.
+/// Folders, and the beginnings of the names of the scripts to run.
 const BEGINNINGS: [(&str, &str); 3] =
     [("comparisons", "compare_"), ("comparisons", "recompute_"), ("book", "recompute_")];
 
@@ -33,7 +33,7 @@ pub(super) fn run(runner: &Runner) -> Outcome {
         .and(|| python(runner, &profile, &[&["comparisons/together.py"][..], &scripts].concat()))
 }
 
-/// Runs what is left out otherwise, by the phea of the release profile.
+/// Runs the scripts that are otherwise left out, with the phea of the release profile.
 pub(super) fn soak(runner: &Runner) -> Outcome {
     let profile = runner.target.join("release");
     let jobs = std::thread::available_parallelism().map_or(1, usize::from).to_string();
@@ -51,8 +51,8 @@ pub(super) fn soak(runner: &Runner) -> Outcome {
 /// Runs Python with the programs of this profile.
 fn python(runner: &Runner, profile: &Path, arguments: &[&str]) -> Outcome {
     let path = |path: &Path| path.to_string_lossy().into_owned();
-    // The libraries below NumPy would take every core for matrices of a few rows, and the system
-    // would clear the memory of a large array anew for each.
+    // The libraries below NumPy would use every core for matrices of a few rows, and the system
+    // would clear the memory of each large array again.
     let variables = [
         ("OPENBLAS_NUM_THREADS", "1".to_string()),
         ("MALLOC_MMAP_THRESHOLD_", "1000000000".to_string()),
@@ -67,7 +67,7 @@ fn python(runner: &Runner, profile: &Path, arguments: &[&str]) -> Outcome {
     runner.execute(&[&[PYTHON][..], arguments].concat(), &variables)
 }
 
-/// Makes the virtual environment with the packages that the scripts need.
+/// Creates the virtual environment with the packages that the scripts need.
 fn environment(runner: &Runner) -> Outcome {
     if let Err(missing) = tools::python() {
         return Outcome::Failed(missing);

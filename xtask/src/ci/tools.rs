@@ -1,11 +1,11 @@
-//! Tools that a stage needs and a machine may lack, installed where that is possible.
+//! Tools that a stage needs and a machine may lack, installed if possible.
 
 use std::process::{Command, Stdio};
 use std::sync::{Mutex, PoisonError};
 
-/// Ensures that this works, by these commands if need be; reports what is missing if it cannot.
+/// Ensures that a tool works, by these commands if necessary; reports the missing tool otherwise.
 fn ensure(what: &str, works: impl Fn() -> bool, install: &[&str]) -> Result<(), String> {
-    // Needed by two stages at once, it is installed once.
+    // If two stages need the tool at once, it is installed once.
     static INSTALLING: Mutex<()> = Mutex::new(());
     let _installing = INSTALLING.lock().unwrap_or_else(PoisonError::into_inner);
     if works() || (install.iter().all(|line| succeeds(line)) && works()) {
@@ -27,13 +27,13 @@ pub(super) fn target(name: &str) -> Result<(), String> {
     ensure(name, works, &[&format!("rustup target add {name}")])
 }
 
-/// SUNDIALS, where it can be linked; root installs it on Debian.
+/// SUNDIALS, if it can be linked; root installs it on Debian.
 pub(super) fn sundials() -> Result<(), String> {
     let works = || succeeds("cc -fsyntax-only -include cvode/cvode.h -x c /dev/null");
     ensure("SUNDIALS", works, &["apt-get update -qq", "apt-get install -y -qq libsundials-dev"])
 }
 
-/// Python's module for virtual environments, which Debian has in a package of its own.
+/// Python's module for virtual environments, which is in a separate package on Debian.
 pub(super) fn python() -> Result<(), String> {
     let works = || succeeds("python3 -m ensurepip --version");
     ensure("python3-venv", works, &["apt-get update -qq", "apt-get install -y -qq python3-venv"])

@@ -1,7 +1,7 @@
-//! Every number in the built-in catalogue has a source, and every file of it is built in.
+//! Numbers in the built-in catalogue have a source, and every file of the catalogue is built in.
 //!
-//! A file in `crates/project/catalogue/` describes one product and has its name. `source` holds for
-//! every key of the file, `[sources]` for single ones.
+//! A file in `crates/project/catalogue/` describes one product and has its name. `source` applies
+//! to every key of the file, `[sources]` to single ones.
 
 use super::Violation;
 use crate::repository::Repository;

@@ -1,5 +1,5 @@
-//! The top-level modules of a crate do not use each other in a circle: a reader begins with those
-//! that use no other. No two types of the libraries and applications have one name.
+//! Cycles between the top-level modules of a crate are forbidden, so that a reader can begin with
+//! those that use no other. Types of the libraries and applications have unique names.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,7 +7,7 @@ use super::Violation;
 use crate::repository::Repository;
 use crate::rust_file::{RustFile, paths, words};
 
-/// For each top-level module those that it uses.
+/// Modules that each top-level module uses.
 type Uses = BTreeMap<String, BTreeSet<String>>;
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
@@ -28,7 +28,7 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     found
 }
 
-/// Types of which another file has one of the same name.
+/// Types for which another file has one of equal name.
 pub(super) fn check_names(repository: &Repository) -> Vec<Violation> {
     let mut places: BTreeMap<&str, &str> = BTreeMap::new();
     let mut found = Vec::new();
@@ -43,7 +43,7 @@ pub(super) fn check_names(repository: &Repository) -> Vec<Violation> {
     found
 }
 
-/// The types that a file defines, with their lines; those of implementations and traits belong to
+/// The types that a file defines, with their lines; types in implementations and traits belong to
 /// these.
 fn types(file: &RustFile) -> impl Iterator<Item = (&str, usize)> {
     file.shipped().filter_map(|line| {
@@ -57,7 +57,7 @@ fn types(file: &RustFile) -> impl Iterator<Item = (&str, usize)> {
     })
 }
 
-/// The modules from the root of the crate to a file, the root's own file having none.
+/// The modules from the root of the crate to a file; the root's own file has none.
 fn modules(file: &RustFile) -> Vec<&str> {
     let inner = file.path.split_once("/src/").map_or("", |(_, inner)| inner).trim_end_matches(".rs");
     if matches!(inner, "lib" | "main") { vec![] } else { inner.split('/').collect() }
@@ -85,8 +85,8 @@ fn uses(files: &[&RustFile]) -> Uses {
     uses
 }
 
-/// Name that a path has directly below the root, from a file `depth` modules below it: a module, or
-/// a type that the root passes on.
+/// Name of a path directly below the root, from a file `depth` modules below it: a module, or a
+/// type that the root exports.
 fn used_module(path: &str, depth: usize) -> Option<&str> {
     let mut parts = path.split("::").peekable();
     let first = *parts.peek()?;

@@ -1,16 +1,16 @@
-//! Equation numbers of the thesis as comments cite them: "thesis (6.20)", "thesis 6.1 to 6.4",
-//! "Ledezma (2019), equation 6.12".
+//! Equation numbers of the thesis in the form in which comments cite them: "thesis (6.20)", "thesis
+//! 6.1 to 6.4", "Ledezma (2019), equation 6.12".
 
 /// Chapter and number.
 pub(super) type Equation = (u32, u32);
 
 const MARKS: [&str; 2] = ["thesis", "Ledezma (2019)"];
 
-/// Words and signs that may stand between the mark and the numbers, or between numbers.
+/// Words and signs that are allowed between the mark and the numbers, or between numbers.
 const BETWEEN: [&str; 12] =
     ["equations", "equation", "'s", "'", "(", ")", ",", "and", "or", "both", "corrected", " "];
 
-/// All equations that a line cites, ranges written out.
+/// Equations that a line cites, with ranges expanded.
 pub(super) fn cited(line: &str) -> Vec<Equation> {
     let after =
         |mark: &&str| line.match_indices(*mark).map(|(start, found)| start + found.len()).collect::<Vec<_>>();

@@ -1,4 +1,4 @@
-//! Packages depend on those packages alone that the table below allows.
+//! Dependencies between packages: only those that the table below allows.
 //!
 //! ```text
 //! dynamics <- quantity <- table <- hydraulics <- machine, project <-+
@@ -9,8 +9,8 @@
 use super::Violation;
 use crate::repository::Repository;
 
-/// The packages by their folder, those outside the workspace too, and those of ours that each may
-/// use.
+/// Packages by their folder, including those outside the workspace, and the packages of this
+/// repository that each may use.
 const ALLOWED: &[(&str, &str)] = &[
     ("crates/dynamics", ""),
     ("crates/hydraulics", "dynamics quantity"),
@@ -28,11 +28,11 @@ const ALLOWED: &[(&str, &str)] = &[
     ("xtask", ""),
 ];
 
-/// The folders of the crates that compute and do nothing else.
+/// The folders of the crates that only compute.
 pub(super) const LOWER_CRATES: [&str; 5] =
     ["crates/dynamics/", "crates/hydraulics/", "crates/machine/", "crates/qft/", "crates/quantity/"];
 
-/// Packages that a crate that only computes has no use for: file formats, clocks, threads, unseeded
+/// Packages that a crate that only computes does not need: file formats, clocks, threads, unseeded
 /// random numbers.
 const FOREIGN_TO_LOWER_CRATES: [&str; 10] =
     ["serde", "serde_json", "toml", "clap", "rand", "getrandom", "rayon", "chrono", "time", "tempfile"];
@@ -73,11 +73,11 @@ fn dependencies(table: &toml::Table) -> impl Iterator<Item = &str> {
     })
 }
 
-/// The package that calls a library in C, which cannot forbid what is not safe Rust.
+/// The package that calls a library in C, which cannot forbid unsafe Rust.
 const CALLS_C: &str = "benches/peers/sundials/Cargo.toml";
 
-/// Every package has the lints of the workspace; one that is a workspace of its own, as fuzzing
-/// tools want it, has nothing to inherit.
+/// Checks that every package has the lints of the workspace; a package that is its own workspace,
+/// as fuzzing tools require, has nothing to inherit.
 pub(super) fn check_lints(repository: &Repository) -> Vec<Violation> {
     let manifests = repository.texts("", "/Cargo.toml").filter(|(path, text)| {
         let lines = || text.lines().map(str::trim);

@@ -1,6 +1,6 @@
-//! Every equation of the thesis that the code cites stands in the book's index of equations, what
-//! the index says implements it exists, and the file that it names holds the equation as a formula.
-//! For an equation of another source the index states how the formula begins.
+//! Equations of the thesis that the code cites are in the book's index of equations; the
+//! implementation named in the index exists, and the named file contains the equation as a formula.
+//! For an equation of another source the index states the beginning of the formula.
 
 use std::collections::BTreeSet;
 
@@ -43,7 +43,7 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     found
 }
 
-/// The file of a row whose fences do not hold the row's formula.
+/// The file of a row whose fences do not contain the row's formula.
 fn missing_formula(repository: &Repository, row: &Row<'_>) -> Vec<Violation> {
     let [formulae, files] = ["formula", "in"].map(|column| row.spans(column));
     let (&[formula], &[file]) = (formulae.as_slice(), files.as_slice()) else {
@@ -62,13 +62,13 @@ fn spaced(line: &str) -> String {
     line.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The source that the index calls so.
+/// The source with this name in the index.
 fn source<'a>(repository: &'a Repository, name: &str) -> Option<&'a str> {
     let (package, file) = name.split_once('/')?;
     repository.text(&format!("crates/{package}/src/{file}"))
 }
 
-/// Equations of a row that no file of the row holds, and files that hold none of them.
+/// Equations of a row that are in no file of the row, and files that contain none of them.
 fn misplaced(repository: &Repository, row: &Row<'_>, equations: &[Equation]) -> Vec<Violation> {
     let mut found = Vec::new();
     let mut held = BTreeSet::new();

@@ -1,5 +1,6 @@
-//! Examples of all that other programs may call: a file with a public free function has one with an
-//! assertion, in the crates that compute. The crates above are called through the commands.
+//! Examples of everything that other programs may call: in the crates that compute, a file with a
+//! public free function has an example with an assertion. The crates above are called through the
+//! commands.
 
 use super::Violation;
 use super::dependencies::LOWER_CRATES;
@@ -13,8 +14,8 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     repository.rust_files.iter().filter(is_checked).filter_map(check_file).collect()
 }
 
-/// A function at the level of the file that is `pub`: where its module is private and nothing
-/// exports it, the compiler requires `pub(crate)`.
+/// A function at the level of the file that is `pub`: if its module is private and nothing exports
+/// it, the compiler requires `pub(crate)`.
 fn check_file(file: &RustFile) -> Option<Violation> {
     let function = file.shipped().find(|line| line.code.starts_with("pub fn "))?;
     let name = function.code.trim_start_matches("pub fn ").split(['(', '<']).next()?;
@@ -22,8 +23,8 @@ fn check_file(file: &RustFile) -> Option<Violation> {
     (!has_example(file)).then(|| Violation::new(&file.path, function.number, message))
 }
 
-/// Returns whether a fence that is run as a test asserts something. One with any word after its
-/// mark but `rust` is another language, or is not run.
+/// Returns true if a fence that is run as a test asserts something. A fence with any word other
+/// than `rust` after its mark is another language, or is not run.
 fn has_example(file: &RustFile) -> bool {
     let comments = file.shipped().filter_map(|line| line.text.trim().strip_prefix("//"));
     let mut fence = None;

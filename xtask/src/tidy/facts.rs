@@ -1,11 +1,12 @@
-//! The crates below the workbench return facts: a text of four words is the message of an error.
+//! The crates below the workbench return facts: a string literal of four words is the message of an
+//! error.
 
 use super::Violation;
 use crate::repository::Repository;
 use crate::rust_file::RustFile;
 
-/// The crates that hold no sentence. `project` states what its keys mean and what is wrong with a
-/// file, and `figure` draws labels.
+/// The crates that contain no sentence. `project` states the meaning of its keys and the errors of
+/// a file, and `figure` draws labels.
 const FOLDERS: [&str; 5] =
     ["crates/dynamics/", "crates/engineering/", "crates/hydraulics/", "crates/qft/", "crates/quantity/"];
 const MESSAGE: &str = "is a sentence: return a fact, and word it in the workbench";

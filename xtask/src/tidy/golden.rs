@@ -1,4 +1,4 @@
-//! A golden number has an origin.
+//! Golden numbers have an origin.
 //!
 //! A test, and a function, constant or static in a `tests` folder, has a comment `ORIGIN: ...`,
 //! inside or directly above, if an assertion in it has a number of four significant digits or more;
@@ -8,7 +8,7 @@ use super::Violation;
 use crate::repository::Repository;
 use crate::rust_file::{Line, RustFile, numbers};
 
-/// Beginnings of an origin.
+/// First words of an origin.
 const ORIGINS: [&str; 8] =
     ["analytic", "thesis", "recomputed", "paper", "data sheet", "measured", "other tool", "written by hand"];
 
@@ -36,7 +36,7 @@ fn problem(repository: &Repository, origin: &str) -> Option<String> {
     (!repository.exists(script)).then(|| format!("the origin `{script}` does not exist"))
 }
 
-/// Returns whether a work is cited as in "Ledezma (2019)".
+/// Returns true if a work is cited as in "Ledezma (2019)".
 fn cites_a_year(origin: &str) -> bool {
     let inside = origin.split('(').skip(1).filter_map(|rest| rest.split(')').next());
     inside.into_iter().any(|year| year.len() == 4 && year.parse::<u16>().is_ok())
@@ -68,13 +68,13 @@ fn is_item(code: &str) -> bool {
     ["fn ", "const ", "static "].iter().any(|keyword| words.starts_with(keyword))
 }
 
-/// A comment, an attribute or a part of one.
+/// Returns true for a comment, an attribute or a part of one.
 fn is_above_an_item(line: &Line) -> bool {
     let text = line.text.trim();
     text.starts_with("//") || text.starts_with("#[")
 }
 
-/// Returns whether these lines, or assertions among them, have a number of four digits or more.
+/// Returns true if these lines, or assertions among them, have a number of four digits or more.
 fn has_golden_number(file: &RustFile, start: usize, end: usize) -> bool {
     let anywhere = file.path.contains("/golden");
     let mut asserted = start;
@@ -89,8 +89,7 @@ fn has_golden_number(file: &RustFile, start: usize, end: usize) -> bool {
     })
 }
 
-/// Significant digits of a floating-point literal; trailing zeros of a whole number count for
-/// nothing.
+/// Significant digits of a floating-point literal; trailing zeros of a whole number do not count.
 fn significant_digits(literal: &str) -> usize {
     let mantissa = literal.split(char::is_alphabetic).next().unwrap_or_default();
     if !mantissa.contains('.') && !literal[mantissa.len()..].starts_with('e') {

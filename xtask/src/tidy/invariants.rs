@@ -1,5 +1,5 @@
-//! Every invariant of ARCHITECTURE.md names what enforces it, and that exists: a tidy check, a
-//! stage of the test command, a file or a test.
+//! Invariants of ARCHITECTURE.md name their enforcement, which exists: a tidy check, a stage of the
+//! test command, a file or a test.
 
 use super::links::{code_spans, prose_lines};
 use super::{CHECKS, Violation};

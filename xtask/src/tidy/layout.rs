@@ -1,6 +1,6 @@
-//! One concept a file, named after it: `foo.rs` next to `foo/`, no drawer for leftovers. The tests
-//! of a package are one program, and no file of tests is left out of it. A library that is not
-//! built for tests has none.
+//! One concept per file, which is named after it: `foo.rs` next to `foo/`, and no file for
+//! leftovers. The tests of a package are one program, and no file of tests is left out of it. A
+//! library that is not built for tests has none.
 
 use super::Violation;
 use crate::repository::Repository;

@@ -4,7 +4,7 @@
 use super::Violation;
 use crate::repository::Repository;
 
-/// Folders at the root: a code span that starts with one of them is taken for a path.
+/// Folders at the root; a code span that begins with one of them counts as a path.
 const FOLDERS: [&str; 7] = ["crates/", "apps/", "book/", "examples/", "xtask/", "comparisons/", ".ci/"];
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
@@ -22,7 +22,7 @@ fn check_document(repository: &Repository, path: &str, text: &str) -> Vec<Violat
             broken.map(|(_, target)| Violation::new(path, number, format!("`{target}` does not exist"))),
         );
     }
-    // Stories run in a folder of their own; what they name is the story's business.
+    // Stories run in their own folders; the files that they name are checked when they run.
     for (number, line) in commands(text).filter(|_| !path.starts_with("examples/")) {
         let lost = line.split_whitespace().filter(|word| !check_span(repository, word));
         found.extend(lost.map(|word| Violation::new(path, number, format!("`{word}` does not exist"))));
@@ -93,15 +93,15 @@ fn resolved(from: &str, target: &str) -> String {
     parts.join("/")
 }
 
-/// The anchor that a heading gets: lower case, spaces to hyphens, other signs dropped.
+/// The anchor of a heading: lower case, spaces replaced by hyphens, other signs dropped.
 fn slug(heading: &str) -> String {
     let words = heading.trim_start_matches('#').trim().to_lowercase();
     let kept = words.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
     kept.map(|c| if c == ' ' { '-' } else { c }).collect()
 }
 
-/// A code span that looks like a path of the repository must be one; `*` and capitals as in `NAME`
-/// stand for anything.
+/// Checks a code span that has the form of a path of the repository: it must exist; `*` and
+/// capitals as in `NAME` match anything.
 fn check_span(repository: &Repository, span: &str) -> bool {
     let looks_like_path = FOLDERS.iter().any(|folder| span.starts_with(folder)) && !span.contains(' ');
     let placeholder =

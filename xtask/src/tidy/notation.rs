@@ -1,8 +1,8 @@
-//! NOTATION.md names what exists, and names every parameter of the actuator.
+//! NOTATION.md names only existing identifiers, and every parameter of the actuator.
 //!
 //! In every table that has a column `identifier`, each code span of that column is a word of the
-//! code or `Type::member`. A parameter is named by its word, or by `Type::word` where the word
-//! alone would be ambiguous.
+//! code or `Type::member`. A parameter is named by its word, or by `Type::word` if the word is
+//! ambiguous.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -42,14 +42,14 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     found
 }
 
-/// One row of a table, with the header that names its columns.
+/// A row of a table, with the header that names its columns.
 pub(super) struct Row<'a> {
     pub(super) line: usize,
     cells: BTreeMap<&'a str, &'a str>,
 }
 
 impl<'a> Row<'a> {
-    /// The cell in this column; empty where there is none.
+    /// The cell in this column; empty if there is none.
     pub(super) fn cell(&self, column: &str) -> &'a str {
         self.cells.get(column).copied().unwrap_or_default()
     }
@@ -75,13 +75,13 @@ pub(super) fn tables<'a>(text: &'a str, column: &str) -> Vec<Row<'a>> {
     rows
 }
 
-/// The cells of a table's line; none where the line is not part of a table.
+/// The cells of a table's line; none if the line is not part of a table.
 fn cells(line: &str) -> Vec<&str> {
     let inner = line.trim().strip_prefix('|').and_then(|rest| rest.strip_suffix('|'));
     inner.map(|inner| inner.split('|').map(str::trim).collect()).unwrap_or_default()
 }
 
-/// Every word of the code in `crates/`, comments and texts left out.
+/// Every word of the code in `crates/`, without comments and string literals.
 pub(super) struct Vocabulary<'a>(BTreeSet<&'a str>);
 
 impl Vocabulary<'_> {
@@ -90,7 +90,7 @@ impl Vocabulary<'_> {
         Vocabulary(libraries.flat_map(|file| &file.lines).flat_map(|line| words(&line.code)).collect())
     }
 
-    /// Reports those names of which some part is not a word.
+    /// Reports those names of which some part is not a word of the code.
     pub(super) fn unknown(&self, document: &str, line: usize, names: &[&str]) -> Vec<Violation> {
         let is_known = |name: &&&str| name.split("::").all(|word| self.0.contains(word));
         let unknown = names.iter().filter(|name| !is_known(name));

@@ -1,13 +1,13 @@
 //! The parameters of the actuator: the numbers of those types of `crates/hydraulics` that can be
-//! refused, because they have a method `problems` or are part of a type that has one. Somebody
-//! types these numbers and has to know what they mean.
+//! rejected, because they have a method `problems` or are part of a type that has one. Users type
+//! these numbers and need to know their meaning.
 
 use std::collections::BTreeSet;
 
 use crate::repository::Repository;
 use crate::rust_file::{Line, RustFile, words};
 
-/// A field that is a number, of a type that can be refused.
+/// A field that is a number, of a type that can be rejected.
 pub(super) struct Parameter<'a> {
     pub(super) path: &'a str,
     pub(super) line: usize,
@@ -15,7 +15,7 @@ pub(super) struct Parameter<'a> {
     pub(super) name: &'a str,
 }
 
-/// All parameters, in the order of the files.
+/// Parameters in the order of the files.
 pub(super) fn parameters(repository: &Repository) -> Vec<Parameter<'_>> {
     let is_physics = |file: &&RustFile| file.path.starts_with("crates/hydraulics/src/") && file.is_shipped();
     let files: Vec<&RustFile> = repository.rust_files.iter().filter(is_physics).collect();

@@ -1,4 +1,4 @@
-//! The crates that compute do nothing else: no file, clock, thread, environment, hashed order or
+//! Purity of the crates that only compute: no file, clock, thread, environment, hashed order or
 //! serialisation. No library crate opens a path: only shells do.
 
 use super::Violation;
@@ -6,7 +6,7 @@ use super::dependencies::LOWER_CRATES;
 use crate::repository::Repository;
 use crate::rust_file::paths;
 
-/// Forbidden in every library crate, and why.
+/// Items forbidden in every library crate, with the reason.
 const FOR_LIBRARIES: [(&str, &str); 5] = [
     ("std::fs", "only shells open paths; take text or bytes"),
     ("std::net", "only shells reach outside"),
@@ -15,7 +15,7 @@ const FOR_LIBRARIES: [(&str, &str); 5] = [
     ("rand", "random numbers come from an explicit seed of our own generator"),
 ];
 
-/// Forbidden in the crates that compute too.
+/// Items forbidden in the crates that compute, in addition.
 const FOR_LOWER_CRATES: [(&str, &str); 9] = [
     ("std::time", "results do not depend on a clock"),
     ("std::thread", "whoever holds the loop owns the threads"),
@@ -28,7 +28,7 @@ const FOR_LOWER_CRATES: [(&str, &str); 9] = [
     ("Deserialize", "files and JSON belong to the workbench"),
 ];
 
-/// Allowed although it is below what is forbidden: it waits for nobody.
+/// Allowed although it is inside a forbidden module: it never blocks.
 const SHARED: &str = "std::sync::Arc";
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
@@ -46,7 +46,7 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     found
 }
 
-/// Returns whether `path` is `forbidden` or something inside it.
+/// Returns true if `path` is `forbidden` or something inside it.
 fn is_below(path: &str, forbidden: &str) -> bool {
     path.strip_prefix(forbidden).is_some_and(|rest| rest.is_empty() || rest.starts_with("::"))
 }

@@ -1,5 +1,5 @@
-//! A file has at most 500 lines, a function of Python fits on a screen, and the overview on a few
-//! pages. For functions of Rust see `too-many-lines-threshold` in clippy.toml.
+//! File sizes: a file has at most 500 lines, a function of Python fits on a screen, and the
+//! overview on a few pages. For functions of Rust see `too-many-lines-threshold` in clippy.toml.
 
 use super::Violation;
 use crate::repository::Repository;
@@ -30,7 +30,7 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     found
 }
 
-/// Python's functions, by their first line and the number of the others: a `def` reaches to the
+/// Python's functions, by their first line and the number of the others: a `def` extends to the
 /// last line that is indented further.
 fn python_functions(text: &str) -> impl Iterator<Item = (usize, usize)> {
     let indentation = |line: &str| line.len() - line.trim_start().len();

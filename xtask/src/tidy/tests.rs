@@ -1,4 +1,4 @@
-//! Every check reports what breaks its rule, and nothing else.
+//! Tests that every check reports violations of its rule, and nothing else.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,8 @@ fn found(check: &str, files: &[(&str, &str)]) -> Vec<String> {
     function(&Repository::new(texts)).iter().map(ToString::to_string).collect()
 }
 
-/// The first file breaks the rule once, and the second does not; further files are there for both.
+/// Checks that the first file breaks the rule once, and the second does not; further files are
+/// present in both cases.
 fn breaks(check: &str, broken: (&str, &str), fine: (&str, &str), others: &[(&str, &str)]) {
     let with = |file| [&[file][..], others].concat();
     let reported = found(check, &with(broken));
@@ -21,7 +22,7 @@ fn breaks(check: &str, broken: (&str, &str), fine: (&str, &str), others: &[(&str
     assert_eq!(found(check, &with(fine)), [""; 0], "{check}: {fine:?}");
 }
 
-/// Two texts at one path: the first breaks the rule once, the second does not.
+/// Checks two texts at one path: the first breaks the rule once, the second does not.
 fn breaks_at(check: &str, path: &str, broken: &str, fine: &str) {
     breaks(check, (path, broken), (path, fine), &[]);
 }

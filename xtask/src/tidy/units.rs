@@ -7,7 +7,7 @@ use crate::rust_file::numbers;
 /// The folder in which text is parsed and printed.
 const HOME: &str = "crates/quantity/src";
 
-/// The digits of factors that no other number is likely to have, and what they convert.
+/// The digits of factors that no other number is likely to have, and the units that they convert.
 const FACTORS: [(f64, &str); 7] = [
     (6.894_757_293, "psi"),
     (4.448_221_615, "pounds of force"),
@@ -34,7 +34,8 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     found
 }
 
-/// Returns whether the two numbers agree in their first five digits, wherever the decimal point is.
+/// Returns true if the two numbers agree in their first five digits, regardless of the decimal
+/// point.
 fn has_digits_of(literal: &str, factor: f64) -> bool {
     let plain = literal.split(char::is_alphabetic).next().unwrap_or_default().replace('_', "");
     let number: f64 = plain.parse().unwrap_or_default();

@@ -1,5 +1,4 @@
-//! Comments of Rust and prose of Markdown are at most 100 columns wide, as far as they can be
-//! broken.
+//! Comments of Rust and prose of Markdown are at most 100 columns wide, if they can be broken.
 
 use super::Violation;
 use crate::repository::Repository;
@@ -24,7 +23,7 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     found
 }
 
-/// Numbers of the lines that are too wide, of lines with their number, their text and what of it is
+/// Numbers of the lines that are too wide, from lines with their number, their text and their
 /// prose: not in fences, tables, headings and code, without a link, and with a space at which they
 /// can be broken.
 fn wide<'a>(lines: impl Iterator<Item = (usize, &'a str, &'a str)>) -> impl Iterator<Item = usize> {

@@ -1,4 +1,4 @@
-//! A campaign whose table is a file that grows.
+//! Campaign whose table is a file that grows.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{ErrorKind, Read as _, Seek as _, SeekFrom, Write as _};
@@ -22,7 +22,7 @@ use crate::voice::ProgressLine;
 /// Longest time after which the rows are flushed to the disk.
 const KEEPING: Duration = Duration::from_secs(2);
 
-/// What is asked for.
+/// Request of the command line.
 pub(super) fn request(
     runs: Option<u64>,
     seed: u32,
@@ -71,7 +71,7 @@ pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answ
         table.iter().for_each(LockedTable::leave_no_trace);
         refused(&loaded, &request, (&error, line.stage()))
     })?;
-    // the table stays locked until all other files are written
+    // the table remains locked until all other files are written
     let mut written: Vec<PathBuf> = table.iter().map(|table| table.path.clone()).collect();
     written.extend(tables.map(Folder::into_begun).unwrap_or_default());
     if let Some(folder) = &common.out {
@@ -81,14 +81,14 @@ pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answ
     Ok((answer, written))
 }
 
-/// A file that grows at its end and is locked meanwhile: the system releases the lock with the
-/// process.
+/// A file that grows at its end and is locked meanwhile: the system releases the lock when the
+/// process ends.
 struct LockedTable {
     path: PathBuf,
     file: File,
-    /// True where no such file stood there before.
+    /// True if there was no such file before.
     is_new: bool,
-    /// When all of it was last flushed to the disk.
+    /// Time of the last flush of all rows to the disk.
     kept: Instant,
 }
 
@@ -124,14 +124,14 @@ impl LockedTable {
         }
     }
 
-    /// The file, next to the table, with rows that wait for an earlier one.
+    /// The file, next to the table, with rows of runs that were completed before an earlier one.
     fn beside(&self) -> PathBuf {
         let mut name = self.path.clone().into_os_string();
         name.push(".ahead");
         name.into()
     }
 
-    /// Flushes all of it to the disk.
+    /// Flushes all rows to the disk.
     fn keep(&mut self) -> Result<(), String> {
         self.kept = Instant::now();
         self.file.sync_data().map_err(|error| self.explain(&error))
@@ -172,7 +172,7 @@ impl RowStore for LockedTable {
     fn keep_ahead(&mut self, text: &str) -> Result<(), String> {
         let path = self.beside();
         let file = OpenOptions::new().create(true).append(true).open(&path);
-        // an earlier incomplete row ends in a line of its own
+        // an earlier incomplete row ends in its own line
         let written = file.and_then(|mut file| file.write_all(format!("\n{text}").as_bytes()));
         written.map_err(|error| unwritten(&path, &error))
     }

@@ -19,7 +19,7 @@ use crate::interruption::Interruption;
 use crate::output::write;
 use crate::voice::ProgressLine;
 
-/// As it is called.
+/// Name of the command.
 const NAME: &str = "identify";
 
 /// The answer, and the files that were written.
@@ -76,7 +76,7 @@ pub(super) fn answered(recorded: &IdentifyArguments) -> Result<(Answer, Vec<Path
     Ok((answer, written))
 }
 
-/// Why there is no answer; `stage` is the one that was reported last.
+/// Failure of an identification without an answer; `stage` is the last reported one.
 fn unanswered(error: &IdentifyError, stage: Option<&str>, hash: Option<&str>) -> Failure {
     let explain = |message: &str| command::failure_json(Some(NAME), hash, message);
     match error {
@@ -93,7 +93,7 @@ fn unanswered(error: &IdentifyError, stage: Option<&str>, hash: Option<&str>) ->
     }
 }
 
-/// The files that must stay; refused where one of those that are written would replace one.
+/// The files that must remain; an error if a written file would replace one.
 fn kept_inputs(
     recorded: &IdentifyArguments,
     loaded: Option<&Loaded>,
@@ -107,7 +107,7 @@ fn kept_inputs(
     Ok(inputs)
 }
 
-/// The project, which may be among the files, known by its ending, and the tables.
+/// The project, which may be among the files and is identified by its ending, and the tables.
 fn named(recorded: &IdentifyArguments) -> Result<(Option<String>, Vec<String>), Failure> {
     let is_project = |file: &&String| Path::new(file).extension().is_some_and(|ending| ending == "toml");
     let (projects, files): (Vec<&String>, Vec<&String>) = recorded.files.iter().partition(is_project);
@@ -131,7 +131,7 @@ fn side_of(chamber: ChamberWord) -> LineSide {
     }
 }
 
-/// Refuses what the identification of the named subject does not take.
+/// Rejects options that the identification of the named subject does not have.
 fn check_subject(recorded: &IdentifyArguments) -> Result<(), Failure> {
     const VALVE: &[SubjectWord] = &[SubjectWord::Valve];
     const RESPONSES: &[SubjectWord] = &[SubjectWord::Response, SubjectWord::Line];
@@ -157,13 +157,13 @@ fn check_subject(recorded: &IdentifyArguments) -> Result<(), Failure> {
     Err(refused(&message))
 }
 
-/// A command line that cannot be followed.
+/// Failure of an invalid command line.
 fn refused(message: &str) -> Failure {
     let json = command::failure_json(Some(NAME), None, message);
     Failure::wrong_input(format!("error: {message}")).with_json(json)
 }
 
-/// What is stated of a frequency response; refused where a time is not positive.
+/// Settings of a frequency response; an error if a time is not positive.
 fn response_settings(recorded: &IdentifyArguments) -> Result<ResponseSettings, Failure> {
     let times =
         [("period", &recorded.period), ("settling", &recorded.settling), ("segment", &recorded.segment)];

@@ -1,4 +1,4 @@
-//! A rig whose peak depends on a ringing of 1e-5 N that grows: by CVODE and by phea, at many
+//! A rig whose peak depends on a growing ringing of 1e-5 N, simulated by CVODE and by phea at many
 //! tolerances.
 //!
 //!     cargo run --release -p sundials --example ill_conditioned -- 1e-9 1e-11
@@ -87,13 +87,14 @@ fn main() {
     }
 }
 
-/// The peak after the load has begun to move, when it is, and the ringing just before it grows.
+/// Prints the peak after the load has begun to move, its time, and the ringing just before it
+/// grows.
 fn told(name: &str, force: &[f64], begun: Instant) {
     let from = (MOTION_S / OUTPUT_STEP_S).round() as usize;
     let errors = force.iter().enumerate().skip(from).map(|(row, force)| (row, (force - REFERENCE_N).abs()));
     let (row, peak) = errors.fold((0, 0.0), |most, next| if next.1 > most.1 { next } else { most });
     let at = |time: f64| (time / OUTPUT_STEP_S).round() as usize;
-    // Third differences see what rings, and little of what is slow.
+    // Third differences show ringing, and little of the slow part.
     let ringing = |from: f64, to: f64| -> f64 {
         let rows = force.get(at(from)..at(to)).unwrap_or_default();
         let differences = rows.windows(4).map(|w| (w[3] - 3.0 * w[2] + 3.0 * w[1] - w[0]).abs());

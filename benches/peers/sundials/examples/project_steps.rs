@@ -1,10 +1,10 @@
-//! The steps that CVODE tries on the first scenario of a project under a continuous controller, and
-//! those of phea, at some tolerances.
+//! Steps of CVODE and of phea on the first scenario of a project under a continuous controller, at
+//! some tolerances.
 //!
 //!     cargo run -p sundials --example project_steps -- rig.toml 1e-6 1e-8
 //!
-//! Both solve the same equations. CVODE begins anew at each break of an input, and its stability
-//! limit is watched: without it a lightly damped mode makes it take more steps still.
+//! Both solve identical equations. CVODE restarts at each break of an input, with the detection of
+//! its stability limit: without it a lightly damped mode makes it take even more steps.
 
 use std::cell::Cell;
 
@@ -56,7 +56,7 @@ impl Observer for Nobody {
     fn observe(&mut self, _time_s: f64, _states: &[f64], _inputs: &[f64]) {}
 }
 
-/// Counts the times at which rates are requested: one for each step that is tried.
+/// Counts the times at which rates are computed: one for each attempted step.
 struct Counted<'a> {
     problem: &'a ScenarioProblem,
     asked_at: Cell<f64>,

@@ -1,4 +1,5 @@
-//! A system of phea driven through a course by CVODE: what its own method is held against.
+//! Simulation of a system of phea under an input schedule by CVODE, as a reference for phea's own
+//! method.
 
 use std::cell::RefCell;
 
@@ -8,22 +9,23 @@ use phea_dynamics::simulation::{Input, InputSchedule, Sampler, System};
 use crate::waves::{Waves, integrate_delayed};
 use crate::{CvodeError, Method, integrate};
 
-/// What CVODE asks of a system: every [`System`] answers it, and what was compiled elsewhere may.
+/// Equations in the form that CVODE needs: every [`System`] has them, and code compiled elsewhere
+/// may.
 pub trait Equations {
-    /// As [`System::states`].
+    /// Number of states: [`System::states`].
     fn states(&self) -> usize;
-    /// As [`System::inputs`].
+    /// Number of inputs: [`System::inputs`].
     fn inputs(&self) -> usize;
-    /// As [`System::scales`].
+    /// Scales of the states: [`System::scales`].
     fn scales(&self) -> Vec<f64>;
-    /// As [`System::delays`].
+    /// Delays, s: [`System::delays`].
     fn delays(&self) -> Vec<f64>;
-    /// As [`System::rates`].
+    /// Rates of the states: [`System::rates`].
     fn rates(&self, state: &[f64], inputs: &[f64], rates: &mut [f64]);
-    /// As [`System::outgoing`].
+    /// Outgoing waves: [`System::outgoing`].
     fn outgoing(&self, state: &[f64], inputs: &[f64], waves: &mut [f64]);
-    /// Called with the time before the rates there are asked for. CVODE tries one step for each
-    /// time at which it asks.
+    /// Called with the time before the rates there are computed. CVODE attempts one step for each
+    /// such time.
     fn is_asked_at(&self, _time: f64) {}
 }
 
@@ -53,7 +55,7 @@ impl<E: System<f64>> Equations for E {
     }
 }
 
-/// Small errors put into a solution on purpose, to see what becomes of them.
+/// Small errors added to a solution on purpose, to observe how they grow.
 ///
 /// ```text
 /// at 0, T, 2T, ...:    y_i -> y_i + e s_i scale_i,    s_i = +1 or -1 by chance
@@ -62,43 +64,43 @@ impl<E: System<f64>> Equations for E {
 pub struct Kicks {
     /// Time T between them in s; positive.
     pub period_s: f64,
-    /// Size e over the scale of each state.
+    /// Size e, relative to the scale of each state.
     pub size: f64,
-    /// Where the signs come from.
+    /// Seed of the signs.
     pub seed: u64,
 }
 
-/// How a course is followed.
+/// Settings of the integration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Following {
-    /// Of one step of CVODE, relative to state plus scale.
+    /// Tolerance of one step of CVODE, relative to state plus scale.
     pub tolerance: f64,
-    /// How CVODE steps.
+    /// Method of CVODE's steps.
     pub method: Method,
-    /// Errors put in on purpose.
+    /// Errors added on purpose.
     pub kicks: Option<Kicks>,
 }
 
 impl Following {
-    /// Without errors on purpose.
+    /// Settings without errors on purpose.
     pub fn new(tolerance: f64, method: Method) -> Following {
         Following { tolerance, method, kicks: None }
     }
 }
 
-/// The states at each row of a course, from time zero.
+/// States at each row of an input schedule, from time zero.
 ///
-/// The same equations, inputs, samples and held commands as in
-/// [`phea_dynamics::simulation::simulate`], on another method. CVODE starts anew at each break of
-/// an input, at each sample and where a command takes effect; the error is measured by the
+/// Equations, inputs, samples and held commands are those of
+/// [`phea_dynamics::simulation::simulate`], solved by another method. CVODE restarts at each break
+/// of an input, at each sample and where a command takes effect; the error is measured by the
 /// tolerance times state and scale, as there. Delayed waves, given after the states at the start,
-/// are kept as polynomials of degree eleven over an eighth of the shortest delay or less; CVODE
-/// never steps beyond what has been sent, and starts anew where a break comes back.
+/// are stored as polynomials of degree eleven over an eighth of the shortest delay or less; CVODE
+/// never steps beyond the waves that have been sent, and restarts where a break returns.
 ///
 /// # Errors
 ///
-/// As [`integrate`]; [`CvodeError::Argument`] for a start that does not give every state and every
-/// wave.
+/// Errors of [`integrate`]; [`CvodeError::Argument`] for a start that does not give every state and
+/// every wave.
 ///
 /// # Example
 ///
@@ -180,7 +182,7 @@ pub fn follow(
     Ok(rows)
 }
 
-/// The states at `times` where nothing is delayed.
+/// The states at `times`, if nothing is delayed.
 fn continued(
     system: &dyn Equations,
     inputs_at: &dyn Fn(f64, &Waves, &mut [f64]),
@@ -200,8 +202,8 @@ fn continued(
     integrate(&mut rates, state, times, tolerance, &absolute, method, breaks)
 }
 
-/// Samples taken, the command in force, and commands on their way with the time that they take
-/// effect.
+/// Samples taken so far, the command in force, and pending commands with the times at which they
+/// take effect.
 struct Held {
     sample: u64,
     command: f64,
@@ -209,8 +211,8 @@ struct Held {
 }
 
 impl Held {
-    /// Samples if it is time to, puts due commands into force, and returns when something happens
-    /// next.
+    /// Takes a sample if it is due, puts due commands into force, and returns the time of the next
+    /// event.
     fn act(&mut self, sampler: &mut dyn Sampler, time: f64, state: &[f64], inputs: &[f64]) -> f64 {
         if time >= self.sample as f64 * sampler.sample_time_s() {
             self.sample += 1;
@@ -225,7 +227,7 @@ impl Held {
     }
 }
 
-/// How many kicks there were, and where the signs of the next come from.
+/// Number of past kicks, and the source of the signs of the next ones.
 struct Kicked {
     kicks: Kicks,
     count: u64,
@@ -233,7 +235,7 @@ struct Kicked {
 }
 
 impl Kicked {
-    /// Kicks the state if it is time to, and returns when the next is due.
+    /// Kicks the state if it is due, and returns the time of the next kick.
     fn act(&mut self, time: f64, state: &mut [f64], scales: &[f64]) -> f64 {
         let Kicks { period_s, size, .. } = self.kicks;
         if time >= self.count as f64 * period_s {
@@ -267,8 +269,8 @@ fn breaks(course: &InputSchedule) -> Vec<f64> {
     profiles.flat_map(|profile| profile.breaks().to_vec()).collect()
 }
 
-/// From one time to another, over the rows between them; a row is as many output steps from zero as
-/// there are before it.
+/// Times from one time to another, with the rows between them; the time of a row is its index times
+/// the output step.
 fn times(course: &InputSchedule, from: f64, until: f64, row: usize) -> Vec<f64> {
     let rows = (row..).map(|row| row as f64 * course.output_step_s);
     let between = rows.take_while(|time| *time < until).filter(|time| *time > from);

@@ -1,12 +1,12 @@
-//! What is used of the C interface of SUNDIALS 6, in double precision with 64-bit indices.
+//! Part of the C interface of SUNDIALS 6 that is used, in double precision with 64-bit indices.
 
 use std::ffi::{c_char, c_int, c_long, c_void};
 
-/// An object of the library behind a pointer.
+/// An object of the library, as a pointer.
 pub(crate) type Object = *mut c_void;
 
-/// `CVRhsFn`: time, state, derivative, user data; 0, positive to have a shorter step tried,
-/// negative to give up.
+/// `CVRhsFn`: time, state, derivative, user data; 0, positive to request a shorter step, negative
+/// to give up.
 pub(crate) type RightHandSide = unsafe extern "C" fn(f64, Object, Object, *mut c_void) -> c_int;
 
 pub(crate) const ADAMS: c_int = 1;

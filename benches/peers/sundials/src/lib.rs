@@ -1,8 +1,8 @@
 //! CVODE (Hindmarsh and others, 2005) for right-hand sides written in Rust.
 //!
-//! [`integrate`] for any right-hand side, [`follow`] for a system and a course of phea, delayed
-//! waves included. Built against SUNDIALS 6 as Debian 12 packages it; another major version is
-//! refused when it is met, because its C interface differs.
+//! [`integrate`] is for any right-hand side, [`follow`] for a system and an input schedule of phea,
+//! delayed waves included. Built against SUNDIALS 6 as packaged by Debian 12; another major version
+//! is rejected at run time, because its C interface differs.
 
 mod course;
 mod interface;
@@ -12,40 +12,40 @@ mod waves;
 pub use course::{Equations, Following, Kicks, follow};
 use session::Session;
 
-/// How CVODE steps; both solve their implicit equations by Newton's method with a dense Jacobian of
-/// difference quotients.
+/// Method of CVODE's steps; all solve their implicit equations by Newton's method with a dense
+/// Jacobian of difference quotients.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
     /// Backward differentiation of order one to five.
     BackwardDifferentiation,
-    /// The same with the detection of its stability limit, which lowers the order where eigenvalues
-    /// are lightly damped.
+    /// Backward differentiation with detection of its stability limit, which reduces the order
+    /// where eigenvalues are lightly damped.
     StabilityLimit,
     /// Adams and Moulton's formulas of order one to twelve.
     Adams,
 }
 
-/// The right-hand side: time, states, and where their rates go.
+/// The right-hand side: time, states, and the array for their rates.
 pub type Rates<'a> = dyn FnMut(f64, &[f64], &mut [f64]) + 'a;
 
-/// Why there is no solution.
+/// Reason why there is no solution.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CvodeError {
     /// The library found when the program was started is not of version 6.
     Version {
-        /// What it says it is.
+        /// Major version that the library reports.
         major: i32,
     },
-    /// An argument that CVODE cannot be given; says which.
+    /// An argument that CVODE does not accept, with its name.
     Argument(&'static str),
-    /// The library could not make one of its objects.
+    /// The library could not create one of its objects.
     Memory,
     /// CVODE gave up: its negative status, and the time that it had reached.
     Failed {
-        /// As documented: -1 too much work, -3 error test, -4 convergence, -9 and -10 the
+        /// Status as documented: -1 too much work, -3 error test, -4 convergence, -9 and -10 the
         /// right-hand side, and others.
         status: i32,
-        /// In the unit of `times`.
+        /// Time that was reached, in the unit of `times`.
         time: f64,
     },
 }
@@ -63,7 +63,7 @@ impl std::fmt::Display for CvodeError {
 
 impl std::error::Error for CvodeError {}
 
-/// Steps that one piece between stops may take.
+/// Largest number of steps of a piece between stops.
 pub const MOST_STEPS: i64 = 20_000_000;
 
 /// The states at each of `times`, from `start` at the first of them.
@@ -72,10 +72,10 @@ pub const MOST_STEPS: i64 = 20_000_000;
 /// dy/dt = rates(t, y),   error of state i against  relative_tolerance |y_i| + absolute_tolerances_i
 /// ```
 ///
-/// CVODE starts anew at each of `stops`, where rates may jump or bend. Rates are taken as
-/// continuous from the right: a piece that ends at a stop sees the last number below it, the piece
-/// that begins there sees the stop itself, so that `t >= stop` distinguishes them. A rate that is
-/// not finite makes CVODE try a shorter step. A panic of `rates` passes through.
+/// CVODE restarts at each of `stops`, where rates may jump or bend. Rates are taken as continuous
+/// from the right: a piece that ends at a stop is evaluated up to the last number below it, the
+/// piece that begins there at the stop itself, so that `t >= stop` distinguishes them. A rate that
+/// is not finite makes CVODE attempt a shorter step. A panic of `rates` is propagated.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! One integrator of the library with everything it holds, freed when dropped.
+//! An integrator of the library with everything that it holds, freed when dropped.
 
 use std::any::Any;
 use std::ffi::{c_int, c_void};
@@ -9,11 +9,11 @@ use std::ptr::null_mut;
 use crate::interface::{self as c, Object};
 use crate::{CvodeError, MOST_STEPS, Method, Rates};
 
-/// What the right-hand side reaches through CVODE's user data.
+/// Data that the right-hand side reaches through CVODE's user data.
 struct Caller<'a> {
     rates: &'a mut Rates<'a>,
     states: usize,
-    /// Times are shown to `rates` between these.
+    /// Range to which the times passed to `rates` are clamped.
     from: f64,
     until: f64,
     panic: Option<Box<dyn Any + Send>>,
@@ -22,14 +22,14 @@ struct Caller<'a> {
 /// An initialised integrator.
 pub(crate) struct Session<'a> {
     objects: Objects,
-    /// Where CVODE began, or began anew.
+    /// Time at which CVODE began or restarted.
     begun: f64,
-    /// Owned; a bare pointer, because CVODE keeps a copy of it.
+    /// Owned; a bare pointer, because CVODE has a copy of it.
     caller: *mut Caller<'a>,
     owned: PhantomData<Caller<'a>>,
 }
 
-/// The objects of the library, null until made.
+/// The objects of the library, null until created.
 struct Objects {
     context: Object,
     state: Object,
@@ -40,7 +40,7 @@ struct Objects {
 }
 
 impl<'a> Session<'a> {
-    /// At `start`, ready to advance.
+    /// Creates an integrator at `start`, ready to advance.
     pub(crate) fn new(
         rates: &'a mut Rates<'a>,
         start: &[f64],
@@ -72,7 +72,7 @@ impl<'a> Session<'a> {
         Ok(session)
     }
 
-    /// No step goes beyond `end`, where a piece of the rates ends.
+    /// Limits steps to `end`, where a piece of the rates ends.
     pub(crate) fn set_end(&mut self, end: f64) -> Result<(), CvodeError> {
         // SAFETY: the caller is alive, and no call into CVODE is under way.
         unsafe { (*self.caller).until = end.next_down() };
@@ -80,14 +80,14 @@ impl<'a> Session<'a> {
         self.judge(unsafe { c::CVodeSetStopTime(self.objects.cvode, end) }, end)
     }
 
-    /// The state at `time`, at or before the end that was set. CVODE does not begin for a few
-    /// roundings of time: there the state is still the one it begins with.
+    /// The state at `time`, at or before the end that was set. CVODE does not begin within a few
+    /// roundings of the start time: there the state is still the initial one.
     pub(crate) fn advance(&mut self, time: f64) -> Result<Vec<f64>, CvodeError> {
         if time - self.begun <= 4.0 * f64::EPSILON * time.abs().max(self.begun.abs()) {
             return Ok(self.state());
         }
         let mut reached = time;
-        // SAFETY: integrator and state are alive; `right_hand_side` lets no panic out.
+        // SAFETY: integrator and state are alive; `right_hand_side` propagates no panic.
         let status =
             unsafe { c::CVode(self.objects.cvode, time, self.objects.state, &mut reached, c::NORMAL) };
         // SAFETY: the caller is alive, and no call into CVODE is under way.
@@ -99,15 +99,15 @@ impl<'a> Session<'a> {
     }
 
     fn state(&self) -> Vec<f64> {
-        // SAFETY: the vector was made with this number of elements, and nobody writes to it now;
-        // the caller is alive.
+        // SAFETY: the vector was created with this number of elements, and nothing writes to it
+        // now; the caller is alive.
         unsafe {
             let first = c::N_VGetArrayPointer(self.objects.state);
             std::slice::from_raw_parts(first, (*self.caller).states).to_vec()
         }
     }
 
-    /// Forgets what was learned before `time`; the state stays.
+    /// Discards the history before `time`; the state remains.
     pub(crate) fn restart(&mut self, time: f64) -> Result<(), CvodeError> {
         // SAFETY: as in `set_end`.
         unsafe { (*self.caller).from = time };
@@ -122,8 +122,8 @@ impl<'a> Session<'a> {
 
 impl Drop for Session<'_> {
     fn drop(&mut self) {
-        // SAFETY: made by `Box::into_raw` in `new`, freed here alone; CVODE calls nobody while it
-        // is freed after this.
+        // SAFETY: created by `Box::into_raw` in `new`, freed only here; CVODE calls nothing while
+        // it is freed after this.
         drop(unsafe { Box::from_raw(self.caller) });
     }
 }
@@ -135,7 +135,7 @@ impl Objects {
             Self { context: null, state: null, tolerances: null, matrix: null, solver: null, cvode: null };
         let kind = if method == Method::Adams { c::ADAMS } else { c::BACKWARD_DIFFERENTIATION };
         let length = i64::try_from(start.len()).map_err(|_| CvodeError::Memory)?;
-        // SAFETY: each object is made from such as were made before it and are not null.
+        // SAFETY: each object is created from objects that were created before it and are not null.
         unsafe {
             if c::SUNContext_Create(null_mut(), &mut made.context) != 0 {
                 return Err(CvodeError::Memory);
@@ -193,14 +193,14 @@ unsafe fn vector(values: &[f64], length: i64, context: Object) -> Result<Object,
 
 fn check_version() -> Result<(), CvodeError> {
     let (mut major, mut minor, mut patch, mut label) = (0, 0, 0, [0; 32]);
-    // SAFETY: the label has room for as many characters as are said.
+    // SAFETY: the label has room for the stated number of characters.
     unsafe { c::SUNDIALSGetVersionNumber(&mut major, &mut minor, &mut patch, label.as_mut_ptr(), 32) };
     if major == 6 { Ok(()) } else { Err(CvodeError::Version { major }) }
 }
 
 unsafe extern "C" fn right_hand_side(time: f64, state: Object, rates: Object, caller: *mut c_void) -> c_int {
-    // SAFETY: CVODE hands back the user data that it was given, and two vectors of the length of
-    // the state.
+    // SAFETY: CVODE returns the user data that it was given, and two vectors of the length of the
+    // state.
     let (caller, state, rates) = unsafe {
         let caller = &mut *caller.cast::<Caller>();
         let length = caller.states;

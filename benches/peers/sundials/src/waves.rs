@@ -1,4 +1,4 @@
-//! Waves in delays, by the method of steps: what arrives was sent at least the shortest delay
+//! Waves in delays, by the method of steps: an arriving wave was sent at least the shortest delay
 //! before, and is known by then.
 
 use std::cell::RefCell;
@@ -7,45 +7,45 @@ use std::f64::consts::PI;
 use crate::session::Session;
 use crate::{CvodeError, Equations, Following};
 
-/// Points in a piece of a wave, of a polynomial of one degree less.
+/// Points in a piece of a wave; the degree of its polynomial is one less.
 const POINTS: usize = 12;
-/// Pieces in the shortest delay, at least.
+/// Least number of pieces in the shortest delay.
 const PIECES: f64 = 8.0;
-/// A break's waves end pieces this many times on their way to and fro.
+/// Number of passages of a break to and fro after which its waves no longer end a piece.
 const ECHOES: usize = 12;
 
-/// What was sent into each delay.
+/// Waves that were sent into each delay.
 pub(crate) struct Waves {
     delays: Vec<f64>,
     initial: Vec<f64>,
     pieces: Vec<Piece>,
 }
 
-/// All waves over a piece of time, at Chebyshev's points.
+/// Waves over a piece of time, at Chebyshev's points.
 struct Piece {
     start: f64,
     length: f64,
-    /// Wave by wave.
+    /// Values, wave by wave.
     values: Vec<[f64; POINTS]>,
 }
 
 impl Waves {
-    /// Delays in s, and what each was sent before time zero.
+    /// Waves from delays in s, and from the values sent before time zero.
     pub(crate) fn new(delays: Vec<f64>, initial: Vec<f64>) -> Waves {
         Waves { delays, initial, pieces: Vec::new() }
     }
 
-    /// Whether nothing is delayed.
+    /// True if nothing is delayed.
     pub(crate) fn are_none(&self) -> bool {
         self.delays.is_empty()
     }
 
-    /// How far ahead all waves are known.
+    /// Time ahead for which all waves are known.
     fn shortest(&self) -> f64 {
         self.delays.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
-    /// Writes what arrives.
+    /// Writes the arriving waves.
     pub(crate) fn arriving(&self, time: f64, places: &mut [f64]) {
         for (wave, ((place, delay), initial)) in
             places.iter_mut().zip(&self.delays).zip(&self.initial).enumerate()
@@ -59,7 +59,7 @@ impl Waves {
         }
     }
 
-    /// These times and those at which what they change comes back.
+    /// Breaks, and the times at which their effects return.
     pub(crate) fn echoes(&self, breaks: &[f64], duration: f64) -> Vec<f64> {
         let mut delays = self.delays.clone();
         delays.sort_by(f64::total_cmp);
@@ -80,13 +80,13 @@ impl Waves {
     }
 }
 
-/// In order, and each once but for rounding.
+/// Sorts the times and removes those that are equal within rounding.
 fn tidy(times: &mut Vec<f64>) {
     times.sort_by(f64::total_cmp);
     times.dedup_by(|later, earlier| *later - *earlier <= 1e-13 * later.abs());
 }
 
-/// From 0 to 1, both included.
+/// Chebyshev's points from 0 to 1, both included.
 fn point(index: usize) -> f64 {
     0.5 - 0.5 * (PI * index as f64 / (POINTS - 1) as f64).cos()
 }
@@ -106,9 +106,9 @@ fn interpolated(values: &[f64; POINTS], part: f64) -> f64 {
     above / below
 }
 
-/// The states at `times`, over which no input breaks; keeps what is sent meanwhile.
+/// States at `times`, over which no input breaks; stores the waves that are sent meanwhile.
 ///
-/// `inputs_at` writes all inputs of a time, what arrives included.
+/// `inputs_at` writes all inputs of a time, arriving waves included.
 pub(crate) fn integrate_delayed(
     system: &dyn Equations,
     inputs_at: &dyn Fn(f64, &Waves, &mut [f64]),

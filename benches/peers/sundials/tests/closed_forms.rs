@@ -1,4 +1,4 @@
-//! CVODE behind its safe function, on problems whose solution is known.
+//! Tests of the safe interface to CVODE on problems with a known solution.
 
 use sundials::{CvodeError, Method, integrate};
 

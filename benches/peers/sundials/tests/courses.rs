@@ -1,4 +1,4 @@
-//! phea's method and CVODE on the same equations, inputs and samples.
+//! Comparison of phea's method and CVODE for equal equations, inputs and samples.
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{
@@ -33,7 +33,7 @@ impl System<f64> for Oscillator {
     }
 }
 
-/// u = -k y, sampled, and late.
+/// u = -k y, sampled and delayed.
 struct Feedback {
     gain: f64,
     sample_time_s: f64,

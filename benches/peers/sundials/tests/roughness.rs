@@ -1,4 +1,4 @@
-//! The judge of ringing, judged: what the rule of the random rigs lets through and what not.
+//! Test of the rule by which the random rigs judge ringing: forces that pass and forces that fail.
 
 #[allow(dead_code)]
 #[path = "random_rigs/roughness.rs"]
@@ -9,7 +9,7 @@ use roughness::{Roughness, is_rough, roughest};
 const STEP_S: f64 = 0.25e-3;
 const PEAK_N: f64 = 1000.0;
 
-/// A slow course of the force, and from `from_s` on a ringing at 1500 rad/s.
+/// Slow variation of the force, and from `from_s` on a ringing at 1500 rad/s.
 fn force(amplitude: f64, phase: f64, from_s: f64) -> Vec<f64> {
     let value = |time_s: f64| {
         let ringing = if time_s < from_s { 0.0 } else { amplitude * (1500.0 * time_s + phase).sin() };
@@ -18,7 +18,7 @@ fn force(amplitude: f64, phase: f64, from_s: f64) -> Vec<f64> {
     (0..4001).map(|row| value(f64::from(row) * STEP_S)).collect()
 }
 
-/// The same between two times alone.
+/// Force with ringing only between two times.
 fn burst(amplitude: f64, from_s: f64, until_s: f64) -> Vec<f64> {
     let (ringing, calm) = (force(amplitude, 0.0, from_s), force(0.0, 0.0, 0.0));
     let row = |time_s: f64| (time_s / STEP_S) as usize;
@@ -58,7 +58,7 @@ fn a_calmed_ringing_is_refused_and_another_phase_is_not() {
     assert!(compared(&force(14.0, 0.0, 0.5), references).fault().is_some());
 }
 
-/// Also where it is over within a tenth of a second, and begins a little later than CVODE's.
+/// The ringing may end within a tenth of a second, and begin a little later than CVODE's.
 #[test]
 fn a_burst_is_looked_for_in_the_windows_around() {
     let (reference, kicked) = (burst(10.0, 0.61, 0.69), burst(10.0, 0.62, 0.7));
@@ -71,7 +71,8 @@ fn a_burst_is_looked_for_in_the_windows_around() {
     assert!(elsewhere.fault().is_some(), "{elsewhere:?}");
 }
 
-/// Where CVODE's own runs differ the strength is nobody's, but there is ringing.
+/// Ringing whose strength differs between CVODE's own runs is not judged by its strength, but there
+/// must be ringing.
 #[test]
 fn ringing_that_hangs_on_rounding_is_asked_for_at_all() {
     let (reference, kicked) = (force(10.0, 0.0, 0.5), force(28.0, 0.0, 0.5));
@@ -82,8 +83,8 @@ fn ringing_that_hangs_on_rounding_is_asked_for_at_all() {
     assert!(calmed.fault().is_some_and(|fault| fault.contains("calmed")), "{calmed:?}");
 }
 
-/// Ringing before trajectories separate is judged row by row, and one below a thousandth of the
-/// peak is none.
+/// Ringing before trajectories separate is judged row by row, and ringing below a thousandth of the
+/// peak does not count.
 #[test]
 fn what_is_too_small_or_too_early_is_not_judged() {
     let small = force(0.5, 0.0, 0.0);

@@ -64,8 +64,8 @@ fn a_late_integrator_is_a_polynomial_of_each_delay() {
     }
 }
 
-/// At k T = pi/2 it oscillates for ever: y = cos(pi t/2) is the solution of the history cos(pi
-/// t/2); with k T = 1 it decays.
+/// Limit of stability k T = pi/2, at which it oscillates for ever: y = cos(pi t/2) is the solution
+/// of the history cos(pi t/2); with k T = 1 it decays.
 #[test]
 fn a_late_integrator_over_many_delays() {
     for tolerance in [1e-6, 1e-9] {

@@ -1,4 +1,4 @@
-//! Growing modes are seen to grow, however small they are and however loose the tolerance.
+//! Growing modes are detected, however small they are and however loose the tolerance.
 
 use phea_dynamics::portable;
 use phea_dynamics::random;
@@ -84,8 +84,8 @@ fn two_masses_grow_at_their_rate() {
     }
 }
 
-/// A mass on a spring whose friction feeds it increasingly with time; the effect of a command on
-/// its speed is zero here.
+/// A mass on a spring whose friction feeds it increasingly with time; a command has no effect on
+/// its speed here.
 ///
 /// ```text
 /// x' = omega y,   y' = -omega x + 2 a s y + w,   s' = 1        amplitude A exp(a (s^2 - s_0^2)/2), to the order of a/omega^2
@@ -138,7 +138,7 @@ impl Drifting {
     }
 }
 
-/// Sampler whose command is zero.
+/// Sampler with a zero command.
 struct Nothing(f64);
 
 impl Sampler for Nothing {
@@ -160,9 +160,9 @@ fn friction_that_feeds_more_and_more_is_followed() {
     assert!((grown - 1.0).abs() < 0.02, "{grown}");
 }
 
-/// From sample to sample the machine uses precomputed matrices: these are found again when friction
-/// has changed, so that a mode that decayed when they were found is seen to grow, for any angle of
-/// the mode within a sample. (The first sample uses the method, which may damp the decaying mode.)
+/// Sampled machines use precomputed matrices from sample to sample: these are computed again when
+/// friction has changed, so that a mode that decayed at first is seen to grow, for any angle of the
+/// mode within a sample. (The first sample uses the method, which may damp the decaying mode.)
 #[test]
 fn samples_do_not_hide_growth() {
     for angle in [0.3, 1.3, 2.6, 6.5, 13.0, 39.0] {
@@ -284,7 +284,7 @@ fn an_oscillation_that_was_not_there_is_seen_when_it_comes_up() {
         let run = simulate(&Loosening, &begin, &course, None, &settings, &mut |_| true).unwrap();
         assert_eq!(run.outcome.status, Status::Completed);
         let [x, y, _] = run.outcome.end[..] else { panic!("three states") };
-        // it grows by e^100, from the little that friction and rounding leave; the motion without
+        // growth by e^100, from the little that friction and rounding leave; the motion without
         // growth gives 1e-6
         let amplitude = portable::ln(portable::hypot(x, y));
         assert!(amplitude > 30.0, "{tolerance:e}: {amplitude}");

@@ -20,8 +20,8 @@ impl Law for Bent {
     }
 }
 
-/// y(1) = (p^2 + (1 - p)^2)/2 at a thousand p. Rejected and shortened steps do not end where their
-/// error estimate is blind; the remaining errors are first attempts that happen to begin so.
+/// Result y(1) = (p^2 + (1 - p)^2)/2 at a thousand p. Rejected and shortened steps do not end where
+/// their error estimate is blind; the remaining errors are first attempts that happen to begin so.
 #[test]
 fn a_kink_is_met_to_the_tolerance_wherever_it_lies() {
     for tolerance in [1e-4, 1e-6, 1e-8] {

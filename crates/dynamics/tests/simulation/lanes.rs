@@ -101,7 +101,7 @@ impl Sampler for Holding {
 /// Status, events, work and the bits of the last state.
 type Ended = (Status, Vec<Event>, [u64; 3], Vec<u64>);
 
-/// All observations, to the bit.
+/// Observations, to the bit.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Seen {
     bits: Vec<u64>,

@@ -36,7 +36,7 @@ fn steps_of_an_input_are_integrated_exactly() {
     assert_eq!((result.outcome.work.steps, result.outcome.work.rejected), (100, 0));
 }
 
-/// At a break the rows show the inputs after it, and the state is continuous.
+/// Rows at a break show the inputs after it, and the state is continuous.
 #[test]
 fn the_answer_to_a_step_begins_at_the_step() {
     for tolerance in [1e-4, 1e-7, 1e-10] {

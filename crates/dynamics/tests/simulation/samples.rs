@@ -7,7 +7,7 @@ use phea_dynamics::simulation::{CommandedPlant, Input, Method, Plant, Profile, S
 
 use super::laws::{Integral, Lawful, course, settings, simulate};
 
-/// A mass on a spring behind a lag, in units of `rate` rad/s: F = 3 x, times 1/rate.
+/// A mass on a spring, driven through a lag, in units of `rate` rad/s: F = 3 x, times 1/rate.
 #[derive(Clone)]
 struct Spring {
     rate: f64,
@@ -230,7 +230,7 @@ fn a_row_at_a_break_shows_what_follows() {
     }
 }
 
-/// A pendulum-like plant whose stiffness increases with its amplitude, with a valve that closes.
+/// Plant like a pendulum whose stiffness increases with its amplitude, with a valve that closes.
 ///
 /// ```text
 /// x' = v,   v' = z - 9 x - 4 x^3 - |v| v,   z' = (u - z) sqrt(1 + z^2) 8
@@ -264,8 +264,8 @@ impl Plant<f64> for Bent {
     }
 }
 
-/// From sample to sample by precomputed matrices, or by a method without them: one result, within
-/// the tolerance.
+/// Precomputed matrices from sample to sample, or a method without them: one result, within the
+/// tolerance.
 #[test]
 fn a_bent_plant_gets_from_sample_to_sample() {
     let plant = CommandedPlant::on_hold(Bent, &TransferFunction::gain_only(1.0)).unwrap();

@@ -227,7 +227,7 @@ fn a_scale_that_is_no_magnitude_is_refused() {
     }
 }
 
-/// Only time advances in a system without states.
+/// Time only advances in a system without states.
 #[test]
 fn a_system_without_states_arrives() {
     #[derive(Clone)]

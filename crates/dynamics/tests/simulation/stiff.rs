@@ -21,7 +21,7 @@ impl Law for Decay {
     }
 }
 
-/// One step of 1 s, without error control: R(h lambda) tends to zero.
+/// A single step of 1 s, without error control: R(h lambda) tends to zero.
 #[test]
 fn a_fast_mode_is_gone_after_one_step() {
     for (rate, left) in [(-1e6, 1e-4), (-1e9, 1e-7), (-1e12, 1e-10)] {

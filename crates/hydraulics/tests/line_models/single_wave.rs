@@ -58,8 +58,7 @@ fn the_exact_line_is_that_of_bessel_functions() {
     }
 }
 
-/// Up to ten half waves, and at the dissipation numbers of a hose, a short pipe and a long thin
-/// one.
+/// Ten half waves, and the dissipation numbers of a hose, a short pipe and a long thin one.
 #[test]
 fn the_transmission_line_follows_the_exact_line() {
     let hose = conduit();
@@ -99,7 +98,7 @@ fn every_model_is_symmetric_and_reciprocal() {
     }
 }
 
-/// At rest every model has the volume of the lumped line, and a steady flow obeys Hagen and
+/// Compliance at rest is that of the lumped line in every model, and a steady flow obeys Hagen and
 /// Poiseuille.
 #[test]
 fn every_model_has_the_compliance_and_the_resistance_of_the_lumped_line() {
@@ -121,8 +120,8 @@ fn every_model_has_the_compliance_and_the_resistance_of_the_lumped_line() {
     }
 }
 
-/// For any dynamic model, a hose contains at rest the volume stated by its sheet at the operating
-/// pressure: creeping walls with the modulus at rest, all others with the dynamic one.
+/// Volume of a hose at rest: for any dynamic model, it is the one stated by its sheet at the
+/// operating pressure: creeping walls with the modulus at rest, all others with the dynamic one.
 #[test]
 fn every_model_of_a_hose_keeps_to_its_sheet() {
     // ORIGIN: analytic, dV/dp = epsilon L/r_beta + (A_ho + E(35 bar)) L/beta_0

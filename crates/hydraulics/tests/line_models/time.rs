@@ -51,8 +51,8 @@ impl Run {
         }
     }
 
-    /// One step of the classical Runge-Kutta method; returns the energy in J that valve and chamber
-    /// put into the line.
+    /// Advances by one step of the classical Runge-Kutta method; returns the energy in J that valve
+    /// and chamber put into the line.
     fn advance(&mut self, inflow: f64, outflow: f64) -> f64 {
         self.record();
         let states = self.state.len();
@@ -136,7 +136,7 @@ pub(crate) fn next(seed: &mut u64) -> f64 {
     *seed as f64 / 1_073_741_823.5 - 1.0
 }
 
-/// From rest without pressure, no line ever supplies more energy than it received.
+/// Lines driven from rest without pressure never supply more energy than they received.
 #[test]
 fn random_flows_get_no_energy_out() {
     for (index, line) in models().into_iter().enumerate() {

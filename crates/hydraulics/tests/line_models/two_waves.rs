@@ -165,7 +165,7 @@ fn without_coupling_one_wave_is_left() {
     assert!((near.speed / fluid.speed - 1.0).abs() < 1e-5 && near.modal_ratio.abs() < 1e-2);
 }
 
-/// At low frequency the hose between fixed ends is the lumped line `by_volume`, since its braid is
+/// The hose between fixed ends is at low frequency the lumped line `by_volume`, since its braid is
 /// at the neutral angle.
 #[test]
 fn the_assumed_hose_is_at_rest_as_soft_as_its_catalogue_says() {

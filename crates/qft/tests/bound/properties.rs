@@ -114,8 +114,8 @@ fn disc(numbers: &mut Numbers) -> (Template, Vec<TemplatePoint>) {
     (template, members)
 }
 
-/// Straight edges in the q-plane for all kinds but the control effort, whose edges are straight in
-/// the plane of P: there the members omit the edges between the corners.
+/// Edges in the q-plane are straight for all kinds except the control effort, whose edges are
+/// straight in the plane of P: there the members omit the edges between the corners.
 #[test]
 fn a_filled_bound_serves_the_whole_region_and_forbids_only_what_a_plant_of_it_forbids() {
     let mut numbers = Numbers(0xD1B5_4A32_D192_ED03);
@@ -131,7 +131,7 @@ fn a_filled_bound_serves_the_whole_region_and_forbids_only_what_a_plant_of_it_fo
             for _ in 0..12 {
                 let nominal_loop = numbers.polar([0.05, 20.0], [-std::f64::consts::TAU, 0.0]);
                 let (gain, phase) = (portable::magnitude(nominal_loop), portable::argument(nominal_loop));
-                // Slightly away from the plant with 1 + L = 0, whose closed loops are undefined.
+                // slightly away from the plant with 1 + L = 0, whose closed loops are undefined
                 let response = -template.nominal / nominal_loop * (1.0 + 1e-6);
                 let itself = TemplatePoint { response, ..members[0].clone() };
                 let is_inside = inside(&template.outlines[0], template.nominal, -nominal_loop);

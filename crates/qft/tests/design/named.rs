@@ -136,8 +136,8 @@ fn a_longer_structure_must_earn_its_poles() {
     assert_eq!(ending(&more, NamedStructure::PiLowPass), Some(StructureEnding::NotEarned));
 }
 
-/// An integrator before a resonance has |L| = K/(2 D w) there, so that |T| <= 1.5 lets K reach
-/// 0.6 * 2 D w = 0.24 without a notch. A notch at the resonance lets it reach half of w.
+/// An integrator and a resonance have |L| = K/(2 D w) at the resonance, so that |T| <= 1.5 lets K
+/// reach 0.6 * 2 D w = 0.24 without a notch. A notch at the resonance lets it reach half of w.
 #[test]
 fn a_notch_lies_upon_the_resonance() {
     let problem = resonance(4.0);

@@ -70,7 +70,7 @@ fn coarse_coefficients_are_designed_for() {
         assert_eq!(broken.verdict, Verdict::Violated);
         let options = least_gain(proportional_integral(), 1);
         let design = designed(&problem, DesignOptions { coefficients: format, ..options });
-        // its audit is that of the returned controller, whose coefficients have these bits
+        // the audit is that of the returned controller, whose coefficients have these bits
         assert_met(&problem, &design, TrackingJudgement::Spread);
         assert_eq!(design.controller, rounded(&design.law, format).unwrap().controller);
         let step = 2.0_f64.powi(-i32::from(fraction_bits));

@@ -9,7 +9,7 @@ use super::problems::{
     structure,
 };
 
-/// One zero and two poles; a damping ratio of at least 1 makes the poles real.
+/// Structures with one zero and two poles; a damping ratio of at least 1 makes the poles real.
 fn from_three_seeds(damping_ratio: [f64; 2], expected_db: f64) {
     let problem = example_d();
     for seed in 1..=3 {

@@ -180,8 +180,8 @@ fn zeros_of_sampling_cost_sensitivity() {
         let continuous = problem(family.clone(), vec![everywhere(limit_of_s(limit))]);
         sampled(continuous, 0.001, 0.0)
     };
-    // with T = 0.001 the pole is e^0.002 and has almost no effect: the constraint at the zero is
-    // S >= 1
+    // the pole is e^0.002 for T = 0.001 and has almost no effect: the constraint at the zero is S
+    // >= 1
     assert!(least > 1.0);
     assert_eq!(impossibilities(&of(1.02)), []);
     let found = constraints(&of(0.9));

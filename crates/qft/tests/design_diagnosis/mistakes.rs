@@ -32,7 +32,7 @@ fn contradictory_bounds() {
     });
     let (frequency, [low, high]) = contradiction.unwrap();
     // for the gains 10 and 20, the smallest loop must satisfy S and the greatest T: at phase 0,
-    // where 1/(1 + g) = s r and 2 g/(1 + 2 g) = t r
+    // with 1/(1 + g) = s r and 2 g/(1 + 2 g) = t r
     let (s, t) = (10.0 / 1000f64.sqrt(), 5.0 / 125f64.sqrt());
     let truth = decibels((s + t - (s * s + t * t).sqrt()) / (s * t));
     assert!(frequency == 10.0 && low <= truth && truth <= high + 1e-3, "{low} {truth} {high}");

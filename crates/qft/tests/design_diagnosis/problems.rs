@@ -12,7 +12,7 @@ use phea_qft::specification::{Limit, Requirement, Specification};
 
 pub(crate) const EVERYWHERE: [f64; 2] = [0.0, f64::INFINITY];
 
-/// One plant without uncertainty.
+/// A single plant without uncertainty.
 pub(crate) fn single(numerator: &[f64], denominator: &[f64], dead_time_s: f64) -> Family {
     let numbers = |coefficients: &[f64]| coefficients.iter().map(|&c| Recorded::from(c)).collect();
     let plant = UncertainPlant::record(vec![], |_| PlantCoefficients {

@@ -118,7 +118,7 @@ fn its_slopes_are_those_of_central_differences() {
     }
 }
 
-/// The resonance at 10 rad/s reaches 0.8, where the phase tolerates some 30 ms.
+/// The resonance at 10 rad/s reaches 0.8, at which the phase tolerates some 30 ms.
 #[test]
 fn a_peak_below_one_is_a_row_before_it_is_a_crossover() {
     let x = [0.7f64, 5.0, 5.0].map(f64::ln);

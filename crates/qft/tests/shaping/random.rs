@@ -61,7 +61,7 @@ pub(crate) fn specification(requirement: Requirement, band_rad_per_s: [f64; 2]) 
     Specification { requirement, frequencies_rad_per_s: vec![1.0], band_rad_per_s }
 }
 
-/// One specification of each kind, over different bands.
+/// A specification of each kind, over different bands.
 pub(crate) fn specifications() -> Vec<Specification> {
     let constant = Limit::Constant;
     let everywhere = [0.0, f64::INFINITY];

@@ -99,7 +99,7 @@ fn two_gains_in_series_are_a_segment_too() {
 
 /// A lag too short to matter bends k/s by 3e-8 degrees at most: the polygons of its faces are as
 /// thin as rounding errors, and the template is the segment of k.
-// ORIGIN: analytic, 1/(w (T w + 1)) beside k/w
+// ORIGIN: analytic, 1/(w (T w + 1)) next to k/w
 #[test]
 fn a_parameter_that_hardly_moves_the_plant_leaves_a_segment() {
     let family = family(&[("k", 1.0, 100.0, Logarithmic), ("T", 0.0, 1e-9, Linear)], 3, |p| {

@@ -145,8 +145,8 @@ fn two_servo_designs() {
     let (worst, frequency) = excess(&findings[0]);
     assert_eq!(findings[0].verdict, Verdict::Violated);
     assert!((worst - 0.0239).abs() < 1e-3 && (frequency / 2.912 - 1.0).abs() < 2e-3, "{worst} {frequency}");
-    // without its prefilter: the spread is just allowed at the upper end of the band, and has no
-    // slack at zero frequency
+    // the spread without a prefilter is just allowed at the upper end of the band, and has no slack
+    // at zero frequency
     let tracking = &findings[1];
     let (last, margin) = tracking.envelope.last().copied().unwrap();
     assert!(tracking.verdict == Verdict::Met && last == 15.0 && (margin - 2.410e-4).abs() < 2e-7, "{margin}");

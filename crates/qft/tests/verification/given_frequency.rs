@@ -1,4 +1,4 @@
-//! The worst plant at a given frequency whose resonance there belongs to no plant of the grid.
+//! The worst plant at a given frequency, if the resonance there belongs to no plant of the grid.
 
 use phea_dynamics::controller::Timing;
 use phea_dynamics::expression::Recorded;

@@ -1,4 +1,4 @@
-//! Alternatives for people: a summary, what follows from it, then the table of all numbers.
+//! Alternatives for people: a summary, the findings, then the table of all numbers.
 
 use super::findings::findings;
 use super::front;
@@ -16,7 +16,7 @@ use crate::simulate::ScenarioRun;
 use crate::specification::subject_words;
 use phea_qft::verification::Verdict;
 
-/// The table and the findings, below what must be known first.
+/// The table and the findings, after the most important warnings.
 pub(crate) fn output(found: &Alternatives) -> Document {
     let mut out = Document::default();
     out.warnings(told_first(found));
@@ -40,10 +40,10 @@ pub(crate) fn document(found: &Alternatives) -> Document {
     out
 }
 
-/// Alternatives side by side on the paper.
+/// Number of alternatives side by side on the paper.
 const PART: usize = 6;
 
-/// The rigs that their families do not contain, and what to do.
+/// The rigs that their families do not contain, and the remedy.
 pub(crate) fn told_first(found: &Alternatives) -> Vec<String> {
     let all = summary::groups(found).into_iter().flat_map(|(_, judged)| judged);
     let mut told: Vec<String> = Vec::new();
@@ -57,8 +57,8 @@ pub(crate) fn told_first(found: &Alternatives) -> Vec<String> {
     told
 }
 
-/// A sentence on ranges that do not contain the rig of an alternative, whether they were moved or
-/// not.
+/// A sentence on ranges that do not contain the rig of an alternative, whether or not they were
+/// moved.
 pub(crate) fn outside_words(name: &str, outside: &[OutsideParameter], moved: bool) -> String {
     let cure = match moved {
         false => "state them in `set`, or let them follow by `recentre = true`",
@@ -122,7 +122,8 @@ fn feasible(one: &JudgedAlternative) -> Cell {
     }
 }
 
-/// Whether every plant of its family, with the declared load on it, is stable in the designed loop.
+/// Cell that shows whether every plant of the family, with the declared load, is stable in the
+/// designed loop.
 pub(super) fn stable(one: &JudgedAlternative) -> Cell {
     let view = one.design.as_ref().ok();
     match view.map(|view| view.designed.view.audit.stability.verdict) {
@@ -133,7 +134,8 @@ pub(super) fn stable(one: &JudgedAlternative) -> Cell {
     }
 }
 
-/// Whether the impedance at the load is passive, or in how many bands it is not.
+/// Cell that shows whether the impedance at the load is passive, or the number of bands in which it
+/// is not.
 pub(super) fn port(one: &JudgedAlternative, closed: bool) -> Cell {
     let Ok(found) = &one.linearization else { return Cell::Missing };
     let designed = found.closed_loop.as_ref().filter(|_| one.deployed.is_ok());
@@ -162,7 +164,7 @@ pub(super) fn parts(all: &[AlternativeColumns]) -> Vec<ColumnPart> {
     parts
 }
 
-/// The keys of a part that some alternative has a value for, or should state one for.
+/// The keys of a part for which some alternative has a value, or should state one.
 fn keys(all: &[AlternativeColumns], part: &ColumnPart) -> Vec<ColumnKey> {
     let mut keys = Vec::new();
     let columns = all.iter().flat_map(|columns| &columns.0).filter(|(own, _)| own == part);
@@ -193,7 +195,7 @@ fn cell(columns: &AlternativeColumns, part: &ColumnPart, key: ColumnKey) -> Cell
         Ok(value) if key == ColumnKey::WorstMargin => Cell::margin(*value),
         Ok(value) if column.digits == 0 => value.to_string().into(),
         Ok(value) => Cell::quantity(*value, column.digits, column.unit),
-        // what of it is missing is found in the table of its part
+        // the table of its part lists what is missing
         Err(reason @ NoNumber::Parts(_)) if is_unstated(reason) => no_number_words(reason).into(),
         Err(reason) if is_unstated(reason) => NOT_STATED.into(),
         Err(_) => Cell::Missing,

@@ -15,7 +15,7 @@ use crate::project::{IdentifiedUse, Project, print};
 use crate::simulate::{ScenarioRun, laid_over};
 use crate::specification::subject_words;
 
-/// All of them.
+/// Returns all files.
 pub(crate) fn files(found: &Alternatives) -> Vec<OutputFile> {
     let mut files = vec![table("alternatives.csv", &[("", &found.judged)])];
     if !found.cases.is_empty() {
@@ -32,7 +32,8 @@ pub(crate) fn files(found: &Alternatives) -> Vec<OutputFile> {
     for ((_, one), name) in all.iter().zip(names) {
         if let Ok(deployed) = &one.deployed {
             let mut project = Project { alternatives: vec![], load_cases: vec![], ..deployed.clone() };
-            // what the recordings gave is in it as numbers: they need not lie in its folder
+            // the numbers from the recordings are in the project: the recordings need not be in its
+            // folder
             if let Some(identify) = &mut project.identify {
                 identify.takes = IdentifiedUse::Nothing;
             }
@@ -68,7 +69,7 @@ fn forces(file: &str, case: &str, judged: &[JudgedAlternative]) -> Vec<Figure> {
     laid_over((file, &title, &caption), &names, &runs.iter().collect::<Vec<_>>())
 }
 
-/// The impedance at the load of each alternative, under its controller where that is continuous.
+/// The impedance at the load of each alternative, under its controller if that is continuous.
 fn impedances(found: &Alternatives) -> Option<Figure> {
     let series = found.judged.iter().filter_map(|one| {
         let models = one.linearization.as_ref().ok()?;
@@ -95,12 +96,12 @@ fn impedances(found: &Alternatives) -> Option<Figure> {
     (!chart.series.is_empty()).then(|| chart.draw(&words))
 }
 
-/// A row for each alternative, in SI, behind the name of its load case where there are several; a
-/// value that does not exist is empty.
+/// A row for each alternative, in SI, after the name of its load case if there are several; a value
+/// that does not exist is empty.
 fn table(file: &str, groups: &[(&str, &[JudgedAlternative])]) -> OutputFile {
     let all: Vec<AlternativeColumns> =
         groups.iter().flat_map(|(_, judged)| judged.iter().map(JudgedAlternative::columns)).collect();
-    // all alternatives of a project move alike: none replaces its cylinder by a motor
+    // alternatives of a project have one kind of motion: none replaces its cylinder by a motor
     let mut judged = groups.iter().flat_map(|(_, judged)| judged.iter());
     let motion = judged.next().map(|one| one.loaded.project.motion()).unwrap_or_default();
     let mut named: Vec<(ColumnPart, ColumnKey)> = Vec::new();

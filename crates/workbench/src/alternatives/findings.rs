@@ -1,5 +1,5 @@
-//! What follows from the columns, in sentences that are read in a minute: what is met, what the
-//! machine contradicts, what is best, who dominates whom, and what each costs.
+//! Findings on the columns, in sentences that are read in a minute: specifications that are met,
+//! contradictions by the machine, the best values, dominance, and the costs of each alternative.
 
 use phea_qft::design::ControllerChoice;
 use phea_qft::design::DesignStatus;
@@ -17,7 +17,7 @@ use crate::quantity::{DisplayUnit, MotionKind, MotionWords, fitting, significant
 use crate::simulate::{ScenarioRun, required_of_run, requirement_sentence};
 use crate::trial::{Agreement, finding_words, run_name};
 
-/// Of the declared load, and then of each load case.
+/// Findings for the declared load, and then for each load case.
 pub(crate) fn findings(found: &Alternatives) -> Vec<String> {
     let mut sentences = of_judged(&found.judged, found.not_reached.len());
     sentences.extend(ranges(&found.judged));
@@ -29,7 +29,7 @@ pub(crate) fn findings(found: &Alternatives) -> Vec<String> {
     sentences
 }
 
-/// Of a load case.
+/// Findings for a load case.
 pub(super) fn of_case(case: &JudgedCase) -> Vec<String> {
     let not_reached = case.not_reached.iter().map(|name| format!("{name}: not reached"));
     of_judged(&case.judged, case.not_reached.len()).into_iter().chain(not_reached).collect()
@@ -45,7 +45,7 @@ fn of_judged(judged: &[JudgedAlternative], not_reached: usize) -> Vec<String> {
     sentences
 }
 
-/// Alternatives by what can be compared of all of them.
+/// Alternatives with the measures that are known for all of them.
 struct MeasuredAlternatives {
     motion: MotionKind,
     measures: Vec<ComparedMeasure>,
@@ -53,7 +53,7 @@ struct MeasuredAlternatives {
 }
 
 impl MeasuredAlternatives {
-    /// Those that have the four measures.
+    /// Selects the alternatives that have the four measures.
     fn of<'j>(judged: impl Iterator<Item = &'j JudgedAlternative>) -> MeasuredAlternatives {
         let mut judged = judged.peekable();
         let motion = judged.peek().map(|one| one.loaded.project.motion()).unwrap_or_default();
@@ -82,7 +82,7 @@ impl MeasuredAlternatives {
 /// The measures of dominance in words.
 const FOUR: [&str; 4] = ["disturbance", "control effort", "order", "delay tolerated"];
 
-/// What an alternative misses, in its scenarios, of what is required in time.
+/// Requirements in time that an alternative misses in its scenarios.
 fn missing(one: &JudgedAlternative) -> Vec<String> {
     let Ok(runs) = &one.runs else { return vec![] };
     let missed = |run: &ScenarioRun| -> Vec<String> {
@@ -93,7 +93,8 @@ fn missing(one: &JudgedAlternative) -> Vec<String> {
     runs.iter().flat_map(missed).collect()
 }
 
-/// Who meets every specification, who misses them by how much, and what else became of a design.
+/// Sentences on alternatives that meet every specification, on those that miss some and by how
+/// much, and on other outcomes of a design.
 fn specifications(judged: &[JudgedAlternative], not_reached: usize) -> Vec<String> {
     let named = |which: &dyn Fn(&JudgedAlternative) -> Option<String>| {
         judged.iter().filter_map(which).collect::<Vec<_>>()
@@ -132,7 +133,7 @@ fn specifications(judged: &[JudgedAlternative], not_reached: usize) -> Vec<Strin
     sentences
 }
 
-/// The greatest order, where the orders were free and the same for all.
+/// The greatest order, if the orders were free and equal for all.
 fn tried(judged: &[JudgedAlternative]) -> String {
     let orders = judged.iter().filter_map(|one| match one.design.as_ref().ok()?.options.controller {
         ControllerChoice::Grow { maximum_order } | ControllerChoice::Any { maximum_order, .. } => {
@@ -147,8 +148,8 @@ fn tried(judged: &[JudgedAlternative]) -> String {
     }
 }
 
-/// Each sentence once, behind the names of all that it holds for; of most of them, of those that it
-/// does not hold for.
+/// Each sentence once, after the names of all alternatives to which it applies; if it applies to
+/// most of them, after the names of the exceptions.
 fn shared<'a>(judged: &'a [JudgedAlternative], told: impl Iterator<Item = (&'a str, String)>) -> Vec<String> {
     let others = |names: &[&str]| {
         let others = judged.iter().map(|one| one.name.as_str()).filter(|name| !names.contains(name));
@@ -164,14 +165,15 @@ fn shared<'a>(judged: &'a [JudgedAlternative], told: impl Iterator<Item = (&'a s
     grouped(told.map(|(name, sentence)| (sentence, name))).into_iter().map(words).collect()
 }
 
-/// What the machine contradicts, what the verdict leaves out, and why nothing was driven.
+/// Contradictions by the machine, effects that the verdict leaves out, and the reason why nothing
+/// was driven.
 fn lacking(one: &JudgedAlternative) -> Vec<(&str, String)> {
     let view = one.design.as_ref().ok();
     let runs =
         view.and_then(|view| view.trial.as_ref()).map(|trial| trial.runs.as_slice()).unwrap_or_default();
     let contradicts: Vec<_> = runs.iter().filter(|run| run.agreement == Agreement::Contradicts).collect();
     let contradicts = contradicts.split_first().map(|(first, further)| {
-        // what could be done about it is in the reason after the first sentence, and with `design`
+        // the remedy is in the reason after the first sentence, and with `design`
         let reason = finding_words(&first.reason.finding, first.units);
         let further = match further.len() {
             0 => String::new(),
@@ -193,7 +195,7 @@ fn lacking(one: &JudgedAlternative) -> Vec<(&str, String)> {
         .collect()
 }
 
-/// What is compared of a loop that shows the load an impedance.
+/// Properties that are compared for a loop with a virtual impedance at the load.
 fn impedance(one: &JudgedAlternative) -> Option<Vec<String>> {
     let declared = one.loaded.project.controller.as_ref()?.impedance?;
     let MotionWords { force, position, .. } = one.loaded.project.motion().words();
@@ -232,7 +234,7 @@ fn moved_words(name: &str, range: &MovedRange, motion: MotionKind) -> String {
     format!("{name}, {} {moved} in place of {stated}", range.name)
 }
 
-/// What is best in each measure, of those that may be compared.
+/// The best alternative in each measure, among those that may be compared.
 fn best(comparable: &MeasuredAlternatives) -> Option<String> {
     let MeasuredAlternatives { measures, all, motion } = comparable;
     if all.len() < 2 {
@@ -254,7 +256,7 @@ fn best(comparable: &MeasuredAlternatives) -> Option<String> {
     ))
 }
 
-/// Among those that satisfy every specification, on the machine too.
+/// Dominance among the alternatives that satisfy every specification, on the machine too.
 fn dominance(comparable: &MeasuredAlternatives) -> Vec<String> {
     let MeasuredAlternatives { measures, all, .. } = comparable;
     if all.len() < 2 {
@@ -273,7 +275,7 @@ fn dominance(comparable: &MeasuredAlternatives) -> Vec<String> {
     }]
 }
 
-/// Each against the project as it is declared: what it gains, and what it costs.
+/// Gains and costs of each alternative relative to the project as declared.
 fn costs(found: &MeasuredAlternatives) -> Vec<String> {
     let Some(((base, given), others)) = found.all.split_first() else { return vec![] };
     if base != AS_DECLARED {

@@ -40,7 +40,7 @@ pub(super) fn table(front: &Front) -> Table {
     rows
 }
 
-/// What a column is called, as far as a point has it.
+/// The name of a column, as far as a point has it.
 fn column_words(front: &Front, index: usize) -> Cow<'_, str> {
     let is_known = front.points.iter().any(|point| matches!(point.values.get(index), Some(Ok(_))));
     match front.columns.get(index) {
@@ -51,7 +51,7 @@ fn column_words(front: &Front, index: usize) -> Cow<'_, str> {
     }
 }
 
-/// A point in words, by its place.
+/// A point in words, by its index.
 fn named(front: &Front, place: usize) -> String {
     front.points.get(place).map_or(String::new(), |point| name_of(front, point))
 }
@@ -60,8 +60,8 @@ fn name_of(front: &Front, point: &FrontPoint) -> String {
     format!("{} at {}", point.alternative, front.unit.text(point.value, 4))
 }
 
-/// The front from its best end in the first column to the other, each step with its price; why some
-/// points have no values; what was not reached.
+/// Sentences on the front from its best end in the first column to the other, each step with its
+/// price; on points without values and their reasons; on values that were not reached.
 pub(super) fn findings(front: &Front) -> Vec<String> {
     let mut on_front: Vec<&FrontPoint> = front.points.iter().filter(|point| point.is_on_front()).collect();
     let first = |point: &FrontPoint| point.numbers().and_then(|numbers| numbers.first().copied());
@@ -96,7 +96,7 @@ pub(super) fn findings(front: &Front) -> Vec<String> {
     sentences
 }
 
-/// From one point of the front to the next: what is paid, and what is had for it.
+/// A step from one point of the front to the next: its cost and its gain.
 fn step(front: &Front, from: &FrontPoint, to: &FrontPoint) -> String {
     let changes = from.values.iter().zip(&to.values).enumerate().filter_map(|(index, (from, to))| {
         let (from, to) = (from.as_ref().ok()?, to.as_ref().ok()?);
@@ -163,7 +163,7 @@ pub(super) fn csv(front: &Front) -> OutputFile {
     OutputFile::new("front.csv", csv.text())
 }
 
-/// The points of every alternative; `None` where no point has all values.
+/// The points of every alternative; `None` if no point has all values.
 pub(super) fn figure(front: &Front) -> Option<Figure> {
     let mut curves: Vec<ParetoCurve> = Vec::new();
     for point in &front.points {

@@ -1,5 +1,5 @@
-//! A row for each alternative, under the declared load and under each load case: what a decision
-//! needs, before the table of all numbers.
+//! A row for each alternative, under the declared load and under each load case: the numbers needed
+//! for a decision, before the table of all numbers.
 
 use super::{AlternativeColumns, Alternatives, ColumnKey, JudgedAlternative};
 use crate::document::{Cell, Table};
@@ -7,11 +7,11 @@ use crate::quantity::{MotionKind, significant};
 use crate::simulate::{ScenarioRun, settling_within};
 use crate::verdict_words::agreement_word;
 
-/// What the group of the project's own load is called, where there are load cases too.
+/// Name of the group of the project's declared load, if there are load cases too.
 pub(super) const DECLARED_LOAD: &str = "declared load";
 
-/// Columns for a decision at a glance, with their names for people. The worst value counts
-/// where a column exists for several scenarios.
+/// Columns for a decision at a glance, with their names for people. The worst value counts if a
+/// column exists for several scenarios.
 const COMPARED_AT_A_GLANCE: [(ColumnKey, &str); 9] = [
     (ColumnKey::Order, "order of G"),
     (ColumnKey::DelayMargin, "delay tolerated"),
@@ -76,7 +76,7 @@ pub(super) fn groups(found: &Alternatives) -> Vec<(&str, &[JudgedAlternative])> 
     std::iter::once((DECLARED_LOAD, found.judged.as_slice())).chain(cases).collect()
 }
 
-/// The columns that some alternative has a value for.
+/// The columns for which some alternative has a value.
 fn shown<'c>(all: impl Iterator<Item = &'c AlternativeColumns> + Clone) -> Vec<(ColumnKey, &'static str)> {
     let has = |key: ColumnKey| all.clone().any(|columns| columns.worst(key).is_some());
     COMPARED_AT_A_GLANCE.into_iter().filter(|(key, _)| has(*key)).collect()
@@ -91,7 +91,7 @@ fn number(columns: &AlternativeColumns, key: ColumnKey) -> Cell {
     }
 }
 
-/// Whether they are met, or by how much they are missed.
+/// Cell that shows whether the specifications are met, or by how much they are missed.
 fn specifications(one: &JudgedAlternative) -> Cell {
     let columns = one.columns();
     let relaxation = columns.first(ColumnKey::Relaxation).and_then(|column| column.value.clone().ok());
@@ -105,7 +105,7 @@ fn specifications(one: &JudgedAlternative) -> Cell {
     }
 }
 
-/// Whether the machine behaves as the verdict says.
+/// Cell that shows whether the machine confirms the verdict.
 pub(super) fn machine(one: &JudgedAlternative) -> Cell {
     let trial = one.design.as_ref().ok().and_then(|view| view.trial.as_ref());
     trial.map(|trial| Cell::from(agreement_word(trial.agreement())).marked(trial.agreement())).into()

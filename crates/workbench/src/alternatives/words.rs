@@ -62,7 +62,7 @@ pub(super) fn measure_name(key: ColumnKey, motion: MotionKind) -> &'static str {
 /// Entry of a table for a number that the project should state.
 pub(super) const NOT_STATED: &str = "not stated";
 
-/// The error of a part of what is found about an alternative.
+/// The error of a missing finding on an alternative.
 pub(super) fn judge_error_words(error: &JudgeError) -> String {
     match error {
         JudgeError::Design(error) => design_error_words(error),
@@ -99,7 +99,7 @@ pub(super) fn no_number_words(reason: &NoNumber) -> String {
     fixed.to_string()
 }
 
-/// True where the project should state a number.
+/// True if the project should state a number.
 pub(super) fn is_unstated(reason: &NoNumber) -> bool {
     match reason {
         NoNumber::Parts(PartsUnknown::NotStated(_)) => true,

@@ -1,4 +1,4 @@
-//! The limits of a design that a given loop keeps or not, in words and in JSON.
+//! Limits of a design that a given loop satisfies or exceeds, in words and in JSON.
 
 use phea_engineering::limit_kind::{
     DesignLimitKind, ExceededLimit, JudgedLimits, limit_key, limit_unit_key, origin_key,
@@ -11,8 +11,8 @@ use crate::document::{Cell, Document, Table};
 use crate::limit_kind::{limit_words, origin_words};
 use crate::quantity::{DisplayUnit, significant};
 
-/// A table of those that the loop does not keep, and what it means, or that it keeps all of them;
-/// empty where none was judged.
+/// A table of the limits that the loop exceeds, with their meaning, or a statement that it
+/// satisfies all; empty if none was judged.
 pub(super) fn document(view: &ProjectAudit) -> Document {
     let mut out = Document::default();
     let Some(JudgedLimits { exceeded, kept }) = &view.below_design else { return out };

@@ -1,5 +1,5 @@
 //! The file of a certificate: written by `verify --certificate`, read by `check-certificate` and by
-//! checkers of others.
+//! independent checkers.
 
 mod comparison;
 mod layout;
@@ -17,7 +17,7 @@ use crate::specification::closed_loop_key;
 pub use layout::CertificateError;
 use layout::File;
 
-/// Its name in a folder.
+/// Name of the file in a folder.
 pub const CERTIFICATE_FILE: &str = "certificate.json";
 
 /// The file with the proof of an audit, with this name; `None` if nothing was proven.
@@ -28,12 +28,12 @@ pub(crate) fn certificate_of(loaded: &Loaded, view: &ProjectAudit, name: &str) -
 
 /// The file of a certificate.
 fn file(loaded: &Loaded, certificate: &Certificate) -> OutputFile {
-    // only finite numbers and string keys
+    // contains only finite numbers and string keys
     let text = serde_json::to_string(&File::of(loaded, certificate)).unwrap_or_default();
     OutputFile { name: CERTIFICATE_FILE.to_string(), bytes: format!("{text}\n").into_bytes() }
 }
 
-/// Checks the file of a certificate: the answer is yes where every claim holds.
+/// Checks the file of a certificate: the answer is yes if every claim holds.
 ///
 /// # Errors
 /// [`CertificateError`] for a file that is not a certificate.
@@ -41,11 +41,11 @@ pub fn check_certificate(text: &str) -> Result<Answer, CertificateError> {
     checked(text, None)
 }
 
-/// The same, and whether it is the certificate of this problem: the answer is yes where every claim
-/// holds, and plant, box, laws and specifications are those of the problem.
+/// Checks the file of a certificate, and that it belongs to this problem: the answer is yes if
+/// every claim holds, and plant, box, laws and specifications are those of the problem.
 ///
 /// # Errors
-/// Those of [`check_certificate`].
+/// Errors of [`check_certificate`].
 pub fn check_certificate_of(text: &str, problem: &RobustProblem) -> Result<Answer, CertificateError> {
     checked(text, Some(problem))
 }
@@ -60,8 +60,8 @@ fn checked(text: &str, problem: Option<&RobustProblem>) -> Result<Answer, Certif
     Ok(answer((&title, &project_sha256), &certificate, rejected.as_ref(), (compared, &in_time)))
 }
 
-/// The specifications, by their number in the file, that require something in time: nothing of that
-/// is claimed.
+/// The specifications, by their number in the file, that have requirements in time; a certificate
+/// makes no claim on these.
 fn in_time(problem: &RobustProblem) -> Vec<usize> {
     let required = problem.in_time.iter().filter(|required| required.follows);
     required.map(|required| required.number).collect()

@@ -21,8 +21,7 @@ use crate::specification::{name_words, numbered};
 use crate::trial::{self, Trial};
 use crate::verdict_words::verdict_words;
 
-/// The tables and sentences of `verify` for people, with the trial on the machine where there is
-/// one.
+/// The tables and sentences of `verify` for people, with the trial on the machine if there is one.
 pub fn output(view: &ProjectAudit, tried: Option<&Trial>) -> Document {
     let mut out = document(view, vec![]);
     out.append(proven(view, "What is proven"));
@@ -100,7 +99,7 @@ fn delayed_words(paths: DelayedPaths) -> &'static str {
     }
 }
 
-/// A margin, and where.
+/// A margin, and its frequency.
 fn margin_at(worst: Option<&SpecificationMargin>) -> [Cell; 2] {
     match worst {
         Some(worst) => [Cell::margin(worst.margin_db), Cell::frequency(worst.frequency_rad_per_s)],
@@ -129,8 +128,8 @@ fn specifications(view: &ProjectAudit) -> Table {
         row.extend(margin_at(finding.worst.as_ref()));
         row.extend(margin_at(worst_at_design(finding)));
         rows.row(row);
-        // a worst margin at an end of the band is of little interest; the margin of the family need
-        // not have its least where that of one plant has
+        // a worst margin at an end of the band is of little interest; the least margin of the
+        // family need not occur where that of one plant does
         let interior = finding.interior.as_ref().filter(|interior| finding.worst.as_ref() != Some(*interior));
         if let Some(interior) = interior {
             let [margin, frequency] = margin_at(Some(interior));
@@ -148,7 +147,8 @@ fn specifications(view: &ProjectAudit) -> Table {
     rows
 }
 
-/// What was proven: a row for each claim, and why a claim is not; empty if no proof was requested.
+/// Proven claims, a row for each, and the reason why a claim is not proven; empty if no proof was
+/// requested.
 pub(crate) fn proven(view: &ProjectAudit, title: &str) -> Document {
     let mut out = Document::default();
     let Some(proof) = &view.proof else { return out };
@@ -173,7 +173,7 @@ pub(crate) fn proven(view: &ProjectAudit, title: &str) -> Document {
     out
 }
 
-/// The room for a closed loop that is proven to be at most so many dB over its limit.
+/// Words for the tolerance up to which a closed loop is proven to satisfy its limit, dB.
 fn allowed_words(tolerance_db: f64) -> String {
     format!(", within the {tolerance_db} dB allowed")
 }
@@ -257,7 +257,8 @@ pub(crate) fn basis(view: &ProjectAudit) -> Vec<String> {
     sentences
 }
 
-/// What counts as met, and how well the plants are known at the resonances of fitted lines.
+/// Tolerance within which a specification counts as met, and the accuracy of the plants at the
+/// resonances of fitted lines.
 fn tolerance(view: &ProjectAudit) -> String {
     let met = portable::rounded(view.audit.tolerance_db, 3);
     let fitted = match view.has_lines_in_motion() {
@@ -269,8 +270,8 @@ fn tolerance(view: &ProjectAudit) -> String {
     format!("A margin of -{met} dB still counts as met{fitted}.")
 }
 
-/// What modes that fold leave unknown between the plants examined; `None` where it is less than
-/// what counts as met by default.
+/// Uncertainty between the examined plants because of modes that fold; `None` if it is below the
+/// default tolerance.
 fn folding(change: f64) -> Option<String> {
     let db = -20.0 * portable::log10(1.0 - change);
     (db > DEFAULT_TOLERANCE_DB).then(|| {
@@ -282,7 +283,7 @@ fn folding(change: f64) -> Option<String> {
     })
 }
 
-/// Each remark once, with the specifications that it concerns.
+/// Remarks, each once, with the specifications that it concerns.
 fn remarks(view: &ProjectAudit) -> Vec<String> {
     let found = view.audit.specifications.iter().enumerate().flat_map(|(index, finding)| {
         let remarks = remark_sentences(finding, &view.names).into_iter();

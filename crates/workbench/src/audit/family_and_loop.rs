@@ -76,7 +76,7 @@ fn counted(count: usize, noun: &str) -> String {
     if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
 }
 
-/// The dead times that are not zero; empty where all are.
+/// The dead times that are not zero; empty if all are zero.
 fn dead_time_words(dead_time: &LoopDeadTime) -> String {
     let text = |time_s: f64| DisplayUnit::MILLISECOND.text(time_s, 3);
     let [least, most] = dead_time.plant_s;

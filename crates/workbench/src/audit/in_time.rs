@@ -69,7 +69,7 @@ fn rise_words(worst: &WorstStep) -> String {
     }
 }
 
-/// Each requirement that is missed: `settled in 1.08 s at worst where 0.8 s is required`.
+/// Requirements that are missed: `settled in 1.08 s at worst where 0.8 s is required`.
 pub(crate) fn missed(finding: &TimeFinding) -> Vec<String> {
     let TimeOutcome::Searched { overshoot, settling, rise, .. } = &finding.outcome else { return vec![] };
     let wish = &finding.requirement.wish;

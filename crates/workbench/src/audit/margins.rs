@@ -8,14 +8,15 @@ use crate::document::{Cell, Table};
 use crate::plant_names::PlantNames;
 use crate::quantity::{DisplayUnit, significant};
 
-/// Reason why there are none of the nominal loop.
+/// Reason why the nominal loop has none.
 pub(super) const NO_NOMINAL: &str = "no margin: the nominal loop is not known to be stable";
-/// Reason why there are none of the family.
+/// Reason why the family has none.
 const NO_FAMILY: &str = "no margin: not every plant is known to be stable";
 /// Reason why there is no frequency.
 const UNLIMITED: &str = "nothing limits it";
 
-/// The worst of the family, and the same keys of both.
+/// The worst margins of the family, and objects with the margins of the nominal loop and of the
+/// family.
 pub(super) fn object(view: &ProjectAudit) -> Object {
     let margins = &view.margins;
     let own = values(margins.family.as_ref(), NO_FAMILY);
@@ -55,7 +56,7 @@ fn places(view: &ProjectAudit, set: &MarginSet) -> Object {
     })
 }
 
-/// A row for each margin; empty where there are none.
+/// A row for each margin; empty if there are none.
 pub(super) fn table(view: &ProjectAudit) -> Table {
     let (nominal, family) = (view.margins.nominal.as_ref(), view.margins.family.as_ref());
     if nominal.is_none() && family.is_none() {
@@ -91,7 +92,8 @@ fn rows_of() -> [PrintedMargin; 5] {
     ]
 }
 
-/// A margin and its frequency; a fall of the gain without its sign, a phase with its side.
+/// A margin and its frequency; a reduction of the gain is shown without its sign, a phase with its
+/// side.
 fn cells(margin: &LoopMargin, unit: DisplayUnit) -> [Cell; 2] {
     if margin.value.is_infinite() {
         return ["no limit".into(), Cell::Missing];
@@ -103,7 +105,7 @@ fn cells(margin: &LoopMargin, unit: DisplayUnit) -> [Cell; 2] {
     [value, margin.frequency_rad_per_s.map_or(Cell::Missing, Cell::frequency)]
 }
 
-/// The plants that the worst of the family was searched among; `None` where there is none.
+/// The plants among which the worst of the family was searched for; `None` if there is none.
 pub(super) fn sentence(view: &ProjectAudit) -> Option<String> {
     view.margins.family.as_ref()?;
     let plants = view.margins.plants;
@@ -116,7 +118,7 @@ pub(super) fn sentence(view: &ProjectAudit) -> Option<String> {
         };
         return Some(format!("The worst margins are those of the {plants} measured responses{discs}."));
     }
-    // plants without polynomials cost too much to be searched for between
+    // the search between plants without polynomials is too expensive
     let searched = if view.without_polynomials.is_some() { "" } else { ", and of a search from these" };
     (plants > 1).then(|| {
         format!(
@@ -125,19 +127,19 @@ pub(super) fn sentence(view: &ProjectAudit) -> Option<String> {
     })
 }
 
-/// Whether the family is measured: nothing is searched for between its responses.
+/// True if the family is measured; then no plants between its responses are searched.
 fn is_measured(view: &ProjectAudit) -> bool {
     matches!(view.names, PlantNames::Measured(_))
 }
 
-/// Whether these responses are known within confidence discs.
+/// True if these responses are known within confidence discs.
 fn has_discs(view: &ProjectAudit) -> bool {
     let mut remarks = view.audit.specifications.iter().flat_map(|finding| &finding.remarks);
     remarks.any(|remark| matches!(remark, Remark::WorstWithinDiscs | Remark::OpenWithinDiscs { .. }))
 }
 
 /// The decrease of the gain that the nominal loop tolerates, which a loop around an unstable plant
-/// needs; `None` where the gain may vanish.
+/// needs; `None` if the gain may vanish.
 pub(super) fn reduction_sentence(margins: &NominalMargins) -> Option<String> {
     let db = margins.gain_reduction_db;
     db.is_finite().then(|| {
@@ -148,13 +150,14 @@ pub(super) fn reduction_sentence(margins: &NominalMargins) -> Option<String> {
     })
 }
 
-/// `40.9 rad/s`; `none` where |L| does not fall below 1.
+/// `40.9 rad/s`; `none` if |L| does not fall below 1.
 pub fn crossover_words(crossovers: &Crossovers) -> String {
     let first = crossovers.first_rad_per_s;
     first.map_or("none".to_string(), |rad_per_s| format!("{} rad/s", significant(rad_per_s, 3)))
 }
 
-/// `between 655 and 681 rad/s`, where |L| is above 1 again; `None` where it remains below.
+/// `between 655 and 681 rad/s`, the range in which |L| is above 1 again; `None` if it remains
+/// below.
 pub fn above_one_again_words(crossovers: &Crossovers) -> Option<String> {
     let [low, high] = crossovers.again_rad_per_s?;
     let low = significant(low, 3);

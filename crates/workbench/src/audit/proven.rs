@@ -14,8 +14,8 @@ pub(super) fn standing_word(standing: &Standing) -> &'static str {
     }
 }
 
-/// Why a claim is neither proven nor refuted, in a sentence without its full stop; `None` if it is
-/// either.
+/// Reason why a claim is neither proven nor refuted, in a sentence without its full stop; `None` if
+/// it is proven or refuted.
 pub(super) fn why_not_proven(view: &ProjectAudit, proof: &Proof, standing: &Standing) -> Option<String> {
     let Standing::NotProven(reason) = standing else { return None };
     Some(match reason {

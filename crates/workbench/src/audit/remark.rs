@@ -65,7 +65,7 @@ fn without_response(frequency_rad_per_s: f64, plant: &str) -> String {
     format!("at {} rad/s {plant} has no response that could be judged", rounded(frequency_rad_per_s))
 }
 
-/// Which plants make the spread.
+/// The plants that determine the spread.
 fn spread(finding: &SpecificationFinding, names: &PlantNames) -> String {
     let judged = "judged by its spread, without a prefilter";
     let worst = finding.worst.as_ref().and_then(|worst| Some((worst, worst.other.as_ref()?)));

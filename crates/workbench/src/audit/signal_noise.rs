@@ -1,4 +1,5 @@
-//! The effect of the noise of what a controller reads in addition to the force, in a sentence.
+//! The effect of the noise of the signals that a controller reads in addition to the force, in a
+//! sentence.
 
 use phea_qft::design::quantization::QuantizationError;
 use phea_qft::verification::PlantPoint;
@@ -8,7 +9,7 @@ use super::{NoisySignal, SignalNoise, UnknownNoiseEffect};
 use crate::plant_names::{PlantNames, plant_text};
 use crate::quantity::{PRESSURE, VELOCITY, display, significant};
 
-/// The noise and its largest effects, or why these are not known.
+/// The noise and its largest effects, or the reason why these are not known.
 pub fn noise_sentence(noise: &SignalNoise, names: &PlantNames) -> String {
     let (what, dimension) = match noise.signal {
         NoisySignal::LoadVelocity => ("measured load velocity", noise.units.motion.dimension(&VELOCITY)),

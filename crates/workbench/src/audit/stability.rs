@@ -1,4 +1,4 @@
-//! Stability in words: what was found, how, and why not.
+//! Stability in words: the finding, the method, and the reason if it is undecided.
 
 use phea_qft::stability::{Instability, Irresolution};
 use phea_qft::verification::{
@@ -9,7 +9,7 @@ use super::words::rounded;
 use crate::plant_names::{PlantNames, plant_text};
 use crate::quantity::significant;
 
-/// Whether the family is stable, and how this is known.
+/// Sentence on the stability of the family and its evidence.
 pub(crate) fn stability_sentence(stability: &StabilityFinding, names: &PlantNames) -> String {
     let plant = match &stability.reason {
         StabilityReason::AllStable { closest: Some(closest), .. } => plant_text(names, &closest.plant),
@@ -37,7 +37,7 @@ pub(crate) fn stability_sentence(stability: &StabilityFinding, names: &PlantName
     }
 }
 
-/// The evidence that no pole passes through infinity inside the box, where it is a search.
+/// The evidence that no pole passes through infinity inside the box, if it comes from a search.
 pub(super) fn infinity_sentence(stability: &StabilityFinding, names: &PlantNames) -> Option<String> {
     let found = stability.infinity.as_ref()?;
     Some(format!(
@@ -56,7 +56,7 @@ fn moving_words(found: &SearchedInfinity, names: &PlantNames) -> String {
     if named.is_empty() { "no single parameter".to_string() } else { named.join(", ") }
 }
 
-/// How stability was decided.
+/// Method by which stability was decided.
 pub(crate) fn stability_reason(stability: &StabilityFinding) -> String {
     match &stability.reason {
         StabilityReason::Unstable(instability) => instability_words(*instability),

@@ -17,8 +17,8 @@ pub(super) fn evidence_key(evidence: Evidence) -> &'static str {
     }
 }
 
-/// The evidence for the limits over frequency, in a sentence, and for the steps where they are part
-/// of the verdict.
+/// The evidence for the limits over frequency, in a sentence, and for the steps if they are part of
+/// the verdict.
 pub(super) fn evidence_sentence(view: &ProjectAudit) -> String {
     let (evidence, verdict) = (view.audit.evidence, view.audit.verdict);
     let over_frequency = limits_sentence(evidence, verdict, view.names.headings().is_empty());
@@ -67,8 +67,8 @@ pub(super) fn worst_at_design(finding: &SpecificationFinding) -> Option<&Specifi
     finding.at_design_frequencies.iter().min_by(|a, b| a.margin_db.total_cmp(&b.margin_db))
 }
 
-/// One sentence on a specification: what it requires, whether it holds, and where it is worst; of a
-/// stable family with the tolerance within which a margin counts as met.
+/// A sentence on a specification: its requirement, its verdict, and the place where it is worst;
+/// for a stable family with the tolerance within which a margin counts as met.
 pub(super) fn finding_sentence(
     name: &str,
     finding: &SpecificationFinding,
@@ -113,7 +113,7 @@ fn reached_words(symbol: &str, reached: &ReachedLimit) -> String {
     }
 }
 
-/// The same as [`frequency_words`], with the frequency in Hz too.
+/// Words of [`frequency_words`], with the frequency in Hz in addition.
 pub(super) fn place_words(frequency_rad_per_s: f64) -> String {
     let words = frequency_words(frequency_rad_per_s);
     if !(frequency_rad_per_s > 0.0 && frequency_rad_per_s.is_finite()) {
@@ -134,7 +134,7 @@ pub(crate) fn meaning(requirement: &Requirement) -> &'static str {
     }
 }
 
-/// To four significant digits, for a reader.
+/// A number rounded to four significant digits, for a reader.
 pub(super) fn rounded(value: f64) -> f64 {
     portable::rounded(value, 4)
 }

@@ -35,7 +35,7 @@ pub(crate) fn document(
     out
 }
 
-/// That the pump did not keep the pressure.
+/// Warning that the pump did not maintain the pressure.
 fn sag(loaded: &Loaded, run: &BenchRun) -> Option<String> {
     let stated = loaded.project.actuator.as_ref()?.supply.pressure;
     let (least, at) = (run.lowest_supply_pressure, |value| display(value, &PRESSURE, 4));
@@ -44,7 +44,7 @@ fn sag(loaded: &Loaded, run: &BenchRun) -> Option<String> {
     })
 }
 
-/// Hysteresis and threshold, as shares of the nominal voltage.
+/// Hysteresis and threshold, fractions of the nominal voltage.
 fn reversals(found: Option<&ReversalReading>) -> Vec<String> {
     let Some(found) = found else {
         return vec![

@@ -4,7 +4,7 @@ use super::table::{BenchColumn, BenchTable};
 use super::{FrictionRow, FrictionRun, FrictionSeries};
 use crate::quantity::DisplayUnit;
 
-/// What a run records.
+/// The record of a run.
 pub(super) fn recorded(run: &FrictionRun) -> BenchTable {
     let column = |names, unit, of: fn(&FrictionRow) -> f64| {
         BenchColumn::of(names, unit, run.rows.iter().map(of).collect())

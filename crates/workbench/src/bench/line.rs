@@ -5,7 +5,7 @@ use crate::answer::{Object, OutputFile};
 use crate::line_test::{LineRun, LineSeries};
 use crate::quantity::DisplayUnit;
 
-/// What a test records.
+/// The record of a test.
 pub(super) fn recorded(run: &LineRun) -> BenchTable {
     let litres = DisplayUnit::LITRE_PER_MINUTE;
     let (name, quantity, unit, factor, si) = match run.series {

@@ -1,4 +1,4 @@
-//! What a test records: as a file, for people and for programs.
+//! The record of a test: as a file, for people and for programs.
 
 use std::io;
 
@@ -12,30 +12,30 @@ use crate::quantity::{DisplayUnit, TIME, display};
 pub(super) struct BenchTable {
     /// Name of the test and its file.
     pub(super) name: &'static str,
-    /// For people.
+    /// Title for people.
     pub(super) title: &'static str,
     /// Times of the rows, s.
     pub(super) times: Vec<f64>,
-    /// Without time.
+    /// Columns other than time.
     pub(super) columns: Vec<BenchColumn>,
 }
 
-/// A column of it.
+/// A column of the table.
 pub(super) struct BenchColumn {
-    /// Its name in the file.
+    /// Name in the file.
     pub(super) name: &'static str,
-    /// For people.
+    /// Quantity, for people.
     pub(super) quantity: &'static str,
-    /// Its unit in the file, and the values there.
+    /// Unit in the file, and the values in it.
     pub(super) unit: &'static str,
     pub(super) shown: Vec<f64>,
-    /// Its SI unit, and the values in that.
+    /// SI unit, and the values in it.
     pub(super) si: &'static str,
     pub(super) values: Vec<f64>,
 }
 
 impl BenchColumn {
-    /// Of values in SI, shown in a unit.
+    /// A column of values in SI, shown in another unit.
     pub(super) fn of(
         [name, quantity, si]: [&'static str; 3],
         unit: DisplayUnit,
@@ -62,7 +62,7 @@ impl BenchTable {
 
     /// The table as a file.
     pub(super) fn file(&self) -> OutputFile {
-        // nothing that is written to memory can fail
+        // writing to memory cannot fail
         OutputFile { name: self.file_name(), bytes: self.csv().unwrap_or_default() }
     }
 
@@ -77,7 +77,7 @@ impl BenchTable {
         table.finish()
     }
 
-    /// A section that shows how far each column goes.
+    /// A section that shows the range of each column.
     pub(super) fn tell(&self, digits: usize, out: &mut Document) {
         let rows = self.columns.iter().map(|column| {
             let [least, most] = ends(column.shown.iter().copied()).map(|value| Cell::number(value, digits));
@@ -88,7 +88,7 @@ impl BenchTable {
         out.sentences([format!("{} rows in {duration}.", self.times.len())]);
     }
 
-    /// What it is, in JSON.
+    /// Name and title in JSON.
     pub(super) fn json(&self) -> Object {
         Object::new()
             .with("name", self.name)
@@ -97,7 +97,7 @@ impl BenchTable {
             .with("duration_s", self.duration_s())
     }
 
-    /// The same with the smallest and the largest value of each column.
+    /// Name, title, and the smallest and the largest value of each column, in JSON.
     pub(super) fn json_of_signals(&self) -> Object {
         self.json().each("signals", &self.columns, |column| {
             Object::new().with("name", column.quantity).with("unit", column.si).with("range", column.range())

@@ -1,4 +1,4 @@
-//! What `campaign` says to people.
+//! The output of `campaign` for people.
 
 use super::Summary;
 use super::{CampaignRequirement, FamilyBox, RequestedRuns};
@@ -12,7 +12,7 @@ use crate::quantity::{DisplayUnit, MotionKind};
 use crate::simulate::{self, Metric, RunStatus, ScenarioRun, cause_words, shown_in, status_words};
 use crate::simulate::{not_judged_words, reached_words, required_words};
 
-/// Largest number of rejected and ended runs that are listed.
+/// Largest number of listed runs that were rejected or stopped early.
 const TOLD: usize = 6;
 
 /// A metric in words, with its unit.
@@ -26,7 +26,7 @@ fn metric_words(metric: Metric, plan: &Plan) -> String {
     shown_in(metric, plan.units()).title(&label)
 }
 
-/// One of [`LUMP_NAMES`] as it is written in equations, with its unit.
+/// A name of [`LUMP_NAMES`] as it is written in equations, with its unit.
 fn lump_words(lump: usize, motion: MotionKind) -> &'static str {
     let stiffness = motion.either("K_H (N/m)", "K_θ (N.m/rad)");
     [stiffness, "K_qU (m3/(s.V))", "K_c (m3/(s.Pa))"].get(lump).copied().unwrap_or_default()
@@ -37,7 +37,7 @@ pub(crate) fn counted(runs: usize) -> String {
     if runs == 1 { "1 run".to_string() } else { format!("{runs} runs") }
 }
 
-/// How many of the driven runs are left out of the quantiles of a metric because they have no such
+/// Number of driven runs that are left out of the quantiles of a metric because they have no such
 /// number; `None` if all have one.
 fn without(metric: Metric, spread: Option<Spread>, driven: usize) -> Option<String> {
     let missing = spread.map_or(driven, |spread| spread.missing);
@@ -50,7 +50,7 @@ fn without(metric: Metric, spread: Option<Spread>, driven: usize) -> Option<Stri
     (missing > 0).then(|| format!("{missing} of {driven} {words}"))
 }
 
-/// The scenarios of the project that a campaign leaves out; `None` where it has no other.
+/// The scenarios of the project that a campaign leaves out; `None` if it has no other.
 pub(crate) fn left_out(plan: &Plan) -> Option<String> {
     let others: Vec<String> = plan.other_scenarios().iter().map(|name| format!("\"{name}\"")).collect();
     (!others.is_empty()).then(|| {
@@ -61,7 +61,7 @@ pub(crate) fn left_out(plan: &Plan) -> Option<String> {
     })
 }
 
-/// Tables and sentences of a campaign; whether its rows are kept.
+/// Tables and sentences of a campaign, with a note if its rows are stored.
 pub(crate) fn document(
     plan: &Plan,
     (wanted, kept): (RequestedRuns, bool),
@@ -149,7 +149,7 @@ pub(crate) fn metrics(plan: &Plan, summary: &Summary) -> Table {
     rows
 }
 
-/// Quantiles, and the worst with its run; empty if no run has such a number.
+/// Quantiles, and the worst value with its run; empty if no run has such a number.
 fn spread_cells(spread: Option<Spread>, unit: DisplayUnit) -> Vec<Cell> {
     let Some(spread) = spread else { return vec![Cell::Missing; QUANTILES.len() + 1] };
     let (value, run) = spread.worst;
@@ -178,8 +178,8 @@ pub(crate) fn lumps(plan: &Plan, summary: &Summary) -> Table {
         .with(summary.lumps.iter().enumerate().filter_map(row))
 }
 
-/// Which drawn numbers the controller is not judged for, and why parameters of the linear model
-/// have no box.
+/// Drawn numbers for which the controller is not judged, and the reason why parameters of the
+/// linear model have no box.
 pub(crate) fn beyond_box(plan: &Plan) -> Vec<String> {
     let mut told = Vec::new();
     let without: Vec<&str> = LUMP_NAMES.iter().copied().filter(|name| plan.bounds(name).is_none()).collect();
@@ -211,7 +211,7 @@ pub(crate) fn beyond_box(plan: &Plan) -> Vec<String> {
     told
 }
 
-/// One run: its numbers as settings, and the output of `simulate`.
+/// A single run: its numbers as settings, and the output of `simulate`.
 pub(crate) fn run_document(
     draw: &Draw,
     settings: &[String],

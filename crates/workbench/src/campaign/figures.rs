@@ -13,7 +13,7 @@ use crate::simulate::{Cause, Metric, Window, around, cause_words};
 /// The bands over the whole scenario, and around each event; empty if no run was driven.
 ///
 /// # Errors
-/// As [`Plan::forces`].
+/// Errors of [`Plan::forces`].
 pub(crate) fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<Figure>, CampaignError> {
     let end = summary.bands.times_s.last().copied().unwrap_or(0.0);
     let words = Words::new(
@@ -41,17 +41,17 @@ pub(crate) fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<Figure>, Ca
     Ok(figures)
 }
 
-/// Settling times of the slowest run that are shown, and what is shown of an event without one, s.
+/// Time shown of the slowest run, in settling times, and time shown of an event without one, s.
 const SETTLING_TIMES: f64 = 2.0;
 const AFTER_S: f64 = 0.5;
 
-/// How much of a window is shown.
+/// Time of a window that is shown.
 fn after_s(summary: &Summary, index: usize) -> f64 {
     let spread = summary.metrics.get(index).and_then(|spreads| spreads[Metric::SettlingTime]);
     spread.map_or(AFTER_S, |spread| SETTLING_TIMES * spread.worst.0)
 }
 
-/// The metric by which a window's worst run is chosen, and what it is of.
+/// The metric by which a window's worst run is chosen, and the words for it.
 fn worst_metric(window: &Window, plan: &Plan) -> (Metric, &'static str) {
     let force = plan.motion().words().force;
     match window.cause {

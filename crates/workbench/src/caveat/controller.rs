@@ -1,4 +1,4 @@
-//! Effects of what a controller feeds forward and back, and of its sampling.
+//! Effects of the signals that a controller feeds forward and back, and of its sampling.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::{Discretization, MovedRoot};
@@ -24,7 +24,7 @@ pub(super) fn feed_forward(measured: bool, yields: bool) -> String {
     )
 }
 
-/// The loop of which a verdict is that lacks a path of the load.
+/// Words for the loop of a verdict that lacks a path of the load.
 fn without_load(yields: bool) -> &'static str {
     match yields {
         true => "this is the loop without it, and only a simulation is of the loop with it",
@@ -68,7 +68,7 @@ pub(super) fn impedance(yields: bool, motion: MotionKind) -> String {
     }
 }
 
-/// A zero or pole that the sampling moves, and the discretisation that does not.
+/// A zero or pole that the sampling moves, and the discretisation that retains it.
 pub(super) fn moved_root(table: &str, moved: &MovedRoot, discretization: Discretization) -> String {
     let frequency = |root: Complex64| display(portable::magnitude(root), &ANGULAR_FREQUENCY, 4);
     let (name, cure) = match discretization {

@@ -4,7 +4,7 @@ use super::{MISFIT_BOUND, MisfitConsequence, UnexplainedKind, UnexplainedPart, u
 use crate::project::Project;
 use crate::quantity::significant;
 
-/// The misfits of identified parts, for runs of the machine, on which no verdict is given.
+/// The misfits of identified parts, for runs of the machine, which lead to no verdict.
 pub(crate) fn misfits_in_runs(project: &Project) -> Vec<String> {
     let of = |part: UnexplainedPart| format!("{}: these runs do not contain it", statement(&part));
     unexplained_parts(project).into_iter().map(of).collect()

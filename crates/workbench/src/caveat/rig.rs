@@ -109,7 +109,7 @@ pub(super) fn friction_directions(extending: f64, retracting: f64, motion: Motio
     )
 }
 
-/// The rig itself, which the family does not contain, and its loop.
+/// A rig that its own family does not contain, and its loop.
 pub(super) fn outside_family(found: &OutsideFamily) -> String {
     let with_rig = match &found.with_rig {
         LoopWithRig::Satisfied => "the loop with it is stable and satisfies every specification".to_string(),
@@ -130,7 +130,7 @@ pub(crate) fn outside(parameters: &[OutsideParameter]) -> String {
     format!("the family does not contain the rig as it is derived ({})", outside_parameters(parameters))
 }
 
-/// Values of the rig outside of their bounds.
+/// Values of the rig outside their bounds.
 pub(crate) fn outside_parameters(parameters: &[OutsideParameter]) -> String {
     let of = |one: &OutsideParameter| {
         let number = |value: f64| match one.dimension {

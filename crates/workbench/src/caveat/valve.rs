@@ -1,4 +1,4 @@
-//! Effects of the servovalve and of what connects the chambers.
+//! Effects of the servovalve and of valves between the chambers.
 
 use crate::quantity::{FLOW, MotionKind, PRESSURE, VOLTAGE, display, significant};
 

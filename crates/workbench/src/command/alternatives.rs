@@ -11,16 +11,16 @@ use crate::linearize::SweepRequest;
 use crate::project::{AS_DECLARED, Loaded};
 use crate::source::Source;
 
-/// What is requested for the alternatives of a project, as written.
+/// Request on the alternatives of a project, as written.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct AlternativesRequest {
-    /// Whether files are wanted.
+    /// True if files are requested.
     pub files: bool,
     /// Columns of a front, separated by commas.
     pub front: Option<String>,
-    /// What is swept for it, such as `line.length=0.5 m..3 m`.
+    /// Parameter that is swept for the front, such as `line.length=0.5 m..3 m`.
     pub sweep: Option<String>,
-    /// The number of its values.
+    /// Number of values of the sweep.
     pub points: Option<usize>,
     /// Frequencies at which the impedance at the load is stated, such as `1, 10 Hz`.
     pub frequencies: Option<String>,
@@ -53,8 +53,8 @@ pub(super) fn alternatives_answer(
     })
 }
 
-/// Reads every alternative and assembles its rig, so that a wrong one is found before anything is
-/// designed; reports whose rig is not in its family.
+/// Reads every alternative and assembles its rig, so that an invalid one is found before anything
+/// is designed; reports those whose rig is not in its family.
 pub(super) fn read_alternatives(
     source: &dyn Source,
     loaded: &Loaded,
@@ -71,7 +71,8 @@ pub(super) fn read_alternatives(
     Ok(told)
 }
 
-/// Assembles the rig of each; the sentences on those that their families do not contain.
+/// Assembles the rig of each alternative; returns the sentences on those that their families do not
+/// contain.
 fn rigs(all: &[AskedAlternative], case: &str) -> Result<Vec<String>, CommandError> {
     let own = |one: &&AskedAlternative| !case.is_empty() || one.name != AS_DECLARED;
     for one in all.iter().filter(own).filter(|one| one.loaded.project.actuator.is_some()) {

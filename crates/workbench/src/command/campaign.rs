@@ -1,4 +1,4 @@
-//! Campaigns as a command: all runs with their rows stored, or one run again.
+//! Campaigns as a command: all runs with their rows stored, or one run repeated.
 
 use super::unprinted::Unprinted;
 use super::{CommandError, Watch, with_recordings};
@@ -16,24 +16,24 @@ use phea_engineering::line_choice::{LoopInQuestion, with_chosen_lines};
 pub struct CampaignRequest {
     /// Seed of all random numbers.
     pub seed: u32,
-    /// All runs or one.
+    /// Requested runs: all or one.
     pub asked: CampaignRuns,
-    /// Whether the table for other programs and the figures are wanted as files.
+    /// True if the table for other programs and the figures are requested as files.
     pub files: bool,
 }
 
-/// Which runs of a campaign.
+/// Selection of the runs of a campaign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CampaignRuns {
-    /// All, or a part of them.
+    /// The whole campaign, or a part of its runs.
     All(RequestedRuns),
     /// The run with this index, in full.
     One(u64),
 }
 
 /// Answers a campaign, its rows stored in the ledger, if there is one, from which an interrupted
-/// campaign continues. The answer is yes if every run has its row, however it ended. The table over
-/// time of a single run goes to the destination, if there is one.
+/// campaign continues. The answer is yes if every run has its row, whatever its outcome. The table
+/// over time of a single run goes to the destination, if there is one.
 ///
 /// # Errors
 /// [`CommandError`] if the project declares no campaign, or the ledger fails.
@@ -75,7 +75,7 @@ pub fn campaign_watched(
     Ok(answer.with_misfits(&loaded.project).print("campaign", std::slice::from_ref(loaded)))
 }
 
-/// One run: its numbers as settings of the project, and the complete output of `simulate` with
+/// A single run: its numbers as settings of the project, and the complete output of `simulate` with
 /// them.
 fn one(
     source: &dyn Source,

@@ -1,4 +1,4 @@
-//! `check`: what follows from a project, and what is wrong with it before anything is run.
+//! `check`: the consequences of a project, and its errors, found before anything is run.
 
 use phea_qft::family::Family;
 
@@ -20,7 +20,7 @@ use crate::specification::{self, wishes};
 /// Every derived quantity, the box of the family and the requirements in time.
 ///
 /// # Errors
-/// [`CommandError`] for a rig, a family or a scenario that is none.
+/// [`CommandError`] for an invalid rig, family or scenario.
 pub(super) fn check(
     source: &dyn Source,
     loaded: &Loaded,
@@ -29,11 +29,11 @@ pub(super) fn check(
     let setup = Setup::new(&loaded.project)?;
     let derived = match derive(&setup) {
         Ok(derived) => derived,
-        // A plant given as a transfer function has nothing to derive; it is valid all the same.
+        // A plant given as a transfer function has nothing to derive, but is valid.
         Err(RigError::NoActuator) => vec![],
         Err(error) => return Err(error.into()),
     };
-    // everything that is wrong with measured plants, and not the first file that is missing alone
+    // every error of measured plants, and not only the first missing file
     let underived = derived.is_empty().then(|| without_derived(source, &setup)).transpose()?;
     let of_alternatives = read_alternatives(source, loaded, catalogues)?;
     let impossible = Impossible::all(source, loaded, &setup)?;
@@ -68,7 +68,7 @@ pub(super) fn check(
     Ok(Unprinted { document, body, files, affirmative: true })
 }
 
-/// What the scenarios ask of the rig and it cannot do, each with its line.
+/// Requests of the scenarios that the rig cannot satisfy, each with its line.
 ///
 /// # Errors
 /// [`CommandError`] for a file that the project names and that is missing or malformed.

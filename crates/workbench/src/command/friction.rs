@@ -8,12 +8,12 @@ use crate::source::Source;
 
 use super::Watch;
 
-/// From which files, and what is wanted.
+/// Request for the identification of friction.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FrictionRequest {
-    /// Recorded runs; none: those of the project's `[identify]`.
+    /// Recorded runs; if empty, those of the project's `[identify]`.
     pub files: Vec<String>,
-    /// Whether figures are among the files of the answer.
+    /// True if figures are among the files of the answer.
     pub figures: bool,
 }
 
@@ -21,7 +21,7 @@ pub struct FrictionRequest {
 ///
 /// # Errors
 /// [`IdentifyError`] for a project without a cylinder, files that are not evenly sampled runs, and
-/// runs that say nothing.
+/// runs without information.
 pub fn friction_watched(
     source: &dyn Source,
     loaded: Option<&Loaded>,

@@ -12,25 +12,25 @@ use phea_hydraulics::servovalve::LeakageModel;
 
 use super::Watch;
 
-/// What a valve is identified from.
+/// Request for the identification of a valve.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct IdentifyRequest {
-    /// Recorded tests, as text or Parquet; none: those of the project's `[identify]`.
+    /// Recorded tests, as text or Parquet; if empty, those of the project's `[identify]`.
     pub files: Vec<String>,
-    /// Starting points of the search; absent: 6.
+    /// Number of starting points of the search; 6 if absent.
     pub starts: Option<usize>,
     /// Seed of the starting points and of the bootstrap.
     pub seed: u32,
-    /// Repetitions of the bootstrap; zero makes none.
+    /// Number of repetitions of the bootstrap; no bootstrap if zero.
     pub bootstrap: usize,
-    /// The model of the leakage; absent: the one that the recordings support.
+    /// The model of the leakage; if absent, the one that the recordings support.
     pub leakage_model: Option<LeakageModel>,
-    /// Whether the figures are wanted as files.
+    /// True if the figures are requested as files.
     pub figures: bool,
 }
 
-/// Identifies a valve from files, with what a project says of it: nominal voltage, supply pressure,
-/// tank pressure, transition pressure and the drop at which the tare flow is stated.
+/// Identifies a valve from files, with the data that a project states: nominal voltage, supply
+/// pressure, tank pressure, transition pressure and the drop at which the tare flow is stated.
 ///
 /// # Errors
 /// [`IdentifyError`] for files that are not tests, and recordings that no valve explains.
@@ -70,7 +70,7 @@ pub fn identify_watched(
     })
 }
 
-/// The files that are asked for, or those of the project, each relative to it.
+/// The requested files, or those of the project, with paths relative to it.
 fn files(loaded: Option<&Loaded>, asked: &IdentifyRequest) -> Result<Vec<RecordedTest>, IdentifyError> {
     if !asked.files.is_empty() {
         return Ok(asked.files.iter().map(|file| RecordedTest::of(file)).collect());

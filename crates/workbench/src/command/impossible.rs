@@ -1,4 +1,4 @@
-//! What no loop can satisfy, with its line, in words and in JSON.
+//! Requirements that no loop can satisfy, with their lines, in words and in JSON.
 
 use phea_engineering::impossible::{Impossibilities, Impossibility, ImpossibleStep, impossibilities};
 
@@ -18,7 +18,7 @@ pub(super) struct Impossible {
 }
 
 impl Impossible {
-    /// All of a project.
+    /// The requirements of a project that no loop can satisfy.
     ///
     /// # Errors
     /// [`SpecificationError`] for a limit that is absent or not a function of frequency.
@@ -51,7 +51,7 @@ impl Impossible {
         }
     }
 
-    /// The key, what is impossible, and what would satisfy it.
+    /// The key, the impossible requirement, and the change that would satisfy it.
     pub(super) fn object(&self) -> Object {
         Object::new()
             .with("key", self.at.path.as_str())

@@ -10,16 +10,16 @@ use crate::source::Source;
 
 use super::Watch;
 
-/// Which recordings belong to which line.
+/// Request for the identification of a line.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LineRequest {
-    /// Recordings, as text or Parquet; none: those of the project's `[identify] line`.
+    /// Recordings, as text or Parquet; if empty, those of the project's `[identify] line`.
     pub files: Vec<String>,
-    /// The line; absent: that of `[bench.line]`, or the line to chamber A.
+    /// The line; if absent, that of `[bench.line]`, or the line to chamber A.
     pub side: Option<LineSide>,
-    /// How the frequency response is estimated.
+    /// Settings for the estimation of the frequency response.
     pub settings: ResponseSettings,
-    /// Whether figures are among the files of the answer.
+    /// True if figures are among the files of the answer.
     pub figures: bool,
 }
 
@@ -27,7 +27,7 @@ pub struct LineRequest {
 ///
 /// # Errors
 /// [`IdentifyError`] without a project that describes the line, for files that are not recordings,
-/// and for those that no line explains.
+/// and for recordings that no line explains.
 pub fn line_watched(
     source: &dyn Source,
     loaded: Option<&Loaded>,

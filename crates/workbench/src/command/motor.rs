@@ -1,9 +1,9 @@
-//! Which commands treat a rig that turns.
+//! Commands that accept a rig with a motor.
 
 use super::{CommandError, Request};
 use crate::project::Loaded;
 
-/// Refuses what phea does not do with a motor.
+/// Rejects the requests that are not available for a motor.
 ///
 /// # Errors
 /// [`CommandError::OfCylinders`].
@@ -15,7 +15,7 @@ pub(super) fn refuse(loaded: &Loaded, request: &Request) -> Result<(), CommandEr
         Request::Size { .. } | Request::Shape { .. } | Request::Bench => {
             Err(CommandError::OfCylinders { command: request.name() })
         }
-        // each by its name, so that a further command is not accepted unseen
+        // each request by its name, so that a further command is not accepted by accident
         Request::Check
         | Request::Linearize { .. }
         | Request::Verify { .. }
@@ -28,7 +28,7 @@ pub(super) fn refuse(loaded: &Loaded, request: &Request) -> Result<(), CommandEr
     }
 }
 
-/// Refuses projects side by side of which some turn and others do not.
+/// Rejects a comparison of projects of which some turn and others do not.
 ///
 /// # Errors
 /// [`CommandError::MixedMotion`].

@@ -13,11 +13,11 @@ use super::{CampaignRuns, Request};
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct OutputNames {
     exact: Vec<String>,
-    /// Names with a number where several are alike, each with its ending.
+    /// Numbered names, each as the part before the number and the ending.
     numbered: Vec<[String; 2]>,
 }
 
-/// Of the stages of a design, and of the audit of its result.
+/// Files of the stages of a design and of the audit of its result.
 const OF_DESIGN: [&str; 13] = [
     DESIGNED_PROJECT,
     NEAREST_PROJECT,
@@ -34,7 +34,7 @@ const OF_DESIGN: [&str; 13] = [
     "verification.json",
 ];
 
-/// Of the virtual tests of valve, cylinder and lines.
+/// Files of the virtual tests of valve, cylinder and lines.
 const OF_BENCH: [&str; 11] = [
     "leakage.csv",
     "metering.csv",
@@ -49,14 +49,14 @@ const OF_BENCH: [&str; 11] = [
     "line_frequency_response.csv",
 ];
 
-/// Of everything that can be identified from recordings.
+/// Files of everything that can be identified from recordings.
 const OF_IDENTIFICATION: [&str; 5] =
     ["valve.toml", "uncertainty.toml", "measured.toml", "line.toml", "friction.toml"];
 
 const ALTERNATIVES: [&str; 3] = ["alternatives.csv", "load_cases.csv", "front.csv"];
 
 impl OutputNames {
-    /// Those of a request on a project.
+    /// Returns the names for a request on a project.
     pub fn of(loaded: &Loaded, request: &Request) -> OutputNames {
         let project = &loaded.project;
         match request {
@@ -82,7 +82,7 @@ impl OutputNames {
         }
     }
 
-    /// Those of an identification from these recordings.
+    /// Returns the names for an identification from these recordings.
     pub fn of_identification(files: &[String]) -> OutputNames {
         let stem = |file: &String| {
             let name = file.rsplit(['/', '\\']).next().unwrap_or_default();
@@ -122,8 +122,8 @@ impl OutputNames {
         OutputNames { numbered: numbered.collect(), ..OutputNames::exact(&ALTERNATIVES) }
     }
 
-    /// Whether a file of this name may be written; every drawing may. Names that differ in case
-    /// alone are one, as on some file systems.
+    /// True if a file of this name may be written; every drawing may. Names that differ only in
+    /// case count as one, as on some file systems.
     ///
     /// # Example
     /// ```
@@ -145,8 +145,7 @@ impl OutputNames {
     }
 }
 
-/// A name without the number at its end that distinguishes it from one alike; `None` if it has
-/// none.
+/// A name without the distinguishing number at its end; `None` if it has none.
 fn without_number(name: &str) -> Option<&str> {
     let plain = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
     plain.strip_suffix([' ', '-']).filter(|_| plain.len() < name.len())

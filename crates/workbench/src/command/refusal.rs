@@ -1,4 +1,4 @@
-//! The JSON where a command has no answer.
+//! The JSON if a command has no answer.
 
 use super::{CommandError, Request};
 use crate::answer::{Object, SCHEMA};
@@ -6,7 +6,7 @@ use crate::project::{Diagnostic, Loaded, Refusal, Severity, sha256};
 use crate::quantity::MotionKind;
 use crate::source::Source;
 
-/// The JSON object of a command whose project, at `path`, was rejected.
+/// Returns the JSON object of a command whose project, at `path`, was rejected.
 pub fn refusal_json(source: &dyn Source, path: &str, command: &str, refusal: &Refusal) -> String {
     let hash = source.read(path).ok().map(|bytes| sha256(&bytes));
     refusal_body(Some(command), hash.as_deref(), refusal_rows(refusal))
@@ -22,8 +22,8 @@ pub fn error_json(loaded: &Loaded, request: &Request, error: &CommandError) -> S
     }
 }
 
-/// Why a command that was stopped has no answer: the stage in which it was, none before the first,
-/// and what was not begun.
+/// Reason why a command that was stopped has no answer: the stage that was running (none before the
+/// first), and the stages that were not begun.
 ///
 /// # Example
 /// ```
@@ -43,7 +43,7 @@ pub fn stopped_text(request: &Request, stage: Option<&str>) -> String {
     format!("stopped {place}: {missing}; nothing was written")
 }
 
-/// The JSON object of a command whose files other than the project were rejected.
+/// Returns the JSON object of a command whose other files were rejected.
 pub fn files_json(command: &str, project_sha256: Option<&str>, refusal: &Refusal) -> String {
     refusal_body(Some(command), project_sha256, refusal_rows(refusal))
 }

@@ -11,18 +11,18 @@ use crate::source::Source;
 
 use super::Watch;
 
-/// What is estimated, and from which files.
+/// Request for the estimation of responses.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ResponseRequest {
     /// Records, one for each member.
     pub files: Vec<String>,
-    /// How.
+    /// Settings of the estimation.
     pub settings: ResponseSettings,
-    /// Whether diagrams are among the files of the answer.
+    /// True if diagrams are among the files of the answer.
     pub figures: bool,
 }
 
-/// The records that a project declares, as their paths are.
+/// The records that a project declares, with unchanged paths.
 fn declared(loaded: Option<&Loaded>) -> Vec<RecordedResponse> {
     let Some((project, identify)) =
         loaded.and_then(|loaded| Some((&loaded.project, loaded.project.identify.as_ref()?)))
@@ -34,11 +34,12 @@ fn declared(loaded: Option<&Loaded>) -> Vec<RecordedResponse> {
     identify.responses.iter().map(with_path).collect()
 }
 
-/// Estimates the response of each file, compared with the linear plant of a project where there is
-/// one.
+/// Estimates the response of each file, and compares it with the linear plant of a project, if
+/// there is one.
 ///
 /// # Errors
-/// [`IdentifyError`] for files that are not evenly sampled records, and records that say nothing.
+/// [`IdentifyError`] for files that are not evenly sampled records, and for records without
+/// information.
 pub fn response_watched(
     source: &dyn Source,
     loaded: Option<&Loaded>,

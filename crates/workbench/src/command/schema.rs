@@ -3,7 +3,7 @@
 use crate::answer::OutputFile;
 use crate::project;
 
-/// The name of the file that [`schema`] gives.
+/// Name of the file that [`schema`] returns.
 pub const SCHEMA_FILE: &str = "phea.schema.json";
 
 /// The JSON Schema of the project file, as the file that editors take.

@@ -14,27 +14,27 @@ use crate::simulate::{
 };
 use crate::source::{Destination, Source};
 
-/// What is requested of `simulate`.
+/// Request for `simulate`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SimulateRequest {
-    /// How tables are written.
+    /// Format of the tables.
     pub table: TableFormat,
-    /// Whether figures are wanted as files.
+    /// True if figures are requested as files.
     pub figures: bool,
     /// The frequency response of the machine instead of its scenarios.
     pub frequency_response: Option<FrequencyOptions>,
-    /// Whether each scenario is run a second time at a tenth of the tolerance, with a report of the
+    /// True if each scenario is run a second time at a tenth of the tolerance, with a report of the
     /// difference.
     pub check: bool,
-    /// Whether each run has its accounts of oil and energy, which cost as much as its solution;
-    /// without them an answer says that they were not requested.
+    /// True if each run has accounts of oil and energy, which cost as much as its solution; an
+    /// answer without them states that they were not requested.
     pub ledgers: bool,
 }
 
 /// Options of a frequency response, as written.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FrequencyOptions {
-    /// Such as `1, 10, 100 rad/s`: a unit holds for the bare numbers before it.
+    /// Frequencies, such as `1, 10, 100 rad/s`: a unit applies to the bare numbers before it.
     pub frequencies: Option<String>,
     /// Amplitude of the command of the open loop, such as `0.1 V`.
     pub amplitude: Option<String>,
@@ -129,7 +129,7 @@ fn frequency_answer(
     })
 }
 
-/// `1, 10, 100 Hz`: the unit holds for the bare numbers before it; without any, rad/s.
+/// `1, 10, 100 Hz`: the unit applies to the bare numbers before it; the default is rad/s.
 pub(super) fn frequencies(text: &str) -> Result<Vec<f64>, CommandError> {
     let mut unit = "";
     let mut found = Vec::new();

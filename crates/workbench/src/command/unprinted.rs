@@ -1,4 +1,4 @@
-//! What a command says of a project, before it is printed.
+//! Output of a command on a project, before it is printed.
 
 use crate::answer::{Answer, Object, OutputFile, envelope};
 use crate::caveat::misfits_in_runs;
@@ -7,7 +7,7 @@ use crate::identify::in_use_above;
 use crate::line_choice::chosen_above;
 use crate::project::{Loaded, Project};
 
-/// An [`Answer`] whose text and JSON are not printed yet.
+/// An [`Answer`] before its text and JSON are printed.
 pub(super) struct Unprinted {
     pub(super) document: Document,
     pub(super) body: Object,
@@ -16,8 +16,8 @@ pub(super) struct Unprinted {
 }
 
 impl Unprinted {
-    /// With the misfits of identified parts, which the runs of the machine do not contain:
-    /// warnings, and `warnings` of the JSON where there are any.
+    /// Adds the misfits of identified parts, which the runs of the machine do not contain: as
+    /// warnings, and as `warnings` of the JSON if there are any.
     pub(super) fn with_misfits(mut self, project: &Project) -> Unprinted {
         let misfits = misfits_in_runs(project);
         if !misfits.is_empty() {
@@ -27,8 +27,8 @@ impl Unprinted {
         self
     }
 
-    /// Below what recordings gave, in the envelope of the first project, with names of their
-    /// motion.
+    /// Prints the output below the values from recordings, in the envelope of the first project,
+    /// with the names of its motion.
     pub(super) fn print(self, command: &'static str, projects: &[Loaded]) -> Answer {
         let mut document = Document::default();
         for loaded in projects {
@@ -37,7 +37,7 @@ impl Unprinted {
         }
         document.append(self.document);
         let envelope = projects.first().map_or(Object::new(), |first| envelope(command, first));
-        // projects of both motions are not printed together
+        // projects with different motions are not printed together
         let motion = projects.first().map(|loaded| loaded.project.motion()).unwrap_or_default();
         Answer {
             text: document.text(),

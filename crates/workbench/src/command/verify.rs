@@ -1,4 +1,4 @@
-//! `verify`: the audit of the given controller, with a proof and on the machine where these are
+//! `verify`: the audit of the given controller, with a proof and a test on the machine if these are
 //! requested.
 
 use phea_dynamics::watch::{Watch, within};
@@ -19,10 +19,10 @@ use crate::setup::Setup;
 use crate::source::Source;
 use crate::trial::{Agreement, DrivenCorners, tried};
 
-/// Part of an audit that the specifications take; the rest is for the limits of a design.
+/// Fraction of an audit's progress for the specifications; the rest is for the limits of a design.
 const SPECIFICATIONS: f64 = 0.9;
 
-/// The audit of the given controller, with the limits of a design that it does not keep.
+/// The audit of the given controller, with the limits of a design that it exceeds.
 fn audited(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -35,7 +35,7 @@ fn audited(
     Ok((problem, view))
 }
 
-/// The audit of a given controller: with a proof, on the machine.
+/// The audit of a given controller, with a proof and a test on the machine if requested.
 pub(super) fn verify_answer(
     source: &dyn Source,
     loaded: &Loaded,

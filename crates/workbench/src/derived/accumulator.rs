@@ -9,7 +9,7 @@ use crate::project::{DeclaredAccumulator, Project};
 use crate::quantity::{FORCE, STIFFNESS};
 use crate::rig::{ChargedRange, Rig, charged_range, components_at_setting};
 
-/// The precharge at the temperature in operation, and the one that is stated.
+/// The precharge at operating temperature, and the stated one.
 fn precharge(declared: &DeclaredAccumulator, gas: &Accumulator, name: String, list: &mut List) {
     let Some(temperatures) = declared.temperatures else { return };
     let equation = "P_0 = P_{stated} T/T_{stated}, absolute";
@@ -20,7 +20,7 @@ fn precharge(declared: &DeclaredAccumulator, gas: &Accumulator, name: String, li
     }
 }
 
-/// What a neck and heat add to the gas.
+/// Effects of a neck and of heat on the gas.
 fn of_branch(branch: &GasBranch, name: &impl Fn(&str) -> String, list: &mut List) {
     if let Some(later) = branch.relaxation {
         let equation = "C_{acc}/γ, too fast for heat, with the oil of a neck";
@@ -45,8 +45,8 @@ fn of_branch(branch: &GasBranch, name: &impl Fn(&str) -> String, list: &mut List
     }
 }
 
-/// The stiffness where the setting of accumulators that are adjusted is elsewhere: shut, or without
-/// what is added, at 0.
+/// The stiffness at other settings of adjustable accumulators; at 0 the valves are shut, or the
+/// added gas is absent.
 fn at_settings(
     components: &Components,
     stiffness: &impl Fn(&Components, &OperatingPoint) -> f64,

@@ -4,8 +4,7 @@ use super::list::List;
 use crate::rig::{CrossPortAtPoint, Rig, cross_port_at_point};
 use crate::setup::Setup;
 
-/// A valve between the chambers: what it passes and costs at rest, and what its feedback is made
-/// of.
+/// A valve between the chambers: its flow and its cost at rest, and the origin of its feedback.
 pub(super) fn cross_port(setup: &Setup<'_>, rig: &Rig, list: &mut List) {
     let Some(found) = cross_port_at_point(rig) else { return };
     list.group("Valve between the chambers");
@@ -43,8 +42,8 @@ pub(super) fn cross_port(setup: &Setup<'_>, rig: &Rig, list: &mut List) {
     }
 }
 
-/// What a leak at rest costs in force: the gain of the plant at rest, and the static error of the
-/// given controller where it does not integrate.
+/// Effect of a leak on the force at rest: the gain of the plant at rest, and the static error of
+/// the given controller if it does not integrate.
 fn static_error(setup: &Setup<'_>, found: &CrossPortAtPoint, list: &mut List) {
     let [with, without] = found.static_gains;
     let (equation, unit) =

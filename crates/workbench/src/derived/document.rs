@@ -7,7 +7,7 @@ use crate::family::{Extreme, VisitedRange};
 use crate::project::{Project, WrittenUnits};
 use crate::replaced::{ReplacedRange, replaced_ranges};
 
-/// All derived quantities, and the values that the project states instead.
+/// Every derived quantity, and the values that the project states instead.
 pub(crate) fn document(derived: &[Derived], units: &WrittenUnits) -> Document {
     let mut out = Document::default();
     let mut groups: Vec<&str> = derived.iter().map(|quantity| quantity.group).collect();
@@ -49,7 +49,7 @@ fn cells(quantity: &Derived, units: &WrittenUnits) -> [Cell; 4] {
     ]
 }
 
-/// How the box was found.
+/// Method by which the box was found.
 const SEARCHED: &str =
     "found by a search from the members and both sides of null, not proven: the family may reach beyond";
 
@@ -81,7 +81,7 @@ pub(crate) fn visited(project: &Project, ranges: &[VisitedRange]) -> Document {
     out
 }
 
-/// The ranges that a family replaces, with what it visits.
+/// The ranges that a family replaces, with the ranges that it visits.
 pub(crate) fn replaced_table(ranges: &[ReplacedRange]) -> Table {
     let row = |range: &ReplacedRange| {
         let ends = [range.stated[0], range.stated[1], range.visited[0], range.visited[1]];
@@ -93,7 +93,7 @@ pub(crate) fn replaced_table(ranges: &[ReplacedRange]) -> Table {
     Table::new(headings).with(ranges.iter().map(row))
 }
 
-/// Where the family goes beyond the ranges that it replaces.
+/// Ranges in which the family extends beyond those that it replaces.
 pub(crate) fn replaced_sentences(ranges: &[ReplacedRange]) -> Vec<String> {
     let sentence = |range: &ReplacedRange| {
         let side = match range.beyond() {

@@ -6,13 +6,13 @@ use crate::linearize::{HidingMass, hidden_above};
 use crate::quantity::STIFFNESS;
 use crate::rig::Rig;
 
-/// Of the rig against its load; what is inherently that of the actuator is named so where the load
-/// can move.
+/// Dynamics of the rig against its load; a quantity that belongs to the actuator itself is named so
+/// if the load can move.
 pub(super) fn dynamics(rig: &Rig, list: &mut List) {
     let linear = &rig.against_load();
     let factors = decompose(linear, MechanicalDamping::Corrected);
     let springs = match (rig.load_stiffness().is_some(), rig.plant.series.is_some()) {
-        // a spring or transmission is for a cylinder
+        // only a cylinder has a spring or transmission
         (true, true) => "1/K_{eq} = 1/K_H + 1/K_S + 1/k_t + 1/k_L",
         (false, true) => "1/K_{eq} = 1/K_H + 1/K_S + 1/k_t",
         (true, false) => {
@@ -59,7 +59,7 @@ pub(super) fn dynamics(rig: &Rig, list: &mut List) {
     modes(rig, list);
 }
 
-/// The piston on its force sensor, and what its mass hides.
+/// The piston held by its force sensor, and the frequency above which a mass hides the compliance.
 fn held_still(rig: &Rig, list: &mut List) {
     let factors = decompose(&rig.leaking(), MechanicalDamping::Corrected);
     let frequency = factors.mechanical_square.sqrt();
@@ -85,8 +85,8 @@ fn held_still(rig: &Rig, list: &mut List) {
     list.add("dynamics.compliance_hidden_above", "ω", hidden, "rad/s", equation);
 }
 
-/// The modes of the plant that oscillate, the slowest first, and the one that does so longest: with
-/// all of its parts but waves in the lines.
+/// The oscillating modes of the plant, the slowest first, and the one that rings longest: with all
+/// parts except waves in the lines.
 fn modes(rig: &Rig, list: &mut List) {
     let Ok(plant) = transfer_functions(&rig.plant.coefficients()) else { return };
     let oscillating = plant.command.poles().iter().filter(|pole| pole.im > 0.0);

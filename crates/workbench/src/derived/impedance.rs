@@ -1,7 +1,8 @@
 use super::list::List;
 use crate::rig::Rig;
 
-/// What follows from a virtual impedance: where its terms are equal, and where its filter begins.
+/// Consequences of a virtual impedance: the frequency at which its terms are equal, and the
+/// frequency at which its filter begins.
 pub(super) fn impedance(rig: &Rig, list: &mut List) {
     let Some(impedance) = rig.virtual_impedance else { return };
     list.group("Virtual impedance");

@@ -14,7 +14,7 @@ impl List {
         List { entries: Vec::new(), group: "", motion }
     }
 
-    /// SI unit of a quantity of the motion, whose dimension is that in linear motion.
+    /// SI unit of a quantity of the motion, given the dimension for linear motion.
     pub(super) fn si(&self, of: &'static Dimension) -> &'static str {
         self.motion.dimension(of).si
     }
@@ -62,7 +62,7 @@ impl List {
         }
     }
 
-    /// A quantity that does not exist here, and why.
+    /// A quantity that does not exist here, with the reason.
     pub(super) fn absent(
         &mut self,
         name: impl Into<String>,
@@ -79,7 +79,7 @@ impl List {
     }
 }
 
-/// Words of quantities of a motor whose names have words of linear motion.
+/// Names of quantities of a motor that differ from those for linear motion, in words.
 const WORDS_OF_A_MOTOR: [(&str, &str); 13] = [
     ("stiffness.at_least_force", "at least torque"),
     ("stiffness.at_greatest_force", "at greatest torque"),

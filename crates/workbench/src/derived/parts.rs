@@ -7,7 +7,7 @@ use crate::rig::Rig;
 const NOT_STATED: &str = "not stated";
 const NOT_ALL: &str = "not stated for each of these parts";
 
-/// What the parts cost and weigh, where any of them states it.
+/// Cost and mass of the parts, if any of them states them.
 pub(super) fn costs(project: &Project, rig: &Rig, list: &mut List) {
     let Some(declared) = &project.actuator else { return };
     let counted = PartsCounted::of(std::iter::once(project)).unwrap_or_default();

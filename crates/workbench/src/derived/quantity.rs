@@ -9,13 +9,13 @@ pub struct Derived {
     pub words: String,
     /// Symbol as in the notation, such as `K_H`.
     pub symbol: &'static str,
-    /// Value, SI, or why it does not exist.
+    /// Value, SI, or the reason why it does not exist.
     pub value: Result<f64, &'static str>,
     /// SI unit.
     pub unit: &'static str,
-    /// Equation it follows from.
+    /// Equation from which it follows.
     pub equation: &'static str,
-    /// The value in use instead, where the project states one.
+    /// The value in use instead, if the project states one.
     pub stated: Option<Stated>,
 }
 
@@ -24,9 +24,9 @@ pub struct Derived {
 pub struct Stated {
     /// Value, SI.
     pub value: f64,
-    /// Where it stands, such as `[linear]`, `[uncertainty]` or `[sizing]`.
+    /// Table that states it, such as `[linear]`, `[uncertainty]` or `[sizing]`.
     pub place: &'static str,
-    /// Bounds, where stated.
+    /// Bounds, if stated.
     pub bounds: Option<[f64; 2]>,
 }
 
@@ -34,18 +34,18 @@ pub struct Stated {
 /// two digits explains.
 const CONTRADICTION: f64 = 0.05;
 
-/// The same for stated bounds, which are printed to three digits.
+/// Relative tolerance of stated bounds, which are printed to three digits.
 const BEYOND_BOUNDS: f64 = 0.01;
 
 impl Derived {
-    /// How far the stated value is from the derived one, in percent of the latter; zero where both
-    /// are zero.
+    /// Difference of the stated from the derived value, percent of the latter; zero if both are
+    /// zero.
     pub fn difference_percent(&self) -> Option<f64> {
         let (stated, value) = (self.stated.as_ref()?.value, self.value.ok()?);
         Some(if stated == value { 0.0 } else { 100.0 * (stated - value) / value })
     }
 
-    /// Whether the stated value lies outside the bounds that the project states for it.
+    /// True if the stated value is outside the bounds that the project states for it.
     pub fn outside_own_bounds(&self) -> bool {
         let outside = |stated: &Stated| {
             stated.bounds.is_some_and(|[minimum, maximum]| !(minimum..=maximum).contains(&stated.value))
@@ -53,13 +53,13 @@ impl Derived {
         self.stated.as_ref().is_some_and(outside)
     }
 
-    /// Whether what is stated contradicts itself or the derived value.
+    /// True if the stated value contradicts its own bounds or the derived value.
     pub fn contradicts(&self) -> bool {
         self.outside_own_bounds() || self.contradicts_derived()
     }
 
-    /// Whether the derived value contradicts what is stated: it lies more than 1 % outside the
-    /// stated bounds, or without bounds more than 5 % away.
+    /// True if the derived value contradicts the stated one: it is more than 1 % outside the stated
+    /// bounds, or, if there are none, more than 5 % away.
     pub fn contradicts_derived(&self) -> bool {
         let (Some(stated), Ok(value)) = (&self.stated, self.value) else { return false };
         match stated.bounds {

@@ -19,7 +19,7 @@ use crate::quantity::{DAMPING, FORCE, LENGTH, MASS, MotionKind, STIFFNESS, VELOC
 use crate::rig::{FlowLimit, ParameterOrigin, Rig, RigError, largest_flow};
 use crate::setup::Setup;
 
-/// Equations of the flow gain and of the flow-pressure coefficient, of a cylinder and of a motor.
+/// Equations of the flow gain and of the flow-pressure coefficient, for a cylinder and for a motor.
 const FLOW_GAIN: &str = "K_{qU} = A_u (A_A K_{qA}/C_A + A_B K_{qB}/C_B)/K_H";
 const FLOW_GAIN_OF_A_MOTOR: &str = "K_{qU} = D^2 (K_{qA}/C_A + K_{qB}/C_B)/K_θ";
 const SLOPES: &str = "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}";
@@ -28,7 +28,7 @@ const SLOPES_OF_A_MOTOR: &str = "1/K_c = 1/K_{cA} + 1/K_{cB}";
 /// Every derived quantity of a rig, in the order in which they follow from each other.
 ///
 /// # Errors
-/// Those of [`Setup::rig`].
+/// Errors of [`Setup::rig`].
 pub fn derive(setup: &Setup<'_>) -> Result<Vec<Derived>, RigError> {
     let (project, rig) = (setup.project, setup.rig()?);
     let mut list = List::new(project.motion());
@@ -51,7 +51,7 @@ pub fn derive(setup: &Setup<'_>) -> Result<Vec<Derived>, RigError> {
     Ok(list.into_entries())
 }
 
-/// What moves: cylinder or motor.
+/// The moving part: cylinder or motor.
 fn moving(rig: &Rig, list: &mut List) {
     let cylinder = &rig.actuator.components().cylinder;
     match list.motion {
@@ -145,7 +145,7 @@ fn lines(rig: &Rig, list: &mut List) {
             Line::Pipe { .. } | Line::Volume { .. } => "C_{ho} = V_{ho}/β_e",
         };
         list.add(name("compliance"), "C_ho", compliance, "m3/Pa", equation);
-        // a wave runs in the oil that the bore holds
+        // a wave runs in the oil that fills the bore
         let filled = line.filled().effective_modulus(modulus, StiffeningMember::Nominal);
         let wave_speed = (filled / components.fluid.density).sqrt();
         list.add(name("wave_speed"), "c", wave_speed, "m/s", "c = sqrt(β_e(p)/ρ)");
@@ -318,7 +318,7 @@ fn friction(rig: &Rig, list: &mut List) {
     list.add("friction.passive_viscous_minimum", "σ_2", least, list.si(&DAMPING), equation);
 }
 
-/// The speed at which the flow of the pump drives the piston, in each direction where they differ.
+/// The speed at which the flow of the pump drives the piston, for each direction if they differ.
 fn piston_speed(flow: f64, [area_a, area_b]: [f64; 2], list: &mut List) {
     let unit = list.si(&VELOCITY);
     let differs = area_a.total_cmp(&area_b).is_ne();

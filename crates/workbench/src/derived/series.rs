@@ -7,7 +7,7 @@ use crate::project::Project;
 use crate::rig::{Rig, series_coil, stall_force, waves_right_to};
 use crate::sizing::{CoilUnknown, coil_unknown_words};
 
-/// What lies between force sensor and load.
+/// The part between force sensor and load.
 pub(super) fn series(project: &Project, rig: &Rig, list: &mut List) {
     let components = rig.actuator.components();
     match &components.series {
@@ -17,7 +17,7 @@ pub(super) fn series(project: &Project, rig: &Rig, list: &mut List) {
     }
 }
 
-/// The oil between two pistons, as rod and load feel it.
+/// The oil between two pistons, as seen by rod and load.
 fn transmission(transmission: &Transmission, rig: &Rig, list: &mut List) {
     let fluid = &rig.actuator.components().fluid;
     let column = transmission.column(fluid, StiffeningMember::Nominal);
@@ -40,7 +40,7 @@ fn transmission(transmission: &Transmission, rig: &Rig, list: &mut List) {
     list.add("series.pull_limit", "F", tears, "N", "F = A (p_0 + p_{atm})");
 }
 
-/// The spring, and how it is wound.
+/// The spring and its winding.
 fn spring(spring: &SeriesSpring, project: &Project, rig: &Rig, list: &mut List) {
     list.group("Series spring");
     let force = rig.point.hydraulic_force;

@@ -72,7 +72,7 @@ fn unloaded_flow_gains(rig: &Rig, list: &mut List) {
     }
 }
 
-/// K_c of the valve on either side of a spool at null.
+/// K_c of the valve on either side of null.
 fn null_leakage(rig: &Rig, list: &mut List) {
     let own = TwoPressureModel { external_leakage: None, ..rig.model };
     let [above, below] = list.motion.either(
@@ -91,7 +91,7 @@ fn null_leakage(rig: &Rig, list: &mut List) {
     }
 }
 
-/// K_pU of the valve without anything else that leaks.
+/// K_pU of the valve without any other leakage.
 fn pressure_gain(valve: &TwoPressureLinearParameters, list: &mut List) {
     let alone = reduced(valve);
     let (name, equation) = ("valve.pressure_gain", "K_{pU} = K_{qU}/K_c");
@@ -103,7 +103,7 @@ fn pressure_gain(valve: &TwoPressureLinearParameters, list: &mut List) {
     }
 }
 
-/// K_qU of the operating point on either side of a spool at null.
+/// K_qU of the operating point on either side of null.
 fn null_flow_gains(rig: &Rig, list: &mut List) {
     let sides = [
         (
@@ -128,8 +128,8 @@ fn null_flow_gains(rig: &Rig, list: &mut List) {
     }
 }
 
-/// The coefficients of the valve by itself: those of the rig have the leakage through a motor's
-/// case too.
+/// The coefficients of the valve without the motor's case leakage, which is part of those of the
+/// rig.
 fn without_case(rig: &Rig) -> ChamberCoefficients {
     let chambers = rig.two_pressure.chambers;
     let case = rig.model.external_leakage.unwrap_or(0.0);
@@ -140,7 +140,7 @@ fn without_case(rig: &Rig) -> ChamberCoefficients {
     }
 }
 
-/// K_c with the highest null leakage of the data sheet, where it has a range.
+/// K_c with the highest null leakage of the data sheet, if that gives a range.
 fn greatest_leakage(project: &Project, list: &mut List) {
     let declared = project.actuator.as_ref().map(|actuator| actuator.valve.leakage);
     let Some(ValveCoefficients::Rated(NullLeakage { maximum: Some(most), .. })) = declared else { return };

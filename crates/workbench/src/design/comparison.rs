@@ -33,8 +33,8 @@ pub(super) struct ComparedFigure {
     pub(super) cell: Cell,
 }
 
-/// Everything that a controller is compared by: verdicts first, then size, then margins. Its gain
-/// is in V per the unit of what is controlled, where the plant has units.
+/// The criteria by which a controller is compared: verdicts first, then size, then margins. The
+/// gain is in V per the unit of the controlled quantity, if the plant has units.
 pub(super) fn compared(side: &AuditedController, per: Option<&str>) -> Vec<ComparedFigure> {
     let verdict = side.view.verdict();
     let cell = match verdict {

@@ -24,10 +24,10 @@ use crate::quantity::DisplayUnit;
 use crate::trial;
 use crate::verdict_words::margin_words;
 
-/// Accuracy to which a design keeps a reserve, dB.
+/// Accuracy to which a design satisfies a reserve, dB.
 const RESERVE_KEPT_DB: f64 = 2e-3;
 
-/// The least margin of the audit less the reserve to be kept where it occurs, dB.
+/// Least margin of the audit minus the required reserve where that margin occurs, dB.
 fn least_beyond_reserve_db(view: &ProjectDesign) -> f64 {
     let left = view.designed.view.audit.specifications.iter().filter_map(|finding| {
         let worst = finding.worst.as_ref()?;
@@ -118,12 +118,12 @@ fn in_project(loaded: &Loaded, view: &ProjectDesign) -> Document {
     out
 }
 
-/// In place of the tables of a controller that must not be used.
+/// Text printed instead of the tables of a controller that must not be used.
 fn not_to_be_used(why: &str) -> String {
     format!("Do not use this controller: {why}. It is not printed as a part of a project.")
 }
 
-/// The tables of a design as its project would have them.
+/// The tables of a design as they would appear in its project.
 fn pasted(loaded: &Loaded, view: &ProjectDesign) -> String {
     let laws = (&view.declared_controller, view.declared_prefilter.as_ref());
     snippet(laws, loaded.project.motions())
@@ -137,7 +137,7 @@ fn in_place_of(view: &ProjectDesign) -> &'static str {
     }
 }
 
-/// How the search ended, what is known whatever a search finds, and the audit of the result.
+/// End of the search, the bounds that are known before any search, and the audit of the result.
 pub(crate) fn status(view: &ProjectDesign) -> Document {
     let unfinished = view.unfinished.iter().map(|part| unfinished_sentence(*part).to_string());
     let mut sentences: Vec<String> = unfinished.collect();
@@ -156,7 +156,8 @@ pub(crate) fn status(view: &ProjectDesign) -> Document {
     out
 }
 
-/// Why the steps of a design with rounded coefficients did not lead it, where they are missed.
+/// Reason why the steps of a design with rounded coefficients were not the objective, if they miss
+/// the requirement.
 fn not_led_sentence(view: &ProjectDesign) -> Option<String> {
     let misses = view.designed.view.misses_in_time() || view.misses_on_rig();
     let is_missed = misses || view.exceeded_command().is_some();
@@ -165,8 +166,8 @@ fn not_led_sentence(view: &ProjectDesign) -> Option<String> {
     })
 }
 
-/// The consequences of the machine's contradiction, with the controllers that come nearest to what
-/// cannot be achieved.
+/// The consequences of the machine's contradiction, with the controllers that come nearest to the
+/// goal that cannot be achieved.
 fn repaired(loaded: &Loaded, view: &ProjectDesign, repair: &Repair) -> Result<Document, LinearError> {
     let mut out = Document::default();
     out.heading(format!("Repair: {}", repair_words(repair.status)));
@@ -185,7 +186,7 @@ fn repaired(loaded: &Loaded, view: &ProjectDesign, repair: &Repair) -> Result<Do
     Ok(out)
 }
 
-/// The limits that conflict, what the specifications cost, and how it was found.
+/// The limits that conflict, the cost of the specifications, and the account of the search.
 pub(crate) fn costs(view: &ProjectDesign) -> Document {
     let mut out = Document::default();
     out.section("Conflicting specifications", conflicts(view));
@@ -228,7 +229,7 @@ pub(crate) fn costs(view: &ProjectDesign) -> Document {
     out
 }
 
-/// What led a design that touches no limit over frequency.
+/// The objective of a design that touches no limit over frequency.
 fn led_sentence(view: &ProjectDesign) -> Option<String> {
     let led_by = match view.led_by {
         LedBy::Frequency => return None,
@@ -273,7 +274,7 @@ pub(crate) fn laws(side: &AuditedController) -> Result<Document, LinearError> {
 }
 
 /// The compared quantities, a row each: the given controller, the one before the repair, the
-/// designed one, and in a sampled loop the one that was designed without samples.
+/// designed one, and in a sampled loop the one designed without sampling.
 pub(crate) fn side_by_side(view: &ProjectDesign) -> Document {
     let sides = [
         ("given", view.published.as_deref()),
@@ -345,7 +346,7 @@ fn rounds(view: &ProjectDesign) -> Table {
     Table::new(headings).with(view.design.rounds.iter().enumerate().map(row))
 }
 
-/// What another seed may do.
+/// Effect that another seed may have.
 fn seed_sentence(view: &ProjectDesign) -> String {
     let better = match (&view.design.status, view.options.objective) {
         (DesignStatus::Infeasible(_), _) => "may need less relaxation",
@@ -356,7 +357,7 @@ fn seed_sentence(view: &ProjectDesign) -> String {
     format!("started from random points (seed {}); a local optimum: other seeds {better}", view.options.seed)
 }
 
-/// How much the result depends on its starts: where the descents of the last search ended.
+/// Dependence of the result on its starting points: the ends of the descents of the last search.
 fn starts_sentence(starts: &Starts) -> String {
     let mut sentence = format!("{} of {} starts stabilise every plant", starts.stabilised, starts.tried);
     let three = |[best, median, worst]: [String; 3]| format!("best {best}, median {median}, worst {worst}");

@@ -1,11 +1,11 @@
-//! A transfer function by its factors, for people.
+//! Factored form of a transfer function, for people.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
 
 use crate::quantity::{RATIO, display};
 
-/// `0.001 (s + 8) / (s (s^2 + 20 s + 200))`, its numbers with this number of digits.
+/// `0.001 (s + 8) / (s (s^2 + 20 s + 200))`, with this number of digits.
 pub fn factored(function: &TransferFunction, digits: usize) -> String {
     let name = if function.domain() == TimeDomain::Continuous { "s" } else { "z" };
     let gain = display(function.gain(), &RATIO, digits);

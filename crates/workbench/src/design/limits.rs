@@ -1,4 +1,5 @@
-//! What may be built: the limits of a design beyond its specifications, with what it reaches.
+//! Limits on what may be built: the limits of a design in addition to its specifications, with the
+//! values that it reaches.
 
 use phea_engineering::design::{
     CommandOfSteps, DesignLimit, DesignLimitKind, StepLimit, limit_key, limit_unit_key, origin_key,
@@ -17,10 +18,10 @@ use crate::quantity::{DisplayUnit, FORCE, MotionWords, QuantityName};
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::portable::magnitude;
 
-/// Ratio up to which a pole is at the limit.
+/// Ratio up to which a pole counts as being at the limit.
 const SAME: f64 = 1.000001;
 
-/// A table of the limits; empty where there are none.
+/// A table of the limits; empty if there are none.
 pub(crate) fn document(view: &ProjectDesign) -> Document {
     let mut out = Document::default();
     if view.limits.is_empty() {
@@ -51,8 +52,8 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
     out
 }
 
-/// A pole of the designed controller beyond the fastest one that is allowed: that of a notch whose
-/// poles are damped so much that they are real.
+/// A pole of the designed controller beyond the fastest allowed one: that of a notch whose poles
+/// are so strongly damped that they are real.
 fn fast_notch(view: &ProjectDesign) -> Option<String> {
     let limit = view.limits.iter().find(|limit| limit.kind == DesignLimitKind::FastestPole)?;
     let law = view.design.law.feedback.transfer_function().ok()?;
@@ -129,7 +130,7 @@ fn set_by(view: &ProjectDesign, command: &CommandOfSteps) -> String {
     }
 }
 
-/// The same in JSON.
+/// The command and the parameters that set it, in JSON.
 fn command_object(view: &ProjectDesign, command: &CommandOfSteps) -> Object {
     let names = view.designed.view.names.headings();
     let moved_by = command.moved_by.iter().filter_map(|index| names.get(*index).copied());
@@ -158,7 +159,7 @@ fn command_object(view: &ProjectDesign, command: &CommandOfSteps) -> Object {
 /// The least margin of a limit over the family, dB.
 fn margin_db(view: &ProjectDesign, limit: &DesignLimit) -> Option<f64> {
     match limit.kind {
-        // the search is led by a limit on |S| in its place
+        // the search uses a limit on |S| in its place
         DesignLimitKind::PrefilterGain => {
             let largest = PrefilterGain::of_loop(&view.designed.problem.compensation).largest;
             Some(decibels(limit.value / largest))
@@ -183,7 +184,7 @@ pub(crate) fn rows(view: &ProjectDesign) -> Vec<Object> {
     view.limits.iter().map(row).collect()
 }
 
-/// Whether the design keeps a limit; the ranges of poles are kept by the search itself.
+/// True if the design satisfies a limit; the search itself enforces the ranges of poles.
 fn is_kept(view: &ProjectDesign, limit: &DesignLimit) -> bool {
     match limit.kind {
         DesignLimitKind::MinimumDelayMargin => view.tolerates_its_delay,
@@ -202,7 +203,7 @@ fn is_kept(view: &ProjectDesign, limit: &DesignLimit) -> bool {
     }
 }
 
-/// The command of the scenarios' steps, of the limit on it.
+/// The command of the scenarios' steps, if the limit is on the command.
 fn command(view: &ProjectDesign, kind: DesignLimitKind) -> Option<&CommandOfSteps> {
     view.command_of_steps.as_ref().filter(|_| kind == DesignLimitKind::CommandOfSteps)
 }

@@ -1,4 +1,4 @@
-//! The designed controller in the words of a controller's manual.
+//! The designed controller in the terms of a controller's manual.
 
 use std::f64::consts::{PI, TAU};
 
@@ -15,7 +15,8 @@ use crate::quantity::DisplayUnit;
 /// Digits of the settings, for people.
 const DIGITS: usize = 4;
 
-/// The parts of the controller with their settings; empty for one of no name that has none.
+/// The parts of the controller with their settings; empty for a controller without a name or
+/// settings.
 pub(crate) fn document(view: &ProjectDesign) -> Document {
     let mut out = Document::default();
     if view.design.name.is_none() && view.manual.is_err() {
@@ -39,7 +40,7 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
     out
 }
 
-/// What the settings mean, and what belongs to them.
+/// Meaning of the settings, and notes that apply to them.
 fn remarks(view: &ProjectDesign, words: &ManualLaw) -> Vec<String> {
     let form = |part: &ManualPart| match part {
         ManualPart::ProportionalIntegral { .. } => Some("PI is K_p (1 + 1/(T_i s))"),
@@ -102,7 +103,7 @@ fn remarks(view: &ProjectDesign, words: &ManualLaw) -> Vec<String> {
     all
 }
 
-/// The words in JSON.
+/// The terms in JSON.
 pub(super) fn object(words: &ManualLaw) -> Object {
     Object::new()
         .with(
@@ -157,7 +158,7 @@ fn part(part: &ManualPart) -> Object {
 /// The unit of a gain.
 #[derive(Clone, Copy)]
 struct Gain {
-    /// Of the measured quantity; `None` for a plant without units.
+    /// Unit of the measured quantity; `None` for a plant without units.
     per: Option<DisplayUnit>,
 }
 
@@ -178,7 +179,7 @@ impl Gain {
     }
 }
 
-/// A part as manuals call it.
+/// Name of a part in manuals.
 pub(super) fn part_name(part: &ManualPart) -> &'static str {
     match part {
         ManualPart::Proportional { .. } => "P",

@@ -8,12 +8,12 @@ use crate::document::Document;
 use crate::error::design_error_words;
 use crate::quantity::{ANGULAR_FREQUENCY, QuantityName, VOLTAGE_PER_FORCE, VOLTAGE_PER_PRESSURE, display};
 
-/// The feedback with what it gains; empty where it was not free.
+/// The feedback with its gain in performance; empty if it was not free.
 pub(crate) fn document(view: &ProjectDesign) -> Document {
     view.pressure_feedback.as_ref().map(pressure_feedback_document).unwrap_or_default()
 }
 
-/// A feedback that was found before the loop, with what it gains, for people.
+/// A feedback that was found before the loop, with its gain in performance, for people.
 pub fn pressure_feedback_document(found: &PressureFeedbackDesign) -> Document {
     let mut out = Document::default();
     out.heading("Pressure feedback, found before the loop");
@@ -56,14 +56,14 @@ pub fn pressure_feedback_document(found: &PressureFeedbackDesign) -> Document {
     out
 }
 
-/// What was left out, and why.
+/// Plants that were left out, with the reason.
 fn missing(plants: &MissingPlants) -> String {
     let MissingPlants { count, of, reason } = plants;
     let reason = design_error_words(reason);
     format!("it was found without {count} of {of} plants with waves in their lines: {reason}")
 }
 
-/// The same in JSON.
+/// The feedback in JSON.
 pub fn pressure_feedback_object(found: &PressureFeedbackDesign) -> Object {
     let [limited_without, limited] = found.limited_at_rad_per_s;
     let damping = found.least_damping_ratio;

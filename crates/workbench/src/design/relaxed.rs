@@ -17,7 +17,7 @@ use crate::specification::numbered;
 /// A gain below this is within the accuracy of the search, dB.
 const ACCURACY_DB: f64 = 0.01;
 
-/// A sentence for each limit; empty where none binds.
+/// A sentence for each limit; empty if none binds.
 pub(super) fn document(view: &ProjectDesign) -> Document {
     let mut out = Document::default();
     if view.relaxations.limits.is_empty() {
@@ -31,7 +31,7 @@ pub(super) fn document(view: &ProjectDesign) -> Document {
     out
 }
 
-/// Each limit in JSON.
+/// The limits in JSON.
 pub(super) fn rows(view: &ProjectDesign) -> Vec<Object> {
     let row = |one: &RelaxedGain| {
         let object = match one.limit {
@@ -47,7 +47,7 @@ pub(super) fn rows(view: &ProjectDesign) -> Vec<Object> {
     view.relaxations.limits.iter().map(row).collect()
 }
 
-/// Of a limit of what may be built: its relaxed value, and what that would buy.
+/// A limit on what may be built: its relaxed value, and the gain from it.
 pub(super) fn of_limit(view: &ProjectDesign, kind: DesignLimitKind, value: f64) -> Option<Object> {
     let found = view.relaxations.limits.iter().find(|one| one.limit == RelaxedLimit::Design(kind))?;
     Some(
@@ -87,7 +87,7 @@ fn sentence(view: &ProjectDesign, one: &RelaxedGain) -> String {
     format!("relaxing {name} {} {effect}", relaxed(view, one.limit))
 }
 
-/// From which value to which one.
+/// The present value of a limit and its relaxed one.
 fn relaxed(view: &ProjectDesign, limit: RelaxedLimit) -> String {
     let by = format!("by {} %", significant(100.0 * RELAXED_BY, 2));
     let values = match limit {
@@ -132,7 +132,7 @@ fn value_words(kind: DesignLimitKind, value: f64) -> String {
     }
 }
 
-/// What is gained, in words.
+/// The gain, in words.
 fn bought(view: &ProjectDesign, gained_db: f64, noise_gained_db: Option<f64>) -> String {
     let gained = format!("{} dB", significant(gained_db, 2));
     match (view.relaxations.of, view.options.objective, &view.design.status) {

@@ -1,4 +1,4 @@
-//! What a repair did, and what cannot be achieved, in sentences.
+//! Sentences on the steps of a repair, and on the limits of what can be achieved.
 
 use phea_engineering::design::{NEAREST_PROJECT, ProjectDesign, Repair, RepairRemedy, RepairStatus};
 use phea_qft::verification::Verdict;
@@ -33,7 +33,7 @@ pub(super) fn repair_words(status: RepairStatus) -> &'static str {
     }
 }
 
-/// Steps of a repair and limits of what it can achieve, for an engineer.
+/// Sentences on the steps of a repair and the limits of what it can achieve.
 pub(super) fn repair_sentences(view: &ProjectDesign, repair: &Repair) -> Vec<String> {
     let mut sentences = added(view, repair);
     if repair.status == RepairStatus::Met {
@@ -43,7 +43,7 @@ pub(super) fn repair_sentences(view: &ProjectDesign, repair: &Repair) -> Vec<Str
     sentences
 }
 
-/// What was added, the result, and what would help if it failed.
+/// Plants that were added, the result, and changes that would help if it failed.
 fn added(view: &ProjectDesign, repair: &Repair) -> Vec<String> {
     if let Some(error) = &repair.no_family {
         return vec![format!("the plant with waves in its lines cannot be added: {error}")];
@@ -69,7 +69,8 @@ fn added(view: &ProjectDesign, repair: &Repair) -> Vec<String> {
     sentences
 }
 
-/// Reason why the steps of the nearest controller did not lead to it, where they are missed.
+/// Reason why the steps of the nearest controller were not its objective, if they miss the
+/// requirement.
 fn not_led(found: &ProjectDesign) -> Option<String> {
     let misses = found.designed.view.misses_in_time() || found.exceeded_command().is_some();
     misses.then(|| {
@@ -78,7 +79,7 @@ fn not_led(found: &ProjectDesign) -> Option<String> {
     })
 }
 
-/// What is known about the plants that were not added.
+/// Knowledge about the plants that were not added.
 fn whole(view: Option<&ProjectAudit>) -> String {
     let every = "with `line.model = \"transmission_line\"` waves are in every plant of the family";
     let told = match view {
@@ -150,7 +151,8 @@ fn margins(view: &ProjectAudit) -> String {
     told.collect::<Vec<_>>().join(", ")
 }
 
-/// Up to where the loop has |L| = 1, and where the line is a quarter wave long.
+/// The crossover up to which the loop has |L| = 1, and the frequency at which the line is a quarter
+/// wave long.
 fn crossing(repair: &Repair, told: &ProjectDesign) -> Option<String> {
     let (own, quarter) = (told.designed.figures.last_crossing_rad_per_s()?, repair.quarter_wave_rad_per_s?);
     let beyond = if own > quarter { "beyond" } else { "below" };
@@ -213,13 +215,13 @@ fn stable_with_waves(run: &TrialRun) -> String {
     )
 }
 
-/// No controller at all.
+/// Sentence for a repair without any controller.
 fn nothing_found() -> String {
     "that plant was added, and the search ended without a controller that makes every plant stable"
         .to_string()
 }
 
-/// Deviations that no linear plant explains, run by run, and what to change.
+/// Deviations that no linear plant explains, run by run, and the changes to make.
 fn left<'a>(runs: impl Iterator<Item = &'a TrialRun>) -> Vec<String> {
     let contradicting = runs.filter(|run| run.agreement == Agreement::Contradicts);
     let others = contradicting.filter(|run| run.quarter_wave_rad_per_s.is_none());
@@ -228,7 +230,7 @@ fn left<'a>(runs: impl Iterator<Item = &'a TrialRun>) -> Vec<String> {
         .collect()
 }
 
-/// What to change, by the events of the run.
+/// Changes to make, from the events of the run.
 fn advice(run: &TrialRun) -> String {
     let [from, to] = run.reference_n;
     let step = run.units.force.short((to - from).abs(), 3);

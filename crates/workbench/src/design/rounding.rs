@@ -14,8 +14,8 @@ pub(super) fn signal_word(signal: RoundedSignal) -> &'static str {
     }
 }
 
-/// The effect in sentences, the output in this unit and the command in V; of a plant without units
-/// bare numbers.
+/// The effect in sentences, the output in this unit and the command in V; bare numbers for a plant
+/// without units.
 pub(super) fn rounding_sentences(rounding: &Rounding, unit: Option<DisplayUnit>) -> Vec<String> {
     let effects = match rounding.effects() {
         Ok(effects) => effects,

@@ -20,17 +20,17 @@ use crate::quantity::MotionKind;
 use crate::robust::{BoundsError, DesignFrequency, RobustProblem};
 use crate::specification::kind_key;
 
-/// How far the drawn frequencies reach beyond the design frequencies.
+/// Factors from the design frequencies to the ends of the drawn range.
 const BEYOND: [f64; 2] = [0.1, 30.0];
 
-/// The same beyond the inverse of a time in which a step is required to settle.
+/// Factor from the inverse of a required settling time to the upper end of the drawn range.
 const BEYOND_BANDWIDTH: f64 = 300.0;
 
 /// The nominal loop over frequency.
 const LOOP: &str = "loop.csv";
 
-/// The project with the designed controller and prefilter in it, and with the model of its lines
-/// where that was chosen; everything else byte for byte as it was.
+/// The project with the designed controller and prefilter in it, and with the model of its lines if
+/// that was chosen; every other byte is unchanged.
 pub fn files(loaded: &Loaded, view: &ProjectDesign) -> Vec<OutputFile> {
     let nearest = view.repair.as_ref().and_then(Repair::nearest);
     let named = [(DESIGNED_PROJECT, Some(view)), (NEAREST_PROJECT, nearest)];
@@ -55,7 +55,8 @@ pub fn files(loaded: &Loaded, view: &ProjectDesign) -> Vec<OutputFile> {
 /// First words of the comment above a controller that must not be used.
 const UNUSABLE: &str = "# DO NOT USE THIS CONTROLLER: ";
 
-/// A project under the reason why its controller must not be used, without that of a design before.
+/// A project below the reason why its controller must not be used; the reason of an earlier design
+/// is removed.
 fn marked(bytes: &[u8], unusable: Option<String>) -> Vec<u8> {
     let mut own = bytes;
     while own.starts_with(UNUSABLE.as_bytes()) {
@@ -65,8 +66,8 @@ fn marked(bytes: &[u8], unusable: Option<String>) -> Vec<u8> {
     [first.as_slice(), own].concat()
 }
 
-/// Every stage; a design that was stopped has no templates and bounds, which take long to compute,
-/// and one that the watch stops while they are computed is noted to have none.
+/// Every stage. A design that was stopped has no templates and bounds, which take long to compute;
+/// if the watch stops their computation, a note says that there are none.
 ///
 /// # Errors
 /// [`CommandError`] for a template that cannot be computed.
@@ -102,7 +103,7 @@ pub fn stage_files(
     Ok(files)
 }
 
-/// False for a table of headings alone: where steps alone are required there are no templates.
+/// False for a table that has headings only: if only steps are required, there are no templates.
 fn has_rows(file: &OutputFile) -> bool {
     let lines = file.bytes.iter().filter(|byte| **byte == b'\n').count();
     !file.name.ends_with(".csv") || lines > 1
@@ -112,13 +113,13 @@ fn transfer_file(name: &str, function: &TransferFunction) -> OutputFile {
     OutputFile::new(name, factors(function).print(MotionKind::default()))
 }
 
-/// The frequencies at which a loop is drawn: around those of the design, or around what a required
-/// step asks for where nothing else is required.
+/// The frequencies at which a loop is drawn: around the design frequencies, or, if only a step is
+/// required, around the bandwidth that it needs.
 pub(crate) fn drawn(problem: &RobustProblem) -> Vec<f64> {
     let frequencies = problem.design_frequencies();
     match (frequencies.first(), frequencies.last()) {
         (Some(first), Some(last)) => problem.drawn_frequencies(first * BEYOND[0], last * BEYOND[1]),
-        // steps alone are required
+        // only steps are required
         _ => problem.in_time.first().map_or_else(Vec::new, |required| {
             let bandwidth = 1.0 / required.wish.horizon_s;
             problem.drawn_frequencies(bandwidth * BEYOND[0], bandwidth * BEYOND_BANDWIDTH)
@@ -126,7 +127,7 @@ pub(crate) fn drawn(problem: &RobustProblem) -> Vec<f64> {
     }
 }
 
-/// L0 over frequency, and at the design frequencies how far it lies from the bounds.
+/// L0 over frequency, and its distance from the bounds at the design frequencies.
 fn nominal_loop(problem: &RobustProblem, found: &[DesignFrequency]) -> Result<OutputFile, LinearError> {
     let mut csv = Csv::new("frequency_rad_per_s,magnitude_db,phase_deg,allowed,distance_db");
     let Some(nominal) = problem.nominal()? else { return Ok(OutputFile::new(LOOP, csv.text())) };
@@ -147,8 +148,8 @@ fn nominal_loop(problem: &RobustProblem, found: &[DesignFrequency]) -> Result<Ou
     Ok(OutputFile::new(LOOP, csv.text()))
 }
 
-/// Least and greatest |F T| of the members against the limits of tracking, and the remaining
-/// distance on either side; `None` without tracking or prefilter.
+/// Least and greatest |F T| of the members, the limits of tracking, and the remaining distance on
+/// either side; `None` without tracking or prefilter.
 fn prefilter_band(side: &AuditedController) -> Result<Option<OutputFile>, LinearError> {
     let problem = &side.problem;
     let mut csv = Csv::new(

@@ -1,4 +1,4 @@
-//! The structures that were tried against what each reaches.
+//! The tested structures and the values that each reaches.
 
 use phea_engineering::design::{DesignLimitKind, LedBy, ReachedStructure, SearchedLimit, structure_key};
 use phea_qft::design::{ControllerChoice, Objective, StructureEnding};
@@ -12,10 +12,10 @@ use crate::document::{Cell, Document, Table};
 use crate::limit_kind::limit_words;
 use crate::quantity::DisplayUnit;
 
-/// Ending of a structure that was not worth its poles beside another one than that which is taken.
+/// Outcome of a structure whose gain over another one was not worth its poles.
 const GIVEN_UP: &str = "given up";
 
-/// A table of the structures; empty where none has a name.
+/// A table of the structures; empty if none has a name.
 pub(crate) fn document(view: &ProjectDesign) -> Document {
     let mut out = Document::default();
     if view.structures.iter().all(|one| one.name.is_none()) {
@@ -87,8 +87,8 @@ fn way_sentence(view: &ProjectDesign) -> Option<String> {
     })
 }
 
-/// Structures that ended as something else than their name, and loops in which |L| rises above 1
-/// again beyond the crossover.
+/// Structures whose result differs from their name, and loops in which |L| rises above 1 again
+/// beyond the crossover.
 fn laws_that_differ(view: &ProjectDesign) -> Vec<String> {
     let renamed = view.structures.iter().filter_map(|one| {
         let name = structure_name(one.name.filter(|_| one.no_pid.is_some())?);
@@ -109,8 +109,8 @@ fn binding(view: &ProjectDesign, one: &ReachedStructure) -> Option<String> {
     one.binding.map(|limit| searched_limit_name(view, limit))
 }
 
-/// What a design was led by, of the structure that is taken; `None` where limits over frequency
-/// led.
+/// The objective of a design, for the structure that is taken; `None` if limits over frequency were
+/// the objective.
 fn led_words(view: &ProjectDesign, one: &ReachedStructure) -> Option<String> {
     let words = match view.led_by {
         LedBy::Frequency => return None,
@@ -120,7 +120,7 @@ fn led_words(view: &ProjectDesign, one: &ReachedStructure) -> Option<String> {
     one.is_chosen.then(|| words.to_string())
 }
 
-/// The word of what led a design, in JSON.
+/// The word for the objective of a design, in JSON.
 pub(super) fn led_key(led_by: LedBy) -> &'static str {
     match led_by {
         LedBy::Frequency => "frequency",
@@ -129,7 +129,7 @@ pub(super) fn led_key(led_by: LedBy) -> &'static str {
     }
 }
 
-/// What the high-frequency gain is that of, in a sampled loop.
+/// Definition of the high-frequency gain in a sampled loop.
 fn sampled_gain(view: &ProjectDesign) -> Option<String> {
     let is_sampled = view.designed.problem.compensation.sample_time_s().is_some();
     is_sampled.then(|| {
@@ -137,7 +137,7 @@ fn sampled_gain(view: &ProjectDesign) -> Option<String> {
     })
 }
 
-/// What a longer structure must gain, dB, where that decides.
+/// Gain required of a longer structure for each further pole, dB, if that decides.
 pub(super) fn earned_per_pole_db(view: &ProjectDesign) -> Option<f64> {
     match view.options.controller {
         ControllerChoice::Any { earned_per_pole_db, .. } => Some(earned_per_pole_db),
@@ -194,18 +194,19 @@ fn row(view: &ProjectDesign, one: &ReachedStructure) -> Vec<Cell> {
     cells
 }
 
-/// True where a rise time is required.
+/// True if a rise time is required.
 fn requires_rise(view: &ProjectDesign) -> bool {
     let required = view.designed.view.in_time.first();
     required.is_some_and(|finding| finding.requirement.wish.rise_time_s.is_some())
 }
 
-/// A time in s; infinite where it never comes to that.
+/// A time in s; infinite if the response does not settle or rise that far.
 fn time_words(time_s: f64, never: &str) -> String {
     if time_s.is_finite() { DisplayUnit::MILLISECOND.text(time_s, 3) } else { never.to_string() }
 }
 
-/// What structures are compared by, in dB; the noise gain |G/(1+L)| has the unit of G.
+/// The quantity by which structures are compared, in dB; the noise gain |G/(1+L)| has the unit of
+/// G.
 fn compared_words(view: &ProjectDesign, value_db: f64) -> String {
     let value = significant(value_db, 4);
     match view.options.objective {
@@ -224,7 +225,7 @@ fn steps(view: &ProjectDesign, one: &ReachedStructure) -> [Option<String>; 2] {
     ]
 }
 
-/// Percent and s, as far as they are required.
+/// Overshoot, percent, and settling time, s, if they are required.
 fn reached_steps(view: &ProjectDesign, one: &ReachedStructure) -> Option<[Option<f64>; 2]> {
     let (reached, wish) = (one.steps?, view.designed.view.in_time.first()?.requirement.wish);
     Some([
@@ -233,37 +234,37 @@ fn reached_steps(view: &ProjectDesign, one: &ReachedStructure) -> Option<[Option
     ])
 }
 
-/// True where linear steps of a structure miss what is required in time.
+/// True if linear steps of a structure miss a requirement in time.
 fn has_late_steps(view: &ProjectDesign, one: &ReachedStructure) -> bool {
     let Some((reached, finding)) = one.steps.zip(view.designed.view.in_time.first()) else { return false };
     finding.requirement.follows && finding.requirement.wish.excess(&reached) > 1.0
 }
 
-/// The same of a structure that keeps every limit.
+/// True if a structure satisfies every limit but misses a requirement in time.
 fn misses_in_time(view: &ProjectDesign, one: &ReachedStructure) -> bool {
     one.ending == StructureEnding::Met && has_late_steps(view, one)
 }
 
-/// True where a run on the nonlinear rig missed what is required, and the linear steps did not.
+/// True if a run on the nonlinear rig misses the requirement, and the linear steps do not.
 fn misses_on_rig_alone(view: &ProjectDesign, one: &ReachedStructure) -> bool {
     let misses = one.misses_on_rig || one.is_chosen && view.misses_on_rig();
     misses && !has_late_steps(view, one)
 }
 
-/// A structure beside the one that is taken.
+/// A structure compared with the one that is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum BesideTaken {
-    /// It is shorter, or one of both is not known by a number.
+    /// The structure is shorter, or one of the two values is unknown.
     Open,
-    /// It gains nothing.
+    /// No gain.
     NotBetter,
-    /// It gains less than its further poles must.
+    /// A gain smaller than its additional poles require.
     NotWorthItsPoles,
-    /// It gains as much as its further poles must.
+    /// A gain at least as large as its additional poles require.
     WorthItsPoles,
 }
 
-/// The gain of a structure over the one that is taken, by what both are compared by.
+/// The gain of a structure over the one that is taken, in the quantity by which they are compared.
 fn beside_taken(view: &ProjectDesign, one: &ReachedStructure) -> BesideTaken {
     let taken = view.structures.iter().find(|other| other.is_chosen && other.order <= one.order);
     let Some((taken, earned_db)) = taken.zip(earned_per_pole_db(view)) else { return BesideTaken::Open };

@@ -33,7 +33,7 @@ pub(super) fn verdict_key(verdict: &DesignVerdict) -> &'static str {
     }
 }
 
-/// The verdict for people, with what it means.
+/// The verdict for people, with its meaning.
 pub(crate) fn verdict_sentence(verdict: &DesignVerdict, motion: MotionKind) -> String {
     match verdict {
         DesignVerdict::Stopped { is_met, is_driven, miss } => stopped_sentence(*is_met, *is_driven, *miss),
@@ -117,7 +117,7 @@ pub(crate) fn rig_miss_words(miss: RigMiss) -> &'static str {
     }
 }
 
-/// Advice that leaves more delay, where a path within the force loop is delayed too.
+/// Advice that leaves more delay, if a path within the force loop is delayed too.
 fn delay_cure(paths: DelayedPaths) -> &'static str {
     match (paths.pressure_feedback, paths.velocity_feed_forward) {
         (true, _) => ": a smaller gain of the pressure feedback leaves more",
@@ -153,7 +153,7 @@ fn tried(controllers: TriedControllers) -> String {
     }
 }
 
-/// The reason not to use the designed controller; `None` where it may be used.
+/// The reason not to use the designed controller; `None` if it may be used.
 pub(super) fn unusable_words(view: &ProjectDesign) -> Option<String> {
     let words = |reason: UnusableController| match reason {
         UnusableController::UnstablePlant => "it does not make every plant of the family stable".to_string(),
@@ -165,7 +165,7 @@ pub(super) fn unusable_words(view: &ProjectDesign) -> Option<String> {
     (!reasons.is_empty()).then(|| reasons.join(", and "))
 }
 
-/// The name of a limit that the search keeps.
+/// The name of a limit that the search satisfies.
 pub(super) fn searched_limit_name(view: &ProjectDesign, limit: SearchedLimit) -> String {
     match limit {
         SearchedLimit::Specification(index) => numbered(view.designed.view.named(index)),
@@ -178,7 +178,7 @@ pub(super) fn objective_key(objective: Objective) -> &'static str {
     word_of(&DESIGN_OBJECTIVES, &objective)
 }
 
-/// The factors of a structure: integrator, zero, pole pair; a gain where there are none.
+/// The factors of a structure: integrator, zero, pole pair; a gain if there are none.
 pub(super) fn structure_parts(structure: &Structure) -> Vec<&'static str> {
     match structure.parts.as_slice() {
         [] => vec!["gain"],
@@ -206,7 +206,7 @@ pub(super) fn structure_name(name: NamedStructure) -> &'static str {
     }
 }
 
-/// The name of a structure that was tried, or of the law that was found in its place.
+/// The name of a tested structure, or of the law that was found in its place.
 pub(super) fn reached_words(one: &ReachedStructure) -> String {
     if let Some(law) = &one.no_pid {
         return law.parts.iter().map(part_name).collect::<Vec<_>>().join(" with ");

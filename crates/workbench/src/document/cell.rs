@@ -47,16 +47,16 @@ impl From<Agreement> for StatusMark {
     }
 }
 
-/// How the digits of a number are chosen.
+/// Rule for the number of digits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Precision {
-    /// So many significant digits.
+    /// This many significant digits.
     Significant(usize),
     /// Four significant digits without trailing zeros, as for a frequency.
     Frequency,
-    /// With its sign, to a hundredth or a thousandth, as for a margin in dB.
+    /// A signed number, to a hundredth or a thousandth, as for a margin in dB.
     Margin,
-    /// To this number of decimal places; zero has no sign.
+    /// This number of decimal places; zero has no sign.
     Decimal(usize),
 }
 
@@ -74,15 +74,15 @@ pub(crate) enum Cell {
     Equation(String),
     /// A unit.
     Unit(Cow<'static, str>),
-    /// A number with its unit, which is empty where the heading has it.
+    /// A number with its unit; the unit is empty if the heading has it.
     Quantity { value: f64, precision: Precision, unit: &'static str },
-    /// What is good or bad.
+    /// A good or bad result, with its mark.
     Status(StatusMark, Box<Cell>),
-    /// In bold letters.
+    /// A cell in bold letters.
     Strong(Box<Cell>),
     /// Cells that follow each other directly, in one.
     Joined(Vec<Cell>),
-    /// No such thing.
+    /// A missing value.
     #[default]
     Missing,
 }
@@ -103,7 +103,7 @@ impl Cell {
         Cell::Quantity { value, precision: Precision::Significant(digits), unit: "" }
     }
 
-    /// The same with its unit, to which it is converted from SI.
+    /// A number with its unit, converted from SI.
     pub(crate) fn quantity(value: f64, digits: usize, unit: DisplayUnit) -> Cell {
         let symbol = if unit.symbol == "1" { "" } else { unit.symbol };
         Cell::Quantity { value: unit.of(value), precision: Precision::Significant(digits), unit: symbol }
@@ -119,7 +119,7 @@ impl Cell {
         Cell::Quantity { value, precision: Precision::Margin, unit: "" }
     }
 
-    /// To this number of decimal places; missing if it is not finite.
+    /// A number with this many decimal places; missing if it is not finite.
     pub(crate) fn decimal(value: f64, places: usize) -> Cell {
         match value.is_finite() {
             true => Cell::Quantity { value, precision: Precision::Decimal(places), unit: "" },
@@ -127,22 +127,22 @@ impl Cell {
         }
     }
 
-    /// How many.
+    /// A count.
     pub(crate) fn count(value: usize) -> Cell {
         Cell::Text(value.to_string())
     }
 
-    /// With a mark.
+    /// The cell with a mark.
     pub(crate) fn marked(self, mark: impl Into<StatusMark>) -> Cell {
         Cell::Status(mark.into(), Box::new(self))
     }
 
-    /// In bold letters.
+    /// The cell in bold letters.
     pub(crate) fn strong(self) -> Cell {
         Cell::Strong(Box::new(self))
     }
 
-    /// Followed directly by another one.
+    /// The cell, followed directly by another one.
     pub(crate) fn then(self, next: impl Into<Cell>) -> Cell {
         let mut cells = match self {
             Cell::Joined(cells) => cells,
@@ -152,11 +152,11 @@ impl Cell {
         Cell::Joined(cells)
     }
 
-    /// That of a verdict.
+    /// The cell of a verdict.
     pub(crate) fn verdict(verdict: Verdict) -> Cell {
         Cell::from(verdict_words(verdict)).marked(verdict)
     }
-    /// Whether it is a number.
+    /// True if the cell is a number.
     pub(super) fn is_numeric(&self) -> bool {
         match self {
             Cell::Quantity { .. } => true,
@@ -166,14 +166,14 @@ impl Cell {
         }
     }
 
-    /// As a text, in which symbols and numbers are not typeset.
+    /// The cell as text, in which symbols and numbers are not typeset.
     pub(crate) fn text(&self) -> String {
         match self {
             Cell::Text(text) | Cell::Code(text) | Cell::Name { name: text, .. } => text.clone(),
             Cell::Status(_, cell) | Cell::Strong(cell) => cell.text(),
             Cell::Joined(cells) => cells.iter().map(Cell::text).collect(),
             Cell::Unit(unit) => unit.to_string(),
-            // braces are what only typesetting needs
+            // braces are needed only for typesetting
             Cell::Equation(equation) => equation.replace(['{', '}'], ""),
             Cell::Quantity { value, precision, unit } => {
                 let number = number(*value, *precision);

@@ -7,15 +7,15 @@ use super::typeset::unit;
 use super::{Block, Cell, Document, StatusMark, Table, prose, typeset};
 use crate::figure::Figure;
 
-/// Columns from which a table takes the whole width of the paper, as one with a cell that is not
-/// broken always does: an equation, or a mark of more letters than [`LONG_MARK`].
+/// Number of columns from which a table takes the whole width of the paper. A table with a cell
+/// that is not broken always does: an equation, or a mark of more letters than [`LONG_MARK`].
 const WIDE: usize = 5;
 
-/// Letters of a mark that fits into a column of half of the paper.
+/// Number of letters of a mark that fits into a column of half of the paper.
 const LONG_MARK: usize = 24;
 
 impl Document {
-    /// For the page.
+    /// The document as HTML.
     pub(crate) fn markup(&self) -> Markup {
         html! { @for block in &self.blocks { (block.markup()) } }
     }
@@ -72,7 +72,7 @@ impl Table {
         html! { @for part in &parts { (self.part(part)) } }
     }
 
-    /// With these columns.
+    /// The table with these columns, as HTML.
     fn part(&self, columns: &[usize]) -> Markup {
         let is_long = |cell: &Cell| match cell {
             Cell::Equation(_) => true,
@@ -96,24 +96,24 @@ impl Table {
     }
 }
 
-/// The items of these columns, each with whether its column is one of numbers.
+/// The items of these columns, each with true if its column is numeric.
 fn placed<'i, Item>(items: &'i [Item], columns: &[(usize, bool)]) -> Vec<(bool, &'i Item)> {
     columns.iter().filter_map(|(column, is_number)| Some((*is_number, items.get(*column)?))).collect()
 }
 
-/// The words of a card, whose long names may be broken where they are joined.
+/// The words of a card; long names may be broken at their joints.
 fn carded(words: &str) -> Markup {
     PreEscaped(prose(words).into_string().replace('_', "_<wbr>"))
 }
 
-/// A text, whose long names may be broken where they are joined, and no torque within its unit.
+/// A text in which long names may be broken at their joints, but no unit of torque.
 fn breakable(text: &str) -> Markup {
     let broken = prose(text).into_string().replace('_', "_<wbr>").replace('.', ".<wbr>");
     PreEscaped(broken.replace("N.<wbr>m", "N.m"))
 }
 
 impl Cell {
-    /// For the page.
+    /// The block as HTML.
     fn markup(&self) -> Markup {
         match self {
             Cell::Text(text) => coded(text),
@@ -140,7 +140,7 @@ fn place(figure: &Figure) -> Markup {
 }
 
 impl StatusMark {
-    /// The class of its colour, which that of an edge begins with.
+    /// The class of its colour; the class of an edge begins with it.
     fn class(self) -> &'static str {
         match self {
             StatusMark::Good => "good",
@@ -150,7 +150,7 @@ impl StatusMark {
     }
 }
 
-/// The form with the word in its colour.
+/// The symbol with the word in its colour.
 fn badge(mark: StatusMark, word: &str) -> Markup {
     let (outline, inside) = match mark {
         StatusMark::Good => ("M8 1a7 7 0 1 1 0 14a7 7 0 1 1 0-14z", "M4.5 8.3l2.4 2.4l4.6-5.2"),

@@ -1,4 +1,4 @@
-//! A table of typed cells, in groups of rows where it has such.
+//! A table of typed cells, with or without groups of rows.
 
 use super::Cell;
 
@@ -9,7 +9,8 @@ pub(crate) struct Table {
     pub(super) grouped_by: Option<String>,
     pub(super) headings: Vec<String>,
     pub(super) groups: Vec<RowGroup>,
-    /// Columns besides the first that one part of it has on a page; `None`: it is whole.
+    /// Number of columns, in addition to the first, in each part of the table on a page; `None` if
+    /// it is not divided.
     pub(super) columns_of_part: Option<usize>,
 }
 
@@ -26,8 +27,8 @@ impl Table {
         Table { headings: headings.into_iter().map(Into::into).collect(), ..Table::default() }
     }
 
-    /// The same in groups, whose names also have a heading: a terminal shows it, and the name next
-    /// to the first row.
+    /// An empty table with groups, whose names also have a heading: a terminal shows it, and the
+    /// name next to the first row.
     pub(crate) fn grouped_by<Heading: Into<String>>(
         groups: &str,
         headings: impl IntoIterator<Item = Heading>,
@@ -35,7 +36,7 @@ impl Table {
         Table { grouped_by: Some(groups.to_string()), ..Table::new(headings) }
     }
 
-    /// The rows that follow belong together.
+    /// Begins a group with the rows that follow.
     pub(crate) fn group(&mut self, name: impl Into<String>) {
         self.groups.push(RowGroup { name: name.into(), rows: vec![] });
     }
@@ -49,7 +50,7 @@ impl Table {
         }
     }
 
-    /// With these rows.
+    /// The table with these rows.
     pub(crate) fn with<Item: Into<Cell>, Row: IntoIterator<Item = Item>>(
         mut self,
         rows: impl IntoIterator<Item = Row>,
@@ -60,13 +61,13 @@ impl Table {
         self
     }
 
-    /// On a page in parts of at most this number of columns besides the first, which each part
-    /// repeats.
+    /// The table divided on a page into parts of at most this number of columns, in addition to the
+    /// first, which each part repeats.
     pub(crate) fn in_parts_of(self, columns: usize) -> Table {
         Table { columns_of_part: Some(columns), ..self }
     }
 
-    /// The places of the columns of each part: all of them where it is whole.
+    /// The indices of the columns of each part: all columns if the table is not divided.
     pub(super) fn parts(&self) -> Vec<Vec<usize>> {
         let columns: Vec<usize> = (1..self.headings.len()).collect();
         let most = self.columns_of_part.filter(|most| *most < columns.len());
@@ -75,7 +76,7 @@ impl Table {
         columns.chunks(even).map(|part| std::iter::once(0).chain(part.iter().copied()).collect()).collect()
     }
 
-    /// Whether it has no row.
+    /// True if the table has no row.
     pub(crate) fn is_empty(&self) -> bool {
         self.groups.iter().all(|group| group.rows.is_empty())
     }
@@ -84,7 +85,7 @@ impl Table {
         self.groups.iter().flat_map(|group| &group.rows)
     }
 
-    /// Whether most of what a column holds is numbers.
+    /// True if most cells of a column are numbers.
     pub(super) fn is_numeric(&self, column: usize) -> bool {
         let cells = self.rows().filter_map(|row| row.get(column));
         let told = cells.filter(|cell| **cell != Cell::Missing && **cell != Cell::empty());

@@ -6,10 +6,10 @@ use comfy_table::presets;
 use super::{Block, Cell, Document, Table};
 
 impl Document {
-    /// For a terminal.
+    /// The document as text for a terminal.
     pub fn text(&self) -> String {
         let mut out = String::new();
-        // no empty line stands above a heading that follows directly
+        // no empty line is printed above a heading that follows directly
         let mut directly = true;
         for block in &self.blocks {
             let above = if directly { "" } else { "\n" };
@@ -50,7 +50,7 @@ fn indented(out: &mut String, sentence: &str) {
 }
 
 impl Table {
-    /// Its lines without the last line break.
+    /// The lines of the table without the last line break.
     fn text(&self) -> String {
         let mut printed = comfy_table::Table::new();
         printed.load_style(presets::NOTHING);

@@ -28,7 +28,7 @@ pub fn typeset(equation: &str) -> Markup {
     }
 }
 
-/// One letter is a quantity; a longer word is a function's name or prose and stays upright.
+/// A single letter is a quantity; a longer word is a function's name or prose and is set upright.
 fn line(text: &str) -> Markup {
     let letters: Vec<char> = text.chars().collect();
     let words = letters.chunk_by(|one, next| one.is_alphabetic() && next.is_alphabetic());
@@ -56,7 +56,7 @@ pub fn prose(sentence: &str) -> Markup {
     html! { @for (index, word) in sentence.split(' ').enumerate() { @if index > 0 { " " } (set(word)) } }
 }
 
-/// A word as it begins a sentence.
+/// A word with a capital letter, for the beginning of a sentence.
 pub(crate) fn capital(word: &str) -> String {
     let mut letters = word.chars();
     letters.next().map_or(String::new(), |first| format!("{}{}", first.to_uppercase(), letters.as_str()))
@@ -71,7 +71,7 @@ fn set(word: &str) -> Markup {
     html! { (head) @if is_symbol { (typeset(core)) } @else { (number(core)) } (tail) }
 }
 
-/// The same, with text between backticks as code.
+/// Sets a sentence in which text between backticks is code.
 pub(super) fn coded(sentence: &str) -> Markup {
     let parts = sentence.split('`').enumerate();
     html! {
@@ -81,7 +81,7 @@ pub(super) fn coded(sentence: &str) -> Markup {
     }
 }
 
-/// `2.2e6` as 2.2·10^6; anything else as it is.
+/// `2.2e6` as 2.2·10^6; anything else unchanged.
 fn number(word: &str) -> Markup {
     let parts = word.split_once('e').and_then(|(mantissa, exponent)| {
         let (_, exponent): (f64, i32) = (mantissa.parse().ok()?, exponent.parse().ok()?);
@@ -93,7 +93,7 @@ fn number(word: &str) -> Markup {
     } }
 }
 
-/// A unit as it is printed: m3/(s.V) as m³/(s·V).
+/// Printed form of a unit: m3/(s.V) becomes m³/(s·V).
 pub(super) fn unit(text: &str) -> String {
     text.replace("Pa^0.5", "√Pa").replace('2', "²").replace('3', "³").replace('.', "·")
 }

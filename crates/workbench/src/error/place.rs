@@ -1,5 +1,5 @@
-//! Where the key is that an error names: what is wrong with a valid project is sometimes known only
-//! where its rig is computed.
+//! Place of the key that an error names: some errors of a valid project are found only when its rig
+//! is computed.
 
 use phea_engineering::bench::BenchError;
 use phea_engineering::campaign::CampaignError;
@@ -16,7 +16,7 @@ use crate::project::{LateError, Project};
 use crate::specification;
 
 /// The error at each key or table that it names, in the order of its message; empty for an error
-/// that is not of the project, or that has places of its own.
+/// that is not of the project, or that has its own places.
 pub(super) fn late(error: &CommandError, project: &Project) -> Vec<LateError> {
     if error.refusal().is_some() || error.is_of_files() {
         return vec![];
@@ -37,8 +37,8 @@ pub(super) fn late(error: &CommandError, project: &Project) -> Vec<LateError> {
     }
 }
 
-/// A plant that nothing balances, at the range that first names one of the numbers that determine
-/// it: the numbers of the operating point first.
+/// An operating point without equilibrium, at the range that first names one of the numbers that
+/// determine it; the numbers of the operating point come first.
 fn unbalanced(error: &ProjectFamilyError, numbers: &[String], project: &Project) -> LateError {
     let ranged = |name: &&String| {
         project.uncertain_numbers().iter().any(|one| one.name == **name && one.minimum < one.maximum)
@@ -70,7 +70,7 @@ fn range_of(name: &str, project: &Project) -> String {
     }
 }
 
-/// Names of the numbers of the operating point begin with this; the table of their region.
+/// Prefix of the names of the numbers of the operating point; the table of their region.
 const OF_POINT: &str = "operating_point.";
 const REGION: &str = "family.operating_region";
 

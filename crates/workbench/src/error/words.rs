@@ -6,8 +6,8 @@ use crate::explanation::explanation_sentence;
 use crate::impossible_steps::late_of_steps;
 use crate::project::LateError;
 
-/// The error of a design: of one without a controller with the facts that are known of its problem,
-/// of required steps that no controller makes each with its cure.
+/// The error of a design in words; for a design without a controller with the known facts on its
+/// problem, for required steps that no controller makes each with its remedy.
 pub(crate) fn design_error_words(error: &DesignError) -> String {
     match error {
         DesignError::NoController(known) => {

@@ -10,8 +10,8 @@ use crate::estimate::Estimate;
 use crate::identify::DECISIVE;
 use crate::quantity::DisplayUnit;
 
-/// Coefficients with their intervals and why some are open, the friction map, and how well all is
-/// explained.
+/// Coefficients with their intervals and the reasons why some are open, the friction map, and the
+/// quality of the fit.
 pub(crate) fn document(found: &FrictionIdentification) -> Document {
     let mut out = Document::default();
     write(found, &mut out);
@@ -56,7 +56,7 @@ pub(crate) fn write(found: &FrictionIdentification, out: &mut Document) {
     out.sentences(explained(found));
 }
 
-/// A run that sticks and slips, or changes its velocity otherwise.
+/// A run that sticks and slips, or whose velocity varies otherwise.
 fn varying(found: &FrictionIdentification, one: &VaryingVelocity) -> String {
     let [mean, least, greatest] =
         [one.velocity, one.range[0], one.range[1]].map(|velocity| DisplayUnit::MILLIMETRE.of(velocity));
@@ -135,7 +135,7 @@ fn remarks(found: &FrictionIdentification) -> Vec<String> {
     open.chain(found.evidence.iter().map(directions)).chain([zero]).collect()
 }
 
-/// The model that the recordings support: the same both ways, or by direction.
+/// The model that the recordings support: equal in both directions, or different by direction.
 fn directions(evidence: &DirectionEvidence) -> String {
     let by = significant(evidence.difference().abs(), 3);
     match (evidence.chosen(), evidence.difference() > 0.0) {

@@ -45,7 +45,7 @@ fn map(found: &FrictionIdentification) -> Option<Figure> {
     Some(chart.draw(&Words::new("friction_map", "Friction map", caption)))
 }
 
-/// The identified curve of one way: finer where it is steep.
+/// The identified curve for one direction: finer where it is steep.
 fn curve(found: &FrictionIdentification, fastest: f64, way: f64) -> Curve {
     let point = |step: u32| {
         let part = f64::from(step) / f64::from(CURVE_POINTS);
@@ -55,7 +55,7 @@ fn curve(found: &FrictionIdentification, fastest: f64, way: f64) -> Curve {
     Curve::line((1..=CURVE_POINTS).map(point), 0)
 }
 
-/// Force and position until the piston breaks away, and what is left of both over time.
+/// Force and position until the piston breaks away, and the residuals of both over time.
 fn pressed(found: &FrictionIdentification, index: usize, press: &PressedRows) -> Option<Figure> {
     let recording = found.recordings.get(press.recording)?;
     let stem = stem(&recording.file);
@@ -66,7 +66,7 @@ fn pressed(found: &FrictionIdentification, index: usize, press: &PressedRows) ->
     Some(over_time(words, &curve, recording.time_step, press.rows))
 }
 
-/// Rows of a shaken piston that are drawn, so that each period can be seen.
+/// Number of drawn rows of a shaken piston, so that each period can be seen.
 const SHAKEN_ROWS: usize = 500;
 
 /// Force and position of the first rows of a piston that is shaken.

@@ -4,8 +4,8 @@ use super::{
 use crate::answer::{OutputFile, in_toml};
 use crate::estimate::Estimate;
 
-/// The table `[cylinder.friction]` of a project with what was identified: what the data do not
-/// determine is a comment.
+/// The table `[cylinder.friction]` of a project with the identified values; coefficients that the
+/// data do not determine are comments.
 pub fn files(found: &FrictionIdentification) -> Vec<OutputFile> {
     let both = super::FRICTION_NAMES.iter().zip(&found.estimates).map(line);
     let lines: String = both.collect();
@@ -36,8 +36,8 @@ fn line(((name, unit), one): (&(&str, &str), &Result<Estimate, OpenCoefficient>)
     }
 }
 
-/// The table of what differs while the rod retracts, and the range of the plant's viscous friction
-/// that has both directions.
+/// The table of the coefficients that differ while the rod retracts, and the range of the plant's
+/// viscous friction over both directions.
 fn retracting(found: &FrictionIdentification, back: &[Result<Estimate, OpenCoefficient>]) -> String {
     let lines: String = RETRACTING_NAMES.iter().zip(back).map(line).collect();
     let levels = found.lugre.curve.both_levels().map(|levels| levels.viscous);

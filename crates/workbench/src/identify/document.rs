@@ -33,7 +33,7 @@ pub(crate) fn document(
     out
 }
 
-/// Model of the leakage, coefficients with their intervals, and those found by hand.
+/// Model of the leakage, coefficients with their intervals, and those computed by hand.
 pub(crate) fn write_coefficients(found: &Identification, out: &mut Document) {
     out.heading("Model of the leakage");
     out.sentences(leakage(found));
@@ -54,7 +54,7 @@ pub(crate) fn write_coefficients(found: &Identification, out: &mut Document) {
     out.sentences(found.oil.as_ref().map(warm_oil));
 }
 
-/// The temperature that the coefficients are stated at.
+/// The temperature at which the coefficients are stated.
 fn warm_oil(oil: &TestOil) -> String {
     let [from, to, reference] =
         [oil.range[0], oil.range[1], oil.reference].map(|temperature| significant(temperature, 4));
@@ -121,7 +121,7 @@ fn leakage(found: &Identification) -> Vec<String> {
     ]
 }
 
-/// Terms of the valve in addition to edges that open in proportion, and those that it could have.
+/// Terms of the valve in addition to edges that open in proportion, and terms that could be added.
 fn terms(found: &Identification) -> Vec<String> {
     let named = |one: &TermEvidence| match one.term {
         ValveTerm::Lap => "lap of the edges (`lap`)",
@@ -203,8 +203,8 @@ fn coefficients(found: &Identification) -> Vec<Vec<Cell>> {
         .collect()
 }
 
-/// The simple calculations in the order of the coefficients.
-/// The tare flow is that at the pressure of the identified one.
+/// The simple calculations in the order of the coefficients. The tare flow is at the pressure of
+/// the identified one.
 ///
 /// ```text
 /// q_tare sqrt(dp_identified/dp_read)

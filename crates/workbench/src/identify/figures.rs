@@ -6,12 +6,12 @@ use super::{Identification, Recording, SignalFit, SignalKind};
 use crate::figure::{Curve, CurveChart, CurvePanel, CurveStyle, Figure, TestCircuit, TestPorts, Words};
 use crate::quantity::{DisplayUnit, PRESSURE, display};
 
-/// Commands around null that the leakage is drawn over, percent of the nominal voltage.
+/// Range of commands around null over which the leakage is drawn, percent of the nominal voltage.
 const AROUND_NULL: f64 = 6.0;
-/// Commands around null that the flow gain is drawn over, percent of the nominal voltage.
+/// Range of commands around null over which the flow gain is drawn, percent of the nominal voltage.
 const NEAR_NULL: f64 = 4.0;
-/// Commands around null that the pressure sensitivity is drawn over, percent of the nominal
-/// voltage.
+/// Range of commands around null over which the pressure sensitivity is drawn, percent of the
+/// nominal voltage.
 const CLOSE_TO_NULL: f64 = 2.5;
 
 const COMMAND: &str = "Command U_C (% of nominal)";
@@ -107,7 +107,7 @@ fn port_pressures(recording: &Recording, row: usize) -> Option<[f64; 2]> {
     Some([at(SignalKind::PressureA)?, at(SignalKind::PressureB)?])
 }
 
-/// The signal of a flow, and what it is called.
+/// The signal of a flow, and its name.
 fn flow_signal(recording: &Recording) -> Option<(SignalKind, &'static str)> {
     let kinds = [
         (SignalKind::LeakFlow, "Leakage (L/min)"),
@@ -159,7 +159,8 @@ fn series(found: &Identification, index: usize, recording: &Recording) -> Figure
     chart.draw(&Words::new(format!("series_{}_{name}", index + 1), title, caption))
 }
 
-/// Command in percent, and what `of` says of a row, of each branch one way.
+/// Curve of each branch in one direction: the command in percent, and the value that `of` returns
+/// for a row.
 fn over_command(
     found: &Identification,
     recording: &Recording,
@@ -177,7 +178,7 @@ fn lines(branches: Vec<Vec<(f64, f64)>>, series: usize) -> impl Iterator<Item = 
     branches.into_iter().map(move |points| Curve::line(points, series))
 }
 
-/// A chart over the command, to this far on either side of zero, percent.
+/// A chart over the command, up to this distance on either side of zero, percent.
 fn over_commands(reach: f64, panels: Vec<CurvePanel>, legend: Vec<(String, CurveStyle)>) -> CurveChart {
     CurveChart { x_title: COMMAND.to_string(), x_range: [-reach, reach], panels, legend }
 }
@@ -188,7 +189,7 @@ fn greatest_command(found: &Identification) -> f64 {
     percent(found, commands.fold(0.0, f64::max)).ceil()
 }
 
-/// Both nulls as marks.
+/// Marks at both nulls.
 fn null_marks(found: &Identification) -> Vec<(f64, String)> {
     let nulls = found.simple.nulls.into_iter().zip(["rising", "falling"]);
     nulls
@@ -216,7 +217,7 @@ fn leakage(found: &Identification, recording: &Recording) -> Figure {
     chart.draw(&Words::new("leakage_both_ways", "Internal leakage both ways", caption))
 }
 
-/// Flow with the direction that the model gives it where the meter does not indicate it.
+/// Flow with its direction according to the model if the meter does not indicate it.
 fn signed_flow(recording: &Recording, outputs: &[TestOutput], row: usize) -> Option<f64> {
     let (kind, _) = flow_signal(recording)?;
     let value = recording.signal(kind)?.values.get(row).copied()??;
@@ -303,7 +304,7 @@ fn pressure_sensitivity(found: &Identification) -> Option<Figure> {
 /// A recorded signal, the unit it is shown in, and its value in the model.
 type ShownSignal = (SignalKind, DisplayUnit, fn(&TestOutput) -> f64);
 
-/// A leakage test against the model, one way, with residuals.
+/// A leakage test compared with the model, in one direction, with residuals.
 fn against_model(found: &Identification, index: usize, (way, rising): (&str, bool)) -> Figure {
     let (bar, litre) = (DisplayUnit::BAR, DisplayUnit::LITRE_PER_MINUTE);
     let outputs = found.shown(index, &found.coefficients);

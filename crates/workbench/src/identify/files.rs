@@ -15,9 +15,9 @@ use crate::quantity::DisplayUnit;
 /// The files as they were read.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Read {
-    /// Contents of each.
+    /// Contents of each file.
     pub contents: Vec<FileContents>,
-    /// Findings that were not refused.
+    /// Findings that did not lead to rejection.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -93,7 +93,8 @@ impl Read {
         all.chain(misfits).collect()
     }
 
-    /// A row for each column, and a sentence for what is not used and what was dealt with.
+    /// A row for each column, and a sentence for columns that are not used and findings that were
+    /// handled.
     pub(crate) fn write(&self, out: &mut Document) {
         let mut table = Table::grouped_by("file", ["column", "holds", "from", "to", "unit", "gaps"]);
         for file in &self.contents {

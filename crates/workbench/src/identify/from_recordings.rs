@@ -4,8 +4,8 @@
 //! project, recordings -> coefficients, family -> settings of the project -> the project, read again
 //! ```
 //!
-//! Identified numbers go through the reader as any other number of the project does, so that
-//! every condition between values is checked, and nothing below sees two rigs.
+//! Identified numbers pass through the reader like any other number of the project, so that every
+//! condition between values is checked, and no later code has to handle two rigs.
 
 use phea_dynamics::watch::Watch;
 
@@ -28,7 +28,7 @@ pub enum ValveInUseError {
     /// Nothing was identified.
     #[error(transparent)]
     Identify(#[from] IdentifyError),
-    /// The search for a valve ended early.
+    /// The search for a valve stopped early.
     #[error(
         "the recordings lead to no valve: the search did not converge, so that they cannot take the place of [valve]; `phea identify` gives the details, and `--set identify.use=\"nothing\"` keeps the declared valve"
     )]
@@ -64,15 +64,15 @@ pub fn recorded_files(project: &Project) -> Vec<RecordedTest> {
     declared.map(|one| RecordedTest { file: project.path_of(&one.file), ..one.clone() }).collect()
 }
 
-/// The project with the valve identified from its recordings, where `identify.use` wants that;
-/// `None` where it does not, or where it was done already.
+/// The project with the valve identified from its recordings, if `identify.use` requires that;
+/// `None` if it does not, or if the valve has already been identified.
 ///
 /// The hash is that of the bytes of the project followed by those of each recording, so that
 /// another recording is another project.
 ///
 /// # Errors
-/// [`ValveInUseError`] where files are refused, where the recordings do not determine a coefficient
-/// that the plant depends on, and where what they determine contradicts the project.
+/// [`ValveInUseError`] if files are rejected, if the recordings do not determine a coefficient on
+/// which the plant depends, and if their result contradicts the project.
 pub fn in_use(
     source: &dyn Source,
     loaded: &Loaded,
@@ -113,8 +113,8 @@ pub fn in_use(
     Ok(Some(Loaded { sha256, ..read_again(source, loaded, recorded)? }))
 }
 
-/// The files in memory, so that what is hashed is what is read; the hash of each, and of all
-/// together after the project.
+/// The files in memory, so that the bytes that are hashed are the bytes that are read; the hash of
+/// each, and of the project followed by all of them.
 fn held(source: &dyn Source, loaded: &Loaded, files: &[RecordedTest]) -> (Memory, Vec<HashedFile>, String) {
     let mut memory = Memory::default();
     let mut together = loaded.bytes.clone();
@@ -130,8 +130,8 @@ fn held(source: &dyn Source, loaded: &Loaded, files: &[RecordedTest]) -> (Memory
     (memory, hashes, sha256(&together))
 }
 
-/// A fit that did not end, or left a coefficient of the plant open, is not a valve: the others were
-/// fitted together with it.
+/// A fit that did not converge, or that did not determine a coefficient of the plant, gives no
+/// valve: the other coefficients were fitted together with the missing one.
 fn determined(found: &Identification) -> Result<(), ValveInUseError> {
     if !found.has_converged() {
         return Err(ValveInUseError::NotConverged);
@@ -153,7 +153,7 @@ fn region(found: &Identification, project: &Project) -> Result<JointRegion, Valv
     Ok(joint_region(found, project, SMALLEST_EFFECT)?)
 }
 
-/// Numbers in place of declared ones, and numbers that stay as declared.
+/// Numbers that replace declared ones, and numbers that remain as declared.
 fn numbers(found: &Identification, project: &Project) -> (Vec<IdentifiedNumber>, Vec<KeptNumber>) {
     let (mut numbers, mut kept) = (Vec::new(), Vec::new());
     let of = |index: usize| Some((*COEFFICIENT_NAMES.get(index)?, *found.estimates.get(index)?));
@@ -208,7 +208,7 @@ fn settings(
     settings
 }
 
-/// Settings that take away the declared terms of the valve without which it was identified.
+/// Settings that remove those declared terms of the valve that were absent from the identification.
 fn without(found: &Identification, project: &Project) -> Vec<String> {
     let terms = found.tested.terms;
     let declares = |path: &str| project.number(path).is_some_and(|number| number != 0.0);
@@ -226,7 +226,7 @@ fn without(found: &Identification, project: &Project) -> Vec<String> {
     settings
 }
 
-/// The margin of a design for what another recording of the same valve may move: its plants
+/// The design margin for the change that another recording of the same valve may cause: its plants
 /// have other gains, and a closed loop changes by no more where a limit on it binds.
 fn reserve(region: &JointRegion) -> String {
     format!("design.reserve={:e}", 1.0 + region.change_left_out)
@@ -243,7 +243,7 @@ fn direction(direction: &UncertaintyDirection) -> String {
     )
 }
 
-/// The project with what was identified; a setting of the user must not contradict it.
+/// The project with the identified values; a setting of the user must not contradict them.
 fn read_again(
     source: &dyn Source,
     loaded: &Loaded,

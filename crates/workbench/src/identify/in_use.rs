@@ -1,4 +1,4 @@
-//! Identified numbers in place of those that a project declares: for people.
+//! Identified numbers that replace those declared in a project, for people.
 
 use super::COVERAGE;
 use crate::answer::{kept_because, significant};
@@ -6,7 +6,7 @@ use crate::document::{Cell, Document, Table};
 use crate::project::{FromRecordings, IdentifiedFamily, Loaded};
 use crate::quantity::{PRESSURE, display};
 
-/// Heading and table above the output of every command; nothing where recordings gave nothing.
+/// Heading and table above the output of every command; empty if recordings gave nothing.
 pub(crate) fn in_use_above(loaded: &Loaded) -> Document {
     let mut out = Document::default();
     if let Some(recorded) = &loaded.recorded {
@@ -17,7 +17,8 @@ pub(crate) fn in_use_above(loaded: &Loaded) -> Document {
     out
 }
 
-/// The files, the numbers with the declared ones, what stays as declared, and the family.
+/// The files, the numbers with the declared ones, the numbers that remain as declared, and the
+/// family.
 pub(crate) fn write_in_use(recorded: &FromRecordings, out: &mut Document) {
     let files = recorded.files.iter().map(|file| format!("From {}, SHA-256 `{}`.", file.path, file.sha256));
     out.sentences(files);
@@ -52,7 +53,7 @@ fn tare_pressure(recorded: &FromRecordings) -> Option<String> {
     Some(format!("`valve.tare_flow` is that at {identified} from supply to tank{other}."))
 }
 
-/// Uncertainty that the recordings leave, in a sentence.
+/// Uncertainty that remains after identification, in a sentence.
 fn family(family: &IdentifiedFamily) -> String {
     let half_width = significant(family.deviations, 3);
     let coverage = significant(100.0 * COVERAGE, 2);

@@ -20,7 +20,7 @@ pub(super) fn misfit_in_words(found: &Identification, misfit: &Misfit) -> String
     )
 }
 
-/// The greatest misfit as a project states it: the value of `valve.misfit`.
+/// The greatest misfit in the form of the project's `valve.misfit`.
 pub(super) fn declared_misfit(found: &Identification) -> Option<DeclaredMisfit> {
     let misfit = found.misfits().into_iter().next()?;
     Some(DeclaredMisfit { share: misfit.fraction, at: Some(misfit_at(found, &misfit)) })

@@ -20,7 +20,7 @@ pub(super) struct SimpleBody {
     null_leakage_m3_per_s: Option<f64>,
     leakage_shape: Option<f64>,
     tare_flow_m3_per_s: Option<f64>,
-    /// Drop from supply to tank that leakage and tare flow are read at.
+    /// Drop from supply to tank at which leakage and tare flow are read.
     leakage_pressure_pa: Option<f64>,
     tare_share: Option<f64>,
     null_bias_v: Option<f64>,
@@ -31,14 +31,14 @@ pub(super) struct SimpleBody {
     hysteresis_v: Option<f64>,
     flow_gain_extending_m3_per_s_v: Option<f64>,
     flow_gain_retracting_m3_per_s_v: Option<f64>,
-    /// Commands from null between which they are read, to either side.
+    /// Range of commands from null, on either side, over which the gains are read.
     flow_gain_commands_v: Option<[f64; 2]>,
-    /// Drop from supply to tank that they are stated at.
+    /// Drop from supply to tank at which the gains are stated.
     flow_gain_pressure_pa: Option<f64>,
     pressure_sensitivity_pa_per_v: Option<f64>,
-    /// None of edges with a lap, whose flow gain at null is not the one that is read.
+    /// Absent for edges with a lap, whose flow gain at null is not the one that is read.
     flow_pressure_coefficient: Option<f64>,
-    /// Intervals of those that have one.
+    /// Confidence intervals of the numbers that have one.
     confidence_95: BTreeMap<&'static str, [f64; 2]>,
 }
 
@@ -77,13 +77,13 @@ pub(super) fn simple_body(identified: &Identification) -> SimpleBody {
     }
 }
 
-/// K_c, which is that at null where the flow gain that is read is: of edges without lap.
+/// K_c at null, if the flow gain that is read is also that at null: for edges without lap.
 fn coefficient_at_null(found: &Identification) -> Option<Estimate> {
     found.simple.flow_pressure_coefficient().filter(|_| !found.tested.terms.lap)
 }
 
-/// A line of the table: what it is, its equation, its unit, and what the thesis prints of its
-/// valve.
+/// A line of the table: the name of the number, its equation, its unit, and the value that the
+/// thesis prints for its valve.
 struct NumberLine {
     name: &'static str,
     equation: &'static str,
@@ -91,15 +91,15 @@ struct NumberLine {
     thesis: Option<&'static str>,
 }
 
-/// True for the valve whose numbers the thesis prints.
+/// True if the actuator has the valve for which the thesis prints numbers.
 pub(crate) fn is_valve_of_thesis(actuator: &DeclaredActuator) -> bool {
     actuator.valve.model.as_ref().is_some_and(|model| model.starts_with(VALVE_OF_THESIS))
 }
 
 const VALVE_OF_THESIS: &str = "moog_760_c263a";
 
-/// The numbers with their equations, and those that the thesis prints of the valve of its rig if
-/// this is that one.
+/// The numbers with their equations, and next to them those printed in the thesis if the valve is
+/// the one of its rig.
 pub(crate) fn write(found: &Identification, of_thesis: bool, out: &mut Document) {
     let mut headings = vec!["number", "read", "95 % from", "to", "unit", "by"];
     headings.extend(of_thesis.then_some("Ledezma (2019)"));
@@ -129,7 +129,7 @@ pub(crate) fn write(found: &Identification, of_thesis: bool, out: &mut Document)
     out.sentences(null_offset(found));
 }
 
-/// At which pressures and commands the numbers were read.
+/// Pressures and commands at which the numbers were read.
 fn read_at(found: &Identification) -> Vec<String> {
     let simple = &found.simple;
     let bar = |pressure: f64| display(pressure, &PRESSURE, 3);
@@ -158,7 +158,7 @@ fn null_method(method: NullMethod) -> &'static str {
     }
 }
 
-/// By which a null was found.
+/// Equation of the method by which a null was found.
 fn null_equation(null: Option<NullReading>) -> &'static str {
     match null.map(|null| null.method) {
         Some(NullMethod::FlowLines) => "between zeros of q(U)",
@@ -167,8 +167,8 @@ fn null_equation(null: Option<NullReading>) -> &'static str {
     }
 }
 
-/// Distance of the null that was read from the one that was identified, where that is more than
-/// its interval, in a sentence with the reason.
+/// Distance of the null that was read from the identified one, if it exceeds its interval, in a
+/// sentence with the reason.
 fn null_offset(found: &Identification) -> Option<String> {
     let read = found.simple.null_bias()?;
     let null_bias = COEFFICIENT_NAMES.iter().position(|(name, _)| *name == "null_bias")?;

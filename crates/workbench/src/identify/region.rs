@@ -1,5 +1,5 @@
-//! Uncertainty of the plant that the recordings leave: sentences, JSON, and a fragment of a project
-//! file.
+//! Plant uncertainty that remains after identification: sentences, JSON, and a fragment of a
+//! project file.
 
 use serde::Serialize;
 
@@ -9,7 +9,7 @@ use crate::document::{Cell, Document, Table};
 use crate::project::UncertaintyDirection;
 use crate::quantity::print_bare;
 
-/// The joint region of the coefficients, or why there is none.
+/// The joint region of the coefficients, or the reason why there is none.
 pub type FoundRegion = Result<JointRegion, JointRegionError>;
 
 /// The chapter on the plant.

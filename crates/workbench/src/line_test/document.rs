@@ -6,7 +6,7 @@ use crate::project::LineSide;
 use crate::quantity::{DisplayUnit, FLOW, PRESSURE, VOLUME, display};
 use crate::response::resampling;
 
-/// The numbers of the line, what the recordings do not determine, and how they were explained.
+/// The numbers of the line, those that the recordings do not determine, and the quality of the fit.
 pub(crate) fn document(found: &LineIdentification) -> Document {
     let mut out = Document::default();
     let rows = numbers(found).into_iter().filter_map(|(key, what, number)| {
@@ -38,7 +38,7 @@ fn chamber(side: LineSide) -> &'static str {
     }
 }
 
-/// For people.
+/// Unit in which people read a key.
 fn unit(key: &str) -> DisplayUnit {
     match key {
         "wave_speed_m_per_s" => DisplayUnit::METRE_PER_SECOND,

@@ -47,7 +47,7 @@ fn volume_over_pressure(fit: &RiseFit) -> Figure {
 fn compliance_over_frequency(found: &LineIdentification, fit: &ResponseFit) -> Figure {
     let points = fit.compliances(&found.known);
     let hertz = |frequency: f64| DisplayUnit::HERTZ.of(frequency);
-    // what is beyond the resonances of a line is drawn with it, and would hide the rest
+    // points beyond the resonances of a line are drawn with it, and would hide the rest
     let per_bar = |compliance: f64| compliance * 1e5 / MILLILITRE;
     let [first, last] = [points.first(), points.last()].map(|p| p.map_or(1.0, |p| p.frequency));
     let ratio = ln(last / first) / (POINTS - 1) as f64;

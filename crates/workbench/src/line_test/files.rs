@@ -8,7 +8,7 @@ use crate::project::{DeclaredMisfit, LineSide};
 /// Digits of the numbers of a fragment.
 const DIGITS: usize = 6;
 
-/// The fragment of a project with the line as it was identified; none where nothing of it was.
+/// The fragment of a project with the line as identified; none if nothing was identified.
 pub fn files(found: &LineIdentification) -> Vec<OutputFile> {
     let Some(keys) = keys(found) else { return Vec::new() };
     let misfit = misfit(found).unwrap_or_default();
@@ -51,7 +51,8 @@ fn keys(found: &LineIdentification) -> Option<String> {
             keys.push_str(&match stiffening {
                 Some(found) => {
                     let [low, high] = found.interval.map(|end| significant(end.max(1.0), DIGITS));
-                    // an estimate below 1 is noise: the schema has no wall that softens
+                    // an estimate below 1 is noise: the schema has no wall that softens under
+                    // pressure
                     let nominal = significant(ratio.max(1.0), DIGITS);
                     format!(
                         "dynamic_stiffening = {{ nominal = {nominal}, minimum = {low}, maximum = {high} }}\n"
@@ -81,7 +82,7 @@ fn misfit(found: &LineIdentification) -> Option<String> {
     Some(format!("\n[{}.misfit]\n{entries}\n", path(&found.known)))
 }
 
-/// The free air in the oil, where the pressure rise shows it.
+/// The free air in the oil, if the pressure rise shows it.
 fn air(found: &LineIdentification) -> String {
     let of = |air: EntrainedAir| {
         let [fraction, exponent] =
@@ -94,7 +95,7 @@ fn air(found: &LineIdentification) -> String {
     shown.map_or_else(String::new, of)
 }
 
-/// Path of the table with the keys: that of both lines where the project declares them alike.
+/// Path of the table with the keys: that of both lines if the project declares them together.
 fn path(known: &KnownLine) -> &'static str {
     match known.side {
         _ if !known.differs_from_other => "line",

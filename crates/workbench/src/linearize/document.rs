@@ -104,8 +104,8 @@ pub(crate) fn linkage_table(places: &[LinkagePlace]) -> Table {
     Table::new(headings).with(places.iter().map(row))
 }
 
-/// Where Z is, of a rig whose load turns about a joint: with v = r omega and tau = F r, whose arm
-/// changes.
+/// Location of Z for a rig whose load turns about a joint: with v = r omega and tau = F r, whose
+/// arm changes.
 pub(crate) fn impedance_at_joint(linearization: &Linearization) -> Option<String> {
     let here = linearization.linkage.iter().find(|place| place.at == LinkagePosition::OperatingPoint)?;
     let arm = crate::quantity::display(here.lever_arm_m, &crate::quantity::LENGTH, 4);
@@ -114,7 +114,7 @@ pub(crate) fn impedance_at_joint(linearization: &Linearization) -> Option<String
     ))
 }
 
-/// A virtual impedance and what the port shows, at a few frequencies.
+/// A virtual impedance and the impedance at the port, at a few frequencies.
 pub(crate) fn asked_table(asked: &AskedImpedance, motion: MotionKind) -> Table {
     let row = |point: &AskedAt| {
         let size = |value: Complex64| Cell::number(portable::magnitude(value), 3);
@@ -132,7 +132,7 @@ pub(crate) fn asked_table(asked: &AskedImpedance, motion: MotionKind) -> Table {
     Table::new(headings).with(asked.points.iter().map(row))
 }
 
-/// Where the port shows the required impedance.
+/// Sentence on the band in which the port has the required impedance.
 pub(crate) fn asked_sentence(asked: &AskedImpedance) -> String {
     let within = significant(WITHIN_PERCENT, 3);
     match asked.follows_rad_per_s {
@@ -145,7 +145,7 @@ pub(crate) fn asked_sentence(asked: &AskedImpedance) -> String {
     }
 }
 
-/// A mode with its share and decay ratio, or the reason why a number does not exist.
+/// A mode with its participation and decay ratio, or the reason why a number does not exist.
 fn mode_cells(mode: &ModeShare) -> [Cell; 3] {
     let absence = mode.absence.map(|absence| absence.to_string()).unwrap_or_default();
     let or =
@@ -175,7 +175,7 @@ pub(crate) fn models(linearization: &Linearization) -> [(String, &'static str, &
     all.map(|(model, equation, function)| (model_words(linearization, model), equation, function))
 }
 
-/// The name of a model, and what is made of a load that can move under force.
+/// The name of a model, with its treatment of a load that can move under force.
 pub(crate) fn model_words(linearization: &Linearization, model: &str) -> String {
     let load = match model {
         _ if !linearization.load_yields => "",
@@ -225,7 +225,7 @@ fn located(difference: &ResponseDifference) -> String {
     )
 }
 
-/// Whether an impedance is passive, and where not.
+/// Sentence on the passivity of an impedance, and on the bands in which it is not passive.
 pub(crate) fn passivity_sentence(report: &PassivityReport) -> String {
     if report.passive {
         return "passive at every frequency".to_string();

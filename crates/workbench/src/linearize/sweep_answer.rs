@@ -19,7 +19,7 @@ pub(super) fn head(sweep: &Sweep) -> Object {
         .with("plant_follows", sweep.plant_follows)
 }
 
-/// What came of each value.
+/// The result at each value.
 pub(super) fn rows(sweep: &Sweep) -> Vec<Object> {
     sweep.points.iter().map(|point| row(point, sweep.units.motion)).collect()
 }

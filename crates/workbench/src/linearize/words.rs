@@ -1,16 +1,17 @@
-//! Stiffness over the stroke, and reasons for what a linearisation lacks, in words.
+//! Stiffness over the stroke, and reasons for missing parts of a linearisation, in words.
 
 use super::{HidingMass, Linearization, NoBandwidth, NoClosedImpedance};
 use phea_hydraulics::stiffness::StrokeStiffness;
 
 use crate::quantity::{DisplayUnit, MotionKind, TORSIONAL_STIFFNESS, fitting, significant};
 
-/// Share by which the two stiffness models may differ and still be said to agree.
+/// Relative difference up to which the two stiffness models count as agreeing.
 const AGREEMENT: f64 = 0.005;
 
-/// The least and the greatest stiffness, or the one that it has everywhere, with the place.
+/// The least and the greatest stiffness with their places, or the single value if it is constant.
 ///
-/// A motor's is shown in the unit that fits it: motors are of very different sizes.
+/// The stiffness of a motor is shown in the unit that fits it, because motors are of very different
+/// sizes.
 pub(crate) fn stiffness_words(motion: MotionKind, stiffness: &StrokeStiffness) -> [String; 2] {
     let unit = match motion {
         MotionKind::Linear => DisplayUnit::MEGANEWTON_PER_METRE,
@@ -26,7 +27,7 @@ pub(crate) fn stiffness_words(motion: MotionKind, stiffness: &StrokeStiffness) -
     }
 }
 
-/// One sentence on the two stiffness models.
+/// A sentence on the two stiffness models.
 pub(crate) fn stiffness_sentence(linearization: &Linearization) -> String {
     let Linearization { motion, stiffness_models: difference, .. } = linearization;
     let symbol = motion.symbols().stiffness;

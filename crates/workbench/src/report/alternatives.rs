@@ -1,13 +1,13 @@
-//! The chapter on the alternatives of the project: one table, what follows from it, and their
-//! curves laid over each other.
+//! The chapter on the alternatives of the project: one table, the findings, and their curves laid
+//! over each other.
 
 use super::chapter::Chapter;
 use crate::alternatives::{Alternatives, document, figures, told_first};
 use crate::document::Document;
 use crate::project::Project;
 
-/// `None` for a project without alternatives. Where they were not judged, the chapter says how to
-/// have them.
+/// The chapter; `None` for a project without alternatives. If they were not judged, the chapter
+/// states how to request this.
 pub(super) fn chapter(project: &Project, found: Option<&Alternatives>) -> Option<Chapter> {
     let names: Vec<&str> = project.alternatives.iter().map(|one| one.name.as_str()).collect();
     let document = match (found, names.as_slice()) {

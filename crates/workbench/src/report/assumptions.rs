@@ -1,4 +1,4 @@
-//! The assumptions of the models of a rig, each only where the project has what it speaks of.
+//! The assumptions of the models of a rig, each only if the project has the part that it concerns.
 
 use phea_dynamics::portable;
 use phea_hydraulics::stiffness::StiffnessModel;
@@ -37,7 +37,7 @@ pub(super) fn assumptions(project: &Project) -> Vec<String> {
     told.into_iter().map(str::to_string).collect()
 }
 
-/// The response that the sizing takes, whose deviation from its end is e^(-t/T).
+/// The response that the sizing assumes; its deviation from the final value is e^(-t/T).
 fn first_order(speed: Speed) -> String {
     let (given, band_percent) = match speed {
         Speed::TimeConstant(_) => ("its time constant is stated", SETTLING_BAND_PERCENT),
@@ -69,7 +69,7 @@ fn supply(actuator: &DeclaredActuator) -> &'static str {
     }
 }
 
-/// What the models take of the lines that the rig has.
+/// Assumptions of the models on the lines of the rig.
 fn lines(actuator: &DeclaredActuator) -> Vec<&'static str> {
     let sides = || [&actuator.line.a, &actuator.line.b].into_iter();
     let any = |has: &dyn Fn(&DeclaredLine) -> bool| sides().any(has);
@@ -115,7 +115,7 @@ fn friction(actuator: &DeclaredActuator) -> Option<&'static str> {
     )
 }
 
-/// How the pressures of the chambers are known, where they are fed back.
+/// Source of the chamber pressures, if they are fed back.
 fn pressures(project: &Project) -> Option<&'static str> {
     let controller = project.controller.as_ref()?;
     let fed = controller.pressure_feedback.filter(|fed| fed.gain != 0.0)?;
@@ -129,7 +129,7 @@ fn pressures(project: &Project) -> Option<&'static str> {
     })
 }
 
-/// How the velocity of the load is known, where it is fed forward.
+/// Source of the velocity of the load, if it is fed forward.
 fn velocity(project: &Project) -> Option<&'static str> {
     let fed = project.controller.as_ref()?.load_velocity_feed_forward?;
     let sensor = project.actuator.as_ref()?.velocity_sensor.as_ref();

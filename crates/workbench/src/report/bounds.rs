@@ -1,5 +1,5 @@
-//! The chapter on templates and bounds: the plants at each design frequency, where the nominal loop
-//! may not be, and whether the given loop satisfies this.
+//! The chapter on templates and bounds: the plants at each design frequency, the regions forbidden
+//! to the nominal loop, and the position of the given loop among the bounds.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::LinearError;
@@ -94,19 +94,19 @@ fn specification_figures(problem: &RobustProblem, found: &[DesignFrequency]) -> 
 /// Bounds that a chart of loops shows at most.
 const SHOWN_BOUNDS: usize = 5;
 
-/// Phases beside a loop at which a bound is looked for, and how many of them count as much as a
-/// decibel.
+/// Phases next to a loop at which a bound is searched for, degrees, and the number of degrees that
+/// count as much as a decibel.
 const BESIDE_DEGREES: [f64; 9] = [0.0, -10.0, 10.0, -20.0, 20.0, -30.0, 30.0, -40.0, 40.0];
 const DEGREES_PER_DECIBEL: f64 = 4.0;
 
 /// The bounds of all specifications at the frequencies at which one of these loops comes nearest to
-/// them, rising; and whether others are left out.
+/// them, in order of frequency; true if others are left out.
 pub(super) fn nearest_bounds(found: &[DesignFrequency], loops: &[&RobustProblem]) -> (Vec<Bound>, bool) {
     let distance = |one: &DesignFrequency| {
         let of = |problem: &&RobustProblem| {
             let feedback = problem.compensation.response(one.frequency_rad_per_s).feedback;
             let open_loop = one.template.template.nominal * feedback;
-            // a bound may lie beside the loop, and not above or below it
+            // a bound may be to the left or right of the loop, and not above or below it
             let beside = |degrees: f64| {
                 let turned = exp_complex(Complex64::new(0.0, degrees.to_radians()));
                 let above_db = match one.exact_bounds.placement(open_loop * turned) {
@@ -130,22 +130,22 @@ pub(super) fn nearest_bounds(found: &[DesignFrequency], loops: &[&RobustProblem]
     (order.into_iter().map(|(_, one)| one.bounds.union.clone()).collect(), left_out)
 }
 
-/// Which bounds a chart shows, in a sentence.
+/// The bounds that a chart shows, in a sentence.
 pub(super) const fn nearest_words(left_out: bool) -> &'static str {
     if left_out { " Bounds: of the five frequencies nearest to a loop." } else { "" }
 }
 
-/// A chart of a loop for which steps alone are required.
+/// Caption of the chart of a loop for which only steps are required.
 pub(super) const NO_BOUNDS: &str =
     "The nominal loop around the critical point; nothing is required over frequency that would draw a bound.";
 
-/// The bounds of a chart by their name; none where there are none.
+/// The bounds of a chart under their name; empty if there are none.
 pub(super) fn group<'a>(name: &str, bounds: &'a [Bound]) -> Vec<BoundGroup<'a>> {
     let group = BoundGroup { name: name.to_string(), bounds };
     if bounds.is_empty() { vec![] } else { vec![group] }
 }
 
-/// Reason why a loop that is met may lie beyond a bound.
+/// Reason why a loop that meets a specification may be beyond its bound.
 pub(super) const WITHIN_TOLERANCE: &str = " Bounds are drawn without the tolerance of the verdict: where one is steep, a loop that is met within it may lie some decibels beyond.";
 
 /// L0 over the frequencies around those of the design; `None` without a controller or a nominal
@@ -169,7 +169,7 @@ pub(super) fn nominal_loop(problem: &RobustProblem) -> Result<Option<FrequencySe
     Ok(Some(series))
 }
 
-/// The Nichols chart of the given loop, or of the bounds alone; `None` where there is neither.
+/// The Nichols chart of the given loop, or of the bounds only; `None` if there is neither.
 ///
 /// # Errors
 /// A loop that cannot be computed.
@@ -213,7 +213,7 @@ pub(super) fn chart(
     Ok(Some(chart.draw(&Words::new("nichols", "Nichols chart of the loop", caption))))
 }
 
-/// The open loop of each worst plant, where it violates.
+/// The open loop of each worst plant at which it violates a specification.
 fn violations(problem: &RobustProblem, view: &ProjectAudit) -> Vec<OpenLoopViolation> {
     let violated = view.audit.specifications.iter().filter(|finding| finding.verdict == Verdict::Violated);
     violated

@@ -17,7 +17,7 @@ use crate::project::{Distribution, Loaded};
 use crate::simulate::{Cause, Metric, PerMetric, Window, cause_words, shown_in, status_words};
 use crate::source::Source;
 
-/// Number of runs where the project states none, and their seed.
+/// Number of runs if the project states none, and their seed.
 const RUNS: u64 = 200;
 const SEED: u32 = 1;
 /// Runs from which the work of all is estimated.
@@ -25,7 +25,7 @@ const PILOT_RUNS: u64 = 8;
 /// Steps of the integration that all runs together may take: a minute or two.
 const BUDGET_STEPS: u64 = 10_000_000;
 
-/// Runs whose numbers are printed.
+/// Number of worst runs whose numbers are printed.
 const WORST: usize = 4;
 
 /// Significant digits of the numbers in the tables: an answer has all of them.
@@ -42,13 +42,13 @@ pub(super) struct CampaignChapter {
 /// A step of the reference in a run.
 pub(super) struct CampaignStep {
     pub(super) run: u64,
-    /// Where it begins, and by what.
+    /// Beginning of the step and its cause.
     pub(super) window: Window,
-    /// Percent of the step.
+    /// Overshoot, percent of the step.
     pub(super) overshoot_percent: Option<f64>,
-    /// s; infinite where it does not settle.
+    /// Settling time, s; infinite if the step does not settle.
     pub(super) settling_time_s: f64,
-    /// From 10 to 90 percent, s; infinite where it does not rise so far.
+    /// Rise time from 10 to 90 percent, s; infinite if the step does not rise that far.
     pub(super) rise_time_s: f64,
     /// The band of the settling time, percent of the step.
     pub(super) band_percent: f64,
@@ -58,7 +58,7 @@ pub(super) struct CampaignStep {
 /// without `[campaign]`.
 ///
 /// # Errors
-/// [`CommandError::Stopped`] where the watch stops it.
+/// [`CommandError::Stopped`] if the watch stops it.
 pub(super) fn driven(
     source: &dyn Source,
     (loaded, is_designed): (&Loaded, bool),
@@ -105,8 +105,8 @@ fn within_budget(asked: u64, pilot: &[Row]) -> u64 {
     runs_within_budget(asked, [pilot.len() as u64, steps])
 }
 
-/// As many of the requested runs as a report makes within its steps of integration, judged by the
-/// runs that were made first and by their steps.
+/// Number of the requested runs that fits the report's budget of integration steps, estimated from
+/// the first runs and their steps.
 pub fn runs_within_budget(asked: u64, [made, steps]: [u64; 2]) -> u64 {
     match made.saturating_mul(BUDGET_STEPS).checked_div(steps) {
         Some(most) => asked.min(most.max(made)),
@@ -134,13 +134,13 @@ fn steps(loaded: &Loaded, plan: &Plan, rows: &[Row]) -> Vec<CampaignStep> {
         .collect()
 }
 
-/// Metrics of an event that a reader wants first, the best of those that it has.
+/// Metrics of an event that a reader wants first; the first of these that the event has are shown.
 const TOLD_FIRST: [Metric; 4] =
     [Metric::DisturbancePeak, Metric::SettlingTime, Metric::TrackingErrorPeak, Metric::ForcePeak];
 /// Number of events in the summary.
 const TOLD_EVENTS: usize = 2;
 
-/// How many were completed, and the range of most of them in the first events.
+/// The number of completed runs, and the range of most of them in the first events.
 fn words(runs: u64, plan: &Plan, summary: &Summary) -> String {
     let mut told = vec![format!("{} of {runs} runs completed", summary.statuses[0])];
     let units = plan.units();
@@ -244,7 +244,7 @@ fn drawn(out: &mut Document, plan: &Plan, summary: &Summary) {
     out.table(Table::new(heads).with(plan.ranges().iter().enumerate().map(row)));
 }
 
-/// How the numbers are distributed, in sentences.
+/// The distributions of the numbers, in sentences.
 fn distributions(plan: &Plan) -> String {
     let known = grouped(plan.ranges().iter().map(|range| (range.distribution_word(), range.path.as_str())));
     let plain = |word: &str| word.replace('_', "-");

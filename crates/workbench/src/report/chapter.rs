@@ -2,7 +2,7 @@ use crate::caveat::of_models_in_words;
 use crate::document::{Document, StatusMark};
 use crate::setup::Setup;
 
-/// One chapter of the report.
+/// A chapter of the report.
 pub(super) struct Chapter {
     /// Anchor of the chapter on the page.
     pub(super) anchor: &'static str,
@@ -13,14 +13,14 @@ pub(super) struct Chapter {
 }
 
 impl Chapter {
-    /// With what a document says.
+    /// A chapter with the content of a document.
     pub(super) const fn of(anchor: &'static str, title: &'static str, document: Document) -> Chapter {
         Chapter { anchor, title, document }
     }
 }
 
 impl Document {
-    /// The effects that a chapter on the linear loop does not include, if any.
+    /// Adds the effects that a chapter on the linear loop does not include, if any.
     pub(super) fn left_out(&mut self, setup: &Setup<'_>) {
         for sentence in of_models_in_words(setup) {
             self.verdict(StatusMark::Note, sentence, vec![]);

@@ -19,7 +19,7 @@ use crate::verdict_words::frequency_words;
 /// Number of members that are drawn, in addition to the worst.
 pub(super) const DRAWN_MEMBERS: usize = 40;
 
-/// How far beyond design frequencies and violations the figures reach.
+/// Factor by which the figures extend beyond design frequencies and violations.
 const MARGIN_OF_FREQUENCY: f64 = 10.0;
 
 /// The frequencies that a figure of this finding covers, rad/s.
@@ -33,9 +33,9 @@ fn span(specification: &Specification, finding: &SpecificationFinding) -> [f64; 
     if ends.is_empty() { [0.01, 1000.0] } else { [low / MARGIN_OF_FREQUENCY, high * MARGIN_OF_FREQUENCY] }
 }
 
-/// The family of plants within one loop, and what its audit found.
+/// The family of plants within one loop, and the findings of its audit.
 pub(super) struct LoopFamily<'a> {
-    /// Name of the loop; empty where there is one.
+    /// Name of the loop; empty if there is only one.
     name: &'static str,
     problem: &'a RobustProblem,
     view: &'a ProjectAudit,
@@ -51,13 +51,13 @@ impl<'a> LoopFamily<'a> {
         Ok(LoopFamily { name, problem, view, members: problem.members()? })
     }
 
-    /// What the audit found, if the specification has a margin: the magnitudes of an unstable loop
-    /// do not describe a response.
+    /// The finding of the audit, if the specification has a margin: the magnitudes of an unstable
+    /// loop do not describe a response.
     fn finding(&self, index: usize) -> Option<&SpecificationFinding> {
         self.view.audit.specifications.get(index).filter(|finding| finding.worst.is_some())
     }
 
-    /// Of each plant, the one that the audit found worst as the last.
+    /// The curve of each plant, with the worst one of the audit as the last.
     fn curves(&self, index: usize, requirement: &Requirement, frequencies: &[f64]) -> Vec<MagnitudeCurve> {
         let worst = self.finding(index).and_then(|found| self.problem.member(&found.worst.as_ref()?.plant));
         let members = self.members.iter().chain(&worst);
@@ -80,9 +80,9 @@ impl<'a> LoopFamily<'a> {
     }
 }
 
-/// A specification in these loops, with every member in the first of them, and whether it is shown
-/// by the spread of the family, which a prefilter does not change. `None` if no loop has a margin
-/// to it.
+/// A specification in these loops, with every member in the first of them; true if it is shown by
+/// the spread of the family, which a prefilter does not change. `None` if no loop has a margin to
+/// it.
 pub(super) fn magnitudes(
     loops: &[LoopFamily<'_>],
     index: usize,
@@ -141,7 +141,7 @@ fn frequencies(seen: &[&LoopFamily<'_>], index: usize, specification: &Specifica
     sorted_distinct(frequencies)
 }
 
-/// One figure for each specification that has a margin.
+/// A figure for each specification that has a margin.
 pub(super) fn figures(problem: &RobustProblem, view: &ProjectAudit) -> Result<Vec<Figure>, LinearError> {
     let family = [LoopFamily::new("", problem, view)?];
     let specifications = problem.specifications.iter().enumerate();
@@ -170,7 +170,7 @@ fn figure(family: &[LoopFamily<'_>; 1], index: usize, specification: &Specificat
     Some(chart.draw(&Words::new(name, titled(problem.number_of(index), title), caption)))
 }
 
-/// Keeps some of the curves, and the last, which is that of the worst plant.
+/// Thins out the curves; retains the last, which is that of the worst plant.
 fn thin_out(curves: &mut Vec<MagnitudeCurve>) {
     let (last, step) = (curves.len().saturating_sub(1), curves.len() / DRAWN_MEMBERS + 1);
     let mut index = 0;
@@ -180,7 +180,7 @@ fn thin_out(curves: &mut Vec<MagnitudeCurve>) {
     });
 }
 
-/// The second over the first.
+/// The second curve divided by the first.
 fn quotient([low, high]: [MagnitudeCurve; 2]) -> MagnitudeCurve {
     MagnitudeCurve {
         magnitudes: high.magnitudes.iter().zip(&low.magnitudes).map(|(high, low)| high / low).collect(),
@@ -188,7 +188,7 @@ fn quotient([low, high]: [MagnitudeCurve; 2]) -> MagnitudeCurve {
     }
 }
 
-/// Where the spread is worst compared with the allowed one.
+/// A mark at the frequency at which the spread is worst relative to the allowed one.
 fn spread_mark(allowed: &MagnitudeCurve, finding: &SpecificationFinding) -> Option<MagnitudeMark> {
     let worst = finding.worst.as_ref()?;
     let place = worst.frequency_rad_per_s;
@@ -239,7 +239,7 @@ fn extreme(curves: &[MagnitudeCurve], choose: fn(f64, f64) -> f64) -> MagnitudeC
     extreme
 }
 
-/// Where a finding is worst, and by how much.
+/// A mark at the frequency of the worst finding, with the distance to the limit.
 fn mark(
     problem: &RobustProblem,
     requirement: &Requirement,

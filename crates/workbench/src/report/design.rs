@@ -1,5 +1,5 @@
 //! The chapter on the design: the designed controller compared with the given one, in figures of
-//! both, and what the specifications cost.
+//! both, and the cost of the specifications.
 
 mod loops;
 mod magnitudes;
@@ -29,7 +29,7 @@ use crate::setup::Setup;
 use crate::source::Source;
 use crate::trial::{self, Trial};
 
-/// Whether the report of a project designs a controller: if it has `[design]`, or gives no
+/// True if the report of a project designs a controller: the project has `[design]`, or gives no
 /// controller.
 pub(super) fn is_asked_for(project: &Project) -> bool {
     let has_law = project.controller.as_ref().is_some_and(|controller| controller.has_law());
@@ -50,10 +50,10 @@ pub(super) struct FoundDesign {
     view: ProjectDesign,
 }
 
-/// Looks for a controller.
+/// Searches for a controller.
 ///
 /// # Errors
-/// Errors that leave nothing to report; that no controller is found is not one of them.
+/// Errors that leave nothing to report; a search that finds no controller is not an error.
 pub(super) fn designed(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -77,7 +77,7 @@ pub(super) fn designed(
 }
 
 impl Designed {
-    /// The design, where one was found.
+    /// The design, if one was found.
     pub(super) fn found(&self) -> Option<&ProjectDesign> {
         match self {
             Designed::Found(found) => Some(&found.view),
@@ -93,7 +93,7 @@ impl Designed {
         self.found().map_or(Ok(None), |view| Ok(loops::figure(view, bounds)?))
     }
 
-    /// In a few words.
+    /// The design in a few words.
     pub(super) fn words(&self) -> String {
         let Designed::Found(found) = self else { return "none found".to_string() };
         let side = &found.view.designed;

@@ -13,30 +13,31 @@ use phea_dynamics::watch::{Stopped, Watch};
 
 /// Name of the controller that the project gives.
 pub(super) const GIVEN: &str = "given";
-/// Name of the one that was designed.
+/// Name of the designed controller.
 pub(super) const DESIGNED: &str = "designed";
 
 /// The runs of the machine in every scenario.
 pub(super) struct MachineChapter {
     /// Given and designed controller, if they exist.
     pub(super) sides: Vec<DrivenSide>,
-    /// What is required of a step in time, of the first specification that does so.
+    /// Requirement in time for a step, from the first specification that has one.
     pub(super) required: Option<TimeRequirement>,
 }
 
-/// The same under one controller.
+/// The runs under one controller.
 pub(super) struct DrivenSide {
-    /// [`GIVEN`] or [`DESIGNED`].
+    /// Name of the controller: [`GIVEN`] or [`DESIGNED`].
     pub(super) name: &'static str,
-    /// In file order, or why there are none.
+    /// The runs in file order, or the reason why there are none.
     pub(super) runs: Result<Vec<ScenarioRun>, SimulateError>,
 }
 
-/// Drives the scenarios under the given controller, and under the `designed` one where there is
-/// one; `None` without scenarios.
+/// Drives the scenarios under the given controller, and under the `designed` one if there is one;
+/// `None` without scenarios.
 ///
 /// # Errors
-/// [`CommandError::Stopped`] where the watch stops it, or where a wish in time is invalid.
+/// [`CommandError::Stopped`] if the watch stops it, or an error if a requirement in time is
+/// invalid.
 pub(super) fn driven(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -62,12 +63,13 @@ pub(super) fn driven(
 }
 
 impl MachineChapter {
-    /// What is required of the steps in a scenario; `None` where it has none that this is about.
+    /// Requirement in time for the steps of a scenario; `None` if the scenario has no step to which
+    /// it applies.
     pub(super) fn wish_of(&self, index: usize) -> Option<&TrackingWish> {
         self.required_of(index).map(|required| &required.wish)
     }
 
-    /// The same with the steps that it is about.
+    /// The requirement together with the steps to which it applies.
     pub(super) fn required_of(&self, index: usize) -> Option<&TimeRequirement> {
         let required = self.required.as_ref()?;
         let windows = self.sides.iter().filter_map(|side| run_of(side, index)).flat_map(|run| &run.windows);
@@ -86,15 +88,15 @@ impl MachineChapter {
         named
     }
 
-    /// The same in the order of the figures that compare both, whose first colour is the designed
-    /// one's.
+    /// The runs of a scenario in the order of the figures that compare both controllers; the first
+    /// colour is that of the designed one.
     pub(super) fn drawn(&self, index: usize) -> Vec<NamedRun<'_>> {
         let mut named = self.of_scenario(index);
         named.reverse();
         named
     }
 
-    /// The runs of one controller; `None` where it was not driven.
+    /// The runs of one controller; `None` if it was not driven.
     pub(super) fn runs_of(&self, name: &str) -> Option<&[ScenarioRun]> {
         let side = self.sides.iter().find(|side| side.name == name)?;
         side.runs.as_deref().ok()

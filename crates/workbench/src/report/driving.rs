@@ -9,7 +9,7 @@ const DIGITS: usize = 4;
 const TOLD: usize = 4;
 
 /// The initial state and the inputs of a scenario, if these are more than steps of the reference;
-/// the load turns behind a linkage, or moves with the rod.
+/// `turns` is true if the load is driven through a linkage, otherwise it moves with the rod.
 pub(super) fn sentences(scenario: &Scenario, units: Units, turns: bool) -> Vec<String> {
     let mut told = Vec::new();
     if let Some(file) = scenario.start.as_ref().and_then(|start| start.file.as_ref()) {
@@ -42,7 +42,7 @@ pub(super) fn sentences(scenario: &Scenario, units: Units, turns: bool) -> Vec<S
     told
 }
 
-/// All parts, joined.
+/// The parts of an input, joined.
 fn parts(signals: &[InputSignal], unit: DisplayUnit) -> String {
     let steps: Vec<String> = signals
         .iter()

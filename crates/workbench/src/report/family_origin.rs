@@ -1,5 +1,5 @@
-//! The chapter on where the family comes from: how much of the ranges that it replaces the rig
-//! reaches, how much smaller its templates are, and what that gives the controller.
+//! The chapter on the origin of the family: the part of the replaced ranges that the rig reaches,
+//! the reduction of the templates, and the benefit for the controller.
 
 use phea_dynamics::watch::Watch;
 
@@ -17,7 +17,7 @@ use crate::source::Source;
 use crate::specification::numbered;
 use crate::verdict_words::frequency_number;
 
-/// `None` where the project says of no range that its family replaces it.
+/// The chapter; `None` if no range of the project is replaced by its family.
 pub(super) fn chapter(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -47,7 +47,7 @@ pub(super) fn chapter(
     Ok(Some(Chapter::of("family", "Where the family comes from", out)))
 }
 
-/// What the family is of.
+/// Origin of the family.
 fn origin(project: &Project) -> String {
     let region = project.family.as_ref().and_then(|family| family.operating_region.as_ref());
     let mut parts = Vec::new();
@@ -80,7 +80,7 @@ fn area(areas: &TemplateAreas) -> [Cell; 4] {
     ]
 }
 
-/// The worst margins of the same controller over both.
+/// The worst margins of the given controller over both families.
 fn margins(over_box: &ProjectAudit, own: &ProjectAudit) -> Table {
     let rows = own.audit.specifications.iter().zip(&over_box.audit.specifications).enumerate();
     let margin = |found: &phea_qft::verification::SpecificationFinding| match &found.worst {

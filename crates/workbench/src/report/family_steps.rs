@@ -12,14 +12,14 @@ use crate::figure::{FamilySteps, Figure, TimeBand, TimeSeries, Words};
 use crate::linear_step::{StepResponse, linear_step};
 use crate::robust::RobustProblem;
 
-/// Points of each response, and of those of the limits.
+/// Number of points of each response, and of those of the limits.
 const POINTS: usize = 1200;
 const SAMPLES: usize = 600;
 /// Time constants of the slowest pole of the lower limit that are shown.
 const TIME_CONSTANTS: f64 = 8.0;
 
-/// The figure under a name and a title, or why there is none; `None` where no tracking is specified
-/// by transfer functions.
+/// The figure under a name and a title, or the reason why there is none; `None` if no tracking is
+/// specified by transfer functions.
 pub(super) fn figure(
     problem: &RobustProblem,
     view: &ProjectAudit,

@@ -74,7 +74,7 @@ pub(super) fn chapter(
     Ok(Chapter::of("impedance", "The impedance at the load", out))
 }
 
-/// The virtual impedance; empty where the project states none.
+/// The virtual impedance; empty if the project states none.
 fn required(linearization: &Linearization) -> Document {
     let mut out = Document::default();
     let Some(asked) = &linearization.asked else { return out };
@@ -166,7 +166,7 @@ fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {
     let mut lines: Vec<AsymptoteLine> = Vec::new();
     for (name, view) in views(linearization) {
         for asymptote in &view.asymptotes {
-            // Plateau and limit are the same for both loops; one line is enough.
+            // Plateau and limit are equal for both loops; one line is enough.
             if name != "open loop" && asymptote.kind != AsymptoteKind::LowFrequency {
                 continue;
             }
@@ -214,7 +214,7 @@ fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {
     Ok(chart.draw(&Words::new("impedance", "Driving-point impedance", caption)))
 }
 
-/// A range of frequencies, whose upper end may be infinite.
+/// A range of frequencies; its upper end may be infinite.
 fn between(from: f64, to: f64) -> String {
     let [low, high] = [from, to].map(|frequency| significant(frequency, 3));
     match (from > 0.0, to.is_finite()) {

@@ -20,7 +20,7 @@ pub(super) struct Judged {
     pub(super) bounds: Vec<DesignFrequency>,
     /// The audit of the given controller; `None` without one.
     pub(super) given: Option<ProjectAudit>,
-    /// The trial of it on the machine.
+    /// The trial of the given controller on the machine.
     pub(super) given_trial: Option<Trial>,
     /// The result of the design; `None` if no design was requested.
     pub(super) designed: Option<Designed>,
@@ -29,8 +29,8 @@ pub(super) struct Judged {
 /// Judges a project; `None` without specifications.
 ///
 /// # Errors
-/// [`CommandError`] for a family or a controller that cannot be computed, and where the watch stops
-/// it.
+/// [`CommandError`] for a family or a controller that cannot be computed; [`CommandError::Stopped`]
+/// if the watch stops it.
 pub(super) fn judged(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -63,7 +63,7 @@ pub(super) fn judged(
 }
 
 impl Judged {
-    /// The design, where one was found.
+    /// The design, if one was found.
     pub(super) fn found(&self) -> Option<&ProjectDesign> {
         self.designed.as_ref()?.found()
     }

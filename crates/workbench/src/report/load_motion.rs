@@ -13,7 +13,7 @@ use crate::over_time::{Trace, chart, measured_force, panel, trace};
 use crate::project::{LoadMotion, MotionShape, Project};
 use crate::quantity::Units;
 
-/// The motion that is shown where no scenario moves the load: 1 mm in 0.1 s.
+/// Motion of the load if no scenario moves it: 1 mm in 0.1 s.
 const MOTION: (f64, f64) = (1e-3, 0.1);
 
 /// Samples of the motion; straight between them.
@@ -29,7 +29,7 @@ fn motion(project: &Project) -> (f64, f64) {
         MotionShape::SmoothStep { duration, distance } => Some((distance, duration)),
         _ => None,
     };
-    // behind a linkage a scenario turns the joint
+    // a scenario turns the joint if there is a linkage
     let turns = project.actuator.as_ref().is_some_and(|actuator| actuator.linkage.is_some());
     project
         .scenarios
@@ -54,11 +54,11 @@ fn velocity(distance: f64, duration: f64) -> Result<SampledSignal, TimeResponseE
 
 /// The force at one port while the load moves.
 pub(super) struct Moved {
-    /// Which loop.
+    /// Name of the loop.
     pub(super) name: &'static str,
-    /// Whether the ground of the load moves and not the load itself.
+    /// True if the ground of the load moves and not the load itself.
     pub(super) moves_ground: bool,
-    /// Absent where the port is unstable.
+    /// The force; absent if the port is unstable.
     pub(super) force: Option<MovedForce>,
 }
 
@@ -92,7 +92,7 @@ pub(super) fn forces(
             forces.push(Moved { name, moves_ground: view.moves_ground, force: None });
             continue;
         };
-        // F_e = -Z (s X_L), of a load that yields with its ground in place of X_L
+        // F_e = -Z (s X_L); for a load that yields, its ground takes the place of X_L
         let force = view.by_motion.series(&TransferFunction::gain_only(-1.0))?;
         let values = forced_response(&force, &input, &times_s)?;
         let peak_n = values.iter().copied().fold(0.0, larger);
@@ -128,11 +128,11 @@ fn end(forces: &[Moved], units: Units) -> String {
     sentences.join(" ")
 }
 
-/// What moves, in words: the ground of a load that yields.
+/// The moving body in words: the ground of a load that yields.
 pub(super) fn what_moves(project: &Project, is_ground: bool) -> &'static str {
     let linked = project.actuator.as_ref().is_some_and(|actuator| actuator.linkage.is_some());
     match (is_ground, linked) {
-        // a linkage is behind a rod
+        // a linkage is driven by a rod
         (true, true) => "the ground of the load, as seen at the rod's end,",
         (true, false) => "the ground of the load",
         (false, true) => "the rod's end",

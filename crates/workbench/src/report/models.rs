@@ -62,7 +62,7 @@ fn poles(linearization: &Linearization) -> Figure {
     chart.draw(&Words::new("poles", "Pole map", &caption))
 }
 
-/// The models with the values in use, the plant first, which may be the fifth-order model.
+/// The models with the values in use; the plant, which may be the fifth-order model, is first.
 fn responses(linearization: &Linearization) -> Result<Figure, LinearError> {
     let mut models = vec![
         ("fifth order (6.7)", &linearization.full.command),

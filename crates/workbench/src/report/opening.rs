@@ -1,5 +1,5 @@
-//! The first page: the specifications, how well the given and the designed controller satisfy them,
-//! the main numbers, force over time, the loop in its Nichols chart, and what to do next.
+//! The first page: the specifications, the verdicts on the given and the designed controller, the
+//! main numbers, force over time, the loop in its Nichols chart, and the next steps.
 
 mod next;
 mod side;
@@ -33,39 +33,39 @@ pub(super) struct Contents<'a> {
     pub(super) results: &'a Facts,
     /// The steps of the reference in the campaign, under the given controller.
     pub(super) campaign: &'a [CampaignStep],
-    /// Whether a hose was required and none fits.
+    /// True if a hose was required and none fits.
     pub(super) no_hose_fits: bool,
 }
 
 /// The content of the page for programs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Decision {
-    /// The controller that the project gives; absent where it gives none.
+    /// The controller that the project gives; absent if it gives none.
     pub given: Option<Decided>,
-    /// The one that was designed.
+    /// The designed controller.
     pub designed: Option<Decided>,
-    /// What to do next, a sentence each.
+    /// The next steps, a sentence each.
     pub next: Vec<String>,
 }
 
-/// What is known about one controller; absent where it was not requested.
+/// Findings on one controller; absent if they were not requested.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Decided {
     /// Verdict on the family: `met`, `violated`, `not_proven`.
     pub verdict: Option<&'static str>,
-    /// The same for each specification, in file order.
+    /// Verdict on each specification, in file order.
     pub specifications: Vec<&'static str>,
-    /// Whether all of that is proven for every plant and every frequency; absent where no proof was
+    /// True if all verdicts are proven for every plant and every frequency; absent if no proof was
     /// attempted.
     pub proven: Option<bool>,
     /// The trial of the verdict on the machine: `agrees`, `differs`, `contradicts`.
     pub machine: Option<&'static str>,
-    /// Whether every step on the machine met the wish in time.
+    /// True if every step on the machine satisfied the requirement in time.
     pub wishes_kept: Option<bool>,
 }
 
 impl Decision {
-    /// For programs.
+    /// The content as JSON.
     pub(crate) fn json(&self) -> Object {
         Object::new()
             .maybe("given", self.given.as_ref().map(Decided::json))
@@ -104,7 +104,7 @@ pub(super) fn opening(contents: &Contents<'_>, nichols: Option<Figure>) -> (Chap
     pair.figures(figures);
     match count {
         0 => out.append(steps),
-        // next to a figure that stands alone
+        // placed next to a figure that has no partner
         1 => {
             pair.append(steps);
             out.beside(pair);
@@ -138,7 +138,7 @@ fn decided(contents: &Contents<'_>, side: &Side<'_>) -> Decided {
     }
 }
 
-/// What prevents any controller, stated first.
+/// Obstacles to any controller, stated first.
 fn hindrances(contents: &Contents<'_>) -> Vec<String> {
     let found = contents.judged.and_then(Judged::found);
     let explained = found.into_iter().flat_map(|view| view.explanations.iter().map(move |one| (view, one)));

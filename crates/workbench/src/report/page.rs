@@ -5,7 +5,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use super::chapter::Chapter;
 use crate::figure::style_sheet;
 
-/// The whole page before it is written.
+/// The content of the whole page before it is written.
 pub(super) struct Page<'a> {
     pub(super) title: &'a str,
     pub(super) subtitle: &'a str,
@@ -18,7 +18,7 @@ pub(super) struct Page<'a> {
 }
 
 impl Page<'_> {
-    /// The file.
+    /// Returns the HTML of the page.
     pub(super) fn html(&self) -> String {
         let style = format!("{}{}", include_str!("style.css"), style_sheet());
         html! {

@@ -8,7 +8,7 @@ use crate::design::DESIGNED_CERTIFICATE;
 use crate::document::Document;
 use crate::project::Project;
 
-/// `None` if there is no controller.
+/// The chapter; `None` if there is no controller.
 pub(super) fn chapter(project: &Project, judged: &Judged) -> Option<Chapter> {
     let designed = judged.found().map(|found| &found.designed.view);
     let sides = [
@@ -30,7 +30,7 @@ pub(super) fn chapter(project: &Project, judged: &Judged) -> Option<Chapter> {
     Some(Chapter::of("proven", "What is proven", out))
 }
 
-/// Where the certificate of the proof is, and what it contains.
+/// File of the proof's certificate, and its contents.
 fn certified(view: &ProjectAudit, file: &str) -> Option<String> {
     let certificate = view.proof.as_ref()?.certificate.as_ref()?;
     Some(format!(

@@ -1,4 +1,5 @@
-//! The chapter on provenance: where each number comes from, what was assumed, what was not proven.
+//! The chapter on provenance: the origin of each number, the assumptions, and the claims that were
+//! not proven.
 
 use super::assumptions::assumptions;
 use super::chapter::Chapter;
@@ -49,7 +50,7 @@ fn paths(loaded: &Loaded, keep: impl Fn(&Origin) -> bool) -> Vec<&str> {
     loaded.provenance.iter().filter(|entry| keep(&entry.origin)).map(|entry| entry.path.as_str()).collect()
 }
 
-/// What this report does not cover.
+/// Statement on the scope that this report does not cover.
 fn not_proven(project: &Project, is_judged: bool) -> String {
     match (is_judged && !project.specifications.is_empty(), project.actuator.is_some()) {
         (true, true) => {

@@ -8,8 +8,8 @@ use crate::project::Loaded;
 use crate::source::Source;
 use phea_dynamics::watch::Watch;
 
-/// What the recordings of the project say of the friction of its cylinder; nothing where it
-/// declares none.
+/// Findings of the recordings of the project on the friction of its cylinder; nothing if the
+/// project declares none.
 pub(super) fn chapter(
     source: &dyn Source,
     loaded: &Loaded,

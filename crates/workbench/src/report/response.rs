@@ -12,7 +12,7 @@ use crate::over_time::ForceStep;
 use crate::quantity::{DisplayUnit, Units};
 use crate::setup::Setup;
 
-/// Height of the drawn step where the project's scenarios give none, N.
+/// Height of the drawn step if the project's scenarios give none, N.
 const REFERENCE: f64 = 1000.0;
 
 pub(super) fn chapter(

@@ -31,12 +31,12 @@ fn shown(value: f64, dimension: &Dimension) -> String {
     quantity::display(value, dimension, 4)
 }
 
-/// Who reads what the cylinder is.
+/// Text or drawing next to which the cylinder is described.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Beside {
-    /// A drawing, which shows at which end a rod comes out.
+    /// A drawing, which shows the end at which a rod comes out.
     Drawing,
-    /// Other words.
+    /// Words only.
     Words,
 }
 
@@ -50,7 +50,7 @@ fn moving_words(actuator: &project::DeclaredActuator, beside: Beside) -> String 
     }
 }
 
-/// kg or kg m2.
+/// Moving mass or inertia, kg or kg m2.
 fn moving_mass(actuator: &project::DeclaredActuator) -> f64 {
     actuator.motor.as_ref().map_or(actuator.cylinder.moving_mass, |motor| motor.inertia)
 }
@@ -146,7 +146,7 @@ pub(super) fn load_words(actuator: &project::DeclaredActuator) -> String {
     }
 }
 
-/// What lies between rod and joint in a few words.
+/// The linkage between rod and joint in a few words.
 fn linkage_words(linkage: &project::DeclaredLinkage) -> String {
     let mm = |length: f64| shown(length, &LENGTH);
     let between = |triangle: &CylinderTriangle| {
@@ -167,7 +167,7 @@ fn linkage_words(linkage: &project::DeclaredLinkage) -> String {
     }
 }
 
-/// What lies between force sensor and load: its name, and what it is in a few words.
+/// The part between force sensor and load: its name, and its description in a few words.
 fn series_words(series: &DeclaredSeries) -> [String; 2] {
     match series {
         DeclaredSeries::Spring(spring) => ["series spring".to_string(), spring_words(spring)],
@@ -256,7 +256,7 @@ fn facts(actuator: &project::DeclaredActuator, rig: &Rig) -> Table {
     Table::new(["component", "declared"]).with(rows.into_iter().map(|(name, text)| [name.to_string(), text]))
 }
 
-/// A valve between the chambers in a few words, with what it costs at rest.
+/// A valve between the chambers in a few words, with its flow and loss at rest.
 fn cross_port_words(found: &CrossPortAtPoint) -> String {
     let conductance = quantity::significant(found.conductance, 3);
     let kind = match (found.valve.restrictor, found.valve.capacity) {

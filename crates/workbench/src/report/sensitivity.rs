@@ -20,11 +20,10 @@ use crate::source::Source;
 const STIFFNESS_FACTORS: [f64; 4] = [0.1, 0.5, 1.0, 2.0];
 const FRICTION_FACTORS: [(f64, &str); 4] = [(0.0, "none"), (0.5, "half"), (1.0, "all of it"), (2.0, "twice")];
 
-/// The chapter, of the first controller that was driven, whose project this is; `None` where none
-/// was.
+/// The chapter, for the first controller that was driven, with its project; `None` if none was.
 ///
 /// # Errors
-/// [`CommandError::Stopped`] where the watch stops it.
+/// [`CommandError::Stopped`] if the watch stops it.
 pub(super) fn chapter(
     source: &dyn Source,
     project: &Project,

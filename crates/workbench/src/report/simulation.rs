@@ -1,5 +1,5 @@
 //! The chapter on the nonlinear model: each scenario over time under each controller, and its
-//! metrics compared with wishes, published values and measurements.
+//! metrics compared with requirements in time, published values and measurements.
 
 use super::chapter::Chapter;
 use super::driven::MachineChapter;
@@ -60,7 +60,7 @@ pub(super) fn inside(project: &Project, driven: &MachineChapter) -> Option<Chapt
     Some(Chapter::of("inside", "Inside the simulated rig at each event", out))
 }
 
-/// All controllers in one figure; a single controller with all signals.
+/// Figures of all controllers together; for a single controller, figures of all signals.
 fn drawn(runs: &[NamedRun<'_>], number: usize, wish: Option<&TrackingWish>) -> Vec<Figure> {
     match runs {
         [alone] => pictures(alone.run, number),
@@ -160,7 +160,7 @@ fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, required: Option<&TimeReq
     out
 }
 
-/// What was wished, in words.
+/// The requirement in time, in words.
 fn wished(wish: &TrackingWish) -> Option<String> {
     let words: Vec<String> =
         [required_overshoot(wish), required_settling(wish)].into_iter().flatten().collect();

@@ -25,7 +25,7 @@ pub(super) fn chapter(problem: &SizingProblem, sizing: &Sizing) -> Chapter {
     Chapter::of("sizing", "Sizing of the hose", out)
 }
 
-/// In place of it: why the procedure does not apply to the rig.
+/// Replacement for the chapter: the reason why the procedure does not apply to the rig.
 pub(super) fn refused(error: &SizingError) -> Chapter {
     let mut out = Document::default();
     out.verdict(StatusMark::Note, "No hose is sized", vec![error.to_string()]);

@@ -81,8 +81,8 @@ fn step_row(required: &TimeRequirement, unit: DisplayUnit) -> [Cell; 5] {
     ]
 }
 
-/// The title of a figure: `Specification 2, tracking`, or the name alone of one that is not in the
-/// file.
+/// The title of a figure: `Specification 2, tracking`, or only the name of a specification that is
+/// not in the file.
 pub(super) fn titled(number: Option<usize>, name: &str) -> String {
     number.map_or_else(|| name.to_string(), |number| format!("Specification {number}, {name}"))
 }
@@ -157,7 +157,7 @@ fn factors(roots: &[Complex64], variable: char) -> Vec<String> {
     roots.iter().filter(|root| root.im >= 0.0).map(factor).collect()
 }
 
-/// How far apart the limits of tracking are; empty for other kinds.
+/// Distance between the limits of tracking; empty for other kinds.
 fn spread(out: &mut Document, name: &str, specification: &Specification) {
     let (Some(lower), upper) = specification.requirement.limits() else { return };
     let decibels = |value: f64| if value.abs() < 5e-4 { "0".to_string() } else { significant(value, 3) };

@@ -16,7 +16,7 @@ use crate::quantity::{MotionWords, Units};
 use crate::rig::Rig;
 use crate::sizing::model_name;
 
-/// Positions of a curve over the stroke.
+/// Number of positions of a curve over the stroke.
 const POSITIONS: u32 = 120;
 
 pub(super) fn chapter(
@@ -34,7 +34,7 @@ pub(super) fn chapter(
     Chapter::of("stiffness", "Stiffness over the stroke", out)
 }
 
-/// How both models differ, for lines as the rig has them.
+/// Difference of the two models, for the lines of the rig.
 fn models_sentence(actuator: &DeclaredActuator) -> String {
     let has_hose = [&actuator.line.a, &actuator.line.b].iter().any(|line| line.hose().is_some());
     let mut told = "`uniform` takes the effective bulk modulus of a line for the oil of its chamber too, `by_volume` takes each by itself".to_string();
@@ -105,7 +105,7 @@ fn positions(stroke: f64) -> Vec<f64> {
     (0..=POSITIONS).map(|step| stroke * f64::from(step) / f64::from(POSITIONS)).collect()
 }
 
-/// The declared model where accumulators can be adjusted to.
+/// The declared model at the settings to which the accumulators can be adjusted.
 fn settings(rig: &Rig, stroke: f64) -> Vec<StiffnessCurve> {
     let of = |setting: f64| {
         let places = positions(stroke);

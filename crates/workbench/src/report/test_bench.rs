@@ -12,7 +12,7 @@ use crate::project::{Loaded, Project};
 use crate::source::Source;
 use phea_dynamics::watch::Watch;
 
-/// What the recordings of the project say of its valve; nothing where it declares none.
+/// Findings of the recordings of the project on its valve; nothing if the project declares none.
 pub(super) fn chapter(
     source: &dyn Source,
     loaded: &Loaded,
@@ -53,7 +53,7 @@ fn document(found: &Identification, project: &Project, read: &Read) -> Document 
     out
 }
 
-/// Table 5.1 has both columns, and says in words that one does not reproduce the tests.
+/// Table 5.1 has both columns, and states in words that one does not reproduce the tests.
 fn simple_against_identified(found: &Identification, of_thesis: bool) -> String {
     let squares = |coefficients| -> f64 {
         let shares = found.signals.iter().map(|one| found.residual_rms_of(one, coefficients) / one.range);

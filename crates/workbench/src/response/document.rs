@@ -10,8 +10,8 @@ use crate::quantity::DisplayUnit;
 /// Rows of a table for people; all of them are in the files.
 const SHOWN: usize = 16;
 
-/// A section for each record: how it was taken apart, the response, and what was left out; and one
-/// for each comparison of two.
+/// A section for each record: its division into blocks, the response, and the omitted frequencies;
+/// and one for each comparison of two records.
 pub(crate) fn document(found: &[Compared], comparisons: &[LevelComparison]) -> Document {
     let mut out = Document::default();
     for compared in found {

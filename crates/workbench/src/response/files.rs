@@ -4,7 +4,8 @@ use super::{Averaging, Compared, ReferenceSource};
 use crate::answer::{Csv, OutputFile, significant};
 use crate::quantity::DisplayUnit;
 
-/// A table for each member, as `[family] measured` reads it, and the fragment that names them.
+/// A table for each member, in the form read by `[family] measured`, and the fragment that names
+/// them.
 pub fn files(found: &[Compared]) -> Vec<OutputFile> {
     let names: Vec<String> =
         (0..found.len()).map(|index| format!("{}.response.csv", stem(found, index))).collect();
@@ -22,7 +23,7 @@ pub fn files(found: &[Compared]) -> Vec<OutputFile> {
     files
 }
 
-/// The file's name without folder and ending; with its number where another has the same.
+/// The file's name without folder and ending; with its number if another file has an equal name.
 pub(super) fn stem(found: &[Compared], index: usize) -> String {
     let of = |compared: &Compared| {
         let name = compared.member.file.rsplit(['/', '\\']).next().unwrap_or_default().to_string();

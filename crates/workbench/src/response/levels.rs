@@ -31,7 +31,7 @@ struct DifferenceAt {
     exceeds_noise: bool,
 }
 
-/// The comparison as JSON has it.
+/// The comparison in the form of the JSON.
 pub(super) fn compared_levels<'a>(
     comparison: &'a LevelComparison,
     found: &'a [Compared],

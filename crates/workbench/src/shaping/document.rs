@@ -77,7 +77,7 @@ fn margins(view: &ProjectShaping) -> Table {
         .with(view.margins.iter().map(row))
 }
 
-/// What a placement asks for.
+/// Target of a placement.
 fn placement(placement: &Placement) -> String {
     match placement {
         Placement::Allowed { slack_db } if slack_db.is_infinite() => "any gain is allowed".to_string(),
@@ -104,7 +104,7 @@ fn points(view: &ProjectShaping) -> Table {
     rows
 }
 
-/// dB, and degrees in (-360, 0] as on the chart.
+/// Magnitude in dB, and phase in degrees in (-360, 0] as on the chart.
 pub(super) fn polar(response: num_complex::Complex64) -> (f64, f64) {
     let degrees = portable::argument(response).to_degrees();
     let degrees = if degrees > 0.0 { degrees - 360.0 } else { degrees };

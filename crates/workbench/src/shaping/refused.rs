@@ -1,4 +1,4 @@
-//! A change that cannot be made as a finding in its text, in words.
+//! Words for a change that cannot be made, as a finding in its text.
 
 use phea_engineering::shaping::{Change, ChangeProblem, RefusedChange, ShapingError, solved_kinds};
 
@@ -8,7 +8,7 @@ use crate::spelling::nearest;
 
 const EXAMPLE: &str = "for instance: lead through -6 dB, -130 deg at 20 rad/s";
 
-/// The error of shaping, a change that cannot be made as the refusal of its text.
+/// The error of shaping; for a change that cannot be made, the refusal of its text.
 pub(crate) fn with_text(error: ShapingError) -> ShapingError {
     match error {
         ShapingError::Change(refused) => ShapingError::Refused(refusal(&refused)),

@@ -1,4 +1,4 @@
-//! Reason why no element passes the point that is asked for, in words.
+//! Reason why no element passes the requested point, in words.
 
 use phea_dynamics::portable;
 use phea_qft::manual_shaping::{ElementPattern, NeededCoordinate, PassError, Reach};

@@ -80,11 +80,11 @@ fn why(stopped: &StoppedRun) -> String {
     told.to_string()
 }
 
-/// Metrics that have a column only where some window has them.
+/// Metrics that have a column only if some window has them.
 const RARE: [Metric; 2] = [Metric::TrackingErrorPeak, Metric::ForcePeak];
 
-/// The metrics of each event of a run, judged by the wish. Next to published values only metrics
-/// that some event has are shown.
+/// The metrics of each event of a run, judged by the requirement in time. Next to published values
+/// only metrics that some event has are shown.
 pub(crate) fn windows(
     run: &ScenarioRun,
     required: Option<&TimeRequirement>,
@@ -110,7 +110,7 @@ pub(crate) fn windows(
     rows
 }
 
-/// What is required of a window; `None` where the requirement is not about it.
+/// Requirement in time for a window; `None` if the requirement does not apply to it.
 pub(crate) fn wish_of<'r>(
     required: Option<&'r TimeRequirement>,
     window: &Window,
@@ -118,7 +118,7 @@ pub(crate) fn wish_of<'r>(
     required.filter(|required| concerns(required, window)).map(|required| &required.wish)
 }
 
-/// The metrics of one event, those with a wish marked.
+/// The metrics of one event, with marks on those that have a requirement.
 pub(crate) fn metrics_row(
     name: String,
     shown: &[Metric],
@@ -203,7 +203,7 @@ fn measured_cells(overlay: &Overlay, units: Units) -> [Cell; 5] {
     ]
 }
 
-/// What began a window.
+/// Cause of a window.
 pub(crate) fn cause_words(window: &Window, units: Units) -> String {
     let at = display(window.start_s, &TIME, 4);
     match window.cause {
@@ -249,7 +249,7 @@ pub(crate) fn adjustment_sentence(run: &ScenarioRun) -> Option<String> {
     (!sentences.is_empty()).then(|| sentences.join("; "))
 }
 
-/// How far the gas at the chambers is compressed and heated.
+/// Compression and heating of the gas at the chambers.
 pub(crate) fn gas_sentence(run: &ScenarioRun) -> Option<String> {
     let of = |gas: &GasRange| {
         let pressure = run.record.units.pressure.short(gas.peak_pa, 4);

@@ -42,7 +42,8 @@ pub(crate) fn pictures(run: &ScenarioRun, number: usize) -> Vec<Figure> {
     figures
 }
 
-/// What an overview shows: the whole scenario, or until what repeats has done so twice.
+/// Words for the span of an overview: the whole scenario, or its first part, after which it
+/// repeats.
 pub(super) fn shown_words(run: &ScenarioRun, end_s: f64) -> String {
     match span_of_events(run, end_s)[1] {
         shown if shown < end_s => {
@@ -77,7 +78,7 @@ fn overlaid(run: &ScenarioRun, number: usize, span_s: [f64; 2]) -> Option<Figure
     (!panels.is_empty()).then(|| chart(panels, legend, &events, span_s).draw(&words))
 }
 
-/// Everything at a glance.
+/// Overview of all signals.
 fn overview(words: &Words, run: &ScenarioRun, span_s: [f64; 2]) -> Figure {
     let record = &run.record;
     let mut panels = vec![measured(record, 190.0)];
@@ -118,12 +119,12 @@ pub(super) fn close_up(words: &Words, run: &ScenarioRun, window: &Window, span_s
     drawn(run, panels, span_s).draw(words)
 }
 
-/// Most that a prefiltered reference may leave the range of force and reference, as a part of that
-/// range, to be drawn in their panel.
+/// Largest excursion of a prefiltered reference beyond the range of force and reference, as a
+/// fraction of that range, with which it is still drawn in their panel.
 const LEAVES: f64 = 0.5;
 
 /// The measured force with its reference, before and after the prefilter; a prefiltered reference
-/// that would spoil the scale is left to a panel of its own.
+/// that would spoil the scale gets its own panel.
 fn measured(record: &Record, height: f64) -> CurvePanel {
     let Units { motion, force: unit, .. } = record.units;
     let mut series = vec![over_time(record, record.signal(Signal::Force))];
@@ -140,7 +141,7 @@ fn measured(record: &Record, height: f64) -> CurvePanel {
     force
 }
 
-/// The prefiltered reference by itself, where it does not fit the scale of the force.
+/// The prefiltered reference in its own panel, if it does not fit the scale of the force.
 fn prefiltered(record: &Record) -> Option<CurvePanel> {
     let Units { motion, force: unit, .. } = record.units;
     let title = motion.either("F F_ref", "F T_ref");
@@ -148,7 +149,7 @@ fn prefiltered(record: &Record) -> Option<CurvePanel> {
     (!fits(record)).then(|| named(panel(title, unit, 90.0, vec![series]), ["prefiltered reference"]))
 }
 
-/// Whether the prefiltered reference can be drawn on the scale of force and reference.
+/// True if the prefiltered reference can be drawn on the scale of force and reference.
 fn fits(record: &Record) -> bool {
     let (least, most) =
         extent(record.signal(Signal::Force).into_iter().chain(record.reference_n.iter().copied()));
@@ -182,22 +183,22 @@ pub(super) fn asked_for(record: &Record) -> Option<Trace> {
     (!record.reference_n.is_empty()).then(|| over_time(record, record.reference_n.clone()))
 }
 
-/// Whether the event of a window moves the load.
+/// True if the event of a window moves the load.
 pub(super) fn moves_load(window: &Window) -> bool {
     matches!(window.cause, Cause::LoadMotion | Cause::ExternalForce { .. })
 }
 
-/// What acts on the load from outside.
+/// The external force or torque on the load, in words.
 fn external_words(record: &Record) -> &'static str {
     if turns(record) || record.units.motion.is_rotary() { "external torque" } else { "external force" }
 }
 
-/// What the position of the load is called: behind a linkage it is that of the rod's end.
+/// Words for the position of the load; with a linkage, the position is that of the rod's end.
 fn load_words(record: &Record) -> &'static str {
     if turns(record) { "rod's end" } else { "load" }
 }
 
-/// The force from outside on the load, or the torque on one that turns, if there is one.
+/// The external force on the load, or the torque on one that turns, if there is one.
 fn external_force(record: &Record) -> Option<Vec<f64>> {
     let signals = [Signal::ExternalForce, Signal::ExternalTorque].map(|signal| record.signal(signal));
     signals.into_iter().find(|values| !values.is_empty())
@@ -228,19 +229,20 @@ fn settings(record: &Record) -> Option<CurvePanel> {
     Some(named(panel("Settings s_A, s_B", DisplayUnit::ONE, 90.0, series.into()), ["s_A", "s_B"]))
 }
 
-/// Whether the load turns behind a linkage.
+/// True if the load is driven through a linkage and turns.
 pub(crate) fn turns(record: &Record) -> bool {
     record.parts.linkage
 }
 
-/// The angle of the joint behind a linkage, if there is one.
+/// The angle of the joint, if there is a linkage.
 fn joint(record: &Record) -> Option<CurvePanel> {
     let series = turns(record).then(|| over_time(record, record.signal(Signal::JointAngle)))?;
     Some(named(panel("Joint θ", DisplayUnit::DEGREE, 90.0, vec![series]), ["joint"]))
 }
 
-/// The pressures of gas behind necks and the temperatures of gas that exchanges heat, where there
-/// are any: over that of the wall where the working temperature is not stated.
+/// The pressures of the gas in accumulators with a neck, and the temperatures of the gas that
+/// exchanges heat, if there are any; relative to the wall temperature if the working temperature is
+/// not stated.
 fn gas(record: &Record) -> Vec<CurvePanel> {
     let unstated = [0, 1].map(|side| match record.parts.gas_wall_celsius[side] {
         None => record.signal([Signal::GasTemperatureRatioA, Signal::GasTemperatureRatioB][side]),
@@ -261,7 +263,7 @@ fn gas(record: &Record) -> Vec<CurvePanel> {
     ];
     let there = panels.into_iter().filter(|(_, _, sides)| sides.iter().any(|side| !side.is_empty()));
     let drawn = there.map(|(quantity, unit, sides)| {
-        // a side without such gas keeps its place among the colours: no point of it is drawn
+        // a side without such gas retains its colour, but has no points
         named(
             panel(quantity, unit, 90.0, sides.map(|values| over_time(record, values)).into()),
             ["at A", "at B"],
@@ -296,7 +298,7 @@ fn drawn(run: &ScenarioRun, panels: Vec<CurvePanel>, span_s: [f64; 2]) -> CurveC
     chart(panels, [], &instants(&run.windows, span_s, run.record.units.motion), span_s)
 }
 
-/// The events that have a figure of their own, with their indices among all.
+/// The events that have their own figure, with their indices among all.
 pub(super) fn enlarged(windows: &[(Window, Metrics)], end_s: f64) -> Vec<(usize, &Window)> {
     let begun = windows.iter().map(|(window, _)| window).enumerate();
     let begun: Vec<(usize, &Window)> = begun.filter(|(_, window)| window.start_s < end_s).collect();
@@ -338,7 +340,8 @@ pub(super) fn over_time(record: &Record, values: Vec<f64>) -> Trace {
     trace(&record.times_s, &values)
 }
 
-/// Each scenario over time, its events enlarged, and its steps with their settling bands, as SVG.
+/// Figures of each scenario over time, its events enlarged, and its steps with their settling
+/// bands, as SVG.
 pub(crate) fn figure_files(runs: &[ScenarioRun]) -> Vec<OutputFile> {
     let of_run = |(number, run): (usize, &ScenarioRun)| {
         let mut figures = pictures(run, number + 1);
@@ -387,14 +390,16 @@ fn step(run: &ScenarioRun, window: &Window, (number, event): (usize, usize)) -> 
     Some(shown.chart().draw(&Words::new(format!("simulation-{number}-step-{event}"), title, caption)))
 }
 
-/// Each scenario of a comparison and each of its events, all projects in one figure, as SVG.
+/// Figures of a comparison, with all projects in one figure for each scenario and each of its
+/// events, as SVG.
 pub(crate) fn comparison_files(comparison: &ScenarioComparison<'_>) -> Vec<OutputFile> {
     let scenarios = comparison.scenarios().into_iter().enumerate();
     let figures = scenarios.flat_map(|(number, name)| compared(comparison, name, number + 1));
     picture_files(&figures.collect::<Vec<_>>())
 }
 
-/// One scenario of all projects that have it: the whole, and each event of the first.
+/// Figures of one scenario for all projects that have it: the whole, and each event of the first
+/// project.
 fn compared(comparison: &ScenarioComparison<'_>, name: &str, number: usize) -> Vec<Figure> {
     let titles = comparison.projects.iter().map(|(loaded, _)| loaded.project.title.clone());
     let (titles, runs): (Vec<String>, Vec<&ScenarioRun>) =
@@ -404,7 +409,7 @@ fn compared(comparison: &ScenarioComparison<'_>, name: &str, number: usize) -> V
     laid_over((&format!("compare-{number}"), name, &caption), &titles, &runs)
 }
 
-/// One scenario of several rigs: the whole, and each event of the first of them enlarged.
+/// Figures of one scenario for several rigs: the whole, and each event of the first rig enlarged.
 pub(crate) fn laid_over(
     (file, title, caption): (&str, &str, &str),
     titles: &[String],

@@ -3,7 +3,7 @@
 use super::{BeyondReach, ExceededForce, RestLimit, StepEnd};
 use crate::quantity::{FORCE, PRESSURE, Units, display};
 
-/// A required step that the rig does not reach, and its cure.
+/// A required step that the rig does not reach, and the remedy.
 pub(crate) fn beyond_reach(step: &BeyondReach, units: &Units) -> (String, String) {
     let verb = match step.end {
         StepEnd::Begin => "begins at",
@@ -24,7 +24,7 @@ pub(crate) fn force(value: f64, units: &Units) -> String {
     display(value, units.motion.dimension(&FORCE), 4)
 }
 
-/// A limit on the force that is exceeded, and what changes that.
+/// A limit on the force that is exceeded, and the changes that would raise it.
 pub(crate) fn exceeded_force(exceeded: &ExceededForce, units: &Units) -> (String, String) {
     let reached = force(exceeded.greatest, units);
     match exceeded.limit {

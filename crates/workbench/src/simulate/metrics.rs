@@ -17,8 +17,8 @@ pub(crate) fn metric_cell(metric: Metric, value: f64, units: Units) -> Cell {
     Cell::quantity(value, metric.digits(), shown_in(metric, units))
 }
 
-/// The label of a metric, that of the settling time with its band: `settling (1 %)`; with each band
-/// once where it differs between what is compared.
+/// The label of a metric, for the settling time with its band: `settling (1 %)`; with each band
+/// once if the compared runs have different bands.
 pub(crate) fn label_within(
     metric: Metric,
     bands_percent: impl IntoIterator<Item = f64>,
@@ -42,7 +42,7 @@ pub(crate) fn settling_within(bands_percent: impl IntoIterator<Item = f64>) -> S
     if bands.is_empty() { label.to_string() } else { format!("{label} ({})", bands.join(", ")) }
 }
 
-/// Each metric with its unit.
+/// The cell of each metric, with its unit.
 pub(crate) fn cells_of(metrics: &Metrics, units: Units) -> PerMetric<Cell> {
     PerMetric::of(|metric| match metrics.get(metric) {
         Ok(value) => metric_cell(metric, value, units),

@@ -1,4 +1,4 @@
-//! Reasons for which a run lacks a number, a saved end, accounts or a closed loop.
+//! Reasons why a run lacks a number, a saved end, accounts or a closed loop.
 
 use super::{NoClosedLoop, NoLedger, NotSaved, RunStatus, Unmeasured};
 use crate::quantity::MotionKind;

@@ -50,7 +50,7 @@ fn spread(spread: &PassSpread, motion: MotionKind) -> Object {
         .with("part", spread.part)
 }
 
-/// What amplifies errors, as an answer names it.
+/// Name of the cause that amplifies errors, in an answer.
 pub(super) fn cause_word(cause: GrowthCause) -> &'static str {
     match cause {
         GrowthCause::Mode => "mode",
@@ -75,7 +75,7 @@ pub(super) fn divergence_row(divergence: &Divergence) -> Object {
     }
 }
 
-/// How a run diverges.
+/// Words for the way in which a run diverges.
 pub(super) fn divergence_words(divergence: &Divergence, units: Units) -> String {
     let since = DisplayUnit::SECOND.number(divergence.since_s(), 4);
     match *divergence {
@@ -97,7 +97,7 @@ pub(super) fn divergence_words(divergence: &Divergence, units: Units) -> String 
     }
 }
 
-/// Results that may depend on the tolerance, and what came of repeating the run.
+/// Results that may depend on the tolerance, and the outcome of repeating the run.
 pub(super) fn sentences(run: &ScenarioRun) -> Vec<String> {
     let grown = run.errors_amplified.map(|grown| {
         let [from, until] = [grown.from_s, grown.until_s].map(|time| DisplayUnit::SECOND.number(time, 4));
@@ -120,7 +120,7 @@ pub(super) fn sentences(run: &ScenarioRun) -> Vec<String> {
     sentences.chain(doubt.then(|| unknown.to_string())).chain(unfollowed).collect()
 }
 
-/// As an answer names it.
+/// Name, in an answer, of the cause for which the growth of errors was not followed.
 pub(super) fn unfollowed_word(cause: UnfollowedCause) -> &'static str {
     match cause {
         UnfollowedCause::Samples => "samples",
@@ -173,7 +173,7 @@ fn agreement_words(run: &ScenarioRun, repetition: &Repetition) -> String {
     }
 }
 
-/// What differs most, in words.
+/// The quantity that differs most, in words.
 fn apart(spread: &PassSpread, units: Units) -> String {
     let name = spread.of.map_or(units.motion.words().force, |(_, metric)| metric.label(units.motion));
     let unit = spread.of.map_or(units.force, |(_, metric)| shown_in(metric, units));

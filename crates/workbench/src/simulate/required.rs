@@ -1,10 +1,10 @@
-//! What is required in time, held against the runs of scenarios, in words and for programs.
+//! Requirements in time, compared with the runs of scenarios, in words and for programs.
 
 use super::{NotJudged, ScenarioRequirement, ScenarioRun, reached_words, required_of_run, required_words};
 use crate::answer::Object;
 use crate::project::Project;
 
-/// Reason why runs say nothing of a requirement.
+/// Reason why runs give no verdict on a requirement.
 pub(crate) fn not_judged_words(why: NotJudged) -> &'static str {
     match why {
         NotJudged::NoStep => "the scenario has no such step of the reference",
@@ -14,12 +14,12 @@ pub(crate) fn not_judged_words(why: NotJudged) -> &'static str {
     }
 }
 
-/// The word for steps that satisfy what is required in time, or not.
+/// The word for steps that satisfy or miss a requirement in time.
 pub(crate) fn satisfied_word(is_satisfied: bool) -> &'static str {
     if is_satisfied { "satisfies" } else { "misses" }
 }
 
-/// Each requirement of the project in a run of it: satisfied, missed or not judged, with the worst
+/// The requirements of the project in a run, each satisfied, missed or not judged, with the worst
 /// of its steps.
 pub(crate) fn requirement_sentences(project: &Project, run: &ScenarioRun) -> Vec<String> {
     required_of_run(project, run).iter().map(requirement_sentence).collect()
@@ -37,7 +37,7 @@ pub(crate) fn requirement_sentence(one: &ScenarioRequirement) -> String {
     }
 }
 
-/// The same for programs.
+/// A requirement in a run, for programs.
 pub(super) fn row(one: &ScenarioRequirement) -> Object {
     let wish = &one.wish;
     let required = Object::new()

@@ -1,17 +1,18 @@
-//! The time that a figure of an event shows: until a step has settled, two cycles of what repeats.
+//! The time that a figure of an event shows: until a step has settled, or two cycles of a repeating
+//! input.
 
 use super::{Cause, Metrics, Record, ScenarioRun, Window};
 use phea_hydraulics::signal::Signal;
 
-/// Shown before an event, as a part of what is shown after it.
+/// Time shown before an event, as a fraction of the time after it.
 const BEFORE: f64 = 0.05;
-/// Settling times of a step or a disturbance that are shown.
+/// Time shown of a step or a disturbance, in settling times.
 const SETTLING_TIMES: f64 = 3.0;
-/// Shown after an event that does not settle and does not repeat, s.
+/// Time shown after an event that neither settles nor repeats, s.
 const AFTER_S: f64 = 0.5;
 /// Shortest time shown after an event, s.
 const SHORTEST_S: f64 = 0.05;
-/// Cycles of a reference that repeats.
+/// Time shown of a reference that repeats, in cycles.
 const CYCLES: f64 = 2.0;
 
 /// The time that the figure of an event shows, within the run.
@@ -31,13 +32,13 @@ pub(crate) fn around(window: &Window, after_s: f64, end_s: f64) -> [f64; 2] {
     [(window.start_s - BEFORE * after_s).max(0.0), (window.start_s + after_s).min(end_s)]
 }
 
-/// Three settling times; what does not settle is shown for a while.
+/// Three settling times; a fixed time if the force does not settle.
 fn settled(metrics: Option<&Metrics>) -> f64 {
     let settling_s = metrics.and_then(|metrics| metrics.settling_time_s.ok());
     settling_s.map_or(AFTER_S, |time_s| SETTLING_TIMES * time_s)
 }
 
-/// Two cycles of an input that repeats, otherwise until it rests.
+/// Two cycles of an input that repeats; otherwise the time until it rests.
 fn moving(record: &Record, values: &[f64], window: &Window) -> f64 {
     let rows = record.times_s.iter().copied().zip(values.iter().copied());
     let within: Vec<(f64, f64)> =
@@ -50,20 +51,21 @@ fn moving(record: &Record, values: &[f64], window: &Window) -> f64 {
     moves.map_or(AFTER_S, |(time_s, _)| time_s - window.start_s + AFTER_S)
 }
 
-/// Whether what an event begins repeats: a sine.
+/// True if an event begins a repeating input: a sine.
 fn repeats(window: &Window) -> bool {
     matches!(window.cause, Cause::ReferenceMotion { kind: SINE } | Cause::CommandMotion { kind: SINE })
 }
 
 const SINE: &str = "sine";
 
-/// Whether two spans show the same, but for a tenth.
+/// True if two spans are equal within a tenth.
 pub(crate) fn are_alike([start, end]: [f64; 2], [other_start, other_end]: [f64; 2]) -> bool {
     let room = 0.1 * (end - start).max(other_end - other_start);
     (start - other_start).abs() <= room && (end - other_end).abs() <= room
 }
 
-/// From one upward crossing of the middle to the next, if there are three: what repeats twice.
+/// Time between two upward crossings of the middle, if there are three, so that the signal repeats
+/// twice.
 pub(crate) fn period(rows: &[(f64, f64)]) -> Option<f64> {
     let (least, most) = rows.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), (_, value)| {
         (least.min(*value), most.max(*value))
@@ -77,8 +79,8 @@ pub(crate) fn period(rows: &[(f64, f64)]) -> Option<f64> {
     crossings.next().map(|_| second - first)
 }
 
-/// The part of a run that shows all its events: from the beginning to the end of what the last of
-/// them shows, where the rest would repeat it.
+/// The part of a run that shows all its events: from the beginning to the end of the last event's
+/// figure, if the rest would only repeat it.
 pub(crate) fn span_of_events(run: &ScenarioRun, end_s: f64) -> [f64; 2] {
     let ends = run.windows.iter().map(|(window, _)| span_of(run, window, end_s)[1]);
     let last = ends.fold(0.0, f64::max);

@@ -1,5 +1,5 @@
-//! Figures of one scenario under several controllers: the same machine, the same reference, a
-//! colour for each controller.
+//! Figures of one scenario under several controllers: one machine and one reference, a colour for
+//! each controller.
 
 use super::figures::{
     asked_for, close_up, enlarged, error_title, instants, load_pressure, moves_load, over_time, shown_words,
@@ -18,9 +18,9 @@ use phea_hydraulics::signal::Signal;
 /// A run with the name of its controller.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NamedRun<'a> {
-    /// Such as `designed`.
+    /// Name of the controller, such as `designed`.
     pub(crate) name: &'static str,
-    /// Of the scenario that all have in common.
+    /// The run of the scenario that all have in common.
     pub(crate) run: &'a ScenarioRun,
 }
 
@@ -55,7 +55,7 @@ pub(crate) fn together(runs: &[NamedRun<'_>], number: usize, wish: Option<&Track
     figures
 }
 
-/// Force and command from the first event to a little after the last, or of the whole run where
+/// Force and command from the first event to a little after the last, or over the whole run if
 /// nothing begins.
 pub(crate) fn at_a_glance(name: &str, runs: &[NamedRun<'_>], wish: Option<&TrackingWish>) -> Option<Figure> {
     let first = runs.first()?;
@@ -73,8 +73,8 @@ pub(crate) fn at_a_glance(name: &str, runs: &[NamedRun<'_>], wish: Option<&Track
     Some(with_events(runs, panels, span).draw(&Words::new(name, title, caption)))
 }
 
-/// The signals inside the machine at each event, for one controller: as Figure 6.17 of Ledezma
-/// (2019).
+/// The signals inside the machine at each event, for one controller, in the layout of Figure 6.17
+/// of Ledezma (2019).
 pub(crate) fn close_ups(named: NamedRun<'_>, number: usize) -> Vec<Figure> {
     let NamedRun { name, run } = named;
     let force = run.record.units.motion.words().force;
@@ -159,7 +159,8 @@ fn drawn(
     ([tall, low], positions): ([f64; 2], bool),
     wish: Option<&TrackingWish>,
 ) -> Figure {
-    // a step is compared with its wish; motions of the load, and the whole run, show the piston
+    // a step is compared with its requirement; motions of the load, and the whole run, show the
+    // piston
     let mut panels = match positions {
         true => vec![forces(runs, tall, span_s, wish)],
         false => forces_enlarged(runs, [tall, low], span_s, wish),
@@ -182,7 +183,7 @@ fn errors(runs: &[NamedRun<'_>], span_s: [f64; 2]) -> Option<CurvePanel> {
         .then(|| panel(error_title(motion), unit, 90.0, each(runs, tracking_error)).with_zero_line())
 }
 
-/// Whether the reference begins to move within a span, other than by steps.
+/// True if the reference begins to move within a span, other than by steps.
 fn moves_reference(runs: &[NamedRun<'_>], [start_s, end_s]: [f64; 2]) -> bool {
     let windows = runs.iter().flat_map(|named| &named.run.windows);
     let within = windows.filter(|(window, _)| (start_s..end_s).contains(&window.start_s));
@@ -226,7 +227,7 @@ fn forces(runs: &[NamedRun<'_>], height: f64, span_s: [f64; 2], wish: Option<&Tr
 }
 
 /// The force and, below it, an enlargement around the reference of the only step in the frame, if
-/// there is a wish for it.
+/// there is a requirement for it.
 fn forces_enlarged(
     runs: &[NamedRun<'_>],
     [tall, low]: [f64; 2],
@@ -245,8 +246,8 @@ fn forces_enlarged(
     std::iter::once(whole).chain(enlarged).collect()
 }
 
-/// Range around the reference that is shown enlarged, in the band that is required or the overshoot
-/// that is allowed, whichever is wider; more above if the force overshoots by more.
+/// Range around the reference that is enlarged: the required band or the allowed overshoot,
+/// whichever is wider; larger above if the force overshoots by more.
 const BANDS: f64 = 2.0;
 const OVERSHOOTS: f64 = 1.2;
 

@@ -1,4 +1,4 @@
-//! Required steps and what a step reaches of them, in words.
+//! Required steps and the values that a step reaches, in words.
 
 use super::{NO_OVERSHOOT_PERCENT, ReachedStep, TrackingWish};
 use crate::quantity::significant;
@@ -19,13 +19,13 @@ pub(crate) fn required_rise(wish: &TrackingWish) -> Option<String> {
     wish.rise_time_s.map(|time_s| format!("risen from 10 to 90 % in {time_s} s"))
 }
 
-/// All that is required of a step.
+/// The requirements on a step.
 pub(crate) fn required_words(wish: &TrackingWish) -> String {
     let all = [required_overshoot(wish), required_settling(wish), required_rise(wish)];
     all.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
-/// Values that a step reaches of the required ones.
+/// Values that a step reaches, for the required quantities.
 pub(crate) fn reached_words(wish: &TrackingWish, reached: &ReachedStep) -> String {
     if reached.overshoot_percent == f64::INFINITY {
         return "stopped before the end of the run".to_string();

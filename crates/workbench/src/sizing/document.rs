@@ -48,7 +48,7 @@ pub(crate) fn document(sizing: &Sizing, figures: Vec<Figure>) -> Document {
     out
 }
 
-/// What else has the stiffness of the hose, and what damps the load cell.
+/// Other parts with the stiffness of the hose, and parts that damp the load cell.
 fn other_means(out: &mut Document, found: &OtherMeans) {
     let mega = |value: f64| DisplayUnit::MEGANEWTON_PER_METRE.text(value, 3);
     let length = |value: f64| display(value, &LENGTH, 3);
@@ -106,7 +106,7 @@ fn other_means(out: &mut Document, found: &OtherMeans) {
     out.explanation("Pipe, gas and spring stand in place of the hose: K_H is that of chambers and pipe, of chambers and gas, or of chambers and spring in series. A valve between the chambers does not soften: it damps the mode of the load cell, of the rig as it is declared and of its chambers without any line.");
 }
 
-/// How much a valve damps, and what it costs.
+/// Damping by a valve, and its cost.
 fn valve_words(valve: &SizedValve) -> String {
     let [most, at] = valve.most.map(|value| significant(value, 3));
     let alone = significant(valve.alone, 3);
@@ -129,7 +129,7 @@ fn is_accepted(best: Option<&Candidate>) -> bool {
     best.is_some_and(Candidate::accepted)
 }
 
-/// What to buy and which gain to set, in a sentence.
+/// The hose to buy and the gain to set, in a sentence.
 fn answer_sentence(best: Option<&Candidate>) -> String {
     match best {
         None => {
@@ -147,14 +147,14 @@ fn answer_sentence(best: Option<&Candidate>) -> String {
     }
 }
 
-/// Candidates of one hose with the same findings as they are printed, so that these are stated
-/// once; in the order of the first of each.
+/// Candidates of one hose that have equal findings when printed, so that these are stated once; in
+/// the order of the first of each.
 fn alike(candidates: &[Candidate]) -> Vec<Vec<&Candidate>> {
     let all = candidates.iter().map(|one| ((&one.option.name, marked_reasons(one)), one));
     grouped(all).into_iter().map(|(_, group)| group).collect()
 }
 
-/// The findings on a candidate, each behind its consequence.
+/// The findings on a candidate, each after its consequence.
 fn marked_reasons(candidate: &Candidate) -> Vec<(Option<StatusMark>, String)> {
     let marked = candidate.findings.iter().map(|finding| {
         let text = reason_words(finding);
@@ -183,7 +183,7 @@ fn findings(out: &mut Document, group: &[&Candidate]) {
     out.marked(marked_reasons(first));
 }
 
-/// A row for each candidate; branches that lead to the same numbers share one.
+/// A row for each candidate; branches that lead to equal numbers have a single row.
 fn distinct(candidates: &[Candidate]) -> Vec<Vec<Cell>> {
     let mut rows: Vec<(Vec<Cell>, Vec<&'static str>)> = Vec::new();
     for candidate in candidates {
@@ -201,7 +201,7 @@ fn distinct(candidates: &[Candidate]) -> Vec<Vec<Cell>> {
     named.collect()
 }
 
-/// Place of the branch in a row.
+/// Column of the branch in a row.
 const BRANCH: usize = 3;
 
 /// A candidate without its branch.

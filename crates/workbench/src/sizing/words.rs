@@ -18,7 +18,7 @@ pub(crate) fn model_name(model: StiffnessModel) -> &'static str {
     }
 }
 
-/// The name of a hose or a dash size; of hoses that differ, both.
+/// The name of a hose or a dash size; both names if the hoses differ.
 pub(crate) fn hose_name(name: &HoseName) -> String {
     let one = |name: &Option<String>| name.as_deref().unwrap_or("the project's hose").to_string();
     match name {
@@ -51,7 +51,7 @@ pub(super) fn setting_words(influence: &Influence) -> String {
     unit.with_symbol(influence.values.map(|value| unit.number(value, 4)).join(" · "))
 }
 
-/// Reason why it is not known how a spring is wound.
+/// Reason why the winding of a spring is not known.
 pub(crate) fn coil_unknown_words(reason: CoilUnknown) -> &'static str {
     match reason {
         CoilUnknown::NotStated => "not stated: sizing.other_means.coil",
@@ -254,7 +254,7 @@ fn system_words(system: &SizedSystem) -> String {
     )
 }
 
-/// K_S, and what the load in series with it makes of it.
+/// K_S, and its value in series with the load.
 fn sensor_words(system: &SizedSystem) -> String {
     let unit = DisplayUnit::MEGANEWTON_PER_METRE;
     let sensor = format!("K_S = {}", unit.text(system.sensor_alone, 4));
@@ -330,7 +330,7 @@ fn branch_words(branch: &Branch) -> Vec<(&'static str, String)> {
     decided
 }
 
-/// The trials whose hose is too long; `None` where the first one is not.
+/// The trials whose hose is too long; `None` if the first one is not.
 fn too_long_words(branch: &Branch) -> Option<String> {
     let number = |value| significant(value, 4);
     let (_, trials) = branch.steps.split_last()?;

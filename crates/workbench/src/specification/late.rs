@@ -3,7 +3,7 @@
 use super::{SpecificationError, SpecificationProblem};
 use crate::project::LateError;
 
-/// The error at the place of its limit, with what would satisfy it.
+/// The error at the place of its limit, with the change that would satisfy it.
 pub(crate) fn late(error: &SpecificationError) -> LateError {
     let help = match error.reason {
         SpecificationProblem::Crossed { .. } => {

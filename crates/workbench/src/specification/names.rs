@@ -15,7 +15,7 @@ pub(crate) fn subject_words(name: SpecificationName) -> &'static str {
     }
 }
 
-/// The kind that limits a closed loop, for people.
+/// The name of a limited closed loop, for people.
 fn closed_loop_words(closed_loop: ClosedLoop) -> &'static str {
     match closed_loop {
         ClosedLoop::RobustStability => "robust stability",
@@ -27,18 +27,18 @@ fn closed_loop_words(closed_loop: ClosedLoop) -> &'static str {
     }
 }
 
-/// `tracking`; empty where there is no specification.
+/// `tracking`; empty if there is no specification.
 pub(crate) fn name_words(named: Option<NamedSpecification>) -> &'static str {
     named.map_or("", |named| subject_words(named.name))
 }
 
-/// `2 tracking`; the name alone of a specification that is not declared.
+/// `2 tracking`; only the name for a specification that is not declared.
 pub(crate) fn numbered(named: Option<NamedSpecification>) -> String {
     let name = name_words(named);
     number(named).map_or_else(|| name.to_string(), |number| format!("{number} {name}"))
 }
 
-/// A specification as a sentence names it: that of the file by its table and number.
+/// A specification as a sentence names it: by table and number if it is in the file.
 pub(crate) fn stated(named: Option<NamedSpecification>) -> String {
     let name = name_words(named);
     match number(named) {

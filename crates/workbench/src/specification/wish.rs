@@ -1,4 +1,4 @@
-//! A requirement in time and what its limit reaches, in a sentence.
+//! A requirement in time and the values that its limit reaches, in a sentence.
 
 use phea_dynamics::time_response::Settling;
 use phea_qft::specification::{WishCheck, WishOutcome, Wished};
@@ -6,15 +6,15 @@ use phea_qft::specification::{WishCheck, WishOutcome, Wished};
 use super::CheckedWish;
 use crate::quantity::{RATIO, display};
 
-/// The requirement, whether its limit satisfies it, and what the limit itself reaches.
+/// The requirement, the verdict on its limit, and the values that the limit itself reaches.
 pub fn wish_sentence(wish: &CheckedWish) -> String {
     let met = if wish.is_met() { "met" } else { "not met" };
     let words = words(&wish.check);
     format!("Specification {}, {} limit, {met}; {words}.", wish.number, wish.key)
 }
 
-/// `wished: at most 1 % overshoot, settled within 1 % in 0.1 s; the limit itself reaches 2.19 %
-/// overshoot and settles in 0.126 s`
+/// Words such as `wished: at most 1 % overshoot, settled within 1 % in 0.1 s; the limit itself
+/// reaches 2.19 % overshoot and settles in 0.126 s`.
 fn words(check: &WishCheck) -> String {
     let Wished { overshoot_percent, settling_time_s, settling_band_percent } = check.wished;
     let wished = match overshoot_percent {
@@ -41,7 +41,7 @@ fn words(check: &WishCheck) -> String {
     )
 }
 
-/// The value in three digits, or as many more as distinguish it from the other.
+/// The value in three digits, or in as many more as distinguish it from the other.
 fn beside(value: f64, other: f64) -> String {
     let number = |value: f64, digits: usize| display(value, &RATIO, digits);
     let differs = |digits: &usize| value == other || number(value, *digits) != number(other, *digits);

@@ -15,7 +15,7 @@ use crate::simulate::{reached_words, required_words, satisfied_word};
 use crate::verdict_words::agreement_word;
 use phea_qft::verification::Verdict;
 
-/// The agreement in words; where it lacks nothing but the settling time, with those times.
+/// The agreement in words; if only the settling time differs, with those times.
 fn headline(trial: &Trial) -> String {
     let agreement = trial.agreement();
     let is_but_for_settling = agreement == Agreement::AgreesButForSettling;
@@ -110,7 +110,7 @@ fn cells(run: &TrialRun) -> [Cell; 8] {
     ]
 }
 
-/// The runs, those of the worst corners only where no other run has their plant and step.
+/// The runs; those of the worst corners only if no other run has their plant and step.
 fn distinct(trial: &Trial) -> impl Iterator<Item = &TrialRun> {
     trial.runs.iter().filter(|run| repeated(trial, run).is_none())
 }
@@ -125,7 +125,7 @@ fn repeated<'a>(trial: &'a Trial, run: &TrialRun) -> Option<&'a TrialRun> {
     before.into_iter().find(is_same)
 }
 
-/// What the words and the last column of the table mean, as far as they occur.
+/// Meanings of the words and of the last column of the table, as far as they occur.
 fn meanings(trial: &Trial) -> Vec<String> {
     let motion = units_of(trial).motion;
     let force = motion.words().force;
@@ -165,7 +165,7 @@ fn meanings(trial: &Trial) -> Vec<String> {
     told
 }
 
-/// What is required in time, run by run; empty where nothing is.
+/// Requirements in time, run by run; empty if there are none.
 fn required(trial: &Trial) -> Document {
     let mut out = Document::default();
     let Some(satisfies) = trial.satisfies() else { return out };
@@ -191,7 +191,8 @@ fn required(trial: &Trial) -> Document {
     out
 }
 
-/// The corner of the box or plant inside that is the worst, and by what.
+/// The corner of the box, or the plant inside it, that is the worst, and the quantity in which it
+/// is.
 fn corners(trial: &Trial) -> Vec<String> {
     let is_corner = |run: &&TrialRun| trial.corners.iter().any(|corner| have_one_name(corner, run));
     let words = |run: &TrialRun| {
@@ -209,12 +210,12 @@ fn corners(trial: &Trial) -> Vec<String> {
     told
 }
 
-/// From one reference to the other.
+/// Words for a step from one reference to the other.
 fn step_words(run: &TrialRun) -> String {
     ends_words(run, false)
 }
 
-/// The same, or back.
+/// Words for a step from one reference to the other, or back.
 fn ends_words(run: &TrialRun, is_back: bool) -> String {
     let [from, to] = run.reference_n.map(|force| run.units.force.short(force, 3));
     if is_back { format!("{to} to {from}") } else { format!("{from} to {to}") }
@@ -240,7 +241,7 @@ fn reasons(trial: &Trial) -> Vec<String> {
 /// Number of settling times of the linear loop that are drawn, and of required ones at least.
 const SETTLING_TIMES: f64 = 3.0;
 const REQUIRED_TIMES: f64 = 1.2;
-/// Range of the frame in shares of the step; a response that leaves it is drawn up to there.
+/// Range of the frame, fractions of the step; a response that leaves it is drawn up to its edge.
 const SHOWN: std::ops::RangeInclusive<f64> = -0.4..=2.4;
 
 /// The steps of all machines that were driven, and that of the linear loop with the nominal plant.
@@ -277,13 +278,13 @@ fn figure(trial: &Trial, [name, title]: [&str; 2]) -> Option<Figure> {
     Some(chart.draw(&Words::new(name, title, caption)))
 }
 
-/// The agreement in a few words: the word, and what it rests on.
+/// The agreement in a few words: the word, and its basis.
 pub(crate) fn words(trial: &Trial) -> String {
     with_detail(trial.agreement(), agreement_detail(trial))
 }
 
-/// The settling times that are furthest apart where nothing else is, or the machine that is worst;
-/// `None` where every run agrees.
+/// The settling times that differ most, if nothing else differs, or the worst machine; `None` if
+/// every run agrees.
 pub(crate) fn agreement_detail(trial: &Trial) -> Option<String> {
     let agreement = trial.agreement();
     match agreement {

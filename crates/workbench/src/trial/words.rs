@@ -1,4 +1,4 @@
-//! Machines of a trial and what their runs show, in words.
+//! Machines of a trial and the results of their runs, in words.
 
 use super::{
     Agreement, DampingWall, DifferenceCause, Leg, NotDriven, OvershootNote, REACH, StepSize, Trial,
@@ -30,7 +30,7 @@ fn worst_plant(of: &WorstOf) -> String {
     }
 }
 
-/// The name of a run: its machine, and the size of its steps where it is not the usual one.
+/// The name of a run: its machine, and the size of its steps if it is not the usual one.
 pub(crate) fn run_name(run: &TrialRun) -> String {
     name_of(&run.machine_driven, run.size)
 }
@@ -47,7 +47,7 @@ pub(crate) fn name_of(machine: &TrialMachine, size: StepSize) -> String {
     format!("{}{ending}", machine_words(machine))
 }
 
-/// True where two runs have the same machine and steps of the same size.
+/// True if two runs have one machine and steps of equal size.
 pub(crate) fn have_one_name(run: &TrialRun, other: &TrialRun) -> bool {
     run.machine_driven == other.machine_driven && run.size == other.size
 }
@@ -233,12 +233,12 @@ fn not_driven_words(one: &NotDriven, units: Units) -> String {
     }
 }
 
-/// The units of what a trial drives.
+/// The units of the machines that a trial drives.
 pub(super) fn units_of(trial: &Trial) -> Units {
     trial.runs.first().map_or_else(Units::default, |run| run.units)
 }
 
-/// All that a trial does not drive.
+/// Parts that a trial does not drive.
 pub(crate) fn not_driven(trial: &Trial) -> Vec<String> {
     let units = units_of(trial);
     trial.not_driven.iter().map(|one| not_driven_words(one, units)).collect()

@@ -1,10 +1,11 @@
-//! Tables of campaigns that were interrupted, cut, damaged, or are another campaign's.
+//! Tables of campaigns that were interrupted, truncated or damaged, or that belong to another
+//! campaign.
 
 use phea_workbench::campaign::RowFault;
 
 use super::*;
 
-/// The table of a campaign that nothing interrupts.
+/// The table of a campaign without interruption.
 fn uninterrupted(loaded: &Loaded, asked: &CampaignRequest) -> Page {
     let mut page = Page::default();
     kept(loaded, asked, &mut page).unwrap();
@@ -38,13 +39,13 @@ fn an_interrupted_campaign_goes_on_to_the_same_bytes() {
         assert!(page.text == whole.text, "torn at {torn} of {bytes}");
         assert_eq!(again, answer);
     }
-    // more of the same
+    // appended to itself
     let mut page = Page { text: whole.text.clone() };
     kept(&loaded, &request(33, Shard::default()), &mut page).unwrap();
     assert!(page.text.starts_with(&whole.text) && page.text.lines().count() == 34);
 }
 
-/// A table, and rows that waited for others when it was left.
+/// A table, and pending rows from when it was left.
 struct Pages {
     table: Page,
     ahead: String,
@@ -78,8 +79,8 @@ impl RowStore for Pages {
     }
 }
 
-/// Rows that waited for a slower run are not driven again; torn ones, others' and those that the
-/// table has are passed over.
+/// Rows ahead of a slower run are not simulated again; torn ones, those of other campaigns and
+/// those already in the table are skipped.
 #[test]
 fn rows_that_waited_are_not_driven_again() {
     let loaded = load(&SHORT);
@@ -103,7 +104,8 @@ fn rows_that_waited_are_not_driven_again() {
     assert!(pages.table.text == whole.text && pages.ahead.is_empty());
 }
 
-/// Stopped at once, it has no row that is not whole, and goes on.
+/// A table of a campaign that is stopped at once has complete rows only, and the campaign
+/// continues.
 #[test]
 fn stopping_leaves_whole_rows() {
     let loaded = load(&SHORT);
@@ -154,8 +156,8 @@ fn refusal(result: Result<String, CommandError>) -> CampaignError {
     }
 }
 
-/// Whatever is not what was written is refused with its line, and left as it is; without the lines
-/// from there on, the same bytes.
+/// A line that differs from the written one is rejected with its number, and left unchanged;
+/// without the lines from there on, the result has identical bytes.
 #[test]
 fn damaged_rows_are_refused_with_their_line() {
     let loaded = load(&SHORT);
@@ -181,7 +183,7 @@ fn damaged_rows_are_refused_with_their_line() {
     assert_eq!(refusal(kept(&loaded, &asked, &mut page)), CampaignError::LineEnds { line: 1 });
     let mut page = Page { text: with_third(&lines[3].replace('\n', "\r\n")) };
     assert_eq!(refusal(kept(&loaded, &asked, &mut page)), CampaignError::LineEnds { line: 4 });
-    // twice the same run, as two writers would leave it
+    // one run twice, as two writers would leave it
     let mut page = Page { text: [&whole.text, lines[1]].concat() };
     let error = refusal(kept(&loaded, &request(9, Shard::default()), &mut page));
     assert!(matches!(error, CampaignError::Damaged { line: 8, fault: RowFault::OfAnotherRun }), "{error}");
@@ -190,7 +192,7 @@ fn damaged_rows_are_refused_with_their_line() {
     assert_eq!(page.text, whole.text);
 }
 
-/// A row with its own sum that is not of the draw it says it is.
+/// A row with a valid checksum whose numbers are not those of its draw.
 #[test]
 fn kept_numbers_are_those_that_are_drawn() {
     let loaded = load(&SHORT);

@@ -1,5 +1,5 @@
-//! What is listed as the source of a parameter of the linear model is compared with what a change
-//! of a number changes.
+//! Listed sources of the parameters of the linear model, compared with the effects of changing a
+//! number.
 
 use phea_workbench::project::KeyEntry;
 
@@ -33,20 +33,20 @@ const NOT_LISTED: &[(&str, &[&str])] = &[
             "valve.tare_flow",
         ],
     ),
-    // K_qU that is stated has no sides
+    // stated K_qU has no sides
     ("flow_gain", &["operating_point.spool_side"]),
-    // through the stiffnesses by which the flows of both chambers are weighed
+    // through the stiffnesses by which the flows of both chambers are weighted
     ("flow_gain", &["cylinder.stroke", "line.length"]),
-    // of a telescopic cylinder alone
+    // only for a telescopic cylinder
     ("piston_area", &["operating_point.position"]),
 ];
 
-/// Numbers that are listed and change nothing where the spool is on the other side of its null.
+/// Numbers that are listed but change nothing if the spool is on the other side of null.
 const OF_THE_OTHER_SIDE: [&str; 2] =
     ["valve.flow_coefficients.a_to_tank", "valve.flow_coefficients.supply_to_b"];
 
-/// Every number that is listed changes the parameter on a rig, and every number that changes it by
-/// a tenth as much as itself is listed.
+/// Every listed number changes the parameter on some rig, and every number whose relative effect on
+/// it is a tenth or more is listed.
 pub(super) fn linear_parameters_follow_from_what_is_listed(moved: &Moved, keys: &[KeyEntry]) {
     let is_number =
         |path: &str| keys.iter().any(|entry| entry.path == path && entry.takes == entry.key.dimension.name);

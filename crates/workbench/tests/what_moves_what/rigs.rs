@@ -21,7 +21,7 @@ const TURNING: &str = include_str!("../../../project/tests/valid/motor_turning.t
 const TELESCOPIC: &str = include_str!("../../../project/tests/valid/telescopic.toml");
 const ASYMMETRIC: &str = include_str!("../../../project/tests/valid/asymmetric.toml");
 
-/// What rounds in the computer of a controller.
+/// Converters that round in the computer of a controller.
 const CONVERTERS: [&str; 2] = [
     "controller.sample_time=1 ms",
     "controller.quantization={ command_bits = 10, command_range = [\"-10 V\", \"10 V\"], measurement_bits = 10, measurement_range = [\"-10 kN\", \"10 kN\"] }",
@@ -38,7 +38,7 @@ const SHOWN: &str = "velocity_sensor={ gain_error = \"2 %\", delay = \"1 ms\", f
 /// A virtual impedance.
 const IMPEDANCE: &str = "controller.impedance={ stiffness = \"100 kN/m\", damping = \"2 kN.s/m\", mass = \"20 kg\", filter_time = \"2 ms\" }";
 
-/// Leakage with a shape of its own at each edge.
+/// Leakage with a different shape at each edge.
 const LEAKING_BY_EDGE: &str =
     "valve.leakage_shapes={ supply_to_a = 100, a_to_tank = 90, supply_to_b = 110, b_to_tank = 100 }";
 
@@ -51,7 +51,7 @@ const UNEQUAL: &str = "cylinder={ piston_diameter = \"50 mm\", rod_diameters = [
 /// Pressures that are fed back.
 const FED_BACK: &str = "controller.pressure_feedback={ gain = \"0.02 V/bar\", area_ratio = 0.9, high_pass = \"1 Hz\", low_pass = \"100 Hz\" }";
 
-/// The same loop by zeros, poles and gain.
+/// The controller by zeros, poles and gain.
 fn factored(hose: &str) -> String {
     hose.replace(
         "numerator = \"0.001*s + 0.008\"\ndenominator = \"s\"",
@@ -60,7 +60,7 @@ fn factored(hose: &str) -> String {
     .replace("numerator = \"910\"\ndenominator = \"s^2 + 83*s + 910\"", "gain = 910\npoles = [-12.9, -70.1]")
 }
 
-/// Rigs that together have every key: examples, the projects of other tests, and the same with
+/// Rigs that together have every key: examples, the projects of other tests, and variants with
 /// other words.
 pub(super) fn rigs() -> Vec<(String, Vec<&'static str>)> {
     let hose = || without_family(include_str!("../../../../examples/ybitu/hose.toml"));
@@ -122,7 +122,7 @@ pub(super) fn rigs() -> Vec<(String, Vec<&'static str>)> {
         .collect()
 }
 
-/// Rigs with accumulators, the same machine without, and a telescopic one.
+/// Rigs with accumulators, the machine without them, and a telescopic one.
 fn with_accumulators() -> Vec<(String, Vec<&'static str>)> {
     vec![
         (TELESCOPIC.to_string(), vec![]),
@@ -166,7 +166,7 @@ fn with_accumulators() -> Vec<(String, Vec<&'static str>)> {
     ]
 }
 
-/// Rigs with a spring on the rod, and with a motor in place of the cylinder.
+/// Rigs with a spring on the rod, and with a motor instead of the cylinder.
 fn on_springs() -> Vec<(String, Vec<&'static str>)> {
     let springs = [
         (without_uncertainty(SERIES), vec!["operating_point.load_force=2 kN"]),
@@ -175,7 +175,7 @@ fn on_springs() -> Vec<(String, Vec<&'static str>)> {
             without_uncertainty(TRANSMISSION),
             vec!["fluid.kinematic_viscosity=46 cSt", "cylinder.dead_length=300 mm"],
         ),
-        // its mass follows from that of its wall
+        // the mass of the line follows from that of its wall
         (
             TRANSMISSION_PIPE.replace(
                 "mass = \"0.4 kg\"\nmass_per_length = \"0.3 kg/m\"",
@@ -205,7 +205,7 @@ fn with_linkages() -> Vec<(String, Vec<&'static str>)> {
     ]
 }
 
-/// Rigs with a motor in place of the cylinder.
+/// Rigs with a motor instead of the cylinder.
 fn with_motors() -> Vec<(String, Vec<&'static str>)> {
     let vane = without_uncertainty(&MOTOR.replace("moving_mass = \"0.03 kg.m2\"", ""));
     vec![(vane, vec![]), (TURNING.to_string(), vec![])]
@@ -240,21 +240,21 @@ fn between_chambers(hose: String, pipe: String) -> Vec<(String, Vec<&'static str
     ]
 }
 
-/// The same rig with nothing that is stated of its linear model.
+/// The rig without its stated linear model.
 fn without_family(text: &str) -> String {
     let (before, rest) = text.split_once("[uncertainty]").unwrap();
     let (_, after) = rest.split_once("[[specification]]").unwrap();
     format!("{before}[[specification]]{after}")
 }
 
-/// The same without what is uncertain.
+/// The rig without its uncertainty.
 fn without_uncertainty(text: &str) -> String {
     let (before, rest) = text.split_once("[uncertainty]").unwrap();
     let (_, after) = rest.split_once("[controller]").unwrap();
     format!("{before}[controller]{after}")
 }
 
-/// Values of what may be absent, or is not a number.
+/// Values of keys that may be absent, or are not numbers.
 const STATED: [(&str, &str); 89] = [
     ("cross_port.mass", "1 kg"),
     ("cross_port.price", "100 EUR"),
@@ -347,8 +347,8 @@ const STATED: [(&str, &str); 89] = [
     ("linear.sensor_stiffness", "1.5e7"),
 ];
 
-/// Other values of a key where the rig states one, and whether one that is accepted is enough: each
-/// other word, a number a hundredth larger or, where that is refused, smaller.
+/// Other values of a key that the rig states: each other word, a number a hundredth larger or, if
+/// that is rejected, smaller; true if one accepted value is enough.
 pub(super) fn others(entry: &KeyEntry, project: &Project) -> (Vec<String>, bool) {
     if let Some(words) = entry.takes.strip_prefix("one of ") {
         return (words.split(", ").map(|word| word.trim_matches('"').to_string()).collect(), false);
@@ -367,7 +367,7 @@ pub(super) fn others(entry: &KeyEntry, project: &Project) -> (Vec<String>, bool)
     (values, true)
 }
 
-/// The number that a rig states, that of side A where it does so for each side.
+/// The number that a rig states, that of side A if it states one for each side.
 pub(super) fn stated(entry: &KeyEntry, project: &Project) -> Option<f64> {
     let of_one_side = || {
         let path = entry.path.strip_prefix("line.").map(|rest| format!("line.a.{rest}"));
@@ -376,7 +376,7 @@ pub(super) fn stated(entry: &KeyEntry, project: &Project) -> Option<f64> {
     project.number(&entry.path).or_else(of_one_side)
 }
 
-/// Tables that a rig may lack, with keys that are refused where it does.
+/// Tables that a rig may lack, with keys that are rejected in that case.
 const TABLES: [&str; 8] = [
     "series.",
     "cross_port.",
@@ -388,7 +388,7 @@ const TABLES: [&str; 8] = [
     "supply.accumulator.",
 ];
 
-/// Those of which a rig states no number.
+/// Tables of which a rig states no number.
 pub(super) fn absent_tables(keys: &[KeyEntry], project: &Project) -> Vec<&'static str> {
     let has = |table: &str| {
         keys.iter().any(|entry| entry.path.starts_with(table) && stated(entry, project).is_some())
@@ -396,7 +396,7 @@ pub(super) fn absent_tables(keys: &[KeyEntry], project: &Project) -> Vec<&'stati
     TABLES.into_iter().filter(|table| !has(table)).collect()
 }
 
-/// Whether a key is one of these tables.
+/// True if a key is in one of these tables.
 pub(super) fn is_within(entry: &KeyEntry, tables: &[&str]) -> bool {
     tables.iter().any(|table| entry.path.starts_with(table))
 }

@@ -1,4 +1,4 @@
-//! A key that moves no part of the model is used all the same: a command answers differently.
+//! A key that moves no part of the model must be used nevertheless: a command answers differently.
 
 use std::cell::OnceCell;
 use std::collections::BTreeSet;
@@ -13,11 +13,11 @@ use phea_workbench::source::Memory;
 use super::rigs::{absent_tables, is_within, others, stated};
 use super::{loaded, on_every_rig};
 
-/// The keys that no answer depends on: the guide says so.
+/// The keys on which no answer depends, as stated in the guide.
 const UNUSED: [&str; 2] = ["series.line.minimum_bend_radius", "valve.response_time"];
 
-/// On some rig, another value of each of these keys is refused or answered differently, unless the
-/// key is one of [`UNUSED`].
+/// Checks that on some rig another value of each of these keys is rejected or answered differently,
+/// unless the key is in [`UNUSED`].
 pub(super) fn what_moves_nothing_is_used(still: &BTreeSet<&str>, keys: &[KeyEntry]) {
     let open = Mutex::new(still.clone());
     on_every_rig(|text, settings| {
@@ -50,14 +50,14 @@ pub(super) fn what_moves_nothing_is_used(still: &BTreeSet<&str>, keys: &[KeyEntr
     assert_eq!(open.into_inner().unwrap(), UNUSED.into(), "keys that no answer depends on");
 }
 
-/// Values within the range of a number, far from its own.
+/// Values within the range of a number, far from the declared one.
 fn far(entry: &KeyEntry, own: &Loaded) -> Vec<String> {
     let Some(value) = stated(entry, &own.project) else { return vec![] };
     let values = [0.01, 0.3, 3.0, 100.0].map(|factor| factor * value).into_iter();
     values.filter(|value| entry.key.range.contains(*value)).map(|value| format!("{value:?}")).collect()
 }
 
-/// What the quick commands print of a project, what is said when it is read, and its length, which
+/// Output of the quick commands on a project, the warnings when it is read, and its length, which
 /// `alternatives` compares.
 fn answers(loaded: &Loaded) -> String {
     let source = Memory::default();

@@ -1,4 +1,4 @@
-//! One rig by phea and by CVODE.
+//! A rig simulated by phea and by CVODE.
 
 use std::path::Path;
 use std::process::Command;
@@ -20,68 +20,71 @@ use crate::repeated::{Judged, Made, made};
 use crate::rig::{Control, OUTPUT_STEP_S, Rig};
 use crate::roughness::{Roughness, is_rough, roughest};
 
-/// Of CVODE's runs.
+/// Tolerance of CVODE's runs.
 const EXACT: f64 = 1e-11;
-/// Of one more, where phea differs from them.
+/// Tolerance of one more run, made if phea differs from them.
 const FINEST: f64 = 1e-13;
-/// What a project has that does not say otherwise; the size of the errors that are granted.
+/// Default tolerance of a project; the size of the errors that are allowed.
 pub(crate) const TOLERANCE: f64 = 1e-6;
-/// Of the run that is held to them, where nothing else is asked for.
+/// Tolerance of phea's run that is judged, unless another one is requested.
 pub(crate) const JUDGED: f64 = 1e-7;
-/// Errors put into the other reference, every hundredth of a second.
+/// Errors added to the other reference, every hundredth of a second.
 const KICKS: Kicks = Kicks { period_s: 1e-2, size: 1e-8, seed: 1 };
-/// Errors as large as the tolerance that a solver is granted between two kicks.
+/// Allowed error of a solver between two kicks, in units of the tolerance.
 pub(crate) const ERRORS: f64 = 10.0;
-/// Growth of kicks from which on it cannot hold the largest error.
+/// Growth of kicks at which the largest allowed errors of a solver reach the largest error of the
+/// force.
 const SEPARATED: f64 = crate::LARGEST_ERROR / (ERRORS * TOLERANCE);
-/// A rig is well posed if CVODE at this tolerance agrees with the other to this part of the peak.
+/// Tolerance of CVODE, and the fraction of the peak to which it must agree with the other reference
+/// for a rig to count as well posed.
 const LOOSER: f64 = 1e-9;
 const WELL_POSED: f64 = 1e-5;
-/// Around the row at which CVODE meets a chamber without fluid, s.
+/// Time around the row at which CVODE reaches a chamber without fluid, s.
 const NEAR_S: f64 = 1e-3;
 
-/// Evaluations after which CVODE is told that a rate is not a number.
+/// Evaluations after which CVODE receives a rate that is not a number.
 const PATIENCE: u64 = 20_000_000;
 
-/// What became of a rig.
+/// Comparison of a rig.
 #[derive(Default)]
 pub(crate) struct Compared {
-    /// Why CVODE has no reference, if it has none.
+    /// Reason why CVODE has no reference; `None` if it has one.
     pub(crate) without_reference: Option<String>,
-    /// How much kicks have grown until each row, of the force's peak over the kicks' size.
+    /// Growth of kicks until each row: the difference of the force over its peak, divided by the
+    /// kicks' size.
     pub(crate) growth: Vec<f64>,
     /// Rows before the trajectories separate.
     pub(crate) rows: usize,
     /// Largest magnitude of the force or of its reference, N.
     pub(crate) peak: f64,
-    /// Whether CVODE finds the same at two tolerances.
+    /// True if CVODE's results at two tolerances agree.
     pub(crate) well_posed: bool,
-    /// Whether CVODE's force rings anywhere, above the floor of [`Roughness`].
+    /// True if CVODE's force rings anywhere, above the floor of [`Roughness`].
     pub(crate) rough: bool,
-    /// Largest difference between phea's runs over all rows, as a part of the peak: what a check at
-    /// a tenth of the tolerance shows.
+    /// Largest difference between phea's runs over all rows, as a fraction of the peak: the result
+    /// of a check at a tenth of the tolerance.
     pub(crate) estimate: f64,
-    /// Whether the force still swings at the end, long after the last thing that happened.
+    /// True if the force still swings at the end, long after the last event.
     pub(crate) hunts: bool,
-    /// When CVODE has left the model, a chamber having no fluid any more, in s.
+    /// Time at which CVODE left the model because a chamber had no fluid any more, s.
     emptied_s: Option<f64>,
-    /// phea's run that is judged.
+    /// The run of phea that is judged.
     pub(crate) ours: Option<Ours>,
-    /// The same at the tolerance of a project that says nothing.
+    /// The run at the default tolerance of a project.
     pub(crate) by_default: Option<Ours>,
-    /// The same, repeated where its errors may be visible.
+    /// The run that is repeated if its errors may be visible.
     pub(crate) repeated: Option<Judged>,
-    /// The same model in C: largest difference over those rows as a part of the peak.
+    /// Largest difference from the model in C over those rows, as a fraction of the peak.
     pub(crate) twin: Option<f64>,
-    /// What CVODE costs at phea's error: with its stability limit, and by Adams' method.
+    /// Cost of CVODE at phea's error: with its stability limit, and by Adams' method.
     pub(crate) costs_of_cvode: [Option<Cost>; 2],
 }
 
-/// What a run costs.
+/// Cost of a run.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cost {
     pub(crate) seconds: f64,
-    /// Of the rates, those for derivatives included.
+    /// Number of evaluations of the rates, those for derivatives included.
     pub(crate) evaluations: f64,
 }
 
@@ -89,15 +92,15 @@ pub(crate) struct Cost {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ours {
     pub(crate) status: Status,
-    /// Largest error of the force before trajectories separate, as a part of the peak.
+    /// Largest error of the force before trajectories separate, as a fraction of the peak.
     pub(crate) error: f64,
-    /// The same over all rows.
+    /// Largest error of the force over all rows, as a fraction of the peak.
     pub(crate) error_of_all: f64,
     /// Largest error over the growth of kicks of the tolerance, over all rows after they separate.
     pub(crate) beyond: f64,
-    /// Its ringing where trajectories have separated; `None` where they do not.
+    /// Ringing after trajectories have separated; `None` if they do not.
     pub(crate) roughness: Option<Roughness>,
-    /// The largest growth of errors; `None` where none grew.
+    /// The largest growth of errors; `None` if none grew.
     pub(crate) amplification: Option<Amplification>,
     pub(crate) work: StepCounts,
     pub(crate) seconds: f64,
@@ -111,12 +114,12 @@ impl Ours {
         Ours { status, error, error_of_all, beyond, roughness: None, amplification, work, seconds }
     }
 
-    /// True where it reports that errors of [`TOLERANCE`] may be visible.
+    /// True if the run reports that errors of [`TOLERANCE`] may be visible.
     pub(crate) fn may_show_errors(&self) -> bool {
         self.amplification.is_some_and(|grown| grown.may_show_errors(TOLERANCE))
     }
 
-    /// Whether it meets its requirements, and how it fails otherwise.
+    /// Requirement that the run fails; `None` if it satisfies all.
     pub(crate) fn fault(&self) -> Option<String> {
         match self {
             Ours { status, .. } if *status != Status::Completed => {
@@ -133,7 +136,7 @@ impl Ours {
     }
 }
 
-/// A controller in its computer, its prefilter before the converter.
+/// A digital controller, with its prefilter before the converter.
 struct Digital<'a> {
     held: &'a Commanded,
     controller: SampledController,
@@ -156,7 +159,7 @@ impl Sampler for Digital<'_> {
     }
 }
 
-/// All states of every row.
+/// The states at every row.
 pub(crate) struct Rows<'a> {
     pub(crate) wanted: Vec<usize>,
     pub(crate) states: &'a mut Vec<Vec<f64>>,
@@ -177,7 +180,7 @@ impl Observer for Rows<'_> {
 }
 
 impl Compared {
-    /// How far kicks leave the trajectory as it is, and the peak of force and reference.
+    /// Computes the growth of kicks, and the peak of force and reference.
     fn look_at(&mut self, asked: f64, reference: &[f64], kicked: &[f64]) {
         self.peak = reference.iter().fold(asked.abs(), |most: f64, force| most.max(force.abs()));
         let mut most = 0.0_f64;
@@ -190,7 +193,7 @@ impl Compared {
         self.rough = is_rough(roughest(reference, OUTPUT_STEP_S), self.peak);
     }
 
-    /// Whether phea ended at an emptied chamber, whose infinite pressure CVODE steps over.
+    /// True if phea stopped at an emptied chamber, whose infinite pressure CVODE steps over.
     pub(crate) fn leaves_the_model(&self) -> bool {
         let ended_s = self.ours.and_then(|ours| match ours.status {
             Status::StepTooSmall { time_s } | Status::NotFinite { time_s } => Some(time_s),
@@ -200,12 +203,13 @@ impl Compared {
         emptied.is_some_and(|(emptied_s, ended_s)| (ended_s - emptied_s).abs() <= NEAR_S)
     }
 
-    /// Whether kicks grow so much that not all rows can be compared.
+    /// True if kicks grow so much that not all rows can be compared.
     pub(crate) fn separates(&self) -> bool {
         self.rows < self.growth.len()
     }
 
-    /// Holds phea's runs, the judged one first, against CVODE's: the reference, kicked, and looser.
+    /// Compares phea's runs, the judged one first, with CVODE's: the reference, the kicked one, and
+    /// the one at a looser tolerance.
     fn take(&mut self, runs: &[(Ours, Vec<f64>); 2], references: &[&[f64]]) {
         let reference = references[0];
         let [judged, by_default] = runs;
@@ -220,12 +224,12 @@ impl Compared {
         (self.ours, self.by_default) = (Some(ours), Some(by_default));
     }
 
-    /// Whether a run of phea's is beyond a rule.
+    /// True if a run of phea fails a requirement.
     fn differs(&self) -> bool {
         [self.ours, self.by_default].into_iter().flatten().any(|ours| ours.fault().is_some())
     }
 
-    /// What CVODE costs at phea's error, by the methods of [`Compared::costs_of_cvode`].
+    /// Cost of CVODE at phea's error, for the methods of [`Compared::costs_of_cvode`].
     fn costs(&self, reference: &[f64], run: &Costing<'_>) -> [Option<Cost>; 2] {
         [Method::StabilityLimit, Method::Adams].map(|method| {
             cost_at(self.ours?.error, &|tolerance| {
@@ -235,7 +239,7 @@ impl Compared {
         })
     }
 
-    /// Largest error over the first rows as a part of the peak; infinite if some are missing.
+    /// Largest error over the first rows as a fraction of the peak; infinite if some are missing.
     fn part_of_peak(&self, reference: &[f64], found: &[f64], rows: usize) -> f64 {
         if found.len() < rows {
             return f64::INFINITY;
@@ -243,7 +247,8 @@ impl Compared {
         apart(reference, found, rows) / self.peak
     }
 
-    /// Largest error over what kicks of the tolerance grow to, over the rows after they separate.
+    /// Largest error divided by the growth of kicks of the tolerance, over the rows after
+    /// trajectories separate.
     fn beyond(&self, reference: &[f64], found: &[f64]) -> f64 {
         let rows = reference.iter().zip(found).zip(&self.growth).skip(self.rows);
         let parts = rows.map(|((one, other), growth)| (one - other).abs() / (self.peak * TOLERANCE * growth));
@@ -251,21 +256,21 @@ impl Compared {
     }
 }
 
-/// A run of CVODE: its force and what it cost, where it comes to an end.
+/// A run of CVODE: its force and its cost; `None` if it does not reach the end.
 type Costing<'a> = dyn Fn(&Following) -> Option<(Vec<f64>, Cost)> + 'a;
 
-/// How a rig is compared.
+/// Settings of a comparison.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Manner {
     /// Tolerance of the run that is judged.
     pub(crate) judged: f64,
-    /// Whether CVODE is asked for the same error too, which takes longer.
+    /// True if CVODE is also run to an equal error, which takes longer.
     pub(crate) timed: bool,
-    /// True for runs that are judged as a project has them, repeated where errors may be visible.
+    /// True for runs that are judged in the form of a project's, repeated if errors may be visible.
     pub(crate) repeated: bool,
 }
 
-/// Runs a rig both ways.
+/// Runs a rig by both methods.
 pub(crate) fn compare(rig: &Rig, number: u64, program: &Path, manner: Manner) -> Compared {
     let controller = controller(&rig.control);
     let [value, rate] = [Input::Value, Input::Rate].map(|input| input(rig.ground.clone()));
@@ -336,7 +341,7 @@ pub(crate) fn controller(control: &Control) -> Controller {
 /// Makes a sampler for each run.
 pub(crate) type NewSampler<'a> = dyn Fn() -> Option<Box<dyn Sampler + 'a>> + 'a;
 
-/// The comparison, and the force that CVODE finds.
+/// Returns the comparison, and CVODE's force.
 fn judge<'a>(
     rig: &Rig,
     system: &'a Loop,
@@ -382,7 +387,7 @@ fn judge<'a>(
     compared.well_posed = looser.as_ref().is_some_and(|looser| apart(looser) <= WELL_POSED);
     let mut references = vec![&reference[..], &kicked, looser.as_deref().unwrap_or(&reference)];
     compared.take(&runs, &references);
-    // whether CVODE's own errors are what rings
+    // decides if the ringing comes from CVODE's own errors
     let finest = (compared.differs() || manner.repeated).then(|| forces_at(FINEST)).flatten();
     if manner.repeated {
         let truths = [finest.as_deref().unwrap_or(&reference), &reference];
@@ -422,8 +427,8 @@ fn emptied(rig: &Rig, states: &[Vec<f64>]) -> Option<f64> {
     Some(row as f64 * OUTPUT_STEP_S)
 }
 
-/// Over the last fifth of its rows the force crosses the middle of its range at least four times,
-/// and the range is a twentieth of the peak or more.
+/// Hunting: over the last fifth of its rows the force crosses the middle of its range at least four
+/// times, and the range is a twentieth of the peak or more.
 fn hunts(force: &[f64], peak: f64) -> bool {
     let last = &force[force.len() * 4 / 5..];
     let least = last.iter().copied().fold(f64::INFINITY, f64::min);
@@ -433,7 +438,7 @@ fn hunts(force: &[f64], peak: f64) -> bool {
     crossings >= 4 && most - least >= 0.05 * peak
 }
 
-/// What an error costs, on a straight line between two runs in a plane of logarithms.
+/// Cost at a given error, on a straight line between two runs in logarithmic coordinates.
 fn cost_at(error: f64, run: &dyn Fn(f64) -> Option<(f64, Cost)>) -> Option<Cost> {
     let mut before: Option<(f64, Cost)> = None;
     for exponent in [-3.0, -4.0, -5.0, -6.0, -7.0, -8.0, -9.0] {
@@ -457,7 +462,7 @@ fn apart(one: &[f64], other: &[f64], rows: usize) -> f64 {
     one.iter().zip(other).take(rows).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
 }
 
-/// The force of the same rig in C, by CVODE's Adams method at 1e-11.
+/// The force of the rig's equivalent in C, by CVODE's Adams method at 1e-11.
 fn twin(program: &Path, number: u64, parameters: &[String]) -> Result<Vec<f64>, String> {
     let output = program.with_extension(format!("{number}.csv"));
     let file = format!("output={}", output.display());

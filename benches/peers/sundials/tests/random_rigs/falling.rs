@@ -1,5 +1,5 @@
-//! Rigs whose friction falls with the velocity somewhere, and whose load moves so slowly that the
-//! piston visits the place.
+//! Rigs whose friction falls with the velocity in some range, and whose load moves so slowly that
+//! the piston passes through that range.
 //!
 //! Where dF/dv is negative, friction feeds the ringing of piston and load cell:
 //!
@@ -24,7 +24,7 @@ use crate::rig::{Chance, Control, Refusal, Rig};
 
 const REFERENCE_S: f64 = 0.05;
 const MOTION_S: f64 = 0.3;
-/// From the end of the motion to that of the run.
+/// Time from the end of the motion to the end of the run, s.
 const REST_S: f64 = 0.2;
 
 /// The rig of this number.
@@ -127,7 +127,7 @@ fn components(chance: &mut Chance) -> Components {
     }
 }
 
-/// Steep enough to feed the ringing, viscous little.
+/// Friction that is steep enough to feed the ringing, with little viscous friction.
 fn friction(chance: &mut Chance, most_force: f64, mass: f64) -> Friction {
     let coulomb = most_force * chance.decades(2e-3, 3e-2);
     let static_friction = coulomb * chance.between(1.2, 2.0);
@@ -150,7 +150,7 @@ fn friction(chance: &mut Chance, most_force: f64, mass: f64) -> Friction {
     }
 }
 
-/// Gains for a crossover that does not ring by itself.
+/// Gains for a crossover at which the loop itself does not ring.
 fn control(chance: &mut Chance, components: &Components) -> Control {
     let Components { valve, cylinder, supply, force_sensor, line_a, .. } = components;
     let volume = cylinder.area_a * cylinder.stroke.middle() + line_a.volume();

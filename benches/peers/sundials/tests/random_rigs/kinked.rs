@@ -1,5 +1,5 @@
-//! Rigs whose rates have kinks on the way: end stops, walls with a gap, stages of a telescopic
-//! piston, friction that sticks and reverses.
+//! Rigs whose rates have kinks: end stops, walls with a gap, stages of a telescopic piston,
+//! friction that sticks and reverses.
 
 use phea_dynamics::simulation::Profile;
 use phea_hydraulics::actuator::{Actuator, Components};
@@ -16,7 +16,7 @@ const DURATION_S: f64 = 0.5;
 /// The parts of the rig with this number.
 const KINDS: [&str; 4] = ["end stops", "wall", "stages", "stick-slip"];
 
-/// The rig of this number: of each kind every fourth.
+/// The rig of this number; every fourth is of each kind.
 pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     let mut chance = Chance::of(number, 0x6a09_e667_f3bc_c909);
     let kind = KINDS[(number % 4) as usize];
@@ -70,7 +70,7 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     })
 }
 
-/// A push and a smaller one, and at last one that lets go; against a wall no pull.
+/// A push and a smaller one, and at last one that releases; no pull against a wall.
 fn reference(chance: &mut Chance, kind: &str, most: f64) -> Result<Profile, Refusal> {
     let most = if kind == "wall" { most.abs() } else { most };
     let size = most * chance.decades(0.02, 0.5);
@@ -80,7 +80,7 @@ fn reference(chance: &mut Chance, kind: &str, most: f64) -> Result<Profile, Refu
     Ok(Profile::steps(0.0, &steps).expect("times ascend"))
 }
 
-/// To a place, or to and fro.
+/// Motion to a position, or to and fro.
 fn ground(chance: &mut Chance, way: f64) -> Profile {
     let motion = if chance.happens(0.5) {
         Profile::smooth_step(0.08, chance.decades(2e-2, 0.3), way)
@@ -110,7 +110,7 @@ fn stages(chance: &mut Chance, stroke: f64, transition: f64) -> Telescope {
     Telescope { stroke, stages: [Some(second), None, None], transition }
 }
 
-/// Friction of a few percent of the most force, steep, with little viscous friction.
+/// Friction of a few percent of the largest force, steep, with little viscous friction.
 fn sticky(chance: &mut Chance, components: &mut Components, most: f64) {
     let Friction::LuGre(mut lugre) = components.friction else { return };
     lugre.curve.coulomb = most * chance.decades(1e-2, 8e-2);

@@ -1,46 +1,46 @@
-//! Random rigs through phea and through CVODE: 100 of each family, or as many as the first argument
-//! says (the test command asks for 50, the stage `soak` for 1000).
+//! Random rigs simulated by phea and by CVODE: 100 of each family, or the number in the first
+//! argument (the test command requests 50, the stage `soak` 1000).
 //!
 //!     cargo test --release -p sundials --test random_rigs -- 1000 timed
 //!
 //! Four families: `any`, whose valve, lines, cylinder, friction, load, controller and its samples
-//! vary over decades; `falling`, whose friction falls with the velocity where a slow load lets the
-//! piston go, so that it feeds the ringing on the load cell; `necks`, with gas behind necks that
-//! empties; and `kinked`, which meet end stops, walls and stages of a telescopic piston, stick and
-//! reverse. One of these words runs as many of that family alone; without one, the last two are run
-//! a sixteenth and a fifth as often, at most 60 and 200 of them, which the stage `soak` asks for.
-//! For necks, an error above the thousandth at the default tolerance is a failure unless it is
-//! reported as one that may be visible, and so are ten times the steps that CVODE tries at 1e-9,
-//! which is their only reference. Kinked rigs are run as a project is, repeated where errors may be
-//! visible, and every row and metric must be right unless the run reports otherwise: [`repeated`].
+//! vary over decades; `falling`, whose friction falls with the velocity where a slow load releases
+//! the piston, so that it feeds the ringing on the load cell; `necks`, with accumulators behind
+//! necks that empty; and `kinked`, which reach end stops, walls and stages of a telescopic piston,
+//! stick and reverse. One of these words runs the full number of that family only; without one, the
+//! last two are run a sixteenth and a fifth as often, at most 60 and 200 of them, the numbers of
+//! the stage `soak`. For necks, an error above one thousandth at the default tolerance is a failure
+//! unless the run reports that errors may be visible, and so are more than ten times the steps of
+//! CVODE at 1e-9, which is their only reference. Kinked rigs are run like a project, repeated if
+//! errors may be visible, and every row and metric must be right unless the run reports otherwise:
+//! [`repeated`].
 //!
-//! The reference is CVODE at 1e-11, phea is judged at the tolerance 1e-7. What it does at 1e-6,
-//! which a project has by default, is reported with it. Every fourth rig of the first family is
-//! compared with `closed_loop.h` as well; `timed` adds what CVODE costs at the same error; `only=N`
-//! runs one rig, `from=N` begins with it; `judged=1e-9` judges phea at that tolerance.
+//! The reference is CVODE at 1e-11, phea is judged at the tolerance 1e-7. The result at 1e-6, the
+//! default of a project, is reported with it. Every fourth rig of the first family is compared with
+//! `closed_loop.h` as well; `timed` adds the cost of CVODE at an equal error; `only=N` runs one
+//! rig, `from=N` begins with it; `judged=1e-9` judges phea at that tolerance.
 //!
-//! No solver keeps near a trajectory that leaves its neighbours. How fast they part CVODE finds
-//! alone, at 1e-11:
+//! No solver can follow a trajectory that diverges from its neighbours. Two runs of CVODE at 1e-11
+//! measure the rate of divergence:
 //!
 //! ```text
 //! A(t) = largest until t of |F_kicked - F|/(e F_peak)       every 10 ms, y_i -> y_i +- e scale_i by chance, e = 1e-8
 //! ```
 //!
-//! F by backward differentiation, F_kicked by Adams' method, so that rows on which the two do not
-//! agree to 1e-6 are not compared either. A solver that keeps a tolerance may err by as much as
-//! that in every step, and takes 32 steps between two kicks in the mean. Ten errors of 1e-6 grow to
-//! the thousandth of the peak that is allowed where A passes 100: there trajectories count as
-//! separated. Until then an error is held against that thousandth, from then on against what ten
-//! such errors grow to, 10 x 1e-6 A(t). The peak is that of the force, or of the reference where
-//! the loop never brings it.
+//! F is computed by backward differentiation, F_kicked by Adams' method, so that rows on which the
+//! two do not agree to 1e-6 are not compared either. A solver may err by its tolerance in every
+//! step, and takes 32 steps between two kicks on average. Ten errors of 1e-6 grow to the allowed
+//! thousandth of the peak when A exceeds 100: from there trajectories count as separated. Until
+//! then an error is compared with that thousandth, afterwards with the growth of ten such errors,
+//! 10 x 1e-6 A(t). The peak is that of the force, or of the reference if the loop never reaches it.
 //!
-//! Where A is large that bound is met by no ringing at all as well as by the right one. So from
-//! then on the force must ring as strongly as CVODE's does, too: [`roughness`].
+//! A force without ringing would satisfy that bound too if A is large. Therefore, from then on the
+//! force must also ring as strongly as CVODE's: [`roughness`].
 //!
-//! A rig is well posed where CVODE at 1e-9 finds the force of 1e-11 to 1e-5 of the peak. One that
-//! is not and fails is judged again at 1e-9: it must agree there. Of those that are, the error at
-//! the default tolerance is reported over all rows, with what a run at a tenth of the tolerance
-//! says of it.
+//! A rig is well posed if the forces of CVODE at 1e-9 and at 1e-11 agree to 1e-5 of the peak. An
+//! ill-posed rig that fails is judged again at 1e-9: it must agree there. For well-posed rigs, the
+//! error at the default tolerance is reported over all rows, together with its estimate by a run at
+//! a tenth of the tolerance.
 
 mod compare;
 mod falling;
@@ -62,10 +62,10 @@ use compare::{Compared, JUDGED, Manner, compare};
 use rig::{Control, Refusal};
 use tally::Tally;
 
-/// Part of the peak.
+/// Largest error, fraction of the peak.
 const LARGEST_ERROR: f64 = 1e-3;
 
-/// Which rigs.
+/// Family of rigs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Family {
     Any,
@@ -86,7 +86,7 @@ impl Family {
         }
     }
 
-    /// How many of its rigs are run where this many of a family are: those of the last two cost
+    /// Number of its rigs that are run if this many of a family are: those of the last two cost
     /// more.
     fn part_of(self, count: u64) -> u64 {
         match self {
@@ -97,16 +97,16 @@ impl Family {
     }
 }
 
-/// What the command line asks for.
+/// Arguments of the command line.
 struct Asked {
     first: u64,
     count: u64,
-    /// One rig alone.
+    /// Number of the only rig to run.
     only: Option<u64>,
     /// True if families are named: then each is run with the whole count.
     named: bool,
     manner: Manner,
-    /// Whether all that is known of each rig is told.
+    /// True if all data of each rig are printed.
     told: bool,
 }
 
@@ -139,13 +139,13 @@ fn main() -> ExitCode {
     if failed.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// Runs a family and reports what came of it.
+/// Runs a family and reports the outcome.
 fn passes(family: Family, asked: &Asked, program: &Path) -> bool {
     println!("family `{}`", family.word());
     let Asked { first, count, only, named, manner, told } = *asked;
     let count = if named { count } else { family.part_of(count) };
     let numbers = only.map_or(first..first + count, |only| only..only + 1);
-    // Times are taken one after the other.
+    // Runs are timed one after the other.
     let at_once = if manner.timed {
         1
     } else {
@@ -165,7 +165,7 @@ fn passes(family: Family, asked: &Asked, program: &Path) -> bool {
     tally.passes()
 }
 
-/// The results of all these rigs, in their order, so many at once.
+/// The results of all these rigs, in their order, with this many computed at once.
 fn of_all<T: Send>(
     numbers: std::ops::Range<u64>,
     at_once: u64,
@@ -187,7 +187,7 @@ fn of_all<T: Send>(
     found
 }
 
-/// Why there is no such rig.
+/// Reason why there is no such rig.
 fn refused(refusal: Refusal) -> String {
     match refusal {
         Refusal::Actuator(error) => error.to_string(),
@@ -196,13 +196,13 @@ fn refused(refusal: Refusal) -> String {
     }
 }
 
-/// A rig and its comparison, or why there is no such rig.
+/// A rig and its comparison, or the reason why there is no such rig.
 type Outcome = Result<(Described, Compared), String>;
 
 struct Described {
     control: Control,
     features: Vec<&'static str>,
-    /// Of an ill-posed rig that fails: whether it does at [`FINER`] too, and how.
+    /// Outcome of an ill-posed rig that fails, at [`FINER`] too.
     at_finer: Option<Result<(), String>>,
 }
 

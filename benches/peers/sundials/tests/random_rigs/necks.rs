@@ -1,5 +1,5 @@
-//! Rigs whose chambers have gas behind necks that empties: a low supply, precharges above what the
-//! load leaves in a chamber, short and long necks.
+//! Rigs with gas accumulators behind necks that empty: a low supply, precharges above the pressure
+//! that the load leaves in a chamber, short and long necks.
 
 use phea_dynamics::controller::AntiWindup;
 use phea_dynamics::simulation::Profile;
@@ -38,7 +38,7 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     let start =
         StartValues { position, pressure_a: pressure, pressure_b: pressure, ..StartValues::default() };
     let beginning = machine.start(&start).map_err(Refusal::Machine)?;
-    // one chamber is emptied, and then the other
+    // first one chamber is emptied, then the other
     let most = components.supply.pressure * components.cylinder.area_b;
     let sign = if chance.happens(0.5) { 1.0 } else { -1.0 };
     let (first, second) = (sign * most * chance.between(0.3, 0.8), -sign * most * chance.between(0.3, 0.8));
@@ -122,7 +122,7 @@ pub(crate) fn components(chance: &mut Chance) -> Components {
     }
 }
 
-/// Bristles.
+/// Friction with bristles.
 fn friction(chance: &mut Chance, most_force: f64, moving_mass: f64) -> Friction {
     let coulomb = most_force * chance.decades(2e-3, 3e-2);
     let curve = Stribeck {
@@ -138,7 +138,7 @@ fn friction(chance: &mut Chance, most_force: f64, moving_mass: f64) -> Friction 
     Friction::LuGre(LuGre { curve, bristle_stiffness, bristle_damping })
 }
 
-/// Gas that a force between a third and the most of the actuator shuts off, and its neck.
+/// Gas with its neck, shut off by a force between a third and all of the actuator's largest force.
 fn gas(chance: &mut Chance, swept: f64, pressure: f64, exchanges_heat: bool) -> (Accumulator, Neck) {
     let gas = Accumulator {
         gas_volume: swept * chance.decades(1e-2, 0.3),
@@ -149,7 +149,7 @@ fn gas(chance: &mut Chance, swept: f64, pressure: f64, exchanges_heat: bool) -> 
     (gas, Neck::round(size, [870.0, 46e-6, 1.45e9], chance.between(0.5, 2.0)))
 }
 
-/// Gains for a crossover that does not ring by itself.
+/// Gains for a crossover at which the loop itself does not ring.
 pub(crate) fn control(chance: &mut Chance, components: &Components) -> Control {
     let Components { valve, cylinder, supply, force_sensor, .. } = components;
     let flow_gain =

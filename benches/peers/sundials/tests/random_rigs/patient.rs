@@ -1,29 +1,29 @@
-//! A loop of phea for CVODE: what its runs cost is counted, and they come to an end.
+//! A loop of phea for CVODE that counts the cost of its runs and ends them.
 
 use std::cell::Cell;
 
 use phea_machine::Control as Loop;
 use sundials::Equations;
 
-/// phea's own loop, as compiled for its users, whose rates cease to be numbers after this number of
-/// evaluations: how a run on CVODE is ended.
+/// Loop of phea, as compiled for its users, whose rates cease to be numbers after this number of
+/// evaluations, which ends a run of CVODE.
 pub(crate) struct Patient<'a> {
     control: &'a Loop,
     patience: u64,
     left: Cell<u64>,
-    /// Steps tried, and the time of the last.
+    /// Number of attempted steps, and the time of the last.
     steps: Cell<u64>,
     asked_at: Cell<f64>,
 }
 
 impl<'a> Patient<'a> {
-    /// For so many evaluations.
+    /// Wraps a loop for this number of evaluations.
     pub(crate) fn new(control: &'a Loop, patience: u64) -> Patient<'a> {
         let (left, steps, asked_at) = (Cell::new(patience), Cell::new(0), Cell::new(f64::NAN));
         Patient { control, patience, left, steps, asked_at }
     }
 
-    /// Evaluations of the rates, and steps tried.
+    /// Number of evaluations of the rates, and of attempted steps.
     pub(crate) fn cost(&self) -> [u64; 2] {
         [self.patience - self.left.get(), self.steps.get()]
     }

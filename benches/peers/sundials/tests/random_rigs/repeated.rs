@@ -1,14 +1,14 @@
-//! Runs as a project has them: at the default tolerance, repeated at smaller ones where errors may
-//! be visible. Judged are all rows of the force and the metrics of each event; an error above the
-//! thousandth that the run does not report is a failure.
+//! Runs in the form of a project's: at the default tolerance, repeated at smaller ones if errors
+//! may be visible. All rows of the force and the metrics of each event are judged; an error above
+//! one thousandth that the run does not report is a failure.
 //!
 //! ```text
 //! rows      largest difference of the force over its peak; reported by every run that was repeated
-//! metrics   as two passes are compared; reported by every repetition but one whose passes agree
+//! metrics   compared between two passes; reported by every repetition except one whose passes agree
 //! ```
 //!
-//! There is no truth where CVODE at 1e-11 and at 1e-13 differs from itself by as much: a run then
-//! must report that errors may be visible.
+//! There is no truth if CVODE's results at 1e-11 and at 1e-13 differ by as much: a run must then
+//! report that errors may be visible.
 
 use std::time::Instant;
 
@@ -23,7 +23,7 @@ use crate::LARGEST_ERROR;
 use crate::compare::{NewSampler, Ours, Rows, TOLERANCE, force_of};
 use crate::rig::{OUTPUT_STEP_S, Rig};
 
-/// Percent of a step within which the force is settled.
+/// Settling band of the force, percent of a step.
 const BAND: f64 = 1.0;
 const NONE: Unmeasured = Unmeasured::NoStep;
 
@@ -34,7 +34,7 @@ pub(crate) struct Made {
     pub(crate) force: Vec<f64>,
 }
 
-/// Makes a pass of phea's.
+/// Runs one pass of phea.
 pub(crate) fn made<'a>(
     rig: &Rig,
     system: &'a Loop,
@@ -62,22 +62,22 @@ pub(crate) fn made<'a>(
     Made { ours, force: force_of(rig, &states) }
 }
 
-/// A run that was repeated where its errors may be visible.
+/// A run that was repeated because its errors may be visible.
 #[derive(Debug)]
 pub(crate) struct Judged {
     pub(crate) status: Status,
     pub(crate) repetition: Option<Repetition>,
-    /// Largest difference from CVODE over all rows, as a part of the peak.
+    /// Largest difference from CVODE over all rows, as a fraction of the peak.
     pub(crate) of_rows: f64,
     /// Largest difference of a metric.
     pub(crate) of_metrics: Option<PassSpread>,
-    /// Both between CVODE at two tolerances.
+    /// Largest differences of rows and of metrics between CVODE's runs at two tolerances.
     pub(crate) of_truth: [f64; 2],
     pub(crate) steps: u64,
 }
 
 impl Judged {
-    /// The run that a project would report, by `run`; held against CVODE's force, the exact one
+    /// The run that a project would report, by `run`; compared with CVODE's force, the exact one
     /// first.
     pub(crate) fn of(rig: &Rig, run: &dyn Fn(PassPlan) -> Made, truths: [&[f64]; 2]) -> Judged {
         let windows = windows(rig);
@@ -136,7 +136,7 @@ impl Judged {
     }
 }
 
-/// One from each step of the reference and from each beginning of the ground's motion to the next.
+/// Windows, each from a step of the reference or a beginning of the ground's motion to the next.
 fn windows(rig: &Rig) -> Vec<Window> {
     let end_s = rig.duration_s;
     let steps = rig.reference.breaks();
@@ -152,7 +152,7 @@ fn windows(rig: &Rig) -> Vec<Window> {
     begun.into_iter().zip(ends).map(|((start_s, cause), end_s)| Window { cause, start_s, end_s }).collect()
 }
 
-/// Metrics from rows, linear between them.
+/// Metrics from rows, with linear interpolation.
 fn measured(window: &Window, reference: &Profile, force: &[f64]) -> Metrics {
     let row = |time_s: f64| (time_s / OUTPUT_STEP_S).round() as usize;
     let (first, end) = (row(window.start_s), (row(window.end_s) + 1).min(force.len()));

@@ -1,5 +1,5 @@
-//! What a richer rig has: lines with dynamics of their own, walls, memories of the spool, ends that
-//! are met.
+//! Additional parts of a richer rig: lines with dynamics, walls, memories of the spool, ends that
+//! are reached.
 
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::contact::Contact;
@@ -15,7 +15,7 @@ use crate::rig::Chance;
 pub(crate) fn lines(chance: &mut Chance, components: &mut Components) -> Result<[DynamicLine; 2], LineError> {
     let is_hose = chance.happens(0.6);
     let bore = 12.7e-3 * (components.cylinder.area_a / 1.6e-3).sqrt() * chance.between(0.5, 1.5);
-    // Waves to and fro along shorter ones take CVODE minutes.
+    // Waves to and fro along shorter lines take CVODE minutes.
     let length = chance.decades(1.5, 10.0);
     let pressure = 0.5 * components.supply.pressure;
     let line = if is_hose { hose(chance, bore, length, pressure) } else { pipe(chance, bore, length) };
@@ -62,7 +62,7 @@ fn pipe(chance: &mut Chance, bore: f64, length: f64) -> Line {
     Line::Pipe { pipe: Pipe { bore, wall }, length }
 }
 
-/// Adds to these components and options what makes a machine rich.
+/// Adds richer parts to these components and options.
 pub(crate) fn enrich(chance: &mut Chance, components: &mut Components, options: &mut MachineOptions) {
     let Components { supply, cylinder, force_sensor, .. } = *components;
     let most_force = supply.pressure * cylinder.area_a;

@@ -1,5 +1,5 @@
-//! A rig drawn at random: valve, lines, cylinder, friction, load, controller and what happens to
-//! it, over decades.
+//! A rig drawn at random: valve, lines, cylinder, friction, load, controller and inputs, over
+//! decades.
 
 use phea_dynamics::controller::AntiWindup;
 use phea_dynamics::random;
@@ -22,14 +22,14 @@ use phea_hydraulics::stroke::ActuatorStroke;
 
 use crate::rich;
 
-/// Of every run, in s.
+/// Duration of every run, s.
 const DURATION_S: f64 = 1.0;
-/// Fine enough for what rings with 5000 rad/s.
+/// Output step, fine enough for ringing at 5000 rad/s.
 pub(crate) const OUTPUT_STEP_S: f64 = 0.25e-3;
 const REFERENCE_S: f64 = 0.1;
 const MOTION_S: f64 = 0.5;
 
-/// A proportional-integral controller behind a prefilter of second order.
+/// A proportional-integral controller with a prefilter of second order.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Control {
     pub(crate) proportional: f64,
@@ -42,26 +42,26 @@ pub(crate) struct Control {
     pub(crate) delay_s: f64,
 }
 
-/// A machine, its controller, and what happens to both.
+/// A machine, its controller, and the inputs of both.
 pub(crate) struct Rig {
     pub(crate) machine: Machine,
     pub(crate) start: Vec<f64>,
-    /// What arrives from its lines at first.
+    /// Waves that arrive from its lines at the start.
     pub(crate) waves: Vec<f64>,
     pub(crate) control: Control,
     pub(crate) reference: Profile,
     pub(crate) ground: Profile,
-    /// Of its run, in s.
+    /// Duration of its run, s.
     pub(crate) duration_s: f64,
-    /// Parameters of `closed_loop.h` that describe the same, if it can.
+    /// Parameters of `closed_loop.h` that describe an equivalent rig, if it can.
     pub(crate) twin: Option<Vec<String>>,
-    /// What it is made of, in words.
+    /// Features of the rig, in words.
     pub(crate) features: Vec<&'static str>,
 }
 
 impl Rig {
-    /// Its state at the beginning, this number of values without those of its waves: what a
-    /// controller adds is at rest.
+    /// Initial state, with this number of values without those of its waves: the states of the
+    /// controller are at rest.
     pub(crate) fn beginning(&self, states: usize) -> Vec<f64> {
         let mut start = self.start.clone();
         start.resize(states, 0.0);
@@ -70,7 +70,7 @@ impl Rig {
     }
 }
 
-/// Why there is no such rig.
+/// Reason why there is no such rig.
 #[derive(Debug)]
 pub(crate) enum Refusal {
     Actuator(ActuatorError),
@@ -78,11 +78,11 @@ pub(crate) enum Refusal {
     Line(LineError),
 }
 
-/// Where random numbers come from.
+/// Source of random numbers.
 pub(crate) struct Chance(u64);
 
 impl Chance {
-    /// That of the rig of this number, in the family of this seed.
+    /// Random numbers for the rig of this number, in the family of this seed.
     pub(crate) fn of(number: u64, seed: u64) -> Chance {
         let mut chance = Chance(number.wrapping_mul(0x5851_f42d_4c95_7f2d) ^ seed);
         random::share(&mut chance.0);
@@ -106,9 +106,9 @@ impl Chance {
     }
 }
 
-/// The rig of this number. Every fourth is one that `closed_loop.h` can describe too, every fourth
-/// a richer one, one in five of those with lines that have dynamics of their own: CVODE takes long
-/// for their many states.
+/// The rig of this number. Every fourth can be described by `closed_loop.h` too, and every fourth
+/// is a richer one, of which one in five has lines with dynamics: CVODE takes long for their many
+/// states.
 pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     let mut chance = Chance::of(number, 0x1405_7b7e_f767_814f);
     let (like_benchmark, rich) = (number.is_multiple_of(4), number % 4 == 2);
@@ -133,7 +133,7 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     let sign = if pulls { -1.0 } else { 1.0 };
     let mut share = inside;
     if rich && components.cylinder.end_stops.is_some() && chance.happens(0.5) {
-        // Near the end that it is moved into.
+        // Near the end into which it is moved.
         let left = chance.decades(1e-4, 1e-2);
         share = if pulls { left } else { 1.0 - left };
     }
@@ -249,7 +249,7 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
     }
 }
 
-/// A line that holds some of what the chamber does.
+/// A line with a fraction of the chamber's volume.
 fn line(chance: &mut Chance, chamber: f64) -> Line {
     Line::Volume {
         volume: chamber * chance.decades(1e-2, 3.0),
@@ -284,7 +284,7 @@ fn friction(chance: &mut Chance, most_force: f64, mass: f64, bristles: bool) -> 
     }
 }
 
-/// Leakage across the piston and end stops are the cylinder's.
+/// Leakage across the piston and end stops belong to the cylinder.
 fn options(chance: &mut Chance, components: &mut Components) -> MachineOptions {
     let Components { supply, cylinder, force_sensor, .. } = *components;
     let most_force = supply.pressure * cylinder.area_a;
@@ -322,8 +322,8 @@ fn options(chance: &mut Chance, components: &mut Components) -> MachineOptions {
     }
 }
 
-/// Gains for a crossover over decades, if the piston were without mass and friction: slow ones, and
-/// ones that hunt.
+/// Gains for a crossover over decades, for a piston without mass and friction: slow ones, and ones
+/// that hunt.
 fn control(chance: &mut Chance, components: &Components, like_benchmark: bool) -> Control {
     let Components { valve, cylinder, supply, force_sensor, fluid, .. } = components;
     let volume = cylinder.area_a * cylinder.stroke.middle() + components.line_a.volume();
@@ -354,7 +354,7 @@ fn control(chance: &mut Chance, components: &Components, like_benchmark: bool) -
     }
 }
 
-/// The same rig in the words of `closed_loop.h`; `motion` is its time constant and its duration.
+/// The equivalent rig for `closed_loop.h`; `motion` is its time constant and its duration.
 fn twin(
     components: &Components,
     control: &Control,

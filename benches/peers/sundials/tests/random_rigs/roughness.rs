@@ -1,16 +1,16 @@
-//! How much of a force rings: what shows whether a solver has calmed an oscillation, where
-//! trajectories have parted.
+//! Ringing of a force: shows, after trajectories have separated, if a solver has damped an
+//! oscillation.
 //!
 //! ```text
 //! R_k^2 = mean over window k of (F - mean of F over the 10 ms around)^2          windows of 0.1 s
 //! ```
 //!
-//! The phase of a ringing that grew out of almost nothing says nothing, how strong it is does, as
-//! far as anybody knows: an onset may fall into the window before or after, and where CVODE's own
-//! runs (at 1e-11, the same moved by chance, at 1e-9) differ by more than these parts in the
-//! largest of R_(k-1), R_k, R_(k+1), the strength depends on what is smaller than any tolerance. A
-//! rig on which phea differs from them is run by CVODE at 1e-13 too: it may be CVODE's own error
-//! that grew into a ringing, and phea is right.
+//! The phase of a ringing that grew from almost zero carries no information, but its strength does,
+//! as far as it is known: an onset may be in the window before or after, and if CVODE's own runs
+//! (at 1e-11, at 1e-11 with random kicks, and at 1e-9) differ by more than these fractions in the
+//! largest of R_(k-1), R_k, R_(k+1), the strength depends on quantities smaller than any tolerance.
+//! A rig on which phea differs from them is run by CVODE at 1e-13 too: CVODE's own error may have
+//! grown into a ringing, with phea being right.
 //!
 //! ```text
 //! known       largest of R_(k-1), R_k, R_(k+1)  >=  0.7 smallest of CVODE's R_k
@@ -21,31 +21,31 @@
 //! of each window with rows after trajectories have separated; P, a thousandth of the peak, is the
 //! smallest that counts as ringing.
 
-/// Over which the slow part of a force is taken, s.
+/// Time over which the slow part of a force is averaged, s.
 const SLOW_S: f64 = 10e-3;
 const WINDOW_S: f64 = 0.1;
-/// Below the smallest and above the largest of CVODE's.
+/// Limits relative to the smallest and to the largest ringing of CVODE's runs.
 const LEAST: f64 = 0.7;
 const MOST: f64 = 1.3;
-/// Part of the peak from which on a force counts as rough.
+/// Fraction of the peak above which a force counts as rough.
 const FLOOR: f64 = 1e-3;
 
-/// The ringing of one run held against that of CVODE's.
+/// The ringing of a run compared with that of CVODE.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Roughness {
-    /// Windows in which CVODE rings, and those among them of which it knows how strongly.
+    /// Windows in which CVODE rings, and those among them in which its strength is known.
     pub(crate) windows: usize,
     pub(crate) known: usize,
-    /// Smallest part of CVODE's smallest, or of what is ringing at all; 1 where it rings in no
-    /// window.
+    /// Smallest ratio to CVODE's smallest ringing, or to the threshold of ringing; 1 if CVODE rings
+    /// in no window.
     pub(crate) least: f64,
-    /// Largest part of CVODE's largest where that is known; 1 where neither rings.
+    /// Largest ratio to CVODE's largest ringing, if that is known; 1 if neither rings.
     pub(crate) most: f64,
 }
 
 impl Roughness {
-    /// Of a run's force, with rows at this distance, which separate after this number; `None` where
-    /// they do not.
+    /// Compares a run's force with those of CVODE, on rows `step_s` apart that separate after
+    /// `rows` of them; `None` if they do not separate.
     pub(crate) fn compared(
         force: &[f64],
         references: &[&[f64]],
@@ -78,7 +78,7 @@ impl Roughness {
         Some(found)
     }
 
-    /// How it differs from what CVODE finds, if it does.
+    /// Difference from CVODE's ringing, if there is one.
     pub(crate) fn fault(&self) -> Option<String> {
         if self.least < LEAST {
             Some(format!("rings with {:.2} of the least that CVODE finds: calmed", self.least))
@@ -90,12 +90,12 @@ impl Roughness {
     }
 }
 
-/// Largest root mean square of what is fast in a force, over all its windows.
+/// Largest root mean square of the fast part of a force, over all its windows.
 pub(crate) fn roughest(force: &[f64], step_s: f64) -> f64 {
     rough(force, step_s).into_iter().fold(0.0, f64::max)
 }
 
-/// Whether it is large enough to count.
+/// True if the roughness is large enough to count.
 pub(crate) fn is_rough(roughness: f64, peak: f64) -> bool {
     roughness >= FLOOR * peak
 }
@@ -106,7 +106,7 @@ fn most_near(rough: &[f64], window: usize) -> f64 {
     rough[around].iter().copied().fold(0.0, f64::max)
 }
 
-/// Root mean square of what is fast, window by window.
+/// Root mean square of the fast part, window by window.
 fn rough(force: &[f64], step_s: f64) -> Vec<f64> {
     let half = rows_of(SLOW_S, step_s) / 2;
     let mut sums = vec![0.0];

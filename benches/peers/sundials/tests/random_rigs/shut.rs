@@ -1,6 +1,6 @@
-//! What runs cost over gas that is shut off behind its neck: there the oil of the neck rings for
-//! long, and CVODE takes minutes at the tolerance at which other rigs have their reference. So its
-//! run at a looser one is the reference, and its steps are what those of phea are held against.
+//! Cost of runs with gas that is shut off and has a neck: there the oil of the neck rings for long,
+//! and CVODE takes minutes at the tolerance of the reference of other rigs. Its run at a looser
+//! tolerance is therefore the reference, and phea's steps are compared with its steps.
 
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{
@@ -13,31 +13,32 @@ use crate::compare::{Rows, TOLERANCE, controller, force_of};
 use crate::patient::Patient;
 use crate::rig::{OUTPUT_STEP_S, Rig};
 
-/// Of CVODE.
+/// Tolerance of CVODE.
 const LOOSER: f64 = 1e-9;
-/// Its evaluations, after which the steps so far are what counts.
+/// Largest number of its evaluations, after which the steps so far are counted.
 const EVALUATIONS: u64 = 4_000_000;
-/// Times its steps that phea may try at its default tolerance.
+/// Largest allowed ratio of phea's steps at its default tolerance to CVODE's.
 const MOST_STEPS: f64 = 10.0;
 
 /// Runs of one rig.
 pub(crate) struct Costs {
     pub(crate) status: Status,
-    /// Steps tried: by phea, and by CVODE.
+    /// Attempted steps of phea and of CVODE.
     pub(crate) steps: [u64; 2],
-    /// Largest difference of the force as a part of its peak; `None` where CVODE came to no end.
+    /// Largest difference of the force as a fraction of its peak; `None` if CVODE did not reach the
+    /// end.
     pub(crate) error: Option<f64>,
-    /// Whether phea reports that errors may be visible.
+    /// True if phea reports that errors may be visible.
     pub(crate) may_show_errors: bool,
 }
 
 impl Costs {
-    /// phea's steps over those of CVODE.
+    /// Ratio of phea's steps to CVODE's.
     pub(crate) fn ratio(&self) -> f64 {
         self.steps[0] as f64 / self.steps[1] as f64
     }
 
-    /// What is wrong with them.
+    /// Description of the failure, if there is one.
     pub(crate) fn fault(&self) -> Option<String> {
         let Costs { status, steps, error, may_show_errors } = self;
         if *status != Status::Completed {
@@ -51,7 +52,7 @@ impl Costs {
     }
 }
 
-/// phea and CVODE over one rig whose controller is continuous.
+/// Runs phea and CVODE on a rig whose controller is continuous.
 pub(crate) fn costs(rig: &Rig) -> Costs {
     let sensed =
         Sensed::new(rig.machine, &TransferFunction::gain_only(1.0)).expect("a sensor without memory");
@@ -95,7 +96,7 @@ pub(crate) fn costs(rig: &Rig) -> Costs {
     }
 }
 
-/// Prints what came of all rigs and what is wrong with some; whether nothing is.
+/// Prints the results of all rigs and the failures; returns true if there is none.
 pub(crate) fn passes(found: &[(u64, Result<Costs, String>)]) -> bool {
     let run: Vec<(u64, &Costs)> =
         found.iter().filter_map(|(number, costs)| Some((*number, costs.as_ref().ok()?))).collect();

@@ -1,4 +1,4 @@
-//! What was found over all rigs of a family.
+//! Results over all rigs of a family.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use crate::repeated::Judged;
 use crate::roughness::Roughness;
 use crate::{Described, FINER, LARGEST_ERROR, Outcome};
 
-/// Between the machine and `closed_loop.h`, part of the peak.
+/// Largest difference between the machine and `closed_loop.h`, fraction of the peak.
 const LARGEST_DIFFERENCE: f64 = 1e-4;
 
 #[derive(Default)]
@@ -17,45 +17,48 @@ pub(crate) struct Tally {
     run: usize,
     refused: BTreeMap<String, usize>,
     without_reference: usize,
-    /// Which phea ends where a chamber has emptied.
+    /// Number of rigs on which phea stops because a chamber has emptied.
     without_model: usize,
     features: BTreeMap<&'static str, usize>,
     hunting: usize,
     rough: usize,
-    /// Parts of their rows that are compared.
+    /// Fractions of compared rows, for rigs whose trajectories separate.
     separating: Vec<f64>,
     errors: Vec<f64>,
-    /// Whose error exceeds the largest in any row, separated or not.
+    /// Number of rigs whose error exceeds the largest in any row, separated or not.
     exceeding: usize,
     beyond: Vec<f64>,
-    /// Rigs and windows that ring, windows where it is known how strongly, and parts of CVODE's.
+    /// Rigs and windows that ring, windows in which the strength is known, and ratios to CVODE's
+    /// ringing.
     ringing: [usize; 3],
     least: Vec<f64>,
     most: Vec<f64>,
     steps: u64,
     evaluations: u64,
-    /// Of the runs at the default tolerance: errors, and what would be failures.
+    /// Runs at the default tolerance: errors, and descriptions of those that would be failures.
     default_errors: Vec<f64>,
     default_faults: Vec<String>,
     default_steps: u64,
     checks: Checks,
     projects: Projects,
     twins: Vec<f64>,
-    /// CVODE's seconds and evaluations over phea's: with its stability limit, and by Adams' method.
+    /// Ratios of CVODE's seconds and evaluations to phea's: with its stability limit, and by Adams'
+    /// method.
     ratios: [[Vec<f64>; 2]; 2],
-    /// Ill-posed rigs that fail at the tolerance at which they are judged, and not at a finer one.
+    /// Ill-posed rigs that fail at the tolerance at which they are judged, but not at a finer one.
     ill_posed: Vec<String>,
     failures: Vec<String>,
 }
 
-/// Results of runs as a project has them.
+/// Results of runs in the form of a project's.
 #[derive(Default)]
 struct Projects {
-    /// How their repetitions ended, and how many were made once.
+    /// Outcomes of their repetitions, with their counts and that of the runs made once.
     agreements: BTreeMap<String, usize>,
     of_rows: Vec<f64>,
     of_metrics: Vec<f64>,
-    /// Rigs whose rows, and whose metrics, CVODE does not determine to the largest error.
+    /// Numbers of rigs whose rows, and whose metrics, CVODE does not determine to the largest
+    /// error.
     unknown: [usize; 2],
     steps: u64,
 }
@@ -86,18 +89,18 @@ impl Projects {
     }
 }
 
-/// What a run at a tenth of the default tolerance says of the error at it.
+/// Error at the default tolerance as estimated by a run at a tenth of it.
 #[derive(Default)]
 struct Checks {
     well_posed: usize,
     /// Errors over all rows of well-posed rigs.
     errors: Vec<f64>,
     /// Rigs whose error at the default tolerance exceeds the largest, and rigs whose error does
-    /// not: all, of those with the report that errors may be visible, of those where a check says
-    /// so, and of those with either.
+    /// not: their number, and those with the report that errors may be visible, with a check that
+    /// shows them, and with either.
     reported: [[usize; 4]; 2],
-    /// True error over what the check says, where either exceeds the largest: of well-posed rigs,
-    /// and of the others.
+    /// Ratio of the true error to the checked one, if either exceeds the largest: for well-posed
+    /// rigs, and for the others.
     factors: [Vec<f64>; 2],
 }
 
@@ -171,7 +174,7 @@ impl Tally {
         }
     }
 
-    /// Takes what is reported of a rig whose trajectories separate.
+    /// Adds the reports on a rig whose trajectories separate.
     fn separate(&mut self, number: u64, compared: &Compared, ours: &Ours) {
         let (rows, of) = (compared.rows, compared.growth.len());
         self.separating.push(rows as f64 / of as f64);
@@ -262,7 +265,7 @@ impl Tally {
 }
 
 impl Checks {
-    /// `run` is that at the default tolerance.
+    /// Adds a rig; `run` is that at the default tolerance.
     fn take(&mut self, number: u64, compared: &Compared, run: &Ours) {
         let (error, estimate) = (run.error_of_all, compared.estimate);
         if compared.well_posed {

@@ -1,4 +1,4 @@
-//! In what a certificate differs from a project, in words.
+//! Differences between a certificate and a project, in words.
 
 use phea_qft::proof::{Certificate, CertificateDifference, CertificateSide, differences};
 

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use crate::project::{Loaded, word_of};
 use claims::{Cover, StatedClaim, covers, panels};
 
-/// What the file begins with.
+/// First word of the file.
 const FORMAT: &str = "phea-certificate";
 /// Version of the layout.
 const VERSION: u32 = 1;
@@ -26,12 +26,12 @@ pub(super) struct File {
     pub(super) title: String,
     pub(super) project_sha256: String,
     settings: Vec<String>,
-    /// The recordings that the plant is of, which `project_sha256` covers too.
+    /// The recordings from which the plant was identified, which `project_sha256` covers too.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     recordings: Vec<StatedRecording>,
     variables: usize,
     parameters: Vec<String>,
-    /// For each box, for each parameter.
+    /// A segment for each box and each parameter.
     boxes: Vec<Vec<StatedSegment>>,
     operations: Vec<Operation>,
     plant: CertificatePlant,
@@ -49,7 +49,7 @@ pub(super) struct File {
     claims: Vec<StatedClaim>,
 }
 
-/// A recording that a value of the plant comes from.
+/// A recording from which a value of the plant comes.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StatedRecording {
@@ -104,7 +104,7 @@ fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
 
-/// One recorded operation: its name, then what it acts on.
+/// A recorded operation: its name, then its operands.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
 enum Operation {
@@ -127,7 +127,7 @@ const BINARY: [(&str, Binary); 4] = [
     ("multiply", Binary::Multiply),
     ("divide", Binary::Divide),
 ];
-/// The third where the first is less than the second, else the fourth.
+/// The third operand if the first is less than the second, otherwise the fourth.
 const SELECT: &str = "select";
 
 fn named<T: Copy>(table: &[(&str, T)], name: &str) -> Option<T> {
@@ -177,7 +177,7 @@ struct StatedSampling {
     #[serde(default, skip_serializing_if = "is_zero")]
     sensor_delay: f64,
     images: usize,
-    /// For each box.
+    /// Bounds for each box.
     bounds: Vec<Vec<StatedBound>>,
 }
 
@@ -189,7 +189,7 @@ struct StatedBound {
     panels: Vec<Cover>,
 }
 
-/// Why a file is not a certificate.
+/// Reason why a file is not a certificate.
 #[derive(Debug, thiserror::Error)]
 pub enum CertificateError {
     /// No JSON of this layout.
@@ -198,9 +198,9 @@ pub enum CertificateError {
     /// Another format or version.
     #[error("this is `{format}` version {version}; `{FORMAT}` version {VERSION} is known")]
     Version {
-        /// What it says it is.
+        /// Format stated in the file.
         format: String,
-        /// Its version.
+        /// Version stated in the file.
         version: u32,
     },
     /// A word, a position or a number without a meaning.

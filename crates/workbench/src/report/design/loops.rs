@@ -47,7 +47,7 @@ pub(super) fn figure(view: &ProjectDesign, found: &[DesignFrequency]) -> Result<
     Ok(Some(chart.draw(&Words::new("design_nichols", title, caption))))
 }
 
-/// The loop of a side where it lies in a bound.
+/// Violation by the loop of a side at a design frequency; `None` if there is none.
 fn forbidden(side: &AuditedController, name: &str, one: &DesignFrequency) -> Option<OpenLoopViolation> {
     let frequency_rad_per_s = one.frequency_rad_per_s;
     let feedback = side.problem.compensation.response(frequency_rad_per_s).feedback;

@@ -10,7 +10,7 @@ use crate::design::ProjectDesign;
 use crate::figure::{FamilyMagnitude, Figure, Words};
 use crate::specification::{kind_key, name_words};
 
-/// One figure for each specification that a loop has a margin to.
+/// A figure for each specification to which a loop has a margin.
 pub(super) fn figures(view: &ProjectDesign) -> Result<Vec<Figure>, LinearError> {
     let sides = [("designed", Some(&view.designed)), ("given", view.published.as_deref())];
     let sides = sides.into_iter().filter_map(|(name, side)| Some((name, side?)));

@@ -16,10 +16,10 @@ use crate::verdict_words::frequency_words;
 
 /// Distance of tracking limits below which they are not distinguishable in a figure, dB.
 const DISTINGUISHED_DB: f64 = 0.01;
-/// How far the drawn frequencies reach below and above the design frequencies.
+/// Factors by which the drawn frequencies extend below and above the design frequencies.
 const BEYOND: [f64; 2] = [0.1, 10.0];
 
-/// One figure for each tracking specification that a prefilter was designed for.
+/// A figure for each tracking specification for which a prefilter was designed.
 pub(super) fn figures(view: &ProjectDesign) -> Result<Vec<Figure>, LinearError> {
     let mut figures = Vec::new();
     for (index, one) in view.designed.problem.specifications.iter().enumerate() {
@@ -59,8 +59,8 @@ fn figure(
     Ok(Some(prefilter_band(&words, &panels)))
 }
 
-/// The band of one loop, with a sentence on where it is tightest; `None` for a loop that is not
-/// stable, or is not known.
+/// The band of one loop, with a sentence on its narrowest place; `None` for a loop that is not
+/// stable, or not known.
 fn panel(
     name: &str,
     side: &AuditedController,
@@ -95,7 +95,7 @@ fn panel(
     Ok(Some((PrefilterPanel { name: name.to_string(), points: points.collect() }, sentence)))
 }
 
-/// The band at drawn frequencies, from where its limits can be distinguished.
+/// The band at drawn frequencies, beginning where its limits can be distinguished.
 fn shown(band: &PrefilterBand, drawn: &[f64]) -> Vec<PrefilterBandPoint> {
     let ends = drawn.first().copied().unwrap_or_default()..=drawn.last().copied().unwrap_or_default();
     let inside = band.points().iter().filter(|point| ends.contains(&point.frequency_rad_per_s));

@@ -6,7 +6,8 @@ use crate::design::AuditedController;
 use crate::specification::numbered;
 use crate::verdict_words::margin_words;
 
-/// Where the continuous design is worst compared with the one that takes sampling into account.
+/// Frequency at which the continuous design is worst compared with the one that takes sampling into
+/// account.
 pub(super) fn sentence(sampled: &AuditedController, continuous: &AuditedController) -> String {
     let margin = |finding: &SpecificationFinding| finding.worst.as_ref().map(|worst| worst.margin_db);
     let pairs = sampled.view.audit.specifications.iter().zip(&continuous.view.audit.specifications);

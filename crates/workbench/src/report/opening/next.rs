@@ -1,6 +1,6 @@
-//! What to do next, a sentence each, as it follows from the results: which controller to take,
-//! contradictions by the machine, effects that no verdict includes, wishes that are not met, and
-//! missing declarations.
+//! Sentences on the next steps, as they follow from the results: the controller to take,
+//! contradictions by the machine, effects that no verdict includes, requirements in time that are
+//! not met, and missing declarations.
 
 use phea_dynamics::closed_loop::ClosedLoop;
 use phea_dynamics::order::sort_by_number;
@@ -31,10 +31,11 @@ const MOST: usize = 6;
 /// Delay of a computer with a sample time of one millisecond, s: a loop that tolerates less must
 /// take it into account.
 const SHORT_DELAY_S: f64 = 2e-3;
-/// Deviation of a simulated from a measured signal that counts as small, as a share of its range.
+/// Deviation of a simulated from a measured signal that counts as small, as a fraction of its
+/// range.
 const NEAR: f64 = 0.1;
 
-/// The sentences, what decides first.
+/// The sentences, the decisive ones first.
 pub(super) fn next_steps(contents: &Contents<'_>, sides: &[Side<'_>]) -> Vec<String> {
     let taken = taken(sides);
     let mut steps = Vec::new();
@@ -95,7 +96,7 @@ fn controller(contents: &Contents<'_>, sides: &[Side<'_>]) -> Option<String> {
     })
 }
 
-/// Whether the machine contradicts the verdict.
+/// True if the machine contradicts the verdict.
 fn contradicted(side: &Side<'_>) -> bool {
     side.trial.is_some_and(|trial| trial.agreement() == Agreement::Contradicts)
 }
@@ -151,7 +152,7 @@ fn missed_words(view: &ProjectAudit) -> String {
     missed.join(" and ")
 }
 
-/// The plant, if a few words suffice; otherwise where it is listed.
+/// The plant, if a few words suffice; otherwise the place where it is listed.
 fn plant_words(view: &ProjectAudit, plant: &phea_qft::verification::PlantPoint) -> String {
     match view.names.headings().len() {
         0 => String::new(),
@@ -223,7 +224,8 @@ fn machine(side: &Side<'_>) -> Vec<String> {
 }
 
 fn machine_words(side: &Side<'_>, run: &TrialRun) -> String {
-    // the chapter on the machine has the rest: the range of the force, and the time of a wave
+    // the chapter on the machine has the rest: the range of the force, and the travel time of a
+    // wave
     let why = brief_reason(&run.reason, run.units);
     let satisfies = side.trial.and_then(Trial::satisfies) == Some(true);
     if satisfies && run.agreement != Agreement::Contradicts {
@@ -264,7 +266,8 @@ fn is_tracking(specification: &DeclaredSpecification) -> bool {
     specification.kind == SpecificationKind::ClosedLoop(ClosedLoop::Tracking)
 }
 
-/// A step of the machine that misses the wish, and the response of the tracking limits themselves.
+/// A step of the machine that misses the requirement in time, and the response of the tracking
+/// limits themselves.
 fn wishes(contents: &Contents<'_>, side: &Side<'_>) -> Option<String> {
     let required: &TimeRequirement = contents.driven?.required.as_ref()?;
     let missed = |property| {
@@ -334,7 +337,7 @@ fn delay(project: &Project, side: &Side<'_>) -> Option<String> {
     })
 }
 
-/// What would give more certainty.
+/// Declarations that would give more certainty.
 fn undeclared(contents: &Contents<'_>, taken: Option<&Side<'_>>) -> Vec<String> {
     let project = contents.setup.project;
     let mut steps = Vec::new();

@@ -1,4 +1,4 @@
-//! One controller with all its results.
+//! A controller with all its results.
 
 use phea_qft::proof::{Proof, Standing};
 use phea_qft::verification::Verdict;
@@ -14,7 +14,7 @@ use crate::trial::Trial;
 
 /// A controller.
 pub(super) struct Side<'a> {
-    /// [`GIVEN`] or [`DESIGNED`].
+    /// Name of the controller: [`GIVEN`] or [`DESIGNED`].
     pub(super) name: &'static str,
     /// The audit of its family.
     pub(super) view: Option<&'a ProjectAudit>,
@@ -35,7 +35,7 @@ pub(super) fn sides<'a>(
     campaign: &'a [CampaignStep],
 ) -> Vec<Side<'a>> {
     let found = judged.and_then(Judged::found);
-    // a project without a controller of its own is driven under the designed one
+    // a project that gives no controller is driven under the designed one
     let (of_given, of_designed): (&[CampaignStep], &[CampaignStep]) = match driven {
         Some(driven) if driven.runs_of(GIVEN).is_none() && found.is_some() => (&[], campaign),
         _ => (campaign, &[]),
@@ -60,33 +60,33 @@ pub(super) fn sides<'a>(
 }
 
 impl Side<'_> {
-    /// Its proof, if one was attempted.
+    /// The proof, if one was attempted.
     pub(super) fn proof(&self) -> Option<&Proof> {
         self.view?.proof.as_ref()
     }
 
-    /// Whether every plant is proven to be stable and to satisfy every specification at every
-    /// frequency; `None` where no proof was attempted.
+    /// True if every plant is proven to be stable and to satisfy every specification at every
+    /// frequency; `None` if no proof was attempted.
     pub(super) fn is_proven(&self) -> Option<bool> {
         let proof = self.proof()?;
-        // steps in time are searched for, and no part of a proof
+        // steps in time are searched for, and are not part of a proof
         let searched = self.view?.in_time.iter().any(|finding| finding.requirement.follows);
         let each = proof.specifications.iter().map(|own| &own.standing);
         Some(std::iter::once(&proof.stability).chain(each).all(|one| !searched && *one == Standing::Proven))
     }
 
-    /// Whether every specification is met.
+    /// True if every specification is met.
     pub(super) fn is_met(&self) -> bool {
         self.view.is_some_and(|view| view.verdict() == Verdict::Met)
     }
 
-    /// Whether all steps that it is about satisfy a requirement; `None` if none can be judged.
+    /// True if all steps to which a requirement applies satisfy it; `None` if none can be judged.
     pub(super) fn keeps(&self, required: &TimeRequirement) -> Option<bool> {
         let all = StepProperty::ALL.into_iter().filter_map(|property| steps(self, required, property));
         all.map(|steps| steps.are_kept()).reduce(|one, other| one && other)
     }
 
-    /// Seconds of delay that its family still tolerates.
+    /// Additional delay that the family tolerates, s.
     pub(super) fn delay_margin_s(&self) -> Option<f64> {
         Some(self.view?.audit.delay_margin.as_ref()?.delay_s)
     }

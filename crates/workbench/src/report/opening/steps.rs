@@ -1,6 +1,6 @@
-//! Every step of the reference that the report has of one controller, compared with what is
-//! required in time: the scenarios, the machines of the trial, the linear steps over the family,
-//! and the runs of the campaign.
+//! Every step of the reference that the report has of one controller, compared with its requirement
+//! in time: the scenarios, the machines of the trial, the linear steps over the family, and the
+//! runs of the campaign.
 
 use std::collections::BTreeSet;
 
@@ -15,24 +15,24 @@ use crate::simulate::{
 };
 use crate::trial::{Trial, TrialRun, have_one_name, run_name};
 
-/// Which property of a step.
+/// Property of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum StepProperty {
-    /// Percent of the step.
+    /// Overshoot, percent of the step.
     Overshoot,
-    /// s; infinite where it does not settle.
+    /// Settling time, s; infinite if the step does not settle.
     Settling,
-    /// From 10 to 90 percent, s; infinite where it does not rise so far.
+    /// Rise time from 10 to 90 percent, s; infinite if the step does not rise that far.
     Rise,
 }
 
 impl StepProperty {
-    /// All of them.
+    /// Every property.
     pub(super) const ALL: [StepProperty; 3] =
         [StepProperty::Overshoot, StepProperty::Settling, StepProperty::Rise];
 }
 
-/// Where steps come from.
+/// Origin of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum StepOrigin {
     Scenario,
@@ -53,19 +53,20 @@ pub(super) struct AllSteps {
     property: StepProperty,
     most: f64,
     steps: Vec<OneStep>,
-    /// Plants of the family whose linear steps were computed; the worst one is among the steps.
+    /// Number of plants of the family whose linear steps were computed; the worst one is among the
+    /// steps.
     plants: usize,
 }
 
 /// Words for a step that does not settle, and for one that does not rise to 90 percent.
 pub(super) const NEVER_SETTLED: &str = "not settled";
 pub(super) const NEVER_RISEN: &str = "not risen to 90 %";
-/// Tolerance relative to what is required: printed numbers have three digits.
+/// Tolerance relative to the required value: printed numbers have three digits.
 const ROUNDED: f64 = 1e-6;
 /// Deviation of a linear step that counts as none, percent.
 const ACCURACY_PERCENT: f64 = 0.01;
 
-/// All steps of a controller that a requirement is about; `None` where the property is not required
+/// Every step of a controller that a requirement is about; `None` if the property is not required
 /// or no step has it.
 pub(super) fn steps(side: &Side<'_>, required: &TimeRequirement, property: StepProperty) -> Option<AllSteps> {
     let wish = &required.wish;
@@ -84,7 +85,7 @@ pub(super) fn steps(side: &Side<'_>, required: &TimeRequirement, property: StepP
         let windows = run.windows.iter().map(|(window, metrics)| (window, metrics));
         steps.extend(windows.filter(|(window, _)| concerns(required, window)).filter_map(of));
     }
-    // a requirement with a step of its own is about no other
+    // a requirement with its own step applies to no other
     let is_about = |run: &TrialRun| {
         let mut numbers = run.requirements.iter().map(|held| held.number);
         !required.steps.are_stated() || numbers.any(|number| number == required.number)
@@ -128,8 +129,8 @@ fn corner_words(run: &TrialRun) -> String {
     }
 }
 
-/// What the steps of a run that was completed reach of a requirement; `None` where they were not
-/// held against it.
+/// Values that the steps of a completed run reach for a requirement; `None` if they were not
+/// compared with it.
 fn held<'r>(run: &'r TrialRun, required: &TimeRequirement) -> Option<&'r ReachedStep> {
     let held = run.requirements.iter().find(|held| held.number == required.number)?;
     Some(&held.reached).filter(|reached| reached.overshoot_percent.is_finite())
@@ -154,7 +155,7 @@ fn of_machine(run: &TrialRun, wish: &TrackingWish, property: StepProperty) -> Op
     let metrics =
         step_metrics(&response.times_s, &response.values, StepBaseline::unit(), wish.band_percent).ok()?;
     Some(match property {
-        // of the solution itself, where it is known
+        // overshoot of the solution itself, where it is known
         StepProperty::Overshoot => {
             let known = run.machine.as_ref().and_then(|step| step.overshoot_percent);
             known.unwrap_or(metrics.overshoot_percent)
@@ -164,7 +165,7 @@ fn of_machine(run: &TrialRun, wish: &TrackingWish, property: StepProperty) -> Op
     })
 }
 
-/// The worst linear step of the family, and of how many.
+/// The worst linear step of the family, and the number of steps.
 fn of_family(side: &Side<'_>, number: usize, property: StepProperty) -> (Option<OneStep>, usize) {
     let Some(view) = side.view else { return (None, 0) };
     let own = view.in_time.iter().find(|finding| finding.requirement.number == number);
@@ -198,7 +199,7 @@ impl AllSteps {
         step.value > self.most + accuracy
     }
 
-    /// Whether all satisfy what is required.
+    /// True if all steps satisfy the requirement.
     pub(super) fn are_kept(&self) -> bool {
         !self.steps.iter().any(|step| self.is_above(step))
     }
@@ -209,7 +210,7 @@ impl AllSteps {
         self.value_words(worst)
     }
 
-    /// The value of a step; a simulated one is known over its window alone.
+    /// The value of a step in words; a simulated value is known over its window only.
     fn value_words(&self, step: &OneStep) -> String {
         let value = step.value;
         let within = if step.origin == StepOrigin::Family { "" } else { " within its window" };
@@ -226,7 +227,7 @@ impl AllSteps {
         self.steps.iter().max_by(|one, other| one.value.total_cmp(&other.value))
     }
 
-    /// The worst value with its place, and how many of which steps are above.
+    /// The worst value with its place, and the number and kinds of steps above the requirement.
     pub(super) fn words(&self) -> String {
         let Some(worst) = self.worst() else { return String::new() };
         let value = self.value_words(worst);
@@ -239,7 +240,7 @@ impl AllSteps {
         for (origin, what) in counts {
             let own = || self.steps.iter().filter(|step| step.origin == origin);
             let (count, above) = match origin {
-                // a run has several steps, and misses what is required by one of them
+                // a run has several steps, and misses the requirement in one of them
                 StepOrigin::Campaign => {
                     let runs = |all: &mut dyn Iterator<Item = &OneStep>| -> usize {
                         all.map(|step| step.place.as_str()).collect::<BTreeSet<_>>().len()
@@ -272,7 +273,7 @@ impl AllSteps {
             (StepOrigin::Campaign, "of the campaign"),
         ];
         let count = |origin: StepOrigin| match origin {
-            // the worst of the family stands for all of its plants
+            // the worst plant of the family represents all of its plants
             StepOrigin::Family => self.plants,
             _ => self.steps.iter().filter(|step| step.origin == origin).count(),
         };

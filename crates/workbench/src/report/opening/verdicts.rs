@@ -36,7 +36,7 @@ pub(super) fn table(contents: &Contents<'_>, sides: &[Side<'_>]) -> Table {
     table
 }
 
-/// A row, whose cell of each controller may be missing.
+/// A row with a cell for each controller, which may be missing.
 fn row(
     name: impl Into<Cell>,
     sides: &[Side<'_>],
@@ -87,7 +87,7 @@ fn proven(is_proven: bool) -> &'static str {
     if is_proven { ", proven" } else { "" }
 }
 
-/// The verdict, its margin, and where it occurs.
+/// The verdict, its margin, and the frequency at which it occurs.
 fn finding(finding: &SpecificationFinding, is_proven: bool) -> Cell {
     let verdict = Cell::verdict(finding.verdict);
     let Some(worst) = &finding.worst else { return verdict };

@@ -61,7 +61,7 @@ pub(super) fn circuit(project: &Project, actuator: &DeclaredActuator, rig: &Rig)
     chart.draw(&Words::new("circuit", "The rig", caption))
 }
 
-/// What the load is, below its drawing.
+/// Description of the load, shown below its drawing.
 fn environment_rows(actuator: &DeclaredActuator) -> Vec<String> {
     let stiffness = match actuator.load {
         Load::Prescribed => None,
@@ -86,7 +86,7 @@ fn linkage_symbol(linkage: &DeclaredLinkage, rig: &Rig) -> LinkageSymbol {
     LinkageSymbol { rows: std::iter::once(kind.to_string()).chain(arm.into_iter().flatten()).collect() }
 }
 
-/// A valve between the chambers: its kind, and what it is stated by.
+/// A valve between the chambers: its kind, and the numbers that state it.
 fn cross_port_symbol(declared: &DeclaredCrossPort) -> CrossPortSymbol {
     let (has_capacity, kind) = match &declared.kind {
         CrossPortKind::Laminar { .. } => (false, "laminar valve"),
@@ -102,7 +102,7 @@ fn cross_port_symbol(declared: &DeclaredCrossPort) -> CrossPortSymbol {
     CrossPortSymbol { has_capacity, rows: std::iter::once(kind.to_string()).chain(size).collect() }
 }
 
-/// A line with what is stated of its gas next to the drawing; what heat does to it is stated in the
+/// A line with the stated data of its gas next to the drawing; the effect of heat is stated in the
 /// table.
 fn line_symbol(declared: &DeclaredLine) -> LineSymbol {
     let mut symbol = line_alone(declared);
@@ -118,7 +118,7 @@ fn line_symbol(declared: &DeclaredLine) -> LineSymbol {
     symbol
 }
 
-/// Volume and precharge where the setting of the gas is at rest.
+/// Volume and precharge, if the setting of the gas is at rest.
 fn gas_at_rest(gas: &DeclaredAccumulator) -> String {
     let [mut volume, mut precharge] = [gas.gas_volume, gas.precharge_pressure];
     if let Some(DeclaredAdjustment { kind: AdjustmentKind::Gas(one), setting }) = gas.adjustment {
@@ -130,7 +130,7 @@ fn gas_at_rest(gas: &DeclaredAccumulator) -> String {
     format!("{}, {}", quantity::display(volume, &VOLUME, 3), quantity::display(precharge, &PRESSURE, 3))
 }
 
-/// Where the setting is, and between what it is adjusted.
+/// The setting, and the range in which it is adjusted.
 fn adjustment_rows(gas: &DeclaredAccumulator, adjustment: &DeclaredAdjustment) -> Vec<String> {
     let setting = shown(adjustment.setting.unwrap_or(0.0), &quantity::RATIO);
     match adjustment.kind {

@@ -8,7 +8,7 @@ use crate::document::{Cell, Document, Table};
 use crate::quantity::{DisplayUnit, MotionKind, VOLTAGE, display};
 use crate::simulate::reasons::no_closed_loop_words;
 
-/// The tables and sentences of a frequency response.
+/// Tables and sentences of a frequency response.
 pub(crate) fn document(found: &MachineResponses) -> Document {
     let units = found.units;
     let [position, force] = [(units.position, found.position_m), (units.force, found.force_n)]
@@ -52,7 +52,7 @@ fn response(response: &MachineResponse, unit: DisplayUnit) -> Table {
     let mut last: Option<f64> = None;
     let row = |point: &ResponsePoint| {
         let [decibels, degrees] = own(point);
-        // no jump by a turn from row to row
+        // removes jumps by a full turn from row to row
         let degrees = degrees - 360.0 * last.map_or(0.0, |last| ((degrees - last) / 360.0_f64).round());
         last = Some(degrees);
         let mut cells = vec![
