@@ -4,8 +4,8 @@ use std::rc::Rc;
 
 use phea_dynamics::simulation::{Quartic, Stretch};
 
-/// The terms of a signal: indices of the observed states, and of inputs, each with its weight; and
-/// of states that it depends on in another way, as on the deflection of a progressive spring.
+/// Terms of a signal: indices of the observed states, and of inputs, each with its weight; and of
+/// states on which it depends nonlinearly, as on the deflection of a progressive spring.
 ///
 /// ```text
 /// s = sum of a_i y_i + sum of f_k(y_k) + sum of b_j w_j
