@@ -26,7 +26,7 @@ pub struct Rest {
     pub start: Vec<f64>,
     /// Measurement of the controller, N.
     pub measured_n: f64,
-    /// Pressure signal that it may feed back, Pa.
+    /// Pressure signal that the controller may feed back, Pa.
     pub inner_pa: f64,
     /// Command of the controller, V.
     pub command_v: f64,
@@ -132,7 +132,7 @@ struct RestingMachine<'a> {
     held: &'a Commanded,
     /// Steady gains F(1) and G(1).
     gains: [Option<f64>; 2],
-    /// Steady gain H(1) of the pressures that are fed back.
+    /// Steady gain H(1) of the pressure feedback.
     inner_gain: f64,
 }
 
