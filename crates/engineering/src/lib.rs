@@ -1,4 +1,4 @@
-//! The engineer's procedures: a project becomes a rig, and each question about it an answer in
+//! Procedures of an engineer: a project becomes a rig, and each question about it an answer in
 //! values.
 //!
 //! ```text

@@ -7,8 +7,8 @@
 //!
 //! The virtual stand of `[bench.line]` makes such recordings of the project's own line.
 //!
-//! The oil, the length and the bore are known from a project. What the recordings do not determine
-//! is not determined, with the reason.
+//! The oil, the length and the bore are known from a project. A number that the recordings do not
+//! determine is reported as such, with the reason.
 
 mod found;
 mod known;

@@ -1,4 +1,4 @@
-//! The machine behind dynamic lines: their limits, and comparison with each other, by the
+//! Tests of the machine with dynamic lines: their limits, and comparison with each other, by the
 //! production method.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
@@ -43,8 +43,8 @@ fn two_waves() -> DynamicLine {
     DynamicLine::TwoWave(hose.in_time(END_SHARE).unwrap())
 }
 
-/// Force in N every millisecond while the load moves smoothly by 2 mm, begun 20 ms after a rest at
-/// 2 kN.
+/// Force every millisecond, N, while the load moves smoothly by 2 mm, beginning 20 ms after a rest
+/// at 2 kN.
 fn forces(line: Option<DynamicLine>, motion_s: f64, duration_s: f64) -> Vec<f64> {
     let machine = machine(line);
     let point = operating_point(&actuator(), 0.2, Condition::Load(SteadyLoad::Force(2e3))).unwrap();
@@ -64,7 +64,7 @@ fn largest_difference(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// A capacity without segments behind the valve equals the lumped line, for any stiffness model of
+/// A capacity without segments after the valve equals the lumped line, for any stiffness model of
 /// the chamber.
 #[test]
 fn one_capacity_is_the_lumped_line() {

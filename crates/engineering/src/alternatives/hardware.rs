@@ -93,7 +93,7 @@ impl JudgedAlternative {
 ///
 /// ```text
 /// stroke + cylinder.dead_length + installed length of the coil springs on the rod
-///                               + both cylinders of a transmission, wherever the one of the load stands
+///                               + both cylinders of a transmission, wherever that of the load is
 /// ```
 ///
 /// # Errors

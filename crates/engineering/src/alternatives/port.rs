@@ -11,8 +11,8 @@ use crate::quantity::{DAMPING, fitting};
 pub const IMPEDANCE_AT: [f64; 3] = [1.0, 10.0, 100.0];
 
 impl JudgedAlternative {
-    /// |Z(jw)| at each frequency, with the command held, under the designed controller, and as a
-    /// virtual impedance asks for it.
+    /// Magnitude |Z(jw)| at each frequency, with the command held, under the designed controller,
+    /// and as required by a virtual impedance.
     pub(super) fn impedances(&self) -> Vec<(ColumnPart, AlternativeColumn)> {
         let each = self.impedance_at.iter().flat_map(|frequency| {
             let part = ColumnPart::Impedance(*frequency);

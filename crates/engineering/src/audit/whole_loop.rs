@@ -46,8 +46,8 @@ pub struct DelayedPaths {
 }
 
 impl DelayedPaths {
-    /// No paths, if the velocity of the load does not depend on the force, and nothing else is fed
-    /// back.
+    /// Delayed paths of a problem; none if the velocity of the load does not depend on the force,
+    /// and nothing else is fed back.
     pub(super) fn of(problem: &RobustProblem) -> DelayedPaths {
         let RobustProblem { before_feedback, compensation, .. } = problem;
         let nominal = WholeLoop::of((problem, compensation), &nominal_point(problem));

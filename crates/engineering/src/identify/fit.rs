@@ -32,7 +32,7 @@ const MANY_ROWS: usize = 20_000;
 /// Number of evaluations over all of many rows for a model that need not be the requested one.
 const ROUGH_EVALUATIONS: usize = 12;
 
-/// Inverse of the fraction of a recording that is the longest block.
+/// Least number of blocks of a recording, which limits their length.
 const LONGEST_BLOCK: usize = 10;
 
 /// Extent of a search.
