@@ -65,7 +65,7 @@ pub(super) fn guess(
     if presses.is_empty() && slides.is_empty() && shakes.is_empty() {
         return None;
     }
-    // springs and dampers that respond as the shaken piston did
+    // springs and dampers with the response of the shaken piston
     let alike: Vec<[f64; 2]> = shakes.iter().map(|shake| shake.spring_and_damper(mass)).collect();
     let mean = |place: usize| alike.iter().map(|one| one[place]).sum::<f64>() / alike.len().max(1) as f64;
     let bristle_stiffness = match compliances.is_empty() {

@@ -40,8 +40,8 @@ pub(crate) fn not_increasing(
 /// Number of rows to either side whose usual step counts.
 const NEAR: usize = 20;
 
-/// Wrong one of two rows whose times do not increase: the earlier row if the later one is at most
-/// two usual steps after the row before both.
+/// Wrong one of two rows whose times do not increase: the earlier one if it is further from one
+/// usual step after the row before both than the later one is from two.
 fn misplaced(times: &[f64], row: usize) -> usize {
     let at = |back: usize| row.checked_sub(back).and_then(|row| times.get(row)).copied();
     let Some(((two_before, before), now)) = at(2).zip(at(1)).zip(at(0)) else { return row };
