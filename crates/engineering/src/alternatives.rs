@@ -2,7 +2,7 @@
 //! project's specifications, audited, tested on the machine and simulated through every scenario.
 //!
 //! ```text
-//! [[alternative]] -> project -> sizing, design, audit, trial -> the designed loop, driven -> columns -> dominance
+//! [[alternative]] -> project -> sizing, design, audit, trial -> the designed loop, simulated -> columns -> dominance
 //! ```
 
 mod asked;
@@ -50,7 +50,7 @@ use asked::ReadingAgain;
 /// The project as declared and its alternatives, judged.
 #[derive(Clone, Debug)]
 pub struct Alternatives {
-    /// The project itself first, then its alternatives in file order.
+    /// The declared project first, then its alternatives in file order.
     pub judged: Vec<JudgedAlternative>,
     /// Names of the alternatives that were not finished when `watch` cancelled.
     pub not_reached: Vec<String>,

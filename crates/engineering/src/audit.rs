@@ -138,8 +138,7 @@ pub struct ProjectAudit {
     pub names: PlantNames,
     /// Name of each specification.
     pub specification_names: Vec<SpecificationName>,
-    /// Number in the file, from 1, of each specification that is declared there; the others come
-    /// after them.
+    /// Number in the file, from 1, of each specification that is declared there; the others follow.
     pub specification_numbers: Vec<usize>,
     /// Position of every plant; `None` if the plants differ in it or in its stiffness, and without
     /// a rig.
@@ -163,8 +162,8 @@ pub struct ProjectAudit {
     pub units: Units,
     /// Declared effects that the audit does not include.
     pub caveats: Vec<Caveat>,
-    /// Magnitude that the worst plant of each specification reaches, where the specification limits
-    /// a magnitude.
+    /// Magnitude that the worst plant of each specification reaches; `None` for a specification
+    /// that does not limit a magnitude.
     pub reached: Vec<Option<ReachedLimit>>,
     /// Effect of the noise of a velocity that is fed forward; `None` without one.
     pub velocity_noise: Option<SignalNoise>,
@@ -250,7 +249,7 @@ fn reached(problem: &RobustProblem, finding: &SpecificationFinding) -> Option<Re
 }
 
 impl ProjectAudit {
-    /// An audit of the loop of this problem, with the findings for the rig itself where the family
+    /// An audit of the loop of this problem, with the findings for the rig itself if the family
     /// does not contain it.
     pub(crate) fn new(problem: &RobustProblem, mut audit: Audit, of_rig: Option<Caveat>) -> ProjectAudit {
         let RobustProblem { family, compensation, .. } = problem;

@@ -2,7 +2,7 @@
 //! scenario.
 //!
 //! ```text
-//! seed, index -> numbers -> machine, start -> driven in lanes -> row -> table, quantiles, bands, worst runs
+//! seed, index -> numbers -> machine, start -> simulated in lanes -> row -> table, quantiles, bands, worst runs
 //! ```
 //!
 //! Seed and index determine a run completely. Rows are in the order of the runs and have identical

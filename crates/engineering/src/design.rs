@@ -98,8 +98,8 @@ pub struct ProjectDesign {
     pub designed: AuditedController,
     /// The controller that the project gives, with its audit; absent if it gives none.
     pub published: Option<Box<AuditedController>>,
-    /// For a sampled loop: the design made for the continuous loop, sampled and audited as the loop
-    /// is.
+    /// Design made for the continuous loop, sampled and audited as the loop is; `None` for a
+    /// continuous loop.
     pub continuous: Option<Box<AuditedController>>,
     /// Specifications that no controller can meet, or that will be hard to meet, whatever the
     /// search found.
@@ -222,7 +222,7 @@ impl ProjectDesign {
         let (problem, audit, limit_findings) = split(&problem, &audit);
         let of_rig = caveat_of_rig(&problem, watch)?;
         let mut view = ProjectAudit::new(&problem, audit, of_rig);
-        // the proof of a design led by its steps comes last
+        // the proof of a design led by its steps is made at the end
         if !problem.in_time.iter().any(|one| one.follows) {
             try_to_prove(&problem, &mut view, watch)?;
         }
@@ -463,7 +463,7 @@ fn continuous_as_sampled(
         inner_feedback: timing.inner_feedback,
         ..Timing::default()
     };
-    // a sampled loop closes the feedback of the pressures itself
+    // a sampled loop closes the pressure feedback itself
     let family = match timing.inner_feedback.is_zero() {
         true => sampled.family.clone(),
         false => damping::family_at_once(source, setup.project)?,

@@ -180,7 +180,7 @@ pub enum NoEffect {
 ///
 /// # Errors
 /// [`ProjectFamilyError`] if there is no rig, an uncertain name is not a parameter of the plant, or
-/// a member lies outside the box.
+/// a member is outside the box.
 ///
 /// # Example
 /// ```

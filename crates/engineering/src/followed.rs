@@ -15,8 +15,8 @@ const OF_MEDIAN: f64 = 1.4826;
 /// Ratio of roughness to the greatest command that follows from the digits of its numbers.
 const OF_DIGITS: f64 = 1e-7;
 
-/// Number of standard deviations of the noise by which a command has to go back to have turned: the
-/// difference of two extremes of a hundred thousand rows of noise reaches nine.
+/// Number of standard deviations of the noise by which a command has to move back to have turned:
+/// the difference of two extremes of a hundred thousand rows of noise reaches nine.
 const TURNED: f64 = 10.0;
 
 /// Fewest rows from which a turning point is identified.
@@ -55,7 +55,7 @@ pub(crate) fn followed(command: &[f64], roughness: f64) -> Vec<f64> {
         let rising: Vec<f64> = rows.iter().map(|value| way * value).collect();
         found.extend(nearest_rising(&rising, TURNED * roughness).into_iter().map(|value| way * value));
     }
-    // a command that never goes back has no noise, but rounding at most
+    // a command that never reverses has no noise, but rounding at most
     let goes_back = found.as_slice() != command;
     for pair in pieces.windows(2).filter(|_| goes_back) {
         let [before, after] = pair else { continue };
@@ -143,7 +143,7 @@ impl Piece {
 }
 
 /// The command in pieces from one turning point to the next, each of which begins after its turning
-/// point; a command has turned when it has gone back by more than a threshold.
+/// point; a command has turned when it has moved back by more than a threshold.
 fn pieces(command: &[f64], threshold: f64) -> Vec<Piece> {
     let mut pieces = Vec::new();
     let mut from = 0;
@@ -235,7 +235,7 @@ mod tests {
         command.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum()
     }
 
-    /// Without noise the result is the record, to the bit.
+    /// The result is the record, to the bit, in the absence of noise.
     #[test]
     fn a_clean_command_is_left_as_it_is() {
         let clean = path(8000);

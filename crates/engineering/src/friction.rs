@@ -1,7 +1,7 @@
 //! Identification of a cylinder's friction from recorded runs.
 //!
 //! ```text
-//! files -> FrictionRecording -> constant velocities | pressed rows | shaken rows -> first guess -> least squares over all of them -> coefficients, intervals, what is open
+//! files -> FrictionRecording -> constant velocities | pressed rows | shaken rows -> initial estimate -> least squares over all of them -> coefficients, intervals, open ones
 //! ```
 //!
 //! The model is [`LuGre`]. While the piston slides at a constant velocity, its equation has a

@@ -1,7 +1,7 @@
 //! Identification of a servovalve's coefficients from recorded static tests.
 //!
 //! ```text
-//! files -> Recording -> first guess (thesis, section 5.2) -> least squares over all signals at once -> intervals, what the data do not determine
+//! files -> Recording -> initial estimate (thesis, section 5.2) -> least squares over all signals at once -> intervals, undetermined combinations
 //! ```
 //!
 //! The model is [`phea_hydraulics::servovalve::TestedValve`]; all signals of all files are

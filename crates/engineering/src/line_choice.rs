@@ -1,13 +1,13 @@
-//! Model of lines for which the project states none: lumped unless the loop comes near their waves.
+//! Model of lines for which the project states none: lumped unless the loop is near their waves.
 //!
 //! ```text
-//! w_q = pi/(2 T)            where the slower line is a quarter of a wave long; T: time of a wave through it
-//! w   = max of              what loop and requirements reach:
+//! w_q = pi/(2 T)            frequency at which the slower line is a quarter wave long; T: its travel time
+//! w   = max of              frequencies of loop and requirements:
 //!         crossover             of the given loop, the highest of the nominal plant and of plants spread over the family
 //!         ln(100/band)/t_s      bandwidth of a required settling time, 2.2/t_r that of a required rise time
 //!         design frequencies    the highest of limits that require feedback: tracking, sensitivity, disturbance
-//!         highest bandwidth     that a design may have, where there is no controller or one is designed;
-//!                               that which valve, lines and sampling leave, where a design limits none
+//!         highest bandwidth     that a design may have, if there is no controller or one is designed;
+//!                               that which valve, lines and sampling permit, if a design has no limit
 //! w_q > 10 w: lumped        else: waves
 //! ```
 //!

@@ -122,7 +122,7 @@ pub fn linear_loop_of(
 /// as the samples of the step response of the prefilter.
 ///
 /// # Errors
-/// [`LinearError`] or [`TimeResponseError`] for a system that cannot be built or discretised.
+/// [`LoopError`] for a system that cannot be built or discretised.
 pub fn linear_loop(
     plant: &TransferFunction,
     controller: &Controller,

@@ -54,7 +54,7 @@ pub enum PartsUnknown {
     NoPrice,
     /// No part states a mass.
     NoMass,
-    /// These parts state none.
+    /// Neither price nor mass of these parts is stated.
     NotStated(Vec<UnstatedPart>),
 }
 

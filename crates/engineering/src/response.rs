@@ -1,7 +1,7 @@
 //! Frequency responses from recorded signals: members of a measured family.
 //!
 //! ```text
-//! file -> SampledPair -> whole periods | local polynomials | overlapping segments -> points -> those that are known well enough
+//! file -> SampledPair -> whole periods | local polynomials | overlapping segments -> points -> those that are sufficiently well known
 //! ```
 //!
 //! A periodic input (a multisine, a repeated chirp) is averaged over its periods; any other (noise,

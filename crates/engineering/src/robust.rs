@@ -50,8 +50,7 @@ pub struct RobustProblem {
     pub specifications: Vec<Specification>,
     /// Names of the specifications, except the limits of a design.
     pub specification_names: Vec<SpecificationName>,
-    /// Number in the file, from 1, of each specification that is declared there; the others come
-    /// after them.
+    /// Number in the file, from 1, of each specification that is declared there; the others follow.
     pub specification_numbers: Vec<usize>,
     /// Kinds of the limits of a design, which are the last specifications, in their order.
     pub design_limits: Vec<DesignLimitKind>,

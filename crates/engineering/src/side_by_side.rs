@@ -10,7 +10,7 @@ use phea_dynamics::watch::{Progress, Stopped, Watch, tell, unwatched, within};
 
 /// Interval between calls of `watch` while pieces of work are in progress.
 const ROUND: Duration = Duration::from_millis(20);
-/// Interval between calls of `watch` while the calling thread only waits for another one.
+/// Interval between calls of `watch` while another thread works and the calling thread is idle.
 const WAITING: Duration = Duration::from_millis(2);
 
 /// Results of `count` pieces of work in their order, computed by as many threads as there are
@@ -164,7 +164,8 @@ pub(crate) fn left_behind<T: Send + 'static>(
 
 /// Results of two pieces of work: `first`, on a separate thread if there is more than one core, and
 /// `second`, whose progress is reported meanwhile; then the stage of `first` is reported until it
-/// ends. This is the fraction of the progress for `first` if it runs before `second`.
+/// ends. Without a separate thread, `first` runs before `second` and has this fraction of the
+/// progress.
 pub(crate) fn both<A: Send, B>(
     watch: Watch<'_>,
     fraction: f64,

@@ -183,7 +183,7 @@ pub enum SimulateError {
         /// Rate of its motion, 1/s.
         rate: f64,
     },
-    /// There is an equilibrium, but none at which the piston, behind a linkage, is at the required
+    /// There is an equilibrium, but none at which the piston of a linkage is at the required
     /// position.
     #[error(
         "scenario \"{name}\" states no `start`, and no position of the joint was found at which the closed loop rests at its reference \

@@ -88,7 +88,8 @@ pub fn size(problem: &SizingProblem, question: Question) -> Sizing {
             }
         }
     }
-    // Lengths that differ by the search's rounding are one length; ties keep the catalogue's order.
+    // Lengths that differ by the search's rounding are one length; ties are in the order of the
+    // catalogue.
     let micrometres = |candidate: &Candidate| (candidate.length_m() * 1e6).round();
     let other_model = |candidate: &Candidate| candidate.branch.model != problem.model;
     candidates.sort_by(|one, other| {

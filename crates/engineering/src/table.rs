@@ -1,7 +1,7 @@
 //! Tables of recorded numbers: text from loggers and spreadsheets, and Apache Parquet.
 //!
 //! ```text
-//! bytes, what is sought -> MeasuredTable: headings, rows -> columns: which is what, in which unit -> numbers in SI
+//! bytes, required signals -> MeasuredTable: headings, rows -> columns: signals and units -> numbers in SI
 //! ```
 //!
 //! One reader for everything that is measured: static tests of a valve, frequency responses,

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! project, audit -> rigs::rigs -> Tried { project, plant } -> TriedMachine::driven, the first steps and the largest -> judge -> Run { linear, machine, agreement, reason } -> answer
-//! all satisfy what is required -> corners of the box and plants inside -> the worst of them
+//! all satisfy the requirements -> corners of the box and plants inside -> the worst of them
 //! ```
 
 mod corners;
@@ -84,7 +84,7 @@ pub struct Trial {
 pub enum DrivenCorners {
     /// Always: a search needs the contribution of the rig there.
     Always,
-    /// Only if everything else satisfies the requirements: a run that misses one gives as much
+    /// If everything else satisfies the requirements: a run that misses one gives as much
     /// information.
     WhereElseSatisfies,
 }

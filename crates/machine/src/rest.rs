@@ -42,7 +42,7 @@ pub struct Rest {
 /// [`EquilibriumError`] if none is found.
 ///
 /// # Example
-/// With an integrating controller the loop rests at a force equal to its reference, 2 kN, instead
+/// The loop with an integrating controller rests at a force equal to its reference, 2 kN, instead
 /// of the 3 kN of the guess:
 /// ```
 /// # use phea_dynamics::controller::{Compensator, Controller, Element};
@@ -127,7 +127,7 @@ pub fn at_rest(
 /// 0 = G(1) (F(1) r - m) - H(1) p - u         if it does not
 /// ```
 ///
-/// Its last state is the command u.
+/// The last state is the command u.
 struct RestingMachine<'a> {
     held: &'a Commanded,
     /// Steady gains F(1) and G(1).

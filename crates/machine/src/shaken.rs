@@ -53,7 +53,7 @@ impl Control {
 /// states.
 ///
 /// # Example
-/// At rest the force is that of the operating point; without a progressive spring, an amplitude j
+/// The force at rest is that of the operating point; without a progressive spring, an amplitude j
 /// times its state gives j times that force.
 /// ```
 /// # use num_complex::Complex64;

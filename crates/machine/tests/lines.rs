@@ -79,7 +79,7 @@ fn one_capacity_is_the_lumped_line() {
     assert_eq!(lumped.ledger(&state, &[0.31, 0.01]), capacity.ledger(&state, &[0.31, 0.01]));
 }
 
-/// In slow motion every line acts as its compliance; in fast motion they differ.
+/// Every line acts as its compliance in slow motion; in fast motion they differ.
 #[test]
 fn slow_motions_see_the_lumped_line() {
     let compare = |line: DynamicLine, motion_s: f64| {

@@ -16,7 +16,7 @@ pub struct JudgedCase {
     pub name: String,
     /// Settings of the load case.
     pub settings: Vec<String>,
-    /// The project itself first, then its alternatives in file order.
+    /// The declared project first, then its alternatives in file order.
     pub judged: Vec<JudgedAlternative>,
     /// Names of the alternatives that were not finished when `watch` cancelled.
     pub not_reached: Vec<String>,
@@ -29,7 +29,7 @@ pub struct AskedCase {
     pub name: String,
     /// Settings of the load case.
     pub settings: Vec<String>,
-    /// The project itself first, then its alternatives in file order.
+    /// The declared project first, then its alternatives in file order.
     pub all: Vec<AskedAlternative>,
     /// Attributes of parts that are counted.
     pub counted: PartsCounted,

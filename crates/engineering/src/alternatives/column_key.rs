@@ -75,7 +75,7 @@ pub enum ColumnKey {
 }
 
 impl ColumnKey {
-    /// All columns in the order of an answer.
+    /// All columns in the order of the output.
     pub const ALL: [ColumnKey; 33] = {
         use ColumnKey::*;
         [

@@ -38,7 +38,7 @@ pub enum ColumnPart {
     Scenario(String),
 }
 
-/// All columns of an alternative, each with its part, in the order of an answer.
+/// All columns of an alternative, each with its part, in the order of the output.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AlternativeColumns(pub Vec<(ColumnPart, AlternativeColumn)>);
 
@@ -170,7 +170,7 @@ fn driven(run: Result<&ScenarioRun, NoNumber>, force: DisplayUnit) -> [Alternati
 /// Energy that the valve takes from the supply over a run, J, including the tare flow.
 ///
 /// ```text
-/// E = integral of p_S q_S dt                  by the trapezoidal rule over the samples of the record
+/// E = integral of p_S q_S dt                  trapezoidal rule over the samples of the record
 /// ```
 fn energy_from_supply(run: &ScenarioRun) -> Result<f64, NoNumber> {
     if let Some(reason) = without_result(run) {

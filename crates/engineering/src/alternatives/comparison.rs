@@ -16,7 +16,7 @@ pub enum ColumnSense {
 /// dominance):
 ///
 /// ```text
-/// a dominates b   <=>   a_i <= b_i for all i, and a_i < b_i for some i     (>= and > where more is better)
+/// a dominates b   <=>   a_i <= b_i for all i, and a_i < b_i for some i     (>= and > if more is better)
 /// ```
 ///
 /// # Example

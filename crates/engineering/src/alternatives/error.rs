@@ -76,7 +76,7 @@ pub enum PrepareError {
     TwoCurrencies {
         /// Currency of the alternatives before it.
         first: Currency,
-        /// Its currency.
+        /// Currency of this alternative.
         other: Currency,
     },
     /// A range around zero cannot follow the rig.

@@ -15,7 +15,7 @@ use crate::spelling::nearest;
 /// The request, as written.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FrontRequest {
-    /// Two or three columns by their names in an answer, or `swept` for the swept number; each may
+    /// Two or three columns by their names in the output, or `swept` for the swept number; each may
     /// end in `:less` or `:more`, which states which is better.
     pub columns: Vec<String>,
     /// Range and number of points of the sweep.
@@ -51,7 +51,7 @@ pub struct Front {
     pub si: &'static str,
     /// Two or three columns.
     pub columns: Vec<FrontColumn>,
-    /// The points of each alternative, in the order of the answer.
+    /// Points of each alternative, in the order of the output.
     pub points: Vec<FrontPoint>,
     /// Number of points that were not reached before `watch` cancelled.
     pub not_reached: usize,

@@ -1,7 +1,7 @@
 //! Margins of the nominal loop, and the worst of the family.
 //!
 //! ```text
-//! gain:      1/|L| where arg L = -180 deg           growth: the least above 1, reduction: the greatest below
+//! gain:      1/|L| at arg L = -180 deg              growth: the least above 1, reduction: the greatest below
 //! phase:     |180 deg + arg L| where |L| = 1        the least
 //! modulus:   min |1 + L|
 //! delay:     the least dead time that brings L to -1

@@ -42,7 +42,8 @@ impl CommandPath {
     }
 }
 
-/// From zero to the amplitude and back, with a small reversal at each level in either direction.
+/// Corners of the path from zero to the amplitude and back, with a small reversal at each level in
+/// either direction.
 pub(super) fn corners(reversals: &Reversals) -> Vec<f64> {
     let Reversals { amplitude, size } = *reversals;
     let levels = LEVELS.map(|level| level * amplitude);

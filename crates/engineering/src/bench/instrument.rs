@@ -8,7 +8,7 @@ use crate::project::{Bench, FlowMeter};
 /// Fraction of its range that a transducer with a live zero (4 to 20 mA) shows below zero.
 const LIVE_ZERO: f64 = 0.025;
 
-/// The instruments of a test, all with converters of the same number of bits.
+/// Instruments of a test, all with converters of equal numbers of bits.
 pub(crate) struct Instruments {
     command: Option<Converter>,
     pressure: Option<Converter>,

@@ -95,7 +95,7 @@ pub struct Draw {
 /// The numbers over which the box of a family ranges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FamilyBox {
-    /// No box.
+    /// The box is absent.
     None,
     /// Parameters of the linear model.
     LinearParameters,

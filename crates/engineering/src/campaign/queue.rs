@@ -87,9 +87,9 @@ pub(super) fn one_by_one(shared: &Shared<'_>, most: usize, give: Give<'_>) -> Re
 
 /// Simulates at most this number of runs in lanes; cancelled runs are not returned. Under a sampled
 /// controller they are simulated one by one: from sample to sample a machine follows its own
-/// matrices, and if one machine has to leave them, its neighbours wait. Lanes would give the same
-/// bits there, and take as long. All runs are simulated one by one on a processor without the
-/// vector instructions that lanes need.
+/// matrices, and its neighbours are idle while it has to leave them. Lanes would give equal bits
+/// there, and take as long. All runs are simulated one by one on a processor without the vector
+/// instructions that lanes need.
 ///
 /// # Errors
 /// [`CampaignError`] for a start or input schedule that does not fit the machine.

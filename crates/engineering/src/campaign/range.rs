@@ -9,7 +9,7 @@ use super::quantity::{self, Dimension, DisplayUnit};
 ///
 /// ```text
 /// uniform         a + s (b - a)                                            s a share in [0, 1)
-/// normal          (a + b)/2 + n (b - a)/4                                  n standard normal: a and b two deviations away
+/// normal          (a + b)/2 + n (b - a)/4                                  n standard normal: a and b are two deviations away
 /// log-uniform     exp(ln a + s (ln b - ln a))
 /// triangular      a + (b - a) sqrt(s/2) below the middle, b - (b - a) sqrt((1 - s)/2) above
 /// ```

@@ -6,7 +6,7 @@ use std::ops::Range;
 /// Runs that no thread has taken yet.
 pub(super) struct RemainingRuns {
     pub(super) runs: Range<u64>,
-    /// Those among them whose rows already exist.
+    /// Runs among them whose rows already exist.
     pub(super) known: BTreeSet<u64>,
     /// Number of idle threads.
     pub(super) idle: usize,
@@ -47,8 +47,8 @@ mod tests {
         RemainingRuns { runs: 0..runs, known: BTreeSet::new(), idle }
     }
 
-    /// As many runs as threads: each thread simulates one, though the first could take all into its
-    /// lanes.
+    /// Every thread simulates one run if there are as many runs as threads, though the first could
+    /// take all into its lanes.
     #[test]
     fn every_thread_drives_before_lanes_are_filled() {
         let (mut supply, mut works) = (supply(6, 3), [false; 3]);

@@ -12,7 +12,7 @@ use super::simulate::{
     RunStatus, Window,
 };
 
-/// The metrics in the order of a row, whose columns keep their positions.
+/// Metrics in the order of a row, whose columns have fixed positions.
 pub const ROW_METRICS: [Metric; 9] = [
     Metric::Overshoot,
     Metric::RiseTime,

@@ -37,7 +37,7 @@ pub struct Summary {
     pub ended: Vec<(u64, RunStatus, f64)>,
     /// Events of the runs: kind, number of runs, and the first of them.
     pub occurrences: Vec<(&'static str, usize, u64)>,
-    /// For each window, the spread of each metric that occurs in it.
+    /// Spread of each metric that occurs in a window, for every window.
     pub metrics: Vec<PerMetric<Option<Spread>>>,
     /// Spread of each of [`LUMP_NAMES`].
     pub lumps: [Option<Spread>; LUMP_NAMES.len()],

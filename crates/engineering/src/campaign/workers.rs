@@ -98,7 +98,7 @@ type Message = Result<Finished, CampaignError>;
 /// Loop of one thread, as long as there are runs. The thread simulates a single run and, if that
 /// was short, then as many in lanes as it has machines; then a single one again.
 fn work(shared: &Shared<'_>, effort: Effort, sender: &mpsc::Sender<Message>) {
-    // if the receiver is gone, everything is stopped too
+    // without a receiver, everything is cancelled
     let mut give = |finished| drop(sender.send(Ok(finished)));
     let mut in_lanes_next = false;
     while shared.has_more() {
@@ -176,7 +176,7 @@ fn in_order(
     }
 }
 
-/// Received items, and true if no more will come.
+/// Received items, and true if no more will follow.
 fn collected(receiver: &mpsc::Receiver<Message>) -> Result<(Vec<Finished>, bool), CampaignError> {
     let mut news = Vec::new();
     loop {

@@ -1,7 +1,7 @@
 //! Search for specifications that require feedback.
 //!
 //! ```text
-//! largest |P| / least |P| <= upper/lower      at every design frequency: F alone could keep the limits, for any loop however slow
+//! largest |P| / least |P| <= upper/lower      at every design frequency: F suffices for the limits, with any loop however slow
 //! ```
 
 use phea_dynamics::closed_loop::ClosedLoop;

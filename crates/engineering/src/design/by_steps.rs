@@ -2,9 +2,9 @@
 //! result of the limits on frequency responses.
 //!
 //! ```text
-//! rows of the search: margins of the limits at the samples, beside margins of steps of the worst plants
+//! rows of the search: margins of the limits at the samples, and margins of steps of the worst plants
 //! y(t) <= 1 + M,    |y(t) - 1| <= b from t_s on,    rise <= t_r,    |u(t)| <= u_max in the steps of the scenarios
-//! search -> audit, with the worst steps between the samples -> what it finds joins the search
+//! search -> audit, with the worst steps between the samples -> its findings join the search
 //! ```
 
 mod commands;
@@ -45,7 +45,7 @@ const NEARLY_DB: f64 = 0.05;
 const OVERSHOOT_SHARE: f64 = 0.6;
 const SETTLING_SHARE: f64 = 0.9;
 const BAND_SHARE: f64 = 0.8;
-/// Such fractions for steps including the contribution of the rig.
+/// Fractions for steps including the contribution of the rig.
 const OVERSHOOT_SHARE_WITH_RIG: f64 = 0.9;
 const SETTLING_SHARE_WITH_RIG: f64 = 0.97;
 /// Least overshoot at which the search aims, percent.
@@ -216,9 +216,9 @@ pub(super) struct LedSearch {
 /// linear steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum StepRoom {
-    /// As much as rigs commonly add.
+    /// Room as large as the common contribution of rigs.
     Usual,
-    /// As little as is reserved once the contribution of the rig is known.
+    /// Room as small as suffices once the contribution of the rig is known.
     Little,
 }
 

@@ -3,9 +3,9 @@
 //!
 //! ```text
 //! P         plants without feedback
-//! P_1       the same with a small one of gain k_1:   Q = (P/P_1 - 1)/k_1       from command to pressure signal
-//! plants with lumped lines: the same with their waves besides
-//! P, Q -> qft::inner_loop -> gain, corner -> the rig with them -> the loop, as of any project
+//! P_1       plants with a small feedback of gain k_1:   Q = (P/P_1 - 1)/k_1       from command to pressure signal
+//! for plants with lumped lines also with their waves
+//! P, Q -> qft::inner_loop -> gain, corner -> the rig with them -> the loop, as for any project
 //! ```
 //!
 //! The given controller retains the feedback that the project states; everything after it has the

@@ -2,7 +2,7 @@
 //! it, the search continues with the contribution of the rig to the steps of the linear loop.
 //!
 //! ```text
-//! design -> trial on the nonlinear rig -> misses -> search with linear steps + what the rig added -> trial -> the better one
+//! design -> trial on the nonlinear rig -> misses -> search with linear steps + contribution of the rig -> trial -> the better one
 //! ```
 
 use phea_dynamics::watch::{Watch, within};

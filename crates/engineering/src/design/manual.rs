@@ -88,7 +88,7 @@ pub enum ManualPart {
         /// Pole p, rad/s.
         pole_rad_per_s: f64,
     },
-    /// A pair of zeros over a pair of poles at the same frequency, or at one nearby.
+    /// A pair of zeros over a pair of poles at equal or similar frequencies.
     Notch {
         /// Natural frequency w of the zeros, rad/s.
         frequency_rad_per_s: f64,

@@ -2,7 +2,7 @@
 //! found, with only that limit wider by a tenth.
 //!
 //! ```text
-//! gained = f(limits) - f(limits, one of them wider),      f the least objective, or less the greatest worst margin
+//! gained = f(limits) - f(limits, one of them wider),      f the least objective, or minus the greatest worst margin
 //! ```
 //!
 //! The gain is the value of a search and not a slope, so that it includes the limits that bind in

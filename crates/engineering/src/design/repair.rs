@@ -2,9 +2,9 @@
 //! continues with it, or the report states what cannot be achieved.
 //!
 //! ```text
-//! trial contradicts -> the plant of that machine, its lines in motion -> audit of the loop with it
-//!   not met  -> qft::design_again    -> met: tried on the machine anew      not met: how near, and what would help
-//!   met      -> no linear plant does what the machine does: what the run met
+//! trial contradicts -> the plant of that machine, with waves in its lines -> audit of the loop with it
+//!   not met  -> qft::design_again    -> met: simulated on the machine again      not met: distance, and remedies
+//!   met      -> no linear plant reproduces the machine's behaviour: limits that the run met
 //! ```
 
 use phea_dynamics::uncertain_plant::UncertainPlant;
@@ -35,7 +35,7 @@ pub enum RepairStatus {
         /// Amount by which every upper limit is raised and every lower one reduced, dB.
         relaxation_db: f64,
     },
-    /// Search and audit did not come to agree.
+    /// Search and audit did not converge.
     NotConverged,
     /// None of the designed controllers makes every plant stable.
     NotStabilised,
@@ -66,12 +66,12 @@ pub struct Repair {
     /// Error of the family with waves in its lines, whose plant was to be added; `None` if that
     /// family exists, or was not needed.
     pub no_family: Option<ProjectFamilyError>,
-    /// Changes of the project that may let a controller satisfy every specification with waves;
-    /// empty if a controller does, or no change was found.
+    /// Changes of the project that may make every specification with waves satisfiable; empty if a
+    /// controller satisfies them, or no change was found.
     pub remedies: Vec<RepairRemedy>,
 }
 
-/// A change of the project that may let a controller satisfy every specification with waves.
+/// A change of the project that may make every specification with waves satisfiable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RepairRemedy {
     /// A line whose quarter wave is beyond the last frequency at which |L| = 1.
@@ -108,7 +108,7 @@ impl Repair {
         }
     }
 
-    /// Controller that comes nearest to the requirement that cannot be achieved.
+    /// Controller nearest to the requirement that cannot be achieved.
     pub fn nearest(&self) -> Option<&ProjectDesign> {
         self.other.as_deref().filter(|_| self.status != RepairStatus::Met)
     }

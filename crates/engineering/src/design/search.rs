@@ -99,7 +99,7 @@ pub(super) fn rank(told: &ProjectDesign) -> (u8, f64) {
         }
         Verdict::Met => 1,
         Verdict::NotProven => 2,
-        // a stabilising loop comes nearer than any that does not stabilise the plants
+        // a stabilising loop is nearer than any that does not stabilise the plants
         Verdict::Violated => 3 + u8::from(told.designed.view.audit.stability.verdict == Verdict::Violated),
     };
     (verdict, StepAim::AS_REQUIRED.excess(told))

@@ -3,7 +3,7 @@
 //! is judged without them.
 //!
 //! ```text
-//! requirement in time -> limits of tracking -> design -> steps miss it by r -> the same for a requirement stricter by r
+//! requirement in time -> limits of tracking -> design -> steps miss it by r -> repeated for a requirement stricter by r
 //! ```
 
 use phea_dynamics::frequency::logarithmic_grid;
@@ -226,7 +226,7 @@ fn required_step(given: &RobustProblem) -> Option<&TimeRequirement> {
 /// tracking; `None` if there is none.
 ///
 /// ```text
-/// |F| <= gain,   |F T| >= lower          ask for  |T| >= lower/gain,   which follows from  |1 - T| = |S| <= 1 - lower/gain
+/// |F| <= gain,   |F T| >= lower          require  |T| >= lower/gain,   which follows from  |1 - T| = |S| <= 1 - lower/gain
 /// ```
 ///
 /// The limit is required where the lower limit is at least 0.9, and nowhere less than 0.9 at lower

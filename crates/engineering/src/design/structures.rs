@@ -209,7 +209,7 @@ pub(super) fn earns_its_poles(
     Ok(gained_db.is_some_and(|gained_db| gained_db >= earned_per_pole_db * further))
 }
 
-/// Such a gain for the loop of a problem, over these frequencies, rad/s; the result in dB.
+/// Largest such gain for the loop of a problem, dB, over these frequencies, rad/s.
 pub(super) fn noise_gain_around(around: &RobustProblem, frequencies_rad_per_s: &[f64]) -> Option<f64> {
     let nominal = around.nominal().ok()??;
     let gain = |frequency: &f64| {

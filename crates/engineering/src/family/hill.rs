@@ -282,7 +282,7 @@ mod tests {
             for start in [[0.5; 3], [0.1, 0.9, 0.2]] {
                 let found = pruned.climb(start.to_vec());
                 assert_eq!(found, whole.climb(start.to_vec()), "hill {number}");
-                // the steeper the sides, the lower is a place with the same correct digits
+                // the steeper the sides, the lower is a place with equally many correct digits
                 let near = match crest.kind {
                     0 => continue,
                     1 => 1e-2 * crest.fall,

@@ -2,7 +2,7 @@
 //! plants without polynomials over the box of the lumped rig.
 //!
 //! ```text
-//! parameters -> PlantInMotion, at every point of the box -> UncertainPlant -> the members that are looked at
+//! parameters -> PlantInMotion, at every point of the box -> UncertainPlant -> the examined members
 //! ```
 
 use std::sync::Arc;

@@ -2,7 +2,7 @@
 //! touched, a relief valve that closes.
 //!
 //! ```text
-//! choice:     y < z,     |y|               g = y - z,     g = y               a jump where g changes its sign
+//! choice:     y < z,     |y|               g = y - z,     g = y               a jump if g changes its sign
 //! ```
 //!
 //! The equations never branch on a value, so that every choice is an operation of the recorded

@@ -14,7 +14,7 @@ const PATH: &str = "operating_point.velocity";
 /// the pump can supply at the declared numbers.
 ///
 /// ```text
-/// -(q_pump - q_tare)/A_B <= v <= (q_pump - q_tare)/A_A          the chamber that supply fills; leakage is left aside
+/// -(q_pump - q_tare)/A_B <= v <= (q_pump - q_tare)/A_A          the chamber that the supply fills; leakage is neglected
 /// ```
 ///
 /// # Errors

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! m_k = mean residual of a constant velocity, s_k its standard deviation by the noise of the rows
-//! misfit^2 = mean of m_k^2 - s_k^2                reported where sum m_k^2/s_k^2 is beyond chance and both halves agree
+//! misfit^2 = mean of m_k^2 - s_k^2                reported if sum m_k^2/s_k^2 is beyond chance and both halves agree
 //! misfit^2 = r rms^2                                  of what is pressed or shaken, r the correlation of neighbours
 //! ```
 

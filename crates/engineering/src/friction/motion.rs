@@ -42,7 +42,7 @@ const ENDS: f64 = 0.05;
 /// Fraction by which a constant velocity may change from its beginning to its end.
 const CHANGE: f64 = 0.02;
 
-/// Fraction by which it may change, increased by twice the standard deviation of the change.
+/// Largest fraction by which it may change, including twice the standard deviation of the change.
 const CERTAIN_CHANGE: f64 = 0.05;
 
 /// Fraction by which the force may still change in the second half.

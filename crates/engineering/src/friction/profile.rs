@@ -169,7 +169,7 @@ impl<'a> SlidingProfile<'a> {
                 self.searched(start, &bounds, None)
             }
             HeldCoefficient::Coulomb(levels) => {
-                // the fall stands for F_C here, and F_S is at least that
+                // the fall represents F_C here, and F_S is at least that
                 set(levels.fall, [value; 2]);
                 set(levels.static_friction, [value, 1e3]);
                 let mut found = self.searched(&exchanged(start, levels), &bounds, Some(levels))?;

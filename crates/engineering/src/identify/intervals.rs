@@ -43,7 +43,7 @@ const OF_MAGNITUDE: f64 = 0.62;
 /// Reduces the interval of the tare flow by the amount that a meter without direction may have
 /// added to it.
 ///
-/// Without flow such a meter shows the magnitude of its noise; in the mean over rows
+/// The mean over rows of such a meter without flow is that of the magnitude of its noise:
 ///
 /// ```text
 /// E|q + n| = sigma sqrt(2/pi) exp(-q^2/(2 sigma^2)) + q erf(q/(sqrt 2 sigma))

@@ -178,7 +178,8 @@ fn spread(found: &Identification, plant: &[usize]) -> DMatrix<f64> {
     })
 }
 
-/// Rotation after which each column of the effects takes as much of them as the earlier ones left.
+/// Rotation after which each column of the effects has as much of them as remains after the earlier
+/// ones.
 fn turned(effects: &DMatrix<f64>) -> DMatrix<f64> {
     let eigen = SymmetricEigen::new(effects.transpose() * effects);
     let count = eigen.eigenvalues.len();

@@ -1,7 +1,7 @@
 //! Memory of the spool at the beginning of a test.
 //!
 //! ```text
-//! z = s h + (z_0 - s h) exp(-|dU|/(2 h))        the slow spool:  dz/dz_0 = exp(-S/(2 h)),  S the way of the command since the first row
+//! z = s h + (z_0 - s h) exp(-|dU|/(2 h))        slow spool:  dz/dz_0 = exp(-S/(2 h)),  S the path of the command since the first row
 //! ```
 //!
 //! A test that begins after other cycles begins with their memory z_0, between -h and h. It is

@@ -1,7 +1,7 @@
 //! Residuals of the recordings under the model of the valve that are not noise.
 //!
 //! ```text
-//! residual = misfit + noise,       misfit alike in neighbouring rows, noise not
+//! residual = misfit + noise,       misfit correlated in neighbouring rows, noise not
 //! misfit^2 = r rms^2               rms of the residuals, r the correlation of neighbours
 //! ```
 

@@ -1,7 +1,7 @@
 //! Recorded tests from tables of loggers and spreadsheets.
 //!
 //! ```text
-//! table -> which column is what -> rows that are used -> numbers that a test has -> test
+//! table -> columns by name -> rows that are used -> plausible numbers -> test
 //! ```
 //!
 //! A column is recognised by its name, with its unit (`supply_pressure_bar`, `p_S [bar]`), or by

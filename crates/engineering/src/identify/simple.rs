@@ -107,8 +107,8 @@ impl SimpleCalculations {
 /// Calculations, from any test that permits them.
 ///
 /// ```text
-/// q_tare   median leakage beyond 60 % of the amplitude; below the least reading where the meter reads zero there
-/// q_vin    highest mean over a small part of the width at half height, less q_tare
+/// q_tare   median leakage beyond 60 % of the amplitude; below the least reading if the meter reads zero there
+/// q_vin    highest mean over a small part of the width at half height, minus q_tare
 /// nulls    middle of the half height of the leakage, rising and falling; else between the zeros of the flow's lines; else of p_A = p_B
 /// K_vinp = q_vin/sqrt(2 p_S)                                   thesis (4.13)
 /// lambda = 1.317/u_half                                        sech(1.317) = 1/2

@@ -20,7 +20,7 @@ const OTHER_SHAPES: std::ops::Range<usize> = 15..18;
 /// Coefficients that a static test shows but the linear plant does not depend on.
 pub(super) const OF_TEST_ALONE: [usize; 3] = [TARE_FLOW, NULL_BIAS, HYSTERESIS];
 
-/// Number of flow coefficients, which come first.
+/// Number of flow coefficients, the first of all.
 const EDGES: usize = 4;
 
 /// Least ratio of a coefficient to its reference at which it is varied by its inverse.

@@ -21,7 +21,7 @@ pub enum LinkagePosition {
 }
 
 impl LinkagePosition {
-    /// Words for tables and answers.
+    /// Words for tables and JSON output.
     pub fn words(self) -> &'static str {
         match self {
             LinkagePosition::Retracted => "retracted",

@@ -25,7 +25,7 @@ const LOOKED_AT: [f64; 2] = [1e-2, 1e4];
 const COUNT: usize = 1201;
 
 /// Impedance that is required at a port, and impedance of the loop, with the load at the port moved
-/// as if by a hand.
+/// from outside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AskedImpedance {
     /// Required impedance: Z_v/s at the port.

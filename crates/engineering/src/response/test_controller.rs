@@ -9,7 +9,7 @@ use crate::identify_error::RecordFault;
 use crate::project::Project;
 use crate::setup::{ControlError, Setup};
 
-/// Rounding of the number of rows of a delay of whole rows.
+/// Rounding of a delay of whole rows, in rows.
 const ROUNDING: f64 = 1e-6;
 /// Fraction of the output's power below which a calculated reference counts as rounding: six
 /// digits.

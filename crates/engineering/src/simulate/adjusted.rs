@@ -7,7 +7,7 @@ use super::bench::ControlledMachine;
 /// Work of the adjustment of accumulators over a run, J.
 ///
 /// ```text
-/// work: integral of the power of the adjustment, of what the oil can get back from the gas: 1/2 dK/dt x^2 of a spring
+/// work: integral of the power of the adjustment that the oil can recover from the gas: 1/2 dK/dt x^2 for a spring
 /// throttled: integral of the drop times the flow of the valves between chambers and gas
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

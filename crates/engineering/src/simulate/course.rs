@@ -58,7 +58,7 @@ pub struct ScenarioDrive {
 }
 
 impl PreparedScenario {
-    /// Inputs that act on the machine besides the controller.
+    /// Inputs that act on the machine in addition to the controller.
     pub(crate) fn other_inputs(&self) -> OtherInputs<'_> {
         let more = [&self.external_force, &self.setting_change].into_iter().flatten();
         OtherInputs { reference: &self.reference, of_load: [&self.ground].into_iter().chain(more).collect() }

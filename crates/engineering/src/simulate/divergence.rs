@@ -25,7 +25,7 @@ pub enum Divergence {
         /// Number of swings from one end to the other, until the end of the run.
         swings: u32,
     },
-    /// At the end of the run the force is more than ten times the largest reference, and nothing
+    /// The force at the end of the run is more than ten times the largest reference, and nothing
     /// else moves the load.
     ForceBeyondReference {
         /// Time of the largest force, s.
@@ -66,7 +66,7 @@ const LAST: f64 = 0.1;
 /// Ratio of force to largest reference from which a run diverges.
 const BEYOND: f64 = 10.0;
 
-/// Inputs that act on the machine besides the controller.
+/// Inputs that act on the machine in addition to the controller.
 pub(crate) struct OtherInputs<'a> {
     /// Reference, N.
     pub(crate) reference: &'a Profile,

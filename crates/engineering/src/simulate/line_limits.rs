@@ -38,7 +38,7 @@ pub struct LineLimits {
 /// Nodes of a line in addition to its chamber.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum LineNodes {
-    /// No further node: one pressure.
+    /// The line has one pressure, without a further node.
     #[default]
     Lumped,
     /// Beginning of each of this many segments.

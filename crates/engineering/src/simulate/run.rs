@@ -204,7 +204,7 @@ pub(super) struct RunPass<'t> {
     pub(super) table: Option<RunTable<'t>>,
     /// The force at some times, N.
     force_n: Vec<f64>,
-    /// The largest growth of errors; `None` where none grew.
+    /// Largest amplification of errors; `None` if none grew.
     amplification: Option<Amplification>,
 }
 

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! schema = 1
-//! project_sha256 = "..."            of the project it was written for
+//! project_sha256 = "..."            of the project for which it was written
 //! scenario = "step"
 //! time_s = 1
 //!
@@ -10,10 +10,10 @@
 //! spool_v = 0.125
 //! ```
 //!
-//! It contains every state of machine, sensor, controller and prefilter by its name, the position
-//! of the load's ground, and the change of the setting of accumulators if it changes; for a sampled
-//! controller also its memories, the held command and the position in its random numbers. The
-//! content of a delay cannot be stored as numbers: such a final state is not saved.
+//! The file contains every state of machine, sensor, controller and prefilter by its name, the
+//! position of the load's ground, and the change of the setting of accumulators if it changes; for
+//! a sampled controller also its memories, the held command and the position in its random numbers.
+//! The content of a delay cannot be stored as numbers: such a final state is not saved.
 
 use std::fmt::Write as _;
 

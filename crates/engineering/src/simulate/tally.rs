@@ -35,8 +35,8 @@ pub(super) enum CommandStretch {
 /// The running metrics of a window.
 ///
 /// ```text
-/// deviation    of a step of the reference: how far the force is beyond its new value, in the direction of the step
-///              of all else: reference less force; in an open loop the force
+/// deviation    for a step of the reference: force minus its new value, in the direction of the step
+///              for all else: reference minus force; in an open loop the force
 /// ```
 pub(super) struct Tally {
     pub(super) window: Window,

@@ -40,7 +40,7 @@ pub struct ReachedStep {
     pub rise_time_s: f64,
 }
 
-/// A number to twelve digits: 1.65 where 1.1 times 1.5 is 1.6500000000000001.
+/// A number to twelve digits: 1.65 for 1.1 times 1.5, which is 1.6500000000000001.
 fn rounded(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }

@@ -190,7 +190,7 @@ fn settling(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<S
         findings.push(SizingReason::SlowLoop { time_constant: slowest, desired: problem.time_constant });
     }
     let [at_null, at_largest] = candidate.steady_state_gain;
-    // Without a positive gain there is no loop; the gain itself is rejected above.
+    // There is no loop without a positive gain; the gain itself is rejected above.
     if candidate.branch.gain_v_per_n > 0.0 && at_largest < 0.95 {
         findings.push(SizingReason::SteadyStateGain { at_null, at_largest });
     }

@@ -104,7 +104,7 @@ pub enum TimeConstantOrigin {
     Settling {
         /// Settling time, s.
         settling_time: f64,
-        /// Its band, percent of the step.
+        /// Settling band, percent of the step.
         band_percent: f64,
         /// Time constants until the response enters the band.
         constants: f64,
@@ -127,7 +127,7 @@ pub struct SoonerRequirement {
 /// Difference between the lines as declared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnlikeLines {
-    /// The hoses differ: each is sized for the same compliance.
+    /// The hoses differ: each is sized for an equal compliance.
     HosesDiffer,
     /// Line B is not a hose: hoses are sized for both lines.
     LineBIsNoHose,
@@ -212,7 +212,7 @@ impl SizingProblem {
     }
 
     /// Hydraulic stiffness that gives the desired time constant under gain K_p, thesis (6.16), N/m;
-    /// infinite at and below the gain where not even a rigid transmission is stiff enough.
+    /// infinite at and below the gain at which not even a rigid transmission is stiff enough.
     pub(crate) fn stiffness_for_gain(&self, gain: f64) -> f64 {
         match required_stiffness(&self.linear, self.time_constant, gain) {
             RequiredStiffness::Stiffness(stiffness) => stiffness,

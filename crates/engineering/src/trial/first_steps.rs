@@ -3,7 +3,7 @@
 //! ```text
 //! a requirement that states its step                       -> that step
 //! a requirement of every step, or none                     -> a tenth of the force of the supply
-//! a requirement of every step                              -> the same the other way, and the steps of the scenarios
+//! a requirement of every step                              -> that step reversed, and the steps of the scenarios
 //! ```
 
 use super::run::{Leg, StepSize};

@@ -45,7 +45,7 @@ pub struct TrialStep {
     pub settling_time_s: Option<f64>,
 }
 
-/// The size of the steps through which a machine is driven.
+/// Size of the steps through which a machine is simulated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StepSize {
     /// A tenth of the force that the supply can produce.
@@ -60,7 +60,7 @@ pub enum StepSize {
     Required,
 }
 
-/// The steps of a run, in the order in which they are driven.
+/// Steps of a run, in the order of simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Leg {
     /// Step from the force of the operating point.
@@ -170,7 +170,7 @@ fn is_limited(driven: &ScenarioRun) -> bool {
 /// A run of the steps, or the reason why there is none.
 type TrialOutcome = Result<ScenarioRun, SimulateError>;
 
-/// Steps through which a machine was driven, and their result.
+/// Steps through which a machine was simulated, and their result.
 pub(super) struct DrivenSteps {
     size: StepSize,
     required: RequiredSteps,
@@ -288,7 +288,7 @@ impl<'a> TriedMachine<'a> {
         all.iter().map(|driven| self.judgement(driven, (problem, view))).collect()
     }
 
-    /// Simulates the machine; `None` if `watch` cancels. The first step comes first: if it is
+    /// Simulates the machine; `None` if `watch` cancels. The first step is made first: if it is
     /// decisive, the other steps and the repetition at smaller tolerances would take most of the
     /// time.
     fn driven_by(

@@ -1,4 +1,5 @@
-//! The steps of the reference through which a machine is driven: there, back, and there again.
+//! Steps of the reference through which a machine is simulated: a step, the step back, and the step
+//! again.
 //!
 //! ```text
 //! project, Steps -> stepped project -> ScenarioRun -> metrics and response of each leg
@@ -80,7 +81,7 @@ impl Steps {
         Steps { to_n: self.from_n + towards * most.min(estimated), ..*self }
     }
 
-    /// These steps multiplied by a factor.
+    /// Steps multiplied by a factor.
     pub(super) fn scaled(&self, factor: f64) -> Steps {
         Steps { to_n: self.from_n + factor * (self.to_n - self.from_n), ..*self }
     }

@@ -151,7 +151,7 @@ fn begun_from(tried: &TriedStructure, told: &ProjectDesign) -> Design {
     with_free_gain(Design { structure, prefilter, free_numbers, name: tried.name, ..design.clone() }, told)
 }
 
-/// |G| of a design at the first crossover of its nominal loop.
+/// Magnitude |G| of a design at the first crossover of its nominal loop.
 fn gain_at_crossover(told: &ProjectDesign) -> Option<f64> {
     let crossover = told.designed.figures.nominal.as_ref()?.crossovers.first_rad_per_s?;
     let law = told.design.law.feedback.transfer_function().ok()?;

@@ -4,7 +4,7 @@
 //! u(t) = u_0 + sum of (r_k - r_(k-1)) w(t - t_k),    u_0 of a plant = u_0 of the nominal one * h/h_nominal,    h = w(inf)
 //! ```
 //!
-//! With an integrator in the loop, h = F(0)/P(0) is the command of a plant that holds 1 N: leakage
+//! The command of a plant that holds 1 N is h = F(0)/P(0), with an integrator in the loop: leakage
 //! and supply change it in proportion to the command that holds the first reference.
 
 use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
@@ -244,7 +244,7 @@ mod tests {
         assert_near(there.value_v, BEGINS_V + 4.0);
     }
 
-    /// If no command exceeds its final value, the largest one is that at rest.
+    /// The largest command is that at rest if no command exceeds its final value.
     #[test]
     fn the_command_at_rest_is_that_of_the_farthest_reference() {
         let monotone = StepResponse { values: vec![0.0, 0.5, 1.0], times_s: vec![0.0, 1.0, 2.0] };

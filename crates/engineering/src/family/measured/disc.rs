@@ -1,7 +1,7 @@
 //! Discs that contain all responses simultaneously, from discs that contain one response each.
 //!
 //! ```text
-//! r_all^2 = F(2, m; 0.05/n) sigma^2           n rows, each outside with 0.05/n: all inside with 95 % at least
+//! r_all^2 = F(2, m; 0.05/n) sigma^2           n rows, each outside with 0.05/n: all inside with at least 95 %
 //! F(2, m; p) = (m/2) (p^(-2/m) - 1)           r^2 = F(2, m; 0.05) sigma^2 states m
 //! ```
 //!

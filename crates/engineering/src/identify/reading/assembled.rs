@@ -82,15 +82,15 @@ fn means((one, other): (&[f64], &[f64])) -> Vec<f64> {
     one.iter().zip(other).map(|(one, other)| f64::midpoint(*one, *other)).collect()
 }
 
-/// Rate at which a command came to a row from the row before.
+/// Rate of change of a command from the row before.
 fn rate(times: &[f64], command: &[f64], row: usize) -> Option<f64> {
     let before = row.checked_sub(1)?;
     let difference = |values: &[f64]| Some(values.get(row)? - values.get(before)?);
     Some(difference(command)? / difference(times)?)
 }
 
-/// Standard deviation of a command's noise, and the command without it. A record that never goes
-/// back by a small amount has rounding at most: the valve followed it.
+/// Standard deviation of a command's noise, and the command without it. A record without small
+/// reversals has rounding at most: the valve followed it.
 fn without_noise(command: &[f64]) -> (f64, Vec<f64>) {
     let rough = roughness(command);
     let followed = followed(command, rough);
@@ -118,7 +118,7 @@ fn turning(values: &[f64]) -> Vec<Option<f64>> {
     values.iter().map(|value| Some(*value).filter(|value| *value != 0.0 && !value.is_nan())).collect()
 }
 
-/// True if anything besides inputs was recorded.
+/// True if a signal other than inputs was recorded.
 pub(super) fn is_test(taken: &Taken, circuit: PortCircuit, whole: Place, findings: &mut Findings) -> bool {
     let has = |signal: TestSignal| taken.of(signal).is_some();
     let [a, b] = [TestSignal::PressureA, TestSignal::PressureB].map(has);

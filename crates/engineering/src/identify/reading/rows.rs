@@ -63,8 +63,8 @@ pub(super) fn used(
     is_used
 }
 
-/// Omits rows whose command deviates from those around it: a memory that follows it would have gone
-/// there and back.
+/// Omits rows whose command deviates from those around it: a memory that follows it would have
+/// moved there and back.
 fn leave_out_standing_out(
     table: &MeasuredTable,
     columns: &[(TestSignal, Column)],

@@ -239,13 +239,13 @@ fn whole(frequency: f64, sample_time_s: f64) -> Option<f64> {
 ///
 /// ```text
 /// T = F G P e^(-s d)/(1 + G P H e^(-s d))
-/// sampled: T = F G/(1 + L) hold P e^(-s d),    hold = (1 - e^(-s T))/(s T), L in z; the fundamental of what is between the samples.
+/// sampled: T = F G/(1 + L) hold P e^(-s d),    hold = (1 - e^(-s T))/(s T), L in z; the fundamental of the signal between the samples.
 /// ```
 ///
-/// If the velocity of a load that can move is fed forward, or pressures are fed back, at the
-/// samples, the command grows by the factor P_z'/P_z, where these are the plants in z with and
-/// without it. With a virtual impedance, L is that of y = F_e + Z_v X_L, and P between reference
-/// and force that of the force.
+/// The command grows by the factor P_z'/P_z if the velocity of a load that can move is fed forward,
+/// or pressures are fed back, at the samples; these are the plants in z with and without it. With a
+/// virtual impedance, L is that of y = F_e + Z_v X_L, and P between reference and force that of the
+/// force.
 struct LinearizedLoop {
     /// The rig as part of the loop.
     rig: Rig,
