@@ -279,8 +279,8 @@ impl Judging<'_> {
     }
 }
 
-/// The project with a controller of the force in place of that of an inner position loop: for the
-/// loop, and for the result of a design.
+/// The project with a controller of the force in place of that of an inner position loop; the loop
+/// is unchanged, and a design finds this form.
 ///
 /// ```text
 /// C_x = G (M_v s^2 + B_v s + K_v)

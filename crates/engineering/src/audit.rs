@@ -184,7 +184,7 @@ pub struct ProjectAudit {
     pub below_design: Option<JudgedLimits>,
 }
 
-/// A closed-loop magnitude and the limit that it comes nearest to, or violates.
+/// A closed-loop magnitude and the limit to which it is nearest, or which it violates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReachedLimit {
     /// The magnitude.
@@ -206,7 +206,7 @@ pub enum LimitSide {
     Lower,
 }
 
-/// 20 log10(e)
+/// Decibels per neper, 20 log10(e).
 pub(crate) const DECIBELS_PER_NEPER: f64 = 20.0 * std::f64::consts::LOG10_E;
 
 /// Magnitude that the worst plant reaches; `None` for a spread, and at the ends of the frequency

@@ -206,7 +206,7 @@ pub(crate) const MOST_ROWS: usize = 1_000_000;
 /// All static tests of the project's valve.
 ///
 /// # Errors
-/// [`BenchError`] for a project without an actuator, an impossible one, or too many rows.
+/// [`BenchError`] for a project without an actuator, for an invalid actuator, or for too many rows.
 pub fn bench(setup: &Setup<'_>, watch: Watch<'_>) -> Result<Vec<BenchRun>, BenchError> {
     let declared = setup.project.actuator.as_ref().ok_or(RigError::NoActuator)?;
     let rig = setup.rig()?;

@@ -14,7 +14,7 @@
 //! files   -> friction                                         the friction that explains recorded runs
 //! ```
 //!
-//! Results are values; text, JSON and figures of them are made in the workbench.
+//! Results are values; the workbench turns them into text, JSON and figures.
 
 pub mod alternatives;
 pub mod audit;

@@ -49,7 +49,7 @@ pub enum LoopInQuestion {
 ///
 /// # Example
 /// The controller of this project crosses over near 60 rad/s, and its hose of 1.5 m is a quarter
-/// wave long at 560 rad/s: with waves. One of 0.5 m is lumped.
+/// wave long at 560 rad/s: with waves. A hose of 0.5 m is lumped.
 /// ```
 /// use phea_engineering::line_choice::{LoopInQuestion, with_chosen_lines};
 /// use phea_project::source::Memory;

@@ -118,8 +118,8 @@ pub fn linear_loop_of(
 /// Closes the loop of plant P with a controller to which the sensor H feeds back the output.
 ///
 /// A continuous controller in a continuous loop; a sampled one with the plant held by a zero-order
-/// hold, the delay of the loop in it. For a prefilter that acts before the sampling, a step passes
-/// as the samples of the step response of the prefilter.
+/// hold, including the delay of the loop. For a prefilter that acts before the sampling, a step
+/// passes as the samples of the step response of the prefilter.
 ///
 /// # Errors
 /// [`LoopError`] for a system that cannot be built or discretised.

@@ -1,5 +1,5 @@
-//! The linear models of a rig side by side: two-pressure, fifth order (6.7), decomposed (6.12),
-//! first order (6.13); their omissions, the impedance at the load, and whether it is passive.
+//! Comparison of the linear models of a rig: two-pressure, fifth order (6.7), decomposed (6.12),
+//! first order (6.13); their omissions, the impedance at the load, and its passivity.
 
 mod agreement;
 mod linkage;
@@ -53,7 +53,7 @@ pub struct Linearization {
     pub motion: MotionKind,
     /// Stiffness over the stroke by the project's model: nominal, softest and stiffest wall.
     pub stiffness: [StrokeStiffness; 3],
-    /// Both stiffness models side by side, nominal.
+    /// Both stiffness models for comparison, nominal.
     pub stiffness_models: ModelDifference,
     /// Plant of every verdict: with its load, its leakage, and the parameters in use.
     pub plant: LinearModel,
@@ -121,7 +121,7 @@ pub struct ReductionDifference {
     pub all: ResponseDifference,
 }
 
-/// The driving-point impedance and what follows from it.
+/// Driving-point impedance and its properties.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PortView {
     /// Impedance, Z = -F_e/(s X_L), N s/m.
@@ -140,7 +140,8 @@ pub struct PortView {
     pub final_force_n: Option<f64>,
 }
 
-/// G H of a continuous controller, through which the load motion acts; G of another.
+/// Product G H of a continuous controller, through which the load motion acts; G of another
+/// controller.
 fn in_series_with(
     controller: &Controller,
     sensor: &TransferFunction,
@@ -149,8 +150,8 @@ fn in_series_with(
     if is_continuous(&feedback) { feedback.series(sensor) } else { Ok(feedback) }
 }
 
-/// Linearises a rig; `controller` is the given one, if there is one, which sees the force through
-/// the sensor H.
+/// Linearises a rig; `controller` is the given one, if there is one, to which the sensor H feeds
+/// back the force.
 ///
 /// # Errors
 /// [`LinearError`] for a model without finite roots: parameters so extreme that the arithmetic

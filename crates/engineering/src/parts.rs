@@ -54,7 +54,7 @@ pub enum PartsUnknown {
     NoPrice,
     /// No part states a mass.
     NoMass,
-    /// Neither price nor mass of these parts is stated.
+    /// Some parts, which are listed, do not state it.
     NotStated(Vec<UnstatedPart>),
 }
 

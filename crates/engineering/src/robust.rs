@@ -212,9 +212,9 @@ pub const TOLERANCE_IN_MOTION_DB: f64 = 0.1;
 pub enum NoPolynomials {
     /// Waves travel in the lines.
     LinesInMotion,
-    /// A continuous controller feeds the pressures back late.
+    /// A continuous controller feeds the pressures back with a delay.
     PressuresFedBackLate,
-    /// The velocity of the load is fed forward late.
+    /// The velocity of the load is fed forward with a delay.
     LoadVelocityFedForwardLate,
 }
 

@@ -1,4 +1,4 @@
-//! Equilibrium of a loop: all simulated rates are zero.
+//! Equilibrium of a loop: all simulated time derivatives are zero.
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{EquilibriumError, Plant, System, equilibrium};

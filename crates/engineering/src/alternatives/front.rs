@@ -94,7 +94,7 @@ pub enum FeasibilityUnknown {
     NotPrepared(AlternativesError),
     /// The alternative has no design.
     NotDesigned(JudgeError),
-    /// The design of the alternative leaves it undecided.
+    /// The design does not decide whether the specifications are satisfied.
     Undecided(DesignVerdict),
 }
 

@@ -120,8 +120,8 @@ pub fn retracted_length(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, L
     Ok(cylinder.longest_stage_m() + dead + series)
 }
 
-/// Mass of the rod, and of what moves between force sensor and load, kg: the oil of a transmission
-/// is referred to its pistons.
+/// Moving mass of the rod, and of the parts between force sensor and load, kg: the oil of a
+/// transmission is referred to its pistons.
 fn moving_mass(_: &DeclaredActuator, rig: &Rig) -> Result<f64, NoNumber> {
     let on_rod = match (rig.plant.series.map(|series| series.element), rig.actuator.components().series) {
         (Some(LinearElement::Oil(column)), _) => column.mass * column.segments as f64,

@@ -216,7 +216,7 @@ pub(super) fn worst_of(audit: &Audit) -> impl Iterator<Item = PlantPoint> {
     of_specifications.chain([&audit.stability.plant]).chain(closest).chain(delayed).cloned()
 }
 
-/// Plants among which the worst margins are searched, without the search between them.
+/// Plants whose margins are compared for the worst, without a search between them.
 pub(crate) fn plants_of_margins(problem: &RobustProblem, audit: &Audit) -> Family {
     let Family::Uncertain(family) = &problem.family else { return problem.family.clone() };
     let members = visited(problem, audit).into_iter().filter_map(|plant| match plant {

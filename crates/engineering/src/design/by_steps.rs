@@ -54,7 +54,7 @@ const LEAST_OVERSHOOT_PERCENT: f64 = 0.3;
 /// Designs from which a search by steps begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SearchStarts {
-    /// The design, and the structures that came nearest.
+    /// The design, and the structures nearest to the requirement.
     Nearest,
     /// The structures after those.
     Others,

@@ -30,8 +30,8 @@ pub struct LoopFigures {
     pub order: usize,
     /// Number of poles minus number of zeros of that controller.
     pub relative_degree: i64,
-    /// lim s^r G(s), dB, for that relative degree r, of the continuous controller if there is one;
-    /// for one in z, |G| at pi/T, dB.
+    /// High-frequency gain, dB: lim s^r G(s) for that relative degree r, of the continuous
+    /// controller if there is one; for one in z, |G| at pi/T.
     pub high_frequency_gain_db: f64,
     /// Number of poles of the prefilter, of the continuous one if there is one.
     pub prefilter_order: usize,

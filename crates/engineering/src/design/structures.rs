@@ -41,7 +41,7 @@ pub struct ReachedStructure {
     pub slowest_zero_rad_per_s: Option<f64>,
     /// Margins of the nominal loop.
     pub nominal: Option<NominalMargins>,
-    /// lim s^r G(s) for the relative degree r, dB.
+    /// High-frequency gain lim s^r G(s) for the relative degree r, dB.
     pub high_frequency_gain_db: Option<f64>,
     /// Number of poles minus number of zeros.
     pub relative_degree: i32,

@@ -58,7 +58,7 @@ pub enum DesignVerdict {
         /// Amount by which every limit must be wider for one of them, dB.
         relaxation_db: f64,
     },
-    /// No audit of a controller that the search found decides it.
+    /// No audit of a controller from the search decides it.
     Undecided,
     /// The audit still finds deficits that the search did not evaluate.
     NotConverged {

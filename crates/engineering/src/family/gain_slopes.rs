@@ -17,8 +17,8 @@ const MOST: usize = STATIC_COEFFICIENTS;
 /// Beginning of the paths over which a region of operating points ranges.
 const OPERATING_POINT: &str = "operating_point.";
 
-/// Relative change of K_qU and of K_c for a change of each number by one, SI: a row for each of
-/// both at each operating point, which are the ends and the middle of every range of
+/// Relative change of K_qU and of K_c for a change of each number by one, SI: one row for each of
+/// the two at each operating point, which are the ends and the middle of every range of
 /// `[uncertainty]` and of `[family.operating_region]`.
 ///
 /// ```text

@@ -97,7 +97,7 @@ fn forms(around: &Around) -> [CoefficientForm; FRICTION_COEFFICIENTS] {
     ]
 }
 
-/// Estimates of each coefficient, and of the zero of the force.
+/// Estimates of each coefficient, and of the zero error of the force.
 pub(super) fn estimates(problem: &FrictionProblem<'_>, minimum: &Minimum) -> Estimates {
     let (lugre, zero) = problem.friction(&minimum.variables);
     let uncertainty = uncertainty_by_scale(&searched_only(problem, minimum), problem.count());

@@ -1,4 +1,4 @@
-//! Uncertainty of a valve that recordings leave, as far as it affects the plant.
+//! Uncertainty of a valve that recordings leave, in the coefficients on which the plant depends.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 use phea_dynamics::order::sort_by_number;

@@ -110,8 +110,7 @@ impl Recording {
         self.signals.iter().find(|signal| signal.kind == kind)
     }
 
-    /// Lag of the spool from earlier cycles, V; zero for a test that begins without one, as far as
-    /// its rows show.
+    /// Lag of the spool from earlier cycles, V; zero for a test whose rows show none.
     pub fn memory_at_start(&self) -> f64 {
         self.inputs.first().map_or(0.0, |input| input.memory)
     }

@@ -1,4 +1,4 @@
-//! Terms of a valve in addition to edges that open in proportion, as far as the recordings show.
+//! Terms of a valve, if the recordings show them, in addition to edges that open in proportion.
 
 use phea_dynamics::watch::Watch;
 use phea_hydraulics::servovalve::{LeakageModel, TestedValve, ValveTerms};

@@ -139,8 +139,8 @@ impl SoughtLine<'_> {
         }
     }
 
-    /// Parameters from the logarithms of compliance, creep and retardation, inertance, as far as
-    /// the model has them.
+    /// Parameters from the logarithms of compliance, creep and retardation, inertance, if the model
+    /// has them.
     fn parameters(&self, variables: &[f64]) -> LineParameters {
         let mut values = variables.iter().map(|variable| exp(*variable));
         let mut next = || values.next().unwrap_or(f64::NAN);

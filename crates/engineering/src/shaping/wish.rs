@@ -99,7 +99,7 @@ fn numbered(
     }
 }
 
-/// Magnitude, dB, and phase, degrees, as far as they are given.
+/// Magnitude, dB, and phase, degrees; `None` if not given.
 fn coordinates(point: &TextPiece<'_>) -> Result<[Option<f64>; 2], Box<RefusedChange>> {
     let parts = point.split(",").map_or_else(|| vec![*point], |parts| parts.to_vec());
     let mut found = [None, None];

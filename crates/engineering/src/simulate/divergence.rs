@@ -83,7 +83,8 @@ pub(super) struct DivergenceWatch {
     before_s: f64,
     /// Time since which the command is at an end of its range, s.
     since_s: Option<f64>,
-    /// End of the range at which the command last was, late in the run, and number of changes.
+    /// End of the range at which the command last was, in the last part of the run, and number of
+    /// changes.
     side: Option<bool>,
     swings: u32,
     first_swing_s: f64,

@@ -16,7 +16,7 @@ pub(super) struct RestedLoop {
 }
 
 /// Equilibrium of the loop under constant inputs, with the piston at the position of the initial
-/// guess: all simulated rates are zero.
+/// guess: all simulated time derivatives are zero.
 pub(super) fn rest(
     bench: &ControlledMachine,
     guess: &[f64],

@@ -1,5 +1,5 @@
-//! Limits of the rig that a run exceeds. Nothing is clamped by them: the real rig has these limits,
-//! the simulated machine does not.
+//! Limits of the rig that a run exceeds. They clamp nothing: the real rig has these limits, the
+//! simulated machine does not.
 
 use phea_dynamics::simulation::Quartic;
 use phea_hydraulics::machine::MachineSignals;

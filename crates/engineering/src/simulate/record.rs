@@ -128,7 +128,7 @@ fn every_second<T>(values: &mut Vec<T>) {
 mod tests {
     use super::*;
 
-    /// However long a run is, its record is short, evenly spaced, and begins with the first sample.
+    /// A record of a run of any length is short, evenly spaced, and begins with the first sample.
     #[test]
     fn a_record_is_even_and_never_long() {
         let parts = SignalParts { external_force: true, ..SignalParts::default() };

@@ -138,7 +138,7 @@ pub enum UnlikeLines {
 /// Name of a hose, or of a dash size.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum HoseName {
-    /// Name of the hose of both lines; `None` for the project's own hose without a name.
+    /// Name of the hose of both lines; `None` for a hose of the project without a name.
     Both(Option<String>),
     /// Names of the hose of line A and of that of line B, which differ.
     Each([Option<String>; 2]),

@@ -51,7 +51,7 @@ pub enum SizingReason {
         /// Length of the stock, m.
         stock: f64,
     },
-    /// Under this gain even a rigid transmission is too slow.
+    /// Even a rigid transmission is too slow under this gain.
     RigidTooSlow {
         /// Gain K_p, V/N.
         gain: f64,

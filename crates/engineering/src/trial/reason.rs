@@ -120,7 +120,7 @@ pub enum OvershootNote {
     Nothing,
     /// The limit on |L/(1+L)| permits no loop to overshoot so far.
     BeyondLimit,
-    /// The force does not come to rest and swings between these forces, N.
+    /// The force does not settle and swings between these forces, N.
     Swings([f64; 2]),
     /// No solver can determine the result.
     Undetermined,
@@ -172,7 +172,7 @@ pub enum NotDriven {
 /// Reason why a plant has no rig.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NoRig {
-    /// The plant is one in motion.
+    /// The plant is in motion at its operating point.
     #[error("a machine is tried from rest, and this plant is one in motion")]
     InMotion,
     /// A number of the plant does not exist in the rig.
