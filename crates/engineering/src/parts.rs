@@ -54,7 +54,7 @@ pub enum PartsUnknown {
     NoPrice,
     /// No part states a mass.
     NoMass,
-    /// Some parts, which are listed, do not state it.
+    /// The listed parts state no value.
     NotStated(Vec<UnstatedPart>),
 }
 

@@ -40,9 +40,9 @@ use crate::rig::LargestFlow;
 pub enum Question {
     /// Both branches: the gain is searched for, and the stock length is evaluated.
     Both,
-    /// Which length does this gain K_p, V/N, need?
+    /// Length for this gain K_p, V/N.
     Gain(f64),
-    /// Which gain does this length of each line, m, need?
+    /// Gain for this length of each line, m.
     Length(f64),
 }
 
