@@ -1,8 +1,8 @@
-//! Alternatives of one project, each as that project with settings of its own: sized, designed for
-//! the same specifications, audited, tried on the machine and driven through every scenario.
+//! Alternatives of one project, each the project with other settings: sized, designed for the
+//! project's specifications, audited, tested on the machine and simulated through every scenario.
 //!
 //! ```text
-//! [[alternative]] -> project -> sizing, design, audit, trial -> the designed loop, driven -> columns -> dominance
+//! [[alternative]] -> project -> sizing, design, audit, trial -> the designed loop, simulated -> columns -> dominance
 //! ```
 
 mod asked;
@@ -47,25 +47,25 @@ use crate::source::Source;
 use crate::trial::Agreement;
 use asked::ReadingAgain;
 
-/// The project as it is declared and its alternatives, judged.
+/// The project as declared and its alternatives, judged.
 #[derive(Clone, Debug)]
 pub struct Alternatives {
-    /// The project itself first, then its alternatives in file order.
+    /// The declared project first, then its alternatives in file order.
     pub judged: Vec<JudgedAlternative>,
-    /// Names of those that were not finished when the watch stopped.
+    /// Names of the alternatives that were not finished when `watch` cancelled.
     pub not_reached: Vec<String>,
-    /// The same under each load case.
+    /// Results under each load case.
     pub cases: Vec<JudgedCase>,
-    /// Fronts over a swept key, where they are asked for.
+    /// Fronts over a swept key, if requested.
     pub front: Option<Front>,
 }
 
-/// What is requested for the alternatives of a project.
+/// Options for the alternatives of a project.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlternativesOptions {
     /// Fronts over a swept key.
     pub front: Option<FrontRequest>,
-    /// Frequencies in rad/s at which the impedance at the load is stated.
+    /// Frequencies at which the impedance at the load is reported, rad/s.
     pub impedance_at: Vec<f64>,
 }
 
@@ -75,10 +75,10 @@ impl Default for AlternativesOptions {
     }
 }
 
-/// An alternative with everything that was found about it, or why something was not.
+/// An alternative with all results, or the reasons why they are absent.
 #[derive(Clone, Debug)]
 pub struct JudgedAlternative {
-    /// Its name.
+    /// Name of the alternative.
     pub name: String,
     /// The project with its settings.
     pub loaded: Loaded,
@@ -86,28 +86,28 @@ pub struct JudgedAlternative {
     pub rig: Result<Rig, JudgeError>,
     /// The ranges of `[uncertainty]` that follow its rig.
     pub moved: Vec<MovedRange>,
-    /// The parameters of its rig outside of their ranges in `[uncertainty]`, or `None` where
-    /// they are those of the project as it is declared.
+    /// Parameters of its rig outside their ranges in `[uncertainty]`, or `None` if they are those
+    /// of the project as declared.
     pub outside: Option<Vec<OutsideParameter>>,
-    /// Frequencies in rad/s at which its impedance is stated.
+    /// Frequencies at which the impedance is reported, rad/s.
     pub impedance_at: Vec<f64>,
-    /// What is counted of the parts of all that are compared.
+    /// Attributes of parts that are counted in all compared alternatives.
     pub counted: PartsCounted,
-    /// Hoses of the catalogue for its `[sizing]`.
+    /// Hoses of the catalogue for the `[sizing]` of the alternative.
     pub sizing: Result<Sizing, JudgeError>,
     /// The designed controller with its audit and its trial on the machine.
     pub design: Result<ProjectDesign, JudgeError>,
-    /// The project with the designed laws in place of its own.
+    /// The project with the designed laws in place of those that it gives.
     pub deployed: Result<Project, JudgeError>,
     /// The linear models of its rig, the closed loop with the designed controller.
     pub linearization: Result<Linearization, JudgeError>,
-    /// Every scenario under the designed controller and prefilter; empty where there is none, or no
-    /// machine.
+    /// Runs of every scenario under the designed controller and prefilter; empty without a
+    /// scenario, or without a machine.
     pub runs: Result<Vec<ScenarioRun>, JudgeError>,
 }
 
 impl Alternatives {
-    /// Whether every alternative has a design, and every scenario ran to its end.
+    /// True if every alternative has a design, and every scenario ran to its end.
     pub fn is_complete(&self) -> bool {
         let front = self.front.as_ref().is_none_or(|front| front.not_reached == 0);
         let all = |judged: &[JudgedAlternative], not_reached: &[String]| {
@@ -119,26 +119,27 @@ impl Alternatives {
 }
 
 impl JudgedAlternative {
-    /// Whether it has a design that was driven, to results that describe the machine.
+    /// True if the alternative has a design whose simulation gave results that describe the
+    /// machine.
     pub(crate) fn is_judged(&self) -> bool {
         let reliable = |runs: &Vec<ScenarioRun>| runs.iter().all(ScenarioRun::is_reliable);
         self.design.is_ok() && self.runs.as_ref().is_ok_and(reliable)
     }
 
-    /// Whether the machine does something that the verdict excludes.
+    /// True if the machine does something that the verdict excludes.
     pub(crate) fn is_contradicted(&self) -> bool {
         let trial = self.design.as_ref().ok().and_then(|view| view.trial.as_ref());
         trial.is_some_and(|trial| trial.agreement() == Agreement::Contradicts)
     }
 
-    /// Whether it may be said to dominate another: it satisfies every specification, was driven to
-    /// the end of its scenarios, and the machine does not contradict its verdict.
+    /// True if the alternative may dominate another: it satisfies every specification, was
+    /// simulated to the end of its scenarios, and the machine does not contradict its verdict.
     pub fn is_comparable(&self) -> bool {
         self.feasible() == Some(true) && self.is_judged() && !self.is_contradicted()
     }
 
-    /// True where the designed loop satisfies every specification, and the nonlinear rig what is
-    /// required in time; `None` where this is not known, for which the design has the reason.
+    /// True if the designed loop satisfies every specification, and the nonlinear rig its
+    /// requirements in time; `None` if this is unknown, for the reason in the design.
     pub fn feasible(&self) -> Option<bool> {
         use phea_qft::design::DesignStatus;
         let view = self.design.as_ref().ok()?;
@@ -157,12 +158,13 @@ impl JudgedAlternative {
     }
 }
 
-/// Judges the project as it is declared, and each of its alternatives, one after the other; then
-/// all of them again under each load case. If the watch answers `false`, the one at hand and all
-/// later ones are not reached.
+/// Judges the project as declared, and each of its alternatives, one after the other; then all of
+/// them again under each load case. If `watch` returns `false`, the current one and all later ones
+/// are not reached.
 ///
 /// # Errors
-/// [`AlternativesError`]. What an alternative lacks otherwise is reported of that alternative.
+/// [`AlternativesError`]. Anything else that an alternative lacks is reported with that
+/// alternative.
 ///
 /// # Example
 /// ```
@@ -216,10 +218,10 @@ pub fn judge(
     Ok(found)
 }
 
-/// Share of the progress that the design is, the scenarios being the rest.
+/// Fraction of the progress that the design takes; the scenarios take the rest.
 const DESIGNING: f64 = 0.7;
 
-/// What every alternative is judged with.
+/// Common inputs for the judgement of every alternative.
 pub(crate) struct Judging<'a> {
     source: &'a dyn Source,
     catalogue: &'a Catalogue,
@@ -229,7 +231,7 @@ pub(crate) struct Judging<'a> {
 }
 
 impl Judging<'_> {
-    /// `None` where the watch stops it.
+    /// A judged alternative; `None` if `watch` cancels.
     fn judged(&self, asked: AskedAlternative, watch: Watch<'_>) -> Option<JudgedAlternative> {
         let outside = asked.outside(self.all);
         let AskedAlternative { name, loaded, rig, no_hose, moved } = asked;
@@ -277,8 +279,8 @@ impl Judging<'_> {
     }
 }
 
-/// The project with the controller of the force in place of that of an inner position loop: the
-/// same loop, and what a design finds.
+/// The project with a controller of the force in place of that of an inner position loop; the loop
+/// is unchanged, and a design finds this form.
 ///
 /// ```text
 /// C_x = G (M_v s^2 + B_v s + K_v)
@@ -318,7 +320,7 @@ fn driven(
     Ok(simulate_project(source, setup?, watch)?)
 }
 
-/// Reason why there is nothing of a machine.
+/// Reason for the absent results of a machine.
 fn no_rig() -> NoNumber {
     NoNumber::NotJudged(RigError::NoActuator.into())
 }

@@ -47,17 +47,17 @@ use phea_dynamics::watch::{Stopped, Watch, part, unwatched};
 /// Reason why there is nothing to audit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AuditError {
-    /// There is no controller.
+    /// The controller is missing.
     #[error(
         "the project gives no [controller] to be verified: add one, such as `numerator = \"2e-4 s + 3e-3\"` and `denominator = \"s\"`, or let `phea design` find it"
     )]
     NoController,
-    /// There is a controller without a transfer function.
+    /// The controller has no transfer function.
     #[error(
         "[controller] states only when it acts and leaves its transfer function to be designed: `phea design` does that"
     )]
     NoLaw,
-    /// There is no specification to audit.
+    /// The specifications are missing.
     #[error(
         "the project states no [[specification]] to verify the controller against: add one, such as `kind = \"robust_stability\"` and `limit = 1.3`"
     )]
@@ -65,7 +65,7 @@ pub enum AuditError {
     /// The project is not a problem of the robust method.
     #[error(transparent)]
     Robust(#[from] RobustError),
-    /// The watch stopped it.
+    /// The progress callback cancelled the audit.
     #[error(transparent)]
     Stopped(#[from] Stopped),
 }
@@ -76,8 +76,8 @@ const STAGE: &str = "auditing";
 /// Audits the given controller and prefilter over the whole family and band.
 ///
 /// # Errors
-/// [`AuditError`] for a project without a controller, a part of it that is not a transfer
-/// function, a family that cannot be built, or a watch that stops it.
+/// [`AuditError`] for a project without a controller, a part of it that is not a transfer function,
+/// a family that cannot be built, or a cancellation by `watch`.
 pub fn audit_project(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -86,10 +86,10 @@ pub fn audit_project(
     Ok(audit_problem(&problem_to_audit(source, setup)?, watch)?)
 }
 
-/// The given controller in a loop with the whole family, and what it is audited for.
+/// The given controller in a loop with the whole family, and the specifications for the audit.
 ///
 /// # Errors
-/// The errors of [`audit_project`], but for the watch.
+/// The errors of [`audit_project`], except cancellation.
 pub fn problem_to_audit(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustProblem, AuditError> {
     let project = setup.project;
     match &project.controller {
@@ -103,10 +103,10 @@ pub fn problem_to_audit(source: &dyn Source, setup: &Setup<'_>) -> Result<Robust
     Ok(robust_problem(source, setup)?)
 }
 
-/// The same for an existing robust problem.
+/// Audits an existing robust problem.
 ///
 /// # Errors
-/// [`Stopped`] where the watch stops it.
+/// [`Stopped`] if `watch` cancels it.
 pub fn audit_problem(problem: &RobustProblem, watch: Watch<'_>) -> Result<ProjectAudit, Stopped> {
     let share = if problem.rig_outside.is_some() { 0.8 } else { 1.0 };
     let asked = audit_request(problem, &problem.family);
@@ -132,26 +132,27 @@ pub fn audit_request<'a>(problem: &'a RobustProblem, family: &'a Family) -> Audi
 /// An audit with the names of its project.
 #[derive(Clone, Debug)]
 pub struct ProjectAudit {
-    /// What was found.
+    /// Findings of the audit.
     pub audit: Audit,
     /// The names of the parameters of a plant.
     pub names: PlantNames,
-    /// What each specification is called.
+    /// Name of each specification.
     pub specification_names: Vec<SpecificationName>,
-    /// The number in the file, from 1, of each that is declared there; the others come after them.
+    /// Number in the file, from 1, of each specification that is declared there; the others follow.
     pub specification_numbers: Vec<usize>,
-    /// Position of every plant; `None` where they differ in it or its stiffness, and without a rig.
+    /// Position of every plant; `None` if the plants differ in it or in its stiffness, and without
+    /// a rig.
     pub position: Option<CommonPosition>,
     /// Number of plants of the family.
     pub members: usize,
-    /// Whether everything between them belongs to the family.
+    /// True if everything between the plants belongs to the family.
     pub whole_box: bool,
-    /// Reason why its plants have no polynomials; `None` where they have them.
+    /// Reason why the plants have no polynomials; `None` if they have them.
     pub without_polynomials: Option<NoPolynomials>,
     /// Paths that the delay margin delays with the controller; gain, phase and modulus margins are
     /// those of the force loop around them.
     pub delayed_paths: DelayedPaths,
-    /// s; `None` for a continuous controller.
+    /// Sample time, s; `None` for a continuous controller.
     pub sample_time_s: Option<f64>,
     /// Delay of the loop, s.
     pub delay_s: f64,
@@ -161,55 +162,55 @@ pub struct ProjectAudit {
     pub units: Units,
     /// Declared effects that the audit does not include.
     pub caveats: Vec<Caveat>,
-    /// What the worst plant of each specification reaches, where that is a magnitude against a
-    /// limit.
+    /// Magnitude that the worst plant of each specification reaches; `None` for a specification
+    /// that does not limit a magnitude.
     pub reached: Vec<Option<ReachedLimit>>,
-    /// What the noise of a velocity that is fed forward does; `None` without one.
+    /// Effect of the noise of a velocity that is fed forward; `None` without one.
     pub velocity_noise: Option<SignalNoise>,
-    /// What the noise of pressures that are fed back does; `None` without one.
+    /// Effect of the noise of pressures that are fed back; `None` without one.
     pub pressure_noise: Option<SignalNoise>,
-    /// Margins of the nominal loop; `None` where it is not known to be stable.
+    /// Margins of the nominal loop; `None` if the loop is not known to be stable.
     pub nominal: Option<NominalMargins>,
     /// Gain, phase, modulus and delay margin of the nominal loop, and the worst of the family.
     pub margins: AuditMargins,
     /// The requirements in time of its specifications.
     pub in_time: Vec<TimeFinding>,
-    /// The prefilter, where it amplifies.
+    /// The prefilter, if it amplifies.
     pub amplifying_prefilter: Option<PrefilterGain>,
-    /// What was proven about it, if a proof was requested.
+    /// Result of the proof, if one was requested.
     pub proof: Option<Proof>,
-    /// The limits of a design that the loop keeps and does not keep, which are no part of the
-    /// verdict; `None` where they were not examined.
+    /// Limits of a design that the loop satisfies or violates, which are no part of the verdict;
+    /// `None` if they were not examined.
     pub below_design: Option<JudgedLimits>,
 }
 
-/// A closed-loop magnitude and the limit that it comes nearest to, or violates.
+/// A closed-loop magnitude and the limit to which it is nearest, or which it violates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReachedLimit {
     /// The magnitude.
     pub magnitude: f64,
     /// The limit.
     pub limit: f64,
-    /// Which of its limits that is.
+    /// Side of the magnitude on which the limit is.
     pub side: LimitSide,
 }
 
-/// Whether a limit bounds a magnitude from above or from below.
+/// Side of a magnitude that a limit bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitSide {
-    /// The only one, an upper one.
+    /// Upper limit without a lower one.
     Only,
-    /// The upper of two.
+    /// Upper limit of two.
     Upper,
-    /// The lower of two.
+    /// Lower limit of two.
     Lower,
 }
 
-/// 20 log10(e)
+/// Decibels per neper, 20 log10(e).
 pub(crate) const DECIBELS_PER_NEPER: f64 = 20.0 * std::f64::consts::LOG10_E;
 
-/// What the worst plant reaches; `None` for a spread, and at the ends of the frequency axis where
-/// there are two limits.
+/// Magnitude that the worst plant reaches; `None` for a spread, and at the ends of the frequency
+/// axis if there are two limits.
 fn reached(problem: &RobustProblem, finding: &SpecificationFinding) -> Option<ReachedLimit> {
     let worst = finding.worst.as_ref().filter(|worst| worst.other.is_none())?;
     let frequency = worst.frequency_rad_per_s;
@@ -223,7 +224,7 @@ fn reached(problem: &RobustProblem, finding: &SpecificationFinding) -> Option<Re
         return single.then_some(ReachedLimit { magnitude, limit: upper, side: LimitSide::Only });
     }
     if lower.is_none() {
-        // of all plants that a measured response may be this is the worst
+        // among all plants compatible with a measured response, this is the worst
         let magnitude = upper * portable::exp(-worst.margin_db / DECIBELS_PER_NEPER);
         return Some(ReachedLimit { magnitude, limit: upper, side: LimitSide::Only });
     }
@@ -248,7 +249,7 @@ fn reached(problem: &RobustProblem, finding: &SpecificationFinding) -> Option<Re
 }
 
 impl ProjectAudit {
-    /// An audit of the loop of this problem, with the findings for the rig itself where the family
+    /// An audit of the loop of this problem, with the findings for the rig itself if the family
     /// does not contain it.
     pub(crate) fn new(problem: &RobustProblem, mut audit: Audit, of_rig: Option<Caveat>) -> ProjectAudit {
         let RobustProblem { family, compensation, .. } = problem;
@@ -304,13 +305,13 @@ impl ProjectAudit {
         }
     }
 
-    /// The verdict on the specifications over frequency and on the requirements in time: a step
-    /// that misses one violates what was required.
+    /// Verdict on the specifications over frequency and on the requirements in time: a step that
+    /// misses one violates a requirement.
     pub fn verdict(&self) -> Verdict {
         self.in_time.iter().map(TimeFinding::part_of_verdict).fold(self.audit.verdict, Verdict::max)
     }
 
-    /// The evidence for that verdict: the steps of plants that were visited are a search.
+    /// Evidence for that verdict: the steps of the visited plants are a search.
     pub fn evidence(&self) -> Evidence {
         let own = self.audit.evidence;
         let of_verdict = |finding: &TimeFinding| finding.requirement.follows && finding.verdict().is_some();
@@ -328,7 +329,7 @@ impl ProjectAudit {
         self.in_time.iter().find(|finding| finding.requirement.limits == Some(index))
     }
 
-    /// Whether a step misses a requirement in time that its limits follow from.
+    /// True if a step misses a requirement in time from which limits follow.
     pub fn misses_in_time(&self) -> bool {
         self.in_time.iter().any(TimeFinding::violates)
     }
@@ -339,7 +340,7 @@ impl ProjectAudit {
         Some(NamedSpecification { number: self.number_of(index), name })
     }
 
-    /// Whether the plants have lines with waves, which are fitted.
+    /// True if the plants have lines with waves, which are fitted.
     pub fn has_lines_in_motion(&self) -> bool {
         self.without_polynomials == Some(NoPolynomials::LinesInMotion)
     }

@@ -32,28 +32,28 @@ use crate::quantity::{DisplayUnit, TIME, display};
 use crate::rig::RigError;
 use crate::setup::Setup;
 
-/// The readings of the instruments at one time. Units: s, V, Pa, m3/s.
+/// Readings of the instruments at one time. Units: s, V, Pa, m3/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BenchRow {
     /// Time from the beginning.
     pub time: f64,
     /// Command U_C.
     pub command: f64,
-    /// p_S.
+    /// Supply pressure p_S.
     pub supply_pressure: f64,
-    /// p_A.
+    /// Pressure p_A.
     pub pressure_a: f64,
-    /// p_B.
+    /// Pressure p_B.
     pub pressure_b: f64,
-    /// Flow from the supply in the leakage test, tare flow included.
+    /// Flow from the supply in the leakage test, including the tare flow.
     pub leak_flow: f64,
     /// Flow between the ports in the metering test.
     pub flow: f64,
-    /// Temperature of the oil in degC, where it is stated.
+    /// Temperature of the oil, degC, if it is stated.
     pub oil_temperature: Option<f64>,
 }
 
-/// What is recorded in one go. Metering tests may be two, one for each meter.
+/// Kind of a continuous recording. There may be two metering tests, one for each meter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BenchSeries {
     /// Internal leakage.
@@ -69,7 +69,7 @@ pub enum BenchSeries {
 }
 
 impl BenchSeries {
-    /// As files are called.
+    /// Name in file names.
     pub fn name(self) -> &'static str {
         match self {
             BenchSeries::LowFlowMetering => "metering_low_flow",
@@ -78,7 +78,7 @@ impl BenchSeries {
         }
     }
 
-    /// The test it is, as ports and columns are concerned.
+    /// Kind of the test that determines ports and columns.
     pub fn test(self) -> StaticTest {
         match self {
             BenchSeries::Leakage => StaticTest::Leakage,
@@ -90,31 +90,31 @@ impl BenchSeries {
     }
 }
 
-/// A test as it was recorded.
+/// A recorded test.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BenchRun {
-    /// Which.
+    /// Kind of the recording.
     pub series: BenchSeries,
     /// Rows in the order of time.
     pub rows: Vec<BenchRow>,
-    /// Lowest supply pressure during the test, without noise, in Pa.
+    /// Lowest supply pressure during the test, without noise, Pa.
     pub lowest_supply_pressure: f64,
-    /// Hysteresis and threshold as its rows show them.
+    /// Hysteresis and threshold from the rows of the test.
     pub reversals: Option<ReversalReading>,
 }
 
 /// Reason why there are no tests.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BenchError {
-    /// The valve cannot be computed with.
+    /// The valve cannot be computed.
     #[error(transparent)]
     Rig(#[from] RigError),
     /// A test would have more rows than can be recorded.
     #[error("[bench] asks for {rows} rows a test: at most {most} are recorded")]
     TooManyRows {
-        /// Rows of one test.
+        /// Number of rows of one test.
         rows: f64,
-        /// How many there may be.
+        /// Largest permitted number.
         most: usize,
     },
     /// The tests of a line cannot be made.
@@ -131,9 +131,9 @@ pub enum BenchError {
         travel
     )]
     BeyondStroke {
-        /// m, from one reversal to the next.
+        /// Travel from one reversal to the next, m.
         travel: f64,
-        /// m, of the cylinder.
+        /// Stroke of the cylinder, m.
         stroke: f64,
     },
     /// A piston is shaken too quickly for its rows.
@@ -143,12 +143,12 @@ pub enum BenchError {
         display(*sample_time, &TIME, 3)
     )]
     ShakenTooFast {
-        /// rad/s.
+        /// Highest frequency, rad/s.
         highest: f64,
-        /// s, the longest.
+        /// Longest sample time, s.
         sample_time: f64,
     },
-    /// No frequency is left to shake a piston with.
+    /// No frequency remains to shake a piston with.
     #[error(
         "[bench.friction.shaken]: no multiple of {} lies from {} to {}: choose a longer `period` or other `frequencies`",
         hertz(spacing),
@@ -156,12 +156,12 @@ pub enum BenchError {
         hertz(&frequencies[1])
     )]
     NothingShaken {
-        /// rad/s, the ends.
+        /// Ends of the range of frequencies, rad/s.
         frequencies: [f64; 2],
-        /// rad/s, of the period.
+        /// Frequency of the period, rad/s.
         spacing: f64,
     },
-    /// Stopped by the watch.
+    /// The progress callback cancelled the tests.
     #[error("stopped")]
     Stopped,
 }
@@ -189,7 +189,7 @@ pub enum BenchLineError {
     Unfinished,
 }
 
-/// A frequency in rad/s for people.
+/// Display text of a frequency, rad/s.
 fn hertz(frequency: &f64) -> String {
     DisplayUnit::HERTZ.text(*frequency, 4)
 }
@@ -200,13 +200,13 @@ impl From<Stopped> for BenchError {
     }
 }
 
-/// Most rows of a test.
+/// Largest number of rows of a test.
 pub(crate) const MOST_ROWS: usize = 1_000_000;
 
 /// All static tests of the project's valve.
 ///
 /// # Errors
-/// [`BenchError`] for a project without an actuator, an impossible one, or too many rows.
+/// [`BenchError`] for a project without an actuator, for an invalid actuator, or for too many rows.
 pub fn bench(setup: &Setup<'_>, watch: Watch<'_>) -> Result<Vec<BenchRun>, BenchError> {
     let declared = setup.project.actuator.as_ref().ok_or(RigError::NoActuator)?;
     let rig = setup.rig()?;
@@ -237,7 +237,7 @@ pub fn bench(setup: &Setup<'_>, watch: Watch<'_>) -> Result<Vec<BenchRun>, Bench
     Ok(runs)
 }
 
-/// The usual three, and what else is declared.
+/// The three usual tests, and the further ones that are declared.
 fn wanted(settings: &Bench) -> Vec<BenchSeries> {
     let mut series = vec![BenchSeries::Leakage, BenchSeries::Metering, BenchSeries::PressureGain];
     series.extend(settings.low_flow_meter.map(|_| BenchSeries::LowFlowMetering));
@@ -245,29 +245,29 @@ fn wanted(settings: &Bench) -> Vec<BenchSeries> {
     series
 }
 
-/// The meter between the ports: small flows and reversals are measured by the small one, where
-/// there is one.
+/// Meter between the ports: small flows and reversals are measured by the small one, if there is
+/// one.
 fn meter_of(series: BenchSeries, settings: &Bench) -> FlowMeter {
     let small = matches!(series, BenchSeries::LowFlowMetering | BenchSeries::Reversals);
     let small = settings.low_flow_meter.filter(|_| small);
     small.map_or(settings.flow_meter, |small| small.meter)
 }
 
-/// Flow at a drop of 1 Pa.
+/// Flow at a pressure drop of 1 Pa.
 fn meter_coefficient(meter: &FlowMeter) -> f64 {
     if meter.pressure_drop > 0.0 { meter.range / meter.pressure_drop.sqrt() } else { f64::INFINITY }
 }
 
-/// The oil after a share of the test, relative to the one that the valve is stated at.
+/// The oil after a fraction of the test, relative to the oil for which the valve is stated.
 fn oil_at(oil: &OilTemperature, share: f64) -> (f64, WarmOil) {
     let law = OilLaw { viscosity_slope: oil.viscosity_slope, density_slope: oil.density_slope };
     let temperature = oil.start + (oil.end - oil.start) * share;
     (temperature, law.warmer(temperature - oil.reference.unwrap_or(oil.start)))
 }
 
-/// Flow of the pump and the override of its relief valve, where the supply is limited.
+/// Flow of the pump and the override of its relief valve, if the supply is limited.
 fn pump(declared: &DeclaredActuator, settings: &Bench) -> Option<[f64; 2]> {
-    // a relief valve that opens within 1 % of the pressure, where none is described
+    // a relief valve that opens within 1 % of the pressure, if none is described
     let sharp = 0.01 * (declared.supply.pressure - declared.supply.tank_pressure);
     match (&declared.supply.model, settings.pump_flow) {
         (SupplyModel::PumpLimited(pump), flow) => Some([flow.unwrap_or(pump.flow), pump.relief_override]),
@@ -343,8 +343,8 @@ fn record(
     Ok(found)
 }
 
-/// The position of the spool on its way, without the noise of the command's record, and the flow,
-/// of each row; the spool is this many rows late.
+/// Position of the spool on its path, without the noise of the command's record, and flow, for each
+/// row; the spool is this many rows late.
 fn opened(rows: &[BenchRow], late: f64) -> Vec<(f64, f64)> {
     let recorded: Vec<f64> = rows.iter().map(|row| row.command).collect();
     let mut before = 0.0;

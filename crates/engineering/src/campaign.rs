@@ -1,13 +1,13 @@
-//! Monte Carlo campaigns: the nonlinear model with drawn numbers, many times, through one
+//! Monte Carlo campaigns: many simulations of the nonlinear model with drawn numbers, through one
 //! scenario.
 //!
 //! ```text
-//! seed, index -> numbers -> machine, start -> driven in lanes -> row -> table, quantiles, bands, worst runs
+//! seed, index -> numbers -> machine, start -> simulated in lanes -> row -> table, quantiles, bands, worst runs
 //! ```
 //!
-//! A run follows from seed and index alone. Rows are in the order of the runs and the same bytes
-//! for any number of threads, in lanes or one by one; a draw that does not give a machine becomes a
-//! row that says so, and is not repeated.
+//! Seed and index determine a run completely. Rows are in the order of the runs and have identical
+//! bytes for any number of threads, in lanes or one by one; a draw that does not give a machine
+//! becomes a row that reports this, and is not repeated.
 
 mod ledger;
 mod parquet;
@@ -44,69 +44,69 @@ use crate::specification::SpecificationError;
 /// Reason why a valid project has no campaign.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CampaignError {
-    /// It declares none.
+    /// The project declares no campaign.
     #[error(
         "the project has no [campaign]: name the numbers that vary in [campaign.parameters], such as `\"supply.pressure\" = {{ minimum = \"60 bar\", maximum = \"70 bar\" }}`"
     )]
     Absent,
-    /// It varies nothing.
+    /// The campaign varies nothing.
     #[error("[campaign] varies nothing: name numbers in [campaign.parameters]")]
     Nothing,
-    /// There is nothing to drive.
+    /// The project has no scenario to simulate.
     #[error(
         "there is nothing to drive: the project has no [[scenario]]: add one, such as `name = \"step\"`, `duration = \"2 s\"` and `reference = {{ at = \"1 s\", force = \"1 kN\" }}`"
     )]
     NoScenario,
-    /// The scenario that it names does not exist.
+    /// The scenario of the campaign does not exist.
     #[error("[campaign] names a scenario \"{name}\" that the project does not have")]
     NoSuchScenario {
-        /// As named.
+        /// Name as written.
         name: String,
     },
-    /// A path that does not lead to a number.
+    /// The path does not lead to a number.
     #[error("[campaign] varies `{path}`, but this project has no such number")]
     Unknown {
-        /// As written.
+        /// Path as written.
         path: String,
     },
-    /// A start that is an equilibrium has no numbers to vary.
+    /// The scenario starts in equilibrium, which has no numbers to vary.
     #[error("[campaign] varies `{path}`, but the scenario states no `start` and begins in equilibrium")]
     NoStart {
-        /// As written.
+        /// Path as written.
         path: String,
     },
-    /// A saved start cannot be varied.
+    /// The scenario starts from a saved state, which cannot be varied.
     #[error("[campaign] varies `{path}`, but the scenario continues from a saved state")]
     SavedStart {
-        /// As written.
+        /// Path as written.
         path: String,
     },
-    /// A spread around nothing.
+    /// The spread is around zero or an absent number.
     #[error(
         "[campaign] spreads `{path}` around a number that is not stated or zero: give `minimum` and `maximum`"
     )]
     NotStated {
-        /// As written.
+        /// Path as written.
         path: String,
     },
-    /// A logarithmic spread of a number that has no logarithm.
+    /// The spread is logarithmic, but the number has no logarithm.
     #[error("[campaign] draws the logarithm of `{path}`, whose least value is {minimum}")]
     NoLogarithm {
-        /// As written.
+        /// Path as written.
         path: String,
-        /// In SI.
+        /// Least value, SI.
         minimum: f64,
     },
     /// The part of a campaign is invalid.
     #[error("--shard {text}: a part has the form 2/4, the second of four")]
     NoShard {
-        /// As written.
+        /// Text as written.
         text: String,
     },
-    /// More runs than can be held at once.
+    /// The number of runs is larger than can be stored at once.
     #[error("{runs} runs are more than {} at once: draw shards of them", ledger::MOST_RUNS)]
     TooMany {
-        /// As asked for.
+        /// Number of requested runs.
         runs: u64,
     },
     /// The stored rows belong to another campaign.
@@ -114,7 +114,7 @@ pub enum CampaignError {
         "line {line} of the kept table is not a row of this campaign: choose another folder, or remove the table"
     )]
     OtherCampaign {
-        /// Counted from 1.
+        /// Line number, from 1.
         line: usize,
     },
     /// A stored row has been altered.
@@ -123,9 +123,9 @@ pub enum CampaignError {
         .line - 1
     )]
     Damaged {
-        /// Counted from 1.
+        /// Line number, from 1.
         line: usize,
-        /// What is wrong with it.
+        /// Fault of the row.
         fault: RowFault,
     },
     /// Another program has rewritten the table.
@@ -133,26 +133,26 @@ pub enum CampaignError {
         "line {line} of the kept table ends in CR LF, where LF was written: give it back its line ends, or remove the table"
     )]
     LineEnds {
-        /// Counted from 1.
+        /// Line number, from 1.
         line: usize,
     },
-    /// More rows are stored than were requested.
+    /// More rows are stored than requested.
     #[error(
         "the kept table has {kept} rows, more than the {asked} that are asked for: choose another folder"
     )]
     MoreKept {
-        /// Rows.
+        /// Number of rows.
         kept: u64,
-        /// Runs.
+        /// Number of runs.
         asked: u64,
     },
-    /// Rows cannot be kept.
+    /// Rows cannot be stored.
     #[error("{0}")]
     RowStore(String),
     /// The machine or its controller cannot be simulated.
     #[error(transparent)]
     Simulate(#[from] SimulateError),
-    /// A limit that is stated in time has no response.
+    /// A limit stated in time has no response.
     #[error(transparent)]
     Specification(#[from] SpecificationError),
     /// A run, written as settings, is no longer a valid project.
@@ -160,16 +160,16 @@ pub enum CampaignError {
     Settings(Box<Refusal>),
 }
 
-/// Fault of a line of the kept table.
+/// Fault of a line of the stored table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RowFault {
-    /// Its checksum is wrong.
+    /// The checksum is wrong.
     #[error("is not as it was written")]
     Changed,
-    /// Its index is not that of its place.
+    /// The index does not match the position of the row.
     #[error("belongs to another run")]
     OfAnotherRun,
-    /// Its numbers are not those of its index.
+    /// The numbers are not those that follow from the index.
     #[error("has other numbers than its run draws")]
     OtherNumbers,
 }

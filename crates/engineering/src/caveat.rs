@@ -1,7 +1,7 @@
-//! Effects that the project declares and a verdict on the linear loop does not include.
+//! Effects that the project declares but a verdict on the linear loop does not include.
 //!
-//! A simulation includes the whole machine. What the linear plant cannot represent is stated before
-//! the verdict; where a specification depends on it, the verdict is not proven.
+//! A simulation includes the whole machine. Anything that the linear plant cannot represent is
+//! stated before the verdict; if a specification depends on it, the verdict is not proven.
 
 mod beyond_reach;
 mod effect;
@@ -39,12 +39,12 @@ use crate::setup::Setup;
 pub struct Caveat {
     /// The effect, with its numbers.
     pub effect: UncountedEffect,
-    /// True where a specification that the linear loop satisfies may be violated because of it.
+    /// True if the effect may violate a specification that the linear loop satisfies.
     pub unproven: bool,
 }
 
 impl Caveat {
-    /// An effect that leaves the verdict as it is.
+    /// Caveat for an effect that does not change the verdict.
     fn noted(effect: UncountedEffect) -> Caveat {
         Caveat { effect, unproven: false }
     }
@@ -67,7 +67,7 @@ pub fn caveats(setup: &Setup<'_>) -> Vec<Caveat> {
         .collect()
 }
 
-/// A region of positions alone under the force of a piston that is blocked at null.
+/// Caveat for a region of positions under only the force of a piston that is blocked at null.
 fn blocked_piston(setup: &Setup<'_>) -> Option<Caveat> {
     let region = setup.project.family.as_ref()?.operating_region.as_ref()?;
     let rig = setup.rig().ok()?;
@@ -80,7 +80,7 @@ fn blocked_piston(setup: &Setup<'_>) -> Option<Caveat> {
     is_visible.then(|| Caveat::noted(UncountedEffect::BlockedPiston { force }))
 }
 
-/// Part of the largest force from which on it changes a plant.
+/// Fraction of the largest force above which the force changes a plant.
 const LEAST_FORCE: f64 = 1e-3;
 
 /// Declared effects that no linear model includes.
@@ -104,7 +104,7 @@ pub fn of_models(setup: &Setup<'_>) -> Vec<UncountedEffect> {
         .collect()
 }
 
-/// A progressive spring is that of the operating point.
+/// Caveat for a progressive spring, which is linearised at the operating point.
 fn progression(setup: &Setup<'_>) -> Option<Caveat> {
     if is_measured(setup.project) {
         return None;
@@ -116,14 +116,14 @@ fn progression(setup: &Setup<'_>) -> Option<Caveat> {
     Some(Caveat::noted(UncountedEffect::ProgressiveSpring { counted, at_rest: declared.stiffness, stiffest }))
 }
 
-/// The waves of a transmission beyond its segments.
+/// Caveat for the waves of a transmission beyond the resolution of its segments.
 fn segments(setup: &Setup<'_>) -> Option<Caveat> {
     let declared = setup.project.actuator.as_ref()?.series.as_ref()?.transmission()?;
     let right_to = waves_right_to(setup.rig().ok()?)?;
     Some(Caveat::noted(UncountedEffect::TransmissionSegments { segments: declared.segments, right_to }))
 }
 
-/// A linear model has fixed settings.
+/// Effect of an adjusted setting, since a linear model has fixed settings.
 fn fixed_setting(project: &Project) -> Option<UncountedEffect> {
     let adjusted: Vec<_> = project.actuator.as_ref()?.adjustments().into_iter().flatten().collect();
     let moves_gas = adjusted.iter().any(|one| one.valve().is_none());
@@ -141,14 +141,14 @@ fn beside_spring(project: &Project) -> Option<UncountedEffect> {
     }
 }
 
-/// Effects that no linear model includes, without those of the lines.
+/// Effects that no linear model includes, except those of the lines.
 fn apart_from_lines(setup: &Setup<'_>) -> impl Iterator<Item = Caveat> {
     let project = setup.project;
     let fed = [feed_forward(project), measured_without_pressures(project), impedance(setup)];
     [load(project), stages(project)].into_iter().chain(fed).flatten()
 }
 
-/// A telescopic piston is that of each operating point.
+/// Caveat for a telescopic piston, whose areas are those of each operating point.
 fn stages(project: &Project) -> Option<Caveat> {
     let declared = project.actuator.as_ref()?;
     if declared.motor.is_some() || declared.cylinder.stages.is_empty() {
@@ -161,7 +161,7 @@ fn stages(project: &Project) -> Option<Caveat> {
     Some(Caveat { effect: UncountedEffect::TelescopicStages { moves }, unproven: moves })
 }
 
-/// A wall without a stated mass of the load.
+/// Caveat for a wall without a stated mass of the load.
 fn load(project: &Project) -> Option<Caveat> {
     let load = &project.actuator.as_ref()?.load;
     matches!(load, Load::Wall { mass: None, .. })
@@ -174,7 +174,7 @@ fn lumped(project: &Project) -> Option<UncountedEffect> {
     Some(UncountedEffect::LinesInMotion { key, model })
 }
 
-/// The key that sets lines in motion, and its word.
+/// Key that declares waves in the lines, and its word.
 fn moving(project: &Project) -> Option<(&'static str, &'static str)> {
     let line = &project.actuator.as_ref()?.line;
     let [a, b] = [&line.a, &line.b].map(|line| &line.motion);
@@ -187,8 +187,8 @@ fn moving(project: &Project) -> Option<(&'static str, &'static str)> {
     Some((place, motion.model()))
 }
 
-/// The effect of a limited supply is included for small motions, but not for a large step; where
-/// more flow is taken than the pump delivers, there is no equilibrium about which to linearise.
+/// Caveat for a limited supply. Its effect is included for small motions, but not for a large step;
+/// if more flow is taken than the pump delivers, there is no equilibrium about which to linearise.
 fn supply(setup: &Setup<'_>) -> Option<Caveat> {
     let project = setup.project;
     let supply = &project.actuator.as_ref()?.supply;
@@ -202,8 +202,8 @@ fn supply(setup: &Setup<'_>) -> Option<Caveat> {
     Some(Caveat { effect, unproven: taken >= delivered })
 }
 
-/// The gas of accumulators is counted at the pressures of each operating point; where a force
-/// empties one of them, the actuator becomes as stiff as without it.
+/// Caveat for the gas of accumulators, which is counted at the pressures of each operating point;
+/// if a force empties one of them, the actuator becomes as stiff as without it.
 fn accumulator(setup: &Setup<'_>) -> Option<Caveat> {
     if is_measured(setup.project) {
         return None;
@@ -227,7 +227,7 @@ fn accumulator(setup: &Setup<'_>) -> Option<Caveat> {
     Some(Caveat::noted(UncountedEffect::Gas { key, shut_beyond, of_family }))
 }
 
-/// The loss at the ends of a neck has no slope where nothing flows.
+/// Caveat for the loss at the ends of a neck, which has zero slope at zero flow.
 fn neck(setup: &Setup<'_>) -> Option<Caveat> {
     if is_measured(setup.project) {
         return None;
@@ -238,7 +238,7 @@ fn neck(setup: &Setup<'_>) -> Option<Caveat> {
     loses.then_some(Caveat::noted(UncountedEffect::NeckLoss))
 }
 
-/// A verdict is for fixed settings.
+/// Caveat for an adjustment, since a verdict is for fixed settings.
 fn adjustment(setup: &Setup<'_>) -> Option<Caveat> {
     if is_measured(setup.project) {
         return None;
@@ -262,7 +262,8 @@ fn adjustment(setup: &Setup<'_>) -> Option<Caveat> {
 const SETTING_PATH: &str = "accumulator.adjustment.setting";
 const TRANSITION_PATH: &str = "accumulator.adjustment.transition_pressure";
 
-/// A valve between chamber and gas has no drop at rest, and there the slope of its transition.
+/// Caveat for a valve between chamber and gas, which has no drop at rest, and there the slope of
+/// its transition.
 fn gas_valve(setup: &Setup<'_>) -> Option<Caveat> {
     if is_measured(setup.project) {
         return None;
@@ -287,11 +288,12 @@ fn of_gas(project: &Project) -> Option<UncountedEffect> {
     (necks || heat || valve).then_some(UncountedEffect::GasOutsideModels { necks, heat })
 }
 
-/// Drops of an orifice in transition pressures below which its slope is that of the transition.
+/// Pressure drop of an orifice, in transition pressures, below which its slope is that of the
+/// transition.
 const IN_TRANSITION: f64 = 10.0;
 
-/// An orifice between the chambers has the slope of its transition where it has no drop: the larger
-/// an oscillation, the less it damps.
+/// Caveat for an orifice between the chambers, which has the slope of its transition if it has no
+/// drop: the larger an oscillation, the less it damps.
 fn cross_port(setup: &Setup<'_>) -> Option<Caveat> {
     let project = setup.project;
     if is_measured(project) {
@@ -325,7 +327,7 @@ fn constant_supply(project: &Project) -> Option<UncountedEffect> {
     matches!(supply.model, SupplyModel::PumpLimited(_)).then_some(UncountedEffect::ConstantSupply)
 }
 
-/// Whether the plants of the family are responses that were measured.
+/// True if the plants of the family are measured responses.
 fn is_measured(project: &Project) -> bool {
     project.family.as_ref().is_some_and(|family| !family.measured.is_empty())
 }

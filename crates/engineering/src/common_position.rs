@@ -1,22 +1,22 @@
-//! The position of the piston at which every plant of a family is taken.
+//! Common position of the piston in all plants of a family.
 
 use crate::quantity::Units;
 use crate::setup::Setup;
 
-/// A position in m, or in rad of a motor, that no plant of the family varies.
+/// A position that no plant of the family varies, m, or rad for a motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CommonPosition {
-    /// From the end of chamber A.
+    /// Position from the end of chamber A.
     pub position: f64,
-    /// The length of the stroke.
+    /// Length of the stroke.
     pub stroke: f64,
     /// Motion of the rig.
     pub units: Units,
 }
 
 impl CommonPosition {
-    /// `None` without a rig, of a motor that turns on, and where the family varies the position, or
-    /// the stiffness that depends on it, or the project states that stiffness.
+    /// `None` without a rig, for a motor of unlimited rotation, and if the family varies the
+    /// position, or the stiffness that depends on it, or the project states that stiffness.
     pub(crate) fn of(setup: &Setup<'_>) -> Option<CommonPosition> {
         let project = setup.project;
         let mut varied = project.uncertain_numbers().into_iter();

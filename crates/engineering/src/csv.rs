@@ -1,8 +1,9 @@
-//! Text with commas, for other programs: the one writer of it.
+//! Text with commas, for other programs: the only writer of this format.
 //!
-//! The crate `csv` (1.4) would not shorten it. It quotes a cell for what is in it, and these tables
-//! quote texts always, names and numbers never; its numbers have other digits, so that it would be
-//! handed texts. What it would do is what [`Csv::cell`] and [`Csv::end_row`] do.
+//! The crate `csv` (1.4) would not shorten it. It quotes a cell depending on its content, whereas
+//! these tables always quote texts, and never names and numbers; it prints numbers with other
+//! digits, so that it would need them as text. The rest of its work is done by [`Csv::cell`] and
+//! [`Csv::end_row`].
 
 use std::fmt::{Display, Write as _};
 
@@ -22,12 +23,12 @@ pub struct Csv {
 }
 
 impl Csv {
-    /// Below these headings, which are separated by commas.
+    /// Rows below these headings, which are separated by commas.
     pub fn new(headings: &str) -> Csv {
         Csv { text: format!("{headings}\n"), is_within_row: false }
     }
 
-    /// The text to which the next cell of the row is written.
+    /// Text to which the next cell of the row is written.
     pub fn cell(&mut self) -> &mut String {
         if std::mem::replace(&mut self.is_within_row, true) {
             self.text.push(',');
@@ -49,25 +50,25 @@ impl Csv {
         }
     }
 
-    /// A row.
+    /// Adds a row.
     pub fn row(&mut self, values: &[&dyn Display]) {
         self.cells(values);
         self.end_row();
     }
 
-    /// All of it so far.
+    /// Text of all rows so far.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// Removes all of it.
+    /// Removes all rows.
     pub fn clear(&mut self) {
         self.text.clear();
         self.is_within_row = false;
     }
 }
 
-/// A text that may have commas in it, as one cell.
+/// Cell with a text that may contain commas.
 pub fn quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('"', "\"\""))
 }

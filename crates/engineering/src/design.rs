@@ -68,9 +68,9 @@ use crate::source::Source;
 use crate::trial::{Agreement, DrivenCorners, Trial, tried};
 use phea_dynamics::watch::{Stopped, Watch, part, within};
 
-/// Name of the file with the project that a design makes.
+/// Name of the file with the designed project.
 pub const DESIGNED_PROJECT: &str = "designed.toml";
-/// Name of the file with the project under the nearest controller, where none suffices.
+/// Name of the file with the project under the nearest controller, if none suffices.
 pub const NEAREST_PROJECT: &str = "nearest.toml";
 
 /// Name of the file with the proof for the designed controller.
@@ -79,65 +79,65 @@ pub const DESIGNED_CERTIFICATE: &str = "designed_certificate.json";
 /// A design, and the given controller for comparison.
 #[derive(Clone, Debug)]
 pub struct ProjectDesign {
-    /// What was found.
+    /// Result of the design.
     pub design: Design,
-    /// How it was looked for.
+    /// Options of the search.
     pub options: DesignOptions,
-    /// What may be built: limits beyond the specifications.
+    /// Limits beyond the specifications that the controller must satisfy to be deployable.
     pub limits: Vec<DesignLimit>,
-    /// What the audit finds of those that are specifications of their own.
+    /// Findings of the audit for those that are separate specifications.
     pub limit_findings: Vec<LimitFinding>,
     /// Required delay in addition to that of the loop, s.
     pub minimum_delay_margin_s: f64,
-    /// Whether the designed loop tolerates it, regardless of the specifications.
+    /// True if the designed loop tolerates this delay, regardless of the specifications.
     pub tolerates_its_delay: bool,
-    /// The parts that the watch left unfinished; with any, it is the best design so far.
+    /// Parts that were left unfinished when `watch` cancelled; if there are any, the design is the
+    /// best so far.
     pub unfinished: Vec<DesignPart>,
     /// The designed controller with its audit.
     pub designed: AuditedController,
-    /// The controller that the project gives, with its audit; absent where it gives none.
+    /// The controller that the project gives, with its audit; absent if it gives none.
     pub published: Option<Box<AuditedController>>,
-    /// In a sampled loop: the design that was made for the continuous one, sampled and audited as
-    /// the loop is.
+    /// Design made for the continuous loop, sampled and audited as the loop is; `None` for a
+    /// continuous loop.
     pub continuous: Option<Box<AuditedController>>,
-    /// What no controller can achieve, and what will be hard, whatever the search found.
+    /// Specifications that no controller can meet, or that will be hard to meet, whatever the
+    /// search found.
     pub explanations: Vec<Explanation>,
-    /// The effect of the computer's converters on the designed loop; absent where nothing is
-    /// rounded.
+    /// Effect of the computer's converters on the designed loop; absent if nothing is rounded.
     pub rounding: Option<Rounding>,
-    /// The trial of the designed controller on the nonlinear model; absent without a machine, and
-    /// where the design was stopped.
+    /// Trial of the designed controller on the nonlinear model; absent without a machine, and if
+    /// the design was cancelled.
     pub trial: Option<Trial>,
-    /// What was done about a machine that contradicts the design; absent where none does, or where
-    /// this was not requested.
+    /// Repair for a machine that contradicts the design; absent if none contradicts it, or if no
+    /// repair was requested.
     pub repair: Option<Repair>,
-    /// The designed controller in the words of a controller's manual: before it was sampled and
+    /// The designed controller in the terms of a controller's manual: before it was sampled and
     /// rounded.
     pub manual: Result<ManualLaw, ManualGap>,
-    /// The unit of the measured quantity, under that of the command in a gain; absent for a plant
+    /// Unit of the measured quantity, below that of the command in a gain; absent for a plant
     /// without units.
     pub gain_per: Option<DisplayUnit>,
-    /// The structures that were tried, in turn.
+    /// Structures of the search, in order.
     pub structures: Vec<ReachedStructure>,
-    /// The largest command that the steps of the scenarios take; absent where nothing limits it,
-    /// or where it is not known.
+    /// Largest command in the steps of the scenarios; absent if nothing limits it, or if it is not
+    /// known.
     pub command_of_steps: Option<CommandOfSteps>,
-    /// The reason of its last search beyond its limits over frequency.
+    /// Reason for the last search beyond its limits over frequency.
     pub led_by: LedBy,
     /// The gain from relaxing each limit that binds.
     pub relaxations: Relaxations,
-    /// The pressure feedback that was found before the loop; absent where it is not free.
+    /// Pressure feedback that was found before the loop; absent if it is not free.
     pub pressure_feedback: Option<PressureFeedbackDesign>,
-    /// The designed controller as a project declares it.
+    /// The designed controller as declared in a project.
     pub declared_controller: project::DeclaredController,
-    /// The designed prefilter likewise; absent where none was designed.
+    /// The designed prefilter as declared in a project; absent if none was designed.
     pub declared_prefilter: Option<project::Prefilter>,
 }
 
 impl ProjectDesign {
-    /// A design by itself, without the given controller for comparison and without explanations.
-    /// `given` is the family in the loop of the project, and `asked` is the problem that was
-    /// solved.
+    /// A design without the given controller for comparison and without explanations. `given` is
+    /// the family in the loop of the project, and `asked` is the problem that was solved.
     ///
     /// # Errors
     /// [`DesignError`] for a controller or a sensor that is not a transfer function.
@@ -209,7 +209,7 @@ impl ProjectDesign {
         })
     }
 
-    /// The same design, judged by the limits of another problem than that which was searched.
+    /// The design, judged by the limits of a problem other than the one that was searched.
     fn judged_by(mut self, given: &RobustProblem, watch: Watch<'_>) -> Result<ProjectDesign, DesignError> {
         let problem = RobustProblem {
             has_prefilter: self.designed.problem.has_prefilter,
@@ -222,7 +222,7 @@ impl ProjectDesign {
         let (problem, audit, limit_findings) = split(&problem, &audit);
         let of_rig = caveat_of_rig(&problem, watch)?;
         let mut view = ProjectAudit::new(&problem, audit, of_rig);
-        // a design that is led by its steps is proven at its end
+        // the proof of a design led by its steps is made at the end
         if !problem.in_time.iter().any(|one| one.follows) {
             try_to_prove(&problem, &mut view, watch)?;
         }
@@ -231,7 +231,7 @@ impl ProjectDesign {
         Ok(ProjectDesign { designed, limit_findings, ..self })
     }
 
-    /// The same where nothing but the way to a required step was missed: the design is met.
+    /// The design with the status met, if it missed only the path to a required step.
     fn met_where_it_is(mut self, known: usize) -> ProjectDesign {
         if self.designed.view.audit.verdict == Verdict::Met && self.keeps_its_limits() {
             self.design.status = DesignStatus::Met;
@@ -243,15 +243,15 @@ impl ProjectDesign {
         self
     }
 
-    /// The limit with this number among the specifications of the search: one of the project's, or
-    /// a limit of the design.
+    /// Limit with this number among the specifications of the search: one of the project, or a
+    /// limit of the design.
     pub fn searched_limit(&self, specification: usize) -> SearchedLimit {
         let own = self.designed.problem.specifications.len();
         let limit = specification.checked_sub(own).and_then(|limit| self.limit_findings.get(limit));
         limit.map_or(SearchedLimit::Specification(specification), |(kind, _)| SearchedLimit::Design(*kind))
     }
 
-    /// The project with the designed laws in place of its own.
+    /// The project with the designed laws in place of those that it gives.
     pub fn deployed(&self, project: &Project) -> Project {
         Project {
             controller: Some(self.declared_controller.clone()),
@@ -260,29 +260,29 @@ impl ProjectDesign {
         }
     }
 
-    /// The SI unit of what is controlled; `None` for a plant without units.
+    /// SI unit of the controlled quantity; `None` for a plant without units.
     pub fn controlled_unit(&self) -> Option<&'static str> {
         self.gain_per.map(|_| self.designed.problem.units.motion.dimension(&FORCE).si)
     }
 
-    /// How the machine agrees with the linear loop, as far as it was simulated.
+    /// Agreement of the machine with the linear loop in the simulated runs.
     pub fn agreement(&self) -> Agreement {
         self.trial.as_ref().map_or(Agreement::Agrees, Trial::agreement)
     }
 
-    /// How far the worst run on the nonlinear rig is from what is required in time: at most 1 where
-    /// all reach it, 0 without a run.
+    /// Largest ratio of a reached property to the required one in the worst run on the nonlinear
+    /// rig: at most 1 if all requirements in time are met, 0 without a run.
     fn worst_run(&self) -> f64 {
         self.trial.as_ref().map_or(0.0, Trial::worst_run)
     }
 
-    /// The same with room for the plants between those that were driven.
+    /// Largest such ratio with room for the plants between the simulated ones.
     fn worst_run_with_room(&self) -> f64 {
         self.trial.as_ref().map_or(0.0, Trial::worst_run_with_room)
     }
 
-    /// The failure of the nonlinear rig to do what is required in time; `None` where it does that
-    /// with room for the plants between those that were driven, or nothing is required.
+    /// Requirement in time that the nonlinear rig misses; `None` if it meets all of them with room
+    /// for the plants between the simulated ones, or nothing is required.
     pub fn rig_miss(&self) -> Option<RigMiss> {
         let trial = self.trial.as_ref()?;
         match trial.lacks_room() {
@@ -291,13 +291,13 @@ impl ProjectDesign {
         }
     }
 
-    /// True where a run on the nonlinear rig misses what is required in time, or all satisfy it
-    /// with no room for the plants between those that were driven.
+    /// True if a run on the nonlinear rig misses a requirement in time, or if all satisfy it
+    /// without room for the plants between the simulated ones.
     pub fn misses_on_rig(&self) -> bool {
         self.rig_miss().is_some()
     }
 
-    /// Whether the designed controller satisfies every specification and keeps every limit.
+    /// True if the designed controller satisfies every specification and every limit.
     pub fn is_met(&self) -> bool {
         self.designed.view.verdict() == Verdict::Met
             && self.tolerates_its_delay
@@ -306,7 +306,7 @@ impl ProjectDesign {
             && self.keeps_its_limits()
     }
 
-    /// True where every limit is kept by which a design is judged.
+    /// True if every limit by which a design is judged is satisfied.
     fn keeps_its_limits(&self) -> bool {
         self.limit_findings.iter().all(|(kind, finding)| kind.is_led_to() || finding.verdict == Verdict::Met)
     }
@@ -315,7 +315,7 @@ impl ProjectDesign {
 /// Designs a controller and, if the machine contradicts it, continues with the contradicting plant.
 ///
 /// # Errors
-/// Those of [`design_project`].
+/// The errors of [`design_project`].
 pub fn design_and_repair(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -333,12 +333,12 @@ pub fn design_and_repair(
     Ok(told.with_pressure_feedback(Some(found)))
 }
 
-/// Designs a controller for the project, after the audit of the one that it gives.
+/// Designs a controller for the project, after the audit of the given one.
 ///
 /// # Errors
 /// [`DesignError`] for a project without a specification, a required step that no controller makes
-/// on the rig, a part that is not a transfer function, a family that cannot be built, or a watch
-/// that stops it before anything was found.
+/// on the rig, a part that is not a transfer function, a family that cannot be built, or a
+/// cancellation before anything was found.
 pub fn design_project(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -352,18 +352,18 @@ pub fn design_project(
     Ok(told.with_pressure_feedback(Some(found)))
 }
 
-/// The problem and its result.
+/// A problem and its result.
 struct DesignRun {
-    /// The limits that the search aims at.
+    /// Problem with the limits at which the search aims.
     aimed: RobustProblem,
     problem: DesignProblem,
     outcome: DesignOutcome,
-    /// The search in which the design was led by its steps; absent where it was not.
+    /// Search in which the design was led by its steps; absent if there was none.
     led: Option<LedSearch>,
 }
 
-/// The design with its problem: the project as it is given, and with the pressure feedback that is
-/// designed for.
+/// The design with its problem, for the project as given and with the pressure feedback for which
+/// it is designed.
 fn designed(
     source: &dyn Source,
     [as_given, setup]: [&Setup<'_>; 2],
@@ -407,7 +407,7 @@ fn designed(
         },
     );
     let (run, mut told, continuous) = found?;
-    // the audit of the given controller may have ended before the watch stopped the design
+    // the audit of the given controller may have ended before `watch` cancelled the design
     let published = match published {
         Err(DesignError::Stopped(_)) => {
             told.leave(DesignPart::GivenController);
@@ -420,7 +420,7 @@ fn designed(
     Ok((run, ProjectDesign { published, continuous, ..told }))
 }
 
-/// The controller that the project gives, with its audit; `None` where it gives none.
+/// The controller that the project gives, with its audit; `None` if it gives none.
 fn audited_as_given(
     setup: &Setup<'_>,
     given: &RobustProblem,
@@ -432,7 +432,7 @@ fn audited_as_given(
     Ok(Some(AuditedController::new(law.clone(), given.clone(), view)?))
 }
 
-/// The machine under the designed controller, as the project would declare it.
+/// The machine under the designed controller, as declared in a project.
 fn tried_design(
     source: &dyn Source,
     project: &Project,
@@ -444,9 +444,9 @@ fn tried_design(
     Ok(tried(source, &Setup::new(&deployed)?, of, DrivenCorners::Always, watch)?)
 }
 
-/// The effect of sampling and delay on a design that ignores them: its structure shaped for the
-/// continuous loop, from its controller, and audited in the sampled one. `None` where the loop is
-/// not sampled, or no such design is found.
+/// Effect of sampling and delay on a design that ignores them: its structure shaped for the
+/// continuous loop, starting from its controller, and audited in the sampled one. `None` if the
+/// loop is not sampled, or no such design is found.
 fn continuous_as_sampled(
     (source, setup): (&dyn Source, &Setup<'_>),
     sampled: &DesignProblem,
@@ -463,14 +463,14 @@ fn continuous_as_sampled(
         inner_feedback: timing.inner_feedback,
         ..Timing::default()
     };
-    // a sampled loop closes the feedback of the pressures itself
+    // a sampled loop closes the pressure feedback itself
     let family = match timing.inner_feedback.is_zero() {
         true => sampled.family.clone(),
         false => damping::family_at_once(source, setup.project)?,
     };
     let problem = DesignProblem { timing: at_once, family, ..sampled.clone() };
     let stage = "designing without samples";
-    // the same structure, so that the samples are all that differs
+    // the structure is unchanged, so that only sampling makes the difference
     let law = reshaped(&problem, &told.options, &told.design, &mut part(&mut *watch, stage, [0.0, 1.0]))?;
     let Some(law) = law else { return Ok(None) };
     let controller = Controller { timing, ..law };

@@ -5,19 +5,19 @@ use phea_dynamics::portable::{exp, ln, pow};
 /// Standard normal quantile of 97.5 %: half width of a 95 % interval, in standard deviations.
 pub const NORMAL_95: f64 = 1.959_963_984_540_054;
 
-/// An estimate with its 95 % confidence interval. SI.
+/// An estimate with its 95 % confidence interval, in SI units.
 ///
 /// A number that recordings do not determine is an `Err` or a `None` in place of an estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// The most likely value.
+    /// Most likely value.
     pub value: f64,
-    /// Bounds of the interval; infinite where nothing limits it.
+    /// Bounds of the interval; infinite if nothing limits it.
     pub interval: [f64; 2],
 }
 
 impl Estimate {
-    /// From a value and its standard deviation; unbounded where that is not finite.
+    /// Estimate from a value and its standard deviation; unbounded if that is not finite.
     pub(crate) fn of(value: f64, deviation: f64) -> Estimate {
         let half = NORMAL_95 * deviation;
         let bounded = [value - half, value + half];
@@ -25,13 +25,13 @@ impl Estimate {
         Estimate { value, interval }
     }
 
-    /// From the logarithm of a positive number and its standard deviation.
+    /// Estimate from the logarithm of a positive number and its standard deviation.
     pub(crate) fn of_logarithm(logarithm: f64, deviation: f64) -> Estimate {
         let edge = NORMAL_95 * deviation;
         Estimate { value: exp(logarithm), interval: [exp(logarithm - edge), exp(logarithm + edge)] }
     }
 
-    /// The interval, where both bounds are finite.
+    /// Interval, if both bounds are finite.
     pub fn bounds(&self) -> Option<[f64; 2]> {
         self.interval.iter().all(|bound| bound.is_finite()).then_some(self.interval)
     }
@@ -71,7 +71,7 @@ impl Estimate {
         Estimate::of(value, value.abs() * (first * first + second * second).sqrt())
     }
 
-    /// An exact number over a positive estimate.
+    /// Quotient of an exact number and a positive estimate.
     pub(crate) fn under(&self, number: f64) -> Estimate {
         let [low, high] = self.interval;
         Estimate { value: number / self.value, interval: [number / high, number / low] }

@@ -1,4 +1,4 @@
-//! From a project to the family of plants that robust design works on.
+//! The family of plants for robust design, from a project.
 
 mod formula;
 mod gain_slopes;
@@ -37,17 +37,17 @@ pub use visited_box::{Extreme, VisitedRange, visited_box};
 /// Reason why a project has no uncertain plant.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ProjectFamilyError {
-    /// The rig cannot be computed with.
+    /// The rig cannot be computed.
     #[error(transparent)]
     Rig(#[from] RigError),
-    /// A parameter of the linear model that is stated directly, outside its own range.
+    /// A parameter of the linear model is stated directly, outside its range.
     #[error(
         "`linear.{name}` = {value:e} lies outside of its range in [uncertainty], {minimum:e} to {maximum:e}: widen the range, or take the number out of [linear]"
     )]
     Linear {
-        /// The parameter.
+        /// Name of the parameter.
         name: String,
-        /// What `[linear]` says, SI.
+        /// Value in `[linear]`, SI.
         value: f64,
         /// Lower end of the range, SI.
         minimum: f64,
@@ -60,21 +60,21 @@ pub enum ProjectFamilyError {
     /// The members are not plants of the box.
     #[error("[uncertainty]: {0}")]
     Members(#[from] phea_qft::family::FamilyError),
-    /// A dead time that is negative, or not a number, at a member.
+    /// The dead time of a member is negative, or not a number.
     #[error("[plant] `delay` is {delay_s} s at {member}")]
     Delay {
-        /// What the formula gives, s.
+        /// Value of the formula, s.
         delay_s: f64,
         /// The member's parameters with their values.
         member: String,
     },
-    /// Files of measured responses that cannot be read, with every place.
+    /// Files of measured responses cannot be read, with every place.
     #[error("[family] `measured` cannot be taken as it is\n{0}")]
     Measurement(Box<Refusal>),
-    /// Measured responses that do not form a family.
+    /// Measured responses do not form a family.
     #[error("[family] `measured`: {0}")]
     Measured(#[from] MeasurementError),
-    /// A member without polynomials and with a coefficient that supplies energy: the number of its
+    /// A member has no polynomials but a coefficient that supplies energy: the number of its
     /// unstable poles is not known.
     #[error(
         "with lines in motion, or a load velocity fed forward late, every coefficient of friction, leakage, valve and load must be zero or \
@@ -84,31 +84,31 @@ pub enum ProjectFamilyError {
         /// The member's parameters with their values.
         member: String,
     },
-    /// A line of a member that its model does not fit.
+    /// The model of a line does not fit a member.
     #[error("[line] model: {error}, at {member}")]
     Line {
-        /// What is wrong.
+        /// Fault of the line.
         error: LineError,
         /// The member's parameters with their values.
         member: String,
     },
-    /// A limit on load motion for a measured plant without that path.
+    /// Load motion is limited, but a measured plant does not contain that path.
     #[error("\"load_motion\" needs the columns `load_motion_...`, which {0} lacks")]
     LoadMotion(String),
     /// The text of the plant is not a ratio of polynomials.
     #[error("[plant]: {message}", message = .0.message)]
     Formula(FormulaError),
-    /// No operating point at a plant of the box, or none that is known to be that of the rig.
+    /// A plant of the box has no operating point, or none that is known to be that of the rig.
     #[error("no operating point at {member}: {reason}")]
     OperatingPoint {
-        /// The parameters that determine it, with their values.
+        /// Parameters that determine it, with their values.
         member: String,
-        /// The names of these parameters.
+        /// Names of these parameters.
         numbers: Vec<String>,
         /// Reason why it does not exist.
         reason: NoOperatingPoint,
     },
-    /// A region that the flow of the pump does not reach.
+    /// The flow of the pump does not reach the whole region.
     #[error(
         "[family.operating_region] `velocity`: the pump gives {least} to {most}, and the nominal velocity is {nominal}"
     )]
@@ -120,23 +120,23 @@ pub enum ProjectFamilyError {
         /// Nominal velocity, with its unit.
         nominal: String,
     },
-    /// An uncertain number without a formula that relates it to the linear model.
+    /// No formula relates an uncertain number to the linear model.
     #[error("[uncertainty] `{path}`: {reason}")]
     Path {
-        /// The path.
+        /// Path of the number.
         path: String,
         /// Reason why it does not affect the linear model.
         reason: NoEffect,
     },
 }
 
-/// The reason why a plant of the box has no operating point.
+/// Reason why a plant of the box has no operating point.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NoOperatingPoint {
-    /// Its components do not make an actuator.
+    /// The components do not make an actuator.
     #[error(transparent)]
     Actuator(#[from] ActuatorError),
-    /// Nothing balances its pressures.
+    /// No pressures balance.
     #[error("{0}")]
     Unbalanced(OfMotion<OperatingPointError>),
     /// The recorded pressures are not those that balance.
@@ -151,36 +151,36 @@ pub enum NoOperatingPoint {
     },
 }
 
-/// The reason why an uncertain number does not affect the linear model.
+/// Reason why an uncertain number does not affect the linear model.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoEffect {
-    /// The project states a parameter of the linear model that would follow from it.
+    /// The project states a parameter of the linear model that would follow from the number.
     #[error("what the project states goes before what would follow from it")]
     StatedInstead,
-    /// Effect only on the waves in the lines, which are those of the declared oil.
+    /// The number affects only the waves in the lines, which are those of the declared oil.
     #[error(
         "it does not enter the linear model but through the waves in the lines, which are those of the declared oil: verify other oils one by one, `--set {path}=...`"
     )]
     OnlyInWaves {
-        /// The path of the number.
+        /// Path of the number.
         path: String,
     },
-    /// No equation of the linear model contains it.
+    /// No equation of the linear model contains the number.
     #[error("it does not enter the linear model")]
     NotInModel,
 }
 
-/// The family of a project: the linear model of its actuator, or the transfer function it states,
-/// over the box of `[uncertainty]`; or the plants that were measured. Where lines move its plants
-/// have no polynomials.
+/// Family of a project: the linear model of its actuator, or the transfer function that it states,
+/// over the box of `[uncertainty]`; or the measured plants. Plants with waves in their lines have
+/// no polynomials.
 ///
 /// `[family]` states which plants of the box are examined: its `grid`, its `vertices`, points at
-/// `random`, explicit `cases`, or several of them together; the grid where it states nothing. If
-/// only `cases` are given, nothing between them belongs to the family.
+/// `random`, explicit `cases`, or several of them together; the grid if it states nothing. If only
+/// `cases` are given, nothing between them belongs to the family.
 ///
 /// # Errors
 /// [`ProjectFamilyError`] if there is no rig, an uncertain name is not a parameter of the plant, or
-/// a member lies outside the box.
+/// a member is outside the box.
 ///
 /// # Example
 /// ```
@@ -213,7 +213,7 @@ pub fn family(setup: &Setup<'_>, source: &dyn Source) -> Result<Family, ProjectF
     Ok(family)
 }
 
-/// A limit on load motion needs a path from it.
+/// Checks that the plant has a path from load motion if one is limited.
 fn check_second_path(project: &Project, family: &Family) -> Result<(), ProjectFamilyError> {
     let wanted = project.specifications.iter().any(|one| one.closed_loop() == Some(ClosedLoop::LoadMotion));
     match family {
@@ -225,7 +225,7 @@ fn check_second_path(project: &Project, family: &Family) -> Result<(), ProjectFa
     }
 }
 
-/// The plant over the box of its uncertain parameters.
+/// Plant over the box of its uncertain parameters.
 fn uncertain_plant(setup: &Setup<'_>) -> Result<UncertainPlant, ProjectFamilyError> {
     let project = setup.project;
     let parameters = null_sides::parameters(setup)?;

@@ -1,4 +1,4 @@
-//! The way of a command under the noise of its record: what the memories of a spool follow.
+//! Path of a command without the noise of its record, which the memories of a spool follow.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -9,21 +9,21 @@ use phea_dynamics::order::median;
 const FOURTH_DIFFERENCE: [f64; 5] = [1.0, -4.0, 6.0, -4.0, 1.0];
 const SUM_OF_SQUARES: f64 = 70.0;
 
-/// Median magnitude of normal numbers over their deviation, inverted.
+/// Inverse ratio of the median magnitude of normal numbers to their standard deviation.
 const OF_MEDIAN: f64 = 1.4826;
 
-/// Roughness over the greatest command that the digits of its numbers have.
+/// Ratio of roughness to the greatest command that follows from the digits of its numbers.
 const OF_DIGITS: f64 = 1e-7;
 
-/// Deviations of the noise by which a command has to go back to have turned: the difference of two
-/// extremes of a hundred thousand rows of noise reaches nine.
+/// Number of standard deviations of the noise by which a command has to move back to have turned:
+/// the difference of two extremes of a hundred thousand rows of noise reaches nine.
 const TURNED: f64 = 10.0;
 
-/// Rows from which it is told where a command turns.
+/// Fewest rows from which a turning point is identified.
 const FEWEST_TO_TURN: usize = 12;
 
-/// Deviation of what differs from row to row in a record of a slow signal, in its unit: noise, and
-/// rounding.
+/// Standard deviation of the differences from row to row in a record of a slow signal, in its unit:
+/// noise, and rounding.
 ///
 /// ```text
 /// sigma = 1.4826 median |U_i - 4 U_(i+1) + 6 U_(i+2) - 4 U_(i+3) + U_(i+4)| / sqrt(70)
@@ -40,12 +40,12 @@ pub(crate) fn roughness(command: &[f64]) -> f64 {
     if found > OF_DIGITS * greatest { found } else { 0.0 }
 }
 
-/// A recorded command without its noise: between two points where it turns, a sequence near to the
-/// record that goes one way and not beyond where it turns.
+/// A recorded command without its noise: between two turning points, a monotonic sequence near the
+/// record that does not go beyond the turning points.
 ///
-/// The way that noise goes back and forth is not in it. A memory that follows the record itself has
-/// moved by many times the width of its hysteresis when the command has moved by one: noise of 2 mV
-/// rms made a hysteresis of 0.128 V seem 0.247 V wide. Without noise it is the record.
+/// Back-and-forth motion by noise is not in it. A memory that follows the record itself has moved
+/// by many times the width of its hysteresis when the command has moved by one: noise of 2 mV rms
+/// made a hysteresis of 0.128 V seem 0.247 V wide. Without noise, the result is the record.
 pub(crate) fn followed(command: &[f64], roughness: f64) -> Vec<f64> {
     let mut found = Vec::with_capacity(command.len());
     let pieces = pieces(command, TURNED * roughness);
@@ -55,7 +55,7 @@ pub(crate) fn followed(command: &[f64], roughness: f64) -> Vec<f64> {
         let rising: Vec<f64> = rows.iter().map(|value| way * value).collect();
         found.extend(nearest_rising(&rising, TURNED * roughness).into_iter().map(|value| way * value));
     }
-    // what never goes back is no noise, but rounding at most
+    // a command that never reverses has no noise, but rounding at most
     let goes_back = found.as_slice() != command;
     for pair in pieces.windows(2).filter(|_| goes_back) {
         let [before, after] = pair else { continue };
@@ -65,11 +65,11 @@ pub(crate) fn followed(command: &[f64], roughness: f64) -> Vec<f64> {
     found
 }
 
-/// Ends the way at where the command turns, as the rows around it tell: the greatest of them is
-/// beyond it by the most of their noise.
+/// Ends the path at the turning point of the command, estimated from the rows around it: the
+/// greatest of them is beyond it by the largest noise among them.
 ///
 /// The rows within the threshold of turning are fitted by a parabola and by two straight lines that
-/// meet; the better of both says where the command turned.
+/// meet; the better of both gives the turning point.
 fn turn(
     found: &mut [f64],
     command: &[f64],
@@ -90,7 +90,7 @@ fn turn(
     }
 }
 
-/// The value at which neighbouring rows turn, near one of them; `None` of too few.
+/// Value at which neighbouring rows turn, near one of them; `None` if there are too few.
 fn turning_value(values: &[f64], near: usize) -> Option<f64> {
     if values.len() < FEWEST_TO_TURN {
         return None;
@@ -129,21 +129,21 @@ fn fitted(values: &[f64], third: impl Fn(usize) -> f64) -> Option<TurnFit> {
     shares.iter().all(|share| share.is_finite()).then_some(TurnFit { shares, squares })
 }
 
-/// Rows that go one way.
+/// Rows that move in one direction.
 struct Piece {
     rows: std::ops::Range<usize>,
     rises: bool,
 }
 
 impl Piece {
-    /// 1 where it rises, -1 where it falls.
+    /// Direction: 1 if the rows rise, -1 if they fall.
     fn way(&self) -> f64 {
         if self.rises { 1.0 } else { -1.0 }
     }
 }
 
 /// The command in pieces from one turning point to the next, each of which begins after its turning
-/// point; it has turned where it went back by more than a threshold.
+/// point; a command has turned when it has moved back by more than a threshold.
 fn pieces(command: &[f64], threshold: f64) -> Vec<Piece> {
     let mut pieces = Vec::new();
     let mut from = 0;
@@ -151,7 +151,8 @@ fn pieces(command: &[f64], threshold: f64) -> Vec<Piece> {
     // the rows of the lowest and of the highest value since the last turning point
     let [mut lowest, mut highest] = [(0, f64::INFINITY), (0, f64::NEG_INFINITY)];
     for (row, value) in command.iter().copied().enumerate() {
-        // of equal values the last one while it goes on, so that rest belongs to the way before it
+        // of equal values the last one while the direction is unchanged, so that rest belongs to
+        // the path before it
         if value <= lowest.1 {
             lowest = (row, value);
         }
@@ -176,9 +177,9 @@ fn pieces(command: &[f64], threshold: f64) -> Vec<Piece> {
     pieces
 }
 
-/// A sequence that never falls near to this one: neighbours that fall are pooled to their mean
+/// Monotonically rising sequence nearest to this one: neighbours that fall are pooled to their mean
 /// (Ayer, Brunk, Ewing, Reid and Silverman 1955), and straight lines join the middles of the pools,
-/// but for those that lie further apart than a step.
+/// except for those that are further apart than a step.
 fn nearest_rising(values: &[f64], step: f64) -> Vec<f64> {
     let mut pools: Vec<(f64, usize)> = Vec::with_capacity(values.len());
     for value in values {
@@ -191,7 +192,7 @@ fn nearest_rising(values: &[f64], step: f64) -> Vec<f64> {
         pools.push(last);
     }
     let mut found = Vec::with_capacity(values.len());
-    // twice the row of the middle of the pool before, and its mean
+    // twice the row of the middle of the preceding pool, and its mean
     let mut before: Option<(usize, f64)> = None;
     let mut begun = 0;
     for (mean, count) in pools {
@@ -234,7 +235,7 @@ mod tests {
         command.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum()
     }
 
-    /// Without noise it is the record, to the bit.
+    /// The result is the record, to the bit, in the absence of noise.
     #[test]
     fn a_clean_command_is_left_as_it_is() {
         let clean = path(8000);
@@ -242,8 +243,8 @@ mod tests {
         assert_eq!(followed(&clean, 0.0), clean);
     }
 
-    /// The way is that of the clean command to within what the noise adds at each of four turning
-    /// points; that of the record is ten times as long.
+    /// The path has the length of the clean command to within the noise at each of four turning
+    /// points; the path of the record is ten times as long.
     #[test]
     fn noise_adds_no_way() {
         let clean = path(40_000);
@@ -260,8 +261,8 @@ mod tests {
         assert!((errors / clean.len() as f64).sqrt() < 0.7 * noise);
     }
 
-    /// Where a sine and a triangle turn is found to a fraction of the noise; the greatest row lies
-    /// beyond it by up to three times the noise.
+    /// The turning points of a sine and a triangle are found to a fraction of the noise; the
+    /// greatest row is beyond them by up to three times the noise.
     #[test]
     fn the_way_ends_where_the_command_turns() {
         let noise = 0.002;
@@ -284,7 +285,7 @@ mod tests {
         }
     }
 
-    /// Steps and rests of a staircase stay where they are.
+    /// Steps and rests of a staircase remain in place.
     #[test]
     fn a_staircase_keeps_its_steps() {
         let stairs: Vec<f64> = (0..4000).map(|row| (row / 200) as f64 * 0.5).collect();

@@ -1,15 +1,15 @@
-//! The friction of a cylinder from recorded runs.
+//! Identification of a cylinder's friction from recorded runs.
 //!
 //! ```text
-//! files -> FrictionRecording -> constant velocities | pressed rows | shaken rows -> first guess -> least squares over all of them -> coefficients, intervals, what is open
+//! files -> FrictionRecording -> constant velocities | pressed rows | shaken rows -> initial estimate -> least squares over all of them -> coefficients, intervals, open ones
 //! ```
 //!
-//! The model is [`LuGre`]: while the piston slides at a constant velocity, its equation has a
-//! solution in closed form, and the force is explained for the recorded velocity; while it is
+//! The model is [`LuGre`]. While the piston slides at a constant velocity, its equation has a
+//! solution in closed form, and the force is explained for the recorded velocity. While it is
 //! pressed or shaken and has not broken away, the mass on its bristles is simulated, and the
-//! position is explained for the recorded force, whose noise is explained with it: a force that
-//! presses is straight between knots, one that shakes is a sum of sines. One set of coefficients
-//! explains all.
+//! position is explained for the recorded force, whose noise is estimated with it: a pressing force
+//! is linear between knots, a shaking force is a sum of sines. One set of coefficients explains
+//! all.
 
 mod directions;
 mod estimates;
@@ -57,84 +57,85 @@ pub const FRICTION_NAMES: [(&str, &str); BOTH_WAYS] = [
     ("bristle_damping", "N.s/m"),
 ];
 
-/// Coefficients of a friction that is the same both ways.
+/// Number of coefficients of a friction that is equal in both directions.
 const BOTH_WAYS: usize = 7;
 
 /// Names of the levels of retracting as `[cylinder.friction.retracting]` has them, and their units.
 pub const RETRACTING_NAMES: [(&str, &str); FRICTION_COEFFICIENTS - BOTH_WAYS] =
     [("coulomb", "N"), ("static", "N"), ("viscous", "N.s/m")];
 
-/// The friction that explains the recordings best.
+/// Friction that explains the recordings best.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrictionIdentification {
     /// Recorded runs.
     pub recordings: Vec<FrictionRecording>,
-    /// Rows that slide at a constant velocity, in the order of the recordings.
+    /// Rows of sliding at a constant velocity, in the order of the recordings.
     pub slides: Vec<ConstantVelocity>,
-    /// Rows that slide at a velocity that is constant on average only: left out.
+    /// Rows of sliding at a velocity that is constant only on average: omitted.
     pub varying: Vec<VaryingVelocity>,
-    /// Rows that are pressed and do not slide.
+    /// Rows of pressing without sliding.
     pub presses: Vec<PressedRows>,
-    /// Rows that are shaken.
+    /// Rows of shaking.
     pub shakes: Vec<ShakenRows>,
-    /// Each coefficient, in the order of [`FRICTION_NAMES`]; where friction differs by direction,
-    /// those of extending.
+    /// Estimate of each coefficient, in the order of [`FRICTION_NAMES`]; if friction differs by
+    /// direction, those of extending.
     pub estimates: [Result<Estimate, OpenCoefficient>; BOTH_WAYS],
-    /// Levels of retracting, in the order of [`RETRACTING_NAMES`]; `None` where friction is the
-    /// same both ways.
+    /// Levels of retracting, in the order of [`RETRACTING_NAMES`]; `None` if friction is equal in
+    /// both directions.
     pub retracting: Option<[Result<Estimate, OpenCoefficient>; FRICTION_COEFFICIENTS - BOTH_WAYS]>,
-    /// Comparison of one friction with one for each direction; `None` where nothing slides in one.
+    /// Comparison of one friction for both directions with one for each; `None` if there is no
+    /// sliding in one of them.
     pub evidence: Option<DirectionEvidence>,
-    /// The friction of the minimum, with numbers for what is open.
+    /// Friction at the minimum, with values for the open coefficients.
     pub lugre: LuGre,
-    /// N, that the instruments show without friction; `None` where the recordings go one way, and
-    /// where friction differs by direction.
+    /// Zero error of the force, N; `None` if the recordings move in only one direction, and if
+    /// friction differs by direction.
     pub zero: Option<Estimate>,
-    /// N, root mean square of what is left of the force, each block as one row; and m of the
-    /// position of what was pressed.
+    /// Root mean square of the residual force, N, each block as one row; and of the residual
+    /// position of the presses, m.
     pub residual_rms: [Option<f64>; 2],
     /// Misfits that are not noise, the greatest first.
     pub misfits: Vec<FrictionMisfit>,
-    /// Fraction of the residuals that are independent, the least of all signals.
+    /// Fraction of independent residuals, the least of all signals.
     pub independent: f64,
-    /// kg.
+    /// Moving mass, kg.
     pub moving_mass: f64,
     /// Ending of the search.
     pub ending: Ending,
-    /// For each press, the force at its knots in N, and where the position began in m.
+    /// Force at the knots of each press, N, and initial position, m.
     pressed: Vec<(Vec<f64>, f64)>,
-    /// For each shake, what is explained of force and position.
+    /// Explained force and position of each shake.
     shaken: Vec<PressedCurve>,
 }
 
 impl FrictionIdentification {
-    /// True where no further step explains more.
+    /// True if no further step explains more.
     pub fn has_converged(&self) -> bool {
         self.ending == Ending::Converged
     }
 }
 
-/// Rounds in which the scale of each signal is computed from its residuals.
+/// Number of rounds in which the scale of each signal is computed from its residuals.
 const ROUNDS: usize = 3;
 
 /// Relative decrease of the sum at which an intermediate search ends.
 const ROUGH: f64 = 1e-4;
 
-/// Relative decrease at which the last search ends: a thousandth of what one standard deviation
-/// changes.
+/// Relative decrease at which the last search ends: a thousandth of the change by one standard
+/// deviation.
 const FINE: f64 = 1e-7;
 
-/// Searches to that end at most, each from the minimum of the one before.
+/// Largest number of searches to that end, each from the minimum of the one before.
 const FINE_SEARCHES: usize = 3;
 
 /// Relative change of the scales below which no further round is made.
 const SAME_SCALE: f64 = 1e-2;
 
-/// Finds the friction that explains all recordings at once.
+/// Identifies the friction that explains all recordings at once.
 ///
 /// # Errors
-/// [`IdentifyError`] where nothing in the recordings is of a constant velocity and nothing is
-/// pressed from rest, and when it is stopped.
+/// [`IdentifyError`] if the recordings contain neither a constant velocity nor pressing from rest,
+/// and after cancellation.
 pub fn identify_friction(
     recordings: Vec<FrictionRecording>,
     known: &KnownCylinder,
@@ -185,15 +186,15 @@ pub fn identify_friction(
     })
 }
 
-/// A model, and where its search ends.
+/// A model and the end of its search.
 struct SearchedFriction<'a> {
     problem: FrictionProblem<'a>,
     minimum: Minimum,
 }
 
 impl<'a> SearchedFriction<'a> {
-    /// The model that the recordings support, from further curves for one friction, and from one
-    /// with levels of each direction.
+    /// Model that the recordings support, from further curves for one friction, and from one with
+    /// levels for each direction.
     fn by_evidence(
         problem: FrictionProblem<'a>,
         (others, by_direction): (&[(Stribeck, f64)], Option<Stribeck>),
@@ -229,7 +230,7 @@ impl<'a> SearchedFriction<'a> {
         SearchedFriction::refined(problem, minimum, kept, watch)
     }
 
-    /// Levels of each direction, from a curve that has both.
+    /// Levels for each direction, from a curve that has both.
     fn by_direction(
         problem: FrictionProblem<'a>,
         curve: Stribeck,
@@ -240,7 +241,7 @@ impl<'a> SearchedFriction<'a> {
         SearchedFriction::refined(problem, minimum, kept, watch)
     }
 
-    /// With the scale of each signal from its residuals.
+    /// The search with the scale of each signal from its residuals.
     fn refined(
         mut problem: FrictionProblem<'a>,
         mut minimum: Minimum,
@@ -264,7 +265,7 @@ impl<'a> SearchedFriction<'a> {
     }
 }
 
-/// Runs that were left out because their velocity is constant on average only.
+/// Runs that were omitted because their velocity is constant only on average.
 fn unsteady(recordings: &[FrictionRecording], varying: &[VaryingVelocity]) -> Vec<UnsteadyRun> {
     let of = |one: &VaryingVelocity| UnsteadyRun {
         file: recordings.get(one.recording).map_or(String::new(), |recording| recording.file.clone()),
@@ -274,7 +275,7 @@ fn unsteady(recordings: &[FrictionRecording], varying: &[VaryingVelocity]) -> Ve
     varying.iter().map(of).collect()
 }
 
-/// True where friction acts both ways, so that it differs from a force that is always there.
+/// True if friction acts in both directions, so that it differs from a constant force.
 fn goes_both_ways(slides: &[ConstantVelocity], presses: &[PressedRows]) -> bool {
     let broken = presses.iter().filter(|press| press.breaks_away).map(PressedRows::way);
     let ways: Vec<f64> = slides.iter().map(|slide| slide.velocity).chain(broken).collect();

@@ -1,7 +1,7 @@
-//! The coefficients of a servovalve from recorded static tests.
+//! Identification of a servovalve's coefficients from recorded static tests.
 //!
 //! ```text
-//! files -> Recording -> first guess (thesis, section 5.2) -> least squares over all signals at once -> intervals, what the data do not determine
+//! files -> Recording -> initial estimate (thesis, section 5.2) -> least squares over all signals at once -> intervals, undetermined combinations
 //! ```
 //!
 //! The model is [`phea_hydraulics::servovalve::TestedValve`]; all signals of all files are
@@ -77,28 +77,29 @@ pub const COEFFICIENT_NAMES: [(&str, &str); STATIC_COEFFICIENTS] = [
 /// Facts that are known in addition to the files.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Known {
-    /// V, command of full opening.
+    /// Command of full opening, V.
     pub nominal_voltage: f64,
-    /// s, by which the spool follows a steady ramp late; 0 where its dynamics are not known.
+    /// Delay with which the spool follows a steady ramp, s; 0 if its dynamics are not known.
     pub spool_delay: f64,
-    /// Pa, drop below which an edge's flow is laminar.
+    /// Pressure drop below which the flow of an edge is laminar, Pa.
     pub transition_pressure: f64,
-    /// Pa, used if a file has no column for it.
+    /// Supply pressure, used if a file has no column for it, Pa.
     pub supply_pressure: Option<f64>,
-    /// Pa, used if a file has no column for it.
+    /// Tank pressure, used if a file has no column for it, Pa.
     pub tank_pressure: f64,
-    /// Pa, drop at which the tare flow is to be stated; absent: that of the files.
+    /// Pressure drop at which the tare flow is reported, Pa; absent: that of the files.
     pub tare_pressure: Option<f64>,
-    /// Model of the leakage where the recordings do not decide.
+    /// Model of the leakage if the recordings do not decide.
     pub leakage_model: LeakageModel,
-    /// The change of the oil with its temperature.
+    /// Variation of the oil with its temperature.
     pub oil: OilLaw,
-    /// degC, that the coefficients are to be stated at; absent: the mean of the files.
+    /// Oil temperature for which the coefficients are reported, degC; absent: the mean of the
+    /// files.
     pub oil_reference: Option<f64>,
-    /// Rated flow in m3/s and its drop in Pa, where a data sheet states them.
+    /// Rated flow, m3/s, and its pressure drop, Pa, if a data sheet states them.
     pub rated_flow: Option<[f64; 2]>,
-    /// m³/(s·√Pa), of both edges in series that a positive and a negative command open, where the
-    /// valve is declared.
+    /// Coefficients of both edges in series that a positive and a negative command open,
+    /// m³/(s·√Pa), if the valve is declared.
     pub path_coefficients: Option<[f64; 2]>,
 }
 
@@ -121,7 +122,7 @@ impl Default for Known {
 }
 
 impl Known {
-    /// Facts that a project states of its valve and of its supply; the defaults where it has no
+    /// Facts that a project states about its valve and its supply; the defaults if it has no
     /// actuator.
     pub fn of(project: &Project) -> Known {
         let temperature = project.identify.as_ref().map(|one| one.oil_temperature).unwrap_or_default();
@@ -159,20 +160,20 @@ fn path_coefficients(flow: &ValveCoefficients<RatedFlow>) -> [f64; 2] {
     }
 }
 
-/// Difference of the criterion that no further search makes up for.
+/// Difference of the criterion that no further search can offset.
 const FAR: f64 = 1000.0;
 
 /// Extent of the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Search {
-    /// Number of starting points, including the first guess.
+    /// Number of starting points, including the initial estimate.
     pub starts: usize,
-    /// Seed of the others, and of the bootstrap.
+    /// Seed of the other starting points, and of the bootstrap.
     pub seed: u32,
-    /// The model of the leakage whose coefficients are wanted; absent: the one that the recordings
+    /// Model of the leakage whose coefficients are requested; absent: the one that the recordings
     /// support.
     pub leakage_model: Option<LeakageModel>,
-    /// Repetitions of the bootstrap; zero makes none.
+    /// Number of bootstrap repetitions; zero disables it.
     pub bootstrap: usize,
 }
 
@@ -182,64 +183,65 @@ impl Default for Search {
     }
 }
 
-/// The valve that explains the files best.
+/// Valve that explains the files best.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identification {
     /// Recorded tests.
     pub recordings: Vec<Recording>,
-    /// Its coefficients.
+    /// Coefficients of the valve.
     pub coefficients: StaticCoefficients,
-    /// Each of them with its linearised interval; `None` where the data do not determine it.
+    /// Estimate of each coefficient with its linearised interval; `None` if the data do not
+    /// determine it.
     pub estimates: [Option<Estimate>; STATIC_COEFFICIENTS],
-    /// Standard deviation of each, in its own unit; infinite where nothing depends on it.
+    /// Standard deviation of each coefficient, in its unit; infinite if nothing depends on it.
     pub deviations: [f64; STATIC_COEFFICIENTS],
     /// Intervals by the bootstrap, if requested.
     pub bootstrap: Option<Bootstrap>,
-    /// Correlation of each pair, row by row.
+    /// Correlations of all pairs, row by row.
     pub correlations: Vec<f64>,
     /// Combinations that the data do not determine, the least known first.
     pub not_identifiable: Vec<NotIdentifiableCombination>,
-    /// By the calculations of section 5.2, for comparison.
+    /// Results of the calculations of section 5.2, for comparison.
     pub simple: SimpleCalculations,
-    /// First guess, at which the search began.
+    /// Initial estimate, at which the search began.
     pub first_guess: StaticCoefficients,
-    /// Both models of the leakage compared.
+    /// Comparison of both models of the leakage.
     pub evidence: ModelEvidence,
     /// Evidence for each term of the valve.
     pub terms: Vec<TermEvidence>,
-    /// Fit of each signal, with the instruments wrong as explains most, within their
+    /// Fit of each signal, with the errors of the instruments that explain most, within their
     /// stated accuracies.
     pub signals: Vec<SignalFit>,
-    /// Root mean square of all residuals, each over the range of its signal.
+    /// Root mean square of all residuals, each divided by the range of its signal.
     pub residual_rms: f64,
-    /// Minimised cost: the sum of the losses of all residuals over their scales.
+    /// Minimised cost: the sum of the losses of all residuals divided by their scales.
     pub cost: f64,
     /// Coefficients that ended at a bound of the search.
     pub at_bounds: Vec<&'static str>,
-    /// Number of starting points, and how many of them lead to this minimum.
+    /// Number of starting points, and number of those that lead to this minimum.
     pub starts: [usize; 2],
     /// Ending of the search.
     pub ending: Ending,
-    /// Valve and conditions that were taken as known.
+    /// Valve and conditions that were assumed to be known.
     pub tested: TestedValve,
-    /// The oil, where its temperature was recorded.
+    /// Oil, if its temperature was recorded.
     pub oil: Option<TestOil>,
 }
 
 impl Identification {
-    /// Pa, drop from supply to tank of most rows.
+    /// Pressure drop from supply to tank of most rows, Pa.
     pub fn usual_drop(&self) -> f64 {
         recording::usual_drop(&self.recordings)
     }
 
-    /// The indices of the coefficients of its model, in their order.
+    /// Indices of the coefficients in its model, in their order.
     pub fn in_model(&self) -> impl Iterator<Item = usize> {
         let terms = self.tested.terms;
         (0..STATIC_COEFFICIENTS).filter(move |index| variables::has(terms, *index))
     }
 
-    /// The path of a coefficient in the project: the shape of edge 3 is that of all where the edges
-    /// have no shapes of their own.
+    /// Path of a coefficient in the project: the shape of edge 3 is that of all if the edges have
+    /// no separate shapes.
     pub fn path(&self, name: &str) -> String {
         match name {
             "leakage_shape" if self.tested.terms.leakage_by_edge => {
@@ -249,41 +251,40 @@ impl Identification {
         }
     }
 
-    /// The indices of those of them that the linear plant depends on.
+    /// Indices of those coefficients on which the linear plant depends.
     pub fn of_plant(&self) -> impl Iterator<Item = usize> {
         self.in_model().filter(|index| !variables::OF_TEST_ALONE.contains(index))
     }
 
-    /// True where no further step explains more.
+    /// True if no further step explains more.
     pub fn has_converged(&self) -> bool {
         self.ending == Ending::Converged
     }
 }
 
-/// Fit of a signal. SI.
+/// Fit of a signal, in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SignalFit {
     /// Index of the recording.
     pub recording: usize,
-    /// Which signal.
+    /// Kind of the signal.
     pub kind: SignalKind,
-    /// Rows that count.
+    /// Number of rows that count.
     pub rows: usize,
     /// Root mean square of the residuals.
     pub rms: f64,
-    /// Scale of the residuals that a few outliers do not change.
+    /// Scale of the residuals, insensitive to a few outliers.
     pub scale: f64,
-    /// Largest less smallest recorded value.
+    /// Largest minus smallest recorded value.
     pub range: f64,
-    /// Correlation of neighbouring residuals: near zero for noise, near one where the model is
-    /// wrong.
+    /// Correlation of neighbouring residuals: near zero for noise, near one if the model is wrong.
     pub correlation: f64,
 }
 
 /// Finds the coefficients that explain all recordings at once.
 ///
 /// # Errors
-/// [`IdentifyError`] where the recordings cannot be explained by any valve, and when it is stopped.
+/// [`IdentifyError`] if no valve explains the recordings, and after cancellation.
 pub fn identify(
     mut recordings: Vec<Recording>,
     known: &Known,
@@ -351,8 +352,8 @@ pub fn identify(
     })
 }
 
-/// The coefficients at which a further test is judged: one that is not determined may have ended
-/// anywhere, and has its usual value.
+/// Coefficients at which a further test is judged: one that is not determined may have ended
+/// anywhere, and is replaced by its usual value.
 fn usual(
     coefficients: &StaticCoefficients,
     estimates: &[Option<Estimate>; STATIC_COEFFICIENTS],
@@ -365,10 +366,11 @@ fn usual(
     StaticCoefficients::from_array(usual)
 }
 
-/// Both models of the leakage compared, with what the valve has beyond edges that open in
-/// proportion; and the fit of the wanted model, or else the preferred one, or else the usual one.
+/// Comparison of both models of the leakage, with the terms of the valve beyond edges that open in
+/// proportion; and the fit of the requested model, or else the preferred one, or else the usual
+/// one.
 ///
-/// A term of the valve may make one model of the leakage look like the other: where one is taken,
+/// A term of the valve may make one model of the leakage resemble the other: if a term is added,
 /// both are compared again with it.
 fn best_model<'a>(
     first: Fit<'a>,
@@ -376,7 +378,8 @@ fn best_model<'a>(
     watch: Watch<'_>,
 ) -> Result<(ModelEvidence, Fit<'a>, Vec<TermEvidence>), IdentifyError> {
     let (evidence, found) = better_leakage(first, models, watch)?;
-    // next to a model that the recordings contradict, a term would replace what that model lacks
+    // in addition to a model that the recordings contradict, a term would replace what that model
+    // lacks
     if evidence.preferred().is_some_and(|preferred| preferred != found.together.tested.leakage_model) {
         return Ok((evidence, found, Vec::new()));
     }
@@ -396,8 +399,8 @@ fn best_model<'a>(
     }
 }
 
-/// Both models of the leakage compared, and the fit of the wanted one, or else the preferred one,
-/// or else the usual one.
+/// Comparison of both models of the leakage, and the fit of the requested one, or else the
+/// preferred one, or else the usual one.
 fn better_leakage<'a>(
     first: Fit<'a>,
     (wanted, usual): (Option<LeakageModel>, LeakageModel),
@@ -419,7 +422,7 @@ fn better_leakage<'a>(
     Ok((evidence, found))
 }
 
-/// Root mean square of all residuals, each over the range of its signal.
+/// Root mean square of all residuals, each divided by the range of its signal.
 fn residual_rms(signals: &[SignalFit]) -> f64 {
     let of = |one: &SignalFit| one.rows as f64 * (one.rms / one.range) * (one.rms / one.range);
     let rows: usize = signals.iter().map(|one| one.rows).sum();

@@ -1,5 +1,5 @@
-//! Reasons for which nothing is identified from recordings: of a valve, of frequency responses, of
-//! a line and of a friction.
+//! Reasons why nothing is identified from recordings: of a valve, of frequency responses, of a line
+//! and of a friction.
 
 mod friction;
 mod line;
@@ -17,10 +17,10 @@ use crate::project::Refusal;
 use crate::rig::RigError;
 use crate::setup::ControlError;
 
-/// Why nothing was identified.
+/// Reason why nothing was identified.
 #[derive(Debug, thiserror::Error)]
 pub enum IdentifyError {
-    /// Files are refused.
+    /// Files are rejected.
     #[error("{0}")]
     Files(Box<Refusal>),
     /// The request names nothing to identify.
@@ -41,10 +41,10 @@ pub enum IdentifyError {
     /// The project has no rig.
     #[error(transparent)]
     Rig(#[from] RigError),
-    /// The declared controller is no transfer function.
+    /// The declared controller is not a transfer function.
     #[error(transparent)]
     Control(#[from] ControlError),
-    /// Stopped by the progress callback.
+    /// The progress callback cancelled the identification.
     #[error("stopped")]
     Stopped,
 }

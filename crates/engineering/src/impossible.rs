@@ -19,7 +19,7 @@ use crate::specification::{SpecificationError, closed_loops, crossed_limits};
 pub enum Impossibility {
     /// Limits that cross.
     CrossedLimits(SpecificationError),
-    /// A step.
+    /// A required step.
     Step(ImpossibleStep),
     /// Requirement that a few plants forbid, with the path of its key.
     Plants(String, Finding),
@@ -30,15 +30,15 @@ pub enum Impossibility {
 pub struct Impossibilities {
     /// The requirements.
     pub found: Vec<Impossibility>,
-    /// The robust problem; `None` where there is none.
+    /// Robust problem; `None` if there is none.
     pub problem: Option<RobustProblem>,
 }
 
-/// Requirements that no linear loop can satisfy: limits that cross; what a few plants forbid
-/// (the nominal one, some corners, some members), whatever the controller; times shorter than a
-/// delay; and required steps that the rig does not reach. Each holds for every controller and
-/// prefilter; an empty list does not mean that a controller exists. Where there is no robust
-/// problem, only crossed limits are found.
+/// Requirements that no linear loop can satisfy: limits that cross; requirements that a few plants
+/// forbid (the nominal one, some corners, some members), whatever the controller; times shorter
+/// than a delay; and required steps that the rig does not reach. Each holds for every controller
+/// and prefilter; an empty list does not mean that a controller exists. Without a robust problem,
+/// only crossed limits are found.
 ///
 /// # Errors
 /// [`SpecificationError`] for a limit that is absent or not a function of frequency.
@@ -60,7 +60,7 @@ pub fn impossibilities(
     Ok(Impossibilities { found, problem: Some(problem) })
 }
 
-/// What a few plants forbid.
+/// Requirements that a few plants forbid.
 fn of_plants(setup: &Setup<'_>, problem: &RobustProblem, family: Family) -> Vec<Impossibility> {
     let few = DesignProblem { family, ..design_problem(setup, problem) };
     let is_new = |finding: &Finding| {
@@ -70,7 +70,7 @@ fn of_plants(setup: &Setup<'_>, problem: &RobustProblem, family: Family) -> Vec<
     findings.map(|finding| Impossibility::Plants(path(setup.project, &finding), finding)).collect()
 }
 
-/// The path of the key of the first specification that a finding concerns.
+/// Path of the key of the first specification that a finding concerns.
 fn path(project: &Project, finding: &Finding) -> String {
     match finding.specifications().first() {
         Some(first) => key_of(project, *first).unwrap_or_else(|| "controller.quantization".to_string()),
@@ -79,7 +79,7 @@ fn path(project: &Project, finding: &Finding) -> String {
     }
 }
 
-/// The key of a limit on a closed loop, by its index.
+/// Key of a limit on a closed loop, by its index.
 fn key_of(project: &Project, index: usize) -> Option<String> {
     let (number, closed_loop, _) = closed_loops(project).nth(index)?;
     let key = if closed_loop == ClosedLoop::Tracking { "lower" } else { "limit" };

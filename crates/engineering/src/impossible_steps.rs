@@ -1,5 +1,5 @@
-//! Required steps that no controller makes on the rig, each with the key that states it and what
-//! would satisfy it.
+//! Required steps that no controller makes on the rig, each with the key that states it and a
+//! sufficient change.
 
 mod in_time;
 mod on_rig;
@@ -14,34 +14,34 @@ use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::simulate::BeyondReach;
 
-/// Plants of a box that are examined: corners, and members.
+/// Largest number of examined corners of a box, and of members.
 const CORNERS: usize = 8;
 const MEMBERS: usize = 8;
-/// Coordinates of a box whose corners are listed.
+/// Largest number of coordinates of a box whose corners are listed.
 const COORDINATES_MAXIMUM: usize = 8;
 
 /// A required step that no controller makes on the rig.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ImpossibleStep {
-    /// Step that is to settle before the force can move.
+    /// The step must settle before the force can move.
     BeforeForceMoves {
         /// Number of the specification, from 1.
         number: usize,
-        /// Key of the settling time in it.
+        /// Key of the settling time in the specification.
         key: &'static str,
         /// Required settling time, s.
         settling: f64,
-        /// Times that pass before the force moves.
+        /// Delays before the force moves.
         still: StillTimes,
     },
-    /// Step beyond the piston or the force sensor.
+    /// The step is beyond the piston or the force sensor.
     BeyondReach(BeyondReach),
-    /// Step beyond the valve.
+    /// The step is beyond the valve.
     TooSlow(SlowStep),
 }
 
 impl ImpossibleStep {
-    /// The path of the key that states it.
+    /// Path of the key that states the step.
     pub fn path(&self) -> String {
         let (number, key) = match self {
             ImpossibleStep::BeforeForceMoves { number, key, .. } => (number, *key),
@@ -55,20 +55,20 @@ impl ImpossibleStep {
 /// Required steps that no controller makes on the rig, with the units of its project.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImpossibleSteps {
-    /// The steps.
+    /// Required steps.
     pub steps: Vec<ImpossibleStep>,
     /// Motion of the rig and units of display.
     pub units: Units,
 }
 
 /// Steps that the project requires and that no controller makes on its rig: shorter than a delay,
-/// or beyond what valve, piston or force sensor do. Found before any search.
+/// or beyond the capability of valve, piston or force sensor. They are found before any search.
 pub(crate) fn impossible_steps(setup: &Setup<'_>, problem: &RobustProblem) -> Vec<ImpossibleStep> {
     let few = few_plants(&problem.family);
     [in_time::findings(setup, problem), on_rig::findings(setup, problem, &few)].concat()
 }
 
-/// The nominal plant, some corners and some members: what is impossible for these is impossible for
+/// Nominal plant, some corners and some members: anything impossible for these is impossible for
 /// the family.
 pub(crate) fn few_plants(family: &Family) -> Family {
     let Family::Uncertain(uncertain) = family else { return family.clone() };

@@ -1,20 +1,20 @@
-//! The engineer's procedures: a project becomes a rig, and each question about it an answer in
+//! Procedures of an engineer: a project becomes a rig, and each procedure returns its result as
 //! values.
 //!
 //! ```text
 //! Project -> setup::Setup { rig, controller, prefilter, sensor, timing }
-//! Setup   -> sizing, linearize                                what follows from the rig
+//! Setup   -> sizing, linearize                                consequences of the rig
 //! Setup   -> family -> robust::RobustProblem -> audit, shaping, design (-> trial on the machine -> repair)
 //! Setup   -> simulate::ControlledMachine -> simulate, campaign the nonlinear model
 //! Setup   -> bench                                            static tests of the valve
-//! Project -> alternatives                                     the same project with other values, judged side by side
+//! Project -> alternatives                                     one project with other values, compared
 //! files   -> identify                                         the valve that explains recorded tests
 //! files   -> response                                         frequency responses from recorded signals
 //! files   -> line_test                                        the bulk modulus of a blocked line from recordings
 //! files   -> friction                                         the friction that explains recorded runs
 //! ```
 //!
-//! Results are values; text, JSON and figures of them are made in the workbench.
+//! Results are values; the workbench turns them into text, JSON and figures.
 
 pub mod alternatives;
 pub mod audit;

@@ -1,16 +1,16 @@
-//! The limits of what may be built: their keys, where their values come from, and those that a
-//! loop does not keep.
+//! Limits of a deployable controller: their keys, the origins of their values, and those that a
+//! loop violates.
 
-/// What a limit is about.
+/// Quantity of a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DesignLimitKind {
     /// Noise of the force sensor in the command.
     NoiseToCommand,
     /// Distance of the loop from -1.
     ModulusMargin,
-    /// Frequency from which the loop no longer follows.
+    /// Frequency from which the loop no longer follows its reference.
     HighestBandwidth,
-    /// Delay beyond that of the loop.
+    /// Delay in addition to that of the loop.
     MinimumDelayMargin,
     /// Damping of the controller's poles.
     PoleDampingRatio,
@@ -20,11 +20,11 @@ pub enum DesignLimitKind {
     PrefilterGain,
     /// Command of the steps of the reference in the scenarios.
     CommandOfSteps,
-    /// No limit but the way to a required step: limits of tracking that a search aims at.
+    /// Limits of tracking at which a search aims, on the path to a required step.
     RequiredStep,
 }
 
-/// The key of a limit in `[design]`; of the fastest pole, which has none, a name.
+/// Key of a limit in `[design]`; for the fastest pole, which has no key, a name.
 pub fn limit_key(kind: DesignLimitKind) -> &'static str {
     match kind {
         DesignLimitKind::NoiseToCommand => "noise_to_command",
@@ -40,7 +40,7 @@ pub fn limit_key(kind: DesignLimitKind) -> &'static str {
 }
 
 impl DesignLimitKind {
-    /// Whether `[design]` has a key of this name.
+    /// True if `[design]` has a key of this name.
     pub fn has_key(self) -> bool {
         !matches!(self, DesignLimitKind::FastestPole | DesignLimitKind::RequiredStep)
     }
@@ -60,11 +60,11 @@ pub fn limit_unit_key(kind: DesignLimitKind) -> &'static str {
     }
 }
 
-/// Fraction by which a limit is relaxed to find what that would buy.
+/// Fraction by which a limit is relaxed to find the resulting gain.
 pub const RELAXED_BY: f64 = 0.1;
 
 impl DesignLimitKind {
-    /// A value of the limit that is relaxed by a tenth: larger, or of a least value smaller.
+    /// Value of the limit relaxed by a tenth: larger, or smaller for a least value.
     pub fn relaxed(self, value: f64) -> f64 {
         match self {
             DesignLimitKind::ModulusMargin
@@ -79,8 +79,8 @@ impl DesignLimitKind {
         }
     }
 
-    /// Whether a specification of the search only leads to it: the design is judged by something
-    /// else.
+    /// True if a specification of the search only leads towards the limit, while the design is
+    /// judged by something else.
     pub fn is_led_to(self) -> bool {
         matches!(self, DesignLimitKind::RequiredStep | DesignLimitKind::PrefilterGain)
     }
@@ -89,21 +89,21 @@ impl DesignLimitKind {
 /// Reason why a limit has its value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitOrigin {
-    /// The project states it.
+    /// Statement in the project.
     Stated,
-    /// It is the default of every rig.
+    /// Default for every rig.
     Default,
-    /// The lines are a quarter wave long there.
+    /// Quarter-wave frequency of the lines.
     QuarterWave,
-    /// The natural frequency of the servovalve.
+    /// Natural frequency of the servovalve.
     Servovalve,
-    /// The sample time.
+    /// Sample time.
     Sampling,
-    /// It follows from the highest bandwidth.
+    /// Consequence of the highest bandwidth.
     Bandwidth,
 }
 
-/// The name of an origin for programs.
+/// Key of an origin in output for programs.
 pub fn origin_key(origin: LimitOrigin) -> &'static str {
     match origin {
         LimitOrigin::Stated => "stated",
@@ -115,25 +115,26 @@ pub fn origin_key(origin: LimitOrigin) -> &'static str {
     }
 }
 
-/// The limits of a design that an audited loop keeps and does not keep.
+/// Limits of a design that an audited loop satisfies or violates.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JudgedLimits {
-    /// Those that it does not keep.
+    /// Violated limits.
     pub exceeded: Vec<ExceededLimit>,
-    /// Those that it keeps.
+    /// Satisfied limits.
     pub kept: Vec<DesignLimitKind>,
 }
 
-/// A limit that an audited loop does not keep.
+/// A limit that an audited loop violates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExceededLimit {
-    /// Which limit.
+    /// Kind of the limit.
     pub kind: DesignLimitKind,
-    /// What the worst plant of the family reaches, in the unit of the limit; of the bandwidth the
-    /// frequency from which |L/(1+L)| remains below -3 dB, infinite where none is known.
+    /// Value that the worst plant of the family reaches, in the unit of the limit; for the
+    /// bandwidth, the frequency above which |L/(1+L)| remains below -3 dB, infinite if none is
+    /// known.
     pub reached: f64,
-    /// The limit, in SI.
+    /// Value of the limit, SI.
     pub limit: f64,
-    /// Where its value comes from.
+    /// Origin of the value.
     pub origin: LimitOrigin,
 }

@@ -1,20 +1,19 @@
-//! The model of lines for which the project states none: lumped as long as nothing comes near
-//! their waves.
+//! Model of lines for which the project states none: lumped unless the loop is near their waves.
 //!
 //! ```text
-//! w_q = pi/(2 T)            where the slower line is a quarter of a wave long; T: time of a wave through it
-//! w   = max of              what loop and requirements reach:
+//! w_q = pi/(2 T)            frequency at which the slower line is a quarter wave long; T: its travel time
+//! w   = max of              frequencies of loop and requirements:
 //!         crossover             of the given loop, the highest of the nominal plant and of plants spread over the family
 //!         ln(100/band)/t_s      bandwidth of a required settling time, 2.2/t_r that of a required rise time
 //!         design frequencies    the highest of limits that require feedback: tracking, sensitivity, disturbance
-//!         highest bandwidth     that a design may have, where there is no controller or one is designed;
-//!                               that which valve, lines and sampling leave, where a design limits none
+//!         highest bandwidth     that a design may have, if there is no controller or one is designed;
+//!                               that which valve, lines and sampling permit, if a design has no limit
 //! w_q > 10 w: lumped        else: waves
 //! ```
 //!
 //! A lumped line is a capacity. Its error grows with the square of w/w_q: 0.8 % of the compliance
-//! at a tenth of w_q. Limits on |T| and on the command protect the top of the loop, and
-//! their frequencies say nothing about what it must reach.
+//! at a tenth of w_q. Limits on |T| and on the command protect the upper end of the loop's band,
+//! and their frequencies do not determine what it must reach.
 
 use phea_dynamics::closed_loop::ClosedLoop;
 
@@ -29,27 +28,28 @@ use crate::source::Source;
 use crate::specification::closed_loops;
 use phea_dynamics::portable;
 
-/// Quarter wave over the highest frequency that is reached, from which on a line is lumped.
+/// Ratio of the quarter-wave frequency to the highest frequency of the loop from which a line is
+/// lumped.
 pub const LUMPED_FROM: f64 = 10.0;
-/// Rise time from 10 % to 90 % times the bandwidth of a lag of first order: ln 9.
+/// Rise time from 10 % to 90 % multiplied by the bandwidth of a first-order lag: ln 9.
 const RISE_TIMES_BANDWIDTH: f64 = 2.197_224_577_336_219_6;
 
-/// Whether the command designs a controller.
+/// Loop that the command of the program considers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LoopInQuestion {
-    /// The given one, and one to be designed only where none is given.
+    /// The given loop, and a designed one only if none is given.
     Given,
-    /// One that is designed, as well as the given one.
+    /// A designed loop, in addition to the given one.
     Designed,
 }
 
-/// The project with a model for each line for which it states none; unchanged where there is no
-/// such line, where the rig is invalid (reported by whatever needs it), and where a model has
-/// been chosen already. A stated model is never changed.
+/// The project with a model for each line for which it states none; unchanged if there is no such
+/// line, if the rig is invalid (reported by whatever needs it), and if a model has been chosen
+/// already. A stated model is never changed.
 ///
 /// # Example
 /// The controller of this project crosses over near 60 rad/s, and its hose of 1.5 m is a quarter
-/// wave long at 560 rad/s: with waves. One of 0.5 m is lumped.
+/// wave long at 560 rad/s: with waves. A hose of 0.5 m is lumped.
 /// ```
 /// use phea_engineering::line_choice::{LoopInQuestion, with_chosen_lines};
 /// use phea_project::source::Memory;
@@ -72,7 +72,7 @@ pub fn with_chosen_lines(source: &dyn Source, loaded: &Loaded, question: LoopInQ
     })
 }
 
-/// The model of the lines without a stated one, with what it follows from.
+/// Model of the lines without a stated one, with its reason.
 fn choice(source: &dyn Source, project: &Project, question: LoopInQuestion) -> Option<ChosenLines> {
     let setup = Setup::new(project).ok()?;
     let quarter_wave_rad_per_s = open_quarter_wave(project, setup.rig().ok()?)?;
@@ -91,7 +91,7 @@ fn hindrance(project: &Project) -> Option<WavesHindrance> {
     rig.err().map(|error| WavesHindrance::Rig(error.to_string()))
 }
 
-/// The highest frequency that loop and requirements reach, and by what.
+/// Highest frequency that loop and requirements reach, and its cause.
 fn reach(source: &dyn Source, setup: &Setup<'_>, question: LoopInQuestion) -> Option<(f64, ReachedBy)> {
     let project = setup.project;
     let has_law = setup.controller.is_some();
@@ -107,7 +107,7 @@ fn reach(source: &dyn Source, setup: &Setup<'_>, question: LoopInQuestion) -> Op
         .max_by(|one, other| one.0.total_cmp(&other.0))
 }
 
-/// The highest bandwidth of a design; where it is not limited, that which the rig leaves.
+/// Highest bandwidth of a design; if it is not limited, that which the rig permits.
 fn bandwidth(setup: &Setup<'_>, problem: &RobustProblem) -> Option<(f64, ReachedBy)> {
     let limits = design_limits(setup, problem);
     let limit = limits.iter().find(|limit| limit.kind == DesignLimitKind::HighestBandwidth);
@@ -115,7 +115,7 @@ fn bandwidth(setup: &Setup<'_>, problem: &RobustProblem) -> Option<(f64, Reached
     stated.or_else(|| Some((highest_bandwidth(setup)?.0, ReachedBy::UnlimitedBandwidth)))
 }
 
-/// The bandwidths of lags of first order that settle and rise in the required times.
+/// Bandwidths of first-order lags that settle and rise in the required times.
 fn required_times(project: &Project) -> Vec<(f64, ReachedBy)> {
     let requirements = time_requirements(project).unwrap_or_default();
     let each = requirements.into_iter().flat_map(|required| {
@@ -130,7 +130,7 @@ fn required_times(project: &Project) -> Vec<(f64, ReachedBy)> {
     each.collect()
 }
 
-/// The highest design frequency of each limit that requires feedback.
+/// Highest design frequency of each limit that requires feedback.
 fn design_frequencies(project: &Project) -> impl Iterator<Item = (f64, ReachedBy)> {
     closed_loops(project).filter_map(|(number, closed_loop, declared)| {
         let requires_feedback = match closed_loop {
@@ -145,7 +145,7 @@ fn design_frequencies(project: &Project) -> impl Iterator<Item = (f64, ReachedBy
     })
 }
 
-/// Where the slower of the lines without a stated model is a quarter of a wave long, rad/s.
+/// Quarter-wave frequency of the slower of the lines without a stated model, rad/s.
 fn open_quarter_wave(project: &Project, rig: &Rig) -> Option<f64> {
     let declared = &project.actuator.as_ref()?.line;
     let components = rig.actuator.components();

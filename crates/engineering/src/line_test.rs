@@ -1,14 +1,14 @@
 //! The effective bulk modulus of a line from recordings of it with its far end blocked.
 //!
 //! ```text
-//! volume or flow, pressure -> RiseFit: compliance at rest over the pressure ------+
+//! volume or flow, pressure -> RiseFit: compliance at rest by pressure -----------+
 //! flow, pressure -> spectrum -> ResponseFit: compliance, creep, inertance ---------+-> moduli, r_beta, wave speed
 //! ```
 //!
-//! The virtual stand of `[bench.line]` makes such recordings of the project's own line.
+//! The virtual test stand of `[bench.line]` makes such recordings of the line of the project.
 //!
-//! The oil, the length and the bore are known from a project. What the recordings do not determine
-//! is not determined, with the reason.
+//! The oil, the length and the bore are known from a project. A number that the recordings do not
+//! determine is reported as such, with the reason.
 
 mod found;
 mod known;

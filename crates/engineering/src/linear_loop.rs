@@ -17,35 +17,35 @@ use crate::linear_step::{StepResponse, linear_step};
 /// The closed loop and its properties.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearLoop {
-    /// G
+    /// Controller G.
     pub controller: TransferFunction,
-    /// F: in s where it acts before the samples of the loop.
+    /// Prefilter F: in s if it acts before the sampling of the loop.
     pub prefilter: TransferFunction,
-    /// L = P G H with the delay of the loop.
+    /// Open loop L = P G H with the delay of the loop.
     pub open_loop: TransferFunction,
     /// Gain, phase, modulus and delay margin of L.
     pub margins: Margins,
-    /// Whether the closed loop is stable.
+    /// Stability of the closed loop.
     pub stability: LoopStability,
-    /// F P G/(1 + L), where it can be computed.
+    /// Step response of F P G/(1 + L), if it can be computed.
     pub step: Result<StepView, NoStep>,
 }
 
-/// Whether a closed loop is stable.
+/// Stability of a closed loop.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LoopStability {
     /// Every pole of the closed loop decays.
     Stable,
     /// A pole of the closed loop does not decay.
     Unstable,
-    /// Its poles cannot be computed, with the reason.
+    /// The poles cannot be computed, with the reason.
     Unknown(UnknownStability),
 }
 
-/// The reason why the stability of a closed loop is not known.
+/// Reason why the stability of a closed loop is not known.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum UnknownStability {
-    /// The turns of its characteristic function cannot be counted.
+    /// The turns of the characteristic function cannot be counted.
     #[error("its characteristic function was not resolved")]
     Unresolved,
     /// The closed loop cannot be built.
@@ -53,7 +53,7 @@ pub enum UnknownStability {
     Linear(#[from] LinearError),
 }
 
-/// The reason why there is no step response.
+/// Reason why there is no step response.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NoStep {
     /// The response grows without bound.
@@ -70,15 +70,15 @@ pub enum NoStep {
 /// A unit step through prefilter and closed loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepView {
-    /// s
+    /// Times, s.
     pub times_s: Vec<f64>,
-    /// Force over the reference's height.
+    /// Force divided by the reference's height.
     pub response: Vec<f64>,
-    /// The prefiltered reference over its height.
+    /// Prefiltered reference divided by the reference's height.
     pub filtered_reference: Vec<f64>,
-    /// The command per newton of reference, V/N.
+    /// Command per newton of reference, V/N.
     pub command_v_per_n: Vec<f64>,
-    /// With the band of the settling time.
+    /// Metrics of the response, with the band of the settling time.
     pub metrics: StepMetrics,
 }
 
@@ -95,14 +95,14 @@ pub enum LoopError {
 
 /// Number of samples of a step response.
 const SAMPLES: usize = 2000;
-/// A pole that is this close to a zero, relative to its own magnitude, leaves a tail of about this
-/// part of the step.
+/// Relative distance between a pole and a zero below which the tail is small: about this fraction
+/// of the step.
 const SMALL_TAIL: f64 = 0.05;
 
-/// The loop of a plant by its coefficients, with the rate that its controller feeds forward.
+/// The loop of a plant by its coefficients, with the derivative that its controller feeds forward.
 ///
 /// # Errors
-/// Those of [`linear_loop`].
+/// The errors of [`linear_loop`].
 pub fn linear_loop_of(
     plant: &PlantCoefficients<f64>,
     controller: &Controller,
@@ -115,14 +115,14 @@ pub fn linear_loop_of(
     }
 }
 
-/// Closes the loop of plant P with a controller that sees the output through the sensor H.
+/// Closes the loop of plant P with a controller to which the sensor H feeds back the output.
 ///
 /// A continuous controller in a continuous loop; a sampled one with the plant held by a zero-order
-/// hold, the delay of the loop in it. For a prefilter that acts before the sampling, a step passes
-/// as the samples of the step response of the prefilter.
+/// hold, including the delay of the loop. For a prefilter that acts before the sampling, a step
+/// passes as the samples of the step response of the prefilter.
 ///
 /// # Errors
-/// A system that cannot be built or discretised.
+/// [`LoopError`] for a system that cannot be built or discretised.
 pub fn linear_loop(
     plant: &TransferFunction,
     controller: &Controller,
@@ -141,7 +141,8 @@ pub fn linear_loop(
     loop_of_member(plant, controller, sensor, band_percent)
 }
 
-/// Whether the closed loop has a finite number of poles in s: it neither samples nor is late.
+/// True if the closed loop has a finite number of poles in s: it has neither sampling nor dead
+/// time.
 fn is_rational(controller: &Controller, dead_time_s: f64, sensor: &TransferFunction) -> bool {
     let late = dead_time_s + controller.timing.delay_s + sensor.dead_time_s();
     controller.timing.sample_time_s.is_none() && late == 0.0
@@ -174,11 +175,11 @@ fn rational_loop(
     })
 }
 
-/// Durations of a step that is not rational in s, s: the first in which it settles early.
+/// Durations of a step that is not rational in s, s: the first in which it settles early is used.
 const DURATIONS_S: [f64; 4] = [0.5, 2.0, 10.0, 60.0];
 
-/// A loop that samples, or is late: its stability by the turns of its characteristic function, its
-/// step sample by sample, or by the method of steps.
+/// A loop with sampling or dead time: its stability by the turns of its characteristic function,
+/// its step sample by sample, or by the method of steps.
 fn loop_of_member(
     plant: PlantCoefficients<f64>,
     controller: &Controller,
@@ -297,12 +298,12 @@ fn step_view(
     if brief.metrics.settling.time_s().is_some() || whole_s <= brief_s {
         return Ok(brief);
     }
-    // The small tail, too, may lead out of the band.
+    // The small tail may also leave the band.
     let whole = shown(instants(&[brief_s, whole_s])?)?;
     Ok(if whole.metrics.settling.time_s().is_some() { whole } else { brief })
 }
 
-/// Times from 0 to the last of these ends: equally many up to each end from the one before.
+/// Times from 0 to the last of these ends: equally many between successive ends.
 fn instants(ends_s: &[f64]) -> Result<Vec<f64>, LoopError> {
     let (mut times_s, mut start_s) = (vec![0.0], 0.0);
     for end_s in ends_s {

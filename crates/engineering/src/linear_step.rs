@@ -1,4 +1,4 @@
-//! The unit step of the reference through prefilter and closed loop, of one plant: continuous or
+//! Unit step of the reference through prefilter and closed loop, for one plant: continuous or
 //! sampled, with dead time or without, known by polynomials or by its response.
 
 mod of_responses;
@@ -15,34 +15,34 @@ use phea_qft::closed_loop::{Compensation, Member};
 pub(crate) use of_responses::KnownResponses;
 use of_responses::{ClosedParts, parts_of_change, real_parts};
 
-/// A step response from the step on: fraction of the step over time.
+/// A step response from the step on: fraction of the step as a function of time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepResponse {
-    /// s.
+    /// Times, s.
     pub times_s: Vec<f64>,
-    /// 0 before, 1 at the new reference.
+    /// Values: 0 before the step, 1 at the new reference.
     pub values: Vec<f64>,
 }
 
-/// What a step of the reference is followed to.
+/// Signal of the response to a step of the reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum StepSignal {
-    /// The output of the plant.
+    /// Output of the plant.
     Output,
-    /// The command of the controller, in its unit for each unit of the reference.
+    /// Command of the controller, in its unit for each unit of the reference.
     Command,
 }
 
-/// The lowest frequency at which a change of the loop matters, over the inverse of the time.
+/// Lowest frequency at which a change of the loop matters, multiplied by the time.
 const LOWEST: f64 = 0.01;
-/// Most samples of a sampled response.
+/// Largest number of samples of a sampled response.
 const SAMPLES_MAXIMUM: usize = 100_000;
 
-/// The response over this time, in about so many points where the loop is continuous; a sampled
-/// loop has its samples.
+/// Response over this time, with about this many points for a continuous loop; a sampled loop has
+/// its samples.
 ///
 /// # Errors
-/// [`LinearError::NoPlant`] for a measured plant, which is not known beyond its frequencies, and
+/// [`LinearError::NoPlant`] for a measured plant, which is unknown beyond its frequencies, and
 /// [`TimeResponseError`] for a system that cannot be realised.
 pub fn linear_step(
     member: &Member,
@@ -54,11 +54,11 @@ pub fn linear_step(
     linear_step_knowing((member, StepSignal::Output), compensation, (duration_s, points), &known)
 }
 
-/// The command of the controller in the same step, in its unit for each unit of the reference: the
-/// step response of F G/(1 + L). What an inner signal feeds back is part of the plant.
+/// Command of the controller in such a step, in its unit for each unit of the reference: the step
+/// response of F G/(1 + L). The feedback of an inner signal is part of the plant.
 ///
 /// # Errors
-/// Those of [`linear_step`].
+/// The errors of [`linear_step`].
 pub fn linear_command_step(
     member: &Member,
     compensation: &Compensation,
@@ -69,8 +69,8 @@ pub fn linear_command_step(
     linear_step_knowing((member, StepSignal::Command), compensation, (duration_s, points), &known)
 }
 
-/// The same of a signal of the loop, with what is known of the response of this plant in a loop of
-/// the same timing and sensor.
+/// Step response of a signal of the loop, with the known responses of this plant in a loop of equal
+/// timing and sensor.
 pub(crate) fn linear_step_knowing(
     (member, signal): (&Member, StepSignal),
     compensation: &Compensation,
@@ -119,7 +119,7 @@ pub(crate) fn linear_step_knowing(
     Ok(StepResponse { times_s, values })
 }
 
-/// A disturbance carried from the loop of one controller to that of another around the same plant:
+/// Transfer of a disturbance from the loop of one controller to that of another around one plant:
 /// samples of the response of either loop to it, by a convolution.
 ///
 /// ```text
@@ -130,7 +130,8 @@ pub(crate) struct CarriedDisturbance {
 }
 
 impl CarriedDisturbance {
-    /// From the loop of one controller to that of another, for so many samples at this distance.
+    /// Transfer from the loop of one controller to that of another, for this many samples at this
+    /// distance.
     pub(crate) fn new(
         member: &Member,
         loops: [&Compensation; 2],
@@ -142,7 +143,7 @@ impl CarriedDisturbance {
         CarriedDisturbance { weights: weights_of_frequency_response(&parts, step_s, count) }
     }
 
-    /// The samples with the other controller.
+    /// Samples with the other controller.
     pub(crate) fn of(&self, samples: &[f64]) -> Vec<f64> {
         let mut carried = samples.to_vec();
         for (delay, weight) in self.weights.iter().enumerate().take(samples.len()) {
@@ -163,7 +164,7 @@ mod tests {
 
     use super::*;
 
-    /// An integrator behind a gain, disturbed at its output such that it answers with two decays.
+    /// An integrator after a gain, disturbed at its output such that its response has two decays.
     #[test]
     fn a_disturbance_is_carried_from_one_controller_to_another() {
         const STEP_S: f64 = 1e-3;

@@ -1,5 +1,5 @@
-//! The linear models of a rig side by side: two-pressure, fifth order (6.7), decomposed (6.12),
-//! first order (6.13); their omissions, the impedance at the load, and whether it is passive.
+//! Comparison of the linear models of a rig: two-pressure, fifth order (6.7), decomposed (6.12),
+//! first order (6.13); their omissions, the impedance at the load, and its passivity.
 
 mod agreement;
 mod linkage;
@@ -53,29 +53,30 @@ pub struct Linearization {
     pub motion: MotionKind,
     /// Stiffness over the stroke by the project's model: nominal, softest and stiffest wall.
     pub stiffness: [StrokeStiffness; 3],
-    /// Both stiffness models side by side, nominal.
+    /// Both stiffness models for comparison, nominal.
     pub stiffness_models: ModelDifference,
-    /// The plant of every verdict: with its load, its leakage, and the parameters in use.
+    /// Plant of every verdict: with its load, its leakage, and the parameters in use.
     pub plant: LinearModel,
-    /// Whether 6.7 is the plant: one load pressure, nothing that flows from chamber to chamber, a
-    /// load whose motion is prescribed.
+    /// True if 6.7 is the plant: one load pressure, no flow from chamber to chamber, a load whose
+    /// motion is prescribed.
     pub plant_is_fifth_order: bool,
-    /// Whether the load can move under force: the models of [`Linearization::two_pressure`] to
-    /// [`Linearization::decomposed`] hold it still.
+    /// True if the load can move under force: in the models from [`Linearization::two_pressure`] to
+    /// [`Linearization::decomposed`] the load is at rest.
     pub load_yields: bool,
-    /// Whether the stiffness of the load is part of [`Linearization::first_order`]: not of a load
-    /// that no stiffness holds.
+    /// True if the stiffness of the load is part of [`Linearization::first_order`]: false for a
+    /// load without a stiffness.
     pub first_order_has_load: bool,
-    /// The linearised two-pressure model of the actuator as declared, with what leaks from chamber
-    /// to chamber, at its operating point, the load held still.
+    /// Linearised two-pressure model of the actuator as declared, with the leakage from chamber to
+    /// chamber, at its operating point, the load at rest.
     pub two_pressure: LinearModel,
-    /// The fifth-order model with the parameters in use, equation 6.7; K_c includes what leaks from
+    /// Fifth-order model with the parameters in use, equation 6.7; K_c includes the leakage from
     /// chamber to chamber.
     pub full: LinearModel,
-    /// The same with the derived parameters: the two-pressure model is compared with this one.
+    /// Fifth-order model with the derived parameters, with which the two-pressure model is
+    /// compared.
     pub derived_full: LinearModel,
-    /// The same against the load: what the plant is where the project states no parameter, but for
-    /// the second chamber pressure.
+    /// Fifth-order model with the derived parameters and the load: equal to the plant of a project
+    /// that states no parameter, except for the second chamber pressure.
     pub derived_plant: TransferFunction,
     /// Equation 6.12 as printed, and with the damping corrected.
     pub decomposed: [TransferFunction; 2],
@@ -89,9 +90,9 @@ pub struct Linearization {
     pub printed_decomposition: ReductionDifference,
     /// Equation 6.12 corrected against 6.7.
     pub corrected_decomposition: ReductionDifference,
-    /// Equation 6.13 against 6.7, both with the load held still.
+    /// Equation 6.13 against 6.7, both with the load at rest.
     pub truncation: ReductionDifference,
-    /// Share of each mode in the step response of the plant.
+    /// Fraction of each mode in the step response of the plant.
     pub modes: Vec<ModeShare>,
     /// The impedance at the load with constant command.
     pub open_loop: PortView,
@@ -100,12 +101,12 @@ pub struct Linearization {
     pub closed_loop: Option<PortView>,
     /// Reason why there is no closed loop.
     pub closed_loop_absent: Option<NoClosedImpedance>,
-    /// What a virtual impedance asks of the port, and what the loop shows there; `None` without
-    /// one, or without a controller.
+    /// Impedance required at the port by a virtual impedance, and the impedance of the loop there;
+    /// `None` without a virtual impedance, or without a controller.
     pub asked: Option<AskedImpedance>,
     /// The linkage over the stroke; empty without one.
     pub linkage: Vec<LinkagePlace>,
-    /// Above this frequency the piston's mass hides the compliance, rad/s.
+    /// Frequency above which the piston's mass hides the compliance, rad/s.
     pub compliance_hidden_above_rad_per_s: f64,
     /// The mass that hides it.
     pub hidden_by: HidingMass,
@@ -114,32 +115,33 @@ pub struct Linearization {
 /// Largest differences of two responses: below 1000 rad/s, and everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReductionDifference {
-    /// Up to 1000 rad/s.
+    /// Difference up to 1000 rad/s.
     pub low: ResponseDifference,
-    /// Over the whole grid, resonance included.
+    /// Difference over the whole grid, including the resonance.
     pub all: ResponseDifference,
 }
 
-/// The driving-point impedance and what follows from it.
+/// Driving-point impedance and its properties.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PortView {
-    /// Z = -F_e/(s X_L), N s/m.
+    /// Impedance, Z = -F_e/(s X_L), N s/m.
     pub impedance: TransferFunction,
-    /// Its straight lines.
+    /// Straight-line asymptotes of the impedance.
     pub asymptotes: Vec<Asymptote>,
-    /// Whether it is passive, and where not.
+    /// Passivity of the impedance, and the frequencies at which it is not passive.
     pub passivity: PassivityReport,
-    /// Minus the force per velocity of what a scenario moves, N s/m: Z itself where the motion of
-    /// the load is prescribed; of a load that yields that of its ground.
+    /// Minus the force per velocity of the moving part of a scenario, N s/m: Z itself if the motion
+    /// of the load is prescribed; the impedance at the ground of a load that yields.
     pub by_motion: TransferFunction,
-    /// Whether it is the ground of a load that yields.
+    /// True if the moving part is the ground of a load that yields.
     pub moves_ground: bool,
     /// Force that remains after a step of that motion by 1 mm, N (Proposition 6.2: zero); absent if
     /// unstable.
     pub final_force_n: Option<f64>,
 }
 
-/// G H of a continuous controller, through which the load motion acts; G of another.
+/// Product G H of a continuous controller, through which the load motion acts; G of another
+/// controller.
 fn in_series_with(
     controller: &Controller,
     sensor: &TransferFunction,
@@ -148,11 +150,12 @@ fn in_series_with(
     if is_continuous(&feedback) { feedback.series(sensor) } else { Ok(feedback) }
 }
 
-/// Linearises a rig; `controller` is the given one, if there is one, which sees the force through
-/// the sensor H.
+/// Linearises a rig; `controller` is the given one, if there is one, to which the sensor H feeds
+/// back the force.
 ///
 /// # Errors
-/// A model without finite roots: parameters so extreme that the arithmetic overflows.
+/// [`LinearError`] for a model without finite roots: parameters so extreme that the arithmetic
+/// overflows.
 pub fn linearize(
     rig: &Rig,
     controller: Option<&Controller>,
@@ -252,8 +255,8 @@ fn open_loop_view(rig: &Rig, [port, plant]: [&LinearModel; 2]) -> Result<PortVie
     })
 }
 
-/// Whether the plant is thesis (6.7): one load pressure, a prescribed load, no leakage, and no
-/// effect of the supply; a series spring alone makes the sensor softer.
+/// True if the plant is thesis (6.7): one load pressure, a prescribed load, no leakage, and no
+/// effect of the supply; a series spring only makes the sensor softer.
 fn is_fifth_order(rig: &Rig) -> bool {
     matches!(rig.plant.chambers, ChamberDynamics::LoadPressure { .. })
         && rig.internal_leakage == 0.0
@@ -263,8 +266,8 @@ fn is_fifth_order(rig: &Rig) -> bool {
         && rig.plant.series.is_none_or(|series| series.is_spring_alone())
 }
 
-/// Whether the ground of the load is moved in place of the load: with a virtual impedance the
-/// output of the plant is not the force alone.
+/// True if the ground of the load moves instead of the load: with a virtual impedance the output of
+/// the plant is not only the force.
 fn moves_ground(rig: &Rig) -> bool {
     rig.load.is_some() && rig.virtual_impedance.is_none()
 }
@@ -291,8 +294,8 @@ pub fn stroke_stiffness(rig: &Rig, member: StiffeningMember) -> StrokeStiffness 
     rig.actuator.chamber_compliance([rig.point.pressure_a, rig.point.pressure_b], member).over_stroke()
 }
 
-/// The settings that accumulators can be adjusted to besides that of rest, 0 and 1, with the
-/// stiffness over the stroke there; empty where nothing is adjusted.
+/// Settings, 0 and 1, to which accumulators can be adjusted in addition to that at rest, with the
+/// stiffness over the stroke at each; empty if nothing is adjusted.
 pub fn stiffness_at_settings(rig: &Rig) -> Vec<(f64, StrokeStiffness)> {
     let components = rig.actuator.components();
     let pressures = [rig.point.pressure_a, rig.point.pressure_b];

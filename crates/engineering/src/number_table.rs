@@ -10,18 +10,18 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 
-/// How a table of numbers is written.
+/// Format of a table of numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TableFormat {
-    /// Text with commas, a first row of names; a number that does not exist is an empty cell.
+    /// Text with commas, a first row of names; an absent number is an empty cell.
     #[default]
     Csv,
-    /// Apache Parquet, columns of doubles; a number that does not exist is null.
+    /// Apache Parquet, columns of doubles; an absent number is null.
     Parquet,
 }
 
 impl TableFormat {
-    /// Ending of a file.
+    /// File extension.
     pub fn ending(self) -> &'static str {
         match self {
             TableFormat::Csv => "csv",
@@ -30,7 +30,7 @@ impl TableFormat {
     }
 }
 
-/// Error for a format in which no table is written.
+/// Error for a format in which no table can be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("a table is written as `csv` or `parquet`")]
 pub struct UnknownTableFormat;
@@ -38,7 +38,7 @@ pub struct UnknownTableFormat;
 impl std::str::FromStr for TableFormat {
     type Err = UnknownTableFormat;
 
-    /// The format with this ending.
+    /// Format with this file extension.
     fn from_str(text: &str) -> Result<TableFormat, UnknownTableFormat> {
         match text {
             "csv" => Ok(TableFormat::Csv),
@@ -56,10 +56,12 @@ struct SurplusValues {
     columns: usize,
 }
 
-/// Rows of a group, which is held until it is written: half a megabyte for each column.
+/// Number of rows of a group, which is in memory until it is written: half a megabyte for each
+/// column.
 const GROUP: usize = 65_536;
 
-/// A table of numbers that grows by rows. Text is written as it comes, Parquet by groups of rows.
+/// A table of numbers that grows by rows. Text is written as it is computed, Parquet by groups of
+/// rows.
 ///
 /// # Example
 /// ```
@@ -81,7 +83,7 @@ impl<W: Write + Send> NumberTable<W> {
     /// A table with these columns and no row yet.
     ///
     /// # Errors
-    /// Those of the sink, and a name that the format does not accept.
+    /// The errors of the sink, and an error for a name that the format does not accept.
     pub fn new(mut sink: W, format: TableFormat, columns: &[&str]) -> io::Result<Self> {
         let writing = match format {
             TableFormat::Csv => {
@@ -104,11 +106,10 @@ impl<W: Write + Send> NumberTable<W> {
         Ok(NumberTable(writing))
     }
 
-    /// Adds a row, a value for each column; missing values do not exist, surplus values are
-    /// rejected.
+    /// Adds a row, a value for each column; missing values are absent, surplus values are rejected.
     ///
     /// # Errors
-    /// Those of the sink; [`io::ErrorKind::InvalidInput`] for more values than columns.
+    /// The errors of the sink; [`io::ErrorKind::InvalidInput`] for more values than columns.
     pub fn row(&mut self, values: &[f64]) -> io::Result<()> {
         let count = match &self.0 {
             Writing::Csv { columns, .. } => *columns,
@@ -138,10 +139,10 @@ impl<W: Write + Send> NumberTable<W> {
         }
     }
 
-    /// Ends the table and gives back what it was written to.
+    /// Ends the table and returns the sink.
     ///
     /// # Errors
-    /// Those of the sink.
+    /// The errors of the sink.
     pub fn finish(self) -> io::Result<W> {
         match self.0 {
             Writing::Csv { sink, .. } => Ok(sink),
@@ -176,8 +177,7 @@ fn write_group<W: Write + Send>(
     group.close().map_err(refused).map(|_| ())
 }
 
-/// Appends the shortest text that reads back as the same number; nothing for a number that does not
-/// exist.
+/// Appends the shortest text that reads back as an identical number; nothing for an absent number.
 fn push_number(text: &mut String, value: f64) {
     if value.is_finite() {
         let mut buffer = zmij::Buffer::new();

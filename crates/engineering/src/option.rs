@@ -1,13 +1,13 @@
-//! Why the value of an option of the command line is invalid.
+//! Errors of command-line options.
 
-/// A value of an option that is invalid.
+/// An invalid value of an option.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("--{option} {text}: {message}")]
 pub struct OptionError {
     /// Name of the option.
     pub option: &'static str,
-    /// As written.
+    /// Text as written.
     pub text: String,
-    /// What is wrong with it.
+    /// Fault of the value.
     pub message: String,
 }

@@ -1,6 +1,5 @@
-//! What the parts that make a rig yield cost and weigh: lines, accumulators, the spring or
-//! transmission and the valve between the chambers. Nothing is known of them but what the project
-//! or a catalogue states.
+//! Cost and mass of the parts that make a rig yield: lines, accumulators, the spring or
+//! transmission, and the valve between the chambers. All data come from the project or a catalogue.
 
 use std::f64::consts::PI;
 
@@ -14,16 +13,16 @@ use crate::project::{
 use crate::quantity::{Currency, Price};
 use crate::rig::{Rig, series_coil};
 
-/// A part with what it costs and weighs, as far as this is stated.
+/// A part with its price and mass, if they are stated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CostedPart {
-    /// What it is.
+    /// Kind of the part.
     pub kind: PartKind,
-    /// The chamber whose line or accumulator it is.
+    /// Chamber of its line or accumulator.
     pub side: Option<&'static str>,
-    /// In the currency of the project.
+    /// Price, in the currency of the project.
     pub price: Option<f64>,
-    /// kg.
+    /// Mass, kg.
     pub mass: Option<f64>,
 }
 
@@ -34,17 +33,17 @@ pub enum PartKind {
     Hose,
     /// A pipe of a line.
     Pipe,
-    /// At a chamber.
+    /// An accumulator at a chamber.
     Accumulator,
-    /// Between the chambers.
+    /// The valve between the chambers.
     CrossPort,
-    /// Between force sensor and load.
+    /// The spring between force sensor and load.
     SeriesSpring,
-    /// Both cylinders of a transmission there.
+    /// Both cylinders of a transmission between force sensor and load.
     TransmissionCylinders,
-    /// The hose or pipe between them.
+    /// The hose or pipe between these cylinders.
     TransmissionLine,
-    /// Counted only where it is stated: mostly it is the same in all that is compared.
+    /// The servovalve, counted only if it is stated: mostly it is identical in all compared rigs.
     Servovalve,
 }
 
@@ -55,37 +54,37 @@ pub enum PartsUnknown {
     NoPrice,
     /// No part states a mass.
     NoMass,
-    /// These do not.
+    /// The listed parts state no value.
     NotStated(Vec<UnstatedPart>),
 }
 
-/// A part that states no price or no mass, or both of a pair that do not.
+/// A part that states no price or no mass, or a pair of parts that state none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnstatedPart {
     /// Kind of the part.
     pub kind: PartKind,
-    /// The chamber whose line or accumulator it is; `None` for both.
+    /// Chamber of its line or accumulator; `None` for both.
     pub side: Option<&'static str>,
     /// True for a pair.
     pub both: bool,
 }
 
-/// What is counted of the parts of several rigs that are compared.
+/// Attributes that are counted for the parts of several compared rigs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PartsCounted {
-    /// Currency of the prices; `None` where none is stated.
+    /// Currency of the prices; `None` if none is stated.
     pub currency: Option<Currency>,
-    /// Whether a mass is stated, or follows from the coils of a spring.
+    /// True if a mass is stated, or follows from the coils of a spring.
     pub masses: bool,
-    /// Whether the price of a servovalve is stated, and the mass of one.
+    /// True if the price of a servovalve is stated, and true if its mass is.
     pub servovalve: [bool; 2],
 }
 
 impl PartsCounted {
-    /// What one or another of these projects states.
+    /// Attributes that at least one of these projects states.
     ///
     /// # Errors
-    /// Two currencies.
+    /// The two currencies, if there are two.
     pub fn of<'p>(projects: impl Iterator<Item = &'p Project>) -> Result<PartsCounted, [Currency; 2]> {
         let mut counted = PartsCounted::default();
         for declared in projects.filter_map(|project| project.actuator.as_ref()) {
@@ -106,7 +105,7 @@ impl PartsCounted {
     }
 }
 
-/// Every statement of a price or a mass.
+/// All statements of a price or a mass.
 fn stated(declared: &DeclaredActuator) -> Vec<PartCost> {
     let (mut lines, mut others) = (vec![&declared.line.a, &declared.line.b], vec![declared.valve.cost]);
     others.extend(declared.cross_port.as_ref().map(|port| port.cost));
@@ -130,7 +129,7 @@ fn stated(declared: &DeclaredActuator) -> Vec<PartCost> {
     of_lines.flatten().chain(others).collect()
 }
 
-/// The parts of a rig. A line that is stated as a volume is drilled or cast, and no part.
+/// Parts of a rig. A line that is stated as a volume is drilled or cast, and no part.
 pub fn parts(declared: &DeclaredActuator, rig: &Rig) -> Vec<CostedPart> {
     let sides = [("A", &declared.line.a), ("B", &declared.line.b)];
     let mut found: Vec<CostedPart> =
@@ -183,7 +182,7 @@ fn line_part(side: Option<&'static str>, line: &DeclaredLine) -> Option<CostedPa
     Some(CostedPart { kind, side, price, mass: sum(cost.ends.mass, by_length.map(|each| each * length)) })
 }
 
-/// What is stated of both; `None` where neither is.
+/// Sum of the stated values; `None` if neither is stated.
 fn sum(one: Option<f64>, other: Option<f64>) -> Option<f64> {
     match (one, other) {
         (None, None) => None,
@@ -191,7 +190,7 @@ fn sum(one: Option<f64>, other: Option<f64>) -> Option<f64> {
     }
 }
 
-/// kg/m, of a hose whose wall moves.
+/// Mass per length of a hose whose wall moves, kg/m.
 fn moving_wall(line: &DeclaredLine) -> Option<f64> {
     match &line.motion {
         crate::project::LineMotion::TwoWave { wall, .. } => wall.as_ref()?.mass_per_length,
@@ -199,13 +198,13 @@ fn moving_wall(line: &DeclaredLine) -> Option<f64> {
     }
 }
 
-/// kg/m, of a pipe whose wall has a density.
+/// Mass per length of a pipe whose wall has a density, kg/m.
 fn tube(pipe: &DeclaredPipe) -> Option<f64> {
     let ElasticWall { thickness, density, .. } = pipe.wall?;
     Some(PI * (pipe.bore + thickness) * thickness * density?)
 }
 
-/// What all parts cost together, in the currency that is counted.
+/// Total price of all parts, in the counted currency.
 ///
 /// # Errors
 /// [`PartsUnknown`] if parts state no price.
@@ -217,7 +216,7 @@ pub fn price(parts: &[CostedPart], counted: PartsCounted) -> Result<f64, PartsUn
     total(wanted, |part| part.price)
 }
 
-/// What all parts weigh together in kg, with the oil in both lines and in a transmission.
+/// Total mass of all parts, with the oil in both lines and in a transmission, kg.
 ///
 /// # Errors
 /// [`PartsUnknown`] if parts state no mass.
@@ -229,7 +228,7 @@ pub fn mass(parts: &[CostedPart], rig: &Rig, counted: PartsCounted) -> Result<f6
     Ok(total(wanted, |part| part.mass)? + oil_in_lines(rig))
 }
 
-/// The transmission between force sensor and load, where there is one.
+/// The transmission between force sensor and load, if there is one.
 pub(crate) fn transmission(rig: &Rig) -> Option<&Transmission> {
     match rig.actuator.components().series.as_ref()? {
         SeriesElement::Transmission(transmission) => Some(transmission),
@@ -237,7 +236,7 @@ pub(crate) fn transmission(rig: &Rig) -> Option<&Transmission> {
     }
 }
 
-/// kg, of the oil in both lines, and in a transmission.
+/// Mass of the oil in both lines and in a transmission, kg.
 pub fn oil_in_lines(rig: &Rig) -> f64 {
     let components = rig.actuator.components();
     let volume: f64 = [&components.line_a, &components.line_b].map(Line::volume).iter().sum();

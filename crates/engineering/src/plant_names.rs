@@ -6,7 +6,7 @@ use phea_qft::verification::PlantPoint;
 use crate::project::Project;
 use crate::quantity::{Dimension, RATIO};
 
-/// What the numbers of a plant are called.
+/// Names of the numbers of a plant.
 #[derive(Clone, Debug)]
 pub enum PlantNames {
     /// Uncertain parameters in the order of the plant, with their dimensions.
@@ -15,11 +15,11 @@ pub enum PlantNames {
     Measured(Vec<String>),
 }
 
-/// One plant with its names: of each number its name and SI value.
+/// One plant with its names: name and SI value of each number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedPlant(pub Vec<(String, NamedValue)>);
 
-/// What a plant is named by.
+/// Value by which a plant is named.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NamedValue {
     /// A parameter, SI, with its dimension.
@@ -64,7 +64,7 @@ impl PlantNames {
         Some(names.iter().zip(values).map(|((name, dimension), value)| (name.as_str(), *dimension, *value)))
     }
 
-    /// The names of the values of a plant, in their order.
+    /// Names of the values of a plant, in their order.
     pub fn headings(&self) -> Vec<&str> {
         match self {
             PlantNames::Parameters(names) => names.iter().map(|(name, _)| name.as_str()).collect(),

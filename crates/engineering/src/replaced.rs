@@ -10,36 +10,36 @@ use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::source::Source;
 
-/// A range that the project says is replaced, and what its family visits instead.
+/// A range that is replaced according to the project, and the range that its family visits instead.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReplacedRange {
     /// The parameter's symbol, such as `K_c`.
     pub symbol: &'static str,
-    /// SI unit.
+    /// SI unit of the parameter.
     pub unit: &'static str,
-    /// The range that is replaced.
+    /// Replaced range.
     pub stated: [f64; 2],
-    /// What the family visits.
+    /// Range that the family visits.
     pub visited: [f64; 2],
-    /// Share of the range that is visited: of its logarithm where it is spaced by equal factors.
+    /// Visited fraction of the range: of its logarithm if it is spaced by equal factors.
     pub share: f64,
 }
 
 impl ReplacedRange {
-    /// Whether the family goes below the range, and above it.
+    /// True for each end, lower and upper, if the family goes beyond it.
     pub fn beyond(&self) -> [bool; 2] {
         let ([least, most], [low, high]) = (self.stated, self.visited);
         [low < least * (1.0 - ROUNDED), high > most * (1.0 + ROUNDED)]
     }
 }
 
-/// Part by which ranges may differ that are printed to three digits.
+/// Relative difference of ranges that may be due to printing to three digits.
 const ROUNDED: f64 = 0.01;
 
 /// Areas of both templates at a frequency, degrees times dB.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TemplateAreas {
-    /// rad/s
+    /// Frequency, rad/s.
     pub frequency_rad_per_s: f64,
     /// Area of the template of the box.
     pub replaced: f64,
@@ -47,7 +47,7 @@ pub struct TemplateAreas {
     pub visited: f64,
 }
 
-/// The ranges that a project says are replaced, with what is visited.
+/// Ranges that are replaced according to a project, with the visited ones.
 pub fn replaced_ranges(project: &Project, visited: &[VisitedRange]) -> Vec<ReplacedRange> {
     let declared = project.family.iter().flat_map(|family| &family.replaces);
     let range = |one: &crate::project::Uncertain| {
@@ -69,12 +69,12 @@ pub fn replaced_ranges(project: &Project, visited: &[VisitedRange]) -> Vec<Repla
     declared.filter_map(range).collect()
 }
 
-/// Areas of the templates at the design frequencies of a problem, and those of the box that the
-/// project says it replaces; nothing where it says so of none. `own` are those of the problem's
+/// Areas of the templates at the design frequencies of a problem, and those of the box that it
+/// replaces according to the project; empty if it replaces none. `own` are those of the problem's
 /// family.
 ///
 /// # Errors
-/// Those of the family of the box and of its templates.
+/// The errors of the family of the box and of its templates.
 pub fn template_areas(
     source: &dyn Source,
     project: &Project,
@@ -95,13 +95,13 @@ pub fn template_areas(
     areas.collect()
 }
 
-/// Why there is nothing to compare with.
+/// Reason why there is no comparison.
 #[derive(Debug, thiserror::Error)]
 pub enum ReplacedError {
     /// The box has no plants.
     #[error("[family.replaces]: {0}")]
     Family(#[from] ProjectFamilyError),
-    /// A template of it cannot be built.
+    /// A template of the box cannot be built.
     #[error("[family.replaces]: {0}")]
     Template(#[from] TemplateError),
     /// The controller is not a transfer function.
@@ -109,8 +109,8 @@ pub enum ReplacedError {
     Control(#[from] crate::setup::ControlError),
 }
 
-/// The project with the ranges that are replaced, and without what replaces them; `None` where it
-/// says so of none.
+/// The project with the replaced ranges, and without the data that replace them; `None` if none are
+/// replaced.
 pub fn boxed(project: &Project) -> Option<Project> {
     let declared = project.family.as_ref().filter(|family| !family.replaces.is_empty())?;
     let family = DeclaredFamily { operating_region: None, replaces: Vec::new(), ..declared.clone() };

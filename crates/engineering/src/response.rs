@@ -1,12 +1,12 @@
 //! Frequency responses from recorded signals: members of a measured family.
 //!
 //! ```text
-//! file -> SampledPair -> whole periods | local polynomials | overlapping segments -> points -> those that are known well enough
+//! file -> SampledPair -> whole periods | local polynomials | overlapping segments -> points -> those that are sufficiently well known
 //! ```
 //!
-//! A periodic input (a multisine, a chirp that is repeated) is averaged over its periods; any other
-//! (noise, a single sweep, a step) is estimated band by band, from the reference where a loop was
-//! closed, or by its controller. One file is one member.
+//! A periodic input (a multisine, a repeated chirp) is averaged over its periods; any other (noise,
+//! a single sweep, a step) is estimated band by band, from the reference of a closed loop, or by
+//! its controller. One file is one member.
 
 mod levels;
 mod member;
@@ -32,30 +32,28 @@ use crate::identify_error::{IdentifyError, ResponseFitError};
 /// Settings of the estimation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ResponseSettings {
-    /// s, of a periodic input; absent: it is found.
+    /// Period of a periodic input, s; found if absent.
     pub period: Option<f64>,
-    /// s at the beginning that are left out; absent: one period of a periodic input, otherwise
-    /// nothing.
+    /// Omitted time at the beginning, s; absent: one period of a periodic input, otherwise nothing.
     pub settling: Option<f64>,
-    /// s, of a segment; absent: an input that does not repeat is taken as a whole.
+    /// Length of a segment, s; absent: an input that does not repeat is used as a whole.
     pub segment: Option<f64>,
-    /// Squared coherence below which a frequency is left out.
+    /// Squared coherence below which a frequency is omitted.
     pub coherence: f64,
 }
 
 impl Default for ResponseSettings {
-    /// A squared coherence of 0.8 over ten blocks leaves a standard deviation of 17 % of the
-    /// response.
+    /// Default settings: a squared coherence of 0.8 over ten blocks leaves a standard deviation of
+    /// 17 % of the response.
     fn default() -> ResponseSettings {
         ResponseSettings { period: None, settling: None, segment: None, coherence: 0.8 }
     }
 }
 
-/// The members of a family from records, one each.
+/// Members of a family from records, one each.
 ///
 /// # Errors
-/// [`IdentifyError`] where a record is too short or its input does not move, and when it is
-/// stopped.
+/// [`IdentifyError`] if a record is too short or its input does not move, and after cancellation.
 pub fn members(
     records: &[SampledPair],
     settings: &ResponseSettings,

@@ -33,64 +33,66 @@ use phea_dynamics::watch::{Stopped, Watch, part};
 /// A family of plants within a loop, and the specifications of the loop.
 #[derive(Clone, Debug)]
 pub struct RobustProblem {
-    /// The plants.
+    /// Family of plants.
     pub family: Family,
-    /// The same plants without the pressure feedback that a continuous controller closes within
-    /// them; `None` where there is none.
+    /// The plants without the pressure feedback that a continuous controller closes within them;
+    /// `None` without such feedback.
     pub before_feedback: Option<Family>,
     /// The names of the parameters of a plant.
     pub names: PlantNames,
-    /// The loop; with a controller of 1 where none is given.
+    /// Loop around the plants; with a controller of 1 if none is given.
     pub compensation: Compensation,
-    /// Whether the project gives a controller.
+    /// True if the project gives a controller.
     pub has_controller: bool,
-    /// Whether it gives a prefilter; tracking is judged by its spread where not.
+    /// True if the project gives a prefilter; otherwise tracking is judged by its spread.
     pub has_prefilter: bool,
     /// The specifications in file order, then those for the rounding of converters.
     pub specifications: Vec<Specification>,
-    /// The name of each but the limits of a design.
+    /// Names of the specifications, except the limits of a design.
     pub specification_names: Vec<SpecificationName>,
-    /// The number in the file, from 1, of each that is declared there; the others come after them.
+    /// Number in the file, from 1, of each specification that is declared there; the others follow.
     pub specification_numbers: Vec<usize>,
-    /// The last of the specifications where they are limits of a design: which, in their order.
+    /// Kinds of the limits of a design, which are the last specifications, in their order.
     pub design_limits: Vec<DesignLimitKind>,
-    /// Requirements in time: of specifications of their own, then of limits of tracking.
+    /// Requirements in time: those of separate specifications, then those of limits of tracking.
     pub in_time: Vec<TimeRequirement>,
-    /// The rig itself as a family of one, where the family does not contain it, and what of it is
-    /// outside.
+    /// The rig as a family of one, if the family does not contain it, with its parameters outside
+    /// the family.
     pub rig_outside: Option<(Family, Vec<OutsideParameter>)>,
-    /// Reason why the plants of the family have no polynomials; `None` where they have them.
+    /// Reason why the plants of the family have no polynomials; `None` if they have them.
     pub without_polynomials: Option<NoPolynomials>,
-    /// Noise of the velocity that a sampled controller feeds forward, m/s rms; zero without.
+    /// Noise of the velocity that a sampled controller feeds forward, m/s rms; zero without such
+    /// feedforward.
     pub velocity_noise: f64,
-    /// Noise of the pressure signal at the samples in Pa rms, where it is fed back; zero without.
+    /// Noise of the pressure signal at the samples, Pa rms, if it is fed back; zero otherwise.
     pub pressure_noise: f64,
-    /// A margin of minus this much still counts as met, dB.
+    /// Tolerance of a margin, dB: a margin of minus this much still counts as met.
     pub tolerance_db: f64,
-    /// Position of every plant; `None` where they differ in it or its stiffness, and without a rig.
+    /// Position of every plant; `None` if the plants differ in it or in its stiffness, and without
+    /// a rig.
     pub position: Option<CommonPosition>,
     /// Motion of the rig.
     pub units: Units,
-    /// Declared effects that none of this includes.
+    /// Declared effects that the problem does not include.
     pub caveats: Vec<Caveat>,
 }
 
 /// Template and bounds at one design frequency.
 #[derive(Clone, Debug)]
 pub struct DesignFrequency {
-    /// rad/s
+    /// Frequency, rad/s.
     pub frequency_rad_per_s: f64,
-    /// The plants there.
+    /// Template of the plants at this frequency.
     pub template: BuiltTemplate,
-    /// Bounds with the template's interior counted as plants.
+    /// Bounds with the interior of the template counted as plants.
     pub bounds: CombinedBound,
-    /// The same before sampling over the phase: they judge any loop at this frequency.
+    /// Bounds before sampling over the phase: they judge any loop at this frequency.
     pub exact_bounds: FrequencyBounds,
-    /// The nominal loop L0 there.
+    /// Nominal loop L0 at this frequency.
     pub nominal_loop: Complex64,
-    /// Its position among bounds that count only the plants of the template.
+    /// Position of the nominal loop among bounds that count only the plants of the template.
     pub placement: Placement,
-    /// Its position among bounds that also count the interior of the template.
+    /// Position of the nominal loop among bounds that also count the interior of the template.
     pub filled_placement: Placement,
 }
 
@@ -103,10 +105,10 @@ pub enum RobustError {
     /// The loop cannot be sampled.
     #[error("the linear models: {0}")]
     Linear(#[from] LinearError),
-    /// There is no family of plants.
+    /// The family of plants cannot be built.
     #[error(transparent)]
     Family(#[from] ProjectFamilyError),
-    /// A specification cannot be met by any loop, or is contradictory.
+    /// A specification is contradictory, or no loop can meet it.
     #[error(transparent)]
     Specification(#[from] SpecificationError),
 }
@@ -114,18 +116,18 @@ pub enum RobustError {
 /// Reason why templates or bounds cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BoundsError {
-    /// A template.
+    /// A template cannot be computed.
     #[error("a template: {0}")]
     Template(TemplateError),
-    /// A bound.
+    /// A bound cannot be computed.
     #[error("a bound at {frequency_rad_per_s} rad/s: {error}")]
     Bound {
-        /// rad/s
+        /// Frequency, rad/s.
         frequency_rad_per_s: f64,
-        /// What is wrong.
+        /// Reason why the bound cannot be computed.
         error: BoundError,
     },
-    /// The watch stopped it.
+    /// The progress callback cancelled the computation.
     #[error(transparent)]
     Stopped(#[from] Stopped),
 }
@@ -187,7 +189,7 @@ pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustPr
     })
 }
 
-/// The family of a project without its pressure feedback, where a continuous controller closes it.
+/// Family of a project without its pressure feedback, if a continuous controller closes it.
 fn before_feedback(setup: &Setup<'_>, source: &dyn Source) -> Result<Option<Family>, RobustError> {
     let fed_back = setup.project.controller.as_ref().and_then(|controller| controller.pressure_feedback);
     if fed_back.is_none() || setup.timing.sample_time_s.is_some() {
@@ -197,11 +199,12 @@ fn before_feedback(setup: &Setup<'_>, source: &dyn Source) -> Result<Option<Fami
     Ok(Some(family(&Setup::new(&without)?, source)?))
 }
 
-/// A margin of minus this much counts as met where the project states no tolerance, dB: no answer
-/// depends on less than what a rig is known to.
+/// Tolerance of a margin if the project states none, dB: a margin of minus this much counts as met,
+/// since no result depends on less than the accuracy to which a rig is known.
 pub const DEFAULT_TOLERANCE_DB: f64 = 0.01;
 
-/// The same where lines move, whose fitted waves are known to 0.3 dB near their resonances.
+/// Tolerance of a margin for lines with waves, whose fit is known to 0.3 dB near their resonances,
+/// dB.
 pub const TOLERANCE_IN_MOTION_DB: f64 = 0.1;
 
 /// The reason why the plants of a family have no polynomials.
@@ -209,9 +212,9 @@ pub const TOLERANCE_IN_MOTION_DB: f64 = 0.1;
 pub enum NoPolynomials {
     /// Waves travel in the lines.
     LinesInMotion,
-    /// A continuous controller feeds the pressures back late.
+    /// A continuous controller feeds the pressures back with a delay.
     PressuresFedBackLate,
-    /// The velocity of the load is fed forward late.
+    /// The velocity of the load is fed forward with a delay.
     LoadVelocityFedForwardLate,
 }
 
@@ -227,8 +230,8 @@ fn without_polynomials(setup: &Setup<'_>, family: &Family) -> Option<NoPolynomia
     (!family.plant().is_rational()).then_some(why)
 }
 
-/// The specifications and their names. Bounds on the rounding of converters are drawn at every
-/// design frequency that the loop reaches.
+/// Specifications and their names. Bounds on the rounding of converters are drawn at every design
+/// frequency that the loop reaches.
 fn named_specifications(
     setup: &Setup<'_>,
     highest_frequency_rad_per_s: f64,
@@ -269,9 +272,9 @@ impl RobustProblem {
     /// Templates and bounds at every design frequency that the family reaches.
     ///
     /// # Errors
-    /// [`BoundsError`], also where the watch stops it.
+    /// [`BoundsError`], including cancellation by `watch`.
     pub fn at_design_frequencies(&self, watch: Watch<'_>) -> Result<Vec<DesignFrequency>, BoundsError> {
-        // the union of the polygons of a template may take a minute, in which nothing is asked
+        // the union of the polygons of a template may take a minute without a progress report
         let problem = self.clone();
         left_behind(watch, TEMPLATES, move |watch| match problem.templates_and_bounds(watch) {
             Err(BoundsError::Stopped(stopped)) => Err(stopped),
@@ -289,7 +292,7 @@ impl RobustProblem {
             let own = [index, index + 1].map(share);
             let watch = &mut part(&mut *watch, TEMPLATES, own);
             match templates.next_watched(watch) {
-                // nothing is known beyond a measurement, so there is no template either
+                // a measurement contains nothing beyond its range, so there is no template either
                 None | Some(Err(TemplateError::OutOfReach { .. })) => {}
                 Some(built) => found.push(self.at_template(built?)?),
             }
@@ -316,10 +319,10 @@ impl RobustProblem {
         })
     }
 
-    /// The nominal plant within the loop.
+    /// Nominal plant within the loop.
     ///
     /// # Errors
-    /// [`LinearError`] where it cannot be sampled.
+    /// [`LinearError`] if it cannot be sampled.
     pub fn nominal(&self) -> Result<Option<Member>, LinearError> {
         match &self.family {
             Family::Uncertain(family) => {
@@ -331,10 +334,10 @@ impl RobustProblem {
         }
     }
 
-    /// Every member within the loop.
+    /// All members within the loop.
     ///
     /// # Errors
-    /// [`LinearError`] where one cannot be sampled.
+    /// [`LinearError`] if one of them cannot be sampled.
     pub fn members(&self) -> Result<Vec<Member>, LinearError> {
         match &self.family {
             Family::Uncertain(family) => {
@@ -347,7 +350,7 @@ impl RobustProblem {
         }
     }
 
-    /// One plant of the family within the loop; `None` where it cannot be sampled.
+    /// One plant of the family within the loop; `None` if it cannot be sampled.
     pub fn member(&self, plant: &PlantPoint) -> Option<Member> {
         match (&self.family, plant) {
             (Family::Uncertain(family), PlantPoint::Parameters(values)) => {
@@ -360,7 +363,8 @@ impl RobustProblem {
         }
     }
 
-    /// The whole loop of a member at a frequency; `None` where a measurement does not reach.
+    /// Response of the whole loop of a member at a frequency; `None` outside the range of a
+    /// measurement.
     pub fn response(&self, member: &Member, frequency_rad_per_s: f64) -> Option<LoopResponse> {
         let found = member.response(frequency_rad_per_s)?;
         let loop_side = self.compensation.response(frequency_rad_per_s);
@@ -373,8 +377,8 @@ impl RobustProblem {
         })
     }
 
-    /// Frequencies for drawing from `from` to `to`: even in their logarithm, and denser around the
-    /// lightly damped roots of the nominal plant and of the controller, rad/s.
+    /// Frequencies for drawing from `from` to `to`, rad/s: even in their logarithm, and denser
+    /// around the lightly damped roots of the nominal plant and of the controller.
     pub fn drawn_frequencies(&self, from: f64, to: f64) -> Vec<f64> {
         let to = to.min(self.compensation.highest_frequency_rad_per_s());
         let mut frequencies = logarithmic_grid(from, to, GRID_POINTS).unwrap_or_default();
@@ -396,11 +400,11 @@ impl RobustProblem {
     }
 }
 
-/// Points of the even grid.
+/// Number of points of the even grid.
 const GRID_POINTS: usize = 500;
-/// Points to each side of a lightly damped root.
+/// Number of points on each side of a lightly damped root.
 const ROOT_POINTS: i32 = 20;
-/// How far they reach, in half widths of its resonance.
+/// Range of these points, in half widths of the resonance.
 const ROOT_WIDTHS: f64 = 12.0;
 
 fn nominal_roots(family: &UncertainFamily) -> Vec<Complex64> {

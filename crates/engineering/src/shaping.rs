@@ -28,18 +28,18 @@ use phea_dynamics::linear::LinearError;
 use phea_dynamics::watch::{Stopped, Watch, part};
 use workpiece::Workpiece;
 
-/// Whether the controller or the prefilter is shaped.
+/// Object of the shaping: the controller or the prefilter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shaped {
-    /// G
+    /// Controller G.
     #[default]
     Controller,
-    /// F
+    /// Prefilter F.
     Prefilter,
 }
 
 impl Shaped {
-    /// The table of the project file.
+    /// Name of the table in the project file.
     pub fn table(self) -> &'static str {
         match self {
             Shaped::Controller => "controller",
@@ -51,13 +51,13 @@ impl Shaped {
 /// Reason why a controller cannot be shaped.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ShapingError {
-    /// A change that cannot be made.
+    /// A change cannot be made.
     #[error(transparent)]
     Change(#[from] Box<RefusedChange>),
-    /// Elements that the reader of projects refuses, each with its place.
+    /// The reader of projects rejects elements, each with its place.
     #[error("{0}")]
     Refused(Refusal),
-    /// A prefilter without a loop.
+    /// A prefilter is shaped without a loop.
     #[error("the project gives no [controller]: shape it first, the prefilter stands in front of its loop")]
     NoController,
     /// The controller is that of a position.
@@ -69,7 +69,7 @@ pub enum ShapingError {
     /// The file cannot be rewritten.
     #[error(transparent)]
     Rewrite(RewriteError),
-    /// A file that would not read back as the intended elements.
+    /// The file would not read back as the intended elements.
     #[error("the project file cannot be rewritten: it would not read back as these elements")]
     NotWritten,
     /// The controller, prefilter or sensor is not a transfer function.
@@ -84,7 +84,7 @@ pub enum ShapingError {
     /// Templates or bounds cannot be computed.
     #[error(transparent)]
     Bounds(BoundsError),
-    /// The watch stopped it.
+    /// The progress callback cancelled the computation.
     #[error(transparent)]
     Stopped(#[from] Stopped),
 }
@@ -110,21 +110,21 @@ impl From<BoundsError> for ShapingError {
 /// A project with its elements changed, and the margins of every plant.
 #[derive(Clone, Debug)]
 pub struct ProjectShaping {
-    /// What was shaped.
+    /// Object of the shaping.
     pub shaped: Shaped,
-    /// How many changes were made.
+    /// Number of changes.
     pub changes: usize,
     /// The elements, including disabled ones.
     pub elements: Vec<DeclaredElement>,
     /// The problem with these elements in its loop.
     pub problem: RobustProblem,
-    /// What the numbers of a plant are called.
+    /// Names of the parameters of a plant.
     pub names: PlantNames,
-    /// Whether every plant is stable.
+    /// Stability of every plant.
     pub stability: StabilityFinding,
-    /// At the design frequencies, the worst first.
+    /// Margins at the design frequencies, the worst first.
     pub margins: Vec<DesignMargin>,
-    /// The nominal loop at the design frequencies.
+    /// Nominal loop at the design frequencies.
     pub points: Vec<DesignPoint>,
     /// Design frequencies that a measurement does not reach, rad/s.
     pub unreached_rad_per_s: Vec<f64>,
@@ -135,7 +135,7 @@ pub struct ProjectShaping {
 /// Makes the changes in order, and judges the result.
 ///
 /// # Errors
-/// [`ShapingError`], for a change that cannot be made among others.
+/// [`ShapingError`], for example for a change that cannot be made.
 pub fn shape(
     source: &dyn Source,
     loaded: &Loaded,
@@ -150,7 +150,7 @@ pub fn shape(
     if shaped == Shaped::Controller && is_of_position(&loaded.project) {
         return Err(ShapingError::Admittance);
     }
-    // without the elements, since the original ones may be such that they cannot be sampled
+    // without the elements, since the original ones may make sampling impossible
     let bare = workpiece::with_elements(&loaded.project, shaped, &[]);
     let bare = Setup::new(&bare)?;
     let mut workpiece = Workpiece::new(&loaded.project, &bare.timing, shaped)?;
@@ -181,7 +181,8 @@ pub fn shape(
     })
 }
 
-/// Templates and bounds at the design frequencies, and those that the family does not reach.
+/// Templates and bounds at the design frequencies, and the frequencies that the family does not
+/// reach.
 fn chart(problem: &RobustProblem, watch: Watch<'_>) -> Result<(DesignChart, Vec<f64>), ShapingError> {
     let frequencies = problem.design_frequencies();
     let options = TemplateOptions::default();
@@ -204,8 +205,8 @@ fn chart(problem: &RobustProblem, watch: Watch<'_>) -> Result<(DesignChart, Vec<
     Ok((chart, unreached))
 }
 
-/// The value at a frequency of what is shaped: the nominal loop L0, or the prefilter F. `None`
-/// where it is not known.
+/// Value of the shaped object at a frequency: the nominal loop L0, or the prefilter F. `None` if it
+/// is not known.
 fn present(
     workpiece: &Workpiece<'_>,
     bare: &RobustProblem,

@@ -8,17 +8,17 @@ use std::time::Duration;
 use phea_dynamics::pieces::{WorkPiece, Workers};
 use phea_dynamics::watch::{Progress, Stopped, Watch, tell, unwatched, within};
 
-/// How often the watch is told while pieces of work go on.
+/// Interval between calls of `watch` while pieces of work are in progress.
 const ROUND: Duration = Duration::from_millis(20);
-/// The same while the calling thread has nothing to do but wait for another one.
+/// Interval between calls of `watch` while another thread works and the calling thread is idle.
 const WAITING: Duration = Duration::from_millis(2);
 
-/// The results of `count` pieces of work in their order, worked on by as many threads as there are
-/// cores; by this one alone where there is one core. The pieces take their index and a watch that
-/// answers `false` once this one did, and give no result then.
+/// Results of `count` pieces of work in their order, computed by as many threads as there are
+/// cores; by the calling thread if there is one core. The pieces receive their index and a watch
+/// that returns `false` once this one has; they give no result then.
 ///
 /// # Errors
-/// [`Stopped`] where the watch answers `false`, or a piece gives no result.
+/// [`Stopped`] if `watch` returns `false`, or a piece gives no result.
 ///
 /// # Example
 /// ```
@@ -49,11 +49,11 @@ pub fn side_by_side<T: Send>(
 /// The result for each item in its order, computed on all cores.
 pub(crate) fn of_each<One: Sync, Found: Send>(all: &[One], of: impl Fn(&One) -> Found + Sync) -> Vec<Found> {
     let found = side_by_side(all.len(), "", &mut unwatched, |index, _| all.get(index).map(&of));
-    // nothing stops it
+    // this watch never cancels
     found.unwrap_or_default()
 }
 
-/// As many threads as there are cores; the calling thread where there is one core.
+/// As many threads as cores; the calling thread if there is one core.
 pub fn all_cores() -> Workers {
     match std::thread::available_parallelism().map_or(1, usize::from) {
         0 | 1 => Workers::CALLER,
@@ -80,7 +80,7 @@ fn on_all_cores(pieces: Vec<WorkPiece<'_>>, stage: &'static str, watch: Watch<'_
                 while goes_on.load(Ordering::Relaxed)
                     && let Some(piece) = next()
                 {
-                    // where no one receives, the work was stopped
+                    // without a receiver, the work was cancelled
                     if sender.send(piece(&mut told)).is_err() {
                         return;
                     }
@@ -94,7 +94,7 @@ fn on_all_cores(pieces: Vec<WorkPiece<'_>>, stage: &'static str, watch: Watch<'_
     })
 }
 
-/// Pieces as long as there are any, then the end of those of the other threads.
+/// Takes pieces until none remain, then receives the ends of those of the other threads.
 fn own_pieces<'p>(
     next: &dyn Fn() -> Option<WorkPiece<'p>>,
     others: &Receiver<Result<(), Stopped>>,
@@ -121,12 +121,12 @@ fn own_pieces<'p>(
     }
 }
 
-/// The result of work that may not ask its watch for long, on a thread of its own where there is
-/// more than one core: the calling thread asks instead. Work that is stopped is left behind; it
-/// ends where it asks next, or with the program.
+/// Result of work that may run for long without calling its watch, on a separate thread if there is
+/// more than one core: the calling thread calls the watch instead. Cancelled work is abandoned; it
+/// ends at its next call of the watch, or with the program.
 ///
 /// # Errors
-/// [`Stopped`] where the watch answers `false`.
+/// [`Stopped`] if `watch` returns `false`.
 pub(crate) fn left_behind<T: Send + 'static>(
     watch: Watch<'_>,
     stage: &'static str,
@@ -144,7 +144,7 @@ pub(crate) fn left_behind<T: Send + 'static>(
             share.store(progress.share.to_bits(), Ordering::Relaxed);
             goes_on.load(Ordering::Relaxed)
         });
-        // where no one receives, the work was stopped
+        // without a receiver, the work was cancelled
         let _ = sender.send(found);
     });
     let (goes_on, share) = &*shared;
@@ -156,16 +156,16 @@ pub(crate) fn left_behind<T: Send + 'static>(
         match receiver.recv_timeout(ROUND) {
             Ok(found) => return found,
             Err(RecvTimeoutError::Timeout) => {}
-            // the work panicked, and has reported it
+            // the work panicked and has printed its message
             Err(RecvTimeoutError::Disconnected) => return Err(Stopped),
         }
     }
 }
 
-/// The results of two pieces of work: of `first`, on a thread of its own where there is more than
-/// one core, and of `second`, whose progress is reported meanwhile, and then the stage of the first
-/// as long as it is waited for. The first has this fraction of the progress where it has to be done
-/// before.
+/// Results of two pieces of work: `first`, on a separate thread if there is more than one core, and
+/// `second`, whose progress is reported meanwhile; then the stage of `first` is reported until it
+/// ends. Without a separate thread, `first` runs before `second` and has this fraction of the
+/// progress.
 pub(crate) fn both<A: Send, B>(
     watch: Watch<'_>,
     fraction: f64,
@@ -194,7 +194,7 @@ pub(crate) fn both<A: Send, B>(
         };
         let second = second(&mut within(&mut told, [fraction, 1.0]));
         while !beside.is_finished() {
-            // a piece that asked nothing so far would not hear of a stop either
+            // a piece that has not called its watch yet would not notice a cancellation either
             let stage = *of_first();
             if let Some(stage) = stage {
                 goes_on.fetch_and(watch(Progress { stage, share }), Ordering::Relaxed);
@@ -225,12 +225,12 @@ mod tests {
         assert_eq!(found, Ok((0..8).collect()));
     }
 
-    /// Work that never asks its watch does not keep the caller from stopping.
+    /// Work that never calls its watch does not prevent cancellation by the caller.
     #[test]
     fn work_that_does_not_ask_is_left_behind() {
         let (release, wait) = channel::<()>();
         let work = move |_: Watch<'_>| {
-            // as long as the other end is there
+            // as long as the other end exists
             let _ = wait.recv();
             Ok(1)
         };
@@ -242,7 +242,7 @@ mod tests {
         assert_eq!(left_behind(&mut |_| true, "", |_| Ok(2)), Ok(2));
     }
 
-    /// Waiting for the first piece is reported by its own stage.
+    /// The stage of the first piece is reported while it is pending.
     #[test]
     fn what_is_waited_for_is_named() {
         let mut seen = vec![];
@@ -259,8 +259,8 @@ mod tests {
         assert!(seen.len() >= 3 && seen.iter().all(|stage| *stage == "first"), "{seen:?}");
     }
 
-    /// The first piece hears of the stop that the watch of the second one answers, and both give
-    /// what they have.
+    /// Cancellation by the watch of the second piece reaches the first piece, and both return their
+    /// results.
     #[test]
     fn a_stop_reaches_both() {
         let begun = AtomicBool::new(false);
@@ -276,7 +276,7 @@ mod tests {
             shares.push(progress.share);
             shares.len() < 3
         };
-        // on one core the first is stopped before the second begins
+        // on one core the first piece is cancelled before the second begins
         let second = |watch: Watch<'_>| {
             while all_cores().at_once > 1 && !begun.load(Ordering::Relaxed) {
                 std::thread::sleep(Duration::from_millis(1));
@@ -288,8 +288,8 @@ mod tests {
         assert!(shares.is_sorted());
     }
 
-    /// Pieces that look at their watch end soon after it is stopped, those behind them do not
-    /// begin, and progress never falls.
+    /// Pieces that call their watch end soon after cancellation, later ones do not begin, and
+    /// progress never decreases.
     #[test]
     fn the_watch_stops_all_pieces() {
         let begun = AtomicUsize::new(0);

@@ -1,4 +1,4 @@
-//! The nonlinear model under its controller, driven through the scenarios of a project.
+//! Simulation of the nonlinear model under its controller, through the scenarios of a project.
 
 mod adjusted;
 mod bench;
@@ -114,12 +114,12 @@ pub enum SimulateError {
     /// The controller is not a transfer function.
     #[error(transparent)]
     Control(#[from] ControlError),
-    /// There is nothing to simulate.
+    /// The project has no scenario.
     #[error(
         "there is nothing to simulate: the project has no [[scenario]]: add one, such as `name = \"step\"`, `duration = \"2 s\"` and `reference = {{ at = \"1 s\", force = \"1 kN\" }}`"
     )]
     NoScenario,
-    /// Nobody commands the valve.
+    /// The valve has no command.
     #[error(
         "nothing commands the valve: [controller] gives no transfer function, and a scenario states no `command`: add a [controller], such as `numerator = \"2e-4 s + 3e-3\"` and `denominator = \"s\"`, or drive open loop with `command = {{ at = \"1 s\", voltage = \"1 V\" }}` in the scenario"
     )]
@@ -133,24 +133,24 @@ pub enum SimulateError {
     /// The linear loop cannot be closed.
     #[error("the linear loop: {0}")]
     LinearLoop(#[from] LoopError),
-    /// A load in front of a wall without a mass.
+    /// The load is in front of a wall but has no mass.
     #[error(
         "[load] model \"wall\" is simulated with the `mass` of what moves beyond the {}: none is stated",
         .0.words().load_cell
     )]
     LoadMass(MotionKind),
-    /// A line that its model cannot describe.
+    /// The model of a line cannot describe it.
     #[error("[line] model: {0}")]
     Line(#[from] LineError),
     /// The machine is impossible.
     #[error("{0}")]
     Machine(OfMotion<MachineError>),
-    /// A scenario does not begin.
+    /// A scenario cannot start.
     #[error("scenario \"{name}\": {error}")]
     Start {
         /// Name of the scenario.
         name: String,
-        /// What is wrong with its start.
+        /// Fault of its start.
         error: OfMotion<MachineError>,
     },
     /// There is no operating point from which to search for an equilibrium.
@@ -161,7 +161,7 @@ pub enum SimulateError {
     Equilibrium {
         /// Name of the scenario.
         name: String,
-        /// Why not.
+        /// Reason why there is no operating point.
         error: OfMotion<OperatingPointError>,
     },
     /// There is no equilibrium to start from.
@@ -178,12 +178,13 @@ pub enum SimulateError {
         name: String,
         /// Reference at time zero, N.
         reference_n: f64,
-        /// What moves.
+        /// State that moves.
         what: MovingState,
-        /// 1/s.
+        /// Rate of its motion, 1/s.
         rate: f64,
     },
-    /// There is an equilibrium, but none with the piston where it is wanted behind a linkage.
+    /// There is an equilibrium, but none at which the piston of a linkage is at the required
+    /// position.
     #[error(
         "scenario \"{name}\" states no `start`, and no position of the joint was found at which the closed loop rests at its reference \
          of {} with the piston at {}: state the `start`",
@@ -209,9 +210,9 @@ pub enum SimulateError {
         name: String,
         /// Reference at time zero, N.
         reference_n: f64,
-        /// V.
+        /// Required command, V.
         command_v: f64,
-        /// V.
+        /// Limit of the command, V.
         limit_v: f64,
     },
     /// The search for an equilibrium does not fit the loop.
@@ -219,7 +220,7 @@ pub enum SimulateError {
     Rest {
         /// Name of the scenario.
         name: String,
-        /// What does not fit.
+        /// Mismatch of search and loop.
         error: EquilibriumError,
     },
     /// A reference or motion that is not a function of time.
@@ -227,13 +228,13 @@ pub enum SimulateError {
     Profile {
         /// Name of the scenario.
         name: String,
-        /// What is wrong with it.
+        /// Fault of the profile.
         error: ProfileError,
     },
     /// A file with a motion, a signal, a state or a measurement was rejected.
     #[error("{0}")]
     Motion(Box<Refusal>),
-    /// The setting of an accumulator leaves its way.
+    /// The setting of an accumulator leaves its range.
     #[error(
         "scenario \"{name}\": its `setting_change` brings the setting of an accumulator to {} at {}, and a setting stays from 0 to \
          1: it is `adjustment.setting` and the `change` of every signal that has begun, one of which must be smaller",
@@ -244,7 +245,7 @@ pub enum SimulateError {
         name: String,
         /// The setting, which is below 0 or above 1.
         setting: f64,
-        /// When, s.
+        /// Time, s.
         time_s: f64,
     },
     /// Start, input schedule or settings do not fit the machine.
@@ -252,7 +253,7 @@ pub enum SimulateError {
     Simulation {
         /// Name of the scenario.
         name: String,
-        /// What does not fit.
+        /// Mismatch of input and machine.
         error: SimulationError,
     },
     /// A table cannot be written.
@@ -261,7 +262,7 @@ pub enum SimulateError {
 }
 
 impl SimulateError {
-    /// The findings, if a file that the project names was rejected, with a place for each.
+    /// Findings for a file that the project names and that was rejected, each with its place.
     pub fn refusal(&self) -> Option<&Refusal> {
         match self {
             SimulateError::Motion(report) => Some(report),
@@ -270,8 +271,8 @@ impl SimulateError {
     }
 }
 
-/// Drives the machine of a project through each of its scenarios, in file order. If the watch
-/// answers `false`, the current scenario ends there with its results so far, and no later one
+/// Simulates the machine of a project through each of its scenarios, in file order. If `watch`
+/// returns `false`, the current scenario ends there with its results so far, and no later one
 /// begins.
 ///
 /// # Errors
@@ -285,27 +286,28 @@ pub fn simulate_project(
     simulate_into(source, setup, RunOutput::new(true, None), watch)
 }
 
-/// What runs leave in addition to their metrics and events.
+/// Output of runs in addition to their metrics and events.
 #[derive(Clone, Copy)]
 pub struct RunOutput<'a> {
-    /// Whether each keeps its samples in memory, for figures; without them its record is empty.
+    /// True if samples are stored in memory, for figures; otherwise the record is empty.
     pub samples: bool,
-    /// A table of each scenario, `SCENARIO.csv` or `SCENARIO.parquet`, its rows written as they are
-    /// computed: none is kept in memory, however many there are.
+    /// Table of each scenario, `SCENARIO.csv` or `SCENARIO.parquet`, whose rows are written as they
+    /// are computed: none is stored in memory, however many there are.
     pub table: Option<(&'a dyn Destination, TableFormat)>,
-    /// Whether each has its accounts of oil and energy, which cost about as much as its solution.
+    /// True if the balances of oil and energy are recorded, which costs about as much as the
+    /// solution.
     pub ledger: bool,
-    /// How closely steps are followed: as a whole, or as a campaign does, whose runs under a
+    /// Detail in which steps are evaluated: in full, or as in a campaign, whose runs under a
     /// sampled controller go from sample to sample by known matrices.
     pub attention: Attention,
-    /// Whether a run whose errors may be visible is [`repeated`].
+    /// True if a run whose errors may be visible is [`repeated`].
     pub repeats: bool,
-    /// True where the limits of lines are watched: their pressure, vacuum, flow and vapour.
+    /// True if the limits of lines are observed: their pressure, vacuum, flow and vapour.
     pub line_limits: bool,
 }
 
 impl<'a> RunOutput<'a> {
-    /// Samples, and a table where a destination is given.
+    /// Output of samples, and of a table if a destination is given.
     pub fn new(samples: bool, table: Option<(&'a dyn Destination, TableFormat)>) -> RunOutput<'a> {
         RunOutput {
             samples,
@@ -318,7 +320,7 @@ impl<'a> RunOutput<'a> {
     }
 }
 
-/// A scenario ready to be run, as often as needed.
+/// A scenario that is ready to be simulated, as often as needed.
 struct PreparedRun<'p> {
     scenario: &'p Scenario,
     bench: ControlledMachine,
@@ -326,7 +328,7 @@ struct PreparedRun<'p> {
     measured: Vec<measured::Measurement>,
 }
 
-/// All scenarios of a project.
+/// Prepares all scenarios of a project.
 fn prepared<'p>(source: &dyn Source, setup: &Setup<'p>) -> Result<Vec<PreparedRun<'p>>, SimulateError> {
     let project = setup.project;
     if project.scenarios.is_empty() {
@@ -344,7 +346,7 @@ fn prepared<'p>(source: &dyn Source, setup: &Setup<'p>) -> Result<Vec<PreparedRu
 /// The scenarios of a project for another solver.
 ///
 /// # Errors
-/// As [`simulate_project`].
+/// The errors of [`simulate_project`].
 pub fn scenario_problems(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -355,7 +357,7 @@ pub fn scenario_problems(
 }
 
 impl PreparedRun<'_> {
-    /// One pass, its rows in a table of this name.
+    /// Makes one pass, with its rows in a table of this name.
     fn pass<'t>(
         &self,
         plan: PassPlan,
@@ -368,12 +370,12 @@ impl PreparedRun<'_> {
     }
 }
 
-/// The same, with the output that is asked for: samples cost more than the solution of the
-/// equations. A run whose errors may be visible is [`repeated`]; its table is that of the last
-/// pass.
+/// Simulates the machine of a project with the requested output: samples cost more than the
+/// solution of the equations. A run whose errors may be visible is [`repeated`]; its table is that
+/// of the last pass.
 ///
 /// # Errors
-/// As [`simulate_project`], and [`SimulateError::Write`].
+/// The errors of [`simulate_project`], and [`SimulateError::Write`].
 pub fn simulate_into(
     source: &dyn Source,
     setup: &Setup<'_>,

@@ -2,8 +2,8 @@
 //! whole catalogue.
 //!
 //! A first-order force response with time constant tau_d under a proportional gain K_p requires one
-//! hydraulic stiffness; a hose of bore D and length L_ho gives one. [`size`] walks both branches of
-//! the flowchart (by gain, by length) for every hose and for both stiffness models, and records
+//! hydraulic stiffness; a hose of bore D and length L_ho gives one. [`size`] follows both branches
+//! of the flowchart (by gain, by length) for every hose and for both stiffness models, and records
 //! each decision with its numbers.
 
 mod bore;
@@ -35,14 +35,14 @@ use phea_hydraulics::stiffness::StiffnessModel;
 
 use crate::rig::LargestFlow;
 
-/// The question that is asked about every hose.
+/// Question that is resolved for every hose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Question {
-    /// Both branches: the gain is searched for, and the stock length is tried.
+    /// Both branches: the gain is searched for, and the stock length is evaluated.
     Both,
-    /// Which length does this gain need? K_p in V/N.
+    /// Length for this gain K_p, V/N.
     Gain(f64),
-    /// Which gain does this length need? Length of each line in m.
+    /// Gain for this length of each line, m.
     Length(f64),
 }
 
@@ -51,13 +51,13 @@ pub enum Question {
 pub struct Sizing {
     /// Every bore considered, with its oil velocity.
     pub bores: Vec<CommercialBore>,
-    /// The largest flows of the lines, and what limits them.
+    /// Largest flows of the lines, and their limitation.
     pub flow: LargestFlow,
     /// Bores from equation 6.17 at the highest and at the lowest recommended velocity, m.
     pub bore_range_m: [f64; 2],
     /// Gain at which equation 6.16 requires an infinitely stiff transmission, V/N.
     pub pole_gain_v_per_n: f64,
-    /// The load that the time constant is of.
+    /// Load for the time constant.
     pub load: SizedLoad,
     /// The stiffness model of the project.
     pub model: StiffnessModel,
@@ -68,7 +68,7 @@ pub struct Sizing {
     pub decisions: Vec<SizingStep>,
     /// Influence of the uncertainties on the best candidate of the project's stiffness model.
     pub influences: Vec<Influence>,
-    /// The same stiffness by other means; `None` where nobody asks, and without an accepted hose.
+    /// Other means with equal stiffness; `None` if not requested, and without an accepted hose.
     pub other_means: Option<OtherMeans>,
 }
 
@@ -88,7 +88,8 @@ pub fn size(problem: &SizingProblem, question: Question) -> Sizing {
             }
         }
     }
-    // Lengths that differ by the search's rounding are one length; ties keep the catalogue's order.
+    // Lengths that differ by the search's rounding are one length; ties are in the order of the
+    // catalogue.
     let micrometres = |candidate: &Candidate| (candidate.length_m() * 1e6).round();
     let other_model = |candidate: &Candidate| candidate.branch.model != problem.model;
     candidates.sort_by(|one, other| {
@@ -117,8 +118,8 @@ pub fn size(problem: &SizingProblem, question: Question) -> Sizing {
 }
 
 impl Sizing {
-    /// The answer: the first candidate of the project's own stiffness model that nothing rejects;
-    /// it is accepted where all that must be known of a hose is known of any that fits.
+    /// Result of the sizing: the first candidate of the project's stiffness model that nothing
+    /// rejects; it is accepted if all required data are known for any hose that fits.
     pub fn best(&self) -> Option<&Candidate> {
         self.best_of(self.model)
     }

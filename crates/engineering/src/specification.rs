@@ -1,4 +1,4 @@
-//! From the specifications of a project to those of robust design.
+//! Specifications of robust design from those of a project.
 
 mod kind;
 mod limit;
@@ -23,18 +23,18 @@ use crate::quantity::significant;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("[[specification]] {number}, `{key}`: {reason}")]
 pub struct SpecificationError {
-    /// Its number in the file, from 1.
+    /// Number in the file, from 1.
     pub number: usize,
-    /// `limit`, `upper` or `lower`.
+    /// Key: `limit`, `upper` or `lower`.
     pub key: &'static str,
-    /// What is wrong with it.
+    /// Fault of the specification.
     pub reason: SpecificationProblem,
 }
 
-/// What is wrong with a limit.
+/// Fault of a limit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SpecificationProblem {
-    /// It is not there.
+    /// The limit is missing.
     #[error("this kind of specification needs it")]
     Missing,
     /// The text is not a ratio of polynomials.
@@ -49,7 +49,7 @@ pub enum SpecificationProblem {
     /// No limit guarantees the margins.
     #[error(transparent)]
     Margin(#[from] MarginError),
-    /// The wish in time has no limit, or the limit no response to check.
+    /// The requirement in time has no limit, or the limit no response to check.
     #[error(transparent)]
     TimeDomain(#[from] TimeDomainError),
     /// The lower limit is above the upper one, so that no loop meets both.
@@ -59,44 +59,45 @@ pub enum SpecificationProblem {
         significant(*frequency_rad_per_s, 4), significant(*lower, 3), significant(*upper, 3)
     )]
     Crossed {
-        /// rad/s, where the lower one is the most above the other.
+        /// Frequency at which the lower limit is the most above the upper one, rad/s.
         frequency_rad_per_s: f64,
-        /// There.
+        /// Lower limit at this frequency.
         lower: f64,
-        /// There.
+        /// Upper limit at this frequency.
         upper: f64,
-        /// The frequencies around it at which they cross, rad/s, or the ends of the band.
+        /// Ends of the range around it in which they cross, rad/s, or ends of the band.
         span_rad_per_s: [f64; 2],
     },
-    /// Margins, which belong to another kind of specification.
+    /// Margins are stated, which belong to another kind of specification.
     #[error("this kind of specification does not take margins")]
     TakesNoMargins,
-    /// A requirement in time, which belongs to another kind of specification.
+    /// A requirement in time is stated, which belongs to another kind of specification.
     #[error("this kind of specification does not take a wish in time")]
     TakesNoWish,
 }
 
-/// A limit of tracking that was stated in time, and its own step response.
+/// A limit of tracking that was stated in time, and its step response.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CheckedWish {
     /// Number of the specification in the file, from 1.
     pub number: usize,
-    /// `upper` or `lower`.
+    /// Key: `upper` or `lower`.
     pub key: &'static str,
-    /// Wished and reached.
+    /// Required and reached values.
     pub check: WishCheck,
-    /// Whether the limit follows from the wish; otherwise it is stated, and only compared with it.
+    /// True if the limit follows from the requirement in time; otherwise it is stated, and only
+    /// compared with it.
     pub follows: bool,
 }
 
 impl CheckedWish {
-    /// Whether the limit meets the wish.
+    /// True if the limit meets the requirement in time.
     pub fn is_met(&self) -> bool {
         self.check.outcome() == WishOutcome::Met
     }
 }
 
-/// The limits of a project on closed loops, in file order.
+/// Limits of a project on closed loops, in file order.
 ///
 /// # Errors
 /// [`SpecificationError`] for a limit that is absent or not a function of frequency.
@@ -126,10 +127,11 @@ pub(crate) fn closed_loops(
     all.filter_map(|(index, declared)| Some((index + 1, declared.closed_loop()?, declared)))
 }
 
-/// Every limit of tracking that was stated in time, compared with its wish; in file order.
+/// Every limit of tracking that was stated in time, compared with its requirement; in file order.
 ///
 /// # Errors
-/// [`SpecificationError`] for a wish without a limit, or a limit whose step response has no end.
+/// [`SpecificationError`] for a requirement in time without a limit, or a limit whose step response
+/// has no end.
 ///
 /// # Example
 /// The thesis' upper limit (6.28), given directly, and its intended response:
@@ -166,7 +168,7 @@ pub fn wishes(project: &Project) -> Result<Vec<CheckedWish>, SpecificationError>
     Ok(checked)
 }
 
-/// The limit that a declared specification makes, with its number for messages.
+/// Limit that a declared specification makes, with its number for messages.
 pub(crate) fn specification(
     declared: &project::DeclaredSpecification,
     kind: ClosedLoop,
@@ -194,7 +196,7 @@ pub(crate) fn specification(
     })
 }
 
-/// The first specification whose lower limit is above its upper one: no loop meets it.
+/// First specification whose lower limit is above its upper one: no loop meets it.
 ///
 /// # Errors
 /// [`SpecificationError`] for a limit that is absent or not a function of frequency.
@@ -206,12 +208,13 @@ pub fn crossed_limits(project: &Project) -> Result<Option<SpecificationError>, S
     Ok(closed_loops(project).zip(&specifications(project)?).find_map(crossed))
 }
 
-/// How far the limits may cross, as a share: rounding.
+/// Relative crossing of the limits that counts as rounding.
 const ROUNDING: f64 = 1e-6;
-/// Frequencies of the band at which the limits are compared, in addition to those of the design.
+/// Number of frequencies of the band at which the limits are compared, in addition to those of the
+/// design.
 const COMPARED: usize = 200;
 
-/// The frequency at which the lower limit is the most above the upper one, if any.
+/// Frequency at which the lower limit is the most above the upper one, if they cross, rad/s.
 fn crossed(
     requirement: &Requirement,
     frequencies: &[f64],
@@ -234,7 +237,7 @@ fn crossed(
     })
 }
 
-/// The ends of the frequencies around this one at which limits cross, by halving between two of the
+/// Ends of the range around this frequency in which limits cross, by bisection between two of the
 /// compared ones.
 fn crossing_span(all: &[f64], inside: f64, crosses: &dyn Fn(f64) -> bool) -> [f64; 2] {
     let end = |mut others: Box<dyn Iterator<Item = f64> + '_>| {
@@ -258,7 +261,7 @@ fn crossing_span(all: &[f64], inside: f64, crosses: &dyn Fn(f64) -> bool) -> [f6
     [end(Box::new(below)), end(Box::new(above))]
 }
 
-/// Halvings that find where limits begin to cross.
+/// Number of bisections to find where limits begin to cross.
 const HALVINGS: usize = 40;
 
 /// Ends of the band over which limits are compared, rad/s.

@@ -1,14 +1,14 @@
-//! Tables of recorded numbers: text as loggers and spreadsheets write it, and Apache Parquet.
+//! Tables of recorded numbers: text from loggers and spreadsheets, and Apache Parquet.
 //!
 //! ```text
-//! bytes, what is sought -> MeasuredTable: headings, rows -> columns: which is what, in which unit -> numbers in SI
+//! bytes, required signals -> MeasuredTable: headings, rows -> columns: signals and units -> numbers in SI
 //! ```
 //!
-//! One reader for everything that was measured: static tests of a valve, frequency responses,
-//! signals of a scenario. In text the separator is found, and the row that names the columns,
-//! wherever it is; a unit stands in a heading or below it; a decimal sign is a point or a comma,
-//! one of them in a whole file. Rows without any value and rows that begin with `#` are not rows.
-//! Times are numbers, or stamps of a clock, which are read as seconds since the first one.
+//! One reader for everything that is measured: static tests of a valve, frequency responses,
+//! signals of a scenario. In text, the reader finds the separator and the row that names the
+//! columns, wherever it is; a unit is in a heading or below it; a decimal sign is a point or a
+//! comma, one of them in a whole file. Rows without any value and rows that begin with `#` are
+//! ignored. Times are numbers, or stamps of a clock, which are read as seconds since the first one.
 
 mod cell;
 mod clock;
@@ -33,12 +33,12 @@ use self::parquet::ParquetRows;
 use self::text::TextRows;
 use crate::project::{Findings, Place, RawFinding};
 
-/// Headings and the rows below them. Its text is held by the findings that it was read with.
+/// Headings and the rows below them. The text belongs to the findings with which it was read.
 pub struct MeasuredTable {
-    /// What is above each column.
+    /// Heading of each column.
     pub headings: Vec<Heading>,
     rows: TableRows,
-    /// Rows below the headings that hold no number and no unit.
+    /// Rows below the headings that contain no number and no unit.
     left_out: Vec<Place>,
 }
 
@@ -47,33 +47,34 @@ enum TableRows {
     Parquet(ParquetRows),
 }
 
-/// What stands above a column.
+/// Heading of a column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Heading {
-    /// As written.
+    /// Text as written.
     pub text: String,
-    /// Where.
+    /// Place in the file.
     pub place: Place,
-    /// What the row of units, or the type of the column, says.
+    /// Unit from the row of units, or from the type of the column.
     unit: Option<String>,
 }
 
-/// The numbers of columns, row by row.
+/// Numbers of columns, row by row.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ColumnNumbers {
-    /// SI, for each column; NaN in a gap, and where an error was found.
+    /// Values of each column, SI; NaN in a gap, and at an error.
     pub columns: Vec<Vec<f64>>,
     /// Rows without a value, for each column: empty, or a word such as `NaN`.
     pub gaps: Vec<Vec<usize>>,
-    /// The last row, where it has fewer values than there are columns; it is in none of them.
+    /// Index of the last row, if it has fewer values than there are columns; its values are
+    /// omitted.
     pub cut_off: Option<usize>,
 }
 
 impl MeasuredTable {
-    /// Takes a file in. `separator` is that of a text; absent, it is found.
+    /// Reads a file. `separator` is that of a text; absent, it is found.
     ///
     /// # Errors
-    /// `None` for what is not a table, with the reason among the findings.
+    /// `None` for a file that is not a table, with the reason among the findings.
     pub fn read(
         file: &str,
         bytes: Vec<u8>,
@@ -97,7 +98,7 @@ impl MeasuredTable {
         Some(MeasuredTable { headings, rows: TableRows::Text(rows), left_out })
     }
 
-    /// How many rows there are.
+    /// Number of rows.
     pub fn rows(&self) -> usize {
         match &self.rows {
             TableRows::Text(rows) => rows.count(),
@@ -105,20 +106,20 @@ impl MeasuredTable {
         }
     }
 
-    /// Rows below the headings that hold neither numbers nor units.
+    /// Rows below the headings that contain neither numbers nor units.
     pub fn left_out(&self) -> &[Place] {
         &self.left_out
     }
 
-    /// Where the columns are named.
+    /// Place of the row that names the columns.
     pub(crate) fn header_place(&self) -> Place {
         let ends = self.headings.first().zip(self.headings.last());
         ends.map_or(Place::default(), |(first, last)| Place { end: last.place.end, ..first.place })
     }
 
-    /// The numbers of these columns, with the opposite sign where a column is reversed. What is not
-    /// a number is an error, and a row with more or fewer values than there are columns; gaps and a
-    /// last row that was cut off are reported in the result.
+    /// Numbers of these columns, with the opposite sign if a column is reversed. Text that is not a
+    /// number is an error, and so is a row with more or fewer values than there are columns; gaps
+    /// and an incomplete last row are reported in the result.
     pub fn numbers(&self, columns: &[&Column], findings: &mut Findings) -> ColumnNumbers {
         let mut numbers = match &self.rows {
             TableRows::Text(rows) => {
@@ -135,8 +136,8 @@ impl MeasuredTable {
         numbers
     }
 
-    /// The same where nothing may be missing: gaps, a last row that was cut off and rows that hold
-    /// no number are errors too, each with NaN among the numbers.
+    /// Numbers of these columns, where nothing may be missing: gaps, an incomplete last row and
+    /// rows without a number are errors too, each with NaN among the numbers.
     pub(crate) fn all_numbers(&self, columns: &[&Column], findings: &mut Findings) -> Vec<Vec<f64>> {
         for place in &self.left_out {
             findings.push(
@@ -191,14 +192,14 @@ impl MeasuredTable {
         RawFinding::warning(place, format!("{message}: {}", self.names_of(rows, findings)))
     }
 
-    /// What is written there; empty in Parquet.
+    /// Text of a cell; empty in Parquet.
     pub fn cell<'f>(&self, row: usize, column: &Column, findings: &'f Findings) -> &'f str {
         let TableRows::Text(rows) = &self.rows else { return "" };
         let place = rows.place(findings.content(rows.text), row, column.index);
         findings.content(rows.text).get(place.start..place.end).unwrap_or_default()
     }
 
-    /// Whether the first value of a column is a stamp of a clock.
+    /// True if the first value of a column is a stamp of a clock.
     fn is_clock(&self, index: usize, findings: &Findings) -> bool {
         let TableRows::Text(rows) = &self.rows else { return false };
         let content = findings.content(rows.text);
@@ -207,12 +208,12 @@ impl MeasuredTable {
         clock::ClockStamp::read(first).is_some()
     }
 
-    /// The heading of a column, as written.
+    /// Heading of a column, as written.
     pub fn heading(&self, column: &Column) -> &str {
         self.headings.get(column.index).map_or("", |heading| &heading.text)
     }
 
-    /// Gives the memory of the text back, unless something was found in it: nothing more will be.
+    /// Releases the memory of the text, unless it has findings: no further ones will follow.
     pub fn close(self, findings: &mut Findings) {
         if let TableRows::Text(rows) = &self.rows {
             findings.release(rows.text);
@@ -228,7 +229,7 @@ impl MeasuredTable {
         }
     }
 
-    /// The rows as an editor counts them, runs of them shortened.
+    /// Row numbers as in an editor, consecutive ones shortened.
     fn names_of(&self, rows: &[usize], findings: &Findings) -> String {
         let number = |row: usize| match &self.rows {
             TableRows::Text(text) => text.line(findings.content(text.text), row),
@@ -255,5 +256,5 @@ impl MeasuredTable {
     }
 }
 
-/// Runs of rows that a sentence names.
+/// Largest number of consecutive ranges of rows in a message.
 const MOST_LISTED: usize = 8;

@@ -1,25 +1,25 @@
-//! Whether one signal of a recording rises or falls with another.
+//! Tendency of one signal of a recording to rise or fall with another.
 
 /// Correlation of two signals of a recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Tendency {
     /// Correlation coefficient r, from -1 to 1.
     pub(crate) correlation: f64,
-    /// Rows in which both were recorded.
+    /// Number of rows in which both were recorded.
     pub(crate) rows: usize,
 }
 
-/// The least |r| that is a tendency.
+/// Least |r| of a tendency.
 const LEAST: f64 = 0.1;
-/// The least |t| of r, in standard deviations.
+/// Least |t| of r, in standard deviations.
 const SIGNIFICANT: f64 = 5.0;
-/// Fewest rows.
+/// Fewest rows of a tendency.
 const FEWEST_ROWS: usize = 10;
-/// The least fraction of a signal's variance that is not a straight line over time.
+/// Least fraction of a signal's variance that deviates from a straight line over time.
 const NOT_STRAIGHT: f64 = 0.05;
 
 impl Tendency {
-    /// Of two signals as they are. `None` where one of them does not move, or in too few rows.
+    /// Tendency of two unmodified signals. `None` if one of them does not move, or in too few rows.
     pub(crate) fn of(one: &[f64], other: &[f64]) -> Option<Tendency> {
         let both = recorded(one, other);
         let rows = both.len();
@@ -27,7 +27,7 @@ impl Tendency {
         Tendency::about(&both, [mean(0), mean(1)])
     }
 
-    /// The same about zero instead of the means, for signals whose zero is known.
+    /// Tendency about zero instead of the means, for signals whose zero is known.
     pub(crate) fn about_zero(one: &[f64], other: &[f64]) -> Option<Tendency> {
         Tendency::about(&recorded(one, other), [0.0, 0.0])
     }
@@ -44,14 +44,14 @@ impl Tendency {
         (rows >= FEWEST_ROWS && correlation.is_finite()).then_some(Tendency { correlation, rows })
     }
 
-    /// The partial correlation, from which a drift of both that is a straight line over time is
+    /// Partial correlation, from which a drift of both that is a straight line over time is
     /// removed:
     ///
     /// ```text
     /// r = (r_xy - r_xt r_yt)/sqrt((1 - r_xt^2) (1 - r_yt^2))
     /// ```
     ///
-    /// `None` where a signal is little else than such a line.
+    /// `None` if a signal is little else than such a line.
     pub(crate) fn without_drift(one: &[f64], other: &[f64], times: &[f64]) -> Option<Tendency> {
         let both = Tendency::of(one, other)?;
         let [one, other] = [one, other].map(|signal| Tendency::of(signal, times));
@@ -62,24 +62,24 @@ impl Tendency {
         (!is_straight).then_some(Tendency { correlation: correlation.clamp(-1.0, 1.0), ..both })
     }
 
-    /// Standard deviations by which r differs from zero.
+    /// Number of standard deviations by which r differs from zero.
     fn significance(&self) -> f64 {
         let r = self.correlation;
         r * (self.rows.saturating_sub(2) as f64 / (1.0 - r * r).max(f64::EPSILON)).sqrt()
     }
 
-    /// One falls while the other rises, beyond doubt.
+    /// True if one signal falls while the other rises, beyond doubt.
     pub(crate) fn is_opposite(&self) -> bool {
         self.correlation < -LEAST && self.significance() < -SIGNIFICANT
     }
 
-    /// Both rise together, beyond doubt.
+    /// True if both rise together, beyond doubt.
     pub(crate) fn is_alike(&self) -> bool {
         self.correlation > LEAST && self.significance() > SIGNIFICANT
     }
 }
 
-/// The rows in which both signals have a value.
+/// Rows in which both signals have a value.
 fn recorded(one: &[f64], other: &[f64]) -> Vec<[f64; 2]> {
     let both = one.iter().zip(other).map(|(one, other)| [*one, *other]);
     both.filter(|pair| pair.iter().all(|value| value.is_finite())).collect()

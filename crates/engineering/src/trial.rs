@@ -1,9 +1,9 @@
-//! The verdict tried on the machine: the nonlinear rig under the controller as it is deployed,
-//! compared with what the linear loop predicts.
+//! Test of the verdict on the machine: the nonlinear rig under the deployed controller, compared
+//! with the prediction of the linear loop.
 //!
 //! ```text
 //! project, audit -> rigs::rigs -> Tried { project, plant } -> TriedMachine::driven, the first steps and the largest -> judge -> Run { linear, machine, agreement, reason } -> answer
-//! all satisfy what is required -> corners of the box and plants inside -> the worst of them
+//! all satisfy the requirements -> corners of the box and plants inside -> the worst of them
 //! ```
 
 mod corners;
@@ -43,10 +43,10 @@ use phea_dynamics::linear::LinearError;
 use phea_dynamics::time_response::TimeResponseError;
 use phea_dynamics::watch::{Stopped, Watch, within};
 
-/// Reason why a verdict cannot be tried on the machine.
+/// Reason why a verdict cannot be tested on the machine.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TrialError {
-    /// The rig cannot be computed with.
+    /// The rig cannot be computed.
     #[error(transparent)]
     Rig(#[from] RigError),
     /// The controller, prefilter or sensor is not a transfer function.
@@ -58,87 +58,87 @@ pub enum TrialError {
     /// The step response of the linear loop cannot be measured.
     #[error("a response: {0}")]
     Time(#[from] TimeResponseError),
-    /// The watch stopped it.
+    /// The progress callback cancelled the trial.
     #[error(transparent)]
     Stopped(#[from] Stopped),
 }
 
-/// What the corners of the box and the plants inside take of a trial, in rigs.
+/// Work for the corners of the box and the plants inside, in multiples of the work for one rig.
 const CORNERS_SHARE: f64 = 4.0;
-/// The stage of a trial, for the watch.
+/// Name of the stage in progress reports.
 const STAGE: &str = "nonlinear simulation";
 
-/// Every run, in the order in which they were driven: the rig as it is declared first.
+/// All runs, in the order in which they were simulated: the rig as declared first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trial {
-    /// At least one.
+    /// Runs, at least one.
     pub runs: Vec<TrialRun>,
-    /// The runs of all corners of the box and plants inside that were driven, whose worst are among
-    /// `runs`.
+    /// Simulated runs of all corners of the box and plants inside, whose worst are among `runs`.
     pub corners: Vec<TrialRun>,
-    /// Plants for which no rig was found, and why, and steps that were left out.
+    /// Plants for which no rig was found, with the reason, and steps that were omitted.
     pub not_driven: Vec<NotDriven>,
 }
 
-/// When the corners of the box and the plants inside are driven.
+/// Condition for simulating the corners of the box and the plants inside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DrivenCorners {
-    /// Always: a search wants to know what the rig adds there.
+    /// Always: a search needs the contribution of the rig there.
     Always,
-    /// Only as long as all else satisfies what is required: a run that misses tells as much.
+    /// If everything else satisfies the requirements: a run that misses one gives as much
+    /// information.
     WhereElseSatisfies,
 }
 
-/// Ratio to what is required beyond which a step in a narrower band lacks room.
+/// Ratio to the required settling time beyond which a step in a narrower band lacks room.
 const LATE_WITHOUT_ROOM: f64 = 1.1;
 
 impl Trial {
-    /// Whether every run satisfies what is required of it in time; `None` where nothing is.
+    /// True if every run satisfies its requirements in time; `None` if nothing is required.
     pub fn satisfies(&self) -> Option<bool> {
         let required = self.runs.iter().any(|run| !run.requirements.is_empty());
         required.then(|| self.runs.iter().all(TrialRun::satisfies))
     }
 
-    /// Every run, those at the corners of the box and inside it too.
+    /// All runs, including those at the corners of the box and inside it.
     fn all(&self) -> impl Iterator<Item = &TrialRun> {
         self.runs.iter().chain(&self.corners)
     }
 
-    /// The greatest ratio of a run to what is required in time: at most 1 where all reach it, 0
-    /// without a run.
+    /// Largest ratio of a reached property to the required one in all runs: at most 1 if all
+    /// requirements in time are met, 0 without a run.
     pub(crate) fn worst_run(&self) -> f64 {
         self.all().map(TrialRun::excess).fold(0.0, f64::max)
     }
 
-    /// The same with room for the plants between those that were driven.
+    /// Largest such ratio with room for the plants between the simulated ones.
     pub(crate) fn worst_run_with_room(&self) -> f64 {
         self.all().map(TrialRun::excess_with_room).fold(0.0, f64::max)
     }
 
-    /// True where every run satisfies what is required in time, and one comes back so near to the
-    /// edge of its band that in nine tenths of it it is later than required by a tenth.
+    /// True if every run satisfies the requirements in time, but one swings back so near to the
+    /// edge of its band that in nine tenths of the band it settles later than required by a tenth.
     pub fn lacks_room(&self) -> bool {
         self.worst_run() <= 1.0 && self.worst_run_with_room() > LATE_WITHOUT_ROOM
     }
 
-    /// True where corners of the box were driven, and not through the largest step.
+    /// True if corners of the box were simulated, but not through the largest step.
     pub fn keeps_largest_from_corners(&self) -> bool {
         let has_largest = |runs: &[TrialRun]| runs.iter().any(|run| run.size == StepSize::Largest);
         !self.corners.is_empty() && has_largest(&self.runs) && !has_largest(&self.corners)
     }
 
-    /// The worst of all runs.
+    /// Worst agreement of all runs.
     pub fn agreement(&self) -> Agreement {
         self.runs.iter().map(|run| run.agreement).max().unwrap_or(Agreement::Agrees)
     }
 }
 
-/// Drives the machine of a project, whose controller is the one that was audited; `None` for a
-/// project without an actuator.
+/// Simulates the machine of a project, whose controller is the audited one; `None` for a project
+/// without an actuator.
 ///
 /// # Errors
-/// [`TrialError`] for a controller or a sensor that is not a transfer function, and where the
-/// watch stops it.
+/// [`TrialError`] for a controller or a sensor that is not a transfer function, and for
+/// cancellation by `watch`.
 pub fn tried(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -182,7 +182,7 @@ pub fn tried(
     Ok(Some(trial))
 }
 
-/// The steps of each rig; none for one that has the machine of the first, the rig as declared.
+/// Steps of each rig; empty for one whose machine is that of the first, the rig as declared.
 fn driven(
     source: &dyn Source,
     rigs: &[rigs::Tried],
@@ -199,8 +199,8 @@ fn driven(
     each.into_iter().collect()
 }
 
-/// The cause of a run with waves in its lines that does not agree: the same steps without the noise
-/// of the sensors, and with lumped lines, distinguish noise from waves.
+/// Cause of the disagreement of a run with waves in its lines: repeating the steps without the
+/// noise of the sensors, and with lumped lines, distinguishes noise from waves.
 fn cause(
     (source, [waves, declared]): (&dyn Source, [&rigs::Tried; 2]),
     (driven, run, runs): (&[DrivenSteps], &TrialRun, &[TrialRun]),

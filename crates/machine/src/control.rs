@@ -12,7 +12,7 @@ use phea_hydraulics::machine::{InitialCondition, Machine};
 /// Observer of a run.
 pub type Watcher<'a> = Box<dyn Observer + 'a>;
 
-/// Machine as it appears to the controller, with its source of commands.
+/// Machine as the plant of the controller, with its source of commands.
 pub type Commanded<S = f64> = CommandedPlant<Sensed<Machine<S>>>;
 
 /// Machine under its controller.
@@ -37,7 +37,7 @@ pub struct Sampled {
     pub delay_s: f64,
     /// Largest magnitude of the command, V.
     pub command_limit: f64,
-    /// Feed-forward gain from the load's velocity to the command, V s/m.
+    /// Feedforward gain from the load's velocity to the command, V s/m.
     pub feed_forward: f64,
     /// Converter of the command, if it is quantised.
     pub command_converter: Option<Converter>,
@@ -71,7 +71,7 @@ impl Control {
         }
     }
 
-    /// Plant as it appears to the controller.
+    /// Plant of the controller, including sensor and virtual impedance.
     pub fn sensed(&self) -> &Sensed<Machine> {
         self.commanded().plant()
     }
@@ -92,7 +92,7 @@ impl Control {
     }
 
     /// Sets the rest position of its virtual impedance to the position of the load in a state of
-    /// the loop, with the load's ground there, in m.
+    /// the loop, with the load's ground there, m.
     pub fn rest_at(&self, state: &mut [f64], ground_m: f64) {
         let sensed = self.sensed();
         let mut inputs = vec![0.0; Plant::<f64>::inputs(sensed)];
@@ -131,7 +131,7 @@ impl Control {
         System::<f64>::scales(self.commanded())
     }
 
-    /// Rates of all states, per second: for another solver of the same equations.
+    /// Time derivatives of all states, per second: for another solver of these equations.
     pub fn rates(&self, state: &[f64], inputs: &[f64], rates: &mut [f64]) {
         self.commanded().rates(state, inputs, rates);
     }
@@ -142,7 +142,7 @@ impl Control {
     }
 
     /// Indicators in a state: those of the machine are positive in ordinary operation, that of the
-    /// command's limit while it is reached.
+    /// command's limit is positive while the limit is reached.
     pub fn indicators(&self, state: &[f64], inputs: &[f64]) -> Vec<f64> {
         let system = self.commanded();
         let mut indicators = vec![1.0; System::<f64>::indicators(system)];
@@ -168,10 +168,10 @@ impl Control {
     }
 
     /// Simulates the loop under an input schedule; `watch` is called with the simulated time after
-    /// each step and stops the simulation by returning false.
+    /// each step and cancels the simulation by returning false.
     ///
     /// # Errors
-    /// [`SimulationError`] when start or input schedule do not fit the machine.
+    /// [`SimulationError`] if start or input schedule do not fit the machine.
     pub fn drive(
         &self,
         task: Task<'_, Watcher<'_>>,

@@ -83,7 +83,7 @@ impl<'a> Digital<'a> {
 }
 
 impl Digital<'_> {
-    /// Velocity of the load as it is fed forward, m/s.
+    /// Velocity of the load for the feedforward, m/s.
     fn velocity(&mut self, state: &[f64], inputs: &[f64]) -> f64 {
         let Sampled { held, velocity_noise, velocity_resolution, .. } = self.sampled;
         let states: usize = Plant::<f64>::states(held.plant());

@@ -13,7 +13,7 @@ pub(crate) struct FrozenSample<'a> {
     pub(crate) inputs: &'a [f64],
     /// State of the controller before the sample.
     pub(crate) memory: ControllerState,
-    /// Filtered reference and measurement in N, and inner signal in Pa.
+    /// Filtered reference and measurement, N, and inner signal, Pa.
     pub(crate) read: [f64; 3],
 }
 

@@ -13,7 +13,7 @@ use super::control::{Commanded, Control, Watcher};
 
 /// Source of machines, and destination of their outcomes.
 pub trait Fleet<'a> {
-    /// Next machine, put into its lane, with its task; `None` when there are no more.
+    /// Puts the next machine into its lane, and returns its task; `None` if there are no more.
     fn next(
         &mut self,
         lane: usize,
@@ -23,17 +23,17 @@ pub trait Fleet<'a> {
     /// Receives the outcome of the machine in this lane.
     fn done(&mut self, lane: usize, outcome: Outcome);
 
-    /// Called once per step; return `false` to cancel.
+    /// Progress callback, called once per step; return `false` to cancel.
     fn goes_on(&mut self) -> bool;
 }
 
 /// Simulates machines one by one until none remain. Simulations in lanes must agree with it.
 ///
 /// # Errors
-/// [`SimulationError`] when a task does not fit its machine.
+/// [`SimulationError`] if a task does not fit its machine.
 ///
 /// # Example
-/// Two machines that begin at rest stay at rest under the command that holds them:
+/// Two machines that begin at rest stay at rest under their holding command:
 /// ```
 /// # use phea_dynamics::linear::TransferFunction;
 /// use phea_dynamics::simulation::{
@@ -105,7 +105,7 @@ pub fn one_by_one<'a>(
 /// Motion of the load in a loop of its force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FedMotion {
-    /// Gain from the measured velocity to the command, V s/m; zero without feed-forward.
+    /// Gain from the measured velocity to the command, V s/m; zero without feedforward.
     pub gain: f64,
     /// Sensor of the velocity.
     pub sensor: RateSensor,
@@ -124,7 +124,7 @@ impl Lanewise {
     }
 
     /// Lanes of machines built like this one, with this sensor, under a controller with its
-    /// feed-forward of the load velocity and its virtual impedance, or without one under a stated
+    /// feedforward of the load velocity and its virtual impedance, or without one under a stated
     /// command.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! Equilibrium of a loop: all simulated rates are zero.
+//! Equilibrium of a loop: all simulated time derivatives are zero.
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{EquilibriumError, Plant, System, equilibrium};
@@ -26,7 +26,7 @@ pub struct Rest {
     pub start: Vec<f64>,
     /// Measurement of the controller, N.
     pub measured_n: f64,
-    /// Pressure signal that it may feed back, Pa.
+    /// Pressure signal that the controller may feed back, Pa.
     pub inner_pa: f64,
     /// Command of the controller, V.
     pub command_v: f64,
@@ -42,7 +42,7 @@ pub struct Rest {
 /// [`EquilibriumError`] if none is found.
 ///
 /// # Example
-/// With an integrating controller the loop rests at a force equal to its reference, 2 kN, instead
+/// The loop with an integrating controller rests at a force equal to its reference, 2 kN, instead
 /// of the 3 kN of the guess:
 /// ```
 /// # use phea_dynamics::controller::{Compensator, Controller, Element};
@@ -127,12 +127,12 @@ pub fn at_rest(
 /// 0 = G(1) (F(1) r - m) - H(1) p - u         if it does not
 /// ```
 ///
-/// Its last state is the command u.
+/// The last state is the command u.
 struct RestingMachine<'a> {
     held: &'a Commanded,
     /// Steady gains F(1) and G(1).
     gains: [Option<f64>; 2],
-    /// Steady gain H(1) of the pressures that are fed back.
+    /// Steady gain H(1) of the pressure feedback.
     inner_gain: f64,
 }
 

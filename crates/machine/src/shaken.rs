@@ -27,10 +27,10 @@ pub struct Shaken<'a> {
 
 impl Control {
     /// Response of the force on the load to a sine on an input; `watch` is called with the
-    /// simulated time and stops it by returning false.
+    /// simulated time and cancels the simulation by returning false.
     ///
     /// # Errors
-    /// [`SimulationError`] when start or inputs do not fit the machine.
+    /// [`SimulationError`] if start or inputs do not fit the machine.
     pub fn shaken(
         &self,
         shaken: Shaken<'_>,
@@ -53,7 +53,7 @@ impl Control {
 /// states.
 ///
 /// # Example
-/// At rest the force is that of the operating point; without a progressive spring, an amplitude j
+/// The force at rest is that of the operating point; without a progressive spring, an amplitude j
 /// times its state gives j times that force.
 /// ```
 /// # use num_complex::Complex64;

@@ -1,4 +1,4 @@
-//! The machine in motion, by the methods compiled for it in this crate.
+//! Tests of the machine in motion, by the methods compiled for it in this crate.
 #![cfg(test)]
 
 mod driven;

@@ -41,7 +41,7 @@ impl Observer for Recorder<'_> {
     }
 }
 
-/// Simulated machine from a state, followed by the waves in transit, under a command in V, with its
+/// Simulated machine from a state, followed by the waves in transit, under a command, V, with its
 /// ground moved.
 pub(crate) fn driven(
     machine: Machine,

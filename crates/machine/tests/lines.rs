@@ -1,5 +1,5 @@
-//! The machine with dynamic lines: their limits, and comparison with each other, by the production
-//! method.
+//! Tests of the machine with dynamic lines: their limits, and comparison with each other, by the
+//! production method.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -43,8 +43,8 @@ fn two_waves() -> DynamicLine {
     DynamicLine::TwoWave(hose.in_time(END_SHARE).unwrap())
 }
 
-/// Force in N every millisecond while the load moves smoothly by 2 mm, begun 20 ms after a rest at
-/// 2 kN.
+/// Force every millisecond, N, while the load moves smoothly by 2 mm, beginning 20 ms after a rest
+/// at 2 kN.
 fn forces(line: Option<DynamicLine>, motion_s: f64, duration_s: f64) -> Vec<f64> {
     let machine = machine(line);
     let point = operating_point(&actuator(), 0.2, Condition::Load(SteadyLoad::Force(2e3))).unwrap();
@@ -64,8 +64,8 @@ fn largest_difference(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// A single capacity at the valve, without segments, equals the lumped line, for any stiffness
-/// model of the chamber.
+/// A capacity without segments after the valve equals the lumped line, for any stiffness model of
+/// the chamber.
 #[test]
 fn one_capacity_is_the_lumped_line() {
     let compliance = hose_line().compliance(1.45e9, StiffeningMember::Nominal);
@@ -79,7 +79,7 @@ fn one_capacity_is_the_lumped_line() {
     assert_eq!(lumped.ledger(&state, &[0.31, 0.01]), capacity.ledger(&state, &[0.31, 0.01]));
 }
 
-/// Lines in slow motion act as their compliance; in fast motion they differ.
+/// Every line acts as its compliance in slow motion; in fast motion they differ.
 #[test]
 fn slow_motions_see_the_lumped_line() {
     let compare = |line: DynamicLine, motion_s: f64| {

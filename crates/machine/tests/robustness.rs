@@ -1,5 +1,5 @@
-//! Machines under extreme inputs, by the production method: they end where they should, or report
-//! the reason.
+//! Machines under extreme inputs, by the production method: they reach their expected end, or
+//! report the reason.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -18,8 +18,7 @@ use phea_hydraulics::stiffness::StiffnessModel;
 
 use crate::driven::{Driven, driven};
 
-/// Simulates the machine under an input schedule; its ground starts at the position stated by the
-/// start.
+/// Simulates the machine under an input schedule; its ground begins at the position in the start.
 fn drive(
     machine: Machine,
     start: &StartValues,
@@ -66,8 +65,8 @@ fn free_load() -> LoadModel {
     LoadModel::SpringMassDamper { mass: 5.0, stiffness: 0.0, damping: 300.0 }
 }
 
-/// Pressures of a machine that is shut for half a minute settle where leakage balances, without any
-/// other motion.
+/// A valve that is shut for half a minute: the pressures settle at the balance of leakage, without
+/// any other motion.
 #[test]
 fn a_shut_valve_settles() {
     let machine = machine_of(benchmark_components(), &MachineOptions::default());
@@ -82,8 +81,8 @@ fn a_shut_valve_settles() {
     assert!((before - last).abs() < 1e-4 * last && result.outcome.work.steps < 2000);
 }
 
-/// Motion of the load by 20 mm in 10 ms: chambers cavitate and are reported, not clamped, and the
-/// run ends in time.
+/// Motion into the end stop at full command: the full supply pressure holds the piston there, which
+/// is reported, and it returns.
 #[test]
 fn a_piston_meets_its_end_stops() {
     let options = MachineOptions { load: free_load(), ..MachineOptions::default() };
@@ -98,8 +97,8 @@ fn a_piston_meets_its_end_stops() {
     assert!(largest > 0.5 && largest < 0.501 && least < 0.0 && least > -0.001);
 }
 
-/// 20 mm of load in 10 ms: chambers cavitate and are reported, not clamped, and the run ends in
-/// time.
+/// A load motion of 20 mm in 10 ms: chambers cavitate and are reported, not clamped, and the run
+/// ends in time.
 #[test]
 fn violent_loads_are_survived() {
     let air = Some(EntrainedAir { volume_fraction: 0.01, polytropic_exponent: 1.4 });
@@ -158,8 +157,8 @@ fn lost_supplies_and_reversed_pressures_are_no_error() {
     assert!(taken[0] < 0.0 && taken[taken.len() - 1] > 0.0);
 }
 
-/// Walls hit at speed push and never pull, with every kind of friction and every imperfection of
-/// the spool.
+/// A wall hit at speed pushes and never pulls, with every kind of friction and every imperfection
+/// of the spool.
 #[test]
 fn walls_are_met_with_every_friction() {
     let Friction::LuGre(lugre) = benchmark_components().friction else { unreachable!() };

@@ -1,5 +1,6 @@
 //! The alternatives of a project as projects, ready to be judged: with their settings, with the
-//! hose that `[sizing]` finds where one asks for it, and with the ranges that follow their rig.
+//! hose that `[sizing]` finds if the alternative requests one, and with the ranges that follow
+//! their rig.
 
 use super::by_other_means::OtherPart;
 use super::error::{AlternativesError, NoHose, PrepareError};
@@ -18,15 +19,15 @@ use crate::source::Source;
 /// An alternative, ready to be judged.
 #[derive(Clone, Debug)]
 pub struct AskedAlternative {
-    /// Its name.
+    /// Name of the alternative.
     pub name: String,
-    /// The project with its settings, and with what was found for it.
+    /// The project with the settings of the alternative, and with the part that was found for it.
     pub loaded: Loaded,
     /// The rig of that project.
     pub rig: Result<Rig, RigError>,
-    /// Reason why `[sizing]` finds no hose, where it asks for one.
+    /// Reason why `[sizing]` finds no hose, if one is requested.
     pub no_hose: Option<NoHose>,
-    /// The ranges of `[uncertainty]` that were moved.
+    /// Ranges of `[uncertainty]` that were moved.
     pub moved: Vec<MovedRange>,
 }
 
@@ -36,7 +37,8 @@ impl AskedAlternative {
         AskedAlternative { name: name.to_string(), loaded, rig, no_hose, moved: vec![] }
     }
 
-    /// The same with a model for each line without a stated one, by its own loop and lengths.
+    /// The alternative with a model for each line without a stated one, by its own loop and
+    /// lengths.
     fn with_lines(self, source: &dyn Source) -> AskedAlternative {
         match with_chosen_lines(source, &self.loaded, LoopInQuestion::Designed) {
             Some(loaded) => AskedAlternative { rig: Setup::rig_of(&loaded.project), loaded, ..self },
@@ -44,8 +46,8 @@ impl AskedAlternative {
         }
     }
 
-    /// The parameters of its rig that lie outside of their ranges in `[uncertainty]`; `None` where
-    /// they are those of the project as it is declared, the first of all.
+    /// Parameters of the rig outside their ranges in `[uncertainty]`; `None` if they are those of
+    /// the project as declared, the first of all.
     pub fn outside(&self, all: &[AskedAlternative]) -> Option<Vec<OutsideParameter>> {
         let of = |one: &AskedAlternative| {
             let rig = one.rig.as_ref().ok()?;
@@ -54,7 +56,7 @@ impl AskedAlternative {
         of(self).filter(|own| all.first().and_then(of).as_ref() != Some(own))
     }
 
-    /// The same with its ranges moved from those of the rig of another project.
+    /// The alternative with its ranges moved from those of the rig of another project.
     ///
     /// # Errors
     /// [`AlternativesError`] for a range that cannot be moved.
@@ -70,7 +72,7 @@ impl AskedAlternative {
     }
 }
 
-/// Where a project is read again.
+/// Source and catalogue for reading a project again.
 #[derive(Clone, Copy)]
 pub(super) struct ReadingAgain<'a> {
     pub(super) source: &'a dyn Source,
@@ -78,7 +80,7 @@ pub(super) struct ReadingAgain<'a> {
 }
 
 impl ReadingAgain<'_> {
-    /// A project with further settings.
+    /// The project with further settings.
     pub(super) fn with(&self, loaded: &Loaded, further: &[String]) -> Result<Loaded, AlternativesError> {
         let settings = [loaded.all_settings().as_slice(), further].concat();
         project::read(self.source, &loaded.path, &settings, self.catalogues)
@@ -86,7 +88,7 @@ impl ReadingAgain<'_> {
     }
 }
 
-/// The project as it is declared, and its alternatives in file order.
+/// The project as declared, and its alternatives in file order.
 ///
 /// # Errors
 /// [`AlternativesError::Refused`] for an alternative that is not a valid project, or whose gas is
@@ -119,11 +121,11 @@ pub fn asked(
     Ok((found, counted))
 }
 
-/// What is counted of the parts of all of them.
+/// Attributes of parts that are counted in all alternatives.
 ///
 /// # Errors
-/// [`AlternativesError::Alternative`] for one whose prices are in another currency than those
-/// before it.
+/// [`AlternativesError::Alternative`] for an alternative whose prices are in another currency than
+/// those before it.
 fn counted(all: &[AskedAlternative]) -> Result<PartsCounted, AlternativesError> {
     let projects = |count: usize| all.iter().take(count).map(|one| &one.loaded.project);
     for (index, one) in all.iter().enumerate() {
@@ -135,7 +137,8 @@ fn counted(all: &[AskedAlternative]) -> Result<PartsCounted, AlternativesError> 
     Ok(PartsCounted::of(projects(all.len())).unwrap_or_default())
 }
 
-/// With the hose that `[sizing]` finds, or another part for its stiffness, where it asks for it.
+/// The alternative with the hose that `[sizing]` finds, or with another part for its stiffness, if
+/// requested.
 fn sized(
     again: &ReadingAgain<'_>,
     alternative: &Alternative,
@@ -164,7 +167,7 @@ fn sized(
     let setup = Setup::new(&other.project).map_err(|error| wrong(error.into()))?;
     let problem = sizing_problem(&setup, catalogue).map_err(|error| wrong(error.into()))?;
     let sizing = size(&problem, Question::Both);
-    // of unequal lines the lengths of their own hoses
+    // for unequal lines, the lengths of their own hoses
     let own = other.project.actuator.as_ref().filter(|_| !alike).and_then(own_hoses);
     let of_own = |candidate: &&Candidate| {
         let accepted = candidate.fits() && candidate.branch.model == sizing.model;

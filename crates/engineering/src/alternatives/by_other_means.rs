@@ -1,5 +1,5 @@
 //! An alternative whose gas, spring, pipe or valve between the chambers is sized for the stiffness
-//! of the hose that `[sizing]` finds for the project as it is declared.
+//! of the hose that `[sizing]` finds for the project as declared.
 
 use super::{AskedAlternative, PrepareError};
 use crate::catalogue::Catalogue;
@@ -7,10 +7,10 @@ use crate::project::{Component, CrossPortKind, DeclaredActuator};
 use crate::setup::Setup;
 use crate::sizing::{OtherMeans, Question, size, sizing_problem};
 
-/// Share of the travel under the stall force by which a sized spring may go further.
+/// Additional travel of a sized spring, as a fraction of the travel under the stall force.
 const SPARE_TRAVEL: f64 = 0.1;
 
-/// What of an alternative is sized, in place of a hose.
+/// Part of an alternative that is sized in place of a hose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum OtherPart {
     Gas,
@@ -20,8 +20,7 @@ pub(super) enum OtherPart {
 }
 
 impl OtherPart {
-    /// The part that this alternative has and the declared project lacks; `None` where there is
-    /// none.
+    /// Part that this alternative has and the declared project lacks; `None` if there is none.
     pub(super) fn of(declared: &DeclaredActuator, other: &DeclaredActuator) -> Option<OtherPart> {
         let gas = |rig: &DeclaredActuator| rig.line.a.accumulator.is_some() && rig.line.a == rig.line.b;
         let spring = |rig: &DeclaredActuator| rig.series.as_ref().is_some_and(|one| one.spring().is_some());
@@ -40,10 +39,10 @@ impl OtherPart {
         parts.into_iter().find(|(is_new, _)| *is_new).map(|(_, part)| part)
     }
 
-    /// The settings that size it for the project as it is declared.
+    /// Settings that size the part for the project as declared.
     ///
     /// # Errors
-    /// Reason why it cannot be sized.
+    /// The reason why it cannot be sized.
     pub(super) fn settings(
         self,
         declared: &AskedAlternative,

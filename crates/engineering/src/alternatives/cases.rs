@@ -12,33 +12,33 @@ use crate::source::Source;
 /// The project and its alternatives under a load case.
 #[derive(Clone, Debug)]
 pub struct JudgedCase {
-    /// Its name.
+    /// Name of the load case.
     pub name: String,
-    /// What it sets.
+    /// Settings of the load case.
     pub settings: Vec<String>,
-    /// The project itself first, then its alternatives in file order.
+    /// The declared project first, then its alternatives in file order.
     pub judged: Vec<JudgedAlternative>,
-    /// Names of those that were not finished when the watch stopped.
+    /// Names of the alternatives that were not finished when `watch` cancelled.
     pub not_reached: Vec<String>,
 }
 
 /// The project under a load case with its alternatives, ready to be judged.
 #[derive(Clone, Debug)]
 pub struct AskedCase {
-    /// Its name.
+    /// Name of the load case.
     pub name: String,
-    /// What it sets.
+    /// Settings of the load case.
     pub settings: Vec<String>,
-    /// The project itself first, then its alternatives in file order.
+    /// The declared project first, then its alternatives in file order.
     pub all: Vec<AskedAlternative>,
-    /// What is counted of their parts.
+    /// Attributes of parts that are counted.
     pub counted: PartsCounted,
 }
 
 /// The load cases of a project in file order.
 ///
 /// # Errors
-/// Those of [`asked()`], with the name of the load case.
+/// The errors of [`asked()`], with the name of the load case.
 pub fn asked_cases(
     source: &dyn Source,
     loaded: &Loaded,
@@ -59,7 +59,7 @@ pub fn asked_cases(
     each.collect()
 }
 
-/// Judges one after the other; from the first that the watch stops on, none is reached.
+/// Judges one after the other; once `watch` cancels, no further one is reached.
 pub(super) fn judged(
     judging: &Judging<'_>,
     all: &[AskedAlternative],
@@ -82,7 +82,7 @@ pub(super) fn judged(
     (found, not_reached)
 }
 
-/// Every load case, as far as the watch lets it.
+/// Every load case that is reached before `watch` cancels.
 pub(super) fn judged_cases(
     (source, catalogue, impedance_at): (&dyn Source, &Catalogue, &[f64]),
     cases: Vec<AskedCase>,

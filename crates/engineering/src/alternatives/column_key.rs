@@ -32,7 +32,7 @@ pub enum ColumnKey {
     ActuatorLength,
     /// Length of both lines.
     LinesLength,
-    /// Moving mass, of a motor the inertia.
+    /// Moving mass; for a motor the inertia.
     MovingMass,
     /// Volume of both lines.
     LinesVolume,
@@ -70,12 +70,12 @@ pub enum ColumnKey {
     ControlRms,
     /// Energy from the supply in a scenario.
     EnergyFromSupply,
-    /// The swept number of a front.
+    /// Swept number of a front.
     Swept,
 }
 
 impl ColumnKey {
-    /// All columns in the order of an answer.
+    /// All columns in the order of the output.
     pub const ALL: [ColumnKey; 33] = {
         use ColumnKey::*;
         [
@@ -115,7 +115,7 @@ impl ColumnKey {
         ]
     };
 
-    /// Its name for programs.
+    /// Name in output for programs.
     ///
     /// # Example
     /// ```
@@ -164,7 +164,7 @@ impl ColumnKey {
         }
     }
 
-    /// Which of two values is the better one, unless a front requests another sense.
+    /// Sense in which values are better, unless a front requests another sense.
     pub const fn sense(self) -> ColumnSense {
         match self {
             ColumnKey::RelativeDegree

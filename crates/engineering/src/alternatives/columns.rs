@@ -1,4 +1,4 @@
-//! The numbers by which alternatives are compared, each with the reason where it does not exist.
+//! The numbers by which alternatives are compared, each with the reason if it is absent.
 
 use phea_hydraulics::signal::Signal;
 use phea_qft::design::DesignStatus;
@@ -13,24 +13,24 @@ use crate::specification::SpecificationName;
 /// A number of an alternative.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlternativeColumn {
-    /// Its key.
+    /// Key of the number.
     pub key: ColumnKey,
-    /// The unit for people.
+    /// Unit for display.
     pub unit: DisplayUnit,
-    /// Significant digits for people; 0 for a whole number.
+    /// Significant digits for display; 0 for a whole number.
     pub digits: usize,
-    /// In SI.
+    /// Value, SI.
     pub value: Result<f64, NoNumber>,
 }
 
-/// The part of an alternative that a column belongs to.
+/// Part of an alternative to which a column belongs.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ColumnPart {
     /// The designed loop.
     Loop,
     /// The rig.
     Rig,
-    /// The impedance at the load at a frequency in rad/s.
+    /// The impedance at the load at a frequency, rad/s.
     Impedance(f64),
     /// A specification, by its number from 0 and its name.
     Specification(usize, SpecificationName),
@@ -38,14 +38,14 @@ pub enum ColumnPart {
     Scenario(String),
 }
 
-/// All columns of an alternative, each with its part, in the order of an answer.
+/// All columns of an alternative, each with its part, in the order of the output.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AlternativeColumns(pub Vec<(ColumnPart, AlternativeColumn)>);
 
 impl AlternativeColumns {
-    /// The worst value of that column, of all specifications, scenarios or frequencies:
-    /// the least where more is better, otherwise the greatest. `None` if there is none, or the
-    /// force does not settle in one of them.
+    /// Worst value of that column, of all specifications, scenarios or frequencies: the least if
+    /// more is better, otherwise the greatest. `None` if there is none, or the force does not
+    /// settle in one of them.
     pub fn worst(&self, key: ColumnKey) -> Option<f64> {
         let columns = || self.0.iter().filter(|(_, column)| column.key == key);
         if columns()
@@ -60,7 +60,7 @@ impl AlternativeColumns {
         columns().filter_map(|(_, column)| column.value.clone().ok()).reduce(worse)
     }
 
-    /// The first column of that key.
+    /// First column of that key.
     pub fn first(&self, key: ColumnKey) -> Option<&AlternativeColumn> {
         self.0.iter().map(|(_, column)| column).find(|column| column.key == key)
     }
@@ -70,7 +70,7 @@ const DECIBEL: DisplayUnit = DisplayUnit { symbol: "dB", in_si: 1.0 };
 const PERCENT: DisplayUnit = DisplayUnit { symbol: "%", in_si: 1.0 };
 
 impl JudgedAlternative {
-    /// Its columns.
+    /// Columns of the alternative.
     pub fn columns(&self) -> AlternativeColumns {
         let of_loop = self.loop_columns().into_iter().map(|column| (ColumnPart::Loop, column));
         let of_rig = self.rig_columns().into_iter().map(|column| (ColumnPart::Rig, column));
@@ -112,7 +112,7 @@ impl JudgedAlternative {
         ]
     }
 
-    /// The least margin of each specification.
+    /// Least margin of each specification.
     fn margins(&self) -> Vec<(ColumnPart, AlternativeColumn)> {
         let Ok(view) = &self.design else { return vec![] };
         let audited = &view.designed.view;
@@ -149,7 +149,7 @@ pub(super) fn column(
     AlternativeColumn { key, unit, digits, value }
 }
 
-/// The columns of a scenario: of each metric the greatest of all its events.
+/// Columns of a scenario: for each metric the greatest of all its events.
 fn driven(run: Result<&ScenarioRun, NoNumber>, force: DisplayUnit) -> [AlternativeColumn; 6] {
     let of = |metric: fn(&Metrics) -> crate::simulate::Measured| match &run {
         Ok(run) => greatest(run, metric),
@@ -167,10 +167,10 @@ fn driven(run: Result<&ScenarioRun, NoNumber>, force: DisplayUnit) -> [Alternati
     ]
 }
 
-/// Energy in J that the valve takes from the supply over a run, tare flow included.
+/// Energy that the valve takes from the supply over a run, J, including the tare flow.
 ///
 /// ```text
-/// E = integral of p_S q_S dt                  by the trapezoidal rule over the samples of the record
+/// E = integral of p_S q_S dt                  trapezoidal rule over the samples of the record
 /// ```
 fn energy_from_supply(run: &ScenarioRun) -> Result<f64, NoNumber> {
     if let Some(reason) = without_result(run) {
@@ -195,8 +195,8 @@ fn without_result(run: &ScenarioRun) -> Option<NoNumber> {
     }
 }
 
-/// The greatest value over all events; none where the run has no result, or the force does not
-/// settle after one of them.
+/// Greatest value over all events; absent if the run has no result, or the force does not settle
+/// after one of them.
 fn greatest(run: &ScenarioRun, metric: fn(&Metrics) -> crate::simulate::Measured) -> Result<f64, NoNumber> {
     if let Some(reason) = without_result(run) {
         return Err(reason);

@@ -1,22 +1,22 @@
-//! Which alternative is at least as good as another in everything that is compared.
+//! Pareto comparison of alternatives: one is at least as good as another in every compared measure.
 
 use super::{AlternativeColumns, ColumnKey};
 use crate::quantity::DisplayUnit;
 
-/// Which of two values of a column is the better one.
+/// Sense in which a value of a column is better.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ColumnSense {
-    /// The greater.
+    /// The greater value is better.
     More,
-    /// The lesser.
+    /// The lesser value is better.
     Less,
 }
 
-/// Whether values are at least as good as others in every column, and better in one (Pareto
+/// True if values are at least as good as others in every column, and better in one (Pareto
 /// dominance):
 ///
 /// ```text
-/// a dominates b   <=>   a_i <= b_i for all i, and a_i < b_i for some i     (>= and > where more is better)
+/// a dominates b   <=>   a_i <= b_i for all i, and a_i < b_i for some i     (>= and > if more is better)
 /// ```
 ///
 /// # Example
@@ -33,11 +33,11 @@ pub fn dominates(own: &[f64], others: &[f64], senses: &[ColumnSense]) -> bool {
     costs().all(|(own, other)| own <= other) && costs().any(|(own, other)| own < other)
 }
 
-/// The measures of dominance.
+/// Measures of dominance.
 pub const MEASURES: [ColumnKey; 4] =
     [ColumnKey::DisturbancePeak, ColumnKey::ControlRms, ColumnKey::Order, ColumnKey::DelayMargin];
 
-/// Measures of dominance that count where all that are compared state them.
+/// Measures of dominance that count if all compared alternatives state them.
 pub const MEASURES_IF_STATED: [ColumnKey; 2] = [ColumnKey::PartsPrice, ColumnKey::PartsMass];
 
 /// A measure by which alternatives dominate each other.
@@ -45,12 +45,12 @@ pub const MEASURES_IF_STATED: [ColumnKey; 2] = [ColumnKey::PartsPrice, ColumnKey
 pub struct ComparedMeasure {
     /// Key of the column.
     pub key: ColumnKey,
-    /// For people.
+    /// Unit for display.
     pub unit: DisplayUnit,
 }
 
 impl ComparedMeasure {
-    /// Those by which alternatives can be compared: the four, and what all of them state.
+    /// Measures by which alternatives can be compared: the four, and those that all of them state.
     pub fn of_all(all: &[AlternativeColumns]) -> Vec<ComparedMeasure> {
         let stated =
             |key: ColumnKey| !all.is_empty() && all.iter().all(|columns| columns.worst(key).is_some());
@@ -60,23 +60,23 @@ impl ComparedMeasure {
         MEASURES.into_iter().chain(if_stated).map(measure).collect()
     }
 
-    /// Whether the greater value is the better one.
+    /// True if the greater value is the better one.
     pub fn is_more(&self) -> bool {
         self.key.sense() == ColumnSense::More
     }
 }
 
-/// An alternative by its measures: of all scenarios the greatest.
+/// Measures of an alternative: the greatest of all scenarios.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ComparedMeasures(pub Vec<f64>);
 
 impl ComparedMeasures {
-    /// Those of an alternative; `None` where one does not exist.
+    /// Measures of an alternative; `None` if one does not exist.
     pub fn of(columns: &AlternativeColumns, measures: &[ComparedMeasure]) -> Option<ComparedMeasures> {
         measures.iter().map(|measure| columns.worst(measure.key)).collect::<Option<_>>().map(ComparedMeasures)
     }
 
-    /// Whether it dominates another of the same measures.
+    /// True if the alternative dominates another one in these measures.
     ///
     /// # Example
     /// ```

@@ -12,24 +12,24 @@ use crate::sizing::{OtherMeansError, SizingError};
 /// Reason why no alternatives are judged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AlternativesError {
-    /// There is only the project itself.
+    /// The project has no alternatives.
     #[error(
         "the project has no [[alternative]]: add one with `name` and `set = {{ \"line.length\" = \"3 m\" }}`"
     )]
     NoAlternative,
-    /// There is no specification for a controller.
+    /// The project has no specification for a controller.
     #[error(transparent)]
     NoSpecification(DesignError),
     /// The requested front is invalid.
     #[error(transparent)]
     Option(#[from] OptionError),
-    /// The catalogue, or a project that was changed, cannot be read.
+    /// The catalogue, or a changed project, cannot be read.
     #[error("{0}")]
     Refused(Refusal),
-    /// An alternative that cannot be prepared.
+    /// An alternative cannot be prepared.
     #[error("alternative `{name}`: {reason}")]
     Alternative {
-        /// Its name.
+        /// Name of the alternative.
         name: String,
         /// Reason why it cannot be prepared, and the remedy.
         reason: PrepareError,
@@ -39,10 +39,10 @@ pub enum AlternativesError {
 /// Reason why an alternative cannot be prepared.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PrepareError {
-    /// The rig cannot be computed with.
+    /// The rig cannot be computed.
     #[error(transparent)]
     Rig(#[from] RigError),
-    /// Its controller is no transfer function.
+    /// The controller is not a transfer function.
     #[error(transparent)]
     Control(#[from] ControlError),
     /// No hose can be sized.
@@ -59,10 +59,10 @@ pub enum PrepareError {
     /// No valve reaches the damping ratio.
     #[error("no valve between the chambers damps the load cell so much")]
     NoValve,
-    /// Neither hoses are to be sized nor a part in place of them.
+    /// Neither hoses nor a part in place of them are to be sized.
     #[error("`size` finds the hoses of both sides: its [line] must have them")]
     NoHoses,
-    /// The project would give the hose that is found properties of its own.
+    /// The project would give its own properties to the hose that is found.
     #[error(
         "[line] states properties of its own hose, which the hose that [sizing] finds would take over: state them in a catalogue"
     )]
@@ -76,7 +76,7 @@ pub enum PrepareError {
     TwoCurrencies {
         /// Currency of the alternatives before it.
         first: Currency,
-        /// Its own.
+        /// Currency of this alternative.
         other: Currency,
     },
     /// A range around zero cannot follow the rig.
@@ -89,16 +89,16 @@ pub enum PrepareError {
     },
 }
 
-/// Reason why a part of what is found about an alternative is missing.
+/// Reason why a part of the results of an alternative is missing.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum JudgeError {
-    /// The rig cannot be computed with.
+    /// The rig cannot be computed.
     #[error(transparent)]
     Rig(#[from] RigError),
-    /// Its controller is no transfer function.
+    /// The controller is not a transfer function.
     #[error(transparent)]
     Control(#[from] ControlError),
-    /// No hose of the requested size.
+    /// There is no hose of the requested size.
     #[error(transparent)]
     NoHose(#[from] NoHose),
     /// No hose can be sized.
@@ -107,13 +107,13 @@ pub enum JudgeError {
     /// No controller can be designed.
     #[error(transparent)]
     Design(#[from] DesignError),
-    /// There is no loop to compute with.
+    /// There is no controller, and hence no loop.
     #[error("no controller was designed")]
     NoController,
     /// There are no linear models.
     #[error("the linear models: {0}")]
     Linear(#[from] LinearError),
-    /// A scenario cannot be run.
+    /// A scenario cannot be simulated.
     #[error(transparent)]
     Simulate(#[from] SimulateError),
 }
@@ -121,7 +121,7 @@ pub enum JudgeError {
 /// Reason why `[sizing]` finds no hose for an alternative that takes the one it finds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoHose {
-    /// Something rejects each of them.
+    /// Each of them is rejected.
     #[error("no hose of the catalogue is accepted by [sizing]")]
     NoneAccepted,
     /// The chambers are soft enough without one.

@@ -1,4 +1,4 @@
-//! Fronts of Pareto: every alternative over a swept number of its project, by two or three columns.
+//! Pareto fronts: every alternative over a swept number of its project, by two or three columns.
 
 use phea_dynamics::watch::{Progress, Watch};
 
@@ -15,26 +15,26 @@ use crate::spelling::nearest;
 /// The request, as written.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FrontRequest {
-    /// Two or three columns by their names in an answer, or `swept` for the swept number; each may
-    /// end in `:less` or `:more`, which says what is better.
+    /// Two or three columns by their names in the output, or `swept` for the swept number; each may
+    /// end in `:less` or `:more`, which states which is better.
     pub columns: Vec<String>,
-    /// What is swept.
+    /// Range and number of points of the sweep.
     pub sweep: SweepRequest,
 }
 
-/// Values of a sweep whose every point is a design, if none are requested.
+/// Number of values of a sweep in which every point is a design, if none is requested.
 const POINTS: usize = 5;
 
-/// Name of the column that says whether the specifications are satisfied, which requests the
-/// relaxation: 0 where they are.
+/// Name of the column for satisfied specifications, which requests the relaxation: 0 if they are
+/// satisfied.
 const FEASIBLE: &str = "feasible";
 
 /// A column of a front.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrontColumn {
-    /// Its key.
+    /// Key of the column.
     pub key: ColumnKey,
-    /// What is better.
+    /// Sense in which values are better.
     pub sense: ColumnSense,
 }
 
@@ -45,45 +45,45 @@ pub struct Front {
     pub motion: MotionKind,
     /// The swept key.
     pub path: String,
-    /// What people read it in.
+    /// Unit for display.
     pub unit: DisplayUnit,
-    /// The unit of its values.
+    /// SI unit of the values.
     pub si: &'static str,
-    /// Two or three.
+    /// Two or three columns.
     pub columns: Vec<FrontColumn>,
-    /// The points of each alternative, in the order of the answer.
+    /// Points of each alternative, in the order of the output.
     pub points: Vec<FrontPoint>,
-    /// How many points were not reached when the watch stopped.
+    /// Number of points that were not reached before `watch` cancelled.
     pub not_reached: usize,
 }
 
 /// An alternative at one value of the swept number.
 #[derive(Clone, Debug)]
 pub struct FrontPoint {
-    /// The name of the alternative.
+    /// Name of the alternative.
     pub alternative: String,
-    /// The swept number, SI.
+    /// Swept number, SI.
     pub value: f64,
-    /// True where every specification is satisfied.
+    /// True if every specification is satisfied.
     pub feasible: Result<bool, FeasibilityUnknown>,
-    /// Whether it satisfies them, is driven to its end, and is not contradicted by the machine:
-    /// only such points dominate others, or are on a front. Where the relaxation is a column, those
-    /// that miss the specifications are compared too.
+    /// True if the alternative satisfies the specifications, is simulated to its end, and is not
+    /// contradicted by the machine: only such points dominate others, or are on a front. If the
+    /// relaxation is a column, points that miss the specifications are compared too.
     pub comparable: bool,
-    /// The columns.
+    /// Values of the columns.
     pub values: Vec<Result<FrontValue, NoFrontValue>>,
-    /// The points that dominate it, by their place in the list.
+    /// Points that dominate this one, by index in the list.
     pub dominated_by: Vec<usize>,
 }
 
 /// A value of a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrontValue {
-    /// SI.
+    /// Value, SI.
     pub value: f64,
-    /// For people.
+    /// Unit for display.
     pub unit: DisplayUnit,
-    /// Significant digits for people; 0 for a whole number.
+    /// Significant digits for display; 0 for a whole number.
     pub digits: usize,
 }
 
@@ -92,38 +92,38 @@ pub struct FrontValue {
 pub enum FeasibilityUnknown {
     /// The alternative cannot be prepared with this value.
     NotPrepared(AlternativesError),
-    /// No design.
+    /// The alternative has no design.
     NotDesigned(JudgeError),
-    /// Its design does not decide it.
+    /// The design does not decide whether the specifications are satisfied.
     Undecided(DesignVerdict),
 }
 
 /// Reason why a point has no value in a column.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoFrontValue {
-    /// The alternative cannot be prepared with the value that is swept.
+    /// The alternative cannot be prepared with the swept value.
     NotPrepared(AlternativesError),
-    /// No such column.
+    /// The column does not exist.
     NoColumn,
     /// The column has no number.
     NoNumber(NoNumber),
-    /// One of its scenarios has none.
+    /// One of the scenarios of the alternative has no value.
     NotInEveryScenario,
 }
 
 impl FrontPoint {
-    /// Whether no other point dominates it.
+    /// True if no other point dominates this one.
     pub fn is_on_front(&self) -> bool {
         self.comparable && self.dominated_by.is_empty() && self.numbers().is_some()
     }
 
-    /// Its values in SI, if all exist.
+    /// Values of the point, SI, if all exist.
     pub fn numbers(&self) -> Option<Vec<f64>> {
         self.values.iter().map(|value| Some(value.as_ref().ok()?.value)).collect()
     }
 }
 
-/// A request that was read.
+/// A parsed request.
 pub(super) struct FrontPlan {
     motion: MotionKind,
     columns: Vec<FrontColumn>,
@@ -134,7 +134,7 @@ pub(super) struct FrontPlan {
 }
 
 impl FrontPlan {
-    /// Whether it may dominate others.
+    /// True if the alternative may dominate others.
     fn compares(&self, judged: &JudgedAlternative) -> bool {
         let by_relaxation = self.columns.iter().any(|column| column.key == ColumnKey::Relaxation);
         judged.is_comparable() || by_relaxation && judged.is_judged() && !judged.is_contradicted()
@@ -156,7 +156,7 @@ enum FrontColumnsError {
     NoColumn { name: String, names: Vec<String> },
 }
 
-/// Reads the request.
+/// Parses the request.
 ///
 /// # Errors
 /// [`OptionError`] for columns or a sweep that do not exist.
@@ -183,7 +183,7 @@ pub(super) fn plan(request: &FrontRequest, motions: Motions) -> Result<FrontPlan
     Ok(FrontPlan { motion: motions.rig, columns, path: asked.path, unit, si: asked.key.dimension.si, values })
 }
 
-/// A column by its name in a rig of this motion, or the nearest spelling.
+/// Column by its name in a rig of this motion, or the nearest spelling.
 fn column_of(text: &str, motion: MotionKind) -> Result<FrontColumn, FrontColumnsError> {
     let (name, wanted) = match text.trim().split_once(':') {
         None => (text.trim(), None),
@@ -209,7 +209,8 @@ fn column_of(text: &str, motion: MotionKind) -> Result<FrontColumn, FrontColumns
     Ok(FrontColumn { key, sense: wanted.unwrap_or(key.sense()) })
 }
 
-/// Judges every alternative at every value. The ranges of `[uncertainty]` follow the rig of each.
+/// Judges every alternative at every value. The ranges of `[uncertainty]` follow the rig of each
+/// alternative.
 pub(super) fn swept(
     judging: &Judging<'_>,
     (again, all): (&ReadingAgain<'_>, &[AskedAlternative]),
@@ -247,7 +248,7 @@ pub(super) fn swept(
     }
 }
 
-/// `None` where the watch stops it.
+/// One point of the front; `None` if `watch` cancels it.
 fn point(
     judging: &Judging<'_>,
     again: &ReadingAgain<'_>,
@@ -281,7 +282,7 @@ fn point(
     Some(FrontPoint { alternative, value, feasible, comparable, values, dominated_by: vec![] })
 }
 
-/// The alternative with the swept number, its ranges moved with it.
+/// The alternative with the swept number, its uncertainty ranges moved with it.
 fn at(
     again: &ReadingAgain<'_>,
     one: &AskedAlternative,
@@ -317,7 +318,7 @@ fn values_of(
     plan.columns.iter().map(of).collect()
 }
 
-/// Which point dominates which.
+/// Determines which points dominate which.
 fn compare(points: &mut [FrontPoint], columns: &[FrontColumn]) {
     let senses: Vec<ColumnSense> = columns.iter().map(|column| column.sense).collect();
     let numbers: Vec<Option<Vec<f64>>> =

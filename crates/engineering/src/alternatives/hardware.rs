@@ -1,4 +1,4 @@
-//! What an alternative is made of: stiffness, lengths, masses, volumes, and what it takes at rest.
+//! Hardware of an alternative: stiffness, lengths, masses, volumes, and consumption at rest.
 
 use phea_hydraulics::cylinder::chamber_volumes;
 use phea_hydraulics::line::Line;
@@ -61,7 +61,7 @@ impl JudgedAlternative {
         ]
     }
 
-    /// What its parts cost and weigh.
+    /// Price and mass of its parts.
     fn parts(&self) -> [AlternativeColumn; 2] {
         let counted = self.counted;
         let declared = self.loaded.project.actuator.as_ref().ok_or_else(no_rig);
@@ -76,7 +76,7 @@ impl JudgedAlternative {
         [column(ColumnKey::PartsPrice, currency, 4, price), column(ColumnKey::PartsMass, kilogram, 3, mass)]
     }
 
-    /// What `[sizing]` finds for it, whether it is asked to take that or not.
+    /// Result of `[sizing]` for it, whether the alternative takes that hose or not.
     fn sized_columns(&self) -> [AlternativeColumn; 2] {
         let sizing = self.sizing.as_ref().map_err(|reason| NoNumber::from(reason.clone()));
         let best = sizing.and_then(|sizing| sizing.best().ok_or(NoNumber::NoHose));
@@ -89,11 +89,11 @@ impl JudgedAlternative {
     }
 }
 
-/// The length in m of an actuator from mount to mount with the rod in.
+/// Length of an actuator from mount to mount with the rod in, m.
 ///
 /// ```text
 /// stroke + cylinder.dead_length + installed length of the coil springs on the rod
-///                               + both cylinders of a transmission, wherever the one of the load stands
+///                               + both cylinders of a transmission, wherever that of the load is
 /// ```
 ///
 /// # Errors
@@ -120,8 +120,8 @@ pub fn retracted_length(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, L
     Ok(cylinder.longest_stage_m() + dead + series)
 }
 
-/// Of the rod, and of what moves between force sensor and load: the oil of a transmission as its
-/// pistons feel it.
+/// Moving mass of the rod, and of the parts between force sensor and load, kg: the oil of a
+/// transmission is referred to its pistons.
 fn moving_mass(_: &DeclaredActuator, rig: &Rig) -> Result<f64, NoNumber> {
     let on_rod = match (rig.plant.series.map(|series| series.element), rig.actuator.components().series) {
         (Some(LinearElement::Oil(column)), _) => column.mass * column.segments as f64,
@@ -149,8 +149,8 @@ fn lines_volume(_: &DeclaredActuator, rig: &Rig) -> Result<f64, NoNumber> {
     Ok(lines(rig).into_iter().map(Line::volume).sum())
 }
 
-/// Lines, chambers at the operating point, dead volumes, what the accumulators hold there, and the
-/// oil of a transmission.
+/// Volume of oil in lines, chambers at the operating point, dead volumes, accumulators at that
+/// point, and a transmission, m3.
 fn oil_volume(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, NoNumber> {
     let components = rig.actuator.components();
     let (cylinder, point) = (&components.cylinder, &rig.point);
@@ -162,7 +162,7 @@ fn oil_volume(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, NoNumber> {
     Ok(lines_volume(declared, rig)? + chamber_a + chamber_b + held + closed)
 }
 
-/// Of the accumulators at the chambers, at their precharge.
+/// Gas volume of the accumulators at the chambers, at their precharge, m3.
 fn gas_volume(_: &DeclaredActuator, rig: &Rig) -> Result<f64, NoNumber> {
     let gas = rig.actuator.components().accumulators;
     if gas.iter().all(Option::is_none) {

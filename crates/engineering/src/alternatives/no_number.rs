@@ -8,7 +8,7 @@ use crate::simulate::{RunStatus, Unmeasured};
 /// Reason why a column of an alternative has no number.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoNumber {
-    /// The part of the alternative that it is of is missing.
+    /// The part of the alternative to which the column belongs is missing.
     NotJudged(JudgeError),
     /// The design did not find the specifications infeasible, and no limit is to be relaxed.
     NotFoundInfeasible,
@@ -16,9 +16,9 @@ pub enum NoNumber {
     NotKnownStable,
     /// The specification has no margin in any plant at any frequency.
     NothingToJudgeBy,
-    /// The run ended before its time.
+    /// The run ended early.
     Stopped {
-        /// Time of its end, s.
+        /// Time of the end, s.
         time_s: f64,
         /// Status of the run.
         status: RunStatus,
@@ -27,7 +27,7 @@ pub enum NoNumber {
     Undetermined,
     /// The equations of the simulation do not hold.
     OutsideModel {
-        /// Time from which on, s.
+        /// Time from which they do not hold, s.
         time_s: f64,
     },
     /// The metric does not exist for one of the events.
@@ -57,7 +57,7 @@ impl From<JudgeError> for NoNumber {
 /// Reason why the retracted length of an actuator is not known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LengthUnknown {
-    /// A motor has none.
+    /// The rig has a motor, which has no length.
     Motor,
     /// `cylinder.dead_length` is not stated.
     NoDeadLength,

@@ -1,4 +1,4 @@
-//! The impedance at the load, by which an alternative resists a load that moves it.
+//! Impedance at the load, by which an alternative resists a moving load.
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
@@ -7,12 +7,12 @@ use super::columns::{AlternativeColumn, ColumnPart, column};
 use super::{ColumnKey, JudgedAlternative, NoNumber};
 use crate::quantity::{DAMPING, fitting};
 
-/// Frequencies at which the impedance is stated where none are asked for, rad/s.
+/// Frequencies at which the impedance is reported if none are requested, rad/s.
 pub const IMPEDANCE_AT: [f64; 3] = [1.0, 10.0, 100.0];
 
 impl JudgedAlternative {
-    /// |Z(jw)| at each frequency, with the command held, under the designed controller, and as a
-    /// virtual impedance asks for it.
+    /// Magnitude |Z(jw)| at each frequency, with the command held, under the designed controller,
+    /// and as required by a virtual impedance.
     pub(super) fn impedances(&self) -> Vec<(ColumnPart, AlternativeColumn)> {
         let each = self.impedance_at.iter().flat_map(|frequency| {
             let part = ColumnPart::Impedance(*frequency);

@@ -1,5 +1,5 @@
-//! Ranges of `[uncertainty]` that follow a rig: those of parameters of the linear model, moved by
-//! the factor by which another rig changes the parameter.
+//! Ranges of `[uncertainty]` that follow a rig: ranges of parameters of the linear model are moved
+//! by the factor by which another rig changes the parameter.
 
 use phea_hydraulics::line::StiffeningMember;
 
@@ -8,21 +8,21 @@ use crate::linearize::stroke_stiffness;
 use crate::project::Uncertain;
 use crate::rig::Rig;
 
-/// A range that was moved.
+/// A moved range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MovedRange {
-    /// The parameter of the linear model.
+    /// Name of the parameter of the linear model.
     pub name: String,
     /// Nominal value, minimum and maximum as they were stated, SI.
     pub stated: [f64; 3],
-    /// The same for the rig of the alternative.
+    /// Nominal value, minimum and maximum for the rig of the alternative, SI.
     pub moved: [f64; 3],
 }
 
-/// Relative change of a parameter below which it counts as the same.
+/// Relative change of a parameter that counts as zero.
 const SAME: f64 = 1e-9;
 
-/// The ranges that the rig of another project moves.
+/// Ranges that the rig of another project moves.
 ///
 /// ```text
 /// least' = least k(least)       greatest' = greatest k(greatest)       nominal' = nominal k, within both
@@ -30,8 +30,8 @@ const SAME: f64 = 1e-9;
 ///
 /// k is the quotient of the derived parameter of both rigs at their operating points. For K_H,
 /// whose range is that over the stroke, the ends have the quotients of the least and of the
-/// greatest stiffness over the stroke. A range that the other project states differently is its own
-/// and is left alone, as is a parameter that `[linear]` states.
+/// greatest stiffness over the stroke. A range that the other project states differently is not
+/// moved, nor is a parameter that `[linear]` states.
 pub(super) fn moved(
     base: &AskedAlternative,
     other: &AskedAlternative,
@@ -59,8 +59,8 @@ pub(super) fn moved(
     Ok(found)
 }
 
-/// The derived parameter of each rig: at the operating point, and what its least and its greatest
-/// value are measured by.
+/// Derived parameter of each rig: at the operating point, and the values by which its least and its
+/// greatest value are scaled.
 fn derived(rigs: &[&Rig; 2], name: &str) -> Option<[[f64; 3]; 2]> {
     let of = |rig: &Rig| {
         let found = rig.parameters.iter().find(|parameter| parameter.name == name)?;
@@ -80,7 +80,7 @@ fn same(from: &[f64; 3], to: &[f64; 3]) -> bool {
     from.iter().zip(to).all(|(from, to)| (to - from).abs() <= SAME * from.abs())
 }
 
-/// What `--set` makes of the moved ranges.
+/// Settings for `--set` with the moved ranges.
 pub(super) fn settings(moved: &[MovedRange]) -> Vec<String> {
     let each = moved.iter().flat_map(|range| {
         let parts = ["nominal", "minimum", "maximum"].into_iter().zip(range.moved);

@@ -1,4 +1,4 @@
-//! The dead time that is in the loop in addition to its own delay.
+//! Dead time of the loop in addition to its declared delay.
 
 use phea_dynamics::scalar::Interval;
 use phea_qft::family::Family;
@@ -8,11 +8,11 @@ use crate::robust::RobustProblem;
 /// Dead time of the parts of a loop, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopDeadTime {
-    /// Least and greatest of the plants of the family, as far as they have polynomials.
+    /// Least and greatest dead time of the plants of the family that have polynomials.
     pub plant_s: [f64; 2],
-    /// Of the sensor.
+    /// Dead time of the sensor.
     pub sensor_s: f64,
-    /// Of the controller.
+    /// Dead time of the controller.
     pub controller_s: f64,
 }
 
@@ -26,13 +26,13 @@ impl LoopDeadTime {
     }
 }
 
-/// The dead time over the box of a family.
+/// Dead time over the box of a family.
 fn of_plants(family: &Family) -> Option<[f64; 2]> {
     let Family::Uncertain(family) = family else { return None };
     let parameters = family.plant().parameters().iter();
     let ranges: Vec<Interval> = parameters.map(|one| Interval::new(one.minimum, one.maximum)).collect();
     let enclosed = family.plant().enclosures(&ranges)?.dead_time_s;
-    // no plant has less than none
+    // no plant has less than zero
     (enclosed.low().is_finite() && enclosed.high().is_finite())
         .then(|| [enclosed.low().max(0.0), enclosed.high()])
 }

@@ -1,6 +1,6 @@
-//! Requirements in time that limits of tracking follow from, or are stated with, compared with the
-//! steps of the linear loop. A limit on magnitudes does not bound a response in time, so a loop
-//! within the limits may still miss the requirement.
+//! Requirements in time from which limits of tracking follow, or which are stated with them,
+//! compared with the steps of the linear loop. A limit on magnitudes does not bound a response in
+//! time, so a loop within the limits may still miss the requirement.
 
 use phea_dynamics::portable;
 use phea_dynamics::time_response::{StepBaseline, StepMetrics, TimeResponseError, step_metrics};
@@ -14,10 +14,10 @@ use crate::linear_step::{KnownResponses, StepResponse, StepSignal, linear_step_k
 use crate::robust::RobustProblem;
 use crate::simulate::{ReachedStep, TimeRequirement, TrackingWish};
 
-/// What the steps of the plants that were visited do.
+/// Finding for the steps of the plants that were visited.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimeFinding {
-    /// What is required.
+    /// Requirement in time.
     pub requirement: TimeRequirement,
     /// The result.
     pub outcome: TimeOutcome,
@@ -28,29 +28,29 @@ pub struct TimeFinding {
 pub enum TimeOutcome {
     /// The steps of plants were computed: evidence of a search.
     Searched {
-        /// How many.
+        /// Number of plants.
         plants: usize,
-        /// The most overshoot, percent of the step; `None` where none is required.
+        /// Greatest overshoot, percent of the step; `None` if it is not required.
         overshoot: Option<WorstStep>,
-        /// The longest settling time, s, infinite where a step does not settle, or not within the
-        /// time that was computed; likewise.
+        /// Longest settling time, s; infinite if a step does not settle, or not within the computed
+        /// time; `None` if it is not required.
         settling: Option<WorstStep>,
-        /// The longest rise from 10 to 90 percent, s, infinite where a step does not rise within
-        /// the time that was computed; likewise.
+        /// Longest rise from 10 to 90 percent, s; infinite if a step does not rise within the
+        /// computed time; `None` if it is not required.
         rise: Option<WorstStep>,
     },
     /// No step was computed.
     NotExamined(Unexamined),
 }
 
-/// Why no step was computed.
+/// Reason why no step was computed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Unexamined {
-    /// Without a prefilter the spread of the family is judged, and no response.
+    /// There is no prefilter: the spread of the family is judged instead of a response.
     NoPrefilter,
-    /// Measured plants are not known beyond their frequencies.
+    /// Measured plants are unknown beyond their frequencies.
     Measured,
-    /// Not every plant is known to be stable.
+    /// Some plants are not known to be stable.
     NotStable,
     /// A step cannot be computed.
     Step(TimeResponseError),
@@ -59,56 +59,58 @@ pub enum Unexamined {
 /// A property of the worst step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorstStep {
-    /// Percent or s.
+    /// Value, percent or s.
     pub value: f64,
-    /// Whether the requirement is satisfied.
+    /// True if the requirement is satisfied.
     pub is_satisfied: bool,
-    /// The plant.
+    /// Plant with this step.
     pub plant: PlantPoint,
 }
 
-/// Overshoot that counts as none, percent of the step: the accuracy of a computed response.
+/// Overshoot that counts as zero, percent of the step: the accuracy of a computed response.
 const ACCURACY_PERCENT: f64 = 0.01;
-/// The same for a plant without polynomials.
+/// Overshoot that counts as zero for a plant without polynomials, percent of the step.
 const ACCURACY_OF_RESPONSE_PERCENT: f64 = 0.1;
-/// Duration of a step, in settling times that are required, and the points of a continuous one.
+/// Duration of a step in required settling times, and number of points of a continuous step.
 const SETTLING_TIMES: f64 = 10.0;
 const POINTS: usize = 2000;
-/// The first part of a continuous one has as many points by itself, in settling times.
+/// Length, in required settling times, of the first part of a continuous step, which has as many
+/// points.
 const SOON: f64 = 2.0;
-/// A step that has not settled in this share of it is computed for longer, by this factor and so
-/// often: every plant is stable.
+/// Fraction of a step within which it must have settled; otherwise it is computed for longer, by
+/// this factor and at most this often: every plant is stable.
 const SETTLED_BY: f64 = 0.5;
 const LONGER: u16 = 4;
 const EXTENSIONS: usize = 3;
-/// The same of a step that has not settled at all, though it ends in its band: the loop may be far
-/// slower than what is required.
+/// Number of extensions of a step that has not settled at all although its final value is within
+/// the band: the loop may be far slower than required.
 const EXTENSIONS_UNSETTLED: usize = 7;
-/// The same of a plant with waves in its lines, whose points grow with the duration.
+/// Number of extensions for a plant with waves in its lines, whose number of points grows with the
+/// duration.
 const EXTENSIONS_RESPONDING: usize = 4;
-/// Frequency that stands for zero, at which integrators have no response, rad/s.
+/// Frequency used in place of zero, at which integrators have no response, rad/s.
 const AT_REST: f64 = 1e-9;
-/// Most members of a family whose steps are computed; of plants without polynomials, whose steps
-/// cost a hundred times as much.
+/// Largest number of members of a family whose steps are computed; for plants without polynomials
+/// fewer, since their steps cost a hundred times as much.
 const MEMBERS: usize = 150;
 const MEMBERS_OF_RESPONSES: usize = 12;
 const CORNERS_OF_RESPONSES: usize = 16;
-/// Most members whose steps are computed where loops are compared that were not audited.
+/// Largest number of members whose steps are computed to compare loops that were not audited.
 const MEMBERS_COMPARED: usize = 40;
-/// Plants from which each property is followed between the members; first and last step, as shares
-/// of the box; most plants that are visited.
+/// Number of plants from which each property is followed between the members; first and last step,
+/// as fractions of the box; largest number of visited plants.
 const STARTS: usize = 3;
 const FIRST_SHARE: f64 = 0.25;
 const LEAST_SHARE: f64 = 0.01;
 const VISITED_MAXIMUM: usize = 600;
 
 impl TimeFinding {
-    /// Whether a step misses what is part of the verdict.
+    /// True if a step misses a requirement that is part of the verdict.
     pub fn violates(&self) -> bool {
         self.requirement.follows && self.verdict() == Some(Verdict::Violated)
     }
 
-    /// Its part of the verdict on a project: not proven where no step of a specification of its own
+    /// Contribution to the verdict on a project: not proven if no step of a separate specification
     /// was computed.
     pub fn part_of_verdict(&self) -> Verdict {
         match self.verdict() {
@@ -118,7 +120,7 @@ impl TimeFinding {
         }
     }
 
-    /// The worst of each property that is required, zero where it is not; `None` where no step was
+    /// Worst value of each required property, zero if it is not required; `None` if no step was
     /// computed.
     pub fn reached(&self) -> Option<ReachedStep> {
         let TimeOutcome::Searched { overshoot, settling, rise, .. } = &self.outcome else { return None };
@@ -130,7 +132,7 @@ impl TimeFinding {
         })
     }
 
-    /// The worst step of the property that is furthest beyond its limit, or else nearest to it.
+    /// Worst step of the property that is furthest beyond its limit, or else nearest to it.
     pub fn nearest(&self) -> Option<&WorstStep> {
         let TimeOutcome::Searched { overshoot, settling, rise, .. } = &self.outcome else { return None };
         let TrackingWish { overshoot_percent, settling_time_s, rise_time_s, .. } = self.requirement.wish;
@@ -142,7 +144,7 @@ impl TimeFinding {
         shares.max_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, worst)| worst)
     }
 
-    /// The verdict on the steps alone; `None` where no step was computed.
+    /// Verdict on the steps; `None` if no step was computed.
     pub fn verdict(&self) -> Option<Verdict> {
         let TimeOutcome::Searched { overshoot, settling, rise, .. } = &self.outcome else { return None };
         let satisfied = overshoot.iter().chain(settling).chain(rise).all(|worst| worst.is_satisfied);
@@ -150,7 +152,7 @@ impl TimeFinding {
     }
 }
 
-/// The findings for every requirement in time of a problem, after its audit.
+/// Findings for every requirement in time of a problem, after its audit.
 pub(super) fn findings(problem: &RobustProblem, audit: &Audit) -> Vec<TimeFinding> {
     let of = |requirement: &TimeRequirement| TimeFinding {
         requirement: *requirement,
@@ -182,8 +184,8 @@ fn outcome(
     Ok(TimeOutcome::Searched { plants: search.visited.len(), overshoot, settling, rise })
 }
 
-/// The worst of the nominal plant and of members spread over the family, without an audit; `None`
-/// where one of them is not known to be stable, or has no step.
+/// Worst steps of the nominal plant and of members spread over the family, without an audit; `None`
+/// if one of them is not known to be stable, or has no step.
 pub(crate) fn steps_of_members(
     problem: &RobustProblem,
     requirement: &TimeRequirement,
@@ -203,8 +205,8 @@ pub(crate) fn steps_of_members(
     TimeFinding { requirement: *requirement, outcome }.reached()
 }
 
-/// The nominal plant and members spread over the family, so many at most. The members of plants
-/// without polynomials are without the corners of the box: these are among them too.
+/// The nominal plant and at most this many members spread over the family. Members of plants
+/// without polynomials do not include the corners of the box, so those are added.
 pub(crate) fn spread_over(family: &UncertainFamily, most: usize) -> Vec<Vec<f64>> {
     let mut found = vec![family.plant().nominal()];
     found.extend(spread(family.members(), most));
@@ -214,7 +216,7 @@ pub(crate) fn spread_over(family: &UncertainFamily, most: usize) -> Vec<Vec<f64>
     found
 }
 
-/// Plants spread over the family, and those that the audit found worst.
+/// Plants spread over the family, and the worst ones of the audit.
 pub(crate) fn visited(family: &UncertainFamily, audit: &Audit) -> Vec<Vec<f64>> {
     let is_rational = family.plant().is_rational();
     let mut found = spread_over(family, if is_rational { MEMBERS } else { MEMBERS_OF_RESPONSES });
@@ -232,7 +234,8 @@ pub(crate) fn visited(family: &UncertainFamily, audit: &Audit) -> Vec<Vec<f64>> 
     distinct
 }
 
-/// Steps of plants: overshoot in percent, settling time and rise time in s, each computed once.
+/// Computed steps of plants, each computed once: overshoot, percent, settling time and rise time,
+/// s.
 struct StepSearch<'a> {
     problem: &'a RobustProblem,
     family: &'a UncertainFamily,
@@ -241,7 +244,7 @@ struct StepSearch<'a> {
 }
 
 impl StepSearch<'_> {
-    /// Overshoot in percent, settling time and rise time in s of the step of a plant.
+    /// Overshoot, percent, and settling time and rise time, s, of the step of a plant.
     fn step(&self, values: &[f64]) -> Result<[f64; 3], TimeResponseError> {
         let compensation = &self.problem.compensation;
         let member = compensation.member_of(self.family.plant(), values)?;
@@ -278,7 +281,7 @@ impl StepSearch<'_> {
         }
         let mut times_s = [metrics.settling.time_s(), metrics.rise_time_10_90_s];
         if matches!(member, Member::Continuous { .. }) {
-            // the peak of a fast swing lies between the points of a long response
+            // the peak of a fast swing may fall between the points of a long response
             let soon_s = SOON * self.wish.horizon_s;
             let soon = within(soon_s, POINTS)?;
             overshoot_percent = overshoot_percent.max(soon.overshoot_percent);
@@ -291,14 +294,14 @@ impl StepSearch<'_> {
         Ok([overshoot_percent, settling_s, rise_s])
     }
 
-    /// True while a time that is required is not known.
+    /// True if a required time is unknown.
     fn lacks(&self, metrics: &StepMetrics) -> bool {
         let TrackingWish { settling_time_s, rise_time_s, .. } = self.wish;
         settling_time_s.is_some() && metrics.settling.time_s().is_none()
             || rise_time_s.is_some() && metrics.rise_time_10_90_s.is_none()
     }
 
-    /// True where the response to a step comes to rest within the band, and where that is unknown.
+    /// True if the response to a step comes to rest within the band, and if that is unknown.
     fn ends_in_band(&self, member: &Member) -> bool {
         let response = self.problem.response(member, AT_REST);
         let at_rest = response.map(|found| {
@@ -309,7 +312,7 @@ impl StepSearch<'_> {
         at_rest.is_none_or(is_within)
     }
 
-    /// The same, kept.
+    /// Step of a plant from the computed ones, or computed and stored.
     fn visit(&mut self, values: &[f64]) -> Result<[f64; 3], TimeResponseError> {
         if let Some((_, known)) = self.visited.iter().find(|(known, _)| known == values) {
             return Ok(*known);
@@ -319,7 +322,7 @@ impl StepSearch<'_> {
         Ok(found)
     }
 
-    /// The limit of each property; `None` where none is required.
+    /// Limit of each property; `None` if it is not required.
     fn required(&self) -> [Option<f64>; 3] {
         let room =
             if self.family.plant().is_rational() { ACCURACY_PERCENT } else { ACCURACY_OF_RESPONSE_PERCENT };
@@ -327,7 +330,7 @@ impl StepSearch<'_> {
         [overshoot_percent.map(|most| most.max(room)), settling_time_s, rise_time_s]
     }
 
-    /// The worst of a property that is required.
+    /// Worst value of a required property.
     fn worst(&self, property: usize) -> Option<WorstStep> {
         let most = self.required().get(property).copied().flatten()?;
         let (values, found) = self.worst_first(property).next()?;
@@ -342,8 +345,8 @@ impl StepSearch<'_> {
         sorted.into_iter()
     }
 
-    /// Follows each property that is required from its worst plants along the coordinates of the
-    /// box, as long as it becomes worse.
+    /// Follows each required property from its worst plants along the coordinates of the box, as
+    /// long as it becomes worse.
     fn between(&mut self) -> Result<(), TimeResponseError> {
         for property in 0..self.required().len() {
             if self.required()[property].is_none() {
@@ -358,7 +361,7 @@ impl StepSearch<'_> {
         Ok(())
     }
 
-    /// Moves from a plant to a worse one beside it.
+    /// Moves from a plant to a worse neighbour.
     fn follow(&mut self, property: usize, start: Vec<f64>) -> Result<(), TimeResponseError> {
         let family = self.family;
         worst_beside(family, start, |values| {
@@ -370,13 +373,13 @@ impl StepSearch<'_> {
 
 /// A plant that a search for a worse one visited.
 pub(crate) struct VisitedPlant {
-    /// The larger the worse.
+    /// Value of the property; larger is worse.
     pub(crate) value: f64,
-    /// True where the search has visited as many plants as it may.
+    /// True if the search has visited as many plants as allowed.
     pub(crate) is_last: bool,
 }
 
-/// Moves from a plant of a family to a worse one beside it, one coordinate after the other, and in
+/// Moves from a plant of a family to a worse neighbour, one coordinate after the other, and in
 /// smaller steps once none is worse.
 pub(crate) fn worst_beside<E>(
     family: &UncertainFamily,

@@ -1,7 +1,7 @@
 //! Margins of the nominal loop, and the worst of the family.
 //!
 //! ```text
-//! gain:      1/|L| where arg L = -180 deg           growth: the least above 1, reduction: the greatest below
+//! gain:      1/|L| at arg L = -180 deg              growth: the least above 1, reduction: the greatest below
 //! phase:     |180 deg + arg L| where |L| = 1        the least
 //! modulus:   min |1 + L|
 //! delay:     the least dead time that brings L to -1
@@ -19,53 +19,54 @@ use phea_qft::verification::{Audit, PlantPoint, SpecificationFinding, Specificat
 use super::whole_loop;
 use crate::robust::RobustProblem;
 
-/// A margin, and where it is.
+/// A margin and its frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoopMargin {
-    /// dB, degrees, |1 + L| or s; infinite where nothing limits it.
+    /// Value, dB, degrees, |1 + L| or s; infinite if nothing limits it.
     pub value: f64,
-    /// rad/s; `None` where nothing limits it.
+    /// Frequency, rad/s; `None` if nothing limits the margin.
     pub frequency_rad_per_s: Option<f64>,
-    /// The plant.
+    /// Plant with this margin.
     pub plant: PlantPoint,
 }
 
-/// The margins of a loop, or the worst of each in a family.
+/// Margins of a loop, or the worst of each in a family.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MarginSet {
-    /// The factor by which the gain may grow, dB.
+    /// Factor by which the gain may grow, dB.
     pub gain_db: LoopMargin,
-    /// The factor to which it may fall, dB; minus infinity where it may vanish.
+    /// Factor to which the gain may fall, dB; minus infinity if it may vanish.
     pub gain_reduction_db: LoopMargin,
-    /// The least angle between L and -1 where |L| = 1, lag or lead, degrees.
+    /// Least angle between L and -1 at |L| = 1, lag or lead, degrees.
     pub phase_deg: LoopMargin,
-    /// The least |1 + L|.
+    /// Least |1 + L|.
     pub modulus: LoopMargin,
-    /// The least dead time that brings L to -1, s.
+    /// Least dead time that brings L to -1, s.
     pub delay_s: LoopMargin,
 }
 
 /// Margins of the nominal loop and of the family.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AuditMargins {
-    /// Of the nominal loop; `None` where it is not known to be stable.
+    /// Margins of the nominal loop; `None` if it is not known to be stable.
     pub nominal: Option<MarginSet>,
-    /// The worst that were found; `None` unless the family is stable.
+    /// Worst margins that were found; `None` unless the family is stable.
     pub family: Option<MarginSet>,
-    /// Number of plants of which the worst is the worst.
+    /// Number of plants among which these are the worst.
     pub plants: usize,
 }
 
-/// Most members and corners whose margins are computed; of plants without polynomials.
+/// Largest number of members and corners whose margins are computed; fewer for plants without
+/// polynomials.
 const MEMBERS: usize = 150;
 const CORNERS: usize = 64;
 const MEMBERS_OF_RESPONSES: usize = 8;
-/// First step of the search between the members, as a share of the box; it is halved this often.
+/// First step of the search between the members, as a fraction of the box; it is halved this often.
 const FIRST_SHARE: f64 = 0.25;
 const HALVINGS: usize = 3;
 
 impl MarginSet {
-    /// Each margin of the plant that has the worse one.
+    /// Each margin of the plant for which it is worse.
     fn worst_of(self, other: MarginSet) -> MarginSet {
         let least = |one: LoopMargin, other: LoopMargin| if other.value < one.value { other } else { one };
         let greatest = |one: LoopMargin, other: LoopMargin| if other.value > one.value { other } else { one };
@@ -78,7 +79,7 @@ impl MarginSet {
         }
     }
 
-    /// The margins that a search follows, each a plant to start from.
+    /// Margins that a search follows, each with a plant as its start.
     fn searched(&self) -> [&LoopMargin; 3] {
         [&self.gain_db, &self.gain_reduction_db, &self.phase_deg]
     }
@@ -109,9 +110,9 @@ impl MarginSet {
 }
 
 impl AuditMargins {
-    /// The margins after an audit: modulus and delay of the family are the worst that the audit
-    /// itself found in its box; gain and phase those of the members, corners and worst plants, and
-    /// of a search from the worst of these.
+    /// Margins after an audit. Modulus and delay margin of the family are the worst that the audit
+    /// found in its box; gain and phase margin are those of the members, corners and worst plants,
+    /// and of a search from the worst of these.
     pub(super) fn of(problem: &RobustProblem, audit: &Audit) -> AuditMargins {
         let is_stable = audit.stability.verdict == Verdict::Met;
         let nominal = nominal_point(problem);
@@ -138,7 +139,7 @@ impl AuditMargins {
     }
 }
 
-/// With the modulus and delay margin that the audit searched the box for.
+/// The margins with the modulus and delay margin for which the audit searched the box.
 fn with_audited(mut worst: MarginSet, audit: &Audit) -> MarginSet {
     if let Some(closest) = &audit.stability.closest_approach
         && closest.distance < worst.modulus.value
@@ -159,7 +160,7 @@ fn with_audited(mut worst: MarginSet, audit: &Audit) -> MarginSet {
     worst
 }
 
-/// With the delay that the force loop and the paths within it tolerate together.
+/// The margins with the delay that the force loop and the paths within it tolerate together.
 fn with_whole_loop(problem: &RobustProblem, mut nominal: MarginSet) -> MarginSet {
     if let Some(found) = whole_loop::delay_margin(problem, &nominal.delay_s.plant) {
         nominal.delay_s = LoopMargin {
@@ -184,8 +185,7 @@ fn member_is_stable(problem: &RobustProblem, plant: &PlantPoint) -> bool {
     })
 }
 
-/// The nominal plant, members and corners spread over the family, and the plants that the audit
-/// found worst.
+/// Nominal plant, members and corners spread over the family, and the worst plants of the audit.
 fn visited(problem: &RobustProblem, audit: &Audit) -> Vec<PlantPoint> {
     let mut all = vec![nominal_point(problem)];
     match &problem.family {
@@ -208,7 +208,7 @@ fn visited(problem: &RobustProblem, audit: &Audit) -> Vec<PlantPoint> {
     distinct
 }
 
-/// The plants that the audit found worst in anything.
+/// Worst plants of the audit in any respect.
 pub(super) fn worst_of(audit: &Audit) -> impl Iterator<Item = PlantPoint> {
     let closest = audit.stability.closest_approach.iter().map(|closest| &closest.plant);
     let delayed = audit.delay_margin.iter().map(|margin| &margin.plant);
@@ -216,7 +216,7 @@ pub(super) fn worst_of(audit: &Audit) -> impl Iterator<Item = PlantPoint> {
     of_specifications.chain([&audit.stability.plant]).chain(closest).chain(delayed).cloned()
 }
 
-/// The plants of which the worst margins are the worst, without a search between them.
+/// Plants whose margins are compared for the worst, without a search between them.
 pub(crate) fn plants_of_margins(problem: &RobustProblem, audit: &Audit) -> Family {
     let Family::Uncertain(family) = &problem.family else { return problem.family.clone() };
     let members = visited(problem, audit).into_iter().filter_map(|plant| match plant {
@@ -233,7 +233,7 @@ pub(super) fn spread(plants: &[Vec<f64>], most: usize) -> impl Iterator<Item = V
     plants.iter().step_by(step).chain(plants.last()).cloned()
 }
 
-/// The corners of the box, at most those of its first eight coordinates.
+/// Corners of the box, at most those of its first eight coordinates.
 pub(super) fn corners(family: &UncertainFamily) -> Vec<Vec<f64>> {
     let dimension = family.coordinates().len();
     if family.extent() != Extent::Box || dimension == 0 || dimension > 8 {
@@ -244,12 +244,12 @@ pub(super) fn corners(family: &UncertainFamily) -> Vec<Vec<f64>> {
     (0..1_usize << dimension).map(|mask| family.values(&shares(mask))).collect()
 }
 
-/// The plants at which a specification is worst.
+/// Plants at which a specification is worst.
 pub(super) fn worst_plants(finding: &SpecificationFinding) -> impl Iterator<Item = &PlantPoint> {
     finding.worst.iter().chain(&finding.interior).flat_map(SpecificationMargin::plants)
 }
 
-/// The worst of each margin so far.
+/// Worst of each margin so far.
 struct MarginSearch<'a> {
     problem: &'a RobustProblem,
     worst: Option<MarginSet>,
@@ -284,7 +284,7 @@ impl MarginSearch<'_> {
         }
     }
 
-    /// The plant a step from the worst of one margin, within the box.
+    /// Plant at a step from the worst of one margin, within the box.
     fn beside(&mut self, family: &UncertainFamily, index: usize, coordinate: usize, step: f64) {
         let worst = self.worst.as_ref().and_then(|worst| worst.searched().into_iter().nth(index).cloned());
         let Some(LoopMargin { plant: PlantPoint::Parameters(values), value, .. }) = worst else { return };
@@ -301,11 +301,11 @@ impl MarginSearch<'_> {
     }
 }
 
-/// Members and corners whose crossover is computed.
+/// Number of members and corners whose crossover is computed.
 const CROSSOVERS: usize = 8;
 
-/// The highest frequency at which |L| = 1, of the nominal plant, members and corners spread over
-/// the family, rad/s; `None` where |L| of none is 1, or the response of none is known.
+/// Highest frequency at which |L| = 1, of the nominal plant, members and corners spread over the
+/// family, rad/s; `None` if |L| = 1 for none of them, or no response is known.
 pub(crate) fn highest_crossover(problem: &RobustProblem) -> Option<f64> {
     let mut plants = vec![nominal_point(problem)];
     match &problem.family {
@@ -324,7 +324,7 @@ pub(crate) fn highest_crossover(problem: &RobustProblem) -> Option<f64> {
     plants.iter().filter_map(crossover).reduce(f64::max)
 }
 
-/// The margins of the loop of one plant; `None` where its response is not known.
+/// Margins of the loop of one plant; `None` if its response is not known.
 fn of_plant(problem: &RobustProblem, plant: &PlantPoint) -> Option<MarginSet> {
     Some(MarginSet::of(&margins_of(problem, plant)?, plant))
 }
@@ -338,7 +338,7 @@ pub(super) fn margins_of(problem: &RobustProblem, plant: &PlantPoint) -> Option<
     }
 }
 
-/// L = G P H with the delay of the loop, in z where it samples; `None` for a plant without
+/// Open loop L = G P H with the delay of the loop, in z if it samples; `None` for a plant without
 /// polynomials.
 ///
 /// # Errors

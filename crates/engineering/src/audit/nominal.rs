@@ -10,32 +10,32 @@ use crate::robust::RobustProblem;
 /// Margins of the nominal loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NominalMargins {
-    /// The factor by which the gain may grow, dB.
+    /// Factor by which the gain may grow, dB.
     pub gain_margin_db: f64,
-    /// The factor to which it may fall, dB; minus infinity where it may vanish.
+    /// Factor to which the gain may fall, dB; minus infinity if it may vanish.
     pub gain_reduction_db: f64,
-    /// Degrees.
+    /// Phase margin, degrees.
     pub phase_margin_deg: f64,
-    /// The highest frequency at which |L| = 1, rad/s; zero if |L| never is 1.
+    /// Highest frequency at which |L| = 1, rad/s; zero if |L| never is 1.
     pub crossover_rad_per_s: f64,
-    /// The frequencies at which |L| falls below 1, and between which it is above 1 again.
+    /// Frequencies at which |L| falls below 1, and between which it is above 1 again.
     pub crossovers: Crossovers,
-    /// The least delay that makes it unstable, s.
+    /// Least delay that makes the loop unstable, s.
     pub delay_margin_s: f64,
 }
 
 /// The crossover of a loop, and a resonance beyond it that reaches |L| = 1 again.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Crossovers {
-    /// The first frequency at which |L| falls through 1, rad/s; `None` where it does not.
+    /// First frequency at which |L| falls through 1, rad/s; `None` if it does not.
     pub first_rad_per_s: Option<f64>,
-    /// The lowest and the highest frequency beyond it at which |L| = 1, rad/s, the highest infinite
-    /// where |L| remains above 1; `None` where |L| remains below 1.
+    /// Lowest and highest frequency beyond it at which |L| = 1, rad/s, the highest infinite if |L|
+    /// remains above 1; `None` if |L| remains below 1.
     pub again_rad_per_s: Option<[f64; 2]>,
 }
 
 impl Crossovers {
-    /// From the frequencies at which |L| = 1, in rad/s, and from |L| between them.
+    /// Crossovers from the frequencies at which |L| = 1, rad/s, and from |L| between them.
     ///
     /// ```text
     /// |L| > 1 below w_1, |L| < 1 above       w_1 is the crossover
@@ -44,7 +44,7 @@ impl Crossovers {
     pub fn of(crossings_rad_per_s: Vec<f64>, magnitude: impl Fn(f64) -> Option<f64>) -> Crossovers {
         let crossings = sorted_distinct(crossings_rad_per_s);
         let next = |index: usize| crossings.get(index).copied();
-        // above[k] lies between crossing k - 1 and crossing k
+        // above[k] is between crossing k - 1 and crossing k
         let is_above = |index: usize| {
             let inside = match (index.checked_sub(1).and_then(next), next(index)) {
                 (None, Some(first)) => 0.5 * first,
@@ -70,8 +70,8 @@ impl Crossovers {
 /// Factor by which a frequency beyond the last crossing of |L| = 1 exceeds it.
 const BEYOND_LAST: f64 = 1.001;
 
-/// Margins of the loop of the nominal plant, which must be stable, by its polynomials or else its
-/// response; `None` where its response is not known.
+/// Margins of the loop of the nominal plant, which must be stable, by its polynomials or else by
+/// its response; `None` if its response is not known.
 pub(crate) fn nominal_margins(problem: &RobustProblem) -> Option<NominalMargins> {
     let found = margins_of(problem, &nominal_point(problem))?;
     let crossings: Vec<f64> = found.phase_margins.iter().map(|margin| margin.frequency_rad_per_s).collect();

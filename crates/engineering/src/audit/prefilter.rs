@@ -1,4 +1,5 @@
-//! A prefilter that amplifies: the reference then anticipates what the loop does not do.
+//! Detection of a prefilter that amplifies: the reference then compensates in advance for a deficit
+//! of the loop.
 
 use phea_dynamics::frequency::{decibels, logarithmic_grid};
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
@@ -6,28 +7,28 @@ use phea_dynamics::order::sorted_distinct;
 use phea_dynamics::portable;
 use phea_qft::closed_loop::Compensation;
 
-/// The gain of a prefilter F.
+/// Gain of a prefilter F.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrefilterGain {
-    /// |F(0)|
+    /// Gain |F(0)|.
     pub at_zero: f64,
-    /// The largest |F|.
+    /// Largest |F|.
     pub largest: f64,
-    /// Where it is largest, rad/s.
+    /// Frequency of the largest |F|, rad/s.
     pub frequency_rad_per_s: f64,
 }
 
-/// The largest gain above the one at zero frequency, and that above 1, from which a prefilter
-/// amplifies, dB.
+/// Ratio of the largest gain to that at zero frequency, and to 1, from which a prefilter amplifies,
+/// dB.
 const AMPLIFIES_DB: f64 = 1.0;
 const AMPLIFIES_AT_ZERO_DB: f64 = 6.0;
-/// Points of the grid in addition to the magnitudes of the roots, and how far beyond these it
-/// reaches.
+/// Number of points of the grid in addition to the magnitudes of the roots, and its range beyond
+/// these.
 const POINTS: usize = 200;
 const BEYOND: f64 = 100.0;
 
 impl PrefilterGain {
-    /// The gain of the prefilter of a loop; `None` where it does not amplify.
+    /// Gain of the prefilter of a loop; `None` if it does not amplify.
     pub fn amplifying(compensation: &Compensation) -> Option<PrefilterGain> {
         let gain = PrefilterGain::of_loop(compensation);
         let above = |one: f64, other: f64, most_db: f64| decibels(one / other) > most_db;
@@ -53,13 +54,13 @@ impl PrefilterGain {
         gain
     }
 
-    /// The largest gain over that at zero frequency, dB.
+    /// Ratio of the largest gain to that at zero frequency, dB.
     pub fn rise_db(&self) -> f64 {
         decibels(self.largest / self.at_zero)
     }
 }
 
-/// A grid around the roots, and the magnitudes of the roots.
+/// Frequencies of a grid around the roots, and magnitudes of the roots.
 fn frequencies(prefilter: &TransferFunction, highest: f64) -> Vec<f64> {
     let sample_time_s = match prefilter.domain() {
         TimeDomain::Continuous => None,

@@ -1,4 +1,4 @@
-//! Proves or refutes what an audit found by searching; the verdict then rests on the proof.
+//! Proof or refutation of the findings of an audit; the verdict is then based on the proof.
 
 use phea_dynamics::watch::{Stopped, Watch};
 use phea_qft::proof::{NotProven, Proof, ProofOptions, Standing, prove};
@@ -8,12 +8,12 @@ use super::{ProjectAudit, audit_request};
 use crate::robust::RobustProblem;
 use crate::side_by_side::all_cores;
 
-/// Proves or refutes stability and every specification of an audit. What is neither proven nor
-/// refuted becomes `not_proven`, whatever the search found, except for a violation, which is shown
-/// by a plant and a frequency.
+/// Proves or refutes stability and every specification of an audit. Anything that is neither proven
+/// nor refuted becomes `not_proven`, whatever the search found, except for a violation, which is
+/// shown by a plant and a frequency.
 ///
 /// # Errors
-/// [`Stopped`] where the watch stops it.
+/// [`Stopped`] if `watch` cancels it.
 pub fn prove_audit(
     problem: &RobustProblem,
     view: &mut ProjectAudit,
@@ -25,11 +25,11 @@ pub fn prove_audit(
     Ok(())
 }
 
-/// The same for an audit for which no proof was requested: what is neither proven nor refuted keeps
-/// the result of the search, and less effort is spent.
+/// Proves or refutes an audit for which no proof was requested: anything that is neither proven nor
+/// refuted retains the result of the search, and less effort is spent.
 ///
 /// # Errors
-/// [`Stopped`] where the watch stops it.
+/// [`Stopped`] if `watch` cancels it.
 pub fn try_to_prove(
     problem: &RobustProblem,
     view: &mut ProjectAudit,
@@ -45,7 +45,7 @@ pub fn try_to_prove(
 /// Number of leaves of a panel if no proof was requested.
 const TRIED_LEAVES: usize = 10_000;
 
-/// Rests the verdict on a proof; `unproven` is the verdict for an audit that is met but not proven.
+/// Bases the verdict on a proof; `unproven` is the verdict for an audit that is met but not proven.
 fn rest_on(view: &mut ProjectAudit, mut proof: Proof, unproven: Verdict) {
     let audit = &mut view.audit;
     for (finding, found) in audit.specifications.iter().zip(&mut proof.specifications) {
@@ -85,7 +85,8 @@ fn rest_on(view: &mut ProjectAudit, mut proof: Proof, unproven: Verdict) {
     view.proof = Some(proof);
 }
 
-/// A plant and a frequency at which the search found a violation outweigh any proof.
+/// Corrects a standing: a plant and a frequency at which the search found a violation outweigh any
+/// proof.
 fn contradicted(standing: &mut Standing, searched: Verdict) {
     if *standing == Standing::Proven && searched == Verdict::Violated {
         *standing = Standing::NotProven(NotProven::Contradicted);

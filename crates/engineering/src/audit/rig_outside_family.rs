@@ -1,4 +1,4 @@
-//! The rig itself, where the family does not contain it.
+//! Audit of the rig itself if the family does not contain it.
 
 use phea_dynamics::watch::{Stopped, Watch};
 use phea_qft::verification::{Audit, Verdict};
@@ -8,14 +8,14 @@ use crate::caveat::{Caveat, LoopWithRig, OutsideFamily, UncountedEffect};
 use crate::rig::OutsideParameter;
 use crate::robust::RobustProblem;
 
-/// The audit of the rig itself in the loop of a problem, where the family does not contain it.
+/// Audit of the rig itself in the loop of a problem, if the family does not contain it.
 pub(crate) fn caveat(problem: &RobustProblem, watch: Watch<'_>) -> Result<Option<Caveat>, Stopped> {
     let Some((alone, outside)) = &problem.rig_outside else { return Ok(None) };
     let audit = phea_qft::audit::audit(&audit_request(problem, alone), watch)?;
     Ok(Some(of_rig(outside, loop_with_rig(problem, &audit), audit.verdict != Verdict::Met)))
 }
 
-/// The result where the watch stopped it: unknown.
+/// Unknown result, after cancellation by `watch`.
 pub(crate) fn unexamined(problem: &RobustProblem) -> Option<Caveat> {
     let (_, outside) = problem.rig_outside.as_ref()?;
     Some(of_rig(outside, LoopWithRig::NotProven, true))

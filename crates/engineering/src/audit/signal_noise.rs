@@ -1,5 +1,5 @@
-//! The effect of the noise of what a controller reads in addition to the force on the valve's
-//! command and the force.
+//! Effect, on the valve's command and on the force, of noise in the signals that a controller reads
+//! in addition to the force.
 
 use phea_dynamics::linear::LinearError;
 use phea_qft::design::quantization::{QuantizationError, RateNoise, inner_noise, rate_noise};
@@ -9,7 +9,7 @@ use phea_qft::verification::{PlantPoint, Verdict};
 use crate::quantity::Units;
 use crate::robust::{NoPolynomials, RobustProblem};
 
-/// What a controller reads in addition to the force.
+/// A signal that a controller reads in addition to the force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoisySignal {
     /// The velocity of the load, which is fed forward.
@@ -21,20 +21,21 @@ pub enum NoisySignal {
 /// The noise of such a signal with the effects that it has in a sampled loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SignalNoise {
-    /// Which signal.
+    /// Noisy signal.
     pub signal: NoisySignal,
-    /// m/s or Pa rms: noise and rounding of the velocity together, noise of the pressure signal.
+    /// Noise, m/s or Pa rms: noise and rounding of the velocity together, or noise of the pressure
+    /// signal.
     pub rms: f64,
     /// Motion of the rig.
     pub units: Units,
-    /// The largest effects in the family, or why they are not known.
+    /// Largest effects in the family, or the reason why they are not known.
     pub effect: Result<SignalNoiseEffect, UnknownNoiseEffect>,
 }
 
-/// The reason why the effects of a noise are not known.
+/// Reason why the effects of a noise are not known.
 #[derive(Clone, Debug, PartialEq)]
 pub enum UnknownNoiseEffect {
-    /// Not every plant is stable.
+    /// Some plants are not stable.
     Unstable,
     /// The plants have no polynomials: only a simulation shows the effects.
     NoPolynomials(NoPolynomials),
@@ -44,21 +45,21 @@ pub enum UnknownNoiseEffect {
     Response(QuantizationError),
 }
 
-/// The largest effects among the plants of a family that are examined one by one.
+/// Largest effects among the plants of a family that are examined one by one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SignalNoiseEffect {
-    /// On the command at the valve, V rms.
+    /// Effect on the command at the valve, V rms.
     pub command_rms_v: f64,
-    /// The plant with this effect.
+    /// Plant with this effect on the command.
     pub command_plant: PlantPoint,
-    /// On the force, N rms.
+    /// Effect on the force, N rms.
     pub force_rms_n: f64,
-    /// The plant with this effect.
+    /// Plant with this effect on the force.
     pub force_plant: PlantPoint,
 }
 
 impl SignalNoise {
-    /// In the loop of this problem; `None` where there is no noise, or the signal is not read.
+    /// Noise in the loop of this problem; `None` if there is no noise, or the signal is not read.
     pub(super) fn of(
         signal: NoisySignal,
         problem: &RobustProblem,

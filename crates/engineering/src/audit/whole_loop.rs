@@ -1,13 +1,13 @@
-//! The delay that the force loop and the paths within it tolerate together: one computer closes
-//! all of them, and what delays it delays each.
+//! Delay that the force loop and the paths within it tolerate together: one computer closes all of
+//! them, and its delay acts on each.
 //!
 //! ```text
 //! 1 + L_t e^(-s tau) = 0,    1 + L_t = P_0/P (1 + L),    P_0/P = 1 + H_p P_p - H_v P_v
 //! ```
 //!
 //! L_t is the whole loop, cut at the command; P the plant with the pressure feedback H_p and the
-//! velocity feed-forward H_v in it, which is that of L, and P_0 the plant without. The force loop
-//! alone tolerates more: cut there, pressures and velocity act as early as before.
+//! velocity feedforward H_v in it, which is that of L, and P_0 the plant without. The force loop
+//! tolerates more if it is cut there, since pressures and velocity then act without delay.
 
 use num_complex::Complex64;
 
@@ -23,31 +23,31 @@ use super::margins::{corners, nominal_point, spread, worst_of};
 use crate::robust::RobustProblem;
 use crate::side_by_side::of_each;
 
-/// Most members and corners that are examined, and plants whose delay is found by sampling them
-/// anew.
+/// Largest number of members and corners that are examined, and of plants whose delay is found by
+/// sampling them anew.
 const MEMBERS: usize = 150;
 const CORNERS: usize = 64;
 const RANKED: usize = 4;
-/// Points of the grid, and how far it reaches below its end.
+/// Number of points of the grid, and its range below its end.
 const GRID_POINTS: usize = 400;
 const DECADES: f64 = 1e-4;
 /// End of the grid of a continuous loop, rad/s.
 const END_OF_CONTINUOUS: f64 = 2e4;
-/// Share of that end at which a path within shows whether it changes the plant.
+/// Fraction of that end at which a path within the loop is tested for its effect on the plant.
 const TOUCH: f64 = 0.1;
 
 /// Paths within the force loop that are delayed with it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DelayedPaths {
-    /// From the pressures of the chambers.
+    /// True if the feedback of the chambers' pressures is delayed.
     pub pressure_feedback: bool,
-    /// From the velocity of a load that the force moves.
+    /// True if the feedforward of the velocity of a load that the force moves is delayed.
     pub velocity_feed_forward: bool,
 }
 
 impl DelayedPaths {
-    /// None where the velocity of the load does not depend on the force, and nothing else is fed
-    /// back.
+    /// Delayed paths of a problem; none if the velocity of the load does not depend on the force,
+    /// and nothing else is fed back.
     pub(super) fn of(problem: &RobustProblem) -> DelayedPaths {
         let RobustProblem { before_feedback, compensation, .. } = problem;
         let nominal = WholeLoop::of((problem, compensation), &nominal_point(problem));
@@ -58,14 +58,14 @@ impl DelayedPaths {
         DelayedPaths { pressure_feedback, velocity_feed_forward }
     }
 
-    /// True where there is one.
+    /// True if there is a path.
     pub fn are_some(self) -> bool {
         self.pressure_feedback || self.velocity_feed_forward
     }
 }
 
-/// The least delay in s that makes a plant of the family unstable; `None` without such a path, and
-/// where no response is known.
+/// Least delay that makes a plant of the family unstable, s; `None` without such a path, and if no
+/// response is known.
 pub(super) fn least_delay(problem: &RobustProblem, audit: &Audit) -> Option<DelayMargin> {
     audit.delay_margin.as_ref()?;
     let Family::Uncertain(family) = &problem.family else { return None };
@@ -84,7 +84,7 @@ pub(super) fn least_delay(problem: &RobustProblem, audit: &Audit) -> Option<Dela
     nearest.min_by(|one, other| one.delay_s.total_cmp(&other.delay_s))
 }
 
-/// The least delay in s that makes this plant unstable, which must be stable without it. A sampled
+/// Least delay that makes this plant unstable, s; the plant must be stable without it. A sampled
 /// loop is sampled anew with each delay: between whole samples a delay also changes |L_t|.
 pub(super) fn delay_margin(problem: &RobustProblem, plant: &PlantPoint) -> Option<DelayMargin> {
     let whole = WholeLoop::of((problem, &problem.compensation), plant)?;
@@ -102,7 +102,7 @@ pub(super) fn delay_margin(problem: &RobustProblem, plant: &PlantPoint) -> Optio
     Some(DelayMargin { delay_s, frequency_rad_per_s, plant: plant.clone() })
 }
 
-/// A plant in its loop, and the same without the paths within.
+/// A plant in its loop, and the plant without the paths within the loop.
 struct WholeLoop<'c> {
     compensation: &'c Compensation,
     with: Member,
@@ -110,7 +110,7 @@ struct WholeLoop<'c> {
 }
 
 impl<'c> WholeLoop<'c> {
-    /// `None` where no path within changes the plant.
+    /// `None` if no path within the loop changes the plant.
     fn of(
         (problem, compensation): (&RobustProblem, &'c Compensation),
         plant: &PlantPoint,
@@ -129,7 +129,7 @@ impl<'c> WholeLoop<'c> {
         (!whole.is_force_loop()).then_some(whole)
     }
 
-    /// True where the paths within leave the plant as it is.
+    /// True if the paths within the loop do not change the plant.
     fn is_force_loop(&self) -> bool {
         let at = TOUCH * self.highest();
         self.with.response(at).map(|seen| seen.plant) == self.without.response(at).map(|seen| seen.plant)
@@ -139,7 +139,7 @@ impl<'c> WholeLoop<'c> {
         self.compensation.highest_frequency_rad_per_s().min(END_OF_CONTINUOUS)
     }
 
-    /// L_t
+    /// Response of L_t.
     fn at(&self, frequency_rad_per_s: f64) -> Option<Complex64> {
         let [with, without] =
             [self.with.response(frequency_rad_per_s)?, self.without.response(frequency_rad_per_s)?];
@@ -148,7 +148,7 @@ impl<'c> WholeLoop<'c> {
         whole.is_finite().then_some(whole)
     }
 
-    /// The least phase over frequency where |L_t| passes 1.
+    /// Least phase over frequency at which |L_t| passes 1.
     fn critical_delay(&self) -> Option<CriticalDelay> {
         let highest = self.highest();
         let frequencies = logarithmic_grid(DECADES * highest, highest, GRID_POINTS).ok()?;

@@ -1,18 +1,18 @@
-//! The course of the command in a test.
+//! Command as a function of time in a test.
 
 use phea_dynamics::portable;
 
 use super::BenchSeries;
 use crate::project::{Bench, BenchWaveform, Reversals};
 
-/// Greatest commands before a small reversal, over the amplitude.
+/// Greatest commands before a small reversal, divided by the amplitude.
 const LEVELS: [f64; 3] = [0.5, 0.7, 0.9];
 
-/// A command over the nominal voltage, over the share of a test that is done.
+/// Command divided by the nominal voltage, as a function of the completed fraction of a test.
 pub(super) enum CommandPath {
     /// Cycles around zero.
     Cycles { waveform: BenchWaveform, cycles: f64, amplitude: f64 },
-    /// From corner to corner at one rate.
+    /// Straight lines from corner to corner at one rate.
     Straight(Vec<f64>),
 }
 
@@ -31,7 +31,7 @@ impl CommandPath {
         }
     }
 
-    /// After a share of the test.
+    /// Command after a fraction of the test.
     pub(super) fn at(&self, share: f64) -> f64 {
         match self {
             CommandPath::Cycles { waveform, cycles, amplitude } => {
@@ -42,7 +42,8 @@ impl CommandPath {
     }
 }
 
-/// From zero to the amplitude and back, with a small reversal at each level on either way.
+/// Corners of the path from zero to the amplitude and back, with a small reversal at each level in
+/// either direction.
 pub(super) fn corners(reversals: &Reversals) -> Vec<f64> {
     let Reversals { amplitude, size } = *reversals;
     let levels = LEVELS.map(|level| level * amplitude);
@@ -54,12 +55,13 @@ pub(super) fn corners(reversals: &Reversals) -> Vec<f64> {
     corners
 }
 
-/// Least command that the flow is judged at, over the nominal voltage: the lowest corner but zero.
+/// Least command at which the flow is judged, divided by the nominal voltage: the lowest corner
+/// except zero.
 pub(super) fn least_judged(reversals: &Reversals) -> f64 {
     LEVELS.map(|level| level * reversals.amplitude - reversals.size).into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// After a share of the way from corner to corner.
+/// Command after a fraction of the path from corner to corner.
 fn along(corners: &[f64], share: f64) -> f64 {
     let pieces = || corners.iter().zip(corners.iter().skip(1));
     let whole: f64 = pieces().map(|(from, to)| (to - from).abs()).sum();
@@ -74,7 +76,7 @@ fn along(corners: &[f64], share: f64) -> f64 {
     corners.last().copied().unwrap_or(0.0)
 }
 
-/// The command's course over its amplitude after a number of cycles: from zero up first.
+/// Command divided by its amplitude after a number of cycles: first from zero upwards.
 fn wave(waveform: BenchWaveform, cycles: f64) -> f64 {
     let phase = cycles - cycles.floor();
     match waveform {

@@ -1,5 +1,5 @@
-//! Runs of the cylinder for its friction: sliding at constant velocities, pressed until it breaks
-//! away, and shaken on its bristles, as instruments would record them.
+//! Friction tests of the cylinder: sliding at constant velocities, pressed until it breaks away,
+//! and shaken on its bristles, as instruments would record them.
 //!
 //! ```text
 //! velocity | force over time -> LuGre friction, moving mass -> pressures in the chambers -> instruments -> rows
@@ -17,36 +17,36 @@ use super::{BenchError, MOST_ROWS};
 use crate::project::FrictionBench;
 use crate::setup::Setup;
 
-/// The readings of the instruments at one time. Units: s, m, Pa.
+/// Readings of the instruments at one time. Units: s, m, Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionRow {
     /// Time from the beginning.
     pub time: f64,
     /// Position of the piston.
     pub position: f64,
-    /// p_A.
+    /// Pressure p_A.
     pub pressure_a: f64,
-    /// p_B.
+    /// Pressure p_B.
     pub pressure_b: f64,
 }
 
-/// A run of the cylinder as it was recorded.
+/// A recorded run of the cylinder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrictionRun {
-    /// Which.
+    /// Kind of the run.
     pub series: FrictionSeries,
     /// Rows in the order of time.
     pub rows: Vec<FrictionRow>,
 }
 
-/// What is recorded in one go.
+/// Kind of a continuous recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrictionSeries {
-    /// Constant velocities, both ways.
+    /// Constant velocities in both directions.
     Sliding,
     /// Pressed from A to B until it breaks away.
     Breakaway,
-    /// The same from B to A.
+    /// Pressed from B to A until it breaks away.
     BreakawayBack,
     /// Shaken by a force of several frequencies that does not break it away.
     Shaken,
@@ -60,7 +60,7 @@ impl FrictionSeries {
         FrictionSeries::Shaken,
     ];
 
-    /// As files are called.
+    /// Name in file names.
     pub fn name(self) -> &'static str {
         match self {
             FrictionSeries::Sliding => "sliding",
@@ -77,16 +77,16 @@ struct CylinderMoment {
     force: f64,
 }
 
-/// Rest at the beginning, and after each release, in s.
+/// Time at rest at the beginning and after each release, s.
 const REST: f64 = 0.05;
 
-/// Part of the static friction that is put on before a release.
+/// Fraction of the static friction that is applied before a release.
 const PART: f64 = 0.7;
 
-/// Displacement at which a run ends after the piston broke away, over that of the bristles then.
+/// Displacement at which a run ends after breakaway, divided by that of the bristles at breakaway.
 const BROKEN_AWAY: f64 = 40.0;
 
-/// All runs of the cylinder that `[bench.friction]` asks for.
+/// All runs of the cylinder that `[bench.friction]` requests.
 ///
 /// # Errors
 /// [`BenchError`] for a cylinder without bristles, too many rows, or runs beyond the stroke.
@@ -121,17 +121,17 @@ pub fn friction_runs(setup: &Setup<'_>, watch: Watch<'_>) -> Result<Vec<Friction
     Ok(runs)
 }
 
-/// The tests of the valve have the streams of random numbers below.
+/// First stream of random numbers; the tests of the valve use the streams below.
 const FIRST_STREAM: u64 = 64;
 
-/// The chambers, whose mean pressure is kept.
+/// Chambers at constant mean pressure.
 struct EvenChambers<'a> {
     cylinder: &'a Cylinder,
     mean: f64,
 }
 
 impl EvenChambers<'_> {
-    /// p_A and p_B for a force on the piston, in Pa.
+    /// Pressures p_A and p_B for a force on the piston, Pa.
     fn pressures(&self, force: f64) -> [f64; 2] {
         let [a, b] = [self.cylinder.area_a, self.cylinder.area_b];
         let pressure_a = (force + 2.0 * self.mean * b) / (a + b);
@@ -156,11 +156,11 @@ fn recorded(
     moments.iter().enumerate().map(row).collect()
 }
 
-/// Steps between two rows while it slides: the bristles are solved exactly for the velocity in the
-/// middle of each.
+/// Steps between two rows while the piston slides: the bristles are solved exactly for the velocity
+/// in the middle of each.
 const STEPS: usize = 20;
 
-/// From rest through all velocities, the slowest first, each forth and back.
+/// Sliding from rest through all velocities, the slowest first, each forth and back.
 fn sliding(
     lugre: &LuGre,
     cylinder: &Cylinder,
@@ -198,7 +198,7 @@ fn sliding(
     Ok(moments)
 }
 
-/// Times and velocities between which the velocity is straight.
+/// Times and velocities between which the velocity is linear.
 fn velocities(settings: &FrictionBench) -> Vec<(f64, f64)> {
     let count = settings.velocities.max(1);
     let ratio = settings.fastest / settings.slowest;
@@ -218,7 +218,7 @@ fn velocities(settings: &FrictionBench) -> Vec<(f64, f64)> {
     corners
 }
 
-/// Value and slope at a time; `piece` is where the last one was found.
+/// Value and slope at a time; `piece` is the index of the last piece found.
 fn along(corners: &[(f64, f64)], time: f64, piece: &mut usize) -> (f64, f64) {
     while corners.get(*piece + 1).is_some_and(|(end, _)| *end <= time) && *piece + 2 < corners.len() {
         *piece += 1;
@@ -233,8 +233,8 @@ fn along(corners: &[(f64, f64)], time: f64, piece: &mut usize) -> (f64, f64) {
     (from + slope * (time - start).min(end - start), slope)
 }
 
-/// From rest: a part of the static friction put on slowly and let go quickly, to and fro; then a
-/// ramp until the piston breaks away.
+/// Breakaway from rest: a part of the static friction applied slowly and released quickly, in both
+/// directions; then a ramp until the piston breaks away.
 fn breakaway(
     lugre: &LuGre,
     cylinder: &Cylinder,
@@ -263,25 +263,25 @@ fn breakaway(
     Ok(before.map(|(moved, force)| CylinderMoment { position: middle + moved, force: *force }).collect())
 }
 
-/// How far the bristles slip in a step, over their deflection.
+/// Largest slip of the bristles in a step, divided by their deflection.
 const LONGEST_SLIP: f64 = 0.1;
 
-/// Longest step of the integration in s up to this velocity.
+/// Longest integration step up to this velocity, s.
 fn longest_step(lugre: &LuGre, fastest: f64) -> f64 {
     let [extending, retracting] = lugre.curve.both_levels();
     let least = extending.coulomb.min(retracting.coulomb);
     LONGEST_SLIP * least / (lugre.bristle_stiffness * fastest)
 }
 
-/// Static friction in N, the lesser of both directions.
+/// Static friction, N, the lesser of both directions.
 fn least_static(lugre: &LuGre) -> f64 {
     let [extending, retracting] = lugre.curve.both_levels();
     extending.static_friction.min(retracting.static_friction)
 }
 
-/// Times and forces between which the force is straight.
+/// Times and forces between which the force is linear.
 fn forces(settings: &FrictionBench, peak: f64, part: f64) -> Vec<(f64, f64)> {
-    // no corner lies at a row
+    // no corner coincides with a row
     let mut time = REST + 0.37 * settings.sample_time;
     let mut corners = vec![(0.0, 0.0), (time, 0.0)];
     for index in 0..settings.releases {
@@ -297,7 +297,7 @@ fn forces(settings: &FrictionBench, peak: f64, part: f64) -> Vec<(f64, f64)> {
     corners
 }
 
-/// A number of rows that can be recorded.
+/// Number of rows, if it can be recorded.
 fn counted(rows: f64) -> Result<usize, BenchError> {
     match rows {
         rows if rows <= MOST_ROWS as f64 => Ok(rows as usize),

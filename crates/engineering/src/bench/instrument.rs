@@ -1,14 +1,14 @@
-//! Transducers, meters and the converters behind them.
+//! Transducers, meters and their converters.
 
 use phea_dynamics::controller::Converter;
 use phea_dynamics::random::normal;
 
 use crate::project::{Bench, FlowMeter};
 
-/// Share of its range that a transducer with a live zero (4 to 20 mA) shows below zero.
+/// Fraction of its range that a transducer with a live zero (4 to 20 mA) shows below zero.
 const LIVE_ZERO: f64 = 0.025;
 
-/// The instruments of a test, all with converters of the same number of bits.
+/// Instruments of a test, all with converters of equal numbers of bits.
 pub(crate) struct Instruments {
     command: Option<Converter>,
     pressure: Option<Converter>,
@@ -30,12 +30,12 @@ impl Instruments {
         }
     }
 
-    /// The command that leaves the computer, in V.
+    /// Command at the output of the computer, V.
     pub(super) fn command(&self, wanted: f64) -> f64 {
         self.command.as_ref().map_or(wanted, |converter| converter.rounded(wanted))
     }
 
-    /// The recorded value of a command, in V.
+    /// Recorded value of a command, V.
     pub(super) fn recorded_command(&self, command: f64, noise: &mut u64) -> f64 {
         if self.command_noise == 0.0 {
             return command;
@@ -44,14 +44,14 @@ impl Instruments {
         self.command.as_ref().map_or(shown, |converter| converter.rounded(shown))
     }
 
-    /// The reading of a pressure in Pa.
+    /// Reading of a pressure, Pa.
     pub(crate) fn pressure(&mut self, value: f64, noise: &mut u64) -> f64 {
         let shown = value + self.pressure_noise * normal(noise);
         self.pressure.as_ref().map_or(shown, |converter| converter.rounded(shown))
     }
 
-    /// What is read of a flow in m3/s: a turbine stands still below its smallest flow, which goes
-    /// with the kinematic viscosity, and does not indicate the direction unless it is signed.
+    /// Reading of a flow, m3/s: a turbine is at rest below its smallest flow, which is proportional
+    /// to the kinematic viscosity, and does not indicate the direction unless it is signed.
     pub(super) fn flow(&self, meter: &FlowMeter, value: f64, viscosity_ratio: f64, noise: &mut u64) -> f64 {
         let disturbed = value + meter.noise * normal(noise);
         let turning = if value.abs() < meter.minimum * viscosity_ratio { 0.0 } else { disturbed };

@@ -9,36 +9,36 @@ use super::command_path::least_judged;
 use crate::estimate::{Estimate, NORMAL_95};
 use crate::project::Reversals;
 
-/// Hysteresis and threshold in V, each with its 95 % interval.
+/// Hysteresis and threshold, V, each with its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReversalReading {
-    /// Greatest difference of two commands that give the same flow over the cycle, threshold
-    /// included.
+    /// Greatest difference of two commands with equal flow over the cycle, including the threshold.
     pub hysteresis: Estimate,
-    /// Change of command that a reversal takes before the spool moves.
+    /// Change of command that a reversal needs before the spool moves.
     pub threshold: Estimate,
-    /// V, command of full opening.
+    /// Command of full opening, V.
     pub nominal_voltage: f64,
 }
 
-/// Threshold, rest of the hysteresis, and the flow over the opening up to its third power.
+/// Number of variables: threshold, rest of the hysteresis, and the flow as a function of the
+/// opening up to its third power.
 const VARIABLES: usize = 6;
 
-/// Share of the nominal voltage below which neither can be distinguished from zero.
+/// Fraction of the nominal voltage below which neither can be distinguished from zero.
 const LEAST: f64 = 1e-6;
 
 /// Fewest rows with a flow.
 const FEWEST_ROWS: usize = 50;
 
-/// What the rows of command (V) and flow (m3/s) show; `None` where the meter stands still in nearly
-/// all.
+/// Hysteresis and threshold from the rows of command, V, and flow, m3/s; `None` if the meter is at
+/// rest in nearly all rows.
 ///
 /// ```text
 /// q = c_0 + c_1 y + c_2 y^2 + c_3 y^3        y the opening by the memories of the spool, from the first command on
 /// ```
 ///
 /// Threshold and width are those whose opening explains the flow best: far from null the flow is a
-/// smooth function of the opening alone, so that all that differs between one way and the other is
+/// smooth function of only the opening, so that all differences between the two directions are
 /// memory.
 pub(super) fn read(
     rows: &[(f64, f64)],
@@ -85,7 +85,7 @@ pub(super) fn read(
     }))
 }
 
-/// Residuals of the flow over the greatest one, with derivatives.
+/// Residuals of the flow divided by the greatest one, with derivatives.
 fn linearised(
     rows: &[(f64, f64)],
     counts: &[bool],

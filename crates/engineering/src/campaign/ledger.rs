@@ -1,4 +1,4 @@
-//! A campaign from its first row or from where it was interrupted, its rows stored as they come.
+//! A campaign from its first row or from an interruption, its rows stored as they are computed.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -9,17 +9,17 @@ use super::workers::{Asked, News, run};
 use super::{CampaignError, Effort, RowFault};
 use phea_dynamics::watch::{Progress, Watch};
 
-/// Rows that are held at once.
+/// Largest number of rows that are stored at once.
 pub(super) const MOST_RUNS: u64 = 1_000_000;
 
 /// The requested part of a campaign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RequestedRuns {
-    /// Runs of the whole campaign.
+    /// Number of runs of the whole campaign.
     pub runs: u64,
-    /// Which part of it.
+    /// Requested part of the campaign.
     pub shard: Shard,
-    /// How it is computed.
+    /// Computational effort.
     pub effort: Effort,
 }
 
@@ -30,7 +30,7 @@ pub struct Shard {
     of: u64,
 }
 
-/// All of it.
+/// The whole campaign.
 impl Default for Shard {
     fn default() -> Shard {
         Shard { number: 1, of: 1 }
@@ -38,10 +38,10 @@ impl Default for Shard {
 }
 
 impl Shard {
-    /// From a text such as `2/4`, the second of four.
+    /// Part from a text such as `2/4`, the second of four.
     ///
     /// # Errors
-    /// [`CampaignError::NoShard`].
+    /// [`CampaignError::NoShard`] for any other text.
     ///
     /// # Example
     /// ```
@@ -60,24 +60,24 @@ impl Shard {
         }
     }
 
-    /// Its runs, of this number in total.
+    /// Runs of the part, of this number in total.
     pub fn runs_of(&self, runs: u64) -> Range<u64> {
         let share = |number: u64| (u128::from(runs) * u128::from(number) / u128::from(self.of)) as u64;
         share(self.number - 1)..share(self.number)
     }
 
-    /// Whether it begins the table, with the header line.
+    /// True if the part begins the table, with the header line.
     fn begins(&self) -> bool {
         self.number == 1
     }
 
-    /// Name of its table without an ending: `runs`, or `runs-2-of-4`.
+    /// Name of the part's table without an extension: `runs`, or `runs-2-of-4`.
     pub fn name(&self) -> String {
         format!("runs{}", self.part())
     }
 
-    /// The suffix that distinguishes its files from those of other parts: empty, or `-2-of-4`, with
-    /// numbers of equal length.
+    /// Suffix that distinguishes the part's files from those of other parts: empty, or `-2-of-4`,
+    /// with numbers of equal length.
     pub fn part(&self) -> String {
         let Shard { number, of } = *self;
         let digits = of.to_string().len();
@@ -85,58 +85,58 @@ impl Shard {
     }
 }
 
-/// Stores the rows of a campaign while it runs: a text that grows at its end.
+/// Store for the rows of a campaign while it runs: a text that grows at its end.
 pub trait RowStore {
-    /// All of it.
+    /// Returns the whole text.
     ///
     /// # Errors
-    /// Reason why it cannot be read.
+    /// The reason why it cannot be read.
     fn kept(&mut self) -> Result<String, String>;
 
-    /// Keeps this number of bytes from its beginning and drops the rest.
+    /// Truncates the text to this number of bytes.
     ///
     /// # Errors
-    /// Reason why it cannot be cut.
+    /// The reason why it cannot be truncated.
     fn cut(&mut self, bytes: usize) -> Result<(), String>;
 
-    /// Adds to its end.
+    /// Appends to the text.
     ///
     /// # Errors
-    /// Reason why it cannot be written.
+    /// The reason why it cannot be written.
     fn append(&mut self, text: &str) -> Result<(), String>;
 
-    /// Rows that wait for an earlier one, as stored by [`RowStore::keep_ahead`]; anything else
-    /// there is ignored.
+    /// Returns rows pending for an earlier one, as stored by [`RowStore::keep_ahead`]; anything
+    /// else there is ignored.
     ///
     /// # Errors
-    /// Reason why they cannot be read.
+    /// The reason why they cannot be read.
     fn ahead(&mut self) -> Result<String, String> {
         Ok(String::new())
     }
 
-    /// Stores rows that wait for an earlier one, so that they are not driven again after an
+    /// Stores rows pending for an earlier one, so that they are not simulated again after an
     /// interruption. A ledger may store none.
     ///
     /// # Errors
-    /// Reason why they cannot be written.
+    /// The reason why they cannot be written.
     fn keep_ahead(&mut self, _text: &str) -> Result<(), String> {
         Ok(())
     }
 
-    /// Deletes them: all are in the table.
+    /// Deletes the pending rows: all are in the table.
     ///
     /// # Errors
-    /// Reason why they cannot be removed.
+    /// The reason why they cannot be deleted.
     fn forget_ahead(&mut self) -> Result<(), String> {
         Ok(())
     }
 }
 
-/// Drives the missing runs of a campaign, each row stored in the ledger if there is one, and
-/// returns all rows: fewer than requested if it was stopped.
+/// Simulates the missing runs of a campaign, each row stored in the ledger if there is one, and
+/// returns all rows: fewer than requested if it was cancelled.
 ///
 /// # Errors
-/// [`CampaignError`] where the ledger holds another campaign or cannot be written.
+/// [`CampaignError`] if the ledger contains another campaign or cannot be written.
 pub fn campaign(
     plan: &Plan,
     wanted: RequestedRuns,
@@ -188,8 +188,8 @@ pub fn campaign(
     Ok(rows)
 }
 
-/// Stored rows of these runs that wait for earlier ones; a run whose line was altered is driven
-/// again.
+/// Stored rows of these runs that are pending for earlier ones; a run whose line was altered is
+/// simulated again.
 fn ahead(
     plan: &Plan,
     missing: &Range<u64>,

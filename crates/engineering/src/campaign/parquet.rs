@@ -1,4 +1,4 @@
-//! The rows of a campaign as an Apache Parquet table: the columns of its text, absent numbers null.
+//! Rows of a campaign as an Apache Parquet table: the columns of its text, absent numbers null.
 
 use std::sync::Arc;
 
@@ -11,13 +11,13 @@ use parquet::schema::types::{Type, TypePtr};
 
 use super::row::{CampaignColumns, Row, RowOutcome, meaningful};
 
-/// Rows of a group; its columns are held in memory while it is written.
+/// Number of rows of a group, whose columns are in memory while it is written.
 const GROUP: usize = 10_000;
 
-/// The table of these rows.
+/// Table of these rows.
 ///
 /// # Errors
-/// In the words of the format's library.
+/// The error message of the format's library.
 pub(super) fn table(columns: &CampaignColumns, rows: &[Row]) -> Result<Vec<u8>, String> {
     written(columns, rows).map_err(|error| error.to_string())
 }
@@ -86,7 +86,7 @@ fn write<T: DataType>(
     Ok(column.close()?)
 }
 
-/// In the order of the header.
+/// Columns with their values, in the order of the header.
 fn contents(columns: &CampaignColumns, rows: &[Row]) -> Vec<ParquetColumn> {
     let text = |of: &dyn Fn(&Row) -> Option<String>| {
         ParquetColumn::Text(

@@ -1,4 +1,4 @@
-//! The data that all runs of a campaign share.
+//! Data common to all runs of a campaign.
 
 use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::TransferFunction;
@@ -25,7 +25,7 @@ use crate::source::Source;
 /// Largest number of times at which the bands of the force are given over the whole scenario, and
 /// of additional times after the starts of its windows.
 const BAND_TIMES: usize = 125;
-/// How long after the start of a window the force is recorded more often, s.
+/// Time after the start of a window during which the force is recorded more often, s.
 const EVENT_S: f64 = 0.5;
 /// Number of letters of the mark that identifies the rows of a campaign.
 const MARK_LENGTH: usize = 16;
@@ -36,7 +36,7 @@ const SEEDS: f64 = 4e9;
 /// are drawn for each run.
 ///
 /// # Example
-/// Every run follows from seed and index.
+/// Seed and index determine every run.
 /// ```
 /// use phea_engineering::campaign::Plan;
 /// use phea_project as project;
@@ -55,28 +55,27 @@ const SEEDS: f64 = 4e9;
 /// ```
 pub struct Plan {
     pub(super) project: Project,
-    /// The one that is driven.
+    /// Simulated scenario.
     pub(super) scenario: Scenario,
-    /// Its place in the project.
+    /// Index of the scenario in the project.
     place: usize,
     /// Machine and controller as declared.
     pub(super) bench: ControlledMachine,
-    /// H.
+    /// Sensor H.
     pub(super) sensor: TransferFunction,
-    /// The controller with what it is fed of the load's motion; `None` in an open loop.
+    /// Controller with its feedforward of the load's motion; `None` in an open loop.
     pub(super) law: Option<(Controller, FedMotion)>,
     pub(super) driven: ScenarioDrive,
     pub(super) columns: CampaignColumns,
-    /// Time of every look, s.
+    /// Time of every sample, s.
     pub times_s: Vec<f64>,
-    /// Reference at every recorded time, N; at a step, the value from then on. Zero in an open
-    /// loop.
+    /// Reference at every recorded time, N; at a step, the value after it. Zero in an open loop.
     pub reference_n: Vec<f64>,
     /// Indices of the recorded times of the bands.
     pub(super) band_looks: Vec<usize>,
-    /// Indices of the states that force and command depend on.
+    /// Indices of the states on which force and command depend.
     pub(super) look: Vec<usize>,
-    /// What is required in time.
+    /// Requirements in time.
     pub(super) requirements: Vec<TimeRequirement>,
     ranges: Vec<VariedRange>,
     seed: u32,
@@ -87,7 +86,7 @@ pub struct Plan {
 pub struct Draw {
     /// Index of the run.
     pub run: u64,
-    /// In SI, in the order of [`Plan::ranges`].
+    /// Values, SI, in the order of [`Plan::ranges`].
     pub values: Vec<f64>,
     /// Seed of the measurement noise of a sampled controller, if there is noise.
     pub(super) noise_seed: Option<u32>,
@@ -96,7 +95,7 @@ pub struct Draw {
 /// The numbers over which the box of a family ranges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FamilyBox {
-    /// There is none.
+    /// The box is absent.
     None,
     /// Parameters of the linear model.
     LinearParameters,
@@ -107,28 +106,28 @@ pub enum FamilyBox {
 /// A number that is drawn beyond the box for which the controller is judged.
 #[derive(Clone, Copy, Debug)]
 pub struct BeyondBox<'a> {
-    /// The range of the draws; of a normal distribution two standard deviations to both sides.
+    /// Range of the draws; for a normal distribution, two standard deviations to both sides.
     pub range: &'a VariedRange,
-    /// Its range in the box; `None` where it is not in the box.
+    /// Range of the number in the box; `None` if it is not in the box.
     pub designed_for: Option<[f64; 2]>,
 }
 
-/// Share of the box by which a drawn range may exceed it through rounding.
+/// Fraction of the box by which a drawn range may exceed it through rounding.
 const SAME: f64 = 1e-9;
 
 impl Plan {
     /// Rows as a Parquet table.
     ///
     /// # Errors
-    /// The error of the writer of the format.
+    /// The error message of the Parquet writer.
     pub fn parquet(&self, rows: &[super::Row]) -> Result<Vec<u8>, String> {
         super::parquet::table(&self.columns, rows)
     }
 
-    /// The campaign that a project declares, with these random numbers.
+    /// Campaign that a project declares, with the random numbers of a seed.
     ///
     /// # Errors
-    /// [`CampaignError`] if it declares none, or one that cannot be driven.
+    /// [`CampaignError`] if it declares none, or one that cannot be simulated.
     pub fn new(source: &dyn Source, loaded: &Loaded, seed: u32) -> Result<Plan, CampaignError> {
         let project = loaded.project.clone();
         let campaign = project.campaign.as_ref().ok_or(CampaignError::Absent)?;
@@ -189,7 +188,7 @@ impl Plan {
         })
     }
 
-    /// What is varied, in file order.
+    /// Varied numbers, in file order.
     pub fn ranges(&self) -> &[VariedRange] {
         &self.ranges
     }
@@ -199,49 +198,49 @@ impl Plan {
         &self.scenario.name
     }
 
-    /// Names of the scenarios that it does not drive.
+    /// Names of the other scenarios of the project.
     pub fn other_scenarios(&self) -> Vec<&str> {
         let others = self.project.scenarios.iter().enumerate().filter(|(place, _)| *place != self.place);
         others.map(|(_, scenario)| scenario.name.as_str()).collect()
     }
 
-    /// The band of its settling times, percent of a step.
+    /// Settling band, percent of a step.
     pub fn settling_band_percent(&self) -> f64 {
         self.scenario.settling_band_percent
     }
 
-    /// The windows that are evaluated in each run.
+    /// Windows that are evaluated in each run.
     pub fn windows(&self) -> &[Window] {
         &self.columns.windows
     }
 
-    /// Whether a stated command drives the valve, and no controller.
+    /// True if a stated command drives the valve instead of a controller.
     pub fn is_open_loop(&self) -> bool {
         self.columns.open_loop
     }
 
-    /// How the rig moves.
+    /// Motion of the rig.
     pub fn motion(&self) -> MotionKind {
         self.columns.units.motion
     }
 
-    /// The units in which its quantities are shown.
+    /// Units of display.
     pub fn units(&self) -> Units {
         self.columns.units
     }
 
-    /// Where the random numbers come from.
+    /// Seed of the random numbers.
     pub fn seed(&self) -> u32 {
         self.seed
     }
 
-    /// Bounds of an uncertain parameter of the linear model, where the project states them.
+    /// Bounds of an uncertain parameter of the linear model, if the project states them.
     pub fn bounds(&self, parameter: &str) -> Option<[f64; 2]> {
         let uncertain = self.project.uncertainty.iter().find(|uncertain| uncertain.name == parameter)?;
         Some([uncertain.minimum, uncertain.maximum])
     }
 
-    /// The numbers over which the box of the family ranges.
+    /// Kind of the numbers over which the box of the family ranges.
     pub fn box_of_family(&self) -> FamilyBox {
         let uncertain = &self.project.uncertainty;
         if uncertain.iter().any(|one| one.name.contains('.')) {
@@ -253,8 +252,8 @@ impl Plan {
         }
     }
 
-    /// The drawn numbers of the rig that leave the box for which the controller is judged; none
-    /// where that has no numbers of the rig.
+    /// Drawn numbers of the rig that leave the box for which the controller is judged; empty if the
+    /// box has no numbers of the rig.
     pub fn beyond_box(&self) -> Vec<BeyondBox<'_>> {
         if self.box_of_family() != FamilyBox::Numbers {
             return vec![];
@@ -275,7 +274,7 @@ impl Plan {
         beyond.map(|range| BeyondBox { range, designed_for: self.bounds(&range.path) }).collect()
     }
 
-    /// The numbers that are drawn for a run.
+    /// Numbers that are drawn for a run.
     pub fn draw(&self, run: u64) -> Draw {
         let mut stream = random::stream(u64::from(self.seed), run);
         let values = self.ranges.iter().map(|range| range.draw(&mut stream)).collect();
@@ -291,14 +290,15 @@ impl Plan {
         Draw { run, values, noise_seed }
     }
 
-    /// A run as `path=value` settings of the project: `simulate` with them drives the same machine.
+    /// A run as `path=value` settings of the project: `simulate` with them simulates the identical
+    /// machine.
     pub fn settings(&self, draw: &Draw) -> Vec<String> {
         let drawn = self.drawn(draw);
         let mut settings: Vec<String> = Vec::new();
         for (path, value) in self.ranges.iter().zip(&draw.values).flat_map(|one| self.stated(one, &drawn)) {
             let path = match (path.strip_prefix("start."), path.rsplit_once('.')) {
                 (Some(state), _) => format!("scenario.{}.start.{state}", self.place),
-                // a table that may be written as an array: both are replaced by an array
+                // a table that may be written as an array: either form is replaced by an array
                 (None, Some((table, _))) if EDGES.contains(&table) => {
                     let all = ["supply_to_a", "a_to_tank", "supply_to_b", "b_to_tank"].map(|edge| {
                         drawn.as_ref().and_then(|project| project.number(&format!("{table}.{edge}")))
@@ -325,7 +325,7 @@ impl Plan {
         settings
     }
 
-    /// The numbers of the project that a drawn value means: its own, or all that its direction
+    /// Numbers of the project that a drawn value determines: one number, or all that its direction
     /// moves.
     fn stated(&self, (range, value): (&VariedRange, &f64), drawn: &Option<Project>) -> Vec<(String, f64)> {
         let direction = self.project.directions.iter().find(|direction| direction.name == range.path);
@@ -334,8 +334,8 @@ impl Plan {
         direction.changes.numbers.iter().map(|(path, _)| (path.clone(), value(path))).collect()
     }
 
-    /// The gain of a feed-forward that the project does not state: it is fixed beforehand, so that
-    /// the drawn machine does not change the controller.
+    /// Gain of a feedforward that the project does not state: it is fixed beforehand, so that the
+    /// drawn machine does not change the controller.
     fn feed_forward(&self) -> Option<String> {
         if self.is_open_loop() {
             return None;
@@ -345,7 +345,7 @@ impl Plan {
         declared.gain.is_none().then(|| format!("controller.load_velocity_feed_forward.gain={gain:e}"))
     }
 
-    /// The project with the drawn numbers in it; the start's are in the scenario.
+    /// The project with the drawn numbers; those of the start are in the scenario.
     pub(super) fn drawn(&self, draw: &Draw) -> Option<Project> {
         let numbers: Vec<(&str, f64)> = self
             .ranges
@@ -357,7 +357,7 @@ impl Plan {
         with_controller_of(self.project.clone(), &self.bench.rig).with_numbers(&numbers)
     }
 
-    /// The scenario with the drawn start in it.
+    /// The scenario with the drawn start.
     pub(super) fn drawn_scenario(&self, draw: &Draw) -> Scenario {
         let mut scenario = self.scenario.clone();
         for (range, value) in self.ranges.iter().zip(&draw.values) {
@@ -369,7 +369,7 @@ impl Plan {
     }
 }
 
-/// Evenly over the scenario, and more often where a window has begun.
+/// Indices of recorded times, evenly over the scenario, and denser after the start of a window.
 fn band_looks(times_s: &[f64], windows: &[Window]) -> Vec<usize> {
     let mut looks: Vec<usize> = (0..times_s.len()).step_by(times_s.len().div_ceil(BAND_TIMES)).collect();
     let each = (BAND_TIMES / windows.len().max(1)).max(1);
@@ -392,8 +392,8 @@ fn plain(time_s: f64) -> f64 {
 /// Tables of the project that may be written as arrays.
 const EDGES: [&str; 2] = ["valve.flow_coefficients", "valve.leakage_coefficients"];
 
-/// Everything that determines the rows: project with settings and catalogue, the files it names,
-/// seed, and version.
+/// Mark of everything that determines the rows: project with settings and catalogue, the files it
+/// names, seed, and version.
 fn mark(source: &dyn Source, project: &Project, scenario: &Scenario, seed: u32) -> String {
     let mut hash = Sha256::new();
     hash.update(print(project));
@@ -417,7 +417,7 @@ fn mark(source: &dyn Source, project: &Project, scenario: &Scenario, seed: u32) 
     text.chars().take(MARK_LENGTH).collect()
 }
 
-/// Indices of the states that force, command and limits of lines depend on: only these need to be
+/// Indices of the states on which force, command and limits of lines depend: only these are
 /// observed.
 fn look(bench: &ControlledMachine) -> Vec<usize> {
     let control = &bench.control;

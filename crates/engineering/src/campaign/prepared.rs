@@ -1,4 +1,4 @@
-//! One run, ready to be driven, with its observer.
+//! One run, ready to be simulated, with its observer.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -21,28 +21,28 @@ use crate::simulate::{
     StoppedRun, amplification, course_of, moved, occurrences, options, outside_model_s, run_status,
 };
 
-/// A run ready to be driven.
+/// A run that is ready to be simulated.
 pub(super) struct Prepared {
     pub(super) draw: Draw,
     pub(super) lumps: Option<[f64; 3]>,
-    /// The controller around this machine.
+    /// Controller around this machine.
     pub(super) bench: ControlledMachine,
     course: InputSchedule,
     scenario: PreparedScenario,
-    /// What a sampled controller did.
+    /// Samples of a sampled controller.
     log: RefCell<ControllerSamples>,
 }
 
 /// Reason why a run cannot start.
 #[derive(Debug, thiserror::Error)]
 enum DrawError {
-    /// A drawn number is none that the project accepts.
+    /// The project does not accept a drawn number.
     #[error(transparent)]
     OutsideRange(#[from] OutsideRange),
     /// The path of a drawn number is not in the project.
     #[error("a path leads to no number")]
     NoNumber,
-    /// There is no such machine, or it cannot start in this state.
+    /// The machine is invalid, or it cannot start in this state.
     #[error(transparent)]
     Simulate(#[from] SimulateError),
 }
@@ -50,7 +50,7 @@ enum DrawError {
 /// Makes the machine of a draw.
 ///
 /// # Errors
-/// The row that states why the run cannot start.
+/// The row with the reason why the run cannot start.
 pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
     let refused = |reason: DrawError, lumps| {
         let (run, values) = (draw.run, draw.values.clone());
@@ -106,7 +106,7 @@ pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
 }
 
 impl Prepared {
-    /// The task of a lane.
+    /// Task for a lane.
     pub(super) fn task<'a>(&'a self, observer: Watcher<'a>) -> Task<'a, Watcher<'a>> {
         self.task_from(self.scenario.start.clone(), observer)
     }
@@ -121,7 +121,7 @@ impl Prepared {
         Task { start, course: &self.course, sampler, observer }
     }
 
-    /// Drives it again, alone; its watcher stops it by returning false.
+    /// Repeats the run singly; its watcher cancels it by returning false.
     pub(super) fn again<'a>(
         &'a self,
         plan: &'a Plan,
@@ -140,14 +140,14 @@ impl Prepared {
         Ok(self.driven(outcome, watched))
     }
 
-    /// A run that was driven, with what its controller did.
+    /// A simulated run, with the samples of its controller.
     pub(super) fn driven<'a>(&self, outcome: Outcome, watched: Watched<'a>) -> DrivenPass<'a> {
         let inputs = self.scenario.other_inputs();
         let divergence = watched.seen.borrow().follower.divergence(&inputs);
         DrivenPass { outcome, watched, divergence, log: self.log.borrow().clone() }
     }
 
-    /// What came of it.
+    /// Row with the results of a pass.
     pub(super) fn row(&self, pass: &DrivenPass<'_>, repetition: Option<&Repetition>) -> Row {
         let DrivenPass { outcome, watched, .. } = pass;
         let seen = watched.seen.borrow();
@@ -208,12 +208,12 @@ impl Prepared {
     }
 }
 
-/// A run that was driven to its end, or as far as it went.
+/// A run that was simulated to its end, or to an early end.
 pub(super) struct DrivenPass<'a> {
     outcome: Outcome,
     watched: Watched<'a>,
     divergence: Option<Divergence>,
-    /// What a sampled controller did.
+    /// Samples of a sampled controller.
     log: ControllerSamples,
 }
 
@@ -222,7 +222,7 @@ impl DrivenPass<'_> {
         amplification(&self.outcome, &self.log)
     }
 
-    /// As passes are compared.
+    /// The part of the results by which passes are compared.
     pub(super) fn result(&self) -> PassResult {
         let seen = self.watched.seen.borrow();
         let windows = seen.plan.windows().iter().copied();
@@ -236,13 +236,13 @@ impl DrivenPass<'_> {
         }
     }
 
-    /// The force at every recorded time that was kept, N.
+    /// Recorded forces at all times, N.
     pub(super) fn force_n(&self) -> Vec<f64> {
         self.watched.force_n()
     }
 }
 
-/// The observer of a run, for progress and for its result.
+/// Observer of a run, for progress and for its result.
 pub(super) struct Watched<'a> {
     plan: &'a Plan,
     seen: Rc<RefCell<Seen<'a>>>,
@@ -253,9 +253,9 @@ struct Seen<'a> {
     plan: &'a Plan,
     follower: Follower<'a>,
     lines: LineWatch,
-    /// Whether the force at all recorded times is kept, or only at those of the bands.
+    /// True if the force at all recorded times is stored, false if only at those of the bands.
     every_look: bool,
-    /// N.
+    /// Force, N.
     force_n: Vec<f64>,
 }
 
@@ -270,7 +270,7 @@ impl<'a> Watched<'a> {
         Watched { plan, seen: Rc::new(RefCell::new(seen)) }
     }
 
-    /// Who watches the run.
+    /// Observer that watches the run.
     pub(super) fn watcher(&self) -> Watcher<'a> {
         Box::new(Watched { plan: self.plan, seen: Rc::clone(&self.seen) })
     }
@@ -281,7 +281,7 @@ impl<'a> Watched<'a> {
 }
 
 impl Seen<'_> {
-    /// The force at the times of the bands, as far as it went, N.
+    /// Force at the times of the bands, up to the end of the run, N.
     fn of_bands(&self) -> impl Iterator<Item = f64> {
         let places = self.plan.band_looks.iter().enumerate();
         places

@@ -1,4 +1,4 @@
-//! Runs side by side: a machine in each lane, each with its own time and step.
+//! Concurrent runs: a machine in each lane, each with its own time and step.
 
 use std::cell::OnceCell;
 use std::collections::BTreeSet;
@@ -18,21 +18,21 @@ use crate::simulate::{Repetition, SimulateError, repeated};
 
 use super::CampaignError;
 
-/// Machines that a thread builds before it discards them: its lanes run empty after this number of
-/// runs.
+/// Number of machines that a thread builds before it discards them: its lanes run empty after this
+/// number of runs.
 pub(super) const MACHINES: usize = 256;
 
-/// What all threads share.
+/// State common to all threads.
 pub(super) struct Shared<'p> {
     pub(super) plan: &'p Plan,
-    /// Whether everything is to end.
+    /// True if everything is to end.
     pub(super) stop: AtomicBool,
-    /// Runs that are done.
+    /// Number of runs that are done.
     pub(super) done: AtomicU64,
-    /// How often rows were collected: the only measure of time that threads have; no result depends
-    /// on it.
+    /// Number of times that rows were collected: the only measure of time for threads; no result
+    /// depends on it.
     pub(super) rounds: AtomicU64,
-    /// Whether the force at every recorded time is wanted.
+    /// True if the force at every recorded time is requested.
     forces: bool,
     supply: Mutex<RemainingRuns>,
 }
@@ -49,7 +49,7 @@ impl<'p> Shared<'p> {
         Shared { plan, stop: AtomicBool::new(false), done, rounds, forces, supply }
     }
 
-    /// Whether a thread finds work.
+    /// True if a thread finds work.
     pub(super) fn has_more(&self) -> bool {
         let mut supply = self.supply.lock().unwrap_or_else(PoisonError::into_inner);
         !self.stop.load(Ordering::Relaxed) && supply.left() > 0
@@ -60,39 +60,39 @@ impl<'p> Shared<'p> {
         if self.stop.load(Ordering::Relaxed) { None } else { supply.take(driving, works) }
     }
 
-    /// A thread has finished.
+    /// Records that a thread has finished.
     fn rest(&self) {
         self.supply.lock().unwrap_or_else(PoisonError::into_inner).idle += 1;
     }
 }
 
-/// A run, with the force at every recorded time if that is wanted.
+/// A run, with the force at every recorded time if requested.
 pub(super) struct Finished {
     pub(super) row: Row,
     pub(super) force_n: Vec<f64>,
 }
 
-/// Takes each run when it is done.
+/// Receiver of each run when it is done.
 pub(super) type Give<'g> = &'g mut dyn FnMut(Finished);
 
-/// Simulates runs one by one, until none are left or this number is done. Simulations in lanes must
+/// Simulates runs one by one, until none remain or this number is done. Simulations in lanes must
 /// agree with it.
 ///
 /// # Errors
-/// As [`in_lanes`].
+/// The errors of [`in_lanes`].
 pub(super) fn one_by_one(shared: &Shared<'_>, most: usize, give: Give<'_>) -> Result<(), CampaignError> {
     let bench = &shared.plan.bench;
     driven(shared, (most, give), |batch| phea_machine::one_by_one(&bench.control, batch, &bench.settings))
 }
 
-/// Simulates at most this number of runs in lanes; runs that were stopped are not returned. Under a
-/// sampled controller they are driven one by one: from sample to sample a machine follows its own
-/// matrices, and if one machine has to leave them, its neighbours wait. Lanes would give the same
-/// bits there, and take as long. All runs are driven one by one on a processor without the vector
+/// Simulates at most this number of runs in lanes; cancelled runs are not returned. Under a sampled
+/// controller they are simulated one by one: from sample to sample a machine follows its own
+/// matrices, and its neighbours are idle while it has to leave them. Lanes would give equal bits
+/// there, and take as long. All runs are simulated one by one on a processor without the vector
 /// instructions that lanes need.
 ///
 /// # Errors
-/// A start or course that does not fit the machine.
+/// [`CampaignError`] for a start or input schedule that does not fit the machine.
 pub(super) fn in_lanes(shared: &Shared<'_>, most: usize, give: Give<'_>) -> Result<(), CampaignError> {
     let plan = shared.plan;
     if matches!(plan.bench.control, Control::Sampled(_)) || !Lanewise::is_available() {
@@ -104,7 +104,7 @@ pub(super) fn in_lanes(shared: &Shared<'_>, most: usize, give: Give<'_>) -> Resu
     driven(shared, (most, give), |batch| lanes.in_lanes(batch, &plan.bench.settings))
 }
 
-/// Drives runs, each prepared when its turn comes.
+/// Simulates runs, each prepared in its turn.
 fn driven(
     shared: &Shared<'_>,
     (most, give): (usize, Give<'_>),
@@ -122,23 +122,23 @@ fn driven(
     Ok(outcome.map_err(|error| SimulateError::Simulation { name: name(), error })?)
 }
 
-/// Machines that were made, and those under way in each lane.
+/// Machines that were made, and those in progress in each lane.
 struct Batch<'a> {
     shared: &'a Shared<'a>,
     made: &'a [OnceCell<Prepared>],
-    /// The first place that is free.
+    /// Index of the first free machine.
     next: usize,
     in_lanes: Vec<Option<(&'a Prepared, Watched<'a>)>>,
-    /// Whether a run was taken.
+    /// True if a run was taken.
     works: bool,
     give: Give<'a>,
-    /// Why a run could not be repeated.
+    /// Reason why a run could not be repeated.
     fault: Option<SimulationError>,
 }
 
 impl Batch<'_> {
-    /// A run after its first pass, repeated alone where its errors may be visible; `None` where it
-    /// was stopped.
+    /// A run after its first pass, repeated singly if its errors may be visible; `None` if it was
+    /// cancelled.
     fn repeated<'a>(
         &self,
         prepared: &'a Prepared,

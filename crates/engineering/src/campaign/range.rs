@@ -5,30 +5,30 @@ use phea_dynamics::{portable, random};
 use super::project::{AcceptedRange, DISTRIBUTIONS, Distribution, Key, word_of};
 use super::quantity::{self, Dimension, DisplayUnit};
 
-/// A varied number: between two ends, as distributed.
+/// A varied number: two ends and a distribution.
 ///
 /// ```text
 /// uniform         a + s (b - a)                                            s a share in [0, 1)
-/// normal          (a + b)/2 + n (b - a)/4                                  n standard normal: a and b two deviations away
+/// normal          (a + b)/2 + n (b - a)/4                                  n standard normal: a and b are two deviations away
 /// log-uniform     exp(ln a + s (ln b - ln a))
 /// triangular      a + (b - a) sqrt(s/2) below the middle, b - (b - a) sqrt((1 - s)/2) above
 /// ```
 #[derive(Clone, Debug)]
 pub struct VariedRange {
-    /// Of the project, or `start.` and a state.
+    /// Path in the project, or `start.` and a state.
     pub path: String,
-    /// How it is distributed.
+    /// Distribution of the draws.
     pub distribution: Distribution,
-    /// In SI.
+    /// Minimum, SI.
     pub minimum: f64,
-    /// In SI.
+    /// Maximum, SI.
     pub maximum: f64,
     /// The declaration of such a number in the project.
     pub(super) key: Key,
 }
 
 impl VariedRange {
-    /// The next number from a stream of random ones.
+    /// Next number from a stream of random numbers.
     pub(super) fn draw(&self, stream: &mut u64) -> f64 {
         let (low, high) = (self.minimum, self.maximum);
         let width = high - low;
@@ -53,12 +53,12 @@ impl VariedRange {
         (!range.contains(value)).then(outside)
     }
 
-    /// The unit in which people expect numbers of this range.
+    /// Unit for display of numbers of this range.
     pub fn unit(&self) -> DisplayUnit {
         quantity::fitting(self.minimum.abs().max(self.maximum.abs()), self.key.dimension)
     }
 
-    /// In words, as in a project file.
+    /// Word of the distribution, as in a project file.
     pub fn distribution_word(&self) -> &'static str {
         word_of(&DISTRIBUTIONS, &self.distribution)
     }
@@ -74,7 +74,7 @@ pub(super) struct OutsideRange {
     dimension: &'static Dimension,
 }
 
-/// The ends of a range as they are stated.
+/// Ends of a range, as stated.
 fn ends(range: &AcceptedRange, dimension: &Dimension) -> String {
     let show = |value: f64| quantity::display(value, dimension, 6);
     let low = if range.above_minimum { "above" } else { "at least" };

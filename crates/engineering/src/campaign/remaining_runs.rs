@@ -1,19 +1,19 @@
-//! The runs of a campaign that are still to be driven, and their distribution over threads.
+//! Runs of a campaign that are still to be simulated, and their distribution over threads.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-/// The runs that no thread has taken yet.
+/// Runs that no thread has taken yet.
 pub(super) struct RemainingRuns {
     pub(super) runs: Range<u64>,
-    /// Those among them whose rows already exist.
+    /// Runs among them whose rows already exist.
     pub(super) known: BTreeSet<u64>,
-    /// Idle threads.
+    /// Number of idle threads.
     pub(super) idle: usize,
 }
 
 impl RemainingRuns {
-    /// How many there are.
+    /// Number of remaining runs.
     pub(super) fn left(&mut self) -> u64 {
         while self.known.first() == Some(&self.runs.start) && self.runs.start < self.runs.end {
             self.known.pop_first();
@@ -22,9 +22,9 @@ impl RemainingRuns {
         (self.runs.end - self.runs.start).saturating_sub(self.known.len() as u64)
     }
 
-    /// The next run for a thread that simulates this number of runs; sets `works` if it takes one.
-    /// The last runs are left to threads that are idle: a further lane costs little, but a thread
-    /// of its own is quicker.
+    /// Next run for a thread that simulates this number of runs; sets `works` if it takes one. The
+    /// last runs are left to idle threads: a further lane costs little, but a separate thread is
+    /// quicker.
     pub(super) fn take(&mut self, driving: usize, works: &mut bool) -> Option<u64> {
         let left = self.left();
         if left == 0 || (driving > 0 && left <= self.idle as u64) {
@@ -47,8 +47,8 @@ mod tests {
         RemainingRuns { runs: 0..runs, known: BTreeSet::new(), idle }
     }
 
-    /// As many runs as threads: each thread drives one, though the first could take all into its
-    /// lanes.
+    /// Every thread simulates one run if there are as many runs as threads, though the first could
+    /// take all into its lanes.
     #[test]
     fn every_thread_drives_before_lanes_are_filled() {
         let (mut supply, mut works) = (supply(6, 3), [false; 3]);

@@ -1,30 +1,30 @@
-//! The part of the runs of a campaign that satisfies what is required in time.
+//! Fraction of the runs of a campaign that satisfy the requirements in time.
 
 use super::plan::Plan;
 use super::row::{Ran, Row};
 use crate::estimate::NORMAL_95;
 use crate::simulate::{Metric, NotJudged, ReachedStep, RunStatus, TimeRequirement, TrackingWish, concerned};
 
-/// A requirement in time, and how many runs satisfy it.
+/// A requirement in time, and the number of runs that satisfy it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CampaignRequirement {
     /// Number of its specification in the file, from 1.
     pub number: usize,
-    /// What is required of every step of the reference.
+    /// Requirement for every step of the reference.
     pub wish: TrackingWish,
-    /// How many runs satisfy it, or why that is not known.
+    /// Number of runs that satisfy it, or the reason why it is not known.
     pub judged: Result<SatisfiedRuns, NotJudged>,
 }
 
-/// How many runs satisfy a requirement.
+/// Number of runs that satisfy a requirement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SatisfiedRuns {
-    /// Runs all of whose steps do.
+    /// Number of runs all of whose steps satisfy it.
     pub satisfied: usize,
-    /// Runs that were driven; one that was not completed does not satisfy it.
+    /// Number of simulated runs; one that was not completed does not satisfy it.
     pub runs: usize,
-    /// The run that is furthest from it, and what its worst step reaches: by the property that is
-    /// furthest, where runs tie in it by the next one.
+    /// Run that is furthest from the requirement, and the result of its worst step: by the property
+    /// that is furthest, and for equal ones by the next property.
     pub worst: Option<(u64, ReachedStep)>,
 }
 
@@ -36,7 +36,7 @@ impl SatisfiedRuns {
     /// |k/n - p| <= z sqrt(p (1 - p)/n),     z = 1.96
     /// ```
     ///
-    /// from 0 to 1; all of it without a run.
+    /// from 0 to 1; the whole range without a run.
     ///
     /// # Example
     /// ```
@@ -60,7 +60,7 @@ impl SatisfiedRuns {
     }
 }
 
-/// Every requirement that is part of the verdict, over the runs that were driven.
+/// Every requirement that is part of the verdict, over the simulated runs.
 pub(super) fn required(plan: &Plan, rows: &[Row]) -> Vec<CampaignRequirement> {
     let of = |one: &TimeRequirement| CampaignRequirement {
         number: one.number,
@@ -87,7 +87,7 @@ fn judged(plan: &Plan, rows: &[Row], one: &TimeRequirement) -> Result<SatisfiedR
     Ok(found)
 }
 
-/// The worst of the steps of a run, each property by itself; infinite where it was not completed.
+/// Worst of the steps of a run, each property separately; infinite if the run was not completed.
 fn reached(ran: &Ran, windows: &[usize]) -> ReachedStep {
     let most = |metric: Metric| {
         let values = windows.iter().map(|window| {

@@ -1,4 +1,4 @@
-//! One run as a line of a table: its drawn numbers, its end, and its metrics.
+//! One run as a line of a table: its drawn numbers, its status, and its metrics.
 
 use phea_hydraulics::machine::INDICATORS;
 use phea_hydraulics::signal::Signal;
@@ -12,7 +12,7 @@ use super::simulate::{
     RunStatus, Window,
 };
 
-/// The metrics in the order of a row, whose columns keep their places.
+/// Metrics in the order of a row, whose columns have fixed positions.
 pub const ROW_METRICS: [Metric; 9] = [
     Metric::Overshoot,
     Metric::RiseTime,
@@ -47,36 +47,36 @@ const OF_A_REFERENCE: [Metric; 6] = [
 /// Hexadecimal digits of the sum that ends a row.
 const CHECK_LENGTH: usize = 8;
 
-/// Reason why a line is not a row that was written here.
+/// Reason why a line is not a row of this campaign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NoRow {
-    /// It belongs to another campaign, or to none.
+    /// The row belongs to another campaign, or to none.
     Other,
-    /// It ends in CR LF.
+    /// The line ends in CR LF.
     LineEnd,
-    /// Its checksum is wrong.
+    /// The checksum is wrong.
     Changed,
 }
 
 /// One run of a campaign.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// Its index: with the seed it gives every drawn number.
+    /// Index of the run: with the seed it determines every drawn number.
     pub run: u64,
-    /// What was drawn, in SI, in the order of the campaign.
+    /// Drawn values, SI, in the order of the campaign.
     pub values: Vec<f64>,
-    /// [`LUMP_NAMES`] of the machine that was drawn, in SI, where it has a linear model.
+    /// [`LUMP_NAMES`] of the drawn machine, SI, if it has a linear model.
     pub lumps: Option<[f64; 3]>,
-    /// What came of it.
+    /// Outcome of the run.
     pub outcome: RowOutcome,
 }
 
-/// What came of a run.
+/// Outcome of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RowOutcome {
-    /// There is no such machine, or it cannot start in this state.
+    /// The drawn machine is invalid, or it cannot start in this state.
     Refused(String),
-    /// It was driven.
+    /// The machine was simulated.
     Driven(Ran),
 }
 
@@ -85,15 +85,15 @@ pub enum RowOutcome {
 pub struct Ran {
     /// Status of the run.
     pub status: RunStatus,
-    /// When it ended before its time, or diverged, s.
+    /// Time of an early end or of a divergence, s.
     pub ended_s: Option<f64>,
-    /// Accepted steps of the pass that is reported.
+    /// Accepted steps of the reported pass.
     pub steps: u64,
-    /// Events on the way, each kind once: `cavitation_a`, `command_limit` and so on.
+    /// Events of the run, each kind once: `cavitation_a`, `command_limit` and so on.
     pub occurrences: Vec<&'static str>,
-    /// The metrics of each window; absent where there is no such number.
+    /// The metrics of each window; absent if there is no such number.
     pub metrics: Vec<PerMetric<Option<f64>>>,
-    /// Force at the times of the bands, N; as far as it went.
+    /// Force at the times of the bands, N; up to the end of the run.
     pub force_n: Vec<f32>,
 }
 
@@ -106,7 +106,7 @@ impl Row {
         }
     }
 
-    /// Its results, if it was driven.
+    /// Results of the run, if it was simulated.
     pub fn ran(&self) -> Option<&Ran> {
         match &self.outcome {
             RowOutcome::Refused(_) => None,
@@ -151,16 +151,16 @@ pub(super) struct CampaignColumns {
     pub(super) mark: String,
     pub(super) paths: Vec<String>,
     pub(super) windows: Vec<Window>,
-    /// Whether a stated command drives the valve.
+    /// True if a stated command drives the valve.
     pub(super) open_loop: bool,
     /// Times of the bands, s.
     pub(super) times_s: Vec<f64>,
-    /// By which columns of forces and positions, or of torques and angles, are called.
+    /// Units that name the columns: forces and positions, or torques and angles.
     pub(super) units: Units,
 }
 
 impl CampaignColumns {
-    /// The line above the rows.
+    /// The header line above the rows.
     pub(super) fn header(&self) -> String {
         let mut csv = Csv::default();
         csv.cells(&[&"run,campaign,status,reason,ended_s,steps,occurrences"]);
@@ -179,7 +179,7 @@ impl CampaignColumns {
         csv.text().to_string()
     }
 
-    /// The beginning of the line of a run.
+    /// Beginning of the line of a run.
     pub(super) fn beginning(&self, run: u64) -> String {
         format!("{run},{},", self.mark)
     }
@@ -190,12 +190,12 @@ impl CampaignColumns {
         format!("{text},{}\n", check(&text))
     }
 
-    /// The end of the line of a row.
+    /// Checksum at the end of the line of a row.
     pub(super) fn check(&self, row: &Row) -> String {
         check(&self.text(row))
     }
 
-    /// A row without its end.
+    /// Text of a row without its checksum.
     fn text(&self, row: &Row) -> String {
         let mut csv = Csv::default();
         csv.cells(&[&row.run, &self.mark, &row.status().key()]);
@@ -227,7 +227,7 @@ impl CampaignColumns {
     /// The row that a line contains.
     ///
     /// # Errors
-    /// Reason why it holds none.
+    /// [`NoRow`] for a line that contains no row of this campaign.
     pub(super) fn row(&self, line: &str) -> Result<Row, NoRow> {
         let (text, sum) = line.rsplit_once(',').ok_or(NoRow::Other)?;
         if text.split(',').nth(1) != Some(self.mark.as_str()) {
@@ -294,7 +294,7 @@ fn check(text: &str) -> String {
     sum.chars().take(CHECK_LENGTH).collect()
 }
 
-/// An empty cell stands for no number; any other must be a number.
+/// Number in a cell: an empty cell means no number; any other must be a number.
 fn number(cell: &str) -> Option<Option<f64>> {
     if cell.is_empty() { Some(None) } else { cell.parse().ok().map(Some) }
 }
@@ -307,7 +307,7 @@ fn cell(csv: &mut Csv, value: Option<f64>) {
     }
 }
 
-/// At the commas that are not inside quotes; a doubled quote inside is one.
+/// Cells of a line, split at the commas outside quotes; a doubled quote inside is one quote.
 fn cells(line: &str) -> Vec<String> {
     let mut cells = vec![String::new()];
     let mut inside = false;
@@ -348,7 +348,7 @@ mod tests {
         }
     }
 
-    /// The values of a row, in its order.
+    /// Values of a row as metrics, in the order of a row.
     fn in_order(values: [Option<f64>; 9]) -> PerMetric<Option<f64>> {
         let value = |metric| values[ROW_METRICS.iter().position(|one| *one == metric).unwrap()];
         PerMetric::of(value)

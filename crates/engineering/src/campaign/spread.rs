@@ -2,25 +2,25 @@
 
 use phea_dynamics::order::sort_numbers;
 
-/// Shares of the runs below each quantile, percent.
+/// Percentages of the runs below each quantile.
 pub const QUANTILES: [u8; 5] = [5, 25, 50, 75, 95];
 
 /// Distribution of a number over the runs that have one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread {
-    /// Runs that have one.
+    /// Number of runs that have a number.
     pub count: usize,
     /// Number of simulated runs that do not have one.
     pub missing: usize,
     /// [`QUANTILES`], interpolated linearly between two runs.
     pub quantiles: [f64; 5],
-    /// The least and the greatest.
+    /// Least and greatest number.
     pub extremes: [f64; 2],
     /// The number of largest magnitude, and its run.
     pub worst: (f64, u64),
 }
 
-/// `None` where no run has such a number.
+/// Distribution of these numbers; `None` if no run has one.
 pub(super) fn spread(numbers: impl Iterator<Item = (u64, Option<f64>)>) -> Option<Spread> {
     let mut missing = 0;
     let mut values = Vec::new();

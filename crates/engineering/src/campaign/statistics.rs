@@ -8,21 +8,21 @@ use super::spread::{Spread, quantiles, spread};
 use crate::simulate::{Metric, PerMetric};
 use phea_dynamics::order::sort_numbers;
 
-/// Quantiles of the force over time, of all runs that lasted until then.
+/// Quantiles of the force over time, of all runs that lasted until that time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bands {
-    /// s.
+    /// Times, s.
     pub times_s: Vec<f64>,
-    /// [`QUANTILES`](super::QUANTILES) in N at each time.
+    /// [`QUANTILES`](super::QUANTILES) of the force at each time, N.
     pub force_n: Vec<[f64; 5]>,
 }
 
-/// A run to look at again, and why.
+/// A run that deserves inspection, and the reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WorstRun {
-    /// Its index.
+    /// Index of the run.
     pub run: u64,
-    /// The windows, counted from 0, and metrics in which it is worst.
+    /// Windows, counted from 0, and metrics in which the run is worst.
     pub of: Vec<(usize, Metric)>,
 }
 
@@ -33,31 +33,32 @@ pub struct Summary {
     pub statuses: [usize; RunStatus::OF_ROWS.len()],
     /// Runs without a machine, with the reason.
     pub refused: Vec<(u64, String)>,
-    /// Runs that ended before their time, with their status and the time in s.
+    /// Runs that ended early, with their status and the time, s.
     pub ended: Vec<(u64, RunStatus, f64)>,
-    /// Events on the way: kind, number of runs, and the first of them.
+    /// Events of the runs: kind, number of runs, and the first of them.
     pub occurrences: Vec<(&'static str, usize, u64)>,
-    /// For each window, the spread of each metric that occurs in it.
+    /// Spread of each metric that occurs in a window, for every window.
     pub metrics: Vec<PerMetric<Option<Spread>>>,
     /// Spread of each of [`LUMP_NAMES`].
     pub lumps: [Option<Spread>; LUMP_NAMES.len()],
-    /// Runs whose machine has one outside its bounds in `[uncertainty]`, where there are bounds.
+    /// Number of runs whose machine has each parameter outside its bounds in `[uncertainty]`, if
+    /// there are bounds.
     pub outside: [Option<usize>; LUMP_NAMES.len()],
     /// Bands of the force.
     pub bands: Bands,
-    /// What is required in time, and how many runs satisfy it.
+    /// Requirements in time, with the number of runs that satisfy them.
     pub requirements: Vec<CampaignRequirement>,
-    /// Runs to look at again, in the order of the metrics they are worst in.
+    /// Runs that deserve inspection, in the order of the metrics in which they are worst.
     pub worst: Vec<WorstRun>,
 }
 
 impl Summary {
-    /// Runs that were driven, to their end or not.
+    /// Number of runs that were simulated, to their end or not.
     pub fn driven(&self) -> usize {
         self.statuses.iter().sum::<usize>() - self.refused.len()
     }
 
-    /// The summary of rows.
+    /// Statistics of rows.
     pub fn of(plan: &Plan, rows: &[Row]) -> Summary {
         let driven: Vec<(u64, &Ran)> = rows.iter().filter_map(|row| Some((row.run, row.ran()?))).collect();
         let metrics: Vec<PerMetric<Option<Spread>>> = (0..plan.windows().len())
@@ -95,7 +96,7 @@ impl Summary {
 
 fn outside(plan: &Plan, rows: &[Row], lump: usize) -> Option<usize> {
     let [low, high] = plan.bounds(LUMP_NAMES[lump])?;
-    // a draw that equals a bound up to rounding lies within it
+    // a draw that equals a bound up to rounding is within it
     let beyond = |value: f64| value < low * (1.0 - 1e-9) || value > high * (1.0 + 1e-9);
     Some(rows.iter().filter(|row| row.lumps.is_some_and(|lumps| beyond(lumps[lump]))).count())
 }

@@ -1,15 +1,15 @@
-//! What a campaign varies, read from its project.
+//! Numbers that a campaign varies, read from its project.
 
 use super::CampaignError;
 use super::range::VariedRange;
 use crate::project::{Campaign, DIRECTION, Distribution, Project, Scenario, UncertaintyDirection, Varied};
 
-/// The ranges of everything a campaign varies, in file order: what it names, then the directions of
-/// the project, each standard normal.
+/// Ranges of all varied numbers, in file order: those that the campaign names, then the directions
+/// of the project, each standard normal.
 ///
 /// # Errors
-/// [`CampaignError`] where a spread has no declared number to spread around, or a logarithm does
-/// not exist.
+/// [`CampaignError`] if a spread has no declared number to spread around, or a logarithm does not
+/// exist.
 pub(super) fn ranges(
     project: &Project,
     campaign: &Campaign,

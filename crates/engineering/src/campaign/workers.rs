@@ -1,4 +1,4 @@
-//! Threads that take runs one by one, and their rows in the order of the runs.
+//! Threads that simulate runs one by one, and their rows in the order of the runs.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::Ordering;
@@ -11,21 +11,22 @@ use super::queue::{Finished, MACHINES, Shared, in_lanes, one_by_one};
 use super::{CampaignError, Row};
 use crate::side_by_side::all_cores;
 
-/// How long rows are collected before they are reported and the watch is called again: a round.
+/// Duration of a round, in which rows are collected before they are reported and `watch` is called
+/// again.
 const ROUND: Duration = Duration::from_millis(20);
-/// Rounds until a row that waits for earlier ones is reported: about a second.
+/// Number of rounds until a row pending for earlier ones is reported: about a second.
 const LATE: u32 = 50;
-/// Rounds of a run beyond which it is driven alone: four runs in lanes take little more than twice
-/// as long as one, but none of them finishes earlier, and at most some four seconds of work may be
-/// lost at any time.
+/// Number of rounds beyond which a run is simulated singly: four runs in lanes take little more
+/// than twice as long as one, but none of them finishes earlier, and at most some four seconds of
+/// work may be lost at any time.
 const LONG: u64 = 85;
 
-/// How a campaign is computed; its rows do not depend on it.
+/// Computational effort of a campaign; its rows do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
-    /// Number of threads that drive machines; at least one is used.
+    /// Number of threads that simulate machines; at least one is used.
     pub threads: usize,
-    /// Whether several machines are driven at once in the lanes of vectors, and not one by one.
+    /// True if several machines are simulated at once in the lanes of vectors, not one by one.
     pub lanes: bool,
 }
 
@@ -36,41 +37,41 @@ impl Default for Effort {
     }
 }
 
-/// What the caller of a campaign is notified of.
+/// Notification for the caller of a campaign.
 pub(super) enum News {
-    /// This number of the requested runs is done.
+    /// Number of requested runs that are done.
     Done(u64),
     /// The next rows.
     Rows(Vec<Finished>),
-    /// Rows that wait for an earlier run. They are passed on again in their turn.
+    /// Rows pending for an earlier run. They are passed on again in their turn.
     Ahead(Vec<Row>),
 }
 
 impl Effort {
-    /// All cores, with lanes.
+    /// One thread for each core, with lanes.
     pub fn on_all_cores() -> Effort {
         Effort { threads: all_cores().at_once, ..Effort::default() }
     }
 }
 
-/// Takes a notification; the campaign stops soon after the answer `false`.
+/// Receiver of notifications; the campaign stops soon after it returns `false`.
 pub(super) type Tell<'t> = &'t mut dyn FnMut(News) -> Result<bool, CampaignError>;
 
-/// Which runs are driven.
+/// Requested runs.
 pub(super) struct Asked {
     pub(super) runs: std::ops::Range<u64>,
-    /// Rows of some of them that already exist.
+    /// Existing rows of some of these runs.
     pub(super) known: BTreeMap<u64, Row>,
-    /// Whether the force at every recorded time is wanted too.
+    /// True if the force at every recorded time is requested too.
     pub(super) forces: bool,
 }
 
-/// Drives runs and reports them, rows in the order of the runs; if the answer is `false`,
-/// everything ends soon with the rows obtained so far. Each thread drives a run as soon as there is
-/// one for it, and takes more into its lanes where there are more than threads.
+/// Simulates runs and reports them, rows in the order of the runs; if `tell` returns `false`,
+/// everything ends soon with the rows obtained so far. Each thread takes a run as soon as one is
+/// free, and takes more into its lanes if there are more runs than threads.
 ///
 /// # Errors
-/// [`CampaignError`] where a run does not fit the machine, or a notification fails.
+/// [`CampaignError`] if a run does not fit the machine, or a notification fails.
 pub(super) fn run(plan: &Plan, asked: Asked, effort: Effort, tell: Tell<'_>) -> Result<(), CampaignError> {
     let threads = effort.threads.max(1);
     let Asked { runs, known, forces } = asked;
@@ -94,10 +95,10 @@ pub(super) fn run(plan: &Plan, asked: Asked, effort: Effort, tell: Tell<'_>) -> 
 
 type Message = Result<Finished, CampaignError>;
 
-/// One thread, as long as there are runs. It drives one run alone and, if that was short, as many
-/// in lanes as it keeps machines; then one alone again.
+/// Loop of one thread, as long as there are runs. The thread simulates a single run and, if that
+/// was short, then as many in lanes as it has machines; then a single one again.
 fn work(shared: &Shared<'_>, effort: Effort, sender: &mpsc::Sender<Message>) {
-    // if the receiver is gone, everything is stopped too
+    // without a receiver, everything is cancelled
     let mut give = |finished| drop(sender.send(Ok(finished)));
     let mut in_lanes_next = false;
     while shared.has_more() {
@@ -116,12 +117,12 @@ fn work(shared: &Shared<'_>, effort: Effort, sender: &mpsc::Sender<Message>) {
     }
 }
 
-/// A row that waits for those before it.
+/// Row pending for earlier rows.
 struct WaitingRow {
     finished: Finished,
-    /// How often rows were collected since.
+    /// Number of rounds since.
     rounds: u32,
-    /// Whether its waiting was reported.
+    /// True if it was reported as pending.
     told: bool,
 }
 
@@ -175,7 +176,7 @@ fn in_order(
     }
 }
 
-/// The items received, and whether no more will come.
+/// Received items, and true if no more will follow.
 fn collected(receiver: &mpsc::Receiver<Message>) -> Result<(Vec<Finished>, bool), CampaignError> {
     let mut news = Vec::new();
     loop {
@@ -187,20 +188,19 @@ fn collected(receiver: &mpsc::Receiver<Message>) -> Result<(Vec<Finished>, bool)
 }
 
 impl Plan {
-    /// Rows of runs, in their order.
+    /// Rows of runs, in order.
     ///
     /// # Errors
-    /// [`CampaignError`] where a run does not fit the machine.
+    /// [`CampaignError`] if a run does not fit the machine.
     pub fn rows(&self, runs: std::ops::Range<u64>, effort: Effort) -> Result<Vec<Row>, CampaignError> {
         let rows = self.finished(runs, effort, false)?;
         Ok(rows.into_iter().map(|one| one.row).collect())
     }
 
-    /// Force in N at each row of the scenario, of runs in their order; empty for one that was
-    /// rejected.
+    /// Force at each row of the scenario, N, for runs in order; empty for a rejected run.
     ///
     /// # Errors
-    /// [`CampaignError`] where a run does not fit the machine.
+    /// [`CampaignError`] if a run does not fit the machine.
     pub fn forces(&self, runs: std::ops::Range<u64>, effort: Effort) -> Result<Vec<Vec<f64>>, CampaignError> {
         let rows = self.finished(runs, effort, true)?;
         Ok(rows.into_iter().map(|one| one.force_n).collect())
@@ -222,7 +222,7 @@ impl Plan {
         Ok(rows)
     }
 
-    /// The text of rows, as a campaign writes it.
+    /// Text of rows in the format of a campaign.
     pub fn table(&self, rows: &[Row]) -> String {
         let lines = rows.iter().map(|row| self.columns.line(row));
         std::iter::once(self.columns.header()).chain(lines).collect()

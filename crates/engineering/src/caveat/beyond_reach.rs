@@ -4,8 +4,8 @@ use super::{Caveat, UncountedEffect};
 use crate::setup::Setup;
 use crate::simulate::{steps_beyond, time_requirements};
 
-/// A linear loop follows a step of any size: what is beyond the stall force or the capacity of the
-/// sensor is no step of this rig.
+/// Caveats for steps beyond the stall force or the capacity of the sensor: a linear loop follows a
+/// step of any size, the rig does not.
 pub(super) fn beyond_reach(setup: &Setup<'_>) -> Vec<Caveat> {
     let required = time_requirements(setup.project).unwrap_or_default();
     let beyond = steps_beyond(setup, &required).into_iter();

@@ -30,31 +30,31 @@ pub enum UncountedEffect {
     TransmissionSegments {
         /// Segments.
         segments: u32,
-        /// Frequency up to which the waves are right to 3 %, rad/s.
+        /// Frequency up to which the waves are correct to 3 %, rad/s.
         right_to: f64,
     },
-    /// A transmission, of which models with one load pressure have the oil as a spring alone.
+    /// A transmission, for which models with one load pressure include only the spring of its oil.
     TransmissionAsSpring,
-    /// Damping and mass of a series spring, which models with one load pressure do not have.
+    /// Damping and mass of a series spring, which models with one load pressure omit.
     SeriesParts {
-        /// True where a damping is declared.
+        /// True if a damping is declared.
         damping: bool,
-        /// True where a mass is declared.
+        /// True if a mass is declared.
         mass: bool,
     },
-    /// An accumulator whose setting is adjusted, counted at its setting of rest.
+    /// An accumulator whose setting is adjusted, counted at its setting at rest.
     FixedSetting {
-        /// True where the adjustment moves gas, which brings energy in.
+        /// True if the adjustment moves gas, which adds energy.
         moves_gas: bool,
     },
     /// A telescopic piston, counted with the areas at each operating point.
     TelescopicStages {
-        /// True where an operating point moves.
+        /// True if an operating point moves.
         moves: bool,
     },
     /// A wall without a mass of the load.
     WallWithoutMass,
-    /// Waves in the lines, which the models of a linearisation do not have.
+    /// Waves in the lines, which the models of a linearisation omit.
     LinesInMotion {
         /// Key that declares them.
         key: &'static str,
@@ -70,75 +70,75 @@ pub enum UncountedEffect {
         /// Flow that the pump delivers, m3/s.
         delivered: f64,
     },
-    /// A pump of limited flow, which the models of a linearisation have as a constant pressure.
+    /// A pump of limited flow, which the models of a linearisation replace by a constant pressure.
     ConstantSupply,
     /// Gas of accumulators, counted at the pressures of each operating point.
     Gas {
         /// Key of the accumulator.
         key: &'static str,
-        /// Forces below the first and above the second shut gas off, N.
+        /// Forces below which and above which gas is shut off, N.
         shut_beyond: [Option<f64>; 2],
         /// Plants of the family whose gas is shut off.
         of_family: Option<ShutGas>,
     },
-    /// Necks, heat and valves of accumulators, which the models of a linearisation do not have.
+    /// Necks, heat and valves of accumulators, which the models of a linearisation omit.
     GasOutsideModels {
-        /// True where an accumulator has a neck.
+        /// True if an accumulator has a neck.
         necks: bool,
-        /// True where the gas of an accumulator exchanges heat.
+        /// True if the gas of an accumulator exchanges heat.
         heat: bool,
     },
-    /// The loss at the ends of a neck, which has no slope where nothing flows.
+    /// The loss at the ends of a neck, which has zero slope at zero flow.
     NeckLoss,
     /// An adjustment of accumulators, counted at fixed settings.
     Adjustment {
         /// Settings that are counted.
         settings: CountedSettings,
-        /// True where the adjustment moves gas, which brings energy in.
+        /// True if the adjustment moves gas, which adds energy.
         moves_gas: bool,
     },
     /// A valve between chamber and gas, counted with the slope of its transition.
     GasValve {
         /// Transition pressure of the valve, Pa.
         transition_pressure: f64,
-        /// True where `[uncertainty]` gives the setting or the transition pressure a range.
+        /// True if `[uncertainty]` gives the setting or the transition pressure a range.
         has_range: bool,
     },
     /// An orifice between the chambers, counted with the slope of its transition.
     CrossPortOrifice {
-        /// Drop at rest, Pa; `None` where a volume in series has it.
+        /// Pressure drop at rest, Pa; `None` if a volume in series takes it.
         drop: Option<f64>,
         /// Transition pressure of the orifice, Pa.
         transition_pressure: f64,
         /// Conductance that is counted, m3/(s.Pa).
         conductance: f64,
-        /// True where `[uncertainty]` gives the transition pressure a range.
+        /// True if `[uncertainty]` gives the transition pressure a range.
         has_range: bool,
     },
-    /// Dynamic pressure feedback, which the models of a linearisation do not have.
+    /// Dynamic pressure feedback, which the models of a linearisation omit.
     DynamicPressureFeedback,
-    /// A velocity feed-forward of the load, which a verdict does not have.
+    /// A velocity feedforward of the load, which a verdict does not include.
     FeedForward {
-        /// True where the plants were measured without it; otherwise no load is declared.
+        /// True if the plants were measured without it; otherwise no load is declared.
         measured: bool,
-        /// True where the load may move under force.
+        /// True if the load may move under force.
         yields: bool,
     },
-    /// A velocity feed-forward of the load, which the models of a linearisation do not have.
+    /// A velocity feedforward of the load, which the models of a linearisation omit.
     FeedForwardOutsideModels(FeedForwardObstacle),
-    /// A virtual impedance, which measured plants do not have.
+    /// A virtual impedance, which measured plants do not include.
     ImpedanceUnmeasured {
-        /// True where the load may move under force.
+        /// True if the load may move under force.
         yields: bool,
     },
     /// A virtual impedance, to which the specifications refer.
     Impedance {
-        /// True where the load may move under force.
+        /// True if the load may move under force.
         yields: bool,
     },
-    /// A pressure feedback, which measured plants do not have.
+    /// A pressure feedback, which measured plants do not include.
     PressureFeedbackUnmeasured,
-    /// A pressure feedback, which the models of a linearisation do not have.
+    /// A pressure feedback, which the models of a linearisation omit.
     PressureFeedbackOutsideModels,
     /// A viscous friction of one direction that no plant of the family has.
     FrictionDirections {
@@ -160,12 +160,12 @@ pub enum UncountedEffect {
     Overlap {
         /// Spool positions between which no edge is open, V.
         dead_band: [f64; 2],
-        /// Flow gain within them as a fraction of that beyond.
+        /// Ratio of the flow gain within the dead band to that beyond.
         gain_ratio: f64,
     },
-    /// A flow gain that differs on both sides of null, of which the models have the mean.
+    /// A flow gain that differs on both sides of null; the models use the mean.
     NullSides {
-        /// Flow gain where the piston retracts, and where it extends, m3/(s.V).
+        /// Flow gain for retracting and for extending the piston, m3/(s.V).
         flow_gains: [f64; 2],
         /// Flow gain of the models, m3/(s.V).
         mean: f64,
@@ -192,21 +192,21 @@ pub enum UncountedEffect {
 pub enum CountedSettings {
     /// Every fixed setting of a range.
     Range([f64; 2]),
-    /// The settings of rest at A and at B, which differ.
+    /// The settings at rest at A and at B, which differ.
     OfSides([f64; 2]),
-    /// The one setting of rest.
+    /// The setting at rest.
     OfRest(f64),
 }
 
-/// Reason for which the models of a linearisation do not have a velocity feed-forward.
+/// Reason why the models of a linearisation omit a velocity feedforward.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FeedForwardObstacle {
-    /// The controller delays it.
+    /// The controller delays the feedforward.
     ControllerDelay,
-    /// The sensor of the velocity delays it.
+    /// The sensor of the velocity delays the feedforward.
     SensorDelay,
     /// The models have no controller.
     NoController,
-    /// The controller samples it.
+    /// The controller samples the velocity.
     Sampling,
 }

@@ -1,12 +1,12 @@
-//! Velocity and pressures that a controller feeds forward and back, in verdicts and models.
+//! Feedforward of velocity and feedback of pressures by a controller, in verdicts and models.
 
 use super::{Caveat, FeedForwardObstacle, UncountedEffect, is_measured};
 use crate::project::{Load, Project};
 use crate::rig::limits_load_motion;
 use crate::setup::Setup;
 
-/// The load's velocity on the command: a feedback if the load can move under force, otherwise a
-/// path of the load motion. The loop of a rig includes both.
+/// Caveat for the feedforward of the load's velocity to the command: it is a feedback if the load
+/// can move under force, otherwise a path of the load motion. The loop of a rig includes both.
 pub(super) fn feed_forward(project: &Project) -> Option<Caveat> {
     let controller = project.controller.as_ref()?;
     let declared = controller.load_velocity_feed_forward?;
@@ -22,13 +22,13 @@ pub(super) fn feed_forward(project: &Project) -> Option<Caveat> {
     Some(Caveat { effect, unproven: can_yield || limits_load_motion(project) })
 }
 
-/// True where the load of an actuator can move under force.
+/// True if the load of an actuator can move under force.
 fn yields(project: &Project) -> bool {
     project.actuator.as_ref().is_some_and(|actuator| actuator.load != Load::Prescribed)
 }
 
-/// A virtual impedance, to which the specifications of its loop refer, or which measured plants
-/// lack.
+/// Caveat for a virtual impedance, to which the specifications of its loop refer, or which measured
+/// plants lack.
 pub(super) fn impedance(setup: &Setup<'_>) -> Option<Caveat> {
     let project = setup.project;
     setup.virtual_impedance?;
@@ -42,8 +42,8 @@ pub(super) fn impedance(setup: &Setup<'_>) -> Option<Caveat> {
     })
 }
 
-/// The feed-forward of the load velocity, which the models of a linearisation do not include
-/// because they describe the rig without its controller.
+/// Feedforward of the load velocity, which the models of a linearisation omit because they describe
+/// the rig without its controller.
 pub(super) fn fed_in_loop(setup: &Setup<'_>) -> Option<UncountedEffect> {
     let controller = setup.project.controller.as_ref()?;
     let declared = controller.load_velocity_feed_forward?;
@@ -57,15 +57,15 @@ pub(super) fn fed_in_loop(setup: &Setup<'_>) -> Option<UncountedEffect> {
         .then_some(UncountedEffect::FeedForwardOutsideModels(obstacle))
 }
 
-/// Pressures that are fed back, where the plants of the family were measured without that.
+/// Caveat for a pressure feedback, if the plants of the family were measured without it.
 pub(super) fn measured_without_pressures(project: &Project) -> Option<Caveat> {
     let declared = project.controller.as_ref()?.pressure_feedback?;
     (declared.gain != 0.0 && is_measured(project))
         .then_some(Caveat { effect: UncountedEffect::PressureFeedbackUnmeasured, unproven: true })
 }
 
-/// Pressures that are fed back, which the models of a linearisation do not include because they
-/// describe the rig without its controller.
+/// Pressure feedback, which the models of a linearisation omit because they describe the rig
+/// without its controller.
 pub(super) fn pressures_in_loop(project: &Project) -> Option<UncountedEffect> {
     let declared = project.controller.as_ref()?.pressure_feedback?;
     (declared.gain != 0.0 && !is_measured(project)).then_some(UncountedEffect::PressureFeedbackOutsideModels)

@@ -1,16 +1,16 @@
-//! A viscous friction that differs by direction: the linear plant has one slope.
+//! Caveat for a viscous friction that differs by direction, since the linear plant has one slope.
 
 use super::{Caveat, UncountedEffect, is_measured};
 use crate::project::Project;
 use crate::setup::Setup;
 
-/// Paths of the numbers that the viscous friction of the plants follows from.
+/// Paths of the numbers that determine the viscous friction of the plants.
 const OF_PLANT: [&str; 2] = ["viscous_friction", "cylinder.friction.viscous"];
 
-/// Relative difference of a plant's viscous friction that changes nothing.
+/// Relative difference of a plant's viscous friction that is negligible.
 const SAME: f64 = 1e-9;
 
-/// The viscous friction of a direction that is in no plant of the family.
+/// Caveat for the viscous friction of a direction that is in no plant of the family.
 pub(super) fn friction_directions(setup: &Setup<'_>) -> Option<Caveat> {
     if is_measured(setup.project) {
         return None;
@@ -27,7 +27,7 @@ pub(super) fn friction_directions(setup: &Setup<'_>) -> Option<Caveat> {
     Some(Caveat { effect: UncountedEffect::FrictionDirections { extending, retracting }, unproven: true })
 }
 
-/// The interval of the viscous friction that the project states.
+/// Interval of the viscous friction that the project states.
 fn range(project: &Project) -> Option<[f64; 2]> {
     let of = |path: &&str| project.uncertainty.iter().find(|one| one.name == **path);
     OF_PLANT.iter().find_map(of).map(|one| [one.minimum, one.maximum])

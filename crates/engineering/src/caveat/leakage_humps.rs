@@ -1,28 +1,28 @@
-//! A valve whose leakage is least at null.
+//! Caveat for a valve whose leakage is least at null.
 
 use phea_hydraulics::servovalve::{Servovalve, Supply, blocked_ports};
 
 use super::UncountedEffect;
 use crate::setup::Setup;
 
-/// Openings on either side of null at which the leakage is found, and the greatest, in widths of
-/// the leakage.
+/// Number of openings on either side of null at which the leakage is computed, and the greatest
+/// opening, in widths of the leakage.
 const OPENINGS: usize = 160;
 const WIDTHS: f64 = 8.0;
-/// The leakage at null is less than beside it by this share and more; the valve of the thesis has
-/// 7.4 %.
+/// Least fraction by which the leakage at null is less than next to it; for the valve of the thesis
+/// it is 7.4 %.
 const DIP: f64 = 0.08;
 
-/// Edges that open faster than those in series with them shut leak most on either side of null,
-/// which no measured valve does.
+/// Effect of edges that open faster than those in series with them shut: the leakage is greatest on
+/// either side of null, which no measured valve shows.
 pub(super) fn leakage_humps(setup: &Setup<'_>) -> Option<UncountedEffect> {
     let components = setup.rig().ok()?.actuator.components();
     let [command, greatest, least] = humps(&components.valve, &components.supply)?;
     Some(UncountedEffect::LeakageHumps { command, greatest, least })
 }
 
-/// The command of the lower of two maxima of a valve's leakage, the leakage there, and the least
-/// between both.
+/// Command of the lower of two maxima of a valve's leakage, the leakage there, and the least
+/// leakage between both.
 fn humps(valve: &Servovalve, supply: &Supply) -> Option<[f64; 3]> {
     let widest = (WIDTHS * valve.nominal_voltage / valve.leakage_shape.widest()).min(valve.nominal_voltage);
     let openings: Vec<f64> =

@@ -1,11 +1,11 @@
-//! Parts whose identified numbers do not explain the recordings that they come from.
+//! Parts whose identified numbers do not explain their recordings.
 
 use super::{Caveat, UncountedEffect, is_measured};
 use crate::project::Project;
 use crate::rig::ParameterOrigin;
 use crate::setup::Setup;
 
-/// Fraction of the range of a signal up to which a misfit leaves a verdict on its part as it is.
+/// Fraction of the range of a signal up to which a misfit does not change a verdict on its part.
 pub const MISFIT_BOUND: f64 = 5e-3;
 
 /// A part with a misfit.
@@ -15,9 +15,9 @@ pub struct UnexplainedPart {
     pub kind: UnexplainedKind,
     /// Table of the part in the project.
     pub table: &'static str,
-    /// Fraction of the range of a recorded signal that is left unexplained.
+    /// Fraction of the range of a recorded signal that remains unexplained.
     pub fraction: f64,
-    /// Recording and range where the misfit is, as the project states it.
+    /// Recording and range of the misfit, as the project states it.
     pub at: Option<String>,
 }
 
@@ -39,11 +39,12 @@ pub enum MisfitConsequence {
     Within,
     /// Beyond the bound: no verdict on the part is met.
     Beyond,
-    /// The linear plant has its viscous friction from elsewhere.
+    /// The viscous friction of the linear plant has another origin.
     OfRunsAlone,
 }
 
-/// The misfits of identified parts; beyond the bound no verdict that rests on their numbers is met.
+/// Caveats for misfits of identified parts; beyond the bound no verdict that is based on their
+/// numbers is met.
 pub(super) fn misfits(setup: &Setup<'_>) -> Vec<Caveat> {
     unexplained_parts(setup.project).into_iter().map(|part| part.caveat(setup)).collect()
 }
@@ -82,8 +83,8 @@ impl UnexplainedPart {
     }
 }
 
-/// True where the viscous friction of the linear plant follows from the identified friction: it is
-/// not where `[linear]` or `[uncertainty]` states it, or the plants were measured.
+/// True if the viscous friction of the linear plant follows from the identified friction: false if
+/// `[linear]` or `[uncertainty]` states it, or the plants were measured.
 fn takes_viscous_of_friction(setup: &Setup<'_>) -> bool {
     let Ok(rig) = setup.rig() else { return true };
     let derived = |name: &str| {

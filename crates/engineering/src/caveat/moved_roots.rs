@@ -1,4 +1,4 @@
-//! A notch or peak of the controller that its samples have elsewhere.
+//! Caveat for a notch or peak of the controller that sampling moves.
 
 use phea_dynamics::controller::{Compensator, Timing};
 use phea_dynamics::linear::{MovedRoot, TimeDomain};
@@ -6,10 +6,10 @@ use phea_dynamics::linear::{MovedRoot, TimeDomain};
 use super::{Caveat, UncountedEffect};
 use crate::setup::Setup;
 
-/// Relative shift of a frequency from which it is reported.
+/// Relative shift of a frequency above which it is reported.
 const MOVED: f64 = 0.02;
 
-/// The lightly damped zeros and poles of controller and prefilter that their sampling moves.
+/// Lightly damped zeros and poles of controller and prefilter that sampling moves.
 pub(super) fn moved_roots(setup: &Setup<'_>) -> Vec<Caveat> {
     let controller = setup.controller.as_ref().map(|given| &given.feedback);
     let prefilter = setup.prefilter.as_ref().filter(|_| !setup.timing.continuous_prefilter);

@@ -1,9 +1,9 @@
-//! A spool at null whose edges differ on both sides.
+//! Caveat for a spool at null whose edges differ on both sides.
 
 use super::UncountedEffect;
 use crate::setup::Setup;
 
-/// The flow gains of both sides and the one of the models of one plant.
+/// Flow gains of both sides, and the one in the models of one plant.
 pub(super) fn null_sides(setup: &Setup<'_>) -> Option<UncountedEffect> {
     if setup.project.operating_point.spool_side.is_some() {
         return None;

@@ -1,4 +1,4 @@
-//! The rig itself, which the family does not contain, as a fact.
+//! The rig itself as a fact, if the family does not contain it.
 
 use crate::rig::OutsideParameter;
 use crate::specification::SpecificationName;
@@ -15,9 +15,9 @@ pub struct OutsideFamily {
 /// Verdict on the loop with the rig itself.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LoopWithRig {
-    /// Stable; every specification is satisfied.
+    /// The loop is stable, and every specification is satisfied.
     Satisfied,
-    /// Unstable.
+    /// The loop is unstable.
     Unstable,
     /// Violated specifications, each with its number, from 1, and name.
     Violates(Vec<(usize, SpecificationName)>),

@@ -1,4 +1,4 @@
-//! A valve whose edges overlap.
+//! Caveat for a valve whose edges overlap.
 
 use phea_hydraulics::servovalve::{OpeningLaw, Servovalve, SpoolDirection, Supply, chamber_coefficients};
 
@@ -8,16 +8,16 @@ use crate::setup::Setup;
 /// Travel beyond the lap at which an edge is open, in laps.
 const BEYOND: f64 = 2.0;
 
-/// Within its overlap a valve passes leakage alone, and no linear plant has both this and what it
-/// passes beyond.
+/// Effect of an overlap: within it a valve passes only leakage, and no linear plant has both this
+/// and the flow beyond.
 pub(super) fn overlap(setup: &Setup<'_>) -> Option<UncountedEffect> {
     let components = setup.rig().ok()?.actuator.components();
     let [from, to, gain_ratio] = dead_band(&components.valve, &components.supply)?;
     Some(UncountedEffect::Overlap { dead_band: [from, to], gain_ratio })
 }
 
-/// Spool positions between which no edge is open, and the magnitude of the flow gain in the middle
-/// over that beyond.
+/// Spool positions between which no edge is open, and ratio of the magnitude of the flow gain in
+/// the middle to that beyond.
 pub(crate) fn dead_band(valve: &Servovalve, supply: &Supply) -> Option<[f64; 3]> {
     let OpeningLaw::Shaped(shape) = valve.opening else { return None };
     let [from, to] = [-shape.lap_negative, shape.lap_positive].map(|lap| lap * valve.nominal_voltage);

@@ -6,8 +6,8 @@
 //! next loop L':   y(t) = linear step + added(t) through (1 + L)/(1 + L')
 //! ```
 //!
-//! Friction and hysteresis disturb similar loops about equally, and each loop suppresses by 1/(1 +
-//! L) what disturbs it, so that a few trials suffice.
+//! Friction and hysteresis disturb similar loops about equally, and each loop suppresses its
+//! disturbances by 1/(1 + L), so that a few trials suffice.
 
 use std::sync::Arc;
 
@@ -19,22 +19,22 @@ use crate::linear_step::StepResponse;
 use crate::plant_names::{NamedPlant, NamedValue};
 use crate::trial::TrialRun;
 
-/// Differences of the steps of one plant, nonlinear less linear.
+/// Differences of the steps of one plant, nonlinear minus linear.
 #[derive(Clone, Debug)]
 pub(super) struct AddedByRig {
-    /// The parameters of the plant.
+    /// Parameters of the plant.
     values: Vec<f64>,
-    /// The difference in each run, as a share of its step.
+    /// Difference in each run, as a fraction of its step.
     pub(super) steps: Vec<StepResponse>,
-    /// The loop of the trial.
+    /// Loop of the trial.
     pub(super) around: Arc<Compensation>,
 }
 
-/// The most runs of a plant whose differences are added.
+/// Largest number of runs of a plant whose differences are added.
 const MOST_RUNS: usize = 2;
 
-/// Differences in the trial of a design, of each plant those of the runs that are furthest from
-/// what is required, with those of other plants from trials before.
+/// Differences in the trial of a design, for each plant those of the runs that are furthest from
+/// the requirement, with those of other plants from earlier trials.
 pub(super) fn added(told: &ProjectDesign, before: &[AddedByRig]) -> Vec<AddedByRig> {
     let Family::Uncertain(family) = &told.designed.problem.family else { return vec![] };
     let around = Arc::new(told.designed.problem.compensation.clone());
@@ -45,7 +45,7 @@ pub(super) fn added(told: &ProjectDesign, before: &[AddedByRig]) -> Vec<AddedByR
     for run in runs {
         let (Some(values), Some(step)) = (values(family, run), difference(run)) else { continue };
         match all.iter_mut().find(|known| known.values == values) {
-            // a plant may be driven both as the worst of the family and as a corner
+            // a plant may be simulated both as the worst of the family and as a corner
             Some(known) if known.steps.len() >= MOST_RUNS || known.steps.contains(&step) => {}
             Some(known) => known.steps.push(step),
             None => all.push(AddedByRig { values, steps: vec![step], around: around.clone() }),
@@ -57,7 +57,7 @@ pub(super) fn added(told: &ProjectDesign, before: &[AddedByRig]) -> Vec<AddedByR
     all
 }
 
-/// Differences to be expected of a plant: those of the nearest one that was tried.
+/// Differences to be expected of a plant: those of the nearest one that was simulated.
 pub(super) fn added_to<'a>(
     family: &UncertainFamily,
     all: &'a [AddedByRig],
@@ -72,13 +72,13 @@ pub(super) fn added_to<'a>(
 }
 
 impl StepResponse {
-    /// Its values at these times, straight between its own and zero outside of them.
+    /// Values at these times, linear between the given ones and zero outside of them.
     pub(super) fn at_times(&self, times_s: &[f64]) -> Vec<f64> {
         times_s.iter().map(|time_s| self.at(*time_s)).collect()
     }
 
-    /// When it first comes to a level, straight between its values, so that the time moves with
-    /// them; `None` where it does not.
+    /// Time at which the response first reaches a level, linear between its values, so that the
+    /// time moves with them; `None` if it does not.
     pub(super) fn first_at(&self, level: f64) -> Option<f64> {
         let StepResponse { times_s, values } = self;
         let next = values.iter().position(|value| *value >= level)?;
@@ -103,7 +103,7 @@ impl StepResponse {
     }
 }
 
-/// The parameters of the plant that was driven; `None` for one that is none of the family.
+/// Parameters of the simulated plant; `None` for one that is not in the family.
 fn values(family: &UncertainFamily, run: &TrialRun) -> Option<Vec<f64>> {
     if run.quarter_wave_rad_per_s.is_some() {
         return None;
@@ -116,8 +116,7 @@ fn values(family: &UncertainFamily, run: &TrialRun) -> Option<Vec<f64>> {
     numbers.iter().map(number).collect()
 }
 
-/// The nonlinear step less the linear one, at the times of the first up to where the second is
-/// known.
+/// Nonlinear step minus the linear one, at the times of the first, up to the end of the second.
 fn difference(run: &TrialRun) -> Option<StepResponse> {
     if run.requirements.is_empty() || run.linear_response.values.is_empty() {
         return None;
@@ -143,7 +142,7 @@ mod tests {
         );
     }
 
-    /// ORIGIN: analytic, straight lines: 0.1 to 0.3 over 2 s, half-way, and nothing beyond.
+    /// ORIGIN: analytic, straight lines: 0.1 to 0.3 over 2 s, halfway, and zero beyond.
     #[test]
     fn what_is_added_lies_straight_between_its_times() {
         let added = StepResponse { times_s: vec![1.0, 3.0], values: vec![0.1, 0.3] };

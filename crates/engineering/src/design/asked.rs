@@ -1,7 +1,7 @@
-//! A search for specifications that ask for feedback at all.
+//! Search for specifications that require feedback.
 //!
 //! ```text
-//! largest |P| / least |P| <= upper/lower      at every design frequency: F alone could keep the limits, for any loop however slow
+//! largest |P| / least |P| <= upper/lower      at every design frequency: F suffices for the limits, with any loop however slow
 //! ```
 
 use phea_dynamics::closed_loop::ClosedLoop;
@@ -12,8 +12,8 @@ use phea_qft::specification::Specification;
 use super::{ExplainedFact, Explanation};
 use crate::robust::RobustProblem;
 
-/// An explanation where the specifications are limits on tracking that the plants keep without a
-/// loop, and nothing limits a disturbance; `None` where something asks for feedback.
+/// An explanation if the specifications are limits on tracking that the plants satisfy without a
+/// loop, and nothing limits a disturbance; `None` if something requires feedback.
 pub(super) fn nothing_asks(given: &RobustProblem) -> Option<Explanation> {
     let own = given.specifications.len() - given.design_limits.len();
     let own = given.specifications.get(..own)?;

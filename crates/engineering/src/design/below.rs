@@ -1,5 +1,5 @@
-//! The limits of what may be built that a given loop does not keep, so that a design would refuse
-//! it. They are no part of its verdict.
+//! Limits of a deployable controller that a given loop violates, so that a design would reject it.
+//! They are no part of its verdict.
 
 use phea_dynamics::portable;
 use phea_dynamics::watch::{Stopped, Watch};
@@ -16,8 +16,8 @@ use crate::limit_kind::{DesignLimitKind, ExceededLimit, JudgedLimits};
 use crate::robust::RobustProblem;
 use crate::setup::{Setup, is_of_position};
 
-/// The limits of `[design]`, stated or by default, that the audited loop keeps or not; none where
-/// the family is not stable, which no design would return either, and for a plant without a rig
+/// Limits of `[design]`, stated or by default, that the audited loop satisfies or violates; empty
+/// if the family is not stable, which no design would return either, and for a plant without a rig
 /// that states none.
 ///
 /// Modulus and delay margin are those of the audit. Noise and bandwidth are the worst of the plants
@@ -25,7 +25,7 @@ use crate::setup::{Setup, is_of_position};
 /// their ranges are those of a search, not of a loop.
 ///
 /// # Errors
-/// [`Stopped`] where the watch stops it.
+/// [`Stopped`] if `watch` cancels it.
 pub fn below_design(
     setup: &Setup<'_>,
     given: &RobustProblem,
@@ -67,8 +67,7 @@ pub fn below_design(
     Ok(JudgedLimits { exceeded, kept })
 }
 
-/// True of a limit that holds for a given loop too, and not for a search or for the scenarios
-/// alone.
+/// True for a limit that applies to a given loop too, and not only to a search or to the scenarios.
 fn is_of_loop(kind: DesignLimitKind, given: &RobustProblem) -> bool {
     match kind {
         DesignLimitKind::NoiseToCommand
@@ -83,13 +82,13 @@ fn is_of_loop(kind: DesignLimitKind, given: &RobustProblem) -> bool {
     }
 }
 
-/// True of a limit for which the family is searched; the audit itself has the worst modulus.
+/// True for a limit for which the family is searched; the worst modulus is in the audit itself.
 fn is_searched(limit: &DesignLimit) -> bool {
     limit.specification.is_some() && limit.kind != DesignLimitKind::ModulusMargin
 }
 
-/// The worst of a margin in the audit, or the largest gain of the prefilter, where that is beyond
-/// its limit.
+/// Worst value of a margin in the audit, or largest gain of the prefilter, if it is beyond its
+/// limit.
 fn exceeded_margin(
     limit: &DesignLimit,
     asked: &DesignProblem,
@@ -113,8 +112,8 @@ fn exceeded_margin(
     }
 }
 
-/// What the worst plant reaches of a limit that it violates: the end of the last band in which it
-/// does, or as many times the limit as its margin says.
+/// Value that the worst plant reaches for a limit that it violates: the end of the last band in
+/// which it does, or the limit multiplied according to its margin.
 fn reached(limit: &DesignLimit, found: &SpecificationFinding) -> f64 {
     if limit.kind == DesignLimitKind::HighestBandwidth {
         return found.violations.last().map_or(f64::INFINITY, |band| band.band_rad_per_s[1]);

@@ -1,4 +1,4 @@
-//! The limits that leave the search of a design no room.
+//! Limits that leave the search of a design no room.
 
 use phea_qft::design::{BINDING_DB, DesignStatus, PoleRange};
 use phea_qft::loop_shaping::Structure;
@@ -10,34 +10,34 @@ use super::{DesignLimit, DesignLimitKind, ProjectDesign};
 /// poles within which it binds.
 const NEAR: f64 = 0.01;
 
-/// The reason that led the last search of a design.
+/// Reason that led the last search of a design.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LedBy {
     /// Limits over frequency.
     #[default]
     Frequency,
-    /// The steps of the linear loop.
+    /// Steps of the linear loop.
     LinearSteps,
-    /// The same with what the nonlinear rig added to them in its runs.
+    /// Steps of the linear loop with the contribution of the nonlinear rig in its runs.
     NonlinearRuns,
 }
 
-/// A limit that a search keeps.
+/// A limit that a search satisfies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SearchedLimit {
     /// A specification of the project, by its index.
     Specification(usize),
-    /// A limit of what may be built.
+    /// A limit of a deployable controller.
     Design(DesignLimitKind),
 }
 
 impl ProjectDesign {
-    /// The finding of the audit for a limit that is a specification.
+    /// Finding of the audit for a limit that is a specification.
     pub fn limit_finding(&self, kind: DesignLimitKind) -> Option<&SpecificationFinding> {
         self.limit_findings.iter().find(|(known, _)| *known == kind).map(|(_, found)| found)
     }
 
-    /// True where a limit of what may be built leaves the search no room; `None` where that is not
+    /// True if a limit of a deployable controller leaves the search no room; `None` if that is not
     /// known. A specification binds within [`BINDING_DB`] of its limit.
     pub fn binds(&self, limit: &DesignLimit) -> Option<bool> {
         match limit.kind {
@@ -63,7 +63,7 @@ impl ProjectDesign {
         }
     }
 
-    /// The specifications of the search that the loop touches, or in which it is in conflict, by
+    /// Specifications of the search that the loop touches, or with which it is in conflict, by
     /// their indices: those of the project, then those of its limits.
     pub(super) fn touched(&self) -> Vec<usize> {
         let conflicts = match &self.design.status {
@@ -74,7 +74,7 @@ impl ProjectDesign {
         touched.chain(conflicts.iter().map(|one| one.specification)).collect()
     }
 
-    /// True where a free number is at an end of its range that this limit moves.
+    /// True if a free number is at an end of its range that this limit moves.
     fn is_at_end(&self, kind: DesignLimitKind) -> bool {
         let (own, wider) = (self.design.structure.bounds(), self.structure_with_wider(kind).bounds());
         let is_near = |one: f64, other: f64| (one - other).abs() < NEAR;

@@ -1,10 +1,10 @@
-//! A design whose steps miss what is required in time, moved until they do not: by the steps
-//! themselves, from where the limits on frequency responses led.
+//! Search by steps for a design whose steps miss their requirement in time, starting from the
+//! result of the limits on frequency responses.
 //!
 //! ```text
-//! rows of the search: margins of the limits at the samples, beside margins of steps of the worst plants
+//! rows of the search: margins of the limits at the samples, and margins of steps of the worst plants
 //! y(t) <= 1 + M,    |y(t) - 1| <= b from t_s on,    rise <= t_r,    |u(t)| <= u_max in the steps of the scenarios
-//! search -> audit, with the worst steps between the samples -> what it finds joins the search
+//! search -> audit, with the worst steps between the samples -> its findings join the search
 //! ```
 
 mod commands;
@@ -35,48 +35,48 @@ use crate::setup::Setup;
 use crate::simulate::TrackingWish;
 use crate::trial::BAND_WITH_ROOM;
 
-/// Most members whose steps are looked at after each search.
+/// Largest number of members whose steps are checked after each search.
 const LOOKED_AT: usize = 12;
-/// Shortfall of a search by steps up to which a trial on the nonlinear rig tells more than another
-/// start, dB.
+/// Largest shortfall of a search by steps, dB, for which a trial on the nonlinear rig gives more
+/// information than another start.
 const NEARLY_DB: f64 = 0.05;
-/// Shares of what is required that the search keeps for linear steps, since the nonlinear rig takes
-/// some of it.
+/// Fractions of the requirement at which the search aims with linear steps, since the nonlinear rig
+/// takes part of it.
 const OVERSHOOT_SHARE: f64 = 0.6;
 const SETTLING_SHARE: f64 = 0.9;
 const BAND_SHARE: f64 = 0.8;
-/// The same for steps with what the rig adds to them.
+/// Fractions for steps including the contribution of the rig.
 const OVERSHOOT_SHARE_WITH_RIG: f64 = 0.9;
 const SETTLING_SHARE_WITH_RIG: f64 = 0.97;
-/// Least overshoot that is aimed at, percent.
+/// Least overshoot at which the search aims, percent.
 const LEAST_OVERSHOOT_PERCENT: f64 = 0.3;
 
 /// Designs from which a search by steps begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SearchStarts {
-    /// The design, and the structures that came nearest.
+    /// The design, and the structures nearest to the requirement.
     Nearest,
-    /// The structures beyond those.
+    /// The structures after those.
     Others,
 }
 
-/// The aim of a search by steps, and what is known of them.
+/// Aim of a search by steps, and the known data of the steps.
 #[derive(Clone, Copy)]
 pub(super) struct AimedSteps<'a> {
     pub(super) given: &'a RobustProblem,
     pub(super) aim: StepAim,
-    /// Differences of steps on the nonlinear rig, as far as they are known.
+    /// Differences of steps on the nonlinear rig, where known.
     pub(super) added: &'a [AddedByRig],
-    /// The plants, which all searches of a design share.
+    /// Plants common to all searches of a design.
     pub(super) plants: &'a SteppedPlants,
-    /// The designs from which a search begins.
+    /// Designs from which a search begins.
     pub(super) from: SearchStarts,
 }
 
-/// The design with its steps led towards the aimed share of what is required, from its own
-/// structure and from others that came near: the first that reaches it, or else the nearest. What
-/// the nonlinear rig is known to add to a step is added. `None` where nothing is required in time,
-/// no loop is stable, or the coefficients are rounded.
+/// The design with its steps led towards the aimed fraction of the requirement, from its structure
+/// and from others that came near: the first that reaches the aim, or else the nearest. The known
+/// contribution of the nonlinear rig to a step is added. `None` if nothing is required in time, no
+/// loop is stable, or the coefficients are rounded.
 pub(super) fn by_steps(
     setup: &Setup<'_>,
     aimed: AimedSteps<'_>,
@@ -97,7 +97,7 @@ pub(super) fn by_steps(
             Some(begun) if begun.least_db >= least_db => {
                 best = led.better(best, begun, told, &mut within(watch, [0.5, 1.0]))?;
             }
-            // what the neighbours of a design do not reach, other structures may
+            // other structures may reach what the neighbours of a design do not
             Some(begun) if reach == SearchReach::Anywhere => waiting.push(begun),
             _ => {}
         }
@@ -119,9 +119,9 @@ pub(super) fn by_steps(
     Ok(Some(taken(best, aimed.added, (run, told))?))
 }
 
-/// The simplest structure that reaches what is required by its steps: shorter than that of a
-/// design, and given up for it since it misses the limits on the way to the step, which may be
-/// stricter than the step itself; `None` where none does.
+/// The simplest structure that reaches the requirement by its steps: shorter than that of a design,
+/// and rejected by the search over frequency since it misses the limits on the path to the step,
+/// which may be stricter than the step itself; `None` if there is none.
 pub(super) fn simpler(
     setup: &Setup<'_>,
     aimed: AimedSteps<'_>,
@@ -151,8 +151,8 @@ pub(super) fn simpler(
     Ok(None)
 }
 
-/// The design without zeros and poles that do next to nothing, led again; `None` where it has none,
-/// or does not reach what is required without them.
+/// The design without zeros and poles that have next to no effect, searched again; `None` if it has
+/// none, or does not reach the requirement without them.
 pub(super) fn shortened(
     setup: &Setup<'_>,
     aimed: AimedSteps<'_>,
@@ -165,8 +165,8 @@ pub(super) fn shortened(
     found.map(|found| taken(found, aimed.added, (run, told))).transpose()
 }
 
-/// The problem of a design that is led; `None` where nothing is required in time and no command is
-/// exceeded, or the coefficients are rounded.
+/// Problem of a design that is led by its steps; `None` if nothing is required in time and no
+/// command is exceeded, or the coefficients are rounded.
 fn led<'a>(
     setup: &'a Setup<'_>,
     aimed: AimedSteps<'a>,
@@ -189,7 +189,7 @@ fn led<'a>(
     Ok(Some(LedDesign { setup, aimed, looked_at, problem, samples, required, room }))
 }
 
-/// A design that was led, in place of the one before it.
+/// A design led by its steps, replacing the one before it.
 fn taken(
     found: AuditedStep,
     added: &[AddedByRig],
@@ -205,24 +205,25 @@ fn taken(
     Ok((DesignRun { aimed, problem, outcome, led: Some(search) }, *best))
 }
 
-/// The search in which a design was led by its steps.
+/// Search in which a design was led by its steps.
 pub(super) struct LedSearch {
-    /// Its limits and samples.
+    /// Limits and samples of the search.
     shaping: Shaping,
     room: StepRoom,
 }
 
-/// Part of what is required that a search keeps for what the nonlinear rig adds to linear steps.
+/// Part of the requirement that a search reserves for the contribution of the nonlinear rig to
+/// linear steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum StepRoom {
-    /// As much as rigs commonly add.
+    /// Room as large as the common contribution of rigs.
     Usual,
-    /// As little as it keeps once it knows what the rig adds.
+    /// Room as small as suffices once the contribution of the rig is known.
     Little,
 }
 
 impl StepRoom {
-    /// The requirement that is aimed at.
+    /// Requirement at which the search aims.
     fn of(self, wish: TrackingWish) -> TrackingWish {
         match self {
             StepRoom::Usual => with_room(wish),
@@ -231,7 +232,7 @@ impl StepRoom {
     }
 }
 
-/// The requirement of steps with what the rig adds to them.
+/// Requirement of steps including the contribution of the rig.
 fn with_rig(wish: TrackingWish) -> TrackingWish {
     TrackingWish {
         overshoot_percent: wish.overshoot_percent.map(|most| most * OVERSHOOT_SHARE_WITH_RIG),
@@ -242,7 +243,7 @@ fn with_rig(wish: TrackingWish) -> TrackingWish {
     }
 }
 
-/// The requirement that is aimed at, stricter by what the nonlinear rig may take.
+/// Requirement at which the search aims, reduced by what the nonlinear rig may take.
 fn with_room(wish: TrackingWish) -> TrackingWish {
     let lower = |most: f64| (most * OVERSHOOT_SHARE).max(LEAST_OVERSHOOT_PERCENT.min(most));
     TrackingWish {

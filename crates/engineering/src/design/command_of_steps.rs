@@ -1,12 +1,12 @@
-//! The command that the steps of the scenarios take, held against what the valve has.
+//! Command in the steps of the scenarios, compared with the range of the valve.
 //!
 //! ```text
 //! u(t) = u_0 + sum of (r_k - r_(k-1)) w(t - t_k),   w the unit step through F G/(1 + L)         |u(t)| <= limit
 //! ```
 //!
-//! The sum is over the steps of one scenario, r_k the reference from t_k on, and u_0 the command
-//! that holds a plant at the reference r_0 with which it begins. The loop is linear, so that the
-//! largest step that the valve does follows from w as well.
+//! The sum is over the steps of one scenario, with r_k the reference from t_k on, and u_0 the
+//! command that holds a plant at its initial reference r_0. The loop is linear, so that the largest
+//! step within the range of the valve follows from w as well.
 
 mod scenario_steps;
 
@@ -26,47 +26,46 @@ use crate::simulate::{ForceLimit, ForceLimits, ReferenceStep};
 
 /// Name of the stage.
 const STAGE: &str = "command of steps";
-/// Points of a continuous response, over the whole of it and over its first part.
+/// Number of points of a continuous response, over the whole of it and over its first part.
 const POINTS: usize = 1000;
-/// The first part of a continuous response, which has as many points by itself.
+/// First part of a continuous response, which has as many points.
 const SOON: f64 = 0.1;
-/// Plants from which the search begins, and most plants that it visits.
+/// Number of plants from which the search begins, and largest number of plants that it visits.
 const STARTS: usize = 3;
 const VISITED_MAXIMUM: usize = 400;
-/// Fraction of the limit by which a command may be beyond it: a computed response is no more
-/// accurate.
+/// Fraction of the limit by which a command may exceed it: a computed response is no more accurate.
 const ACCURACY: f64 = 1e-3;
 
-/// The largest command that the steps of the scenarios take: evidence of a search.
+/// Largest command in the steps of the scenarios: evidence of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommandOfSteps {
-    /// The name of the scenario whose command takes most of the limit.
+    /// Name of the scenario whose command takes most of the limit.
     pub scenario: String,
-    /// The step after which it does.
+    /// Step after which this command occurs.
     pub step: ReferenceStep,
-    /// When, in the time of the scenario, s.
+    /// Time in the scenario, s.
     pub at_s: f64,
-    /// The largest magnitude of the command, V.
+    /// Largest magnitude of the command, V.
     pub largest_v: f64,
-    /// The largest that remains between steps once the loop has settled: what holds the force,
-    /// which no controller changes, V.
+    /// Largest magnitude that remains between steps once the loop has settled, V: the command that
+    /// holds the force, which no controller changes.
     pub at_rest_v: f64,
-    /// Most that it may be, V.
+    /// Limit of the command, V.
     pub limit_v: f64,
-    /// The largest single step of that sign, from rest where this one begins, that keeps the limit
-    /// and that supply and sensor allow, N.
+    /// Largest single step of that sign, from the initial reference of this one at rest, that
+    /// satisfies the limit and that supply and sensor permit, N.
     pub largest_step_n: f64,
-    /// The limit that keeps a step from being larger.
+    /// Limit that prevents a larger step.
     pub step_limit: StepLimit,
-    /// How many plants were visited.
+    /// Number of plants that were visited.
     pub plants: usize,
-    /// The plant with the largest command.
+    /// Plant with the largest command.
     pub plant: PlantPoint,
-    /// Indices of its parameters that move the largest command; the others have any value.
+    /// Indices of its parameters that affect the largest command; the others may have any value.
     pub moved_by: Vec<usize>,
 }
 
-/// The limit that keeps a step from being larger.
+/// Limit that prevents a larger step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StepLimit {
     /// The command of the valve.
@@ -76,35 +75,35 @@ pub enum StepLimit {
 }
 
 impl CommandOfSteps {
-    /// True where the command keeps its limit.
+    /// True if the command satisfies its limit.
     pub fn is_kept(&self) -> bool {
         self.largest_v <= (1.0 + ACCURACY) * self.limit_v
     }
 
-    /// True where the command that holds the force is beyond the limit, whatever the controller.
+    /// True if the command that holds the force is beyond the limit, whatever the controller.
     pub fn is_out_of_reach(&self) -> bool {
         self.at_rest_v > (1.0 + ACCURACY) * self.limit_v
     }
 
-    /// True where the largest command is what holds a force, and no peak on the way there.
+    /// True if the largest command is the one that holds a force, without a higher peak before.
     pub fn is_at_rest(&self) -> bool {
         self.largest_v <= (1.0 + ACCURACY) * self.at_rest_v
     }
 
-    /// The ratio of the command to its limit.
+    /// Ratio of the command to its limit.
     pub(super) fn ratio(&self) -> f64 {
         self.largest_v / self.limit_v
     }
 }
 
 impl ProjectDesign {
-    /// The command of the scenarios' steps, where it is more than the valve may take.
+    /// Command of the scenarios' steps, if it is larger than the valve permits.
     pub fn exceeded_command(&self) -> Option<&CommandOfSteps> {
         self.command_of_steps.as_ref().filter(|command| !command.is_kept())
     }
 }
 
-/// The command of a unit step of one plant, V/N, and the largest in any scenario, V.
+/// Command of a unit step of one plant, V/N, and the largest in any scenario, V.
 #[derive(Clone, Debug)]
 struct UnitCommand {
     values: Vec<f64>,
@@ -114,7 +113,7 @@ struct UnitCommand {
     largest_v: f64,
 }
 
-/// A search for the plant whose steps take the largest command.
+/// Search for the plant whose steps need the largest command.
 struct CommandSearch<'a> {
     told: &'a ProjectDesign,
     family: &'a UncertainFamily,
@@ -122,24 +121,24 @@ struct CommandSearch<'a> {
     of: ScenarioSteps,
     visited: Vec<UnitCommand>,
     watch: Watch<'a>,
-    /// True where the watch stopped it.
+    /// True if `watch` cancelled the search.
     is_stopped: bool,
 }
 
-/// Where a search for the largest command looks.
+/// Range of a search for the largest command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum CommandDepth {
-    /// At the members, the corners and the worst plants of the audit.
+    /// Members, corners and worst plants of the audit.
     KnownPlants,
-    /// Between them too.
+    /// The box between them too.
     Whole,
 }
 
-/// The largest command of the scenarios' steps under a design; `None` where they have no step,
-/// nothing limits it, or a response is not known.
+/// Largest command of the scenarios' steps under a design; `None` if they have no step, nothing
+/// limits it, or a response is not known.
 ///
 /// # Errors
-/// [`Stopped`] by the watch.
+/// [`Stopped`] if `watch` cancels it.
 pub(super) fn command_of_steps(
     (setup, told): (&Setup<'_>, &ProjectDesign),
     plants: &SteppedPlants,
@@ -159,11 +158,11 @@ pub(super) fn command_of_steps(
     if search.is_stopped { Err(Stopped) } else { Ok(found) }
 }
 
-/// A design with the largest command of the scenarios' steps over its whole family; noted as
-/// unfinished where the watch stops it.
+/// A design with the largest command of the scenarios' steps over its whole family; recorded as
+/// unfinished if `watch` cancels.
 ///
 /// # Errors
-/// None today: a search that the watch stops is noted.
+/// None at present: a cancelled search is recorded in the result.
 pub(super) fn with_command_of_steps(
     (setup, told): (&Setup<'_>, ProjectDesign),
     plants: &SteppedPlants,
@@ -180,7 +179,7 @@ pub(super) fn with_command_of_steps(
 }
 
 impl CommandSearch<'_> {
-    /// The largest command; `None` where a response is not known, and where the watch stops it.
+    /// Largest command; `None` if a response is not known, and after cancellation.
     fn found(&mut self, setup: &Setup<'_>, depth: CommandDepth) -> Option<CommandOfSteps> {
         let family = self.family;
         if let Some(nominal_v_per_n) = self.held_v_per_n(&family.plant().nominal()) {
@@ -196,13 +195,13 @@ impl CommandSearch<'_> {
         let found = self.worst(setup)?;
         let moved_by = match is_whole {
             true => self.moved_by(&found)?,
-            // beside a listed member there is no plant
+            // a listed member has no neighbouring plants
             false => (0..family.plant().parameters().len()).collect(),
         };
         Some(CommandOfSteps { moved_by, ..found })
     }
 
-    /// The command of a unit step; `None` where it cannot be computed.
+    /// Command of a unit step; `None` if it cannot be computed.
     fn command(&mut self, values: &[f64]) -> Option<StepResponse> {
         let told = tell(self.watch, STAGE, self.visited.len(), VISITED_MAXIMUM);
         self.is_stopped |= told.is_err();
@@ -232,7 +231,7 @@ impl CommandSearch<'_> {
         Some(StepResponse { times_s, values })
     }
 
-    /// The largest magnitude of the command in any scenario, V.
+    /// Largest magnitude of the command in any scenario, V.
     fn visit(&mut self, values: &[f64]) -> Option<f64> {
         if let Some(known) = self.visited.iter().find(|known| known.values == values) {
             return Some(known.largest_v);
@@ -251,8 +250,8 @@ impl CommandSearch<'_> {
         Some(UnitCommand { values: values.to_vec(), unit, held_v_per_n, largest_v })
     }
 
-    /// F(0)/P(0), the command that holds 1 N at a plant under a loop with an integrator, V/N;
-    /// `None` under another one.
+    /// Command that holds 1 N at a plant in a loop with an integrator, F(0)/P(0), V/N; `None` for
+    /// any other loop.
     fn held_v_per_n(&self, values: &[f64]) -> Option<f64> {
         let compensation = &self.told.designed.problem.compensation;
         let command = self.family.plant().member(values)?.slow().command.transfer_function().ok()?;
@@ -298,8 +297,9 @@ impl CommandSearch<'_> {
         })
     }
 
-    /// The largest step in the direction of this one, from rest where it begins, that keeps the
-    /// limit at every plant visited, and that supply and sensor allow; N, with what limits it.
+    /// Largest step in the direction of this one, from its initial reference at rest, that
+    /// satisfies the limit at every plant visited, and that supply and sensor permit, N, with its
+    /// limit.
     fn largest_step(
         &self,
         setup: &Setup<'_>,
@@ -331,8 +331,8 @@ impl CommandSearch<'_> {
         (direction * size_n, limit)
     }
 
-    /// The parameters of the worst plant that move the largest command at an end of their range,
-    /// the others unchanged; `None` where a command cannot be computed.
+    /// Parameters of the worst plant that affect the largest command at an end of their range, the
+    /// others unchanged; `None` if a command cannot be computed.
     fn moved_by(&mut self, found: &CommandOfSteps) -> Option<Vec<usize>> {
         let PlantPoint::Parameters(values) = &found.plant else { return Some(vec![]) };
         let mut moved_by = Vec::new();

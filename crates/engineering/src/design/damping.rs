@@ -1,17 +1,17 @@
-//! Pressure feedback as a free part of a design: found first, for the plants of the family, then
-//! the loop is designed for the damped rig.
+//! Pressure feedback as a free part of a design: it is found first, for the plants of the family,
+//! then the loop is designed for the damped rig.
 //!
 //! ```text
 //! P         plants without feedback
-//! P_1       the same with a small one of gain k_1:   Q = (P/P_1 - 1)/k_1       from command to pressure signal
-//! plants with lumped lines: the same with their waves besides
-//! P, Q -> qft::inner_loop -> gain, corner -> the rig with them -> the loop, as of any project
+//! P_1       plants with a small feedback of gain k_1:   Q = (P/P_1 - 1)/k_1       from command to pressure signal
+//! for plants with lumped lines also with their waves
+//! P, Q -> qft::inner_loop -> gain, corner -> the rig with them -> the loop, as for any project
 //! ```
 //!
-//! The given controller keeps the feedback that the project states; everything that follows has the
-//! one that was found. From inside out, since the feedback then does not depend on a loop that is
-//! opened, limited or designed anew, and since searching for it costs a second, where each of its
-//! values would otherwise need a design.
+//! The given controller retains the feedback that the project states; everything after it has the
+//! one that was found. The order is from the inner loop outwards, since the feedback then does not
+//! depend on a loop that is opened, limited or designed anew, and since its search takes a second,
+//! whereas otherwise each of its values would need a design.
 
 mod plants;
 
@@ -33,56 +33,57 @@ use crate::trial;
 
 /// Factor by which a feedback must raise the gain of a proportional loop.
 const EARNED: f64 = 1.1;
-/// Corners over the frequency that limits the loop without feedback.
+/// Ratios of the corner frequencies to the frequency that limits the loop without feedback.
 const CORNERS: [f64; 2] = [1.0 / 30.0, 3.0];
-/// Largest corner over pi/T and over the low pass.
+/// Ratio of the largest corner to pi/T and to the low pass.
 const BELOW_END: f64 = 0.9;
-/// Frequency at which loop gains are compared, over the one that limits the loop without feedback.
+/// Ratio of the frequency at which loop gains are compared to the one that limits the loop without
+/// feedback.
 const REFERENCE: f64 = 0.25;
-/// Band in which poles are the resonance, over the frequency that limits the loop without feedback.
+/// Ratios that bound the band of resonance poles, relative to the frequency that limits the loop
+/// without feedback.
 const RESONANCE: [f64; 2] = [0.5, 2.0];
-/// Distance from -1 where the design has no limit of its own.
+/// Distance from -1 if the design has no limit for it.
 const MODULUS_MARGIN: f64 = 0.5;
 
-/// The pressure feedback of a design, with what it gains.
+/// Pressure feedback of a design, with its effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PressureFeedbackDesign {
-    /// As a project declares it: gain and high pass as found, the rest as the project has it.
+    /// Feedback as declared in a project: gain and high pass as found, the rest as in the project.
     pub declared: DeclaredPressureFeedback,
-    /// True where the design has it; false where it gains too little.
+    /// True if the design uses it; false if it gains too little.
     pub is_used: bool,
-    /// Largest gain of a proportional loop with it, over that without.
+    /// Ratio of the largest gain of a proportional loop with it to that without.
     pub loop_gain_factor: f64,
     /// Largest gain of a proportional loop without and with it, V/N.
     pub proportional_gain: [f64; 2],
     /// Frequency at which a proportional loop is limited, without and with it, rad/s.
     pub limited_at_rad_per_s: [f64; 2],
     /// Least damping ratio of the plants' oscillations within a factor of two of the first of
-    /// these, without and with it; `None` where plants have no polynomials, or do not oscillate
-    /// there.
+    /// these, without and with it; `None` if plants have no polynomials, or do not oscillate there.
     pub least_damping_ratio: Option<[f64; 2]>,
-    /// Number of plants that it was found with.
+    /// Number of plants with which it was found.
     pub plants: usize,
-    /// Plants with waves in their lines that it was found without; absent where none is missing.
+    /// Plants with waves in their lines that are missing in the search; absent if none is missing.
     pub missing_with_waves: Option<MissingPlants>,
 }
 
 /// Plants that have no responses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MissingPlants {
-    /// How many.
+    /// Number of missing plants.
     pub count: usize,
-    /// Of how many.
+    /// Number of all plants.
     pub of: usize,
     /// Reason why the first of them has none.
     pub reason: DesignError,
 }
 
-/// The project with the feedback that was found; `None` where it is not free.
+/// The project with the feedback that was found; `None` if it is not free.
 ///
 /// # Errors
-/// [`DesignError::NoPressureFeedback`] where no gain keeps the limits, others for a family that
-/// cannot be built or sampled, or a watch that stops it.
+/// [`DesignError::NoPressureFeedback`] if no gain satisfies the limits, others for a family that
+/// cannot be built or sampled, and for cancellation by `watch`.
 pub fn with_free_pressure_feedback(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -99,7 +100,7 @@ pub fn with_free_pressure_feedback(
     let plain = with_pressure_feedback(project, None);
     let undamped = Setup::new(&plain)?;
     let mut probed = ProbedPlants::new(source, &undamped, &declared)?.complete()?;
-    // a lumped line that is stated hides waves from the loop, and none from the pressures
+    // a stated lumped line hides waves from the loop, but not from the pressures
     let with_waves = trial::with_waves(&plain);
     let with_waves = with_waves.as_ref().map(|other| {
         let setup = Setup::new(other)?;
@@ -120,7 +121,7 @@ pub fn with_free_pressure_feedback(
     Ok(Some((if found.is_used { with } else { plain }, found)))
 }
 
-/// What a feedback gains, for people and programs.
+/// Effect of a feedback, for display and for programs.
 fn described(
     (source, undamped): (&dyn Source, &Setup<'_>),
     with: &Project,
@@ -147,7 +148,7 @@ fn described(
     })
 }
 
-/// The plants with the limits that the design has too.
+/// Plants with the limits that the design has too.
 fn problem(
     source: &dyn Source,
     undamped: &Setup<'_>,
@@ -185,7 +186,7 @@ fn problem(
     Ok(problem)
 }
 
-/// The family of a project as a loop without samples and delay sees it, its pressures fed back.
+/// Family of a project for a loop without sampling and delay, with pressure feedback.
 ///
 /// # Errors
 /// [`DesignError`] for a family that cannot be built.
@@ -203,7 +204,7 @@ pub(super) fn family_at_once(source: &dyn Source, project: &Project) -> Result<F
 }
 
 impl ProjectDesign {
-    /// The same with the pressure feedback that was found before the loop.
+    /// The design with the pressure feedback that was found before the loop.
     pub(super) fn with_pressure_feedback(mut self, found: Option<PressureFeedbackDesign>) -> ProjectDesign {
         if let Some(repair) = &mut self.repair
             && let Some(other) = &mut repair.other

@@ -1,4 +1,4 @@
-//! What may be built: limits that a designed loop keeps beyond the specifications, of `[design]` or
+//! Limits that make a controller deployable, in addition to the specifications, from `[design]` or
 //! by default. Only a rig has defaults: a plant given by polynomials may be anything.
 //!
 //! ```text
@@ -25,51 +25,51 @@ use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::simulate::stepped_references;
 
-/// Part of the nominal voltage that noise may take, rms.
+/// Fraction of the nominal voltage that noise may take, rms.
 const NOISE_SHARE: f64 = 0.01;
-/// Part of what noise may take that is left to the force sensor, and to the pressures, where both
+/// Fraction of the permitted noise that is left to the force sensor, and to the pressures, if both
 /// have noise: half of its square.
 pub(super) const NOISE_TO_COMMAND_LEFT: f64 = FRAC_1_SQRT_2;
 const MODULUS_MARGIN: f64 = 0.5;
-/// s, of a continuous loop.
+/// Delay margin of a continuous loop, s.
 const DELAY_MARGIN_S: f64 = 0.5e-3;
 const POLE_DAMPING_RATIO: f64 = 0.3;
 const PREFILTER_GAIN: f64 = 2.0;
-/// Part of the nominal voltage that the steps of the scenarios may take.
+/// Fraction of the nominal voltage that the steps of the scenarios may take.
 const COMMAND_OF_STEPS: f64 = 1.0;
-/// Part of pi/T that a bandwidth may reach, and that a pole may.
+/// Fraction of pi/T that a bandwidth may reach, and that a pole may reach.
 const BANDWIDTH_SHARE: f64 = 0.2;
 const FASTEST_SHARE: f64 = 0.5;
-/// Fastest pole of a continuous controller over the highest bandwidth.
+/// Ratio of the fastest pole of a continuous controller to the highest bandwidth.
 const BEYOND_BANDWIDTH: f64 = 10.0;
 /// Multiples of the highest bandwidth at which its bounds are drawn.
 const DRAWN: [f64; 3] = [1.0, 2.0, 4.0];
 
-/// A limit of what may be built.
+/// Limit of a deployable controller.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesignLimit {
-    /// What it is about.
+    /// Kind of the limit.
     pub kind: DesignLimitKind,
-    /// In SI: a share of the nominal voltage, a distance, rad/s or s.
+    /// Value, SI: a fraction of the nominal voltage, a distance, rad/s or s.
     pub value: f64,
-    /// Where the value comes from.
+    /// Origin of the value.
     pub origin: LimitOrigin,
-    /// The specification by which it is kept; `None` where the search itself keeps it.
+    /// Specification that enforces the limit; `None` if the search enforces it.
     pub specification: Option<Specification>,
 }
 
-/// True where something is required of the response to the reference.
+/// True if a response to the reference is required.
 fn follows_reference(given: &RobustProblem) -> bool {
     given.specifications.iter().any(|one| one.requirement.is_tracking()) || !given.in_time.is_empty()
 }
 
-/// True where a scenario steps the reference of a valve around plants whose steps are known.
+/// True if a scenario steps the reference of a valve, and the steps of its plants are known.
 fn steps_command(setup: &Setup<'_>, given: &RobustProblem) -> bool {
     let has_steps = matches!(given.family, Family::Uncertain(_));
     has_steps && setup.rig().is_ok() && !stepped_references(setup.project).is_empty()
 }
 
-/// The limits of a design for this problem; none for a plant without a rig that states none.
+/// Limits of a design for this problem; empty for a plant without a rig that states none.
 pub fn design_limits(setup: &Setup<'_>, given: &RobustProblem) -> Vec<DesignLimit> {
     let declared = setup.project.design.clone().unwrap_or_default();
     let is_rig = setup.project.actuator.is_some() && declared.limits == UnstatedLimits::Default;
@@ -94,8 +94,7 @@ pub fn design_limits(setup: &Setup<'_>, given: &RobustProblem) -> Vec<DesignLimi
     let asks = |(kind, found): (DesignLimitKind, Option<(f64, LimitOrigin)>)| {
         let (value, origin) = found.filter(|(value, _)| *value > 0.0 && value.is_finite())?;
         let specification = specification((setup, given), kind, value);
-        // without a noisy sensor in a sampled loop, or a reference to follow, there is nothing to
-        // limit
+        // without a noisy sensor in a sampled loop, or a reference to follow, no limit applies
         let is_void = match kind {
             DesignLimitKind::NoiseToCommand => specification.is_none(),
             DesignLimitKind::PrefilterGain => !follows_reference(given),
@@ -107,14 +106,13 @@ pub fn design_limits(setup: &Setup<'_>, given: &RobustProblem) -> Vec<DesignLimi
     each.into_iter().filter_map(asks).collect()
 }
 
-/// The value of a limit, if there is one.
+/// Value of a limit, if there is one.
 pub(super) fn limit_value(limits: &[DesignLimit], kind: DesignLimitKind) -> Option<f64> {
     limits.iter().find(|limit| limit.kind == kind).map(|limit| limit.value)
 }
 
 impl ProjectDesign {
-    /// The largest gain that the designed prefilter may have and the one that it has, where that is
-    /// more.
+    /// Largest permitted gain of the designed prefilter and its actual gain, if that is larger.
     pub fn exceeded_prefilter_gain(&self) -> Option<[f64; 2]> {
         self.declared_prefilter.as_ref()?;
         let most = limit_value(&self.limits, DesignLimitKind::PrefilterGain)?;
@@ -122,7 +120,7 @@ impl ProjectDesign {
         (largest > most).then_some([most, largest])
     }
 
-    /// Reasons not to use the designed controller; none where it may be used.
+    /// Reasons not to use the designed controller; empty if it may be used.
     pub fn unusable(&self) -> Vec<UnusableController> {
         let is_unstable = self.designed.view.audit.stability.verdict == Verdict::Violated;
         let stability = is_unstable.then_some(UnusableController::UnstablePlant);
@@ -144,10 +142,10 @@ pub enum UnusableController {
 }
 
 /// Gain of a prefilter from which a loop that does not satisfy its specifications is not to be
-/// used, whatever `design.prefilter_gain` allows.
+/// used, whatever `design.prefilter_gain` permits.
 const UNUSABLE_PREFILTER_GAIN: f64 = 100.0;
 
-/// Where the poles of a designed controller may lie.
+/// Range of the poles of a designed controller.
 pub(super) fn pole_range(limits: &[DesignLimit]) -> PoleRange {
     let free = PoleRange::default();
     PoleRange {
@@ -158,7 +156,7 @@ pub(super) fn pole_range(limits: &[DesignLimit]) -> PoleRange {
     }
 }
 
-/// The problem with the limits that are specifications as further ones, without names.
+/// The problem with those limits that are specifications as additional ones, without names.
 pub(super) fn limited(given: &RobustProblem, limits: &[DesignLimit]) -> RobustProblem {
     let mut problem = given.clone();
     for limit in limits {
@@ -169,8 +167,8 @@ pub(super) fn limited(given: &RobustProblem, limits: &[DesignLimit]) -> RobustPr
     problem
 }
 
-/// The problem of the project's own specifications, and the audit of a design split likewise: its
-/// own, and the findings for the limits.
+/// The problem with the project's specifications only, the audit of a design reduced to them, and
+/// the findings for the limits.
 pub(super) fn split(given: &RobustProblem, audit: &Audit) -> (RobustProblem, Audit, Vec<LimitFinding>) {
     let own = given.specifications.len() - given.design_limits.len();
     let (audit, others) = audit.split_off(own);
@@ -180,10 +178,10 @@ pub(super) fn split(given: &RobustProblem, audit: &Audit) -> (RobustProblem, Aud
     (problem, audit, kinds.into_iter().zip(others).collect())
 }
 
-/// What an audit finds of a limit.
+/// Finding of an audit for a limit.
 pub type LimitFinding = (DesignLimitKind, SpecificationFinding);
 
-/// The least of what waves in the lines, the servovalve and sampling leave.
+/// Least bandwidth of those that waves in the lines, the servovalve and sampling permit.
 pub(crate) fn highest_bandwidth(setup: &Setup<'_>) -> Option<(f64, LimitOrigin)> {
     let rig = setup.rig().ok()?;
     let valve = rig.actuator.components().valve.natural_frequency;
@@ -196,8 +194,8 @@ pub(crate) fn highest_bandwidth(setup: &Setup<'_>) -> Option<(f64, LimitOrigin)>
     each.into_iter().flatten().min_by(|one, other| one.0.total_cmp(&other.0))
 }
 
-/// The fastest pole that a controller of growing order may have; a structure that the project
-/// states has its own ranges.
+/// Fastest pole that a controller of growing order may have; a structure that the project states
+/// has its own ranges.
 fn fastest_pole(
     setup: &Setup<'_>,
     declared: &DeclaredDesign,
@@ -213,7 +211,7 @@ fn fastest_pole(
     }
 }
 
-/// The specification by which a limit is kept.
+/// Specification that enforces a limit.
 pub(super) fn specification(
     (setup, given): (&Setup<'_>, &RobustProblem),
     kind: DesignLimitKind,

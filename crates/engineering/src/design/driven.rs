@@ -1,8 +1,8 @@
-//! A design whose steps on the nonlinear rig are held against what is required in time: where they
-//! miss it, the search goes on with what the rig added to the steps of the linear loop.
+//! Comparison of a design's steps on the nonlinear rig with the requirement in time: if they miss
+//! it, the search continues with the contribution of the rig to the steps of the linear loop.
 //!
 //! ```text
-//! design -> trial on the nonlinear rig -> misses -> search with linear steps + what the rig added -> trial -> the better one
+//! design -> trial on the nonlinear rig -> misses -> search with linear steps + contribution of the rig -> trial -> the better one
 //! ```
 
 use phea_dynamics::watch::{Watch, within};
@@ -25,33 +25,33 @@ use crate::side_by_side::{all_cores, both};
 use crate::source::Source;
 use crate::trial::Agreement;
 
-/// How often the search goes on as long as the nonlinear rig misses what is required.
+/// Largest number of continuations while the nonlinear rig misses the requirement.
 const TRIES: usize = 6;
 
-/// How often it goes on where the rig satisfies what is required, and lacks room.
+/// Largest number of continuations if the rig satisfies the requirement but lacks room.
 const TRIES_FOR_ROOM: usize = 4;
-/// A try that brings the worst run nearer by less than this share is one in vain, and so many in
-/// turn are the last.
+/// Least relative improvement of the worst run by a useful continuation; this many useless ones in
+/// succession are the last.
 const GAIN: f64 = 0.05;
 const IN_VAIN: usize = 2;
 
-/// A design, and its twin for the continuous loop.
+/// A design with its twin for the continuous loop.
 pub(super) struct ContinuousTwin {
     /// The design.
     of: Design,
-    /// The one that was made without samples, as [`continuous_as_sampled`] finds it.
+    /// The twin that was made without sampling, as found by [`continuous_as_sampled`].
     found: Result<Option<AuditedController>, DesignError>,
 }
 
 impl ContinuousTwin {
-    /// The twin of this design; `None` of another one.
+    /// Twin of this design; `None` for another one.
     pub(super) fn of(self, design: &Design) -> Option<Result<Option<AuditedController>, DesignError>> {
         (self.of == *design).then_some(self.found)
     }
 }
 
-/// The best design with its trial; without one where the watch stops it before. Also the design
-/// made without samples, which is looked for during the trial where that leads to no other design.
+/// The best design with its trial; without a trial if `watch` cancels before. Also the design made
+/// without sampling, which is searched during the trial if that leads to no other design.
 pub(super) fn found_and_tried(
     (source, setup): (&dyn Source, &Setup<'_>),
     given: &RobustProblem,
@@ -63,7 +63,7 @@ pub(super) fn found_and_tried(
     let begins = (given, first, &plants);
     let (mut driven, mut twin) =
         simplest((source, setup), begins, seed, &mut within(&mut *watch, [0.0, 0.7]))?;
-    // without the limit that leads away from a loop without gain, the search goes another way
+    // without the limit that leads away from a loop without gain, the search takes another path
     if first != StepAim::AS_REQUIRED && !driven.told.is_stopped() && misses(&driven.told) {
         let begins = (given, StepAim::AS_REQUIRED, &plants);
         match simplest((source, setup), begins, seed, &mut within(&mut *watch, [0.7, 0.9])) {
@@ -71,7 +71,7 @@ pub(super) fn found_and_tried(
                 (driven, twin) = (other.with_missed(&driven.told), None);
             }
             Err(DesignError::Stopped(_)) => driven.told.leave(DesignPart::Search),
-            // what was found before remains
+            // the earlier result remains
             Ok(_) | Err(_) => {}
         }
     }
@@ -82,7 +82,7 @@ pub(super) fn found_and_tried(
     if told.command_of_steps.is_none() {
         told = with_command_of_steps((setup, told), &plants, watch)?;
     }
-    // a design that was led by its steps is not proven on the way
+    // a design led by its steps is not proven before the end
     if told.designed.view.proof.is_none() {
         let problem = told.designed.problem.clone();
         let view = &mut told.designed.view;
@@ -108,7 +108,7 @@ pub(super) fn found_and_tried(
     Ok((run, ProjectDesign { unfinished, relaxations, ..told }, twin))
 }
 
-/// A design with its trial, and what its runs add to the steps of the linear loop.
+/// A design with its trial, and the contribution of its runs to the steps of the linear loop.
 struct DrivenDesign {
     aim: StepAim,
     run: DesignRun,
@@ -117,15 +117,15 @@ struct DrivenDesign {
 }
 
 impl DrivenDesign {
-    /// The same beside a shorter structure whose runs miss what is required.
+    /// The design together with a shorter structure whose runs miss the requirement.
     fn with_missed(mut self, shorter: &ProjectDesign) -> DrivenDesign {
         self.told.note_missed_on_rig(shorter);
         self
     }
 }
 
-/// The best design that a search with this aim leads to: the simplest structure by its steps,
-/// unless the nonlinear rig misses what is required with that and less with another.
+/// Best design to which a search with this aim leads: the simplest structure by its steps, unless
+/// the nonlinear rig misses the requirement with that and misses less with another.
 fn simplest(
     (source, setup): (&dyn Source, &Setup<'_>),
     (given, first, plants): (&RobustProblem, StepAim, &SteppedPlants),
@@ -150,7 +150,7 @@ fn simplest(
     })
 }
 
-/// The simplest structure that is as good a design by its steps, where there is one, and the design
+/// The simplest structure that is as good a design by its steps, if there is one, and the design
 /// itself.
 fn with_simpler(
     setup: &Setup<'_>,
@@ -165,12 +165,12 @@ fn with_simpler(
     if matches!(found, Err(DesignError::Stopped(_))) {
         told.leave(DesignPart::Search);
     }
-    // what was found before remains
+    // the earlier result remains
     (found.ok().flatten(), told)
 }
 
-/// A design with its trial, and as long as that misses what is required, the designs that follow
-/// from what the runs add: the best of them.
+/// A design with its trial and, as long as the trial misses the requirement, the designs that
+/// follow from the contributions of the runs: the best of them.
 fn driven(
     (source, setup): (&dyn Source, &Setup<'_>),
     aimed: AimedSteps<'_>,
@@ -181,7 +181,7 @@ fn driven(
     let (told, twin) =
         with_trial_and_twin((source, setup), &problem, told, &mut within(&mut *watch, [0.0, 0.25]))?;
     let mut best = (run, told);
-    // the design that the next one begins from, unless that is the best one
+    // the design from which the next one begins, unless it is the best one
     let mut latest: Option<(DesignRun, ProjectDesign)> = None;
     let mut known = added(&best.1, &[]);
     let (mut nearest, mut in_vain) = (best.1.worst_run_with_room(), 0);
@@ -189,7 +189,8 @@ fn driven(
     for index in 0..TRIES {
         let share = [index, index + 1].map(|done| 0.25 + 0.75 * done as f64 / TRIES as f64);
         let before = latest.as_ref().unwrap_or(&best);
-        // what the rig satisfies and a limit does not, a search with its runs may
+        // a search with these runs may satisfy a limit that the design misses although the rig
+        // satisfies the requirement
         let lacks_a_limit = latest.as_ref().is_some_and(|(_, told)| rank(told).0 > 0);
         let suffices = best.1.worst_run() <= 1.0;
         if !misses(&before.1) && !lacks_a_limit || in_vain > IN_VAIN || for_room >= TRIES_FOR_ROOM {
@@ -215,7 +216,7 @@ fn driven(
                 };
             }
             Err(DesignError::Stopped(_)) => best.1.leave(DesignPart::Search),
-            // what was found before remains
+            // the earlier result remains
             Ok(None) | Err(_) => break,
         }
         if best.1.is_stopped() {
@@ -226,14 +227,15 @@ fn driven(
     Ok((DrivenDesign { aim: aimed.aim, run, told, known }, twin))
 }
 
-/// A design with the trial of its controller, and meanwhile with what was made without samples.
+/// A design with the trial of its controller, and concurrently with the design made without
+/// sampling.
 fn with_trial_and_twin(
     (source, setup): (&dyn Source, &Setup<'_>),
     problem: &DesignProblem,
     told: ProjectDesign,
     watch: Watch<'_>,
 ) -> Result<(ProjectDesign, Option<ContinuousTwin>), DesignError> {
-    // a rig that misses what is required in time leads to another design
+    // a rig that misses a requirement in time leads to another design
     let is_required = told.designed.problem.in_time.iter().any(|one| one.follows);
     if told.is_stopped() || is_required || all_cores().at_once == 1 {
         return Ok((with_trial((source, setup), told, watch)?, None));
@@ -248,8 +250,8 @@ fn with_trial_and_twin(
     Ok((told?, Some(ContinuousTwin { of: untried.design, found })))
 }
 
-/// The design without zeros and poles that do next to nothing, where the nonlinear rig satisfies
-/// what is required with it too; as it is otherwise.
+/// The design without zeros and poles that have next to no effect, if the nonlinear rig satisfies
+/// the requirement with it too; otherwise the unchanged design.
 fn shorter(
     (source, setup): (&dyn Source, &Setup<'_>),
     aimed: AimedSteps<'_>,
@@ -260,7 +262,7 @@ fn shorter(
         return (run, told);
     }
     let found = shortened(setup, aimed, (&run, &told), &mut within(&mut *watch, [0.0, 0.7]));
-    // what was found before remains
+    // the earlier result remains
     let found = found.and_then(|found| {
         let Some((run, shorter)) = found else { return Ok(None) };
         Ok(Some((run, with_trial((source, setup), shorter, &mut within(watch, [0.7, 1.0]))?)))
@@ -273,27 +275,27 @@ fn shorter(
     }
 }
 
-/// A design whose search was stopped while it went on from there.
+/// A design whose continued search was cancelled.
 fn stopped_in_search(run: DesignRun, mut told: ProjectDesign) -> (DesignRun, ProjectDesign) {
     told.leave(DesignPart::Search);
     (run, told)
 }
 
-/// True where the nonlinear rig agrees with one design as with another; settling times that satisfy
-/// what is required need not be those of the linear loop.
+/// True if the nonlinear rig agrees with one design as well as with another; settling times that
+/// satisfy the requirement need not be those of the linear loop.
 fn agrees_as_well(one: &ProjectDesign, other: &ProjectDesign) -> bool {
     one.agreement() <= other.agreement().max(Agreement::AgreesButForSettling)
 }
 
-/// True where the nonlinear rig misses what is required under a design that is met, or satisfies it
-/// without room for the plants between those that were driven.
+/// True if the nonlinear rig misses the requirement under a design that is met, or satisfies it
+/// without room for the plants between the simulated ones.
 fn misses(told: &ProjectDesign) -> bool {
     let is_met = told.design.status == DesignStatus::Met && !told.is_stopped();
     is_met && told.misses_on_rig()
 }
 
-/// A design with what the rig is known to add to its steps, and its trial; `None` where the steps
-/// of the one before do not lead.
+/// A design with the known contribution of the rig to its steps, and its trial; `None` if the steps
+/// of the one before lead to none.
 fn next_design(
     (source, setup): (&dyn Source, &Setup<'_>),
     aimed: AimedSteps<'_>,
@@ -305,7 +307,7 @@ fn next_design(
     Ok(Some((run, with_trial((source, setup), told, &mut within(watch, [0.7, 1.0]))?)))
 }
 
-/// A design with the trial of its controller; absent once the watch has stopped it, and without a
+/// A design with the trial of its controller; the trial is absent after cancellation, and without a
 /// rig.
 fn with_trial(
     (source, setup): (&dyn Source, &Setup<'_>),
@@ -322,8 +324,9 @@ fn with_trial(
     Ok(ProjectDesign { unfinished, trial, ..told })
 }
 
-/// True where one design is as good as another over frequency, and its worst run is nearer to what
-/// is required: of two whose runs all satisfy it, with room for the plants between.
+/// True if one design is as good as another over frequency and its worst run is nearer to the
+/// requirement; if the runs of both satisfy it, the worst run with room for the plants between
+/// counts.
 fn is_better(one: &ProjectDesign, other: &ProjectDesign) -> bool {
     let runs = |told: &ProjectDesign| (told.worst_run().max(1.0), told.worst_run_with_room());
     !one.is_stopped() && rank(one).0 <= rank(other).0 && runs(one) < runs(other)

@@ -1,4 +1,4 @@
-//! Why nothing is designed.
+//! Errors of a design.
 
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::watch::Stopped;
@@ -10,10 +10,10 @@ use crate::robust::{RobustError, RobustProblem};
 use crate::setup::{ControlError, Setup};
 use crate::trial::TrialError;
 
-/// Why nothing is designed.
+/// Reason why nothing is designed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DesignError {
-    /// There is no specification for a controller.
+    /// The project has no specification for a controller.
     #[error(
         "the project states no [[specification]] to design a controller for: add one, such as `kind = \"robust_stability\"` and `limit = 1.3`"
     )]
@@ -26,13 +26,13 @@ pub enum DesignError {
         .0.words().position
     )]
     Admittance(MotionKind),
-    /// The search found no controller; with what was known of the problem.
+    /// The search found no controller; with the known facts about the problem.
     #[error("the search ended without a controller")]
     NoController(Vec<Explanation>),
-    /// Required steps that no controller makes on the rig.
+    /// No controller makes the required steps on the rig.
     #[error("no controller makes {} of the required steps on this rig", .0.steps.len())]
     ImpossibleSteps(Box<ImpossibleSteps>),
-    /// A part of the problem cannot be searched with.
+    /// The search cannot use a part of the problem.
     #[error(transparent)]
     Search(#[from] phea_qft::design::LoopDesignError),
     /// The controller, prefilter or sensor is not a transfer function.
@@ -44,15 +44,15 @@ pub enum DesignError {
     /// The project is not a problem of the robust method.
     #[error(transparent)]
     Robust(#[from] RobustError),
-    /// The designed controller cannot be tried on the machine.
+    /// The designed controller cannot be simulated on the machine.
     #[error(transparent)]
     Trial(TrialError),
-    /// A free pressure feedback for a rig or family that has none.
+    /// The pressure feedback is free, but the rig or family admits none.
     #[error(
         "design.pressure_feedback = \"free\" found no feedback: it needs plants of a rig, stable without it, and no gain keeps the limits of its own loop here"
     )]
     NoPressureFeedback,
-    /// The watch stopped it before anything was found.
+    /// The progress callback cancelled the design before anything was found.
     #[error(transparent)]
     Stopped(#[from] Stopped),
 }
@@ -66,7 +66,7 @@ impl From<TrialError> for DesignError {
     }
 }
 
-/// Refuses a project that requires a step that no controller makes on its rig.
+/// Rejects a project that requires a step that no controller makes on its rig.
 pub(super) fn refuse_impossible_steps(setup: &Setup<'_>, problem: &RobustProblem) -> Result<(), DesignError> {
     match impossible_steps(setup, problem) {
         none if none.is_empty() => Ok(()),

@@ -1,4 +1,4 @@
-//! What is known about a problem whatever a search finds: impossibilities, and what will be hard.
+//! Facts about a problem that hold whatever a search finds: impossibilities and difficulties.
 
 use phea_qft::design::{Finding, FindingSeverity};
 use phea_qft::verification::{PlantPoint, SpecificationMargin};
@@ -10,29 +10,29 @@ use crate::specification::NamedSpecification;
 /// One fact that is impossible or hard for a controller.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Explanation {
-    /// The fact.
+    /// Explained fact.
     pub fact: ExplainedFact,
-    /// The specifications that it concerns, each by the index that the fact names it by.
+    /// Specifications that the fact concerns, each by the index with which the fact names it.
     pub limits: Vec<(usize, ExplainedLimit)>,
-    /// Whether it means that no controller satisfies the specifications.
+    /// True if the fact means that no controller satisfies the specifications.
     pub is_impossible: bool,
-    /// rad/s, where it happens.
+    /// Frequency of the fact, rad/s.
     pub frequency_rad_per_s: Option<f64>,
-    /// The plants that it concerns.
+    /// Plants that the fact concerns.
     pub plants: Vec<PlantPoint>,
-    /// Indices of the specifications that it concerns.
+    /// Indices of the specifications that the fact concerns.
     pub specifications: Vec<usize>,
-    /// The least common relaxation of all limits that may help, dB.
+    /// Least common relaxation of all limits that may help, dB.
     pub relaxation_db: Option<f64>,
 }
 
-/// A fact about a problem whatever a search finds.
+/// A fact about a problem that holds whatever a search finds.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExplainedFact {
     /// A finding of the diagnosis.
     Finding(Finding),
-    /// Limits on tracking alone, wider than the plants of the family differ: a prefilter without
-    /// feedback could keep them.
+    /// The only limits are on tracking, and wider than the spread of the family: a prefilter
+    /// without feedback could satisfy them.
     NothingAsksForFeedback,
 }
 
@@ -41,12 +41,12 @@ pub enum ExplainedFact {
 pub enum ExplainedLimit {
     /// A specification of the project.
     Specification(NamedSpecification),
-    /// A limit of what may be built.
+    /// A limit of a deployable controller.
     Design(DesignLimitKind),
 }
 
 impl Explanation {
-    /// A finding of the diagnosis of a problem.
+    /// Explanation of a finding of the diagnosis of a problem.
     pub fn of(finding: &Finding, problem: &RobustProblem) -> Explanation {
         let specifications = finding.specifications();
         Explanation {

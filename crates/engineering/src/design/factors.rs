@@ -1,11 +1,11 @@
-//! A transfer function by its factors, as a project declares it.
+//! A transfer function by its factors, as declared in a project.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
 
 use super::project::{RationalFunction, Transfer, Variable};
 
-/// As [controller] or [prefilter] declares it.
+/// Declaration for [controller] or [prefilter].
 pub(super) fn declared(function: &TransferFunction) -> Transfer {
     let in_z = function.domain() != TimeDomain::Continuous;
     let ratio = RationalFunction {

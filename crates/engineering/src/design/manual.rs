@@ -1,4 +1,4 @@
-//! A control law in the words of a controller's manual.
+//! A control law in the terms of a controller's manual.
 //!
 //! ```text
 //! PI              K_p (1 + 1/(T_i s))
@@ -9,7 +9,7 @@
 //!                 depth 20 log10(D_z/D_p) at w, width 2 D_p w, of its poles
 //! ```
 //!
-//! The parts act in series.
+//! The parts are in series.
 
 mod roots;
 
@@ -18,104 +18,105 @@ use phea_dynamics::controller::{Compensator, Element, NamedStructure};
 use self::roots::{Pair, Roots};
 use crate::project::{DeclaredElement, ElementKind};
 
-/// Natural frequencies nearer to one another than this share are that of one notch.
+/// Relative difference of natural frequencies below which zeros and poles count as at one
+/// frequency.
 const SAME: f64 = 1e-12;
-/// Natural frequencies of zeros and poles within this factor are a notch.
+/// Ratio of the natural frequencies of zeros and poles within which they form a notch.
 const NEARBY: f64 = 2.0;
 
 /// Parts in series, the one with the gain first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ManualLaw {
-    /// The parts.
+    /// Parts of the law.
     pub parts: Vec<ManualPart>,
 }
 
-/// A part of a controller, as manuals name it.
+/// A part of a controller, in the terms of manuals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ManualPart {
-    /// K_p.
+    /// Gain K_p.
     Proportional {
-        /// K_p.
+        /// Gain K_p.
         gain: f64,
     },
-    /// K_i/s.
+    /// Integrator K_i/s.
     Integral {
-        /// K_i, 1/s.
+        /// Gain K_i, 1/s.
         gain: f64,
     },
-    /// K_p (1 + 1/(T_i s)).
+    /// PI controller K_p (1 + 1/(T_i s)).
     ProportionalIntegral {
-        /// K_p.
+        /// Gain K_p.
         gain: f64,
-        /// T_i, s.
+        /// Integral time T_i, s.
         integral_time_s: f64,
     },
-    /// K_p (1 + 1/(T_i s) + T_d s/(T_f s + 1)).
+    /// PID controller K_p (1 + 1/(T_i s) + T_d s/(T_f s + 1)).
     ProportionalIntegralDerivative {
-        /// K_p.
+        /// Gain K_p.
         gain: f64,
-        /// T_i, s.
+        /// Integral time T_i, s.
         integral_time_s: f64,
-        /// T_d, s.
+        /// Derivative time T_d, s.
         derivative_time_s: f64,
-        /// T_f, s.
+        /// Filter time T_f, s.
         filter_time_s: f64,
     },
-    /// 1/(T_f s + 1).
+    /// Low pass 1/(T_f s + 1).
     LowPass {
-        /// T_f, s.
+        /// Time constant T_f, s.
         time_s: f64,
     },
-    /// 1/(s^2/w^2 + 2 D s/w + 1).
+    /// Second-order low pass 1/(s^2/w^2 + 2 D s/w + 1).
     SecondOrderLowPass {
-        /// w, rad/s.
+        /// Natural frequency w, rad/s.
         frequency_rad_per_s: f64,
-        /// D.
+        /// Damping ratio D.
         damping_ratio: f64,
     },
-    /// (s/z + 1)/(s/p + 1) with z < p.
+    /// Lead (s/z + 1)/(s/p + 1) with z < p.
     Lead {
-        /// z, rad/s.
+        /// Zero z, rad/s.
         zero_rad_per_s: f64,
-        /// p, rad/s.
+        /// Pole p, rad/s.
         pole_rad_per_s: f64,
     },
-    /// The same with z > p.
+    /// Lag (s/z + 1)/(s/p + 1) with z > p.
     Lag {
-        /// z, rad/s.
+        /// Zero z, rad/s.
         zero_rad_per_s: f64,
-        /// p, rad/s.
+        /// Pole p, rad/s.
         pole_rad_per_s: f64,
     },
-    /// A pair of zeros over a pair of poles at the same frequency, or at one nearby.
+    /// A pair of zeros over a pair of poles at equal or similar frequencies.
     Notch {
-        /// w of the zeros, rad/s.
+        /// Natural frequency w of the zeros, rad/s.
         frequency_rad_per_s: f64,
-        /// w of the poles, rad/s.
+        /// Natural frequency w of the poles, rad/s.
         pole_frequency_rad_per_s: f64,
-        /// D_z.
+        /// Damping ratio D_z of the zeros.
         zero_damping_ratio: f64,
-        /// D_p.
+        /// Damping ratio D_p of the poles.
         pole_damping_ratio: f64,
     },
 }
 
-/// Reason why a law has no such words.
+/// Reason why a law has no description in these terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ManualGap {
-    /// It is a function of z.
+    /// The law is a function of z.
     #[error("the law is given in z, and manuals state continuous ones")]
     Sampled,
-    /// A part of it is no finite transfer function without dead time.
+    /// A part of the law is not a finite transfer function without dead time.
     #[error("the law is not a ratio of polynomials without dead time")]
     NotRational,
-    /// More than one integrator, or a differentiator.
+    /// The law has more than one integrator, or a differentiator.
     #[error("the law has more than one integrator, or it differentiates")]
     Origin,
-    /// Roots on the imaginary axis or in the right half plane.
+    /// The law has roots on the imaginary axis or in the right half plane.
     #[error("the law has zeros or poles on the imaginary axis or in the right half plane")]
     NotMinimumPhase,
-    /// Zeros that no poles belong to.
+    /// The law has zeros that belong to no poles.
     #[error(
         "the law has zeros that no part of a manual takes: a pair without poles near it, or more zeros than single poles"
     )]
@@ -123,10 +124,11 @@ pub enum ManualGap {
 }
 
 impl ManualLaw {
-    /// The words of a law; one that was designed by a name is told in the words of the name.
+    /// Description of a law; one that was designed as a named structure is described in the terms
+    /// of that name.
     ///
     /// # Errors
-    /// [`ManualGap`] for a law that no such parts make up.
+    /// [`ManualGap`] for a law that cannot be composed of such parts.
     pub fn new(law: &Compensator, name: Option<NamedStructure>) -> Result<ManualLaw, ManualGap> {
         let mut roots = Roots::of(law)?;
         let mut behind = roots.notches.clone();
@@ -155,12 +157,12 @@ impl ManualLaw {
         Ok(ManualLaw { parts })
     }
 
-    /// The law of these words.
+    /// Compensator with these parts.
     pub fn compensator(&self) -> Compensator {
         Compensator::new(self.parts.iter().flat_map(ManualPart::elements).collect())
     }
 
-    /// As elements of a project.
+    /// Elements of a project with these parts.
     pub fn declared(&self) -> Vec<DeclaredElement> {
         self.parts.iter().flat_map(ManualPart::declared).map(DeclaredElement::new).collect()
     }
@@ -266,14 +268,14 @@ impl ManualPart {
                 derivative_gain,
                 filter_time,
             }),
-            // no part consists of them
+            // no part consists of these elements
             Element::Differentiator | Element::RealZero { .. } | Element::General(_) => None,
         };
         self.elements().into_iter().filter_map(declared).collect()
     }
 }
 
-/// The part with the gain: a PID where the structure is one, or two zeros demand it.
+/// Part with the gain: a PID if the structure is one, or two zeros require it.
 fn first(roots: &mut Roots, name: Option<NamedStructure>) -> Result<ManualPart, ManualGap> {
     let gain = roots.gain;
     match roots.integrators {

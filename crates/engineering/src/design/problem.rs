@@ -1,4 +1,4 @@
-//! From a project to the problem of a design.
+//! Problem of a design, from a project.
 
 use phea_dynamics::controller::Element;
 use phea_dynamics::linear::LinearError;
@@ -15,14 +15,14 @@ use crate::setup::Setup;
 use crate::setup::{ControlError, LawPlace, element};
 use crate::side_by_side::all_cores;
 
-/// How far corner frequencies may lie below and above the design frequencies.
+/// Range of corner frequencies below and above the design frequencies.
 const FREQUENCY_FACTORS: [f64; 2] = [0.1, 100.0];
-/// Factor by which a further pole must lower what the command takes from the noise: 6 dB.
+/// Factor by which a further pole must reduce the noise in the command: 6 dB.
 const EARNED_PER_POLE: f64 = 2.0;
 /// Damping ratios of a pair for which the project states none.
 const DAMPING_RATIOS: [f64; 2] = [0.1, 5.0];
 
-/// Which specifications which plants must satisfy, in which loop.
+/// Problem of a design: specifications, plants and loop.
 pub fn design_problem(setup: &Setup<'_>, given: &RobustProblem) -> DesignProblem {
     DesignProblem {
         family: given.family.clone(),
@@ -38,7 +38,7 @@ pub fn design_problem(setup: &Setup<'_>, given: &RobustProblem) -> DesignProblem
     }
 }
 
-/// How a design is made: by `[design]`, or its defaults; `seed` in place of the project's.
+/// Options of a design: from `[design]`, or the defaults; `seed` replaces that of the project.
 ///
 /// # Errors
 /// [`DesignError`] for a prefilter that is not a transfer function, or a nominal plant that
@@ -77,7 +77,7 @@ pub fn design_options(
     })
 }
 
-/// The gain that a further pole must bring, dB.
+/// Gain that a further pole must bring, dB.
 fn earned_per_pole_db(design: &DeclaredDesign) -> f64 {
     20.0 * portable::log10(design.earned_per_pole.unwrap_or(EARNED_PER_POLE))
 }
@@ -86,8 +86,8 @@ fn count(number: u32) -> usize {
     usize::try_from(number).unwrap_or(usize::MAX)
 }
 
-/// A prefilter is designed for tracking only, and never in place of one that is given next to a
-/// controller without a transfer function.
+/// Choice of the prefilter: one is designed for tracking only, and never in place of one that is
+/// given together with a controller without a transfer function.
 fn prefilter_choice(
     setup: &Setup<'_>,
     given: &RobustProblem,
@@ -122,7 +122,7 @@ fn structure(
     Ok(Structure { sign, gain, parts })
 }
 
-/// A part that the project declares; the ranges of its free numbers are wide where it states none.
+/// A part that the project declares; the ranges of its free numbers are wide if it states none.
 fn part(declared: &StructurePart, wide: [f64; 2]) -> Result<StructureFactor, ControlError> {
     let pair = |frequency: &Option<[f64; 2]>, damping_ratio: &Option<[f64; 2]>| {
         (frequency.unwrap_or(wide), damping_ratio.unwrap_or(DAMPING_RATIOS))

@@ -1,5 +1,5 @@
-//! The proof of a design: if it refutes a specification that the search found to be met, the
-//! refuting plants are added and the design continues.
+//! Proof of a design: if it refutes a specification that the search found to be met, the refuting
+//! plants are added and the design continues.
 
 use phea_dynamics::uncertain_plant::UncertainPlant;
 use phea_dynamics::watch::Watch;
@@ -13,11 +13,11 @@ use crate::audit::try_to_prove;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 
-/// How often a design continues with plants that refute it.
+/// Largest number of continuations of a design with refuting plants.
 const REFUTATIONS_MAXIMUM: usize = 4;
 
-/// The design, and the same with its audit and the proof; `None` where nothing was found, or the
-/// watch stopped it.
+/// The design with its audit and the proof; `None` if nothing was found, or after cancellation by
+/// `watch`.
 pub(super) fn proven(
     (setup, given): (&Setup<'_>, &RobustProblem),
     mut run: DesignRun,
@@ -40,7 +40,7 @@ pub(super) fn proven(
     Ok((run, None))
 }
 
-/// The plants that refute a specification that the search found to be met.
+/// Plants that refute a specification that the search found to be met.
 fn refuting(designed: &AuditedController) -> Vec<UncertainPlant> {
     let Family::Uncertain(family) = &designed.problem.family else { return vec![] };
     let proofs = designed.view.proof.iter().flat_map(|proof| &proof.specifications);

@@ -1,13 +1,13 @@
-//! What relaxing a limit of a design would buy: the last search, continued from the controller that
-//! it found, with nothing but that limit wider by a tenth.
+//! Gain from relaxing a limit of a design: the last search, continued from the controller that it
+//! found, with only that limit wider by a tenth.
 //!
 //! ```text
-//! gained = f(limits) - f(limits, one of them wider),      f the least objective, or less the greatest worst margin
+//! gained = f(limits) - f(limits, one of them wider),      f the least objective, or minus the greatest worst margin
 //! ```
 //!
-//! It is the value of a search and not a slope, so that it includes the limits that bind in place
-//! of the one that gives way. Structure, plants and frequencies are those of the design; the
-//! result is not audited.
+//! The gain is the value of a search and not a slope, so that it includes the limits that bind in
+//! place of the relaxed one. Structure, plants and frequencies are those of the design; the result
+//! is not audited.
 
 use phea_dynamics::watch::{Watch, part};
 use phea_qft::closed_loop::Compensation;
@@ -31,41 +31,40 @@ const STAGE: &str = "relaxing each limit";
 pub enum RelaxedLimit {
     /// A specification of a closed loop, by its index.
     Specification(usize),
-    /// What is required of a step, by its index among the requirements in time.
+    /// The requirement of a step, by its index among the requirements in time.
     Steps(usize),
-    /// A limit of what may be built.
+    /// A limit of a deployable controller.
     Design(DesignLimitKind),
 }
 
-/// What relaxing one limit would buy.
+/// Gain from relaxing one limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RelaxedGain {
-    /// The limit.
+    /// Relaxed limit.
     pub limit: RelaxedLimit,
-    /// dB by which the objective would be lower or, where the worst margin counts, that margin
-    /// larger.
+    /// Decrease of the objective or, if the worst margin counts, increase of that margin, dB.
     pub gained_db: f64,
-    /// dB by which the largest gain from the noise of the sensor to the command of the nominal loop
-    /// would be lower; absent where it is not known.
+    /// Decrease of the largest gain from the noise of the sensor to the command of the nominal
+    /// loop, dB; absent if it is not known.
     pub noise_gained_db: Option<f64>,
 }
 
-/// What counts in a design.
+/// Quantity by which gains of a design are measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Gained {
-    /// The objective, of a design that is met.
+    /// The objective, for a design that is met.
     #[default]
     Objective,
-    /// The worst margin, of a design for the best one, and of one that is missed.
+    /// The worst margin, for a design for the best margin, and for one that is missed.
     WorstMargin,
 }
 
-/// What relaxing the limits that bind would buy.
+/// Gains from relaxing the limits that bind.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Relaxations {
-    /// What is gained.
+    /// Quantity that is gained.
     pub of: Gained,
-    /// Each limit that binds.
+    /// Gain from each limit that binds.
     pub limits: Vec<RelaxedGain>,
 }
 
@@ -81,9 +80,9 @@ struct SearchLimits {
     structure: Structure,
     specifications: Vec<Specification>,
     delay_s: f64,
-    /// What a step may do, over what is required.
+    /// Ratio of the permitted properties of a step to the requirement.
     steps: f64,
-    /// The command that a step may take, over its limit.
+    /// Ratio of the permitted command of a step to its limit.
     command: f64,
 }
 
@@ -96,10 +95,10 @@ struct RelaxedDesign<'a> {
     delay_s: f64,
 }
 
-/// The gain from relaxing each limit that binds; none where no search ended.
+/// Gain from relaxing each limit that binds; empty if no search ended.
 ///
 /// # Errors
-/// [`DesignError`] for a loop that cannot be sampled, and by the watch.
+/// [`DesignError`] for a loop that cannot be sampled, and for cancellation by `watch`.
 pub(super) fn relaxations<'a>(
     setup: &'a Setup<'a>,
     aimed: AimedSteps<'a>,
@@ -127,7 +126,7 @@ pub(super) fn relaxations<'a>(
     let relaxed = RelaxedDesign { setup, aimed, told, search, delay_s };
     let mut limits = Vec::new();
     for limit in relaxed.binding() {
-        // a limit that does not exist once it is wider cannot be relaxed
+        // a limit that does not exist in its wider form cannot be relaxed
         let Ok(wider) = relaxed.wider(limit) else { continue };
         let mut wider = relaxed.search.with_limits(wider);
         let Some(first) = end.continued(wider.problem(), watch)? else { continue };
@@ -152,7 +151,7 @@ impl<'a> LastSearch<'a> {
         }
     }
 
-    /// Its samples.
+    /// Shaping of the search, with its samples.
     fn shaping(&mut self) -> &mut Shaping {
         match self {
             LastSearch::OverFrequency(shaping) => shaping.as_mut(),
@@ -175,7 +174,7 @@ impl<'a> LastSearch<'a> {
 }
 
 impl RelaxedDesign<'_> {
-    /// The largest gain of the nominal loop from the noise of the sensor to the command, dB.
+    /// Largest gain of the nominal loop from the noise of the sensor to the command, dB.
     fn noise_gain_db(&self, x: &[f64]) -> Option<f64> {
         let shaping = match &self.search {
             LastSearch::OverFrequency(shaping) => shaping,
@@ -187,8 +186,8 @@ impl RelaxedDesign<'_> {
         noise_gain_around(&around, &shaping.samples().frequencies_rad_per_s())
     }
 
-    /// The limits that bind: those within [`BINDING_DB`] of the loop or in conflict, ends of ranges
-    /// that a free number reaches, and of a design that was led by its steps their requirement.
+    /// Limits that bind: those within [`BINDING_DB`] of the loop or in conflict, ends of ranges
+    /// that a free number reaches, and, for a design led by its steps, their requirement.
     fn binding(&self) -> Vec<RelaxedLimit> {
         let own = self.told.designed.problem.specifications.len();
         let touched = self.told.touched();
@@ -204,32 +203,32 @@ impl RelaxedDesign<'_> {
             .collect()
     }
 
-    /// True where the search was led by its steps, or its limits on the way to them bind.
+    /// True if the search was led by its steps, or the limits on the path to them bind.
     fn leads_to_steps(&self) -> bool {
         matches!(self.search, LastSearch::BySteps(_)) || self.touches_way()
     }
 
-    /// True where the limits of tracking on the way to a required step bind.
+    /// True if the limits of tracking on the path to a required step bind.
     fn touches_way(&self) -> bool {
         let worst = self.told.limit_finding(DesignLimitKind::RequiredStep);
         worst.and_then(|found| found.worst.as_ref()).is_some_and(|worst| worst.margin_db < BINDING_DB)
     }
 
-    /// True where a limit binds and this search can relax it: the command of steps is no limit of
-    /// one over frequency.
+    /// True if a limit binds and this search can relax it: the command of steps is no limit of a
+    /// search over frequency.
     fn is_relaxed(&self, limit: &DesignLimit) -> bool {
         let is_searched =
             limit.kind != DesignLimitKind::CommandOfSteps || matches!(self.search, LastSearch::BySteps(_));
         is_searched && self.told.binds(limit) == Some(true)
     }
 
-    /// The index of a limit among those that are specifications.
+    /// Index of a limit among those that are specifications.
     fn index(&self, kind: DesignLimitKind) -> Option<usize> {
         self.told.limit_findings.iter().position(|(known, _)| *known == kind)
     }
 
-    /// The specifications that the search was made for, where this is given, and the prefilter may
-    /// have this many times its gain.
+    /// Specifications for which the search was made, with this permitted multiple of the prefilter
+    /// gain.
     fn specifications(
         &self,
         given: RobustProblem,
@@ -242,7 +241,7 @@ impl RelaxedDesign<'_> {
         })
     }
 
-    /// The limits of the search with one of them wider.
+    /// Limits of the search with one of them wider.
     fn wider(&self, limit: RelaxedLimit) -> Result<SearchLimits, DesignError> {
         let mut given = self.aimed.given.clone();
         let (mut steps, mut command, mut gain, mut delay_s) = (1.0, 1.0, 1.0, self.delay_s);

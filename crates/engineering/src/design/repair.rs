@@ -1,10 +1,10 @@
-//! What follows if the machine contradicts a design: the contradicting plant is added and the
-//! design continues with it, or the report states what cannot be achieved.
+//! Reaction to a machine that contradicts a design: the contradicting plant is added and the design
+//! continues with it, or the report states what cannot be achieved.
 //!
 //! ```text
-//! trial contradicts -> the plant of that machine, its lines in motion -> audit of the loop with it
-//!   not met  -> qft::design_again    -> met: tried on the machine anew      not met: how near, and what would help
-//!   met      -> no linear plant does what the machine does: what the run met
+//! trial contradicts -> the plant of that machine, with waves in its lines -> audit of the loop with it
+//!   not met  -> qft::design_again    -> met: simulated on the machine again      not met: distance, and remedies
+//!   met      -> no linear plant reproduces the machine's behaviour: limits that the run met
 //! ```
 
 use phea_dynamics::uncertain_plant::UncertainPlant;
@@ -24,60 +24,59 @@ use crate::source::Source;
 use crate::trial::{self, Agreement, StepSize, TrialMachine, TrialRun, waves_alone};
 use phea_dynamics::watch::{Stopped, Watch, part};
 
-/// What became of it.
+/// Result of a repair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RepairStatus {
     /// The controller now satisfies every specification over the family, and with the added plant.
     Met,
-    /// None of the controllers that were tried does; one does if every limit is relaxed by this
+    /// None of the designed controllers satisfies them; one does if every limit is relaxed by this
     /// much.
     Infeasible {
-        /// dB by which every upper limit is raised and every lower one lowered.
+        /// Amount by which every upper limit is raised and every lower one reduced, dB.
         relaxation_db: f64,
     },
-    /// Search and audit did not come to agree.
+    /// Search and audit did not converge.
     NotConverged,
-    /// None of the controllers that were tried makes every plant stable.
+    /// None of the designed controllers makes every plant stable.
     NotStabilised,
-    /// Whoever watched stopped it.
+    /// The progress callback cancelled the repair.
     Stopped,
-    /// No linear plant is known that behaves like the machine: there was nothing to add.
+    /// No linear plant reproduces the machine's behaviour, so none could be added.
     NothingToTakeIn,
 }
 
-/// What was done about a machine that contradicts the design.
+/// Repair of a design that the machine contradicts.
 #[derive(Clone, Debug)]
 pub struct Repair {
-    /// What became of it.
+    /// Result of the repair.
     pub status: RepairStatus,
-    /// The name of the run of the machine whose plant was added; `None` if none was.
+    /// Run of the machine whose plant was added; `None` if none was added.
     pub taken_in: Option<(TrialMachine, StepSize)>,
-    /// Where the slower line of that machine is a quarter of a wave long, rad/s.
+    /// Quarter-wave frequency of the slower line of that machine, rad/s.
     pub quarter_wave_rad_per_s: Option<f64>,
-    /// That plant in the loop of the first design.
+    /// Audit of that plant in the loop of the first design.
     pub before: Option<ProjectAudit>,
-    /// The same in the loop that was found; `None` if none was found.
+    /// Audit of that plant in the loop that was found; `None` if none was found.
     pub after: Option<ProjectAudit>,
-    /// The loop that was found, with waves in every plant of the family; `None` if none was found,
-    /// or if this is unknown.
+    /// Audit of the loop that was found, with waves in every plant of the family; `None` if no loop
+    /// was found, or if this is unknown.
     pub whole: Option<ProjectAudit>,
-    /// Where it is met, the first design; otherwise the controller that comes nearest, where there
-    /// is one.
+    /// The first design, if the repair is met; otherwise the nearest controller, if there is one.
     pub other: Option<Box<ProjectDesign>>,
-    /// Error of the family with waves in its lines, whose plant was to be added; `None` where that
+    /// Error of the family with waves in its lines, whose plant was to be added; `None` if that
     /// family exists, or was not needed.
     pub no_family: Option<ProjectFamilyError>,
-    /// Changes of the project that may let a controller satisfy every specification with waves;
-    /// empty where one does, or none was found.
+    /// Changes of the project that may make every specification with waves satisfiable; empty if a
+    /// controller satisfies them, or no change was found.
     pub remedies: Vec<RepairRemedy>,
 }
 
-/// A change of the project that may let a controller satisfy every specification with waves.
+/// A change of the project that may make every specification with waves satisfiable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RepairRemedy {
     /// A line whose quarter wave is beyond the last frequency at which |L| = 1.
     ShorterLine {
-        /// Its greatest length, m.
+        /// Greatest length, m.
         below_m: f64,
     },
     /// Known damping of the waves by the wall of a hose.
@@ -89,7 +88,7 @@ pub enum RepairRemedy {
     },
     /// Specifications that require less bandwidth.
     LessBandwidth {
-        /// Relaxation of all limits that suffices, where one is known, dB.
+        /// Sufficient relaxation of all limits, dB, if it is known.
         relaxation_db: Option<f64>,
     },
 }
@@ -109,13 +108,13 @@ impl Repair {
         }
     }
 
-    /// The controller that comes nearest to what cannot be achieved.
+    /// Controller nearest to the requirement that cannot be achieved.
     pub fn nearest(&self) -> Option<&ProjectDesign> {
         self.other.as_deref().filter(|_| self.status != RepairStatus::Met)
     }
 }
 
-/// The current stage, for the watch.
+/// Name of the stage in progress reports.
 const STAGE: &str = "designing again";
 
 /// The design after the correction by the machine; unchanged if the machine does not contradict it.
@@ -234,7 +233,7 @@ fn remedies(
 }
 
 impl ProjectDesign {
-    /// The run with waves in its lines, where that contradicts the design.
+    /// The run with waves in its lines, if it contradicts the design.
     pub fn contradicting_waves(&self) -> Option<&TrialRun> {
         let mut runs = self.trial.iter().flat_map(|trial| &trial.runs);
         runs.find(|run| run.agreement == Agreement::Contradicts && run.quarter_wave_rad_per_s.is_some())
@@ -254,7 +253,7 @@ fn alone_in_loop(plant: &UncertainPlant, design: &ProjectDesign) -> RobustProble
 }
 
 /// The loop of a design with waves in every plant of its family, one of which was added; `None`
-/// where there is no such family.
+/// without such a family.
 fn family_with_waves(
     (source, setup): (&dyn Source, &Setup<'_>),
     found: &ProjectDesign,
@@ -273,7 +272,7 @@ fn family_with_waves(
     Ok(Some(audit_problem(&problem, watch)?))
 }
 
-/// The design continued with the additional plant and tried on the machine; `None` where no
+/// The design continued with the additional plant and simulated on the machine; `None` if no
 /// controller was found.
 fn designed_again(
     (source, setup): (&dyn Source, &Setup<'_>),

@@ -1,4 +1,4 @@
-//! The effect of the converters of the controller's computer on its loop.
+//! Effect of the converters of the controller's computer on its loop.
 
 use phea_dynamics::linear::LinearError;
 use phea_qft::design::quantization::{QuantizationError, RoundingEffect, RoundingEffects, rounding_effects};
@@ -8,26 +8,26 @@ use phea_qft::verification::PlantPoint;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 
-/// The effect of the converters, or why it cannot be computed.
+/// Effect of the converters, or the reason why it cannot be computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rounding {
     effects: Result<RoundingEffects, QuantizationError>,
-    /// The plants for which the effects are computed.
+    /// Plants for which the effects are computed.
     plants: Vec<PlantPoint>,
 }
 
-/// A signal of the loop that converters round or that their rounding moves.
+/// A signal of the loop that converters round or that their rounding affects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RoundedSignal {
-    /// The command of the controller.
+    /// Command of the controller.
     Command,
-    /// The measurement of the force.
+    /// Measurement of the force.
     Measurement,
-    /// The force.
+    /// Force.
     Output,
 }
 
-/// `None` where no converter rounds.
+/// Effect of rounding; `None` if no converter rounds.
 pub(super) fn rounding(setup: &Setup<'_>, problem: &RobustProblem) -> Result<Option<Rounding>, LinearError> {
     let quantization = setup.quantization;
     if quantization.command.is_none() && quantization.measurement.is_none() {
@@ -42,7 +42,7 @@ pub(super) fn rounding(setup: &Setup<'_>, problem: &RobustProblem) -> Result<Opt
 }
 
 impl Rounding {
-    /// The rounded signal, the affected signal, and the effect.
+    /// Rounded signals, affected signals, and effects.
     pub fn each(&self) -> Vec<(RoundedSignal, RoundedSignal, RoundingEffect)> {
         let Ok(effects) = &self.effects else { return vec![] };
         let rows = [
@@ -53,7 +53,7 @@ impl Rounding {
         rows.into_iter().filter_map(|(of, on, effect)| Some((of, on, effect?))).collect()
     }
 
-    /// The effect of the converters, or why it cannot be computed.
+    /// Effect of the converters, or the reason why it cannot be computed.
     ///
     /// # Errors
     /// [`QuantizationError`] for plants whose loop with the converters cannot be computed.
@@ -61,7 +61,7 @@ impl Rounding {
         self.effects.as_ref()
     }
 
-    /// The plant with this index among those for which the effects are computed.
+    /// Plant with this index among those for which the effects are computed.
     pub fn plant(&self, index: usize) -> PlantPoint {
         self.plants.get(index).cloned().unwrap_or(PlantPoint::Measured(index))
     }

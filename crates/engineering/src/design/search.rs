@@ -1,5 +1,5 @@
-//! The search for a design: the limits of the project and of what may be built, aimed at what is
-//! required in time, and stricter where the steps of what was found still miss it.
+//! Search for a design: within the limits of the project and of a deployable controller, aimed at
+//! the requirements in time, and with stricter limits if the steps of the result still miss them.
 
 use std::cmp::Ordering;
 
@@ -18,8 +18,8 @@ use crate::audit::TimeFinding;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 
-/// The best design that was found for a problem with the limits of what may be built, from this aim
-/// on, and the aim that led to it.
+/// Best design that was found for a problem with the limits of a deployable controller, from this
+/// aim on, and the aim that led to it.
 pub(super) fn found(
     setup: &Setup<'_>,
     (given, mut aim, plants): (&RobustProblem, StepAim, &SteppedPlants),
@@ -30,7 +30,7 @@ pub(super) fn found(
     for repetition in 0..=REPETITIONS {
         let aimed = match aim.of(setup.project, given) {
             Ok(aimed) => aimed,
-            // limits for a stricter aim may not exist: what was found before remains
+            // limits for a stricter aim may not exist: the earlier result remains
             Err(_) if !found.is_empty() => break,
             Err(error) => return Err(error),
         };
@@ -44,11 +44,11 @@ pub(super) fn found(
                     led_by_steps(setup, (given, aim, plants), design, &mut within(&mut *watch, share));
                 found.push((aim, run, told));
             }
-            // what was found before remains
+            // the earlier result remains
             Err(error) if found.is_empty() => return Err(error),
             Err(_) => break,
         }
-        // a stricter aim seldom helps where the limits of this one are missed, and takes as long
+        // a stricter aim seldom helps if the limits of this one are missed, and takes as long
         let met =
             found.last().filter(|(.., told)| !told.is_stopped() && told.design.status == DesignStatus::Met);
         let Some((.., told)) = met else { break };
@@ -63,7 +63,7 @@ pub(super) fn found(
     Ok((aim, run, told.with_shorter(tried)))
 }
 
-/// A design whose steps miss what is required, led to it by its steps; as it is where that gains
+/// A design whose steps miss the requirement, led to it by its steps; unchanged if that gains
 /// nothing.
 fn led_by_steps(
     setup: &Setup<'_>,
@@ -83,13 +83,13 @@ fn led_by_steps(
             told.leave(DesignPart::Search);
             (run, told)
         }
-        // what was found before remains
+        // the earlier result remains
         Ok(_) | Err(_) => (run, told),
     }
 }
 
-/// The rank of a design among several, the least the best: its verdict over frequency with a
-/// prefilter that keeps its gain, then the distance of its steps from what is required.
+/// Rank of a design among several, the least the best: its verdict over frequency with a prefilter
+/// within its permitted gain, then the distance of its steps from the requirement.
 pub(super) fn rank(told: &ProjectDesign) -> (u8, f64) {
     let verdict = match told.designed.view.audit.verdict {
         Verdict::Met
@@ -99,20 +99,20 @@ pub(super) fn rank(told: &ProjectDesign) -> (u8, f64) {
         }
         Verdict::Met => 1,
         Verdict::NotProven => 2,
-        // a loop that keeps the plants stable comes nearer than any that does not
+        // a stabilising loop is nearer than any that does not stabilise the plants
         Verdict::Violated => 3 + u8::from(told.designed.view.audit.stability.verdict == Verdict::Violated),
     };
     (verdict, StepAim::AS_REQUIRED.excess(told))
 }
 
-/// The order of two designs by their rank: the lesser is nearer to what is required.
+/// Order of two designs by their rank: the lesser is nearer to the requirement.
 fn by_rank(one: &ProjectDesign, other: &ProjectDesign) -> Ordering {
     let (one, other) = (rank(one), rank(other));
     one.0.cmp(&other.0).then(one.1.total_cmp(&other.1))
 }
 
-/// A design of the problem that is aimed at, judged as the given one; plants that a design before
-/// sampled are not sampled again.
+/// A design of the aimed problem, judged as the given one; plants that an earlier design sampled
+/// are not sampled again.
 fn searched(
     setup: &Setup<'_>,
     (given, aimed): (&RobustProblem, &RobustProblem),
@@ -122,7 +122,7 @@ fn searched(
     let problem = design_problem(setup, aimed);
     let mut options = design_options(setup, aimed, seed)?;
     if let ControllerChoice::Any { from: first, .. } = &mut options.controller {
-        // what is too short for the limits before is too short for stricter ones
+        // a structure too short for the earlier limits is too short for stricter ones
         *first = before.and_then(|(_, told)| told.design.name);
     }
     let mut outcome = match before {

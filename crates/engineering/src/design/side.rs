@@ -1,4 +1,4 @@
-//! A controller with its audit and the figures that an engineer compares controllers by.
+//! A controller with its audit and the figures by which an engineer compares controllers.
 
 use phea_dynamics::controller::Controller;
 use phea_dynamics::frequency::decibels;
@@ -12,41 +12,41 @@ use crate::robust::RobustProblem;
 /// A controller with its audit.
 #[derive(Clone, Debug)]
 pub struct AuditedController {
-    /// Controller, prefilter, timing.
+    /// Controller, prefilter and timing.
     pub controller: Controller,
-    /// The family in its loop.
+    /// Family in the loop of the controller.
     pub problem: RobustProblem,
-    /// Its audit.
+    /// Audit of the loop.
     pub view: ProjectAudit,
-    /// What it is compared by.
+    /// Figures for comparison.
     pub figures: LoopFigures,
 }
 
 /// The numbers by which controllers are compared, in addition to their verdicts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopFigures {
-    /// Poles of the controller: of the continuous controller if there is one, even in a sampled
-    /// loop.
+    /// Number of poles of the controller: of the continuous controller if there is one, even in a
+    /// sampled loop.
     pub order: usize,
-    /// Poles less zeros of the same controller.
+    /// Number of poles minus number of zeros of that controller.
     pub relative_degree: i64,
-    /// lim s^r G(s) for that relative degree r, of the continuous controller if there is one; for
-    /// one in z, |G| at pi/T; dB.
+    /// High-frequency gain, dB: lim s^r G(s) for that relative degree r, of the continuous
+    /// controller if there is one; for one in z, |G| at pi/T.
     pub high_frequency_gain_db: f64,
-    /// Poles of the prefilter, likewise.
+    /// Number of poles of the prefilter, of the continuous one if there is one.
     pub prefilter_order: usize,
-    /// Margins of the nominal loop; `None` where it is not known to be stable.
+    /// Margins of the nominal loop; `None` if it is not known to be stable.
     pub nominal: Option<NominalMargins>,
-    /// The least |1 + L| of the family; `None` unless it is stable.
+    /// Least |1 + L| of the family; `None` unless it is stable.
     pub modulus_margin: Option<f64>,
-    /// The least delay that makes a plant unstable, s; `None` unless the family is stable.
+    /// Least delay that makes a plant unstable, s; `None` unless the family is stable.
     pub delay_margin_s: Option<f64>,
 }
 
 impl LoopFigures {
-    /// Highest frequency at which |L| of the nominal loop is 1, where a resonance may bring it far
-    /// beyond the crossover, rad/s; `None` where |L| does not cross 1, or the loop is not known to
-    /// be stable.
+    /// Highest frequency at which |L| of the nominal loop is 1, rad/s, which a resonance may raise
+    /// far beyond the crossover; `None` if |L| does not cross 1, or the loop is not known to be
+    /// stable.
     pub fn last_crossing_rad_per_s(&self) -> Option<f64> {
         let nominal = self.nominal.as_ref()?;
         Some(nominal.crossover_rad_per_s).filter(|crossing| *crossing > 0.0)
@@ -67,7 +67,7 @@ impl AuditedController {
         Ok(AuditedController { controller, problem, view, figures })
     }
 
-    /// Whether the controller itself is given in z.
+    /// True if the controller is given in z.
     pub fn is_in_z(&self) -> bool {
         let law = self.controller.feedback.transfer_function();
         law.is_ok_and(|law| law.domain() != TimeDomain::Continuous)

@@ -1,9 +1,9 @@
-//! The way to what is required in time: limits on tracking that lead a search there. They follow
-//! from the requirement, and are tightened where steps of the designed loop still miss it; the
-//! design is judged without them.
+//! Path to a requirement in time: limits on tracking that lead a search towards it. They follow
+//! from the requirement, and are tightened if steps of the designed loop still miss it; the design
+//! is judged without them.
 //!
 //! ```text
-//! requirement in time -> limits of tracking -> design -> steps miss it by r -> the same for a requirement stricter by r
+//! requirement in time -> limits of tracking -> design -> steps miss it by r -> repeated for a requirement stricter by r
 //! ```
 
 use phea_dynamics::frequency::logarithmic_grid;
@@ -21,57 +21,58 @@ use crate::simulate::{ReachedStep, TimeRequirement, TrackingWish};
 use crate::specification::{specification, specifications};
 use phea_dynamics::closed_loop::ClosedLoop;
 
-/// How often a design is repeated with stricter limits.
+/// Largest number of repetitions of a design with stricter limits.
 pub(super) const REPETITIONS: usize = 3;
-/// Least gain of a prefilter that a loop is led to.
+/// Least gain of a prefilter towards which a loop is led.
 const LEAST_PREFILTER_GAIN: f64 = 1.05;
-/// A response counts as slow where its lower limit is at least this.
+/// Least lower limit of a response that counts as slow.
 const SLOW: f64 = 0.9;
-/// Points of a grid over the frequencies of a limit.
+/// Number of points of a grid over the frequencies of a limit.
 const POINTS: usize = 100;
-/// Room that is left where a limit is tightened.
+/// Room that is left in a tightened limit.
 const ROOM: f64 = 0.97;
-/// Least share of a requirement that is aimed at.
+/// Least fraction of a requirement that is aimed at.
 const LEAST_SHARE: f64 = 0.2;
-/// Settling time of the upper limit over that of the lower one, and zero and pole times it.
+/// Settling time of the upper limit divided by that of the lower one, and zero and pole multiplied
+/// by it.
 const UPPER_SHARE: f64 = 0.4;
 const EXTRA_ROOT: f64 = 15.0;
-/// Least decay of zero and pole within the settling time, over that which a band requires.
+/// Least decay of zero and pole within the settling time, divided by the decay that a band
+/// requires.
 const EXTRA_DECAY: f64 = 2.0;
 /// Least overshoot of an upper limit, percent.
 const LEAST_OVERSHOOT_PERCENT: f64 = 0.1;
-/// Design frequencies times the settling time; the last is the end of the band.
+/// Design frequencies multiplied by the settling time; the last is the end of the band.
 const FREQUENCIES: [f64; 6] = [0.025, 0.25, 1.25, 2.5, 5.0, 12.5];
 
-/// Shares of what is required that a search aims at.
+/// Fractions of the requirements at which a search aims.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct StepAim {
     overshoot: f64,
     settling: f64,
-    /// Largest gain of a prefilter that the loop must do with.
+    /// Largest permitted gain of a prefilter of the loop.
     prefilter_gain: Option<f64>,
 }
 
 impl StepAim {
-    /// At what is required itself.
+    /// The aim at exactly the requirement.
     pub(super) const AS_REQUIRED: StepAim = StepAim { overshoot: 1.0, settling: 1.0, prefilter_gain: None };
 
-    /// The aim of the first search: at what is required itself. Where nothing but a step leads the
-    /// search, by a loop that does with the prefilter that may be built: a loop with no gain has
-    /// the spread of its plants at every frequency, and no neighbour of it is nearer to the limits
-    /// on the way to the step.
+    /// Aim of the first search: exactly the requirement. If only a step leads the search, it aims
+    /// at a loop with a deployable prefilter: a loop without gain has the spread of its plants at
+    /// every frequency, and no neighbour of it is nearer to the limits on the path to the step.
     pub(super) fn first(setup: &Setup<'_>, given: &RobustProblem) -> StepAim {
         let prefilter_gain = required_step(given)
             .and(limit_value(&design_limits(setup, given), DesignLimitKind::PrefilterGain));
         StepAim { prefilter_gain, ..StepAim::AS_REQUIRED }
     }
 
-    /// The same with a larger gain of the prefilter that the loop must do with.
+    /// The aim with a larger permitted gain of the prefilter.
     pub(super) fn with_prefilter_gain(self, factor: f64) -> StepAim {
         StepAim { prefilter_gain: self.prefilter_gain.map(|gain| factor * gain), ..self }
     }
 
-    /// The share of what is required that is aimed at.
+    /// Requirement in time at which the search aims, from the stated one.
     pub(super) fn wish(self, required: TrackingWish) -> TrackingWish {
         TrackingWish {
             overshoot_percent: required.overshoot_percent.map(|most| most * self.overshoot),
@@ -81,7 +82,7 @@ impl StepAim {
         }
     }
 
-    /// How far the steps of a design are from it: the largest ratio, at most 1 where all are within
+    /// Largest ratio of a property of the steps of a design to the aim: at most 1 if all are within
     /// it.
     pub(super) fn excess(self, told: &ProjectDesign) -> f64 {
         let required = told.designed.view.in_time.iter().filter(|finding| finding.requirement.follows);
@@ -93,9 +94,9 @@ impl StepAim {
         required.map(ratio).fold(command, f64::max)
     }
 
-    /// Stricter by what a design lacks: a loop that does by itself what its prefilter exaggerates,
-    /// and steps that miss a requirement; `None` where it lacks nothing, or where nothing is gained
-    /// by aiming lower still.
+    /// Aim made stricter by the deficits of a design: a loop that does without its prefilter what
+    /// the prefilter exaggerates, and steps that miss a requirement; `None` without deficits, or if
+    /// a stricter aim gains nothing.
     pub(super) fn stricter(self, told: &ProjectDesign) -> Option<StepAim> {
         let Some([most, largest]) = told.exceeded_prefilter_gain() else {
             return self.stricter_steps(told);
@@ -105,14 +106,14 @@ impl StepAim {
         (aim != self).then_some(aim)
     }
 
-    /// Stricter by as much as the steps of a design miss a requirement; `None` where they miss
-    /// none, or where nothing is gained by aiming lower still.
+    /// Aim made stricter by as much as the steps of a design miss a requirement; `None` if they
+    /// miss none, or if a stricter aim gains nothing.
     fn stricter_steps(self, told: &ProjectDesign) -> Option<StepAim> {
         let missed = told.designed.view.in_time.iter().find(|finding| finding.violates())?;
         self.stricter_by(&missed.requirement.wish, &missed.reached()?)
     }
 
-    /// The same by as much as these steps miss a requirement.
+    /// Aim made stricter by as much as these steps miss a requirement.
     pub(super) fn stricter_by(self, wish: &TrackingWish, reached: &ReachedStep) -> Option<StepAim> {
         let over = |value: f64, most: Option<f64>| {
             let ratio = value / most?.max(LEAST_OVERSHOOT_PERCENT);
@@ -137,8 +138,9 @@ impl StepAim {
         (aim != self).then_some(aim)
     }
 
-    /// The problem that is searched with this aim: its limits of tracking that follow from a
-    /// requirement for a stricter one, and where only a step is required, limits that lead there.
+    /// Problem that is searched with this aim: limits of tracking that follow from a requirement
+    /// are replaced by those of a stricter one; if only a step is required, limits that lead to it
+    /// are added.
     ///
     /// # Errors
     /// [`DesignError`] for a requirement without limits.
@@ -191,7 +193,7 @@ impl StepAim {
             settling_band_percent: Some(wish.band_percent),
             ..ResponseWish::default()
         };
-        // a pole alone settles at p t = ln(100/band)
+        // one pole settles at p t = ln(100/band)
         let decay = EXTRA_DECAY * portable::ln(100.0 / wish.band_percent);
         let root = Some(EXTRA_ROOT.max(decay) / wish.horizon_s);
         let overshoot_percent = self.overshoot * wish.overshoot_percent.unwrap_or(wish.band_percent);
@@ -212,8 +214,8 @@ impl StepAim {
     }
 }
 
-/// The required step that a search is led to by limits on tracking of its own; `None` where
-/// specifications limit tracking, or none is required.
+/// The required step towards which separate limits on tracking lead a search; `None` if
+/// specifications limit tracking, or no step is required.
 fn required_step(given: &RobustProblem) -> Option<&TimeRequirement> {
     let tracks = |one: &Specification| one.requirement.is_tracking();
     let required = given.in_time.iter().find(|one| one.limits.is_none());
@@ -221,13 +223,14 @@ fn required_step(given: &RobustProblem) -> Option<&TimeRequirement> {
 }
 
 /// A limit that leads to a loop whose prefilter needs no larger gain, from the first limit on
-/// tracking; `None` where there is none.
+/// tracking; `None` if there is none.
 ///
 /// ```text
-/// |F| <= gain,   |F T| >= lower          ask for  |T| >= lower/gain,   which follows from  |1 - T| = |S| <= 1 - lower/gain
+/// |F| <= gain,   |F T| >= lower          require  |T| >= lower/gain,   which follows from  |1 - T| = |S| <= 1 - lower/gain
 /// ```
 ///
-/// It is asked for where the lower limit is at least 0.9, and less than 0.9 nowhere below.
+/// The limit is required where the lower limit is at least 0.9, and nowhere less than 0.9 at lower
+/// frequencies.
 fn without_prefilter(specifications: &[Specification], gain: f64) -> Option<Specification> {
     let tracking = specifications.iter().find(|one| one.requirement.is_tracking())?;
     let lower = tracking.requirement.limits().0?;

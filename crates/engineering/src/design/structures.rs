@@ -1,4 +1,4 @@
-//! The structures that were tried, with what each reaches.
+//! Structures of a search, with the results of each.
 
 use phea_dynamics::controller::Controller;
 use phea_dynamics::frequency::decibels;
@@ -17,46 +17,46 @@ use crate::project::{STRUCTURES, StructureChoice, word_of};
 use crate::robust::RobustProblem;
 use crate::simulate::ReachedStep;
 
-/// A structure with what it reaches.
+/// A structure with its results.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReachedStructure {
-    /// Its name; `None` for one of growing order or a given one.
+    /// Name; `None` for a structure of growing order or a given one.
     pub name: Option<NamedStructure>,
-    /// The parts of a law that was found for a PID, where its T_d would not be positive.
+    /// Parts of a law that was found for a PID, if its T_d would not be positive.
     pub no_pid: Option<ManualLaw>,
-    /// Its factors.
+    /// Factors of the structure.
     pub structure: Structure,
     /// Number of poles.
     pub order: usize,
-    /// How its trial ended.
+    /// End of its search.
     pub ending: StructureEnding,
-    /// Whether the design has it.
+    /// True if the design has this structure.
     pub is_chosen: bool,
-    /// The least margin, to the limits that were searched with, of the plants and frequencies that
-    /// were searched with; absent where no controller makes them stable.
+    /// Least margin to the limits of the search at its plants and frequencies; absent if no
+    /// controller makes the plants stable.
     pub least: Option<SpecificationMargin>,
-    /// The limit of that margin, where it leaves the loop no room.
+    /// Limit of that margin, if it leaves the loop no room.
     pub binding: Option<SearchedLimit>,
-    /// The lowest frequency that a zero was looked for at, where one ended there, rad/s.
+    /// Lowest frequency at which a zero was searched, rad/s, if a zero ended there.
     pub slowest_zero_rad_per_s: Option<f64>,
     /// Margins of the nominal loop.
     pub nominal: Option<NominalMargins>,
-    /// lim s^r G(s) for the relative degree r, dB.
+    /// High-frequency gain lim s^r G(s) for the relative degree r, dB.
     pub high_frequency_gain_db: Option<f64>,
-    /// Poles less zeros.
+    /// Number of poles minus number of zeros.
     pub relative_degree: i32,
-    /// By which it is compared with others, dB, the less the better: the largest gain from the
+    /// Quantity by which structures are compared, dB, smaller is better: the largest gain from the
     /// noise of the sensor to the command of the nominal loop, or the objective.
     pub compared_db: Option<f64>,
-    /// The worst linear steps of the family where a step is required, of the design those of its
-    /// audit, of others those of members spread over the family; absent where no prefilter was
-    /// fitted.
+    /// Worst linear steps of the family, if a step is required: for the design those of its audit,
+    /// for others those of members spread over the family; absent if no prefilter was fitted.
     pub steps: Option<ReachedStep>,
-    /// True where it was tried on the nonlinear rig, and a run misses what is required in time.
+    /// True if the structure was simulated on the nonlinear rig, and a run misses a requirement in
+    /// time.
     pub misses_on_rig: bool,
 }
 
-/// The word of a structure in a project; empty for one without a name.
+/// Word of a structure in a project; empty for one without a name.
 pub fn structure_key(name: Option<NamedStructure>) -> &'static str {
     name.map_or("", |name| word_of(&STRUCTURES, &StructureChoice::Named(name)))
 }
@@ -67,8 +67,8 @@ pub(super) fn reached(run: &DesignRun, told: &ProjectDesign) -> Result<Vec<Reach
     Ok(each.collect::<Result<Vec<ReachedStructure>, LinearError>>()?)
 }
 
-/// The structures of a design before, with what its own reaches since it was led by its steps;
-/// `least` is the least margin of its samples.
+/// Structures of an earlier design, with the results of its structure since it was led by its
+/// steps; `least` is the least margin of its samples.
 pub(super) fn led(
     run: &DesignRun,
     before: &ProjectDesign,
@@ -162,15 +162,15 @@ fn reached_by(
     })
 }
 
-/// The parts of a law that is no PID of positive terms, such as a PI with a lag; `None` for one
-/// that is.
+/// Parts of a law that is not a PID of positive terms, such as a PI with a lag; `None` for one that
+/// is.
 fn no_pid(law: &Controller) -> Option<ManualLaw> {
     let law = ManualLaw::new(&law.feedback, Some(NamedStructure::Pid)).ok()?;
     let is_pid = |part: &ManualPart| matches!(part, ManualPart::ProportionalIntegralDerivative { .. });
     (!law.parts.iter().any(is_pid)).then_some(law)
 }
 
-/// The least margin that the audit of a design found to anything that it is judged by.
+/// Least margin to any limit by which a design is judged, found by its audit.
 fn audited_least(told: &ProjectDesign) -> Option<SpecificationMargin> {
     let of_project = told.designed.view.audit.specifications.iter().map(|finding| (true, finding));
     let of_design = told.limit_findings.iter().map(|(kind, finding)| (!kind.is_led_to(), finding));
@@ -179,8 +179,8 @@ fn audited_least(told: &ProjectDesign) -> Option<SpecificationMargin> {
     margins.min_by(|one, other| one.margin_db.total_cmp(&other.margin_db)).cloned()
 }
 
-/// The largest gain from the noise of the sensor to the command of the nominal loop, by which
-/// structures are compared for the least gain at high frequency; dB.
+/// Largest gain from the noise of the sensor to the command of the nominal loop, dB, by which
+/// structures are compared for the least gain at high frequency.
 ///
 /// ```text
 /// 20 log10 max |G/(1 + L)|         over the frequencies of the search
@@ -193,8 +193,7 @@ fn noise_gain_db(run: &DesignRun, told: &ProjectDesign) -> Option<f64> {
     noise_gain_around(&told.designed.problem, &frequencies)
 }
 
-/// True where a design lowers what it is compared by enough to be taken in place of one with fewer
-/// poles.
+/// True if a design reduces the compared quantity by enough to replace one with fewer poles.
 pub(super) fn earns_its_poles(
     run: &DesignRun,
     longer: &ProjectDesign,
@@ -210,7 +209,7 @@ pub(super) fn earns_its_poles(
     Ok(gained_db.is_some_and(|gained_db| gained_db >= earned_per_pole_db * further))
 }
 
-/// The same of the loop of a problem, over these frequencies in rad/s.
+/// Largest such gain for the loop of a problem, dB, over these frequencies, rad/s.
 pub(super) fn noise_gain_around(around: &RobustProblem, frequencies_rad_per_s: &[f64]) -> Option<f64> {
     let nominal = around.nominal().ok()??;
     let gain = |frequency: &f64| {
@@ -222,8 +221,8 @@ pub(super) fn noise_gain_around(around: &RobustProblem, frequencies_rad_per_s: &
 }
 
 impl ProjectDesign {
-    /// Takes in that a shorter structure was designed, and a run of it on the nonlinear rig misses
-    /// what is required.
+    /// Records that a shorter structure was designed, and that a run of it on the nonlinear rig
+    /// misses a requirement.
     pub(super) fn note_missed_on_rig(&mut self, shorter: &ProjectDesign) {
         let Some(own) = shorter.structures.iter().find(|one| one.is_chosen) else { return };
         let missed = ReachedStructure { is_chosen: false, misses_on_rig: true, ..own.clone() };
@@ -233,7 +232,7 @@ impl ProjectDesign {
         }
     }
 
-    /// The same with the structures that were tried for less strict limits and not again.
+    /// The design with the structures that were searched only for less strict limits.
     pub(super) fn with_shorter(mut self, tried: Vec<ReachedStructure>) -> ProjectDesign {
         let is_same = |one: &ReachedStructure, other: &ReachedStructure| one.structure == other.structure;
         let mut all: Vec<ReachedStructure> = Vec::new();

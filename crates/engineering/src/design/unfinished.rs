@@ -1,13 +1,13 @@
-//! The parts that a design lacks where the watch stopped it.
+//! Parts that a design lacks if `watch` cancelled it.
 
 use super::{DesignError, ProjectDesign};
 
-/// A part of a design, in the order in which a reader misses them.
+/// A part of a design, in the order of importance to a reader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum DesignPart {
     /// The search for a controller.
     Search,
-    /// The search for the largest command that the steps of the scenarios take.
+    /// The search for the largest command in the steps of the scenarios.
     CommandOfSteps,
     /// The trial of the designed controller on the nonlinear rig.
     Trial,
@@ -17,7 +17,7 @@ pub enum DesignPart {
     Proof,
     /// The gain from relaxing each limit that binds.
     Relaxations,
-    /// The design without samples, for comparison.
+    /// The design without sampling, for comparison.
     WithoutSamples,
     /// The audit of the controller that the project gives.
     GivenController,
@@ -43,26 +43,26 @@ impl DesignPart {
 }
 
 impl ProjectDesign {
-    /// True where the watch stopped it: then it is the best so far. A repair that was stopped
-    /// leaves the first design as it was.
+    /// True if `watch` cancelled the design: then it is the best so far. A cancelled repair leaves
+    /// the first design unchanged.
     pub fn is_stopped(&self) -> bool {
         self.unfinished.iter().any(|part| *part != DesignPart::Repair)
     }
 
-    /// Notes a part that the watch left unfinished.
+    /// Records a part that was left unfinished at cancellation.
     pub fn leave(&mut self, part: DesignPart) {
         leave(&mut self.unfinished, part);
     }
 }
 
-/// Adds a part that is not listed yet, in its place.
+/// Adds a part that is not listed yet, in its order.
 fn leave(unfinished: &mut Vec<DesignPart>, part: DesignPart) {
     unfinished.push(part);
     unfinished.sort_unstable();
     unfinished.dedup();
 }
 
-/// A result that follows a design; absent, and noted as unfinished, once the watch has stopped it,
+/// A result that follows a design; absent, and recorded as unfinished, once `watch` has cancelled,
 /// since the design remains.
 pub(super) fn unless_stopped<Found>(
     unfinished: &mut Vec<DesignPart>,
@@ -88,7 +88,7 @@ mod tests {
 
     use super::*;
 
-    /// A part that is stopped is noted, and every part behind it too without being begun; the first
+    /// A cancelled part is recorded, and so is every later part, without being begun; the first
     /// result remains.
     #[test]
     fn what_follows_a_stop_is_not_begun_and_noted() {

@@ -1,4 +1,4 @@
-//! The result of a design, by the first reason that decides it.
+//! Result of a design, by the first reason that decides it.
 
 use phea_qft::design::{ControllerChoice, DesignStatus, NamedStructure};
 use phea_qft::verification::Verdict;
@@ -10,76 +10,77 @@ use crate::robust::DEFAULT_TOLERANCE_DB;
 /// Result of a design.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DesignVerdict {
-    /// The watch stopped it: the controller is the best one until then.
+    /// `watch` cancelled the design: the controller is the best one until then.
     Stopped {
-        /// True where it satisfies every specification and keeps every limit.
+        /// True if the controller satisfies every specification and every limit.
         is_met: bool,
-        /// True where its trial on the nonlinear rig was finished.
+        /// True if its trial on the nonlinear rig was finished.
         is_driven: bool,
         /// Failure of the nonlinear rig.
         miss: Option<RigMiss>,
     },
-    /// Every specification is satisfied over the family, which lacks something that is declared.
+    /// Every specification is satisfied over the family, which lacks a declared effect.
     NotProven,
-    /// The proof refutes what the search of the audit found to be met.
+    /// The proof refutes a specification that the search of the audit found to be met.
     Refuted,
-    /// Every specification over frequency is satisfied, and linear steps miss what is required.
+    /// Every specification over frequency is satisfied, but linear steps miss a requirement.
     StepsMissed,
-    /// Every specification is satisfied, and the nonlinear rig misses what is required in time.
+    /// Every specification is satisfied, but the nonlinear rig misses a requirement in time.
     MissedOnRig(RigMiss),
-    /// Every specification is satisfied, and the prefilter amplifies by more than its limit.
+    /// Every specification is satisfied, but the prefilter amplifies by more than its limit.
     PrefilterAmplifies,
-    /// Every specification is satisfied, and steps of the scenarios take more than their limit.
+    /// Every specification is satisfied, but steps of the scenarios need more command than its
+    /// limit.
     CommandBeyondValve {
         /// Name of the scenario.
         scenario: String,
         /// Largest magnitude of the command, V.
         largest_v: f64,
-        /// Most that it may be, V.
+        /// Largest permitted magnitude, V.
         limit_v: f64,
-        /// Command that holds the force under any controller, where that is beyond the limit, V.
+        /// Command that holds the force under any controller, if it is beyond the limit, V.
         held_v: Option<f64>,
     },
-    /// Every specification is satisfied, and the loop tolerates less delay than is required.
+    /// Every specification is satisfied, but the loop tolerates less delay than is required.
     DelayNotTolerated(DelayedPaths),
-    /// Every specification is satisfied and every limit kept.
+    /// Every specification and every limit is satisfied.
     Met {
-        /// Tolerance within which alone a margin is met, where that is more than the accuracy of
+        /// Tolerance without which a margin is not met, if it is larger than the accuracy of
         /// margins, dB.
         tolerance_db: Option<f64>,
     },
-    /// No controller that was tried makes the required steps; the nearest keeps everything else.
+    /// None of the controllers makes the required steps; the nearest one satisfies everything else.
     StepsNotReached(TriedControllers),
-    /// No controller that was tried satisfies every specification.
+    /// None of the controllers satisfies every specification.
     Infeasible {
-        /// The controllers.
+        /// Controllers of the search.
         tried: TriedControllers,
-        /// dB by which every limit is wider where one does.
+        /// Amount by which every limit must be wider for one of them, dB.
         relaxation_db: f64,
     },
-    /// No audit of a controller that the search found decides it.
+    /// No audit of a controller from the search decides it.
     Undecided,
-    /// The audit still finds what the search did not evaluate.
+    /// The audit still finds deficits that the search did not evaluate.
     NotConverged {
-        /// Rounds of search and audit.
+        /// Number of rounds of search and audit.
         rounds: usize,
-        /// True where the controller satisfies every specification and keeps every limit.
+        /// True if the controller satisfies every specification and every limit.
         is_met: bool,
     },
-    /// No controller that was tried makes every plant stable.
+    /// None of the controllers makes every plant stable.
     NotStabilised(TriedControllers),
 }
 
-/// Failure of the nonlinear rig to do what is required in time.
+/// Failure of the nonlinear rig to satisfy a requirement in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RigMiss {
-    /// A run misses it.
+    /// A run misses the requirement.
     Missed,
-    /// Every run satisfies it, without room for the plants between those that were driven.
+    /// Every run satisfies the requirement, without room for the plants between the simulated ones.
     WithoutRoom,
 }
 
-/// The controllers among which a design was searched.
+/// Controllers among which a design was searched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TriedControllers {
     /// Controllers of the structure that the project gives.
@@ -103,7 +104,7 @@ impl TriedControllers {
 }
 
 impl ProjectDesign {
-    /// The result of the design.
+    /// Result of the design.
     pub fn verdict(&self) -> DesignVerdict {
         let tried = TriedControllers::of(&self.options.controller);
         match &self.design.status {
@@ -129,7 +130,7 @@ impl ProjectDesign {
         }
     }
 
-    /// The result where the search found every specification to be satisfied.
+    /// Result if the search found every specification to be satisfied.
     fn verdict_where_met(&self) -> DesignVerdict {
         let view = &self.designed.view;
         if view.verdict() == Verdict::NotProven {
@@ -159,8 +160,8 @@ impl ProjectDesign {
         }
     }
 
-    /// The tolerance, where a specification or a limit of the design is met within it alone, and it
-    /// is more than what margins are computed to; dB.
+    /// Tolerance without which a specification or a limit of the design is not met, if it is larger
+    /// than the accuracy of margins, dB.
     fn needed_tolerance_db(&self) -> Option<f64> {
         let limits = self.limit_findings.iter().filter(|(kind, _)| !kind.is_led_to()).map(|(_, found)| found);
         let all = self.designed.view.audit.specifications.iter().chain(limits);
@@ -169,7 +170,7 @@ impl ProjectDesign {
         (least < -DEFAULT_TOLERANCE_DB).then_some(self.designed.view.audit.tolerance_db)
     }
 
-    /// True where a design misses what is required in time and nothing else.
+    /// True if a design misses only a requirement in time.
     fn keeps_all_but_steps(&self) -> bool {
         let is_met = self.designed.view.audit.verdict == Verdict::Met && self.keeps_its_limits();
         is_met && self.designed.view.misses_in_time()

@@ -1,4 +1,4 @@
-//! The uncertain plant of a transfer function in s and named parameters.
+//! Uncertain plant of a transfer function in s and named parameters.
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::{

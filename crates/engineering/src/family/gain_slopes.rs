@@ -1,4 +1,4 @@
-//! How much K_qU and K_c change with numbers of the project, at its operating points.
+//! Relative change of K_qU and K_c with numbers of the project, at its operating points.
 
 use phea_dynamics::expression::Expression;
 use phea_dynamics::order::sorted_distinct;
@@ -11,14 +11,14 @@ use super::{ProjectFamilyError, uncertain};
 use crate::rig::RigError;
 use crate::setup::Setup;
 
-/// The most numbers: as many as static tests determine of a valve.
+/// Largest number of numbers: as many as static tests determine for a valve.
 const MOST: usize = STATIC_COEFFICIENTS;
 
-/// Beginning of the paths that a region of operating points ranges over.
+/// Beginning of the paths over which a region of operating points ranges.
 const OPERATING_POINT: &str = "operating_point.";
 
-/// Relative change of K_qU and of K_c for a change of each number by one, SI: a row for each of
-/// both at each operating point, which are the ends and the middle of every range of
+/// Relative change of K_qU and of K_c for a change of each number by one, SI: one row for each of
+/// the two at each operating point, which are the ends and the middle of every range of
 /// `[uncertainty]` and of `[family.operating_region]`.
 ///
 /// ```text
@@ -26,7 +26,7 @@ const OPERATING_POINT: &str = "operating_point.";
 /// ```
 ///
 /// # Errors
-/// Those of a rig that cannot be computed with or does not rest at such a point.
+/// [`ProjectFamilyError`] for a rig that cannot be computed or is not at rest at such a point.
 pub(crate) fn gain_slopes(setup: &Setup<'_>, numbers: &[&str]) -> Result<Vec<Vec<f64>>, ProjectFamilyError> {
     let project = setup.project;
     let Some(declared) = &project.actuator else { return Err(RigError::NoActuator.into()) };
@@ -71,7 +71,7 @@ pub(crate) fn gain_slopes(setup: &Setup<'_>, numbers: &[&str]) -> Result<Vec<Vec
     Ok(rows)
 }
 
-/// The ends and the middle of every range, in all combinations.
+/// Ends and middle of every range, in all combinations.
 fn combinations(points: &[UncertainParameter]) -> Vec<Vec<f64>> {
     let mut all = vec![Vec::new()];
     for UncertainParameter { nominal, minimum, maximum, .. } in points {

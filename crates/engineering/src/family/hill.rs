@@ -1,4 +1,4 @@
-//! The highest place of a result over the box of a family, from a start in it.
+//! Maximum of a result over the box of a family, from a start in it.
 
 use std::collections::BTreeMap;
 
@@ -6,48 +6,49 @@ use phea_dynamics::expression::Expression;
 use phea_dynamics::random;
 use phea_qft::family::UncertainFamily;
 
-/// First step of the search for an extreme, as a share of each range, and its least.
+/// First and least step of the search for an extreme, as fractions of each range.
 const STEPS: [f64; 2] = [0.25, 1e-5];
 /// Least distance within which the crest of a coefficient is searched for, number of points of a
 /// scan to either side, and number of ternary steps from there on.
 const NEAR: f64 = 0.02;
 const SCANNED: f64 = 8.0;
 const THIRDS: usize = 25;
-/// Between the points of a scan a crest is taken to rise by less than this times the step from the
-/// highest of them down to its lower neighbour; where it is concave, it rises by at most that step.
+/// Ratio that bounds the rise of a crest between the points of a scan: at most this times the step
+/// from the highest of them down to its lower neighbour; a concave crest rises by at most that
+/// step.
 const RISE: f64 = 4.0;
-/// Relative difference that is rounding.
+/// Relative difference that counts as rounding.
 pub(super) const SAME: f64 = 1e-9;
-/// What random draws begin with.
+/// Seed of random draws.
 pub(super) const SEED: u64 = 1;
 
-/// A result over the box, as high as it is with this sign.
+/// A result over the box, to be maximised with this sign.
 pub(super) struct Hill<'f> {
     family: &'f UncertainFamily,
     expression: &'f Expression,
     sign: f64,
-    /// The coordinate that has a crest.
+    /// Coordinate that has a crest.
     along: Option<usize>,
-    /// How much a crest may rise between the points of a scan, as [`RISE`].
+    /// Bound of the rise of a crest between the points of a scan, see [`RISE`].
     rise: f64,
 }
 
-/// What is known of each crest, by the values that decide it: those of the parameters, where the
-/// search begins, and how far it goes.
+/// Known crests by the values that determine them: those of the parameters, the start of the
+/// search, and its range.
 type Crests = BTreeMap<Vec<u64>, Crest>;
 
-/// What is known of the crest near a point.
+/// Knowledge of the crest near a point.
 #[derive(Clone, Copy)]
 enum Crest {
-    /// It is not higher than this.
+    /// Upper bound of its height.
     UpTo(f64),
-    /// It is here.
+    /// Position and height of the crest.
     At { share: f64, height: f64 },
 }
 
 impl<'f> Hill<'f> {
-    /// The hill of an expression with one result, with a crest along one coordinate, if there is
-    /// one.
+    /// The objective of an expression with one result, with a crest along one coordinate, if there
+    /// is one.
     pub(super) fn new(
         family: &'f UncertainFamily,
         expression: &'f Expression,
@@ -61,10 +62,10 @@ impl<'f> Hill<'f> {
         self.sign * self.expression.number(&self.family.values(shares))
     }
 
-    /// Steps along each coordinate, and along all of them together, while they increase the value,
-    /// with decreasing length. After each step the coordinate `along` moves to the best place
-    /// nearby: a coefficient has a crest where the spool is at null, and steps away from it
-    /// decrease the value.
+    /// Point reached by steps along each coordinate, and along all of them together, while they
+    /// increase the value, with decreasing length. After each step the coordinate `along` moves to
+    /// the best place nearby: a coefficient has a crest where the spool is at null, and steps away
+    /// from it decrease the value.
     pub(super) fn climb(&self, shares: Vec<f64>) -> Vec<f64> {
         let [mut step, least] = STEPS;
         let mut crests = Crests::new();
@@ -97,9 +98,9 @@ impl<'f> Hill<'f> {
         shares
     }
 
-    /// These shares with the coordinate `along` at the best place nearby, and the height there,
-    /// where it is more than `wanted`. Many steps end at a corner of the box, or move what the
-    /// result does not depend on: they are searched once.
+    /// The point with the coordinate `along` at the best place nearby, and the height there, if it
+    /// is more than `wanted`. Many steps end at a corner of the box, or move a coordinate on which
+    /// the result does not depend: such points are searched once.
     fn at_crest(
         &self,
         mut shares: Vec<f64>,
@@ -129,8 +130,8 @@ impl<'f> Hill<'f> {
         }
     }
 
-    /// The crest along one coordinate within a distance: by a scan, then by ternary search around
-    /// the best point of it, where that may come to more than `wanted`.
+    /// Crest along one coordinate within a distance: by a scan, then by ternary search around its
+    /// best point, if that may reach more than `wanted`.
     fn crest(&self, shares: &[f64], axis: usize, within: f64, wanted: f64) -> Crest {
         let middle = shares[axis];
         let heights = |places: &[f64]| -> Vec<f64> {
@@ -158,7 +159,7 @@ impl<'f> Hill<'f> {
                 best = (height, place);
             }
         }
-        // two places, of which one lies a step or more beyond the crest, at an end of the box too
+        // two places, one of which is a step or more beyond the crest, also at an end of the box
         let beside = [-1.0, 1.0].map(|side| match best.1 + side * spacing {
             place if (0.0..=1.0).contains(&place) => place,
             _ => best.1 - 2.0 * side * spacing,
@@ -220,8 +221,8 @@ mod tests {
         UncertainFamily::new(plant.unwrap(), (0..3).map(along).collect(), vec![], Extent::Box).unwrap()
     }
 
-    /// The crest of a random hill: where it is, how it falls to its sides, and how it rises along
-    /// itself.
+    /// The crest of a random hill: its position, its fall to both sides, and its rise along the
+    /// crest.
     ///
     /// ```text
     /// h(x, y, v) = a x + b y - f(|v - c|),     c = c_0 + c_x x + c_y y in (0, 1)
@@ -264,7 +265,7 @@ mod tests {
             })
         }
 
-        /// Its highest place is a corner of x and y, on the crest.
+        /// Height of the maximum, which is a corner of x and y, on the crest.
         fn height(&self) -> f64 {
             self.rise.iter().map(|rise| rise.max(0.0)).sum()
         }
@@ -281,7 +282,7 @@ mod tests {
             for start in [[0.5; 3], [0.1, 0.9, 0.2]] {
                 let found = pruned.climb(start.to_vec());
                 assert_eq!(found, whole.climb(start.to_vec()), "hill {number}");
-                // the steeper the sides, the lower is a place that is right to the same digits
+                // the steeper the sides, the lower is a place with equally many correct digits
                 let near = match crest.kind {
                     0 => continue,
                     1 => 1e-2 * crest.fall,

@@ -1,8 +1,8 @@
-//! The family of a rig whose lines move, or whose load velocity is fed forward with a delay: plants
-//! without polynomials over the same box.
+//! Family of a rig with waves in its lines, or with a delayed feedforward of the load velocity:
+//! plants without polynomials over the box of the lumped rig.
 //!
 //! ```text
-//! parameters -> PlantInMotion, at every point of the box -> UncertainPlant -> the members that are looked at
+//! parameters -> PlantInMotion, at every point of the box -> UncertainPlant -> the examined members
 //! ```
 
 use std::sync::Arc;
@@ -19,13 +19,13 @@ use super::visited::Visited;
 use crate::project::Project;
 use crate::setup::Setup;
 
-/// Number of members of a box that are examined, including its corners; the box between them is
+/// Largest number of examined members of a box, including its corners; the box between them is
 /// searched.
 const MEMBERS_MAXIMUM: usize = 200;
-/// Boxes with more coordinates have too many corners to examine.
+/// Largest number of coordinates of a box whose corners are examined; others have too many.
 const CORNER_COORDINATES: usize = 6;
 
-/// The family without polynomials; `None` if its plants have polynomials.
+/// Family without polynomials; `None` if its plants have polynomials.
 pub(super) fn family(
     setup: &Setup<'_>,
     lumped: &UncertainFamily,
@@ -64,15 +64,15 @@ impl Moving {
 }
 
 impl RespondingPlants for Moving {
-    /// There is no plant where a model cannot describe a line, or where something would supply
-    /// energy, so that the number of unstable poles is not known.
+    /// Plant at these values; `None` if a model cannot describe a line, or if an element would
+    /// supply energy, so that the number of unstable poles is not known.
     fn at(&self, values: &[f64]) -> Option<Arc<dyn RespondingPlant>> {
         let plant = self.plant(values).ok()??;
         plant.is_passive().then(|| Arc::new(plant) as Arc<dyn RespondingPlant>)
     }
 }
 
-/// The corners of a box if there are few: every audit examines them.
+/// Corners of a box if there are few: every audit examines them.
 fn corners(lumped: &UncertainFamily) -> Result<Vec<Vec<f64>>, ProjectFamilyError> {
     let few = (1..=CORNER_COORDINATES).contains(&lumped.coordinates().len());
     Ok(match lumped.extent() {
@@ -81,8 +81,8 @@ fn corners(lumped: &UncertainFamily) -> Result<Vec<Vec<f64>>, ProjectFamilyError
     })
 }
 
-/// The nominal plant, and as many of the others as are examined in addition to the corners, spread
-/// over all.
+/// Nominal plant, and as many of the others as are examined in addition to the corners, spread over
+/// all.
 fn members(lumped: &UncertainFamily, corners: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let all = lumped.members();
     if lumped.extent() == Extent::Members {

@@ -1,14 +1,14 @@
-//! Plants of a box on both sides of where its equations choose otherwise: gas that is shut off, a
-//! wall that is touched, a relief valve that closes.
+//! Plants of a box on both sides of a switch in its equations: gas that is shut off, a wall that is
+//! touched, a relief valve that closes.
 //!
 //! ```text
-//! choice:     y < z,     |y|               g = y - z,     g = y               a jump where g changes its sign
+//! choice:     y < z,     |y|               g = y - z,     g = y               a jump if g changes its sign
 //! ```
 //!
 //! The equations never branch on a value, so that every choice is an operation of the recorded
-//! plant, with spool and pressures for inputs. The plants next to a jump are members of the family,
-//! from which every search inside the box starts: between the corners nothing points to them. Null
-//! of the spool is that of [`super::null_crossing`].
+//! plant, with spool and pressures as inputs. The plants next to a jump are members of the family,
+//! from which every search inside the box starts: between the corners nothing indicates them. For
+//! the null of the spool see [`super::null_crossing`].
 
 use phea_dynamics::expression::{Binary, Expression, Node, Unary};
 use phea_hydraulics::operating_point::Settled;
@@ -19,32 +19,33 @@ use super::hydraulic::Open;
 use super::visited::{Visited, lines};
 use crate::project::Project;
 
-/// Boxes with more coordinates are searched from their nominal plant only.
+/// Largest number of coordinates of a box that is searched from its corners too; others are
+/// searched from their nominal plant only.
 const CORNER_COORDINATES: usize = 5;
-/// Points along a line between which signs are compared.
+/// Number of points along a line between which signs are compared.
 const ALONG: usize = 6;
-/// Halvings that find a change of sign.
+/// Number of bisections to find a change of sign.
 const HALVINGS: usize = 34;
 /// Largest number of jumps that become members, of two plants each.
 const JUMPS: usize = 32;
-/// Relative change of a coefficient that is a jump.
+/// Relative change of a coefficient that counts as a jump.
 const JUMP: f64 = 1e-6;
 /// Fraction of the nominal voltage within which the spool is at null.
 const AT_NULL: f64 = 1e-6;
-/// Spool, both pressures, and that of the supply.
+/// Solved variables: spool, both pressures, and that of the supply.
 const SOLVED: [&str; 4] = ["spool", "pressure_a", "pressure_b", "supply_pressure"];
 
-/// The choices of a family's equations.
+/// Choices of a family's equations.
 struct Choices<'a> {
     visited: &'a Visited,
     open: Open<'a>,
     family: &'a UncertainFamily,
-    /// g of each, by the parameters and what is solved for.
+    /// Sign function g of each choice, in terms of the parameters and the solved variables.
     signs: Expression,
 }
 
-/// The plants on either side of each jump: on the edges of the box, and along each coordinate from
-/// the nominal plant.
+/// Plants on either side of each jump: on the edges of the box, and along each coordinate from the
+/// nominal plant.
 pub(super) fn jumps(visited: &Visited, project: &Project, family: &UncertainFamily) -> Vec<Vec<f64>> {
     let Some(declared) = &project.actuator else { return Vec::new() };
     let open = visited.open(project, declared);
@@ -60,7 +61,7 @@ pub(super) fn jumps(visited: &Visited, project: &Project, family: &UncertainFami
     found.into_iter().step_by(step).flatten().collect()
 }
 
-/// g of every choice that the plant depends on; `None` where there is none.
+/// Sign functions g of all choices on which the plant depends; `None` if there is none.
 fn signs(visited: &Visited, open: &Open<'_>, family: &UncertainFamily) -> Option<Expression> {
     let own: Vec<&str> = family.plant().parameters().iter().map(|one| one.name.as_str()).collect();
     let names: Vec<&str> = own.iter().copied().chain(SOLVED).collect();
@@ -94,7 +95,7 @@ fn signs(visited: &Visited, open: &Open<'_>, family: &UncertainFamily) -> Option
 }
 
 impl Choices<'_> {
-    /// g of every choice at a plant, and the spool there in V.
+    /// Sign functions g of all choices at a plant, and the spool there, V.
     fn at(&self, values: &[f64]) -> (Vec<f64>, f64) {
         let (supply, Settled { command, pressures: [a, b] }) = self.open.solved(values, self.visited.moved);
         let all: Vec<f64> = values.iter().copied().chain([command, a, b, supply.pressure]).collect();
@@ -137,7 +138,7 @@ impl Choices<'_> {
         found
     }
 
-    /// Whether a coefficient of the plant jumps between two plants.
+    /// True if a coefficient of the plant jumps between two plants.
     fn is_jump(&self, both: &[Vec<f64>; 2]) -> bool {
         let Some(recorded) = self.family.plant().expression() else { return false };
         let [one, other] = both.each_ref().map(|values| recorded.evaluate(values));

@@ -5,7 +5,7 @@
 //! frequency_hz, magnitude_db, phase_deg
 //! 0.5,          -12.1,        -91.2
 //! ```
-//! A row for each frequency; the unit belongs to the name of a column.
+//! Each frequency has a row; the unit belongs to the name of a column.
 
 mod column;
 mod disc;
@@ -24,7 +24,7 @@ use crate::project::{DeclaredFamily, Findings, Project};
 use crate::source::Source;
 use crate::table::{Column, MeasuredTable};
 
-/// The plants of the files, the nominal one first.
+/// Plants of the files, the nominal one first.
 pub(super) fn family(
     project: &Project,
     declared: &DeclaredFamily,
@@ -45,7 +45,7 @@ pub(super) fn family(
     Ok(MeasuredFamily::new(findings.or_refused(plants).map_err(ProjectFamilyError::Measurement)?)?)
 }
 
-/// The plant of one file; `None` if it has an error.
+/// Plant of one file; `None` if it has an error.
 fn plant(name: &str, path: &str, bytes: Vec<u8>, findings: &mut Findings) -> Option<MeasuredPlant> {
     let table = MeasuredTable::read(path, bytes, &MeasurementColumns::sought(), None, findings)?;
     let columns = MeasurementColumns::find(&table, findings)?;
@@ -96,8 +96,8 @@ fn plant(name: &str, path: &str, bytes: Vec<u8>, findings: &mut Findings) -> Opt
     (findings.error_count() == before).then_some(plant)
 }
 
-/// The response and the radii of the discs that hold it at every row at once, narrowed where it is
-/// smooth.
+/// Response, and radii of the discs that contain it simultaneously in all rows, narrowed where it
+/// is smooth.
 fn within_discs(
     frequencies: &[f64],
     response: Vec<Complex64>,
@@ -110,7 +110,7 @@ fn within_discs(
     smoothed(&discs).unwrap_or((response, radii))
 }
 
-/// Reports a problem of a value, with what is expected instead.
+/// Reports a problem of a value, with the expected value.
 fn report(
     table: &MeasuredTable,
     (row, column): (usize, &Column),
@@ -138,7 +138,7 @@ fn rising(table: &MeasuredTable, column: &Column, frequencies: &[f64], findings:
     }
 }
 
-/// A response over the rows, of its two parts.
+/// Response in all rows, from its two parts.
 fn responses(
     table: &MeasuredTable,
     form: &ResponseForm,

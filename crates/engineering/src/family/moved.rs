@@ -17,7 +17,7 @@ pub(super) struct MovedNumber {
     changes: Vec<(usize, f64)>,
 }
 
-/// What the directions of a project move, each number once; `parameters` are the uncertain ones.
+/// Numbers that the directions of a project move, each once; `parameters` are the uncertain ones.
 pub(super) fn moved(project: &Project, parameters: &[String]) -> Vec<MovedNumber> {
     let mut found: Vec<MovedNumber> = Vec::new();
     for direction in &project.directions {

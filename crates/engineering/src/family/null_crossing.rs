@@ -1,7 +1,7 @@
 //! Plants of a box next to those whose spool is at null.
 //!
 //! K_qU of unequal edges jumps there, and K_c has its least values within the few hundredths of a
-//! volt in which the edges leak: between the corners of a box nothing points to them. They are
+//! volt in which the edges leak: between the corners of a box nothing indicates them. They are
 //! members of the family, from which every search inside the box starts.
 
 use std::collections::BTreeSet;
@@ -13,17 +13,19 @@ use super::jumps::jumps;
 use super::visited::{Visited, lines};
 use crate::setup::Setup;
 
-/// Boxes with more coordinates are crossed from their nominal plant only.
+/// Largest number of coordinates of a box that is crossed from its corners too; others are crossed
+/// from their nominal plant only.
 const CORNER_COORDINATES: usize = 6;
 /// Largest number of crossings that become members.
 const CROSSINGS: usize = 64;
-/// Halvings of a coordinate: to far less than what moves a spool from null to beside it.
+/// Number of bisections of a coordinate: down to far less than the change that moves a spool away
+/// from null.
 const HALVINGS: usize = 40;
-/// Share of the nominal voltage by which a spool is beside null.
+/// Fraction of the nominal voltage by which a spool is next to null.
 const BESIDE: f64 = 1e-8;
 
-/// The family with the plants on both sides of null, where its operating points cross it: on the
-/// edges of the box, and along each coordinate from the nominal plant.
+/// The family with the plants on both sides of null, if its operating points cross it: on the edges
+/// of the box, and along each coordinate from the nominal plant.
 pub(super) fn with_crossings(
     setup: &Setup<'_>,
     family: UncertainFamily,
@@ -45,7 +47,7 @@ pub(super) fn with_crossings(
     Ok(UncertainFamily::new(family.plant().clone(), coordinates, members, Extent::Box)?)
 }
 
-/// The plants on either side of each crossing.
+/// Plants on either side of each crossing.
 fn crossings(visited: &Visited, family: &UncertainFamily) -> Vec<Vec<f64>> {
     let mut found = Vec::new();
     for axis in visited.axes(family) {
@@ -56,8 +58,8 @@ fn crossings(visited: &Visited, family: &UncertainFamily) -> Vec<Vec<f64>> {
     found.into_iter().step_by(step).flatten().collect()
 }
 
-/// The plants along one coordinate between which the spool passes through null, below and above it,
-/// a little beside: exactly there it has no side. Only one of them where the box ends at null.
+/// Plants along one coordinate between which the spool passes through null, slightly below and
+/// above it: exactly at null it has no side. Only one of them if the box ends at null.
 fn beside_null(visited: &Visited, family: &UncertainFamily, from: &[f64], axis: usize) -> Vec<Vec<f64>> {
     let beside = BESIDE * visited.rig.actuator.components().valve.nominal_voltage;
     let at = |share: f64| {

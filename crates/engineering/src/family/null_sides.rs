@@ -1,5 +1,5 @@
-//! Both sides of null as a coordinate of the family, where a spool at null opens other edges on
-//! each side.
+//! Both sides of null as a coordinate of the family, if a spool at null opens other edges on each
+//! side.
 //!
 //! ```text
 //! K_qU = (1 + n)/2 K_qU(0+) + (1 - n)/2 K_qU(0-),      n from -1 to 1
@@ -18,15 +18,15 @@ use super::visited::{Visited, within};
 use crate::project::Project;
 use crate::setup::Setup;
 
-/// Path of n.
+/// Path of the coordinate n.
 pub(super) const SIDE: &str = "operating_point.spool_side";
-/// Its range.
+/// Range of n.
 const SIDES: [f64; 2] = [-1.0, 1.0];
-/// Relative difference of coefficients that is rounding.
+/// Relative difference of coefficients that counts as rounding.
 const EQUAL: f64 = 1e-9;
 
-/// The uncertain parameters of a project, with the side of null where it changes a plant that is
-/// examined; it is nominally the mean. A side that the project states is kept.
+/// Uncertain parameters of a project, with the side of null if it changes an examined plant; it is
+/// nominally the mean. A side that the project states is retained.
 pub(super) fn parameters(setup: &Setup<'_>) -> Result<Vec<UncertainParameter>, ProjectFamilyError> {
     let project = setup.project;
     let stated = uncertain::parameters(project)?;
@@ -46,7 +46,7 @@ pub(super) fn parameters(setup: &Setup<'_>) -> Result<Vec<UncertainParameter>, P
     Ok(if jumps { parameters } else { stated })
 }
 
-/// Whether the plants of both sides of null differ at these values of the other parameters.
+/// True if the plants of both sides of null differ at these values of the other parameters.
 fn are_different(visited: &Visited, open: &Open<'_>, values: &[f64]) -> bool {
     let [below, above] = SIDES.map(|side| {
         let values: Vec<f64> = values.iter().copied().chain([side]).collect();

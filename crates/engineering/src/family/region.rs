@@ -1,4 +1,4 @@
-//! The part of an operating region that the pump can supply.
+//! Part of an operating region that the pump can supply.
 
 use phea_hydraulics::servovalve::tare_flow;
 
@@ -10,11 +10,11 @@ use crate::rig::{Numbers, components};
 /// Path of the number that a pump limits.
 const PATH: &str = "operating_point.velocity";
 
-/// The uncertain numbers, with the velocity of `[family.operating_region]` limited to what the pump
-/// can supply at the declared numbers.
+/// Uncertain numbers, with the velocity of `[family.operating_region]` limited to the range that
+/// the pump can supply at the declared numbers.
 ///
 /// ```text
-/// -(q_pump - q_tare)/A_B <= v <= (q_pump - q_tare)/A_A          the chamber that supply fills; leakage is left aside
+/// -(q_pump - q_tare)/A_B <= v <= (q_pump - q_tare)/A_A          the chamber that the supply fills; leakage is neglected
 /// ```
 ///
 /// # Errors
@@ -40,8 +40,7 @@ pub(super) fn within_reach(project: &Project) -> Result<Vec<Uncertain>, ProjectF
     Ok(numbers)
 }
 
-/// The least and the greatest velocity in m/s that the pump can supply; `None` where no flow is
-/// declared.
+/// Least and greatest velocity that the pump can supply, m/s; `None` if no flow is declared.
 pub(super) fn limits(project: &Project) -> Option<[f64; 2]> {
     let declared = project.actuator.as_ref()?;
     let components = components(declared, &Numbers::declared());

@@ -1,4 +1,4 @@
-//! Plants of a family at which the gas at a chamber is shut off.
+//! Plants of a family in which the gas at a chamber is shut off.
 
 use phea_qft::family::{Extent, UncertainFamily};
 
@@ -8,17 +8,17 @@ use super::{ProjectFamilyError, uncertain, uncertain_plant};
 use crate::quantity::Dimension;
 use crate::setup::Setup;
 
-/// The plants at which the pressure of a chamber is below the precharge of its gas: they are as
-/// stiff as without it.
+/// Plants in which the pressure of a chamber is below the precharge of its gas: they are as stiff
+/// as without it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShutGas {
-    /// How many of those that were examined: the members, and the corners of the box.
+    /// Number of such plants among those examined: the members, and the corners of the box.
     pub count: usize,
-    /// How many were examined.
+    /// Number of examined plants.
     pub examined: usize,
-    /// The chamber of the first, A or B.
+    /// Chamber of the first such plant, A or B.
     pub side: char,
-    /// The uncertain numbers of the first that are not nominal.
+    /// Uncertain numbers of the first such plant that are not nominal.
     pub at: Vec<NumberAt>,
 }
 
@@ -29,22 +29,22 @@ pub struct NumberAt {
     pub name: String,
     /// Value, SI.
     pub value: f64,
-    /// Dimension; `None` where the project has no number of this name.
+    /// Dimension; `None` if the project has no number of this name.
     pub dimension: Option<&'static Dimension>,
 }
 
 /// Largest number of uncertain numbers whose corners are all examined.
 const MOST_AXES: usize = 10;
 
-/// Where in a family the gas at a chamber is shut off; `None` where it is in use at every plant
-/// that is examined, or there is none.
+/// Plants of a family in which the gas at a chamber is shut off; `None` if it is in use in every
+/// examined plant, or if there is no gas.
 ///
 /// ```text
 /// P_A < P_0 of accumulator A,   or   P_B < P_0 of accumulator B            at the operating point of the plant
 /// ```
 ///
 /// # Errors
-/// Those of [`family`](super::family()).
+/// The errors of [`family`](super::family()).
 pub fn shut_gas(setup: &Setup<'_>) -> Result<Option<ShutGas>, ProjectFamilyError> {
     let project = setup.project;
     let Some(declared) = &project.actuator else { return Ok(None) };
@@ -70,7 +70,7 @@ pub fn shut_gas(setup: &Setup<'_>) -> Result<Option<ShutGas>, ProjectFamilyError
     Ok(Some(ShutGas { count, examined: plants.len(), side, at: at.collect() }))
 }
 
-/// The members, and the corners of a box of a few numbers.
+/// Members, and corners of a box of a few numbers.
 fn examined(family: &UncertainFamily) -> Vec<Vec<f64>> {
     let axes = family.coordinates().len();
     let corners = match family.extent() {

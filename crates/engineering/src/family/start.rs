@@ -1,11 +1,11 @@
-//! Polynomials next to the operating points of a family, from which Newton steps have their digits:
-//! halvings choose, and no polynomial follows a choice.
+//! Polynomials near the operating points of a family, from which Newton steps converge to all
+//! digits: bisections make choices, and polynomials cannot follow a choice.
 //!
 //! ```text
 //! U, p_A, p_B = c_0 + (x - x_0)(c_1 + (x - x_1)(...)),      x_k = cos((k + 1/2) pi/n),      x in [-1, 1] over a piece
 //! ```
 //!
-//! A piece of the box whose polynomials are too far off is halved. Where one number moves the spool
+//! A piece of the box whose polynomials are too inaccurate is halved. If one number moves the spool
 //! through null, a narrow piece around null separates both sides: the slopes of the edges jump
 //! there.
 
@@ -18,23 +18,23 @@ use super::hydraulic::Open;
 use super::visited::Visited;
 use crate::project::{Project, SupplyModel};
 
-/// Points of a polynomial along each number, for one, two and three numbers that move the operating
-/// point.
+/// Number of points of a polynomial along each number, for one, two and three numbers that move the
+/// operating point.
 const POINTS: [usize; 3] = [7, 5, 4];
-/// Points along each number at which it is tested.
+/// Number of points along each number at which the polynomial is tested.
 const TESTED: [usize; 3] = [41, 9, 6];
 /// Largest number of pieces.
 const PIECES_MAXIMUM: usize = 32;
 /// Largest relative error after the Newton steps.
 const EXACT: f64 = 1e-9;
-/// Half width of the piece around null, as a share of the width over which the edges leak.
+/// Half width of the piece around null, as a fraction of the width over which the edges leak.
 const AROUND_NULL: f64 = 1e-3;
-/// Halvings that find null.
+/// Number of bisections to find null.
 const HALVINGS: usize = 60;
 
 /// Starts for the balance of a family.
 pub(super) struct BalanceStart {
-    /// The numbers that move the operating point, as indices of parameters.
+    /// Numbers that move the operating point, as indices of parameters.
     movers: Vec<usize>,
     pieces: StartPieces,
 }
@@ -49,13 +49,13 @@ enum StartPieces {
 struct Polynomials {
     /// Middle and half width of the piece along each mover.
     ranges: Vec<[f64; 2]>,
-    /// Newton's divided differences, the last mover's running fastest; command, p_A, p_B.
+    /// Newton's divided differences, with the index of the last mover fastest; command, p_A, p_B.
     differences: [Vec<f64>; 3],
 }
 
 impl BalanceStart {
-    /// The starts for the operating points of a family; `None` where they need none, or where few
-    /// pieces do not suffice.
+    /// Starts for the operating points of a family; `None` if they need none, or if a few pieces do
+    /// not suffice.
     pub(super) fn of(
         visited: &Visited,
         project: &Project,
@@ -85,7 +85,7 @@ impl BalanceStart {
         Some(BalanceStart { movers, pieces })
     }
 
-    /// The start at these values of the parameters.
+    /// Start at these values of the parameters.
     pub(super) fn at<S: Scalar>(&self, values: &[S]) -> Settled<S> {
         let [command, a, b] = self.pieces.at(&self.movers, values);
         Settled { command, pressures: [a, b] }
@@ -134,7 +134,7 @@ fn nodes(movers: usize) -> Vec<f64> {
     (0..count).map(|index| portable::cos(angle(index))).collect()
 }
 
-/// What polynomials are fitted to.
+/// Functions to which polynomials are fitted.
 struct Fitted<'a> {
     visited: &'a Visited,
     open: Open<'a>,
@@ -142,7 +142,7 @@ struct Fitted<'a> {
 }
 
 impl Fitted<'_> {
-    /// The values of all parameters with the movers at these.
+    /// Values of all parameters with the movers at these places.
     fn values(&self, movers: &[usize], at: &[f64]) -> Vec<f64> {
         let mut values: Vec<f64> = self.parameters.iter().map(|one| one.nominal).collect();
         for (&index, value) in movers.iter().zip(at) {
@@ -151,7 +151,7 @@ impl Fitted<'_> {
         values
     }
 
-    /// The pieces of a box, cut at both ends of null where a single number crosses it.
+    /// Pieces of a box, cut at both ends of null if a single number crosses it.
     fn around_null(
         &self,
         movers: &[usize],
@@ -194,7 +194,7 @@ impl Fitted<'_> {
         }))
     }
 
-    /// The pieces of a box, halved along one number after the other until each has polynomials.
+    /// Pieces of a box, halved along one number after the other until each has polynomials.
     fn pieces(
         &self,
         movers: &[usize],
@@ -239,7 +239,7 @@ impl Fitted<'_> {
         Polynomials { ranges, differences }
     }
 
-    /// Whether Newton steps from the polynomials end at the solution, everywhere in their piece.
+    /// True if Newton steps from the polynomials end at the solution, everywhere in their piece.
     fn is_near(&self, movers: &[usize], box_of: &[[f64; 2]], polynomials: &Polynomials) -> bool {
         let count = TESTED[movers.len() - 1];
         let places: Vec<f64> =
@@ -262,7 +262,7 @@ impl Fitted<'_> {
     }
 }
 
-/// All points with these places along each range, the last range's running fastest.
+/// All points with these places along each range, with the index of the last range fastest.
 fn grid<'a>(ranges: &'a [[f64; 2]], places: &'a [f64]) -> impl Iterator<Item = Vec<f64>> + 'a {
     let (count, axes) = (places.len(), ranges.len());
     (0..count.pow(axes as u32)).map(move |number| {

@@ -1,4 +1,4 @@
-//! The box of a project's uncertain numbers, the coordinates that span it, and the plants that are
+//! Box of a project's uncertain numbers, the coordinates that span it, and the plants that are
 //! examined.
 
 use std::collections::BTreeSet;
@@ -11,8 +11,7 @@ use super::null_sides::on_both_sides;
 use super::region::within_reach;
 use crate::project::{Case, Project};
 
-/// The uncertain parameters: those of `[uncertainty]`, then those that only explicit cases give
-/// values to.
+/// Uncertain parameters: those of `[uncertainty]`, then those that only explicit cases set.
 ///
 /// A value of `[linear]` takes precedence over the nominal value of `[uncertainty]`, as everywhere,
 /// and this over the first case.
@@ -75,14 +74,14 @@ pub(super) fn family(
     Ok(family)
 }
 
-/// Every member once, at its first occurrence.
+/// Members without duplicates, each at its first occurrence.
 fn distinct(members: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let mut seen = BTreeSet::new();
     let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<u64>>();
     members.into_iter().filter(|values| seen.insert(bits(values))).collect()
 }
 
-/// No dead time of a member may be negative.
+/// Checks that no dead time of a member is negative.
 fn check_delay(family: &UncertainFamily) -> Result<(), ProjectFamilyError> {
     for values in family.members() {
         let Some(PlantCoefficients { dead_time_s: delay_s, .. }) = family.plant().coefficients(values) else {

@@ -1,4 +1,4 @@
-//! The operating points of a family: recorded with the numbers that determine them, checked at its
+//! Operating points of a family: recorded with the numbers that determine them, checked at its
 //! plants, and the box of linear parameters that they visit.
 
 use std::collections::BTreeSet;
@@ -23,22 +23,22 @@ use crate::setup::Setup;
 const EXACT: f64 = 1e-9;
 /// Largest number of corners of a box that are examined one by one.
 const CORNERS: usize = 4096;
-/// Points within a box at which equality of the chambers is tested.
+/// Number of points within a box at which equality of the chambers is tested.
 const WITHIN: usize = 64;
 
 /// The rig of a family with its uncertain numbers as parameters.
 #[derive(Debug)]
 pub(super) struct Visited {
     pub(super) rig: Rig,
-    /// Names of the parameters, then of what their directions move.
+    /// Names of the parameters, then of the numbers that their directions move.
     names: Vec<String>,
-    /// What directions move.
+    /// Numbers that directions move.
     by_directions: Vec<MovedNumber>,
-    /// Whether the pressures depend on an uncertain number.
+    /// True if the pressures depend on an uncertain number.
     pub(super) moved: bool,
-    /// What is equal on both sides of every plant.
+    /// Parameters that are equal on both sides in every plant.
     pub(super) equal: Equal,
-    /// The uncertain numbers on which they depend.
+    /// Uncertain numbers on which the pressures depend.
     pub(super) movers: Vec<usize>,
     /// Command and both pressures.
     pub(super) settled: Expression,
@@ -86,13 +86,13 @@ impl Visited {
         Ok(Visited { rig, names, by_directions, moved, equal, movers, settled })
     }
 
-    /// The rig with its uncertain numbers open.
+    /// The rig with its uncertain numbers as variables.
     pub(super) fn open<'a>(&'a self, project: &'a Project, declared: &'a DeclaredActuator) -> Open<'a> {
         let (names, moved) = (&self.names, &self.by_directions);
         Open { project, declared, rig: &self.rig, names, moved, start: None }
     }
 
-    /// The error at a plant; `None` if its recorded pressures are those of its operating point.
+    /// Error at a plant; `None` if its recorded pressures are those of its operating point.
     pub(super) fn problem(&self, open: &Open<'_>, values: &[f64]) -> Option<NoOperatingPoint> {
         let (position, steady, balance) = open.balance(values);
         let results = self.settled.evaluate(values);
@@ -136,7 +136,7 @@ impl Visited {
         (0..family.coordinates().len()).filter(|&axis| moves(&family.coordinates()[axis])).collect()
     }
 
-    /// The chamber, A or B, whose pressure is below the precharge of its gas at a plant.
+    /// Chamber, A or B, whose pressure is below the precharge of its gas at a plant.
     pub(super) fn shut_gas(&self, open: &Open<'_>, values: &[f64]) -> Option<char> {
         let &[_, pressure_a, pressure_b] = self.settled.evaluate(values).first_chunk()?;
         let all = open.all(values);
@@ -163,8 +163,8 @@ impl Visited {
         self.movers.iter().filter_map(|&index| self.names.get(index).cloned()).collect()
     }
 
-    /// The plants of a family, and the corners of its box, that differ in the numbers that
-    /// determine the operating point.
+    /// Plants of a family, and corners of its box, that differ in the numbers that determine the
+    /// operating point.
     fn places(&self, family: &UncertainFamily) -> Vec<Vec<f64>> {
         let axes = self.axes(family);
         let count = match family.extent() {
@@ -192,7 +192,7 @@ impl Visited {
 /// are those of its operating point.
 ///
 /// # Errors
-/// [`ProjectFamilyError::OperatingPoint`] with the first where they are not, and why.
+/// [`ProjectFamilyError::OperatingPoint`] with the first plant where they are not, and the reason.
 pub(super) fn check(setup: &Setup<'_>, family: &UncertainFamily) -> Result<(), ProjectFamilyError> {
     let project = setup.project;
     let Some(declared) = &project.actuator else { return Ok(()) };
@@ -229,8 +229,8 @@ pub(super) fn within(parameters: &[UncertainParameter]) -> Vec<Vec<f64>> {
     points
 }
 
-/// Shares of the box from which lines go along one coordinate: those of the nominal plant, and its
-/// edges, if it has no more coordinates than this.
+/// Fractions of the box from which lines extend along one coordinate: those of the nominal plant,
+/// and its edges, if it has no more coordinates than this.
 pub(super) fn lines(
     family: &UncertainFamily,
     axis: usize,

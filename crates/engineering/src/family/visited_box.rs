@@ -1,5 +1,5 @@
-//! The box of linear parameters that a family visits: a table such as Table 6.3 of the thesis
-//! states it without its origin.
+//! Box of linear parameters that a family visits, which a table such as Table 6.3 of the thesis
+//! states without its origin.
 
 use phea_dynamics::expression::Expression;
 use phea_dynamics::order::sort_by_number;
@@ -18,29 +18,29 @@ use crate::source::Memory;
 /// A parameter of the linear model over a family.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VisitedRange {
-    /// Its key in `[linear]`.
+    /// Key in `[linear]`.
     pub name: &'static str,
-    /// Its symbol, such as `K_H`.
+    /// Symbol, such as `K_H`.
     pub symbol: &'static str,
-    /// SI unit.
+    /// SI unit of the parameter.
     pub unit: &'static str,
-    /// The least it is.
+    /// Least value.
     pub minimum: Extreme,
-    /// The most it is.
+    /// Greatest value.
     pub maximum: Extreme,
 }
 
-/// A value and where it occurs.
+/// A value and the plant at which it occurs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extreme {
-    /// SI.
+    /// Value, SI.
     pub value: f64,
-    /// The uncertain numbers that the parameter follows from: name, and value in SI. A number
-    /// without influence there is left out.
+    /// Uncertain numbers from which the parameter follows: name, and value, SI. A number without
+    /// influence there is omitted.
     pub at: Vec<(String, f64)>,
 }
 
-/// Name, symbol and unit of each, in the order of the results.
+/// Name, symbol and unit of each enclosed parameter, in the order of the results.
 fn enclosed(motion: MotionKind) -> [(&'static str, &'static str, &'static str); 4] {
     let of_motion = |dimension| motion.dimension(dimension).si;
     [
@@ -50,20 +50,20 @@ fn enclosed(motion: MotionKind) -> [(&'static str, &'static str, &'static str); 
         ("viscous_friction", "f_v", of_motion(&DAMPING)),
     ]
 }
-/// What moves the spool most.
+/// Parameter with the greatest effect on the spool.
 const VELOCITY: &str = "operating_point.velocity";
-/// Plants from which the search for an extreme starts, and how many are drawn in addition to the
-/// members to choose them from.
+/// Number of plants from which the search for an extreme starts, and number of random ones in
+/// addition to the members from which they are chosen.
 const STARTS: usize = 4;
 const DRAWN: usize = 500;
 
-/// The box of K_qU, K_c, K_H and f_v that encloses the family; `None` where they depend on no
-/// number of the project.
+/// Box of K_qU, K_c, K_H and f_v that encloses the family; `None` if they depend on no number of
+/// the project.
 ///
 /// The members are evaluated first; a search inside the box starts from the most extreme of them.
 ///
 /// # Errors
-/// Those of [`family`].
+/// The errors of [`family`].
 pub fn visited_box(setup: &Setup<'_>) -> Result<Option<Vec<VisitedRange>>, ProjectFamilyError> {
     let project = setup.project;
     let Some(declared) = &project.actuator else { return Ok(None) };
@@ -113,7 +113,7 @@ pub fn visited_box(setup: &Setup<'_>) -> Result<Option<Vec<VisitedRange>>, Proje
     Ok(Some(ranges.map(|range| in_the_limit(range, stand_in_coefficient(stand_in))).collect()))
 }
 
-/// A range of K_c without what the stand-in for an ideal valve leaks, which is at most this.
+/// A range of K_c without the leakage of the substitute for an ideal valve, which is at most this.
 fn in_the_limit(range: VisitedRange, most: Option<f64>) -> VisitedRange {
     let limit = |end: Extreme| match most {
         Some(most) if range.symbol == "K_c" && end.value <= most => Extreme { value: 0.0, at: vec![] },
@@ -122,8 +122,8 @@ fn in_the_limit(range: VisitedRange, most: Option<f64>) -> VisitedRange {
     VisitedRange { minimum: limit(range.minimum), maximum: limit(range.maximum), ..range }
 }
 
-/// The most of a result over a family with sign 1, the least with sign -1; `points` are some of its
-/// plants with the result there.
+/// Greatest value of a result over a family with sign 1, least value with sign -1; `points` are
+/// some of its plants with their results.
 fn extreme<'a>(
     family: &UncertainFamily,
     expression: &Expression,
@@ -131,7 +131,7 @@ fn extreme<'a>(
     points: impl Iterator<Item = (&'a Vec<f64>, &'a f64)>,
 ) -> Extreme {
     let value = |values: &[f64]| sign * expression.number(values);
-    // among plants that differ only by rounding the first is kept, which is nearest to the nominal
+    // among plants that differ only by rounding the first is used, which is nearest to the nominal
     // one
     let unit = SAME * value(&family.plant().nominal()).abs();
     let rounded_of = |value: f64| (value / unit).round();
@@ -173,7 +173,7 @@ fn extreme<'a>(
     }
 }
 
-/// Points of the box drawn at random.
+/// Random points of the box.
 fn drawn(family: &UncertainFamily) -> Vec<Vec<f64>> {
     let mut state = random::stream(SEED, 0);
     let mut point = |_| {

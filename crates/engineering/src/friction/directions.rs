@@ -1,4 +1,4 @@
-//! Evidence for one friction in both directions, or for one in each.
+//! Evidence for one friction in both directions, or for a separate one in each.
 
 use phea_dynamics::least_squares::{Settings, negative_log_likelihood};
 use phea_dynamics::portable;
@@ -11,14 +11,14 @@ use crate::identify::DECISIVE;
 /// Model of friction in both directions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DirectionModel {
-    /// One set of levels for both directions, next to a zero error of the force.
+    /// One set of levels for both directions, with a zero error of the force.
     SameBothWays,
-    /// Coulomb, static and viscous friction of each direction, the instruments without zero error.
+    /// Coulomb, static and viscous friction of each direction, with instruments without zero error.
     DiffersByDirection,
 }
 
 impl DirectionModel {
-    /// In JSON.
+    /// Name in JSON.
     pub fn name(self) -> &'static str {
         match self {
             DirectionModel::SameBothWays => "same_both_ways",
@@ -30,17 +30,17 @@ impl DirectionModel {
 /// A model with its fit and criterion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExplainedByDirections {
-    /// Which.
+    /// Compared model.
     pub model: DirectionModel,
-    /// The friction that does it best.
+    /// Friction that explains the recordings best.
     pub lugre: LuGre,
-    /// N, zero error of the force that goes with it.
+    /// Zero error of the force for this friction, N.
     pub zero: f64,
-    /// Information criterion; the lower the better, its zero has no meaning.
+    /// Information criterion; lower is better, its zero has no meaning.
     pub criterion: f64,
 }
 
-/// Both models compared.
+/// Comparison of both models.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectionEvidence {
     /// One friction for both directions, then one for each.
@@ -48,13 +48,13 @@ pub struct DirectionEvidence {
 }
 
 impl DirectionEvidence {
-    /// By how much the criterion is lower with levels of each direction.
+    /// Reduction of the criterion by separate levels for each direction.
     pub fn difference(&self) -> f64 {
         let [same, differs] = &self.models;
         same.criterion - differs.criterion
     }
 
-    /// The model of the numbers: levels of each direction where the evidence for them is decisive.
+    /// Model for the results: levels for each direction if the evidence for them is decisive.
     pub fn chosen(&self) -> DirectionModel {
         match self.difference() >= DECISIVE {
             true => DirectionModel::DiffersByDirection,
@@ -62,15 +62,15 @@ impl DirectionEvidence {
         }
     }
 
-    /// The information criterion of Schwarz (1978) for both fits of the same recordings.
+    /// Information criterion of Schwarz (1978) for both fits of these recordings.
     ///
     /// ```text
     /// BIC = m ln n - 2 ln L        ln L = -sum over signals of f (n_c ln s_c + sum rho(r/s_c)),   n = sum f n_c
     /// ```
     ///
     /// with s_c the likeliest scale of each signal, m the number of shared variables, and f the
-    /// fraction of residuals that are independent with the levels of each direction. Terms that
-    /// both models share are left out.
+    /// fraction of residuals that are independent with the levels for each direction. Terms common
+    /// to both models are omitted.
     pub(super) fn of(fits: [&SearchedFriction<'_>; 2]) -> DirectionEvidence {
         let [_, differs] = fits;
         let fractions: Vec<f64> =
@@ -101,13 +101,13 @@ fn rows_of(channel: &FrictionChannel) -> f64 {
     (to - from) as f64
 }
 
-/// The contribution of each signal to -ln L at its likeliest scale.
+/// Contribution of each signal to -ln L at its likeliest scale.
 fn losses<'a>(problem: &'a FrictionProblem<'_>, residuals: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
     let beyond = Settings::default().robust_beyond;
     problem.channels.iter().map(move |channel| {
         let [from, to] = channel.residuals;
         let own = residuals.get(from..to).unwrap_or_default();
-        // over the scale of the fit; no finer than an instrument resolves
+        // relative to the scale of the fit; no finer than an instrument resolves
         let unit = channel.effective_scale();
         let scales = rows_of(channel) * portable::ln(unit);
         negative_log_likelihood(own, channel.finest / unit, beyond) + scales

@@ -11,7 +11,7 @@ use super::profile::{HeldCoefficient, SlidingProfile};
 use super::reasons::{Fall, NotIdentifiableFriction, reasons};
 use crate::estimate::{Estimate, NORMAL_95};
 
-/// A coefficient that the recordings do not determine, with what they say of it.
+/// A coefficient that the recordings do not determine, with the available information.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OpenCoefficient {
     /// Minimum of the sum of squares, and the interval that the recordings leave.
@@ -26,7 +26,7 @@ impl OpenCoefficient {
         self.reasons.is_empty()
     }
 
-    /// The estimate, where there is no reason against it.
+    /// The estimate, if there is no reason against it.
     fn judged(self) -> Result<Estimate, OpenCoefficient> {
         if self.is_determined() { Ok(self.estimate) } else { Err(self) }
     }
@@ -39,13 +39,13 @@ pub(super) struct Estimates {
     pub(super) zero: Option<Estimate>,
 }
 
-/// Standard deviation over the value beyond which a coefficient is not determined, as for a valve.
+/// Relative standard deviation beyond which a coefficient is not determined, as for a valve.
 const NOT_IDENTIFIABLE: f64 = 0.5;
 
-/// Standard deviation over the value beyond which an interval is taken from the profile of the sum.
+/// Relative standard deviation beyond which an interval is taken from the profile of the sum.
 const NOT_A_PARABOLA: f64 = 0.1;
 
-/// First step along a profile, in the variables: logarithms, or parts of a typical value.
+/// First step along a profile, in the variables: logarithms, or fractions of a typical value.
 const FIRST_STEPS: [f64; 2] = [0.02, 0.3];
 
 /// Index of the exponent of the curve among the variables.
@@ -60,13 +60,13 @@ struct CoefficientForm {
 
 #[derive(Clone, Copy)]
 enum VariableScale {
-    /// In proportion to its variable, which is in this unit.
+    /// Proportional to its variable, which is in this unit.
     Linear(f64),
-    /// This times the exponential of its variable.
+    /// Exponential of its variable, multiplied by this factor.
     Logarithmic(f64),
 }
 
-/// In the order of the coefficients.
+/// Forms in the order of the coefficients.
 fn forms(around: &Around) -> [CoefficientForm; FRICTION_COEFFICIENTS] {
     let Around { lugre, force, damping, .. } = *around;
     let variable = |index: usize, scale| CoefficientForm { held: HeldCoefficient::Variable(index), scale };
@@ -97,7 +97,7 @@ fn forms(around: &Around) -> [CoefficientForm; FRICTION_COEFFICIENTS] {
     ]
 }
 
-/// Estimates of each coefficient, and of the zero of the force.
+/// Estimates of each coefficient, and of the zero error of the force.
 pub(super) fn estimates(problem: &FrictionProblem<'_>, minimum: &Minimum) -> Estimates {
     let (lugre, zero) = problem.friction(&minimum.variables);
     let uncertainty = uncertainty_by_scale(&searched_only(problem, minimum), problem.count());
@@ -108,7 +108,7 @@ pub(super) fn estimates(problem: &FrictionProblem<'_>, minimum: &Minimum) -> Est
     let differs = problem.directions == DirectionModel::DiffersByDirection;
     let of = |index: usize| match differs || index < BOTH_WAYS {
         true => estimate(values[index], forms[index], &uncertainty, profile.as_ref()),
-        // the same as that of extending, which comes first
+        // equal to that of extending, which comes first
         false => {
             let estimate = Estimate { value: values[index], interval: [0.0, f64::INFINITY] };
             OpenCoefficient { estimate, reasons: vec![] }
@@ -129,7 +129,7 @@ fn deviation_of(uncertainty: &Uncertainty, variable: usize) -> f64 {
     uncertainty.deviations.get(variable).copied().unwrap_or(f64::INFINITY)
 }
 
-/// One coefficient: by its standard deviation, and by the profile where that is large.
+/// Estimate of one coefficient: by its standard deviation, and by the profile if that is large.
 fn estimate(
     value: f64,
     form: CoefficientForm,
@@ -137,7 +137,7 @@ fn estimate(
     profile: Option<&SlidingProfile<'_>>,
 ) -> OpenCoefficient {
     let deviation = match form.held {
-        // F_C is F_S less the fall
+        // F_C is F_S minus the fall
         HeldCoefficient::Coulomb(of) => difference(uncertainty, of.static_friction, of.fall),
         HeldCoefficient::Variable(index) => deviation_of(uncertainty, index),
     };
@@ -165,7 +165,7 @@ fn estimate(
     OpenCoefficient { estimate: Estimate { value, interval }, reasons }
 }
 
-/// The minimum without what was not searched for.
+/// The minimum without the variables that were not searched.
 fn searched_only(problem: &FrictionProblem<'_>, minimum: &Minimum) -> Linearised {
     let mut at = minimum.linearised.clone();
     let known = problem.known_variables();
@@ -177,7 +177,7 @@ fn searched_only(problem: &FrictionProblem<'_>, minimum: &Minimum) -> Linearised
     at
 }
 
-/// Standard deviation of one variable less another.
+/// Standard deviation of the difference of two variables.
 fn difference(uncertainty: &Uncertainty, first: usize, second: usize) -> f64 {
     let place = first * uncertainty.deviations.len() + second;
     let [first, second] = [first, second].map(|index| deviation_of(uncertainty, index));
@@ -197,7 +197,7 @@ fn interval(value: f64, scale: VariableScale, deviation: f64) -> [f64; 2] {
     }
 }
 
-/// The interval of a coefficient by the profile; 0 and infinity where nothing limits it.
+/// Interval of a coefficient by the profile; 0 and infinity if nothing limits it.
 fn profiled(profile: &SlidingProfile<'_>, form: CoefficientForm, deviation: f64) -> [f64; 2] {
     let [shortest, longest] = FIRST_STEPS;
     let step = if deviation.is_finite() { deviation.clamp(shortest, longest) } else { longest };
@@ -205,7 +205,7 @@ fn profiled(profile: &SlidingProfile<'_>, form: CoefficientForm, deviation: f64)
         VariableScale::Linear(unit) => variable * unit,
         VariableScale::Logarithmic(around) => around * portable::exp(variable),
     };
-    // no exponent is beyond its bounds; all else is from nothing to anything
+    // no exponent is beyond its bounds; everything else ranges from zero to infinity
     let limits = match form.held {
         HeldCoefficient::Variable(EXPONENT) => profile.bound(form.held).map(value),
         _ => [0.0, f64::INFINITY],

@@ -1,4 +1,4 @@
-//! First guess, at which the search begins.
+//! Initial estimate, at which the search begins.
 
 use nalgebra::{DMatrix, DVector};
 use phea_dynamics::portable;
@@ -10,27 +10,26 @@ use super::pressing::{Breakaway, PressedRows, breakaway, compliance, pressed_row
 use super::problem::Around;
 use super::shaking::{ShakenRows, shaken_rows};
 
-/// A friction near that of the recordings, and what is pressed and shaken in them.
+/// A friction near that of the recordings, and their pressed and shaken rows.
 pub(super) struct Guess {
     pub(super) around: Around,
-    /// Further curves and zeros of the force from which a search begins.
+    /// Further curves and zero errors of the force from which a search begins.
     pub(super) others: Vec<(Stribeck, f64)>,
-    /// A curve with levels of each direction; `None` where nothing slides in one of them.
+    /// A curve with levels for each direction; `None` if nothing slides in one of them.
     pub(super) by_direction: Option<Stribeck>,
     pub(super) presses: Vec<PressedRows>,
     pub(super) shakes: Vec<ShakenRows>,
 }
 
-/// Damping ratio of the mass on its bristles that is taken for granted: under a slow force it does
-/// not matter.
+/// Assumed damping ratio of the mass on its bristles: under a slow force it does not matter.
 const DAMPING_RATIO: f64 = 0.5;
 
-/// Distance over which bristles settle, over the shortest way at a constant velocity, where nothing
-/// is known.
+/// Ratio of the distance over which bristles settle to the shortest path at a constant velocity, if
+/// nothing is known.
 const SETTLED: f64 = 0.05;
 
-/// Distance over which what a reversal leaves decays, over the shortest way at a constant velocity,
-/// at most: a run whose force still changes is not steady.
+/// Largest ratio of the distance over which the effect of a reversal decays to the shortest path at
+/// a constant velocity: a run whose force still changes is not steady.
 const LEFT_BY_REVERSAL: f64 = 0.2;
 
 pub(super) fn guess(
@@ -66,7 +65,7 @@ pub(super) fn guess(
     if presses.is_empty() && slides.is_empty() && shakes.is_empty() {
         return None;
     }
-    // springs and dampers that respond as the shaken piston did
+    // springs and dampers with the response of the shaken piston
     let alike: Vec<[f64; 2]> = shakes.iter().map(|shake| shake.spring_and_damper(mass)).collect();
     let mean = |place: usize| alike.iter().map(|one| one[place]).sum::<f64>() / alike.len().max(1) as f64;
     let bristle_stiffness = match compliances.is_empty() {
@@ -75,7 +74,7 @@ pub(super) fn guess(
         true => curve.static_friction / (SETTLED * shortest_way(slides, recordings)),
     };
     let damping = (bristle_stiffness * mass).sqrt();
-    // the slip of the bristles damps too, so that there is more than theirs
+    // the slip of the bristles adds damping, so that the total exceeds theirs
     let bristle_damping = match mean(1) > 0.0 {
         true => (mean(1) - curve.viscous).max(0.1 * mean(1)),
         false => 2.0 * DAMPING_RATIO * damping,
@@ -98,14 +97,13 @@ fn slides_in(slides: &[ConstantVelocity], recording: usize) -> bool {
     slides.iter().any(|slide| slide.recording == recording)
 }
 
-/// The greatest force, without the noise on it.
+/// Greatest force, without its noise.
 fn greatest_force(forces: &[f64]) -> f64 {
     let largest = forces.iter().map(|force| force.abs()).fold(0.0, f64::max);
     (largest - 3.0 * noise(forces)).max(0.0)
 }
 
-/// Curve without sliding: as good as Coulomb friction, at velocities below which nothing is
-/// recorded.
+/// Curve without sliding: close to Coulomb friction, at velocities below any recorded one.
 fn without_sliding(static_friction: f64) -> Stribeck {
     Stribeck {
         coulomb: 0.8 * static_friction,
@@ -117,7 +115,7 @@ fn without_sliding(static_friction: f64) -> Stribeck {
     }
 }
 
-/// m, of the slowest run.
+/// Shortest path of a run, m.
 fn shortest_way(slides: &[ConstantVelocity], recordings: &[FrictionRecording]) -> f64 {
     let way = |slide: &ConstantVelocity| {
         let time_step = recordings.get(slide.recording).map_or(0.0, |recording| recording.time_step);
@@ -126,22 +124,22 @@ fn shortest_way(slides: &[ConstantVelocity], recordings: &[FrictionRecording]) -
     slides.iter().map(way).fold(f64::INFINITY, f64::min)
 }
 
-/// Velocity at which a piston breaks away, over the slowest at which it slides.
+/// Ratio of the velocity at which a piston breaks away to the slowest sliding velocity.
 const AT_REST: f64 = 1e-6;
 
-/// Slowest Stribeck velocity that is evaluated, over the slowest at which the piston slides.
+/// Ratio of the slowest evaluated Stribeck velocity to the slowest sliding velocity.
 const BELOW_SLOWEST: f64 = 0.1;
 
-/// Static friction over the greatest recorded force at most: few speeds are explained by any fall
-/// that is over before the slowest.
+/// Largest ratio of static friction to the greatest recorded force: few speeds are explained by any
+/// fall that is over before the slowest.
 const PLAUSIBLE: f64 = 1.5;
 
-/// Most curves from which a search begins.
+/// Largest number of curves from which a search begins.
 const STARTS: usize = 8;
 
-/// Steady curves, and zeros of the force in N, through the forces in the second half of each
+/// Steady curves, and zero errors of the force, N, through the forces in the second half of each
 /// constant velocity and those at which the piston breaks away: linear least squares for each of
-/// some Stribeck velocities and exponents, the best first. Few speeds are explained by many.
+/// some Stribeck velocities and exponents, the best first. Many curves explain few speeds.
 fn steady_guesses(slides: &[ConstantVelocity], breakaways: &[Breakaway]) -> Vec<(Stribeck, f64)> {
     if slides.is_empty() {
         return without_slides(breakaways).into_iter().collect();
@@ -153,8 +151,8 @@ fn steady_guesses(slides: &[ConstantVelocity], breakaways: &[Breakaway]) -> Vec<
     found.into_iter().take(STARTS).map(|(_, curve, zero)| (curve, zero)).collect()
 }
 
-/// The best curve through the same forces with levels of each direction, which share the Stribeck
-/// velocity and its exponent.
+/// Best curve through these forces with levels for each direction, which have the Stribeck velocity
+/// and its exponent in common.
 fn directed_guess(slides: &[ConstantVelocity], breakaways: &[Breakaway]) -> Option<Stribeck> {
     let (out, back): (Vec<_>, Vec<_>) =
         steady_points(slides, breakaways).into_iter().partition(|(velocity, _)| *velocity > 0.0);
@@ -171,7 +169,7 @@ fn directed_guess(slides: &[ConstantVelocity], breakaways: &[Breakaway]) -> Opti
     all.min_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, curve)| curve)
 }
 
-/// Velocities and forces of all runs, those at which the piston breaks away at almost no velocity.
+/// Velocities and forces of all runs, with breakaway at almost zero velocity.
 fn steady_points(slides: &[ConstantVelocity], breakaways: &[Breakaway]) -> Vec<(f64, f64)> {
     let slowest = slides.iter().map(|slide| slide.velocity.abs()).fold(f64::INFINITY, f64::min);
     let slid = slides.iter().map(|slide| (slide.velocity, slide.settled_force()));
@@ -190,12 +188,11 @@ fn shapes(slides: &[ConstantVelocity]) -> impl Iterator<Item = (f64, f64)> {
     velocities.flat_map(|velocity| [2.0, 1.0].map(|exponent| (velocity, exponent)))
 }
 
-/// The curve with this Stribeck velocity and exponent, the zero, and how badly both explain the
-/// points.
+/// Curve with this Stribeck velocity and exponent, its zero error, and the misfit of both.
 fn steady_curve(points: &[(f64, f64)], velocity: f64, exponent: f64) -> Option<(f64, Stribeck, f64)> {
     let typical = points.iter().map(|(_, force)| force.abs()).fold(0.0, f64::max);
     let (cost, [coulomb, fall, viscous, zero]) = linear_part(points, velocity, exponent)?;
-    // what a friction cannot be is worse than anything it can be
+    // an impossible friction is worse than any possible one
     let is_friction = coulomb > 0.0 && fall >= 0.0 && viscous >= 0.0 && coulomb + fall <= PLAUSIBLE * typical;
     let cost = if is_friction { cost } else { 1e6 * (1.0 + cost) };
     let coulomb = coulomb.max(0.01 * typical);
@@ -210,8 +207,7 @@ fn steady_curve(points: &[(f64, f64)], velocity: f64, exponent: f64) -> Option<(
     (typical > 0.0).then_some((cost, curve, zero))
 }
 
-/// Curve from the forces at which the piston breaks away only: those of both ways separate the
-/// zero.
+/// Curve from only the breakaway forces: those of both directions separate the zero error.
 fn without_slides(breakaways: &[Breakaway]) -> Option<(Stribeck, f64)> {
     let mean = |way: f64| {
         let own = breakaways.iter().filter(|one| one.way == way).map(|one| one.force);
@@ -223,8 +219,8 @@ fn without_slides(breakaways: &[Breakaway]) -> Option<(Stribeck, f64)> {
     (static_friction > 0.0).then(|| (without_sliding(static_friction), zero))
 }
 
-/// Sum of squares, and F_C, F_S - F_C, sigma_2 and the zero of the force, which is 0 where it goes
-/// one way.
+/// Sum of squares, and F_C, F_S - F_C, sigma_2 and the zero error of the force, which is 0 if the
+/// force acts in only one direction.
 fn linear_part(points: &[(f64, f64)], velocity: f64, exponent: f64) -> Option<(f64, [f64; 4])> {
     let both = points.iter().any(|(v, _)| *v > 0.0) && points.iter().any(|(v, _)| *v < 0.0);
     let row = |v: f64| {

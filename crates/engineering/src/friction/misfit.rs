@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! m_k = mean residual of a constant velocity, s_k its standard deviation by the noise of the rows
-//! misfit^2 = mean of m_k^2 - s_k^2                reported where sum m_k^2/s_k^2 is beyond chance and both halves agree
+//! misfit^2 = mean of m_k^2 - s_k^2                reported if sum m_k^2/s_k^2 is beyond chance and both halves agree
 //! misfit^2 = r rms^2                                  of what is pressed or shaken, r the correlation of neighbours
 //! ```
 
@@ -16,28 +16,28 @@ use super::problem::{FrictionChannel, FrictionProblem};
 pub struct FrictionMisfit {
     /// Index of the recording.
     pub recording: usize,
-    /// Which signal of it.
+    /// Signal of the recording.
     pub signal: FrictionSignal,
     /// Correlation of neighbouring residuals: of both halves of each constant velocity, or of rows.
     pub correlation: f64,
-    /// Root mean square of the misfit over the range of the signal.
+    /// Root mean square of the misfit divided by the range of the signal.
     pub fraction: f64,
-    /// Constant velocity in m/s at which the misfit is greatest, and what the model shows there
-    /// more than was recorded, in N; `None` of what is pressed or shaken.
+    /// Constant velocity at which the misfit is greatest, m/s, and the force of the model there
+    /// minus the recorded one, N; `None` for a press or a shake.
     pub place: Option<[f64; 2]>,
 }
 
 /// A signal that friction explains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrictionSignal {
-    /// A_A p_A - A_B p_B - F_e.
+    /// Force A_A p_A - A_B p_B - F_e.
     Force,
     /// Position of the piston.
     Position,
 }
 
 impl FrictionSignal {
-    /// In JSON and in words.
+    /// Name in JSON and in text.
     pub fn name(self) -> &'static str {
         match self {
             FrictionSignal::Force => "force",
@@ -46,20 +46,20 @@ impl FrictionSignal {
     }
 }
 
-/// Correlation of neighbouring residuals up to which they are noise, as for a valve.
+/// Correlation of neighbouring residuals up to which they count as noise, as for a valve.
 const OF_NOISE: f64 = 0.4;
 
-/// Standard deviations up to which a correlation of rows is chance, as for a valve.
+/// Number of standard deviations up to which a correlation of rows is chance, as for a valve.
 const CHANCE: f64 = 5.0;
 
-/// Standard deviations up to which a sum of squares is chance, as for a line.
+/// Number of standard deviations up to which a sum of squares is chance, as for a line.
 const SUM_BY_CHANCE: f64 = 4.0;
 
-/// Misfits of a smaller fraction of the range are not reported, as for a valve.
+/// Fraction of the range below which misfits are not reported, as for a valve.
 const SMALLEST_FRACTION: f64 = 1e-3;
 
-/// Constant velocities that the steady curve and the zero, or the curves of both directions,
-/// explain whatever they are.
+/// Number of constant velocities that the steady curve and the zero error, or the curves of both
+/// directions, always explain.
 fn explained_by(directions: DirectionModel) -> usize {
     match directions {
         DirectionModel::SameBothWays => 6,
@@ -67,7 +67,7 @@ fn explained_by(directions: DirectionModel) -> usize {
     }
 }
 
-/// The signals that are not explained by these residuals, the greatest misfit first.
+/// Signals that are not explained, from these residuals, the greatest misfit first.
 pub(super) fn misfits(problem: &FrictionProblem<'_>, residuals: &[f64]) -> Vec<FrictionMisfit> {
     let mut found = Vec::new();
     let mut channels = problem.channels.iter();
@@ -103,8 +103,8 @@ fn own<'a>(channel: &FrictionChannel, residuals: &'a [f64]) -> &'a [f64] {
     residuals.get(from..to).unwrap_or_default()
 }
 
-/// A slide's mean residual in N over all rows and over both halves, and the standard deviation of
-/// the first by noise.
+/// Mean residual of a slide over all rows and over both halves, N, and the standard deviation of
+/// the first due to noise.
 struct SlideResidual {
     velocity: f64,
     mean: f64,
@@ -159,7 +159,7 @@ fn of_slides(
     })
 }
 
-/// Correlation of neighbours and misfit over the range, where it is more than noise.
+/// Correlation of neighbours, and misfit divided by the range, if it is more than noise.
 fn of_rows(values: &[f64], channel: &FrictionChannel, residuals: &[f64]) -> Option<[f64; 2]> {
     let own = own(channel, residuals);
     let squares: f64 = own.iter().map(|residual| residual * residual).sum();

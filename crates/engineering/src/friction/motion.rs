@@ -13,9 +13,9 @@ use phea_dynamics::order::median;
 pub struct ConstantVelocity {
     /// Index of the recording.
     pub recording: usize,
-    /// Rows that are used; those at both ends are left out.
+    /// Rows that are used; those at both ends are omitted.
     pub rows: Range<usize>,
-    /// m/s, the slope of the line through the positions.
+    /// Slope of the line through the positions, m/s.
     pub velocity: f64,
     /// Blocks of rows, one after the other.
     pub(super) blocks: Vec<ForceBlock>,
@@ -25,7 +25,7 @@ pub struct ConstantVelocity {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ForceBlock {
     pub(super) slid: SlidBlock,
-    /// N, mean of the rows.
+    /// Mean force of the rows, N.
     pub(super) force: f64,
     pub(super) rows: usize,
 }
@@ -33,34 +33,34 @@ pub(super) struct ForceBlock {
 /// Fewest rows of a constant velocity.
 const FEWEST_ROWS: usize = 20;
 
-/// Most blocks of one.
+/// Largest number of blocks of a constant velocity.
 const BLOCKS: usize = 40;
 
-/// Fraction of the rows that is left out at either end, where the velocity may still change.
+/// Fraction of the rows that is omitted at either end, where the velocity may still change.
 const ENDS: f64 = 0.05;
 
 /// Fraction by which a constant velocity may change from its beginning to its end.
 const CHANGE: f64 = 0.02;
 
-/// Fraction by which it may change with twice the standard deviation of the change.
+/// Largest fraction by which it may change, including twice the standard deviation of the change.
 const CERTAIN_CHANGE: f64 = 0.05;
 
 /// Fraction by which the force may still change in the second half.
 const SETTLED: f64 = 0.05;
 
-/// Standard deviations of the slope of a force beyond which it is no noise.
+/// Number of standard deviations of the slope of a force beyond which it is no noise.
 const CERTAIN_SLOPE: f64 = 6.0;
 
 /// Relative difference of slopes that belong to one line.
 const SAME_SLOPE: f64 = 0.25;
 
-/// Sum of the residuals of a line, over noise and the root of their number, beyond which it is not
-/// a line. The largest of white noise exceeds 0.9 in one case of twenty: a bend too many does no
-/// harm.
+/// Sum of the residuals of a line, divided by noise and the root of their number, beyond which it
+/// is not a line. The largest of white noise exceeds 0.9 in one case of twenty: an additional bend
+/// does no harm.
 const BENT: f64 = 1.0;
 
-/// Standard deviation of white noise on a smooth signal, from its third differences (their variance
-/// is 20 times that of the noise), by their median; at least what numbers resolve.
+/// Standard deviation of white noise on a smooth signal, from the median of its third differences
+/// (their variance is 20 times that of the noise); at least the resolution of the numbers.
 pub(super) fn noise(values: &[f64]) -> f64 {
     let third = values.windows(4).filter_map(|four| match four {
         [a, b, c, d] => Some((d - 3.0 * c + 3.0 * b - a).abs()),
@@ -72,12 +72,12 @@ pub(super) fn noise(values: &[f64]) -> f64 {
     if differences.is_empty() { floor } else { (1.4826 * median(differences) / 20.0_f64.sqrt()).max(floor) }
 }
 
-/// The straight line through the values of some rows.
+/// Straight line through the values of some rows.
 #[derive(Clone, Copy, Debug)]
 struct RowLine {
     middle: f64,
     mean: f64,
-    /// For each row.
+    /// Slope per row.
     slope: f64,
 }
 
@@ -98,8 +98,8 @@ impl RowLine {
     }
 }
 
-/// Rows in pieces over each of which the values are straight, within noise or within a fraction of
-/// what they change by.
+/// Pieces of rows over each of which the values are linear, within noise or within a fraction of
+/// their change.
 fn straight_pieces(values: &[f64], noise: f64, fraction: f64) -> Vec<Range<usize>> {
     let mut found = Vec::new();
     let mut open = vec![Range { start: 0, end: values.len() }];
@@ -115,7 +115,7 @@ fn straight_pieces(values: &[f64], noise: f64, fraction: f64) -> Vec<Range<usize
     joined(found, |rows| bend(values, rows, noise, fraction).is_none())
 }
 
-/// Neighbouring pieces joined where they are one: a search may have split one next to a jump.
+/// Neighbouring pieces joined if they are one: a search may have split one next to a jump.
 fn joined(pieces: Vec<Range<usize>>, is_straight: impl Fn(&Range<usize>) -> bool) -> Vec<Range<usize>> {
     let mut found: Vec<Range<usize>> = Vec::with_capacity(pieces.len());
     for piece in pieces {
@@ -133,7 +133,7 @@ fn joined(pieces: Vec<Range<usize>>, is_straight: impl Fn(&Range<usize>) -> bool
     found
 }
 
-/// Row at which these rows are bent most, if they are.
+/// Row at which these rows bend most, if they bend.
 fn bend(values: &[f64], rows: &Range<usize>, noise: f64, fraction: f64) -> Option<usize> {
     const SHORTEST: usize = 3;
     let count = rows.len();
@@ -165,15 +165,15 @@ fn bend(values: &[f64], rows: &Range<usize>, noise: f64, fraction: f64) -> Optio
     (most > allowed).then(|| rows.start + at.clamp(SHORTEST, count - SHORTEST))
 }
 
-/// Rows at which a recording slides along a line.
+/// Runs in which a recording slides along a line.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SlidingRuns {
     pub(super) constant: Vec<ConstantVelocity>,
-    /// Runs whose velocity is constant on average only.
+    /// Runs whose velocity is constant only on average.
     pub(super) varying: Vec<VaryingVelocity>,
 }
 
-/// The runs of a recording at a velocity that is constant, on average at least.
+/// Runs of a recording at a velocity that is constant, at least on average.
 pub(super) fn sliding_runs(recording: &FrictionRecording, index: usize) -> SlidingRuns {
     let positions = &recording.positions;
     let [position_noise, force_noise] = [positions, &recording.forces].map(|values| noise(values));
@@ -210,7 +210,7 @@ pub(super) fn sliding_runs(recording: &FrictionRecording, index: usize) -> Slidi
     found
 }
 
-/// The rows between these.
+/// Rows between these.
 fn between(mut taken: Vec<Range<usize>>, count: usize) -> Vec<Range<usize>> {
     taken.sort_by_key(|rows| rows.start);
     let starts = std::iter::once(0).chain(taken.iter().map(|rows| rows.end));
@@ -218,11 +218,12 @@ fn between(mut taken: Vec<Range<usize>>, count: usize) -> Vec<Range<usize>> {
     starts.zip(ends).map(|(start, end)| start..end.max(start)).collect()
 }
 
-/// True where the piston certainly moves, and certainly at one velocity.
+/// True if the piston certainly moves, and certainly at one velocity.
 fn is_constant(positions: &[f64], rows: &Range<usize>, noise: f64) -> bool {
     let count = rows.len() as f64;
     let line = RowLine::through(positions, rows);
-    // of the second-order Legendre polynomial, whose ends differ in slope by 12/count of its size
+    // coefficient of the second-order Legendre polynomial, whose ends differ in slope by 12/count
+    // of it
     let middle = rows.start as f64 + (count - 1.0) / 2.0;
     let second = |row: usize| {
         let x = 2.0 * (row as f64 - middle) / count;
@@ -237,7 +238,7 @@ fn is_constant(positions: &[f64], rows: &Range<usize>, noise: f64) -> bool {
     change <= CERTAIN_CHANGE * line.slope.abs() && line.slope.abs() * count > 20.0 * noise
 }
 
-/// True where the force no longer changes: while a seal is only deformed, it does.
+/// True if the force no longer changes: it does while a seal is only deformed.
 fn is_settled(forces: &[f64], rows: &Range<usize>, noise: f64) -> bool {
     let quarter = rows.len() / 4;
     let mean = |start: usize| {
@@ -249,8 +250,8 @@ fn is_settled(forces: &[f64], rows: &Range<usize>, noise: f64) -> bool {
     (last - second).abs() <= by_noise.max(SETTLED * last.abs())
 }
 
-/// True where the force rises or falls along one line through the rows and beyond them: bristles
-/// that are loaded slowly move the piston as steadily as sliding does.
+/// True if the force rises or falls along one line through the rows and beyond them: slowly loaded
+/// bristles move the piston as steadily as sliding does.
 fn is_ramp(forces: &[f64], rows: &Range<usize>, noise: f64) -> bool {
     let count = rows.len();
     let slope = |rows: Range<usize>| RowLine::through(forces, &rows).slope;

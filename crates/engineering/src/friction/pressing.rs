@@ -1,4 +1,4 @@
-//! The part of a recorded run in which the piston is pressed and has not yet broken away.
+//! Part of a recorded run in which the piston is pressed and has not yet broken away.
 
 use nalgebra::{DMatrix, DVector};
 use phea_dynamics::portable;
@@ -7,53 +7,53 @@ use phea_hydraulics::friction::KnottedForce;
 use super::FrictionRecording;
 use super::motion::noise;
 
-/// The rows of a recording before the piston breaks away.
+/// Rows of a recording before the piston breaks away.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PressedRows {
     /// Index of the recording.
     pub recording: usize,
     /// Number of rows, from the first.
     pub rows: usize,
-    /// True where the piston breaks away then.
+    /// True if the piston breaks away at the end.
     pub breaks_away: bool,
-    /// True where the force changes within a few rows.
+    /// True if the force changes within a few rows.
     pub has_quick_force: bool,
-    /// Guess of the force, with a knot wherever it bends.
+    /// Initial estimate of the force, with a knot wherever it bends.
     pub(super) force: KnottedForce,
-    /// N and m, noise of both signals.
+    /// Noise of force, N, and position, m.
     pub(super) noise: [f64; 2],
 }
 
-/// Fewest rows that say anything.
+/// Fewest rows with sufficient information.
 const FEWEST_ROWS: usize = 20;
 
-/// Rows that are taken as the beginning.
+/// Number of rows that count as the beginning.
 const FIRST_ROWS: usize = 10;
 
-/// Displacement, over that of the bristles at breakaway, up to which the rows are explained: a slow
-/// force reaches 86 % of the static friction there. What comes later depends on the noise of the
+/// Displacement up to which the rows are explained, relative to that of the bristles at breakaway:
+/// a slow force reaches 86 % of the static friction there. Later rows depend on the noise of the
 /// force more than on anything else.
 const EXPLAINED: f64 = 2.0;
 
-/// Displacement at which the piston has broken away.
+/// Displacement at which the piston has broken away, relative to that of the bristles at breakaway.
 const BROKEN_AWAY: f64 = 8.0;
 
-/// Fewest rows from knot to knot, where the force is not bent.
+/// Fewest rows from knot to knot, unless the force bends.
 const SPACING: usize = 20;
 
-/// Most pieces of a force that is not bent.
+/// Largest number of pieces of a force that does not bend.
 const PIECES: usize = 20;
 
-/// Knots beyond which no further ones are sought.
+/// Number of knots beyond which no further ones are added.
 const MOST_KNOTS: usize = 120;
 
 /// Number of searches for further knots.
 const REFINEMENTS: usize = 40;
 
-/// Part of the static friction up to which the compliance is read.
+/// Fraction of the static friction up to which the compliance is read.
 const ELASTIC: f64 = 0.5;
 
-/// Beginning of a recording: mean position in m and force in N.
+/// Mean position, m, and force, N, at the beginning of a recording.
 fn beginning(recording: &FrictionRecording) -> [f64; 2] {
     [&recording.positions, &recording.forces].map(|values| {
         let first = values.get(..FIRST_ROWS.min(values.len())).unwrap_or_default();
@@ -61,8 +61,8 @@ fn beginning(recording: &FrictionRecording) -> [f64; 2] {
     })
 }
 
-/// Compliance of the bristles in m/N, from rest to a part of the static friction; at least what
-/// noise lets see. The force without its noise, which would make the slope less.
+/// Compliance of the bristles, m/N, from rest to a part of the static friction; at least the value
+/// that noise permits to detect. The force is used without its noise, which would reduce the slope.
 ///
 /// ```text
 /// x = -(F_S/sigma_0) ln(1 - F/F_S)                    LuGre friction under a force that rises slowly
@@ -93,13 +93,13 @@ pub(super) fn compliance(recording: &FrictionRecording, static_friction: f64) ->
 /// A piston that breaks away from rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Breakaway {
-    /// 1 or -1: the sign of the displacement.
+    /// Direction of the displacement, 1 or -1.
     pub(super) way: f64,
-    /// N, greatest force until then, with the zero of the instruments in it.
+    /// Greatest force until breakaway, including the zero error of the instruments, N.
     pub(super) force: f64,
 }
 
-/// Row and force at which the piston breaks away; `None` where it does not.
+/// Row and force at which the piston breaks away; `None` if it does not.
 pub(super) fn breakaway(recording: &FrictionRecording) -> Option<Breakaway> {
     let position_noise = noise(&recording.positions);
     let smooth = knotted(&recording.forces, noise(&recording.forces));
@@ -118,7 +118,7 @@ pub(super) fn breakaway(recording: &FrictionRecording) -> Option<Breakaway> {
     Some(Breakaway { way, force })
 }
 
-/// Rows until the piston breaks away; `None` of too few rows.
+/// Rows until the piston breaks away; `None` if there are too few rows.
 pub(super) fn pressed_rows(
     recording: &FrictionRecording,
     index: usize,
@@ -143,8 +143,8 @@ pub(super) fn pressed_rows(
     })
 }
 
-/// A force that is straight between its knots, as close to the rows as their noise: knots at equal
-/// distances, and at each row where the force is bent more sharply.
+/// A force that is linear between its knots, as close to the rows as their noise: knots at equal
+/// distances, and at each row at which the force bends more sharply.
 fn knotted(forces: &[f64], noise: f64) -> KnottedForce {
     let last = forces.len().saturating_sub(1);
     let spacing = (forces.len() / PIECES).max(SPACING);
@@ -167,12 +167,12 @@ fn knotted(forces: &[f64], noise: f64) -> KnottedForce {
     through(knots, forces)
 }
 
-/// True where two knots are those of neighbouring rows.
+/// True if two knots are at neighbouring rows.
 fn is_quick(knots: &[usize]) -> bool {
     matches!(knots, [one, next] if next - one == 1)
 }
 
-/// The force at these knots by least squares over all rows.
+/// Force at these knots by least squares over all rows.
 fn through(knots: Vec<usize>, forces: &[f64]) -> KnottedForce {
     let count = knots.len();
     let found = KnottedForce { knots, forces: vec![0.0; count] };
@@ -187,7 +187,7 @@ fn through(knots: Vec<usize>, forces: &[f64]) -> KnottedForce {
             }
         }
     }
-    // each knot has a row of its own, so that there is a solution
+    // each knot coincides with a row, so that there is a solution
     let solved = normal.cholesky().map(|factor| factor.solve(&right));
     KnottedForce { forces: solved.map_or(found.forces, |heights| heights.iter().copied().collect()), ..found }
 }
@@ -200,7 +200,7 @@ fn residuals(found: &KnottedForce, forces: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// The rows around the neighbours whose residuals are most beyond noise, if any are.
+/// Rows around the neighbours whose residuals exceed noise most, if any do.
 fn sharpest(residuals: &[f64], noise: f64) -> std::ops::Range<usize> {
     const BEYOND_NOISE: f64 = 4.5;
     const AROUND: usize = 2;

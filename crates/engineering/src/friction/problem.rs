@@ -1,4 +1,4 @@
-//! Everything that was recorded, explained by one friction: residuals with derivatives.
+//! Problem of explaining all recordings by one friction: residuals with derivatives.
 
 mod shake;
 mod variables;
@@ -17,45 +17,47 @@ use super::pressing::PressedRows;
 use super::shaking::ShakenRows;
 use phea_dynamics::order::median;
 
-/// Evaluations of a search.
+/// Largest number of evaluations of a search.
 const EVALUATIONS: usize = 60;
 
-/// Angle in rad by which the mass rings on its bristles in a step of the integration.
+/// Angle by which the mass oscillates on its bristles in an integration step, rad.
 const STEP_ANGLE: f64 = 0.3;
 
-/// Most steps between two rows.
+/// Largest number of steps between two rows.
 const MOST_STEPS: f64 = 20.0;
 
-/// Least scale of the force while the piston slides, over the force at breakaway.
+/// Least scale of the force during sliding, relative to the force at breakaway.
 const FINEST_SLIDING: f64 = 1e-9;
 
-/// Least scale of a force that presses or shakes, and of the position, over force and deflection at
-/// breakaway: finer than instruments are. The sizes of the force are variables too, and a force
-/// without noise would outweigh the position by more than rounding leaves of it.
+/// Least scale of a force that presses or shakes, and of the position, relative to force and
+/// deflection at breakaway: finer than that of instruments. The values of the force are variables
+/// too, and a force without noise would outweigh the position by so much that rounding would spoil
+/// it.
 const FINEST: f64 = 1e-5;
 
-/// First scale of the position of a shaken piston, over its swing: from a guess that leaves much
-/// more than the noise, a search that is robust against outliers takes all rows for such.
+/// First scale of the position of a shaken piston, relative to its swing: from an initial estimate
+/// with residuals much larger than the noise, a robust search would take all rows for outliers.
 const FIRST_SCALE: f64 = 0.1;
 
-/// Static friction over its guess from which a search is repeated where it does not start.
+/// Ratios of static friction to its initial estimate from which a search is repeated if it does not
+/// start.
 const RAISED: [f64; 5] = [1.05, 1.1, 1.2, 1.5, 2.0];
 
-/// The friction around which is searched, and the sizes of the variables.
+/// Friction around which the search is made, and the scales of the variables.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Around {
-    /// With F_S at least F_C.
+    /// Friction with F_S at least F_C.
     pub(super) lugre: LuGre,
-    /// N.
+    /// Scale of force, N.
     pub(super) force: f64,
-    /// N·s/m, of sigma_2 and of sigma_1.
+    /// Scales of sigma_2 and of sigma_1, N·s/m.
     pub(super) damping: [f64; 2],
-    /// m.
+    /// Scale of length, m.
     pub(super) length: f64,
-    /// N, that the instruments show without friction.
+    /// Zero error of the force, N.
     pub(super) zero: f64,
-    /// N/m, least stiffness of the bristles: softer ones would not have settled in the runs that
-    /// slide.
+    /// Least stiffness of the bristles, N/m: softer ones would not have settled in the sliding
+    /// runs.
     pub(super) softest: f64,
 }
 
@@ -64,17 +66,17 @@ pub(super) struct Around {
 pub(super) struct FrictionChannel {
     /// Scale of each row.
     pub(super) scale: f64,
-    /// First residual, and the one after the last.
+    /// Indices of the first residual, and of the one after the last.
     pub(super) residuals: [usize; 2],
     /// Fraction of the residuals that are independent.
     pub(super) independent: f64,
-    /// Noise of each row, by its differences.
+    /// Noise of each row, from its differences.
     pub(super) noise: f64,
-    /// The scale of each row is at least this: finer weights would hide all others in rounding.
+    /// Least scale of each row: finer weights would hide all others in rounding.
     pub(super) finest: f64,
 }
 
-/// Recordings that are explained, and the model.
+/// Recordings to be explained, and the model.
 #[derive(Clone, Debug)]
 pub(super) struct FrictionProblem<'a> {
     pub(super) recordings: &'a [FrictionRecording],
@@ -83,12 +85,12 @@ pub(super) struct FrictionProblem<'a> {
     pub(super) shakes: &'a [ShakenRows],
     pub(super) mass: f64,
     pub(super) around: Around,
-    /// True where friction acts both ways, which a zero of the force does not.
+    /// True if friction acts in both directions, which a zero error of the force does not.
     pub(super) goes_both_ways: bool,
-    /// Model of both directions.
+    /// Model of the two directions.
     pub(super) directions: DirectionModel,
-    /// One of each recording that slides; then force and position of each that is pressed, and of
-    /// each that is shaken.
+    /// One channel for each sliding recording; then force and position of each press, and of each
+    /// shake.
     pub(super) channels: Vec<FrictionChannel>,
 }
 
@@ -137,19 +139,19 @@ impl<'a> FrictionProblem<'a> {
         }
     }
 
-    /// Number of channels of what slides; force and position of each press and shake follow.
+    /// Number of channels of sliding; force and position of each press and shake follow.
     pub(super) fn sliding_channels(&self) -> usize {
         self.channels.len() - 2 * (self.presses.len() + self.shakes.len())
     }
 
-    /// Index of the first residual of what does not slide.
+    /// Index of the first residual that is not of sliding.
     pub(super) fn first_row_of_others(&self) -> usize {
         let mut sliding = self.channels.iter().take(self.sliding_channels());
         sliding.next_back().map_or(0, |channel| channel.residuals[1])
     }
 
-    /// Residuals over their scales, with derivatives; `None` where there is no such friction, or
-    /// the simulation has no end.
+    /// Residuals divided by their scales, with derivatives; `None` if there is no such friction, or
+    /// the simulation does not reach its end.
     fn linearised(&self, variables: &[f64], kept: &mut KeptShapes) -> Option<Linearised> {
         let (lugre, zero) = self.friction(variables);
         if !slides_at_all(&lugre) {
@@ -177,7 +179,8 @@ impl<'a> FrictionProblem<'a> {
         Some(rows.found)
     }
 
-    /// Linearisation of what slides only, over the shared variables and those of the slides.
+    /// Linearisation of only the sliding rows, with respect to the shared variables and those of
+    /// the slides.
     pub(super) fn slides_linearised(&self, variables: &[f64]) -> Option<Linearised> {
         let friction = self.friction(variables);
         if !slides_at_all(&friction.0) {
@@ -240,7 +243,7 @@ impl<'a> FrictionProblem<'a> {
         let Around { force, length, .. } = self.around;
         let recording = self.recordings.get(press.recording)?;
         let (begins, knots) = own.split_first()?;
-        // what the pressures show is more than what acts, by the zero
+        // the pressures show the acting force plus the zero error
         let measured: Vec<f64> = knots.iter().map(|value| value * force).collect();
         let acting = measured.iter().map(|value| value - zero).collect();
         let acting = KnottedForce { knots: press.force.knots.clone(), forces: acting };
@@ -281,7 +284,7 @@ impl<'a> FrictionProblem<'a> {
         Some(())
     }
 
-    /// Minimum of a search from here.
+    /// Minimum of a search from these variables.
     pub(super) fn searched(
         &self,
         start: &[f64],
@@ -298,8 +301,8 @@ impl<'a> FrictionProblem<'a> {
         })
     }
 
-    /// Minimum from the guess. Where all slides, the best from other curves too: few speeds leave
-    /// several minima.
+    /// Minimum from the initial estimate. If all rows slide, the best from other curves too: few
+    /// speeds leave several minima.
     pub(super) fn first_minimum(
         &self,
         others: &[(Stribeck, f64)],
@@ -319,7 +322,7 @@ impl<'a> FrictionProblem<'a> {
         Ok(minimum)
     }
 
-    /// Minimum from a curve and a zero of the force; static friction is raised where the piston
+    /// Minimum from a curve and a zero error of the force; static friction is raised if the piston
     /// would run away under the recorded forces.
     pub(super) fn minimum_from(
         &self,
@@ -335,7 +338,7 @@ impl<'a> FrictionProblem<'a> {
                 break;
             }
             let mut raised = start.clone();
-            // static friction and its fall, so that Coulomb friction stays
+            // static friction and its fall, so that Coulomb friction is unchanged
             let both = [EXTENDING, RETRACTING].map(|levels| [levels.static_friction, levels.fall]);
             let known = self.known_variables();
             for index in both.into_iter().flatten().filter(|index| !known.contains(index)) {
@@ -347,7 +350,7 @@ impl<'a> FrictionProblem<'a> {
     }
 
     /// Takes the scale of each signal from its residuals: 1.4826 times their median magnitude; and
-    /// how many of them are independent from the correlation of neighbours (Bayley and Hammersley
+    /// the number of independent ones from the correlation of neighbours (Bayley and Hammersley
     /// 1946). Returns the largest relative change.
     pub(super) fn rescale(&mut self, residuals: &[f64]) -> f64 {
         let mut change = 0.0_f64;
@@ -366,12 +369,12 @@ impl<'a> FrictionProblem<'a> {
     }
 }
 
-/// True where Coulomb friction is positive in both directions.
+/// True if Coulomb friction is positive in both directions.
 fn slides_at_all(lugre: &LuGre) -> bool {
     lugre.curve.both_levels().iter().all(|levels| levels.coulomb > 0.0)
 }
 
-/// The mass of a press, in steps that its ringing on the bristles needs.
+/// Mass of a press, in steps that are short enough for its oscillation on the bristles.
 pub(super) fn pressed_mass(mass: f64, lugre: &LuGre, time_step: f64) -> PressedMass {
     let angle = (lugre.bristle_stiffness / mass).sqrt() * time_step;
     let substeps = (angle / STEP_ANGLE).ceil().clamp(1.0, MOST_STEPS) as usize;
@@ -379,13 +382,13 @@ pub(super) fn pressed_mass(mass: f64, lugre: &LuGre, time_step: f64) -> PressedM
 }
 
 impl FrictionChannel {
-    /// The scale of residuals as if all of them were independent.
+    /// Scale of residuals as if all of them were independent.
     pub(super) fn effective_scale(&self) -> f64 {
         self.scale / self.independent.sqrt()
     }
 }
 
-/// Fraction of some residuals that are independent, where neighbours correlate by more than chance.
+/// Fraction of independent residuals, if neighbours correlate by more than chance.
 fn independent(residuals: &[f64], scale: f64) -> f64 {
     let inside = |residual: &f64| residual.clamp(-3.0 * scale, 3.0 * scale);
     let squares: f64 = residuals.iter().map(|residual| inside(residual) * inside(residual)).sum();
@@ -408,7 +411,7 @@ impl ResidualRows {
         ResidualRows { count, found: Linearised { residuals: Vec::with_capacity(residuals), jacobian } }
     }
 
-    /// The derivatives of a further residual, all zero yet.
+    /// Derivatives of a further residual, initially zero.
     fn next(&mut self, residual: f64) -> &mut [f64] {
         self.found.residuals.push(residual);
         let from = self.found.jacobian.len();

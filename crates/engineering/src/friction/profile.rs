@@ -1,13 +1,14 @@
-//! Intervals of coefficients that the recordings determine badly: there the sum of squares is no
-//! parabola, and standard deviations mean little.
+//! Intervals of coefficients that the recordings determine badly: their sum of squares is not
+//! parabolic, and standard deviations mean little.
 //!
 //! ```text
 //! S(theta) = min over all other variables of sum rho(r)        S(end) - S(least) = 1.96^2/2
 //! ```
 //!
-//! the profile of the likelihood (Venzon and Moolgavkar 1988). What is pressed and shaken counts by
-//! the information that it has on the coefficients, as a normal distribution, except on the shape
-//! of the curve; what slides counts in full, because the steady curve is what bends the sum.
+//! the profile of the likelihood (Venzon and Moolgavkar 1988). Pressed and shaken rows count by
+//! their information about the coefficients, as a normal distribution, except about the shape of
+//! the curve; sliding rows count in full, because the steady curve causes the deviation from a
+//! parabola.
 
 use nalgebra::{DMatrix, DVector};
 use phea_dynamics::least_squares::{Ending, Linearised, Minimum, Settings, minimise};
@@ -15,16 +16,17 @@ use phea_dynamics::least_squares::{Ending, Linearised, Minimum, Settings, minimi
 use super::problem::{FrictionProblem, LevelVariables, SHARED};
 use crate::estimate::NORMAL_95;
 
-/// Increase of the sum at the ends of a 95 % interval, over the efficiency of the loss.
+/// Increase of the sum at the ends of a 95 % interval, divided by the efficiency of the loss.
 const AT_THE_END: f64 = NORMAL_95 * NORMAL_95 / 2.0 / 0.95;
 
-/// Evaluations of a search with one coefficient held.
+/// Number of evaluations of a search with one coefficient fixed.
 const EVALUATIONS: usize = 30;
 
 /// Relative decrease of the sum at which such a search ends.
 const TOLERANCE: f64 = 1e-4;
 
-/// Steps outwards, each longer than the one before by a factor, and halvings then.
+/// Number of steps outwards, each longer than the one before by a factor, and number of bisections
+/// after them.
 const STEPS: usize = 14;
 const LONGER: f64 = 2.5;
 const HALVINGS: usize = 9;
@@ -35,32 +37,31 @@ const STRIBECK_VELOCITY: usize = 2;
 /// Changes of both in further starts.
 const OTHER_CURVES: [(f64, f64); 5] = [(-1.0, 0.0), (1.0, 0.0), (1.0, 0.7), (0.0, 0.7), (0.0, -0.7)];
 
-/// Weight of a residual of the robust loss: all of those that are more than this are outliers.
+/// Residual of the robust loss beyond which all are outliers.
 const ROBUST_BEYOND: f64 = 1.345;
 
-/// Eigenvalue of the information over the largest below which nothing is known.
+/// Ratio of an eigenvalue of the information to the largest below which nothing is known.
 const UNKNOWN: f64 = 1e-12;
 
-/// A coefficient that is held: by one of the variables, or F_C of a direction, which is F_S less
-/// the fall.
+/// A fixed coefficient: one of the variables, or F_C of a direction, which is F_S minus the fall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum HeldCoefficient {
     Coulomb(LevelVariables),
     Variable(usize),
 }
 
-/// Runs that slide, and the information of all else on the shared variables.
+/// Sliding runs, and the information of everything else about the shared variables.
 pub(super) struct SlidingProfile<'a> {
     problem: &'a FrictionProblem<'a>,
     /// Shared variables of the minimum.
     centre: Vec<f64>,
-    /// Slopes of residuals over the shared variables, and the residuals at the centre.
+    /// Slopes of residuals with respect to the shared variables, and the residuals at the centre.
     others: Vec<(Vec<f64>, f64)>,
     least: Minimum,
 }
 
 impl<'a> SlidingProfile<'a> {
-    /// Around a minimum of all; `None` where nothing slides.
+    /// Profile around a minimum for all recordings; `None` if nothing slides.
     pub(super) fn around(problem: &'a FrictionProblem<'a>, minimum: &Minimum) -> Option<SlidingProfile<'a>> {
         let centre: Vec<f64> = minimum.variables.iter().take(SHARED).copied().collect();
         let others = information_of_others(problem, &minimum.linearised);
@@ -77,7 +78,7 @@ impl<'a> SlidingProfile<'a> {
         self.problem.bounds().into_iter().take(SHARED + self.problem.slides.len()).collect()
     }
 
-    /// The value of what is held at these variables.
+    /// Value of the fixed coefficient for these variables.
     pub(super) fn value(held: HeldCoefficient, variables: &[f64]) -> f64 {
         let at = |index: usize| variables.get(index).copied().unwrap_or(0.0);
         match held {
@@ -86,13 +87,13 @@ impl<'a> SlidingProfile<'a> {
         }
     }
 
-    /// Ends of the 95 % interval of what is held, as the variables have it; `None` where its bound
-    /// is as good.
+    /// Ends of the 95 % interval of the fixed coefficient, as the variables have it; `None` if its
+    /// bound is as good.
     pub(super) fn ends(&self, held: HeldCoefficient, step: f64) -> [Option<f64>; 2] {
         [-1.0, 1.0].map(|way| self.end(held, way * step))
     }
 
-    /// The bounds of what is held.
+    /// Bounds of the fixed coefficient.
     pub(super) fn bound(&self, held: HeldCoefficient) -> [f64; 2] {
         let bounds = self.problem.bounds();
         let of = |index: usize| bounds.get(index).copied().unwrap_or([0.0, 0.0]);
@@ -133,8 +134,8 @@ impl<'a> SlidingProfile<'a> {
         Some(outside)
     }
 
-    /// The least sum with a coefficient held: from a start, and where that is outside the interval,
-    /// from others with curves that fall elsewhere and otherwise.
+    /// Least sum with a coefficient fixed: from a start and, if that is outside the interval, from
+    /// others with curves that fall at other velocities and with other shapes.
     fn held(&self, held: HeldCoefficient, value: f64, start: &[f64]) -> Option<Minimum> {
         let mut best = self.held_from(held, value, start);
         for (velocity, exponent) in OTHER_CURVES {
@@ -152,7 +153,7 @@ impl<'a> SlidingProfile<'a> {
         best
     }
 
-    /// True where a sum is that of the interval.
+    /// True if a sum is within the interval.
     fn is_inside(&self, found: &Minimum) -> bool {
         found.cost - self.least.cost <= AT_THE_END
     }
@@ -168,7 +169,7 @@ impl<'a> SlidingProfile<'a> {
                 self.searched(start, &bounds, None)
             }
             HeldCoefficient::Coulomb(levels) => {
-                // the fall is F_C here, and F_S is at least that
+                // the fall represents F_C here, and F_S is at least that
                 set(levels.fall, [value; 2]);
                 set(levels.static_friction, [value, 1e3]);
                 let mut found = self.searched(&exchanged(start, levels), &bounds, Some(levels))?;
@@ -178,7 +179,7 @@ impl<'a> SlidingProfile<'a> {
         }
     }
 
-    /// The end of a search over the variables, or over F_C in place of the fall of a direction.
+    /// End of a search over the variables, or over F_C in place of the fall of a direction.
     fn searched(
         &self,
         start: &[f64],
@@ -215,8 +216,7 @@ impl<'a> SlidingProfile<'a> {
     }
 }
 
-/// F_C in place of the fall of a direction, or the fall in place of F_C: each is F_S less the
-/// other.
+/// Exchange of F_C and the fall of a direction: each is F_S minus the other.
 fn exchanged(variables: &[f64], of: LevelVariables) -> Vec<f64> {
     let mut exchanged = variables.to_vec();
     let static_friction = variables.get(of.static_friction).copied().unwrap_or(0.0);
@@ -224,8 +224,8 @@ fn exchanged(variables: &[f64], of: LevelVariables) -> Vec<f64> {
     exchanged
 }
 
-/// Information of pressed and shaken rows on the shared variables: residuals that are as well
-/// explained with all variables of their own free.
+/// Information of pressed and shaken rows about the shared variables: residuals that are as well
+/// explained with all separate variables free.
 ///
 /// ```text
 /// I = J_s'J_s - J_s'J_o (J_o'J_o)^-1 J_o'J_s        g likewise        R'R = I,  R'b = g
@@ -274,8 +274,8 @@ fn information_of_others(problem: &FrictionProblem<'_>, at: &Linearised) -> Vec<
         .collect()
 }
 
-/// Information with Stribeck velocity and exponent free: a piston that breaks away depends on them
-/// by a straight line only over changes much smaller than those of a profile.
+/// Information with Stribeck velocity and exponent free: the linear dependence of breakaway on them
+/// holds only over changes much smaller than those of a profile.
 fn without_the_shape(shared: &DMatrix<f64>, slope: &DVector<f64>) -> (DMatrix<f64>, DVector<f64>) {
     let across = shared.columns(STRIBECK_VELOCITY, 2).into_owned();
     let own = across.rows(STRIBECK_VELOCITY, 2).into_owned();

@@ -7,17 +7,17 @@ use crate::setup::Setup;
 use crate::source::Source;
 use crate::table::{Column, Measurand, MeasuredTable, Sought, TIME_NAMES};
 
-/// Facts that are known of the cylinder in addition to the files.
+/// Facts about the cylinder that are known in addition to the files.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KnownCylinder {
-    /// m², A_A and A_B.
+    /// Areas A_A and A_B, m².
     pub areas: [f64; 2],
-    /// kg, M.
+    /// Moving mass M, kg.
     pub moving_mass: f64,
 }
 
 impl KnownCylinder {
-    /// As the project states it.
+    /// Facts that the project states.
     ///
     /// # Errors
     /// [`IdentifyError`] for a project without a cylinder.
@@ -34,24 +34,24 @@ impl KnownCylinder {
     }
 }
 
-/// The files with runs of the cylinder that a project declares in `[identify]`.
+/// Files with runs of the cylinder that a project declares in `[identify]`.
 pub fn recorded_runs(project: &Project) -> Vec<String> {
     let files = project.identify.iter().flat_map(|identify| &identify.friction);
     files.map(|file| project.path_of(file)).collect()
 }
 
-/// A recorded run of the cylinder, rows at equal intervals. SI.
+/// A recorded run of the cylinder, rows at equal intervals, in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrictionRecording {
     /// Path of the file.
     pub file: String,
-    /// s between rows.
+    /// Time between rows, s.
     pub time_step: f64,
-    /// m, of each row: recorded, or the integral of the recorded velocity.
+    /// Position at each row, m: recorded, or the integral of the recorded velocity.
     pub positions: Vec<f64>,
-    /// True where the position itself was recorded.
+    /// True if the position itself was recorded.
     pub has_position: bool,
-    /// N, of each row: A_A p_A - A_B p_B - F_e, what drives the mass against its friction.
+    /// Force at each row, N: A_A p_A - A_B p_B - F_e, which drives the mass against its friction.
     pub forces: Vec<f64>,
 }
 
@@ -64,10 +64,10 @@ const MEASURANDS: [Measurand; 6] = [
     Measurand::of("force", &FORCE),
 ];
 
-/// The runs in these files, one each.
+/// Runs in these files, one each.
 ///
 /// # Errors
-/// Everything that is wrong in the files, with its places.
+/// All errors in the files, with their places.
 pub fn friction_recordings(
     source: &dyn Source,
     files: &[String],
@@ -129,7 +129,8 @@ fn recording(
         return None;
     }
     let spacing = RowSpacing::of(&times);
-    // a run of the cylinder is slow against its rows: a line between two of them changes nothing
+    // a run of the cylinder is slow compared with its rows: a line between two of them changes
+    // nothing
     let (time_step, motion, [pressures_a, pressures_b, loads]) = if is_software_timed(&spacing, &times) {
         let even = |values: &[f64]| interpolated(&times, values, spacing.usual);
         (spacing.usual, even(&motion), [&pressures_a, &pressures_b, &loads].map(|values| even(values)))
@@ -150,7 +151,7 @@ fn recording(
     is_right.then_some(FrictionRecording { file, time_step, positions, has_position, forces })
 }
 
-/// By the trapezoidal rule, from zero.
+/// Integral by the trapezoidal rule, from zero.
 fn integrated(velocities: &[f64], time_step: f64) -> Vec<f64> {
     let mut position = 0.0;
     let mut before = velocities.first().copied().unwrap_or(0.0);

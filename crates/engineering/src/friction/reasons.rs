@@ -1,5 +1,5 @@
-//! Reasons for which the recordings leave coefficients open. Each fact that they lack is a reason
-//! of its own, and stays next to the others.
+//! Reasons why the recordings leave coefficients open. Each missing fact is a separate reason, and
+//! is reported together with the others.
 
 use std::f64::consts::PI;
 
@@ -10,16 +10,16 @@ use super::estimates::OpenCoefficient;
 use super::problem::FrictionProblem;
 use super::{ConstantVelocity, PressedRows};
 
-/// Reason for which the recordings do not determine a coefficient.
+/// Reason why the recordings do not determine a coefficient.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NotIdentifiableFriction {
     /// Nothing slides at a constant velocity.
     NothingSlides,
-    /// The force is the same at all slow velocities: no fall from static friction is seen.
+    /// The force is equal at all slow velocities: no fall from static friction is visible.
     NoFall,
     /// Friction falls from static to Coulomb friction, and too few runs slide in between.
     FewOnFall {
-        /// m/s, up to which further runs would show it.
+        /// Velocity below which further runs would show it, m/s.
         below: f64,
     },
     /// Neither is a run slow enough for static friction, nor does the piston break away from rest.
@@ -28,61 +28,63 @@ pub enum NotIdentifiableFriction {
     NothingPressed,
     /// Nothing shakes the piston on its bristles while its position is recorded.
     NothingShaken {
-        /// rad/s, at which the mass rings on the bristles, where their stiffness is determined.
+        /// Frequency at which the mass oscillates on the bristles, rad/s, if their stiffness is
+        /// determined.
         ringing: Option<f64>,
-        /// N, static friction, where it is determined.
+        /// Static friction, N, if it is determined.
         breaking: Option<f64>,
     },
-    /// The piston is shaken, and there are too few rows in a period of its ringing.
+    /// The piston is shaken, but there are too few rows in a period of its oscillation on the
+    /// bristles.
     TooFewRows {
-        /// s between rows, the longest that would do.
+        /// Longest sufficient time between rows, s.
         time_step: f64,
     },
-    /// The piston is shaken too little, or away from where it rings.
+    /// The piston is shaken too little, or far from its natural frequency.
     ShakenTooLittle {
-        /// Standard deviation over the largest at which it is determined.
+        /// Ratio of the standard deviation to the largest one at which it is determined.
         factor: f64,
     },
     /// The force changes within a few rows, or rises too quickly, while the piston is pressed.
     QuickForce,
-    /// Noise hides it.
+    /// Noise hides the coefficient.
     Hidden,
     /// The rows that are pressed are not explained.
     NotExplained {
-        /// Residual over the noise.
+        /// Ratio of the residual to the noise.
         residual: f64,
     },
 }
 
-/// Duration of a force that rises slowly, over the delay by the damping: twice its inverse is the
-/// error of the stiffness where the damping is not the one that is taken for granted.
+/// Duration of a slowly rising force in terms of the delay by the damping: twice its inverse is the
+/// error of the stiffness if the damping is not the assumed one.
 const SLOW: f64 = 250.0;
 
-/// Fewest rows in a period of the ringing.
+/// Fewest rows in a period of the oscillation on the bristles.
 pub const ROWS_OF_RINGING: f64 = 8.0;
 
-/// Part of the friction of the slowest run that static friction has at least.
+/// Least ratio of static friction to the friction of the slowest run.
 const UP_TO_NOISE: f64 = 0.98;
 
-/// Residual over noise beyond which recordings are not explained.
+/// Ratio of residual to noise beyond which recordings are not explained.
 const EXPLAINED: f64 = 1.5;
 
 impl OpenCoefficient {
-    /// Adds a reason. What to record says more than that noise hides it.
+    /// Adds a reason. A missing recording is more informative than hiding noise.
     fn leave_open(&mut self, reason: NotIdentifiableFriction) {
         self.reasons.retain(|known| *known != NotIdentifiableFriction::Hidden && *known != reason);
         self.reasons.push(reason);
     }
 }
 
-/// The fall from static to Coulomb friction of a direction, and its standard deviation, in N.
+/// Fall from static to Coulomb friction of a direction, and its standard deviation, N.
 #[derive(Clone, Copy)]
 pub(super) struct Fall {
     pub(super) value: f64,
     pub(super) deviation: f64,
 }
 
-/// Coulomb and static friction of a direction, and what shows them.
+/// Coulomb and static friction of a direction, and the data that show them.
 struct LoadedDirection<'a> {
     levels: [&'a mut OpenCoefficient; 2],
     fall: Fall,
@@ -90,7 +92,7 @@ struct LoadedDirection<'a> {
     presses: Vec<&'a PressedRows>,
 }
 
-/// Adds to each coefficient why it is open, as far as that is known.
+/// Adds the known reasons to each open coefficient.
 pub(super) fn reasons(
     (problem, lugre): (&FrictionProblem<'_>, &LuGre),
     found: &mut [OpenCoefficient; FRICTION_COEFFICIENTS],
@@ -128,7 +130,7 @@ pub(super) fn reasons(
     of_the_bristles(problem, [stiffness, damping], breaking);
 }
 
-/// Reasons of Stribeck velocity and exponent.
+/// Reasons for Stribeck velocity and exponent.
 fn of_the_fall(
     problem: &FrictionProblem<'_>,
     directions: &[LoadedDirection<'_>],
@@ -152,7 +154,7 @@ fn of_the_fall(
     }
 }
 
-/// Reasons of Coulomb and static friction.
+/// Reasons for Coulomb and static friction.
 fn of_levels(problem: &FrictionProblem<'_>, lugre: &LuGre, direction: &mut LoadedDirection<'_>) {
     let LoadedDirection { levels: [coulomb, breaking], slides, presses, .. } = direction;
     if slides.is_empty() {
@@ -160,7 +162,7 @@ fn of_levels(problem: &FrictionProblem<'_>, lugre: &LuGre, direction: &mut Loade
     }
     if presses.is_empty() && !slides.is_empty() && !breaking.is_determined() {
         breaking.leave_open(NotIdentifiableFriction::NotApproached);
-        // it is no less than what the slowest run shows, up to noise
+        // static friction is no less than the friction of the slowest run, up to noise
         let slowest = slides.iter().map(|slide| slide.velocity);
         let slowest = slowest.min_by(|one, other| one.abs().total_cmp(&other.abs())).unwrap_or(0.0);
         let shown = UP_TO_NOISE * lugre.curve.sliding_force(slowest);
@@ -172,7 +174,7 @@ fn of_levels(problem: &FrictionProblem<'_>, lugre: &LuGre, direction: &mut Loade
     }
 }
 
-/// Reasons of stiffness and damping of the bristles.
+/// Reasons for stiffness and damping of the bristles.
 fn of_the_bristles(
     problem: &FrictionProblem<'_>,
     [stiffness, damping]: [&mut OpenCoefficient; 2],
@@ -203,14 +205,14 @@ fn of_the_bristles(
     }
 }
 
-/// s between the rows of what is shaken, the longest.
+/// Longest time between the rows of the shakes, s.
 fn shaken_time_step(problem: &FrictionProblem<'_>) -> Option<f64> {
     let recordings = problem.shakes.iter().filter_map(|shake| problem.recordings.get(shake.recording));
     recordings.map(|one| one.time_step).reduce(f64::max)
 }
 
-/// True where a force that presses is not known between its rows, or is too quick for a damping
-/// that is taken for granted, which delays the mass.
+/// True if a pressing force is not known between its rows, or is too quick for an assumed damping,
+/// which delays the mass.
 fn presses_quickly(
     problem: &FrictionProblem<'_>,
     stiffness: &OpenCoefficient,

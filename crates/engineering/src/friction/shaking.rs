@@ -7,23 +7,23 @@ use phea_hydraulics::friction::{MultisineForce, TRENDS};
 use super::FrictionRecording;
 use sines::{fitted, sines, white_noise};
 
-/// The rows of a recording whose force is a sum of sines.
+/// Rows of a recording whose force is a sum of sines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShakenRows {
     /// Index of the recording.
     pub recording: usize,
-    /// Guess of the force.
+    /// Initial estimate of the force.
     pub force: MultisineForce,
-    /// Cosine and sine of the position for each frequency, in m.
+    /// Cosine and sine coefficients of the position for each frequency, m.
     responses: Vec<[f64; 2]>,
-    /// N and m, noise of both signals.
+    /// Noise of force, N, and position, m.
     pub(super) noise: [f64; 2],
 }
 
-/// Fewest rows that say anything.
+/// Fewest rows with sufficient information.
 const FEWEST_ROWS: usize = 100;
 
-/// The recording as one that is shaken; `None` where its force is not a sum of sines.
+/// Shaken rows of the recording; `None` if its force is not a sum of sines.
 pub(super) fn shaken_rows(recording: &FrictionRecording, index: usize) -> Option<ShakenRows> {
     let rows = recording.forces.len();
     if rows < FEWEST_ROWS {
@@ -43,18 +43,18 @@ pub(super) fn shaken_rows(recording: &FrictionRecording, index: usize) -> Option
 }
 
 impl ShakenRows {
-    /// Velocity in m/s and displacement from the mean in m at the first row, but for noise.
+    /// Velocity, m/s, and displacement from the mean, m, at the first row, without noise.
     pub(super) fn beginning(&self) -> [f64; 2] {
         let all = self.force.frequencies.iter().zip(&self.responses);
         all.fold([0.0; 2], |[v, x], (omega, [cosine, sine])| [v + omega * sine, x + cosine])
     }
 
-    /// Root mean square of the position in m, but for its mean, drift and noise.
+    /// Root mean square of the position, without its mean, drift and noise, m.
     pub(super) fn swing(&self) -> f64 {
         self.responses.iter().map(|[cosine, sine]| (cosine * cosine + sine * sine) / 2.0).sum::<f64>().sqrt()
     }
 
-    /// Stiffness in N/m and damping in N s/m of a spring and a damper that respond alike.
+    /// Stiffness, N/m, and damping, N s/m, of a spring and a damper with this response.
     ///
     /// ```text
     /// F_k = (sigma_0 - M omega_k^2 + j omega_k c) X_k        least squares over all k

@@ -1,4 +1,4 @@
-//! The behaviour of the identified friction, compared with the recordings.
+//! Behaviour of the identified friction, compared with the recordings.
 
 use phea_dynamics::least_squares::Minimum;
 use phea_hydraulics::friction::KnottedForce;
@@ -9,25 +9,25 @@ use super::pressing::PressedRows;
 use super::problem::{FrictionProblem, KeptShapes, SHARED};
 use super::shaking::ShakenRows;
 
-/// The friction force at a constant velocity. Units: m/s, N.
+/// Friction force at a constant velocity. Units: m/s, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SteadyPoint {
     /// Index of the recording.
     pub recording: usize,
-    /// v.
+    /// Velocity v.
     pub velocity: f64,
-    /// As recorded, over the second half of the rows, less the zero of the force.
+    /// Recorded force over the second half of the rows, without the zero error.
     pub force: f64,
-    /// By the identified curve.
+    /// Force of the identified curve.
     pub modelled: f64,
 }
 
-/// Position over force of a piston that is pressed or shaken. Units: N, m.
+/// Position as a function of force for a piston that is pressed or shaken. Units: N, m.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PressedCurve {
-    /// As recorded, less the zero of the force.
+    /// Recorded force without the zero error.
     pub forces: Vec<f64>,
-    /// As recorded, from the beginning.
+    /// Recorded position, relative to its beginning.
     pub positions: Vec<f64>,
     /// Explained force.
     pub modelled_forces: Vec<f64>,
@@ -36,7 +36,7 @@ pub struct PressedCurve {
 }
 
 impl ConstantVelocity {
-    /// N, mean of the recorded force over the second half.
+    /// Mean of the recorded force over the second half, N.
     pub fn settled_force(&self) -> f64 {
         let half = self.blocks.get(self.blocks.len() / 2..).unwrap_or_default();
         let rows: f64 = half.iter().map(|block| block.rows as f64).sum();
@@ -45,8 +45,8 @@ impl ConstantVelocity {
 }
 
 impl PressedRows {
-    /// A number with the sign of the change of the force, which is that of the way in which the
-    /// piston breaks away.
+    /// A number with the sign of the change of the force, which is that of the direction of
+    /// breakaway.
     pub(super) fn way(&self) -> f64 {
         let ends = self.force.forces.last().zip(self.force.forces.first());
         ends.map_or(0.0, |(last, first)| last - first)
@@ -54,7 +54,7 @@ impl PressedRows {
 }
 
 impl FrictionIdentification {
-    /// The recorded friction map, and the curve at its velocities.
+    /// Recorded friction map, and the curve at its velocities.
     pub fn steady_points(&self) -> Vec<SteadyPoint> {
         let zero = self.zero.as_ref().map_or(0.0, |zero| zero.value);
         let point = |slide: &ConstantVelocity| SteadyPoint {
@@ -71,7 +71,7 @@ impl FrictionIdentification {
         self.shaken.get(index)
     }
 
-    /// The recorded and the explained position of a press.
+    /// Recorded and explained position of a press.
     pub fn pressed_curve(&self, index: usize) -> Option<PressedCurve> {
         let zero = self.zero.as_ref().map_or(0.0, |zero| zero.value);
         let press = self.presses.get(index)?;
@@ -119,7 +119,7 @@ pub(super) fn shaken(
     problem.shakes.iter().filter_map(of).collect()
 }
 
-/// Root mean square of what is left of the forces in N and of the positions in m.
+/// Root mean square of the residual forces, N, and positions, m.
 pub(super) fn residual_rms(problem: &FrictionProblem<'_>, minimum: &Minimum) -> [Option<f64>; 2] {
     let groups = problem.sliding_channels();
     let mut sums = [(0.0, 0.0); 2];
@@ -135,7 +135,7 @@ pub(super) fn residual_rms(problem: &FrictionProblem<'_>, minimum: &Minimum) -> 
     sums.map(|(sum, count)| (count > 0.0).then(|| f64::sqrt(sum / count)))
 }
 
-/// Measured force of each press at its knots in N, and the beginning of its position in m.
+/// Measured force of each press at its knots, N, and initial position, m.
 pub(super) fn pressed(problem: &FrictionProblem<'_>, minimum: &Minimum) -> Vec<(Vec<f64>, f64)> {
     let mut first = SHARED + problem.slides.len();
     let of = |press: &PressedRows| {

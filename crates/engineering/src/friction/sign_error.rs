@@ -1,16 +1,16 @@
 use crate::tendency::Tendency;
 
-/// Error of signals that go against each other.
+/// Error of signals with opposite signs.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(super) enum SignError {
-    /// A recorded velocity against the slope of the position.
+    /// A recorded velocity is opposite to the slope of the position.
     #[error(
         "`{velocity}` is against the slope of `{position}` (correlation {:.2} over {} blocks of rows)",
         tendency.correlation,
         tendency.rows
     )]
     Velocity { velocity: String, position: String, tendency: Tendency },
-    /// A force that drives the piston against its motion.
+    /// The force that drives the piston is opposite to its motion.
     #[error(
         "the force that drives the piston, of {columns}, is against its motion by {motion} (correlation {:.2} over {} blocks of rows)",
         tendency.correlation,
@@ -39,10 +39,10 @@ pub(super) enum SignHint {
     OtherSign { motion: String, exchanged: bool, shifted: bool },
 }
 
-/// Further reason for which a force may be against the motion.
+/// Further reason why a force may be opposite to the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 enum OtherReason {
-    /// Both pressures, each for the other one.
+    /// The pressures of both ports are exchanged.
     #[error(", or the columns of the ports are exchanged")]
     Exchanged,
     /// Instruments of a run in one direction.

@@ -1,7 +1,7 @@
-//! Signals of a run that go against each other.
+//! Check for signals of a run with opposite signs.
 //!
-//! Friction takes energy from the mass: what drives it, A_A p_A - A_B p_B - F_e, acts in the
-//! direction of the motion, over both ways whatever the zero of the instruments is.
+//! Friction takes energy from the mass: the driving force, A_A p_A - A_B p_B - F_e, acts in the
+//! direction of the motion, over both directions whatever the zero error of the instruments is.
 
 use phea_dynamics::order;
 
@@ -10,15 +10,15 @@ use crate::project::{Findings, RawFinding};
 use crate::table::{Column, MeasuredTable};
 use crate::tendency::Tendency;
 
-/// Most blocks of rows that a run is averaged over.
+/// Largest number of blocks of rows over which a run is averaged.
 const BLOCKS: usize = 1000;
-/// Path over the distance between its ends, beyond which a run goes both ways.
+/// Ratio of the path to the distance between its ends beyond which a run moves in both directions.
 const BOTH_WAYS: f64 = 3.0;
-/// m, shortest distance between the ends of a run that slides. Less is a piston on its bristles,
-/// whose elastic force is in phase with the position, not the velocity.
+/// Shortest distance between the ends of a sliding run, m. Less is a piston on its bristles, whose
+/// elastic force is in phase with the position, not the velocity.
 const SLIDING: f64 = 2e-4;
 
-/// Refuses a run in which the recorded velocity goes against the slope of the position.
+/// Rejects a run in which the recorded velocity is opposite to the slope of the position.
 pub(super) fn velocity_along_position(
     table: &MeasuredTable,
     position: Option<&Column>,
@@ -41,7 +41,7 @@ pub(super) fn velocity_along_position(
     findings.push(found.help(hint.to_string()));
 }
 
-/// Refuses a run in which the force that drives the mass is against its motion.
+/// Rejects a run in which the force that drives the mass is opposite to its motion.
 pub(super) fn force_along_motion(
     table: &MeasuredTable,
     motion: &Column,
@@ -72,7 +72,7 @@ pub(super) fn force_along_motion(
     findings.push(found.help(hint.to_string()));
 }
 
-/// Rows of a block.
+/// Number of rows of a block.
 fn width(values: &[f64]) -> usize {
     values.len().div_ceil(BLOCKS).max(1)
 }

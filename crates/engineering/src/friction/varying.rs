@@ -1,4 +1,4 @@
-//! Runs of the piston whose velocity is not constant, though it is on average.
+//! Runs of the piston whose velocity is constant only on average.
 
 use std::ops::Range;
 
@@ -9,30 +9,30 @@ use phea_dynamics::order;
 pub struct VaryingVelocity {
     /// Index of the recording.
     pub recording: usize,
-    /// Rows that are left out for it.
+    /// Rows that are omitted for this reason.
     pub rows: Range<usize>,
-    /// m/s, the slope of the line through the positions.
+    /// Slope of the line through the positions, m/s.
     pub velocity: f64,
-    /// m/s, least and greatest velocity over the shortest windows that noise allows.
+    /// Least and greatest velocity over the shortest windows that noise permits, m/s.
     pub range: [f64; 2],
 }
 
-/// Standard deviation of the velocity of a window, over the mean velocity, that sets its length.
+/// Relative standard deviation of the velocity of a window that determines its length.
 const RESOLVED: f64 = 0.05;
 
-/// Departure from the mean velocity, over it, up to which a velocity is constant.
+/// Relative departure from the mean velocity up to which a velocity is constant.
 const STEADY: f64 = 0.25;
 
-/// Standard deviations of the velocity of a window that are noise.
+/// Number of standard deviations of the velocity of a window that count as noise.
 const OF_NOISE: f64 = 5.0;
 
 /// Fewest rows of a window.
 const SHORTEST: usize = 4;
 
-/// Fewest windows: fewer resolve nothing of the velocity within the run.
+/// Fewest windows: fewer do not resolve the velocity within the run.
 const FEWEST_WINDOWS: usize = 4;
 
-/// Least and greatest velocity within a run, in m a row, where it is not constant.
+/// Least and greatest velocity within a run, m per row, if it is not constant.
 ///
 /// ```text
 /// v_k = slope of the line through w rows        its standard deviation s (12/(w (w^2 - 1)))^(1/2)
@@ -47,15 +47,15 @@ pub(super) fn varying(positions: &[f64], mean: f64, noise: f64) -> Option<[f64; 
     (mean - least > allowed || greatest - mean > allowed).then_some([least, greatest])
 }
 
-/// Times that a velocity goes below the half of its mean and above one and a half of it, from which
-/// on a piston sticks and slips.
+/// Number of times that a velocity falls below half of its mean and exceeds one and a half of it
+/// from which a piston sticks and slips.
 const CYCLES: usize = 3;
 
-/// Part of the way of the piston that leads from one end of the rows to the other, at least.
+/// Least ratio of the distance between the ends of the rows to the path of the piston.
 const ONE_WAY: f64 = 0.5;
 
-/// Mean, least and greatest velocity, in m a row, of a piston that goes one way and sticks and
-/// slips on it.
+/// Mean, least and greatest velocity of a piston that moves in one direction with stick-slip, m per
+/// row.
 pub(super) fn sticks_and_slips(positions: &[f64], noise: f64) -> Option<[f64; 3]> {
     let distance = positions.last()? - positions.first()?;
     let mean = distance / (positions.len() as f64 - 1.0);
@@ -80,7 +80,7 @@ pub(super) fn sticks_and_slips(positions: &[f64], noise: f64) -> Option<[f64; 3]
     (cycles >= CYCLES && straight >= ONE_WAY * way).then_some([mean, least, greatest])
 }
 
-/// The velocity of the shortest windows that noise allows, in m a row, and its standard deviation.
+/// Velocity of the shortest windows that noise permits, m per row, and its standard deviation.
 fn velocities(positions: &[f64], mean: f64, noise: f64) -> Option<(Vec<f64>, f64)> {
     let noise = noise.max(resolution(positions) / 12.0_f64.sqrt());
     let deviation = |width: usize| {
@@ -93,8 +93,7 @@ fn velocities(positions: &[f64], mean: f64, noise: f64) -> Option<(Vec<f64>, f64
     Some((windows.map(slope).collect(), deviation(width)))
 }
 
-/// The step between two numbers of a position that repeats itself from row to row; zero where it
-/// does not.
+/// Step between two numbers of a position that repeats itself from row to row; zero if it does not.
 fn resolution(positions: &[f64]) -> f64 {
     const REPEATED: usize = 10;
     let steps = || positions.windows(2).filter_map(|pair| Some((pair.last()? - pair.first()?).abs()));
@@ -106,7 +105,7 @@ fn resolution(positions: &[f64]) -> f64 {
     if finest.is_finite() { finest } else { 0.0 }
 }
 
-/// For each row, of the line by least squares.
+/// Slope per row of the line by least squares.
 fn slope(values: &[f64]) -> f64 {
     let count = values.len() as f64;
     let middle = (count - 1.0) / 2.0;

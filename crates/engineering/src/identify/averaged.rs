@@ -5,21 +5,22 @@ use phea_hydraulics::servovalve::{Supply, TestInput, WarmOil};
 use super::recording::{RecordedSignal, Recording};
 use phea_dynamics::order::median;
 
-/// About how many averages a recording has near null, and away from it, where leakage is still
-/// curved: its curvature within an average counts with the fourth power of their length.
+/// Approximate number of averages of a recording near null, and away from it, where leakage is
+/// still curved: its curvature within an average counts with the fourth power of their length.
 const NEAR: usize = 1500;
 const OTHERS: usize = 2500;
 
 /// Fraction of the greatest command within which a row is near null.
 const NEAR_NULL: f64 = 0.1;
 
-/// Distances from the median, over the median distance, beyond which a value is an outlier.
+/// Ratio of the distance from the median to the median distance beyond which a value is an outlier.
 const OUTLYING: f64 = 6.0;
 
-/// A recording with one row for each block of neighbouring rows whose command goes one way.
+/// A recording with one row for each block of neighbouring rows whose command moves in one
+/// direction.
 ///
-/// Averages of white noise determine the coefficients as well as all rows do; what they
-/// change is the curvature of a signal within a block, and its outliers.
+/// Averages of white noise determine the coefficients as well as all rows do; they only change the
+/// curvature of a signal within a block, and its outliers.
 pub(super) fn averaged(recording: &Recording) -> Recording {
     let blocks = blocks(recording);
     let mean = |values: &[f64], block: &std::ops::Range<usize>| {
@@ -87,7 +88,7 @@ fn blocks(recording: &Recording) -> Vec<std::ops::Range<usize>> {
     blocks
 }
 
-/// The mean of the values that are no outliers; absent where none was read.
+/// Mean of the values that are no outliers; absent if none was read.
 fn inner_mean(values: &[Option<f64>]) -> Option<f64> {
     let read: Vec<f64> = values.iter().flatten().copied().collect();
     let middle = median(read.clone());

@@ -21,11 +21,11 @@ const TOLERANCE: f64 = 1e-7;
 pub struct Bootstrap {
     /// 95 % interval of each coefficient, from the 2.5th to the 97.5th percentile.
     pub intervals: [[f64; 2]; COUNT],
-    /// Repetitions that were made.
+    /// Number of completed repetitions.
     pub repetitions: usize,
-    /// Repetitions whose fit did not converge: they are left out.
+    /// Number of repetitions whose fit did not converge: they are omitted.
     pub failed: usize,
-    /// Rows of a block.
+    /// Number of rows of a block.
     pub block_rows: usize,
 }
 
@@ -36,10 +36,10 @@ pub struct Bootstrap {
 /// y* = y(K) + s_b r sqrt(n/(n - m))        s_b = +-1
 /// ```
 ///
-/// So noise that differs from row to row stays in its row, signals of a row stay together, and the
-/// correlation of neighbouring residuals stays within a block (Liu 1988, Shao 2010). A block is as
-/// long as the residuals of any signal are correlated: up to the lag at which their correlation is
-/// below 2/sqrt(n).
+/// Thus noise that differs from row to row stays in its row, signals of a row stay together, and
+/// the correlation of neighbouring residuals stays within a block (Liu 1988, Shao 2010). A block is
+/// as long as the correlation of the residuals of any signal: up to the lag at which it is below
+/// 2/sqrt(n).
 pub(super) fn bootstrap(
     fit: &Fit<'_>,
     repetitions: usize,
@@ -83,7 +83,7 @@ pub(super) fn bootstrap(
     Ok(Bootstrap { intervals, repetitions, failed, block_rows })
 }
 
-/// The recordings with the signs of their residuals drawn anew.
+/// Recordings with the signs of their residuals drawn anew.
 fn repeated(fit: &Fit<'_>, widening: f64, block_rows: usize, state: &mut u64) -> Vec<Recording> {
     let together = &fit.together;
     let mut recordings = together.recordings.to_vec();
@@ -108,7 +108,8 @@ fn repeated(fit: &Fit<'_>, widening: f64, block_rows: usize, state: &mut u64) ->
     recordings
 }
 
-/// Each value (the model's value less the residual), with the residual multiplied by a sign.
+/// Replaces each value by the model's value (the value minus the residual) plus the residual
+/// multiplied by a sign.
 fn replace<'s>(
     signal: &mut RecordedSignal,
     residuals: &[f64],

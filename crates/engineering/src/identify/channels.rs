@@ -1,4 +1,4 @@
-//! The recorded signals that are explained together, and their residuals.
+//! Recorded signals that are explained together, and their residuals.
 
 use phea_dynamics::least_squares::{Linearised, Minimum, Settings, minimise};
 use phea_dynamics::portable;
@@ -9,20 +9,20 @@ use super::recording::{RecordedSignal, Recording};
 use super::variables::{NULL_BIAS, Variables};
 use phea_dynamics::order::median;
 
-/// Initial scale of a residual, over the range of its signal.
+/// Initial scale of a residual, relative to the range of its signal.
 const FIRST_SCALE: f64 = 0.01;
 
-/// Least scale over the range, which no instrument resolves.
+/// Least scale relative to the range, which no instrument resolves.
 const RESOLUTION: f64 = 1e-6;
 
-/// Evaluations of a search whose end is the start of another.
+/// Number of evaluations of a search whose end is the start of another.
 const FEW_EVALUATIONS: usize = 60;
 
-/// Evaluations after which a search is judged to be worth its time.
+/// Number of evaluations after which a search is judged to be worth its time.
 const FIRST_STEPS: usize = 6;
 
-/// Evaluations of the last search. Where the recordings hardly distinguish coefficients, the sum
-/// has a long curved valley.
+/// Number of evaluations of the last search. If the recordings hardly distinguish coefficients, the
+/// sum has a long curved valley.
 pub(super) const EVALUATIONS: usize = 1000;
 
 /// Decrease of the negative logarithm of the likelihood that moves no coefficient by more than a
@@ -32,27 +32,28 @@ const NO_EVIDENCE: f64 = 1e-3;
 /// Damping of a search that begins near its end.
 const UNDAMPED: f64 = 1e-10;
 
-/// Rows of a recording from which the noise of its command is estimated.
+/// Fewest rows of a recording from which the noise of its command is estimated.
 const FEWEST_STEEP: usize = 10;
 
-/// A row is steep where the noise of the command shows in a signal by this many of its scales.
+/// Ratio of the contribution of command noise to the scale of a signal from which a row is steep.
 const STEEP: f64 = 2.0;
 
-/// Median magnitude of normal numbers over their deviation, and the same that counts as no more.
+/// Ratio of the median magnitude of normal numbers to their standard deviation, and the ratio up to
+/// which they still count as normal.
 const OF_NORMAL: [f64; 2] = [0.6745, 0.75];
 
-/// Halvings in which the noise of a command is found.
+/// Number of bisections to find the noise of a command.
 const HALVINGS: usize = 30;
 
-/// A row in which a signal is steep over the command.
+/// A row in which a signal depends steeply on the command.
 struct SteepRow {
     residual: f64,
     slope: f64,
     scale: f64,
 }
 
-/// The noise of the command with which half of the residuals of steep rows are within what is
-/// normal; at most as much as its record has.
+/// Noise of the command with which half of the residuals of steep rows are within the normal range;
+/// at most the noise of its record.
 fn noise_of_steep_rows(steep: &[SteepRow], most: f64) -> f64 {
     let middle = |noise: f64| {
         let of = |row: &SteepRow| row.residual.abs() / portable::hypot(row.scale, noise * row.slope);
@@ -76,17 +77,18 @@ pub(super) struct Channel {
     pub(super) recording: usize,
     pub(super) signal: usize,
     pub(super) scale: f64,
-    /// The deviation of the signal by the noise of the command, row by row;
-    /// empty where it has none.
+    /// Standard deviation of the signal due to the noise of the command, row by row; empty without
+    /// such noise.
     pub(super) by_command: Vec<f64>,
-    /// Largest less smallest value.
+    /// Difference between largest and smallest value.
     pub(super) range: f64,
-    /// Step of the converter that the values show.
+    /// Step of the converter that is visible in the values.
     pub(super) step: f64,
 }
 
 impl Channel {
-    /// Scale of the residual of a row: by the signal's own noise and that of the command together.
+    /// Scale of the residual of a row: from the noise of the signal and that of the command
+    /// together.
     ///
     /// ```text
     /// s_i^2 = s_c^2 + (sigma_U dy/dU)^2                                        Orear (1982)
@@ -96,7 +98,7 @@ impl Channel {
     }
 
     /// Resolution of the instrument, and the standard deviation of rounding to the converter's
-    /// steps: where most rows are rounded to one value, their residuals say nothing of the noise.
+    /// steps: if most rows are rounded to one value, their residuals do not show the noise.
     pub(super) fn least_scale(&self) -> f64 {
         (RESOLUTION * self.range).max(self.step / 12.0_f64.sqrt())
     }
@@ -142,7 +144,7 @@ impl<'a> Together<'a> {
         self.recordings.get(channel.recording)?.signals.get(channel.signal)
     }
 
-    /// Residuals over their scales, channel by channel, with derivatives.
+    /// Residuals divided by their scales, channel by channel, with derivatives.
     pub(super) fn linearised(&self, variables: &[f64]) -> Linearised {
         let coefficients = self.variables.coefficients(variables);
         let slopes = self.variables.slopes(&coefficients);
@@ -180,8 +182,8 @@ impl<'a> Together<'a> {
         self.channels.iter().filter_map(of_channel).flatten().collect()
     }
 
-    /// The group of each residual: the readings of one instant, or of so many rows whose residuals
-    /// are alike.
+    /// Group of each residual: the readings of one instant, or of this number of rows whose
+    /// residuals are alike.
     pub(super) fn groups(&self, block_rows: usize) -> Vec<usize> {
         let mut before = 0;
         let mut firsts = Vec::with_capacity(self.recordings.len());
@@ -200,7 +202,8 @@ impl<'a> Together<'a> {
         groups
     }
 
-    /// Minimum of a search from here, at this relative decrease of the sum, or soon.
+    /// Minimum of a search from here, to this relative decrease of the sum, or after few
+    /// evaluations.
     pub(super) fn searched(
         &self,
         start: &[f64],
@@ -211,19 +214,19 @@ impl<'a> Together<'a> {
         self.searched_with(start, few, watch)
     }
 
-    /// The end of the first steps of a search from here.
+    /// End of the first steps of a search from here.
     pub(super) fn searched_briefly(&self, start: &[f64], watch: Watch<'_>) -> Result<Minimum, Stopped> {
         let brief = Settings { maximum_evaluations: FIRST_STEPS, ..Settings::default() };
         self.searched_with(start, brief, watch)
     }
 
-    /// The minimum that a search from here leads to.
+    /// Minimum to which a search from here leads.
     pub(super) fn searched_to_the_end(&self, start: &[f64], watch: Watch<'_>) -> Result<Minimum, Stopped> {
         let many = Settings { maximum_evaluations: EVALUATIONS, ..Settings::default() };
         self.searched_with(start, many, watch)
     }
 
-    /// The minimum near a start that differs from it by less than the noise.
+    /// Minimum near a start that differs from it by less than the noise.
     pub(super) fn searched_from_near(
         &self,
         start: &[f64],
@@ -246,7 +249,7 @@ impl<'a> Together<'a> {
         })
     }
 
-    /// Residuals of each channel, over their scales.
+    /// Residuals of each channel, divided by their scales.
     pub(super) fn by_channel<'r>(&self, residuals: &'r [f64]) -> Vec<&'r [f64]> {
         let mut rest = residuals;
         let count = |channel| self.signal(channel).map_or(0, |signal| signal.values.iter().flatten().count());
@@ -258,15 +261,15 @@ impl<'a> Together<'a> {
         self.channels.iter().map(&mut split).collect()
     }
 
-    /// Scales of the residuals of a channel, row by row that was read.
+    /// Scales of the residuals of a channel, for each row that was read.
     pub(super) fn scales<'c>(&'c self, channel: &'c Channel) -> impl Iterator<Item = f64> + 'c {
         let values = self.signal(channel).into_iter().flat_map(|signal| &signal.values);
         values.enumerate().filter(|(_, value)| value.is_some()).map(|(row, _)| channel.scale_at(row))
     }
 
     /// Takes the scale of each signal from its residuals: 1.4826 times their median magnitude,
-    /// which outliers do not move; at least what the instrument resolves. Then that of the command
-    /// of each recording. Returns the largest relative change of the scale of a signal.
+    /// which outliers do not move; at least the resolution of the instrument. Then that of the
+    /// command of each recording. Returns the largest relative change of the scale of a signal.
     pub(super) fn rescale(&mut self, variables: &[f64], residuals: &[f64]) -> f64 {
         let of = |own: &[f64]| median(own.iter().map(|residual| residual.abs()).collect());
         let medians: Vec<f64> = self.by_channel(residuals).into_iter().map(of).collect();
@@ -285,7 +288,7 @@ impl<'a> Together<'a> {
         change
     }
 
-    /// Residuals of each channel row by row that was read, in the unit of the signal.
+    /// Residuals of each channel for each row that was read, in the unit of the signal.
     fn unscaled(&self, residuals: &[f64]) -> Vec<Vec<f64>> {
         let own = self.channels.iter().zip(self.by_channel(residuals));
         own.map(|(channel, own)| {
@@ -294,12 +297,13 @@ impl<'a> Together<'a> {
         .collect()
     }
 
-    /// Finds the deviation of the signals of a recording by the noise of the command.
+    /// Determines the standard deviation of the signals of a recording due to the noise of the
+    /// command.
     ///
-    /// The record of the command shows how rough it is; the residuals where a signal is steep
-    /// show that the valve did not follow this. The noise is that with which half of them are
-    /// normal, at most that of the record; zero where they are without it: a command that was sent
-    /// unchanged is rounded, and without noise.
+    /// The record of the command shows its roughness; the residuals at steep rows of a signal show
+    /// that the valve did not follow it. The noise is the value with which half of the residuals
+    /// are normal, at most that of the record; zero if they are normal without it: a command that
+    /// was sent unchanged is rounded, and without noise.
     fn takes_command_noise(
         &mut self,
         index: usize,
@@ -332,14 +336,15 @@ impl<'a> Together<'a> {
         }
     }
 
-    /// Magnitude of the slope of each signal of a recording over the command, row by row.
+    /// Magnitude of the slope of each signal of a recording with respect to the command, row by
+    /// row.
     fn command_slopes(&self, recording: &Recording, variables: &[f64]) -> Vec<Vec<f64>> {
         let coefficients = self.variables.coefficients(variables);
         let outputs = self.tested.sensitive_outputs(&coefficients, recording.circuit, &recording.inputs);
         let of = |output: &TestOutput<Sensitive>| {
             let slope = |signal: &RecordedSignal| {
                 let shown = output.combined(signal.kind.weights(&output.values()));
-                // the edges move with the command as they do against the null bias
+                // a command moves the edges as a null bias of opposite sign does
                 shown.gradient().get(NULL_BIAS).map_or(0.0, |slope| slope.abs())
             };
             recording.signals.iter().map(slope).collect()

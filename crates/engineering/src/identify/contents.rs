@@ -3,14 +3,14 @@
 use super::recording::Recording;
 use crate::project::{Diagnostic, StaticTest, TestSignal};
 
-/// The tests of some files, and what to know of the files.
+/// Tests of some files, and facts about the files.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordedFiles {
     /// The tests, in the order of the files.
     pub recordings: Vec<Recording>,
     /// Contents of each file.
     pub contents: Vec<FileContents>,
-    /// Findings in the files that were not refused.
+    /// Findings in the accepted files.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -19,31 +19,31 @@ pub struct RecordedFiles {
 pub struct FileContents {
     /// Path of the file.
     pub file: String,
-    /// Which test it is, where the project says so.
+    /// Kind of the test, if the project states it.
     pub test: Option<StaticTest>,
-    /// Rows that are used.
+    /// Number of rows that are used.
     pub rows: usize,
-    /// Rows that are left out, each with a warning.
+    /// Number of rows that are omitted, each with a warning.
     pub rows_left_out: usize,
     /// Columns that are used.
     pub columns: Vec<ColumnContents>,
-    /// Headings of columns that are not.
+    /// Headings of unused columns.
     pub unused: Vec<String>,
 }
 
-/// A column that is used, and what it was taken for.
+/// A used column and its meaning.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColumnContents {
-    /// Its heading.
+    /// Heading of the column.
     pub heading: String,
-    /// Signal that it holds.
+    /// Signal in the column.
     pub signal: TestSignal,
-    /// The unit that it was read in.
+    /// Unit in which the column was read.
     pub unit: String,
-    /// True where it was read with the opposite sign, as the project says.
+    /// True if the column was read with the opposite sign, as the project states.
     pub is_reversed: bool,
-    /// Least and greatest value of the rows that are used, in SI.
+    /// Least and greatest value of the used rows, SI.
     pub range: [f64; 2],
-    /// Rows without a value.
+    /// Number of rows without a value.
     pub gaps: usize,
 }

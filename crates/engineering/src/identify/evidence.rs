@@ -1,4 +1,4 @@
-//! Which model of the leakage the recordings support.
+//! Evidence of the recordings for each model of the leakage.
 
 use phea_dynamics::least_squares::{Settings, negative_log_likelihood};
 use phea_dynamics::portable;
@@ -16,25 +16,25 @@ const MOST_CORRELATED: f64 = 0.99;
 /// A model of the leakage with its fit and criterion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExplainedBy {
-    /// Which.
+    /// Compared model.
     pub model: LeakageModel,
-    /// Coefficients that do it best.
+    /// Coefficients that explain the recordings best.
     pub coefficients: StaticCoefficients,
-    /// Information criterion; the lower the better, its zero has no meaning.
+    /// Information criterion; lower is better, its zero has no meaning.
     pub criterion: f64,
-    /// Root mean square of all residuals, each over the range of its signal.
+    /// Root mean square of all residuals, each divided by the range of its signal.
     pub residual_rms: f64,
 }
 
-/// The models of the leakage compared.
+/// Comparison of the models of the leakage.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelEvidence {
-    /// Both, the one that explains the recordings better first.
+    /// Both models, the one that explains the recordings better first.
     pub models: [ExplainedBy; 2],
 }
 
 impl ModelEvidence {
-    /// By how much the criterion of the better model is lower.
+    /// Difference of the criteria of the better and the worse model.
     pub fn difference(&self) -> f64 {
         let [better, worse] = &self.models;
         worse.criterion - better.criterion
@@ -62,7 +62,7 @@ impl ModelEvidence {
     }
 }
 
-/// The information criterion of Schwarz (1978) for both fits of the same recordings.
+/// Information criterion of Schwarz (1978) for both fits of these recordings.
 ///
 /// ```text
 /// BIC = m ln n - 2 ln L        ln L = -sum over signals of f (n_c ln s_c + sum rho(r/s_c)),   n = sum f n_c
@@ -70,8 +70,8 @@ impl ModelEvidence {
 ///
 /// with s_c the likeliest scale of each signal, m the number of coefficients and scales, and f the
 /// fraction of rows that are independent, (1 - c)/(1 + c) with c the correlation of neighbouring
-/// residuals of the better model (Bayley and Hammersley 1946). A constant that both models share is
-/// left out.
+/// residuals of the better model (Bayley and Hammersley 1946). A constant common to both models is
+/// omitted.
 pub(super) fn criteria(fits: [&Fit<'_>; 2]) -> [f64; 2] {
     let signals = fits.map(Fit::signals);
     let losses = fits.map(losses);
@@ -92,18 +92,18 @@ pub(super) fn criteria(fits: [&Fit<'_>; 2]) -> [f64; 2] {
     [of(0), of(1)]
 }
 
-/// Fraction of rows that are independent where neighbouring residuals have this correlation.
+/// Fraction of independent rows if neighbouring residuals have this correlation.
 pub(super) fn independent_fraction(correlation: f64) -> f64 {
     let correlation = correlation.clamp(0.0, MOST_CORRELATED);
     (1.0 - correlation) / (1.0 + correlation)
 }
 
-/// The contribution of each signal to -ln L at its likeliest scale.
+/// Contribution of each signal to -ln L at its likeliest scale.
 fn losses(fit: &Fit<'_>) -> Vec<f64> {
     let beyond = Settings::default().robust_beyond;
     let residuals = fit.together.by_channel(&fit.minimum.linearised.residuals);
     let of = |(channel, own): (&super::channels::Channel, &[f64])| {
-        // over the scale of the fit; no finer than an instrument resolves
+        // relative to the scale of the fit; no finer than an instrument resolves
         let least = channel.least_scale() / channel.scale;
         let scales = fit.together.scales(channel).map(portable::ln).sum::<f64>();
         negative_log_likelihood(own, least, beyond) + scales

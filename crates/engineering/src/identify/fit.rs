@@ -21,34 +21,35 @@ const ROUGH: f64 = 1e-5;
 /// Relative change of the scales below which no further round is made.
 const SAME_SCALE: f64 = 1e-3;
 
-/// Rows of the first search: all over a recording, and near null.
+/// Rows of the first search: spread over a recording, and near null.
 const OTHERS: usize = 150;
 const NEAR: usize = 1500;
 
-/// Rows of all recordings beyond which the minimum is found over averages of rows first. The last
-/// search is over all rows from there, and ends after few evaluations.
+/// Number of rows of all recordings above which the minimum is first found over averages of rows.
+/// The last search is over all rows from there, and ends after few evaluations.
 const MANY_ROWS: usize = 20_000;
 
-/// Evaluations over all of many rows of a model that need not be the one that is wanted.
+/// Number of evaluations over all of many rows for a model that need not be the requested one.
 const ROUGH_EVALUATIONS: usize = 12;
 
-/// Longest block, as fraction of a recording.
+/// Least number of blocks of a recording, which limits their length.
 const LONGEST_BLOCK: usize = 10;
 
 /// Extent of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Depth {
-    /// Until the sum falls by no more than its hundred-thousandth: enough to compare models.
+    /// Search until the sum falls by less than a hundred-thousandth of it: enough to compare
+    /// models.
     ToCompare,
-    /// Until nothing is left to gain.
+    /// Search until no further improvement is possible.
     ToTheEnd,
 }
 
-/// The valve that explains the recordings best, with the signals and their scales.
+/// Valve that explains the recordings best, with the signals and their scales.
 pub(super) struct Fit<'a> {
     pub(super) together: Together<'a>,
     pub(super) minimum: Minimum,
-    /// Number of starting points, and how many of them lead here.
+    /// Number of starting points, and number of those that lead here.
     pub(super) starts: [usize; 2],
 }
 
@@ -91,12 +92,12 @@ impl Fit<'_> {
         self.signals_with(&self.minimum.linearised.residuals)
     }
 
-    /// True where a signal is left unexplained.
+    /// True if a signal remains unexplained.
     pub(super) fn has_misfit(&self) -> bool {
         self.signals().iter().any(|signal| signal.misfit().is_some())
     }
 
-    /// Fit of each signal where these residuals are left.
+    /// Fit of each signal with these residuals.
     pub(super) fn signals_with(&self, residuals: &[f64]) -> Vec<SignalFit> {
         let residuals = self.together.by_channel(residuals);
         let one = |(channel, own): (&Channel, &[f64])| {
@@ -118,7 +119,7 @@ impl Fit<'_> {
     }
 }
 
-/// The coefficients that explain all recordings best, from several starting points.
+/// Coefficients that explain all recordings best, from several starting points.
 pub(super) fn fitted<'a>(
     recordings: &'a [Recording],
     tested: TestedValve,
@@ -138,8 +139,8 @@ pub(super) fn fitted<'a>(
     )
 }
 
-/// Recordings explained by another model of the valve, from where this one ended or from
-/// a first guess, whichever leads further; as far as it takes to compare the two.
+/// Recordings explained by another model of the valve, from the end of this fit or from an initial
+/// estimate, whichever leads further; with the effort that is needed to compare the two.
 pub(super) fn with_another_model<'a>(
     first: &Fit<'a>,
     tested: TestedValve,
@@ -151,7 +152,7 @@ pub(super) fn with_another_model<'a>(
     fitted_from(&starts, together, Depth::ToCompare, watch)
 }
 
-/// Recordings explained by the same model from near where another fit ended.
+/// Recordings explained by one model from near the end of another fit.
 pub(super) fn from_near<'a>(
     recordings: &'a [Recording],
     like: &Fit<'_>,
@@ -163,8 +164,8 @@ pub(super) fn from_near<'a>(
     fitted_from(&[start.to_vec()], together, depth, watch)
 }
 
-/// A few steps towards the minimum that a model of the valve with another term has near this one,
-/// with the same scales: enough to judge whether the term is worth a fit.
+/// A few steps towards the minimum, near this one, of a model of the valve with another term, with
+/// these scales: enough to judge whether the term is worth a fit.
 pub(super) fn a_few_steps_with<'a>(
     first: &Fit<'a>,
     tested: TestedValve,
@@ -206,14 +207,14 @@ fn fitted_from<'a>(
     Ok(Fit { together, minimum, starts: [starts.len(), agreeing] })
 }
 
-/// True where the minimum is found over averages first.
+/// True if the minimum is first found over averages.
 fn has_many_rows(recordings: &[Recording]) -> bool {
     recordings.iter().map(|one| one.inputs.len()).sum::<usize>() > MANY_ROWS
 }
 
 impl Fit<'_> {
-    /// Fit at its minimum, with the scale of each signal from its residuals there: a search
-    /// that was cut short has those of another model.
+    /// Fit at its minimum, with the scale of each signal from its residuals there: a search with
+    /// few evaluations has those of another model.
     pub(super) fn searched_to_the_end(mut self, watch: Watch<'_>) -> Result<Self, IdentifyError> {
         let near = self.minimum.variables.clone();
         self.minimum = if has_many_rows(self.together.recordings) {
@@ -226,7 +227,7 @@ impl Fit<'_> {
     }
 }
 
-/// The minimum over all rows near a start, searched with the flow coefficients as in series.
+/// Minimum over all rows near a start, searched with the flow coefficients as in series.
 fn near_minimum(
     together: &Together<'_>,
     near: &[f64],
@@ -251,7 +252,7 @@ fn near_minimum(
     Ok(Minimum { variables: usual.of(&coefficients), ..minimum })
 }
 
-/// The minimum that a start leads to, with the scale of each signal from its residuals there.
+/// Minimum to which a start leads, with the scale of each signal from its residuals there.
 fn settled(
     together: &mut Together<'_>,
     start: &[f64],
@@ -272,7 +273,7 @@ fn settled(
     }
 }
 
-/// The best end of several starts, over fewer rows, and how many of them lead there.
+/// Best end of several starts, over fewer rows, and number of those that lead there.
 fn best_start(
     starts: &[Vec<f64>],
     together: &Together<'_>,

@@ -1,12 +1,12 @@
-//! First guesses, from what is read off the curves by hand.
+//! Initial estimates, from readings of the curves by hand.
 
 use phea_hydraulics::servovalve::{Edges, OpeningShape, StaticCoefficients, TestedValve};
 
 use super::recording::Recording;
 use super::simple::{SimpleCalculations, largest_command};
 
-/// The starting point of all coefficients: the calculations, or usual values where there are none.
-/// A coefficient that may be zero starts at a value that would matter.
+/// Starting point of all coefficients: the calculations, or usual values in their absence. A
+/// coefficient that may be zero starts at a value that would matter.
 pub(super) fn first_guess(
     recordings: &[Recording],
     tested: &TestedValve,

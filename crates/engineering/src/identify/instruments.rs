@@ -1,4 +1,4 @@
-//! Errors that instruments have throughout the tests, and the residuals that follow from them.
+//! Constant errors of instruments throughout the tests, and their effect on the residuals.
 
 use nalgebra::DMatrix;
 use phea_dynamics::least_squares::{Linearised, Settings};
@@ -8,12 +8,12 @@ use super::recording::{Recording, SignalKind};
 use super::warm::TestOil;
 use crate::project::{Accuracy, TestSignal};
 
-/// An error of an instrument that is the same in all rows, of one standard deviation.
+/// An error of an instrument that is equal in all rows, of one standard deviation.
 #[derive(Clone, Copy, Debug)]
 enum SharedError {
-    /// A fraction of what is read.
+    /// Error as a fraction of the reading.
     Gain(f64),
-    /// In the unit of the signal.
+    /// Error in the unit of the signal.
     Zero(f64),
 }
 
@@ -26,12 +26,11 @@ impl SharedError {
     }
 }
 
-/// The change of every residual by one standard deviation of each error that the instruments are
-/// stated to have.
+/// Change of every residual by one standard deviation of each stated error of the instruments.
 ///
-/// An accuracy bounds the error, and nothing is known of where within the bounds it is: its
-/// deviation is the bound over sqrt(3) (GUM, 4.3.7). Columns of one signal with the same accuracy
-/// are of one instrument.
+/// An accuracy bounds the error, whose value within the bounds is unknown: its standard deviation
+/// is the bound over sqrt(3) (GUM, 4.3.7). Columns of one signal with equal accuracies belong to
+/// one instrument.
 pub(super) fn shared_changes(
     together: &Together<'_>,
     variables: &[f64],
@@ -50,8 +49,8 @@ pub(super) fn shared_changes(
     errors(together.recordings).iter().map(change).collect()
 }
 
-/// The rest of the residuals of a minimum where the instruments err as explains most of them,
-/// within what they are stated to be wrong by, and the coefficients follow.
+/// Remaining residuals of a minimum if the errors of the instruments are those that explain most of
+/// them, within their stated accuracies, and the coefficients follow.
 ///
 /// ```text
 /// r - J x - D a        x, a by least squares,    |a| <= sqrt(3) standard deviations
@@ -76,7 +75,7 @@ pub(super) fn without_errors(at: &Linearised, shared: &[Vec<f64>]) -> Vec<f64> {
             slopes.iter().enumerate().for_each(|(j, second)| normal[(i, j)] += first * second);
         }
     }
-    // an error has its stated deviation where the residuals say nothing of it
+    // an error has its stated standard deviation if the residuals do not determine it
     for index in 0..count {
         normal[(index, index)] += if index < own { 1e-9 * normal[(index, index)] + 1e-12 } else { 1.0 };
     }
@@ -114,7 +113,7 @@ fn errors(recordings: &[Recording]) -> Vec<(TestSignal, Accuracy, SharedError)> 
     instruments.into_iter().flat_map(of).collect()
 }
 
-/// The greatest magnitude that a signal was recorded with.
+/// Greatest recorded magnitude of a signal.
 fn greatest(recording: &Recording, signal: TestSignal) -> f64 {
     let of_inputs = |of: fn(&phea_hydraulics::servovalve::TestInput) -> f64| {
         recording.inputs.iter().map(of).fold(0.0, |most: f64, value| most.max(value.abs()))
@@ -135,7 +134,7 @@ fn greatest(recording: &Recording, signal: TestSignal) -> f64 {
     }
 }
 
-/// The recording as it would be were a signal recorded with this error more.
+/// The recording with this additional error of a signal.
 fn disturbed(
     recording: &Recording,
     signal: TestSignal,
@@ -178,8 +177,8 @@ fn values(recording: &mut Recording, kinds: &[SignalKind], error: SharedError) {
     }
 }
 
-/// A port's own pressure where the ports are shut; of joined ports it is in the mean, and with its
-/// sign in the drop across the meter.
+/// Adds an error to the pressure of a port: to this pressure if the ports are shut; for joined
+/// ports to the mean, and with its sign to the drop across the meter.
 fn port_pressure(recording: &mut Recording, kind: SignalKind, (sign, error): (f64, SharedError)) {
     values(recording, &[kind], error);
     let means = recording.signals.iter_mut().find(|one| one.kind == SignalKind::MeanPressure);

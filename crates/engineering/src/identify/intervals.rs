@@ -1,4 +1,4 @@
-//! 95 % intervals by linearisation, of coefficients that may vanish too.
+//! 95 % intervals by linearisation, also for coefficients that may vanish.
 
 use phea_dynamics::least_squares::{Linearised, Settings, Uncertainty, uncertainty_with_shared};
 use phea_dynamics::portable;
@@ -9,12 +9,11 @@ use super::recording::{Recording, SignalKind};
 use super::variables::{COUNT, Kind, TARE_FLOW, Variables, over};
 use crate::estimate::{Estimate, NORMAL_95};
 
-/// Half width, over the change that matters, beyond which an interval carries no information: a
-/// factor of a million.
+/// Half width, in changes that matter, beyond which an interval carries no information: a factor of
+/// a million.
 const NOTHING_SAID: f64 = 14.0;
 
-/// Uncertainty of the coefficients: in changes that matter, see
-/// [`Variables::scales`].
+/// Uncertainty of the coefficients, in changes that matter, see [`Variables::scales`].
 pub(super) fn uncertainty(
     at: &Linearised,
     (groups, shared): (&[usize], &[Vec<f64>]),
@@ -36,21 +35,23 @@ pub(super) fn uncertainty(
     uncertainty_with_shared(&at, groups, COUNT, Settings::default().robust_beyond, shared)
 }
 
-/// 1.4826 times the median distance of the magnitude of normal noise from where it is fitted, over
-/// the deviation of the noise: 0.65 from the mean, 0.63 from the centre of the robust loss.
+/// 1.4826 times the median distance of the magnitude of normal noise from its fitted value, divided
+/// by the standard deviation of the noise: 0.65 from the mean, 0.63 from the centre of the robust
+/// loss.
 const OF_MAGNITUDE: f64 = 0.62;
 
-/// Lowers the interval of the tare flow by what a meter without direction may have added to it.
+/// Reduces the interval of the tare flow by the amount that a meter without direction may have
+/// added to it.
 ///
-/// Without flow such a meter shows the magnitude of its own noise; in the mean over rows
+/// The mean over rows of such a meter without flow is that of the magnitude of its noise:
 ///
 /// ```text
 /// E|q + n| = sigma sqrt(2/pi) exp(-q^2/(2 sigma^2)) + q erf(q/(sqrt 2 sigma))
 /// ```
 ///
-/// The least tare flow is that of which the meter would show the interval's lower end. The noise is
-/// taken from the scale of the residuals as if all of them were magnitudes, which is the most it
-/// can be.
+/// The least tare flow is that for which the meter would show the interval's lower end. The noise
+/// is taken from the scale of the residuals as if all of them were magnitudes, which is its upper
+/// bound.
 pub(super) fn lowered_tare_flow(
     estimates: &mut [Option<Estimate>; COUNT],
     recordings: &[Recording],
@@ -67,7 +68,7 @@ pub(super) fn lowered_tare_flow(
     }
 }
 
-/// The flow of which a meter without direction shows this in the mean.
+/// Flow for which a meter without direction shows this value in the mean.
 fn without_magnitude(shown: f64, noise: f64) -> f64 {
     let mean = |flow: f64| {
         let relative = flow / noise;
@@ -85,7 +86,7 @@ fn without_magnitude(shown: f64, noise: f64) -> f64 {
     if low > 0.0 { high } else { 0.0 }
 }
 
-/// Standard deviation of each coefficient in its own unit; infinite where nothing depends on it.
+/// Standard deviation of each coefficient in its unit; infinite if nothing depends on it.
 pub(super) fn deviations(
     variables: &Variables,
     coefficients: &StaticCoefficients,
@@ -98,10 +99,11 @@ pub(super) fn deviations(
     deviations
 }
 
-/// Each coefficient with its interval, from its standard deviation over the change that matters.
+/// Each coefficient with its interval, from its standard deviation divided by the change that
+/// matters.
 ///
 /// For a positive coefficient both ends are positive. For one that may vanish the negative part of
-/// the interval is cut off: where its lower end is zero, the interval is an upper bound.
+/// the interval is cut off: if its lower end is zero, the interval is an upper bound.
 pub(super) fn estimates(
     variables: &Variables,
     coefficients: &StaticCoefficients,

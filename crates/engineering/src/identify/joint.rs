@@ -1,4 +1,4 @@
-//! Uncertainty that recordings leave of a valve, as far as the plant depends on it.
+//! Uncertainty of a valve that recordings leave, in the coefficients on which the plant depends.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 use phea_dynamics::order::sort_by_number;
@@ -16,41 +16,41 @@ use crate::setup::Setup;
 /// Probability that the true coefficients are in the region.
 pub const COVERAGE: f64 = 0.95;
 
-/// Standard deviations of one recording that two of the same valve differ by at most with 95 %:
-/// 1.96 sqrt 2.
+/// Number of standard deviations of one recording by which two of one valve differ at most with 95
+/// %: 1.96 sqrt 2.
 const BETWEEN_TWO: f64 = 2.771_8;
 
-/// Relative change of K_qU and K_c that the directions left out may make together, where nothing
-/// else is requested.
+/// Relative change of K_qU and K_c that the omitted directions may make together, if nothing else
+/// is requested.
 pub const SMALLEST_EFFECT: f64 = 0.01;
 
-/// The joint 95 % region of the coefficients, as directions for a family.
+/// Joint 95 % region of the coefficients, as directions for a family.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointRegion {
     /// Independent directions, the one with the greatest effect first.
     pub directions: Vec<UncertaintyDirection>,
     /// Largest relative change of K_qU and K_c that each direction makes from its middle to an end.
     pub effects: Vec<f64>,
-    /// Directions that were left out: their coefficients stay as identified.
+    /// Number of omitted directions: their coefficients remain as identified.
     pub left_out: usize,
-    /// Largest relative change of K_qU or K_c that those make together.
+    /// Largest relative change of K_qU or K_c that the omitted directions make together.
     pub effect_left_out: f64,
-    /// Relative change of K_qU or K_c by those from one recording of the same valve to another that
-    /// is not exceeded with 95 %.
+    /// Relative change of K_qU or K_c by the omitted directions between two recordings of one valve
+    /// that is not exceeded with 95 %.
     pub change_left_out: f64,
-    /// Standard deviations to either side.
+    /// Half width of each direction in standard deviations.
     pub deviations: f64,
 }
 
-/// Why there is no such region.
+/// Reason why there is no such region.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum JointRegionError {
-    /// A coefficient without an interval.
+    /// A coefficient has no interval.
     #[error(
         "the recordings do not determine `{0}`, so that nothing is known of the plants that are possible"
     )]
     NotIdentifiable(&'static str),
-    /// A coefficient whose region is not positive.
+    /// The region of a coefficient is not positive.
     #[error("the region of `{0}` begins below zero: the recordings cannot distinguish it from zero")]
     BelowZero(String),
     /// The rig with the identified valve has no operating point, or is not a rig.
@@ -61,11 +61,11 @@ pub enum JointRegionError {
     NoRig,
 }
 
-/// The joint region of an identified valve for the rig of a project.
+/// Joint region of an identified valve for the rig of a project.
 ///
 /// The estimates are normal with covariance C = D L L' D, D the standard deviations, L L' the
 /// correlations. With c = c0 + D L z the components of z are independent and standard normal, and
-/// remain so when z is turned. It is turned so that each component in its order has as great an
+/// remain so when z is rotated. It is rotated so that each component in its order has as great an
 /// effect on ln K_qU and ln K_c at the operating points of the rig as the earlier ones left: by the
 /// eigenvectors of M'M, M = J D L, J the derivatives.
 ///
@@ -73,9 +73,9 @@ pub enum JointRegionError {
 /// P(|z_i| <= r for all n) = erf(r/sqrt 2)^n = 0.95          n = 9: r = 2.77
 /// ```
 ///
-/// so that the box of the directions, and not each interval on its own, has 95 %. (Nine intervals
+/// so that the box of the directions, and not each interval separately, has 95 %. (Nine intervals
 /// of 1.96 deviations have 63 % together; the ellipsoid of 95 % has the radius 4.11, and the box
-/// around it 99.96 %.) The components at the end are left out as long as they move no K_qU and no
+/// around it 99.96 %.) The components at the end are omitted as long as they change no K_qU and no
 /// K_c by more than `smallest_effect` together, each at its end.
 ///
 /// # Errors
@@ -86,7 +86,7 @@ pub fn joint_region(
     smallest_effect: f64,
 ) -> Result<JointRegion, JointRegionError> {
     let mut project = with_valve(project, found).ok_or(JointRegionError::NoRig)?;
-    // ranges of what follows from the coefficients are what the region is to replace
+    // the region is to replace ranges of parameters that follow from the coefficients
     project
         .uncertainty
         .retain(|one| !["flow_gain", "flow_pressure_coefficient"].contains(&one.name.as_str()));
@@ -130,7 +130,8 @@ pub fn joint_region(
     }
 }
 
-/// The project with the identified valve, its spool's dynamics as they are; `None` without a rig.
+/// The project with the identified valve and the unchanged dynamics of its spool; `None` without a
+/// rig.
 pub fn with_valve(project: &Project, found: &Identification) -> Option<Project> {
     let mut project = project.clone();
     let valve = &mut project.actuator.as_mut()?.valve;
@@ -160,7 +161,7 @@ fn edges(edges: Edges) -> EdgeCoefficients {
     EdgeCoefficients { supply_to_a, a_to_tank, supply_to_b, b_to_tank }
 }
 
-/// D L: the change of each coefficient of the plant with independent standard normal numbers.
+/// Matrix D L: change of each coefficient of the plant with independent standard normal numbers.
 fn spread(found: &Identification, plant: &[usize]) -> DMatrix<f64> {
     let all = COEFFICIENT_NAMES.len();
     let count = plant.len();
@@ -177,7 +178,8 @@ fn spread(found: &Identification, plant: &[usize]) -> DMatrix<f64> {
     })
 }
 
-/// The turn after which each column of the effects has as much of them as the earlier ones left.
+/// Rotation after which each column of the effects has as much of them as remains after the earlier
+/// ones.
 fn turned(effects: &DMatrix<f64>) -> DMatrix<f64> {
     let eigen = SymmetricEigen::new(effects.transpose() * effects);
     let count = eigen.eigenvalues.len();
@@ -188,7 +190,7 @@ fn turned(effects: &DMatrix<f64>) -> DMatrix<f64> {
     })
 }
 
-/// Number of the first columns that it takes so that the others together have less effect than this
+/// Number of leading columns that are needed so that the others together have less effect than this
 /// on every row.
 fn kept(effects: &DMatrix<f64>, smallest: f64) -> usize {
     let count = effects.ncols();
@@ -215,7 +217,7 @@ fn direction(
     }
 }
 
-/// A coefficient that is negative at the ends of the directions, and may not be.
+/// A coefficient that is negative at the ends of the directions, although it must not be.
 fn below_zero(region: &JointRegion, found: &Identification, plant: &[usize]) -> Option<String> {
     let reach = |path: &str| {
         let changes = region.directions.iter().flat_map(|direction| &direction.changes.numbers);
@@ -228,8 +230,8 @@ fn below_zero(region: &JointRegion, found: &Identification, plant: &[usize]) -> 
     })
 }
 
-/// Half width r of the box in which this many independent standard normal numbers are together with
-/// 95 %.
+/// Half width r of the box that contains this many independent standard normal numbers together
+/// with 95 %.
 fn deviations(count: usize) -> f64 {
     let outside = 1.0 - pow(COVERAGE, 1.0 / count as f64);
     let [mut low, mut high] = [0.0_f64, 10.0];

@@ -1,12 +1,12 @@
-//! The memory of the spool at the beginning of a test.
+//! Memory of the spool at the beginning of a test.
 //!
 //! ```text
-//! z = s h + (z_0 - s h) exp(-|dU|/(2 h))        the slow spool:  dz/dz_0 = exp(-S/(2 h)),  S the way of the command since the first row
+//! z = s h + (z_0 - s h) exp(-|dU|/(2 h))        slow spool:  dz/dz_0 = exp(-S/(2 h)),  S the path of the command since the first row
 //! ```
 //!
 //! A test that begins after other cycles begins with their memory z_0, between -h and h. It is
 //! found for each test separately, where the loss of its first residuals is least, and the
-//! coefficients are fitted anew with it, until it stays.
+//! coefficients are fitted anew with it, until it no longer changes.
 
 use phea_dynamics::least_squares::{Settings, loss};
 use phea_dynamics::minimum::golden_section;
@@ -20,44 +20,45 @@ use super::fit::{self, Depth, Fit};
 use super::recording::Recording;
 use crate::identify_error::IdentifyError;
 
-/// Fits with other memories at most.
+/// Largest number of fits with other memories.
 const PASSES: usize = 6;
 
-/// Change of a memory, over the width of the hysteresis, that changes nothing.
+/// Change of a memory, relative to the width of the hysteresis, that is negligible.
 const SETTLED: f64 = 2e-3;
 
-/// Memories that are evaluated between both ends, and steps of the golden section that follows.
+/// Number of memories that are evaluated between both ends, and number of golden-section steps that
+/// follow.
 const CANDIDATES: i32 = 16;
 const SECTIONS: usize = 24;
 
-/// Fraction of the first memory that a row still has to be counted.
+/// Fraction of the first memory that must remain at a row for it to count.
 const FORGOTTEN: f64 = 1e-3;
 
-/// Recordings with the memories that their tests begin with, and where the fit of them ended.
+/// Recordings with the initial memories of their tests, and the end of their fit.
 pub(super) struct WithMemories {
     recordings: Vec<Recording>,
-    /// The variables there.
+    /// Variables at the end of the fit.
     start: Vec<f64>,
 }
 
 impl WithMemories {
-    /// The fit of these recordings.
+    /// Fit of these recordings.
     ///
     /// # Errors
-    /// Errors of a fit.
+    /// The errors of a fit.
     pub(super) fn fitted<'a>(&'a self, first: &Fit<'_>, watch: Watch<'_>) -> Result<Fit<'a>, IdentifyError> {
         fit::from_near(&self.recordings, first, &self.start, Depth::ToTheEnd, watch)
     }
 }
 
-/// Memories of the recordings that a fit explains; `None` where no test needs one. `width` is the
-/// first guess of the hysteresis in V.
+/// Memories of the recordings that a fit explains; `None` if no test needs one. `width` is the
+/// initial estimate of the hysteresis, V.
 ///
-/// A fit with a wrong memory may end far from the right one: where it leaves a misfit, tests that
-/// continue the way that they went are evaluated too.
+/// A fit with a wrong memory may end far from the correct one: if a misfit remains, tests that
+/// continue their earlier motion are evaluated too.
 ///
 /// # Errors
-/// Errors of a fit.
+/// The errors of a fit.
 pub(super) fn remembered(
     first: &Fit<'_>,
     width: f64,
@@ -80,7 +81,7 @@ pub(super) fn remembered(
     settled(first, needed, watch).map(Some)
 }
 
-/// Memory of a test that continues the way that it went before it was recorded: its spool lags by
+/// Sets the memory of a test that continues the motion before it was recorded: its spool lags by
 /// half the width.
 fn continues(recording: &mut Recording, width: f64) {
     let rises = recording.branches().first().is_some_and(|branch| branch.rises);
@@ -88,7 +89,7 @@ fn continues(recording: &mut Recording, width: f64) {
     recording.inputs.iter_mut().take(1).for_each(|input| input.memory = memory);
 }
 
-/// The memories where they and the coefficients stay.
+/// Memories at which they and the coefficients no longer change.
 fn settled(first: &Fit<'_>, mut needed: Vec<bool>, watch: Watch<'_>) -> Result<WithMemories, IdentifyError> {
     let mut found = memories(first);
     let mut recordings = first.together.recordings.to_vec();
@@ -113,19 +114,19 @@ fn settled(first: &Fit<'_>, mut needed: Vec<bool>, watch: Watch<'_>) -> Result<W
     Ok(WithMemories { recordings, start })
 }
 
-/// The memory that a test begins with, in V, and by how much it lowers the criterion.
+/// Initial memory of a test, V, and its decrease of the criterion.
 #[derive(Clone, Copy, Debug)]
 struct FirstMemory {
     memory: f64,
     gain: f64,
 }
 
-/// True where the recording needs it.
+/// True if the recording needs a memory.
 fn is_needed(found: &Option<FirstMemory>) -> bool {
     found.is_some_and(|one| one.gain > DECISIVE)
 }
 
-/// Memory at the beginning of each recording; `None` where no row shows it.
+/// Memory at the beginning of each recording; `None` if no row shows it.
 fn memories(fit: &Fit<'_>) -> Vec<Option<FirstMemory>> {
     let signals = fit.signals();
     let half = 0.5 * fit.coefficients().hysteresis_width;
@@ -145,7 +146,7 @@ fn memories(fit: &Fit<'_>) -> Vec<Option<FirstMemory>> {
     fit.together.recordings.iter().enumerate().map(of).collect()
 }
 
-/// The rows of a test that the first memory reaches.
+/// Rows of a test that the first memory affects.
 struct Begun<'f> {
     fit: &'f Fit<'f>,
     recording: &'f Recording,
@@ -168,7 +169,7 @@ impl<'f> Begun<'f> {
         Begun { fit, recording, index, inputs }
     }
 
-    /// The loss of the residuals with this memory in V.
+    /// Loss of the residuals with this memory, V.
     fn loss(&self, memory: f64) -> f64 {
         let together = &self.fit.together;
         let beyond = Settings::default().robust_beyond;

@@ -1,7 +1,7 @@
 //! Residuals of the recordings under the model of the valve that are not noise.
 //!
 //! ```text
-//! residual = misfit + noise,       misfit alike in neighbouring rows, noise not
+//! residual = misfit + noise,       misfit correlated in neighbouring rows, noise not
 //! misfit^2 = r rms^2               rms of the residuals, r the correlation of neighbours
 //! ```
 
@@ -10,15 +10,15 @@ use phea_dynamics::order::ends;
 use super::recording::{SignalKind, TestBranch};
 use super::{Identification, SignalFit};
 
-/// Correlation of neighbouring residuals up to which they are noise: those of recordings that the
-/// model explains reach 0.23.
+/// Correlation of neighbouring residuals up to which they count as noise: those of recordings that
+/// the model explains reach 0.23.
 const OF_NOISE: f64 = 0.4;
-/// Standard deviations of the correlation of independent residuals, 1/sqrt(rows), up to which it is
-/// chance.
+/// Number of standard deviations of the correlation of independent residuals, 1/sqrt(rows), up to
+/// which it is chance.
 const CHANCE: f64 = 5.0;
-/// Misfits of a smaller fraction of the range are not reported.
+/// Fraction of the range below which misfits are not reported.
 const SMALLEST_FRACTION: f64 = 1e-3;
-/// Ranges of the command in which a misfit is evaluated, for either direction.
+/// Number of ranges of the command in which a misfit is evaluated, for either direction.
 const RANGES: usize = 10;
 
 /// A signal that the model does not explain.
@@ -26,31 +26,31 @@ const RANGES: usize = 10;
 pub struct Misfit {
     /// Index of the recording.
     pub recording: usize,
-    /// Which signal.
+    /// Kind of the signal.
     pub kind: SignalKind,
     /// Correlation of neighbouring residuals.
     pub correlation: f64,
-    /// Root mean square of the misfit over the range of the signal.
+    /// Root mean square of the misfit divided by the range of the signal.
     pub fraction: f64,
-    /// Place at which it is greatest; `None` where no row shows it.
+    /// Place of the greatest misfit; `None` if no row shows it.
     pub place: Option<MisfitPlace>,
 }
 
 /// Place at which a misfit is greatest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MisfitPlace {
-    /// True while the command rises.
+    /// True if the command rises.
     pub is_rising: bool,
-    /// V, range of the command.
+    /// Range of the command, V.
     pub command: [f64; 2],
-    /// Output of the model there less the recorded signal, on average, over the range of the
-    /// signal.
+    /// Mean of the model's output minus the recorded signal in this range, divided by the range of
+    /// the signal.
     pub fraction: f64,
 }
 
 impl SignalFit {
-    /// Root mean square of what the model does not explain, over the range of the signal; `None`
-    /// where that is noise.
+    /// Root mean square of the unexplained part, divided by the range of the signal; `None` if that
+    /// is noise.
     pub(super) fn misfit(&self) -> Option<f64> {
         let fraction = self.rms * self.correlation.max(0.0).sqrt() / self.range;
         let is_chance = self.correlation * (self.rows as f64).sqrt() <= CHANCE;
@@ -59,7 +59,7 @@ impl SignalFit {
 }
 
 impl Identification {
-    /// The signals that the model does not explain, the greatest misfit first.
+    /// Signals that the model does not explain, the greatest misfit first.
     pub fn misfits(&self) -> Vec<Misfit> {
         let of = |signal: &SignalFit| {
             let fraction = signal.misfit()?;
@@ -76,7 +76,7 @@ impl Identification {
         found
     }
 
-    /// The part of the branches where the residuals of a signal have the greatest mean.
+    /// Part of the branches in which the residuals of a signal have the greatest mean.
     fn place(&self, signal: &SignalFit) -> Option<MisfitPlace> {
         let recording = self.recordings.get(signal.recording)?;
         let inputs = &recording.inputs;
@@ -99,7 +99,7 @@ impl Identification {
             branch.into_iter().enumerate().map(move |(range, found)| (is_rising, range, found))
         });
         let places = all.filter(|(.., (_, rows))| *rows > 0).map(|(is_rising, range, (sum, rows))| {
-            // the end at null is null, not the rounding of a sum
+            // the end at null is exactly null, not the rounding of a sum
             let end = |steps: usize| ((least + steps as f64 * width) / width * 1e6).round() * 1e-6 * width;
             MisfitPlace {
                 is_rising,

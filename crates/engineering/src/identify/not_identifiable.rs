@@ -1,4 +1,4 @@
-//! Combinations of coefficients that the data do not determine, and the tests that would.
+//! Combinations of coefficients that the data do not determine, and tests that would.
 
 use phea_dynamics::least_squares::{Direction, Uncertainty};
 use phea_dynamics::order::sort_by_number;
@@ -10,7 +10,7 @@ use super::variables::has;
 use crate::bench::StaticTest;
 
 /// Standard deviation in the logarithm of a coefficient beyond which it is not determined: a factor
-/// of e^0.98 = 2.7 either way at 95 %.
+/// of e^0.98 = 2.7 in either direction at 95 %.
 const NOT_IDENTIFIABLE: f64 = 0.5;
 
 /// Standard deviation below which a test determines a combination.
@@ -25,15 +25,14 @@ pub struct NotIdentifiableCombination {
     /// Coefficients with their components of the direction, as factors: of length one, the greatest
     /// first.
     pub components: Vec<(&'static str, f64)>,
-    /// Standard deviation along it, in the logarithm; infinite where nothing recorded depends on
-    /// it.
+    /// Standard deviation along it, in the logarithm; infinite if no recorded signal depends on it.
     pub deviation: f64,
     /// Tests that would determine it, at 30 % of the command with errors of 1 % of each signal's
     /// range.
     pub identifiable_by: Vec<StaticTest>,
 }
 
-/// The combinations that are not determined, the least known first.
+/// Combinations that are not determined, the least known first.
 pub(super) fn combinations(
     uncertainty: &Uncertainty,
     coefficients: &StaticCoefficients,
@@ -71,7 +70,7 @@ pub(super) fn combinations(
         .collect()
 }
 
-/// Derivatives of the readings of a test, over a hundredth of the range of each signal.
+/// Derivatives of the readings of a test, divided by a hundredth of the range of each signal.
 fn sensitivities(
     test: StaticTest,
     coefficients: &StaticCoefficients,

@@ -1,12 +1,12 @@
-//! Recorded tests from tables, as loggers and spreadsheets write them.
+//! Recorded tests from tables of loggers and spreadsheets.
 //!
 //! ```text
-//! table -> which column is what -> rows that are used -> numbers that a test has -> test
+//! table -> columns by name -> rows that are used -> plausible numbers -> test
 //! ```
 //!
-//! A column is known by its name, with its unit (`supply_pressure_bar`, `p_S [bar]`), or by what a
-//! project says of it. What is harmless is dealt with and reported; everything else refuses the
-//! file.
+//! A column is recognised by its name, with its unit (`supply_pressure_bar`, `p_S [bar]`), or by
+//! the declaration of the project. Harmless faults are corrected and reported; all others reject
+//! the file.
 
 mod assembled;
 mod error;
@@ -30,7 +30,7 @@ use crate::table::{Column, Measurand, MeasuredTable, Sought, TIME_NAMES};
 /// Fewest rows of a test.
 const FEWEST_ROWS: usize = 20;
 
-/// Signals that the columns of a test may hold, in the order of [`TestSignal::ALL`].
+/// Signals that the columns of a test may contain, in the order of [`TestSignal::ALL`].
 static MEASURANDS: [Measurand; 9] = [
     measurand(TestSignal::Time, TIME_NAMES),
     measurand(TestSignal::Command, &[]),
@@ -52,14 +52,14 @@ const fn measurand(signal: TestSignal, symbols: &'static [&'static str]) -> Meas
     }
 }
 
-/// Which columns are used.
+/// Columns that are used.
 struct Chosen {
     columns: Vec<(TestSignal, Column)>,
-    /// Headings of the others.
+    /// Headings of the other columns.
     unused: Vec<String>,
 }
 
-/// The columns that are used, over the rows that are used.
+/// Used columns, over the used rows.
 struct Taken {
     columns: Vec<(TestSignal, Vec<f64>)>,
 }
@@ -74,11 +74,10 @@ impl Taken {
     }
 }
 
-/// The tests of these files, in their order, with what the files hold and what was dealt with in
-/// them.
+/// Tests of these files, in their order, with the contents of the files and the corrected faults.
 ///
 /// # Errors
-/// Everything that is wrong in the files, with its places.
+/// All errors in the files, with their places.
 pub fn recordings(
     source: &dyn Source,
     files: &[RecordedTest],
@@ -101,7 +100,7 @@ pub fn recordings(
     Ok(recorded)
 }
 
-/// The signals with what the project says of their columns, in the order of [`TestSignal::ALL`].
+/// Signals with the project's declarations of their columns, in the order of [`TestSignal::ALL`].
 fn sought(declared: &RecordedTest) -> Vec<Sought<'_>> {
     let all = TestSignal::ALL.iter().zip(&MEASURANDS);
     let of = |(signal, measurand): (&TestSignal, &'static Measurand)| {
@@ -116,7 +115,7 @@ fn sought(declared: &RecordedTest) -> Vec<Sought<'_>> {
     all.map(of).collect()
 }
 
-/// The test of one file.
+/// Test of one file.
 fn recording(
     declared: &RecordedTest,
     bytes: Vec<u8>,
@@ -180,12 +179,12 @@ fn recording(
     if is_test {
         assembled::warn_of_unknown_drop(&taken, circuit, whole, findings);
     }
-    // a long text and the test made of it need not be held at once
+    // a long text and the test made of it need not be in memory at once
     table.close(findings);
     is_test.then(|| (assembled::assembled(declared, &taken, circuit, known), contents))
 }
 
-/// The columns that are used, and the headings of the others.
+/// Columns that are used, and headings of the others.
 fn columns(
     declared: &RecordedTest,
     table: &MeasuredTable,
@@ -227,14 +226,14 @@ fn columns(
     (findings.error_count() == before).then_some(Chosen { columns, unused })
 }
 
-/// Circuit of the ports: as the test says, or the column of a flow.
+/// Circuit of the ports: as declared for the test, or from the column of a flow.
 fn circuit(declared: &RecordedTest, columns: &[(TestSignal, Column)]) -> PortCircuit {
     let has_flow = columns.iter().any(|(signal, _)| *signal == TestSignal::Flow);
     let by_columns = if has_flow { PortCircuit::Connected } else { PortCircuit::Blocked };
     declared.test.map_or(by_columns, StaticTest::circuit)
 }
 
-/// True where the model needs a signal in every row.
+/// True if the model needs a signal in every row.
 fn is_input(signal: TestSignal, circuit: PortCircuit) -> bool {
     match signal {
         TestSignal::LeakFlow | TestSignal::Flow | TestSignal::OilTemperature => false,

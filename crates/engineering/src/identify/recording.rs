@@ -1,74 +1,75 @@
-//! A static test as it was recorded.
+//! A recorded static test.
 
 use phea_dynamics::order::{ends, median, sort_numbers};
 use phea_hydraulics::servovalve::{PortCircuit, TestInput, TestOutput};
 
 use crate::project::{Accuracy, TestSignal};
 
-/// Differences of values, over their range, that are the rounding of their digits.
+/// Differences of values, relative to their range, that are the rounding of their digits.
 const ROUNDING: f64 = 1e-9;
 
 /// Greatest distance of a value from a multiple of the step, in steps.
 const OFF_STEP: f64 = 0.02;
 
-/// A recorded test, rows in the order of time. SI.
+/// A recorded test, rows in the order of time, in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     /// Path of the file.
     pub file: String,
     /// Circuit of the ports.
     pub circuit: PortCircuit,
-    /// V, deviation of what differs from row to row in a command with noise; zero without.
+    /// Standard deviation of the row-to-row differences of a command with noise, V; zero without
+    /// noise.
     pub command_roughness: f64,
-    /// s, of each row.
+    /// Time of each row, s.
     pub times: Vec<f64>,
     /// Inputs of the valve.
     pub inputs: Vec<TestInput>,
-    /// degC, of the oil in each row, where it was recorded.
+    /// Temperature of the oil in each row, degC, if it was recorded.
     pub oil_temperature: Option<Vec<f64>>,
-    /// The stated accuracies of its instruments.
+    /// Stated accuracies of its instruments.
     pub accuracies: Vec<(TestSignal, Accuracy)>,
     /// Recorded signals of the valve.
     pub signals: Vec<RecordedSignal>,
 }
 
-/// A part of a test in which the command goes one way.
+/// Part of a test in which the command moves in one direction.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TestBranch {
-    /// True where it rises.
+    /// True if the command rises.
     pub rises: bool,
-    /// The rows.
+    /// Rows of the branch.
     pub rows: std::ops::Range<usize>,
 }
 
-/// A signal over the rows of a recording. SI.
+/// A signal over the rows of a recording, in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedSignal {
-    /// Which.
+    /// Kind of the signal.
     pub kind: SignalKind,
-    /// A value for each row; `None` where the instrument showed nothing.
+    /// Value for each row; `None` if the instrument showed nothing.
     pub values: Vec<Option<f64>>,
 }
 
 /// Kind of a signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SignalKind {
-    /// p_A.
+    /// Pressure p_A.
     PressureA,
-    /// p_B.
+    /// Pressure p_B.
     PressureB,
-    /// (p_A + p_B)/2 of joined ports, whose difference is an input.
+    /// Mean pressure (p_A + p_B)/2 of joined ports, whose difference is an input.
     MeanPressure,
-    /// Flow from the supply, tare flow included.
+    /// Flow from the supply, including the tare flow.
     LeakFlow,
     /// Flow from port A to port B.
     PortFlow,
-    /// Flow by a meter that does not indicate the direction.
+    /// Flow from a meter that does not indicate the direction.
     PortFlowMagnitude,
 }
 
 impl SignalKind {
-    /// As columns and JSON call it.
+    /// Name in columns and JSON.
     pub fn name(self) -> &'static str {
         match self {
             SignalKind::PressureA => "pressure_a",
@@ -84,7 +85,7 @@ impl SignalKind {
         matches!(self, SignalKind::PressureA | SignalKind::PressureB | SignalKind::MeanPressure)
     }
 
-    /// Output of the model: weights of p_A, p_B, leakage and port flow.
+    /// Weights of p_A, p_B, leakage and port flow in the output of the model.
     pub(super) fn weights(self, output: &TestOutput) -> [f64; 4] {
         match self {
             SignalKind::PressureA => [1.0, 0.0, 0.0, 0.0],
@@ -96,7 +97,7 @@ impl SignalKind {
         }
     }
 
-    /// The combination of these.
+    /// Weighted combination of these outputs.
     pub(super) fn shown(self, output: &TestOutput) -> f64 {
         let all = [output.pressure_a, output.pressure_b, output.leak_flow, output.port_flow];
         all.iter().zip(self.weights(output)).map(|(signal, weight)| signal * weight).sum()
@@ -104,19 +105,18 @@ impl SignalKind {
 }
 
 impl Recording {
-    /// A signal of it.
+    /// A signal of the recording.
     pub fn signal(&self, kind: SignalKind) -> Option<&RecordedSignal> {
         self.signals.iter().find(|signal| signal.kind == kind)
     }
 
-    /// The lag of earlier cycles that the spool brings along, in V; zero of a test that begins
-    /// without, as far as its rows show it.
+    /// Lag of the spool from earlier cycles, V; zero for a test whose rows show none.
     pub fn memory_at_start(&self) -> f64 {
         self.inputs.first().map_or(0.0, |input| input.memory)
     }
 
-    /// The branches of the test: rows in a row whose command goes one way, rows at which it rests
-    /// among those before them.
+    /// Branches of the test: consecutive rows whose command moves in one direction, with rows at
+    /// rest belonging to those before them.
     pub fn branches(&self) -> Vec<TestBranch> {
         let command = |row: usize| self.inputs.get(row).map(|input| input.followed_command);
         let mut branches: Vec<TestBranch> = Vec::new();
@@ -129,14 +129,14 @@ impl Recording {
                 _ => branches.push(TestBranch { rises: now > before, rows: row..row + 1 }),
             }
         }
-        // what rests before the first change belongs to it
+        // rest before the first change belongs to the first branch
         if let Some(first) = branches.first_mut() {
             first.rows.start = 0;
         }
         branches
     }
 
-    /// The rows of these indices only.
+    /// The recording reduced to the rows of these indices.
     pub(super) fn only(&self, rows: &[usize]) -> Recording {
         let inputs = rows.iter().filter_map(|row| self.inputs.get(*row).copied()).collect();
         let signals = self.signals.iter().map(|signal| RecordedSignal {
@@ -158,13 +158,13 @@ impl Recording {
 }
 
 impl RecordedSignal {
-    /// Smallest and largest value, single rows that their neighbours contradict left out.
+    /// Smallest and largest value, without single rows that their neighbours contradict.
     pub fn range(&self) -> [f64; 2] {
         ends(self.despiked().into_iter().flatten())
     }
 
-    /// The step of the converter, or of the digits, that all values are multiples of from the least
-    /// one on; zero where they have none.
+    /// Step of the converter, or of the digits, of which all values are multiples from the least
+    /// one on; zero if they have none.
     pub(super) fn step(&self) -> f64 {
         let mut sorted: Vec<f64> = self.values.iter().flatten().copied().collect();
         sort_numbers(&mut sorted);
@@ -176,8 +176,8 @@ impl RecordedSignal {
         if is_multiple { step } else { 0.0 }
     }
 
-    /// Each value, or its neighbour where that is between it and its other neighbour: the median
-    /// of three.
+    /// Each value, or its neighbour if that is between it and its other neighbour: the median of
+    /// three.
     pub(super) fn despiked(&self) -> Vec<Option<f64>> {
         let at = |row: Option<usize>| row.and_then(|row| self.values.get(row).copied().flatten());
         let of = |(row, value): (usize, &Option<f64>)| {
@@ -192,7 +192,7 @@ impl RecordedSignal {
     }
 }
 
-/// Median drop from supply to tank, in Pa.
+/// Median pressure drop from supply to tank, Pa.
 pub(super) fn usual_drop(recordings: &[Recording]) -> f64 {
     let inputs = recordings.iter().flat_map(|recording| &recording.inputs);
     median(inputs.map(|input| input.supply.pressure - input.supply.tank_pressure).collect())

@@ -5,13 +5,13 @@ use phea_hydraulics::servovalve::{StaticCoefficients, TestOutput};
 use super::{Identification, SignalFit};
 
 impl Identification {
-    /// Outputs of a valve of these coefficients in a recorded test, row by row.
+    /// Outputs of a valve with these coefficients in a recorded test, row by row.
     pub fn shown(&self, recording: usize, coefficients: &StaticCoefficients) -> Vec<TestOutput> {
         let of = |one: &super::Recording| self.tested.outputs(coefficients, one.circuit, &one.inputs);
         self.recordings.get(recording).map(of).unwrap_or_default()
     }
 
-    /// Output of such a valve less the recorded signal; `None` where nothing was recorded. SI.
+    /// Output of such a valve minus the recorded signal, SI; `None` if nothing was recorded.
     pub fn residuals(&self, signal: &SignalFit, coefficients: &StaticCoefficients) -> Vec<Option<f64>> {
         let recorded = self.recordings.get(signal.recording).and_then(|one| one.signal(signal.kind));
         let Some(recorded) = recorded else { return Vec::new() };

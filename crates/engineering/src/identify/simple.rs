@@ -15,51 +15,50 @@ use crate::estimate::Estimate;
 /// Feature of the curves that shows null.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NullMethod {
-    /// The middle of the leakage curve at half of its height. Of unequal edges it is not quite
-    /// null.
+    /// Middle of the leakage curve at half of its height. For unequal edges it is not quite null.
     LeakageCentre,
-    /// The middle between the zeros of straight lines through both branches of the flow.
+    /// Middle between the zeros of straight lines through both branches of the flow.
     FlowLines,
-    /// Command at which both ports have the same pressure.
+    /// Command at which both ports have equal pressures.
     EqualPressures,
 }
 
-/// Null, and what shows it.
+/// Null, and the feature that shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NullReading {
-    /// V.
+    /// Command at null, V.
     pub command: Estimate,
-    /// Feature that shows it.
+    /// Feature that shows the null.
     pub method: NullMethod,
 }
 
-/// Results of the calculations of the thesis, section 5.2; `None` where the test for it is missing.
-/// SI.
+/// Results of the calculations of the thesis, section 5.2; `None` if the test for it is missing. SI
+/// units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SimpleCalculations {
-    /// K_vp by (4.12), corrected, for positive commands (edges 3 and 6) and negative ones (4 and
-    /// 5).
+    /// Flow coefficient K_vp by (4.12), corrected, for positive commands (edges 3 and 6) and
+    /// negative ones (4 and 5).
     pub flow_coefficients: [Option<Estimate>; 2],
-    /// Flow of this valve over the rated one at the rated drop.
+    /// Ratio of the flow of this valve to the rated one at the rated drop.
     pub fraction_of_nominal: Option<Estimate>,
-    /// q_vin, the peak of the leakage above its base.
+    /// Null leakage q_vin, the peak of the leakage above its base.
     pub null_leakage: Option<Estimate>,
-    /// p_S - p_T of the leakage test.
+    /// Pressure drop p_S - p_T of the leakage test.
     pub leakage_pressure: Option<f64>,
-    /// q_tare, the base of the leakage curve.
+    /// Tare flow q_tare, the base of the leakage curve.
     pub tare_flow: Option<Estimate>,
-    /// lambda of (4.14), by the width of the curve at half its height.
+    /// Leakage shape lambda of (4.14), from the width of the curve at half its height.
     pub leakage_shape: Option<f64>,
-    /// Command of null with a rising and a falling command, in V.
+    /// Command at null with a rising and a falling command, V.
     pub nulls: [Option<NullReading>; 2],
-    /// dq/dU near null at the usual supply pressure, for positive and negative commands, in m3/(s
-    /// V).
+    /// Slope dq/dU near null at the usual supply pressure, for positive and negative commands,
+    /// m3/(s V).
     pub flow_gains: [Option<Estimate>; 2],
-    /// Commands from null, to either side, between which the flow gains are read, in V.
+    /// Commands from null, to either side, between which the flow gains are read, V.
     pub flow_gain_commands: Option<[f64; 2]>,
-    /// p_S - p_T that they are stated at.
+    /// Pressure drop p_S - p_T for which they are stated.
     pub flow_gain_pressure: f64,
-    /// d(p_A - p_B)/dU at null with blocked ports, in Pa/V.
+    /// Slope d(p_A - p_B)/dU at null with blocked ports, Pa/V.
     pub pressure_sensitivity: Option<Estimate>,
 }
 
@@ -70,24 +69,24 @@ impl SimpleCalculations {
         Estimate::mean(&[rising?.command, falling?.command])
     }
 
-    /// Takes a null where nothing better showed it before.
+    /// Adds a null if no better feature has shown it before.
     fn add_null(&mut self, rising: bool, method: NullMethod, read: impl FnOnce() -> Option<Estimate>) {
         let null = &mut self.nulls[usize::from(!rising)];
         *null = null.or_else(|| read().map(|command| NullReading { command, method }));
     }
 
-    /// Their difference.
+    /// Difference of both nulls.
     pub fn hysteresis(&self) -> Option<Estimate> {
         let [rising, falling] = self.nulls;
         Some(rising?.command.minus(&falling?.command))
     }
 
-    /// K_vinp by (4.13).
+    /// Leakage coefficient K_vinp by (4.13).
     pub fn leakage_coefficient(&self) -> Option<Estimate> {
         Some(self.null_leakage?.times(1.0 / (2.0 * self.leakage_pressure?).sqrt()))
     }
 
-    /// Fraction of the tare flow in the whole leakage at null, which errs as the peak does.
+    /// Fraction of the tare flow in the whole leakage at null, with the error of the peak.
     pub fn tare_fraction(&self) -> Option<Estimate> {
         let tare = self.tare_flow?;
         Some(tare.over(&self.null_leakage?.plus(tare.value)))
@@ -99,17 +98,17 @@ impl SimpleCalculations {
         Estimate::mean(&[extending?, retracting?])
     }
 
-    /// K_c = K_qU/K_pU, in m3/(s Pa).
+    /// Flow-pressure coefficient K_c = K_qU/K_pU, m3/(s Pa).
     pub fn flow_pressure_coefficient(&self) -> Option<Estimate> {
         Some(self.flow_gain()?.over(&self.pressure_sensitivity?))
     }
 }
 
-/// The calculations, from whatever test allows them.
+/// Calculations, from any test that permits them.
 ///
 /// ```text
-/// q_tare   median leakage beyond 60 % of the amplitude; below the least reading where the meter reads zero there
-/// q_vin    highest mean over a small part of the width at half height, less q_tare
+/// q_tare   median leakage beyond 60 % of the amplitude; below the least reading if the meter reads zero there
+/// q_vin    highest mean over a small part of the width at half height, minus q_tare
 /// nulls    middle of the half height of the leakage, rising and falling; else between the zeros of the flow's lines; else of p_A = p_B
 /// K_vinp = q_vin/sqrt(2 p_S)                                   thesis (4.13)
 /// lambda = 1.317/u_half                                        sech(1.317) = 1/2
@@ -119,8 +118,8 @@ impl SimpleCalculations {
 /// K_c    = K_qU/K_pU
 /// ```
 ///
-/// A crossing of half the height errs by at most the noise over the slope of the flank between its
-/// quarters; a zero of a straight line y = b (x - x_0) by
+/// A crossing of half the height has an error of at most the noise divided by the slope of the
+/// flank between its quarters; a zero of a straight line y = b (x - x_0) has
 ///
 /// ```text
 /// sigma_0 = sigma/|b| sqrt(1/n + (x_0 - mean x)^2/sum (x - mean x)^2)
@@ -180,7 +179,7 @@ fn leakage(recording: &Recording, tested: &TestedValve, found: &mut SimpleCalcul
     let Some(least) = highest.first().copied() else { return };
     let (tare_flow, noise) = base_flow(&base, least);
     let tare = tare_flow.value;
-    // what only the noise of a hundredth of the rows exceeds
+    // values exceeded only by the noise of a hundredth of the rows
     let Some(high) = highest.get(highest.len() * 99 / 100).copied().filter(|high| *high > tare) else {
         return;
     };
@@ -218,8 +217,8 @@ fn leakage(recording: &Recording, tested: &TestedValve, found: &mut SimpleCalcul
     }
 }
 
-/// Flow of the base, and the noise of one of its rows. Where the meter reads zero there, it is
-/// below the least flow that the meter shows anywhere.
+/// Flow of the base, and the noise of one of its rows. If the meter reads zero there, it is below
+/// the least flow that the meter shows anywhere.
 fn base_flow(base: &[f64], least: f64) -> (Estimate, f64) {
     if base.is_empty() {
         let estimate = Estimate { value: 0.0, interval: [0.0, least.max(0.0)] };
@@ -230,14 +229,14 @@ fn base_flow(base: &[f64], least: f64) -> (Estimate, f64) {
     (Estimate::of(middle, deviation), deviation * (base.len() as f64).sqrt())
 }
 
-/// True where the command rises at a row; `None` where it does not change.
+/// True if the command rises at a row; `None` if it does not change.
 pub(super) fn direction(recording: &Recording, row: usize) -> Option<bool> {
     let before = recording.inputs.get(row.checked_sub(1)?)?.followed_command;
     let now = recording.inputs.get(row)?.followed_command;
     (now != before).then_some(now > before)
 }
 
-/// Command at which p_A and p_B are equal, going up or down, in V.
+/// Command at which p_A and p_B are equal, rising or falling, V.
 fn crossing(recording: &Recording, rising: bool) -> Option<Estimate> {
     let a = recording.signal(SignalKind::PressureA)?;
     let b = recording.signal(SignalKind::PressureB)?;
@@ -254,14 +253,14 @@ fn crossing(recording: &Recording, rising: bool) -> Option<Estimate> {
     let crossed = crossed.into_iter().filter(|row| *row >= from);
     let crossed: Vec<(f64, f64)> = crossed.filter_map(|row| at(row).zip(at(row - 1))).collect();
     let middle = median(crossed.iter().map(|(now, _)| *now).collect());
-    // they are apart where noise makes the pressures cross more than once
+    // the crossings are apart if noise makes the pressures cross more than once
     let square = |one: f64| one * one;
     let apart = |(now, before): &(f64, f64)| square(now - middle) + square(now - before);
     let deviation = (crossed.iter().map(apart).sum::<f64>() / crossed.len() as f64).sqrt();
     (!crossed.is_empty()).then(|| Estimate::of(middle, deviation))
 }
 
-/// Both branches of the flow as straight lines, going up and down: their slopes are the flow
+/// Both branches of the flow as straight lines, rising and falling: their slopes are the flow
 /// coefficients, and between their zeros is null.
 fn flow(recording: &Recording, tested: &TestedValve, found: &mut SimpleCalculations) {
     let kinds = [SignalKind::PortFlow, SignalKind::PortFlowMagnitude];
@@ -273,7 +272,7 @@ fn flow(recording: &Recording, tested: &TestedValve, found: &mut SimpleCalculati
             let input = recording.inputs.get(row)?;
             let drop = input.supply.pressure - input.supply.tank_pressure - input.load_pressure.abs();
             let fraction = sign * input.command / largest;
-            // away from the leakage and from the reversals
+            // far from the leakage and from the reversals
             let counts = (0.3..0.95).contains(&fraction) && direction(recording, row) == Some(rising);
             let edge = flow_coefficient_from_rating((*value)?.abs(), drop);
             (counts && drop > 0.0).then_some((input.command, edge))
@@ -296,7 +295,7 @@ fn flow(recording: &Recording, tested: &TestedValve, found: &mut SimpleCalculati
     }
 }
 
-/// Row at which the command first turns round.
+/// Row at which the command first reverses.
 fn first_reversal(recording: &Recording) -> usize {
     let rows = 1..recording.inputs.len();
     let mut ways = rows.filter_map(|row| direction(recording, row).map(|way| (row, way)));
@@ -304,7 +303,7 @@ fn first_reversal(recording: &Recording) -> usize {
     ways.find(|(_, way)| *way != first).map_or(0, |(row, _)| row)
 }
 
-/// Standard deviation of a median, of noise that is normal: 1.2533 times that of the mean.
+/// Standard deviation of a median, for normal noise: 1.2533 times that of the mean.
 fn deviation_of_median(values: &[f64], middle: f64) -> f64 {
     let squares: f64 = values.iter().map(|value| (value - middle) * (value - middle)).sum();
     1.2533 * squares.sqrt() / values.len() as f64

@@ -1,4 +1,4 @@
-//! Terms of a valve in addition to edges that open in proportion, as far as the recordings show.
+//! Terms of a valve, if the recordings show them, in addition to edges that open in proportion.
 
 use phea_dynamics::watch::Watch;
 use phea_hydraulics::servovalve::{LeakageModel, TestedValve, ValveTerms};
@@ -14,15 +14,15 @@ pub enum ValveTerm {
     Lap,
     /// Openings that saturate.
     Saturation,
-    /// Leakage with a shape of its own at each edge.
+    /// Leakage with a separate shape for each edge.
     LeakageByEdge,
 }
 
 impl ValveTerm {
-    /// All of them.
+    /// All terms.
     pub const ALL: [ValveTerm; 3] = [ValveTerm::Lap, ValveTerm::Saturation, ValveTerm::LeakageByEdge];
 
-    /// Its name in JSON.
+    /// Name in JSON.
     pub fn name(self) -> &'static str {
         match self {
             ValveTerm::Lap => "lap",
@@ -39,7 +39,7 @@ impl ValveTerm {
         }
     }
 
-    /// The valve with this term too; `None` where it has no meaning.
+    /// The valve with this term in addition; `None` if the term has no meaning.
     fn added_to(self, tested: TestedValve) -> Option<TestedValve> {
         let mut terms = tested.terms;
         match self {
@@ -56,20 +56,19 @@ impl ValveTerm {
 /// Improvement of the fit with a term.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TermEvidence {
-    /// Which.
+    /// Kind of the term.
     pub term: ValveTerm,
-    /// By how much it lowers the information criterion; negative where it does not earn its
-    /// numbers.
+    /// Decrease of the information criterion; negative if the term does not earn its numbers.
     pub gain: f64,
-    /// True where the valve is identified with it.
+    /// True if the valve is identified with the term.
     pub taken: bool,
 }
 
-/// The fit with every term that the recordings support, added one at a time, the one that explains
-/// most first; and what each term explains.
+/// Fit with every term that the recordings support, added one at a time, the one that explains most
+/// first; and the contribution of each term.
 ///
-/// A term is taken where it lowers the information criterion by [`DECISIVE`] and more. The
-/// gain of a term that is not taken is that in addition to those that are.
+/// A term is added if it reduces the information criterion by at least [`DECISIVE`]. The gain of a
+/// term that is not added is that in addition to those that are.
 pub(super) fn with_terms<'a>(
     mut found: Fit<'a>,
     watch: Watch<'_>,
@@ -81,7 +80,8 @@ pub(super) fn with_terms<'a>(
         let mut best: Option<(f64, Fit<'a>)> = None;
         for term in ValveTerm::ALL.into_iter().filter(|term| !term.is_in(tested.terms)) {
             let Some(tested) = term.added_to(tested) else { continue };
-            // far from where a wrong model ended, a few steps do not show what a term is worth
+            // far from the end point of a wrong model, a few steps do not show the contribution of
+            // a term
             let mut with = fit::a_few_steps_with(&found, tested, watch)?;
             let mut gain = gained(&found, &with);
             if gain > 0.0 || found.has_misfit() {
@@ -91,7 +91,7 @@ pub(super) fn with_terms<'a>(
                     whole = whole.searched_to_the_end(watch)?;
                 }
                 let of_whole = gained(&found, &whole);
-                // it may end elsewhere, and worse
+                // the search may end elsewhere, and at a worse point
                 if of_whole > gain {
                     (with, gain) = (whole, of_whole);
                 }
@@ -111,7 +111,7 @@ pub(super) fn with_terms<'a>(
     }
 }
 
-/// By how much the criterion of the second fit is lower.
+/// Decrease of the criterion from the first to the second fit.
 fn gained(without: &Fit<'_>, with: &Fit<'_>) -> f64 {
     let [before, after] = criteria([without, with]);
     before - after

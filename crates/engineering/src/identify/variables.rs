@@ -1,4 +1,4 @@
-//! The coefficients as variables of order one, within their bounds.
+//! Coefficients as variables of order one, within their bounds.
 
 use phea_dynamics::portable;
 use phea_dynamics::random::normal;
@@ -17,34 +17,35 @@ const LAPS: std::ops::Range<usize> = 12..14;
 const SATURATION: usize = 14;
 const OTHER_SHAPES: std::ops::Range<usize> = 15..18;
 
-/// Coefficients that a static test shows and the linear plant does not depend on.
+/// Coefficients that a static test shows but the linear plant does not depend on.
 pub(super) const OF_TEST_ALONE: [usize; 3] = [TARE_FLOW, NULL_BIAS, HYSTERESIS];
 
-/// Flow coefficients, the first ones.
+/// Number of flow coefficients, the first of all.
 const EDGES: usize = 4;
 
-/// Least coefficient over its reference that is varied by its inverse.
+/// Least ratio of a coefficient to its reference at which it is varied by its inverse.
 const LEAST_IN_SERIES: f64 = 0.05;
 
-/// Step of the null bias that counts as much as a factor of e in a positive coefficient, over the
-/// nominal voltage.
+/// Step of the null bias, relative to the nominal voltage, that is equivalent to a factor of e in a
+/// positive coefficient.
 const BIAS_SCALE: f64 = 0.01;
 
-/// Step of a lap, over full travel, and saturation, that count as much.
+/// Equivalent step of a lap, relative to full travel, and of the saturation.
 const LAP_SCALE: f64 = 1e-3;
 const SATURATION_SCALE: f64 = 0.1;
 
-/// Lap of a first guess.
+/// Lap of an initial estimate.
 const FIRST_LAP: f64 = 5e-3;
 
 /// Greatest lap and saturation.
 const MOST_LAP: f64 = 0.2;
 const MOST_SATURATION: f64 = 10.0;
 
-/// Least leakage of an edge over the first guess: without any leakage, pressures have no limit.
+/// Ratio of the least leakage of an edge to the initial estimate: without any leakage, pressures
+/// have no limit.
 const LEAST_LEAKAGE: f64 = 1e-6;
 
-/// True where a valve with these terms has the coefficient of this index.
+/// True if a valve with these terms has the coefficient of this index.
 pub(super) fn has(terms: ValveTerms, index: usize) -> bool {
     match index {
         12..14 => terms.lap,
@@ -54,7 +55,7 @@ pub(super) fn has(terms: ValveTerms, index: usize) -> bool {
     }
 }
 
-/// The quotient of two derivatives; zero of a coefficient that is not varied, which has none.
+/// Quotient of two derivatives; zero for a coefficient that is not varied, which has none.
 pub(super) fn over(derivative: f64, other: f64) -> f64 {
     if other == 0.0 { 0.0 } else { derivative / other }
 }
@@ -62,13 +63,14 @@ pub(super) fn over(derivative: f64, other: f64) -> f64 {
 /// Kind of a coefficient, by its variation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// Positive, by its logarithm.
+    /// Positive coefficient, varied by its logarithm.
     Positive,
-    /// It may vanish: in proportion to a reference.
+    /// Coefficient that may vanish: proportional to a reference.
     MayVanish,
     /// Coefficient of either sign, in steps.
     EitherSign,
-    /// Positive, by its square's inverse over that of the reference: edges in series add by it.
+    /// Positive coefficient, varied by the inverse of its square relative to that of the reference:
+    /// edges in series add by it.
     InSeries,
 }
 
@@ -81,12 +83,12 @@ impl Kind {
         }
     }
 
-    /// True where a coefficient of this kind may have either sign.
+    /// True if a coefficient of this kind may have either sign.
     pub(super) fn may_be_negative(self) -> bool {
         self == Kind::EitherSign
     }
 
-    /// The scale of a coefficient that may end at zero.
+    /// True for a coefficient that may end at zero.
     pub(super) fn vanishes(index: usize) -> bool {
         Kind::of(index) == Kind::MayVanish
     }
@@ -99,7 +101,7 @@ pub(super) struct Variables {
     bias_step: f64,
     nominal_voltage: f64,
     terms: ValveTerms,
-    /// Which flow coefficients are varied as [`Kind::InSeries`].
+    /// True for each flow coefficient that is varied as [`Kind::InSeries`].
     in_series: [bool; EDGES],
 }
 
@@ -118,7 +120,7 @@ impl Variables {
         Variables { terms, ..self.clone() }
     }
 
-    /// True where a valve with these terms has this coefficient.
+    /// True if a valve with these terms has this coefficient.
     fn varies(&self, index: usize) -> bool {
         has(self.terms, index)
     }
@@ -128,14 +130,14 @@ impl Variables {
         (0..COUNT).filter(|index| self.varies(*index)).count()
     }
 
-    /// The step of a coefficient of either sign.
+    /// Step of a coefficient of either sign.
     fn step(&self, index: usize) -> f64 {
         if index == NULL_BIAS { self.bias_step } else { LAP_SCALE }
     }
 
-    /// Variables with the flow coefficients as in series, but for those that nearly vanish here:
-    /// what a test of joined ports leaves open of them is a straight line, where it is a curved
-    /// valley of their logarithms.
+    /// Variables with the flow coefficients as in series, except for those that nearly vanish here:
+    /// the combinations that a test of joined ports leaves open are a straight line, instead of a
+    /// curved valley in their logarithms.
     pub(super) fn in_series(&self, near: &StaticCoefficients) -> Variables {
         let mut in_series = [false; EDGES];
         for ((is_used, number), reference) in in_series.iter_mut().zip(near.to_array()).zip(self.reference) {
@@ -149,7 +151,7 @@ impl Variables {
         if is_in_series { Kind::InSeries } else { Kind::of(index) }
     }
 
-    /// The variables of coefficients.
+    /// Variables of given coefficients.
     pub(super) fn of(&self, coefficients: &StaticCoefficients) -> Vec<f64> {
         let all = coefficients.to_array().into_iter().zip(self.reference).enumerate();
         let of = |(index, (number, reference)): (usize, (f64, f64))| match self.kind(index) {
@@ -167,7 +169,7 @@ impl Variables {
         (0..COUNT).map(of).collect()
     }
 
-    /// Variables of the reference; of a valve with lap also with an overlap and with an underlap.
+    /// Variables of the reference; for a valve with lap also with an overlap and with an underlap.
     pub(super) fn starts(&self) -> Vec<Vec<f64>> {
         let laps: &[f64] = if self.terms.lap { &[0.0, FIRST_LAP, -FIRST_LAP] } else { &[0.0] };
         let with = |lap: &f64| {
@@ -190,7 +192,7 @@ impl Variables {
         (0..COUNT).map(of).collect()
     }
 
-    /// The coefficients.
+    /// Coefficients of these variables.
     pub(super) fn coefficients(&self, variables: &[f64]) -> StaticCoefficients {
         let mut numbers = self.reference;
         for (index, (number, x)) in numbers.iter_mut().zip(variables).enumerate() {
@@ -208,13 +210,13 @@ impl Variables {
         StaticCoefficients::from_array(numbers)
     }
 
-    /// Derivative of each coefficient with respect to its variable; zero where it is not varied.
+    /// Derivative of each coefficient with respect to its variable; zero if it is not varied.
     pub(super) fn slopes(&self, coefficients: &StaticCoefficients) -> [f64; COUNT] {
         self.of_each(coefficients, |_, reference| reference)
     }
 
-    /// The change of each coefficient that matters: its own size, or that of the reference where it
-    /// may vanish and is smaller.
+    /// Change of each coefficient that matters: its magnitude, or that of the reference if it may
+    /// vanish and is smaller.
     pub(super) fn scales(&self, coefficients: &StaticCoefficients) -> [f64; COUNT] {
         self.of_each(coefficients, f64::max)
     }
@@ -239,7 +241,7 @@ impl Variables {
         found
     }
 
-    /// The bounds of each: a factor of a hundred, down to zero where a coefficient may vanish;
+    /// Bounds of each variable: a factor of a hundred, down to zero if a coefficient may vanish;
     /// shape, tare flow and width within their meaningful range, the null within a tenth of the
     /// nominal voltage.
     pub(super) fn bounds(&self) -> [[f64; 2]; COUNT] {

@@ -5,20 +5,20 @@ use phea_hydraulics::servovalve::OilLaw;
 
 use super::recording::Recording;
 
-/// The oil of the tests, against which the coefficients are stated.
+/// Oil of the tests, to which the coefficients refer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TestOil {
-    /// Its change with the temperature.
+    /// Variation of the oil with the temperature.
     pub law: OilLaw,
-    /// degC, that the coefficients are stated at.
+    /// Temperature to which the coefficients refer, degC.
     pub reference: f64,
-    /// degC, the lowest and the highest of all recordings.
+    /// Lowest and highest temperature of all recordings, degC.
     pub range: [f64; 2],
 }
 
-/// Gives each row the oil of its recorded temperature. The coefficients are stated at this
-/// temperature, or that which all rows have on average; a test without the column has it
-/// throughout. `None` where no test has the column.
+/// Gives each row the oil of its recorded temperature. The coefficients refer to this temperature,
+/// or to the average of all rows; a test without the column has this temperature throughout. `None`
+/// if no test has the column.
 pub(super) fn warm(recordings: &mut [Recording], law: OilLaw, stated_at: Option<f64>) -> Option<TestOil> {
     let columns = || recordings.iter().filter_map(|one| one.oil_temperature.as_ref());
     let all = || columns().flatten().copied().filter(|temperature| temperature.is_finite());

@@ -1,36 +1,36 @@
 use crate::rig::RigError;
 
-/// Reason for which recordings determine no line.
+/// Reason why recordings determine no line.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LineFitError {
     /// The project has no line to identify.
     #[error(transparent)]
     Known(#[from] KnownLineError),
-    /// More than one slow test.
+    /// There is more than one slow test.
     #[error("{0} pressure rises are named: one at most is explained at a time")]
     SeveralRises(usize),
-    /// More than one fast test.
+    /// There is more than one fast test.
     #[error("{0} frequency responses are named: one at most is explained at a time")]
     SeveralResponses(usize),
-    /// No recording.
+    /// There is no recording.
     #[error("there is no recording of a line")]
     NoRecording,
-    /// No record of a frequency response.
+    /// There is no record of a frequency response.
     #[error("there is no record")]
     NoRecord,
-    /// A constant pressure.
+    /// The pressure is constant.
     #[error("{file}: the pressure never moves")]
     PressureNeverMoves {
         /// Path of the file.
         file: String,
     },
-    /// A volume that does not depend on the pressure.
+    /// The volume does not depend on the pressure.
     #[error("{file}: volume and pressure do not move together")]
     Unrelated {
         /// Path of the file.
         file: String,
     },
-    /// A frequency response that no search explains.
+    /// No search explains the frequency response.
     #[error("{file}: no blocked line has such a response")]
     NoSuchResponse {
         /// Path of the file.
@@ -38,21 +38,21 @@ pub enum LineFitError {
     },
 }
 
-/// Reason for which a project has no line to identify or to test.
+/// Reason why a project has no line to identify or to test.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum KnownLineError {
-    /// No rig.
+    /// The project has no rig.
     #[error(transparent)]
     Rig(#[from] RigError),
-    /// No actuator.
+    /// The project has no actuator.
     #[error("the project has no line")]
     NoLine,
-    /// A piston whose areas change.
+    /// The areas of the piston change.
     #[error(
         "lines are identified with a piston of one pair of areas, and those of a telescopic piston change: identify them without [[cylinder.stage]]"
     )]
     Telescopic,
-    /// A line without volume.
+    /// The line has no volume.
     #[error("the line holds no oil")]
     NoOil,
 }

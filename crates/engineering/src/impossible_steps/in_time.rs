@@ -8,8 +8,8 @@ use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::simulate::TimeRequirement;
 
-/// Times that pass before the force moves, s: the dead time between reference and force, and on the
-/// rig the run of a wave through the shorter line.
+/// Delays before the force moves, s: the dead time between reference and force, and on the rig the
+/// travel time of a wave through the shorter line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StillTimes {
     /// Delay of the controller, s.
@@ -18,7 +18,7 @@ pub struct StillTimes {
     pub controller_dead_time: f64,
     /// Dead time of the plant, s.
     pub plant_dead_time: f64,
-    /// Run of a wave through the shorter line, s.
+    /// Travel time of a wave through the shorter line, s.
     pub wave: f64,
 }
 
@@ -33,18 +33,18 @@ impl StillTimes {
         }
     }
 
-    /// The sum, s.
+    /// Sum of the delays, s.
     pub fn total(&self) -> f64 {
         [self.controller_delay, self.controller_dead_time, self.plant_dead_time, self.wave].iter().sum()
     }
 }
 
-/// The sum of the times that pass before the force moves, s.
+/// Sum of the delays before the force moves, s.
 pub(super) fn still_s(setup: &Setup<'_>, problem: &RobustProblem) -> f64 {
     StillTimes::of(setup, problem).total()
 }
 
-/// No step settles before the force has moved.
+/// Requirements to settle before the force has moved.
 pub(super) fn findings(setup: &Setup<'_>, problem: &RobustProblem) -> Vec<ImpossibleStep> {
     let still = StillTimes::of(setup, problem);
     let of = |requirement: &TimeRequirement| {
@@ -55,8 +55,8 @@ pub(super) fn findings(setup: &Setup<'_>, problem: &RobustProblem) -> Vec<Imposs
     problem.in_time.iter().filter_map(of).collect()
 }
 
-/// The time of a wave through the shorter line, s; `None` without lines, and where the plant's dead
-/// time has it already.
+/// Travel time of a wave through the shorter line, s; `None` without lines, and if the plant's dead
+/// time includes it already.
 fn wave_s(setup: &Setup<'_>) -> Option<f64> {
     let rig = setup.rig().ok()?;
     let components = rig.actuator.components();

@@ -1,5 +1,6 @@
-//! Required steps that the rig does not reach: beyond the force at which the piston stalls, beyond
-//! the capacity of the force sensor, or beyond what the valve's whole voltage does in the time.
+//! Required steps that the rig does not reach: beyond the stall force of the piston, beyond the
+//! capacity of the force sensor, or beyond the effect of the valve's full voltage within the
+//! required time.
 //!
 //! ```text
 //! |u(t)| <= U   gives   |y(t)| <= U integral of |h| over 0 ... t = U V(t)
@@ -21,16 +22,16 @@ use crate::robust::{NoPolynomials, RobustProblem};
 use crate::setup::Setup;
 use crate::simulate::{ReferenceStep, TimeRequirement, stepped_references, steps_beyond};
 
-/// Points of a step response.
+/// Number of points of a step response.
 const POINTS: usize = 1000;
-/// What is added to the variation of a response that is known at points, as a share.
+/// Relative addition to the variation of a response that is known at points.
 const BETWEEN_POINTS: f64 = 0.02;
-/// Largest ratio of flows for which a larger valve is advised: beyond it time is what is missing.
+/// Largest ratio of flows for which a larger valve is advised: beyond it, time is missing instead.
 const LARGER_VALVE: f64 = 3.0;
-/// Ratio by which a plant with waves in its lines may do more than the same with lumped ones.
+/// Ratio by which a plant with waves in its lines may reach more than with lumped lines.
 const WAVES: f64 = 2.0;
 
-/// The steps of a project that its rig does not reach, of these plants of its family; without those
+/// Steps of a project that its rig does not reach, for these plants of its family; without those
 /// that are required before the force can move at all.
 pub(super) fn findings(setup: &Setup<'_>, problem: &RobustProblem, few: &Family) -> Vec<ImpossibleStep> {
     let beyond = steps_beyond(setup, &problem.in_time).into_iter().map(ImpossibleStep::BeyondReach);
@@ -38,46 +39,46 @@ pub(super) fn findings(setup: &Setup<'_>, problem: &RobustProblem, few: &Family)
     beyond.chain(slow.map(ImpossibleStep::TooSlow)).collect()
 }
 
-/// A step that the valve's whole voltage does not bring into its band in time.
+/// A step that the valve's full voltage does not bring into its band in time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SlowStep {
     /// Number of the specification, from 1.
     pub number: usize,
     /// Greatest voltage at the valve, V.
     pub voltage: f64,
-    /// The slowest plant.
+    /// Slowest plant.
     pub plant: NamedPlant,
-    /// True where the plant has lumped lines and the rig has not.
+    /// True if the plant has lumped lines but the rig does not.
     pub lumped: bool,
-    /// Force by which the plant moves at most, N.
+    /// Largest change of the force of the plant, N.
     pub reached: f64,
     /// Size of the step, N.
     pub size: f64,
-    /// True where a scenario makes the step.
+    /// True if a scenario makes the step.
     pub of_scenario: bool,
     /// Required settling time, s.
     pub settling: f64,
-    /// Flow that is missing: that of a valve which would do it over that of the valve.
+    /// Ratio of the required flow of a valve to that of this valve.
     pub flow_ratio: f64,
 }
 
 impl SlowStep {
-    /// True where a larger valve would make up for the time that is missing.
+    /// True if a larger valve could make up for the missing time.
     pub fn is_matter_of_valve(&self) -> bool {
         self.flow_ratio <= LARGER_VALVE
     }
 }
 
-/// A step that is required.
+/// A required step.
 struct AskedStep {
     from_n: f64,
     size_n: f64,
-    /// True where a scenario makes it, and the requirement holds for every step.
+    /// True if a scenario makes it, and the requirement applies to every step.
     of_scenario: bool,
 }
 
-/// The step of a requirement, or those of the scenarios where it is part of the verdict and holds
-/// for every step.
+/// Step of a requirement, or those of the scenarios if it is part of the verdict and applies to
+/// every step.
 fn asked(setup: &Setup<'_>, required: &TimeRequirement) -> Option<Vec<AskedStep>> {
     let from_n = required.steps.initial_force_n.unwrap_or(setup.rig().ok()?.point.hydraulic_force);
     if let Some(amplitude_n) = required.steps.amplitude_n {
@@ -94,8 +95,8 @@ fn asked(setup: &Setup<'_>, required: &TimeRequirement) -> Option<Vec<AskedStep>
     Some(steps.map(of).collect())
 }
 
-/// A step that the valve's whole voltage does not bring into its band in time, of the plant that
-/// does least of it.
+/// A step that the valve's full voltage does not bring into its band in time, for the plant that
+/// reaches least of it.
 fn too_slow(
     setup: &Setup<'_>,
     problem: &RobustProblem,
@@ -133,7 +134,7 @@ fn too_slow(
     })
 }
 
-/// Result of [`reached`] for the plant that does least, and its parameters.
+/// Result of [`reached`] for the plant that reaches least, and its parameters.
 fn least_reached(few: &UncertainFamily, during: (f64, f64), limit_v: f64) -> Option<(f64, &Vec<f64>)> {
     let each = few
         .members()
@@ -142,9 +143,9 @@ fn least_reached(few: &UncertainFamily, during: (f64, f64), limit_v: f64) -> Opt
     each.min_by(|one, other| one.0.total_cmp(&other.0))
 }
 
-/// The most that the plant with these parameters does within a time in s from an equilibrium at a
-/// force in N, by commands of at most this, V; `None` where that is not known. The command that
-/// holds the force may be taken away too.
+/// Largest change of the plant with these parameters within a time, s, from an equilibrium at a
+/// force, N, by commands of at most this voltage, V; `None` if it is not known. The command that
+/// holds the force may be removed too.
 fn reached(
     plant: &UncertainPlant,
     values: &[f64],
@@ -188,9 +189,9 @@ mod tests {
         assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
     }
 
-    /// An integrator of 3 does 3 U t, after its dead time; a lag of 2 V to 5 N and 0.1 s does
-    /// 5 U (1 - e^(-t/0.1)), and may let go of what holds it; a resonance without damping is pushed
-    /// on every half period, so that 10 periods of 2 pi/w do 40 U/w^2.
+    /// An integrator of gain 3 reaches 3 U t, after its dead time; a lag of 2 V to 5 N and 0.1 s
+    /// reaches 5 U (1 - e^(-t/0.1)), and may release its holding command; a resonance without
+    /// damping is excited every half period, so that 10 periods of 2 pi/w reach 40 U/w^2.
     // ORIGIN: analytic
     #[test]
     fn the_most_that_a_bounded_command_does() {

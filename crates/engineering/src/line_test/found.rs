@@ -12,56 +12,57 @@ use crate::response::{ResponseSettings, SampledPair, members};
 /// A line as identified from recordings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LineIdentification {
-    /// Facts that were known.
+    /// Known facts.
     pub known: KnownLine,
-    /// Pa, at which everything is stated.
+    /// Pressure for which all results hold, Pa.
     pub pressure: f64,
-    /// The slow test.
+    /// Fit of the slow test.
     pub rise: Option<RiseFit>,
-    /// The fast one.
+    /// Fit of the fast test.
     pub response: Option<ResponseFit>,
-    /// Pa, at rest.
+    /// Effective bulk modulus at rest, Pa.
     pub effective_bulk_modulus: Result<Estimate, NotIdentifiableLine>,
-    /// Pa, between both ends of the slow test.
+    /// Secant bulk modulus between both ends of the slow test, Pa.
     pub secant_bulk_modulus: Result<Estimate, NotIdentifiableLine>,
-    /// 1, by which the modulus at rest grows with the pressure: d beta/dp.
+    /// Slope d beta/dp of the modulus at rest with respect to the pressure, dimensionless.
     pub modulus_slope: Result<Estimate, NotIdentifiableLine>,
-    /// Pa, under fast changes.
+    /// Bulk modulus under fast changes, Pa.
     pub dynamic_bulk_modulus: Result<Estimate, NotIdentifiableLine>,
-    /// r_beta, of the wall of a hose.
+    /// Dynamic stiffening r_beta of the wall of a hose.
     pub dynamic_stiffening: Result<Estimate, NotIdentifiableLine>,
-    /// s, in which pressure relaxes while the volume is held.
+    /// Relaxation time of the pressure at constant volume, s.
     pub relaxation_time: Result<Estimate, NotIdentifiableLine>,
-    /// m/s, of a fast wave.
+    /// Speed of a fast wave, m/s.
     pub wave_speed: Result<Estimate, NotIdentifiableLine>,
-    /// 1, volume of free air at atmospheric pressure over that of the mixture.
+    /// Volume of free air at atmospheric pressure as a fraction of that of the mixture.
     pub entrained_air: Result<Estimate, NotIdentifiableLine>,
-    /// kg/m3, of the oil, as its inertance shows it with the declared length and bore.
+    /// Density of the oil, kg/m3, from its inertance with the declared length and bore.
     pub density: Result<Estimate, NotIdentifiableLine>,
 }
 
 /// Standard deviation of a logarithm beyond which a number is not determined: a factor of one and a
-/// half either way.
+/// half in either direction.
 const NARROW: f64 = 0.2;
-/// Standard deviation of the logarithm of a wave speed and of a relaxation time, which follow from
-/// what the response has besides a compliance: below five standard deviations it may be nothing.
+/// Largest standard deviation of the logarithm of a wave speed and of a relaxation time, which
+/// follow from the response beyond a compliance: with less than five standard deviations it may be
+/// absent.
 const SHOWN: f64 = 0.1;
 /// Fraction of the range of a pressure rise by which it may be extrapolated.
 const BEYOND: f64 = 0.1;
 
-/// Finds what recordings determine of a line: at most one slow test and one fast one.
+/// Identifies a line from recordings: at most one slow test and one fast one.
 ///
 /// ```text
 /// beta_e = V/(dV/dp)       r_beta = (C_rest - V/beta_0)/(C_fast - V/beta_0)       c = L/sqrt(I C_fast)
 /// ```
 ///
-/// V is the oil that the line holds at the operating pressure, beta_0 the modulus of the declared
+/// V is the volume of oil in the line at the operating pressure, beta_0 the modulus of the declared
 /// fluid there, I the inertance of the fit. Units: Pa, m3, m3/Pa, m/s. Theory of the line: D'Souza
 /// and Oldenburger (1964).
 ///
 /// # Errors
-/// [`IdentifyError`] for recordings that no line explains, several of one kind, and when it is
-/// stopped.
+/// [`IdentifyError`] for recordings that no line explains, for several of one kind, and after
+/// cancellation.
 ///
 /// # Example
 /// A rigid volume of a litre filled by hand.
@@ -125,7 +126,7 @@ pub fn identify_line(
     Ok(combined(known, rise, response))
 }
 
-/// The fit of a frequency response, together with the pressure rise.
+/// Fit of a frequency response, together with the pressure rise.
 fn shaken(
     record: &SampledPair,
     rise: Option<&RiseFit>,
@@ -144,7 +145,7 @@ fn shaken(
 }
 
 impl RiseFit {
-    /// True where a pressure in Pa is among those that were recorded, or near them.
+    /// True if a pressure, Pa, is among those that were recorded, or near them.
     fn reaches(&self, pressure: f64) -> bool {
         let [low, high] = self.pressures;
         let beyond = BEYOND * (high - low);
@@ -152,7 +153,7 @@ impl RiseFit {
     }
 }
 
-/// Numbers of both tests together.
+/// Results of both tests together.
 fn combined(known: KnownLine, rise: Option<RiseFit>, response: Option<ResponseFit>) -> LineIdentification {
     let volume = known.volume();
     let pressure = match (&response, &rise) {
@@ -203,8 +204,8 @@ fn relative(value: f64, deviation: f64) -> Result<Estimate, NotIdentifiableLine>
     Err(NotIdentifiableLine::PressureDoesNotRise { slope: value })
 }
 
-/// m3/Pa: of a creeping wall, oil and wall after the creep. What is not a hose yields at rest as it
-/// does in motion.
+/// Compliance at rest, m3/Pa: for a creeping wall that of oil and wall after the creep. A line that
+/// is not a hose yields at rest as it does in motion.
 fn compliance_at_rest(
     known: &KnownLine,
     pressure: f64,
@@ -229,14 +230,14 @@ fn compliance_at_rest(
     }
 }
 
-/// The fraction of free air.
+/// Fraction of free air.
 fn air(rise: &RiseFit) -> Result<Estimate, NotIdentifiableLine> {
     let [value, deviation] = rise.air_fraction().ok_or(NotIdentifiableLine::NoAir)?;
     let edge = NORMAL_95 * deviation;
     Ok(Estimate { value, interval: [(value - edge).max(0.0), value + edge] })
 }
 
-/// d beta/dp at a pressure, where the compliance changes.
+/// Slope d beta/dp at a pressure, if the compliance changes.
 fn slope(rise: &RiseFit, volume: f64, pressure: f64) -> Result<Estimate, NotIdentifiableLine> {
     if rise.terms() < 2 && rise.air_fraction().is_none() {
         return Err(NotIdentifiableLine::ConstantCompliance);
@@ -248,7 +249,7 @@ fn slope(rise: &RiseFit, volume: f64, pressure: f64) -> Result<Estimate, NotIden
     Ok(Estimate { value, interval: [value - edge, value + edge] })
 }
 
-/// r_beta of a hose.
+/// Dynamic stiffening r_beta of a hose.
 fn stiffening(
     known: &KnownLine,
     pressure: f64,
@@ -276,7 +277,7 @@ fn stiffening(
     Ok(Estimate::of_logarithm(ln(slow / fast), pow(of_fast * of_fast + of_slow * of_slow, 0.5)))
 }
 
-/// tau of a creeping wall, with the declared oil.
+/// Relaxation time tau of a creeping wall, with the declared oil.
 fn relaxation(known: &KnownLine, fit: &ResponseFit) -> Result<Estimate, NotIdentifiableLine> {
     if fit.parameters.creep.is_none() {
         return Err(NotIdentifiableLine::NoCreep);
@@ -294,14 +295,14 @@ fn relaxation(known: &KnownLine, fit: &ResponseFit) -> Result<Estimate, NotIdent
     if deviation < SHOWN { Ok(found) } else { Err(NotIdentifiableLine::AwayFromCreep { deviation }) }
 }
 
-/// I A/L.
+/// Density of the oil, I A/L.
 fn density(known: &KnownLine, fit: &ResponseFit) -> Result<Estimate, NotIdentifiableLine> {
     wave_speed(known, fit)?;
     let stated = known.inertance().unwrap_or(f64::NAN);
     Ok(fit.of(|line| known.fluid.density * line.inertance.unwrap_or(f64::NAN) / stated))
 }
 
-/// c of a fast wave.
+/// Speed c of a fast wave.
 fn wave_speed(known: &KnownLine, fit: &ResponseFit) -> Result<Estimate, NotIdentifiableLine> {
     let Some([length, _]) = known.dimensions() else {
         return Err(NotIdentifiableLine::NoLength);

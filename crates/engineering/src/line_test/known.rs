@@ -9,44 +9,44 @@ use crate::project::{LineMotion, LineSegments, LineSide};
 use crate::rig::line_model;
 use crate::setup::Setup;
 
-/// Facts that a project states of a line, in addition to what is identified of it.
+/// Facts that a project states about a line, in addition to the identified ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KnownLine {
-    /// Which line.
+    /// Side of the line.
     pub side: LineSide,
-    /// True where the project declares the line to the other chamber differently.
+    /// True if the project declares the line to the other chamber differently.
     pub differs_from_other: bool,
-    /// As declared.
+    /// Line as declared.
     pub line: Line,
-    /// The oil in it.
+    /// Oil in the line.
     pub fluid: Fluid,
-    /// Pa, midway between supply and tank, for which a hose's bore is stated.
+    /// Pressure midway between supply and tank, Pa, for which a hose's bore is stated.
     pub pressure: f64,
-    /// The declared model of its motion.
+    /// Declared model of the line's motion.
     pub motion: LineMotion,
-    /// m2, of the piston that displaces a recorded volume, where there is one.
+    /// Area of the piston that displaces a recorded volume, if there is one, m2.
     pub piston_area: f64,
-    /// True where it ends at an accumulator, which is not part of it while that end is blocked.
+    /// True if the line ends at an accumulator, which is not part of it while that end is blocked.
     pub leaves_accumulator: bool,
 }
 
 /// `end_share` of the exact line, to which lines with end volumes tend: at the antinodes of the
-/// pressure a volume counts twice as much as the same compliance along the line, so that end
+/// pressure a volume counts twice as much as an equal compliance along the line, so that end
 /// volumes of 1 % make a resonance 1 % slower.
 pub(super) const EXACT: f64 = 0.0;
-/// `end_share` of the line on the virtual stand where none is stated: it shifts a resonance by less
+/// `end_share` of the line on the virtual stand if none is stated: it shifts a resonance by less
 /// than 1e-4.
 const ON_THE_STAND: f64 = 1e-4;
 /// Polytropic index of bubbles that are compressed slowly: the oil around them has a
 /// constant temperature.
 const ISOTHERMAL: f64 = 1.0;
-/// No liquid has a greater modulus, in Pa.
+/// Greatest modulus of any liquid, Pa.
 const MOST_MODULUS: f64 = 1e11;
-/// Halvings of an interval, down to the last digit.
+/// Number of bisections of an interval, down to the last digit.
 const HALVINGS: usize = 60;
 
 impl KnownLine {
-    /// The line of a project.
+    /// Line of a project.
     ///
     /// # Errors
     /// [`KnownLineError`] without an actuator, with impossible parameters, and for a line without
@@ -76,12 +76,12 @@ impl KnownLine {
         if known.volume() > 0.0 { Ok(known) } else { Err(KnownLineError::NoOil) }
     }
 
-    /// m3, of the oil that it holds at the operating pressure: its moduli refer to it.
+    /// Volume of the oil that it contains at the operating pressure, m3: its moduli refer to it.
     pub fn volume(&self) -> f64 {
         self.line.filled().volume()
     }
 
-    /// Length and bore in m, as filled; none for a plain volume.
+    /// Length and bore, m, as filled; absent for a plain volume.
     pub fn dimensions(&self) -> Option<[f64; 2]> {
         match self.line.filled() {
             Line::Hose { hose, length } => Some([length, hose.bore]),
@@ -90,25 +90,25 @@ impl KnownLine {
         }
     }
 
-    /// m3/Pa, of the oil without wall at a pressure in Pa; none for a plain volume, whose modulus
-    /// has oil and wall.
+    /// Compliance of the oil without wall at a pressure, Pa, in m3/Pa; absent for a plain volume,
+    /// whose modulus includes oil and wall.
     pub fn fluid_compliance(&self, pressure: f64) -> Option<f64> {
         self.dimensions().map(|_| self.volume() / self.fluid.modulus_at(pressure))
     }
 
-    /// Pa s2/m3, of the oil in it; none for a plain volume.
+    /// Inertance of the oil in it, Pa s2/m3; absent for a plain volume.
     pub fn inertance(&self) -> Option<f64> {
         let [length, bore] = self.dimensions()?;
         Some(self.fluid.density * length / (FRAC_PI_4 * bore * bore))
     }
 
-    /// Its motion as declared.
+    /// Model of its motion as declared.
     pub(crate) fn declared_model(&self) -> LineModel {
         line_model(&self.motion, &self.line)
     }
 
-    /// Its motion with waves that are all but exact where no volume at the ends is stated: those
-    /// of a machine keep its valve apart from the waves, and a line has none.
+    /// Model of its motion with nearly exact waves if no volume at the ends is stated: the end
+    /// volumes of a machine separate its valve from the waves, whereas a line has none.
     pub(crate) fn stand_model(&self) -> LineModel {
         match (&self.motion, self.declared_model()) {
             (LineMotion::TransmissionLine { end_share: None }, _) => {
@@ -118,9 +118,8 @@ impl KnownLine {
         }
     }
 
-    /// The model in which its response is sought: as declared, and where that has no waves, with
-    /// them, so that they are found if they are there. Waves are exact unless a volume at the ends
-    /// is stated.
+    /// Model in which its response is identified: as declared, and if that has no waves, with them,
+    /// so that they are found if they exist. Waves are exact unless a volume at the ends is stated.
     pub(crate) fn sought_model(&self) -> LineModel {
         let exact = LineModel::TransmissionLine { end_share: EXACT };
         match (self.dimensions(), self.declared_model()) {
@@ -140,24 +139,24 @@ impl KnownLine {
         }
     }
 
-    /// The oil in which a slow pressure rise may show air: compressed at constant temperature where
-    /// the project states no index. None for a plain volume, whose modulus has oil and wall.
+    /// Oil in which a slow pressure rise may show air: compressed at constant temperature if the
+    /// project states no index. Absent for a plain volume, whose modulus includes oil and wall.
     pub(super) fn aerated_oil(&self) -> Option<AeratedOil> {
         let exponent = self.fluid.entrained_air.map_or(ISOTHERMAL, |air| air.polytropic_exponent);
         let fluid = Fluid { entrained_air: None, ..self.fluid };
         self.dimensions().map(|_| AeratedOil { volume: self.volume(), fluid, exponent })
     }
 
-    /// Line with this air in its oil.
+    /// The line with this air in its oil.
     pub(super) fn with_air(self, air: EntrainedAir) -> KnownLine {
         KnownLine { fluid: Fluid { entrained_air: Some(air), ..self.fluid }, ..self }
     }
 
-    /// The modulus in Pa of the oil without its air that has a modulus with it, at a pressure; none
-    /// where the air without liquid is softer.
+    /// Modulus of the oil without its air, Pa, for a modulus with it, at a pressure; absent if the
+    /// air without liquid is softer.
     ///
     /// # Example
-    /// See [`super::identify_line`]; without air it is the modulus itself.
+    /// See [`super::identify_line`]; without air, the result is the modulus itself.
     pub fn liquid_modulus(&self, modulus: f64, pressure: f64) -> Option<f64> {
         if self.fluid.entrained_air.is_none() {
             return (modulus > 0.0).then_some(modulus);
@@ -178,7 +177,7 @@ impl KnownLine {
         Some(f64::midpoint(low, high))
     }
 
-    /// The oil column of this compliance in m3/Pa and inertance in Pa s2/m3.
+    /// Oil column of this compliance, m3/Pa, and inertance, Pa s2/m3.
     pub(super) fn conduit(&self, compliance: f64, inertance: f64) -> Option<Conduit> {
         let [length, bore] = self.dimensions()?;
         let area = FRAC_PI_4 * bore * bore;

@@ -7,23 +7,23 @@ use super::{LineIdentification, ResponseFit, RiseFit, VolumeSource};
 pub struct LineMisfit {
     /// Path of the file.
     pub file: String,
-    /// `volume` of a pressure rise, `response` of a frequency response.
+    /// Signal: `volume` of a pressure rise, or `response` of a frequency response.
     pub signal: &'static str,
-    /// Root mean square of the misfit over the range of the volume, or over the response.
+    /// Root mean square of the misfit divided by the range of the volume, or by the response.
     pub fraction: f64,
     /// Correlation of neighbouring residuals of a volume.
     pub correlation: Option<f64>,
 }
 
-/// Correlation of neighbouring residuals up to which they are noise, as for a valve.
+/// Correlation of neighbouring residuals up to which they count as noise, as for a valve.
 const OF_NOISE: f64 = 0.4;
-/// Standard deviations up to which a correlation is chance, as for a valve.
+/// Number of standard deviations up to which a correlation is chance, as for a valve.
 const CHANCE: f64 = 5.0;
-/// Misfits of a smaller fraction of the range are not reported, as for a valve.
+/// Fraction of the range below which misfits are not reported, as for a valve.
 const SMALLEST_FRACTION: f64 = 1e-3;
 
 impl LineIdentification {
-    /// The signals that the line does not explain.
+    /// Signals that the line does not explain.
     pub fn misfits(&self) -> Vec<LineMisfit> {
         let rise = self.rise.as_ref().and_then(RiseFit::misfit);
         rise.into_iter().chain(self.response.as_ref().and_then(ResponseFit::misfit_of_response)).collect()
@@ -36,8 +36,8 @@ impl RiseFit {
     /// ```
     ///
     /// around the mean of the residuals: the volume at the first row has the noise of that row.
-    /// None of a volume that is the integral of a flow: there the noise of the meter is alike in
-    /// neighbouring rows.
+    /// There is no misfit of a volume that is the integral of a flow: the noise of the meter is
+    /// correlated in its neighbouring rows.
     fn misfit(&self) -> Option<LineMisfit> {
         if self.record.source == VolumeSource::Flow {
             return None;
@@ -64,7 +64,7 @@ impl RiseFit {
 }
 
 impl ResponseFit {
-    /// Misfit beyond noise, over the response.
+    /// Misfit beyond noise, relative to the response.
     fn misfit_of_response(&self) -> Option<LineMisfit> {
         if self.is_explained() {
             return None;

@@ -1,4 +1,4 @@
-/// Reason for which recordings do not determine a number of a line.
+/// Reason why recordings do not determine a number of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NotIdentifiableLine {
     /// There is no slow pressure rise among the recordings.
@@ -9,28 +9,28 @@ pub enum NotIdentifiableLine {
     NoResponse,
     /// The estimate is wider than a factor of one and a half.
     Wide {
-        /// The number that is estimated.
+        /// Estimated number.
         quantity: WideQuantity,
         /// Standard deviation of its logarithm.
         deviation: f64,
     },
     /// The pressure does not rise with the volume.
     PressureDoesNotRise {
-        /// m3/Pa, slope of the volume over the pressure.
+        /// Slope of the volume as a function of the pressure, m3/Pa.
         slope: f64,
     },
     /// The declared oil without air explains the pressure rise as well.
     NoAir,
     /// The compliance does not change with the pressure beyond its noise.
     ConstantCompliance,
-    /// No hose, which alone has a wall that stiffens.
+    /// The line is not a hose, and only a hose has a wall that stiffens.
     NoHose,
-    /// No wall stiffening, because the line yields less than the declared oil alone.
+    /// There is no wall stiffening, because the line yields less than the declared oil would.
     StifferThanOil {
-        /// m3/Pa in fast motion and at rest, less that of the oil.
+        /// Compliance in fast motion and at rest, minus that of the oil, m3/Pa.
         wall: [f64; 2],
     },
-    /// No relaxation, because the line yields less than the declared oil alone.
+    /// There is no relaxation, because the line yields less than the declared oil would.
     NoWallCompliance,
     /// The declared model of the line has no creep.
     NoCreep,
@@ -45,14 +45,14 @@ pub enum NotIdentifiableLine {
     TwoWaves,
     /// The response shows no wave.
     NoWave {
-        /// rad/s, highest frequency of the response.
+        /// Highest frequency of the response, rad/s.
         highest: f64,
     },
     /// The frequencies end too far below the quarter wave.
     BelowQuarterWave {
-        /// rad/s, highest frequency of the response.
+        /// Highest frequency of the response, rad/s.
         highest: f64,
-        /// Hz, estimate of the quarter wave.
+        /// Estimate of the quarter-wave frequency, Hz.
         quarter_wave: f64,
     },
 }

@@ -15,17 +15,17 @@ use crate::tendency::Tendency;
 /// A recording of a blocked line.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LineRecord {
-    /// The pressure rises slowly, or falls.
+    /// Record of a slow pressure rise or fall.
     Rise(RiseRecord),
-    /// The flow goes back and forth.
+    /// Record of an alternating flow.
     Response(SampledPair),
 }
 
 /// Fewest rows of a rise.
 const FEWEST_ROWS: usize = 10;
-/// Distance that a volume goes over its range, beyond which the flow goes back and forth.
+/// Ratio of the path of a volume to its range beyond which the flow alternates.
 const SLOW: f64 = 6.0;
-/// Blocks over which a flow is averaged to see whether it does.
+/// Number of blocks over which a flow is averaged to detect alternation.
 const BLOCKS: usize = 200;
 
 const SIGNALS: [Measurand; 5] = [
@@ -36,10 +36,11 @@ const SIGNALS: [Measurand; 5] = [
     Measurand::of("position", &LENGTH).called(&["x"]),
 ];
 
-/// The recordings of these files, one each. A position becomes a volume by the piston's area in m2.
+/// Recordings of these files, one each. A position becomes a volume by multiplication with the
+/// piston's area, m2.
 ///
 /// # Errors
-/// Everything that is wrong in the files, with its places.
+/// All errors in the files, with their places.
 pub fn line_records(
     source: &dyn Source,
     files: &[String],
@@ -120,7 +121,7 @@ fn response(file: &str, rows: EvenRows) -> Option<LineRecord> {
         input: signals.next()?,
         output: signals.next()?,
         reference: None,
-        // the supply and the line move each other: no controller is needed for that
+        // the supply and the line act on each other: no controller is needed for that
         recorded_loop: Some(RecordedLoop::Open),
         controller: None,
         operating_point: None,
@@ -128,7 +129,7 @@ fn response(file: &str, rows: EvenRows) -> Option<LineRecord> {
     }))
 }
 
-/// Refuses a record whose pressure falls while its volume grows.
+/// Rejects a record whose pressure falls while its volume grows.
 fn rises_with_volume(
     table: &MeasuredTable,
     columns: [&Column; 2],
@@ -161,7 +162,7 @@ fn increasing(table: &MeasuredTable, column: &Column, times: &[f64], findings: &
     }
 }
 
-/// The integral of a flow by the trapezoidal rule, zero at the first row.
+/// Integral of a flow by the trapezoidal rule, zero at the first row.
 fn integral(times: &[f64], flows: &[f64]) -> Vec<f64> {
     let mut sum = 0.0;
     let mut volumes = vec![0.0];
@@ -174,7 +175,7 @@ fn integral(times: &[f64], flows: &[f64]) -> Vec<f64> {
     volumes
 }
 
-/// True where the volume goes much further than between its ends.
+/// True if the path of the volume is much longer than the distance between its ends.
 fn goes_back_and_forth(times: &[f64], flows: &[f64], volumes: &[f64]) -> bool {
     let length = flows.len().div_ceil(BLOCKS).max(1);
     let ends = times.first().zip(times.last()).map_or(0.0, |(first, last)| last - first);

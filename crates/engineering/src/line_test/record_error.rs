@@ -1,12 +1,12 @@
 /// Error of a recording of a line.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(super) enum LineRecordError {
-    /// A pressure that falls while oil enters the line.
+    /// The pressure falls while oil enters the line.
     #[error(
         "`{pressure}` falls while `{volume}` fills the line (correlation {correlation:.2} over {rows} rows)"
     )]
     PressureFalls { pressure: String, volume: String, correlation: f64, rows: usize },
-    /// Fewer rows than a test has.
+    /// There are fewer rows than a test has.
     #[error("{0} rows are too few for a test of a line")]
     TooFewRows(usize),
 }

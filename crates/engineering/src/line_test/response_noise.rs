@@ -2,26 +2,26 @@
 
 use phea_dynamics::spectrum::SpectralPoint;
 
-/// Rounds of the fit, each of which makes the numbers more likely.
+/// Number of rounds of the fit, each of which increases the likelihood.
 const ROUNDS: usize = 400;
 
-/// Standard deviation of the response at each point: the scatter of few blocks, smoothed by where
-/// noise is from.
+/// Standard deviation of the response at each point: the scatter of few blocks, smoothed by the
+/// origin of the noise.
 ///
 /// ```text
 /// sigma_k^2 e_k = a + b |G_k|^2         e the power of the input, a noise of the output, b of the input
 /// ```
 ///
-/// White noise of either signal is as strong at all frequencies, so two numbers hold for all, which
-/// many more blocks determine than there are at one frequency. They are the most likely ones, for
-/// scatter that is a sum of squares:
+/// White noise of either signal is equally strong at all frequencies, so two numbers suffice for
+/// all, which many more blocks determine than there are at one frequency. They are the most likely
+/// ones, for scatter that is a sum of squares:
 ///
 /// ```text
 /// minimise sum ln m_k + s_k/m_k,  m = a + b g:     a sqrt(sum s/m^2 / sum 1/m) -> a,   b sqrt(sum g s/m^2 / sum g/m) -> b
 /// ```
 ///
-/// which never increases the sum (Fevotte and Idier 2011). Pintelon and Schoukens (2012),
-/// section 2.
+/// which never increases the sum (Fevotte and Idier 2011). Pintelon and Schoukens (2012), section
+/// 2.
 pub(super) fn smoothed_deviations(points: &[SpectralPoint]) -> Vec<f64> {
     let squared = |point: &SpectralPoint| point.response.norm_sqr();
     let largest = points.iter().map(squared).fold(f64::MIN_POSITIVE, f64::max);

@@ -15,24 +15,24 @@ use crate::identify_error::LineFitError;
 pub enum VolumeSource {
     /// The integral of a flow.
     Flow,
-    /// It was recorded.
+    /// A recorded volume.
     Volume,
-    /// A piston's position times its area.
+    /// Position of a piston times its area.
     Position,
 }
 
-/// A slow test of a blocked line. SI.
+/// A slow test of a blocked line, in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RiseRecord {
     /// Path of the file.
     pub file: String,
     /// Source of the volumes.
     pub source: VolumeSource,
-    /// s; empty where no time was recorded.
+    /// Times, s; empty if none were recorded.
     pub times: Vec<f64>,
-    /// m3, displaced into the line since the first row.
+    /// Volumes displaced into the line since the first row, m3.
     pub volumes: Vec<f64>,
-    /// Pa.
+    /// Pressures, Pa.
     pub pressures: Vec<f64>,
 }
 
@@ -41,58 +41,58 @@ pub struct RiseRecord {
 pub struct RiseFit {
     /// Recorded rise.
     pub record: RiseRecord,
-    /// Pa, lowest and highest pressure.
+    /// Lowest and highest pressure, Pa.
     pub pressures: [f64; 2],
-    /// m3, coefficients b_j; then the fraction of air, where there is some.
+    /// Coefficients b_j, m3; then the fraction of air, if there is some.
     coefficients: DVector<f64>,
-    /// The oil, where the record shows air in it.
+    /// Oil, if the record shows air in it.
     oil: Option<AeratedOil>,
-    /// Their covariance.
+    /// Covariance of the coefficients.
     covariance: DMatrix<f64>,
-    /// m3/s that the meter shows or the line loses at standstill; none where the record does not
-    /// separate it from the compliance.
+    /// Zero error of the meter or leakage of the line at standstill, m3/s; absent if the record
+    /// does not separate it from the compliance.
     pub drift: Option<f64>,
-    /// m3, at the first row.
+    /// Volume at the first row, m3.
     offset: f64,
-    /// m3, root mean square of what differs from row to row.
+    /// White noise from row to row, m3, root mean square.
     pub white_noise: f64,
-    /// m3, by which the sum of a meter's noise grows from row to row, root mean square.
+    /// Growth of the sum of a meter's noise from row to row, m3, root mean square.
     pub walk: f64,
 }
 
-/// Least absolute t of a further coefficient: one in a thousand by chance.
+/// Least absolute t of a further coefficient: exceeded by chance in one of a thousand cases.
 const DECISIVE: f64 = 3.29;
-/// Most terms of the volume over the pressure.
+/// Largest number of terms of the volume as a function of the pressure.
 const MOST_TERMS: usize = 3;
-/// Fraction of the compliance that its standard deviation may be for a drift to be taken as
+/// Largest standard deviation of the compliance, as a fraction of it, at which a drift counts as
 /// determined.
 const DETERMINED: f64 = 0.1;
-/// Windows of a record over which pressures are smoothed.
+/// Number of windows of a record over which pressures are smoothed.
 const WINDOWS: usize = 100;
-/// ln of the ratio of walk to white noise that is searched.
+/// Range of the logarithm of the ratio of walk to white noise that is searched.
 const RATIOS: [f64; 2] = [-23.0, 9.0];
-/// Steps of the search over them, coarse and fine.
+/// Number of steps of this search, coarse and fine.
 const STEPS: [usize; 2] = [16, 24];
 
-/// Fraction of air at which its search begins, and its steps.
+/// Fraction of air at which its search begins, and number of steps.
 const FIRST_AIR: f64 = 0.01;
 const AIR_STEPS: usize = 8;
 
-/// Fits volume over pressure.
+/// Fits volume as a function of pressure.
 ///
 /// ```text
 /// V_k = V_0 + sum b_j u_k^j/j + q_0 t_k + w_k + e_k        u = (p - p_m)/h,  p_m and h middle and half of the range
 /// w_(k+1) = w_k + n_k,   variance of n over that of e by restricted likelihood           dV/dp = sum b_j u^(j-1)/h
 /// ```
 ///
-/// e is what is read wrong from row to row, w what the integral of a meter's noise has summed up
-/// to, q_0 its zero error and any leakage. Where w dominates, only what changes from row to row
-/// counts, and there the noise of the pressure is as large as its change: smoothed pressures are
-/// instruments for the recorded ones, whose noise they hardly share. Harvey (1989), section 2.3,
+/// e is the reading error from row to row, w the accumulated integral of a meter's noise, q_0 its
+/// zero error and any leakage. If w dominates, only the changes from row to row count, and there
+/// the noise of the pressure is as large as its change: smoothed pressures are instruments for the
+/// recorded ones, with whose noise they have hardly anything in common. Harvey (1989), section 2.3,
 /// for the local level; Patterson and Thompson (1971) for the likelihood.
 ///
-/// Air in `oil` competes with the terms: of both, that with the lower criterion of Schwarz (1978)
-/// is taken.
+/// Air in `oil` competes with the terms: the fit with the lower criterion of Schwarz (1978) is
+/// used.
 ///
 /// ```text
 /// V_k = ... + V (-ln((1 - a) V_liquid(p_k) + a V_gas(p_k)) - p_k/beta_0)          a the fraction of free air
@@ -127,7 +127,7 @@ pub(super) fn rise_fit(record: RiseRecord, oil: Option<AeratedOil>) -> Result<Ri
     Ok(fit.into_rise(record, pressures))
 }
 
-/// The fit with air in the oil; `None` where none shows.
+/// Fit with air in the oil; `None` if there is no visible air.
 fn with_air(record: &RiseRecord, pressures: [f64; 2], oil: AeratedOil, drift: bool) -> Option<TermsFit> {
     let of = |terms: usize| {
         let mut fraction = FIRST_AIR;
@@ -152,18 +152,18 @@ fn with_air(record: &RiseRecord, pressures: [f64; 2], oil: AeratedOil, drift: bo
     }
 }
 
-/// The law by which volumes follow from pressures.
+/// Law by which volumes follow from pressures.
 #[derive(Clone, Copy)]
 struct RiseModel {
     terms: usize,
-    /// True where a constant flow is sought.
+    /// True if a constant flow is estimated.
     drift: bool,
-    /// Air, and the fraction around which it is sought.
+    /// Air, and the fraction around which it is estimated.
     air: Option<(AeratedOil, f64)>,
 }
 
 impl RiseModel {
-    /// Coefficients without the drift.
+    /// Number of coefficients without the drift.
     fn count(&self) -> usize {
         self.terms + usize::from(self.air.is_some())
     }
@@ -177,12 +177,12 @@ struct TermsFit {
     offset: f64,
     white_variance: f64,
     ratio: f64,
-    /// Information criterion: the lower the better.
+    /// Information criterion: lower is better.
     criterion: f64,
 }
 
 impl TermsFit {
-    /// True where a coefficient is larger than by chance.
+    /// True if a coefficient is larger than by chance.
     fn is_decisive(&self, index: usize) -> bool {
         let value = self.values.get(index).copied().unwrap_or(0.0);
         let variance = self.covariance.get((index, index)).copied().unwrap_or(f64::INFINITY);
@@ -205,7 +205,7 @@ impl TermsFit {
     }
 }
 
-/// Columns of the regression: instruments, what they represent, and the volume.
+/// Columns of the regression: instruments, the regressors that they represent, and the volume.
 fn columns(record: &RiseRecord, [low, high]: [f64; 2], model: RiseModel) -> Vec<Vec<f64>> {
     let (middle, half) = (f64::midpoint(low, high), (high - low) / 2.0);
     let smooth = smoothed(&record.pressures);
@@ -221,7 +221,7 @@ fn columns(record: &RiseRecord, [low, high]: [f64; 2], model: RiseModel) -> Vec<
         );
         columns.extend(model.drift.then(|| record.times.clone()));
     }
-    // what the air takes up is straight in its fraction around the one that is given
+    // the volume of air is linear in its fraction around the given one
     let beyond =
         |p: f64| model.air.map_or(0.0, |(oil, air)| oil.taken_up(air, p) - air * oil.taken_up_slope(air, p));
     let rows = record.volumes.iter().zip(&record.pressures);
@@ -229,7 +229,7 @@ fn columns(record: &RiseRecord, [low, high]: [f64; 2], model: RiseModel) -> Vec<
     columns
 }
 
-/// Each value as the mean of those around it, over a hundredth of the record.
+/// Each value replaced by the mean of those around it, over a hundredth of the record.
 fn smoothed(values: &[f64]) -> Vec<f64> {
     let around = values.len() / WINDOWS / 2;
     let mean = |row: usize| {
@@ -245,7 +245,7 @@ fn powered(value: f64, power: usize) -> f64 {
     (0..power).fold(1.0, |product, _| product * value)
 }
 
-/// The coefficients at the best ratio of walk to white noise.
+/// Coefficients at the best ratio of walk to white noise.
 fn fitted(record: &RiseRecord, pressures: [f64; 2], model: RiseModel) -> Option<TermsFit> {
     let columns = columns(record, pressures, model);
     let spread = if model.air.is_some() { NoiseSpread::DiffersByRow } else { NoiseSpread::Even };
@@ -262,7 +262,7 @@ fn fitted(record: &RiseRecord, pressures: [f64; 2], model: RiseModel) -> Option<
     let (volume, others) = columns.split_last()?;
     let shown = others.iter().skip(others.len() / 2);
     let explained: f64 = shown.zip(solved.values.iter()).map(|(x, b)| of_first(x) * b).sum();
-    // what wanders in a volume that was not summed up from a flow is no noise
+    // the wander of a volume that was not integrated from a flow is no noise
     let compared = if record.source == VolumeSource::Flow { ratio } else { least };
     let likelihood = at(compared)?.likelihood;
     let rows = record.volumes.len() as f64;
@@ -289,11 +289,11 @@ struct WhitenedSolution {
     likelihood: f64,
 }
 
-/// True where the noise of a volume is as large in all rows.
+/// Spread of the noise of a volume over the rows.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum NoiseSpread {
     Even,
-    /// The noise of the pressure counts for more where air makes the line soft.
+    /// The noise of the pressure has more effect where air makes the line soft.
     DiffersByRow,
 }
 
@@ -351,13 +351,13 @@ impl WhitenedSolution {
 }
 
 impl RiseFit {
-    /// Number of terms of the volume over the pressure: 1 for a compliance that does not change,
-    /// but for that of air.
+    /// Number of terms of the volume as a function of the pressure: 1 for a constant compliance,
+    /// without that of air.
     pub fn terms(&self) -> usize {
         self.coefficients.len() - usize::from(self.oil.is_some())
     }
 
-    /// Fraction of free air at atmospheric pressure, and its standard deviation; none where the
+    /// Fraction of free air at atmospheric pressure, and its standard deviation; absent if the
     /// record shows none.
     pub fn air_fraction(&self) -> Option<[f64; 2]> {
         let last = self.terms();
@@ -365,7 +365,7 @@ impl RiseFit {
         self.oil.map(|_| [self.coefficients[last], variance.max(0.0).sqrt()])
     }
 
-    /// The air that the record shows.
+    /// Air that the record shows.
     pub(super) fn air(&self) -> Option<EntrainedAir> {
         self.oil.zip(self.air_fraction()).map(|(oil, [fraction, _])| oil.air(fraction))
     }
@@ -380,14 +380,15 @@ impl RiseFit {
         (pressure - f64::midpoint(low, high)) / self.half()
     }
 
-    /// Air at a pressure in Pa: its compliance in m3/Pa, with the derivatives over its
-    /// fraction and over the pressure.
+    /// Compliance of air at a pressure, Pa, in m3/Pa, with the derivatives with respect to its
+    /// fraction and to the pressure.
     fn of_air(&self, pressure: f64) -> [f64; 3] {
         let both = self.oil.zip(self.air_fraction());
         both.map_or([0.0; 3], |(oil, [fraction, _])| oil.compliance(fraction, pressure))
     }
 
-    /// m3 that the air takes up at a gauge pressure in Pa, and the derivative over its fraction.
+    /// Volume that the air takes up at a gauge pressure, Pa, in m3, and the derivative with respect
+    /// to its fraction.
     fn taken_by_air(&self, pressure: f64) -> [f64; 2] {
         let both = self.oil.zip(self.air_fraction());
         both.map_or([0.0; 2], |(oil, [fraction, _])| {
@@ -395,14 +396,14 @@ impl RiseFit {
         })
     }
 
-    /// dV/dp in m3/Pa at a pressure in Pa, and its standard deviation.
+    /// Compliance dV/dp at a pressure, Pa, in m3/Pa, and its standard deviation.
     pub fn compliance(&self, pressure: f64) -> [f64; 2] {
         let u = self.scaled(pressure);
         let [air, by_fraction, _] = self.of_air(pressure);
         self.combined(|term| powered(u, term) / self.half(), [air, by_fraction])
     }
 
-    /// Change of volume over change of pressure between the ends, in m3/Pa, and its standard
+    /// Change of volume divided by change of pressure between the ends, m3/Pa, and its standard
     /// deviation.
     pub fn secant(&self) -> [f64; 2] {
         let odd = |term: usize| if term.is_multiple_of(2) { 1.0 / (term + 1) as f64 } else { 0.0 };
@@ -411,12 +412,12 @@ impl RiseFit {
         self.combined(|term| odd(term) / self.half(), [between(0), between(1)])
     }
 
-    /// Slope of the compliance over the pressure at a pressure in Pa, in m3/Pa2, and its standard
-    /// deviation.
+    /// Slope of the compliance with respect to the pressure, at a pressure, Pa, in m3/Pa2, and its
+    /// standard deviation.
     pub(crate) fn compliance_slope(&self, pressure: f64) -> [f64; 2] {
         let (u, half) = (self.scaled(pressure), self.half());
         let [_, _, by_pressure] = self.of_air(pressure);
-        // the slope of what air takes up is as good as straight in its fraction
+        // the slope of the volume of air is nearly linear in its fraction
         let by_fraction = self.air_fraction().map_or(0.0, |[fraction, _]| by_pressure / fraction);
         self.combined(
             |term| term as f64 * powered(u, term.saturating_sub(1)) / (half * half),
@@ -424,8 +425,8 @@ impl RiseFit {
         )
     }
 
-    /// A sum over the terms with these weights, with what air adds, and its derivative over the
-    /// fraction of air.
+    /// Sum over the terms with these weights, with the contribution of air, and its derivative with
+    /// respect to the fraction of air.
     fn combined(&self, weight: impl Fn(usize) -> f64, [air, by_fraction]: [f64; 2]) -> [f64; 2] {
         let terms = self.terms();
         let of = |term: usize| if term < terms { weight(term) } else { by_fraction };
@@ -436,7 +437,7 @@ impl RiseFit {
         [sum + air, variance.max(0.0).sqrt()]
     }
 
-    /// m3 that were displaced at a pressure in Pa, without drift.
+    /// Volume displaced at a pressure, Pa, in m3, without drift.
     pub fn volume(&self, pressure: f64) -> f64 {
         let u = self.scaled(pressure);
         let [air, _] = self.taken_by_air(pressure);
@@ -445,7 +446,7 @@ impl RiseFit {
         self.offset + air + sum
     }
 
-    /// Pa and m3 of each row, the drift taken off.
+    /// Pressure, Pa, and volume, m3, of each row, without the drift.
     pub fn points(&self) -> Vec<(f64, f64)> {
         let drift = self.drift.unwrap_or(0.0);
         let rows = self.record.pressures.iter().zip(&self.record.volumes).enumerate();

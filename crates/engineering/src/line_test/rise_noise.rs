@@ -1,21 +1,21 @@
-//! Rows that depend on each other, made independent.
+//! Transformation of dependent rows into independent ones.
 
-/// Columns, as the filter leaves them.
+/// Columns at the output of the filter.
 pub(super) struct Whitened {
-    /// One row fewer each.
+    /// Columns, each with one row fewer.
     pub(super) columns: Vec<Vec<f64>>,
-    /// ln of the determinant of the covariance, over that of the white noise.
+    /// Logarithm of the determinant of the covariance, relative to that of the white noise.
     pub(super) determinant: f64,
 }
 
-/// Takes out of each column what the rows before say, for white noise of variance 1 on top of a
-/// walk of this variance a row.
+/// Removes from each column the prediction by the preceding rows, for white noise of variance 1 on
+/// top of a random walk of this variance per row.
 ///
 /// ```text
 /// P_1 = 1,  a_1 = y_1:    F = P + r + 1,  v = y - a,  K = (P + r)/F,  a + K v -> a,  (P + r)/F -> P        v/sqrt(F)
 /// ```
 ///
-/// The Kalman filter of the local level with an unknown first level: Harvey (1989), section 3.
+/// Kalman filter of the local level with an unknown first level: Harvey (1989), section 3.
 pub(super) fn whitened(columns: &[Vec<f64>], ratio: f64) -> Whitened {
     let rows = columns.first().map_or(0, Vec::len);
     let mut gains = Vec::with_capacity(rows);

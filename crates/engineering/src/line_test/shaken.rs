@@ -18,66 +18,66 @@ use crate::estimate::{Estimate, NORMAL_95};
 use crate::identify_error::{IdentifyError, LineFitError};
 use crate::response::ResponseMember;
 
-/// Parameters of the response of a blocked line. SI.
+/// Parameters of the response of a blocked line, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineParameters {
-    /// m3/Pa, of oil and wall, at once.
+    /// Immediate compliance of oil and wall, m3/Pa.
     pub compliance: f64,
-    /// m3/Pa, of the wall, later; and the time in s after which it follows.
+    /// Delayed compliance of the wall, m3/Pa, and its time constant, s.
     pub creep: Option<[f64; 2]>,
-    /// Pa s2/m3; none for a plain volume.
+    /// Inertance, Pa s2/m3; absent for a plain volume.
     pub inertance: Option<f64>,
 }
 
-/// The parameters that explain a response.
+/// Parameters that explain a response.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseFit {
-    /// The response, pressure over flow.
+    /// Response of pressure over flow.
     pub member: ResponseMember,
-    /// Pa, mean of the recorded pressure.
+    /// Mean of the recorded pressure, Pa.
     pub pressure: f64,
-    /// The parameters.
+    /// Parameters of the line.
     pub parameters: LineParameters,
     /// Standard deviation of the response at each frequency.
     pub deviations: Vec<f64>,
-    /// Sum of squares over that of noise, and the degrees of freedom.
+    /// Sum of squares relative to that of noise, and degrees of freedom.
     pub misfit: [f64; 2],
-    /// Model in which it was sought.
+    /// Model of the fit.
     pub model: LineModel,
     /// Covariance of the logarithms of the parameters, in their order.
     covariance: DMatrix<f64>,
-    /// True where the inertance ended at the least that is searched.
+    /// True if the inertance ended at its least value in the search.
     pub without_waves: bool,
 }
 
-/// The compliance at one frequency, C = Im(q/p)/w.
+/// Compliance at one frequency, C = Im(q/p)/w.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompliancePoint {
-    /// rad/s.
+    /// Frequency, rad/s.
     pub frequency: f64,
-    /// m3/Pa.
+    /// Measured compliance, m3/Pa.
     pub measured: f64,
-    /// m3/Pa, half of the 95 % interval.
+    /// Half width of the 95 % interval, m3/Pa.
     pub edge: f64,
-    /// m3/Pa, of the fitted line.
+    /// Compliance of the fitted line, m3/Pa.
     pub model: f64,
-    /// Squared coherence of the record there.
+    /// Squared coherence of the record at this frequency.
     pub coherence: f64,
 }
 
 /// Ratios to the inertance of the declared oil at which the search begins.
 const STARTS: [f64; 5] = [1.0, 0.6, 1.6, 0.3, 3.0];
-/// The least and the greatest ratio.
+/// Least and greatest ratio.
 const RATIOS: [f64; 2] = [1e-3, 30.0];
-/// Whole over immediate compliance of a wall that creeps, at which it begins.
+/// Initial ratios of the whole to the immediate compliance of a wall that creeps.
 const STIFFENINGS: [f64; 3] = [3.0, 1.3, 8.0];
 /// Step of the derivatives in the logarithm.
 const STEP: f64 = 1e-5;
-/// The most that a parameter may change in the search, as a factor.
+/// Largest factor by which a parameter may change in the search.
 const RANGE: f64 = 1e4;
 
-/// Fits the model of the line to a response. `slow` is ln of the whole compliance, with its
-/// standard deviation, where a pressure rise determines it.
+/// Fits the model of the line to a response. `slow` is the logarithm of the whole compliance, with
+/// its standard deviation, if a pressure rise determines it.
 pub(super) fn response_fit(
     member: ResponseMember,
     pressure: f64,
@@ -115,7 +115,7 @@ pub(super) fn response_fit(
     })
 }
 
-/// The most that the mean square of residuals over their noise is by chance: four standard
+/// Bound of the mean square of residuals relative to their noise by chance: four standard
 /// deviations.
 pub(super) fn most_misfit(freedom: f64) -> f64 {
     1.0 + 4.0 * (2.0 / freedom.max(1.0)).sqrt()
@@ -139,7 +139,8 @@ impl SoughtLine<'_> {
         }
     }
 
-    /// Logarithms of compliance, creep and retardation, inertance, as far as the model has them.
+    /// Parameters from the logarithms of compliance, creep and retardation, inertance, if the model
+    /// has them.
     fn parameters(&self, variables: &[f64]) -> LineParameters {
         let mut values = variables.iter().map(|variable| exp(*variable));
         let mut next = || values.next().unwrap_or(f64::NAN);
@@ -150,7 +151,7 @@ impl SoughtLine<'_> {
         }
     }
 
-    /// The best minimum from several starts, or the first that explains the response.
+    /// Best minimum from several starts, or the first that explains the response.
     fn best(&self, watch: Watch<'_>) -> Result<Option<Minimum>, Stopped> {
         let inertances: &[f64] = if self.known.inertance().is_some() { &STARTS } else { &[1.0] };
         let stiffenings: &[f64] = if self.creeps().is_some() { &STIFFENINGS } else { &[1.0] };
@@ -173,7 +174,8 @@ impl SoughtLine<'_> {
         Ok(best)
     }
 
-    /// From the compliance at the lowest frequency, with this ratio of inertance and of stiffening.
+    /// Minimum of a search from the compliance at the lowest frequency, with this ratio of
+    /// inertance and of stiffening.
     fn from(&self, [factor, stiffening]: [f64; 2]) -> Result<Minimum, Stopped> {
         let lowest = self.points.first();
         let whole = lowest.map_or(f64::NAN, |point| point.response.inv().im / point.frequency).abs();
@@ -210,8 +212,8 @@ impl SoughtLine<'_> {
         Some(Linearised { residuals, jacobian })
     }
 
-    /// Real and imaginary part of each point over their standard deviation, and the whole
-    /// compliance over that of the pressure rise.
+    /// Real and imaginary part of each point divided by their standard deviation, and the deviation
+    /// of the whole compliance divided by that of the pressure rise.
     fn residuals(&self, variables: &[f64]) -> Option<Vec<f64>> {
         let parameters = self.parameters(variables);
         let line = SoughtImpedance::of(self.known, self.model, &parameters)?;
@@ -228,7 +230,7 @@ impl SoughtLine<'_> {
     }
 }
 
-/// Pressure over flow at the open end of a blocked line.
+/// Pressure divided by flow at the open end of a blocked line.
 enum SoughtImpedance {
     /// Line of a model that a machine computes.
     Model(BlockedLine),
@@ -237,7 +239,7 @@ enum SoughtImpedance {
 }
 
 impl SoughtImpedance {
-    /// Impedance of these parameters; none where their model does not exist.
+    /// Impedance of these parameters; `None` if their model does not exist.
     fn of(known: &KnownLine, model: LineModel, parameters: &LineParameters) -> Option<SoughtImpedance> {
         let LineParameters { compliance, inertance, .. } = *parameters;
         let conduit = inertance.and_then(|inertance| known.conduit(compliance, inertance));
@@ -249,7 +251,7 @@ impl SoughtImpedance {
         }
     }
 
-    /// At a frequency in rad/s, in Pa s/m3.
+    /// Impedance at a frequency, rad/s, in Pa s/m3.
     ///
     /// ```text
     /// Z_c coth(Gamma) of the exact line with laminar friction
@@ -267,7 +269,7 @@ impl SoughtImpedance {
     }
 }
 
-/// The blocked line of these parameters; none where its model does not exist.
+/// Blocked line of these parameters; `None` if its model does not exist.
 fn blocked(known: &KnownLine, model: LineModel, parameters: &LineParameters) -> Option<BlockedLine> {
     let LineParameters { compliance, creep, inertance } = *parameters;
     let Some(conduit) = inertance.and_then(|inertance| known.conduit(compliance, inertance)) else {
@@ -281,8 +283,8 @@ fn blocked(known: &KnownLine, model: LineModel, parameters: &LineParameters) -> 
         LineModel::Segments { count, friction, .. } => {
             let mut segments = Segments::new(&conduit, count, friction).ok()?;
             if let Some([creep, retardation]) = creep {
-                // any split of oil and wall has this creep: all of what yields at once is taken as
-                // wall
+                // any division into oil and wall has this creep: the whole immediate compliance is
+                // assigned to the wall
                 let volume = known.volume();
                 let [fast, slow] = [volume / compliance, volume / (compliance + creep)];
                 let wall = StandardLinearSolid {
@@ -327,12 +329,12 @@ impl ResponseFit {
         Estimate::of_logarithm(at(&values), variance.max(0.0).sqrt())
     }
 
-    /// The model's response at a frequency in rad/s, pressure over flow.
+    /// Response of the model at a frequency, rad/s, pressure over flow.
     pub fn model_response(&self, known: &KnownLine, frequency: f64) -> Option<Complex64> {
         Some(SoughtImpedance::of(known, self.model, &self.parameters)?.at(frequency))
     }
 
-    /// The compliance over the frequency.
+    /// Compliance as a function of the frequency.
     ///
     /// ```text
     /// C(w) = Im(1/Z)/w        sigma_C = sigma_Z/(sqrt(2) |Z|^2 w)
@@ -353,7 +355,7 @@ impl ResponseFit {
         rows.map(of).collect()
     }
 
-    /// True where the residuals are as large as noise makes them.
+    /// True if the residuals are as large as noise makes them.
     pub fn is_explained(&self) -> bool {
         let [misfit, freedom] = self.misfit;
         misfit <= most_misfit(freedom)

@@ -20,7 +20,7 @@ use crate::bench::{BenchError, BenchLineError, Instruments, MOST_ROWS};
 use crate::project::{Bench, LineBench};
 use crate::setup::Setup;
 
-/// One of the tests of a line.
+/// A test of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineSeries {
     /// The pressure rises slowly, and falls again.
@@ -30,7 +30,7 @@ pub enum LineSeries {
 }
 
 impl LineSeries {
-    /// As files are called.
+    /// Name in file names.
     pub fn name(self) -> &'static str {
         match self {
             LineSeries::PressureRise => "line_pressure_rise",
@@ -39,29 +39,29 @@ impl LineSeries {
     }
 }
 
-/// A test of a line as it was recorded. SI.
+/// A recorded test of a line, in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LineRun {
-    /// Which.
+    /// Kind of the test.
     pub series: LineSeries,
-    /// s.
+    /// Times, s.
     pub times: Vec<f64>,
-    /// Into the open end: m3 since the first row of a rise, m3/s of a response.
+    /// Input into the open end: volume since the first row of a rise, m3, flow of a response, m3/s.
     pub inputs: Vec<f64>,
-    /// Pa, at the open end.
+    /// Pressures at the open end, Pa.
     pub pressures: Vec<f64>,
 }
 
-/// Pieces of the integral over the pressure, which is smooth.
+/// Number of pieces of the integral over the pressure, which is smooth.
 const PIECES: u32 = 200;
 
 /// Fraction of the rise during which the flow sets in.
 const ONSET: f64 = 0.05;
 
-/// The tests of `[bench.line]`, with noise and converters; nothing where it is absent.
+/// Tests of `[bench.line]`, with noise and converters; empty if it is absent.
 ///
 /// # Errors
-/// As [`clean_line_runs`].
+/// The errors of [`clean_line_runs`].
 pub fn line_runs(setup: &Setup<'_>, watch: Watch<'_>) -> Result<Vec<LineRun>, BenchError> {
     let bench = &setup.project.bench;
     let mut runs = clean_line_runs(setup, watch)?;
@@ -69,7 +69,7 @@ pub fn line_runs(setup: &Setup<'_>, watch: Watch<'_>) -> Result<Vec<LineRun>, Be
     Ok(runs)
 }
 
-/// Tests as they truly are, without noise and converters.
+/// True values of the tests, without noise and converters.
 ///
 /// # Errors
 /// [`BenchError`] for a project whose line cannot be simulated.
@@ -87,7 +87,7 @@ pub fn clean_line_runs(setup: &Setup<'_>, watch: Watch<'_>) -> Result<Vec<LineRu
     Ok(vec![rise, shaken(&line(mean)?, mean, &bench, watch)?])
 }
 
-/// A run through the instruments.
+/// Passes a run through the instruments.
 pub fn recorded(run: &mut LineRun, bench: &Bench) {
     let mut noise = stream(u64::from(bench.seed), 100 + run.series as u64);
     let mut instruments = Instruments::new(bench, 1.0);
@@ -101,7 +101,7 @@ pub fn recorded(run: &mut LineRun, bench: &Bench) {
     }
 }
 
-/// Standstill, a steady flow in, standstill, the same flow out, standstill.
+/// Standstill, a steady inflow, standstill, an equal outflow, standstill.
 fn rise(line: &BlockedLine, bench: &LineBench, watch: Watch<'_>) -> Result<LineRun, BenchError> {
     let [low, high] = bench.pressures;
     let step = (high - low) / f64::from(PIECES);
@@ -127,8 +127,8 @@ fn rise(line: &BlockedLine, bench: &LineBench, watch: Watch<'_>) -> Result<LineR
     Ok(found)
 }
 
-/// The integral of a function from the first of some times to each, by Simpson's rule: exact for
-/// cubic pieces.
+/// Integral of a function from the first of some times to each, by Simpson's rule: exact for cubic
+/// pieces.
 fn integral(times: &[f64], function: impl Fn(f64) -> f64) -> Vec<f64> {
     let mut sum = 0.0;
     let mut sums = vec![0.0];
@@ -142,7 +142,7 @@ fn integral(times: &[f64], function: impl Fn(f64) -> f64) -> Vec<f64> {
     sums
 }
 
-/// A multisine at lines of its period, as strong in flow at each.
+/// A multisine at lines of its period, with equal flow amplitudes.
 fn shaken(
     line: &BlockedLine,
     pressure: f64,
@@ -161,7 +161,7 @@ fn shaken(
     let harmonics: Vec<Harmonic> = both
         .map(|(frequency, phase_rad)| Harmonic { amplitude, frequency_rad_per_s: *frequency, phase_rad })
         .collect();
-    // what the sines have taken in when they begin, so that the mean is as stated
+    // volume displaced by the sines when they begin, so that the mean is as stated
     let begun = |one: &Harmonic| portable::cos(one.phase_rad) / one.frequency_rad_per_s;
     let first = pressure - amplitude / compliance * harmonics.iter().map(begun).sum::<f64>();
     let profile = Profile::multisine(0.0, &harmonics).map_err(BenchLineError::from)?;
@@ -170,7 +170,7 @@ fn shaken(
     run(line, LineSeries::FrequencyResponse, (profile, first), times, watch)
 }
 
-/// Lines of the period, at about equal ratios between the ends, below half of the sampling
+/// Lines of the period, at approximately equal ratios between the ends, below half of the sampling
 /// frequency.
 fn excited(bench: &LineBench) -> Vec<f64> {
     let spacing = 2.0 * PI / bench.period;

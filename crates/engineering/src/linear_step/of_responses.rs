@@ -1,4 +1,4 @@
-//! The closed loop around a plant that is known by its response, for computing step responses.
+//! Closed loop around a plant that is known by its response, for computing step responses.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -13,19 +13,19 @@ use phea_qft::family::{FINE, tabulated};
 
 use super::StepSignal;
 
-/// Deviation of the closed loop's response from the line between two points that is allowed, as a
-/// share of the step.
+/// Permitted deviation of the closed loop's response from the line between two points, as a
+/// fraction of the step.
 const STRAIGHT: f64 = 1e-3;
 /// Least distance of two points, relative to their frequency.
 const CLOSEST: f64 = 1e-6;
-/// Points of the grid of a change, before it is made finer.
+/// Number of points of the grid of a change before refinement.
 const POINTS_OF_CHANGE: usize = 200;
-/// How often the lowest frequency of the plant is halved: the loop may be slower than the plant,
-/// and what is below the first point is taken as constant.
+/// Number of times that the lowest frequency of the plant is halved: the loop may be slower than
+/// the plant, and the response below the first point is taken as constant.
 const HALVINGS: u32 = 20;
 
-/// What is known of a plant's response, so that other controllers do not ask for it again: its own
-/// frequencies in rad/s, and its response by the bits of a frequency.
+/// Known responses of a plant, so that other controllers do not compute them again: its
+/// frequencies, rad/s, and its response by the bits of a frequency.
 #[derive(Debug, Default)]
 pub(crate) struct KnownResponses {
     own: Mutex<Vec<f64>>,
@@ -47,23 +47,23 @@ impl KnownResponses {
     }
 }
 
-/// Real parts of the response of a closed loop, as shares of a scale and without what passes at
-/// once.
+/// Real parts of the response of a closed loop, as fractions of a scale and without the
+/// instantaneous part.
 pub(super) struct ClosedParts {
-    /// Frequencies in rad/s with the real part there, straight between them.
+    /// Frequencies, rad/s, with the real part there, linear between them.
     pub(super) parts: Vec<(f64, f64)>,
-    /// What the parts are shares of.
+    /// Scale of the parts.
     pub(super) scale: f64,
-    /// The response of a continuous loop at infinite frequency.
+    /// Response of a continuous loop at infinite frequency.
     pub(super) at_once: f64,
 }
 
-/// Frequencies in rad/s with the real part of F P G/(1 + L) there, or of F G/(1 + L), straight
-/// between them: what
-/// [`step_of_frequency_response`](phea_dynamics::time_response::step_of_frequency_response) takes.
+/// Frequencies, rad/s, with the real part of F P G/(1 + L), or of F G/(1 + L), linear between them:
+/// the argument of
+/// [`step_of_frequency_response`](phea_dynamics::time_response::step_of_frequency_response).
 ///
 /// # Errors
-/// [`LinearError`] where the prefilter cannot be sampled.
+/// [`LinearError`] if the prefilter cannot be sampled.
 pub(super) fn real_parts(
     (plant, signal): (&Arc<dyn RespondingPlant>, StepSignal),
     compensation: &Compensation,
@@ -99,14 +99,13 @@ pub(super) fn real_parts(
     Ok(ClosedParts { parts, scale, at_once })
 }
 
-/// The response of a continuous system at infinite frequency.
+/// Response of a continuous system at infinite frequency.
 fn at_infinity(system: &TransferFunction) -> f64 {
     if system.zeros().len() < system.poles().len() { 0.0 } else { system.gain() }
 }
 
-/// Frequencies in rad/s with the real part of (1 + L)/(1 + L') - 1 there, straight between them: by
-/// this much more than before passes what disturbs the loop, with another controller L' in place
-/// of L.
+/// Frequencies, rad/s, with the real part of (1 + L)/(1 + L') - 1, linear between them: relative
+/// increase of the response to a disturbance of the loop if another controller replaces L by L'.
 pub(super) fn parts_of_change(
     member: &Member,
     [before, after]: [&Compensation; 2],
@@ -124,7 +123,7 @@ pub(super) fn parts_of_change(
     straight(&grid, f64::INFINITY, change)
 }
 
-/// F P G/(1 + L) or F G/(1 + L), with F as a step passes through it.
+/// Response F P G/(1 + L) or F G/(1 + L), with F as a step passes through it.
 fn closed(
     (plant, signal): (MemberResponse, StepSignal),
     compensation: &Compensation,
@@ -140,7 +139,7 @@ fn closed(
     }
 }
 
-/// The real part at these frequencies, and between them until it is straight there.
+/// Real part at these frequencies, and between them until it is linear there.
 fn straight(grid: &[f64], highest: f64, response: impl Fn(f64) -> Option<Complex64>) -> Vec<(f64, f64)> {
     let at = |frequency: f64| response(frequency).map(|value| (frequency, value.re));
     let within = grid.iter().rev().filter(|frequency| **frequency <= highest);

@@ -1,4 +1,4 @@
-//! The frequencies at which a reduced model agrees with the plant.
+//! Frequencies at which a reduced model agrees with the plant.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
@@ -8,17 +8,17 @@ use crate::rig::Rig;
 
 /// Difference within which a reduction agrees with the plant, dB.
 pub const WITHIN_DB: f64 = 1.0;
-/// The same for the phase, degrees.
+/// Phase difference within which a reduction agrees with the plant, degrees.
 pub const WITHIN_DEG: f64 = 5.0;
 
-/// Where a reduction agrees with the plant to 1 dB and 5 degrees.
+/// Bands in which a reduction agrees with the plant to 1 dB and 5 degrees.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AgreementBand {
     /// Name of the model.
     pub model: &'static str,
-    /// Its equation.
+    /// Equation of the model.
     pub equation: &'static str,
-    /// Bands in rad/s in which it agrees, by rising frequency, as resolved by the grid.
+    /// Bands in which the model agrees, rad/s, by rising frequency, as resolved by the grid.
     pub bands_rad_per_s: Vec<[f64; 2]>,
 }
 
@@ -29,13 +29,13 @@ const REDUCTIONS: [[&str; 2]; 4] = [
     ["decomposed, corrected", "6.12"],
     [FIRST_ORDER, "6.13"],
 ];
-/// Name of the first-order model, which alone of the reductions has the stiffness of the load.
+/// Name of the first-order model, the only reduction with the stiffness of the load.
 pub const FIRST_ORDER: &str = "first order";
-/// Name of the plant with its lines at rest.
+/// Name of the plant without waves in its lines.
 pub const LUMPED: &str = "lumped lines";
 
-/// Where the reductions, in this order, agree with the plant on a grid of frequencies in rad/s;
-/// where lines move, the plant with lumped lines comes first.
+/// Bands in which the reductions, in this order, agree with the plant on a grid of frequencies,
+/// rad/s; if lines have waves, the plant with lumped lines comes first.
 pub(super) fn agreement(
     rig: &Rig,
     grid: &[f64],
@@ -52,8 +52,8 @@ pub(super) fn agreement(
     lines.into_iter().chain(of_reductions).collect()
 }
 
-/// The bands of a grid in which two responses differ by no more than that; a single frequency is
-/// not a band.
+/// Bands of a grid in which two responses differ by no more than that; a single frequency is not a
+/// band.
 fn bands(grid: &[f64], plant: impl Fn(f64) -> Complex64, model: &TransferFunction) -> Vec<[f64; 2]> {
     let mut bands: Vec<[f64; 2]> = Vec::new();
     let mut inside = false;

@@ -1,27 +1,27 @@
-//! A linkage over the stroke: lever arm, and the inertia of the load as the rod sees it.
+//! A linkage over the stroke: lever arm, and the inertia of the load reflected to the rod.
 
 use crate::rig::{Rig, rod_end};
 
-/// Positions at which the lever arm is looked at for its least and greatest.
+/// Number of positions at which the lever arm is evaluated to find its least and greatest value.
 const LOOKED_AT: usize = 201;
 
-/// Which position of a linkage.
+/// Position of a linkage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LinkagePosition {
     /// The rod is at the start of the stroke.
     Retracted,
-    /// It is at the end.
+    /// The rod is at the end of the stroke.
     Extended,
-    /// That of the operating point.
+    /// The rod is at the operating point.
     OperatingPoint,
-    /// Where the lever arm is shortest.
+    /// The lever arm is shortest.
     LeastArm,
-    /// Where it is longest.
+    /// The lever arm is longest.
     GreatestArm,
 }
 
 impl LinkagePosition {
-    /// In words, as tables and answers have it.
+    /// Words for tables and JSON output.
     pub fn words(self) -> &'static str {
         match self {
             LinkagePosition::Retracted => "retracted",
@@ -36,20 +36,20 @@ impl LinkagePosition {
 /// A linkage at one position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinkagePlace {
-    /// Which position.
+    /// Kind of the position.
     pub at: LinkagePosition,
-    /// m, of the rod's end on the load's side.
+    /// Position of the rod's end on the load's side, m.
     pub position_m: f64,
-    /// rad, of the joint.
+    /// Angle of the joint, rad.
     pub angle_rad: f64,
-    /// m: torque over force, and velocity over angular velocity.
+    /// Lever arm, m: torque over force, and velocity over angular velocity.
     pub lever_arm_m: f64,
-    /// kg, J/r^2; `None` where the motion of the load is prescribed.
+    /// Reflected mass J/r^2, kg; `None` if the motion of the load is prescribed.
     pub reflected_mass_kg: Option<f64>,
 }
 
-/// The linkage of a rig at both ends of the stroke, at the operating point, and where its lever arm
-/// is least and greatest; empty without one.
+/// Linkage of a rig at both ends of the stroke, at the operating point, and at its least and
+/// greatest lever arm; empty without one.
 pub fn linkage_places(rig: &Rig) -> Vec<LinkagePlace> {
     let components = rig.actuator.components();
     let (Some(linkage), Some(stroke)) = (&components.linkage, components.cylinder.stroke.length()) else {

@@ -1,5 +1,5 @@
-//! Hydraulic stiffness over the force that is held at standstill: gas is the stiffer, the more it
-//! is compressed.
+//! Hydraulic stiffness as a function of the force at standstill: gas is the stiffer, the more it is
+//! compressed.
 
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::line::StiffeningMember;
@@ -8,31 +8,30 @@ use phea_hydraulics::stiffness::hydraulic_stiffness;
 
 use crate::rig::{ChargedRange, Rig, charged_range, components_at_setting};
 
-/// Forces over which the stiffness is stated.
+/// Number of forces at which the stiffness is computed.
 const FORCES: u32 = 120;
 
-/// The stiffness over the forces at which the gas is in use; all vectors have one value for each
-/// force.
+/// Stiffness at the forces at which the gas is in use; all vectors have one value for each force.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StiffnessOverForce {
-    /// F_H in N, rising.
+    /// Force F_H, N, rising.
     pub forces: Vec<f64>,
-    /// K_H in N/m at the setting of rest.
+    /// Stiffness K_H at the setting at rest, N/m.
     pub at_rest: Vec<f64>,
-    /// Other settings of what is adjusted with K_H there, NaN where the gas is shut off at that
+    /// Other settings of the adjusted accumulators, with K_H; NaN if the gas is shut off at that
     /// setting.
     pub at_settings: Vec<(f64, Vec<f64>)>,
 }
 
-/// The stiffness for slow motions over the hydraulic force at standstill, at the position of the
-/// operating point; `None` where no gas is in use at standstill.
+/// Stiffness for slow motions as a function of the hydraulic force at standstill, at the position
+/// of the operating point; `None` if no gas is in use at standstill.
 ///
 /// ```text
 /// F_H = A_A p_A - A_B p_B,   q_A = q_B = 0,   K_H = A_A^2/C_A(p_A) + A_B^2/C_B(p_B)
 /// ```
 ///
 /// The forces end where the gas at a chamber is shut off, or at the nominal voltage. The supply
-/// keeps its pressure of the operating point.
+/// pressure is that of the operating point.
 pub fn stiffness_over_force(rig: &Rig) -> Option<StiffnessOverForce> {
     let ChargedRange { least, greatest } = charged_range(rig)?;
     let components = rig.actuator.components();
@@ -57,20 +56,20 @@ pub fn stiffness_over_force(rig: &Rig) -> Option<StiffnessOverForce> {
     let others = others.map(|setting| (setting, along(&components_at_setting(components, setting))));
     Some(StiffnessOverForce {
         forces: points.iter().map(|point| point.hydraulic_force).collect(),
-        // a valve is the same for slow motions, however wide it is open
+        // for slow motions the opening of a valve makes no difference
         at_settings: others.filter(|(_, values)| *values != at_rest).collect(),
         at_rest,
     })
 }
 
-/// K_H at an operating point, NaN where the gas is shut off.
+/// Stiffness K_H at an operating point; NaN if the gas is shut off.
 fn stiffness(components: &Components, point: &OperatingPoint) -> f64 {
     let pressures = [point.pressure_a, point.pressure_b];
     let is_shut_off = components
         .accumulators
         .iter()
         .zip(pressures)
-        // the ends of the forces lie at this pressure
+        // the ends of the forces are at this pressure
         .any(|(gas, pressure)| gas.is_some_and(|gas| pressure < gas.least_pressure() - 1.0));
     match is_shut_off {
         true => f64::NAN,

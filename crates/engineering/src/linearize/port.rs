@@ -1,4 +1,4 @@
-//! The impedance that a loop shows at its port, and the virtual one that is required of it.
+//! The impedance of a loop at its port, and the virtual impedance that is required of it.
 
 use std::sync::Arc;
 
@@ -15,61 +15,62 @@ use phea_qft::closed_loop::Compensation;
 
 use crate::rig::Rig;
 
-/// Frequencies at which both impedances are stated, rad/s.
+/// Frequencies at which both impedances are reported, rad/s.
 pub const SHOWN_AT: [f64; 5] = [0.1, 1.0, 10.0, 100.0, 1000.0];
-/// Share of the asked impedance, in percent, by which the shown one may differ and still follow it.
+/// Largest difference of the impedance of the loop from the required one, percent, at which it
+/// still follows it.
 pub const WITHIN_PERCENT: f64 = 10.0;
-/// Where it is looked for, rad/s, and at how many frequencies.
+/// Range of frequencies of the search for the band, rad/s, and their number.
 const LOOKED_AT: [f64; 2] = [1e-2, 1e4];
 const COUNT: usize = 1201;
 
-/// The impedance that is required of a port, and what the port shows, with the load at its port
-/// moved as if by a hand.
+/// Impedance that is required at a port, and impedance of the loop, with the load at the port moved
+/// from outside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AskedImpedance {
-    /// What is asked: Z_v/s at the port.
+    /// Required impedance: Z_v/s at the port.
     pub impedance: VirtualImpedance,
-    /// Both at [`SHOWN_AT`].
+    /// Both impedances at the frequencies [`SHOWN_AT`].
     pub points: Vec<AskedAt>,
-    /// The widest band in rad/s where they differ by no more than [`WITHIN_PERCENT`]; `None` where
-    /// there is none.
+    /// Widest band in which they differ by at most [`WITHIN_PERCENT`], rad/s; `None` if there is
+    /// none.
     pub follows_rad_per_s: Option<[f64; 2]>,
 }
 
 /// Both impedances at one frequency, N s/m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AskedAt {
-    /// rad/s
+    /// Frequency, rad/s.
     pub frequency_rad_per_s: f64,
-    /// M_v s + B_v + K_v/s, without the filter.
+    /// Required impedance, M_v s + B_v + K_v/s, without the filter.
     pub asked: Complex64,
-    /// -F_e/(s X_L) of the loop: at its samples, where it samples.
+    /// Impedance of the loop, -F_e/(s X_L); at its sampling instants if it samples.
     pub shown: Complex64,
 }
 
 impl AskedImpedance {
-    /// What is asked, without the filter of the measured position: M_v s^2 + B_v s + K_v.
+    /// Required impedance without the filter of the measured position: M_v s^2 + B_v s + K_v.
     pub(crate) fn unfiltered(&self) -> VirtualImpedance {
         VirtualImpedance { filter_time_s: 0.0, ..self.impedance }
     }
 }
 
 impl AskedAt {
-    /// How far the shown impedance is from the asked one, as a share of that.
+    /// Relative difference between the impedance of the loop and the required one.
     pub fn difference(&self) -> f64 {
         portable::magnitude(self.shown / self.asked - 1.0)
     }
 }
 
-/// Both impedances of a rig with this controller, which sees the force through the sensor H; `None`
-/// without a virtual impedance.
+/// Both impedances of a rig with this controller, to which the sensor H feeds back the force;
+/// `None` without a virtual impedance.
 ///
 /// ```text
 /// F_e/X_L = y/X_L - Z_v,     y/X_L = (F_e/X_L + Z_v)/(1 + L)                  with L of a load that does not yield
 /// ```
 ///
 /// # Errors
-/// A loop that cannot be closed.
+/// [`LinearError`] for a loop that cannot be closed.
 pub(super) fn asked(
     rig: &Rig,
     controller: &Controller,
@@ -104,7 +105,7 @@ pub(super) fn asked(
     Ok(Some(AskedImpedance { impedance, points, follows_rad_per_s: widest(&all) }))
 }
 
-/// The widest band, in the logarithm, where the shown impedance follows.
+/// Widest band, in the logarithm of frequency, in which the loop follows the required impedance.
 fn widest(all: &[AskedAt]) -> Option<[f64; 2]> {
     let follows = |point: &AskedAt| point.difference() <= WITHIN_PERCENT / 100.0;
     let bands = all.chunk_by(|one, other| follows(one) == follows(other));
@@ -114,8 +115,8 @@ fn widest(all: &[AskedAt]) -> Option<[f64; 2]> {
         .and_then(|band| Some([band.first()?.frequency_rad_per_s, band.last()?.frequency_rad_per_s]))
 }
 
-/// Straight lines of the impedance of a closed loop. That of a virtual impedance takes the place of
-/// what the loop gives way to, as far as its term of lowest order lasts and the loop acts.
+/// Straight-line asymptotes of the impedance of a closed loop. The virtual impedance replaces the
+/// compliance of the loop, in the range of its term of lowest order and while the loop acts.
 pub(super) fn asymptotes(rig: &Rig, controller: &TransferFunction) -> Vec<Asymptote> {
     let mut lines = own_asymptotes(rig, Some(controller));
     let Some(VirtualImpedance { mass, damping, stiffness, .. }) = rig.virtual_impedance else {
@@ -140,16 +141,17 @@ pub(super) fn asymptotes(rig: &Rig, controller: &TransferFunction) -> Vec<Asympt
     lines
 }
 
-/// The mass that hides the compliance of the chambers from the load at high frequency.
+/// Mass that hides the compliance of the chambers from the load at high frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HidingMass {
-    /// The piston's, above sqrt(K_H/M).
+    /// Mass of the piston, above sqrt(K_H/M).
     Piston,
-    /// That of the oil in a transmission, as its pistons feel it: above sqrt(K_eq/m).
+    /// Mass of the oil in a transmission, referred to its pistons: above sqrt(K_eq/m).
     Oil,
 }
 
-/// Which mass does so, and above which frequency in rad/s: the lower one.
+/// Mass that hides the compliance, and the frequency above which it does, rad/s: the lower one of
+/// the two.
 ///
 /// ```text
 /// sqrt(K_H/M) of the piston,    sqrt(K_eq/m) of the oil, m = N m_j
@@ -167,7 +169,7 @@ pub fn hidden_above(rig: &Rig) -> (HidingMass, f64) {
     }
 }
 
-/// Of the rig without a virtual impedance; without a controller those of the open loop.
+/// Asymptotes of the rig without a virtual impedance; without a controller, those of the open loop.
 pub(super) fn own_asymptotes(rig: &Rig, controller: Option<&TransferFunction>) -> Vec<Asymptote> {
     let lines = impedance_asymptotes(&rig.leaking(), controller);
     match rig.plant.series.map(|series| series.element) {
@@ -176,7 +178,7 @@ pub(super) fn own_asymptotes(rig: &Rig, controller: Option<&TransferFunction>) -
     }
 }
 
-/// L/(1 + L) at zero frequency: 1 where the controller integrates.
+/// L/(1 + L) at zero frequency: 1 if the controller integrates.
 fn followed_at_rest(rig: &Rig, controller: &TransferFunction) -> Option<f64> {
     if controller.poles().contains(&Complex64::ZERO) {
         return Some(1.0);

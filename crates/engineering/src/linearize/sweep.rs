@@ -1,4 +1,4 @@
-//! The linear models of a rig while one number of its project goes from one end to another.
+//! The linear models of a rig while one number of its project varies from one end to the other.
 //!
 //! ```text
 //! line.length=0.5 m..3 m -> range -> values -> read again with --set -> Rig -> linearize -> SweepPoint
@@ -24,24 +24,25 @@ use crate::spelling::nearest;
 /// The request, as written.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SweepRequest {
-    /// Such as `line.length=0.5 m..3 m`; a unit at the end holds for a bare number at the start.
+    /// Key and range, such as `line.length=0.5 m..3 m`; a unit at the end also applies to a bare
+    /// number at the start.
     pub range: String,
-    /// Number of values, including both ends; absent: [`POINTS`].
+    /// Number of values, including both ends; [`POINTS`] if absent.
     pub points: Option<usize>,
 }
 
 /// Number of values if none is requested.
 pub const POINTS: usize = 11;
-/// Most values.
+/// Largest number of values.
 pub(crate) const MOST_POINTS: usize = 1000;
-/// Ends of one sign that lie more than this factor apart are stepped by ratio.
+/// Ratio of two ends of one sign above which the values are evenly spaced by ratio.
 const DECADES: f64 = 100.0;
 /// Relative change by which a pole must move to count as dependent on the swept number.
 const MOVED: f64 = 1e-9;
 /// Band of the settling time with which a loop is computed, percent; steps are not reported.
 const BAND_PERCENT: f64 = 2.0;
 
-/// Why nothing is swept.
+/// Reason why nothing is swept.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SweepError {
     /// The key, the range or the number of points is invalid.
@@ -57,45 +58,45 @@ pub enum SweepError {
 pub struct Sweep {
     /// The swept key.
     pub path: String,
-    /// What people read it in.
+    /// Unit for display.
     pub unit: DisplayUnit,
-    /// The unit of its values.
+    /// SI unit of the values.
     pub si: &'static str,
     /// Motion of the rig and units of display.
     pub units: Units,
-    /// Whether the values are evenly spaced by ratio.
+    /// True if the values are evenly spaced by ratio.
     pub by_ratio: bool,
-    /// Whether the plant of every verdict depends on the key. It may not where the project states
-    /// the parameters of the linear model: then everything reported about poles refers to the
-    /// derived parameters.
+    /// True if the plant of every verdict depends on the key. It may not if the project states the
+    /// parameters of the linear model: then everything reported about poles refers to the derived
+    /// parameters.
     pub plant_follows: bool,
     /// Effects of the project that no verdict on the linear loop includes.
     pub caveats: Vec<Caveat>,
-    /// In order.
+    /// Points in the order of their values.
     pub points: Vec<SweepPoint>,
 }
 
 /// One value.
 #[derive(Clone, Debug)]
 pub struct SweepPoint {
-    /// SI.
+    /// Value, SI.
     pub value: f64,
-    /// The models there, or why there are none.
+    /// Models at this value, or the reason why there are none.
     pub found: Result<Swept, NoSweptModels>,
 }
 
 /// The models at one value.
 #[derive(Clone, Debug)]
 pub struct Swept {
-    /// As `linearize` states it.
+    /// Linear models, as `linearize` returns them.
     pub linearization: Linearization,
-    /// Poles of the plant or, where the plant does not depend on the key, with the derived
-    /// parameters, rad/s.
+    /// Poles of the plant, rad/s; with the derived parameters, if the plant does not depend on the
+    /// key.
     pub poles: Vec<Complex64>,
-    /// The least damped of them with a resonance.
+    /// Least damped of these poles with a resonance.
     pub resonance: Option<Complex64>,
     /// Frequency up to which force over reference stays within 3 dB of its value towards zero
-    /// frequency, rad/s; or why there is none.
+    /// frequency, rad/s; or the reason why there is none.
     pub bandwidth_rad_per_s: Result<f64, NoBandwidth>,
 }
 
@@ -129,7 +130,7 @@ pub enum NoBandwidth {
 /// Sweeps a number of a project.
 ///
 /// # Errors
-/// [`SweepError`]
+/// [`SweepError`] for an invalid request, or a value that makes the project invalid.
 pub fn sweep(
     source: &dyn Source,
     (loaded, setup): (&Loaded, &Setup<'_>),
@@ -159,16 +160,16 @@ pub fn sweep(
     Ok(Sweep { path, unit, si: key.dimension.si, units, by_ratio, plant_follows, caveats, points })
 }
 
-/// A range, read.
+/// A parsed range.
 pub(crate) struct SweepRange {
     pub(crate) path: String,
     pub(crate) key: Key,
-    /// SI.
+    /// Ends of the range, SI.
     pub(crate) ends: [f64; 2],
 }
 
 impl SweepRange {
-    /// Whether its values are evenly spaced by ratio.
+    /// True if the values are evenly spaced by ratio.
     pub(crate) fn by_ratio(&self) -> bool {
         let [from, to] = self.ends;
         let ratio = (to / from).abs();
@@ -205,7 +206,7 @@ fn further(error: &quantity::QuantityError) -> String {
     error.help.as_ref().map_or(String::new(), |help| format!("; {help}"))
 }
 
-/// The range that a text states, in the units of the motions of rig and load.
+/// Range stated in a text, in the units of the motions of rig and load.
 pub(crate) fn range(text: &str, motions: Motions) -> Result<SweepRange, OptionError> {
     let form = || refused(text, &SweepProblem::Form);
     let (path, ends) = text.split_once('=').ok_or_else(form)?;
@@ -215,7 +216,7 @@ pub(crate) fn range(text: &str, motions: Motions) -> Result<SweepRange, OptionEr
         return Err(form());
     }
     let key = key(text, path)?.in_motion(motions);
-    // the unit of the end holds for a bare start, as in a list
+    // the unit of the end also applies to a bare start, as in a list
     let from = if bare(from).is_some() && bare(to).is_none() {
         format!("{from} {}", unit_of(to))
     } else {
@@ -228,7 +229,7 @@ pub(crate) fn range(text: &str, motions: Motions) -> Result<SweepRange, OptionEr
     Ok(SweepRange { path: path.to_string(), key, ends })
 }
 
-/// The entry of the key, or the nearest spelling.
+/// Entry of the key, or the nearest spelling.
 fn key(text: &str, path: &str) -> Result<Key, OptionError> {
     let keys = project::keys();
     let is_number = |entry: &&KeyEntry| entry.takes == entry.key.dimension.name;
@@ -253,7 +254,7 @@ fn bare(text: &str) -> Option<f64> {
     text.parse::<f64>().ok().filter(|value| value.is_finite())
 }
 
-/// What follows the number.
+/// Text after the number.
 fn unit_of(text: &str) -> &str {
     let number =
         (0..text.len()).rev().find(|end| text.get(..*end).is_some_and(|start| bare(start.trim()).is_some()));
@@ -298,10 +299,10 @@ pub(crate) fn values([from, to]: [f64; 2], count: usize, by_ratio: bool) -> Vec<
     (0..count).map(at).collect()
 }
 
-/// The models with their controller.
+/// Models and controller at one value.
 struct Models {
     linearization: Linearization,
-    /// From command to force, as in the loop.
+    /// Plant from command to force, as in the loop.
     seen: PlantCoefficients<f64>,
     given: Option<Controller>,
     sensor: TransferFunction,
@@ -315,7 +316,7 @@ fn linearized(loaded: &Loaded) -> Result<Models, NoSweptModels> {
     Ok(Models { linearization, seen, given: setup.controller, sensor: setup.sensor })
 }
 
-/// Whether a pole of the plant changes with the value.
+/// True if a pole of the plant changes with the value.
 fn moves(found: &[(f64, Result<Models, NoSweptModels>)]) -> bool {
     let mut plants =
         found.iter().filter_map(|(_, found)| Some(found.as_ref().ok()?.linearization.plant.command.poles()));
@@ -349,11 +350,12 @@ fn swept(models: Models, plant_follows: bool) -> Swept {
     }
 }
 
-/// Range of frequencies in which a bandwidth is searched for, rad/s, and the resolution.
+/// Range of frequencies in which a bandwidth is searched, rad/s, and the resolution.
 const LOOKED_AT: [f64; 2] = [1e-2, 1e5];
 const STEPS_PER_DECADE: f64 = 200.0;
 
-/// Where |F L/(1 + L)/H| first falls 3 dB below its value towards zero frequency.
+/// Frequency at which |F L/(1 + L)/H| first falls 3 dB below its value towards zero frequency,
+/// rad/s.
 fn bandwidth(closed: &LinearLoop, sensor: &TransferFunction) -> Result<f64, NoBandwidth> {
     if closed.stability == LoopStability::Unstable {
         return Err(NoBandwidth::Unstable);

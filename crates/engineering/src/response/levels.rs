@@ -6,46 +6,46 @@ use super::ResponseMember;
 /// point at once.
 pub const FALSE_ALARM: f64 = 0.05;
 
-/// Ratio of two inputs from which on their amplitudes count as different.
+/// Ratio of two inputs above which their amplitudes count as different.
 const SAME_AMPLITUDE: f64 = 1.1;
 
 /// Two records at one operating point, compared frequency by frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LevelComparison {
-    /// As the project calls it.
+    /// Name of the operating point in the project.
     pub operating_point: String,
-    /// Indices of the members, that of the smaller input first.
+    /// Indices of the members, the one with the smaller input first.
     pub members: [usize; 2],
-    /// Root mean squares of their inputs, in SI.
+    /// Root mean squares of their inputs, SI.
     pub input_rms: [f64; 2],
-    /// The frequencies that both have, the lowest first.
+    /// Common frequencies, the lowest first.
     pub frequencies: Vec<LevelDifference>,
 }
 
 /// The responses of two records at a frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LevelDifference {
-    /// Both, that of the smaller input first.
+    /// Both responses, that of the smaller input first.
     pub pair: ResponsePair,
     /// Distance that noise explains, in the unit of the responses.
     pub by_noise: f64,
 }
 
 impl LevelDifference {
-    /// True where noise does not explain the distance.
+    /// True if noise does not explain the distance.
     pub fn is_found(&self) -> bool {
         self.pair.distance() > self.by_noise
     }
 }
 
 impl LevelComparison {
-    /// True where the inputs are of different size, so that a difference may be due to it.
+    /// True if the inputs differ in amplitude, so that a difference may be due to it.
     pub fn has_two_levels(&self) -> bool {
         self.input_rms[1] > SAME_AMPLITUDE * self.input_rms[0]
     }
 }
 
-/// Compares each two records at one operating point.
+/// Compares all pairs of records at one operating point.
 ///
 /// ```text
 /// |G_1 - G_2|^2 > F(2, 2 q) (sigma_1^2 + sigma_2^2) at p = 0.05/m
@@ -71,13 +71,13 @@ pub fn compare_levels(members: &[ResponseMember]) -> Vec<LevelComparison> {
     comparisons
 }
 
-/// Comparisons at an operating point.
+/// Number of comparisons at an operating point.
 fn count_of(comparisons: &[LevelComparison], operating_point: &str) -> usize {
     let at_point = comparisons.iter().filter(|one| one.operating_point == operating_point);
     at_point.map(|one| one.frequencies.len()).sum()
 }
 
-/// Two members at one operating point, with the same signals.
+/// Comparison of two members at one operating point, with equal signals.
 fn comparison(indices: [usize; 2], members: [&ResponseMember; 2]) -> Option<LevelComparison> {
     let [one, other] = members;
     let operating_point = one.operating_point.clone()?;

@@ -7,30 +7,30 @@ use super::{ReferenceSignal, ReferenceSource, Resampled, ResponseSettings, Sampl
 use crate::identify_error::{MovingSignal, RecordFault};
 use crate::project::RecordedLoop;
 
-/// Blocks of a record.
+/// Division of a record into blocks for averaging.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Averaging {
     /// The last whole periods.
     Periods {
-        /// s.
+        /// Period, s.
         period: f64,
         /// Number of periods that are averaged.
         count: usize,
     },
     /// Local polynomials over bands of the whole record.
     LocalPolynomials {
-        /// s, of the record.
+        /// Length of the record, s.
         length: f64,
         /// Number of bands.
         bands: usize,
     },
     /// Segments that overlap by half, with a Hann window.
     Segments {
-        /// s.
+        /// Length of a segment, s.
         length: f64,
         /// Number of segments.
         count: usize,
-        /// As how many without overlap they count.
+        /// Equivalent number of segments without overlap.
         independent: f64,
     },
 }
@@ -38,53 +38,53 @@ pub enum Averaging {
 /// A frequency response from one record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseMember {
-    /// The file it is from.
+    /// File of the record.
     pub file: String,
     /// Names of the columns: input and output.
     pub signals: [&'static str; 2],
-    /// Units of them in SI.
+    /// SI units of the columns.
     pub units: [&'static str; 2],
-    /// Rows of the file.
+    /// Number of rows of the file.
     pub rows: usize,
-    /// s between rows.
+    /// Time between rows, s.
     pub time_step: f64,
-    /// The operating point of the test, where the project names it.
+    /// Operating point of the test, if the project names it.
     pub operating_point: Option<String>,
     /// Root mean square of the input around its mean.
     pub input_rms: f64,
     /// Averaging of the blocks.
     pub method: Averaging,
-    /// From what the response of a closed loop follows.
+    /// Signal from which the response of a closed loop follows.
     pub reference: Option<ReferenceSource>,
-    /// Output at lines of the period that the input does not excite.
+    /// Output at lines of the period that are not excited by the input.
     pub distortion: Distortion,
-    /// Resampling of rows that were not even.
+    /// Resampling of unevenly spaced rows.
     pub resampled: Option<Resampled>,
-    /// Squared coherence that a point must have.
+    /// Least squared coherence of a point.
     pub least_coherence: f64,
-    /// Points that are known well enough, the lowest frequency first.
+    /// Points that are sufficiently well known, the lowest frequency first.
     pub points: Vec<SpectralPoint>,
-    /// The others.
+    /// Omitted points.
     pub left_out: Vec<LeftOut>,
 }
 
-/// A frequency that is left out.
+/// An omitted frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeftOut {
-    /// rad/s.
+    /// Frequency, rad/s.
     pub frequency: f64,
-    /// Squared coherence there.
+    /// Squared coherence at this frequency.
     pub coherence: f64,
-    /// Why.
+    /// Reason for the omission.
     pub reason: Unusable,
 }
 
-/// Reason why a frequency is left out.
+/// Reason why a frequency is omitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unusable {
-    /// The input has no power there.
+    /// The input has no power at this frequency.
     NotExcited,
-    /// Noise, or what is not linear, hides the response.
+    /// Noise, or nonlinearity, hides the response.
     Incoherent,
 }
 
@@ -157,7 +157,7 @@ pub(super) fn power(signal: &[f64]) -> f64 {
     signal.iter().map(|value| (value - mean) * (value - mean)).sum()
 }
 
-/// Response of a record before anything is left out.
+/// Response of a record before any omission.
 struct Estimated {
     method: Averaging,
     points: Vec<SpectralPoint>,
@@ -165,12 +165,12 @@ struct Estimated {
     distortion: Distortion,
 }
 
-/// Signal that moves the loop from outside, unless the project states that it was open.
+/// Signal that excites the loop from outside, unless the project states that it was open.
 fn reference_of(record: &SampledPair) -> Option<&ReferenceSignal> {
     record.reference.as_ref().filter(|_| record.recorded_loop != Some(RecordedLoop::Open))
 }
 
-/// Refuses a record whose input follows the noise of its output: the quotient of both would tend to
+/// Rejects a record whose input follows the noise of its output: the quotient of both would tend to
 /// the negative inverse of the controller.
 fn loop_is_open(record: &SampledPair) -> Result<(), RecordFault> {
     let [input, output] = record.signals;
@@ -214,7 +214,7 @@ fn of_segments(record: &SampledPair, length: usize, settling: usize) -> Result<E
         .ok_or(RecordFault::TooFewForSegments { rows: input.len(), length })?;
     let (count, independent) = (blocks.count(), blocks.independent());
     let method = Averaging::Segments { length: length as f64 * record.time_step, count, independent };
-    // the window spreads what is left of the mean over two lines
+    // the window spreads the remainder of the mean over two lines
     let points = blocks.points().into_iter().skip(1).collect();
     Ok(Estimated { method, points, independent, distortion: Distortion::default() })
 }
@@ -236,7 +236,7 @@ fn of_bands(
     Ok(Estimated { method, points, independent: LOCAL_BLOCKS, distortion: Distortion::default() })
 }
 
-/// Points that are known well enough, and the others.
+/// Points that are sufficiently well known, and the others.
 fn sorted(estimated: Vec<SpectralPoint>, least: f64) -> (Vec<SpectralPoint>, Vec<LeftOut>) {
     let (mut points, mut left_out) = (Vec::new(), Vec::new());
     for point in estimated {
@@ -254,7 +254,7 @@ fn sorted(estimated: Vec<SpectralPoint>, least: f64) -> (Vec<SpectralPoint>, Vec
     (points, left_out)
 }
 
-/// The reason why a record has no response at any frequency.
+/// Reason why a record has no response at any frequency.
 fn no_points(reference: Option<&ReferenceSignal>, left_out: &[LeftOut], least: f64) -> RecordFault {
     let moving = reference.map(|reference| match reference.source {
         ReferenceSource::Column(name) => MovingSignal::Column(name),
@@ -273,7 +273,7 @@ fn no_points(reference: Option<&ReferenceSignal>, left_out: &[LeftOut], least: f
 fn whole_steps(record: &SampledPair, stated: f64) -> Result<usize, RecordFault> {
     let exact = stated / record.time_step;
     let steps = exact.round();
-    // half a step off at the end of the record leaks as much as one off in a period
+    // half a step off at the end of the record causes as much leakage as one off in a period
     let periods = record.input.len() as f64 / steps.max(1.0);
     if (exact - steps).abs() * periods > 0.5 || steps < 4.0 {
         // to a nanosecond: the step is a mean of rounded stamps

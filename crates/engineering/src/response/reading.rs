@@ -6,43 +6,43 @@ use crate::quantity::{FORCE, RATIO, TIME, VOLTAGE};
 use crate::source::Source;
 use crate::table::{Column, Measurand, MeasuredTable, Sought, TIME_NAMES};
 
-/// Two signals of a record, sampled at equal intervals. SI.
+/// Two signals of a record, sampled at equal intervals, in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampledPair {
     /// Path of the file.
     pub file: String,
     /// Names of the columns: input and output.
     pub signals: [&'static str; 2],
-    /// Their units.
+    /// Units of the columns.
     pub units: [&'static str; 2],
-    /// s between rows.
+    /// Time between rows, s.
     pub time_step: f64,
-    /// The input.
+    /// Samples of the input.
     pub input: Vec<f64>,
-    /// The output.
+    /// Samples of the output.
     pub output: Vec<f64>,
-    /// Signal that moves a closed loop from outside, where the file has it.
+    /// Signal that excites a closed loop from outside, if the file contains it.
     pub reference: Option<ReferenceSignal>,
-    /// The loop during the test, where the project states it.
+    /// State of the loop during the test, if the project states it.
     pub recorded_loop: Option<RecordedLoop>,
-    /// The controller of a closed loop, where the project declares it.
+    /// Controller of a closed loop, if the project declares it.
     pub controller: Option<Box<TestController>>,
-    /// The operating point of the test, where the project names it.
+    /// Operating point of the test, if the project names it.
     pub operating_point: Option<String>,
-    /// Resampling of rows that were not even.
+    /// Resampling of unevenly spaced rows.
     pub resampled: Option<Resampled>,
 }
 
 /// A reference, or an excitation that is added to the command, of a closed loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReferenceSignal {
-    /// Its origin.
+    /// Origin of the signal.
     pub source: ReferenceSource,
-    /// Its samples, in SI.
+    /// Samples, SI.
     pub values: Vec<f64>,
 }
 
-/// The first column of a reference that has values: an open loop may have it without any.
+/// First column of a reference that has values: an open loop may have the column without any.
 fn reference_in(
     table: &MeasuredTable,
     columns: &[Option<Column>],
@@ -58,23 +58,23 @@ fn reference_in(
     })
 }
 
-/// Origin of the signal that moves a closed loop from outside.
+/// Origin of the signal that excites a closed loop from outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReferenceSource {
-    /// The column of this name.
+    /// Column of this name.
     Column(&'static str),
-    /// Calculated from command and force by the controller of the test.
+    /// Calculation from command and force by the controller of the test.
     Controller,
 }
 
 impl ReferenceSignal {
-    /// True where it is more than a set point that is held.
+    /// True if the signal is more than a constant set point.
     fn moves(&self) -> bool {
         self.values.iter().any(|value| Some(value) != self.values.first())
     }
 }
 
-/// Index of the first reference in them.
+/// Index of the first reference among the columns.
 const REFERENCES: usize = 6;
 
 const MEASURANDS: [(Measurand, &str); 9] = [
@@ -89,10 +89,10 @@ const MEASURANDS: [(Measurand, &str); 9] = [
     (Measurand::of("set_point", &RATIO), "1"),
 ];
 
-/// The records of these files, one each.
+/// Records of these files, one each.
 ///
 /// # Errors
-/// Everything that is wrong in the files, with its places.
+/// All errors in the files, with their places.
 pub fn sampled_pairs(
     source: &dyn Source,
     files: &[RecordedResponse],

@@ -3,23 +3,23 @@ use super::spacing_error::EvenlySampled;
 use crate::project::Findings;
 use crate::table::{Column, MeasuredTable};
 
-/// The longest time between two rows that a line bridges, in usual ones.
+/// Longest time between two rows that a line bridges, in usual steps.
 const LONGEST_BRIDGED: f64 = 5.0;
-/// Part of a turn between two rows, up to which a line between them follows a sine within 5 %:
+/// Fraction of a turn between two rows up to which a line between them follows a sine within 5 %:
 /// (2 pi/10)^2/8.
 const TURN: f64 = 0.1;
 
 /// Loss of signals whose rows come early or late.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resampled {
-    /// s between the earliest and the latest row, each against even ones.
+    /// Difference of the deviations of the latest and the earliest row from even spacing, s.
     pub scatter: f64,
-    /// s, the longest time from one row to the next.
+    /// Longest time from one row to the next, s.
     pub longest: f64,
 }
 
 impl Resampled {
-    /// rad/s, the highest frequency that lines between the rows follow within 5 %.
+    /// Highest frequency that lines between the rows follow within 5 %, rad/s.
     pub fn highest(&self) -> f64 {
         2.0 * std::f64::consts::PI * TURN / self.longest
     }
@@ -27,16 +27,16 @@ impl Resampled {
 
 /// Signals at equal steps.
 pub(crate) struct EvenRows {
-    /// s.
+    /// Step, s.
     pub(crate) step: f64,
     pub(crate) signals: Vec<Vec<f64>>,
-    /// Resampling of rows that were not recorded so.
+    /// Resampling of unevenly recorded rows.
     pub(crate) resampled: Option<Resampled>,
 }
 
-/// Signals at equal steps: as recorded where the rows are even, and on lines between them where
-/// many are early or late and none is missing. All signals of a row are moved alike, so that what
-/// a line takes from a sine it takes from input and output.
+/// Signals at equal steps: as recorded if the rows are even, and on lines between them if many are
+/// early or late and none is missing. All signals of a row are moved alike, so that the attenuation
+/// of a sine by a line is equal in input and output.
 pub(crate) fn even_rows(
     table: &MeasuredTable,
     column: &Column,
@@ -56,7 +56,7 @@ pub(crate) fn even_rows(
     Some(EvenRows { step: spacing.step, signals, resampled })
 }
 
-/// True where rows come late now and then, and none is missing.
+/// True if rows come late now and then, and none is missing.
 pub(crate) fn is_software_timed(spacing: &RowSpacing, times: &[f64]) -> bool {
     let is_bridged = |pair: &[f64]| matches!(pair, [one, next] if next > one && next - one <= LONGEST_BRIDGED * spacing.usual);
     !spacing.is_even() && times.len() > 1 && times.windows(2).all(is_bridged)

@@ -4,15 +4,14 @@ use super::spacing_error::{EvenlySampled, SpacingError, SpacingHint};
 use crate::project::{Findings, RawFinding};
 use crate::table::{Column, MeasuredTable, median_step};
 
-/// Fraction of the time between rows by which a row may be early or late.
+/// Deviation of a row from even spacing, as a fraction of the time between rows, that is permitted.
 pub const UNEVEN: f64 = 0.1;
 
-/// Fewest rows that say anything of a frequency.
+/// Fewest rows that give information about a frequency.
 const FEWEST_ROWS: usize = 32;
 
-/// The time between rows, in s. Rows that are early or late by more than [`UNEVEN`] of it are
-/// refused, unless their stamps are rounded to no more than that: what is calculated takes the
-/// samples as evenly spaced.
+/// Time between rows, s. Rows that are early or late by more than [`UNEVEN`] of it are rejected,
+/// unless their stamps are rounded to no more than that: calculations assume evenly spaced samples.
 pub fn time_step(
     table: &MeasuredTable,
     column: &Column,
@@ -32,14 +31,15 @@ pub fn time_step(
         return Some(spacing.step);
     }
     let usual = spacing.usual;
-    // the row where the usual step is left, rather than the one where the sum of all is
+    // the row at which the usual step ends, rather than the one with the largest sum of deviations
     let off = |pair: &[f64]| match pair {
         [one, next] => ((next - one) - usual).abs(),
         _ => 0.0,
     };
     let most = times.windows(2).map(off).fold(0.0, f64::max);
     let rounded = ((1.0 + ROUNDING) * spacing.digit).max(UNEVEN * usual);
-    // a row that is late is early for the row after it, by the same but for rounding errors
+    // a row that is late is early for the row after it, by an equal amount except for rounding
+    // errors
     let beyond = rounded.min((1.0 - 1e-6) * most);
     let row = times.windows(2).position(|pair| off(pair) > beyond).map_or(0, |row| row + 1);
     let since =
@@ -53,25 +53,25 @@ pub fn time_step(
 /// Spacing of the rows of a record in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RowSpacing {
-    /// s, of the line through all stamps.
+    /// Slope of the line through all stamps, s.
     pub step: f64,
-    /// s, the usual difference from one row to the next.
+    /// Usual difference from one row to the next, s.
     pub usual: f64,
-    /// s, the last digit of the stamps.
+    /// Last digit of the stamps, s.
     pub digit: f64,
-    /// s, between the earliest and the latest row, each against that line.
+    /// Difference of the deviations of the latest and the earliest row from that line, s.
     pub scatter: f64,
-    /// Fraction of the rows that are not the usual difference after the row before.
+    /// Fraction of the rows whose difference from the row before is not the usual one.
     pub jumps: f64,
 }
 
-/// Fraction of the last digit by which even rows may scatter more than by their rounding.
+/// Fraction of the last digit by which even rows may scatter in addition to their rounding.
 const ROUNDING: f64 = 0.05;
-/// Fraction of rows below which a difference that is not the usual one is a row that is missing.
+/// Fraction of rows below which an unusual difference means a missing row.
 pub(super) const FEW_JUMPS: f64 = 0.02;
 
 impl RowSpacing {
-    /// Spacing of these stamps in s.
+    /// Spacing of these stamps, s.
     pub fn of(times: &[f64]) -> RowSpacing {
         let first = times.first().copied().unwrap_or(0.0);
         let middle = times.len().saturating_sub(1) as f64 / 2.0;
@@ -92,8 +92,8 @@ impl RowSpacing {
         RowSpacing { step, usual, digit: last_digit(times), scatter: most - least, jumps }
     }
 
-    /// True where the rows are as even as their stamps can say. Rounding moves many rows; where few
-    /// are moved, rows are missing.
+    /// True if the rows are as even as the digits of their stamps show. Rounding moves many rows;
+    /// if few are moved, rows are missing.
     pub fn is_even(&self) -> bool {
         let is_rounded = self.jumps > FEW_JUMPS;
         let rounded = if is_rounded { (1.0 + ROUNDING) * self.digit } else { 0.0 };
@@ -101,7 +101,7 @@ impl RowSpacing {
     }
 }
 
-/// The decimal that all these times are multiples of, at most 1 s.
+/// Decimal of which all these times are multiples, at most 1 s.
 fn last_digit(times: &[f64]) -> f64 {
     let is_multiple = |digit: &f64| {
         let off = |time: &f64| (time / digit - (time / digit).round()).abs();

@@ -14,10 +14,10 @@ pub enum EvenlySampled {
 /// Error of the times of a record.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub(super) enum SpacingError {
-    /// Fewer rows than say anything of a frequency.
+    /// There are fewer rows than needed for information about a frequency.
     #[error("{rows} rows are too few for {sampled}")]
     TooFewRows { rows: usize, sampled: EvenlySampled },
-    /// s, since the row before, where rows are uneven.
+    /// The rows are uneven; time since the row before, s.
     #[error("{} after the row before", display(*.0, &TIME, 4))]
     After(f64),
 }
@@ -28,7 +28,7 @@ pub(super) enum SpacingHint {
     /// Fewest rows.
     #[error("at least {0} rows")]
     AtLeastRows(usize),
-    /// s, usual time between rows.
+    /// Expectation of even rows; usual time between rows, s.
     #[error("evenly sampled rows: {} apart, as most are", display(*.0, &TIME, 4))]
     Apart(f64),
     /// Remedy of uneven rows.

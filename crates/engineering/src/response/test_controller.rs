@@ -9,23 +9,25 @@ use crate::identify_error::RecordFault;
 use crate::project::Project;
 use crate::setup::{ControlError, Setup};
 
-/// Rows by which rounding may lengthen a delay of whole rows.
+/// Rounding of a delay of whole rows, in rows.
 const ROUNDING: f64 = 1e-6;
-/// Fraction of the output's power below which a calculated reference is rounding: six digits.
+/// Fraction of the output's power below which a calculated reference counts as rounding: six
+/// digits.
 const SILENT: f64 = 1e-12;
 /// Least distance of the loop from -1 in a test: a sensitivity of 5.
 const DISTANCE: f64 = 0.2;
-/// Fraction of the limit from which on a command counts as limited.
+/// Fraction of the limit above which a command counts as limited.
 const LIMIT: f64 = 1.0 - 1e-6;
 
-/// The controller of a test, from the force that it reads to its recorded command.
+/// Controller of a test, from the force that it reads to its recorded command.
 ///
 /// ```text
 /// u = C (F r - y),    y + u/C = F r
 /// ```
 ///
-/// F r is the reference after its prefilter; noise of y that returns through C has no part in it. A
-/// signal d that was added to the command appears in it as d/C, and moves the loop as well.
+/// F r is the reference after its prefilter; noise of y that returns through C does not contribute
+/// to it. A signal d that was added to the command appears in it as d/C, and excites the loop as
+/// well.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TestController {
     compensation: Compensation,
@@ -33,7 +35,7 @@ pub struct TestController {
 }
 
 impl TestController {
-    /// The `[controller]` of a project as it is deployed; `None` where it has no transfer function.
+    /// Deployed `[controller]` of a project; `None` if it has no transfer function.
     ///
     /// # Errors
     /// [`ControlError`] for a controller that is not a transfer function, or cannot be sampled.
@@ -44,15 +46,15 @@ impl TestController {
         Ok(Some(TestController { compensation, command_limit: controller.command_limit }))
     }
 
-    /// C from row to row, with rows h apart, at an angle w h in radians per row.
+    /// Response of C from row to row, with rows h apart, at an angle w h in radians per row.
     ///
     /// ```text
     /// continuous:  C(jw) e^(-jw T_d)
     /// sampled:     C(e^(jwT)) e^(-jw n h) h/T (1 - e^(-jwT))/(1 - e^(-jwh)),    n = ceil(T_d/h)
     /// ```
     ///
-    /// The last factor is the hold over the T/h rows of a sample; it is 1 where a sample lasts one
-    /// row or less.
+    /// The last factor is the hold over the T/h rows of a sample; it is 1 if a sample lasts one row
+    /// or less.
     fn between_rows(&self, angle: f64, time_step: f64) -> Complex64 {
         let law = self.compensation.response(angle / time_step).feedback;
         let delay = self.compensation.delay_s() / time_step;
@@ -67,18 +69,18 @@ impl TestController {
         law * turned(angle * (delay - ROUNDING).ceil().max(0.0)) * hold
     }
 
-    /// True where a response is -1/C: a calculated reference that is noise at this frequency shows
+    /// True if a response is -1/C: a calculated reference that is noise at this frequency shows
     /// that instead of the plant, if the controller of the test was another one.
     pub(super) fn is_negative_inverse(&self, point: &SpectralPoint, time_step: f64) -> bool {
         let controller = self.between_rows(point.frequency * time_step, time_step);
         magnitude(1.0 + point.response * controller) < DISTANCE
     }
 
-    /// The reference of a record, y + u/C.
+    /// Reference of a record, y + u/C.
     ///
     /// # Errors
-    /// [`RecordFault`] where the command reaches its limit, and where the noise of the output is in
-    /// the reference: then this controller was not that of the test.
+    /// [`RecordFault`] if the command reaches its limit, and if the noise of the output is in the
+    /// reference: then this controller was not that of the test.
     pub(super) fn reference(&self, record: &SampledPair) -> Result<ReferenceSignal, RecordFault> {
         let [input, output] = record.signals;
         let is_limited = |value: &&f64| self.command_limit.is_some_and(|limit| value.abs() >= LIMIT * limit);
@@ -106,7 +108,7 @@ impl TestController {
     }
 }
 
-/// exp(-j angle).
+/// Factor exp(-j angle).
 fn turned(angle: f64) -> Complex64 {
     exp_complex(Complex64::new(0.0, -angle))
 }

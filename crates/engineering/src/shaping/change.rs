@@ -1,4 +1,4 @@
-//! Changes as they are requested in text.
+//! Changes, as requested in text.
 
 use phea_dynamics::controller::{Compensator, Element as Solved, Stage};
 use phea_qft::manual_shaping::{Edit, EditError, ElementPattern, apply, pass_through};
@@ -12,28 +12,28 @@ use super::workpiece::Workpiece;
 use crate::project::{DeclaredElement, ElementKind, Findings, value_or_finding};
 use crate::robust::RobustProblem;
 
-/// What is changed.
+/// Kind of a change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
-    /// `ELEMENT`, at the end.
+    /// Adds `ELEMENT` at the end.
     Add,
-    /// `N`
+    /// Removes element `N`.
     Remove,
-    /// `N=ELEMENT`
+    /// Replaces element `N`: `N=ELEMENT`.
     Replace,
-    /// `N`
+    /// Enables element `N`.
     Enable,
-    /// `N`
+    /// Disables element `N`.
     Disable,
-    /// `N=M`: element N to position M.
+    /// Moves element N to position M: `N=M`.
     Move,
-    /// `[N=]KIND [with KEY VALUE] through POINT at FREQUENCY`: an element solved for, added or in
-    /// place of N.
+    /// Solves for an element, added or in place of N: `[N=]KIND [with KEY VALUE] through POINT at
+    /// FREQUENCY`.
     Pass,
 }
 
 impl Change {
-    /// Every change there is.
+    /// All kinds of changes.
     pub const ALL: [Change; 7] = [
         Change::Add,
         Change::Remove,
@@ -44,7 +44,7 @@ impl Change {
         Change::Pass,
     ];
 
-    /// The option of the command line.
+    /// Name of the command-line option.
     pub fn option(self) -> &'static str {
         match self {
             Change::Add => "add",
@@ -61,14 +61,14 @@ impl Change {
 /// A requested change. Elements are counted from 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RequestedChange {
-    /// What is changed.
+    /// Kind of the change.
     pub change: Change,
-    /// How, in text.
+    /// Details of the change, in text.
     pub text: String,
 }
 
 impl RequestedChange {
-    /// The option with its text, as on the command line.
+    /// Option with its text, as on the command line.
     pub fn option_with_text(&self) -> String {
         format!("--{} {}", self.change.option(), self.text)
     }
@@ -108,13 +108,12 @@ pub(super) fn edit(
     })
 }
 
-/// A change that the list of elements does not allow.
+/// Error for a change that the list of elements does not permit.
 pub(super) fn refused(requested: &RequestedChange, error: EditError) -> Box<RefusedChange> {
     TextPiece::whole(requested).refused(ChangeProblem::Edit(error))
 }
 
-/// The element of a request: in place of the one that it names, as a factor of the gain, or at the
-/// end.
+/// Element of a request: in place of the one that it names, as a factor of the gain, or at the end.
 fn pass(
     whole: &TextPiece<'_>,
     wish: &ElementWish<'_>,

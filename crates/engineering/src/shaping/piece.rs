@@ -1,11 +1,11 @@
-//! A part of the text of a change that knows its position.
+//! A part of the text of a change, with its position.
 
 use std::ops::Range;
 
 use super::change::RequestedChange;
 use super::refused::{ChangeProblem, RefusedChange};
 
-/// A part of a text, without the space around it.
+/// A part of a text, without surrounding spaces.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TextPiece<'a> {
     pub(super) words: &'a str,
@@ -33,24 +33,24 @@ impl<'a> TextPiece<'a> {
         self.words.rfind(separator).map(|at| self.cut(at, at + separator.len()))
     }
 
-    /// What stands before an ending.
+    /// The part before an ending.
     pub(super) fn before(&self, ending: &str) -> Option<TextPiece<'a>> {
         let words = self.words.strip_suffix(ending)?;
         Some(TextPiece { words, ..*self }.trimmed())
     }
 
-    /// Its first word, and the rest.
+    /// The first word, and the rest.
     pub(super) fn first_word(&self) -> [TextPiece<'a>; 2] {
         let end = self.words.find(char::is_whitespace).unwrap_or(self.words.len());
         self.cut(end, end)
     }
 
-    /// Refuses the change for this part of it.
+    /// Rejects the change because of this part.
     pub(super) fn refused(&self, reason: ChangeProblem) -> Box<RefusedChange> {
         self.refused_at(&(0..self.words.len()), reason)
     }
 
-    /// Refuses the change for a range of this part.
+    /// Rejects the change because of a range of this part.
     pub(super) fn refused_at(&self, range: &Range<usize>, reason: ChangeProblem) -> Box<RefusedChange> {
         let part = self.start + range.start..self.start + range.end;
         Box::new(RefusedChange { requested: self.requested.clone(), part, reason })

@@ -1,4 +1,4 @@
-//! A change that cannot be made, with the part of its text that shows why.
+//! A change that cannot be made, with the part of its text that is the reason.
 
 use std::ops::Range;
 
@@ -11,18 +11,18 @@ use crate::quantity::QuantityError;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("`{}` cannot be done", .requested.option_with_text())]
 pub struct RefusedChange {
-    /// The change.
+    /// Requested change.
     pub requested: RequestedChange,
-    /// Bytes of its text that show why.
+    /// Bytes of its text that are the reason.
     pub part: Range<usize>,
-    /// The reason.
+    /// Reason for the rejection.
     pub reason: ChangeProblem,
 }
 
-/// Reason for which a change cannot be made.
+/// Reason why a change cannot be made.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ChangeProblem {
-    /// The list of elements does not allow it.
+    /// The list of elements does not permit it.
     Edit(EditError),
     /// No element passes the requested point.
     Pass(PassError),
@@ -38,7 +38,7 @@ pub enum ChangeProblem {
     NotANumberOfAnElement(String),
     /// There is no element of this number.
     NoElement {
-        /// The number, as it is written.
+        /// Number as written.
         number: String,
         /// Number of elements.
         count: usize,
@@ -51,13 +51,13 @@ pub enum ChangeProblem {
     NotSolved(String),
     /// A kind of element without a number.
     WithoutNumber(String),
-    /// A text between the kind of an element and the point that does not begin with `with`.
+    /// The text between the kind of an element and the point does not begin with `with`.
     NotUnderstood(String),
-    /// A number that cannot be given for this element.
+    /// The number of a key cannot be given for this element.
     NotGiven {
-        /// Its key.
+        /// Key of the number.
         key: String,
-        /// The element.
+        /// Kind of the element.
         pattern: ElementPattern,
     },
     /// The text is neither a magnitude in dB nor a phase in degrees.

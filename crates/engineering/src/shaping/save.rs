@@ -1,10 +1,10 @@
-//! The elements written back into the file they came from, and read again to be sure.
+//! Elements written back into their file, and read again for verification.
 
 use super::{Shaped, ShapingError};
 use crate::project::{self, DeclaredElement, Loaded, with_elements};
 use crate::source::{Source, SourceError};
 
-/// The bytes of the project file with these elements; settings of the command line are not written.
+/// Bytes of the project file with these elements; settings of the command line are not written.
 pub(super) fn saved(
     source: &dyn Source,
     loaded: &Loaded,
@@ -30,7 +30,7 @@ fn read_back(
     let over = OverriddenSource { source, path: &loaded.path, bytes: saved };
     let again = match project::read(&over, &loaded.path, &[], &[]) {
         Ok(again) => again,
-        // names of the user's own catalogue are known only to the command line
+        // only the command line knows the names of the user's own catalogue
         Err(_) if !loaded.catalogue_files.iter().all(|file| file.starts_with("built-in:")) => return Ok(()),
         Err(report) => return Err(ShapingError::Refused(report)),
     };

@@ -1,4 +1,4 @@
-//! `lead through -6 dB, -130 deg at 20 rad/s`
+//! Parser of requests for an element, such as `lead through -6 dB, -130 deg at 20 rad/s`.
 //!
 //! ```text
 //! wish   = [number "="] kind ["with" key value] "through" coordinate ["," coordinate] "at" frequency
@@ -12,15 +12,15 @@ use crate::quantity::{self, ANGULAR_FREQUENCY};
 
 /// An element that is to be solved for.
 pub(super) struct ElementWish<'a> {
-    /// The number of the element that it replaces.
+    /// Number of the element that it replaces.
     pub(super) replaced: Option<TextPiece<'a>>,
     pub(super) pattern: ElementPattern,
     pub(super) point: WantedPoint,
 }
 
-/// Damping of a notch's poles where none is given.
+/// Damping of a notch's poles if none is given.
 const NOTCH_DAMPING: f64 = 0.5;
-/// Damping of a roll-off where none is given.
+/// Damping of a roll-off if none is given.
 const ROLL_OFF_DAMPING: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Elements with free numbers.
 const SOLVED: [(&str, ElementPattern); 10] = [
@@ -41,7 +41,7 @@ pub fn solved_kinds() -> [&'static str; 10] {
     SOLVED.map(|(name, _)| name)
 }
 
-/// Reads a request.
+/// Parses a request.
 pub(super) fn read<'a>(whole: &TextPiece<'a>) -> Result<ElementWish<'a>, Box<RefusedChange>> {
     let [head, place] = whole.split("through").ok_or_else(|| whole.refused(ChangeProblem::NoPoint))?;
     let [point, at] = place.split_last(" at ").ok_or_else(|| place.refused(ChangeProblem::NoFrequency))?;
@@ -57,7 +57,7 @@ pub(super) fn read<'a>(whole: &TextPiece<'a>) -> Result<ElementWish<'a>, Box<Ref
     Ok(ElementWish { replaced, pattern, point: WantedPoint { frequency_rad_per_s, magnitude_db, phase_deg } })
 }
 
-/// The element, and its number that is given.
+/// Kind of the element, with its given number.
 fn pattern(head: &TextPiece<'_>) -> Result<ElementPattern, Box<RefusedChange>> {
     let [kind, given] = head.first_word();
     let Some((_, pattern)) = SOLVED.iter().find(|(name, _)| *name == kind.words) else {
@@ -79,7 +79,7 @@ fn pattern(head: &TextPiece<'_>) -> Result<ElementPattern, Box<RefusedChange>> {
     numbered(*pattern, &key, &value)
 }
 
-/// The pattern with a number that is given.
+/// The pattern with a given number.
 fn numbered(
     pattern: ElementPattern,
     key: &TextPiece<'_>,
@@ -99,7 +99,7 @@ fn numbered(
     }
 }
 
-/// Magnitude in dB and phase in degrees, whichever are given.
+/// Magnitude, dB, and phase, degrees; `None` if not given.
 fn coordinates(point: &TextPiece<'_>) -> Result<[Option<f64>; 2], Box<RefusedChange>> {
     let parts = point.split(",").map_or_else(|| vec![*point], |parts| parts.to_vec());
     let mut found = [None, None];
@@ -126,7 +126,7 @@ fn plain(piece: &TextPiece<'_>) -> Result<f64, Box<RefusedChange>> {
     }
 }
 
-/// rad/s where no unit is given.
+/// Frequency, in rad/s if no unit is given.
 fn frequency(piece: &TextPiece<'_>) -> Result<f64, Box<RefusedChange>> {
     if let Some(value) = piece.words.parse::<f64>().ok().filter(|value| value.is_finite()) {
         return Ok(value);

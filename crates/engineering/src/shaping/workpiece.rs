@@ -1,4 +1,4 @@
-//! The elements in both forms: as in the project file, and as in the loop.
+//! Elements in both forms: as in the project file, and as in the loop.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Element, Stage, Timing};
@@ -8,7 +8,7 @@ use super::Shaped;
 use crate::project::{self, ElementKind, Project, RationalFunction, Transfer};
 use crate::setup::{self, ControlError, LawPlace};
 
-/// The elements of a project, and every element that was ever named, so that each keeps the form in
+/// Elements of a project, and every element that was ever named, so that each retains the form in
 /// which it was written.
 pub(super) struct Workpiece<'a> {
     project: &'a Project,
@@ -19,8 +19,7 @@ pub(super) struct Workpiece<'a> {
 }
 
 impl<'a> Workpiece<'a> {
-    /// The elements that the project gives; empty if it gives none. `timing` is that of its
-    /// controller.
+    /// Elements that the project gives; empty if it gives none. `timing` is that of its controller.
     pub(super) fn new(
         project: &'a Project,
         timing: &Timing,
@@ -48,7 +47,7 @@ impl<'a> Workpiece<'a> {
         self.shaped
     }
 
-    /// s; `None` for a continuous controller.
+    /// Sample time, s; `None` for a continuous controller.
     pub(super) fn sample_time(&self) -> Option<f64> {
         let own = match self.shaped {
             Shaped::Controller => None,
@@ -57,12 +56,12 @@ impl<'a> Workpiece<'a> {
         own.or(self.timing.sample_time_s)
     }
 
-    /// When what is shaped acts.
+    /// Timing of the shaped object.
     pub(super) fn timing(&self) -> Timing {
         self.timing
     }
 
-    /// Registers an element as it is declared, and returns it as it acts in the loop.
+    /// Registers a declared element, and returns it in the form of the loop.
     pub(super) fn know(&mut self, declared: project::DeclaredElement) -> Result<Stage, ControlError> {
         let place = match self.shaped {
             Shaped::Controller => LawPlace::Controller,
@@ -74,7 +73,7 @@ impl<'a> Workpiece<'a> {
         Ok(Stage { element, enabled })
     }
 
-    /// The elements as in the project file: each in the form in which it was named, new ones in the
+    /// Elements as in the project file: each in the form in which it was named, new ones in the
     /// form of their kind.
     pub(super) fn declared(&self, compensator: &Compensator) -> Vec<project::DeclaredElement> {
         let mut free: Vec<&(Element, project::DeclaredElement)> = self.known.iter().collect();
@@ -90,7 +89,7 @@ impl<'a> Workpiece<'a> {
         compensator.stages.iter().map(declared).collect()
     }
 
-    /// G(jw) or F(jw), sampled where the loop samples.
+    /// Response G(jw) or F(jw), sampled if the loop samples.
     pub(super) fn response(
         &self,
         compensator: &Compensator,
@@ -116,7 +115,7 @@ impl<'a> Workpiece<'a> {
     }
 }
 
-/// The project with these elements in place of its own.
+/// The project with these elements in place of those that it gives.
 pub(super) fn with_elements(
     project: &Project,
     shaped: Shaped,
@@ -131,7 +130,8 @@ pub(super) fn with_elements(
     project
 }
 
-/// An element that was never declared: a gain that was scaled, or one that was solved for.
+/// Declaration of an element that was never declared: a gain that was scaled, or one that was
+/// solved for.
 fn declared_of(element: &Element) -> project::DeclaredElement {
     project::DeclaredElement::new(match *element {
         Element::Gain(value) => ElementKind::Gain { value },

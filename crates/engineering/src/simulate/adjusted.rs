@@ -1,22 +1,22 @@
-//! The work of accumulators that are adjusted in a run, and what their valves throttle.
+//! Work of accumulators that are adjusted in a run, and throttling losses of their valves.
 
 use phea_dynamics::simulation::{Stretch, gauss_points};
 
 use super::bench::ControlledMachine;
 
-/// What the adjustment of accumulators does over a run, in J.
+/// Work of the adjustment of accumulators over a run, J.
 ///
 /// ```text
-/// work: integral of the power of the adjustment, of what the oil can get back from the gas: 1/2 dK/dt x^2 of a spring
+/// work: integral of the power of the adjustment that the oil can recover from the gas: 1/2 dK/dt x^2 for a spring
 /// throttled: integral of the drop times the flow of the valves between chambers and gas
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AdjustmentWork {
-    /// While its power is positive.
+    /// Work while its power is positive.
     pub brought_j: f64,
-    /// While it is negative.
+    /// Work while its power is negative.
     pub taken_j: f64,
-    /// Lost in the valves between chambers and gas; `None` without such a valve.
+    /// Loss in the valves between chambers and gas; `None` without such a valve.
     pub throttled_j: Option<f64>,
 }
 
@@ -24,13 +24,13 @@ pub struct AdjustmentWork {
 #[derive(Debug)]
 pub(super) struct AdjustmentWatch {
     work: AdjustmentWork,
-    /// Room for states and inputs.
+    /// Storage for states and inputs.
     states: Vec<f64>,
     inputs: Vec<f64>,
 }
 
 impl AdjustmentWatch {
-    /// Of a machine that has an adjustment.
+    /// Monitor of a machine that has an adjustment.
     pub(super) fn of(bench: &ControlledMachine) -> Option<AdjustmentWatch> {
         let machine = &bench.machine;
         let has_valve =
@@ -43,7 +43,7 @@ impl AdjustmentWatch {
         })
     }
 
-    /// Takes a step, all of whose states are wanted.
+    /// Evaluates a step, all of whose states are requested.
     pub(super) fn follow(&mut self, bench: &ControlledMachine, stretch: &Stretch<'_>) {
         let AdjustmentWatch { work, states, inputs } = self;
         let length_s = stretch.end_s() - stretch.start_s();

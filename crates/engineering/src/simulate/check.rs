@@ -1,5 +1,5 @@
-//! A second run at a tenth of the tolerance: how far it differs from the first is an estimate of
-//! the first one's error.
+//! A second run at a tenth of the tolerance: its difference from the first is an estimate of the
+//! first one's error.
 
 use phea_hydraulics::signal::Signal;
 
@@ -15,7 +15,7 @@ use phea_dynamics::watch::{Progress, Watch};
 
 /// Ratio of the first run's tolerance to that of the second.
 pub(super) const FOLD: f64 = 10.0;
-/// Share of the peak above which a difference of the force is reported.
+/// Fraction of the peak above which a difference of the force is reported.
 pub(super) const LARGEST_PART: f64 = 1e-3;
 
 /// Difference between the reported run and a run at a tenth of the tolerance.
@@ -27,7 +27,7 @@ pub(super) const LARGEST_PART: f64 = 1e-3;
 pub struct ToleranceCheck {
     /// Tolerance of the second run.
     pub tolerance: f64,
-    /// How the second run ended, if it ended early: the comparison extends until then.
+    /// Early end of the second run, if there is one: the comparison extends until then.
     pub stopped: Option<StoppedRun>,
     /// Time between two compared samples, s.
     pub look_s: f64,
@@ -39,47 +39,47 @@ pub struct ToleranceCheck {
     pub metrics: Vec<MetricDifferences>,
 }
 
-/// The largest difference of one signal.
+/// Largest difference of one signal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
-    /// Which signal.
+    /// Compared signal.
     pub signal: Signal,
-    /// In its SI unit.
+    /// Difference, in the SI unit of the signal.
     pub difference: f64,
-    /// When it occurs, s.
+    /// Time of the difference, s.
     pub time_s: f64,
     /// Largest magnitude in both runs and, for the force, of the reference.
     pub peak: f64,
 }
 
-/// The metrics of a window: how far each differs.
+/// Differences of the metrics of a window.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MetricDifferences {
-    /// The window.
+    /// Compared window.
     pub window: Window,
     /// Magnitude of the difference of each metric.
     pub differences: PerMetric<Measured>,
 }
 
 impl Difference {
-    /// The difference as a part of the peak; zero where nothing moves.
+    /// Ratio of the difference to the peak; zero if nothing moves.
     pub fn part_of_peak(&self) -> f64 {
         if self.peak > 0.0 { self.difference / self.peak } else { 0.0 }
     }
 }
 
 impl ToleranceCheck {
-    /// Whether the force differs by more than a thousandth of its peak.
+    /// True if the force differs by more than a thousandth of its peak.
     pub fn is_doubtful(&self) -> bool {
         self.force.as_ref().is_some_and(|force| force.part_of_peak() > LARGEST_PART)
     }
 }
 
-/// As [`simulate_into`] with samples, and each scenario once more at a tenth of its last tolerance,
-/// which fills [`ScenarioRun::check`].
+/// Simulates as [`simulate_into`] with samples, and each scenario once more at a tenth of its last
+/// tolerance, which fills [`ScenarioRun::check`].
 ///
 /// # Errors
-/// As [`simulate_into`].
+/// The errors of [`simulate_into`].
 pub fn simulate_checked(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -124,7 +124,7 @@ fn check(run: &ScenarioRun, other: &ScenarioRun, tolerance: f64) -> ToleranceChe
     }
 }
 
-/// Of all signals, over the samples that both records contain.
+/// Differences of all signals, over the samples that both records contain.
 fn differences(one: &Record, other: &Record) -> Vec<Difference> {
     let rows = common_rows(one, other);
     let reference = one.reference_n.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
@@ -145,7 +145,7 @@ fn differences(one: &Record, other: &Record) -> Vec<Difference> {
     found
 }
 
-/// Indices of the samples at the same times: one record may have been thinned out more than the
+/// Indices of the samples at common times: one record may have been thinned out more than the
 /// other.
 fn common_rows(one: &Record, other: &Record) -> Vec<(usize, usize)> {
     let apart = one.stride.max(other.stride);

@@ -1,4 +1,4 @@
-//! The columns of a scenario's table; the guide states their signs and units.
+//! Columns of a scenario's table; the guide states their signs and units.
 
 use phea_hydraulics::signal::{Signal, SignalPart};
 
@@ -6,31 +6,31 @@ use super::ControlledMachine;
 use super::record::Sample;
 use phea_quantity::ZERO_CELSIUS;
 
-/// The parts that a rig has in addition to those of every rig, as far as signals belong to them.
+/// Parts of a rig with signals in addition to those of every rig.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SignalParts {
-    /// A force from outside, or a torque behind a linkage.
+    /// True with an external force, or a torque with a linkage.
     pub external_force: bool,
-    /// A series element.
+    /// True with a series element.
     pub series: bool,
-    /// A hydrostatic transmission.
+    /// True with a hydrostatic transmission.
     pub transmission: bool,
-    /// A linkage.
+    /// True with a linkage.
     pub linkage: bool,
-    /// A virtual impedance.
+    /// True with a virtual impedance.
     pub impedance: bool,
-    /// Accumulators that are adjusted.
+    /// True with accumulators that are adjusted.
     pub adjustment: bool,
-    /// Gas behind a neck or a valve at chambers A and B.
+    /// True, for chambers A and B, with gas beyond a neck or a valve.
     pub gas_pressure: [bool; 2],
-    /// Gas at chambers A and B that exchanges heat.
+    /// True, for chambers A and B, with gas that exchanges heat.
     pub heated_gas: [bool; 2],
-    /// degC, of the wall of that gas, where the project states its working temperature.
+    /// Wall temperature of that gas, degC, if the project states its working temperature.
     pub gas_wall_celsius: [Option<f64>; 2],
 }
 
 impl SignalParts {
-    /// The parts of a machine with its controller.
+    /// Parts of a machine with its controller.
     pub(super) fn of(bench: &ControlledMachine) -> SignalParts {
         let machine = &bench.machine;
         let heated_gas = machine.has_heated_gas();
@@ -48,7 +48,7 @@ impl SignalParts {
         }
     }
 
-    /// Reports whether a rig with these parts has a signal.
+    /// True if a rig with these parts has a signal.
     pub fn have(&self, signal: Signal) -> bool {
         match signal.part() {
             SignalPart::Rig => true,
@@ -70,8 +70,8 @@ impl SignalParts {
         Signal::ALL.iter().copied().filter(|signal| self.have(*signal)).collect()
     }
 
-    /// The value of a signal that the rig has; NaN where the run lacks it, as an open loop lacks
-    /// the reference.
+    /// Value of a signal that the rig has; NaN if the run lacks it, as an open loop lacks the
+    /// reference.
     pub(super) fn value(&self, signal: Signal, sample: &Sample) -> f64 {
         let of_gas = |side: usize| {
             let ratio = sample.machine.gas_temperature_ratios[side];
@@ -95,10 +95,10 @@ impl SignalParts {
     }
 }
 
-/// Temperature in degC of gas at this ratio of its absolute temperature to that of its wall, which
+/// Temperature of gas, degC, at this ratio of its absolute temperature to that of its wall, which
 /// is in degC: T = theta T_w.
 fn gas_temperature(ratio: f64, wall: f64) -> f64 {
-    // exact where the gas has the temperature of its wall
+    // exact if the gas has the temperature of its wall
     wall + (ratio - 1.0) * (wall + ZERO_CELSIUS)
 }
 

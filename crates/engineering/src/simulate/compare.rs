@@ -1,4 +1,4 @@
-//! The same scenarios of several projects, side by side.
+//! Comparison of the common scenarios of several projects.
 
 use super::{ScenarioRun, SimulateError, simulate_project};
 use crate::project::Loaded;
@@ -9,7 +9,7 @@ use phea_dynamics::watch::{Progress, Watch};
 /// Projects with the results of their scenarios.
 #[derive(Debug)]
 pub struct ScenarioComparison<'a> {
-    /// In the order in which they were named; a stopped one is the last.
+    /// Projects in the order in which they were named; a cancelled one is the last.
     pub projects: Vec<(&'a Loaded, Vec<ScenarioRun>)>,
 }
 
@@ -25,12 +25,12 @@ impl<'a> ScenarioComparison<'a> {
         names
     }
 
-    /// The run of that name in each project.
+    /// Run of that name in each project.
     pub fn runs_of<'s>(&'s self, name: &'s str) -> impl Iterator<Item = Option<&'s ScenarioRun>> {
         self.projects.iter().map(move |(_, runs)| runs.iter().find(|run| run.name == name))
     }
 
-    /// Whether every scenario of every project ran to its end and is reliable.
+    /// True if every scenario of every project ran to its end and is reliable.
     pub fn is_complete(&self) -> bool {
         let complete = |(loaded, runs): &(&Loaded, Vec<ScenarioRun>)| {
             runs.len() == loaded.project.scenarios.len() && runs.iter().all(ScenarioRun::is_reliable)
@@ -39,7 +39,7 @@ impl<'a> ScenarioComparison<'a> {
     }
 }
 
-/// Simulates each project; a watch that answers `false` stops it there.
+/// Simulates each project; cancelled if `watch` returns `false`.
 ///
 /// # Errors
 /// The error of the first project that cannot be simulated, with its index in the list.

@@ -18,53 +18,53 @@ use crate::project::{self, LoadMotion, MotionShape, Project, Scenario};
 use crate::rig::OfMotion;
 use crate::source::Source;
 
-/// A scenario ready to be run.
+/// A scenario ready to be simulated.
 pub(crate) struct PreparedScenario {
-    /// In N.
+    /// Reference, N.
     pub reference: Profile,
-    /// In V, of an open loop.
+    /// Command of an open loop, V.
     pub command: Profile,
-    /// Position of the load or of its ground in m.
+    /// Position of the load or of its ground, m.
     pub ground: Profile,
-    /// External force on the load in N, if the machine has that input.
+    /// External force on the load, N, if the machine has that input.
     pub external_force: Option<Profile>,
-    /// By how much the setting of accumulators has moved, if the machine has that input.
+    /// Change of the setting of accumulators, if the machine has that input.
     pub setting_change: Option<Profile>,
-    /// States of the machine, of its sensor and of the continuous part of its controller, and the
-    /// waves in transit.
+    /// Initial states of the machine, of its sensor and of the continuous part of its controller,
+    /// and the waves in transit.
     pub start: Vec<f64>,
-    /// How a sampled controller begins.
+    /// Initial state of a sampled controller.
     pub waking: Waking,
-    /// The windows that are evaluated.
+    /// Windows that are evaluated.
     pub windows: Vec<Window>,
 }
 
-/// The inputs of a scenario, whatever machine they drive.
+/// Inputs of a scenario, independent of the machine.
 pub struct ScenarioDrive {
-    /// In N.
+    /// Reference, N.
     pub reference: Profile,
-    /// In V, of an open loop.
+    /// Command of an open loop, V.
     command: Profile,
-    /// External force on the load in N.
+    /// External force on the load, N.
     external_force: Profile,
-    /// By how much the setting of accumulators has moved.
+    /// Change of the setting of accumulators.
     setting_change: Profile,
-    /// Position of the load or of its ground in m, relative to its start.
+    /// Position of the load or of its ground relative to its start, m.
     pub motion: Profile,
-    /// The windows that are evaluated.
+    /// Windows that are evaluated.
     pub windows: Vec<Window>,
-    /// Where it goes on from.
+    /// Saved state from which the scenario continues.
     saved: Option<SavedState>,
 }
 
 impl PreparedScenario {
-    /// The inputs that move what the controller does not.
+    /// Inputs that act on the machine in addition to the controller.
     pub(crate) fn other_inputs(&self) -> OtherInputs<'_> {
         let more = [&self.external_force, &self.setting_change].into_iter().flatten();
         OtherInputs { reference: &self.reference, of_load: [&self.ground].into_iter().chain(more).collect() }
     }
 
-    /// The inputs of the machine other than its command.
+    /// Inputs of the machine other than its command.
     pub(crate) fn machine_inputs(&self) -> Vec<Input> {
         let ground = [Input::Value(self.ground.clone()), Input::Rate(self.ground.clone())];
         let setting = self.setting_change.clone();
@@ -94,7 +94,8 @@ pub fn driven(
     driven_by(source, project, Some(bench), scenario)
 }
 
-/// The same; without a machine a saved state, which has to fit one, is not read.
+/// Reference and motion of a scenario; without a machine, a saved state, which has to fit one, is
+/// not read.
 pub(super) fn driven_by(
     source: &dyn Source,
     project: &Project,
@@ -160,7 +161,7 @@ pub(crate) fn course_of(
 }
 
 impl ScenarioDrive {
-    /// The constant inputs while the loop is in equilibrium before time zero.
+    /// Constant inputs while the loop is in equilibrium before time zero.
     fn at_start(&self) -> HeldInputs {
         HeldInputs {
             reference_n: self.reference.value(0.0),
@@ -170,8 +171,8 @@ impl ScenarioDrive {
         }
     }
 
-    /// From a state, with the position of the load's ground in m. The load is where a virtual
-    /// impedance rests, unless another run goes on.
+    /// Input schedule from a state, with the position of the load's ground, m. The load is at the
+    /// rest position of a virtual impedance, unless another run is continued.
     fn course(
         &self,
         bench: &ControlledMachine,
@@ -195,12 +196,12 @@ impl ScenarioDrive {
     }
 }
 
-/// Instants at which a setting is looked at in addition to its breaks.
+/// Number of instants at which a setting is checked in addition to its breaks.
 const LOOKS: u32 = 20_000;
-/// By how much rounding may move it beyond its ends.
+/// Distance beyond its ends to which rounding may move a setting.
 const BEYOND: f64 = 1e-9;
 
-/// Refuses a setting that leaves 0 to 1.
+/// Rejects a setting outside 0 to 1.
 fn within_its_way(project: &Project, scenario: &Scenario, change: &Profile) -> Result<(), SimulateError> {
     let adjusted = project.actuator.as_ref().map_or([None; 2], project::DeclaredActuator::adjustments);
     if scenario.setting_change.is_empty() {
@@ -248,8 +249,8 @@ fn motion(
     })
 }
 
-/// Where the search for an equilibrium begins: the machine at the position of its operating point
-/// under the force of the reference, or without force if there is no such operating point.
+/// Start of the search for an equilibrium: the machine at the position of its operating point under
+/// the force of the reference, or without force if there is no such operating point.
 fn near_rest(
     bench: &ControlledMachine,
     scenario: &Scenario,
@@ -291,7 +292,7 @@ fn stated_start(stated: &project::Start) -> StartValues {
 }
 
 /// States of the loop with its machine there, and the waves in transit. Controller and sensor hold
-/// the machine at a reference in N; without one they begin at zero, like everything that is not
+/// the machine at a reference, N; without one they begin at zero, like everything that is not
 /// stated.
 fn loop_start(bench: &ControlledMachine, beginning: &InitialCondition, held_at: Option<f64>) -> Vec<f64> {
     let mut start = beginning.state.clone();

@@ -1,49 +1,49 @@
-//! Runs that leave what their loop can control and do not come back.
+//! Detection of runs that leave the range in which their loop can control, and do not return.
 
 use phea_dynamics::simulation::Profile;
 
 use super::Window;
 
-/// How a run diverges.
+/// Divergence of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Divergence {
-    /// The command is at the end of the valve's range, or beyond, from a time on: over half of the
-    /// last window and more.
+    /// The command is at the end of the valve's range, or beyond, from a time on: over at least
+    /// half of the last window.
     CommandBeyondRange {
-        /// s.
+        /// Start of this time, s.
         since_s: f64,
-        /// V.
+        /// Range of the command, V.
         range_v: f64,
     },
     /// The command swings from one end of the valve's range to the other and back while no input
     /// moves.
     CommandSwings {
-        /// s.
+        /// Start of the swings, s.
         since_s: f64,
-        /// V.
+        /// Range of the command, V.
         range_v: f64,
-        /// From one end to the other, until the end of the run.
+        /// Number of swings from one end to the other, until the end of the run.
         swings: u32,
     },
-    /// At the end of the run the force is more than ten times the largest reference, and nothing
+    /// The force at the end of the run is more than ten times the largest reference, and nothing
     /// else moves the load.
     ForceBeyondReference {
-        /// When it is largest, s.
+        /// Time of the largest force, s.
         since_s: f64,
-        /// N.
+        /// Force, N.
         force_n: f64,
-        /// N.
+        /// Largest reference, N.
         reference_n: f64,
     },
 }
 
 impl Divergence {
-    /// Whether the command swings.
+    /// True if the command swings.
     pub fn swings(&self) -> bool {
         matches!(self, Divergence::CommandSwings { .. })
     }
 
-    /// When it begins or shows, s.
+    /// Time at which the divergence begins or becomes visible, s.
     pub fn since_s(&self) -> f64 {
         match self {
             Divergence::CommandBeyondRange { since_s, .. }
@@ -53,48 +53,49 @@ impl Divergence {
     }
 }
 
-/// Part of the last window over which a command at its end counts as there for good.
+/// Fraction of the last window over which a command at its end counts as permanent.
 const FOR_GOOD: f64 = 0.5;
-/// Part of the last window, at its end, over which swings are counted.
+/// Fraction of the last window, at its end, over which swings are counted.
 const LATE: f64 = 0.25;
-/// Swings from one end to the other that are no transient.
+/// Number of swings from one end to the other that are no transient.
 const SWINGS: u32 = 4;
-/// Part of that time which a swinging command spends at its ends.
+/// Fraction of that time which a swinging command spends at its ends.
 const AT_ENDS: f64 = 0.05;
-/// Part of the run, at its end, over which the force is compared.
+/// Fraction of the run, at its end, over which the force is compared.
 const LAST: f64 = 0.1;
-/// Force over the largest reference.
+/// Ratio of force to largest reference from which a run diverges.
 const BEYOND: f64 = 10.0;
 
-/// The inputs that move what the controller does not.
+/// Inputs that act on the machine in addition to the controller.
 pub(crate) struct OtherInputs<'a> {
-    /// In N.
+    /// Reference, N.
     pub(crate) reference: &'a Profile,
-    /// Of the load: its ground, the force from outside, the setting of its accumulators.
+    /// Inputs of the load: its ground, the external force, the setting of its accumulators.
     pub(crate) of_load: Vec<&'a Profile>,
 }
 
-/// Watches for a divergence.
+/// Monitor for a divergence.
 #[derive(Clone, Debug)]
 pub(super) struct DivergenceWatch {
     range_v: f64,
     end_s: f64,
     last_window_s: f64,
     before_s: f64,
-    /// Since when the command is at an end.
+    /// Time since which the command is at an end of its range, s.
     since_s: Option<f64>,
-    /// The end at which it last was, late in the run, and how often that changed.
+    /// End of the range at which the command last was, in the last part of the run, and number of
+    /// changes.
     side: Option<bool>,
     swings: u32,
     first_swing_s: f64,
     at_ends_s: f64,
-    /// Largest magnitudes of the force at the end of the run with its time, and of the reference.
+    /// Largest magnitudes at the end of the run: of the force with its time, and of the reference.
     force: [f64; 2],
     reference_n: f64,
 }
 
 impl DivergenceWatch {
-    /// Of a run of this length under a command within a range in V.
+    /// Monitor for a run of this length under a command within a range, V.
     pub(super) fn new(range_v: f64, end_s: f64, windows: &[Window]) -> DivergenceWatch {
         DivergenceWatch {
             range_v,
@@ -111,7 +112,7 @@ impl DivergenceWatch {
         }
     }
 
-    /// The beginning of a part of the last window at its end, s.
+    /// Beginning of a part of the last window at its end, s.
     fn late_s(&self, part: f64) -> f64 {
         self.end_s - part * (self.end_s - self.last_window_s)
     }
@@ -140,7 +141,7 @@ impl DivergenceWatch {
         self.before_s = time_s;
     }
 
-    /// How the run diverges, if it does.
+    /// Divergence of the run, if it diverges.
     pub(super) fn found(&self, inputs: &OtherInputs<'_>) -> Option<Divergence> {
         let DivergenceWatch { range_v, end_s, .. } = *self;
         if self.before_s < end_s * (1.0 - 1e-9) {
@@ -163,7 +164,7 @@ impl DivergenceWatch {
     }
 }
 
-/// Whether a function of time is constant between two times.
+/// True if a function of time is constant between two times.
 fn rests(profile: &Profile, from_s: f64, until_s: f64) -> bool {
     let breaks = profile.breaks().into_iter().any(|time_s| from_s < time_s && time_s < until_s);
     !breaks && profile.piece(0.5 * (from_s + until_s)).constant().is_some()

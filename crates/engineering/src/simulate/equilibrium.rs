@@ -1,4 +1,4 @@
-//! The equilibrium of the closed loop: the start of a scenario that states none.
+//! Equilibrium of the closed loop: the start of a scenario that states none.
 
 use phea_dynamics::simulation::EquilibriumError;
 use phea_hydraulics::machine::InitialCondition;
@@ -11,12 +11,12 @@ use crate::quantity::{MotionKind, MotionWords};
 /// A loop in equilibrium.
 pub(super) struct RestedLoop {
     pub(super) rest: Rest,
-    /// Position of the load's ground, m; rad behind a linkage.
+    /// Position of the load's ground, m; with a linkage its angle, rad.
     pub(super) ground_m: f64,
 }
 
-/// The equilibrium of the loop under constant inputs, with the piston at the position of the
-/// initial guess: all simulated rates are zero.
+/// Equilibrium of the loop under constant inputs, with the piston at the position of the initial
+/// guess: all simulated time derivatives are zero.
 pub(super) fn rest(
     bench: &ControlledMachine,
     guess: &[f64],
@@ -48,7 +48,7 @@ pub(super) fn rest(
         ground_m -= position(&rest.start, &own) - wanted_m;
         return Ok(RestedLoop { rest, ground_m });
     }
-    // behind a linkage the torque depends on it too
+    // with a linkage the torque depends on it too
     let (mut rest, mut from) = (rest, beginning.clone());
     for _ in 0..GROUNDS {
         let inputs = from.all_inputs();
@@ -64,12 +64,12 @@ pub(super) fn rest(
     Err(SimulateError::NoRestThere { name: name.to_string(), reference_n, position_m: wanted_m })
 }
 
-/// How near the piston rests to where it is wanted behind a linkage, m, and how often its ground is
-/// moved for that.
+/// Largest distance of the resting piston from its required position with a linkage, m, and largest
+/// number of motions of its ground.
 const AT_POSITION_M: f64 = 1e-9;
 const GROUNDS: usize = 60;
 
-/// A state that moves where none should, by its place in
+/// State that moves although all should rest, by its place in
 /// [`MachineState`](phea_hydraulics::machine::MachineState).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MovingState {

@@ -1,5 +1,5 @@
-//! Limits of the rig that a run exceeds. Nothing is clamped by them: the real rig has these limits,
-//! the simulated machine does not.
+//! Limits of the rig that a run exceeds. They clamp nothing: the real rig has these limits, the
+//! simulated machine does not.
 
 use phea_dynamics::simulation::Quartic;
 use phea_hydraulics::machine::MachineSignals;
@@ -7,48 +7,49 @@ use phea_hydraulics::series::ForceFrom;
 
 use super::ControlledMachine;
 
-/// A limit of the rig, and how far a run exceeds it.
+/// A limit of the rig, and the extent to which a run exceeds it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exceeded {
-    /// Which.
+    /// Kind of the limit.
     pub limit: RigLimit,
-    /// N, V, Pa gauge or a Reynolds number; the one that was exceeded first if there are two.
+    /// Value of the limit: force, N, voltage, V, gauge pressure, Pa, or a Reynolds number; the one
+    /// that was exceeded first if there are two.
     pub limit_value: f64,
-    /// The value farthest beyond it, in the same unit, and its time, s.
+    /// Value farthest beyond the limit, in the unit of the limit.
     pub peak: f64,
-    /// s.
+    /// Time of the peak, s.
     pub peak_time_s: f64,
-    /// When it was first exceeded, s.
+    /// Time at which the limit was first exceeded, s.
     pub first_time_s: f64,
-    /// The place of the peak.
+    /// Place of the peak.
     pub place: LimitPlace,
 }
 
-/// Where a limit holds.
+/// Place of a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LimitPlace {
-    /// At the rig as a whole.
+    /// The rig as a whole.
     Rig,
-    /// In chamber `a` or `b`, at the end of its line.
+    /// Chamber `a` or `b`, at the end of its line.
     Chamber(char),
-    /// In a line.
+    /// A line.
     Line {
-        /// `a` or `b`.
+        /// Side, `a` or `b`.
         side: char,
-        /// m from the valve.
+        /// Distance from the valve, m.
         distance_m: f64,
     },
-    /// In the neck of the accumulator at chamber `a` or `b`.
+    /// Neck of the accumulator at chamber `a` or `b`.
     Neck(char),
-    /// In the line of a transmission.
+    /// Line of a transmission.
     Transmission {
-        /// m from the rod's piston.
+        /// Distance from the rod's piston, m.
         distance_m: f64,
     },
 }
 
 impl LimitPlace {
-    /// As an answer names it; `None` for the rig as a whole.
+    /// Word of the place in JSON output; `None` for the rig as a whole.
     pub fn word(self) -> Option<&'static str> {
         match self {
             LimitPlace::Rig => None,
@@ -62,7 +63,7 @@ impl LimitPlace {
         }
     }
 
-    /// m from the valve in a line, from the rod's piston in that of a transmission.
+    /// Distance, m: from the valve in a line, from the rod's piston in the line of a transmission.
     pub fn distance_m(self) -> Option<f64> {
         match self {
             LimitPlace::Line { distance_m, .. } | LimitPlace::Transmission { distance_m } => Some(distance_m),
@@ -76,10 +77,10 @@ impl LimitPlace {
 pub enum RigLimit {
     /// `force_sensor.capacity`, in both directions.
     SensorCapacity,
-    /// The force at which the piston stalls, A_A p_S - A_B p_T one way and A_B p_S - A_A p_T the
+    /// Stall force of the piston, A_A p_S - A_B p_T in one direction and A_B p_S - A_A p_T in the
     /// other: a reference beyond it is not reached.
     StallForce,
-    /// The voltage of full opening, unless `saturation` keeps the command within it.
+    /// Voltage of full opening, unless `saturation` limits the command to it.
     NominalVoltage,
     /// `fluid.vapour_pressure`: below it the oil cavitates.
     VapourPressure,
@@ -87,15 +88,15 @@ pub enum RigLimit {
     WorkingPressure,
     /// `burst_pressure` of a hose or pipe.
     BurstPressure,
-    /// The Reynolds number of a line whose friction is that of laminar flow.
+    /// Transition Reynolds number of a line with laminar friction.
     LaminarFlow,
-    /// The pressure at which the relief valve of a limited pump is shut: below it the rig takes
-    /// more than the pump delivers.
+    /// Pressure at which the relief valve of a limited pump is shut: below it the rig takes more
+    /// than the pump delivers.
     PumpFlow,
 }
 
 impl RigLimit {
-    /// As an answer names it.
+    /// Word of the limit in JSON output.
     pub fn word(self) -> &'static str {
         match self {
             RigLimit::SensorCapacity => "force_sensor_capacity",
@@ -129,8 +130,8 @@ pub const LINE_OCCURRENCES: [&str; 11] = [
 const TURBULENT_TRANSMISSION: &str = "turbulent_transmission";
 
 impl Exceeded {
-    /// The name of its occurrence; `None` for limits that have none, and in a chamber for vapour
-    /// pressure, of which the machine has an indicator.
+    /// Name of the occurrence; `None` for limits that have none, and for vapour pressure in a
+    /// chamber, for which the machine has an indicator.
     pub fn occurrence(&self) -> Option<&'static str> {
         let first = match (self.limit, self.place) {
             (RigLimit::VapourPressure, LimitPlace::Line { .. }) => 0,
@@ -146,29 +147,29 @@ impl Exceeded {
     }
 }
 
-/// Exceeding a limit by less than this share of it counts as rounding.
+/// Fraction of a limit by which exceeding it counts as rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// Watches for the limits that a run exceeds, sample by sample.
+/// Monitor of the limits that a run exceeds, sample by sample.
 pub(super) struct LimitWatch {
-    /// Of the force sensor, and the force through it from the signals of the machine.
+    /// Limit of the force sensor, and the force through it from the signals of the machine.
     sensor: Option<(WatchedLimit, SensedForce)>,
     stall: WatchedLimit,
     command: WatchedLimit,
-    /// Of a limited pump.
+    /// Limit of a limited pump.
     pump: Option<WatchedLimit>,
 }
 
-/// The force through the sensor, wherever the measured one is taken from.
+/// Force through the sensor, whatever the source of the measured force.
 #[derive(Clone, Copy)]
 enum SensedForce {
     /// The measured force.
     Measured,
-    /// From the deflection of the sensor, whose stiffness in N/m this is.
+    /// Force from the deflection of the sensor, with its stiffness, N/m.
     Deflection(f64),
 }
 
-/// A limit in both directions, of which either may be infinite.
+/// A limit in both directions, either of which may be infinite.
 pub(super) struct WatchedLimit {
     limit: RigLimit,
     low: f64,
@@ -196,13 +197,12 @@ impl LimitWatch {
         }
     }
 
-    /// Whether it needs the signals of the machine.
+    /// True if the monitor needs the signals of the machine.
     pub(super) fn wants_signals(&self) -> bool {
         self.sensor.is_some() || self.pump.is_some()
     }
 
-    /// Takes what the loop asks for and gives out at a time: reference in N, if there is one, and
-    /// command in V.
+    /// Takes the signals of the loop at a time: reference, N, if there is one, and command, V.
     pub(super) fn take_loop(&mut self, time_s: f64, reference_n: Option<f64>, control_v: f64) {
         if let Some(reference_n) = reference_n {
             self.stall.take(time_s, reference_n);
@@ -224,7 +224,7 @@ impl LimitWatch {
         }
     }
 
-    /// The limits that were exceeded.
+    /// Limits that were exceeded.
     pub(super) fn finish(self) -> Vec<Exceeded> {
         let sensor = self.sensor.and_then(|(limit, _)| limit.found);
         let pump = self.pump.and_then(|limit| limit.found);
@@ -237,12 +237,12 @@ impl WatchedLimit {
         WatchedLimit { limit, low, high, found: None }
     }
 
-    /// How far it was exceeded.
+    /// Limit with its peak, if it was exceeded.
     pub(super) fn found(&self) -> Option<Exceeded> {
         self.found
     }
 
-    /// The margin within which a value beyond a limit counts as rounding.
+    /// Margin within which a value beyond a limit counts as rounding.
     fn rounding(&self) -> f64 {
         let largest = [self.low, self.high].into_iter().filter(|limit| limit.is_finite());
         ROUNDING * largest.fold(0.0, |largest, limit| limit.abs().max(largest))
@@ -276,21 +276,21 @@ impl WatchedLimit {
         }
     }
 
-    /// Whether a value between these may be farther beyond it than those that were taken.
+    /// True if a value between these may be farther beyond the limit than those that were taken.
     pub(super) fn may_exceed(&self, [least, most]: [f64; 2]) -> bool {
         let ways = [(1.0, self.high, most), (-1.0, self.low, least)];
         ways.into_iter()
             .any(|(sign, limit, value)| limit.is_finite() && sign * value > self.edges(sign, limit)[1])
     }
 
-    /// From where on a value counts as beyond this limit of a sign, and from where on as farther
-    /// beyond it than any before; both times the sign.
+    /// Values from which a value counts as beyond the limit of a sign, and as farther beyond it
+    /// than any before; both multiplied by the sign.
     fn edges(&self, sign: f64, limit: f64) -> [f64; 2] {
         let edge = sign * limit + self.rounding();
         [edge, self.found.map_or(edge, |found| edge.max(sign * limit + self.excess(found.peak)))]
     }
 
-    /// Notes a value beyond the limit, with the times of crossing it and of the value.
+    /// Records a value beyond the limit, with the times of crossing the limit and of the value.
     fn note(&mut self, [first_time_s, peak_time_s]: [f64; 2], peak: f64, place: LimitPlace) {
         let limit_value = if peak > self.high { self.high } else { self.low };
         let new = Exceeded { limit: self.limit, limit_value, peak, peak_time_s, first_time_s, place };

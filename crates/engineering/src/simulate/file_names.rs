@@ -1,4 +1,4 @@
-//! The names of the files of scenarios.
+//! Names of the files of scenarios.
 
 /// Names of the files with the states of these scenarios.
 pub fn state_names<'a>(scenarios: impl Iterator<Item = &'a str>) -> Vec<String> {
@@ -25,7 +25,7 @@ pub fn file_names<'a>(scenarios: impl Iterator<Item = &'a str>) -> Vec<String> {
     names
 }
 
-/// Characters that file systems do not accept become underscores.
+/// File name in which characters that file systems do not accept are replaced by underscores.
 fn file_name(name: &str) -> String {
     let plain =
         |letter: char| if letter.is_control() || "/\\:*?\"<>|".contains(letter) { '_' } else { letter };

@@ -1,4 +1,4 @@
-//! The files of `simulate`: a table for each scenario, and the state it ended in.
+//! Files of `simulate`: a table for each scenario, and its final state.
 
 use phea_hydraulics::signal::Signal;
 
@@ -12,7 +12,7 @@ use crate::{
     source::OutputFile,
 };
 
-/// The state each run ended in, where that can be saved.
+/// Final state of each run, if it can be saved.
 pub fn files(loaded: &Loaded, runs: &[ScenarioRun]) -> Vec<OutputFile> {
     let names = state_names(runs.iter().map(|run| run.name.as_str()));
     let state = |(run, name): (&ScenarioRun, String)| {
@@ -22,9 +22,9 @@ pub fn files(loaded: &Loaded, runs: &[ScenarioRun]) -> Vec<OutputFile> {
     runs.iter().zip(names).filter_map(state).collect()
 }
 
-/// A table that is written row by row, columns named with their units.
+/// A table that is written row by row, with columns named with their units.
 pub struct RunTable<'a> {
-    /// Where it goes, for messages.
+    /// Path of the table, for messages.
     path: String,
     parts: SignalParts,
     columns: Vec<Signal>,
@@ -34,7 +34,7 @@ pub struct RunTable<'a> {
 }
 
 impl<'a> RunTable<'a> {
-    /// A table with its headings; `bench` says which columns it has.
+    /// A table with its headings; `bench` determines its columns.
     pub(super) fn begin(
         (destination, name): (&'a dyn Destination, &str),
         format: TableFormat,
@@ -56,7 +56,7 @@ impl<'a> RunTable<'a> {
         self.table.row(&self.values).map_err(|error| unwritten(&self.path, &error))
     }
 
-    /// Puts it under its name.
+    /// Stores the table under its name.
     pub(super) fn finish(self) -> Result<(), WriteError> {
         let RunTable { path, table, .. } = self;
         table.finish().and_then(Unfinished::finish).map_err(|error| unwritten(&path, &error))

@@ -1,5 +1,5 @@
-//! Follows a run from step to step, so that the metrics of its windows are those of the solution,
-//! independent of the rows.
+//! Evaluation of a run from step to step, so that the metrics of its windows are those of the
+//! solution, independent of the rows.
 
 use std::cell::RefCell;
 
@@ -16,19 +16,19 @@ use super::{Metrics, Window};
 /// its amplitude.
 const PARTS: u32 = 4;
 /// Distance of ends that differ only by rounding, in steps; and in units of the last place of the
-/// time, which count in a step that ends where an event was located.
+/// time, which matter for a step that ends at a located event.
 const SAME: f64 = 1e-9;
 pub(super) const LAST_PLACES: f64 = 16.0;
 
-/// The distance in s of ends that differ only by rounding, of a step that ends here.
+/// Distance of ends that differ only by rounding, for a step that ends here, s.
 fn rounding_s(start_s: f64, end_s: f64) -> f64 {
     SAME * (end_s - start_s) + LAST_PLACES * f64::EPSILON * end_s.abs()
 }
 
-/// Where the command comes from.
+/// Source of the command.
 pub(super) enum CommandSource<'a> {
-    /// The command that a continuous controller demands, with its limit in V, or the stated command
-    /// of an open loop.
+    /// Command that a continuous controller demands, with its limit, V, or the stated command of an
+    /// open loop.
     Continuously(SignalSum<'a>, f64),
     /// The last command of a sampled controller.
     Sampled(&'a RefCell<ControllerSamples>),
@@ -38,20 +38,20 @@ pub(super) enum CommandSource<'a> {
 pub struct Follower<'a> {
     force: SignalSum<'a>,
     commanded: CommandSource<'a>,
-    /// None in an open loop.
+    /// `None` in an open loop.
     reference: Option<&'a Profile>,
     tallies: Vec<Tally>,
-    /// The first that has not ended.
+    /// Index of the first window that has not ended.
     first: usize,
-    /// Room for all inputs.
+    /// Storage for all inputs.
     inputs: Vec<f64>,
-    /// None in an open loop.
+    /// `None` in an open loop.
     divergence: Option<DivergenceWatch>,
 }
 
 impl<'a> Follower<'a> {
-    /// Of a loop with this number of inputs, in windows in the order of their starts; the band of
-    /// settling times in percent.
+    /// Follower of a loop with this number of inputs, in windows in the order of their starts; with
+    /// the band of settling times, percent.
     pub(super) fn new(
         force: SignalSum<'a>,
         commanded: CommandSource<'a>,
@@ -67,27 +67,27 @@ impl<'a> Follower<'a> {
         Follower { force, commanded, reference, tallies, first: 0, inputs, divergence: None }
     }
 
-    /// The same, watching for a divergence where the loop is closed.
+    /// The follower with a monitor for divergence, if the loop is closed.
     pub(super) fn watching(self, watch: DivergenceWatch) -> Follower<'a> {
         Follower { divergence: self.reference.map(|_| watch), ..self }
     }
 
-    /// How the run diverges, if it does, under these inputs.
+    /// Divergence of the run under these inputs, if there is any.
     pub(crate) fn divergence(&self, inputs: &OtherInputs<'_>) -> Option<Divergence> {
         self.divergence.as_ref()?.found(inputs)
     }
 
-    /// The metrics of each window, as far as it was followed.
+    /// Metrics of each window, up to the last step.
     pub fn metrics(&self) -> Vec<Metrics> {
         self.tallies.iter().map(Tally::metrics).collect()
     }
 
-    /// The force at one time, of the states that are wanted.
+    /// Force at one time, from the requested states, N.
     pub fn force_n(&self, states: &[f64]) -> f64 {
         self.force.at(states)
     }
 
-    /// Takes note of a step.
+    /// Evaluates a step.
     pub fn follow(&mut self, stretch: &Stretch<'_>) {
         let (start_s, end_s) = (stretch.start_s(), stretch.end_s());
         self.watch(stretch);
@@ -132,7 +132,7 @@ impl<'a> Follower<'a> {
         }
     }
 
-    /// Takes the end of a step for a divergence.
+    /// Passes the end of a step to the monitor for divergence.
     fn watch(&mut self, stretch: &Stretch<'_>) {
         let (Some(watch), Some(reference)) = (&mut self.divergence, self.reference) else { return };
         let end_s = stretch.end_s();
@@ -148,7 +148,7 @@ impl<'a> Follower<'a> {
         watch.take(end_s, [force, asked_for, command]);
     }
 
-    /// The command over a part of a step.
+    /// Command over a part of a step.
     fn command(&mut self, stretch: &Stretch<'_>, within: [f64; 2]) -> CommandStretch {
         match &self.commanded {
             CommandSource::Sampled(log) => {
@@ -187,8 +187,8 @@ impl<'a> Follower<'a> {
         }
     }
 
-    /// Whether a step from sample to sample may hold an extreme that counts, or leave a band: then
-    /// the force is needed more accurately than by a cubic.
+    /// True if a step from sample to sample may contain an extreme that counts, or leave a band:
+    /// then the force is needed more accurately than by a cubic.
     pub fn looks_closer(&self, stretch: &Stretch<'_>) -> bool {
         let (start_s, end_s) = (stretch.start_s(), stretch.end_s());
         let open = |tally: &&Tally| tally.window.start_s < end_s && tally.window.end_s > start_s;
@@ -206,7 +206,7 @@ impl<'a> Follower<'a> {
     }
 }
 
-/// The reference at the end of a window, before the event there.
+/// Reference at the end of a window, before the event there.
 fn last_value(reference: &Profile, window: &Window) -> f64 {
     let before_s = window.end_s - 1e-6 * (window.end_s - window.start_s);
     reference.piece(before_s).at(window.end_s).value
@@ -228,7 +228,7 @@ mod tests {
     use super::super::Cause;
     use super::*;
 
-    /// y'' = w^2 (u - y) - 2 d w y'; its states stand for force and command.
+    /// Test oscillator y'' = w^2 (u - y) - 2 d w y'; its states represent force and command.
     #[derive(Clone)]
     struct Swing {
         frequency: f64,
@@ -293,9 +293,9 @@ mod tests {
         (Swing { frequency: 40.0, damping: 0.3 }, reference, Window { cause, start_s: 1.0, end_s: 3.0 })
     }
 
-    /// A step of integration that ends at the step of the reference, a thousand millionth of a
-    /// second long, while the window begins one rounding before: the reference of the window is the
-    /// one after the step alone.
+    /// An integration step that ends at the step of the reference, a thousand millionth of a second
+    /// long, while the window begins one rounding earlier: the reference of the window is only the
+    /// one after the step.
     #[test]
     fn a_window_that_begins_a_rounding_early_has_its_step() {
         let (swing, reference, window) = step();
@@ -314,7 +314,7 @@ mod tests {
         let Swing { frequency, damping } = swing;
         let sine = (1.0 - damping * damping).sqrt();
         let angle = portable::atan2(sine, damping);
-        // of the step, after it
+        // response to the step, after it
         let response = |time_s: f64| {
             let phase = frequency * sine * time_s + angle;
             1.0 - portable::exp(-damping * frequency * time_s) * portable::sin(phase) / sine
@@ -342,12 +342,12 @@ mod tests {
         let rise = crossing(0.0, first_peak, 0.9) - crossing(0.0, first_peak, 0.1);
         assert!(near(seen.rise_time_s.unwrap(), rise), "{seen:?} {rise}");
         // the peaks are exp(-n pi d/s): the last one outside a hundredth is the fourth, below the
-        // step
+        // reference
         let last = crossing(4.0 * first_peak, 5.0 * first_peak, 0.99);
         assert!(response(4.0 * first_peak) < 0.99 && response(5.0 * first_peak) < 1.01);
         assert!(near(seen.settling_time_s.unwrap(), last), "{seen:?} {last}");
         assert!(seen.steady_state_error_n.unwrap().abs() < 1e-6);
-        // a force that enters the band in the last tenth of a window was not watched for long
+        // a force that enters the band in the last tenth of a window was not observed for long
         // enough
         let settled = |share: f64| {
             let window = Window { end_s: 1.0 + last / share, ..window };
@@ -359,7 +359,7 @@ mod tests {
         assert_eq!(seen, found(2.9));
     }
 
-    /// The command's limit cuts its peak, and its mean square where it is reached.
+    /// The command's limit clips its peak, and reduces its mean square while it is reached.
     #[test]
     fn a_limit_cuts_the_command() {
         let (swing, reference, window) = step();
@@ -398,8 +398,7 @@ mod tests {
         assert!(never.disturbance_peak_n.is_err() && never.control_rms_v.is_err());
     }
 
-    /// A reference that does not move as a polynomial: the largest difference from a force that
-    /// stands still.
+    /// A reference that does not move as a polynomial: largest difference from a constant force.
     #[test]
     fn a_moving_reference_is_followed_within_each_step() {
         let swing = Swing { frequency: 5.0, damping: 1.0 };

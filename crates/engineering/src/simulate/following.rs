@@ -1,4 +1,4 @@
-//! Who follows the loop of a bench.
+//! Follower for the loop of a bench.
 
 use std::cell::RefCell;
 
@@ -12,8 +12,9 @@ use super::follower::{CommandSource, Follower};
 use super::sums;
 
 impl<'a> Follower<'a> {
-    /// Of the loop of a bench whose observer wants these states, over a run of this length in s, in
-    /// windows in the order of their starts; the band of settling times in percent.
+    /// Follower for the loop of a bench whose observer needs these states, over a run of this
+    /// length, s, in windows in the order of their starts; with the band of settling times,
+    /// percent.
     pub fn of(
         bench: &'a ControlledMachine,
         wanted: &[usize],

@@ -1,4 +1,4 @@
-//! The forces that a rig reaches at rest, and those that its sensor withstands.
+//! Forces that a rig reaches at rest, and forces that its sensor withstands.
 
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::servovalve::Supply;
@@ -8,38 +8,39 @@ use crate::project::{DeclaredActuator, Project};
 use crate::rig::{Numbers, components};
 use crate::setup::Setup;
 
-/// Forces that a rig reaches, and those that its sensor withstands.
+/// Forces that a rig reaches, and forces that its sensor withstands.
 pub(crate) struct ForceLimits {
-    /// Pa and N: the supply as declared and, where it is uncertain, the lowest of the family.
+    /// Supply pressures, Pa, with stall forces, N: the supply as declared and, if it is uncertain,
+    /// the lowest of the family.
     pub(super) stall: Vec<(f64, [f64; 2])>,
-    /// N, to either side.
+    /// Capacity of the force sensor in either direction, N.
     pub(super) capacity: Option<f64>,
 }
 
-/// A step that is required and that a rig does not reach, or does not survive.
+/// A required step that a rig does not reach, or does not survive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BeyondReach {
     /// Number of the specification, from 1.
     pub number: usize,
-    /// The end of the step.
+    /// End of the step.
     pub end: StepEnd,
-    /// The force there, N.
+    /// Force at this end, N.
     pub force: f64,
-    /// The limit that it exceeds.
+    /// Exceeded limit.
     pub exceeded: ExceededForce,
 }
 
-/// An end of a step.
+/// End of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StepEnd {
-    /// The force before it.
+    /// Force before the step.
     Begin,
-    /// The force after it.
+    /// Force after the step.
     End,
 }
 
 impl StepEnd {
-    /// The key of a specification that states it.
+    /// Key of a specification that states the end.
     pub fn key(self) -> &'static str {
         match self {
             StepEnd::Begin => "initial_force",
@@ -48,31 +49,31 @@ impl StepEnd {
     }
 }
 
-/// A limit on the force at rest that a force exceeds.
+/// Limit on the force at rest that a force exceeds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExceededForce {
-    /// The limit.
+    /// Kind of the limit.
     pub limit: RestLimit,
-    /// The greatest force of its direction that the rig reaches and its sensor withstands, N.
+    /// Greatest force in its direction that the rig reaches and its sensor withstands, N.
     pub greatest: f64,
 }
 
 /// A limit on the force at rest, with its number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RestLimit {
-    /// At this supply pressure, Pa, the piston stalls at this force, N.
+    /// Stall force of the piston, N, at this supply pressure, Pa.
     Stall {
         /// Supply pressure, Pa.
         pressure: f64,
-        /// Force, N.
+        /// Stall force, N.
         force: f64,
     },
-    /// The capacity of the force sensor, N.
+    /// Capacity of the force sensor, N.
     Capacity(f64),
 }
 
-/// The ends of required steps that are beyond the force at which the piston stalls, or beyond the
-/// capacity of the force sensor.
+/// Ends of required steps that are beyond the stall force of the piston, or beyond the capacity of
+/// the force sensor.
 pub(crate) fn steps_beyond(setup: &Setup<'_>, required: &[TimeRequirement]) -> Vec<BeyondReach> {
     let (Some(actuator), Ok(rig)) = (&setup.project.actuator, setup.rig()) else { return vec![] };
     let limits = ForceLimits::of(setup.project, actuator);
@@ -89,7 +90,7 @@ pub(crate) fn steps_beyond(setup: &Setup<'_>, required: &[TimeRequirement]) -> V
     found
 }
 
-/// What limits a force at rest.
+/// Limitation of a force at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ForceLimit {
     /// The supply pressure on the piston.
@@ -112,7 +113,7 @@ impl ForceLimits {
         ForceLimits { stall: pressures.map(stall).collect(), capacity }
     }
 
-    /// The limits that a force in N exceeds.
+    /// Limits that a force, N, exceeds.
     pub(crate) fn beyond(&self, force_n: f64) -> Vec<ExceededForce> {
         let (sign, side) = if force_n < 0.0 { (-1.0, 0) } else { (1.0, 1) };
         let greatest = self.greatest(force_n).0;
@@ -125,8 +126,8 @@ impl ForceLimits {
         stall.into_iter().chain(capacity).map(|limit| ExceededForce { limit, greatest }).collect()
     }
 
-    /// The greatest force in a direction, N with its sign, at every supply pressure of the family,
-    /// and what limits it.
+    /// Greatest signed force in a direction, N, at every supply pressure of the family, and its
+    /// limitation.
     pub(crate) fn greatest(&self, direction: f64) -> (f64, ForceLimit) {
         let sign = direction.signum();
         let side = if sign < 0.0 { 0 } else { 1 };
@@ -146,8 +147,8 @@ mod tests {
 
     use super::*;
 
-    /// A_A p_S - A_B p_T one way and A_A p_T - A_B p_S the other, at the lowest supply pressure, or
-    /// the capacity of the sensor where that is less.
+    /// Greatest force A_A p_S - A_B p_T in one direction and A_A p_T - A_B p_S in the other, at the
+    /// lowest supply pressure, or the capacity of the sensor if that is less.
     // ORIGIN: analytic, a piston of 50 mm with a rod of 22 mm to one side
     #[test]
     fn the_greatest_force_is_that_of_the_lowest_supply_or_of_the_sensor() {

@@ -1,5 +1,5 @@
-//! What is known of the scenarios of a project before any of them is run: files that cannot be
-//! read, and references and motions that the rig cannot follow.
+//! Facts about the scenarios of a project that are known before any simulation: files that cannot
+//! be read, and references and motions that the rig cannot follow.
 
 use phea_dynamics::simulation::Profile;
 
@@ -21,14 +21,14 @@ pub fn unreadable(source: &dyn Source, project: &Project) -> Vec<LateError> {
     scenarios.chain(family).filter_map(|(path, file)| missing(source, project, path, file)).collect()
 }
 
-/// Recordings that `[identify]` names and that are not there, or not yet, each at its key.
+/// Recordings that `[identify]` names but that do not exist, or not yet, each at its key.
 fn absent_recordings(source: &dyn Source, project: &Project) -> Vec<LateError> {
     let all = project.identify.iter().flat_map(|identify| &identify.recordings).enumerate();
     let path = |index: usize| format!("identify.recording[{index}].file");
     all.filter_map(|(index, one)| missing(source, project, path(index), &one.file)).collect()
 }
 
-/// The error of a file that cannot be read.
+/// Error of a file that cannot be read.
 fn missing(source: &dyn Source, project: &Project, path: String, file: &str) -> Option<LateError> {
     let mut findings = Findings::default();
     findings.bytes_of(source, &project.path_of(file));
@@ -37,7 +37,7 @@ fn missing(source: &dyn Source, project: &Project, path: String, file: &str) -> 
     Some(LateError::of_file(path, message))
 }
 
-/// The files of a scenario with their keys.
+/// Files of a scenario with their keys.
 fn files_of(index: usize, scenario: &Scenario) -> Vec<(String, &str)> {
     let own = format!("scenario[{index}]");
     let signals = [
@@ -67,11 +67,11 @@ fn files_of(index: usize, scenario: &Scenario) -> Vec<(String, &str)> {
 /// Signal of a scenario that no controller can produce, or an absent recording.
 #[derive(Clone, Debug)]
 pub enum Foreseen {
-    /// A recording that no command uses and that is not there.
+    /// A recording that no command uses and that does not exist.
     AbsentRecording(LateError),
     /// A signal of a scenario that the rig cannot follow.
     InScenario {
-        /// Place of the scenario in the file, from 0.
+        /// Index of the scenario in the file, from 0.
         index: usize,
         /// Name of the scenario.
         name: String,
@@ -89,7 +89,7 @@ pub enum BeyondRig {
         time: f64,
         /// Force, N.
         force: f64,
-        /// The limit that it exceeds.
+        /// Limit that the reference exceeds.
         exceeded: ExceededForce,
     },
     /// A prescribed motion of the load beyond the stroke.
@@ -100,13 +100,13 @@ pub enum BeyondRig {
         moved_by: f64,
         /// Position of the piston before, m.
         from: f64,
-        /// Stroke, m.
+        /// Stroke of the cylinder, m.
         stroke: f64,
     },
 }
 
 impl BeyondRig {
-    /// The key of the scenario that states it.
+    /// Key of the scenario that states the signal.
     pub fn key(&self) -> &'static str {
         match self {
             BeyondRig::Reference { .. } => "reference",
@@ -115,12 +115,11 @@ impl BeyondRig {
     }
 }
 
-/// References beyond the force at which the piston stalls or beyond the capacity of the force
-/// sensor, and prescribed motions beyond the stroke; and recordings that no command uses and that
-/// are not there.
+/// References beyond the stall force of the piston or beyond the capacity of the force sensor, and
+/// prescribed motions beyond the stroke; and recordings that no command uses and that do not exist.
 ///
 /// # Errors
-/// [`SimulateError`] for a file that is malformed, and for signals that are no functions of time.
+/// [`SimulateError`] for a malformed file, and for signals that are not functions of time.
 pub fn foreseen(source: &dyn Source, setup: &Setup<'_>) -> Result<Vec<Foreseen>, SimulateError> {
     let project = setup.project;
     let Some(actuator) = &project.actuator else { return Ok(vec![]) };
@@ -148,10 +147,10 @@ pub fn foreseen(source: &dyn Source, setup: &Setup<'_>) -> Result<Vec<Foreseen>,
     Ok(found)
 }
 
-/// Instants at which a signal is evaluated in addition to its breaks.
+/// Number of instants at which a signal is evaluated in addition to its breaks.
 const SAMPLES: u32 = 20_000;
 
-/// The least and the greatest value of a signal with their times in s.
+/// Least and greatest value of a signal with their times, s.
 fn ends(profile: &Profile, end_s: f64) -> [(f64, f64); 2] {
     let evenly = (0..=SAMPLES).map(|sample| end_s * f64::from(sample) / f64::from(SAMPLES));
     let breaks = profile.breaks().into_iter().filter(|time| (0.0..=end_s).contains(time));
@@ -169,7 +168,7 @@ fn ends(profile: &Profile, end_s: f64) -> [(f64, f64); 2] {
 }
 
 impl ForceLimits {
-    /// The limits that a reference between these ends exceeds.
+    /// Limits that a reference between these ends exceeds.
     fn exceeded_by(&self, [least, most]: [(f64, f64); 2]) -> Vec<BeyondRig> {
         let mut found = Vec::new();
         for (time, force) in [least, most] {
@@ -180,7 +179,7 @@ impl ForceLimits {
     }
 }
 
-/// A prescribed motion that takes the piston, which starts there in m, out of its stroke.
+/// A prescribed motion that takes the piston out of its stroke from this initial position, m.
 fn beyond_stroke(actuator: &DeclaredActuator, position: f64, moved: [(f64, f64); 2]) -> Option<BeyondRig> {
     let stroke = actuator.stroke()?;
     let outside = |(_, by): &&(f64, f64)| !(0.0..=stroke).contains(&(position + by)) && *by != 0.0;

@@ -1,5 +1,5 @@
-//! The frequency response of the nonlinear model, measured with sines as on a test bench, and
-//! compared with the linear plant.
+//! Frequency response of the nonlinear model, measured with sines as on a test bench, and compared
+//! with the linear plant.
 
 mod closed_loop;
 mod open_loop;
@@ -21,8 +21,8 @@ use crate::rig::{OfMotion, Rig};
 use crate::setup::Setup;
 use phea_dynamics::watch::{Progress, Watch};
 
-/// Default amplitude of a sine, as a share of the nominal voltage and of the force that the supply
-/// can produce.
+/// Default amplitude of a sine, as a fraction of the nominal voltage and of the force that the
+/// supply can produce.
 const USUAL_AMPLITUDE: f64 = 0.01;
 /// Default number of frequencies, the first, and the ratio of the last to the natural frequency of
 /// the valve.
@@ -30,10 +30,11 @@ const POINTS: usize = 28;
 const FIRST_RAD_PER_S: f64 = 0.1;
 const LAST_OVER_VALVE: f64 = 3.0;
 
-/// The request for a frequency response; values that are not stated are chosen.
+/// Request for a frequency response; values that are not stated are chosen.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrequencyRequest {
-    /// rad/s; none: 28 from 0.1 rad/s to three times the natural frequency of the valve.
+    /// Frequencies, rad/s; empty: 28 from 0.1 rad/s to three times the natural frequency of the
+    /// valve.
     pub frequencies_rad_per_s: Vec<f64>,
     /// Amplitude of the command of the open loop, V; absent: at each frequency a hundredth of the
     /// nominal voltage or, if it is less, the voltage that causes a hundredth of the force that the
@@ -55,25 +56,25 @@ pub struct MachineResponses {
     pub force_n: f64,
     /// Command, V.
     pub command_v: f64,
-    /// From command to force, N/V.
+    /// Response from command to force, N/V.
     pub open_loop: MachineResponse,
-    /// From reference to force; or why it is absent.
+    /// Response from reference to force; or the reason why it is absent.
     pub closed_loop: Result<MachineResponse, NoClosedLoop>,
-    /// Whether the watch stopped it.
+    /// True if `watch` cancelled the measurement.
     pub stopped: bool,
 }
 
-/// A response at its frequencies, and its models on finer ones for a picture.
+/// A response at its frequencies, and its models at finer ones for figures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MachineResponse {
-    /// By rising frequency.
+    /// Points by rising frequency.
     pub points: Vec<ResponsePoint>,
     /// Frequencies of the models' curves, rad/s.
     pub curve_rad_per_s: Vec<f64>,
-    /// The linear plant, or the loop it closes, at these.
+    /// Response of the linear plant, or of the loop that it closes, at these frequencies.
     pub linear_plant: Vec<Complex64>,
-    /// The response of the machine's exact derivatives at its equilibrium, at these frequencies;
-    /// empty where they do not form a linear system.
+    /// Response of the machine's exact derivatives at its equilibrium, at these frequencies; empty
+    /// if they do not form a linear system.
     pub linearised_machine: Vec<Complex64>,
 }
 
@@ -82,22 +83,22 @@ struct RestedMachine {
     rig: Rig,
     machine: Machine,
     rest: InitialCondition,
-    /// On the load, N.
+    /// Force on the load, N.
     force_n: f64,
-    /// The force that the supply can produce, N.
+    /// Force that the supply can produce, N.
     push_n: f64,
     settings: SimulationSettings,
 }
 
 impl RestedMachine {
-    /// Force on the load for amplitudes of the states about the equilibrium, in N.
+    /// Force on the load for amplitudes of the states about the equilibrium, N.
     fn force_amplitude(&self, amplitudes: &[Complex64]) -> Complex64 {
         phea_machine::force_amplitude(&self.machine, &self.rest.state, amplitudes)
     }
 }
 
 impl MachineResponses {
-    /// Whether every point settled.
+    /// True if every point settled.
     pub fn is_settled(&self) -> bool {
         let closed = self.closed_loop.iter().flat_map(|response| &response.points);
         !self.stopped && self.open_loop.points.iter().chain(closed).all(|point| point.settled)
@@ -105,7 +106,7 @@ impl MachineResponses {
 }
 
 /// Measures the machine of a project around its operating point: open from command to force, and
-/// closed from reference to force where the project gives a controller. Scenarios are not run.
+/// closed from reference to force if the project gives a controller. Scenarios are not simulated.
 ///
 /// # Errors
 /// [`SimulateError`] if the project describes no machine, or one without an equilibrium at the
@@ -152,7 +153,7 @@ fn rested(setup: &Setup<'_>) -> Result<RestedMachine, SimulateError> {
     Ok(RestedMachine { machine, rest, force_n, push_n, settings: settings(project), rig })
 }
 
-/// The requested ones by rising frequency, or the default ones.
+/// Requested frequencies in rising order, or the default ones.
 fn frequencies(request: &FrequencyRequest, rested: &RestedMachine) -> Vec<f64> {
     let mut asked = request.frequencies_rad_per_s.clone();
     if asked.is_empty() {
@@ -162,7 +163,7 @@ fn frequencies(request: &FrequencyRequest, rested: &RestedMachine) -> Vec<f64> {
     sorted_distinct(asked)
 }
 
-/// Frequencies at equal ratios, the ends among them.
+/// Frequencies at equal ratios, including the ends.
 fn spread([first, last]: [f64; 2], count: usize) -> Vec<f64> {
     let part = |index: usize| index as f64 / (count - 1) as f64;
     let between = |index| first * phea_dynamics::portable::pow(last / first, part(index));

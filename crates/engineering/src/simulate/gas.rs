@@ -1,4 +1,4 @@
-//! How far a run compresses and heats the gas at the chambers.
+//! Compression and heating of the gas at the chambers during a run.
 
 use phea_dynamics::simulation::Stretch;
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
@@ -6,31 +6,32 @@ use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use super::bench::ControlledMachine;
 use super::sum::SignalSum;
 
-/// What became of the gas at a chamber over a run, of the solution itself, between its rows too.
+/// Range of the state of the gas at a chamber over a run, from the solution itself, between its
+/// rows too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GasRange {
-    /// `a` or `b`.
+    /// Chamber, `a` or `b`.
     pub chamber: char,
-    /// Its highest pressure, Pa gauge.
+    /// Highest gauge pressure, Pa.
     pub peak_pa: f64,
-    /// Its lowest and its highest absolute temperature over that of its wall; `None` of gas that
-    /// exchanges no heat, whose exponent says nothing of temperatures.
+    /// Lowest and highest ratio of its absolute temperature to that of its wall; `None` for gas
+    /// without heat exchange, whose exponent does not determine temperatures.
     pub temperature_ratios: Option<[f64; 2]>,
-    /// degC, of its wall, if that is stated.
+    /// Temperature of its wall, degC, if it is stated.
     pub wall_celsius: Option<f64>,
 }
 
-/// Watches the gas at one chamber.
+/// Monitor of the gas at one chamber.
 pub(super) struct GasWatch {
     pressure: SignalSum<'static>,
-    /// theta - 1 of gas that exchanges heat.
+    /// theta - 1 of gas with heat exchange.
     warming: Option<SignalSum<'static>>,
     range: GasRange,
     warmings: [f64; 2],
 }
 
 impl GasWatch {
-    /// Of the gas at either chamber that has some.
+    /// Monitors of the gas at each chamber that contains gas.
     pub(super) fn of(bench: &ControlledMachine, wanted: &[usize]) -> Vec<GasWatch> {
         let names = bench.machine.state_names();
         let place = |name: &str| names.iter().position(|known| known == name);
@@ -71,7 +72,7 @@ impl GasWatch {
         }
     }
 
-    /// What became of it; `None` of a run without a step.
+    /// Range of the gas; `None` for a run without a step.
     pub(super) fn finish(self) -> Option<GasRange> {
         let ratios = self.warming.map(|_| self.warmings.map(|warming| 1.0 + warming));
         (self.range.peak_pa > -ATMOSPHERIC_PRESSURE_ABSOLUTE)

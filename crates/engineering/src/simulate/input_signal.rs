@@ -8,28 +8,28 @@ use crate::project::{InputSignal, Multisine, Project};
 use crate::source::Source;
 use crate::table::Measurand;
 
-/// What begins in a signal.
+/// Beginning of an event in a signal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum SignalOnset {
-    /// It steps.
+    /// Step of the signal.
     Step {
-        /// s.
+        /// Time of the step, s.
         time_s: f64,
-        /// Before.
+        /// Value before the step.
         from: f64,
-        /// From then on.
+        /// Value after the step.
         to: f64,
     },
-    /// A part of it begins to move.
+    /// Beginning of the motion of a part.
     Motion {
-        /// s.
+        /// Time of the beginning, s.
         time_s: f64,
-        /// What kind of part, as it is written.
+        /// Kind of part, as written.
         kind: &'static str,
     },
 }
 
-/// The sum of the parts. Single steps are one staircase: each holds until the next.
+/// Sum of the parts. Single steps form one staircase: each value holds until the next step.
 pub(super) fn profile(
     source: &dyn Source,
     project: &Project,
@@ -75,7 +75,7 @@ fn shape(
     })
 }
 
-/// Schroeder's phases where none are stated.
+/// Harmonics with Schroeder's phases if none are stated.
 fn harmonics(sines: &Multisine) -> Vec<Harmonic> {
     let amplitudes = sines.amplitudes.of(sines.frequencies.len());
     let phases = if sines.phases.is_empty() { schroeder_phases(&amplitudes) } else { sines.phases.clone() };
@@ -88,7 +88,7 @@ fn harmonics(sines: &Multisine) -> Vec<Harmonic> {
     .collect()
 }
 
-/// The events in the sum of these before the end. A step that changes nothing is not an event.
+/// Events in the sum of these signals before the end. A step that changes nothing is not an event.
 pub(super) fn beginnings(signals: &[InputSignal], profile: &Profile, end_s: f64) -> Vec<SignalOnset> {
     let steps = signals.iter().flat_map(InputSignal::steps).map(|(time_s, _)| time_s);
     let step = |time_s: f64| {
@@ -103,7 +103,7 @@ pub(super) fn beginnings(signals: &[InputSignal], profile: &Profile, end_s: f64)
 }
 
 impl SignalOnset {
-    /// When, s.
+    /// Time of the event, s.
     pub(super) fn time_s(&self) -> f64 {
         match *self {
             SignalOnset::Step { time_s, .. } | SignalOnset::Motion { time_s, .. } => time_s,

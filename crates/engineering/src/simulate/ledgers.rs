@@ -1,65 +1,65 @@
-//! The accounts of oil and energy of a run: what each part held at its start and end, what went
-//! into it and what it lost, and how far that is from closing.
+//! Balances of oil and energy of a run: for each part the content at start and end, the inflow, the
+//! loss, and the closing error.
 
 use phea_dynamics::simulation::{Stretch, gauss_points};
 use phea_hydraulics::machine::{Account, ENERGY_ACCOUNTS, Ledger, OIL_ACCOUNTS};
 
 use super::bench::ControlledMachine;
 
-/// An account over a run.
+/// Balance over a run.
 ///
 /// ```text
 /// error = held at the end - held at the start - inflow + lost
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AccountSum {
-    /// The part: one of [`OIL_ACCOUNTS`] or [`ENERGY_ACCOUNTS`].
+    /// Part: one of [`OIL_ACCOUNTS`] or [`ENERGY_ACCOUNTS`].
     pub part: &'static str,
-    /// What it held at the start and at the end, m3 or J.
+    /// Content at the start and at the end, m3 or J.
     pub stored: [f64; 2],
-    /// What went in, m3 or J.
+    /// Inflow, m3 or J.
     pub inflow: f64,
-    /// What it lost, m3 or J.
+    /// Loss, m3 or J.
     pub lost: f64,
-    /// Integral of the magnitudes of both, m3 or J.
+    /// Integral of the magnitudes of inflow and loss, m3 or J.
     pub throughput: f64,
 }
 
 impl AccountSum {
-    /// How far it is from closing, m3 or J.
+    /// Closing error, m3 or J.
     pub fn closing_error(&self) -> f64 {
         self.stored[1] - self.stored[0] - self.inflow + self.lost
     }
 
-    /// The same over the throughput; zero where nothing went through.
+    /// Ratio of closing error to throughput; zero without throughput.
     pub fn relative_error(&self) -> f64 {
         if self.throughput > 0.0 { self.closing_error().abs() / self.throughput } else { 0.0 }
     }
 }
 
-/// The accounts of a run; the last of each is that of the whole rig.
+/// Balances of a run; the last of each list is that of the whole rig.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunLedger {
-    /// m3 at zero gauge pressure.
+    /// Balances of oil, m3 at zero gauge pressure.
     pub oil: Vec<AccountSum>,
-    /// J.
+    /// Balances of energy, J.
     pub energy: Vec<AccountSum>,
 }
 
-/// Reason why a run has no accounts.
+/// Reason why a run has no balances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoLedger {
-    /// They were not requested.
+    /// The balances were not requested.
     NotRequested,
-    /// Waves in transit along a line are in no account.
+    /// No balance contains the waves in transit along a line.
     InTransit,
 }
 
-/// Sums the accounts over each step of the integration.
+/// Sums the balances over each step of the integration.
 pub(super) struct LedgerWatch {
     sums: Vec<AccountSum>,
     begun: bool,
-    /// Room for states and inputs.
+    /// Storage for states and inputs.
     states: Vec<f64>,
     inputs: Vec<f64>,
 }
@@ -82,7 +82,7 @@ impl LedgerWatch {
         }
     }
 
-    /// The accounts at a part of a step, all of whose states are wanted; `None` with waves.
+    /// Balances at a part of a step, of which all states are requested; `None` with waves.
     fn at(
         &mut self,
         bench: &ControlledMachine,
@@ -118,8 +118,8 @@ impl LedgerWatch {
         self.sums.iter_mut().zip(accounts).for_each(|(sum, account)| sum.stored[1] = account.stored);
     }
 
-    /// The accounts of the parts that held or passed on anything, and of the rig; none where waves
-    /// travel along a line, and without a step.
+    /// Balances of the parts with any content or throughput, and of the rig; absent with waves
+    /// along a line, and without a step.
     pub(super) fn finish(self) -> Result<RunLedger, NoLedger> {
         let is_used = |sum: &AccountSum| {
             sum.part == "rig" || sum.throughput != 0.0 || sum.stored.iter().any(|stored| *stored != 0.0)

@@ -1,7 +1,7 @@
-//! Limits of lines and chambers: vapour pressure, the pressures that hoses and pipes bear, and the
-//! Reynolds number up to which their friction is that of the equations. They are watched at every
-//! node of a line, over its whole length where waves travel along it, in necks and in the line of a
-//! transmission, over the solution itself, between its rows too.
+//! Limits of lines and chambers: vapour pressure, the permissible pressures of hoses and pipes, and
+//! the Reynolds number up to which their friction is that of the equations. They are monitored at
+//! every node of a line, over its whole length if waves travel along it, in necks and in the line
+//! of a transmission, over the solution itself, between its rows too.
 //!
 //! ```text
 //! Re = 4 |q|/(pi d nu)          laminar up to 2300
@@ -21,34 +21,34 @@ use super::sum::SignalSum;
 use crate::project::{DeclaredLine, LineMotion, Project};
 use waves::{WaveLine, WithinBounds, WithinLine, WithinSearch};
 
-/// The Reynolds number above which flow in a round pipe is no longer laminar.
+/// Reynolds number above which flow in a round pipe is no longer laminar.
 pub const LAMINAR_UP_TO: f64 = 2300.0;
 
-/// What a line bears, and where its model has nodes.
+/// Permissible pressures of a line, and the nodes of its model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LineLimits {
     nodes: LineNodes,
-    /// Pa, of its hose or pipe, where stated.
+    /// Working pressure of its hose or pipe, Pa, if stated.
     working_pa: Option<f64>,
     burst_pa: Option<f64>,
-    /// m, diameter of the neck of its accumulator.
+    /// Diameter of the neck of its accumulator, m.
     neck_m: Option<f64>,
 }
 
 /// Nodes of a line in addition to its chamber.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum LineNodes {
-    /// None: one pressure.
+    /// The line has one pressure, without a further node.
     #[default]
     Lumped,
-    /// The beginning of each of this many segments.
+    /// Beginning of each of this many segments.
     Segments(usize),
-    /// Its end at the valve.
+    /// End of the line at the valve.
     Waves,
 }
 
 impl LineLimits {
-    /// Those of both lines of a project.
+    /// Limits of both lines of a project.
     pub fn of(project: &Project) -> [LineLimits; 2] {
         let lines = project.actuator.as_ref().map(|actuator| &actuator.line);
         lines.map_or([LineLimits::default(); 2], |lines| [&lines.a, &lines.b].map(LineLimits::of_line))
@@ -67,13 +67,13 @@ impl LineLimits {
         LineLimits { nodes, working_pa, burst_pa, neck_m }
     }
 
-    /// Whether the chamber's own pressure is not all there is to watch.
+    /// True if more than the pressure of the chamber is monitored.
     fn is_watched(&self) -> bool {
         self.nodes != LineNodes::Lumped || self.working_pa.is_some() || self.burst_pa.is_some()
     }
 
-    /// Numbers, from zero, of the line's states that are pressures and flows; the pressures with
-    /// the part of the length from the valve on.
+    /// Indices of the line's states that are pressures and flows; the pressures with the fraction
+    /// of the length from the valve.
     fn states(&self, count: usize) -> (Vec<(usize, f64)>, Vec<usize>) {
         match self.nodes {
             LineNodes::Lumped => (vec![], vec![]),
@@ -87,13 +87,13 @@ impl LineLimits {
     }
 }
 
-/// A signal of the machine with the limits that hold for it.
+/// A signal of the machine with its limits.
 struct WatchedPoint {
     signal: SignalSum<'static>,
-    /// By which the signal is multiplied.
+    /// Factor of the signal.
     scale: f64,
     place: LimitPlace,
-    /// Indices of its limits.
+    /// Indices of the limits.
     limits: Vec<usize>,
 }
 
@@ -107,14 +107,14 @@ struct WatchedWaves {
 struct LimitsOfWaves {
     side: char,
     length_m: f64,
-    /// Reynolds number over flow, s/m3.
+    /// Ratio of Reynolds number to flow, s/m3.
     scale: f64,
-    /// Indices of the limits of its pressure, and of that of its flow.
+    /// Indices of the limits of the pressure, and of that of the flow.
     pressures: Vec<usize>,
     flow: usize,
 }
 
-/// Watches chambers and lines.
+/// Monitor of chambers and lines.
 #[derive(Default)]
 pub(crate) struct LineWatch {
     limits: Vec<WatchedLimit>,
@@ -123,7 +123,7 @@ pub(crate) struct LineWatch {
 }
 
 impl LineWatch {
-    /// Of both sides of a machine, from these observed states.
+    /// Monitor of both sides of a machine, from these observed states.
     pub(crate) fn of(bench: &ControlledMachine, wanted: &[usize]) -> LineWatch {
         let mut watch = LineWatch::default();
         for side in [0, 1] {
@@ -134,7 +134,7 @@ impl LineWatch {
         watch
     }
 
-    /// The states that it needs where anything but the chambers' vapour pressure is watched.
+    /// States that the monitor needs if it covers more than the chambers' vapour pressure.
     pub(crate) fn states(bench: &ControlledMachine) -> Vec<usize> {
         let of_side = |side: usize| {
             let (chamber, line) = places(bench, side);
@@ -210,7 +210,7 @@ impl LineWatch {
         }
     }
 
-    /// The flow through the neck of an accumulator.
+    /// Adds the flow through the neck of an accumulator.
     fn neck(&mut self, bench: &ControlledMachine, wanted: &[usize], side: usize) {
         let Some((place, diameter_m)) = neck(bench, side).zip(bench.line_limits[side].neck_m) else { return };
         let limits = vec![self.add(laminar())];
@@ -219,7 +219,7 @@ impl LineWatch {
         self.points.push(WatchedPoint { signal, scale, place: LimitPlace::Neck(['a', 'b'][side]), limits });
     }
 
-    /// The flow through the line of a transmission.
+    /// Adds the flow through the line of a transmission.
     fn transmission(&mut self, bench: &ControlledMachine, wanted: &[usize]) {
         let series = bench.rig.actuator.components().series;
         let Some(SeriesElement::Transmission(transmission)) = series else { return };
@@ -257,7 +257,7 @@ impl LineWatch {
         }
     }
 
-    /// The limits that were exceeded.
+    /// Limits that were exceeded.
     pub(crate) fn found(&self) -> impl Iterator<Item = Exceeded> + '_ {
         self.limits.iter().filter_map(WatchedLimit::found)
     }
@@ -299,26 +299,26 @@ fn laminar() -> WatchedLimit {
     WatchedLimit::new(RigLimit::LaminarFlow, [-LAMINAR_UP_TO, LAMINAR_UP_TO])
 }
 
-/// 4/(pi d nu) in s/m3.
+/// Ratio of Reynolds number to flow, 4/(pi d nu), s/m3.
 fn reynolds_over_flow(bench: &ControlledMachine, bore_m: f64) -> f64 {
     let viscosity = bench.rig.actuator.components().fluid.kinematic_viscosity;
     4.0 / (std::f64::consts::PI * bore_m * viscosity)
 }
 
-/// The place of the flow through the neck at a chamber in the state.
+/// Index of the flow through the neck at a chamber in the state.
 fn neck(bench: &ControlledMachine, side: usize) -> Option<usize> {
     let wanted = ["neck_flow_a_m3_per_s", "neck_flow_b_m3_per_s"][side];
     bench.machine.state_names().iter().position(|name| name == wanted)
 }
 
-/// Places of the velocities of the oil in a transmission, from the rod on.
+/// Indices of the velocities of the oil in a transmission, from the rod on.
 fn transmission_flows(bench: &ControlledMachine) -> Vec<usize> {
     let names = bench.machine.state_names();
     let velocity = |name: &str| name.starts_with("transmission_velocity");
     names.iter().enumerate().filter(|(_, name)| velocity(name)).map(|(place, _)| place).collect()
 }
 
-/// Length and bore of a line as it is filled, m; of a volume they are not a number.
+/// Length and bore of a filled line, m; NaN for a volume.
 fn size(line: &Line) -> [f64; 2] {
     match line.filled() {
         Line::Hose { hose, length } => [length, hose.bore],
@@ -327,7 +327,7 @@ fn size(line: &Line) -> [f64; 2] {
     }
 }
 
-/// The place of the pressure of a chamber in the state, and those of its line.
+/// Index of the pressure of a chamber in the state, and those of its line.
 fn places(bench: &ControlledMachine, side: usize) -> (Option<usize>, Vec<usize>) {
     let (chamber, line) = [(Signal::PressureA, "line_a_"), (Signal::PressureB, "line_b_")][side];
     let names = bench.machine.state_names();

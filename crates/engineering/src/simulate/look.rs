@@ -1,5 +1,5 @@
-//! The observer of a run: each sample goes into the table, each step into the metrics, and a record
-//! is kept for figures.
+//! Observer of a run: adds each sample to the table and each step to the metrics, and records
+//! samples for figures.
 
 use std::cell::{Cell, RefCell};
 
@@ -30,61 +30,61 @@ pub(super) struct Sighted<'t> {
     /// Metrics of each window.
     pub(super) metrics: Vec<Metrics>,
     pub(super) divergence: Option<Divergence>,
-    /// The table with all its rows, which has no name yet.
+    /// The table with all rows, not yet named.
     pub(super) table: Option<RunTable<'t>>,
-    /// The force at some hundreds of samples, N.
+    /// Force at some hundreds of samples, N.
     pub(super) force_n: Vec<f64>,
     /// Highest pressures of chambers A and B, Pa.
     pub(super) peak_pressures_pa: [f64; 2],
     pub(super) measured: Vec<Overlay>,
-    /// The limits of the rig that it exceeds.
+    /// Limits of the rig that the run exceeds.
     pub(super) exceeded: Vec<Exceeded>,
     pub(super) adjustment: Option<AdjustmentWork>,
     /// Ranges of the chambers with gas.
     pub(super) gas: Vec<GasRange>,
-    /// The accounts of oil and energy, or why there are none.
+    /// Balances of oil and energy, or the reason why they are absent.
     pub(super) ledger: Result<RunLedger, NoLedger>,
 }
 
-/// The controller at one time.
+/// Signals of the controller at one time.
 struct LoopOutput {
-    /// Reference and filtered reference in N; `None` in an open loop.
+    /// Reference and filtered reference, N; `None` in an open loop.
     asked_for: Option<[f64; 2]>,
-    /// V, output of the controller.
+    /// Output of the controller, V.
     control_v: f64,
     others: ControlSignals,
 }
 
-/// Samples at which the force is kept for comparison.
+/// Number of samples at which the force is recorded for comparison.
 const FORCES: f64 = 500.0;
 
-/// Observes a machine and its controller.
+/// Observer of a machine and its controller.
 pub(super) struct Looking<'a, 't> {
     bench: &'a ControlledMachine,
     /// The last output of a sampled controller.
     samples: &'a RefCell<ControllerSamples>,
-    /// All states.
+    /// Indices of all states.
     wanted: Vec<usize>,
-    /// Looks so far.
+    /// Number of samples so far.
     count: u64,
     looks_per_row: u64,
     table: Option<RunTable<'t>>,
-    /// `None` where no samples are kept.
+    /// Recorded samples; `None` if none are recorded.
     record: Option<Record>,
     limits: LimitWatch,
     lines: LineWatch,
     adjustment: Option<AdjustmentWatch>,
     gas: Vec<GasWatch>,
-    /// `None` where it is not asked for.
+    /// Balances of oil and energy; `None` if they are not requested.
     ledger: Option<LedgerWatch>,
     follower: Follower<'a>,
-    /// Pressures of chambers A and B; below, the highest so far, Pa.
+    /// Pressures of chambers A and B; in `peak_pressures_pa` the highest so far, Pa.
     pressures: [SignalSum<'a>; 2],
     peak_pressures_pa: [f64; 2],
     overlays: Vec<Overlaying<'a>>,
-    /// How closely the steps are followed.
+    /// Detail in which the steps are evaluated.
     attention: Attention,
-    /// Samples between two that are kept of the force, and those.
+    /// Number of samples between two recorded forces; in `force_n` those forces, N.
     apart: u64,
     force_n: Vec<f64>,
     course: &'a PreparedScenario,
@@ -137,25 +137,25 @@ impl<'a, 't> Looking<'a, 't> {
         }
     }
 
-    /// The same, following the steps no closer than this, and keeping the force of about this many
-    /// samples at some hundreds of them.
+    /// Sets the detail in which steps are evaluated, and records some hundreds of values of the
+    /// force out of about `looks` samples.
     pub(super) fn following(self, attention: Attention, looks: f64) -> Looking<'a, 't> {
         Looking { attention, apart: (looks / FORCES).ceil().max(1.0) as u64, ..self }
     }
 
-    /// The same, with a record of its samples, about as many as this.
+    /// Records the samples, of which there are about `looks`.
     pub(super) fn keeping(mut self, looks: f64) -> Looking<'a, 't> {
         self.record.get_or_insert_default().reserve(looks as usize);
         self
     }
 
-    /// The same, without the limits of lines.
+    /// Omits the limits of lines.
     pub(super) fn without_line_limits(mut self) -> Looking<'a, 't> {
         self.lines = LineWatch::default();
         self
     }
 
-    /// The same, with the accounts of oil and energy.
+    /// Records the balances of oil and energy.
     pub(super) fn accounting(mut self) -> Looking<'a, 't> {
         self.ledger = Some(LedgerWatch::of(self.bench));
         self
@@ -164,7 +164,7 @@ impl<'a, 't> Looking<'a, 't> {
     /// The observations.
     ///
     /// # Errors
-    /// [`SimulateError::Write`] where a row could not be written.
+    /// [`SimulateError::Write`] if a row could not be written.
     pub(super) fn finish(self) -> Result<Sighted<'t>, SimulateError> {
         if let Some(fault) = self.fault {
             return Err(SimulateError::Write(fault));
@@ -186,7 +186,7 @@ impl<'a, 't> Looking<'a, 't> {
         })
     }
 
-    /// Whether anything takes the signals of the machine.
+    /// True if any observer needs the signals of the machine.
     fn needs_signals(&self) -> bool {
         self.table.is_some()
             || self.record.is_some()
@@ -194,7 +194,8 @@ impl<'a, 't> Looking<'a, 't> {
             || self.limits.wants_signals()
     }
 
-    /// What the controller sees and gives out, and the inputs of the machine alone.
+    /// Signals and output of the controller, and the inputs of the machine without those of the
+    /// controller.
     fn loop_look<'i>(&self, states: &[f64], inputs: &'i [f64]) -> (LoopOutput, &'i [f64]) {
         let (asked_for, control_v, mut signals, others) = match &self.bench.control {
             Control::Continuous(closed) => {

@@ -21,52 +21,53 @@ use crate::quantity::{DisplayUnit, TIME, Units};
 use crate::source;
 use crate::table::{Column, Measurand, MeasuredTable, Sought, TIMES};
 
-/// A signal as it was measured.
+/// A measured signal.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Measurement {
     file: String,
     column: String,
     signal: Signal,
-    /// s, of the scenario; rising.
+    /// Times of the scenario, s; rising.
     times_s: Vec<f64>,
-    /// SI.
+    /// Values, SI.
     values: Vec<f64>,
 }
 
-/// A measured signal and the simulated one.
+/// A measured signal and its simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Overlay {
     /// Name of the file with the measurement.
     pub file: String,
-    /// Its column.
+    /// Heading of its column.
     pub column: String,
     /// The simulated signal.
     pub signal: Signal,
-    /// Times of the rows that are compared, s.
+    /// Times of the compared rows, s.
     pub times_s: Vec<f64>,
-    /// Measured, SI.
+    /// Measured values, SI.
     pub measured: Vec<f64>,
-    /// Simulated at the same times, SI.
+    /// Simulated values at these times, SI.
     pub simulated: Vec<f64>,
-    /// Rows of the file before the scenario begins or after what was simulated.
+    /// Number of rows of the file before the beginning of the scenario or after the end of the
+    /// simulation.
     pub rows_outside: usize,
     /// Root mean square of the difference, SI.
     pub rmse: Measured,
-    /// The same over the range of the measured values.
+    /// Root mean square of the difference divided by the range of the measured values.
     pub nrmse: Measured,
 }
 
 impl Overlay {
-    /// The unit in which people read the signal, in a project with these.
+    /// Unit for display of the signal, in a project with these units.
     pub fn display_unit(&self, units: Units) -> DisplayUnit {
         units.of(self.signal.dimension())
     }
 }
 
-/// Everything that was measured of a scenario.
+/// All measured signals of a scenario.
 ///
 /// # Errors
-/// Every row and column that cannot be taken, with its place.
+/// Every rejected row and column, with its place.
 pub(super) fn measurements(
     source: &dyn source::Source,
     project: &Project,
@@ -144,14 +145,14 @@ enum MeasuredProblem {
     OffsetIsAdded,
 }
 
-/// A measurement that is compared with a run while it is sampled.
+/// A measurement that is compared with a run during sampling.
 pub(super) struct Overlaying<'a> {
     measurement: &'a Measurement,
-    /// The parts of the rig; `None` if it lacks the signal.
+    /// Parts of the rig; `None` if it lacks the signal.
     parts: Option<SignalParts>,
     /// Time and value of the last sample.
     before: Option<(f64, f64)>,
-    /// The next row.
+    /// Index of the next row.
     next: usize,
     overlay: Overlay,
 }
@@ -177,7 +178,7 @@ impl<'a> Overlaying<'a> {
         Overlaying { measurement, parts, before: None, next: 0, overlay }
     }
 
-    /// Takes every row since the last sample, interpolated linearly between the two.
+    /// Evaluates every row since the last sample, interpolated linearly between the two.
     pub(super) fn take(&mut self, sample: &Sample) {
         let Some(parts) = &self.parts else { return };
         let (now_s, now) = (sample.time_s, parts.value(self.measurement.signal, sample));

@@ -1,25 +1,25 @@
-//! The table of metrics: what is computed of each event of a run.
+//! Table of metrics, which are computed for each event of a run.
 
 use std::ops::{Index, IndexMut};
 
 use phea_quantity::{Dimension, FORCE, MotionKind, PERCENT, QuantityName, TIME, VOLTAGE};
 
-/// A number that is computed of each event of a run.
+/// A number that is computed for each event of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Metric {
     /// Excess of the force over the new reference.
     Overshoot,
-    /// From 10 % to 90 % of the step.
+    /// Time from 10 % to 90 % of the step.
     RiseTime,
-    /// Until the force stays within the band around the reference.
+    /// Time until the force stays within the band around the reference.
     SettlingTime,
     /// Largest difference of force and reference while the load moves, and afterwards.
     DisturbancePeak,
     /// Largest difference of force and reference while the reference moves.
     TrackingErrorPeak,
-    /// Largest magnitude of the force where there is no reference.
+    /// Largest magnitude of the force in the absence of a reference.
     ForcePeak,
-    /// Reference less force at the end of the event.
+    /// Reference minus force at the end of the event.
     SteadyStateError,
     /// Largest magnitude of the command.
     ControlPeak,
@@ -69,7 +69,7 @@ impl Metric {
         }
     }
 
-    /// Its name for programs.
+    /// Name of the metric in output for programs.
     ///
     /// # Example
     /// ```
@@ -83,7 +83,7 @@ impl Metric {
         self.row().quantity
     }
 
-    /// Its heading, of a rig that moves so.
+    /// Heading of the metric, for a rig with this motion.
     pub fn label(self, motion: MotionKind) -> &'static str {
         match self {
             Metric::ForcePeak => motion.either("force peak", "torque peak"),
@@ -91,7 +91,7 @@ impl Metric {
         }
     }
 
-    /// Its dimension.
+    /// Dimension of the metric.
     pub fn dimension(self) -> &'static Dimension {
         self.row().dimension
     }

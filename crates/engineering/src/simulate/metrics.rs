@@ -4,49 +4,49 @@ use phea_quantity::MotionKind;
 
 use super::metric::Metric;
 
-/// Part of a run that is evaluated by itself.
+/// Part of a run that is evaluated separately.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
-    /// What begins it.
+    /// Event at the beginning of the window.
     pub cause: Cause,
-    /// s.
+    /// Start, s.
     pub start_s: f64,
-    /// s, where the next one begins or the scenario ends.
+    /// End, s: at the beginning of the next window, or at the end of the scenario.
     pub end_s: f64,
 }
 
-/// What begins a window.
+/// Event that begins a window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cause {
     /// The reference changes.
     ReferenceStep {
-        /// N.
+        /// Reference before the step, N.
         from_n: f64,
-        /// N.
+        /// Reference after the step, N.
         to_n: f64,
     },
     /// A part of the reference begins to move.
     ReferenceMotion {
-        /// What kind of part, as it is written.
+        /// Kind of part, as written.
         kind: &'static str,
     },
     /// The open-loop command changes.
     CommandStep {
-        /// V.
+        /// Command before the step, V.
         from_v: f64,
-        /// V.
+        /// Command after the step, V.
         to_v: f64,
     },
     /// A part of the open-loop command begins to move.
     CommandMotion {
-        /// What kind of part, as it is written.
+        /// Kind of part, as written.
         kind: &'static str,
     },
     /// The load begins to move.
     LoadMotion,
     /// An external force on the load begins or changes.
     ExternalForce {
-        /// Whether it is a torque about the joint of a linkage.
+        /// True for a torque about the joint of a linkage.
         about_joint: bool,
     },
     /// The setting of accumulators begins to move, or steps.
@@ -54,7 +54,7 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// Its word in answers.
+    /// Word of the cause in JSON output.
     pub fn word(&self) -> &'static str {
         match self {
             Cause::ReferenceStep { .. } => "reference_step",
@@ -67,7 +67,7 @@ impl Cause {
         }
     }
 
-    /// The label of the moment in a figure, of a rig that moves so.
+    /// Label of the moment in a figure, for a rig with this motion.
     pub fn label(&self, motion: MotionKind) -> &'static str {
         match self {
             Cause::ReferenceStep { .. } | Cause::CommandStep { .. } => "step",
@@ -86,7 +86,7 @@ pub type Measured = Result<f64, Unmeasured>;
 /// Reason why a number of a run is absent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unmeasured {
-    /// The run ended before.
+    /// The run ended earlier.
     RunEnded,
     /// The reference does not step.
     NoStep,
@@ -104,32 +104,32 @@ pub enum Unmeasured {
     OpenLoop,
     /// The reference states the force.
     ReferenceGiven,
-    /// The reference stands still.
+    /// The reference does not move.
     ReferenceStandsStill,
     /// The reference is zero, so that a band around it has no width.
     ZeroReference,
-    /// One of two runs that are compared has no such number.
+    /// One of two compared runs has no such number.
     OneRunHasNone,
-    /// No row of the file lies within what was simulated.
+    /// No row of the file is within the simulated time.
     NoRow,
     /// The scenario has no such signal.
     NoSignal,
-    /// The measured values do not change, so that there is no range to divide by.
+    /// The measured values do not change, so that there is no range as divisor.
     NoRange,
 }
 
-/// The metrics of a window: of the solution itself over each step of the integration, independent
-/// of the rows.
+/// Metrics of a window: those of the solution over each step of the integration, independent of the
+/// rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metrics {
-    /// How far the force exceeds the new reference, percent of the step.
+    /// Overshoot of the force over the new reference, percent of the step.
     pub overshoot_percent: Measured,
-    /// From 10 % to 90 % of the step, each where the force first reaches it, s.
+    /// Rise time from 10 % to 90 % of the step, each at the first crossing by the force, s.
     pub rise_time_s: Measured,
-    /// From the start of the window until the force stays within the band around the reference, s:
-    /// for the last tenth of the window at least.
+    /// Settling time from the start of the window until the force stays within the band around the
+    /// reference, at least for the last tenth of the window, s.
     pub settling_time_s: Measured,
-    /// The band of the settling time: percent of the step, or of the reference that a load motion
+    /// Band of the settling time, percent of the step, or of the reference that a load motion
     /// disturbs.
     pub settling_band_percent: f64,
     /// Largest difference of force and reference while the load moves, or an external force acts,
@@ -137,9 +137,9 @@ pub struct Metrics {
     pub disturbance_peak_n: Measured,
     /// Largest difference of force and reference while the reference moves, N.
     pub tracking_error_peak_n: Measured,
-    /// Largest magnitude of the force where there is no reference, N.
+    /// Largest magnitude of the force in the absence of a reference, N.
     pub force_peak_n: Measured,
-    /// Reference less force, mean over the last tenth of the window, N.
+    /// Reference minus force, mean over the last tenth of the window, N.
     pub steady_state_error_n: Measured,
     /// Largest magnitude of the command, V.
     pub control_peak_v: Measured,
@@ -151,7 +151,7 @@ pub struct Metrics {
 /// that oscillates is within it at the end of some windows too.
 const STAYS: f64 = 0.1;
 
-/// Whether a force that enters the band at this time stays there for long enough within a window of
+/// True if a force that enters the band at this time stays there for long enough within a window of
 /// this length, s.
 pub fn stays_settled(settling_time_s: f64, window_s: f64) -> bool {
     settling_time_s < (1.0 - STAYS) * window_s

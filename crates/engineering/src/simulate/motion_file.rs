@@ -1,4 +1,4 @@
-//! A function of time from a table: a measured motion of the load, or a recorded signal.
+//! Function of time from a table: a measured motion of the load, or a recorded signal.
 //!
 //! ```text
 //! time_s, position_mm
@@ -17,14 +17,14 @@ use crate::source::Source;
 use crate::table::{Column, Measurand, MeasuredTable, Sought, TIMES, not_increasing};
 
 static POSITION: Measurand = Measurand::of("position", &LENGTH);
-/// A force over time.
+/// Column of forces.
 pub(super) static FORCES: Measurand = Measurand::of("force", &FORCE);
-/// A command over time.
+/// Column of commands.
 pub(super) static VOLTAGES: Measurand = Measurand::of("voltage", &VOLTAGE);
-/// By how much a setting has moved, over time.
+/// Column of changes of a setting.
 pub(super) static CHANGES: Measurand = Measurand::of("change", &RATIO);
 
-/// The motion as a function of time, beginning at `start_s`, or the errors of the file.
+/// Motion as a function of time, beginning at `start_s`, or the errors of the file.
 pub(super) fn motion(
     source: &dyn Source,
     project: &Project,
@@ -38,7 +38,7 @@ pub(super) fn motion(
     Ok(Profile::table(&times, &positions))
 }
 
-/// The signal as a function of time, zero before its first row, or the errors of the file.
+/// Signal as a function of time, zero before its first row, or the errors of the file.
 pub(super) fn signal(
     source: &dyn Source,
     project: &Project,
@@ -94,7 +94,7 @@ fn rows(
     Some(times.iter().copied().zip(values_at.iter().copied()).collect())
 }
 
-/// A file of a motion or a signal with less than two rows.
+/// Error for a file of a motion or a signal with less than two rows.
 #[derive(Debug, thiserror::Error)]
 #[error("a {0} needs two rows at least")]
 struct TooFewRows(&'static str);

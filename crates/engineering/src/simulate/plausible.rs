@@ -1,13 +1,13 @@
-//! Numbers of a file that no rig of this size has: nearly always another unit than the heading
-//! says.
+//! Implausible numbers of a file for a rig of this size: nearly always in another unit than the
+//! heading states.
 
 use crate::project::{DeclaredActuator, Findings, Project, RawFinding};
 use crate::quantity::{Dimension, FORCE, LENGTH, PRESSURE, TORQUE, UnitScale, VOLTAGE, display};
 use crate::table::{Column, MeasuredTable};
 
-/// How far beyond what the rig holds a file may go before its unit is doubted.
+/// Ratio of a value in a file to the capability of the rig from which its unit is doubted.
 const BEYOND: f64 = 10.0;
-/// The range of what would be plausible, over what the rig holds.
+/// Range of plausible values, relative to the capability of the rig.
 const USUAL: [f64; 2] = [1e-3, 1.5];
 
 /// Part that bounds a quantity of a rig, as a clause before the bound.
@@ -25,7 +25,7 @@ enum Holder {
     Supply,
 }
 
-/// A column that no rig of this size has.
+/// A column with implausible values for a rig of this size.
 #[derive(Debug, thiserror::Error)]
 #[error("`{heading}` reaches {}{reached} {unit}, and {holder} {held}", if *is_small { "only " } else { "" })]
 struct ImplausibleColumn {
@@ -67,14 +67,14 @@ fn held(actuator: &DeclaredActuator, dimension: &Dimension) -> Option<(f64, Hold
     }
 }
 
-/// Whether what drives a rig is usually of the size that it holds: motions may be far smaller, and
-/// pressures near the tank's.
+/// True if values that drive a rig are usually of the magnitude of its capability: motions may be
+/// far smaller, and pressures near that of the tank.
 fn is_of_full_scale(dimension: &Dimension) -> bool {
     [&FORCE, &TORQUE].iter().any(|one| std::ptr::eq(dimension, *one))
 }
 
-/// Refuses a column of what was measured that goes beyond ten times what the rig holds. It may be
-/// as small as noise.
+/// Rejects a measured column that exceeds ten times the capability of the rig. It may be as small
+/// as noise.
 pub(super) fn check(
     project: &Project,
     table: &MeasuredTable,
@@ -85,8 +85,8 @@ pub(super) fn check(
     doubt(project, (table, false), of_column, values, findings);
 }
 
-/// The same of a column that drives a scenario; forces below a thousandth of what the rig holds are
-/// refused too where another unit would make them plausible.
+/// Rejects a column that drives a scenario by this criterion; forces below a thousandth of the
+/// capability of the rig are rejected too if another unit would make them plausible.
 pub(super) fn check_driving(
     project: &Project,
     table: &MeasuredTable,

@@ -6,21 +6,21 @@ use phea_hydraulics::signal::Signal;
 use super::columns::SignalParts;
 use phea_quantity::Units;
 
-/// Largest number of samples of a run that its record keeps.
+/// Largest number of samples of a run that its record stores.
 const MOST_KEPT: usize = 100_000;
 
 /// The machine and its controller at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// s.
+    /// Time, s.
     pub time_s: f64,
-    /// N; at a step, the value from then on. `None` in an open loop.
+    /// Reference, N; at a step, the value after it. `None` in an open loop.
     pub reference_n: Option<f64>,
-    /// N, after the prefilter. `None` in an open loop.
+    /// Reference after the prefilter, N. `None` in an open loop.
     pub filtered_reference_n: Option<f64>,
-    /// V, output of the controller, or the command of an open loop.
+    /// Output of the controller, or the command of an open loop, V.
     pub control_v: f64,
-    /// N, external force on the load, if there is one.
+    /// External force on the load, if there is one, N.
     pub external_force_n: Option<f64>,
     /// The signals of the machine.
     pub machine: MachineSignals,
@@ -28,38 +28,38 @@ pub struct Sample {
     pub control: ControlSignals,
 }
 
-/// The signals of a controller besides reference and output; of an open loop the command, without
-/// an integral part.
+/// Signals of a controller in addition to reference and output; for an open loop the command,
+/// without an integral part.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ControlSignals {
     /// Command as it reaches the valve, after the delay of the loop, V.
     pub command_v: f64,
-    /// Command that the controller would put out without its limit, V.
+    /// Command of the controller before its limit, V.
     pub unlimited_v: f64,
     /// Integral part of the command, V.
     pub integral_v: f64,
-    /// Measured force, after the sensor, with the part that a virtual impedance adds, N.
+    /// Measured force, after the sensor, with the contribution of a virtual impedance, N.
     pub measurement_n: f64,
-    /// Force that a virtual impedance adds before the sensor, N.
+    /// Contribution of a virtual impedance to the force before the sensor, N.
     pub virtual_force_n: f64,
 }
 
 /// Samples over time: every one or, in a long run, every second, fourth, eighth and so on, so that
-/// no more than a hundred thousand are kept.
+/// at most a hundred thousand are stored.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
-    /// s.
+    /// Times, s.
     pub times_s: Vec<f64>,
-    /// N; at a step, the value from then on. Empty in an open loop.
+    /// Reference, N; at a step, the value after it. Empty in an open loop.
     pub reference_n: Vec<f64>,
     /// The samples.
     pub samples: Vec<Sample>,
-    /// Number of samples of the run from one of these to the next.
+    /// Number of samples of the run between two of these.
     pub stride: u64,
-    /// The units in which it is shown, with how the rig moves: of one that turns, positions are in
-    /// rad and forces in N m.
+    /// Units of display, and the motion of the rig: if it turns, positions are in rad and forces in
+    /// N m.
     pub units: Units,
-    /// Which parts the rig has.
+    /// Parts of the rig that determine its signals.
     pub parts: SignalParts,
 }
 
@@ -77,7 +77,7 @@ impl Default for Record {
 }
 
 impl Record {
-    /// A signal over time; empty if the rig lacks it, and the reference of an open loop.
+    /// A signal over time; empty if the rig lacks it, and for the reference of an open loop.
     pub fn signal(&self, signal: Signal) -> Vec<f64> {
         let is_reference = matches!(signal, Signal::Reference | Signal::FilteredReference);
         if !self.parts.have(signal) || (is_reference && self.reference_n.is_empty()) {
@@ -86,14 +86,15 @@ impl Record {
         self.samples.iter().map(|sample| self.parts.value(signal, sample)).collect()
     }
 
-    /// Allocates memory for this many samples at once, but for no more than a long run keeps.
+    /// Allocates memory for this many samples at once, but at most for those that a long run
+    /// stores.
     pub(super) fn reserve(&mut self, samples: usize) {
         let samples = samples.min(MOST_KEPT + 1);
         self.times_s.reserve(samples);
         self.samples.reserve(samples);
     }
 
-    /// Keeps the sample of this number, counted from zero, or leaves it out.
+    /// Stores the sample with this index, counted from zero, or omits it.
     pub(super) fn take(&mut self, number: u64, sample: &Sample) {
         if !number.is_multiple_of(self.stride) {
             return;
@@ -114,7 +115,7 @@ impl Record {
     }
 }
 
-/// The first, the third and so on.
+/// Reduces to the first value, the third and so on.
 fn every_second<T>(values: &mut Vec<T>) {
     let mut kept = false;
     values.retain(|_| {
@@ -127,7 +128,7 @@ fn every_second<T>(values: &mut Vec<T>) {
 mod tests {
     use super::*;
 
-    /// However long a run is, its record is short, evenly spaced, and begins with the first sample.
+    /// A record of a run of any length is short, evenly spaced, and begins with the first sample.
     #[test]
     fn a_record_is_even_and_never_long() {
         let parts = SignalParts { external_force: true, ..SignalParts::default() };

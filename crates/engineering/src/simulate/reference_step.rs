@@ -5,16 +5,16 @@ use crate::project::{InputSignal, Project, Scenario};
 /// A step of the reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReferenceStep {
-    /// When, s.
+    /// Time, s.
     pub at_s: f64,
-    /// Before, N.
+    /// Reference before the step, N.
     pub from_n: f64,
-    /// From then on, N.
+    /// Reference after the step, N.
     pub to_n: f64,
 }
 
 impl ReferenceStep {
-    /// Size with its sign, N.
+    /// Signed size of the step, N.
     pub fn size_n(&self) -> f64 {
         self.to_n - self.from_n
     }
@@ -25,14 +25,14 @@ impl ReferenceStep {
 pub struct SteppedReference {
     /// The name of the scenario.
     pub scenario: String,
-    /// In the order of time; at least one.
+    /// Steps in the order of time; at least one.
     pub steps: Vec<ReferenceStep>,
-    /// When the scenario ends, s.
+    /// End of the scenario, s.
     pub end_s: f64,
 }
 
-/// The steps of the reference in each scenario that has any, whatever moves beside it; a ramp or a
-/// sine is no step, nor is what a run that begins at rest begins with.
+/// Steps of the reference in each scenario that has any, whatever else moves; a ramp or a sine is
+/// no step, nor is the initial reference of a run that begins at rest.
 ///
 /// # Example
 /// ```
@@ -56,7 +56,7 @@ fn stepped(scenario: &Scenario) -> Option<SteppedReference> {
     }
     let (single, staircases): (Vec<&InputSignal>, Vec<&InputSignal>) =
         scenario.reference.iter().partition(|signal| matches!(signal, InputSignal::Step { .. }));
-    // single steps are one staircase
+    // single steps form one staircase
     let mut parts: Vec<Vec<(f64, f64)>> = vec![single.into_iter().flat_map(InputSignal::steps).collect()];
     parts.extend(staircases.into_iter().map(InputSignal::steps));
     let mut times_s: Vec<f64> = parts.iter().flatten().map(|(time_s, _)| *time_s).collect();

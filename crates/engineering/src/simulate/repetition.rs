@@ -1,4 +1,4 @@
-//! A run whose errors may be visible, made again at a tenth of the tolerance until its metrics
+//! Repetition of a run whose errors may be visible, at a tenth of the tolerance until its metrics
 //! agree.
 
 use phea_dynamics::portable;
@@ -9,27 +9,27 @@ use super::metric::Metric;
 use super::metrics::Measured;
 use super::{Cause, Metrics, RunStatus, StoppedRun, Window};
 
-/// No pass is made at a smaller tolerance: rounding shows then.
+/// Smallest tolerance of a pass: below it, rounding errors are visible.
 pub const SMALLEST_TOLERANCE: f64 = 1e-10;
 
-/// So many passes must agree with the one before each where errors as large as their tolerance may
+/// Number of passes that must agree with the one before, if errors as large as their tolerance may
 /// still be visible: two that agree may both be wrong.
 const TRUSTED: u32 = 2;
 
 /// Largest difference of the last passes with which a run counts as a result.
 const LARGEST_DOUBT: f64 = 0.1;
 
-/// What a pass over a scenario is made with.
+/// Tolerance and start of a pass over a scenario.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PassPlan {
     /// Tolerance of the integration.
     pub tolerance: f64,
-    /// Whether each state begins a few roundings away.
+    /// True if the value of each state starts a few rounding errors away.
     pub moved: bool,
 }
 
 impl PassPlan {
-    /// Whether it is the one at the tolerance of the project.
+    /// True for the pass at the tolerance of the project.
     pub fn is_first(&self, tolerance: f64) -> bool {
         self.tolerance == tolerance && !self.moved
     }
@@ -38,22 +38,22 @@ impl PassPlan {
 /// A pass that was made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pass {
-    /// What it was made with.
+    /// Tolerance and start of the pass.
     pub plan: PassPlan,
-    /// What it cost.
+    /// Work of the integration.
     pub work: StepCounts,
-    /// How it ended early, if it did.
+    /// Early end of the pass, if it did not complete.
     pub stopped: Option<StoppedRun>,
 }
 
-/// Whether the passes agree.
+/// Agreement of the passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PassAgreement {
-    /// The last two do, within a thousandth.
+    /// The last two passes agree within a thousandth.
     Agreed,
-    /// The last two do not, and no smaller tolerance is used.
+    /// The last two passes differ, and no smaller tolerance is used.
     Apart,
-    /// A start moved by a few roundings gives another result: no solver determines it.
+    /// A start moved by a few rounding errors gives another result: no solver determines it.
     Undetermined,
     /// A pass ended early; the one before is reported.
     Stopped,
@@ -62,47 +62,47 @@ pub enum PassAgreement {
 /// All passes of a run that was repeated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Repetition {
-    /// In order.
+    /// Passes in order.
     pub passes: Vec<Pass>,
-    /// Whether they agree.
+    /// Agreement of the passes.
     pub agreement: PassAgreement,
-    /// The largest difference between the last two that were compared; `None` where they have no
+    /// Largest difference between the last two passes that were compared; `None` if they have no
     /// number in common.
     pub spread: Option<PassSpread>,
 }
 
-/// What differs most between two passes.
+/// Largest difference between two passes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PassSpread {
-    /// The window, counted from 0, and its metric; `None` for the force of a run without metrics.
+    /// Index of the window, from 0, and metric; `None` for the force of a run without metrics.
     pub of: Option<(usize, Metric)>,
-    /// In the earlier pass and in the later.
+    /// Values in the earlier and the later pass.
     pub values: [Measured; 2],
-    /// The difference over the metric; over the step for an overshoot, over the largest deviation
-    /// of the window for a steady-state error. Infinite where one pass has no such number.
+    /// Difference divided by the metric; divided by the step for an overshoot, by the largest
+    /// deviation of the window for a steady-state error. Infinite if one pass has no such number.
     pub part: f64,
 }
 
-/// The results of a pass, as far as passes are compared.
+/// The results by which passes are compared.
 #[derive(Clone, Debug)]
 pub struct PassResult {
-    /// How it ended.
+    /// Status of the integration.
     pub status: Status,
-    /// What it cost.
+    /// Work of the integration.
     pub work: StepCounts,
-    /// The largest growth of errors; `None` where none grew.
+    /// Largest amplification of errors; `None` if none grew.
     pub amplification: Option<Amplification>,
-    /// Whether the command swings from end to end of its range: such a run separates from its
+    /// True if the command swings from end to end of its range: such a run separates from its
     /// neighbours.
     pub swings: bool,
-    /// Of each window.
+    /// Metrics of each window.
     pub metrics: Vec<(Window, Metrics)>,
-    /// The force at some times of the run, N.
+    /// Force at some times of the run, N.
     pub force_n: Vec<f64>,
 }
 
 impl PassResult {
-    /// Whether errors as large as a tolerance may be visible.
+    /// True if errors as large as a tolerance may be visible.
     fn grows(&self, tolerance: f64) -> bool {
         self.amplification.is_some_and(|grown| grown.may_show_errors(tolerance))
     }
@@ -111,22 +111,22 @@ impl PassResult {
         Pass { plan, work: self.work, stopped: StoppedRun::of(self.status) }
     }
 
-    /// The largest difference from another pass: of the metrics, and of the forces where no window
-    /// has a number.
+    /// Largest difference from another pass: of the metrics, or of the forces if no window has a
+    /// number.
     pub fn spread(&self, other: &PassResult) -> Option<PassSpread> {
         spread(self, other)
     }
 }
 
 impl Repetition {
-    /// Whether its watcher ended a pass.
+    /// True if `watch` cancelled a pass.
     pub fn was_cancelled(&self) -> bool {
         self.passes
             .iter()
             .any(|pass| pass.stopped.is_some_and(|stopped| stopped.status == RunStatus::Cancelled))
     }
 
-    /// Whether there is a result: rounding does not decide it, and the last passes agree within a
+    /// True if there is a result: rounding does not decide it, and the last passes agree within a
     /// tenth.
     pub fn is_determined(&self) -> bool {
         let near = self.spread.is_some_and(|spread| spread.part <= LARGEST_DOUBT);
@@ -137,19 +137,19 @@ impl Repetition {
         }
     }
 
-    /// Steps of all passes.
+    /// Number of steps of all passes.
     pub fn steps(&self) -> u64 {
         self.passes.iter().map(|pass| pass.work.steps).sum()
     }
 }
 
-/// The result that is reported, after the first pass at a tolerance: where its errors may be
-/// visible, that of the last complete pass, each at a tenth of the tolerance of the one before,
-/// until two agree. Where even rounding may be visible, or no two agree, a pass from a start moved
-/// by rounding follows.
+/// Result to be reported, after the first pass at a tolerance. If its errors may be visible,
+/// further passes follow, each at a tenth of the tolerance of the one before, until two agree; the
+/// last complete one is returned. If even rounding errors may be visible, or no two passes agree, a
+/// pass from a start moved by rounding errors follows.
 ///
 /// # Errors
-/// That of a pass.
+/// The error of a pass.
 pub fn repeated<R, E>(
     (tolerance, first): (f64, R),
     result: impl Fn(&R) -> PassResult,
@@ -193,7 +193,7 @@ pub fn repeated<R, E>(
     Ok((seen, tolerance, Some(Repetition { passes, agreement, spread: found })))
 }
 
-/// A state whose values are moved by a few roundings, each in its own direction.
+/// A state whose values are moved by a few rounding errors, each in its own direction.
 pub fn moved(start: &mut [f64], scales: &[f64]) {
     for (place, (state, scale)) in start.iter_mut().zip(scales).enumerate() {
         let towards = if place.is_multiple_of(2) { 4.0 } else { -4.0 };
@@ -201,8 +201,8 @@ pub fn moved(start: &mut [f64], scales: &[f64]) {
     }
 }
 
-/// The largest difference between the metrics of two passes; between their forces where no window
-/// has a number.
+/// Largest difference between the metrics of two passes; between their forces if no window has a
+/// number.
 fn spread(one: &PassResult, other: &PassResult) -> Option<PassSpread> {
     let windows = one.metrics.iter().zip(&other.metrics).enumerate();
     let of_metrics = windows.flat_map(|(place, ((window, one), (_, other)))| {
@@ -235,7 +235,7 @@ fn part(difference: f64, magnitude: f64) -> f64 {
     if difference > 0.0 { difference / magnitude } else { 0.0 }
 }
 
-/// What a difference of a metric is compared with.
+/// Reference value to which a difference of a metric is related.
 fn magnitude(metric: Metric, window: &Window, both: [&Metrics; 2], values: [f64; 2]) -> f64 {
     let own = values[0].abs().max(values[1].abs());
     match metric {

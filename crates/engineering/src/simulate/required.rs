@@ -1,22 +1,22 @@
-//! What is required in time, held against the steps of the reference in a scenario.
+//! Requirements in time, compared with the steps of the reference in a scenario.
 
 use super::wish::{ReachedStep, TrackingWish};
 use super::{Cause, Metrics, RunStatus, ScenarioRun, TimeRequirement, Window, time_requirements};
 use crate::project::Project;
 
-/// A requirement in time, and what the steps of a scenario do of it.
+/// A requirement in time, and the result of the steps of a scenario.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScenarioRequirement {
     /// Number of its specification in the file, from 1.
     pub number: usize,
-    /// What is required of every step of the reference.
+    /// Requirement for every step of the reference.
     pub wish: TrackingWish,
-    /// The worst of all steps, each property by itself; infinite where the run did not complete. Or
-    /// why the scenario says nothing of it.
+    /// Worst result of all steps, each property separately; infinite if the run did not complete.
+    /// Or the reason why the scenario does not judge the requirement.
     pub reached: Result<ReachedStep, NotJudged>,
 }
 
-/// Reason why runs say nothing of a requirement.
+/// Reason why a run does not judge a requirement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotJudged {
     /// The scenario has no step of the reference, or none of the required size.
@@ -25,19 +25,18 @@ pub enum NotJudged {
     OtherBand,
 }
 
-/// Relative deviation of a step of the scenario from the required size that counts as none.
+/// Relative deviation of a step of the scenario from the required size that counts as zero.
 const SAME: f64 = 1e-6;
 
 impl ScenarioRequirement {
-    /// Whether every step satisfies it; `None` where the scenario says nothing of it.
+    /// True if every step satisfies the requirement; `None` if the scenario does not judge it.
     pub fn is_satisfied(&self) -> Option<bool> {
         self.reached.ok().map(|reached| self.wish.is_satisfied(&reached))
     }
 }
 
-/// Every requirement of a project that is part of the verdict, held against a run of one of its
-/// scenarios; none where a stated command drives the valve, or where the specifications are
-/// refused.
+/// Every requirement of a project that is part of the verdict, compared with a run of one of its
+/// scenarios; empty if a stated command drives the valve, or if the specifications are rejected.
 pub fn required_of_run(project: &Project, run: &ScenarioRun) -> Vec<ScenarioRequirement> {
     if run.open_loop {
         return vec![];
@@ -52,10 +51,10 @@ pub fn required_of_run(project: &Project, run: &ScenarioRun) -> Vec<ScenarioRequ
     all.iter().filter(|one| one.follows).map(of).collect()
 }
 
-/// The windows that begin with a step for which a requirement holds, by their place.
+/// Indices of the windows that begin with a step to which a requirement applies.
 ///
 /// # Errors
-/// [`NotJudged`] where there is none, or its settling is not comparable.
+/// [`NotJudged`] if there is none, or its settling is not comparable.
 pub(crate) fn concerned(
     one: &TimeRequirement,
     windows: &[Window],
@@ -72,7 +71,7 @@ pub(crate) fn concerned(
     Ok(concerned)
 }
 
-/// Whether a window is a step for which the requirement holds.
+/// True if a window is a step to which the requirement applies.
 pub fn concerns(one: &TimeRequirement, window: &Window) -> bool {
     let Cause::ReferenceStep { from_n, to_n } = window.cause else { return false };
     let is = |stated: Option<f64>, value: f64| {
@@ -81,7 +80,7 @@ pub fn concerns(one: &TimeRequirement, window: &Window) -> bool {
     is(one.steps.amplitude_n, to_n - from_n) && is(one.steps.initial_force_n, from_n)
 }
 
-/// The worst of these steps of a run.
+/// Worst result of these steps of a run.
 fn reached(run: &ScenarioRun, steps: &[usize]) -> ReachedStep {
     let is_complete = run.run_status() == RunStatus::Completed;
     let most = |of: fn(&Metrics) -> super::Measured| {

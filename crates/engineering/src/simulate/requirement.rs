@@ -1,4 +1,4 @@
-//! The requirements in time of a project: of specifications of the kind `step`, and of limits of
+//! Requirements in time of a project: of specifications of the kind `step`, and of limits of
 //! tracking that are stated in time.
 
 use super::TrackingWish;
@@ -10,18 +10,18 @@ use crate::specification::{SpecificationError, closed_loops, wishes};
 pub struct TimeRequirement {
     /// Number of its specification in the file, from 1.
     pub number: usize,
-    /// Index of that among the limits on closed loops; `None` where it limits none.
+    /// Index of the specification among the limits on closed loops; `None` if it limits none.
     pub limits: Option<usize>,
-    /// What is required of every step.
+    /// Requirement for every step.
     pub wish: TrackingWish,
-    /// Whether the limits follow from it: then it is part of the verdict. Stated limits are only
-    /// compared with it.
+    /// True if the limits follow from the requirement: then it is part of the verdict. Stated
+    /// limits are only compared with it.
     pub follows: bool,
-    /// The step of the nonlinear rig for which it holds.
+    /// Step of the nonlinear rig to which the requirement applies.
     pub steps: RequiredSteps,
 }
 
-/// The step for which a requirement holds on the nonlinear rig.
+/// Step to which a requirement applies on the nonlinear rig.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RequiredSteps {
     /// Size, N, with its sign; `None`: a tenth of the force that the supply can produce.
@@ -31,7 +31,7 @@ pub struct RequiredSteps {
 }
 
 impl RequiredSteps {
-    /// Whether it is stated at all.
+    /// True if a step is stated.
     pub fn are_stated(&self) -> bool {
         *self != RequiredSteps::default()
     }
@@ -41,7 +41,8 @@ impl RequiredSteps {
 /// the kind `step` first, then those of limits of tracking.
 ///
 /// # Errors
-/// [`SpecificationError`] for a wish without a limit, or a limit whose step response has no end.
+/// [`SpecificationError`] for a requirement in time without a limit, or a limit whose step response
+/// has no end.
 ///
 /// # Example
 /// ```

@@ -1,4 +1,4 @@
-//! One scenario, run.
+//! Simulation of one scenario.
 
 use std::cell::{Cell, RefCell};
 
@@ -27,45 +27,45 @@ use super::saved::{self, NotSaved, SavedState};
 use super::{NoLedger, RunLedger, RunOutput, RunTable, SimulateError, ToleranceCheck, Window};
 use crate::project::Scenario;
 
-/// Longest time between two samples, from which figures are drawn: 1 ms would cut off the peaks of
-/// a ringing load cell.
+/// Longest interval between two samples, from which figures are drawn: 1 ms would cut off the peaks
+/// of a ringing load cell.
 const LONGEST_LOOK_S: f64 = 0.25e-3;
-/// Largest number of samples where the project requests fewer rows.
+/// Largest number of samples, if the project requests fewer rows.
 const MOST_LOOKS: f64 = 400_000.0;
 /// Steps between two reports of progress.
 const STEPS_UNWATCHED: u32 = 64;
 
-/// What came of a scenario.
+/// Result of one scenario.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScenarioRun {
-    /// Its name.
+    /// Name of the scenario.
     pub name: String,
-    /// How it ended.
+    /// Status at the end of the integration.
     pub status: Status,
-    /// What it cost.
+    /// Work of the integration: numbers of steps and evaluations.
     pub work: StepCounts,
     /// Tolerance of the integration.
     pub tolerance: f64,
-    /// The passes that were made because errors may be visible; `None` where one was enough.
+    /// The passes that were made because errors may be visible; `None` if one was enough.
     pub repetition: Option<Repetition>,
-    /// How it diverges, though it ran to its end; `None` if it does not.
+    /// Divergence of a run that reached its end; `None` if it does not diverge.
     pub divergence: Option<Divergence>,
-    /// The record, every [`ScenarioRun::look_s`], or less often in a long run; empty where it was
-    /// not asked for.
+    /// Samples at intervals of [`ScenarioRun::look_s`], or longer ones in a long run; empty if no
+    /// record was requested.
     pub record: Record,
     /// Number of samples between two rows of the result.
     pub looks_per_row: usize,
-    /// Time between two samples, s: shorter events are not drawn.
+    /// Time between two samples, s: shorter events do not appear in figures.
     pub look_s: f64,
-    /// How closely its steps were followed.
+    /// Detail in which the steps were evaluated.
     pub attention: Attention,
-    /// Each window with its metrics.
+    /// Every window with its metrics.
     pub windows: Vec<(Window, Metrics)>,
     /// The events of the run, in the order of time.
     pub occurrences: Vec<Occurrence>,
     /// The time from which the equations of the machine do not hold, s.
     pub outside_model_s: Option<f64>,
-    /// Percent, of every settling time.
+    /// Settling band of every settling time, percent.
     pub settling_band_percent: f64,
     /// The measured signals and the simulated ones.
     pub measured: Vec<Overlay>,
@@ -74,21 +74,22 @@ pub struct ScenarioRun {
     /// A mode that grew so much that errors within the tolerance of the first pass may be visible;
     /// `None` if there is none.
     pub errors_amplified: Option<Amplification>,
-    /// Kinks along which no deviation was carried, so that what they amplify is not known.
+    /// Kinks across which no deviation was propagated, so that its amplification there is unknown.
     pub unfollowed: Option<UnfollowedKinks>,
-    /// Whether a stated command drove the valve, and no controller.
+    /// True if a stated command drives the valve instead of a controller.
     pub open_loop: bool,
     /// Chambers whose pressure exceeded that up to which the expansion of their hose was measured.
     pub beyond_expansion: Vec<BeyondExpansion>,
-    /// Limits of the rig that it exceeds.
+    /// Limits of the rig that the run exceeds.
     pub exceeded: Vec<Exceeded>,
-    /// Work of accumulators that are adjusted by a valve or as it runs; `None` where there is none.
+    /// Work of accumulators that are adjusted by a valve or during the run; `None` if there are
+    /// none.
     pub adjustment: Option<AdjustmentWork>,
-    /// The gas at each chamber that has some.
+    /// Range of the gas at each chamber that contains gas.
     pub gas: Vec<GasRange>,
-    /// The accounts of oil and energy, or why there are none.
+    /// Balances of oil and energy, or the reason why they are absent.
     pub ledger: Result<RunLedger, NoLedger>,
-    /// Its final state, from which another run can continue, or why it is not saved.
+    /// Final state, from which another run can continue, or the reason why it is not saved.
     pub end: Result<SavedState, NotSaved>,
 }
 
@@ -97,58 +98,58 @@ pub struct ScenarioRun {
 pub struct BeyondExpansion {
     /// `a` or `b`.
     pub chamber: char,
-    /// Its highest pressure, Pa.
+    /// Highest pressure of the chamber, Pa.
     pub peak_pa: f64,
-    /// Where the expansion is stated, Pa.
+    /// Pressure up to which the expansion is stated, Pa.
     pub stated_pa: f64,
 }
 
-/// Something that began or ended.
+/// Beginning or end of an event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Occurrence {
-    /// s.
+    /// Time of the event, s.
     pub time_s: f64,
     /// One of [`INDICATORS`], `command_limit`, or one of
     /// [`LINE_OCCURRENCES`](super::LINE_OCCURRENCES), which only begin.
     pub kind: &'static str,
-    /// Whether it began.
+    /// True at the beginning of the event, false at its end.
     pub begins: bool,
 }
 
 impl Occurrence {
-    /// The beginning of the time in which a limit of a line is exceeded.
+    /// Beginning of the time in which a limit of a line is exceeded.
     pub fn of(exceeded: &Exceeded) -> Option<Occurrence> {
         Some(Occurrence { time_s: exceeded.first_time_s, kind: exceeded.occurrence()?, begins: true })
     }
 }
 
-/// How a run ended early.
+/// Early end of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoppedRun {
-    /// s.
+    /// Time of the end, s.
     pub time_s: f64,
     /// Status of the run.
     pub status: RunStatus,
-    /// The mode whose oscillation would need more steps than are allowed.
+    /// The mode whose oscillation would need more steps than are allowed; `None` for other causes.
     pub mode: Option<UnresolvedMode>,
 }
 
 /// A mode that grows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnresolvedMode {
-    /// Magnitude of its eigenvalue in rad/s.
+    /// Magnitude of the eigenvalue, rad/s.
     pub frequency_rad_per_s: f64,
-    /// Real part of its eigenvalue in 1/s.
+    /// Real part of the eigenvalue, 1/s.
     pub growth_per_s: f64,
 }
 
 impl ScenarioRun {
-    /// Whether it is so long that it was sampled less often than its figures need.
+    /// True if the run is so long that it was sampled less often than its figures need.
     pub fn is_coarse(&self) -> bool {
         self.attention == Attention::Everything && self.look_s > LONGEST_LOOK_S * (1.0 + 1e-9)
     }
 
-    /// Whether whoever watched ended it, or a repetition.
+    /// True if the progress callback cancelled the run or one of its repetitions.
     pub fn was_cancelled(&self) -> bool {
         let repeating = self.repetition.as_ref().is_some_and(Repetition::was_cancelled);
         matches!(self.status, Status::Cancelled { .. }) || repeating
@@ -160,8 +161,8 @@ impl ScenarioRun {
         run_status(self.stopped(), self.outside_model_s, undetermined)
     }
 
-    /// Whether it ran to its end, within the validity of its equations, and to a result that its
-    /// tolerance determines.
+    /// True if the run reached its end, within the validity of its equations, with a result that
+    /// its tolerance determines.
     pub fn is_reliable(&self) -> bool {
         self.run_status() == RunStatus::Completed
     }
@@ -173,12 +174,12 @@ impl ScenarioRun {
 }
 
 impl StoppedRun {
-    /// That of a run to its end that diverges.
+    /// A run that reaches its end but diverges.
     pub fn diverged(divergence: &Divergence) -> StoppedRun {
         StoppedRun { time_s: divergence.since_s(), status: RunStatus::Diverged, mode: None }
     }
 
-    /// The meaning of a status; `None` for a run that was completed.
+    /// Early end by the status of the integration; `None` for a completed run.
     pub fn of(status: Status) -> Option<StoppedRun> {
         let mut mode = None;
         let time_s = match status {
@@ -196,19 +197,19 @@ impl StoppedRun {
     }
 }
 
-/// A pass over a scenario.
+/// One pass over a scenario.
 pub(super) struct RunPass<'t> {
     pub(super) run: ScenarioRun,
-    /// Its rows, to be finished.
+    /// The table with the rows of the pass, still to be finished.
     pub(super) table: Option<RunTable<'t>>,
     /// The force at some times, N.
     force_n: Vec<f64>,
-    /// The largest growth of errors; `None` where none grew.
+    /// Largest amplification of errors; `None` if none grew.
     amplification: Option<Amplification>,
 }
 
 impl RunPass<'_> {
-    /// As passes are compared.
+    /// The part of the results by which passes are compared.
     pub(super) fn result(&self) -> PassResult {
         PassResult {
             status: self.run.status,
@@ -221,8 +222,8 @@ impl RunPass<'_> {
     }
 }
 
-/// Runs a scenario once, writes its rows into a table, if one is given, and keeps its samples, if
-/// they are asked for; `watch` is called with the simulated time at intervals.
+/// Simulates a scenario once, writes its rows into a table, if one is given, and records its
+/// samples, if requested; `watch` is called with the simulated time at intervals.
 pub(super) fn run<'t>(
     bench: &ControlledMachine,
     scenario: &Scenario,
@@ -292,7 +293,7 @@ pub(super) fn run<'t>(
     Ok(RunPass { run, table: seen.table, force_n: seen.force_n, amplification })
 }
 
-/// The start of a pass: that of the scenario, or moved by roundings.
+/// Initial state of a pass: that of the scenario, or a copy perturbed by rounding errors.
 fn start(bench: &ControlledMachine, course: &PreparedScenario, plan: PassPlan) -> Vec<f64> {
     let mut start = course.start.clone();
     if plan.moved {
@@ -301,7 +302,7 @@ fn start(bench: &ControlledMachine, course: &PreparedScenario, plan: PassPlan) -
     start
 }
 
-/// The samples of a sampled controller, which leaves its memory behind.
+/// Sampler of a sampled controller, which stores the controller's final memory.
 fn sampler<'a>(
     control: &'a Control,
     waking: &'a Waking,
@@ -316,14 +317,14 @@ fn sampler<'a>(
     }
 }
 
-/// A scenario as another solver may take it: equations, inputs, and the state at time zero.
+/// A scenario in the form that another solver needs: equations, inputs, and the state at time zero.
 #[derive(Clone, Debug)]
 pub struct ScenarioProblem {
-    /// The machine, with its controller where this is continuous.
+    /// The machine, including the controller if it is continuous.
     pub control: Control,
     /// Duration, rows and inputs.
     pub course: InputSchedule,
-    /// Every state and every wave in transit.
+    /// Values of all states and of all waves in transit.
     pub start: Vec<f64>,
 }
 
@@ -348,7 +349,7 @@ fn inputs(control: &Control, course: &PreparedScenario) -> Vec<Input> {
     leading.into_iter().chain(course.machine_inputs()).collect()
 }
 
-/// All that happened on the way, limits of lines that were exceeded among it.
+/// All events of the run, including the limits of lines that were exceeded.
 fn found(
     (bench, course): (&ControlledMachine, &PreparedScenario),
     outcome: &Outcome,
@@ -375,8 +376,8 @@ fn found(
     found
 }
 
-/// When a chamber, a line or a transmission first cavitates, a chamber has no volume, or the piston
-/// leaves a stroke without end stops.
+/// Time at which a chamber, a line or a transmission first cavitates, a chamber has no volume, or
+/// the piston leaves a stroke without end stops.
 pub(crate) fn outside_model_s(occurrences: &[Occurrence], has_end_stops: bool) -> Option<f64> {
     let outside = |kind: &str| match kind {
         "cavitation_a" | "cavitation_b" | "cavitation_line_a" | "cavitation_line_b" => true,
@@ -405,14 +406,14 @@ fn looks_per_row(scenario: &Scenario) -> usize {
 /// of a machine.
 pub const COMMAND_LIMIT: &str = "command_limit";
 
-/// What a campaign calls a run whose errors may be visible though it was repeated, with the names
-/// of what a machine reports.
+/// Name, in a campaign, of a run whose errors may be visible although it was repeated; used with
+/// the names of what a machine reports.
 pub const ERRORS_AMPLIFIED: &str = "errors_amplified";
 
-/// What a campaign calls a run that was repeated until its metrics agreed.
+/// Name, in a campaign, of a run that was repeated until its metrics agreed.
 pub const REPEATED: &str = "repeated";
 
-/// The status of a run: that of its end first.
+/// Status of a run; an early end takes precedence.
 pub(crate) fn run_status(
     stopped: Option<StoppedRun>,
     outside_model_s: Option<f64>,
@@ -426,7 +427,8 @@ pub(crate) fn run_status(
     }
 }
 
-/// What grew most between the samples of a controller, or from one to the next.
+/// Largest amplification of errors between the samples of a controller, or from one sample to the
+/// next.
 pub fn amplification(outcome: &Outcome, samples: &ControllerSamples) -> Option<Amplification> {
     Amplification::larger([outcome.amplification, samples.amplification])
 }
@@ -443,8 +445,9 @@ fn inputs_at_start(course: &PreparedScenario, mut first: Vec<f64>, control: &Con
     first
 }
 
-/// The events that exist from the start, and every change of an indicator. Those of the machine are
-/// positive while nothing is wrong, that of the command's limit while it is reached.
+/// The events that exist from the start, and every change of an indicator. Indicators of the
+/// machine are positive while nothing is wrong; that of the command limit is positive while the
+/// limit is reached.
 pub fn occurrences(control: &Control, start: &[f64], first: &[f64], events: &[Event]) -> Vec<Occurrence> {
     let kind = |index: usize| INDICATORS.get(index).copied().unwrap_or(COMMAND_LIMIT);
     let begins = |index: usize, positive: bool| positive != (index < INDICATORS.len());

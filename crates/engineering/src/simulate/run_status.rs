@@ -5,32 +5,32 @@ use phea_dynamics::simulation::Status;
 /// Status of a run of a machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunStatus {
-    /// Ran to its end, with numbers that describe the machine.
+    /// The run reached its end, with numbers that describe the machine.
     Completed,
-    /// Not begun: the drawn machine is impossible.
+    /// The run did not begin: the drawn machine is invalid.
     Refused,
     /// No step is short enough for the tolerance.
     StepTooSmall,
-    /// A rate is no longer a number.
+    /// A state derivative is no longer a number.
     NotFinite,
     /// The permitted steps are used up.
     TooManySteps,
-    /// An oscillation grows that would take more steps than are permitted.
+    /// An oscillation grows that would need more steps than are permitted.
     UnresolvedOscillation,
-    /// Ran to its end and diverged.
+    /// The run reached its end, but diverged.
     Diverged,
-    /// Ran to its end, and left the validity of its equations on the way.
+    /// The run reached its end, but left the validity of its equations.
     OutsideModel,
-    /// Ran to its end, and no two of its repetitions give one result.
+    /// The run reached its end, but no two of its repetitions give one result.
     Undetermined,
-    /// Cancelled by the watch.
+    /// The progress callback cancelled the run.
     Cancelled,
-    /// Not begun: the machine has no equilibrium or no equations.
+    /// The run did not begin: the machine has no equilibrium or no equations.
     NotStarted,
 }
 
 impl RunStatus {
-    /// The statuses of the rows of a campaign, in the order in which they are counted.
+    /// Statuses of the rows of a campaign, in the order in which they are counted.
     pub const OF_ROWS: [RunStatus; 9] = [
         RunStatus::Completed,
         RunStatus::Refused,
@@ -43,7 +43,7 @@ impl RunStatus {
         RunStatus::Undetermined,
     ];
 
-    /// The word in JSON and in tables.
+    /// Word of the status in JSON and in tables.
     ///
     /// # Example
     /// ```

@@ -1,8 +1,8 @@
-//! The state at the end of a scenario, as a file from which another run can continue.
+//! State at the end of a scenario, as a file from which another run can continue.
 //!
 //! ```text
 //! schema = 1
-//! project_sha256 = "..."            of the project it was written for
+//! project_sha256 = "..."            of the project for which it was written
 //! scenario = "step"
 //! time_s = 1
 //!
@@ -10,10 +10,10 @@
 //! spool_v = 0.125
 //! ```
 //!
-//! It contains every state of machine, sensor, controller and prefilter by its name, the position
-//! of the load's ground, and by how much the setting of accumulators has moved where it does; for a
-//! sampled controller also its memories, the held command and the position in its random numbers.
-//! The content of a delay cannot be stored as numbers: such an end is not saved.
+//! The file contains every state of machine, sensor, controller and prefilter by its name, the
+//! position of the load's ground, and the change of the setting of accumulators if it changes; for
+//! a sampled controller also its memories, the held command and the position in its random numbers.
+//! The content of a delay cannot be stored as numbers: such a final state is not saved.
 
 use std::fmt::Write as _;
 
@@ -27,26 +27,25 @@ use crate::project::{Findings, Place, Project, RawFinding, Refusal, TreeNode, Tr
 use crate::quantity::significant;
 use crate::source::Source;
 
-/// Part of a sample time within which an end is at a sample.
+/// Fraction of a sample time within which an end is at a sample.
 const AT_A_SAMPLE: f64 = 1e-9;
 
 /// A state from which a run can continue.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SavedState {
-    /// When, in s of its run.
+    /// Time in its run, s.
     pub time_s: f64,
     /// Every continuous state by its name, in order.
     pub states: Vec<(String, f64)>,
-    /// m, position of the load's ground.
+    /// Position of the load's ground, m.
     pub ground_m: f64,
-    /// By how much the setting of accumulators has moved from rest; `None` where it is not an
-    /// input.
+    /// Change of the setting of accumulators from rest; `None` if it is not an input.
     pub setting_change: Option<f64>,
-    /// What a sampled controller remembers.
+    /// Memory of a sampled controller.
     pub(crate) memory: Option<DigitalMemory>,
 }
 
-/// Reason why the end of a run is not saved.
+/// Reason why the final state of a run is not saved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotSaved {
     /// The run was not completed.
@@ -59,7 +58,7 @@ pub enum NotSaved {
     InTransit,
     /// The run ends between two samples of the controller.
     BetweenSamples,
-    /// A command is under way in the delay of the controller.
+    /// A command is in transit in the delay of the controller.
     CommandDelayed,
 }
 
@@ -83,21 +82,21 @@ fn state_names(bench: &ControlledMachine) -> Vec<String> {
     names
 }
 
-/// By how much a setting has moved.
+/// Name of the change of a setting.
 const SETTING_CHANGE: &str = "setting_change";
-/// Differences of a setting that are rounding.
+/// Difference of a setting that counts as rounding.
 const SAME_SETTING: f64 = 1e-9;
-/// Where the load's ground is.
+/// Name of the position of the load's ground.
 const GROUND: &str = "ground_position_m";
-/// What a sampled controller holds.
+/// Name of the held command of a sampled controller.
 const HELD: &str = "held_command_v";
 
-/// The memories of a sampled controller, numbered from 1.
+/// Names of the memories of a sampled controller, numbered from 1.
 fn remembered(number: usize) -> String {
     format!("controller_memory_{number}")
 }
 
-/// The end of a run, or why it is not saved.
+/// Final state of a run, or the reason why it is not saved.
 pub(super) fn of_end(
     bench: &ControlledMachine,
     course: &PreparedScenario,
@@ -136,7 +135,7 @@ pub(super) fn of_end(
 }
 
 impl SavedState {
-    /// As the text of a file.
+    /// Text of the file.
     pub fn text(&self, scenario: &str, sha256: &str) -> String {
         let name = scenario.replace('\\', "\\\\").replace('"', "\\\"");
         let mut text = include_str!("saved_head.toml").to_string();
@@ -166,7 +165,7 @@ impl SavedState {
     }
 }
 
-/// The state in a file for this bench, whose setting begins moved by `setting_change`, or the
+/// State in a file for this bench, whose setting begins with the change `setting_change`, or the
 /// errors of the file.
 pub(super) fn read(
     source: &dyn Source,
@@ -188,7 +187,7 @@ pub(super) fn read(
     }
 }
 
-/// A number below [`SETTING_CHANGE`] and its place; zero where the run before moved no setting.
+/// Number below [`SETTING_CHANGE`] and its place; zero if the previous run moved no setting.
 fn moved_before(root: &TreeNode) -> Option<(f64, Place)> {
     let node = &root.get("state")?.node.get(SETTING_CHANGE)?.node;
     match node.value {
@@ -219,7 +218,7 @@ enum SavedProblem {
     UnknownState(String),
 }
 
-/// Refuses a setting that would jump from where the run before left it.
+/// Rejects a setting that would jump from its final value in the previous run.
 fn goes_on(root: &TreeNode, setting_change: f64, findings: &mut Findings) {
     let (before, place) = moved_before(root).unwrap_or((0.0, root.place));
     if (before - setting_change).abs() > SAME_SETTING {
@@ -228,7 +227,7 @@ fn goes_on(root: &TreeNode, setting_change: f64, findings: &mut Findings) {
     }
 }
 
-/// Every expected number, and no other.
+/// Every expected number; others are errors.
 fn taken(root: &TreeNode, bench: &ControlledMachine, findings: &mut Findings) -> SavedState {
     let known = ["schema", "project_sha256", "scenario", "time_s", "random", "state"];
     for entry in root.entries().iter().filter(|entry| !known.contains(&entry.key.as_str())) {

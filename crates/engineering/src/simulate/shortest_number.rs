@@ -1,12 +1,12 @@
-//! Numbers in as few characters as they need.
+//! Numbers in the fewest characters.
 
 use std::fmt::Write as _;
 
-/// The shortest text that reads back as the same number.
+/// Appends the shortest text that reads back as an identical number.
 pub(crate) fn number(text: &mut String, value: f64) {
     let size = value.abs();
     let plain = size == 0.0 || (1e-4..1e15).contains(&size);
-    // writing to a text does not fail
+    // writing to a text cannot fail
     let _ = if plain { write!(text, "{value}") } else { write!(text, "{value:e}") };
 }
 

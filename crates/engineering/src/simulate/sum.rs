@@ -4,8 +4,8 @@ use std::rc::Rc;
 
 use phea_dynamics::simulation::{Quartic, Stretch};
 
-/// The terms of a signal: indices of the observed states, and of inputs, each with its weight; and
-/// of states that it depends on in another way, as on the deflection of a progressive spring.
+/// Terms of a signal: indices of the observed states, and of inputs, each with its weight; and of
+/// states on which it depends nonlinearly, as on the deflection of a progressive spring.
 ///
 /// ```text
 /// s = sum of a_i y_i + sum of f_k(y_k) + sum of b_j w_j
@@ -17,20 +17,20 @@ pub(super) struct SignalSum<'a> {
     inputs: Vec<(usize, f64)>,
 }
 
-/// What a state contributes.
+/// Contribution of a state.
 type Term<'a> = Box<dyn Fn(f64) -> f64 + 'a>;
 
-/// A value of a state for which a term that is a multiple of it has this share of its weight.
+/// Value of a state at which a proportional term has this fraction of its weight.
 const SMALL: f64 = 1e-3;
-/// Relative deviation from a multiple up to which it is rounding.
+/// Relative deviation from proportionality that counts as rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Parts of a step through whose values a polynomial of degree four is laid.
+/// Points of a step through whose values a polynomial of degree four is fitted.
 const QUARTERS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 impl<'a> SignalSum<'a> {
-    /// From a signal that is such a sum: its value for each of these states, and for each input,
-    /// alone.
+    /// Sum from a signal that has this form: its value for each of these states, and for each
+    /// input, with all others zero.
     pub(super) fn of(
         wanted: &[usize],
         [states, inputs]: [usize; 2],
@@ -58,7 +58,7 @@ impl<'a> SignalSum<'a> {
         sum
     }
 
-    /// The contribution of the states over a step.
+    /// Contribution of the states over a step.
     #[inline]
     pub(super) fn over(&self, states: &[Quartic]) -> Quartic {
         let straight = self.states.iter().fold(Quartic::constant(0.0), |sum, &(place, weight)| {
@@ -70,19 +70,19 @@ impl<'a> SignalSum<'a> {
         })
     }
 
-    /// The contribution of the states at one time.
+    /// Contribution of the states at one time.
     pub(super) fn at(&self, states: &[f64]) -> f64 {
         let value = |place: usize| states.get(place).copied().unwrap_or(f64::NAN);
         let straight: f64 = self.states.iter().map(|&(place, weight)| weight * value(place)).sum();
         straight + self.curved.iter().map(|(place, term)| term(value(*place))).sum::<f64>()
     }
 
-    /// Whether inputs contribute to it.
+    /// True if inputs contribute to the signal.
     pub(super) fn has_inputs(&self) -> bool {
         !self.inputs.is_empty()
     }
 
-    /// The contribution of the inputs over a part of a step.
+    /// Contribution of the inputs over a part of a step.
     pub(super) fn driven(&self, stretch: &Stretch<'_>, part: f64, inputs: &mut [f64]) -> f64 {
         stretch.inputs_at(part, inputs);
         let part = |&(place, weight): &(usize, f64)| weight * inputs.get(place).copied().unwrap_or(f64::NAN);
@@ -92,7 +92,7 @@ impl<'a> SignalSum<'a> {
 
 #[cfg(test)]
 impl SignalSum<'_> {
-    /// One state by itself.
+    /// A single state.
     pub(super) fn single(place: usize) -> Self {
         SignalSum { states: vec![(place, 1.0)], ..SignalSum::default() }
     }

@@ -6,7 +6,7 @@ use phea_machine::Control;
 use super::bench::ControlledMachine;
 use super::sum::SignalSum;
 
-/// The pressures of chambers A and B.
+/// Pressures of chambers A and B.
 pub(super) fn pressures<'a>(bench: &'a ControlledMachine, wanted: &[usize]) -> [SignalSum<'a>; 2] {
     let others = bench.control.leading_inputs();
     [0, 1].map(|side| {
@@ -17,15 +17,15 @@ pub(super) fn pressures<'a>(bench: &'a ControlledMachine, wanted: &[usize]) -> [
     })
 }
 
-/// The machine's own force, before the sensor.
+/// Force of the machine, before the sensor.
 pub(super) fn force<'a>(bench: &'a ControlledMachine, wanted: &[usize]) -> SignalSum<'a> {
     let others = bench.control.leading_inputs();
     let force = move |state: &[f64], inputs: &[f64]| bench.machine.measurement(state, &inputs[others..]);
     SignalSum::of(wanted, bench.control.size(), force)
 }
 
-/// The command of a continuous controller before its limit, or the stated command of an open loop;
-/// zero for a sampled controller.
+/// Command of a continuous controller before its limit, or the stated command of an open loop; zero
+/// for a sampled controller.
 pub(super) fn command<'a>(bench: &'a ControlledMachine, wanted: &[usize]) -> SignalSum<'a> {
     match &bench.control {
         Control::Continuous(closed) => {

@@ -6,25 +6,25 @@ use super::follower::LAST_PLACES;
 use super::metrics::{Measured, Unmeasured, stays_settled};
 use super::{Cause, Metrics, Window};
 
-/// Share of a window, at its end, over which the steady-state error is averaged.
+/// Fraction of a window, at its end, over which the steady-state error is averaged.
 const STEADY_SHARE: f64 = 0.1;
-/// Parts of the step between which the rise time is taken.
+/// Fractions of the step between which the rise time is taken.
 const RISE: [f64; 2] = [0.1, 0.9];
-/// Change of an extreme that justifies no refinement, as a share of the largest deviation.
+/// Change of an extreme that justifies no refinement, as a fraction of the largest deviation.
 const WORTH: f64 = 1e-7;
 
 /// An interval of time with all signals over it.
 pub(super) struct Passed {
     pub(super) times_s: [f64; 2],
     pub(super) force: Quartic,
-    /// None in an open loop.
+    /// `None` in an open loop.
     pub(super) reference: Option<Quartic>,
     pub(super) command: CommandStretch,
 }
 
 /// A command over an interval of time, V.
 pub(super) enum CommandStretch {
-    /// The command of the controller, limited.
+    /// Command of the controller, limited.
     Wanted {
         wanted: Quartic,
         limit: f64,
@@ -35,8 +35,8 @@ pub(super) enum CommandStretch {
 /// The running metrics of a window.
 ///
 /// ```text
-/// deviation    of a step of the reference: how far the force is beyond its new value, in the direction of the step
-///              of all else: reference less force; in an open loop the force
+/// deviation    for a step of the reference: force minus its new value, in the direction of the step
+///              for all else: reference minus force; in an open loop the force
 /// ```
 pub(super) struct Tally {
     pub(super) window: Window,
@@ -49,25 +49,25 @@ pub(super) struct Tally {
     extremes: [f64; 2],
     /// Largest difference of force and reference, N.
     tracking_error: f64,
-    /// The constant reference so far, N; whether it moved, and whether it did so in the last part.
+    /// Constant reference so far, N; true if it moved, and true if it did so in the last part.
     reference: Option<f64>,
     moves: bool,
     moves_late: bool,
     open_loop: bool,
-    /// When the force first reached each share of the step, s.
+    /// Times at which the force first reached each fraction of the step, s.
     reached_s: [Option<f64>; 2],
-    /// When the deviation last was outside the band, s; absent if it never was.
+    /// Time at which the deviation last was outside the band, s; absent if it never was.
     outside_s: Option<f64>,
     ends_outside: bool,
-    /// Integral of reference less force over the last part, N s.
+    /// Integral of reference minus force over the last part, N s.
     late_error: f64,
-    /// V and V^2 s.
+    /// Peak of the command, V, and integral of its square, V^2 s.
     command_peak: f64,
     command_square: f64,
 }
 
 impl Tally {
-    /// An empty record, with the reference at the end of the window in N; `None` in an open loop.
+    /// An empty record, with the reference at the end of the window, N; `None` in an open loop.
     pub(super) fn new(window: Window, band_percent: f64, last_reference: Option<f64>) -> Tally {
         let height = match window.cause {
             Cause::ReferenceStep { from_n, to_n } => to_n - from_n,
@@ -105,7 +105,7 @@ impl Tally {
         }
     }
 
-    /// Records an interval of time, from one share of it to another.
+    /// Records an interval of time, between two fractions of it.
     pub(super) fn pass(&mut self, passed: &Passed, span: [f64; 2]) {
         let [start_s, end_s] = passed.times_s;
         let time_at = |part: f64| start_s + part * (end_s - start_s);
@@ -199,7 +199,7 @@ impl Tally {
         }
     }
 
-    /// Whether a step whose force is known by a cubic alone may hold an extreme that counts, or
+    /// True if a step whose force is known only by a cubic may contain an extreme that counts, or
     /// leave the band.
     pub(super) fn looks_closer(&self, force: &Quartic, reference: Option<f64>) -> bool {
         let reference = reference.map(Quartic::constant);
@@ -215,7 +215,7 @@ impl Tally {
         high > highest + worth || falls || !(inside || outside)
     }
 
-    /// What it comes to.
+    /// Metrics of the window.
     pub(super) fn metrics(&self) -> Metrics {
         let Window { start_s, end_s, cause } = self.window;
         if self.followed_until_s <= start_s {

@@ -1,52 +1,52 @@
-//! The required step response of the force, and whether a step of the machine satisfies it.
+//! Requirement for the step response of the force, and its comparison with a step of the machine.
 
 use super::{Cause, Metrics, Unmeasured, Window};
 use crate::project::{RequiredStep, SETTLING_BAND_PERCENT};
 use crate::specification::CheckedWish;
 
-/// Tolerance in percent of the required value: printed numbers have three digits.
+/// Relative tolerance of the required value: printed numbers have three digits.
 const ROUNDED: f64 = 1e-6;
-/// Percent of a step: a simulated overshoot below it counts as none.
+/// Simulated overshoot that counts as zero below this value, percent of the step.
 pub const NO_OVERSHOOT_PERCENT: f64 = 0.01;
-/// How long a step is looked at first: in rise times, or without one in s.
+/// Duration for which a step is first simulated: in rise times, or without one in s.
 const RISES: f64 = 3.0;
 const HORIZON_S: f64 = 0.1;
 
-/// Wishes of the first tracking specification that has any: the overshoot of its upper limit, the
-/// settling time of its lower one.
+/// Requirements in time of the first tracking specification that has any: the overshoot of its
+/// upper limit, the settling time of its lower one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackingWish {
-    /// Most overshoot, percent of the step.
+    /// Largest permitted overshoot, percent of the step.
     pub overshoot_percent: Option<f64>,
-    /// Settled by then, s.
+    /// Required settling time, s.
     pub settling_time_s: Option<f64>,
-    /// From 10 to 90 percent of the step within this time, s.
+    /// Required rise time, from 10 to 90 percent of the step, s.
     pub rise_time_s: Option<f64>,
-    /// The band of the settling time, percent of the step.
+    /// Band of the settling time, percent of the step.
     pub band_percent: f64,
-    /// The settling time of the lower limit, or of the upper one where only that states one, s: how
-    /// long a step is looked at first.
+    /// Settling time of the lower limit, or of the upper one if only that states one, s: duration
+    /// for which a step is first simulated.
     pub horizon_s: f64,
 }
 
-/// What a step does.
+/// Properties of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReachedStep {
-    /// Percent of the step.
+    /// Overshoot, percent of the step.
     pub overshoot_percent: f64,
-    /// s, infinite where it does not settle.
+    /// Settling time, s; infinite if the step does not settle.
     pub settling_time_s: f64,
-    /// From 10 to 90 percent, s, infinite where it does not rise so far.
+    /// Rise time from 10 to 90 percent, s; infinite if the step does not rise that far.
     pub rise_time_s: f64,
 }
 
-/// A number to twelve digits: 1.65 where 1.1 times 1.5 is 1.6500000000000001.
+/// A number to twelve digits: 1.65 for 1.1 times 1.5, which is 1.6500000000000001.
 fn rounded(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }
 
 impl TrackingWish {
-    /// The requirement of nothing.
+    /// Requirement without any limit.
     pub(crate) const NOTHING: TrackingWish = TrackingWish {
         overshoot_percent: None,
         settling_time_s: None,
@@ -55,12 +55,13 @@ impl TrackingWish {
         horizon_s: HORIZON_S,
     };
 
-    /// The wish of these limits; `None` if there is none.
+    /// Requirement in time of these limits; `None` if there is none.
     pub fn of(wishes: &[CheckedWish]) -> Option<TrackingWish> {
         TrackingWish::of_specification(wishes, wishes.first()?.number)
     }
 
-    /// The wish of the limits of one specification, by its number from 1; `None` if there is none.
+    /// Requirement in time of the limits of one specification, by its number from 1; `None` if
+    /// there is none.
     pub fn of_specification<'a>(
         wishes: impl IntoIterator<Item = &'a CheckedWish> + Clone,
         number: usize,
@@ -79,7 +80,7 @@ impl TrackingWish {
         })
     }
 
-    /// What a specification of the kind `step` requires.
+    /// Requirement of a specification of the kind `step`.
     pub(crate) fn of_step(step: &RequiredStep) -> TrackingWish {
         let of_rise = step.rise_time.map(|time_s| RISES * time_s);
         TrackingWish {
@@ -91,7 +92,7 @@ impl TrackingWish {
         }
     }
 
-    /// The requirement that allows this many times as much of each property, to twelve digits.
+    /// The requirement with this multiple of each permitted property, to twelve digits.
     pub fn wider(self, factor: f64) -> TrackingWish {
         let times = |value: f64| rounded(factor * value);
         TrackingWish {
@@ -103,20 +104,20 @@ impl TrackingWish {
         }
     }
 
-    /// Whether a step satisfies it, up to the rounding of printed numbers. An overshoot below
-    /// a hundredth of a percent counts as none.
+    /// True if a step satisfies the requirement, up to the rounding of printed numbers. An
+    /// overshoot below a hundredth of a percent counts as zero.
     pub fn is_satisfied(&self, reached: &ReachedStep) -> bool {
         self.excess(reached) <= 1.0 + ROUNDED
     }
 
-    /// The largest ratio of what a step reaches to what is required; zero where nothing is.
+    /// Largest ratio of a reached property to the required one; zero if nothing is required.
     pub fn excess(&self, reached: &ReachedStep) -> f64 {
         self.excesses(reached)[0]
     }
 
-    /// The ratio of what a step reaches to what is required, of each property; the largest first,
-    /// zero where nothing is required. Of two steps that never settle the one with the larger
-    /// second ratio is the worse.
+    /// Ratios of the reached properties of a step to the required ones, the largest first; zero if
+    /// nothing is required. Of two steps that never settle, the one with the larger second ratio is
+    /// worse.
     pub fn excesses(&self, reached: &ReachedStep) -> [f64; 3] {
         let overshoot_percent = self.overshoot_percent.map(|most| most.max(NO_OVERSHOOT_PERCENT));
         let each = [
@@ -129,15 +130,15 @@ impl TrackingWish {
         ratios
     }
 
-    /// True where the overshoot of a step satisfies it; `None` where none is required or the window
-    /// contains no step.
+    /// True if the overshoot of a step satisfies the requirement; `None` if none is required or the
+    /// window contains no step.
     pub fn overshoot_satisfied(&self, metrics: &Metrics) -> Option<bool> {
         let most = self.overshoot_percent?;
         let reached = metrics.overshoot_percent.ok()?;
         Some(reached <= most + ROUNDED * most.max(1.0))
     }
 
-    /// True where the settling time satisfies it; `None` also where the two bands differ.
+    /// True if the settling time satisfies the requirement; `None` also if the two bands differ.
     pub fn settling_satisfied(&self, metrics: &Metrics) -> Option<bool> {
         let most = self.settling_time_s?;
         metrics.overshoot_percent.ok()?;
@@ -149,7 +150,7 @@ impl TrackingWish {
         }
     }
 
-    /// Lines of times in s and forces in N that the force should not cross after each step of these
+    /// Lines of times, s, and forces, N, that the force should not cross after each step of these
     /// windows that begins within a span: above it, and below it once it should have settled.
     pub fn lines<'a>(
         &self,

@@ -3,14 +3,15 @@ use std::f64::consts::PI;
 use super::{HoseName, SizingProblem, SizingStep};
 use phea_dynamics::order::sort_by_number;
 
-/// What the oil velocity says about a bore.
+/// Verdict of the oil velocity on a bore.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoreVerdict {
     /// The velocity is within the recommended range.
     Recommended,
-    /// Slower than recommended: larger and more expensive than necessary, but acceptable.
+    /// The oil is slower than recommended: the bore is larger and more expensive than necessary,
+    /// but acceptable.
     Slow,
-    /// Faster than recommended: refused.
+    /// The oil is faster than recommended: the bore is rejected.
     TooFast,
 }
 
@@ -19,11 +20,11 @@ pub enum BoreVerdict {
 pub struct CommercialBore {
     /// Dash size or product.
     pub name: HoseName,
-    /// m.
+    /// Bore, m.
     pub bore_m: f64,
     /// Mean oil velocity at the largest flow, m/s.
     pub oil_velocity_m_per_s: f64,
-    /// What it says.
+    /// Verdict of this velocity.
     pub verdict: BoreVerdict,
 }
 
@@ -63,7 +64,7 @@ pub(super) fn range(problem: &SizingProblem) -> [f64; 2] {
 const LOW_PRESSURE_VELOCITY: [f64; 2] = [0.6, 1.2];
 
 /// Bores of the lines without pressure: a return line carries as much as the fuller line, which is
-/// more than the valve takes where the areas differ.
+/// more than the valve takes if the areas differ.
 fn low_pressure_lines(problem: &SizingProblem) -> SizingStep {
     let [slowest, fastest] = LOW_PRESSURE_VELOCITY;
     let bores = |flow: f64| [fastest, slowest].map(|velocity| (4.0 * flow / (PI * velocity)).sqrt());

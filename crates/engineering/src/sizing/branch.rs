@@ -6,24 +6,24 @@ use super::{HoseOption, Question, SizingProblem};
 /// One trial of the iteration over the gain, steps f to j.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GainStep {
-    /// K_p, V/N.
+    /// Gain K_p, V/N.
     pub gain_v_per_n: f64,
-    /// K_H of equation 6.16, N/m; infinite at or below the pole.
+    /// Stiffness K_H of equation 6.16, N/m; infinite at or below the pole.
     pub stiffness_n_per_m: f64,
-    /// L_ho of line A for it, m: zero where no hose is needed.
+    /// Length L_ho of line A for this stiffness, m: zero if no hose is needed.
     pub length_m: f64,
 }
 
 /// A hose with the length and gain that one branch of the flowchart found for it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Branch {
-    /// Whether the gain was given or searched for (left branch) and not the length (right branch).
+    /// True if the gain was given or searched for (left branch) and not the length (right branch).
     pub by_gain: bool,
     /// Stiffness model.
     pub model: StiffnessModel,
-    /// The trials of the left branch.
+    /// Trials of the left branch.
     pub steps: Vec<GainStep>,
-    /// Length of line A and of line B, m; zero where no hose is needed.
+    /// Length of line A and of line B, m; zero if no hose is needed.
     pub lengths_m: [f64; 2],
     /// Stiffness over the stroke at that length.
     pub stiffness: StrokeStiffness,
@@ -31,7 +31,7 @@ pub struct Branch {
     pub gain_v_per_n: f64,
 }
 
-/// The branches of the flowchart that answer the question for one hose and one stiffness model.
+/// Branches of the flowchart for one hose and one stiffness model.
 pub(super) fn branches(
     problem: &SizingProblem,
     option: &HoseOption,
@@ -52,7 +52,7 @@ pub(super) fn branches(
     }
 }
 
-/// Steps k and l: the stiffness of these lengths, and the gain it needs.
+/// Steps k and l: stiffness of these lengths, and the gain that it needs.
 fn at_lengths(
     problem: &SizingProblem,
     option: &HoseOption,
@@ -81,7 +81,7 @@ fn at_gain(
 }
 
 /// Steps f to j: the gain starts at the largest and is halved until the hose is acceptably short or
-/// the gain at its floor; then the largest gain whose hose is acceptable lies between the last two
+/// the gain at its least; then the largest gain whose hose is acceptable is between the last two
 /// trials and is found by bisection.
 fn search(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel) -> Branch {
     let trial = |gain| gain_step(problem, option, model, gain);
@@ -103,9 +103,9 @@ fn search(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel) -
     commercial(problem, option, at_gain(problem, option, model, steps, gain))
 }
 
-/// The largest gain that fits, between one that does and one that does not.
+/// Largest gain that fits, between one that does and one that does not.
 fn largest_gain(mut fitting: f64, mut too_large: f64, fits: impl Fn(f64) -> bool) -> f64 {
-    // 40 halvings leave a relative interval of 1e-12.
+    // 40 bisections leave a relative interval of 1e-12.
     for _ in 0..40 {
         let middle = 0.5 * (fitting + too_large);
         if fits(middle) {
@@ -117,8 +117,8 @@ fn largest_gain(mut fitting: f64, mut too_large: f64, fits: impl Fn(f64) -> bool
     fitting
 }
 
-/// The same hose cut to the next multiple of the increment that is still acceptable, with the gain
-/// for that length.
+/// The hose cut to the next multiple of the increment that is still acceptable, with the gain for
+/// that length.
 fn commercial(problem: &SizingProblem, option: &HoseOption, exact: Branch) -> Branch {
     let proportion = option.proportion(exact.model, problem.fluid_modulus);
     let available = problem.available_length(proportion);
@@ -150,7 +150,7 @@ fn gain_step(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel
 }
 
 impl Branch {
-    /// Whether both lines have the same length.
+    /// True if both lines have equal lengths.
     pub fn is_alike(&self) -> bool {
         self.lengths_m[0] == self.lengths_m[1]
     }

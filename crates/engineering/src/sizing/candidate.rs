@@ -13,24 +13,23 @@ pub struct Candidate {
     pub branch: Branch,
     /// Oil velocity, m/s.
     pub oil_velocity_m_per_s: f64,
-    /// Pressure surge when the largest flow is stopped at once, Pa.
+    /// Pressure surge if the largest flow is stopped at once, Pa.
     pub surge_pressure_pa: f64,
     /// Closed-loop time constant at the least and at the greatest stiffness over the stroke, s.
     pub time_constant_s: [f64; 2],
-    /// Steady-state gain K_SS at the null flow-pressure coefficient, and at its largest where
-    /// stated.
+    /// Steady-state gain K_SS at the null flow-pressure coefficient, and at its largest if stated.
     pub steady_state_gain: [f64; 2],
-    /// Reasons, those that reject first.
+    /// Reasons, rejecting ones first.
     pub findings: Vec<SizingReason>,
 }
 
 impl Candidate {
-    /// Whether nothing rejects it, and all that must be known of it is known.
+    /// True if nothing rejects the hose, and all required data of it are known.
     pub fn accepted(&self) -> bool {
         self.fits() && !self.has(Consequence::LeavesOpen)
     }
 
-    /// Whether nothing rejects it, as far as it is known.
+    /// True if nothing that is known rejects the hose.
     pub fn fits(&self) -> bool {
         !self.has(Consequence::Rejects)
     }
@@ -39,7 +38,7 @@ impl Candidate {
         self.findings.iter().any(|finding| finding.consequence() == consequence)
     }
 
-    /// Length of line A, and of each line where they are alike, m.
+    /// Length of line A, and of each line if they are alike, m.
     pub fn length_m(&self) -> f64 {
         self.branch.lengths_m[0]
     }
@@ -69,7 +68,7 @@ pub(super) fn assess(problem: &SizingProblem, option: &HoseOption, branch: Branc
     let mut findings = Vec::new();
     length(problem, &candidate, &mut findings);
     practical_gain(problem, &candidate, &mut findings);
-    // Nothing else can be said about a hose that does not exist.
+    // Further checks do not apply to a hose that does not exist.
     if candidate.length_m() > 0.0 {
         velocity(problem, &candidate, &mut findings);
         pressure(problem, &candidate, &mut findings);
@@ -114,7 +113,7 @@ fn length(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<Siz
     let [length_a, length_b] = candidate.branch.lengths_m;
     let (length, least, greatest) = (length_a, length_a.min(length_b), length_a.max(length_b));
     if length == 0.0 && candidate.branch.gain_v_per_n <= problem.pole_gain() {
-        // No stiffness would suffice; the finding on the gain says so.
+        // No stiffness would suffice; the finding on the gain reports this.
     } else if length == 0.0 {
         findings.push(SizingReason::NoHoseNeeded(candidate.branch.model));
     } else if least < shortest {
@@ -149,7 +148,7 @@ fn pressure(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<S
     }
 }
 
-/// The expansion is known up to the pressure it is stated at.
+/// Checks that the expansion is known up to the supply pressure.
 fn expansion(problem: &SizingProblem, option: &HoseOption, findings: &mut Vec<SizingReason>) {
     let supply = problem.supply_pressure;
     if let Some(stated) = option.expansion_stated_at.filter(|stated| supply > stated * (1.0 + 1e-9)) {
@@ -166,14 +165,15 @@ fn bending(candidate: &Candidate, findings: &mut Vec<SizingReason>) {
     }
 }
 
-/// A wall with its static modulus is softer than measured dynamic values of braided hoses.
+/// Checks the wall: with its static modulus it is softer than measured dynamic values of braided
+/// hoses.
 fn stiffening(option: &HoseOption, findings: &mut Vec<SizingReason>) {
     if option.hoses.iter().any(|hose| hose.dynamic_stiffening.maximum <= 1.0) {
         findings.push(SizingReason::StaticWall);
     }
 }
 
-/// The time constant with the flow gains of both sides of null, at the least stiffness.
+/// Checks the time constant with the flow gains of both sides of null, at the least stiffness.
 fn null_sides(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<SizingReason>) {
     findings.extend(problem.dead_band.map(|share| SizingReason::DeadBand { share }));
     let Some(flow_gains) = problem.null_flow_gains else { return };
@@ -190,7 +190,7 @@ fn settling(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<S
         findings.push(SizingReason::SlowLoop { time_constant: slowest, desired: problem.time_constant });
     }
     let [at_null, at_largest] = candidate.steady_state_gain;
-    // Without a positive gain there is no loop; the gain itself is rejected above.
+    // There is no loop without a positive gain; the gain itself is rejected above.
     if candidate.branch.gain_v_per_n > 0.0 && at_largest < 0.95 {
         findings.push(SizingReason::SteadyStateGain { at_null, at_largest });
     }

@@ -21,48 +21,48 @@ use crate::simulate::time_requirements;
 const OIL_VELOCITY: [f64; 2] = [2.1, 4.6];
 /// Smallest practical gain, V/N (Ledezma 2019, section 6.3.2, step j).
 const MINIMUM_GAIN: f64 = 1e-4;
-/// Gain at which the search starts, V/N (the same, step f: a unitary value).
+/// Gain at which the search starts, V/N (Ledezma 2019, section 6.3.2, step f: a unitary value).
 const MAXIMUM_GAIN: f64 = 1.0;
-/// A settling time that is longer by less is that which is required.
+/// Ratio of a settling time to the required one up to which they count as equal.
 const ROUNDED: f64 = 1.001;
-/// Acceptable length of a line where the project states none, m.
+/// Acceptable length of a line if the project states none, m.
 const HOSE_LENGTH: [f64; 2] = [0.1, 10.0];
 
 /// Reason why a project cannot be sized.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SizingError {
-    /// The rig cannot be computed with.
+    /// The rig cannot be computed.
     #[error(transparent)]
     Rig(#[from] RigError),
-    /// There is nothing to size for.
+    /// The project does not request a sizing.
     #[error(
         "the project has no [sizing]: add one with `time_constant`, or `settling_time` and `settling_band_percent`"
     )]
     Absent,
-    /// The gas of an accumulator would share the work of the hose.
+    /// The gas of an accumulator would do part of the work of the hose.
     #[error(
         "sizing finds the hose that is soft enough by itself and counts no gas: size without [line] `accumulator`"
     )]
     Accumulator,
-    /// A capacity between the chambers would share the work of the hose.
+    /// A capacity between the chambers would do part of the work of the hose.
     #[error(
         "sizing finds the hose that is soft enough by itself and counts no capacity between the chambers: size without [cross_port] `kind` = \"dynamic_pressure_feedback\""
     )]
     Capacity,
-    /// The procedure has one area.
+    /// The procedure has one area over the stroke.
     #[error(
         "sizing has one area over the stroke, and the stages of a telescopic piston have several: size for one of them, without [[cylinder.stage]], with its areas and its share of the stroke"
     )]
     Stages,
-    /// The catalogue contains nothing to choose from.
+    /// The catalogue contains no suitable hose.
     #[error("no hose with bore and volumetric expansion in the catalogue or the project")]
     NoHose,
 }
 
-/// Everything the sizing procedure needs, resolved from project, rig and catalogue.
+/// Input of the sizing procedure, resolved from project, rig and catalogue.
 ///
 /// # Errors
-/// [`SizingError`] if the project does not state what to size for.
+/// [`SizingError`] if the project does not state the target of the sizing.
 pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<SizingProblem, SizingError> {
     let (project, rig) = (setup.project, setup.rig()?);
     let wish = project.sizing.as_ref().ok_or(SizingError::Absent)?;
@@ -122,7 +122,7 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
     })
 }
 
-/// Parts beside which the procedure's model does not hold.
+/// Rejects parts for which the procedure's model does not hold.
 fn refuse_what_no_hose_is_sized_for(components: &Components) -> Result<(), SizingError> {
     if components.accumulators.iter().any(Option::is_some) {
         return Err(SizingError::Accumulator);
@@ -136,7 +136,7 @@ fn refuse_what_no_hose_is_sized_for(components: &Components) -> Result<(), Sizin
     }
 }
 
-/// What the specimen is to a hose that is sized: the wall that is sized for is touched.
+/// Load for which a hose is sized: a wall is assumed to be in contact.
 fn sized_load(declared: &project::DeclaredActuator, rig: &Rig) -> SizedLoad {
     match (&declared.load, rig.load_stiffness()) {
         (Load::Prescribed, _) => SizedLoad::Prescribed,
@@ -148,7 +148,7 @@ fn sized_load(declared: &project::DeclaredActuator, rig: &Rig) -> SizedLoad {
     }
 }
 
-/// The linear parameters in use, with series element and load in series with the force sensor.
+/// Linear parameters in use, with series element and load in series with the force sensor.
 fn against_load(declared: &project::DeclaredActuator, rig: &Rig) -> LinearParameters {
     let softened = rig.softened(&rig.linear);
     match sized_load(declared, rig) {
@@ -159,7 +159,7 @@ fn against_load(declared: &project::DeclaredActuator, rig: &Rig) -> LinearParame
     }
 }
 
-/// What the other means are sized from, where somebody asks.
+/// Input for the other means, if they are requested.
 fn other_means(
     wish: &project::DeclaredSizing,
     declared: &project::DeclaredActuator,
@@ -175,8 +175,8 @@ fn other_means(
     })
 }
 
-/// s, and where it comes from: a first-order response enters a band of b percent after ln(100/b)
-/// time constants.
+/// Time constant, s, and its origin: a first-order response enters a band of b percent after
+/// ln(100/b) time constants.
 fn time_constant(speed: Speed) -> (f64, TimeConstantOrigin) {
     match speed {
         Speed::TimeConstant(time) => (time, TimeConstantOrigin::Stated),
@@ -188,8 +188,8 @@ fn time_constant(speed: Speed) -> (f64, TimeConstantOrigin) {
     }
 }
 
-/// The hoses of the catalogue, with the values that the project states for one of the same name, on
-/// both sides; its own that have no name, or differ between its sides.
+/// Hoses of the catalogue, with the values that the project states for a hose of that name, on both
+/// sides; and the project's hoses that have no name, or differ between its sides.
 fn hoses(actuator: &project::DeclaredActuator, catalogue: &Catalogue) -> Vec<HoseOption> {
     let lines = [&actuator.line.a, &actuator.line.b];
     let own = lines.map(|line| line.hose());
@@ -230,13 +230,13 @@ fn hoses(actuator: &project::DeclaredActuator, catalogue: &Catalogue) -> Vec<Hos
             None => hoses.extend(entry.hose.as_ref().map(|hose| option(name, [hose; 2]))),
         }
     }
-    // a name of the catalogue is none of the project's own
+    // a name of the catalogue is not one of the project's hoses
     let own = declared.filter(|(_, name)| !matches!(name, HoseName::Both(Some(_))));
     hoses.extend(own.map(|(own, name)| option(name, own)));
     hoses
 }
 
-/// The name of the hoses of a project among those to choose from; `None` where it has none.
+/// Name of the hoses of a project among those to choose from; `None` if it has none.
 pub(crate) fn own_hoses(actuator: &project::DeclaredActuator) -> Option<HoseName> {
     let lines = [&actuator.line.a, &actuator.line.b];
     let [name_a, name_b] = lines.map(|line| line.hose_name().map(str::to_string));
@@ -261,7 +261,7 @@ fn unlike(actuator: &project::DeclaredActuator) -> Option<UnlikeLines> {
     }
 }
 
-/// The requirement in time that asks for most beyond what this time constant reaches.
+/// Requirement in time that needs the shortest time constant, if this time constant misses it.
 ///
 /// ```text
 /// t_s = tau_d ln(100/band)                    of a first-order response, the band in percent
@@ -277,7 +277,8 @@ fn sooner(project: &Project, time_constant_s: f64) -> Option<SoonerRequirement> 
     each.max_by(|one, other| beyond(one).total_cmp(&beyond(other)))
 }
 
-/// K_qU at null over that beyond the lap of a valve whose edges overlap, where no K_qU is stated.
+/// Ratio of K_qU at null to that beyond the lap, for a valve whose edges overlap, if no K_qU is
+/// stated.
 fn dead_band(setup: &Setup<'_>, stated: Option<f64>) -> Result<Option<f64>, SizingError> {
     let components = setup.rig()?.actuator.components();
     let is_stated = stated.or(setup.project.linear.get("flow_gain")).is_some();

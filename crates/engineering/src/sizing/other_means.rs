@@ -1,4 +1,4 @@
-//! The stiffness of the hose by other means: a pipe, gas at the chambers, a spring on the rod; and
+//! Other means for the stiffness of the hose: a pipe, gas at the chambers, a spring on the rod; and
 //! a valve between the chambers that damps the mode of the load cell.
 
 use phea_dynamics::linear::{Polynomial, TransferFunction};
@@ -12,30 +12,30 @@ use phea_hydraulics::series::{CoilPair, CoilWire, LEAST_ACTIVE_COILS, coil_pair}
 
 use crate::project::OtherMeansWish;
 
-/// What the other means are sized from.
+/// Input for the sizing of the other means.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OtherMeansProblem {
-    /// What is asked.
+    /// Request of the project.
     pub wish: OtherMeansWish,
-    /// The rig, with the lines that it declares.
+    /// Rig with the lines that it declares.
     pub actuator: Actuator,
-    /// Its linear parameters, the stiffness of a series element in series with the force sensor.
+    /// Linear parameters, with the stiffness of a series element in series with the force sensor.
     pub linear: LinearParameters,
     /// Position at the operating point, m.
     pub position: f64,
-    /// m, stroke and `cylinder.dead_length`; `None` where that is not stated.
+    /// Sum of stroke and `cylinder.dead_length`, m; `None` if the latter is not stated.
     pub length: Option<f64>,
 }
 
 /// The other means.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OtherMeans {
-    /// K_H that is required of them, N/m.
+    /// Required K_H, N/m.
     pub stiffness: f64,
-    /// Least K_H over the stroke of the chambers without any line, N/m.
+    /// Least K_H over the stroke of the chambers without a line, N/m.
     pub chambers: f64,
-    /// m, of the actuator from mount to mount, retracted, with the hose and all means but the
-    /// spring; `None` where `cylinder.dead_length` is not stated.
+    /// Length of the actuator from mount to mount, retracted, with the hose and all means except
+    /// the spring, m; `None` if `cylinder.dead_length` is not stated.
     pub actuator_length: Option<f64>,
     /// A pipe to each chamber.
     pub pipe: Result<SizedPipe, OtherMeansError>,
@@ -43,14 +43,14 @@ pub struct OtherMeans {
     pub gas: Result<SizedGas, OtherMeansError>,
     /// A spring on the rod.
     pub spring: Result<SizedSpring, OtherMeansError>,
-    /// A valve between the chambers: of the rig as declared, and of its chambers without any line.
+    /// A valve between the chambers: of the rig as declared, and of its chambers without a line.
     pub valves: Result<[SizedValve; 2], OtherMeansError>,
 }
 
-/// Reason for which one of the other means is not sized.
+/// Reason why one of the other means is not sized.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum OtherMeansError {
-    /// Nothing has to be softer than the chambers are.
+    /// No means has to be softer than the chambers are.
     #[error("the chambers without any line are as soft")]
     ChambersAreAsSoft,
     /// No pipe is as soft.
@@ -62,10 +62,10 @@ pub enum OtherMeansError {
     /// The forces of the gas are not stated.
     #[error("not stated: sizing.other_means.force_range")]
     NoForceRange,
-    /// A force of the range is beyond what the rig holds.
+    /// The rig cannot hold a force of the range.
     #[error("the rig does not hold every force of sizing.other_means.force_range")]
     ForceNotHeld,
-    /// The lowest chamber pressure leaves no precharge above that of the tank.
+    /// The lowest chamber pressure leaves no room for a precharge above the pressure of the tank.
     #[error("a chamber comes so near to the tank in this range that no precharge lies below it")]
     NoPrecharge,
     /// The damping ratio of the valve is not stated.
@@ -73,7 +73,7 @@ pub enum OtherMeansError {
     NoDampingRatio,
 }
 
-/// Reason for which the coils of a spring are not known.
+/// Reason why the coils of a spring are not known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CoilUnknown {
     /// The wire is not stated.
@@ -85,66 +85,66 @@ pub enum CoilUnknown {
 /// A pipe to each chamber.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizedPipe {
-    /// m, that of the hose.
+    /// Bore, equal to that of the hose, m.
     pub bore: f64,
-    /// m, of each.
+    /// Length of each, m.
     pub length: f64,
-    /// m3, of oil in both.
+    /// Volume of oil in both, m3.
     pub oil: f64,
 }
 
 /// Equal accumulators at both chambers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizedGas {
-    /// m3, of each at its precharge.
+    /// Volume of each at its precharge, m3.
     pub volume: f64,
-    /// Pa, gauge.
+    /// Precharge, gauge pressure, Pa.
     pub precharge: f64,
-    /// Supply pressure over precharge, both absolute: for the maker's limit.
+    /// Ratio of supply pressure to precharge, both absolute: for the maker's limit.
     pub pressure_ratio: f64,
-    /// Softest and stiffest least K_H over the stroke between the forces, N/m.
+    /// Softest and stiffest least K_H over the stroke, at forces within the range, N/m.
     pub stiffness: [f64; 2],
 }
 
 /// A spring between force sensor and load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizedSpring {
-    /// N/m.
+    /// Stiffness, N/m.
     pub stiffness: f64,
-    /// m, to either side, under the stall force.
+    /// Travel to either side under the stall force, m.
     pub travel: f64,
-    /// How it is wound, or why this is not known.
+    /// Winding of the spring, or the reason why it is not known.
     pub coil: Result<CoilPair, CoilUnknown>,
-    /// m, of the actuator with it from mount to mount, retracted.
+    /// Length of the actuator with the spring from mount to mount, retracted, m.
     pub actuator_length: Option<f64>,
 }
 
 /// A laminar valve between the chambers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizedValve {
-    /// K_H of the rig that it damps, N/m.
+    /// K_H of the rig that the valve damps, N/m.
     pub stiffness: f64,
-    /// Damping ratio of the mode of the load cell without it.
+    /// Damping ratio of the mode of the load cell without the valve.
     pub alone: f64,
-    /// m3/(s Pa), with which the mode is damped as asked; `None` where none does.
+    /// Conductance at which the mode has the required damping, m3/(s Pa); `None` if there is none.
     pub conductance: Option<f64>,
-    /// The greatest damping ratio that any gives, and that conductance.
+    /// Greatest damping ratio of all conductances, and the conductance at which it occurs.
     pub most: [f64; 2],
-    /// W, what the valve loses at the greatest force of the range; `None` without a range.
+    /// Power loss of the valve at the greatest force of the range, W; `None` without a range.
     pub loss: Option<f64>,
 }
 
-/// Halvings of every search: the interval is rounding then.
+/// Number of bisections of every search: the interval is then at rounding level.
 const HALVINGS: usize = 80;
-/// Forces over the range at which gas is compared.
+/// Number of forces over the range at which gas is compared.
 const FORCES: usize = 21;
-/// Conductances that are compared, and how far they extend to either side of the corner of the
+/// Number of conductances that are compared, and their range to either side of the corner of the
 /// chambers.
 const CONDUCTANCES: usize = 400;
 const DECADES: f64 = 4.0;
 
 impl OtherMeansProblem {
-    /// All of them, for a hose of this K_H in N/m and bore in m.
+    /// All other means, for a hose of this K_H, N/m, and bore, m.
     pub(super) fn solve(&self, hose_stiffness: f64, bore: f64) -> OtherMeans {
         let stiffness = self.wish.stiffness.unwrap_or(hose_stiffness);
         let chambers = self.least(&rigid_pipe(bore, 0.0), None, [self.actuator.mean_pressure(); 2]);
@@ -159,7 +159,7 @@ impl OtherMeansProblem {
         }
     }
 
-    /// Least K_H over the stroke in N/m with this line, and this gas, at both chambers.
+    /// Least K_H over the stroke with this line, and this gas, at both chambers, N/m.
     fn least(&self, line: &Line, gas: Option<Accumulator>, pressures: [f64; 2]) -> f64 {
         let components = Components {
             line_a: *line,
@@ -286,8 +286,8 @@ impl OtherMeansProblem {
     }
 }
 
-/// Damping ratio of the mode of the load cell with a laminar conductance in m3/(s Pa) between the
-/// chambers; one where nothing oscillates.
+/// Damping ratio of the mode of the load cell with a laminar conductance between the chambers,
+/// m3/(s Pa); one if nothing oscillates.
 ///
 /// ```text
 /// (C s + K_c + G)(M s^2 + f_v s + K_S) + A^2 s = 0,    C = A^2/K_H                    4.25, 6.6 with the valve shut
@@ -312,7 +312,7 @@ fn rigid_pipe(bore: f64, length: f64) -> Line {
     Line::Pipe { pipe: Pipe { bore, wall: PipeWall::Rigid }, length }
 }
 
-/// Nothing has to be softer than the chambers are.
+/// Checks that the required stiffness is below that of the chambers.
 fn softer(stiffness: f64, chambers: f64) -> Result<(), OtherMeansError> {
     match stiffness < chambers {
         true => Ok(()),
@@ -320,8 +320,8 @@ fn softer(stiffness: f64, chambers: f64) -> Result<(), OtherMeansError> {
     }
 }
 
-/// Where a falling function of a positive number comes to a value; `None` where it does not up to a
-/// million.
+/// Argument at which a falling function of a positive number reaches a value; `None` if there is
+/// none up to a million.
 fn falls_to(value: f64, of: impl Fn(f64) -> f64) -> Option<f64> {
     let mut most = 1e-3;
     while of(most) > value {

@@ -9,49 +9,51 @@ use super::other_means::OtherMeansProblem;
 use super::{SizedSystem, SizingStep};
 use crate::rig::LargestFlow;
 
-/// The input of the procedure, with every value resolved. SI units.
+/// Input of the procedure, with every value resolved, in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SizingProblem {
-    /// What else is sized for the stiffness of the hose; `None` where nobody asks.
+    /// Other means that are sized for the stiffness of the hose; `None` if not requested.
     pub other_means: Option<OtherMeansProblem>,
     /// The cylinder.
     pub cylinder: Cylinder,
-    /// What leaks from chamber to chamber, which K_c of the linear model includes, m3/(s Pa).
+    /// Leakage coefficient from chamber to chamber, which is included in K_c of the linear model,
+    /// m3/(s Pa).
     pub internal_leakage: f64,
-    /// Parameters of the linear model, K_c with what leaks from chamber to chamber, K_S with the
+    /// Parameters of the linear model, K_c with the leakage from chamber to chamber, K_S with the
     /// load in series; the hydraulic stiffness is to be found; its value is not used.
     pub linear: LinearParameters,
-    /// K_S without the load, N/m.
+    /// Stiffness K_S without the load, N/m.
     pub sensor_alone: f64,
     /// The load in series with it.
     pub load: SizedLoad,
     /// K_qU of a spool at null that retracts the piston and of one that extends it, m3/(s V);
-    /// `None` where they are equal or K_qU is stated.
+    /// `None` if they are equal or K_qU is stated.
     pub null_flow_gains: Option<[f64; 2]>,
-    /// K_qU at null over that beyond the lap, of a valve whose edges overlap; `None` of any other,
-    /// and where K_qU is stated.
+    /// Ratio of K_qU at null to that beyond the lap, for a valve whose edges overlap; `None` for
+    /// any other valve, and if K_qU is stated.
     pub dead_band: Option<f64>,
     /// Bulk modulus of the fluid beta_0, Pa.
     pub fluid_modulus: f64,
     /// Density of the fluid, kg/m3.
     pub density: f64,
-    /// The largest K_c of the project's uncertainty, where it states one.
+    /// Largest K_c of the project's uncertainty, if it states one.
     pub flow_pressure_coefficient_maximum: Option<f64>,
     /// Desired closed-loop time constant tau_d, s.
     pub time_constant: f64,
     /// Origin of tau_d.
     pub time_constant_origin: TimeConstantOrigin,
-    /// The requirement in time that needs a shorter one most; `None` where none does.
+    /// Requirement in time that needs the shortest time constant, if it is shorter than the desired
+    /// one; `None` if none is.
     pub sooner: Option<SoonerRequirement>,
-    /// The largest flows of the lines, and what limits them.
+    /// Largest flows of the lines, and their limitation.
     pub flow: LargestFlow,
     /// Recommended oil velocities, lowest and highest, m/s.
     pub oil_velocity: [f64; 2],
-    /// The least proportional gain that is practical, V/N.
+    /// Least practical proportional gain, V/N.
     pub minimum_gain: f64,
-    /// The gain at which the search starts, V/N.
+    /// Gain at which the search starts, V/N.
     pub maximum_gain: f64,
-    /// Hoses are cut to multiples of this, m.
+    /// Increment of hose lengths when cut, m.
     pub length_increment: Option<f64>,
     /// Available length of hose, for both lines together, m.
     pub stock_length: Option<f64>,
@@ -61,7 +63,7 @@ pub struct SizingProblem {
     pub supply_pressure: f64,
     /// The stiffness model the project declares.
     pub model: StiffnessModel,
-    /// Difference between the declared lines; `None` where they are hoses alike.
+    /// Difference between the declared lines; `None` if they are identical hoses.
     pub unlike: Option<UnlikeLines>,
     /// The hoses to choose from.
     pub hoses: Vec<HoseOption>,
@@ -69,22 +71,22 @@ pub struct SizingProblem {
     pub market_bores: Vec<(String, f64)>,
 }
 
-/// The load in the first-order model that a hose is sized with.
+/// Load in the first-order model with which a hose is sized.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SizedLoad {
-    /// Its motion is prescribed, whatever the force: the thesis.
+    /// The motion of the load is prescribed, whatever the force: the thesis.
     Prescribed,
-    /// It yields under the force with this stiffness at the rod, N/m.
+    /// The load yields under the force with this stiffness at the rod.
     Yielding {
-        /// N/m
+        /// Stiffness, N/m.
         stiffness: f64,
     },
-    /// It can move, but no stiffness holds it: the model holds it still.
+    /// The load can move but has no stiffness: the model assumes it at rest.
     HeldStill,
 }
 
 impl SizedLoad {
-    /// N/m, where it yields with one.
+    /// Stiffness, N/m, if the load yields with one.
     pub fn stiffness(self) -> Option<f64> {
         match self {
             SizedLoad::Yielding { stiffness } => Some(stiffness),
@@ -96,13 +98,13 @@ impl SizedLoad {
 /// Origin of the desired time constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TimeConstantOrigin {
-    /// Stated as such.
+    /// Stated time constant.
     Stated,
     /// Time constant of a first-order response with this settling time.
     Settling {
         /// Settling time, s.
         settling_time: f64,
-        /// Its band, percent of the step.
+        /// Settling band, percent of the step.
         band_percent: f64,
         /// Time constants until the response enters the band.
         constants: f64,
@@ -122,28 +124,28 @@ pub struct SoonerRequirement {
     pub required: f64,
 }
 
-/// Difference between the lines as they are declared.
+/// Difference between the lines as declared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnlikeLines {
-    /// The hoses differ: each is sized for the same compliance.
+    /// The hoses differ: each is sized for an equal compliance.
     HosesDiffer,
-    /// Line B is no hose: hoses are sized for both lines.
+    /// Line B is not a hose: hoses are sized for both lines.
     LineBIsNoHose,
-    /// Line A is no hose: hoses are sized for both lines.
+    /// Line A is not a hose: hoses are sized for both lines.
     LineAIsNoHose,
 }
 
 /// Name of a hose, or of a dash size.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum HoseName {
-    /// Name of the hose of both lines; `None` for the project's own hose without a name.
+    /// Name of the hose of both lines; `None` for a hose of the project without a name.
     Both(Option<String>),
     /// Names of the hose of line A and of that of line B, which differ.
     Each([Option<String>; 2]),
 }
 
 impl HoseName {
-    /// The name of a product or a dash size.
+    /// Name of a product or a dash size.
     pub fn named(name: &str) -> HoseName {
         HoseName::Both(Some(name.to_string()))
     }
@@ -154,28 +156,28 @@ impl HoseName {
 pub struct HoseOption {
     /// Name in the catalogue.
     pub name: HoseName,
-    /// Bore, expansion and stiffening of that of line A and that of line B.
+    /// Bore, expansion and stiffening of the hose of line A and of that of line B.
     pub hoses: [Hose; 2],
-    /// Working pressure, Pa, where known: of two the lower.
+    /// Working pressure, Pa, if known: the lower of two.
     pub working_pressure: Option<f64>,
-    /// Pressure at which the expansion is stated, Pa, where it is: of two the lower.
+    /// Pressure at which the expansion is stated, Pa, if it is: the lower of two.
     pub expansion_stated_at: Option<f64>,
-    /// Minimum bend radius, m, where known: of two the greater.
+    /// Minimum bend radius, m, if known: the greater of two.
     pub minimum_bend_radius: Option<f64>,
 }
 
 impl HoseOption {
-    /// Whether both lines have the same hose.
+    /// True if both lines have identical hoses.
     pub fn is_alike(&self) -> bool {
         self.hoses[0] == self.hoses[1]
     }
 
-    /// m, of the narrower, whose oil is the faster.
+    /// Bore of the narrower hose, in which the oil is faster, m.
     pub fn bore(&self) -> f64 {
         self.hoses[0].bore.min(self.hoses[1].bore)
     }
 
-    /// Lengths of both lines in m for a metre of line A, so that each has the same compliance.
+    /// Lengths of both lines, m, per metre of line A, for which both have equal compliance.
     ///
     /// ```text
     /// L_B/L_A = kappa_A/kappa_B
@@ -196,7 +198,7 @@ impl HoseOption {
         [1.0, metre_a / metre_b]
     }
 
-    /// Both lines at these lengths in m.
+    /// Both lines at these lengths, m.
     pub fn lines(&self, lengths: [f64; 2]) -> [Line; 2] {
         let [hose_a, hose_b] = self.hoses;
         [Line::Hose { hose: hose_a, length: lengths[0] }, Line::Hose { hose: hose_b, length: lengths[1] }]
@@ -204,13 +206,13 @@ impl HoseOption {
 }
 
 impl SizingProblem {
-    /// q_max, the largest flow of a line, m3/s.
+    /// Largest flow of a line, q_max, m3/s.
     pub fn maximum_flow(&self) -> f64 {
         self.flow.line()
     }
 
     /// Hydraulic stiffness that gives the desired time constant under gain K_p, thesis (6.16), N/m;
-    /// infinite at and below the gain where not even a rigid transmission is stiff enough.
+    /// infinite at and below the gain at which not even a rigid transmission is stiff enough.
     pub(crate) fn stiffness_for_gain(&self, gain: f64) -> f64 {
         match required_stiffness(&self.linear, self.time_constant, gain) {
             RequiredStiffness::Stiffness(stiffness) => stiffness,
@@ -223,7 +225,7 @@ impl SizingProblem {
         proportional_gain(&self.with_stiffness(stiffness), self.time_constant)
     }
 
-    /// The gain at which equation 6.16 has its pole, V/N.
+    /// Gain at which equation 6.16 has its pole, V/N.
     pub(crate) fn pole_gain(&self) -> f64 {
         rigid_limit_gain(&self.linear, self.time_constant)
     }
@@ -233,7 +235,7 @@ impl SizingProblem {
         LinearParameters { hydraulic_stiffness, ..self.linear }
     }
 
-    /// Stiffness over the stroke with hoses of these lengths in m on side A and on side B.
+    /// Stiffness over the stroke with hoses of these lengths on side A and on side B, m.
     pub fn stroke_stiffness(
         &self,
         option: &HoseOption,
@@ -245,7 +247,7 @@ impl SizingProblem {
         chamber_compliance(model, moduli, &self.cylinder, lines, StiffeningMember::Nominal).over_stroke()
     }
 
-    /// Length of line A when the stock is shared in this proportion, or the longest acceptable one,
+    /// Length of line A if the stock is divided in this proportion, or the longest acceptable one,
     /// whichever is shorter, m.
     pub(crate) fn available_length(&self, proportion: [f64; 2]) -> f64 {
         let [own, other] = proportion;
@@ -275,7 +277,7 @@ impl SizingProblem {
         vec![SizingStep::SystemData(system), time_constant]
     }
 
-    /// Step f: where the search over the gain begins, and what limits it.
+    /// Step f: gain at which the search begins, and its limitation.
     pub(super) fn search_decision(&self) -> SizingStep {
         SizingStep::Search {
             maximum_gain: self.maximum_gain,

@@ -1,11 +1,11 @@
 use phea_hydraulics::stiffness::StiffnessModel;
 
-/// The consequence of a finding.
+/// Consequence of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Consequence {
     /// The candidate is not accepted.
     Rejects,
-    /// The candidate is not accepted until what it states is known.
+    /// The candidate is not accepted until the unknown data are available.
     LeavesOpen,
     /// The candidate is accepted with a warning.
     Warns,
@@ -18,30 +18,30 @@ pub enum SizingReason {
     OilTooFast {
         /// Oil velocity, m/s.
         velocity: f64,
-        /// Highest recommended one, m/s.
+        /// Highest recommended oil velocity, m/s.
         fastest: f64,
     },
     /// The oil is slower than recommended.
     OilSlow {
         /// Oil velocity, m/s.
         velocity: f64,
-        /// Lowest recommended one, m/s.
+        /// Lowest recommended oil velocity, m/s.
         slowest: f64,
     },
-    /// Chambers and hose without any length are compliant enough by this stiffness model.
+    /// Chambers and hose are compliant enough without any length of hose, by this stiffness model.
     NoHoseNeeded(StiffnessModel),
     /// A line is shorter than acceptable.
     TooShort {
         /// Length of the shorter line, m.
         length: f64,
-        /// Shortest acceptable one, m.
+        /// Shortest acceptable length, m.
         shortest: f64,
     },
     /// A line is longer than acceptable.
     TooLong {
         /// Length of the longer line, m.
         length: f64,
-        /// Longest acceptable one, m.
+        /// Longest acceptable length, m.
         longest: f64,
     },
     /// The stock does not suffice.
@@ -51,23 +51,23 @@ pub enum SizingReason {
         /// Length of the stock, m.
         stock: f64,
     },
-    /// Under this gain even a rigid transmission is too slow.
+    /// Even a rigid transmission is too slow under this gain.
     RigidTooSlow {
-        /// K_p, V/N.
+        /// Gain K_p, V/N.
         gain: f64,
         /// Gain at the pole of equation 6.16, V/N.
         pole_gain: f64,
     },
     /// The gain is too small to be practical.
     GainTooSmall {
-        /// K_p, V/N.
+        /// Gain K_p, V/N.
         gain: f64,
-        /// Least practical one, V/N.
+        /// Least practical gain, V/N.
         minimum_gain: f64,
     },
     /// The working pressure of the hose is not stated.
     PressureUnknown {
-        /// Supply pressure and surge, Pa.
+        /// Sum of supply pressure and surge, Pa.
         peak: f64,
         /// Supply pressure, Pa.
         supply: f64,
@@ -79,16 +79,16 @@ pub enum SizingReason {
         /// Supply pressure, Pa.
         supply: f64,
     },
-    /// The working pressure is below supply pressure and surge.
+    /// The working pressure is below the sum of supply pressure and surge.
     BelowSurge {
         /// Working pressure, Pa.
         working: f64,
-        /// Supply pressure and surge, Pa.
+        /// Sum of supply pressure and surge, Pa.
         peak: f64,
     },
     /// The supply pressure is above the pressure at which the expansion is stated.
     ExpansionExtrapolated {
-        /// Pressure at which it is stated, Pa.
+        /// Pressure at which the expansion is stated, Pa.
         stated: f64,
         /// Supply pressure, Pa.
         supply: f64,
@@ -104,12 +104,12 @@ pub enum SizingReason {
     StaticWall,
     /// The edges of the valve overlap, and the gain at null is used.
     DeadBand {
-        /// K_qU at null over that beyond the lap.
+        /// Ratio of K_qU at null to that beyond the lap.
         share: f64,
     },
     /// The flow gain differs between the sides of null.
     NullSides {
-        /// K_qU that retracts the piston and that extends it, m3/(s V).
+        /// K_qU for retracting and for extending the piston, m3/(s V).
         flow_gains: [f64; 2],
         /// Time constant with each of them at the least stiffness, s.
         time_constants: [f64; 2],
@@ -118,7 +118,7 @@ pub enum SizingReason {
     SlowLoop {
         /// Time constant at the least or at the greatest stiffness, the longer, s.
         time_constant: f64,
-        /// Desired one, s.
+        /// Desired time constant, s.
         desired: f64,
     },
     /// A proportional loop misses the reference at rest.
@@ -131,7 +131,7 @@ pub enum SizingReason {
 }
 
 impl SizingReason {
-    /// Its consequence.
+    /// Consequence of the reason.
     pub fn consequence(&self) -> Consequence {
         match self {
             SizingReason::OilTooFast { .. }

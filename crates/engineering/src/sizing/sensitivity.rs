@@ -4,31 +4,31 @@ use phea_hydraulics::stiffness::line_share_for_stiffness;
 use super::{Candidate, HoseOption, SizingProblem};
 use crate::quantity::DisplayUnit;
 
-/// The effect of one uncertain number on stiffness and length as it goes from low to high,
-/// everything else being nominal.
+/// Effect of one uncertain number on stiffness and length as it varies from low to high, everything
+/// else being nominal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Influence {
-    /// The number that is varied.
+    /// Varied number.
     pub quantity: UncertainHoseNumber,
-    /// The unit in which people read its values.
+    /// Unit for display of its values.
     pub unit: DisplayUnit,
-    /// Its low, nominal and high value in SI.
+    /// Low, nominal and high value, SI.
     pub values: [f64; 3],
     /// Least stiffness over the stroke of the chosen length, N/m, at low, nominal and high.
     pub stiffness_n_per_m: [f64; 3],
-    /// Length of line A that keeps the nominal stiffness, m, at low, nominal and high; zero where
-    /// none is needed.
+    /// Length of line A for the nominal stiffness, m, at low, nominal and high; zero if none is
+    /// needed.
     pub length_m: [f64; 3],
 }
 
-/// An uncertain number that stiffness and length depend on.
+/// An uncertain number on which stiffness and length depend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UncertainHoseNumber {
-    /// r_beta of the wall.
+    /// Dynamic stiffening r_beta of the wall.
     DynamicStiffening,
-    /// beta_0.
+    /// Bulk modulus beta_0.
     FluidBulkModulus,
-    /// E.
+    /// Volumetric expansion E.
     VolumetricExpansion,
 }
 
@@ -36,7 +36,7 @@ pub enum UncertainHoseNumber {
 const ASSUMED_SPREAD: f64 = 0.1;
 
 /// Influence of dynamic stiffening (its interval), fluid bulk modulus and volumetric expansion
-/// (plus and minus 10 %), of both hoses where they differ; the values are those of line A.
+/// (plus and minus 10 %), of both hoses if they differ; the values are those of line A.
 pub fn sensitivity(problem: &SizingProblem, candidate: &Candidate) -> Vec<Influence> {
     let option = &candidate.option;
     let hose = option.hoses[0];
@@ -82,7 +82,8 @@ pub fn sensitivity(problem: &SizingProblem, candidate: &Candidate) -> Vec<Influe
                 (SizingProblem { fluid_modulus, ..problem.clone() }, option.clone())
             },
         ),
-        // The slope goes with the expansion: a hose that expands more does so at every pressure.
+        // The slope is proportional to the expansion: a hose that expands more does so at every
+        // pressure.
         influence(
             UncertainHoseNumber::VolumetricExpansion,
             DisplayUnit::CUBIC_CENTIMETRE_PER_METRE,
@@ -98,7 +99,8 @@ fn expanding(hose: Hose, share: f64) -> Hose {
     Hose { volumetric_expansion, operating_expansion, expansion_slope, ..hose }
 }
 
-/// Least stiffness at the candidate's lengths, and the length of line A that keeps its own.
+/// Least stiffness at the candidate's lengths, and the length of line A at which it has the nominal
+/// stiffness.
 fn outcome(problem: &SizingProblem, option: &HoseOption, candidate: &Candidate) -> (f64, f64) {
     let (model, lengths) = (candidate.branch.model, candidate.branch.lengths_m);
     let stiffness = problem.stroke_stiffness(option, lengths, model).minimum;

@@ -2,19 +2,19 @@ use super::problem::{SoonerRequirement, TimeConstantOrigin, UnlikeLines};
 use super::{Branch, HoseName, SizedLoad};
 use crate::rig::LargestFlow;
 
-/// One step of the procedure, with the numbers of what was decided there; letters as in the
-/// flowchart, section 6.3.2.
+/// One step of the procedure, with the numbers of its decision; letters as in the flowchart,
+/// section 6.3.2.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SizingStep {
     /// Step a: the data of the system.
     SystemData(SizedSystem),
     /// Step b: the desired time constant.
     TimeConstant {
-        /// tau_d, s.
+        /// Time constant tau_d, s.
         time_constant: f64,
-        /// Its origin.
+        /// Origin of the time constant.
         origin: TimeConstantOrigin,
-        /// The requirement in time that needs a shorter one.
+        /// Requirement in time that needs a shorter time constant.
         sooner: Option<SoonerRequirement>,
     },
     /// Step c.2: the lowest and the highest recommended oil velocity of pressure lines, m/s.
@@ -41,7 +41,7 @@ pub enum SizingStep {
     },
     /// Step f: the search over the gain.
     Search {
-        /// Gain at which it starts, V/N.
+        /// Initial gain, V/N.
         maximum_gain: f64,
         /// Greatest length of a line, m.
         available_length: f64,
@@ -54,24 +54,24 @@ pub enum SizingStep {
     Branch(HoseName, Branch),
 }
 
-/// The data of the system that a hose is sized for. SI units.
+/// Data of the system for which a hose is sized, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizedSystem {
-    /// A_u, m2.
+    /// Useful area A_u, m2.
     pub useful_area: f64,
     /// Stroke, m.
     pub stroke: f64,
     /// Bulk modulus of the fluid beta_0, Pa.
     pub fluid_modulus: f64,
-    /// K_S without the load, N/m.
+    /// Stiffness K_S without the load, N/m.
     pub sensor_alone: f64,
     /// The load in series with it.
     pub load: SizedLoad,
-    /// K_S with the load in series, N/m.
+    /// Stiffness K_S with the load in series, N/m.
     pub sensor_stiffness: f64,
-    /// K_qU, m3/(s V).
+    /// Flow gain K_qU, m3/(s V).
     pub flow_gain: f64,
-    /// K_c at null, with what leaks from chamber to chamber, m3/(s Pa).
+    /// Flow-pressure coefficient K_c at null, with the leakage from chamber to chamber, m3/(s Pa).
     pub flow_pressure_coefficient: f64,
     /// Leakage from chamber to chamber, m3/(s Pa).
     pub internal_leakage: f64,

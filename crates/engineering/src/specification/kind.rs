@@ -1,15 +1,15 @@
-//! The words of the kinds of specifications.
+//! Words of the kinds of specifications.
 
 use phea_qft::specification::{ClosedLoop, Requirement};
 
 use crate::project::{SPECIFICATION_KINDS, SpecificationKind, word_of};
 
-/// The word of a kind, as the project file spells it.
+/// Word of a kind, as the project file spells it.
 pub fn kind_key(requirement: &Requirement) -> &'static str {
     closed_loop_key(requirement.closed_loop())
 }
 
-/// The word of the kind that limits a closed loop.
+/// Word of the kind that limits a closed loop.
 pub fn closed_loop_key(closed_loop: ClosedLoop) -> &'static str {
     word_of(&SPECIFICATION_KINDS, &SpecificationKind::ClosedLoop(closed_loop))
 }

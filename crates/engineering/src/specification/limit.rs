@@ -1,4 +1,4 @@
-//! A limit over frequency from each form in which it may be written.
+//! Limit over frequency from each form in which it may be written.
 
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_qft::specification::{
@@ -14,15 +14,15 @@ use super::SpecificationProblem;
 use crate::project::{self, MarginWish, Rational, ResponseWish};
 use crate::setup::from_formulas;
 
-/// What a key accepts in addition to the forms that all keys accept.
+/// Forms that a key accepts in addition to those that all keys accept.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Takes {
-    /// Where this is robust stability or the sensitivity.
+    /// Margins, for robust stability or the sensitivity.
     MarginsOf(ClosedLoop),
     Wish(TrackingSide),
 }
 
-/// Which limit of tracking.
+/// Side of tracking that is limited.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum TrackingSide {
     Upper,
@@ -61,7 +61,7 @@ fn function(rational: &Rational) -> Result<TransferFunction, SpecificationProble
     Ok(function.map_err(SpecificationProblem::Formula)??)
 }
 
-/// The strictest of the limits that guarantee the margins, or the one that guarantees the delay.
+/// Strictest of the limits that guarantee the margins, or the one that guarantees the delay.
 fn of_margins(wish: &MarginWish, closed_loop: ClosedLoop) -> Result<Limit, SpecificationProblem> {
     if let (Some(delay_s), ClosedLoop::RobustStability) = (wish.delay_margin, closed_loop) {
         return Ok(delay_margin_limit(delay_s)?);
@@ -93,7 +93,8 @@ fn of_margins(wish: &MarginWish, closed_loop: ClosedLoop) -> Result<Limit, Speci
     strictest.map(Limit::Constant).ok_or(SpecificationProblem::Missing)
 }
 
-/// The limit that follows from a wish in time, or the one given with it, and its response in time.
+/// Limit that follows from a requirement in time, or the one given with it, and its response in
+/// time.
 pub(super) fn of_wish(
     wish: &ResponseWish,
     side: TrackingSide,

@@ -1,12 +1,12 @@
-//! Specifications that follow from the converters of a sampled controller: how much their rounding
-//! may affect force and command.
+//! Specifications that follow from the converters of a sampled controller: permitted effects of
+//! their rounding on force and command.
 
 use phea_qft::specification::Specification;
 
 use super::SpecificationName;
 use crate::setup::Setup;
 
-/// The specifications of `allowed_force_error` and `allowed_command_error`, with bounds at these
+/// Specifications of `allowed_force_error` and `allowed_command_error`, with bounds at these
 /// frequencies, rad/s.
 pub(crate) fn of_rounding(
     setup: &Setup<'_>,

@@ -1,8 +1,8 @@
-//! The values of a row, as they are written.
+//! Values of a row, as written.
 
 use crate::project::Place;
 
-/// What stands between two values.
+/// Separator between two values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Separator {
     /// A sign of one byte.
@@ -19,7 +19,7 @@ pub(super) struct TextCell<'a> {
 }
 
 impl TextCell<'_> {
-    /// In the text with this index.
+    /// Place in the text with this index.
     pub(super) fn place(&self, text: usize) -> Place {
         Place { text, start: self.start, end: self.start + self.text.len() }
     }
@@ -28,7 +28,7 @@ impl TextCell<'_> {
 /// The values of one row, from left to right.
 pub(super) struct Cells<'a> {
     content: &'a str,
-    /// Of the next value; after the last one, of the next row.
+    /// Position of the next value; after the last one, of the next row.
     pub(super) at: usize,
     separator: Separator,
     has_ended: bool,
@@ -38,12 +38,12 @@ pub(super) struct Cells<'a> {
 const LONGEST_QUOTED: usize = 1000;
 
 impl<'a> Cells<'a> {
-    /// The row that starts at a byte.
+    /// Row that starts at a byte.
     pub(super) fn new(content: &'a str, start: usize, separator: Separator) -> Cells<'a> {
         Cells { content, at: start, separator, has_ended: false }
     }
 
-    /// Reads on to the next row and gives its first byte.
+    /// Reads up to the next row and returns its first byte.
     pub(super) fn end(mut self) -> usize {
         while self.next().is_some() {}
         self.at
@@ -56,7 +56,7 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// The first byte from here that is not a space.
+    /// Index of the first byte from here that is not a space.
     fn past_spaces(&self, mut at: usize) -> usize {
         let bytes = self.content.as_bytes();
         let is_space = |byte: u8| byte == b' ' || (byte == b'\t' && self.separator != Separator::Sign(b'\t'));
@@ -66,7 +66,7 @@ impl<'a> Cells<'a> {
         at
     }
 
-    /// The last byte of a value in quotes that starts here, and where what follows begins.
+    /// Last byte of a value in quotes that starts here, and the byte after it.
     fn quoted(&self, start: usize) -> Option<(usize, usize)> {
         let bytes = self.content.as_bytes();
         let mut at = start + 1;
@@ -88,7 +88,7 @@ impl<'a> Cells<'a> {
         is_end.then_some((at, behind))
     }
 
-    /// Goes behind what ends a value at a byte.
+    /// Moves past the sign that ends a value at a byte.
     fn step(&mut self, at: usize) {
         let bytes = self.content.as_bytes();
         let mut at = if self.separator == Separator::Spaces { self.past_spaces(at) } else { at };

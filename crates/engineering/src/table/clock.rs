@@ -14,13 +14,13 @@ pub(super) struct ClockReading {
 }
 
 impl ClockReading {
-    /// Whether a stamp was read.
+    /// True if a stamp was read.
     pub(super) fn has_begun(&self) -> bool {
         self.first.is_some()
     }
 
-    /// The time of a stamp in s since the first one; `None` for a text that is no stamp. Without a
-    /// date, a time more than half a day before the last one is of the next day.
+    /// Time of a stamp since the first one, s; `None` for a text that is no stamp. Without a date,
+    /// a time more than half a day before the last one is on the next day.
     pub(super) fn seconds(&mut self, text: &str) -> Option<f64> {
         let ClockStamp { has_date, nanoseconds } = ClockStamp::read(text)?;
         let mut at = nanoseconds + self.midnights;
@@ -35,17 +35,17 @@ impl ClockReading {
     }
 }
 
-/// A time as it is written.
+/// A time as written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct ClockStamp {
     has_date: bool,
-    /// Since midnight, or since the beginning of 1970.
+    /// Nanoseconds since midnight, or since the beginning of 1970.
     nanoseconds: i128,
 }
 
 impl ClockStamp {
-    /// Reads `10:00:00.001`, and the same behind `2026-11-27T`, `2026/11/27 ` or `27.11.2026 `; a
-    /// comma is a decimal sign too, and `Z` or `+01:00` may follow a date.
+    /// Reads `10:00:00.001`, also after `2026-11-27T`, `2026/11/27 ` or `27.11.2026 `; a comma is a
+    /// decimal sign too, and `Z` or `+01:00` may follow a date.
     pub(super) fn read(text: &str) -> Option<ClockStamp> {
         let Some((date, time)) = text.split_once(['T', ' ']) else {
             return Some(ClockStamp { has_date: false, nanoseconds: time_of_day(text)? });
@@ -59,7 +59,7 @@ impl ClockStamp {
     }
 }
 
-/// A whole number of so many digits.
+/// A whole number with this number of digits.
 fn whole(text: &str, digits: usize) -> Option<i128> {
     let is_whole = text.len() == digits && text.bytes().all(|byte| byte.is_ascii_digit());
     is_whole.then(|| text.parse().ok())?

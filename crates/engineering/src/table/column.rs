@@ -1,4 +1,4 @@
-//! Which column is what, in which unit.
+//! Signals of columns, and their units.
 
 use super::error::{ColumnError, TableHint};
 use super::heading::{bare, endings, unit_beside, unit_meant};
@@ -7,85 +7,85 @@ use crate::project::{Findings, RawFinding};
 use crate::quantity::{CURRENT, Dimension, RATIO, TIME, UnitScale};
 use crate::spelling::nearest;
 
-/// What a column may hold, as its heading calls it.
+/// Quantity in a column, by the name in its heading.
 #[derive(Clone, Copy, Debug)]
 pub struct Measurand {
-    /// In words with underscores; a heading may have spaces, hyphens and capitals.
+    /// Name in words with underscores; a heading may have spaces, hyphens and capitals.
     pub name: &'static str,
-    /// What else it is called, as in formulae: known where a unit that fits stands next to it, and
-    /// a word of several letters without a unit too.
+    /// Other names, such as symbols in formulae: recognised next to a fitting unit; a word of
+    /// several letters also without a unit.
     pub symbols: &'static [&'static str],
-    /// What its unit is of.
+    /// Dimension of the unit.
     pub dimension: &'static Dimension,
-    /// Whether it may be a share, in percent, of something that the table does not say.
+    /// True if the quantity may be a fraction, in percent, of a value that is not in the table.
     pub may_be_share: bool,
 }
 
 impl Measurand {
-    /// Known by its name.
+    /// A quantity recognised by its name.
     pub const fn of(name: &'static str, dimension: &'static Dimension) -> Measurand {
         Measurand { name, symbols: &[], dimension, may_be_share: false }
     }
 
-    /// Known by other names too.
+    /// The quantity with additional names.
     pub const fn called(self, symbols: &'static [&'static str]) -> Measurand {
         Measurand { symbols, ..self }
     }
 }
 
-/// Times of the rows, as loggers call them.
+/// Times of the rows, by the names that loggers use.
 pub static TIMES: Measurand = Measurand::of("time", &TIME).called(TIME_NAMES);
-/// What loggers call the time.
+/// Names that loggers use for the time.
 pub const TIME_NAMES: &[&str] = &["t", "X_Value", "timestamp", "datetime", "date_time", "date/time"];
-/// The shortest word that names a signal without its unit.
+/// Length of the shortest word that names a signal without its unit.
 const WORD: usize = 3;
 
-/// A signal that is looked for, by its own name or by the heading and unit that a project states.
+/// A required signal, by its name or by the heading and unit that a project states.
 #[derive(Clone, Copy, Debug)]
 pub struct Sought<'a> {
-    /// What is looked for.
+    /// Quantity of the signal.
     pub measurand: &'a Measurand,
-    /// Its heading; absent, its own name.
+    /// Heading of its column; absent: the name of the quantity.
     pub heading: Option<&'a str>,
-    /// Its unit; absent, that of the heading.
+    /// Unit of its column; absent: that of the heading.
     pub unit: Option<&'a str>,
-    /// Its numbers have the opposite sign of the signal.
+    /// True if its numbers have the opposite sign of the signal.
     pub is_reversed: bool,
 }
 
 /// A column that was found.
 #[derive(Clone, Debug)]
 pub struct Column {
-    /// From 0.
+    /// Index, from 0.
     pub index: usize,
-    /// As quantities have it; empty for a pure number.
+    /// Unit, as quantities spell it; empty for a pure number.
     pub unit: String,
-    /// Whether its numbers are shares.
+    /// True if its numbers are fractions.
     pub is_share: bool,
-    /// Whether the signal is its numbers with the opposite sign.
+    /// True if the signal is its numbers with the opposite sign.
     pub is_reversed: bool,
     pub(super) scale: UnitScale,
-    /// Whether it may have stamps of a clock.
+    /// True if the column may contain time stamps of a clock.
     pub(super) is_time: bool,
 }
 
 impl Column {
-    /// What is expected in it.
+    /// Description of the expected values.
     pub fn expected(&self) -> String {
         if self.unit.is_empty() { "a number".to_string() } else { format!("a number in {}", self.unit) }
     }
 }
 
-/// Signs that enclose the unit behind a heading that a project states.
+/// Signs that enclose the unit after a heading that a project states.
 const BRACKETS: [char; 5] = ['[', '(', '{', '<', '/'];
 
 impl<'a> Sought<'a> {
-    /// By its own name.
+    /// A signal with the name of its quantity as heading.
     pub fn by_name(measurand: &'a Measurand) -> Sought<'a> {
         Sought { measurand, heading: None, unit: None, is_reversed: false }
     }
 
-    /// What the heading says of the unit, if it is that of the signal.
+    /// Unit that the heading states, if the heading is that of the signal.
     pub(super) fn unit_in<'h>(&self, heading: &'h str) -> Option<&'h str> {
         match self.heading {
             Some(stated) if stated == heading => {
@@ -108,13 +108,13 @@ impl<'a> Sought<'a> {
         self.measurand.symbols.iter().find_map(known)
     }
 
-    /// Whether a heading names the signal, and whether it says nothing else but a unit of it.
+    /// `Some` if a heading names the signal: true if it contains nothing else but a unit of it.
     pub(super) fn is_named_in(&self, heading: &str) -> Option<bool> {
         let unit = bare(self.unit_in(heading)?);
         Some(unit.is_empty() || self.unit.is_some() || self.unit_of(unit).is_some())
     }
 
-    /// Unit and scale of what a heading says.
+    /// Unit and scale of a written unit.
     fn unit_of(&self, written: &str) -> Option<(String, UnitScale)> {
         if self.measurand.may_be_share && ["%", "percent"].contains(&written) {
             return Some(("%".to_string(), UnitScale::new("%", &RATIO).ok()?));
@@ -125,7 +125,7 @@ impl<'a> Sought<'a> {
         Some((unit, scale))
     }
 
-    /// What its heading may be, for who wrote another.
+    /// Usual headings of the signal, for an error message.
     pub(super) fn usual_names(&self) -> Vec<String> {
         let name = self.measurand.name;
         if let Some(stated) = self.heading {
@@ -139,8 +139,8 @@ impl<'a> Sought<'a> {
 }
 
 impl MeasuredTable {
-    /// The column of each signal, where there is one, and the columns of none. `None` where two are
-    /// of one signal, or a unit is missing.
+    /// The column of each signal, if it exists, and the columns of no signal. `None` if a signal
+    /// has two columns, or a unit is missing.
     pub fn columns(
         &self,
         sought: &[Sought<'_>],
@@ -259,7 +259,7 @@ impl MeasuredTable {
         found.help(hint.to_string())
     }
 
-    /// The columns that none of these signals is named in.
+    /// Columns that name none of these signals.
     pub fn unnamed<'a>(&'a self, sought: &'a [Sought<'a>]) -> impl Iterator<Item = usize> + 'a {
         let is_unnamed = |heading: &Heading| {
             !heading.text.is_empty() && sought.iter().all(|one| one.is_named_in(&heading.text).is_none())

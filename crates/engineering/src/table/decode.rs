@@ -1,4 +1,4 @@
-//! From bytes to text.
+//! Decoding of bytes to text.
 
 use super::error::ForeignFile;
 use crate::project::Findings;
@@ -14,8 +14,8 @@ const OTHERS: [(&[u8], ForeignFile); 7] = [
     (b"%PDF", ForeignFile::Document),
 ];
 
-/// The text of a file, and how many bytes of it come before. Other encodings than UTF-8 are those
-/// that spreadsheets write: UTF-16 with its mark, and one byte for each sign (ISO 8859-1).
+/// Text of a file, and number of bytes before it. Encodings other than UTF-8 are those that
+/// spreadsheets write: UTF-16 with its mark, and one byte for each sign (ISO 8859-1).
 pub(super) fn text(file: &str, mut bytes: Vec<u8>, findings: &mut Findings) -> Option<(String, usize)> {
     if let Some((_, what)) = OTHERS.iter().find(|(start, _)| bytes.starts_with(start)) {
         findings.unreadable(file, &what.to_string());
@@ -36,26 +36,26 @@ pub(super) fn text(file: &str, mut bytes: Vec<u8>, findings: &mut Findings) -> O
         findings.unreadable(file, &ForeignFile::NotText.to_string());
         return None;
     };
-    // lines may end as they did on old systems
+    // lines may end as on old systems
     let is_old = content.contains('\r') && !content.contains('\n');
     Some((if is_old { content.replace('\r', "\n") } else { content }, skipped))
 }
 
-/// UTF-16 behind its mark.
+/// Text in UTF-16 after its mark.
 fn wide(bytes: &[u8], order: fn([u8; 2]) -> u16) -> Option<String> {
     let pairs = bytes.get(2..)?.chunks_exact(2);
     let units: Vec<u16> = pairs.filter_map(|pair| pair.try_into().ok()).map(order).collect();
     String::from_utf16(&units).ok()
 }
 
-/// How much of a text is looked at for signs that no text has.
+/// Length of the part of a text that is checked for signs that do not occur in text.
 const MOST_LOOKED_AT: usize = 4096;
 
 fn is_control(byte: u8) -> bool {
     byte < 0x20 && !matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c | 0x1a)
 }
 
-/// UTF-8, or one byte for each sign.
+/// Text in UTF-8, or with one byte for each sign.
 fn narrow(bytes: Vec<u8>) -> String {
     String::from_utf8(bytes)
         .unwrap_or_else(|error| error.as_bytes().iter().map(|byte| char::from(*byte)).collect())

@@ -49,7 +49,7 @@ pub(super) enum ColumnError {
     /// A second column of a signal.
     #[error("`{heading}` is a second column of `{signal}`")]
     SecondOfSignal { heading: String, signal: &'static str },
-    /// A heading without a unit.
+    /// A heading has no unit.
     #[error("`{0}` has no unit")]
     NoUnit(String),
     /// A unit of another quantity, or of none.
@@ -58,16 +58,16 @@ pub(super) enum ColumnError {
     /// A stated unit that differs from that of the heading.
     #[error("`{heading}` is read in {stated}, as the project says, and not in {other}")]
     ReadInStatedUnit { heading: String, stated: String, other: String },
-    /// No column of a signal.
+    /// A signal has no column.
     #[error("there is no column `{0}`")]
     Missing(String),
-    /// A column of no known signal.
+    /// A column belongs to no known signal.
     #[error("unknown column `{0}`")]
     Unknown(String),
-    /// Pa, gauge pressures below a vacuum.
+    /// Gauge pressures below a vacuum, Pa.
     #[error("`{heading}` falls to {}, which is below a vacuum, in {count} of {rows} rows", shown(*least))]
     BelowVacuum { heading: String, least: f64, count: usize, rows: usize },
-    /// Pa, gauge pressures below the atmosphere.
+    /// Gauge pressures below the atmosphere, Pa.
     #[error(
         "`{heading}` is below the atmosphere in {count} of {rows} rows, by {}: the zero of its transducer may be off",
         shown(*by)
@@ -80,7 +80,7 @@ pub(super) enum ColumnError {
     SignBetweenThousands { number: String, without_sign: String, rows: usize },
 }
 
-/// Three digits of a pressure in Pa.
+/// Pressure, Pa, with three digits.
 fn shown(pressure: f64) -> String {
     display(pressure, &PRESSURE, 3)
 }
@@ -88,7 +88,7 @@ fn shown(pressure: f64) -> String {
 /// Error of a row, or of a number in it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(super) enum RowError {
-    /// Neither numbers nor units.
+    /// A row contains neither numbers nor units.
     #[error("there is no number in this row")]
     NoNumber,
     /// An empty cell.
@@ -109,13 +109,13 @@ pub(super) enum RowError {
     /// A decimal comma and a decimal point.
     #[error("`{comma}` has a comma where `{point}` has a point")]
     TwoDecimalSigns { comma: String, point: String },
-    /// An equal time.
+    /// A time equals that of the row before.
     #[error("the time of the row before, with other values")]
     SameTime,
     /// A time after that of the next row, or equal to it.
     #[error("a time that is not before that of the next row")]
     NotBeforeNext,
-    /// An earlier time.
+    /// A time is earlier than that of the row before.
     #[error("a time before that of the row before")]
     BeforePrevious,
 }
@@ -123,16 +123,16 @@ pub(super) enum RowError {
 /// Error of a table as a whole.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum MeasuredTableError {
-    /// Nothing but empty rows.
+    /// The file contains only empty rows.
     #[error("the file is empty")]
     Empty,
-    /// No row of names.
+    /// There is no row of names.
     #[error("no row has the names of columns")]
     NoNames,
     /// Names without rows.
     #[error("the file has no rows below the names of its columns")]
     NothingBelowNames,
-    /// A measurement file of LabVIEW without one column of times.
+    /// A measurement file of LabVIEW does not have exactly one column of times.
     #[error("a LabVIEW file with X_Columns {0} has no time, or several")]
     LabviewTimes(String),
     /// A measurement file of LabVIEW without names.
@@ -189,7 +189,7 @@ pub(super) enum TableHint {
     /// Expectation of times.
     #[error("times that increase from row to row")]
     IncreasingTimes,
-    /// Expectation of a gauge pressure: the least one in Pa.
+    /// Expectation of a gauge pressure: the least one, Pa.
     #[error("a gauge pressure above {}", display(*.0, &PRESSURE, 4))]
     GaugePressureAbove(f64),
     /// Expectation of an export of LabVIEW.

@@ -1,10 +1,10 @@
-//! The same fault in many rows.
+//! A common fault of many rows.
 
 use crate::project::RawFinding;
 
-/// Up to this number of rows with the same fault are reported one by one.
+/// Largest number of rows with a common fault that are reported one by one.
 const FEW: usize = 5;
-/// The most that are kept of those reported one by one.
+/// Largest number of faults that are stored for reporting one by one.
 const MOST_KEPT: usize = 400;
 
 /// Rows of one fault, in a column or in the whole table.
@@ -15,7 +15,7 @@ pub(super) struct Faults {
 }
 
 impl Faults {
-    /// Takes a row in; the finding is made only where it is kept.
+    /// Adds a row; the finding is made only if it is stored.
     pub(super) fn add(&mut self, found: impl FnOnce() -> RawFinding) {
         self.count += 1;
         if self.first.len() < MOST_KEPT {
@@ -23,7 +23,7 @@ impl Faults {
         }
     }
 
-    /// The findings: one where most rows have the fault.
+    /// Findings: a single one if most rows have the fault.
     pub(super) fn told(mut self, rows: usize) -> Vec<RawFinding> {
         if self.count > FEW && 2 * self.count > rows {
             self.first.truncate(1);

@@ -5,20 +5,21 @@ use super::{Column, MeasuredTable};
 use crate::followed::roughness;
 use crate::project::{Findings, RawFinding};
 
-/// Pa, gauge pressure of a vacuum.
+/// Gauge pressure of a vacuum, Pa.
 const VACUUM: f64 = -101_325.0;
-/// Pa, below which a twentieth of a column is, its noise apart, when the zero of its transducer is
-/// off.
+/// Gauge pressure below which a twentieth of a column is, without its noise, if the zero of its
+/// transducer is off, Pa.
 const ZERO_OFF: f64 = -2e4;
 
-/// Deviations of the noise by which a single row, and a twentieth of all rows, may lie below.
+/// Number of standard deviations of the noise by which a single row, and a twentieth of all rows,
+/// may be below.
 const OF_A_ROW: f64 = 5.0;
 const OF_A_TWENTIETH: f64 = 2.0;
 
 impl MeasuredTable {
-    /// Refuses a column with pressures that lie below a vacuum by more than its noise, and warns of
-    /// one that is below the atmosphere by more than noise. `row` is the row of the table for each
-    /// value; NaN is no value.
+    /// Rejects a column with pressures below a vacuum by more than its noise, and warns of one that
+    /// is below the atmosphere by more than noise. `row` is the row of the table for each value;
+    /// NaN is an absent value.
     pub(crate) fn check_gauge(
         &self,
         column: &Column,

@@ -1,8 +1,8 @@
-//! What a heading says: a name and a unit.
+//! Parts of a heading: a name and a unit.
 
 use crate::quantity::{Dimension, UnitScale};
 
-/// Units as names of columns have them, and as quantities do.
+/// Spellings of units in names of columns, and as quantities.
 const UNITS: [(&str, &str); 42] = [
     ("s", "s"),
     ("ms", "ms"),
@@ -47,10 +47,10 @@ const UNITS: [(&str, &str); 42] = [
     ("ma", "mA"),
     ("a", "A"),
 ];
-/// Those of them that are not offered.
+/// Number of them that are not suggested.
 const UNUSUAL: usize = 14;
 
-/// What of a heading is left next to a name: its unit, or nothing. `None` where it has another
+/// Remainder of a heading next to a name: its unit, or nothing. `None` if the heading has another
 /// name.
 pub(super) fn unit_beside<'h>(heading: &'h str, name: &str) -> Option<&'h str> {
     let heading = heading.trim();
@@ -74,7 +74,7 @@ pub(super) fn bare(unit: &str) -> &str {
     unit.trim().trim_matches(['[', ']', '(', ')', '{', '}', '<', '>']).trim()
 }
 
-/// The unit that is meant by what a heading says, as quantities have it.
+/// Unit that is meant by a heading, in the spelling of quantities.
 pub(super) fn unit_meant(written: &str, dimension: &'static Dimension) -> Option<String> {
     let is_unit = |unit: &str| UnitScale::new(unit, dimension).is_ok();
     let lower = written.to_lowercase();
@@ -87,7 +87,7 @@ pub(super) fn unit_meant(written: &str, dimension: &'static Dimension) -> Option
     known.or(spelled).map(str::to_string)
 }
 
-/// Endings of names that are units of it, for who wrote none.
+/// Suggested endings of names that state a unit, for a heading without one.
 pub(super) fn endings(dimension: &'static Dimension) -> impl Iterator<Item = &'static str> {
     let usual = UNITS.iter().take(UNITS.len() - UNUSUAL);
     usual.filter(move |(_, unit)| UnitScale::new(unit, dimension).is_ok()).map(|(name, _)| *name)

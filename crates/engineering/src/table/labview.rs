@@ -1,4 +1,4 @@
-//! Texts of LabVIEW: measurement files (`.lvm`) say separator and units in lines above the names;
+//! Texts of LabVIEW: measurement files (`.lvm`) state separator and units in lines above the names;
 //! charts export plots, not records.
 
 use super::cell::{Cells, Separator};
@@ -6,22 +6,23 @@ use super::error::{MeasuredTableError, TableHint};
 use super::layout::{TextLayout, lines};
 use crate::project::{Place, RawFinding};
 
-/// How a measurement file begins.
+/// Beginning of a measurement file.
 const MEASUREMENT: &str = "LabVIEW Measurement";
-/// Lines above the names.
+/// Largest number of lines above the names.
 const MOST_ABOVE: usize = 200;
 
-/// What a measurement file says of its columns.
+/// Data of a measurement file about its columns.
 pub(super) struct LabviewHeader {
     pub(super) layout: TextLayout,
-    /// The unit of each column, as written; the first one is the time.
+    /// Unit of each column, as written; the first one is the time.
     pub(super) units: Vec<String>,
 }
 
-/// The header of a measurement file; `None` for any other text.
+/// Header of a measurement file; `None` for any other text.
 ///
 /// # Errors
-/// A file without one column of times, and one whose names are not where they should be.
+/// An error for a file without a single column of times, and for one whose names are not in their
+/// place.
 pub(super) fn header(text: usize, content: &str) -> Option<Result<LabviewHeader, RawFinding>> {
     content.starts_with(MEASUREMENT).then(|| read(text, content))
 }
@@ -52,13 +53,13 @@ fn read(text: usize, content: &str) -> Result<LabviewHeader, RawFinding> {
     Err(RawFinding::error(place, MeasuredTableError::LabviewNames.to_string()))
 }
 
-/// What LabVIEW writes behind the name of a plot.
+/// Suffix that LabVIEW adds to the name of a plot.
 const PLOT: &str = " - Plot ";
 
-/// Refuses what a chart exports: several plots next to each other, and no time.
+/// Rejects the export of a chart: several plots next to each other, and no time.
 ///
 /// # Errors
-/// The row of names.
+/// An error at the row of names.
 pub(super) fn refuse_chart(text: usize, content: &str) -> Result<(), RawFinding> {
     let is_chart = |(line, _): &(&str, usize)| line.matches(PLOT).count() > 1;
     let Some((line, start)) = lines(content, 0).take(MOST_ABOVE).find(is_chart) else { return Ok(()) };

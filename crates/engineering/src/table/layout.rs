@@ -1,9 +1,9 @@
-//! Where the names of the columns are, and what separates them.
+//! Place of the names of the columns, and their separator.
 
 use super::cell::{Cells, Separator};
 use super::column::Sought;
 
-/// Where a table begins in a text.
+/// Beginning of a table in a text.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TextLayout {
     pub(super) separator: Separator,
@@ -11,7 +11,7 @@ pub(super) struct TextLayout {
     pub(super) header: usize,
 }
 
-/// What may separate values; of two that explain as much the first.
+/// Possible separators of values; of two that explain as much, the first.
 const SEPARATORS: [Separator; 5] = [
     Separator::Sign(b';'),
     Separator::Sign(b'\t'),
@@ -20,13 +20,13 @@ const SEPARATORS: [Separator; 5] = [
     Separator::Spaces,
 ];
 
-/// Rows in which names are looked for.
+/// Number of rows in which names are searched.
 const MOST_ROWS: usize = 500;
-/// Rows below the best one in which a better one is looked for.
+/// Number of rows below the best one in which a better one is searched.
 const MOST_BELOW: usize = 20;
 
-/// The row with the most names that are looked for: the first of several, and one behind a `#` only
-/// where none is in the open.
+/// Row with the most of the requested names: the first of several, and one after a `#` only if
+/// there is no other.
 pub(super) fn find(content: &str, sought: &[Sought<'_>], separator: Option<Separator>) -> Option<TextLayout> {
     let separators: Vec<Separator> = separator.map_or(SEPARATORS.to_vec(), |only| vec![only]);
     let mut best: Option<([usize; 3], TextLayout)> = None;
@@ -39,14 +39,14 @@ pub(super) fn find(content: &str, sought: &[Sought<'_>], separator: Option<Separ
         let trimmed = line.trim_start();
         let open = trimmed.trim_start_matches(['#', '%']);
         let header = start + line.len() - open.len();
-        // whether a value is a name, and a name with a unit of it
+        // `Some` for a name, true for a name with a unit of it
         let is_name = |text: &str| sought.iter().filter_map(|one| one.is_named_in(text)).max();
         let names_of = |separator: Separator| {
             let cells: Vec<_> =
                 Cells::new(content, header, separator).map(|cell| is_name(cell.text)).collect();
             (cells.len(), cells.into_iter().flatten().collect::<Vec<bool>>())
         };
-        // a name and its unit may have a space between them where a sign separates the columns
+        // a name and its unit may have a space between them if a sign separates the columns
         let is_signed = separators.iter().any(|separator| {
             let (cells, names) = names_of(*separator);
             *separator != Separator::Spaces && cells > 1 && !names.is_empty()
@@ -74,7 +74,7 @@ pub(super) fn lines(content: &str, from: usize) -> impl Iterator<Item = (&str, u
     })
 }
 
-/// Whether a row has something in it but separators, and is not a comment.
+/// True if a row contains more than separators, and is not a comment.
 pub(super) fn is_row(line: &str, separator: Separator) -> bool {
     let nothing = |sign: char| {
         sign.is_whitespace() || matches!(separator, Separator::Sign(byte) if sign == char::from(byte))

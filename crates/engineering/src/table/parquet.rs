@@ -1,4 +1,4 @@
-//! A table as Apache Parquet.
+//! Reader of a table in Apache Parquet format.
 
 use std::fmt::Write as _;
 
@@ -16,23 +16,24 @@ use super::faults::Faults;
 use super::{ColumnNumbers, Heading};
 use crate::project::{Findings, Place, RawFinding};
 
-/// How a file begins, and ends.
+/// Magic bytes at the beginning and end of a file.
 pub(super) const MAGIC: &[u8] = b"PAR1";
 
 /// The rows of a file.
 pub(super) struct ParquetRows {
-    /// Its index among the texts of the findings, an empty one.
+    /// Index among the texts of the findings, of an empty one.
     text: usize,
     file: SerializedFileReader<Bytes>,
     pub(super) count: usize,
 }
 
-/// Values of one type that are decoded at once.
+/// Number of values of one type that are decoded at once.
 const BATCH: usize = 8192;
-/// The most rows that room is made for before they are read: a file may state any number.
+/// Largest number of rows for which memory is reserved before they are read: a file may state any
+/// number.
 const MOST_RESERVED: usize = 1 << 20;
 
-/// Takes a file in: names of its columns, and rows that are read when they are asked for.
+/// Opens a file: names of its columns, and rows that are read on request.
 pub(super) fn open(
     file: &str,
     bytes: Vec<u8>,
@@ -68,7 +69,7 @@ pub(super) fn open(
     Some((headings, ParquetRows { text, file: opened, count }))
 }
 
-/// Number of a row, from 1, and the column, where rows have no lines.
+/// Number of a row, from 1, and the column, as a place in a table without lines.
 pub(super) fn number_of(row: usize, heading: &str) -> String {
     format!("row {}, column `{heading}`", row + 1)
 }
@@ -77,21 +78,21 @@ fn is_readable(codec: Compression) -> bool {
     matches!(codec, Compression::UNCOMPRESSED | Compression::SNAPPY)
 }
 
-/// Whether values are points in time.
+/// True if values are points in time.
 fn is_moment(column: &ColumnDescriptor) -> bool {
     matches!(ParquetInteger::of(column), Some(ParquetInteger::Since(_)))
 }
 
-/// What the whole numbers of a column mean.
+/// Meaning of the whole numbers of a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum ParquetInteger {
-    /// Themselves.
+    /// Signed number.
     Number,
-    /// The same without a sign.
+    /// Unsigned number.
     Unsigned,
-    /// Times ten to this power.
+    /// Number times ten to this power.
     Power(i32),
-    /// Points in time, in seconds times ten to this power: counted from the first.
+    /// Point in time, in seconds times ten to this power, counted from the first.
     Since(i32),
 }
 
@@ -126,10 +127,10 @@ impl ParquetInteger {
         }
     }
 
-    /// A number as text; `first` is the first of its column.
+    /// Writes a number as text; `first` is the first of its column.
     fn write(self, value: i64, first: i64, mask: u64, text: &mut String) {
         text.clear();
-        // a text takes all that is written to it
+        // writing to a text cannot fail
         let _ = match self {
             ParquetInteger::Number => write!(text, "{value}"),
             ParquetInteger::Unsigned => write!(text, "{}", value.cast_unsigned() & mask),
@@ -139,8 +140,8 @@ impl ParquetInteger {
     }
 }
 
-/// The numbers of a column while they are read, each from the shortest text that means it: so that
-/// the same table as text gives the same numbers.
+/// State of reading the numbers of a column, each from its shortest text, so that the table in text
+/// form gives identical numbers.
 struct ParquetReading<'c> {
     rows: &'c ParquetRows,
     column: &'c Column,
@@ -148,10 +149,10 @@ struct ParquetReading<'c> {
     name: &'c str,
     values: Vec<f64>,
     gaps: Vec<usize>,
-    /// Rows with what is not a number.
+    /// Rows with a value that is not a number.
     wrong: Faults,
     text: String,
-    /// The first whole number.
+    /// First whole number.
     first: Option<i64>,
 }
 
@@ -199,12 +200,12 @@ impl ParquetReading<'_> {
 }
 
 impl ParquetRows {
-    /// A row has no place in a text; only the order of findings goes by it.
+    /// Place of a row, which has none in a text; only the order of findings depends on it.
     pub(super) fn place(&self, row: usize) -> Place {
         Place { text: self.text, start: row + 1, end: row + 1 }
     }
 
-    /// The numbers of columns; what cannot be read is reported.
+    /// Numbers of columns; unreadable ones are reported.
     pub(super) fn numbers(
         &self,
         headings: &[Heading],
@@ -266,7 +267,7 @@ impl ParquetRows {
     }
 }
 
-/// Takes all values of a column in a group of rows; `None` is a gap.
+/// Reads all values of a column in a group of rows; `None` is a gap.
 fn each<T: DataType>(
     mut reader: ColumnReaderImpl<T>,
     level: i16,

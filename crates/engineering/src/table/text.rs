@@ -1,4 +1,4 @@
-//! A table as text.
+//! Reader of a table in text form.
 
 use super::cell::{Cells, Separator};
 use super::clock::ClockReading;
@@ -15,14 +15,14 @@ use crate::spelling::nearest;
 
 /// The rows of a text.
 pub(super) struct TextRows {
-    /// Its index among the texts of the findings.
+    /// Index among the texts of the findings.
     pub(super) text: usize,
     separator: Separator,
     /// First byte of each row.
     starts: Vec<usize>,
 }
 
-/// Rows without a number that may stand between the names and the rows.
+/// Largest number of rows without a number between the names and the rows.
 const MOST_BELOW: usize = 20;
 
 /// Headings, rows, and rows that are neither.
@@ -79,7 +79,7 @@ pub(super) fn open(
     Ok((headings, TextRows { text, separator, starts }, left_out))
 }
 
-/// Error for a text without a row of names, with the spelling that may have been meant.
+/// Error for a text without a row of names, with the closest spelling.
 fn unnamed(text: usize, content: &str, sought: &[Sought<'_>]) -> RawFinding {
     let names: Vec<String> = sought.iter().flat_map(Sought::usual_names).collect();
     let mut rows = lines(content, 0).filter(|(line, _)| is_row(line, Separator::Spaces));
@@ -101,19 +101,19 @@ fn unnamed(text: usize, content: &str, sought: &[Sought<'_>]) -> RawFinding {
     found.help(near.unwrap_or(TableHint::HeadingsInProject).to_string())
 }
 
-/// One of the names of what is looked for.
+/// First usual name of a required signal.
 fn names_first<'n>(sought: &Sought<'_>, names: &'n [String]) -> Option<&'n str> {
     let first = sought.usual_names().into_iter().next()?;
     names.iter().find(|name| **name == first).map(String::as_str)
 }
 
-/// The first byte of each row from a byte on.
+/// First bytes of all rows after a given byte.
 fn starts(content: &str, below: usize, separator: Separator) -> Vec<usize> {
     let has_quotes = content.get(below..).is_some_and(|rest| rest.contains('"'));
     let mut starts = Vec::new();
     let mut until = below;
     for (line, start) in lines(content, below) {
-        // a value in quotes may go on in the next line
+        // a value in quotes may continue on the next line
         if start < until || !is_row(line, separator) {
             continue;
         }
@@ -129,7 +129,7 @@ fn is_like_number(text: &str) -> bool {
     !text.is_empty() && (text.replace(',', ".").parse::<f64>().is_ok() || is_gap(text))
 }
 
-/// What loggers and spreadsheets write where there is no value.
+/// True for text that loggers and spreadsheets write in place of a missing value.
 fn is_gap(text: &str) -> bool {
     let words = ["", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "-nan", "1.#qnan", "-1.#ind"];
     words.iter().any(|word| text.eq_ignore_ascii_case(word))
@@ -144,20 +144,20 @@ impl TextRows {
         Cells::new(content, self.starts.get(row).copied().unwrap_or(content.len()), self.separator)
     }
 
-    /// Where a value is written; the end of the row where it has none.
+    /// Place of a value; the end of the row if it has none.
     pub(super) fn place(&self, content: &str, row: usize, index: usize) -> Place {
         let mut cells = self.cells(content, row);
         let found = cells.by_ref().nth(index);
         found.map_or(Place { text: self.text, start: cells.at, end: cells.at }, |cell| cell.place(self.text))
     }
 
-    /// The line of a row, from 1.
+    /// Line number of a row, from 1.
     pub(super) fn line(&self, content: &str, row: usize) -> usize {
         let start = self.starts.get(row).copied().unwrap_or(content.len());
         content.bytes().take(start).filter(|byte| *byte == b'\n').count() + 1
     }
 
-    /// That a row has more or fewer values than there are columns.
+    /// Error for a row with more or fewer values than there are columns.
     pub(super) fn incomplete(&self, content: &str, row: usize, columns: usize) -> RawFinding {
         let cells: Vec<_> = self.cells(content, row).collect();
         let ends = cells.first().zip(cells.last());
@@ -179,7 +179,7 @@ impl TextRows {
         }
     }
 
-    /// The numbers of columns, and what is wrong with them.
+    /// Numbers of columns, and their faults.
     pub(super) fn numbers(
         &self,
         content: &str,
@@ -235,7 +235,7 @@ impl TextRows {
     }
 }
 
-/// That some numbers have a decimal point and some a decimal comma.
+/// Error for a mixture of decimal points and decimal commas.
 fn two_signs(content: &str, point: Option<Place>, comma: Option<Place>) -> Option<RawFinding> {
     let (point, comma) = (point?, comma?);
     let text = |place: Place| content.get(place.start..place.end).unwrap_or_default().to_string();
@@ -245,7 +245,7 @@ fn two_signs(content: &str, point: Option<Place>, comma: Option<Place>) -> Optio
     Some(found.help(TableHint::NoThousandsSigns.to_string()))
 }
 
-/// That a text is not a number.
+/// Error for a text that is not a number.
 fn no_number(place: Place, text: &str) -> RawFinding {
     let found = RawFinding::error(place, RowError::NotANumber(text.to_string()).to_string());
     if text.contains('.') && text.contains(',') {
@@ -254,15 +254,15 @@ fn no_number(place: Place, text: &str) -> RawFinding {
     found.maybe_help(text.contains(':').then(|| TableHint::TimesAsSeconds.to_string()))
 }
 
-/// Numbers while they are read.
+/// State of reading numbers.
 struct TextReading {
     text: usize,
     numbers: ColumnNumbers,
     /// Rows with more or fewer values than there are columns.
     incomplete: Faults,
-    /// What is not a number, for each column.
+    /// Text that is not a number, for each column.
     wrong: Vec<Faults>,
-    /// How the numbers of each column are written.
+    /// Decimal and thousands signs of each column.
     signs: Vec<ThousandsSigns>,
     /// Stamps of each column.
     clocks: Vec<ClockReading>,
@@ -289,7 +289,8 @@ impl TextReading {
         }
     }
 
-    /// What is not a number with a point: one with a comma, a gap, or wrong.
+    /// Value of a cell that is not a number with a point: a number with a comma, a gap, or an
+    /// error.
     fn other(&mut self, row: usize, slot: usize, column: &Column, cell: super::cell::TextCell<'_>) -> f64 {
         if is_gap(cell.text) {
             self.numbers.gaps.get_mut(slot).into_iter().for_each(|gaps| gaps.push(row));
@@ -314,7 +315,7 @@ impl TextReading {
         f64::NAN
     }
 
-    /// The time of a stamp, where all values before it are stamps or gaps too.
+    /// Time of a stamp, if all values before it are stamps or gaps too.
     fn stamp(&mut self, slot: usize, column: &Column, text: &str) -> Option<f64> {
         let clock = self.clocks.get_mut(slot).filter(|_| column.is_time)?;
         let has_numbers = || self.numbers.columns.get(slot)?.iter().find(|value| !value.is_nan());
@@ -324,7 +325,7 @@ impl TextReading {
         clock.seconds(text)
     }
 
-    /// Takes no number of a row that is not whole.
+    /// Takes no number of an incomplete row.
     fn skip(&mut self, row: usize) {
         for values in &mut self.numbers.columns {
             values.truncate(row);
@@ -332,7 +333,7 @@ impl TextReading {
         }
     }
 
-    /// Takes the last row back, which is not whole.
+    /// Removes the last row, which is incomplete.
     fn cut(&mut self, row: usize) {
         self.numbers.cut_off = Some(row);
         self.numbers.columns.iter_mut().for_each(|values| values.truncate(row));

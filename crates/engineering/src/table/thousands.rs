@@ -1,27 +1,28 @@
-//! Signs between thousands, in a column of whole numbers.
+//! Detection of signs between thousands, in a column of whole numbers.
 
 use super::cell::TextCell;
 use super::column::Column;
 use super::error::{ColumnError, TableHint};
 use crate::project::{Place, RawFinding};
 
-/// How the numbers of a column are written, as long as `1.004` may be a thousand and four.
+/// Notation of the numbers of a column, as long as `1.004` may be a thousand and four.
 #[derive(Clone, Default)]
 pub(super) struct ThousandsSigns {
-    /// Some number is neither whole and below 1000 nor like `1.004`.
+    /// True once a number is neither whole and below 1000 nor like `1.004`.
     is_excluded: bool,
     has_three_digits: bool,
     count: usize,
-    /// The first number with a sign: its text, and where it is.
+    /// First number with a sign: its text and its place.
     first: Option<(String, usize)>,
-    /// The number of the row before, and whether it has a sign.
+    /// Number of the row before, and true if it has a sign.
     before: Option<(f64, bool)>,
-    /// Neighbours of which one has a sign, and that are closer as thousands, and as decimals.
+    /// Numbers of neighbours, one of which has a sign, that are closer as thousands, and closer as
+    /// decimals.
     closer: [usize; 2],
 }
 
 impl ThousandsSigns {
-    /// Takes the number of the next row in.
+    /// Adds the number of the next row.
     pub(super) fn take(&mut self, cell: TextCell<'_>) {
         if self.is_excluded {
             return;

@@ -4,7 +4,7 @@ use super::error::{RowError, TableHint};
 use super::{Column, MeasuredTable};
 use crate::project::{Findings, RawFinding};
 
-/// The middle of all differences from one row to the next, in the unit of the times.
+/// Median of all differences from one row to the next, in the unit of the times.
 pub(crate) fn median_step(times: &[f64]) -> f64 {
     let mut steps: Vec<f64> =
         times.windows(2).filter_map(|pair| Some(pair.last()? - pair.first()?)).collect();
@@ -15,7 +15,7 @@ pub(crate) fn median_step(times: &[f64]) -> f64 {
     *steps.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// That the time of a row is not after that of the row before, at the wrong one of both.
+/// Error for a row whose time is not after that of the row before, at the wrong one of both.
 pub(crate) fn not_increasing(
     table: &MeasuredTable,
     column: &Column,
@@ -37,11 +37,11 @@ pub(crate) fn not_increasing(
     found.expected(TableHint::IncreasingTimes.to_string()).help(cure.to_string())
 }
 
-/// Rows to either side whose usual step counts.
+/// Number of rows to either side whose usual step counts.
 const NEAR: usize = 20;
 
-/// The wrong one of a row whose time is not after that of the row before, and of that row: the one
-/// before where this row is as far from the row before both as two usual steps, or nearer to that.
+/// Wrong one of two rows whose times do not increase: the earlier one if it is further from one
+/// usual step after the row before both than the later one is from two.
 fn misplaced(times: &[f64], row: usize) -> usize {
     let at = |back: usize| row.checked_sub(back).and_then(|row| times.get(row)).copied();
     let Some(((two_before, before), now)) = at(2).zip(at(1)).zip(at(0)) else { return row };

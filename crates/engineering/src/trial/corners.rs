@@ -1,6 +1,6 @@
-//! The corners of the box and some plants inside it on the nonlinear rig: a required step is held
-//! against them too, since what friction and limits add to a step is not largest where the linear
-//! one is worst.
+//! Corners of the box and some plants inside it on the nonlinear rig: a required step is compared
+//! with them too, since the contribution of friction and limits to a step is not largest where the
+//! linear step is worst.
 
 use phea_dynamics::portable;
 use phea_dynamics::watch::Watch;
@@ -17,21 +17,22 @@ use crate::setup::Setup;
 use crate::side_by_side::side_by_side;
 use crate::source::Source;
 
-/// Coordinates of a box all of whose corners are driven; of a larger one as many corners.
+/// Number of coordinates of a box all of whose corners are simulated; of a larger one as many
+/// corners.
 const ALL_OF: usize = 4;
-/// Beyond these, the coordinates whose ends multiplied give that of a further one: the generators
-/// of a fractional factorial design of 16 runs.
+/// Coordinates whose ends, multiplied, give that of a further coordinate beyond these: the
+/// generators of a fractional factorial design of 16 runs.
 const GENERATORS: [usize; 11] =
     [0b0111, 0b1011, 0b1101, 0b1110, 0b1111, 0b0011, 0b0101, 0b0110, 0b1001, 0b1010, 0b1100];
 
-/// Iterations to the golden ratio, each of which brings it at least twice as near.
+/// Number of iterations to the golden ratio, each of which at least halves its error.
 const ITERATIONS: usize = 60;
-/// Plants that are driven in all, and the fewest of them inside the box.
+/// Total number of simulated plants, and least number of them inside the box.
 const ALL: usize = 16;
 const LEAST_INSIDE: usize = 4;
 
-/// The runs of the corners and of the plants inside that have a rig, of which something is
-/// required; empty without a box.
+/// Runs of the corners and of the plants inside that have a rig, if a step is required; empty
+/// without a box.
 pub(super) fn runs_of_corners(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -51,7 +52,7 @@ pub(super) fn runs_of_corners(
     Ok(runs.concat())
 }
 
-/// The run of each size whose steps are furthest from what is required of them.
+/// Run of each size whose steps are furthest from their requirement.
 pub(super) fn worst_of(runs: &[TrialRun]) -> Vec<TrialRun> {
     let mut worst: Vec<TrialRun> = Vec::new();
     for run in runs {
@@ -85,7 +86,7 @@ fn rigs(setup: &Setup<'_>, problem: &RobustProblem, view: &ProjectAudit) -> Resu
     Ok(corners.into_iter().chain(inside).filter_map(of).collect())
 }
 
-/// Plants inside a box, evenly spread: coordinate i of plant k is at the share that is left of
+/// Plants inside a box, evenly spread: coordinate i of plant k is at the fractional part of
 ///
 /// ```text
 /// 1/2 + k/g^(i + 1),      g^(d + 1) = g + 1    for d coordinates
@@ -105,7 +106,7 @@ fn inside(family: &UncertainFamily) -> Vec<Vec<f64>> {
     (1..=count).map(|plant| family.values(&shares(plant))).collect()
 }
 
-/// 1/g, 1/g^2 ... for so many coordinates.
+/// Powers 1/g, 1/g^2 ... for this number of coordinates.
 fn golden_steps(dimension: usize) -> Vec<f64> {
     let mut golden = 2.0;
     for _ in 0..ITERATIONS {
@@ -126,7 +127,7 @@ fn corners(family: &UncertainFamily) -> Vec<Vec<f64>> {
     (0..count).map(|corner| family.values(&shares(corner))).collect()
 }
 
-/// The end of a coordinate at a corner, as a share of the box.
+/// End of a coordinate at a corner, as a fraction of the box.
 fn end(corner: usize, coordinate: usize) -> f64 {
     let is_high = match coordinate.checked_sub(ALL_OF) {
         None => (corner >> coordinate) & 1 == 1,
@@ -152,8 +153,8 @@ mod tests {
         assert!((two[1] - two[0] * two[0]).abs() < 1e-15);
     }
 
-    /// ORIGIN: analytic, an orthogonal array of strength two: of 16 corners, each pair of ends of
-    /// two coordinates is taken 4 times.
+    /// ORIGIN: analytic, an orthogonal array of strength two: among 16 corners, each pair of ends
+    /// of two coordinates occurs 4 times.
     #[test]
     fn every_pair_of_ends_is_taken_equally_often() {
         for one in 0..ALL_OF + GENERATORS.len() {

@@ -1,10 +1,9 @@
-//! The steps through which a machine is driven before the largest: those for which something is
-//! required in time.
+//! Steps through which a machine is simulated before the largest: those with requirements in time.
 //!
 //! ```text
 //! a requirement that states its step                       -> that step
 //! a requirement of every step, or none                     -> a tenth of the force of the supply
-//! a requirement of every step                              -> the same the other way, and the steps of the scenarios
+//! a requirement of every step                              -> that step reversed, and the steps of the scenarios
 //! ```
 
 use super::run::{Leg, StepSize};
@@ -13,21 +12,21 @@ use crate::project::Project;
 use crate::rig::Rig;
 use crate::simulate::{RequiredSteps, TimeRequirement, stepped_references};
 
-/// The most steps of scenarios through which a machine is driven, the largest of them.
+/// Largest number of steps of scenarios through which a machine is simulated, the largest of them.
 pub const MOST_OF_SCENARIOS: usize = 3;
 
-/// The steps for which the requirements in time of a project hold.
+/// Steps to which the requirements in time of a project apply.
 #[derive(Clone, Debug)]
 pub(super) struct RequiredOfSteps {
-    /// Steps that are stated, each once.
+    /// Stated steps, each once.
     stated: Vec<RequiredSteps>,
-    /// True where a requirement that is part of the verdict holds for every step.
+    /// True if a requirement that is part of the verdict applies to every step.
     pub(super) of_every_step: bool,
-    /// The longest time to settle or rise that is required, s; zero where none is.
+    /// Longest required settling or rise time, s; zero if none is required.
     pub(super) longest_s: f64,
 }
 
-/// Steps through which a machine is driven, and what they are.
+/// Steps through which a machine is simulated, and their kind.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FirstSteps {
     pub(super) size: StepSize,
@@ -50,19 +49,19 @@ impl RequiredOfSteps {
         RequiredOfSteps { stated, of_every_step, longest_s: times_s.fold(0.0, f64::max) }
     }
 
-    /// The steps of a machine.
+    /// Steps of a machine.
     pub(super) fn first_steps(&self, (project, rig): (&Project, &Rig), legs: HeldLegs) -> Vec<FirstSteps> {
         self.wanted((project, rig), legs).0
     }
 
-    /// The smaller steps of the scenarios, through which it is not driven, from and to, N.
+    /// Smaller steps of the scenarios, which are not simulated, from and to, N.
     pub(super) fn left_out(&self, (project, rig): (&Project, &Rig)) -> Vec<[f64; 2]> {
         let held_anyhow = HeldLegs { hold_s: 0.0, last: Leg::There };
         let left = self.wanted((project, rig), held_anyhow).1;
         left.into_iter().map(|steps| [steps.from_n, steps.to_n]).collect()
     }
 
-    /// The steps of a machine, and those of the scenarios that are left out.
+    /// Steps of a machine, and those of the scenarios that are omitted.
     fn wanted(&self, (project, rig): (&Project, &Rig), legs: HeldLegs) -> (Vec<FirstSteps>, Vec<Steps>) {
         let (mut all, mut left): (Vec<FirstSteps>, Vec<Steps>) = (Vec::new(), Vec::new());
         for &required in &self.stated {
@@ -86,7 +85,7 @@ impl RequiredOfSteps {
     }
 }
 
-/// The steps of the scenarios that are not driven already, the largest first.
+/// Steps of the scenarios that are not simulated already, the largest first.
 fn of_scenarios(project: &Project, driven: &[FirstSteps], legs: HeldLegs) -> Vec<Steps> {
     let mut found: Vec<Steps> = Vec::new();
     for step in stepped_references(project).into_iter().flat_map(|stepped| stepped.steps) {

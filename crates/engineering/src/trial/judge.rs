@@ -1,5 +1,5 @@
-//! The judgement of a machine that was driven: how its steps compare with those that the linear
-//! loop predicts, and with what a met verdict promises.
+//! Judgement of a simulated machine: comparison of its steps with those that the linear loop
+//! predicts, and with the promise of a met verdict.
 
 use std::f64::consts::PI;
 
@@ -14,35 +14,34 @@ use crate::audit::ProjectAudit;
 use crate::robust::RobustProblem;
 use crate::simulate::{RunStatus, ScenarioRun, SimulateError, TimeRequirement};
 
-/// Motion of a force that counts as settled, as a share of the step.
+/// Motion of a force that counts as settled, as a fraction of the step.
 const STILL: f64 = 0.01;
-/// Motion of a force that has come to rest, likewise.
+/// Motion of a force that has come to rest, as a fraction of the step.
 const AT_REST: f64 = 1e-3;
-/// Fraction by which a settling time may be longer or shorter than predicted and agree: a response
+/// Fraction by which a settling time may differ from the prediction and still agree: a response
 /// that leaves the band by less than the other one stays within it.
 pub const SETTLING_ROOM: f64 = 0.25;
-/// Factor beyond which another settling time is another behaviour.
+/// Ratio of settling times beyond which the behaviour counts as different.
 pub const SETTLING_RATIO: f64 = 2.0;
-/// Percent of the step by which an overshoot may differ: friction has an effect of this size on a
-/// small step.
+/// Permitted difference of overshoots, percent of the step: friction has an effect of this size on
+/// a small step.
 pub const OVERSHOOT_ROOM_PERCENT: f64 = 5.0;
 
-/// A run of a machine, its steps, and what is known of the linear loop.
+/// A run of a machine, its steps, and the known results of the linear loop.
 pub(super) struct Driven<'a> {
     pub(super) run: &'a ScenarioRun,
     pub(super) steps: &'a Steps,
     pub(super) size: StepSize,
-    /// Each leg that was to be driven, with the properties of its step.
+    /// Each planned leg, with the properties of its step.
     pub(super) legs: &'a [(Leg, TrialStep)],
-    /// What the linear loop predicts.
+    /// Prediction of the linear loop.
     pub(super) linear: Option<TrialStep>,
-    /// Whether the linear loop is unstable.
+    /// True if the linear loop is unstable.
     pub(super) grows: bool,
 }
 
 impl Driven<'_> {
-    /// The greatest overshoot and the longest settling time; without one where a step does not
-    /// settle.
+    /// Greatest overshoot and longest settling time; the latter absent if a step does not settle.
     pub(super) fn whole(&self) -> TrialStep {
         let overshoots = self.legs.iter().filter_map(|(_, step)| step.overshoot_percent);
         let settled: Option<Vec<f64>> = self.legs.iter().map(|(_, step)| step.settling_time_s).collect();
@@ -52,8 +51,8 @@ impl Driven<'_> {
         }
     }
 
-    /// The leg that overshoots most, of those that do not settle where there are any; the first of
-    /// equals.
+    /// Leg with the greatest overshoot, among those that do not settle if there are any; the first
+    /// of equals.
     pub(super) fn worst(&self) -> Leg {
         let any = self.legs.iter().any(|(_, step)| step.settling_time_s.is_none());
         self.first_most(|leg| match leg.settling_time_s {
@@ -68,21 +67,21 @@ impl Driven<'_> {
         values.iter().find(|(_, value)| *value >= most).map_or(Leg::There, |(leg, _)| *leg)
     }
 
-    /// The range of the force at the end of the step after which it moves most, N.
+    /// Range of the force at the end of the step after which it moves most, N.
     pub(super) fn remains(&self) -> Option<[f64; 2]> {
         let ranges = self.steps.driven().filter_map(|leg| self.steps.remains(self.run, leg));
         ranges.reduce(|widest, range| if width(range) > width(widest) { range } else { widest })
     }
 }
 
-/// A machine without an equilibrium under its controller, or without equations.
+/// Judgement of a machine without an equilibrium under its controller, or without equations.
 pub(super) fn not_started(error: &SimulateError, view: &ProjectAudit) -> (Agreement, TrialFinding) {
     let agreement =
         if view.audit.verdict == Verdict::Met { Agreement::Contradicts } else { Agreement::Differs };
     (agreement, TrialFinding::NotStarted(error.clone()))
 }
 
-/// How well it agrees, and why.
+/// Agreement, and its reason.
 pub(super) fn judge(
     driven: &Driven<'_>,
     problem: &RobustProblem,
@@ -111,7 +110,7 @@ pub(super) fn judge(
     let overshoots = |note| TrialFinding::Overshoots { percent: overshoot, leg, linear: predicted, note };
     let more = overshoot - predicted.unwrap_or(overshoot);
     let most = most_overshoot_percent(problem).filter(|_| driven.size != StepSize::Largest);
-    // a prefilter may make more of it than the limit, in the linear loop too
+    // a prefilter may increase the overshoot beyond the limit, in the linear loop too
     let satisfies = |most: f64| predicted.is_none_or(|predicted| predicted <= most);
     if more > OVERSHOOT_ROOM_PERCENT && most.is_some_and(|most| overshoot > most && satisfies(most)) {
         return (broken, overshoots(OvershootNote::BeyondLimit));
@@ -138,8 +137,8 @@ pub(super) fn judge(
     }
 }
 
-/// The agreement of two settling times in s that are further apart than [`SETTLING_ROOM`]; `None`
-/// for others, and where one of them is not known.
+/// Agreement of two settling times, s, that differ by more than [`SETTLING_ROOM`]; `None` for
+/// others, and if one of them is not known.
 fn settling_agreement(own_s: Option<f64>, predicted_s: Option<f64>) -> Option<(Agreement, TrialFinding)> {
     let (own_s, predicted_s) = own_s.zip(predicted_s)?;
     let is_within = |factor: f64| (predicted_s / factor..=predicted_s * factor).contains(&own_s);
@@ -151,8 +150,8 @@ fn settling_agreement(own_s: Option<f64>, predicted_s: Option<f64>) -> Option<(A
     Some((agreement, TrialFinding::Settles { machine: own_s, linear: predicted_s, required: None }))
 }
 
-/// Two loops that do not settle within the run: both grow, or the overshoot of a slow one is
-/// compared, as far as it was seen.
+/// Agreement of two loops that do not settle within the run: both grow, or the overshoot of a slow
+/// one is compared, up to the end of the run.
 fn neither_settles(driven: &Driven<'_>) -> (Agreement, TrialFinding) {
     let own = driven.whole().overshoot_percent.unwrap_or(0.0);
     let predicted = driven.linear.and_then(|step| step.overshoot_percent);
@@ -165,8 +164,8 @@ fn neither_settles(driven: &Driven<'_>) -> (Agreement, TrialFinding) {
     }
 }
 
-/// The settling time that is required of these steps, where the linear loop satisfies it and the
-/// machine does not.
+/// Settling time that is required of these steps, if the linear loop satisfies it and the machine
+/// does not.
 fn missed_in_time(machine: &TrialStep, driven: &Driven<'_>, problem: &RobustProblem) -> Option<TrialFinding> {
     let linear = driven.linear;
     let of_verdict = |required: &&TimeRequirement| {
@@ -179,14 +178,14 @@ fn missed_in_time(machine: &TrialStep, driven: &Driven<'_>, problem: &RobustProb
     Some(TrialFinding::Settles { machine: own, linear: predicted, required: Some(most) })
 }
 
-/// Range of a force at rest, over its distance from the reference.
+/// Largest ratio of the range of a force at rest to its distance from the reference.
 const SWING: f64 = 0.5;
 
 fn unsettled(driven: &Driven<'_>) -> TrialFinding {
     let leg = driven.worst();
     let reference = driven.steps.reference(leg);
     let distance = |[low, high]: [f64; 2]| (0.5 * (low + high) - reference).abs();
-    // what swings by less than it is off its reference is noise around a force at rest
+    // a swing smaller than the distance from the reference is noise around a force at rest
     let is_still =
         |range: &[f64; 2]| width(*range) <= (AT_REST * driven.steps.size()).max(SWING * distance(*range));
     if let Some([low, high]) = driven.steps.remains(driven.run, leg).filter(is_still) {
@@ -197,7 +196,7 @@ fn unsettled(driven: &Driven<'_>) -> TrialFinding {
     TrialFinding::Unsettled { leg, end: driven.remains().map(UnsettledEnd::Swings) }
 }
 
-/// The limits and ends that the machine reached, in order.
+/// Limits and end stops that the machine reached, in order.
 pub(super) fn met(driven: &ScenarioRun) -> Vec<&'static str> {
     driven.occurrences.iter().filter(|one| one.begins).map(|one| one.kind).collect()
 }
@@ -206,7 +205,7 @@ fn width([low, high]: [f64; 2]) -> f64 {
     high - low
 }
 
-/// The overshoot of a system of second order whose resonance reaches the least limit on |L/(1+L)|,
+/// Overshoot of a second-order system whose resonance reaches the least limit on |L/(1+L)|,
 /// percent; `None` without such a limit.
 ///
 /// ```text
@@ -232,7 +231,7 @@ fn most_overshoot_percent(problem: &RobustProblem) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// A quarter more or less agrees, up to a factor of two all but the settling does.
+    /// A quarter more or less agrees; up to a factor of two, all but the settling time agrees.
     // ORIGIN: analytic, predicted 100 ms
     #[test]
     fn a_settling_time_agrees_within_a_quarter() {

@@ -1,4 +1,4 @@
-//! The step response that the linear loop predicts.
+//! Step response that the linear loop predicts.
 
 use phea_dynamics::time_response::{StepBaseline, StepMetrics, step_metrics};
 use phea_qft::stability::{StabilityStatus, member_stability};
@@ -9,12 +9,12 @@ use super::run::{BAND_PERCENT, TrialStep};
 use crate::linear_step::{StepResponse, linear_step};
 use crate::robust::RobustProblem;
 
-/// Durations that are tried until the response has settled, s, and the points of each.
+/// Durations that are computed until the response has settled, s, and number of points of each.
 const DURATIONS_S: [f64; 4] = [0.5, 2.0, 10.0, 40.0];
 const POINTS: usize = 4000;
 
-/// Duration of a step in settling times of the linear loop, within bounds: a slow part of it may be
-/// highest long after it has settled within the band.
+/// Duration of a step in settling times of the linear loop, within bounds: a slow part of it may
+/// reach its maximum long after it has settled within the band.
 pub(super) const SETTLING_TIMES: f64 = 5.0;
 
 /// Bounds of the duration of a step, s.
@@ -23,11 +23,11 @@ pub(super) const LONGEST_HOLD_S: f64 = 20.0;
 
 /// The response of the linear loop to a unit step of its reference.
 pub(super) enum Prediction {
-    /// It settles, or would.
+    /// The response settles, or would settle.
     Step(StepMetrics, StepResponse),
-    /// It grows without bound.
+    /// The response grows without bound.
     Grows,
-    /// Its response is not known.
+    /// The response is not known.
     Unknown,
 }
 
@@ -61,11 +61,11 @@ pub(super) fn predicted(tried: &Tried, problem: &RobustProblem) -> Result<Predic
     Ok(found)
 }
 
-/// The linear loop's response to a step.
+/// Response of the linear loop to a step.
 pub(super) struct LinearStep {
     pub(super) step: Option<TrialStep>,
     pub(super) response: StepResponse,
-    /// True where it grows without bound.
+    /// True if the response grows without bound.
     pub(super) grows: bool,
 }
 
@@ -86,7 +86,7 @@ impl LinearStep {
         })
     }
 
-    /// So many settling times, s, within bounds.
+    /// Duration of this number of settling times, s, within bounds.
     pub(super) fn hold_s(&self, settling_times: f64) -> f64 {
         let [shortest, longest] = [SHORTEST_HOLD_S, LONGEST_HOLD_S];
         let settles_s = match self.step {

@@ -6,7 +6,7 @@ use crate::rig::RigError;
 use crate::simulate::{RunStatus, SimulateError};
 use crate::specification::NamedSpecification;
 
-/// A machine that is driven.
+/// A simulated machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TrialMachine {
     /// The rig as declared.
@@ -15,11 +15,11 @@ pub enum TrialMachine {
     WithWaves,
     /// The worst plant of the audit, made into a rig.
     WorstPlant(WorstOf),
-    /// The worst of the corners of the box and of plants inside it.
+    /// The worst of the corners of the box and of the plants inside it.
     WorstOfBox {
-        /// Corners that were driven.
+        /// Number of simulated corners.
         corners: usize,
-        /// Plants inside the box that were driven.
+        /// Number of simulated plants inside the box.
         inside: usize,
     },
 }
@@ -38,9 +38,9 @@ pub enum WorstOf {
 /// Result of a run compared with the linear loop, and the cause of a difference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrialReason {
-    /// Result.
+    /// Finding on the run.
     pub finding: TrialFinding,
-    /// The cause of a difference, where it was sought and found.
+    /// Cause of a difference, if it was searched and found.
     pub cause: Option<DifferenceCause>,
 }
 
@@ -55,7 +55,7 @@ impl From<TrialFinding> for TrialReason {
 pub enum TrialFinding {
     /// Neither the linear loop nor the machine settles.
     NeitherSettles {
-        /// Overshoots of the machine and of the linear loop, percent, where they differ.
+        /// Overshoots of the machine and of the linear loop, percent, if they differ.
         overshoots: Option<[f64; 2]>,
     },
     /// The simulation does not start.
@@ -64,25 +64,25 @@ pub enum TrialFinding {
     Diverges(f64),
     /// The run ended early.
     Ended {
-        /// Time of its end, s.
+        /// Time of the end, s.
         time: f64,
-        /// Its status.
+        /// Status of the run.
         status: RunStatus,
     },
     /// The force does not settle.
     Unsettled {
-        /// The step after which it does not.
+        /// Step after which the force does not settle.
         leg: Leg,
-        /// Final behaviour; `None` where it is not known.
+        /// Final behaviour; `None` if it is not known.
         end: Option<UnsettledEnd>,
     },
     /// The machine overshoots.
     Overshoots {
-        /// Percent of the step.
+        /// Overshoot, percent of the step.
         percent: f64,
-        /// The step with that overshoot.
+        /// Step with that overshoot.
         leg: Leg,
-        /// Overshoot of the linear loop, percent; `None` where it is not known.
+        /// Overshoot of the linear loop, percent; `None` if it is not known.
         linear: Option<f64>,
         /// Remark on the run.
         note: OvershootNote,
@@ -93,8 +93,8 @@ pub enum TrialFinding {
         machine: f64,
         /// Settling time of the linear loop, s.
         linear: f64,
-        /// Settling time that is required and that the machine alone exceeds, s; `None` where the
-        /// difference itself counts.
+        /// Required settling time that only the machine exceeds, s; `None` if the difference itself
+        /// counts.
         required: Option<f64>,
     },
 }
@@ -102,7 +102,7 @@ pub enum TrialFinding {
 /// Final behaviour of a force that does not settle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum UnsettledEnd {
-    /// Rest off the reference.
+    /// Rest at a distance from the reference.
     AtRest {
         /// Force, N.
         force: f64,
@@ -116,31 +116,31 @@ pub enum UnsettledEnd {
 /// Remark on a run that overshoots.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum OvershootNote {
-    /// The overshoot alone.
+    /// No further remark.
     Nothing,
-    /// The limit on |L/(1+L)| lets no loop overshoot so far.
+    /// The limit on |L/(1+L)| permits no loop to overshoot so far.
     BeyondLimit,
-    /// The force does not come to rest and swings between these forces, N.
+    /// The force does not settle and swings between these forces, N.
     Swings([f64; 2]),
-    /// No solver determines the result.
+    /// No solver can determine the result.
     Undetermined,
-    /// The run reaches this limit or end: the name of an occurrence.
+    /// The run reaches this limit or end stop: the name of an occurrence.
     Meets(&'static str),
 }
 
 /// Cause of a difference between a machine and its linear loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DifferenceCause {
-    /// The waves of the lines.
+    /// Waves of the lines.
     Waves {
         /// Frequency at which a line is a quarter wave long, rad/s.
         quarter_wave: f64,
-        /// Declaration by which a wall of these lines damps; `None` where none does.
+        /// Declaration that adds damping by the wall of these lines; `None` if there is none.
         wall: Option<DampingWall>,
     },
-    /// Something other than waves: with lumped lines the same steps differ as well.
+    /// Something other than waves: with lumped lines these steps differ as well.
     OtherThanWaves,
-    /// The noise of the sensors.
+    /// Noise of the sensors.
     Noise,
 }
 
@@ -160,7 +160,7 @@ pub enum NotDriven {
     Plant {
         /// Criterion by which the plant is the worst.
         of: WorstOf,
-        /// The plant.
+        /// Plant without a rig.
         plant: NamedPlant,
         /// Reason why it has no rig.
         reason: NoRig,
@@ -172,10 +172,10 @@ pub enum NotDriven {
 /// Reason why a plant has no rig.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NoRig {
-    /// The plant is one in motion.
+    /// The plant is in motion at its operating point.
     #[error("a machine is tried from rest, and this plant is one in motion")]
     InMotion,
-    /// A number of the plant is none of the rig.
+    /// A number of the plant does not exist in the rig.
     #[error("no rig is known with another `{0}`")]
     UnknownNumber(String),
     /// No rig was found with these parameters.
@@ -184,13 +184,13 @@ pub enum NoRig {
     /// The rig cannot be computed.
     #[error(transparent)]
     Rig(#[from] RigError),
-    /// A parameter is none of the linear model.
+    /// A parameter does not exist in the linear model.
     #[error("`{0}` is not a parameter")]
     UnknownParameter(String),
     /// No number of the rig determines a parameter.
     #[error("nothing in the rig moves `{0}`")]
     Fixed(String),
-    /// No number of the rig determines a parameter without others.
+    /// No number of the rig determines a parameter without affecting others.
     #[error("nothing in the rig moves `{0}` alone")]
     Coupled(String),
     /// The project declares no rig.
@@ -204,9 +204,9 @@ pub enum NoRig {
 pub struct MissedParameter {
     /// Name of the parameter.
     pub name: String,
-    /// Its value, SI.
+    /// Value of the nearest rig, SI.
     pub found: f64,
-    /// The value of the plant, SI.
+    /// Value of the plant, SI.
     pub wanted: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What is required in time, held against the steps of one machine that was driven.
+//! Requirements in time, compared with the steps of one simulated machine.
 
 use phea_dynamics::time_response::{StepBaseline, step_metrics};
 
@@ -6,26 +6,26 @@ use super::run::{BAND_PERCENT, Leg};
 use super::steps::Steps;
 use crate::simulate::{ReachedStep, RequiredSteps, ScenarioRun, TimeRequirement, TrackingWish};
 
-/// A requirement in time, and the worst that the steps of a run do of it.
+/// A requirement in time, and the worst result of the steps of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeldRequirement {
     /// Number of its specification in the file, from 1.
     pub number: usize,
-    /// What is required.
+    /// Requirement.
     pub wish: TrackingWish,
-    /// The worst of all steps, each property by itself; infinite where the run ended before.
+    /// Worst result of all steps, each property separately; infinite if the run ended earlier.
     pub reached: ReachedStep,
-    /// The same in nine tenths of the band.
+    /// Worst result in nine tenths of the band.
     pub reached_with_room: ReachedStep,
-    /// Whether every step satisfies it.
+    /// True if every step satisfies the requirement.
     pub is_satisfied: bool,
 }
 
-/// Share of the band that a design is to keep on the rig: plants between those that are driven come
+/// Fraction of the band at which a design aims on the rig: plants between the simulated ones swing
 /// back a little further.
 pub(crate) const BAND_WITH_ROOM: f64 = 0.9;
 
-/// Every requirement that is part of the verdict and holds for these steps.
+/// Every requirement that is part of the verdict and applies to these steps.
 pub(super) fn held(
     requirements: &[TimeRequirement],
     steps: &Steps,
@@ -48,12 +48,12 @@ pub(super) fn held(
     concerned.map(of).collect()
 }
 
-/// A requirement with a step of its own holds for that alone.
+/// True if the requirement applies to these steps: one with stated steps applies only to those.
 fn holds_for(requirement: &TimeRequirement, steps: RequiredSteps) -> bool {
     !requirement.steps.are_stated() || requirement.steps == steps
 }
 
-/// What one step does, in the band of the requirement.
+/// Properties of one step, in the band of the requirement.
 fn reached(wish: &TrackingWish, steps: &Steps, run: &ScenarioRun, leg: Leg) -> ReachedStep {
     let never = ReachedStep {
         overshoot_percent: f64::INFINITY,
@@ -63,7 +63,7 @@ fn reached(wish: &TrackingWish, steps: &Steps, run: &ScenarioRun, leg: Leg) -> R
     if run.stopped().is_some() {
         return never;
     }
-    // of the solution itself, and not of its rows
+    // from the solution itself, not from its rows
     let known = steps.step(run, leg);
     let response = steps.response(run, leg);
     let baseline = StepBaseline::to_value(1.0);

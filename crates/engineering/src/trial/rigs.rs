@@ -1,4 +1,4 @@
-//! Which machines a verdict is tried on: the declared one, the worst plants of the audit made into
+//! Machines on which a verdict is tested: the declared one, the worst plants of the audit made into
 //! rigs, and the rig with waves in its lumped lines.
 
 use std::sync::Arc;
@@ -23,26 +23,26 @@ use crate::setup::Setup;
 #[derive(Clone, Debug)]
 pub(super) struct Tried {
     pub(super) machine: TrialMachine,
-    /// The plant of the audit that it was made of.
+    /// Plant of the audit from which it was made.
     pub(super) named: Option<NamedPlant>,
-    /// Where the lines of a rig with waves begin to oscillate, rad/s.
+    /// Quarter-wave frequency of a rig with waves, rad/s, at which its lines begin to oscillate.
     pub(super) quarter_wave_rad_per_s: Option<f64>,
     pub(super) project: Project,
-    /// `None` where none is known.
+    /// `None` if no plant is known.
     pub(super) plant: Option<PlantMember>,
-    /// Whether its machine is that of the rig as declared: they differ at most by the side of null
-    /// from which the valve is linearised.
+    /// True if its machine is that of the rig as declared: they differ at most by the side of null
+    /// at which the valve is linearised.
     pub(super) is_declared: bool,
 }
 
-/// Relative deviation of a parameter of the linear model from that of a plant that is allowed.
+/// Permitted relative deviation of a parameter of the linear model from that of a plant.
 const CLOSE: f64 = 1e-3;
 /// Number of passes over all parameters of a plant, which affect each other slightly.
 const PASSES: usize = 8;
-/// Change of a number by which its effect on a parameter is measured.
+/// Relative change of a number by which its effect on a parameter is measured.
 const NUDGE: f64 = 1e-3;
 
-/// The machines, and the reasons for plants without one.
+/// Machines, and the reasons for plants without one.
 pub(super) fn rigs(
     setup: &Setup<'_>,
     rig: &Rig,
@@ -99,8 +99,8 @@ pub(super) fn rigs(
     (rigs, missing)
 }
 
-/// The worst plant of each specification, and of each requirement in time that is part of the
-/// verdict, with what it is the worst of.
+/// Worst plant of each specification, and of each requirement in time that is part of the verdict,
+/// with the criterion.
 fn worst_plants(view: &ProjectAudit) -> impl Iterator<Item = (WorstOf, &PlantPoint)> {
     let of_limits = view.audit.specifications.iter().enumerate();
     let of_limits = of_limits.filter_map(|(index, finding)| {
@@ -117,7 +117,7 @@ fn worst_plants(view: &ProjectAudit) -> impl Iterator<Item = (WorstOf, &PlantPoi
     of_limits.chain(in_time)
 }
 
-/// Whether two projects have one machine, uncertainty and the side of null left out.
+/// True if two projects have equal machines, except for uncertainty and the side of null.
 fn is_same_machine(one: Project, other: Project) -> bool {
     let [one, other] = [one, other].map(|mut project| {
         project.operating_point.spool_side = None;
@@ -126,8 +126,8 @@ fn is_same_machine(one: Project, other: Project) -> bool {
     one == other
 }
 
-/// The same rig with its lumped lines as transmission lines, and a transmission in as many segments
-/// as it may have; `None` if no line is lumped and long, and no transmission has less.
+/// The rig with its lumped lines as transmission lines, and a transmission in the largest number of
+/// segments; `None` if no line is lumped and long, and no transmission has fewer segments.
 pub fn with_waves(project: &Project) -> Option<Project> {
     let mut other = project.clone();
     let actuator = other.actuator.as_mut()?;
@@ -146,8 +146,8 @@ pub fn with_waves(project: &Project) -> Option<Project> {
     moved.then_some(other)
 }
 
-/// A machine whose sensors are without noise; `None` where they are so already, and in a continuous
-/// loop, which has none.
+/// A machine whose sensors are without noise; `None` if they are already, and in a continuous loop,
+/// which has no noise.
 pub(super) fn without_noise(tried: &Tried) -> Option<Tried> {
     let mut quiet = tried.clone();
     let controller = quiet.project.controller.as_mut()?;
@@ -166,7 +166,7 @@ pub(super) fn without_noise(tried: &Tried) -> Option<Tried> {
 }
 
 /// The declared rig with waves: without uncertainty, and without stated parameters that replace
-/// derived ones, which no machine has. `None` if it has no additional waves.
+/// derived ones, which a machine does not have. `None` if it has no additional waves.
 pub(crate) fn waves_alone(setup: &Setup<'_>) -> Option<Project> {
     let rig = setup.rig().ok()?;
     let alone = with_controller_of(with_waves(setup.project)?, rig);
@@ -221,7 +221,7 @@ fn assembled(project: &Project) -> Result<Rig, NoRig> {
     Ok(Setup::rig_of(project)?)
 }
 
-/// A parameter of the linear model as it follows from the rig.
+/// Parameter of the linear model as derived from the rig.
 fn derived(rig: &Rig, name: &str) -> Result<f64, NoRig> {
     let found = rig.parameters.iter().find(|parameter| parameter.name == name);
     found.map(|parameter| parameter.derived).ok_or_else(|| NoRig::UnknownParameter(name.to_string()))
@@ -252,8 +252,7 @@ fn scaled(project: &Project, name: &str, factor: f64) -> Result<Project, NoRig> 
     Ok(rig)
 }
 
-/// The numbers that determine a parameter of the linear model and affect others as little as
-/// possible.
+/// Numbers that determine a parameter of the linear model and affect others as little as possible.
 fn behind<'a>(actuator: &'a mut DeclaredActuator, name: &str) -> Vec<&'a mut f64> {
     match name {
         "viscous_friction" => {

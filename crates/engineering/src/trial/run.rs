@@ -1,4 +1,4 @@
-//! One machine driven through steps of its reference, and what came of them.
+//! Simulation of one machine through steps of its reference, and its result.
 
 use super::first_steps::{FirstSteps, RequiredOfSteps};
 use super::judge::{Driven, judge, met, not_started};
@@ -22,152 +22,155 @@ use crate::source::Source;
 use phea_dynamics::simulation::Attention;
 use phea_dynamics::watch::{Watch, part};
 
-/// How well a machine agrees with its linear loop, best first.
+/// Agreement of a machine with its linear loop, best first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Agreement {
-    /// It behaves as the linear loop predicts.
+    /// The machine behaves as the linear loop predicts.
     Agrees,
-    /// It does but for its settling time, which is within a factor of two of the prediction.
+    /// The machine behaves as predicted except for its settling time, which is within a factor of
+    /// two of the prediction.
     AgreesButForSettling,
-    /// It settles, but not as predicted, or meets a limit on the way.
+    /// The machine settles, but not as predicted, or meets a limit during the run.
     Differs,
-    /// It does not behave as a met verdict promises.
+    /// The machine does not behave as a met verdict promises.
     Contradicts,
 }
 
 /// Properties of a step response.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrialStep {
-    /// Percent of the step.
+    /// Overshoot, percent of the step.
     pub overshoot_percent: Option<f64>,
-    /// s; `None` where it does not settle within the run.
+    /// Settling time, s; `None` if the force does not settle within the run.
     pub settling_time_s: Option<f64>,
 }
 
-/// The size of the steps through which a machine is driven.
+/// Size of the steps through which a machine is simulated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StepSize {
     /// A tenth of the force that the supply can produce.
     Tenth,
-    /// The same the other way.
+    /// A tenth of that force in the opposite direction.
     Reversed,
-    /// As a scenario of the project makes it.
+    /// The step of a scenario of the project.
     Scenario,
-    /// The largest within reach that meets no limit: see [`super::REACH`].
+    /// The largest reachable step that meets no limit: see [`super::REACH`].
     Largest,
-    /// As a requirement in time states it.
+    /// The step that a requirement in time states.
     Required,
 }
 
-/// The steps of a run, in the order in which they are driven.
+/// Steps of a run, in the order of simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Leg {
-    /// From the force of the operating point.
+    /// Step from the force of the operating point.
     There,
-    /// Back to it.
+    /// Step back to the operating point.
     Back,
-    /// The first step again.
+    /// Repetition of the first step.
     Again,
 }
 
 impl Leg {
-    /// All of them.
+    /// All steps of a run.
     pub const ALL: [Leg; 3] = [Leg::There, Leg::Back, Leg::Again];
 
-    /// The steps up to this one.
+    /// Steps up to this one.
     pub(super) fn up_to(last: Leg) -> impl Iterator<Item = Leg> {
         Leg::ALL.into_iter().take(last as usize + 1)
     }
 }
 
-/// One machine, driven there, back and there again.
+/// Simulation of one machine through a step, the step back, and the step again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrialRun {
     /// The machine.
     pub machine_driven: TrialMachine,
-    /// How large its steps are.
+    /// Size of the steps.
     pub size: StepSize,
-    /// The plant of the audit from which it was made, if any.
+    /// Plant of the audit from which the machine was made, if any.
     pub plant: Option<NamedPlant>,
-    /// Its status: `completed`, or the word of what ended it.
+    /// Status of the run: `completed`, or the cause of its early end.
     pub status: RunStatus,
-    /// The reference of the first step, from and to, N; the second returns, the third repeats it.
+    /// Reference before and after the first step, N; the second step returns, the third repeats the
+    /// first.
     pub reference_n: [f64; 2],
-    /// What the linear loop predicts; `None` if it has no known response, or grows without bound.
+    /// Prediction of the linear loop; `None` if it has no known response, or grows without bound.
     pub linear: Option<TrialStep>,
-    /// The greatest overshoot and the longest settling time of the machine's steps; `None` if it
-    /// did not start.
-    pub machine: Option<TrialStep>,
-    /// The same of each step that was driven: the first alone where that decides; empty if it did
+    /// Greatest overshoot and longest settling time of the machine's steps; `None` if the run did
     /// not start.
+    pub machine: Option<TrialStep>,
+    /// Overshoot and settling time of each simulated step: of the first one only, if that is
+    /// decisive; empty if the run did not start.
     pub legs: Vec<(Leg, TrialStep)>,
-    /// The worst of its steps.
+    /// Worst step of the run.
     pub worst: Leg,
     /// Half the range of the force over the last fifth of a step, the largest of all steps, N: the
-    /// amplitude of an oscillation that remains. `None` if the run ended before.
+    /// amplitude of an oscillation that remains. `None` if the run ended earlier.
     pub remaining_amplitude_n: Option<f64>,
-    /// What is required in time of these steps, and whether they satisfy it; empty if it did not
-    /// start.
+    /// Requirements in time of these steps, and whether the steps satisfy them; empty if the run
+    /// did not start.
     pub requirements: Vec<HeldRequirement>,
-    /// The units in which it is shown.
+    /// Units of display.
     pub units: Units,
-    /// The linear loop's response; empty if it is absent.
+    /// Response of the linear loop; empty if it is absent.
     pub linear_response: StepResponse,
-    /// The machine's in its worst step; empty where it did not start.
+    /// Response of the machine in its worst step; empty if the run did not start.
     pub machine_response: StepResponse,
-    /// The judgement.
+    /// Agreement of the machine with the linear loop.
     pub agreement: Agreement,
     /// Result of the run, and the cause of a difference.
     pub reason: TrialReason,
-    /// Where the lines of a machine with waves begin to oscillate, rad/s; `None` for one without.
+    /// Quarter-wave frequency of the lines, rad/s, at which they begin to oscillate; `None` for a
+    /// machine without waves.
     pub quarter_wave_rad_per_s: Option<f64>,
-    /// Events on the way, by the names of occurrences: the limit of the command, cavitation, an end
-    /// stop.
+    /// Events during the run, by the names of occurrences: the limit of the command, cavitation, an
+    /// end stop.
     pub met: Vec<&'static str>,
 }
 
 impl TrialRun {
-    /// How far the steps are from what is required of them: the largest ratio of what one reaches
-    /// to what is required, zero where nothing is.
+    /// Largest ratio of a reached property of the steps to the required one; zero if nothing is
+    /// required.
     pub(crate) fn excess(&self) -> f64 {
         self.requirements.iter().map(|held| held.wish.excess(&held.reached)).fold(0.0, f64::max)
     }
 
-    /// The same in a narrower band.
+    /// Largest such ratio in a narrower band.
     pub(crate) fn excess_with_room(&self) -> f64 {
         let of = |held: &HeldRequirement| held.wish.excess(&held.reached_with_room);
         self.requirements.iter().map(of).fold(self.excess(), f64::max)
     }
 
-    /// Whether the steps satisfy all that is required of them in time.
+    /// True if the steps satisfy all requirements in time.
     pub fn satisfies(&self) -> bool {
         self.requirements.iter().all(|held| held.is_satisfied)
     }
 }
 
-/// Percent of the step within which the force counts as settled.
+/// Band within which the force counts as settled, percent of the step.
 pub const BAND_PERCENT: f64 = 2.0;
-/// Duration of a step at a corner of the box in settling times of the linear loop, and in times
-/// that are required.
+/// Duration of a step at a corner of the box, in settling times of the linear loop, and in required
+/// settling times.
 const SETTLING_TIMES_AT_CORNERS: f64 = 3.0;
 const REQUIRED_TIMES: f64 = 2.0;
-/// Ratio of the largest step to the first from which a run of its own is worth its time.
+/// Ratio of the largest step to the first from which a separate run is worth its time.
 const WORTH: f64 = 1.25;
-/// Ratio below which no smaller step is driven.
+/// Ratio below which no smaller step is simulated.
 const LEAST: f64 = 0.2;
-/// Factor by which a step is reduced that meets a limit, and number of such reductions.
+/// Factor by which a step that meets a limit is reduced, and number of such reductions.
 const REDUCTION: f64 = 0.75;
 const REDUCTIONS: usize = 6;
 
-/// Whether a run met a limit or an end on its way.
+/// True if a run met a limit or an end stop.
 fn is_limited(driven: &ScenarioRun) -> bool {
     driven.occurrences.iter().any(|one| one.begins) || !driven.exceeded.is_empty()
 }
 
-/// A run of the steps, or why there is none.
+/// A run of the steps, or the reason why there is none.
 type TrialOutcome = Result<ScenarioRun, SimulateError>;
 
-/// Steps through which a machine was driven, and what came of them.
+/// Steps through which a machine was simulated, and their result.
 pub(super) struct DrivenSteps {
     size: StepSize,
     required: RequiredSteps,
@@ -175,7 +178,7 @@ pub(super) struct DrivenSteps {
     outcome: TrialOutcome,
 }
 
-/// A machine, and what the linear loop predicts for it.
+/// A machine and the prediction of the linear loop for it.
 pub(super) struct TriedMachine<'a> {
     tried: &'a Tried,
     linear: LinearStep,
@@ -183,15 +186,15 @@ pub(super) struct TriedMachine<'a> {
     effort: TrialEffort,
 }
 
-/// The work that is spent on a machine.
+/// Computational effort for a machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TrialEffort {
     /// Runs are repeated at smaller tolerances.
     Repeated,
-    /// Every run once.
+    /// Every run is made once.
     Once,
-    /// The same, each step held for less long, there and back alone, and no larger steps than
-    /// scenarios make.
+    /// Every run is made once, with shorter steps, only there and back, and no steps larger than
+    /// those of the scenarios.
     Corner,
 }
 
@@ -203,12 +206,12 @@ impl<'a> TriedMachine<'a> {
         Ok(TriedMachine { tried, linear: LinearStep::of(tried, problem)?, required, effort })
     }
 
-    /// The same at a corner of the box.
+    /// The machine with the effort for a corner of the box.
     pub(super) fn at_corner(self) -> TriedMachine<'a> {
         TriedMachine { effort: TrialEffort::Corner, ..self }
     }
 
-    /// How long each step is held, and the last of them.
+    /// Duration of each step, and the last step.
     fn legs(&self) -> HeldLegs {
         match self.effort {
             TrialEffort::Repeated | TrialEffort::Once => {
@@ -222,14 +225,14 @@ impl<'a> TriedMachine<'a> {
         }
     }
 
-    /// True where steps larger than the first ones are driven.
+    /// True if steps larger than the first ones are simulated.
     fn drives_larger(&self) -> bool {
         let has_scenario_steps = !stepped_references(&self.tried.project).is_empty();
         self.effort != TrialEffort::Corner || self.required.of_every_step && !has_scenario_steps
     }
 
-    /// Drives it through the first steps, then through the largest at which nothing saturates;
-    /// `None` where the watcher stops it.
+    /// Simulates the machine through the first steps, then through the largest at which nothing
+    /// saturates; `None` if `watch` cancels.
     pub(super) fn driven(
         &self,
         source: &dyn Source,
@@ -275,7 +278,7 @@ impl<'a> TriedMachine<'a> {
         Ok(Some(all))
     }
 
-    /// The judgement of each.
+    /// Judgement of each run.
     pub(super) fn judged(
         &self,
         all: &[DrivenSteps],
@@ -285,8 +288,9 @@ impl<'a> TriedMachine<'a> {
         all.iter().map(|driven| self.judgement(driven, (problem, view))).collect()
     }
 
-    /// Drives it; `None` where the watcher stops it. The first step alone comes first: where it
-    /// decides, the others and the repetition at smaller tolerances would take most of the time.
+    /// Simulates the machine; `None` if `watch` cancels. The first step is made first: if it is
+    /// decisive, the other steps and the repetition at smaller tolerances would take most of the
+    /// time.
     fn driven_by(
         &self,
         on: (&dyn Source, &Setup<'_>),
@@ -296,7 +300,7 @@ impl<'a> TriedMachine<'a> {
         let once = RunOutput { repeats: false, ..RunOutput::new(true, None) };
         match self.effort {
             TrialEffort::Corner => {
-                // the limit of a line ends nothing but the search for a larger step
+                // the limit of a line only ends the search for a larger step
                 let line_limits = self.drives_larger();
                 let as_in_campaigns = RunOutput { attention: Attention::Steps, line_limits, ..once };
                 return self.driven_up_to(on, (steps, steps.legs.last), as_in_campaigns, watch);
@@ -326,7 +330,7 @@ impl<'a> TriedMachine<'a> {
         }
     }
 
-    /// Whether the first step of a run decides: the run ends early or diverges, or settles as
+    /// True if the first step of a run is decisive: the run ends early or diverges, or settles as
     /// little as the unstable linear loop.
     fn is_decided(&self, steps: &Steps, driven: &ScenarioRun) -> bool {
         let settles = steps.step(driven, Leg::There).settling_time_s.is_some();
@@ -385,7 +389,7 @@ impl<'a> TriedMachine<'a> {
         }
     }
 
-    /// Drives it through the steps of another machine; `None` where the watcher stops it.
+    /// Simulates the machine through the steps of another one; `None` if `watch` cancels.
     pub(super) fn repeated(
         &self,
         source: &dyn Source,
@@ -399,8 +403,8 @@ impl<'a> TriedMachine<'a> {
         Ok(Some(self.judgement(&DrivenSteps { size, required, steps, outcome }, (problem, view))))
     }
 
-    /// The cause of a run with waves that does not agree: the waves, unless the rig with lumped
-    /// lines agrees as little in the same steps.
+    /// Cause of the disagreement of a run with waves: the waves, unless the rig with lumped lines
+    /// agrees as little in these steps.
     pub(super) fn cause_of_waves(
         &self,
         run: &TrialRun,
@@ -415,14 +419,14 @@ impl<'a> TriedMachine<'a> {
 }
 
 impl DrivenSteps {
-    /// Whether these are the steps of a run.
+    /// True if these are the steps of `run`.
     pub(super) fn are_of(&self, run: &TrialRun) -> bool {
         self.size == run.size && [self.steps.from_n, self.steps.to_n] == run.reference_n
     }
 }
 
-/// The declaration of a wall that damps a wave in these lines, if their models include one; pipes
-/// have none.
+/// Declaration of a wall that damps a wave in these lines, if their models include one; pipes have
+/// none.
 fn damping_wall(project: &Project) -> Option<DampingWall> {
     let line = &project.actuator.as_ref()?.line;
     let mut models = [&line.a, &line.b]

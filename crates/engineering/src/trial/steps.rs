@@ -1,4 +1,5 @@
-//! The steps of the reference through which a machine is driven: there, back, and there again.
+//! Steps of the reference through which a machine is simulated: a step, the step back, and the step
+//! again.
 //!
 //! ```text
 //! project, Steps -> stepped project -> ScenarioRun -> metrics and response of each leg
@@ -13,42 +14,42 @@ use crate::project::{InputSignal, Project, Scenario};
 use crate::rig::Rig;
 use crate::simulate::{RequiredSteps, ScenarioRun, stays_settled};
 
-/// The first step over the force that the supply can produce.
+/// Ratio of the first step to the force that the supply can produce.
 const STEP_SHARE: f64 = 0.1;
 /// Fraction of that force within which the reference stays.
 pub const REACH: f64 = 0.8;
-/// s, before the first step.
+/// Time before the first step, s.
 const BEFORE_S: f64 = 0.05;
-/// Rows of a scenario for each step.
+/// Number of rows of a scenario for each step.
 const ROWS: f64 = 2000.0;
-/// Share of a step, at its end, over which the remaining oscillation is measured.
+/// Fraction of a step, at its end, over which the remaining oscillation is measured.
 const LATE_SHARE: f64 = 0.2;
-/// Motion of a force that stands still, as a share of the step.
+/// Range of a force that counts as constant, as a fraction of the step.
 const STANDS_STILL: f64 = 1e-3;
-/// Share of the estimated largest step that is driven first: the machine is not linear.
+/// Fraction of the estimated largest step that is simulated first: the machine is not linear.
 const ESTIMATE_SHARE: f64 = 0.95;
 
 /// Steps between two references.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Steps {
-    /// N.
+    /// Reference before the first step, N.
     pub(super) from_n: f64,
-    /// N.
+    /// Reference after the first step, N.
     pub(super) to_n: f64,
     pub(super) legs: HeldLegs,
 }
 
-/// How long each step is held, and the last that is driven.
+/// Duration of each step, and the last step that is simulated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct HeldLegs {
-    /// s.
+    /// Duration of each step, s.
     pub(super) hold_s: f64,
     pub(super) last: Leg,
 }
 
 impl Steps {
-    /// The steps that are stated, or else steps by a tenth of the force that the supply can
-    /// produce, from the force of the operating point in the direction with more room.
+    /// The stated steps, or else steps by a tenth of the force that the supply can produce, from
+    /// the force of the operating point in the direction with more room.
     pub(super) fn first(rig: &Rig, required: RequiredSteps, legs: HeldLegs) -> Steps {
         let push = push(rig);
         let from_n = required.initial_force_n.unwrap_or(rig.point.hydraulic_force);
@@ -57,19 +58,20 @@ impl Steps {
         Steps { from_n, to_n: from_n + required.amplitude_n.unwrap_or(towards), legs }
     }
 
-    /// Steps of the same size the other way; `None` where they reach further than the supply.
+    /// Steps of equal size in the opposite direction; `None` if they are beyond the reach of the
+    /// supply.
     pub(super) fn reversed(&self, rig: &Rig) -> Option<Steps> {
         let other = self.scaled(-1.0);
         (other.to_n.abs() <= REACH * push(rig)).then_some(other)
     }
 
-    /// Whether they are between the same two references, in either order.
+    /// True if the steps are between these two references, in either order.
     pub(super) fn are_between(&self, one_n: f64, other_n: f64) -> bool {
         [[one_n, other_n], [other_n, one_n]].contains(&[self.from_n, self.to_n])
     }
 
-    /// Steps in the same direction, as large as the supply, the force sensor, and the room that a
-    /// run of these steps left between its command and the limit allow.
+    /// Steps in the same direction, as large as is permitted by the supply, the force sensor, and
+    /// the margin between command and limit in a run of these steps.
     pub(super) fn enlarged(&self, rig: &Rig, limits: CommandLimits, driven: &ScenarioRun) -> Steps {
         let towards = (self.to_n - self.from_n).signum();
         let reach = (REACH * push(rig)).min(limits.force_n);
@@ -79,12 +81,12 @@ impl Steps {
         Steps { to_n: self.from_n + towards * most.min(estimated), ..*self }
     }
 
-    /// The same steps, smaller or larger by a factor.
+    /// Steps multiplied by a factor.
     pub(super) fn scaled(&self, factor: f64) -> Steps {
         Steps { to_n: self.from_n + factor * (self.to_n - self.from_n), ..*self }
     }
 
-    /// The steps that are driven.
+    /// Steps that are simulated.
     pub(super) fn driven(&self) -> impl Iterator<Item = Leg> + use<> {
         Leg::up_to(self.legs.last)
     }
@@ -95,7 +97,7 @@ impl Steps {
     }
 
     /// The project with one scenario: in equilibrium under the first reference, then the steps up
-    /// to this one.
+    /// to `last`.
     pub(super) fn project(&self, project: &Project, last: Leg) -> Project {
         let at = |at, value| InputSignal::Step { at, value, published: None };
         let steps = Leg::up_to(last).map(|leg| at(self.begins_s(leg), self.ends(leg)[1]));
@@ -127,9 +129,10 @@ impl Steps {
         }
     }
 
-    /// Properties of the response of what the loop controls: of the force, or with a virtual
-    /// impedance and a load that yields of the force together with what the impedance makes of the
-    /// motion. A force that is still outside the band in the last tenth of the step is not settled.
+    /// Properties of the response of the controlled quantity: the force, or with a virtual
+    /// impedance and a load that yields the force together with the contribution of the impedance
+    /// from the motion. A force that is still outside the band in the last tenth of the step is not
+    /// settled.
     pub(super) fn step(&self, driven: &ScenarioRun, leg: Leg) -> TrialStep {
         let step = self.measured(driven, leg);
         TrialStep {
@@ -138,7 +141,7 @@ impl Steps {
         }
     }
 
-    /// Whether the force was watched for long enough after it settled.
+    /// True if the force was observed for long enough after it settled.
     pub(super) fn settles_early(&self, settling_time_s: f64) -> bool {
         stays_settled(settling_time_s, self.legs.hold_s)
     }
@@ -159,7 +162,7 @@ impl Steps {
         }
     }
 
-    /// The controlled force during a step, as a share of it.
+    /// Controlled force during a step, as a fraction of the step.
     pub(super) fn response(&self, driven: &ScenarioRun, leg: Leg) -> StepResponse {
         let [from, to] = self.ends(leg);
         let (begins_s, held) = (self.begins_s(leg), controlled(driven));
@@ -171,7 +174,8 @@ impl Steps {
         StepResponse { times_s, values }
     }
 
-    /// Whether the force stands still away from its reference: the supply cannot produce it there.
+    /// True if the force is constant but away from its reference: the supply cannot produce it
+    /// there.
     pub(super) fn stalls(&self, driven: &ScenarioRun) -> bool {
         let unsettled = |leg: &Leg| self.step(driven, *leg).settling_time_s.is_none();
         let stands = |leg: Leg| {
@@ -181,7 +185,7 @@ impl Steps {
         self.driven().filter(unsettled).any(stands)
     }
 
-    /// The range of the controlled force at the end of a step, N; `None` if the run ended before.
+    /// Range of the controlled force at the end of a step, N; `None` if the run ended earlier.
     pub(super) fn remains(&self, driven: &ScenarioRun, leg: Leg) -> Option<[f64; 2]> {
         let [from, to] = self.ends(leg);
         let StepResponse { times_s, values } = self.response(driven, leg);
@@ -194,7 +198,7 @@ impl Steps {
     }
 }
 
-/// The limits of a step: of the command in V, and of the force in N.
+/// Limits of a step: command, V, and force, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct CommandLimits {
     command_v: f64,
@@ -202,7 +206,7 @@ pub(super) struct CommandLimits {
 }
 
 impl CommandLimits {
-    /// The limit of the controller, or else of the valve, and the capacity of the force sensor.
+    /// Limit of the controller, or else of the valve, and capacity of the force sensor.
     pub(super) fn of(project: &Project, rig: &Rig) -> CommandLimits {
         let stated = project.controller.as_ref().and_then(|controller| controller.saturation);
         let capacity = project.actuator.as_ref().and_then(|actuator| actuator.force_sensor.capacity);
@@ -211,15 +215,15 @@ impl CommandLimits {
     }
 }
 
-/// The force that the supply can produce, N.
+/// Force that the supply can produce, N.
 fn push(rig: &Rig) -> f64 {
     let components = rig.actuator.components();
     let [area_a, area_b] = components.cylinder.areas_at(rig.point.position);
     0.5 * (area_a + area_b) * (components.supply.pressure - components.supply.tank_pressure)
 }
 
-/// Factor by which a linear loop's command may grow, about its first value, until it meets the
-/// limit in V: at least zero.
+/// Factor by which a linear loop's command may grow about its first value before it meets the
+/// limit, V: at least zero.
 fn room(commands_v: &[f64], limit_v: f64) -> f64 {
     let rest_v = commands_v.first().copied().unwrap_or(0.0);
     let factors = commands_v.iter().filter(|command| **command != rest_v).map(|command| {
@@ -229,7 +233,7 @@ fn room(commands_v: &[f64], limit_v: f64) -> f64 {
     factors.fold(f64::INFINITY, f64::min).max(0.0)
 }
 
-/// What the loop controls, N.
+/// Controlled force, N.
 fn controlled(driven: &ScenarioRun) -> Vec<f64> {
     let record = &driven.record;
     let forces = record.signal(Signal::Force);

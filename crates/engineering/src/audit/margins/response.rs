@@ -8,22 +8,22 @@ use phea_qft::closed_loop::Member;
 
 use crate::robust::RobustProblem;
 
-/// Frequencies of an even grid, before it is refined.
+/// Number of frequencies of an even grid, before it is refined.
 const GRID_POINTS: usize = 300;
-/// Turn of L from one frequency to the next, rad; where |L| is not small.
+/// Turn of L from one frequency to the next, rad, unless |L| is small.
 const TURN_RAD: f64 = 0.3;
 const SMALL_GAIN: f64 = 1e-3;
-/// Golden sections by which the place of the least |1 + L| is narrowed.
+/// Number of golden sections by which the place of the least |1 + L| is narrowed.
 const REFINEMENTS: usize = 50;
-/// Ratio of two frequencies between which no more are taken.
+/// Ratio of two frequencies below which no more are inserted between them.
 const CLOSEST: f64 = 1.0 + 1e-6;
-/// Most frequencies.
+/// Largest number of frequencies.
 const POINTS_MAXIMUM: usize = 5000;
 
-/// A frequency in rad/s, and L there.
+/// A frequency, rad/s, and L there.
 pub(in crate::audit) type KnownPoint = (f64, Complex64);
 
-/// The margins between the first and the last frequency at which the response is known; `None` for
+/// Margins between the first and the last frequency at which the response is known; `None` for
 /// fewer than two. Between the frequencies of a measurement the response is interpolated.
 pub(super) fn margins(problem: &RobustProblem, member: &Member) -> Option<Margins> {
     let at = |frequency: f64| {
@@ -48,7 +48,7 @@ pub(super) fn margins(problem: &RobustProblem, member: &Member) -> Option<Margin
     })
 }
 
-/// The margins where |L| passes 1 between neighbouring points.
+/// Margins at which |L| passes 1 between neighbouring points.
 pub(in crate::audit) fn phase_margins(
     points: &[KnownPoint],
     at: &dyn Fn(f64) -> Option<KnownPoint>,
@@ -64,7 +64,7 @@ pub(in crate::audit) fn phase_margins(
     points.iter().zip(points.iter().skip(1)).filter_map(of_phase).collect()
 }
 
-/// The frequency of the least |1 + L|, and that: the least of the points, refined between its
+/// Frequency of the least |1 + L|, and its value: the least of the points, refined between its
 /// neighbours.
 fn nearest(points: &[KnownPoint], at: &dyn Fn(f64) -> Option<KnownPoint>) -> Option<(f64, f64)> {
     let distance = |point: &KnownPoint| magnitude(1.0 + point.1);
@@ -81,7 +81,7 @@ fn nearest(points: &[KnownPoint], at: &dyn Fn(f64) -> Option<KnownPoint>) -> Opt
     Some((found.0, distance(&found)))
 }
 
-/// L at the frequencies of a measurement, or at as many as it takes for L to turn little.
+/// L at the frequencies of a measurement, or at as many as needed for L to turn little.
 fn points(
     problem: &RobustProblem,
     member: &Member,
@@ -103,8 +103,7 @@ fn points(
     }
 }
 
-/// The points at these frequencies, rising, and as many between them as it takes for L to turn
-/// little.
+/// Points at these frequencies, rising, and as many between them as needed for L to turn little.
 pub(in crate::audit) fn filled(
     frequencies: impl Iterator<Item = f64>,
     at: &dyn Fn(f64) -> Option<KnownPoint>,
@@ -124,13 +123,13 @@ pub(in crate::audit) fn filled(
     found
 }
 
-/// Whether L turns much from one point to the next.
+/// True if L turns much from one point to the next.
 fn turns(from: KnownPoint, to: KnownPoint) -> bool {
     let large = magnitude(from.1).max(magnitude(to.1)) > SMALL_GAIN;
     large && to.0 > CLOSEST * from.0 && argument(to.1 / from.1).abs() > TURN_RAD
 }
 
-/// The point between two at which a statement changes; `None` where it does not.
+/// Point between two others at which a condition changes; `None` if it does not.
 fn crossing(
     from: KnownPoint,
     to: KnownPoint,

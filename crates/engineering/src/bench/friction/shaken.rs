@@ -10,23 +10,23 @@ use super::{CylinderMoment, counted, least_static, longest_step};
 use crate::bench::BenchError;
 use crate::project::ShakenFriction;
 
-/// Greatest force over the static friction, where none is stated. At the ringing the bristles carry
-/// several times the force of one sine: more would mostly make them slip.
+/// Ratio of the greatest force to the static friction, if none is stated. At the natural frequency
+/// the bristles carry several times the force of one sine: more would mostly make them slip.
 const PART: f64 = 1.0 / 3.0;
 
-/// The frequencies over that of the ringing, where none are stated.
+/// Ratios of the frequencies to the natural frequency on the bristles, if none are stated.
 const AROUND: [f64; 2] = [0.4, 1.7];
 
-/// Angle in rad by which the highest frequency turns between two rows, at most.
+/// Largest angle by which the highest frequency turns between two rows, rad.
 const LARGEST_ANGLE: f64 = PI / 2.0;
 
-/// Angle in rad in a step of the integration.
+/// Angle in an integration step, rad.
 const STEP_ANGLE: f64 = 0.05;
 
-/// Displacement over that of the bristles at breakaway up to which there are rows.
+/// Displacement up to which there are rows, relative to that of the bristles at breakaway.
 const FARTHEST: f64 = 40.0;
 
-/// One period that is not recorded, and those that are, until the piston breaks away.
+/// One period that is not recorded, and the recorded ones, until the piston breaks away.
 pub(super) fn shaken(
     lugre: &LuGre,
     cylinder: &Cylinder,
@@ -37,7 +37,7 @@ pub(super) fn shaken(
     let frequencies = excited(settings, ringing)?;
     let length = breaking / lugre.bristle_stiffness;
     let highest = frequencies.last().copied().unwrap_or(ringing).max(ringing);
-    // a velocity at which the bristles are at most
+    // an upper bound of the velocity of the bristles
     let by_slip = longest_step(lugre, highest * 2.0 * length);
     let steps = settings.sample_time / by_slip.min(STEP_ANGLE / highest);
     let steps = counted(steps.ceil())?.max(1);

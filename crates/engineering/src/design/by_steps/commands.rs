@@ -1,4 +1,4 @@
-//! The command of the scenarios' steps as rows of a search that is led by its steps.
+//! Commands of the scenarios' steps as rows of a search that is led by its steps.
 //!
 //! ```text
 //! margin = 20 log10(limit/largest |u|)     of the step of each scenario, at the plants that the audits found worst
@@ -16,14 +16,14 @@ use super::shaping::STEP;
 use crate::design::ProjectDesign;
 use crate::design::command_of_steps::ScenarioSteps;
 
-/// Most plants whose commands are rows.
+/// Largest number of plants whose commands are rows.
 const PLANTS: usize = 6;
-/// Fraction of the limit from which on the worst plant joins the search.
+/// Fraction of the limit above which the worst plant joins the search.
 const NEAR: f64 = 0.8;
-/// Points of a continuous response.
+/// Number of points of a continuous response.
 const POINTS: usize = 1000;
 
-/// The steps of the scenarios and the plants whose commands are rows of a search.
+/// Steps of the scenarios, and plants whose commands are rows of a search.
 #[derive(Clone, Default)]
 pub(super) struct StepCommands {
     steps: Option<ScenarioSteps>,
@@ -35,8 +35,8 @@ impl StepCommands {
         StepCommands { steps, plants: vec![] }
     }
 
-    /// The parameters of the worst plant of a design, where its command is near the limit and it is
-    /// not among the rows.
+    /// Parameters of the worst plant of a design, if its command is near the limit and it is not
+    /// among the rows.
     pub(super) fn unseen<'a>(&self, told: &'a ProjectDesign) -> Option<&'a [f64]> {
         let command = told.command_of_steps.as_ref()?;
         let PlantPoint::Parameters(values) = &command.plant else { return None };
@@ -45,7 +45,7 @@ impl StepCommands {
         joins.then_some(values)
     }
 
-    /// Allows so many times as much.
+    /// Multiplies the permitted command by a factor.
     pub(super) fn allow(&mut self, factor: f64) {
         if let Some(steps) = &mut self.steps {
             steps.limit_v *= factor;
@@ -56,19 +56,19 @@ impl StepCommands {
         self.plants.push(plant);
     }
 
-    /// The margin of a plant, dB; negative infinity where its command cannot be computed.
+    /// Margin of a plant, dB; negative infinity if its command cannot be computed.
     fn margin_db(&self, plant: &SteppedPlant, around: &Compensation) -> f64 {
         let Some(steps) = &self.steps else { return f64::INFINITY };
         let command = plant.command(around, (steps.duration_s, POINTS));
         command.map_or(f64::NEG_INFINITY, |command| decibels(steps.limit_v / steps.largest_v(&command)))
     }
 
-    /// The least margin of all, dB.
+    /// Least margin of all plants, dB.
     pub(super) fn least_db(&self, around: &Compensation) -> f64 {
         self.plants.iter().map(|plant| self.margin_db(plant, around)).fold(f64::INFINITY, f64::min)
     }
 
-    /// A row for each plant, numbered down from a sample.
+    /// Rows for all plants, numbered downwards from a sample.
     pub(super) fn rows(
         &self,
         around: &Compensation,

@@ -1,4 +1,4 @@
-//! Searches by steps in turn with audits, from one start.
+//! Searches by steps, alternating with audits, from one start.
 
 use phea_dynamics::portable;
 use phea_dynamics::watch::{Watch, part, within};
@@ -22,50 +22,52 @@ use crate::simulate::TrackingWish;
 
 /// Name of the stage.
 pub(super) const STAGE: &str = "shaping by steps";
-/// How often what an audit finds joins the search.
+/// Largest number of times that the findings of an audit are added to the search.
 const ROUNDS: usize = 5;
-/// A round that brings less than this share is one in vain, and so many in turn are the last.
+/// Least relative improvement of a useful round; this many useless rounds in succession are the
+/// last.
 const GAIN: f64 = 0.01;
 const IN_VAIN: usize = 2;
-/// Rounds of a search that misses what it aims at from the beginning.
+/// Number of rounds of a search that misses its aim from the beginning.
 const ROUNDS_IN_NEED: usize = 2;
-/// Zeros of the controller this many times as fast as its fastest pole may be do next to nothing,
-/// and poles of the prefilter that are so much faster than its slowest one.
+/// Ratio to the fastest possible pole of the controller above which its zeros have next to no
+/// effect, and ratio to the slowest pole of the prefilter above which its poles have none.
 const BEYOND_FASTEST: f64 = 2.0;
 const FAST: f64 = 10.0;
-/// Ratio of a step to what is required, with what the rig adds, that is worth a trial.
+/// Ratio of a step, including the contribution of the rig, to its requirement that is worth a
+/// trial.
 const NEAR: f64 = 1.1;
-/// Ratio of its steps to those of a start before from which one is given up.
+/// Ratio of the steps of a start to those of an earlier one from which it is abandoned.
 const FAR: f64 = 1.3;
-/// Fraction of its limit from which on the command of the scenarios' steps is part of each audit.
+/// Fraction of its limit above which the command of the scenarios' steps is part of each audit.
 const COMMAND_NEAR: f64 = 0.5;
-/// How often a search goes on with plants that were not part of it.
+/// Largest number of continuations of a search with plants that were not part of it.
 const LOOKS: usize = 5;
-/// Steps of one search.
+/// Number of steps of one search.
 const DESCENT_STEPS: usize = 12;
 
-/// A design with what it lacks.
+/// An audited design and its deficits.
 pub(super) struct AuditedStep {
     pub(super) told: Box<ProjectDesign>,
     start: Design,
     pub(super) search: LedSearch,
     free_numbers: Vec<f64>,
-    /// How it was audited.
+    /// Depth of the audit.
     audit: AuditDepth,
-    /// The rank of its verdict over frequency.
+    /// Rank of the verdict over frequency.
     verdict: u8,
-    /// How far its steps are from what is aimed at, 1 where they reach it.
+    /// Largest ratio of a property of its steps to the aim, 1 if they reach it.
     excess: f64,
-    /// The least margin to a limit of the samples.
+    /// Least margin of the samples to a limit.
     pub(super) least: Option<SpecificationMargin>,
 }
 
-/// The part of a family that is audited.
+/// Part of a family that is audited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum AuditDepth {
     /// Members and corners.
     KnownPlants,
-    /// All between them too.
+    /// Members, corners and everything between them.
     Whole,
 }
 
@@ -74,23 +76,23 @@ impl AuditedStep {
         self.told.is_met() && self.excess <= 1.0
     }
 
-    /// True where it is nearer than another by more than this share.
+    /// True if the design is nearer than another one by more than this fraction.
     pub(super) fn gains_on(&self, other: &AuditedStep, share: f64) -> bool {
         self.verdict < other.verdict
             || self.verdict == other.verdict && self.excess < (1.0 - share) * other.excess
     }
 }
 
-/// The problem of a design that is led by its steps, and its aim.
+/// Problem of a design that is led by its steps, and its aim.
 pub(super) struct LedDesign<'a> {
     pub(super) setup: &'a Setup<'a>,
     pub(super) aimed: AimedSteps<'a>,
-    /// Plants whose steps are looked at after each search.
+    /// Plants whose steps are checked after each search.
     pub(super) looked_at: Vec<Vec<f64>>,
     pub(super) problem: DesignProblem,
     pub(super) samples: Samples,
     pub(super) required: TrackingWish,
-    /// The part of it that is kept for the rig.
+    /// Part of the aim that is reserved for the rig.
     pub(super) room: StepRoom,
 }
 
@@ -99,19 +101,19 @@ pub(super) struct BegunDesign<'a> {
     start: Design,
     search: StepShaping<'a>,
     free_numbers: Vec<f64>,
-    /// The least margin of its samples and steps, dB.
+    /// Least margin of its samples and steps, dB.
     pub(super) least_db: f64,
 }
 
 impl<'a> LedDesign<'a> {
-    /// The same with little room for what the rig adds to the steps.
+    /// The problem with little room for the contribution of the rig to the steps.
     pub(super) fn with_less_room(&self) -> LedDesign<'a> {
         let (looked_at, problem, samples) =
             (self.looked_at.clone(), self.problem.clone(), self.samples.clone());
         LedDesign { looked_at, problem, samples, room: StepRoom::Little, ..*self }
     }
 
-    /// The first search from a start; `None` where its loop is not stable.
+    /// First search from a start; `None` if its loop is not stable.
     pub(super) fn begun(
         &self,
         start: Design,
@@ -141,8 +143,8 @@ impl<'a> LedDesign<'a> {
         Ok(Some(BegunDesign { start, search, free_numbers, least_db }))
     }
 
-    /// A design without zeros and poles that do next to nothing, begun again; `None` where it has
-    /// none.
+    /// A design without zeros and poles that have next to no effect, with its first search; `None`
+    /// if it has none of them.
     pub(super) fn shorter(
         &self,
         told: &ProjectDesign,
@@ -172,8 +174,8 @@ impl<'a> LedDesign<'a> {
         self.begun(start, told, SearchReach::Anywhere, watch)
     }
 
-    /// The nearest design that was audited, after searches with what each audit found, given up
-    /// where it is far from one that is to be beaten.
+    /// Nearest audited design, after searches with the findings of each audit, abandoned if it is
+    /// far from the design to be beaten.
     pub(super) fn agreed(
         &self,
         begun: BegunDesign<'a>,
@@ -211,7 +213,7 @@ impl<'a> LedDesign<'a> {
         Ok(best)
     }
 
-    /// The design with its audit and what it lacks, and whether it teaches the search anything.
+    /// The design with its audit and its deficits, and true if it adds anything to the search.
     fn judged(
         &self,
         search: &mut StepShaping<'_>,
@@ -236,7 +238,7 @@ impl<'a> LedDesign<'a> {
         Ok((found, is_new))
     }
 
-    /// The same with a complete audit.
+    /// The design with a complete audit.
     pub(super) fn completed(
         &self,
         found: AuditedStep,
@@ -277,15 +279,15 @@ impl<'a> LedDesign<'a> {
             AuditDepth::KnownPlants => CommandDepth::KnownPlants,
             AuditDepth::Whole => CommandDepth::Whole,
         };
-        // what is far from its limit is looked at where the design has been found
+        // a command far from its limit is evaluated only once the design has been found
         if told.command_of_steps.as_ref().is_some_and(|command| command.ratio() > COMMAND_NEAR) {
             found.command_of_steps = command_of_steps((self.setup, &found), self.aimed.plants, depth, watch)?;
         }
         Ok(found)
     }
 
-    /// The free numbers that a search from these finds, again with plants whose steps miss what is
-    /// aimed at with them.
+    /// Free numbers that a search from the given ones finds, continued with plants whose steps miss
+    /// the aim with them.
     fn descended(
         &self,
         search: &mut StepShaping<'_>,
@@ -296,7 +298,7 @@ impl<'a> LedDesign<'a> {
         for look in 0..LOOKS {
             let share = [look, look + 1].map(|done| done as f64 / LOOKS as f64);
             free_numbers = descended(search, &free_numbers, &mut within(&mut *watch, share))?;
-            // what misses with these plants misses with more
+            // numbers that miss the aim with these plants miss it with more
             let misses = search.judge(&free_numbers).worst_margin_db < 0.0;
             if misses || !search.take_unseen(&free_numbers, (self.aimed.given, &self.looked_at))? {
                 break;
@@ -305,7 +307,7 @@ impl<'a> LedDesign<'a> {
         Ok(free_numbers)
     }
 
-    /// The nearest of a design and what a start leads to.
+    /// The better one of a design and the result of a start.
     pub(super) fn better(
         &self,
         best: Option<AuditedStep>,
@@ -320,8 +322,8 @@ impl<'a> LedDesign<'a> {
         })
     }
 
-    /// True where a design reaches what is aimed at, or is so near that a trial on the nonlinear
-    /// rig tells more than another start.
+    /// True if a design reaches the aim, or is so near that a trial on the nonlinear rig gives more
+    /// information than another start.
     pub(super) fn suffices(&self, found: Option<&AuditedStep>) -> bool {
         let keeps_limits = |found: &AuditedStep| {
             found.verdict == 0 || found.least.as_ref().is_some_and(|least| least.margin_db >= -NEARLY_DB)
@@ -332,7 +334,7 @@ impl<'a> LedDesign<'a> {
     }
 }
 
-/// The free numbers that a search from these finds.
+/// Free numbers that a search from the given ones finds.
 fn descended(
     search: &mut StepShaping<'_>,
     free_numbers: &[f64],

@@ -1,4 +1,4 @@
-//! The plants whose steps lead a design, each with what is known of its response.
+//! Plants whose steps lead a design, each with the known part of its response.
 
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -9,27 +9,28 @@ use phea_qft::family::UncertainFamily;
 
 use crate::linear_step::{CarriedDisturbance, KnownResponses, StepResponse, StepSignal, linear_step_knowing};
 
-/// A plant with what is known of its response in loops of one timing and sensor.
+/// A plant with the known part of its response in loops of one timing and sensor.
 pub(in crate::design) struct SteppedPlant {
     pub(super) values: Vec<f64>,
     member: Member,
     known: KnownResponses,
 }
 
-/// Plants that all searches of a design share: the response of one with waves costs far more than
-/// its step in one loop more.
+/// Plants common to all searches of a design: the response of one with waves costs far more than
+/// its step in one more loop.
 #[derive(Default)]
 pub(in crate::design) struct SteppedPlants {
     plants: RefCell<Vec<Arc<SteppedPlant>>>,
 }
 
 impl SteppedPlant {
-    /// Its step over a time in s and about so many points; `None` where it cannot be computed.
+    /// Step of the plant over a time, s, with about this number of points; `None` if it cannot be
+    /// computed.
     pub(super) fn step(&self, around: &Compensation, duration: (f64, usize)) -> Option<StepResponse> {
         linear_step_knowing((&self.member, StepSignal::Output), around, duration, &self.known).ok()
     }
 
-    /// The command that its step takes, likewise.
+    /// Command in such a step; `None` if it cannot be computed.
     pub(in crate::design) fn command(
         &self,
         around: &Compensation,
@@ -38,16 +39,16 @@ impl SteppedPlant {
         linear_step_knowing((&self.member, StepSignal::Command), around, duration, &self.known).ok()
     }
 
-    /// Carries a disturbance from the loop of one controller to that of another, in samples of this
-    /// distance and number.
+    /// Transfer of a disturbance from the loop of one controller to that of another, in this number
+    /// of samples at this distance.
     pub(super) fn carried(&self, loops: [&Compensation; 2], samples: (f64, usize)) -> CarriedDisturbance {
         CarriedDisturbance::new(&self.member, loops, samples, &self.known)
     }
 }
 
 impl SteppedPlants {
-    /// The plant of a family with these parameters, in a loop of the timing and sensor that all
-    /// loops of the design have.
+    /// Plant of a family with these parameters, in a loop with the common timing and sensor of all
+    /// loops of the design.
     pub(in crate::design) fn plant(
         &self,
         values: &[f64],

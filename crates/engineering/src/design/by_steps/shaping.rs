@@ -1,4 +1,5 @@
-//! The shaping of a loop by margins of steps beside those of its limits, as a problem of a search.
+//! Shaping of a loop by margins of steps in addition to those of its limits, as a problem of a
+//! search.
 
 use std::sync::Arc;
 
@@ -23,72 +24,73 @@ use crate::simulate::{ReachedStep, TrackingWish};
 
 /// Margin to be left to every limit on a frequency response, dB.
 pub(super) const RESERVE_DB: f64 = 0.02;
-/// Most plants whose steps are rows of the search.
+/// Largest number of plants whose steps are rows of the search.
 const PLANTS: usize = 24;
-/// Most of them that join it at once.
+/// Largest number of them that join it at once.
 const TAKEN: usize = 3;
-/// Only margins of steps within this much of the worst one have their slopes computed, dB.
+/// Distance from the worst margin of a step within which slopes are computed, dB.
 const NEAR_DB: f64 = 0.1;
-/// Duration of a step, in settling times that are required, and the points of a continuous one.
+/// Duration of a step in required settling times, and number of points of a continuous step.
 const SETTLING_TIMES: f64 = 3.0;
 const POINTS: usize = 600;
-/// dB of 1 + d for a small deviation d.
+/// Factor from a small deviation d to 1 + d in dB.
 const DB: f64 = 20.0 / std::f64::consts::LN_10;
 /// Change of a free number for a slope.
 pub(super) const STEP: f64 = 1e-4;
-/// How far a search beside a design goes: the natural logarithm of a ratio of zeros, poles and
-/// gains.
+/// Range of a search around a design: natural logarithm of a ratio of zeros, poles and gains.
 const BESIDE: f64 = 0.3;
-/// Most swings of a step that are rows of the search, and most rows of a plant.
+/// Largest number of swings of a step that are rows of the search, and largest number of rows of a
+/// plant.
 const SWINGS: usize = 4;
 const ROWS: usize = 64;
 
-/// The shaping of a loop with margins of steps beside those of its limits.
+/// Shaping of a loop with margins of steps in addition to those of its limits.
 #[derive(Clone)]
 pub(in crate::design) struct StepShaping<'a> {
-    /// The limits and their samples.
+    /// Limits and their samples.
     pub(in crate::design) shaping: Shaping,
-    /// What every step is to keep: that of the linear loop, and that with what the rig adds.
+    /// Requirements of every step: that of the linear loop, and that including the contribution of
+    /// the rig.
     wishes: StepWishes,
     added: Vec<AddedByRig>,
     sensor: TransferFunction,
     plants: Vec<LedPlant>,
-    /// The commands of the scenarios' steps.
+    /// Commands of the scenarios' steps.
     commands: StepCommands,
-    /// Plants that all searches of a design share.
+    /// Plants that are common to all searches of a design.
     all: &'a SteppedPlants,
     /// Least and greatest value of each free number.
     bounds: Vec<[f64; 2]>,
 }
 
-/// What steps are to keep.
+/// Requirements of steps.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StepWishes {
-    /// Those of the linear loop.
+    /// Requirements of the steps of the linear loop.
     pub(super) linear: TrackingWish,
-    /// Those with what the nonlinear rig adds.
+    /// Requirements of the steps including the contribution of the nonlinear rig.
     pub(super) with_rig: TrackingWish,
 }
 
-/// A step that is judged, and what it is to keep.
+/// A step that is judged, and its requirements.
 struct JudgedStep {
     response: StepResponse,
     wish: TrackingWish,
 }
 
-/// A place of a step that is judged, by the index of the step, with its margin, dB.
+/// Margin of a step at one of its places, with the index of the step, dB.
 type PlacedMargin = (usize, StepPlace, f64);
 
 /// A plant whose steps are rows of the search.
 #[derive(Clone)]
 struct LedPlant {
     plant: Arc<SteppedPlant>,
-    /// What the rig adds to its steps.
+    /// Contribution of the rig to its steps.
     added: Option<AddedByRig>,
 }
 
 impl StepShaping<'_> {
-    /// Without plants whose steps are looked at.
+    /// Shaping without plants whose steps are judged.
     pub(super) fn new(
         shaping: Shaping,
         (wishes, added): (StepWishes, Vec<AddedByRig>),
@@ -100,17 +102,17 @@ impl StepShaping<'_> {
         StepShaping { shaping, wishes, added, sensor, plants: vec![], commands, all, bounds }
     }
 
-    /// The same with limits on the command of the scenarios' steps.
+    /// The shaping with limits on the command of the scenarios' steps.
     pub(super) fn with_commands(self, steps: Option<ScenarioSteps>) -> Self {
         StepShaping { commands: StepCommands::new(steps), ..self }
     }
 
-    /// Allows so many times as much command.
+    /// Multiplies the allowed command by a factor.
     pub(super) fn allow_commands(&mut self, factor: f64) {
         self.commands.allow(factor);
     }
 
-    /// The same with other requirements of its steps.
+    /// The shaping with other requirements of its steps.
     pub(super) fn with_wishes(mut self, changed: impl Fn(TrackingWish) -> TrackingWish) -> Self {
         let StepWishes { linear, with_rig } = self.wishes;
         self.wishes = StepWishes { linear: changed(linear), with_rig: changed(with_rig) };
@@ -118,7 +120,7 @@ impl StepShaping<'_> {
         self
     }
 
-    /// Keeps the free numbers beside these.
+    /// Limits the free numbers to the neighbourhood of these.
     pub(super) fn stay_beside(&mut self, free_numbers: &[f64]) {
         for ([low, high], own) in self.bounds.iter_mut().zip(free_numbers) {
             (*low, *high) = (low.max(own - BESIDE), high.min(own + BESIDE));
@@ -130,7 +132,7 @@ impl StepShaping<'_> {
         Compensation::new(&self.shaping.controller(x), self.sensor.clone()).ok()
     }
 
-    /// The least margin of each plant's steps; negative infinity where they cannot be computed.
+    /// Least margin of the steps of all plants; negative infinity if they cannot be computed.
     fn least_margin(&self, x: &[f64]) -> f64 {
         let Some(around) = self.around(x) else { return f64::NEG_INFINITY };
         let of_commands = self.commands.least_db(&around);
@@ -139,8 +141,8 @@ impl StepShaping<'_> {
         each.into_iter().fold(of_commands, f64::min)
     }
 
-    /// How far the steps with what the rig adds are from what is required: the largest ratio, at
-    /// most 1 where all are within it; zero where nothing is known of the rig.
+    /// Largest ratio of a property of the steps, including the contribution of the rig, to the
+    /// required one: at most 1 if all are within it; zero if nothing is known of the rig.
     pub(super) fn excess_with_rig(&self, x: &[f64], required: &TrackingWish) -> f64 {
         let Some(around) = self.around(x) else { return f64::INFINITY };
         let of = |step: &JudgedStep| {
@@ -161,13 +163,13 @@ impl StepShaping<'_> {
         self.plants.iter().map(worst).fold(0.0, f64::max)
     }
 
-    /// The least margin to a limit of the samples.
+    /// Least margin of the samples to a limit.
     pub(super) fn least_of_limits(&self, x: &[f64]) -> Option<SpecificationMargin> {
         let margins = self.shaping.margins(x).into_iter();
         margins.min_by(|one, other| one.margin_db.total_cmp(&other.margin_db))
     }
 
-    /// Adds the plants and frequencies at which an audit finds the least margins; true where one is
+    /// Adds the plants and frequencies at which an audit finds the least margins; true if one is
     /// new.
     pub(super) fn take_worst(&mut self, design: &Design) -> Result<bool, DesignError> {
         let mut is_new = false;
@@ -183,7 +185,7 @@ impl StepShaping<'_> {
         Ok(is_new)
     }
 
-    /// Adds the plants with the worst steps of a design; true where one is new.
+    /// Adds the plants with the worst steps of a design; true if one is new.
     pub(super) fn take_steps(&mut self, told: &ProjectDesign) -> Result<bool, DesignError> {
         let mut is_new = false;
         for finding in &told.designed.view.in_time {
@@ -204,7 +206,8 @@ impl StepShaping<'_> {
         Ok(is_new)
     }
 
-    /// Adds the worst of these plants whose steps keep less than the reserve; true where one does.
+    /// Adds the worst of these plants whose steps leave less than the reserve; true if there is
+    /// one.
     pub(super) fn take_unseen(
         &mut self,
         x: &[f64],
@@ -236,7 +239,7 @@ impl StepShaping<'_> {
         Ok(is_new)
     }
 
-    /// The plant with these parameters, unless it is one of the search.
+    /// Plant with these parameters, unless the search already contains it.
     fn unseen(&self, values: &[f64], problem: &RobustProblem) -> Result<Option<LedPlant>, DesignError> {
         let Family::Uncertain(family) = &problem.family else { return Ok(None) };
         if self.plants.iter().any(|known| known.plant.values == values) {
@@ -248,7 +251,7 @@ impl StepShaping<'_> {
 }
 
 impl StepWishes {
-    /// The steps of a plant, that of the linear loop first; `None` where it cannot be computed.
+    /// Steps of a plant, that of the linear loop first; `None` if one cannot be computed.
     fn steps(&self, plant: &LedPlant, around: &Compensation) -> Option<Vec<JudgedStep>> {
         let duration = (SETTLING_TIMES * self.linear.horizon_s, POINTS);
         let linear = plant.plant.step(around, duration)?;
@@ -268,7 +271,7 @@ impl StepWishes {
         Some(steps)
     }
 
-    /// The least margin of a plant's steps; negative infinity where they cannot be computed.
+    /// Least margin of a plant's steps; negative infinity if they cannot be computed.
     fn least_of(&self, plant: &LedPlant, around: &Compensation) -> f64 {
         let least = |steps: Vec<JudgedStep>| {
             places(&steps).iter().map(|(_, _, margin_db)| *margin_db).fold(f64::INFINITY, f64::min)
@@ -276,7 +279,7 @@ impl StepWishes {
         self.steps(plant, around).map_or(f64::NEG_INFINITY, least)
     }
 
-    /// The margins at these places of a plant's steps with their slopes, from the loops beside x.
+    /// Margins at these places of a plant's steps with their slopes, from the loops next to x.
     fn rows(
         &self,
         index: usize,
@@ -352,19 +355,19 @@ impl SearchProblem for StepShaping<'_> {
     }
 }
 
-/// A place at which a step is held against what is required of it.
+/// Place at which a step is compared with its requirement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum StepPlace {
-    /// A sample beyond the reference.
+    /// Sample above the reference.
     Over(usize),
-    /// A sample after the settling time.
+    /// Sample after the settling time.
     Late(usize),
-    /// The rise as a whole.
+    /// Rise as a whole.
     Rise,
 }
 
 impl JudgedStep {
-    /// The margin to what is required there, dB of 1 plus the deviation.
+    /// Margin to the requirement at this place, dB of 1 plus the deviation.
     fn margin(&self, place: StepPlace) -> f64 {
         let JudgedStep { response, wish } = self;
         let band = wish.band_percent / 100.0;
@@ -383,8 +386,8 @@ impl JudgedStep {
         }
     }
 
-    /// The places at which it is nearest to what is required, one of each swing, with the margins
-    /// there.
+    /// Places at which the step is nearest to its requirements, one for each swing, with the
+    /// margins there.
     fn places(&self) -> Vec<(StepPlace, f64)> {
         let JudgedStep { response: StepResponse { times_s, values }, wish } = self;
         let last = values.len().saturating_sub(1);
@@ -408,7 +411,7 @@ impl JudgedStep {
     }
 }
 
-/// The places of the steps of a plant.
+/// Places of the steps of a plant, with their margins.
 fn places(steps: &[JudgedStep]) -> Vec<PlacedMargin> {
     let of = |(index, step): (usize, &JudgedStep)| {
         step.places().into_iter().map(move |(place, margin_db)| (index, place, margin_db)).collect::<Vec<_>>()

@@ -9,34 +9,35 @@ use super::led::LedDesign;
 use crate::design::deployable::limit_value;
 use crate::design::{DesignError, DesignLimitKind, DesignRun, ProjectDesign};
 
-/// Structures that it begins from.
+/// Number of structures from which searches begin.
 const STARTS: usize = 4;
-/// Structures that miss their limits by at most this are begun from in the order of their free
-/// numbers, dB.
+/// Largest miss of its limits, dB, for which a structure takes its turn in the order of free
+/// numbers.
 const NEARLY_DB: f64 = 0.3;
-/// Ratio of the worst run to what is required up to which a search looks beside a design first.
+/// Largest ratio of the worst run to its requirement for which a search first covers the
+/// neighbourhood of a design.
 const NEAR: f64 = 1.6;
-/// Ratio of the gain of a faster loop to that of a design, and the share of the required settling
+/// Ratio of the gain of a faster loop to that of a design, and fraction of the required settling
 /// time in which its prefilter settles.
 const MORE_GAIN: f64 = 2.0;
 const PREFILTER_SHARE: f64 = 0.6;
-/// Greatest gain of the prefilter of a gain alone where the design limits none.
+/// Greatest gain of the prefilter of a pure gain, if the design does not limit it.
 const UNLIMITED_GAIN: f64 = 10.0;
 
-/// How far a search goes from where it begins.
+/// Reach of a search from its start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SearchReach {
-    /// Each zero, pole and gain within a ratio, so that what the rig adds to the steps is known
-    /// well.
+    /// Each zero, pole and gain within a ratio, so that the contribution of the rig to the steps is
+    /// known well.
     Beside,
-    /// As far as the structure goes.
+    /// The whole range of the structure.
     Anywhere,
 }
 
 impl LedDesign<'_> {
-    /// The design, and the structures that came nearest as they were found, its own among them
-    /// where it was led since, the simplest of them first, behind its prefilter where they have
-    /// none; or the structures beyond those.
+    /// The design, and the nearest structures as they were found, including its own structure if
+    /// steps have led it since, the simplest first, with its prefilter if they have none; or the
+    /// structures after those.
     pub(super) fn starts(
         &self,
         told: &ProjectDesign,
@@ -68,9 +69,9 @@ impl LedDesign<'_> {
         starts.into_iter().filter(|(one, _)| !one.free_numbers.is_empty() && keeps(one)).collect()
     }
 
-    /// The design; before it what lies beside it, where its runs on the nonlinear rig miss by
-    /// little; after it, where they miss, a faster loop behind a slower prefilter: what the rig
-    /// adds to a step is suppressed by the loop, and the prefilter alone shapes the rest.
+    /// The design. Before it, its neighbourhood, if its runs on the nonlinear rig miss by little;
+    /// after it, if they miss, a faster loop with a slower prefilter: the loop suppresses the
+    /// contribution of the rig to a step, and the prefilter shapes the rest.
     fn own_starts(&self, told: &ProjectDesign) -> impl Iterator<Item = (Design, SearchReach)> + use<> {
         let design = with_free_gain(told.design.clone(), told);
         let has_missed = !self.aimed.added.is_empty();
@@ -86,8 +87,8 @@ impl LedDesign<'_> {
         beside.into_iter().chain(std::iter::once((design, SearchReach::Anywhere))).chain(faster)
     }
 
-    /// The structures that are shorter than that of a design, and satisfy the limits over frequency
-    /// or miss those on the way to its step alone, the simplest first.
+    /// Structures shorter than that of a design that satisfy the limits over frequency, or miss
+    /// only those on the path to its step, the simplest first.
     pub(super) fn simpler(&self, told: &ProjectDesign, run: &DesignRun) -> Result<Vec<Design>, DesignError> {
         let own = told.design.structure.order()?;
         let given = run.aimed.specifications.len() - run.aimed.design_limits.len();
@@ -114,9 +115,9 @@ impl LedDesign<'_> {
     }
 }
 
-/// In the order in which searches begin from them, of each its least margin in dB and the number of
-/// its free numbers: those that miss nothing by more than [`NEARLY_DB`], the fewest numbers first,
-/// then the others by their margins, the largest first.
+/// Order in which searches begin, by the least margin in dB and the number of free numbers of each
+/// structure: those that miss nothing by more than [`NEARLY_DB`], the fewest numbers first, then
+/// the others by their margins, the largest first.
 fn in_order<One>(mut others: Vec<One>, of: impl Fn(&One) -> (f64, usize)) -> Vec<One> {
     others.sort_by(|one, other| of(other).0.total_cmp(&of(one).0));
     let near = others.iter().take_while(|one| of(one).0 >= -NEARLY_DB).count();
@@ -126,9 +127,9 @@ fn in_order<One>(mut others: Vec<One>, of: impl Fn(&One) -> (f64, usize)) -> Vec
     others
 }
 
-/// A structure as it was found, behind the prefilter of a design where it has none; a gain alone
-/// with that of the design at its crossover, since the limits on the way to a step drive it as high
-/// as stability lets them.
+/// A structure as it was found, with the prefilter of a design if it has none; for a pure gain,
+/// with the gain of the design at its crossover, since the limits on the path to a step drive it as
+/// high as stability permits.
 fn begun_from(tried: &TriedStructure, told: &ProjectDesign) -> Design {
     let design = &told.design;
     let mut free_numbers = tried.free_numbers.clone();
@@ -150,15 +151,15 @@ fn begun_from(tried: &TriedStructure, told: &ProjectDesign) -> Design {
     with_free_gain(Design { structure, prefilter, free_numbers, name: tried.name, ..design.clone() }, told)
 }
 
-/// |G| of a design where its nominal loop crosses over first.
+/// Magnitude |G| of a design at the first crossover of its nominal loop.
 fn gain_at_crossover(told: &ProjectDesign) -> Option<f64> {
     let crossover = told.designed.figures.nominal.as_ref()?.crossovers.first_rad_per_s?;
     let law = told.design.law.feedback.transfer_function().ok()?;
     Some(portable::magnitude(law.at_frequency(crossover)))
 }
 
-/// The free numbers of a controller and its prefilter with a larger gain, and with the first pole
-/// of the prefilter at this frequency; `None` where the gain or that pole is not free.
+/// Free numbers of a controller and its prefilter with a larger gain, and with the first pole of
+/// the prefilter at this frequency, rad/s; `None` if the gain or that pole is not free.
 fn faster_behind_prefilter(
     [own, prefilter]: [&Structure; 2],
     free_numbers: &[f64],
@@ -177,8 +178,8 @@ fn faster_behind_prefilter(
     Some(faster)
 }
 
-/// A gain alone behind a prefilter whose gain is free, since it leaves |T(0)| < 1 and the search
-/// over frequency keeps that gain near 1; any other structure as it is.
+/// A pure gain with a prefilter whose gain is free, since it leaves |T(0)| < 1 and the search over
+/// frequency holds that gain near 1; any other structure unchanged.
 fn with_free_gain(mut start: Design, told: &ProjectDesign) -> Design {
     let place = start.structure.dimension().min(start.free_numbers.len());
     if let Some(prefilter) = &mut start.prefilter
@@ -203,8 +204,8 @@ mod tests {
 
     use super::{faster_behind_prefilter, in_order};
 
-    /// Twice the gain of a PI, as far as it may go, and the pole of the prefilter where it is asked
-    /// for; the zero stays.
+    /// Twice the gain of a PI, within its range, and the pole of the prefilter at the required
+    /// frequency; the zero is unchanged.
     // ORIGIN: written by hand
     #[test]
     fn a_faster_loop_has_a_slower_prefilter() {
@@ -228,8 +229,8 @@ mod tests {
         );
     }
 
-    /// Within 0.3 dB the simplest first, and of equals the one with the larger margin; beyond, the
-    /// nearest first, however simple.
+    /// Within 0.3 dB the simplest structures come first, and of two equally simple ones that with
+    /// the larger margin; beyond, the nearest, however simple.
     // ORIGIN: written by hand, margins in dB and numbers
     #[test]
     fn the_simplest_that_nearly_meet_come_first_then_the_nearest() {

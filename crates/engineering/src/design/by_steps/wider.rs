@@ -1,4 +1,4 @@
-//! The search of a design that was led by its steps, with one of its limits wider.
+//! Search of a design that was led by its steps, with one of its limits wider.
 
 use phea_qft::loop_shaping::{Aim, Structure};
 use phea_qft::specification::Specification;
@@ -9,11 +9,10 @@ use crate::design::command_of_steps::ScenarioSteps;
 use crate::design::{DesignRun, ProjectDesign};
 use crate::setup::Setup;
 
-/// The last search of a design that was led by its steps, and what it looked for.
+/// Last search of a design that was led by its steps, and its aim.
 pub(in crate::design) type LastStepSearch<'a> = (StepShaping<'a>, (Aim, f64));
 
-/// The search in which a design was led by its steps, with its worst plants; `None` where it was
-/// not led.
+/// Search in which a design was led by its steps, with its worst plants; `None` if it was not led.
 pub(in crate::design) fn last_step_search<'a>(
     setup: &'a Setup<'_>,
     aimed: AimedSteps<'a>,
@@ -32,8 +31,8 @@ pub(in crate::design) fn last_step_search<'a>(
 }
 
 impl<'a> StepShaping<'a> {
-    /// The same plants, judged by other limits, and their steps and commands by what allows so many
-    /// times as much.
+    /// The search with its plants judged by other limits, and with this multiple of the permitted
+    /// steps and commands.
     pub(in crate::design) fn with_limits(
         &self,
         structure: Structure,

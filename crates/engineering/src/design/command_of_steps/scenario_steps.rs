@@ -1,11 +1,11 @@
-//! The steps of the scenarios, and the command that they take of one plant.
+//! The steps of the scenarios, and the command that they need for one plant.
 //!
 //! ```text
 //! u(t) = u_0 + sum of (r_k - r_(k-1)) w(t - t_k),    u_0 of a plant = u_0 of the nominal one * h/h_nominal,    h = w(inf)
 //! ```
 //!
-//! With an integrator in the loop h = F(0)/P(0) is what a plant takes to hold 1 N: leakage and
-//! supply move it as they move what holds the first reference.
+//! The command of a plant that holds 1 N is h = F(0)/P(0), with an integrator in the loop: leakage
+//! and supply change it in proportion to the command that holds the first reference.
 
 use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
 
@@ -17,46 +17,45 @@ use crate::rig::Rig;
 use crate::setup::Setup;
 use crate::simulate::{ReferenceStep, SteppedReference, stepped_references};
 
-/// Duration of a step, in settling times that are required, where one is.
+/// Duration of a step in required settling times, if one is required.
 const SETTLING_TIMES: f64 = 10.0;
-/// Relative difference of two commands that is rounding.
+/// Relative difference of two commands that counts as rounding.
 const SAME: f64 = 1e-9;
 
-/// The steps of the scenarios, and what limits their commands.
+/// Steps of the scenarios, and the limit of their commands.
 #[derive(Clone, Debug)]
 pub(in crate::design) struct ScenarioSteps {
     scenarios: Vec<CommandedSteps>,
-    /// Most that a command may be, V.
+    /// Largest permitted command, V.
     pub(in crate::design) limit_v: f64,
-    /// Duration for which a step is followed, s.
+    /// Simulated duration of a step, s.
     pub(in crate::design) duration_s: f64,
 }
 
-/// The steps of one scenario, and the command with which it begins.
+/// Steps of one scenario, and the command at its beginning.
 #[derive(Clone, Debug)]
 pub(super) struct CommandedSteps {
     pub(super) reference: SteppedReference,
-    /// The commands that hold the declared rig at the references, from that with which it begins
-    /// on, V.
+    /// Commands that hold the declared rig at the references, from the initial one on, V.
     held_v: Vec<f64>,
-    /// Command that holds 1 N at the nominal plant, V/N; absent where every plant begins as the
+    /// Command that holds 1 N at the nominal plant, V/N; absent if every plant begins as the
     /// nominal one does.
     nominal_v_per_n: Option<f64>,
 }
 
-/// The largest command of a scenario, of one plant.
+/// Largest command of a scenario, for one plant.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CommandPeak {
     /// Magnitude, V.
     pub(super) value_v: f64,
-    /// In the time of the scenario, s.
+    /// Time in the scenario, s.
     pub(super) at_s: f64,
-    /// The step after which it is.
+    /// Step after which the peak occurs.
     pub(super) step: ReferenceStep,
 }
 
-/// The command that holds a rig at a reference in N at rest; that of its operating point where the
-/// rig does not reach it.
+/// Command that holds a rig at a reference, N, at rest, V; that of its operating point if the rig
+/// does not reach the reference.
 fn resting_command(rig: &Rig, reference_n: f64) -> f64 {
     let held = Condition::Load(SteadyLoad::Force(reference_n));
     let point = operating_point(&rig.actuator, rig.point.position, held);
@@ -64,7 +63,7 @@ fn resting_command(rig: &Rig, reference_n: f64) -> f64 {
 }
 
 impl ScenarioSteps {
-    /// Those of a project; `None` where nothing limits their command.
+    /// Steps of a project; `None` if nothing limits their command.
     pub(in crate::design) fn of(setup: &Setup<'_>, told: &ProjectDesign) -> Option<ScenarioSteps> {
         let share = limit_value(&told.limits, DesignLimitKind::CommandOfSteps)?;
         let rig = setup.rig().ok()?;
@@ -88,26 +87,26 @@ impl ScenarioSteps {
         })
     }
 
-    /// The same where each plant begins with its own command, by what the nominal one takes to
-    /// hold 1 N.
+    /// The steps if each plant begins with its own command, in proportion to the command of the
+    /// nominal plant that holds 1 N.
     pub(super) fn beginning_at_each_plant(&mut self, nominal_v_per_n: f64) {
         for one in &mut self.scenarios {
             one.nominal_v_per_n = Some(nominal_v_per_n).filter(|nominal| *nominal != 0.0);
         }
     }
 
-    /// True where no scenario has a step.
+    /// True if no scenario has a step.
     pub(super) fn is_empty(&self) -> bool {
         self.scenarios.is_empty()
     }
 
-    /// The largest magnitude of the command in any scenario, of this command in a unit step, whose
-    /// end is what holds 1 N; V.
+    /// Largest magnitude of the command in any scenario, V, from the command in a unit step, whose
+    /// final value holds 1 N.
     pub(in crate::design) fn largest_v(&self, unit: &StepResponse) -> f64 {
         self.largest_held_v(unit, last(unit))
     }
 
-    /// The same of a plant that takes this to hold 1 N.
+    /// Largest such magnitude for a plant that needs this command to hold 1 N, V.
     pub(super) fn largest_held_v(&self, unit: &StepResponse, held_v_per_n: f64) -> f64 {
         self.peaks(unit, held_v_per_n).map(|(_, peak)| peak.value_v).fold(0.0, f64::max)
     }
@@ -121,8 +120,8 @@ impl ScenarioSteps {
         self.scenarios.iter().filter_map(move |one| Some((one, one.peak(unit, held_v_per_n)?)))
     }
 
-    /// The largest magnitude of the command at rest, at the beginning of any scenario and between
-    /// its steps, V.
+    /// Largest magnitude of the command at rest, at the beginning of any scenario and between its
+    /// steps, V.
     pub(super) fn at_rest_v(&self, held_v_per_n: f64) -> f64 {
         let of = |one: &CommandedSteps| {
             let largest = one.held_v.iter().map(|held| held.abs()).fold(0.0, f64::max);
@@ -133,7 +132,7 @@ impl ScenarioSteps {
 }
 
 impl CommandedSteps {
-    /// The largest command: after every step the sum of all that were made.
+    /// Largest command: after every step, the sum of the contributions of all steps so far.
     fn peak(&self, unit: &StepResponse, held_v_per_n: f64) -> Option<CommandPeak> {
         let SteppedReference { steps, end_s, .. } = &self.reference;
         let initial_v = self.begins_v(held_v_per_n);
@@ -157,25 +156,25 @@ impl CommandedSteps {
         Some(peak)
     }
 
-    /// The command at rest before this step, of a plant that takes this to hold 1 N; V.
+    /// Command at rest before this step, for a plant that needs this command to hold 1 N, V.
     pub(super) fn resting_v(&self, before: &ReferenceStep, held_v_per_n: f64) -> f64 {
         let index = self.reference.steps.iter().position(|step| step == before).unwrap_or(0);
         self.held_v.get(index).copied().unwrap_or(0.0) * self.ratio(held_v_per_n)
     }
 
-    /// The command with which the scenario begins, of the same; V.
+    /// Command at the beginning of the scenario, for such a plant, V.
     fn begins_v(&self, held_v_per_n: f64) -> f64 {
         self.held_v.first().copied().unwrap_or(0.0) * self.ratio(held_v_per_n)
     }
 
-    /// Command that holds a force at a plant, over that of the declared rig.
+    /// Ratio of the command that holds a force at a plant to that of the declared rig.
     fn ratio(&self, held_v_per_n: f64) -> f64 {
         let ratio = self.nominal_v_per_n.map(|nominal| held_v_per_n / nominal);
         ratio.filter(|ratio| ratio.is_finite() && *ratio > 0.0).unwrap_or(1.0)
     }
 }
 
-/// A response at a time in s: linear between its points, and as it ends from there on.
+/// Value of a response at a time, s: linear between its points, and constant after the last.
 fn value_at(response: &StepResponse, time_s: f64) -> f64 {
     let StepResponse { times_s, values } = response;
     let after = times_s.partition_point(|known_s| *known_s <= time_s);
@@ -187,7 +186,7 @@ fn value_at(response: &StepResponse, time_s: f64) -> f64 {
     }
 }
 
-/// The end of a response.
+/// Final value of a response.
 fn last(response: &StepResponse) -> f64 {
     response.values.last().copied().unwrap_or(0.0)
 }
@@ -202,7 +201,7 @@ mod tests {
     const APART_S: f64 = 0.1;
     const BEGINS_V: f64 = 0.5;
 
-    /// 1 + e^(-t/T): twice as much at once as at rest.
+    /// Unit step 1 + e^(-t/T): initially twice the value at rest.
     fn unit() -> StepResponse {
         let times_s: Vec<f64> = (0..=10_000).map(|index| f64::from(index) * 1e-3).collect();
         let values = times_s.iter().map(|time_s| 1.0 + exp(-time_s / TIME_CONSTANT_S)).collect();
@@ -225,7 +224,7 @@ mod tests {
         assert!((found - expected).abs() < 1e-9, "{found} {expected}");
     }
 
-    /// The second of two steps finds what the first one has left, in either direction.
+    /// The second of two steps begins from what the first one has left, in either direction.
     // ORIGIN: analytic
     #[test]
     fn the_command_of_a_scenario_is_the_sum_of_its_steps() {
@@ -236,16 +235,16 @@ mod tests {
         assert_eq!((up.step.from_n, up.step.to_n), (11.0, 12.0));
         let back = steps(&[10.0, 11.0, 8.0]).peak(&unit(), 1.0).unwrap();
         assert_near(back.value_v, -(BEGINS_V + (1.0 + left) - 6.0));
-        // alone the larger of them would take 6 V from rest
+        // the larger of them would take 6 V from rest without the other
         assert_near(steps(&[11.0, 8.0]).peak(&unit(), 1.0).unwrap().value_v, 6.0 - BEGINS_V);
-        // what the first step ends with belongs to it
+        // the value at the end of the first step belongs to that step
         let rising = StepResponse { values: vec![0.0, 1.0], times_s: vec![0.0, APART_S] };
         let there = steps(&[10.0, 14.0, 10.0]).peak(&rising, 1.0).unwrap();
         assert_eq!((there.step.from_n, there.step.to_n), (10.0, 14.0));
         assert_near(there.value_v, BEGINS_V + 4.0);
     }
 
-    /// Where no command passes its end value the largest one is that at rest.
+    /// The largest command is that at rest if no command exceeds its final value.
     #[test]
     fn the_command_at_rest_is_that_of_the_farthest_reference() {
         let monotone = StepResponse { values: vec![0.0, 0.5, 1.0], times_s: vec![0.0, 1.0, 2.0] };
@@ -257,7 +256,7 @@ mod tests {
         assert!(of.largest_v(&monotone) < of.at_rest_v(1.0));
     }
 
-    /// A plant that takes 1.5 times as much to hold a force takes it at the beginning too.
+    /// A plant that needs 1.5 times as much to hold a force needs it at the beginning too.
     // ORIGIN: analytic
     #[test]
     fn a_plant_begins_with_its_own_command() {

@@ -1,5 +1,5 @@
-//! The plants that a pressure feedback is found for: responses from the command to the measured
-//! force and to the pressure signal.
+//! Plants for which a pressure feedback is found: responses from the command to the measured force
+//! and to the pressure signal.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{Controller, InnerFeedback, Timing};
@@ -19,34 +19,34 @@ use crate::project::DeclaredPressureFeedback;
 use crate::setup::{Setup, with_pressure_feedback};
 use crate::source::Source;
 
-/// Most plants that a feedback is found with.
+/// Largest number of plants with which a feedback is found.
 const MOST_PLANTS: usize = 65;
-/// Points of the even grid, and how far it reaches below its end.
+/// Number of points of the even grid, and its extent below its end.
 const GRID_POINTS: usize = 200;
 const DECADES: f64 = 1e-3;
-/// End of the grid of a continuous loop, over the natural frequency of the valve.
+/// Ratio of the end of the grid of a continuous loop to the natural frequency of the valve.
 const BEYOND_VALVE: f64 = 10.0;
-/// Points to each side of a resonance, and how far they reach in half widths.
+/// Number of points on each side of a resonance, and their range in half widths.
 const ROOT_POINTS: i32 = 12;
 const ROOT_WIDTHS: f64 = 12.0;
-/// How often the grid is halved around the peaks of plants without polynomials.
+/// Number of refinements of the grid around the peaks of plants without polynomials.
 const HALVINGS: usize = 3;
 /// Damping ratio below which a pair of poles is a resonance.
 const OSCILLATES: f64 = 0.7;
 
 /// Plants with and without a small feedback.
 pub(super) struct ProbedPlants {
-    /// Their responses; the reference of each is not set yet.
+    /// Responses of the plants; the reference of each is not set yet.
     pub(super) plants: Vec<InnerPlant>,
-    /// Their parameters.
+    /// Parameters of the plants.
     values: Vec<Vec<f64>>,
-    /// Reason why others have no responses.
+    /// Reasons why others have no responses.
     refused: Vec<DesignError>,
 }
 
 impl ProbedPlants {
-    /// The nominal plant and others of the family of a project without feedback, and why some of
-    /// them have no responses.
+    /// Nominal plant and others of the family of a project without feedback, and the reasons why
+    /// some of them have no responses.
     ///
     /// # Errors
     /// [`DesignError`] for a family that cannot be built or sampled.
@@ -105,15 +105,15 @@ impl ProbedPlants {
         Ok(probed)
     }
 
-    /// The same where every plant has responses.
+    /// The plants, if every one of them has responses.
     ///
     /// # Errors
-    /// Reason why the first of the others has none.
+    /// The reason why the first of the others has none.
     pub(super) fn complete(mut self) -> Result<ProbedPlants, DesignError> {
         if self.refused.is_empty() { Ok(self) } else { Err(self.refused.swap_remove(0)) }
     }
 
-    /// Adds the plants of the same rig with waves in its lines; those that are missing, if any.
+    /// Adds the plants of the rig with waves in its lines; returns the missing ones, if any.
     pub(super) fn add(&mut self, waves: Result<ProbedPlants, DesignError>) -> Option<MissingPlants> {
         let (of, refused) = match waves {
             Ok(waves) => {
@@ -136,7 +136,7 @@ fn uncertain(source: &dyn Source, setup: &Setup<'_>) -> Result<UncertainFamily, 
     }
 }
 
-/// The members of a family, or the nominal one with the vertices where there are too many.
+/// Members of a family, or the nominal one with the vertices if there are too many.
 fn chosen(family: &UncertainFamily) -> Vec<Vec<f64>> {
     let members = family.members();
     if members.len() <= MOST_PLANTS {
@@ -154,7 +154,7 @@ fn chosen(family: &UncertainFamily) -> Vec<Vec<f64>> {
     std::iter::once(nominal).chain(others.into_iter().step_by(step)).collect()
 }
 
-/// P H at a frequency, with hold and delay.
+/// Response P H at a frequency, with hold and delay.
 fn response(plant: &TrialPlant, frequency: f64) -> Option<Complex64> {
     match plant {
         TrialPlant::Held(held) => held.at(frequency).map(|found| found.with_sensor),
@@ -170,7 +170,7 @@ fn resonances(plant: &PlantMember) -> Vec<Complex64> {
     roots.into_iter().filter(oscillates).collect()
 }
 
-/// An even grid up to an end, denser around resonances.
+/// Points of an even grid up to an end, denser around resonances.
 fn points(at: &dyn Fn(f64) -> Option<InnerPoint>, end: f64, resonances: Vec<Complex64>) -> Vec<InnerPoint> {
     let mut frequencies = logarithmic_grid(DECADES * end, end, GRID_POINTS).unwrap_or_default();
     for root in &resonances {
@@ -202,8 +202,8 @@ fn points(at: &dyn Fn(f64) -> Option<InnerPoint>, end: f64, resonances: Vec<Comp
     points
 }
 
-/// The least damping ratio of the oscillations of these plants within a band in rad/s, in the loop
-/// of a project, opened; `None` where a plant has no polynomials, or none oscillates there.
+/// Least damping ratio of the oscillations of these plants within a band, rad/s, in the loop of a
+/// project, opened; `None` if a plant has no polynomials, or none oscillates there.
 pub(super) fn least_damping_ratio(
     source: &dyn Source,
     setup: &Setup<'_>,

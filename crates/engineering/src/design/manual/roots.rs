@@ -1,4 +1,4 @@
-//! A law by its roots: single ones, pairs, and notches.
+//! A law by its roots: real ones, pairs, and notches.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Element};
@@ -15,7 +15,7 @@ pub(super) struct Pair {
     pub(super) damping: f64,
 }
 
-/// k (s/z + 1) .../(s (s/p + 1) ...): every factor but the integrators has unit gain at zero
+/// Law k (s/z + 1) .../(s (s/p + 1) ...): every factor except the integrators has unit gain at zero
 /// frequency.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Roots {
@@ -24,15 +24,15 @@ pub(super) struct Roots {
     /// Corners of real zeros and poles, rad/s, in ascending order.
     pub(super) zeros: Vec<f64>,
     pub(super) poles: Vec<f64>,
-    /// Complex ones.
+    /// Complex zeros.
     pub(super) zero_pairs: Vec<Pair>,
     pub(super) pole_pairs: Vec<Pair>,
-    /// Notches that the law states as such.
+    /// Notches that the law states explicitly.
     pub(super) notches: Vec<ManualPart>,
 }
 
 impl Roots {
-    /// Of a continuous law that is stable and of minimum phase, but for integrators.
+    /// Roots of a continuous law that is stable and of minimum phase, except for integrators.
     pub(super) fn of(law: &Compensator) -> Result<Roots, ManualGap> {
         let mut roots = Roots { gain: 1.0, ..Roots::default() };
         for stage in law.stages.iter().filter(|stage| stage.enabled) {
@@ -81,7 +81,8 @@ impl Roots {
         Ok(())
     }
 
-    /// g prod(s - z)/prod(s - p) has the gain g prod(-z)/prod(-p) once its factors have that of 1.
+    /// Adds the roots of a function: g prod(s - z)/prod(s - p) has the gain g prod(-z)/prod(-p)
+    /// once its factors have unit gain.
     fn take_in_function(&mut self, function: &TransferFunction) -> Result<(), ManualGap> {
         if function.domain() != TimeDomain::Continuous {
             return Err(ManualGap::Sampled);
@@ -119,7 +120,7 @@ impl Roots {
         }
     }
 
-    /// The pair of poles nearest to these zeros, within a factor, taken from the others.
+    /// Pair of poles nearest to these zeros, within a factor, removed from the others.
     pub(super) fn poles_near(&mut self, zeros: Pair, factor: f64) -> Option<Pair> {
         let distance = |pair: &Pair| portable::ln(pair.frequency / zeros.frequency).abs();
         let nearest = self
@@ -132,7 +133,7 @@ impl Roots {
         Some(self.pole_pairs.remove(place))
     }
 
-    /// The real pole nearest to this zero, taken from the others.
+    /// Real pole nearest to this zero, removed from the others.
     pub(super) fn pole_nearest(&mut self, zero: f64) -> Option<f64> {
         let distance = |pole: &f64| portable::ln(pole / zero).abs();
         let each = self.poles.iter().enumerate();
@@ -144,7 +145,7 @@ impl Roots {
         (!self.zeros.is_empty()).then(|| self.zeros.remove(0))
     }
 
-    /// Two zeros over the integrator and a real pole as a PID of positive terms, taken from the
+    /// PID of positive terms from two zeros, the integrator and a real pole, removed from the
     /// others.
     ///
     /// ```text
@@ -177,12 +178,12 @@ impl Roots {
     }
 }
 
-/// A number that is positive.
+/// A number, which must be positive.
 fn left(number: f64) -> Result<f64, ManualGap> {
     if number > 0.0 && number.is_finite() { Ok(number) } else { Err(ManualGap::NotMinimumPhase) }
 }
 
-/// Takes in a pair, two real roots where the damping ratio is 1 or more.
+/// Adds a pair, or two real roots if the damping ratio is 1 or more.
 ///
 /// ```text
 /// s = -w (D +- sqrt(D^2 - 1)),       the product of both is w^2

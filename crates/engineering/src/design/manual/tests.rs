@@ -10,7 +10,8 @@ fn general(gain: f64, zeros: &[[f64; 2]], poles: &[[f64; 2]]) -> Compensator {
     Compensator::new(vec![Element::General(function)])
 }
 
-/// The words give back G at every frequency, from far below the roots to far above them.
+/// Parts of a law, checked to return G at every frequency, from far below the roots to far above
+/// them.
 fn words_of(law: &Compensator, name: Option<NamedStructure>) -> Vec<ManualPart> {
     let words = ManualLaw::new(law, name).unwrap();
     let (given, again) = (law.transfer_function().unwrap(), words.compensator().transfer_function().unwrap());
@@ -52,8 +53,8 @@ fn a_pid_is_told_from_a_pi_with_lead_by_its_name_or_its_complex_zeros() {
     let [ManualPart::ProportionalIntegralDerivative { .. }] = words_of(&complex, None)[..] else { panic!() };
 }
 
-/// K_d = k (1/z_1 - T_f) (1/z_2 - T_f): a filter between the zeros has a T_d below zero, and one
-/// that is slower than both a T_i below zero. Either is a PI with a lag.
+/// Derivative gain K_d = k (1/z_1 - T_f) (1/z_2 - T_f): a filter between the zeros has a T_d below
+/// zero, and one that is slower than both a T_i below zero. Either is a PI with a lag.
 #[test]
 fn a_pid_with_a_slow_filter_is_a_pi_with_a_lag() {
     for pole in [5.0, 15.0] {

@@ -1,11 +1,11 @@
-//! What the columns of a measurement hold, by their names.
+//! Columns of a measurement, recognised by their names.
 
 use super::problem::MeasurementProblem;
 use crate::project::{Findings, RawFinding};
 use crate::quantity::{ANGLE, ANGULAR_FREQUENCY, GAIN, RATIO};
 use crate::table::{Column, Measurand, MeasuredTable, Sought};
 
-/// What a column may hold. A pair of magnitude and phase, or of real and imaginary part, is a
+/// Quantities of columns. A pair of magnitude and phase, or of real and imaginary part, is a
 /// response.
 static MEASURANDS: [Measurand; 12] = [
     Measurand::of("frequency", &ANGULAR_FREQUENCY).called(&["freq", "f", "omega", "w"]),
@@ -22,7 +22,7 @@ static MEASURANDS: [Measurand; 12] = [
     Measurand::of("confidence_95", &RATIO),
 ];
 
-/// How a response is written.
+/// Form of a response.
 #[derive(Clone, Debug)]
 pub(super) enum ResponseForm {
     /// Magnitude and phase.
@@ -35,13 +35,14 @@ pub(super) enum ResponseForm {
 #[derive(Clone, Debug)]
 pub(super) struct MeasurementColumns {
     pub(super) frequency: Column,
-    /// P.
+    /// Response P from the command.
     pub(super) command: ResponseForm,
-    /// Pd.
+    /// Response Pd from the motion of the load.
     pub(super) load_motion: Option<ResponseForm>,
-    /// Radius of the disc that holds the true response with 95 %, in the unit of the response.
+    /// Radius of the disc that contains the true response with 95 % probability, in the unit of the
+    /// response.
     pub(super) radius: Option<Column>,
-    /// Its standard deviation, in the same unit.
+    /// Standard deviation of the response, in the unit of the response.
     pub(super) deviation: Option<Column>,
 }
 
@@ -52,7 +53,7 @@ impl ResponseForm {
         }
     }
 
-    /// Of magnitude, phase, real and imaginary part the two that are there.
+    /// Response from the two columns that exist among magnitude, phase, real and imaginary part.
     fn of(columns: [Option<Column>; 4]) -> Option<ResponseForm> {
         match columns {
             [Some(one), Some(other), None, None] => Some(ResponseForm::Polar(one, other)),
@@ -63,12 +64,12 @@ impl ResponseForm {
 }
 
 impl MeasurementColumns {
-    /// What is looked for in a file.
+    /// Signals that a file may contain.
     pub(super) fn sought() -> Vec<Sought<'static>> {
         MEASURANDS.iter().map(Sought::by_name).collect()
     }
 
-    /// Reads the headings; `None` where they do not say what is needed.
+    /// Reads the headings; `None` if a required column is missing.
     pub(super) fn find(table: &MeasuredTable, findings: &mut Findings) -> Option<MeasurementColumns> {
         let sought = MeasurementColumns::sought();
         let before = findings.error_count();

@@ -1,23 +1,23 @@
-//! From discs that each hold one response to discs that hold all of them at once.
+//! Discs that contain all responses simultaneously, from discs that contain one response each.
 //!
 //! ```text
-//! r_all^2 = F(2, m; 0.05/n) sigma^2           n rows, each outside with 0.05/n: all inside with 95 % at least
+//! r_all^2 = F(2, m; 0.05/n) sigma^2           n rows, each outside with 0.05/n: all inside with at least 95 %
 //! F(2, m; p) = (m/2) (p^(-2/m) - 1)           r^2 = F(2, m; 0.05) sigma^2 states m
 //! ```
 //!
-//! A verdict rests on every row: of a hundred discs of 95 % five do not hold their response.
+//! A verdict depends on every row: of a hundred discs of 95 %, five do not contain their response.
 
 use phea_dynamics::portable;
 
-/// Probability that a disc does not hold its response.
+/// Probability that a disc does not contain its response.
 const OUTSIDE: f64 = 0.05;
-/// The largest m/2 that is distinguished from a normal distribution.
+/// Largest m/2 that is distinguished from a normal distribution.
 const HALF_MAXIMUM: f64 = 1e6;
-/// Halvings of the search for m.
+/// Number of bisections in the search for m.
 const HALVINGS: usize = 80;
 
-/// The radii widened to hold every response at once with 95 %; the standard deviations state how
-/// many blocks each rests on, and without them the error is taken as normal.
+/// Radii widened to contain all responses simultaneously with 95 %; the standard deviations
+/// determine the number of blocks of each, and without them the error is assumed to be normal.
 pub(super) fn of_all_rows(radii: &[f64], deviations: Option<&Vec<f64>>) -> Vec<f64> {
     let outside = OUTSIDE / radii.len().max(1) as f64;
     let widened = |(row, radius): (usize, &f64)| {
@@ -29,8 +29,8 @@ pub(super) fn of_all_rows(radii: &[f64], deviations: Option<&Vec<f64>>) -> Vec<f
     radii.iter().enumerate().map(widened).collect()
 }
 
-/// The standard deviation of each row's error; those of the columns, or of a normal distribution
-/// with these radii.
+/// Standard deviation of each row's error: from the columns, or of a normal distribution with these
+/// radii.
 ///
 /// ```text
 /// r^2 = F(2, infinity; 0.05) sigma^2 = -ln(0.05) sigma^2
@@ -40,18 +40,18 @@ pub(super) fn deviations(radii: &[f64], stated: Option<&Vec<f64>>) -> Vec<f64> {
     stated.cloned().unwrap_or_else(|| radii.iter().map(|radius| radius / normal).collect())
 }
 
-/// F(2, 2 half; p)
+/// Quantile F(2, 2 half; p).
 fn quantile(half: f64, outside: f64) -> f64 {
     half * (portable::pow(outside, -1.0 / half) - 1.0)
 }
 
-/// The half number of degrees of freedom at which the quantile of 95 % has this value; as for the
-/// normal distribution where it has less.
+/// Half the number of degrees of freedom at which the quantile of 95 % has this value; that of the
+/// normal distribution if the value is less.
 fn half_of(value: f64) -> f64 {
     if value.is_nan() || value <= quantile(HALF_MAXIMUM, OUTSIDE) || value.is_infinite() {
         return HALF_MAXIMUM;
     }
-    // the quantile falls with the degrees of freedom
+    // the quantile decreases with the degrees of freedom
     let [mut low, mut high] = [0.5, HALF_MAXIMUM];
     for _ in 0..HALVINGS {
         let middle = (low * high).sqrt();

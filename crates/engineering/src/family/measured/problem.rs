@@ -1,4 +1,4 @@
-//! Problems of a file of a measured response, and what it is expected to hold instead.
+//! Problems of a file with a measured response, and its expected content.
 
 /// A problem of the headings, or of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

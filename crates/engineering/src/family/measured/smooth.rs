@@ -1,25 +1,25 @@
-//! Discs narrowed by what the rows next to each other have in common: a response is smooth over
-//! frequency, and the noise of its rows is not.
+//! Discs narrowed by means of neighbouring rows: a response is smooth over frequency, and the noise
+//! of its rows is not.
 //!
 //! ```text
 //! ln(P_j/P_i) ~ a + b x + c x^2,    x = ln(w_j/w_i),    j = i - k d to i + k d,    weights 1/sigma_j^2,    k = 3, 5, 8, 12
 //! r_i = J_i (sum h_j^2 sigma_j^2)^(1/2) + 2 |a - a'|       |P - P_i e^a| <= |P_i e^a| (e^r_i - 1)
 //! ```
 //!
-//! h_j are the weights of the fit, J_i is the factor for all rows to hold at once, and a' is that
-//! of the next window. The window grows as long as its rows scatter about the parabola as their own
-//! discs say, and as long as what it finds agrees with the smaller ones; of those the last but one
-//! is taken, whose bias is well below what the last one was tested for. Next to a resonance that
-//! few rows show no window passes, and the row keeps its own disc.
+//! h_j are the weights of the fit, J_i is the factor for simultaneous validity in all rows, and a'
+//! is that of the next window. The window grows as long as its rows scatter about the parabola as
+//! their own discs predict, and as long as its result agrees with the smaller ones; the last but
+//! one of these windows is used, whose bias is well below that for which the last one was tested.
+//! Next to a resonance with few rows no window passes, and the row retains its own disc.
 //!
-//! Noise that neighbours share, as segments with a window have it, hides in the parabola and leaves
+//! Correlated noise of neighbours, as in segments with a window, hides in the parabola and leaves
 //! too little scatter: then only every second or third row is used, or none.
 
 use nalgebra::Matrix3;
 use num_complex::Complex64;
 use phea_dynamics::portable;
 
-/// Neighbours to either side.
+/// Numbers of neighbours to either side.
 const WINDOWS: [usize; 4] = [3, 5, 8, 12];
 /// Distances of neighbours, rows.
 const STRIDES: [usize; 3] = [1, 2, 3];
@@ -28,9 +28,9 @@ const STRIDES: [usize; 3] = [1, 2, 3];
 const AGREES: f64 = 2.0;
 /// Bound of the bias of a window, as a multiple of the step to the next one.
 const BIAS: f64 = 2.0;
-/// Scatter that independent rows leave at least, relative to what their discs say.
+/// Least scatter that independent rows leave, relative to the prediction of their discs.
 const LEAST_SCATTER: f64 = 0.75;
-/// Fraction of the rows that must have been compared for that.
+/// Fraction of the rows that must have been compared for this.
 const COMPARED: f64 = 0.5;
 /// Largest standard deviation, relative to the response, for which its logarithm is used.
 const LARGEST_NOISE: f64 = 0.2;
@@ -45,12 +45,12 @@ pub(super) struct Discs<'a> {
     pub(super) response: &'a [Complex64],
     /// Standard deviation of each row's complex error.
     pub(super) deviations: &'a [f64],
-    /// Radii for all rows to hold at once.
+    /// Radii for simultaneous validity in all rows.
     pub(super) radii: &'a [f64],
 }
 
 /// One window about a row: the logarithm of the response there, its standard deviation, and the
-/// scatter about the parabola, 1 where it is that of the discs, with its degrees of freedom.
+/// scatter about the parabola, relative to that of the discs, with its degrees of freedom.
 #[derive(Clone, Copy)]
 struct ParabolaFit {
     value: Complex64,
@@ -59,8 +59,8 @@ struct ParabolaFit {
     freedom: f64,
 }
 
-/// Response and radii by the smoothness of the response; `None` where the scatter of the rows is
-/// not that of independent errors.
+/// Response and radii by the smoothness of the response; `None` if the scatter of the rows is not
+/// that of independent errors.
 pub(super) fn smoothed(discs: &Discs<'_>) -> Option<(Vec<Complex64>, Vec<f64>)> {
     let is_known = |value: &f64| value.is_finite() && *value > 0.0;
     if !discs.deviations.iter().all(is_known) || !discs.radii.iter().all(is_known) {
@@ -91,8 +91,8 @@ impl Discs<'_> {
         shows.then_some((found, radii))
     }
 
-    /// The last but one of the windows that agree with all smaller ones, and how far the last one
-    /// is from it; `None` where a row has its own disc alone.
+    /// The last but one of the windows that agree with all smaller ones, and the distance of the
+    /// last one from it; `None` if a row has only its own disc.
     fn narrowed(&self, row: usize, stride: usize) -> Option<(ParabolaFit, f64)> {
         let relative = self.deviations[row] / portable::magnitude(self.response[row]);
         let own = ParabolaFit {
@@ -122,8 +122,8 @@ impl Discs<'_> {
         }
     }
 
-    /// The parabola of the rows up to this number of strides to either side; `None` where a row has
-    /// too much noise or the response turns too far between two of them.
+    /// Parabola of the rows up to this number of strides to either side; `None` if a row has too
+    /// much noise or the response turns too far between two of them.
     fn fit(&self, row: usize, half: usize, stride: usize) -> Option<ParabolaFit> {
         let rows = self.window(row, half, stride)?;
         if rows.len() <= ORDER + 1 {
@@ -167,7 +167,7 @@ impl Discs<'_> {
         })
     }
 
-    /// The rows of a window, with the phase followed from its middle outwards.
+    /// Rows of a window, with the phase followed from its middle outwards.
     fn window(&self, row: usize, half: usize, stride: usize) -> Option<Vec<WindowRow>> {
         let middle = self.response[row];
         let mut rows = vec![self.row(row, row, 0.0)?];
@@ -204,9 +204,9 @@ impl Discs<'_> {
 
 /// One row of a window.
 struct WindowRow {
-    /// ln(w_j/w_i)
+    /// Logarithm of the frequency, ln(w_j/w_i).
     place: f64,
-    /// ln(P_j/P_i)
+    /// Logarithm of the response, ln(P_j/P_i).
     value: Complex64,
     deviation: f64,
 }

@@ -1,4 +1,4 @@
-//! The residuals of a piston that is shaken.
+//! Residuals of a shaken piston.
 
 use std::collections::BTreeMap;
 
@@ -9,45 +9,45 @@ use phea_hydraulics::friction::{
 use super::{FrictionProblem, ResidualRows, ZERO};
 use crate::friction::shaking::ShakenRows;
 
-/// Variables of a shake that are not sizes of its force: where the position, the velocity and the
-/// deflection of the bristles begin.
+/// Number of variables of a shake in addition to the coefficients of its force: initial position,
+/// velocity and deflection of the bristles.
 const BEGINNINGS: usize = 3;
 
-/// Angle in rad by which the fastest sine, and the ringing, turn in a step of the integration: a
-/// straight line within it is 1e-3 too weak.
+/// Largest angle by which the fastest sine, and the oscillation on the bristles, turn in an
+/// integration step, rad: a straight line within it is 1e-3 too weak.
 const STEP_ANGLE: f64 = 0.1;
 
-/// Most steps between two rows.
+/// Largest number of steps between two rows.
 const MOST_STEPS: f64 = 40.0;
 
-/// Shaken piston of these variables.
+/// Shaken piston for given variables.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::friction) struct Shake {
-    /// m, where the position is at the first row, over the first that is recorded.
+    /// Position at the first row, relative to the first recorded one, m.
     pub(in crate::friction) begins: f64,
-    /// m/s and m, velocity and deflection then.
+    /// Initial velocity, m/s, and deflection of the bristles, m.
     start: [f64; 2],
-    /// N, the sizes of the force as the instruments show it.
+    /// Coefficients of the force as the instruments show it, N.
     pub(in crate::friction) sizes: Vec<f64>,
 }
 
-/// Shapes that the sizes of the forces are multiplied by, of each recording: a search requests
-/// the same again and again.
+/// Shapes that the coefficients of the forces multiply, for each recording: a search requests them
+/// repeatedly.
 #[derive(Debug, Default)]
 pub(in crate::friction) struct KeptShapes {
     at_rows: BTreeMap<usize, MultisineShapes>,
-    /// With the number of steps between two rows that was requested last.
+    /// Shapes with the number of steps between two rows that was requested last.
     at_steps: BTreeMap<usize, (usize, MultisineShapes)>,
 }
 
 impl KeptShapes {
-    /// At the rows.
+    /// Shapes at the rows.
     pub(in crate::friction) fn at_rows(&mut self, shake: &ShakenRows, time_step: f64) -> &MultisineShapes {
         let of = || shake.force.shapes(shake.force.rows, time_step);
         self.at_rows.entry(shake.recording).or_insert_with(of)
     }
 
-    /// At the steps of the integration of this mass.
+    /// Shapes at the integration steps of this mass.
     fn at_steps(&mut self, shake: &ShakenRows, shaken: PressedMass) -> &MultisineShapes {
         let of = || (shaken.substeps, shaken.shapes(&shake.force));
         let kept = self.at_steps.entry(shake.recording).or_insert_with(of);
@@ -59,19 +59,20 @@ impl KeptShapes {
 }
 
 impl ShakenRows {
-    /// Number of its own variables.
+    /// Number of variables of the shake.
     pub(in crate::friction) fn variable_count(&self) -> usize {
         BEGINNINGS + self.force.sizes.len()
     }
 }
 
 impl FrictionProblem<'_> {
-    /// N·s/m: of a mass that rings, where its velocity is that of its force.
+    /// Damping of a mass that oscillates on its bristles, N·s/m, if its velocity is that of its
+    /// force.
     fn ringing_damping(&self) -> f64 {
         self.around.damping[1]
     }
 
-    /// m/s, of a mass that rings with the deflection at breakaway.
+    /// Velocity of a mass that oscillates with the deflection at breakaway, m/s.
     fn ringing_velocity(&self) -> f64 {
         self.around.force / self.ringing_damping()
     }
@@ -88,7 +89,7 @@ impl FrictionProblem<'_> {
         beginnings.chain(shake.force.sizes.iter().map(|_| [-1e3, 1e3])).collect()
     }
 
-    /// By the variables of its own.
+    /// Shake for its variables.
     pub(in crate::friction) fn shake_of(&self, own: &[f64]) -> Option<Shake> {
         let (beginnings, sizes) = own.split_at_checked(BEGINNINGS)?;
         let [begins, velocity, deflection] = *beginnings else { return None };
@@ -150,7 +151,7 @@ impl FrictionProblem<'_> {
 }
 
 impl Shake {
-    /// The displacement from the first row, where the instruments show so much force without any.
+    /// Displacement from the first row, with this zero error of the force.
     pub(in crate::friction) fn moved(
         &self,
         (mass, time_step): (f64, f64),

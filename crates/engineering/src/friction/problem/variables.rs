@@ -1,4 +1,4 @@
-//! The variables of the search, and the friction that they are.
+//! Variables of the search, and the friction that they represent.
 
 use phea_dynamics::portable;
 use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, FrictionLevels, LuGre, Stribeck};
@@ -7,13 +7,14 @@ use super::{Around, FrictionProblem};
 use crate::friction::directions::DirectionModel;
 use crate::friction::shaking::ShakenRows;
 
-/// The variables that are of no recording: the coefficients, and the zero of the force.
+/// Number of variables that belong to no recording: the coefficients, and the zero error of the
+/// force.
 pub(in crate::friction) const SHARED: usize = FRICTION_COEFFICIENTS + 1;
 
 /// Index of the damping of the bristles.
 pub(in crate::friction) const DAMPING: usize = 6;
 
-/// Index of the zero of the force.
+/// Index of the zero error of the force.
 pub(in crate::friction) const ZERO: usize = 7;
 
 /// Indices of the variables of one direction: static friction, its fall to Coulomb friction, and
@@ -25,18 +26,18 @@ pub(in crate::friction) struct LevelVariables {
     pub(in crate::friction) viscous: usize,
 }
 
-/// The variables of positive velocity, or of both directions.
+/// Variables of positive velocity, or of both directions.
 pub(in crate::friction) const EXTENDING: LevelVariables =
     LevelVariables { static_friction: 0, fall: 1, viscous: 4 };
 
-/// The variables of negative velocity; without effect where one friction is sought for both.
+/// Variables of negative velocity; without effect if one friction is searched for both.
 pub(in crate::friction) const RETRACTING: LevelVariables =
     LevelVariables { static_friction: 8, fall: 9, viscous: 10 };
 
 impl FrictionProblem<'_> {
-    /// Number of variables: those that are shared; of each constant velocity what the
-    /// bristles brought along; of each press where it began, and its force at each knot; of each
-    /// shake how it began, and the sizes of its force.
+    /// Number of variables: the shared ones; for each constant velocity the initial state of the
+    /// bristles; for each press its initial position, and its force at each knot; for each shake
+    /// its initial state, and the coefficients of its force.
     pub(in crate::friction) fn count(&self) -> usize {
         let shaken: usize = self.shakes.iter().map(ShakenRows::variable_count).sum();
         self.first_of_shakes() + shaken
@@ -48,7 +49,7 @@ impl FrictionProblem<'_> {
         SHARED + self.slides.len() + pressed
     }
 
-    /// The shared variables that are not searched for.
+    /// Shared variables that are not searched.
     pub(in crate::friction) fn known_variables(&self) -> Vec<usize> {
         let damping = self.shakes.is_empty().then_some(DAMPING);
         let zero = (!self.finds_zero()).then_some(ZERO);
@@ -58,13 +59,13 @@ impl FrictionProblem<'_> {
         damping.into_iter().chain(zero).chain(back).collect()
     }
 
-    /// True where the zero of the force is searched for: with levels for each direction nothing
-    /// tells it from them.
+    /// True if the zero error of the force is searched: with levels for each direction it is not
+    /// identifiable.
     pub(in crate::friction) fn finds_zero(&self) -> bool {
         self.goes_both_ways && self.directions == DirectionModel::SameBothWays
     }
 
-    /// The friction, and the zero of the force in N.
+    /// Friction, and zero error of the force, N.
     pub(in crate::friction) fn friction(&self, variables: &[f64]) -> (LuGre, f64) {
         let at = |index: usize| variables.get(index).copied().unwrap_or(0.0);
         let Around { lugre, force, damping, .. } = self.around;
@@ -90,11 +91,12 @@ impl FrictionProblem<'_> {
         (LuGre { curve, bristle_stiffness, bristle_damping: at(DAMPING) * damping[1] }, at(ZERO) * force)
     }
 
-    /// Derivatives over the shared variables from those over the coefficients.
+    /// Derivatives with respect to the shared variables from those with respect to the
+    /// coefficients.
     pub(in crate::friction) fn shared_slopes(&self, lugre: &LuGre, gradient: &[f64]) -> [f64; SHARED] {
         let of = |index: usize| gradient.get(index).copied().unwrap_or(0.0);
         let Around { force, damping, .. } = self.around;
-        // variables of one direction only count for both where they are the same
+        // variables of one direction count for both only if the directions are equal
         let (back, own) = match self.directions {
             DirectionModel::SameBothWays => (1.0, 0.0),
             DirectionModel::DiffersByDirection => (0.0, 1.0),
@@ -117,7 +119,7 @@ impl FrictionProblem<'_> {
         ]
     }
 
-    /// The start of a search with a curve and a zero of the force.
+    /// Start of a search from a curve and a zero error of the force.
     pub(super) fn start(&self, (curve, zero): &(Stribeck, f64)) -> Vec<f64> {
         let Around { lugre, force, damping, .. } = self.around;
         let over = |value: f64, usual: f64| portable::ln(value / usual);
@@ -147,8 +149,8 @@ impl FrictionProblem<'_> {
         start
     }
 
-    /// Bounds of each variable. Where nothing is shaken the damping of the bristles stays: a slow
-    /// force does not show it, and what rings freely would follow the noise.
+    /// Bounds of each variable. Without shakes the damping of the bristles is fixed: a slow force
+    /// does not show it, and a free oscillation would follow the noise.
     pub(in crate::friction) fn bounds(&self) -> Vec<[f64; 2]> {
         let damping = self.around.lugre.bristle_damping / self.around.damping[1];
         let exponent = self.around.lugre.curve.stribeck_exponent;
@@ -162,7 +164,7 @@ impl FrictionProblem<'_> {
             let value = if known == DAMPING { damping } else { 0.0 };
             bounds.iter_mut().skip(known).take(1).for_each(|bound| *bound = [value; 2]);
         }
-        // what bristles can hold is between -F_S and F_S
+        // the force of bristles is between -F_S and F_S
         bounds.extend(self.slides.iter().map(|_| [-4.0, 4.0]));
         for press in self.presses {
             bounds.push([-1e6, 1e6]);

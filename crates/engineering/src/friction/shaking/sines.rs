@@ -1,4 +1,4 @@
-//! The sines that a force is made of, found in the force and in what it moves.
+//! Sines that compose a force, found in the force and in the motion that it causes.
 
 use std::f64::consts::{LN_2, PI};
 
@@ -10,46 +10,47 @@ use phea_hydraulics::friction::{TRENDS, trends};
 
 use phea_dynamics::order::median;
 
-/// Power of a line in both signals together over that of the noise of both from which it is one:
-/// white noise reaches it once in twenty thousand.
+/// Ratio of the power of a line in both signals together to that of their noise above which it
+/// counts as a sine: white noise reaches it once in twenty thousand.
 const BEYOND_NOISE: f64 = 12.0;
 
-/// Power over that of the strongest line: what is below, less than a hundredth of its size, moves
-/// little.
+/// Ratio of a line's power to that of the strongest below which it is ignored: it has less than a
+/// hundredth of the amplitude, and moves little.
 const FAINT: f64 = 1e-4;
 
-/// Power over that of the strongest line of a round from which another is taken with it: beyond
-/// what one line spreads over its neighbours.
+/// Ratio of a line's power to that of the strongest of a round above which it is added with it:
+/// beyond the leakage of one line to its neighbours.
 const NO_LEAKAGE: f64 = 0.1;
 
-/// Fraction of the variance of a force that its sines may leave unexplained, beyond the noise.
+/// Fraction of the variance of a force that its sines may leave unexplained, in addition to the
+/// noise.
 const NOT_EXPLAINED: f64 = 0.05;
 
-/// Most sines.
+/// Largest number of sines.
 const MOST_SINES: usize = 40;
 
-/// Rounds of the search for further sines.
+/// Number of rounds of the search for further sines.
 const ROUNDS: usize = 12;
 
-/// Steps to better frequencies in each round.
+/// Number of steps to better frequencies in each round.
 const STEPS: usize = 3;
 
-/// Fewest periods of a sine; what is slower belongs to the drift of the mean, or to the noise.
+/// Fewest periods of a sine; slower ones belong to the drift of the mean, or to the noise.
 const FEWEST_PERIODS: f64 = 3.0;
 
-/// Length of the transformed signal over that of the record, by zeros.
+/// Ratio of the length of the transformed signal, filled with zeros, to that of the record.
 const FILLED_UP: usize = 4;
 
-/// Distance of two sines, over a line of the rows, from which they can be distinguished.
+/// Distance of two sines, in lines of the record, from which they can be distinguished.
 const APART: f64 = 1.5;
 
-/// The sines that a force is made of, as angles in rad from row to row, rising; `None` where sines
-/// do not explain it. Force and position are given over the standard deviation of their noise.
+/// Sines that compose a force, as angles from row to row, rad, rising; `None` if sines do not
+/// explain it. Force and position are divided by the standard deviation of their noise.
 ///
-/// A sine that is small in the force may move the piston much where it rings on its bristles, so
-/// that both signals are searched. What is left may hold sines too close to one of these for the
-/// duration of the recording, as where the size of a sine changes a little: they stay with the
-/// noise, up to a small part of the force.
+/// A sine that is small in the force may move the piston much at its natural frequency on the
+/// bristles, so that both signals are searched. The remainder may contain sines too close to one of
+/// these for the duration of the recording, as when the amplitude of a sine changes slightly: they
+/// remain in the noise, up to a small fraction of the force.
 pub(super) fn sines(signals: [&Vec<f64>; 2]) -> Option<Vec<f64>> {
     let [forces, _] = signals;
     let length = (FILLED_UP * forces.len()).next_power_of_two();
@@ -93,14 +94,14 @@ pub(super) fn sines(signals: [&Vec<f64>; 2]) -> Option<Vec<f64>> {
     (is_seen && beyond_noise <= NOT_EXPLAINED * (all - left)).then_some(angles)
 }
 
-/// Power that sines of these angles leave of both signals together.
+/// Power of both signals together that remains after removal of sines of these angles.
 fn power_left(signals: [&Vec<f64>; 2], angles: &[f64], length: usize) -> Option<Vec<f64>> {
     let sines = Sines::of(signals[0].len(), angles)?;
     let [force, position] = signals.map(|values| power(sines.left(values).as_slice(), length));
     Some(force.iter().zip(&position).map(|(one, other)| one + other).collect())
 }
 
-/// Angles of the local maxima beyond this power, the strongest first.
+/// Angles of the local maxima above this power, the strongest first.
 fn peaks(power: &[f64], enough: f64) -> Vec<f64> {
     let mut peaks: Vec<(f64, usize)> = power
         .windows(3)
@@ -112,8 +113,8 @@ fn peaks(power: &[f64], enough: f64) -> Vec<f64> {
     peaks.into_iter().map(|(_, line)| PI * line as f64 / power.len() as f64).collect()
 }
 
-/// Standard deviation of white noise on a signal that is smooth enough to have little in the upper
-/// half of the frequencies; at least what numbers resolve.
+/// Standard deviation of white noise on a signal that is smooth enough to have little power in the
+/// upper half of the frequencies; at least the resolution of the numbers.
 pub(super) fn white_noise(values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
     let centred: Vec<f64> = values.iter().map(|value| value - mean).collect();
@@ -128,12 +129,12 @@ fn typical(power: &[f64]) -> f64 {
     if power.is_empty() { 0.0 } else { median(power.to_vec()) }
 }
 
-/// Power of the noise of one signal, by the median of the sum of two: 1.678 of that of one.
+/// Power of the noise of one signal, from the median of the sum of two: 1.678 of that of one.
 fn level(power: &[f64]) -> f64 {
     typical(power) / 1.678
 }
 
-/// Power at equal distances of the frequency, up to half of that of the rows: for white noise, its
+/// Power at equally spaced frequencies, up to half of that of the rows: for white noise, its
 /// variance on average.
 fn power(values: &[f64], length: usize) -> Vec<f64> {
     let lines = Transform::new(length).of_real(values);
@@ -141,7 +142,7 @@ fn power(values: &[f64], length: usize) -> Vec<f64> {
     lines.iter().take(length / 2).map(|line| line.norm_sqr() / count).collect()
 }
 
-/// A mean that drifts, then cosine and sine of each angle, column after column.
+/// Drifting mean, then cosine and sine of each angle, column after column.
 fn columns(rows: usize, angles: &[f64]) -> Vec<f64> {
     let places = (0..rows).map(|row| trends(2.0 * row as f64 / (rows as f64 - 1.0) - 1.0));
     let drift: Vec<[f64; TRENDS]> = places.collect();
@@ -156,9 +157,9 @@ fn columns(rows: usize, angles: &[f64]) -> Vec<f64> {
     columns
 }
 
-/// A mean that drifts, and sines of some angles, to be fitted to signals.
+/// Drifting mean, and sines of some angles, to be fitted to signals.
 struct Sines {
-    /// Column after column.
+    /// Values, column after column.
     columns: Vec<f64>,
     matrix: DMatrix<f64>,
     normal: Cholesky<f64, Dyn>,
@@ -172,8 +173,8 @@ impl Sines {
         Some(Sines { columns, matrix, normal })
     }
 
-    /// Sizes of the mean that drifts, and of cosine and sine of each angle, by least squares: by
-    /// the normal equations, as the sines are nearly orthogonal.
+    /// Coefficients of the drifting mean, and of cosine and sine of each angle, by least squares:
+    /// by the normal equations, as the sines are nearly orthogonal.
     fn sizes(&self, values: &[f64]) -> DVector<f64> {
         self.normal.solve(&(self.matrix.transpose() * DVector::from_column_slice(values)))
     }
@@ -188,20 +189,20 @@ fn matrix(rows: usize, columns: Vec<f64>) -> DMatrix<f64> {
     DMatrix::from_vec(rows, columns.len() / rows.max(1), columns)
 }
 
-/// The solution of the normal equations.
+/// Solution of the normal equations.
 fn solved(matrix: &DMatrix<f64>, values: &[f64]) -> Option<DVector<f64>> {
     let transposed = matrix.transpose();
     let right = &transposed * DVector::from_column_slice(values);
     Some((transposed * matrix).cholesky()?.solve(&right))
 }
 
-/// Sizes of the mean that drifts, and of cosine and sine of each angle, by least squares.
+/// Coefficients of the drifting mean, and of cosine and sine of each angle, by least squares.
 pub(super) fn fitted(values: &[f64], angles: &[f64]) -> Option<Vec<f64>> {
     Some(Sines::of(values.len(), angles)?.sizes(values).iter().copied().collect())
 }
 
-/// The angles after a step of Gauss and Newton over sizes and angles: the mean of the steps for
-/// both signals, by the squares of the sizes.
+/// Angles after a Gauss-Newton step over coefficients and angles: the mean of the steps for both
+/// signals, weighted by the squares of the amplitudes.
 fn improved(signals: [&Vec<f64>; 2], angles: &[f64]) -> Option<Vec<f64>> {
     let sines = Sines::of(signals[0].len(), angles)?;
     let [force, position] = signals.map(|values| steps(values, angles, &sines));
@@ -215,7 +216,7 @@ fn improved(signals: [&Vec<f64>; 2], angles: &[f64]) -> Option<Vec<f64>> {
     )
 }
 
-/// For each angle its step, and the square of the size of its sine.
+/// Step of each angle, and the square of the amplitude of its sine.
 fn steps(values: &[f64], angles: &[f64], sines: &Sines) -> Option<Vec<[f64; 2]>> {
     let rows = values.len();
     let sizes = sines.sizes(values);

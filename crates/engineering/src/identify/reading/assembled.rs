@@ -1,4 +1,4 @@
-//! From columns to a test: what acted on the valve, and what was recorded of it.
+//! Assembly of columns into a test: inputs of the valve, and recorded signals.
 
 use phea_hydraulics::servovalve::{PortCircuit, Supply, TestInput, WarmOil};
 
@@ -9,7 +9,7 @@ use crate::followed::{followed, roughness};
 use crate::identify::recording::{RecordedSignal, Recording, SignalKind};
 use crate::project::{Accuracy, Findings, Place, RawFinding, RecordedTest, TestSignal};
 
-/// The columns as a test.
+/// Test with these columns.
 pub(super) fn assembled(
     declared: &RecordedTest,
     taken: &Taken,
@@ -82,22 +82,22 @@ fn means((one, other): (&[f64], &[f64])) -> Vec<f64> {
     one.iter().zip(other).map(|(one, other)| f64::midpoint(*one, *other)).collect()
 }
 
-/// Rate at which a command came to a row from the row before.
+/// Rate of change of a command from the row before.
 fn rate(times: &[f64], command: &[f64], row: usize) -> Option<f64> {
     let before = row.checked_sub(1)?;
     let difference = |values: &[f64]| Some(values.get(row)? - values.get(before)?);
     Some(difference(command)? / difference(times)?)
 }
 
-/// The deviation of a command's noise, and the command without it. A record that never goes back by
-/// little is rounded at most: the valve followed it.
+/// Standard deviation of a command's noise, and the command without it. A record without small
+/// reversals has rounding at most: the valve followed it.
 fn without_noise(command: &[f64]) -> (f64, Vec<f64>) {
     let rough = roughness(command);
     let followed = followed(command, rough);
     (if followed == command { 0.0 } else { rough }, followed)
 }
 
-/// The stated accuracies of the instruments whose columns are there.
+/// Stated accuracies of the instruments whose columns exist.
 fn accuracies(declared: &RecordedTest, taken: &Taken) -> Vec<(TestSignal, Accuracy)> {
     let of = |signal: TestSignal| {
         taken.of(signal)?;
@@ -106,7 +106,7 @@ fn accuracies(declared: &RecordedTest, taken: &Taken) -> Vec<(TestSignal, Accura
     TestSignal::ALL.into_iter().filter_map(of).collect()
 }
 
-/// A flow between the ports: by a meter that indicates the direction if some of it is negative.
+/// A flow between the ports: from a meter that indicates the direction if some of it is negative.
 fn port_flow(values: &[f64]) -> RecordedSignal {
     let signed = values.iter().any(|value| *value < 0.0);
     let kind = if signed { SignalKind::PortFlow } else { SignalKind::PortFlowMagnitude };
@@ -118,7 +118,7 @@ fn turning(values: &[f64]) -> Vec<Option<f64>> {
     values.iter().map(|value| Some(*value).filter(|value| *value != 0.0 && !value.is_nan())).collect()
 }
 
-/// True where anything was recorded but inputs.
+/// True if a signal other than inputs was recorded.
 pub(super) fn is_test(taken: &Taken, circuit: PortCircuit, whole: Place, findings: &mut Findings) -> bool {
     let has = |signal: TestSignal| taken.of(signal).is_some();
     let [a, b] = [TestSignal::PressureA, TestSignal::PressureB].map(has);
@@ -132,8 +132,8 @@ pub(super) fn is_test(taken: &Taken, circuit: PortCircuit, whole: Place, finding
     is_test
 }
 
-/// Warns of joined ports between which the drop was not recorded: the meter takes it, and the
-/// valve is then taken for one with less flow.
+/// Warns of joined ports between which the drop was not recorded: the meter takes it, and the valve
+/// then appears to have less flow.
 pub(super) fn warn_of_unknown_drop(
     taken: &Taken,
     circuit: PortCircuit,

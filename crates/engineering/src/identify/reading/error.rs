@@ -1,4 +1,4 @@
-//! Errors of recorded tests and remarks on them, with the hints that go with them.
+//! Errors of recorded tests and remarks on them, with their hints.
 
 use crate::project::TestSignal;
 use crate::quantity::{display, significant};
@@ -9,16 +9,16 @@ pub(super) enum RecordedTestError {
     /// Fewer rows than a test has.
     #[error("{0} rows are too few for a test")]
     TooFewRows(usize),
-    /// Flows of both circuits of the ports.
+    /// The file contains flows of both circuits of the ports.
     #[error("`leak_flow` is of blocked ports, `flow` of joined ones: one file holds one test")]
     TwoTests,
     /// Rows whose supply pressure is not above the tank pressure.
     #[error("the tank pressure is not below the supply pressure in {count} of {rows} rows")]
     TankAboveSupply { count: usize, rows: usize },
-    /// No output of the valve.
+    /// The file contains no output of the valve.
     #[error("there is nothing but inputs: neither a flow nor the pressure of a port")]
     OnlyInputs,
-    /// Joined ports without both pressures, by the names of the absent ones.
+    /// Joined ports lack pressures, by the names of the absent ones.
     #[error(
         "without {absent} the drop from port to port is not known and counts as zero: the flow coefficients come out too small by what the meter takes"
     )]
@@ -26,34 +26,34 @@ pub(super) enum RecordedTestError {
     /// A constant command.
     #[error("the command never moves: this is not a test of a valve")]
     CommandNeverMoves,
-    /// A single value beyond what a test reaches, as written.
+    /// A single value is beyond the range of a test, as written.
     #[error("{written} is not a plausible {signal} of a valve test")]
     ImplausibleValue { written: String, signal: SignalInWords },
-    /// s, a duration that no test has.
+    /// The duration is longer than that of any test, s.
     #[error("`{heading}` lasts {}: no test of a valve takes that long", shown(*duration, TestSignal::Time))]
     ImplausibleDuration { heading: String, duration: f64 },
-    /// V, commands beyond the nominal voltage, or far below it.
+    /// Commands are beyond the nominal voltage, or far below it, V.
     #[error(
         "`{heading}` reaches {}, the nominal voltage is {}",
         shown(*reached, TestSignal::Command),
         shown(*nominal, TestSignal::Command)
     )]
     ImplausibleCommand { heading: String, reached: f64, nominal: f64 },
-    /// Pa, pressures of a port beyond the supply, or far below it.
+    /// Pressures of a port are beyond the supply, or far below it, Pa.
     #[error(
         "`{heading}` reaches {}, the supply pressure {}",
         shown(*reached, TestSignal::PressureA),
         shown(*supply, TestSignal::PressureA)
     )]
     ImplausiblePort { heading: String, reached: f64, supply: f64 },
-    /// A column that reaches what no test reaches, in SI.
+    /// A column has values that no test reaches, SI.
     #[error(
         "`{heading}` reaches {}: that is not a plausible {} of a valve test",
         shown(*reached, *signal),
         SignalInWords::from(*signal)
     )]
     ImplausibleColumn { heading: String, reached: f64, signal: TestSignal },
-    /// Median of the recorded flow over that of the declared valve.
+    /// Flow differs from that of the declared valve: ratio of the medians.
     #[error(
         "`{heading}` is {} times the flow that the declared valve passes at these commands and pressures",
         significant(*ratio, 2)
@@ -62,7 +62,7 @@ pub(super) enum RecordedTestError {
     /// Negative leakage.
     #[error("{name} is negative in {count} of {rows} rows")]
     NegativeLeakage { name: String, count: usize, rows: usize },
-    /// A last row that ends early.
+    /// The last row ends early.
     #[error("the last row is not whole: it is left out")]
     LastRowCutOff,
     /// A row that is neither names, nor units, nor numbers.
@@ -80,12 +80,12 @@ pub(super) enum RecordedTestError {
     /// Single rows far from their neighbours.
     #[error("`{0}` stands out of the rows before and after, and these rows are left out")]
     StandsOut(String),
-    /// Duplicates.
+    /// Rows repeat others.
     #[error("rows that repeat the row before are left out")]
     Repeated,
 }
 
-/// Three digits of a value of a signal, in SI.
+/// Value of a signal, SI, with three digits.
 fn shown(value: f64, signal: TestSignal) -> String {
     display(value, signal.dimension(), 3)
 }
@@ -151,7 +151,7 @@ pub(super) struct ColumnSetting {
     pub(super) unit: String,
 }
 
-/// Change of a project that turns a signal.
+/// Change of a project that reverses a signal.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(super) enum SignRemedy {
     /// A signal that a project reverses.
@@ -160,7 +160,7 @@ pub(super) enum SignRemedy {
     /// A signal that no project reverses.
     #[error("state `{0} = {{ reversed = true }}` in its `[[identify.recording]]` of a project")]
     StateReversed(&'static str),
-    /// Columns of the ports, each for the other one.
+    /// Exchange of the columns of the ports.
     #[error("state {} in its `[[identify.recording]]` of a project", joined(.0))]
     Exchange(Vec<ColumnSetting>),
 }

@@ -1,4 +1,4 @@
-//! Numbers that no test of a valve has: nearly always another unit than the one that is stated.
+//! Implausible numbers for a test of a valve: nearly always in another unit than the stated one.
 
 use super::error::{ColumnSetting, RecordedTestError, RecordedTestHint, SignalInWords};
 use super::{Known, Taken};
@@ -6,7 +6,7 @@ use crate::project::{Findings, RawFinding, TestSignal};
 use crate::quantity::{PRESSURE, UnitScale, display};
 use crate::table::{Column, MeasuredTable};
 
-/// Usual limits of the numbers of a column, in SI: least and most.
+/// Usual limits of the numbers of a column, SI: least and greatest.
 fn usual(signal: TestSignal, nominal_voltage: f64) -> [f64; 2] {
     match signal {
         // the whole test lasts half a second to a day
@@ -21,14 +21,14 @@ fn usual(signal: TestSignal, nominal_voltage: f64) -> [f64; 2] {
     }
 }
 
-/// Greatest command over the nominal one.
+/// Ratio of the greatest command to the nominal one.
 const BEYOND_NOMINAL: f64 = 1.1;
-/// Greatest pressure of a port above the supply, of transducers that disagree.
+/// Ratio of the greatest pressure of a port to the supply, for transducers that disagree.
 const BEYOND_SUPPLY: f64 = 1.25;
-/// The least that a port reaches of the supply in a test.
+/// Least fraction of the supply pressure that a port reaches in a test.
 const LEAST_OF_SUPPLY: f64 = 1e-3;
 
-/// The greatest magnitude of a single value, in SI.
+/// Greatest magnitude of a single value, SI.
 pub(super) fn greatest(signal: TestSignal, nominal_voltage: f64) -> f64 {
     match signal {
         TestSignal::Time => 1e7,
@@ -39,7 +39,8 @@ pub(super) fn greatest(signal: TestSignal, nominal_voltage: f64) -> f64 {
     }
 }
 
-/// Refuses columns whose numbers reach what no test reaches, and single values that are impossible.
+/// Rejects columns whose numbers reach values that no test reaches, and single values that are
+/// impossible.
 pub(super) fn check(
     table: &MeasuredTable,
     columns: &[(TestSignal, Column)],
@@ -58,7 +59,7 @@ pub(super) fn check(
         }
         let level = match signal {
             TestSignal::Time => duration(values),
-            // a meter that reads zero shows nothing
+            // a meter at rest reads zero
             TestSignal::LeakFlow => reached(values.iter().filter(|value| **value != 0.0)),
             _ => reached(values),
         };
@@ -90,7 +91,7 @@ pub(super) fn check(
     }
 }
 
-/// The magnitude that a twentieth of the values is above; zero of none.
+/// Magnitude that a twentieth of the values exceeds; zero without values.
 fn reached<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
     let magnitudes = values.into_iter().map(|value| value.abs());
     let mut magnitudes: Vec<f64> = magnitudes.filter(|value| !value.is_nan()).collect();
@@ -105,7 +106,8 @@ fn duration(times: &[f64]) -> f64 {
     times.first().zip(times.last()).map_or(0.0, |(first, last)| last - first)
 }
 
-/// Finding for a column that reaches what no test reaches, with the units in which it would not.
+/// Finding for a column with values that no test reaches, with the units in which they would be
+/// plausible.
 fn implausible(
     table: &MeasuredTable,
     (signal, column): (TestSignal, &Column),
@@ -147,7 +149,7 @@ fn implausible(
     found.help(hint.to_string())
 }
 
-/// Units in which the numbers of a column would be those of a test.
+/// Units in which the numbers of a column would be plausible.
 fn other_units(signal: TestSignal, column: &Column, level: f64, limits: [f64; 2]) -> Vec<&'static str> {
     let units: &[&'static str] = match signal {
         TestSignal::Time => &["s", "ms", "min", "us"],

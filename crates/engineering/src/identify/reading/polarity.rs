@@ -1,4 +1,5 @@
-//! Signals with the wrong sign: which one goes against which, and the setting that turns it.
+//! Check for signals with the wrong sign: pairs with opposite tendencies, and the setting that
+//! reverses one.
 //!
 //! A positive command opens the supply to port A. With blocked ports p_A - p_B rises with the
 //! command; with joined ports the flow from A to B and the drop p_A - p_B across the meter do.
@@ -13,8 +14,8 @@ use crate::project::{Findings, RawFinding, TestSignal};
 use crate::table::{Column, MeasuredTable};
 use crate::tendency::Tendency;
 
-/// The least flow in one direction, over the greatest in the other, by which a meter indicates the
-/// direction: less is noise around zero.
+/// Ratio of the least flow in one direction to the greatest in the other from which a meter
+/// indicates the direction: less is noise around zero.
 const SIGNED: f64 = 0.1;
 
 /// A file whose signs are checked.
@@ -24,7 +25,7 @@ struct CheckedRecording<'a> {
     taken: &'a Taken,
 }
 
-/// Refuses a recording in which a signal goes against the command.
+/// Rejects a recording in which a signal moves against the command.
 pub(super) fn check(
     table: &MeasuredTable,
     columns: &[(TestSignal, Column)],
@@ -56,7 +57,7 @@ impl CheckedRecording<'_> {
         RawFinding::error(place.map(|heading| heading.place).unwrap_or_default(), message)
     }
 
-    /// p_A - p_B with its name; that of one port where the other was not recorded.
+    /// Signal p_A - p_B with its name; that of one port if the other was not recorded.
     fn pressure_of_ports(&self) -> Option<(String, Vec<f64>)> {
         let [a, b] = [TestSignal::PressureA, TestSignal::PressureB].map(|signal| self.taken.of(signal));
         let [name_a, name_b] = [TestSignal::PressureA, TestSignal::PressureB].map(|one| self.heading(one));
@@ -71,7 +72,7 @@ impl CheckedRecording<'_> {
         }
     }
 
-    /// A leakage is never negative but for the noise of its meter.
+    /// Checks the leakage, which is never negative except for the noise of its meter.
     fn leakage(&self, findings: &mut Findings) {
         let Some(values) = self.taken.of(TestSignal::LeakFlow) else { return };
         let shown: Vec<f64> =
@@ -116,7 +117,7 @@ impl CheckedRecording<'_> {
         let drop = self.pressure_of_ports().filter(|_| has_both == [true, true]);
         let flow = self.taken.of(TestSignal::Flow).map(turning).filter(|flow| is_signed(flow));
         let [command_name, flow_name] = [TestSignal::Command, TestSignal::Flow].map(|one| self.heading(one));
-        // the drop across a meter is small: what drifts with time may be larger
+        // the drop across a meter is small: its drift with time may be larger
         let of_drop = drop.as_ref().and_then(|(_, drop)| Tendency::without_drift(drop, command, times));
         let of_flow = flow.as_ref().and_then(|flow| {
             Tendency::without_drift(flow, command, times).or_else(|| Tendency::of(flow, command))
@@ -165,7 +166,7 @@ impl CheckedRecording<'_> {
         findings.push(found.expected(expected.to_string()).help(self.remedies(turned)));
     }
 
-    /// Signals that may be wrong, each with the setting that turns it.
+    /// Signals that may be wrong, each with the setting that reverses it.
     fn remedies(&self, turned: &[TurnedSignal]) -> String {
         let named = turned.iter().map(|one| (one, self.remedy(*one)));
         match turned {
@@ -191,7 +192,7 @@ impl CheckedRecording<'_> {
         }
     }
 
-    /// The columns of the ports, each for the other one.
+    /// Columns of the ports, exchanged.
     fn exchanged_ports(&self) -> Vec<ColumnSetting> {
         let both = [TestSignal::PressureA, TestSignal::PressureB];
         let exchanged = both.iter().zip(both.iter().rev()).filter_map(|(of, other)| {
@@ -203,17 +204,17 @@ impl CheckedRecording<'_> {
     }
 }
 
-/// One signal falls while another rises.
+/// Error for one signal that falls while another rises.
 fn falls(one: &str, other: &str, Tendency { correlation, rows }: Tendency) -> OppositeSignals {
     OppositeSignals { signal: one.to_string(), other: other.to_string(), correlation, rows }
 }
 
-/// The flow where the meter turns; NaN elsewhere.
+/// Flow in the rows in which the meter turns; NaN elsewhere.
 fn turning(flow: &[f64]) -> Vec<f64> {
     flow.iter().map(|value| if *value == 0.0 { f64::NAN } else { *value }).collect()
 }
 
-/// True of a meter that indicates the direction: some of the flow is negative, beyond its noise.
+/// True for a meter that indicates the direction: some of the flow is negative, beyond its noise.
 fn is_signed(flow: &[f64]) -> bool {
     let least = flow.iter().copied().fold(0.0, f64::min);
     let most = flow.iter().copied().fold(0.0, f64::max);

@@ -1,4 +1,5 @@
-//! Flows between the ports that the declared valve does not pass: another unit, or another valve.
+//! Check of flows between the ports against the declared valve: a difference means another unit, or
+//! another valve.
 
 use phea_dynamics::order::sort_numbers;
 use phea_hydraulics::servovalve::PortCircuit;
@@ -9,22 +10,22 @@ use crate::project::{Findings, RawFinding, TestSignal};
 use crate::quantity::{FLOW, UnitScale};
 use crate::table::{Column, MeasuredTable};
 
-/// Factor between recorded and declared flow beyond which it is warned of.
+/// Ratio of recorded to declared flow beyond which there is a warning.
 const UNUSUAL: f64 = 2.0;
-/// Ratio beyond which the recording is refused.
+/// Ratio beyond which the recording is rejected.
 const IMPOSSIBLE: f64 = 30.0;
-/// Factor within which another unit explains the flow.
+/// Ratio within which another unit explains the flow.
 const EXPLAINED: f64 = 1.6;
 /// Fraction of the greatest command beyond which a row counts: far from null and leakage.
 const FAR_FROM_NULL: f64 = 0.5;
 /// Fewest such rows.
 const FEWEST_ROWS: usize = 5;
 
-/// Units in which people record a flow.
+/// Common units of a flow.
 const UNITS: [&str; 6] = ["L/min", "mL/min", "L/s", "cm3/s", "m3/s", "gpm"];
 
-/// Compares the flow of a metering test with the one that the declared valve passes at the same
-/// commands and pressures, by the median over the rows far from null:
+/// Compares the flow of a metering test with the flow of the declared valve at these commands and
+/// pressures, by the median over the rows far from null:
 ///
 /// ```text
 /// q = K |U|/U_n sqrt(p_S - p_T - |p_A - p_B|)        1/K^2 = 1/K_first^2 + 1/K_second^2
@@ -60,7 +61,7 @@ pub(super) fn check(
     findings.push(found.help(hint.to_string()));
 }
 
-/// Median of the recorded flow over the declared one.
+/// Median of the ratio of recorded to declared flow.
 fn ratio(taken: &Taken, known: &Known) -> Option<f64> {
     let [positive, negative] = known.path_coefficients?;
     let [command, flow] = [TestSignal::Command, TestSignal::Flow].map(|signal| taken.of(signal));
@@ -84,7 +85,7 @@ fn ratio(taken: &Taken, known: &Known) -> Option<f64> {
     ratios.get(ratios.len() / 2).copied().filter(|_| ratios.len() >= FEWEST_ROWS)
 }
 
-/// The unit in which the flow is nearest to the declared one, if it is near.
+/// Unit in which the flow is nearest to the declared one, if it is near.
 fn unit_that_fits(column: &Column, ratio: f64) -> Option<&'static str> {
     let in_si = |unit: &str| UnitScale::new(unit, &FLOW).ok()?.read("1");
     let stated = in_si(&column.unit)?;

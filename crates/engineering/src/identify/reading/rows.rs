@@ -1,4 +1,4 @@
-//! Which rows of a file are used: gaps, duplicates, and the order in time.
+//! Selection of the rows of a file: gaps, duplicates, and the order in time.
 
 use phea_dynamics::order::median;
 
@@ -8,21 +8,21 @@ use crate::followed::roughness;
 use crate::project::{Findings, RawFinding, TestSignal};
 use crate::table::{Column, ColumnNumbers, MeasuredTable, not_increasing};
 
-/// A column with more gaps than this fraction of the rows is not a record.
+/// Largest fraction of gaps in a recorded column.
 const MOST_GAPS: f64 = 0.5;
 
-/// Rows of a slow command, deviations of its noise, and fraction of its greatest value, within
-/// which no row deviates.
+/// Bounds within which no row is an outlier: rows of a slow command, standard deviations of its
+/// noise, and fraction of its greatest value.
 const STEPS: f64 = 3.0;
 const ROUGH: f64 = 10.0;
 const LEAST_OUTLIER: f64 = 1e-3;
 
-/// A command of which a greater fraction of the rows deviates moves like this.
+/// Largest fraction of outliers: a command with more of them moves in this way.
 const MOST_OUTLIERS: f64 = 0.05;
 
-/// Says what is missing, and leaves out the rows that cannot be used: those without an input, and
-/// those that repeat the row before. Times that do not increase are errors. A command beyond what
-/// is plausible is left in, to be refused.
+/// Selects the rows that are used, and reports missing values. Rows without an input, and rows that
+/// repeat the row before, are omitted. Times that do not increase are errors. A command beyond
+/// plausible values is retained, to be rejected later.
 pub(super) fn used(
     table: &MeasuredTable,
     columns: &[(TestSignal, Column)],
@@ -63,8 +63,8 @@ pub(super) fn used(
     is_used
 }
 
-/// Leaves out rows whose command deviates from those around it: a memory that follows it would have
-/// gone there and back.
+/// Omits rows whose command deviates from those around it: a memory that follows it would have
+/// moved there and back.
 fn leave_out_standing_out(
     table: &MeasuredTable,
     columns: &[(TestSignal, Column)],
@@ -89,8 +89,9 @@ fn leave_out_standing_out(
     findings.push(table.warning(&out, column, &message.to_string(), findings));
 }
 
-/// Places at which a slow command is further from the median of five than it moves in three rows,
-/// and than ten deviations of its noise; none where so many are that they are no outliers.
+/// Indices of rows at which a slow command is further from the median of five than it moves in
+/// three rows, and than ten standard deviations of its noise; empty if there are too many to be
+/// outliers.
 fn standing_out(command: &[f64]) -> Vec<usize> {
     let steps = command.iter().zip(command.iter().skip(1)).map(|(before, now)| (now - before).abs());
     let greatest = command.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
@@ -105,7 +106,7 @@ fn standing_out(command: &[f64]) -> Vec<usize> {
     if found.len() as f64 > MOST_OUTLIERS * command.len() as f64 { Vec::new() } else { found }
 }
 
-/// Leaves out rows that say what the row before says, and reports times that do not increase.
+/// Omits rows that repeat the row before, and reports times that do not increase.
 fn leave_out_repeated(
     table: &MeasuredTable,
     columns: &[(TestSignal, Column)],
@@ -142,7 +143,7 @@ fn leave_out_repeated(
     }
 }
 
-/// The columns over the rows that are used.
+/// Columns over the rows that are used.
 pub(super) fn kept(columns: &[(TestSignal, Column)], numbers: ColumnNumbers, is_used: &[bool]) -> Taken {
     let all_used = is_used.iter().all(|used| *used);
     let kept = |mut values: Vec<f64>| {

@@ -5,18 +5,18 @@
 //! ```
 //!
 //! The rows before the turn are on one straight line and those after it on another: the command
-//! turned where both meet. The memory of the spool follows that way, which is longer than that from
-//! row to row by up to one step.
+//! turned at their intersection. The memory of the spool follows that path, which is longer than
+//! that from row to row by up to one step.
 
-/// Difference of two rates, over the rate, up to which three rows are on a straight line.
+/// Relative difference of two rates up to which three rows are on a straight line.
 const STRAIGHT: f64 = 0.01;
 
-/// Distance beyond both rows, over the step between them and their neighbours, that is rounding.
+/// Distance beyond both rows that counts as rounding, relative to the step between them and their
+/// neighbours.
 const ROUNDING: f64 = 1e-6;
 
-/// The command at which it turned on the way to each row from the row before; `None` where it did
-/// not turn beyond both, or where the rows around do not show it. Without times the rows are as far
-/// apart as each other.
+/// Turning value of the command between the row before and each row; `None` if it did not turn
+/// beyond both, or if the rows around do not show it. Without times, the rows are evenly spaced.
 pub(super) fn turns(times: &[f64], command: &[f64]) -> Vec<Option<f64>> {
     let rows = times.iter().copied().chain((times.len()..command.len()).map(|row| row as f64));
     let points: Vec<(f64, f64)> = rows.zip(command.iter().copied()).collect();
@@ -38,7 +38,7 @@ fn turn_before(points: &[(f64, f64)], row: usize) -> Option<f64> {
     (is_beyond(value_1) && is_beyond(value_2)).then_some(turned)
 }
 
-/// The rate of three rows on a straight line.
+/// Rate of three rows on a straight line.
 fn rate(points: &[(f64, f64)]) -> Option<f64> {
     let [(t_0, u_0), (t_1, u_1), (t_2, u_2)] = *points else { return None };
     let [first, second] = [(u_1 - u_0) / (t_1 - t_0), (u_2 - u_1) / (t_2 - t_1)];
@@ -77,7 +77,7 @@ mod tests {
         }
     }
 
-    /// Nothing is added where a row is at the corner, to a sine, or to a command that steps.
+    /// Nothing is added if a row is at the corner, to a sine, or to a command that steps.
     #[test]
     fn nothing_is_added_elsewhere() {
         let times: Vec<f64> = (0..1200).map(|row| 0.4 * f64::from(row)).collect();

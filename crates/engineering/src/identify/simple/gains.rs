@@ -11,21 +11,22 @@ use crate::estimate::Estimate;
 use crate::identify::evidence::DECISIVE;
 use crate::identify::recording::{Recording, SignalKind};
 
-/// Commands from null, over the nominal voltage, between which the flow gain is read: beyond the
-/// leakage, and near null.
+/// Commands from null, divided by the nominal voltage, between which the flow gain is read: beyond
+/// the leakage, and near null.
 const GAIN_WINDOW: [f64; 2] = [0.03, 0.15];
 
 /// Fraction of the greatest command beyond which a reversal is near.
 const AWAY: f64 = 0.6;
 
-/// Load pressure over the supply's up to which the pressure sensitivity is read.
+/// Ratio of load pressure to supply pressure up to which the pressure sensitivity is read.
 const SENSITIVITY_WINDOW: f64 = 0.4;
 
-/// Fewest rows of either.
+/// Fewest rows for either gain.
 const FEWEST: usize = 12;
 
-/// dq/dU for positive and negative commands, and the commands from null in V between which it is
-/// read, at this drop from supply to tank, by the test with the smallest command that shows both.
+/// Slope dq/dU for positive and negative commands, and the commands from null between which it is
+/// read, V, at this drop from supply to tank, from the test with the smallest command that shows
+/// both.
 ///
 /// ```text
 /// K_qU = sqrt(p/2) d/dU (q/sqrt((p_S - p_T - |p_L|)/2))
@@ -51,14 +52,14 @@ pub(super) fn flow_gains(
     found.find(|(gains, _)| gains.iter().all(Option::is_some)).unwrap_or_default()
 }
 
-/// Commands from null in V between which the flow gain is read: away from the reversals, where the
-/// spool has not yet lost what it remembers.
+/// Commands from null between which the flow gain is read, V: far from the reversals, where the
+/// memory of the spool still has an effect.
 fn gain_window(recording: &Recording, tested: &TestedValve) -> [f64; 2] {
     let [least, most] = GAIN_WINDOW.map(|fraction| fraction * tested.nominal_voltage);
     [least, most.min(AWAY * largest_command(std::slice::from_ref(recording)))]
 }
 
-/// Slope of q/sqrt(drop/2) over the command, on one side of null and one way.
+/// Slope of q/sqrt(drop/2) as a function of the command, on one side of null and in one direction.
 fn branch(
     recording: &Recording,
     tested: &TestedValve,
@@ -85,19 +86,19 @@ fn branch(
     straight_line(&points).map(|line| line.slope).filter(|slope| slope.value > 0.0)
 }
 
-/// A row near equal pressures: load pressure over the supply's, command, and the supply's drop.
+/// A row near equal pressures: ratio of load pressure to supply pressure, command, and the supply's
+/// drop.
 type NearNull = (f64, f64, f64);
 
-/// d(p_A - p_B)/dU where both are equal, from all rows about it of all tests with shut ports.
+/// Slope d(p_A - p_B)/dU at equal pressures, from all rows around it of all tests with shut ports.
 ///
 /// ```text
 /// U = c_b + c_1 p_L + bends(p_L)        K_pU = 1/c_1
 /// ```
 ///
-/// An edge that opens bends the curve. Each branch b has its own null: the
-/// hysteresis is between those of either way, and a branch that begins without the memory of a
-/// reversal has another. Such a branch is left out where others have enough rows, as its
-/// spool may begin at rest.
+/// An opening edge bends the curve. Each branch b has its own null: the hysteresis is between those
+/// of the two directions, and a branch that begins without the memory of a reversal has another.
+/// Such a branch is omitted if others have enough rows, as its spool may begin at rest.
 pub(super) fn pressure_sensitivity(recordings: &[Recording]) -> Option<Estimate> {
     let blocked = || recordings.iter().filter(|one| one.circuit == PortCircuit::Blocked);
     let near_null = |first: usize| -> Vec<Vec<NearNull>> {
@@ -111,7 +112,7 @@ pub(super) fn pressure_sensitivity(recordings: &[Recording]) -> Option<Estimate>
     inverse_slope(&if is_enough { later } else { near_null(0) })
 }
 
-/// Rows of a branch that its own null takes.
+/// Number of rows of a branch that its null consumes.
 const FEWEST_OF_BRANCH: usize = 1;
 
 fn around_null(recording: &Recording, rows: std::ops::Range<usize>) -> Vec<NearNull> {
@@ -129,19 +130,19 @@ fn around_null(recording: &Recording, rows: std::ops::Range<usize>) -> Vec<NearN
     rows.filter_map(of_row).collect()
 }
 
-/// Bend of the command over the load pressure, in addition to its slope.
+/// Bend of the command as a function of the load pressure, in addition to its slope.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum NullBend {
-    /// p_L^2 and p_L^3.
+    /// Terms p_L^2 and p_L^3.
     Smooth,
-    /// p_L |p_L| and p_L^3, of equal edges, which open where both pressures are equal.
+    /// Terms p_L |p_L| and p_L^3, for equal edges, which open at equal pressures.
     Even,
-    /// p_L^2, p_L^3 and max(p_L - p_0, 0) of unequal edges, which open elsewhere.
+    /// Terms p_L^2, p_L^3 and max(p_L - p_0, 0), for unequal edges, which open elsewhere.
     KinkAt(f64),
 }
 
 impl NullBend {
-    /// All that are compared: kinks in steps of the window.
+    /// All compared bends: kinks in steps of the window.
     fn all() -> impl Iterator<Item = NullBend> {
         let kink = |step: i32| NullBend::KinkAt(f64::from(step) / f64::from(KINKS) * SENSITIVITY_WINDOW);
         [NullBend::Smooth, NullBend::Even].into_iter().chain((1 - KINKS..KINKS).map(kink))
@@ -156,12 +157,12 @@ impl NullBend {
         }
     }
 
-    /// Number of its parameters, the place of a kink among them.
+    /// Number of its parameters, including the place of a kink.
     fn numbers(self) -> usize {
         if matches!(self, NullBend::KinkAt(_)) { 4 } else { 2 }
     }
 
-    /// The slope at zero of these numbers, that of the load pressure before those of the terms.
+    /// Slope at zero from these numbers, with that of the load pressure before those of the terms.
     fn slope(self, numbers: &[f64]) -> Option<f64> {
         let beyond = matches!(self, NullBend::KinkAt(place) if place < 0.0);
         let kink = if beyond { *numbers.get(3)? } else { 0.0 };
@@ -169,16 +170,17 @@ impl NullBend {
     }
 }
 
-/// Places of a kink to either side.
+/// Number of places of a kink on each side.
 const KINKS: i32 = 10;
 
-/// 1/(dU/dp_L) at p_L = 0 over these branches, by the bend that the information criterion favours.
+/// Slope 1/(dU/dp_L) at p_L = 0 over these branches, with the bend that the information criterion
+/// favours.
 fn inverse_slope(branches: &[Vec<NearNull>]) -> Option<Estimate> {
     let rows = branches.iter().map(Vec::len).sum::<usize>();
     let fits = NullBend::all().filter(|bend| rows > bend.numbers() + 1 + branches.len());
     let found: Vec<(Estimate, f64)> = fits.filter_map(|bend| bent(branches, bend)).collect();
     let (best, least) = found.iter().copied().min_by(|one, other| one.1.total_cmp(&other.1))?;
-    // what another bend says that explains the rows about as well is possible too
+    // the value of another bend that explains the rows about as well is possible too
     let likely = found.iter().filter(|(_, criterion)| criterion - least < DECISIVE);
     let ends = likely.filter_map(|(reading, _)| reading.bounds());
     let [low, high] = ends.fold(best.bounds()?, |[low, high], [from, to]| [low.min(from), high.max(to)]);

@@ -1,10 +1,10 @@
-//! The peak of the leakage, and where the curve is half as high.
+//! Peak of the leakage, and commands at half of its height.
 
 use phea_dynamics::order::sort_by_number;
 
 use crate::estimate::Estimate;
 
-/// The curve of the leakage: its base, its peak, and the noise of a row.
+/// Curve of the leakage: its base, its peak, and the noise of a row.
 pub(super) struct Flank {
     pub(super) base: f64,
     pub(super) peak: f64,
@@ -12,7 +12,7 @@ pub(super) struct Flank {
 }
 
 impl Flank {
-    /// Height at this fraction of the way from the base to the peak.
+    /// Height at this fraction of the distance from the base to the peak.
     pub(super) fn height(&self, fraction: f64) -> f64 {
         self.base + fraction * (self.peak - self.base)
     }
@@ -47,7 +47,7 @@ fn crossings(sorted: &[(f64, f64)], height: f64) -> Option<[f64; 2]> {
     (ends[1] > ends[0]).then_some(ends)
 }
 
-/// Highest mean of a twenty-fourth of these rows, neighbours over the command.
+/// Highest mean of a twenty-fourth of these rows, which are neighbours in the command.
 pub(super) fn peak(points: &[(f64, f64)], noise: f64) -> Option<Estimate> {
     let mut sorted = points.to_vec();
     sort_by_number(&mut sorted, |point| point.0);

@@ -10,7 +10,7 @@ pub(in crate::identify) struct StraightLine {
     pub(in crate::identify) slope: Estimate,
 }
 
-/// The straight line through points; points far from the others' line do not count.
+/// Straight line through points; points far from the others' line do not count.
 pub(in crate::identify) fn straight_line(points: &[(f64, f64)]) -> Option<StraightLine> {
     const FEWEST: usize = 5;
     let fitted = |points: &[(f64, f64)]| -> Option<StraightLine> {

@@ -1,4 +1,4 @@
-//! From reference to force, under the controller as it is deployed.
+//! Frequency response from reference to force, under the deployed controller.
 
 use std::cell::RefCell;
 use std::f64::consts::TAU;
@@ -24,13 +24,13 @@ use crate::simulate::bench::ControlledMachine;
 /// Least number of samples per period: a command that changes its sign at every sample can only be
 /// a square wave.
 const FEWEST_SAMPLES: f64 = 4.0;
-/// The scale for errors of the force, as a share of the force that the supply can produce.
+/// Scale for errors of the force, as a fraction of the force that the supply can produce.
 const TYPICAL_PUSH: f64 = 0.1;
 
 /// Reason why a machine has no closed loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoClosedLoop {
-    /// The measurement was stopped before.
+    /// The measurement was cancelled before.
     Stopped,
     /// The project gives no controller.
     NoController,
@@ -41,7 +41,7 @@ pub enum NoClosedLoop {
 }
 
 /// Measures the response at these frequencies; ends before the first for which `goes_on` is false.
-/// The reason where there is no loop.
+/// The reason if there is no loop.
 pub(super) fn measured(
     setup: &Setup<'_>,
     rested: &RestedMachine,
@@ -70,7 +70,7 @@ pub(super) fn measured(
     }
 }
 
-/// The reference at which the controller maintains the command of the equilibrium under this
+/// Reference at which the controller maintains the command of the equilibrium under this
 /// measurement of its force.
 ///
 /// ```text
@@ -82,12 +82,12 @@ fn held_reference(rested: &RestedMachine, given: &Controller, measured_n: f64) -
     Ok((measured_n + error) / given.prefilter.transfer_function()?.dc_gain())
 }
 
-/// The data that both kinds of loop need.
+/// Data that both kinds of loop need.
 struct LoopParts<'a> {
     rested: &'a RestedMachine,
     model: &'a LinearizedLoop,
     reference_n: f64,
-    /// The measurement of the controller at rest, N.
+    /// Measurement of the controller at rest, N.
     measured_n: f64,
     amplitude: f64,
 }
@@ -123,8 +123,7 @@ impl LoopParts<'_> {
         })
     }
 
-    /// What the controller measures at rest: the force in N, and the pressures that it feeds back,
-    /// in Pa.
+    /// Signals of the controller at rest: the force, N, and the pressures that it feeds back, Pa.
     fn measured(&self) -> [f64; 2] {
         let rest = &self.rested.rest;
         let inner = Plant::<f64>::inner_measurement(&self.rested.machine, &rest.state, &rest.all_inputs());
@@ -170,8 +169,8 @@ impl LoopParts<'_> {
         self.response(points, frequencies, machine)
     }
 
-    /// At the nearest frequencies whose period is a whole number of samples, and without the noise
-    /// of the sensors and the rounding of the velocity.
+    /// Response of a sampled controller at the nearest frequencies whose period is a whole number
+    /// of samples, without the noise of the sensors and the rounding of the velocity.
     fn sampled(
         &self,
         sampled: &Sampled,
@@ -228,34 +227,34 @@ impl LoopParts<'_> {
     }
 }
 
-/// The nearest frequency whose period is a whole number of samples; `None` for one with fewer than
-/// four a period.
+/// Nearest frequency whose period is a whole number of samples; `None` for one with fewer than four
+/// samples a period.
 fn whole(frequency: f64, sample_time_s: f64) -> Option<f64> {
     let samples = (TAU / (frequency * sample_time_s)).round();
     (samples >= FEWEST_SAMPLES).then(|| TAU / (samples * sample_time_s))
 }
 
-/// The loop that the linear plant closes, from reference to force; with lines in motion, from their
+/// Loop that the linear plant closes, from reference to force; for lines with waves, from their
 /// response.
 ///
 /// ```text
 /// T = F G P e^(-s d)/(1 + G P H e^(-s d))
-/// sampled: T = F G/(1 + L) hold P e^(-s d),    hold = (1 - e^(-s T))/(s T), L in z; the fundamental of what is between the samples.
+/// sampled: T = F G/(1 + L) hold P e^(-s d),    hold = (1 - e^(-s T))/(s T), L in z; the fundamental of the signal between the samples.
 /// ```
 ///
-/// If the velocity of a load that can move is fed forward, or pressures are fed back, at the
-/// samples, the command grows by the factor P_z'/P_z, where these are the plants in z with and
-/// without it. Beside a virtual impedance L is that of y = F_e + Z_v X_L, and P between reference
-/// and force that of the force.
+/// The command grows by the factor P_z'/P_z if the velocity of a load that can move is fed forward,
+/// or pressures are fed back, at the samples; these are the plants in z with and without it. With a
+/// virtual impedance, L is that of y = F_e + Z_v X_L, and P between reference and force that of the
+/// force.
 struct LinearizedLoop {
-    /// As the loop sees it.
+    /// The rig as part of the loop.
     rig: Rig,
     compensation: Compensation,
     /// The rig within its loop, sampled if the loop is.
     member: Member,
-    /// The same without the feed-forward, if the loop includes one.
+    /// The rig in its loop without the feedforward, if the loop includes one.
     alone: Option<Member>,
-    /// The rig whose output is the force, in the same loop, where there is a virtual impedance.
+    /// The rig with the force as output, in its loop, if there is a virtual impedance.
     force: Option<Member>,
 }
 

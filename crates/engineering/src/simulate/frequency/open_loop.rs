@@ -1,4 +1,4 @@
-//! From command to force, in open loop.
+//! Frequency response from command to force, in open loop.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;

@@ -1,4 +1,5 @@
-//! One frequency: a machine on its linear orbit, excited until its response has settled.
+//! Response at one frequency: a machine on its linear orbit, excited until its response has
+//! settled.
 
 use std::f64::consts::TAU;
 
@@ -24,35 +25,36 @@ const TOLERANCE: [f64; 2] = [1e-10, 1e-6];
 /// The measured response at one frequency, and those of the models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponsePoint {
-    /// rad/s.
+    /// Frequency, rad/s.
     pub frequency_rad_per_s: f64,
     /// Amplitude of the sine: V in the open loop, N in the closed one.
     pub amplitude: f64,
     /// Fundamental of the force over the amplitude: N/V or 1; NaN if no window was completed.
     pub machine: Complex64,
-    /// The response of the machine's exact derivatives at its equilibrium; absent where they do not
-    /// form a linear system.
+    /// Response of the machine's exact derivatives at its equilibrium; absent if they do not form a
+    /// linear system.
     pub linearised_machine: Option<Complex64>,
-    /// The linear plant, or the loop it closes.
+    /// Response of the linear plant, or of the loop that it closes.
     pub linear_plant: Complex64,
-    /// Harmonics from the second to the twentieth over the fundamental, root of the sum of squares.
+    /// Ratio of the harmonics from the second to the twentieth, root of the sum of squares, to the
+    /// fundamental.
     pub distortion: f64,
-    /// Whether the fundamental changed by a ten-thousandth or less between the last two windows.
+    /// True if the fundamental changed by a ten-thousandth or less between the last two windows.
     pub settled: bool,
-    /// What it changed by.
+    /// Relative change of the fundamental.
     pub change: f64,
-    /// Periods that were watched.
+    /// Number of simulated periods.
     pub periods: u64,
-    /// Steps of the integration.
+    /// Number of integration steps.
     pub steps: u64,
-    /// Events on the way, which lie outside the neighbourhood of the equilibrium.
+    /// Events during the run, which are outside the neighbourhood of the equilibrium.
     pub reached: Vec<&'static str>,
-    /// In a word, why the simulation ended if it did not settle.
+    /// Reason for the end of the simulation if it did not settle.
     pub ended: Option<RunStatus>,
 }
 
 impl ResponsePoint {
-    /// Magnitude of the machine over that of a model in dB, and its phase less the model's in
+    /// Ratio of the machine's magnitude to that of a model, dB, and its phase minus the model's,
     /// degrees, within half a turn.
     pub fn differs(&self, model: Complex64) -> [f64; 2] {
         let quotient = self.machine / model;
@@ -72,8 +74,8 @@ pub(super) struct RestingRig<'a> {
     pub(super) settings: SimulationSettings,
 }
 
-/// The response of a machine to a sine of this frequency and amplitude. It begins on the orbit of
-/// its linearisation, so that only the nonlinear part has to settle.
+/// Response of a machine to a sine of this frequency and amplitude. It begins on the orbit of its
+/// linearisation, so that only the nonlinear part has to settle.
 pub(super) fn respond(
     resting: RestingRig<'_>,
     sampler: Option<Box<dyn Sampler + '_>>,
@@ -102,8 +104,8 @@ pub(super) fn respond(
     answered.map_err(|error| SimulateError::Simulation { name: "frequency response".to_string(), error })
 }
 
-/// A tolerance fine enough for so small a sine, because errors are scaled by typical values, which
-/// are larger.
+/// A tolerance fine enough for such a small sine, because errors are scaled by typical values,
+/// which are larger.
 pub(super) fn finer(settings: SimulationSettings, amplitude_over_typical: f64) -> SimulationSettings {
     let [finest, coarsest] = TOLERANCE;
     let wanted = (coarsest * amplitude_over_typical).clamp(finest, coarsest);

@@ -1,4 +1,4 @@
-//! Pressure and flow within a line along which waves travel.
+//! Pressure and flow within a line with waves.
 //!
 //! ```text
 //! p(x, t) = sum over i of (F_i + B_i)/2 + R_0/2 ((1 - x) Y_0 + x Y_1)
@@ -6,14 +6,14 @@
 //! F_i(x, t) = (1 - x) h_i + x s_i,    h_i, s_i at t - x T_i              B_i likewise from the other end
 //! ```
 //!
-//! h_i leaves an end and s_i is sent off there, smeared by the friction of the whole length; x from
-//! 0 at the valve to 1; Y are the flows into the line that its resistance acts on. At rest, in
-//! steady flow and at both ends this is the line itself. In between a wave is smeared by its way so
-//! far to the first order in friction, and by less than that beyond: a fall of pressure is rather
-//! too deep than too flat.
+//! h_i leaves an end and s_i is sent off there, smeared by the friction of the whole length; x
+//! ranges from 0 at the valve to 1; Y are the flows into the line on which its resistance acts. At
+//! rest, in steady flow and at both ends this equals the line itself. In between, the smearing of a
+//! wave by the distance travelled is correct to first order in friction, and too small beyond that:
+//! a fall of pressure is rather too deep than too flat.
 //!
-//! The least and the greatest values are searched for over the whole length by halving: a part of
-//! it is looked at as long as the bounds of its waves reach beyond what is known. In time the
+//! The least and the greatest values are searched over the whole length by bisection: a part of it
+//! is evaluated as long as the bounds of its waves extend beyond the known values. In time the
 //! search is exact: between two of its joints a wave is a polynomial of degree four.
 
 use phea_dynamics::order::sort_by_number;
@@ -22,54 +22,54 @@ use phea_dynamics::simulation::{Quartic, Stretch, WaveHistory};
 use crate::simulate::ControlledMachine;
 use crate::simulate::sum::SignalSum;
 
-/// Parts of a line, a power of two, between which values are found.
+/// Number of parts of a line, a power of two, between which values are found.
 const PARTS: u32 = 64;
-/// Parts of a time through whose values a polynomial of degree four is laid.
+/// Parts of a time through whose values a polynomial of degree four is fitted.
 const QUARTERS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
-/// Joints nearer to each other than this part of a step are one.
+/// Distance of joints below which they are merged, as a fraction of a step.
 const SHORTEST: f64 = 1e-9;
 
-/// A line along which waves travel.
+/// A line with waves.
 pub(super) struct WaveLine {
-    /// Number of its first wave in the machine.
+    /// Index of its first wave in the machine.
     first: usize,
-    /// T_i, s.
+    /// Travel times T_i, s.
     travel_s: Vec<f64>,
-    /// Z (1 + l) of a line with one wave, Pa s/m3.
+    /// Impedance Z (1 + l) of a line with one wave, Pa s/m3.
     impedance: Option<f64>,
-    /// R_0/2, Pa s/m3.
+    /// Half the resistance, R_0/2, Pa s/m3.
     half_resistance: f64,
-    /// Into the line at valve and chamber, m3/s.
+    /// Flows into the line at valve and chamber, m3/s.
     flows: [SignalSum<'static>; 2],
-    /// sum a X of each wave that is sent, and 1 - sum a.
+    /// Sum a X of each wave that is sent, and 1 - sum a.
     late: Vec<(SignalSum<'static>, f64)>,
-    /// h of each wave that is sent, from its first step on.
+    /// History h of each wave that is sent, from its first step on.
     leaving: Vec<WaveHistory>,
 }
 
 /// A place within a line from one time to another.
 pub(super) struct WithinLine {
-    /// Part of the length from the valve on.
+    /// Fraction of the length from the valve.
     pub(super) part: f64,
-    /// s.
+    /// Times, s.
     pub(super) times_s: [f64; 2],
-    /// Pa.
+    /// Pressure, Pa.
     pub(super) pressure: Quartic,
-    /// m3/s towards the chamber, of a line with one wave.
+    /// Flow towards the chamber, for a line with one wave, m3/s.
     pub(super) flow: Option<Quartic>,
 }
 
-/// Numbers between which pressure and flow are.
+/// Bounds of pressure and flow.
 pub(super) struct WithinBounds {
-    /// Pa.
+    /// Bounds of the pressure, Pa.
     pub(super) pressure: [f64; 2],
-    /// m3/s, of a line with one wave.
+    /// Bounds of the flow, for a line with one wave, m3/s.
     pub(super) flow: Option<[f64; 2]>,
 }
 
-/// Takes what is found within a line.
+/// Receiver of the values within a line.
 pub(super) trait WithinSearch {
-    /// Whether a value within these bounds is looked for.
+    /// True if a value within these bounds is required.
     fn wants(&self, bounds: &WithinBounds) -> bool;
 
     /// Takes a place.
@@ -80,15 +80,15 @@ pub(super) trait WithinSearch {
 struct WavesOfStep<'a> {
     line: &'a WaveLine,
     stretch: &'a Stretch<'a>,
-    /// Into the line at valve and chamber.
+    /// Flows into the line at valve and chamber.
     flows: [Quartic; 2],
-    /// Bounds of the pressure that the resistance takes.
+    /// Bounds of the pressure loss of the resistance.
     lost: [f64; 2],
 }
 
 impl WaveLine {
-    /// The line of a side, from these observed states; its flows at valve and chamber are its
-    /// states with these numbers.
+    /// Line of a side, from these observed states; its flows at valve and chamber are its states
+    /// with these indices.
     pub(super) fn of(
         bench: &ControlledMachine,
         side: usize,
@@ -130,12 +130,12 @@ impl WaveLine {
         WavesOfStep { line: self, stretch, flows, lost }.halve([0, PARTS], search);
     }
 
-    /// Adds what leaves both ends over a step.
+    /// Adds the waves that leave both ends over a step.
     fn send(&mut self, stretch: &Stretch<'_>) {
         let [start_s, end_s] = [stretch.start_s(), stretch.end_s()];
         let sent = (self.first..).map_while(|number| stretch.wave(number));
         if self.leaving.is_empty() {
-            // at rest what leaves is what is sent
+            // at rest, the departing wave equals the sent one
             let before = |sent: &WaveHistory| sent.arriving(start_s, start_s - 1.0)[0];
             let count = self.late.len();
             self.leaving =
@@ -152,7 +152,7 @@ impl WaveLine {
         }
     }
 
-    /// Numbers of a wave among those of the line, on its way to the chamber and back.
+    /// Indices of a wave among those of the line, on its path to the chamber and back.
     fn waves(&self, wave: usize) -> [usize; 2] {
         [wave, self.travel_s.len() + wave]
     }
@@ -168,7 +168,7 @@ impl WavesOfStep<'_> {
         Some([self.stretch.wave(self.line.first + number)?, self.line.leaving.get(number)?])
     }
 
-    /// Searches between two places, in parts of the length.
+    /// Searches between two places, in fractions of the length.
     fn halve(&self, [from, until]: [u32; 2], search: &mut impl WithinSearch) {
         let parts = [from, until].map(|place| f64::from(place) / f64::from(PARTS));
         if until - from < 2 || !search.wants(&self.bounds(parts)) {
@@ -180,7 +180,7 @@ impl WavesOfStep<'_> {
         self.halve([middle, until], search);
     }
 
-    /// Bounds of pressure and flow between two parts of the length.
+    /// Bounds of pressure and flow between two fractions of the length.
     fn bounds(&self, [near, far]: [f64; 2]) -> WithinBounds {
         let line = self.line;
         let (mut sum, mut difference) = (self.lost, [0.0; 2]);
@@ -202,7 +202,7 @@ impl WavesOfStep<'_> {
         WithinBounds { pressure: sum, flow }
     }
 
-    /// Pressure and flow at a part of the length, from joint to joint of the waves.
+    /// Pressure and flow at a fraction of the length, from joint to joint of the waves.
     fn at(&self, part: f64, search: &mut impl WithinSearch) {
         let [start_s, end_s] = self.times_s();
         for pair in self.joints(part).windows(2) {
@@ -225,7 +225,7 @@ impl WavesOfStep<'_> {
         }
     }
 
-    /// The ends of the step, and where a wave has a joint at a part of the length.
+    /// Ends of the step, and times of the joints of waves at a fraction of the length.
     fn joints(&self, part: f64) -> Vec<f64> {
         let times_s = self.times_s();
         let mut joints = times_s.to_vec();
@@ -241,8 +241,8 @@ impl WavesOfStep<'_> {
         joints
     }
 
-    /// Half the sum of the waves at a part of the length, and half their difference, Pa: at a time,
-    /// and where they jump there on the side of another.
+    /// Half the sum of the waves at a fraction of the length, and half their difference, Pa: at a
+    /// time, and at a jump on the side of another time.
     fn travelling(&self, part: f64, [time_s, beside_s]: [f64; 2]) -> [f64; 2] {
         let mut found = [0.0; 2];
         for (wave, travel_s) in self.line.travel_s.iter().enumerate() {
