@@ -7,32 +7,31 @@ use super::listing::Listing;
 use super::{DeclaredActuator, OperatingRegion, Project, Uncertain, UncertaintyDirection};
 use phea_dynamics::uncertain_plant::Spacing;
 use phea_quantity::{FORCE, LENGTH, PRESSURE, RATIO, VELOCITY, VOLTAGE};
-use phea_table::Visitor;
-use phea_table::{Key, key, plain};
+use phea_table::{Key, TableNumber, Visitor, key, plain};
 
 /// Operating point of the linear model; absent parts are mid stroke and null.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct DeclaredOperatingPoint {
+pub struct DeclaredOperatingPoint<S = f64> {
     /// Position from the end of chamber A, m.
-    pub position: Option<f64>,
+    pub position: Option<S>,
     /// Load pressure p_A - p_B, Pa.
-    pub load_pressure: Option<f64>,
+    pub load_pressure: Option<S>,
     /// Load force A_A p_A - A_B p_B, N.
-    pub load_force: Option<f64>,
+    pub load_force: Option<S>,
     /// Velocity towards the end of chamber B, m/s.
-    pub velocity: Option<f64>,
+    pub velocity: Option<S>,
     /// Command, V.
-    pub command: Option<f64>,
+    pub command: Option<S>,
     /// Side of null, from -1, the slopes of a spool that retracts the piston, to 1, of one that
     /// extends it.
-    pub spool_side: Option<f64>,
+    pub spool_side: Option<S>,
 }
 
 /// Beginning of the paths of its numbers.
 const TABLE: &str = "operating_point";
 
-impl DeclaredOperatingPoint {
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
+impl<S: TableNumber> DeclaredOperatingPoint<S> {
+    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("position", &LENGTH, "Position of the piston; absent: mid stroke.")
             .not_negative()
             .of_motion();
@@ -73,7 +72,17 @@ impl DeclaredOperatingPoint {
             &mut self.spool_side,
         );
     }
+}
 
+/// Visits the table `[operating_point]` of a project.
+pub(super) fn visit_as_table<S: TableNumber, V: Visitor<S>>(
+    point: &mut DeclaredOperatingPoint<S>,
+    v: &mut V,
+) {
+    v.needed_table(plain(TABLE, ""), point, DeclaredOperatingPoint::visit);
+}
+
+impl DeclaredOperatingPoint {
     /// Numbers that may be uncertain, by their names.
     pub(super) fn slot(&mut self, name: &str) -> Option<&mut Option<f64>> {
         match name {

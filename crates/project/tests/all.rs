@@ -8,6 +8,7 @@ mod consequences;
 mod formula;
 mod malformed;
 mod mutation;
+mod open_rig;
 mod percentages;
 mod plausible;
 mod reading;

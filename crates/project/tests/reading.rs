@@ -56,7 +56,7 @@ fn the_ybitu_projects_read_and_warn_of_active_friction_only() {
 }
 
 /// Projects that together use every key.
-fn valid() -> Vec<(String, String)> {
+pub(crate) fn valid() -> Vec<(String, String)> {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/valid");
     let files = std::fs::read_dir(folder).expect("the corpus is there");
     let mut files: Vec<_> = files.map(|file| file.expect("a file").path()).collect();

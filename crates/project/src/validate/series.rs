@@ -99,7 +99,7 @@ fn spring(
 ) {
     if series.travel.is_none() {
         for (key, needs) in [
-            ("progression", series.progression.is_some()),
+            ("progression", series.progression > Some(0.0)),
             ("stop_stiffness", series.stop_stiffness.is_some()),
         ] {
             let path = format!("series.{key}");
@@ -110,7 +110,7 @@ fn spring(
             }
         }
     }
-    if series.coil.is_some() && series.progression.is_some() {
+    if series.coil.is_some() && series.progression > Some(0.0) {
         let message = "a coil of constant pitch is linear: it has no `progression`";
         check.error_with_help("series.coil", message, "take out one of the two");
     }
