@@ -1,10 +1,13 @@
 //! Accumulators as they are declared, with what of them is adjusted.
 
 use phea_dynamics::scalar::Scalar;
-use phea_hydraulics::accumulator::{Accumulator, AdjustedPart, Adjustment, GasValve};
+use phea_hydraulics::accumulator::{
+    Accumulator, AdjustedGas, ChamberGas, GasContent, GasPassage, GasValve, RelaxingGas, SealedGas,
+};
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, Fluid};
 
+use super::assembly::neck;
 use super::cross_port::edge;
 use super::numbers::Numbers;
 use crate::project::{AdjustmentKind, DeclaredAccumulator, DeclaredGasValve, GasAtOne, GasTemperatures};
@@ -16,11 +19,41 @@ const TABLE: [&str; 2] = ["accumulator", "adjustment"];
 /// An accumulator declared in the table that `numbers` are within, at its working temperature and
 /// the setting at rest of its adjustment; with a thermal time constant it is isothermal at rest.
 pub(super) fn accumulator<S: Scalar>(
-    declared: Option<&DeclaredAccumulator>,
+    declared: &DeclaredAccumulator,
     numbers: &Numbers<'_, S>,
-) -> Option<Accumulator<S>> {
-    let declared = declared?;
-    Some(at_rest(declared, numbers, warm(declared, numbers)))
+) -> Accumulator<S> {
+    at_rest(declared, numbers, warm(declared, numbers))
+}
+
+/// The gas at a chamber, declared in the line that `numbers` are of; the reader has refused a neck
+/// beside a valve, and heat of gas that is added and removed.
+pub(super) fn chamber_gas<S: Scalar>(
+    declared: &DeclaredAccumulator,
+    numbers: &Numbers<'_, S>,
+    fluid: &Fluid<S>,
+) -> ChamberGas<S> {
+    let at_rest = accumulator(declared, numbers);
+    let oil = [fluid.density, fluid.kinematic_viscosity, fluid.bulk_modulus];
+    let neck = neck(declared, numbers, oil);
+    let passage = match declared.adjustment.map(|of| of.kind) {
+        Some(AdjustmentKind::Gas(last)) => {
+            let [volume_rise, precharge_rise] = rises(declared, &last, numbers, &warm(declared, numbers));
+            let setting = setting(declared, numbers);
+            let gas = AdjustedGas { at_rest, setting, volume_rise, precharge_rise, neck };
+            return ChamberGas::Adjusted(gas);
+        }
+        Some(AdjustmentKind::Valve(valve)) => GasPassage::Valve(gas_valve(declared, &valve, numbers, fluid)),
+        None => neck.map_or(GasPassage::Open, GasPassage::Neck),
+    };
+    let content = match declared.thermal_time_constant {
+        None => GasContent::Polytropic(at_rest),
+        Some(time_constant) => GasContent::Relaxing(RelaxingGas {
+            gas_volume: at_rest.gas_volume,
+            precharge_pressure: at_rest.precharge_pressure,
+            time_constant: numbers.at("accumulator.thermal_time_constant", time_constant),
+        }),
+    };
+    ChamberGas::Sealed(SealedGas { content, passage })
 }
 
 /// The same at setting 0.
@@ -83,32 +116,11 @@ fn at_rest<S: Scalar>(
     }
 }
 
-/// The adjustment of an accumulator declared in the line that `numbers` are of.
-pub(super) fn adjustment<S: Scalar>(
-    declared: &DeclaredAccumulator,
-    numbers: &Numbers<'_, S>,
-    fluid: &Fluid<S>,
-) -> Option<Adjustment<S>> {
-    let part = match &declared.adjustment?.kind {
-        AdjustmentKind::Gas(last) => {
-            let [gas_volume, precharge_pressure] = rises(declared, last, numbers, &warm(declared, numbers));
-            AdjustedPart::Gas { gas_volume, precharge_pressure }
-        }
-        AdjustmentKind::Valve(valve) => AdjustedPart::Valve(gas_valve(declared, valve, numbers, fluid)),
-    };
-    Some(Adjustment { setting: setting(declared, numbers), part })
-}
-
 /// A rig with the setting of every adjustment there, for slow motions: an open valve is the gas at
 /// its chamber, a shut one no gas.
 pub fn components_at_setting(components: &Components, setting: f64) -> Components {
-    let accumulators = [0, 1].map(|side| {
-        let gas = components.accumulators[side]?;
-        let Some(of) = components.adjustments[side] else { return Some(gas) };
-        let shut = of.valve().is_some() && setting == 0.0;
-        (!shut).then(|| of.moved(&gas, setting - of.setting, 0.0).gas)
-    });
-    Components { accumulators, adjustments: [None; 2], ..*components }
+    let gas = components.gas.map(|gas| Some(ChamberGas::Sealed(gas?.at_setting(setting)?)));
+    Components { gas, ..*components }
 }
 
 fn gas_valve<S: Scalar>(
@@ -122,6 +134,7 @@ fn gas_valve<S: Scalar>(
     let is_shut = declared.adjustment.is_some_and(|of| of.setting == 0.0);
     let [flow_coefficient, transition_pressure] = edge(&valve.orifice, &within, fluid.density);
     GasValve {
+        setting: setting(declared, numbers),
         flow_coefficient,
         transition_pressure,
         compliance: within.at("dead_volume", valve.dead_volume(declared.gas_volume)) / fluid.bulk_modulus,
