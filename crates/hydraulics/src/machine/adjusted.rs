@@ -26,8 +26,10 @@ impl<S: Scalar> Machine<S> {
 
     /// Settings of the accumulators at both chambers; zero for one that is not adjusted.
     pub(super) fn settings<T: Scalar + From<S>>(&self, [change, _]: [T; 2]) -> [T; 2] {
-        let at_rest = self.gas.map(|gas| gas?.setting());
-        at_rest.map(|setting| setting.map_or(T::from(0.0), |setting| T::from(setting) + change))
+        [0, 1].map(|side| {
+            let at_rest = self.gas[side].as_ref().and_then(ChamberGas::setting);
+            at_rest.map_or(T::from(0.0), |setting| T::from(setting) + change)
+        })
     }
 
     /// Power of both adjustments with the gas at these pressures in Pa, W.
@@ -90,6 +92,6 @@ impl<S: Scalar> Machine<S> {
 
     /// Compliance of the oil between the chamber and its gas: in a neck, or behind a valve, m3/Pa.
     pub(super) fn before_gas<T: Scalar + From<S>>(&self, side: usize) -> T {
-        T::from(self.gas[side].map_or(S::from(0.0), |gas| gas.oil_before()))
+        T::from(self.gas[side].as_ref().map_or(S::from(0.0), ChamberGas::oil_before))
     }
 }

@@ -68,7 +68,7 @@ impl<S: Scalar> Machine<S> {
         let (behind, precharges) = (self.layout.behind(), self.precharges(gas, setting));
         [0, 1].map(|side| {
             let precharge_pressure = precharges[side].filter(|_| behind[side])?;
-            let stated = self.gas[side]?.at_rest();
+            let stated = self.gas[side].as_ref()?.at_rest();
             let absolute = stated.precharge_pressure + S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
             let of_gas = stated.gas_volume / (stated.polytropic_exponent * absolute);
             Some(Bladder {
