@@ -166,7 +166,7 @@ impl OperatingPoint {
 /// #         leakage_shape: LeakageShape::Common(100.0), leakage_model: LeakageModel::EachEdge, tare_flow: 7.55e-6, nominal_voltage: 10.0,
 /// #         natural_frequency: 1099.0, damping_ratio: 0.9, transition_pressure: 1e3,
 /// #     },
-/// #     line_a: line, line_b: line, accumulators: [None; 2], necks: [None; 2], thermal_time_constants: [None; 2], adjustments: [None; 2], cross_port: None, series: None, linkage: None,
+/// #     line_a: line, line_b: line, gas: [None; 2], cross_port: None, series: None, linkage: None,
 /// #     cylinder: Cylinder { area_a: 1.58336e-3, area_b: 1.58336e-3, stroke: ActuatorStroke::Limited(0.5), moving_mass: 13.1,
 /// #         dead_volume_a: 0.0, dead_volume_b: 0.0, internal_leakage: None, external_leakage: None, end_stops: None },
 /// #     friction: Friction::Viscous { viscous: 100.0 }, force_sensor: ForceSensor { stiffness: 2e7 },
