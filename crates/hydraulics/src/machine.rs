@@ -63,7 +63,7 @@ use crate::friction::MovingFriction;
 use crate::line::{DynamicLine, Segments};
 use crate::linkage::Linkage;
 use crate::series::MovingSeries;
-use crate::servovalve::{Servovalve, SpoolImperfection, Supply};
+use crate::servovalve::{Servovalve, Supply};
 use equations::constant;
 use signals::ground_of;
 use state::Layout;
@@ -98,8 +98,6 @@ use state::Layout;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Machine<S = f64> {
     valve: Servovalve<S>,
-    spool: SpoolImperfection<S>,
-    tare_reference_drop: S,
     supply: Supply<S>,
     power_unit: PowerUnit<S>,
     cylinder: Cylinder<S>,
@@ -144,12 +142,9 @@ impl Machine {
         let components = actuator.components();
         let friction = MovingFriction::new(&components.friction, options.friction_regular_velocity)
             .ok_or(MachineError::StaticFriction)?;
-        let Supply { pressure, tank_pressure } = components.supply;
         let none = DynamicLine::Segments(Segments::lumped(0.0));
         let mut machine = Machine {
             valve: components.valve,
-            spool: options.spool,
-            tare_reference_drop: options.tare_reference_drop.unwrap_or(pressure - tank_pressure),
             supply: components.supply,
             power_unit: options.power_unit,
             cylinder: components.cylinder,
@@ -270,7 +265,7 @@ impl Machine {
 
 phea_dynamics::parameters! {
     Machine {
-        valve, spool, tare_reference_drop, supply, power_unit, cylinder, chambers, accumulators,
+        valve, supply, power_unit, cylinder, chambers, accumulators,
         necks, thermal_time_constants, gas_pressure_limits, adjustments, moving_setting: kept,
         cross_port, lines, friction, sensor_stiffness, series, linkage, load, velocity_gain,
         pressure_ratio, external_force: kept, vapour_pressure, layout: kept,

@@ -80,10 +80,12 @@ pub fn valve() -> Servovalve {
         leakage_shape: LeakageShape::Common(100.0),
         leakage_model: LeakageModel::EachEdge,
         tare_flow: 7.55e-6,
+        tare_reference_drop: 70e5,
         nominal_voltage: 10.0,
         natural_frequency: 1099.0,
         damping_ratio: 0.9,
         transition_pressure: 1e3,
+        spool: SpoolImperfection::default(),
     }
 }
 

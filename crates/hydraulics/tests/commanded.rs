@@ -116,10 +116,9 @@ pub(super) fn yielding(
     let supply = Supply { pressure, ..components.supply };
     let settled = SettledSupply { supply, settled: Settled { command, pressures: ports }, taken: f64::NAN };
     let idle = components.supply.pressure;
-    let drops = [idle, idle - components.supply.tank_pressure];
     // at standstill the areas have no effect
     let balance = Balance::at(components, 0.25);
-    Some(YieldingSupply::new(unit, &balance, drops, &settled, SpoolDirection::Extending))
+    Some(YieldingSupply::new(unit, &balance, idle, &settled, SpoolDirection::Extending))
 }
 
 /// The second number is the gain from the load's velocity to the command, V s/m.

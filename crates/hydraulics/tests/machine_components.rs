@@ -363,12 +363,11 @@ fn accumulators_hold_a_polytropic_gas() {
 /// of the pressure.
 #[test]
 fn tare_flow_is_the_supplys() {
-    let options = MachineOptions { tare_reference_drop: Some(70e5), ..MachineOptions::default() };
     let with = |pressure: f64, tare_flow: f64| {
         let rig = components(hose_line(), StiffnessModel::ByVolume);
         let supply = phea_hydraulics::servovalve::Supply { pressure, tank_pressure: 0.0 };
         let valve = phea_hydraulics::servovalve::Servovalve { tare_flow, ..rig.valve };
-        let machine = machine_of(Components { supply, valve, ..rig }, &options);
+        let machine = machine_of(Components { supply, valve, ..rig }, &MachineOptions::default());
         machine.signals(&[0.3, 0.0, 20e5, 15e5, 0.0, 0.0], &[0.2, 0.0]).supply_flow
     };
     for (pressure, share) in [(70e5, 1.0), (17.5e5, 0.5)] {

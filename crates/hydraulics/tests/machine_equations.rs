@@ -60,7 +60,6 @@ fn pump() -> PumpLimited {
 fn full() -> MachineOptions {
     let contact = Contact { stiffness: 1e8, relative_damping: 0.3 };
     MachineOptions {
-        spool: SpoolImperfection { threshold: Some(0.04), rate_limit: Some(4000.0), ..measured_spool() },
         friction_regular_velocity: Some(1e-3),
         power_unit: PowerUnit::PumpLimited(pump()),
         load: LoadModel::Wall { mass: 8.0, damping: 50.0, gap: 2e-3, contact },
@@ -68,8 +67,12 @@ fn full() -> MachineOptions {
     }
 }
 
-fn leaking_and_stopped(components: Components) -> Components {
-    stopped(leaking(components, 3e-13), Contact { stiffness: 1e8, relative_damping: 0.3 })
+/// Components with all imperfections of the spool, leakage and end stops.
+fn imperfect(components: Components) -> Components {
+    let spool = SpoolImperfection { threshold: Some(0.04), rate_limit: Some(4000.0), ..measured_spool() };
+    let valve = Servovalve { spool, ..components.valve };
+    let contact = Contact { stiffness: 1e8, relative_damping: 0.3 };
+    stopped(leaking(Components { valve, ..components }, 3e-13), contact)
 }
 
 fn hose() -> Components {
@@ -114,11 +117,11 @@ pub(super) fn machines() -> Vec<Machine> {
     vec![
         machine_of(benchmark_components(), &plain),
         machine_of(hose(), &plain),
-        machine_of(leaking_and_stopped(rough), &full()),
+        machine_of(imperfect(rough), &full()),
         machine_of(asymmetric(), &sprung),
-        machine_of(leaking_and_stopped(uniform), &full()),
+        machine_of(imperfect(uniform), &full()),
         machine_of(hose(), &MachineOptions { lines: Some([waves, segments]), ..plain }),
-        machine_of(leaking_and_stopped(rough), &MachineOptions { lines: Some([segments, waves]), ..full() }),
+        machine_of(imperfect(rough), &MachineOptions { lines: Some([segments, waves]), ..full() }),
     ]
 }
 
@@ -337,10 +340,12 @@ fn starts_that_cannot_be_are_refused() {
         Machine::new(&soft, &MachineOptions::default()),
         Err(MachineError::ChamberVanishes { .. })
     ));
-    let spool = SpoolImperfection { threshold: Some(0.2), hysteresis_width: Some(0.1), ..Default::default() };
-    let narrow = MachineOptions { spool, friction_regular_velocity: Some(-1.0), ..MachineOptions::default() };
+    let narrow = MachineOptions { friction_regular_velocity: Some(-1.0), ..MachineOptions::default() };
     let Err(MachineError::Impossible { problems }) = Machine::new(&actuator, &narrow) else { panic!() };
-    assert_eq!(problems.len(), 2);
+    assert_eq!(problems.len(), 1);
+    let spool = SpoolImperfection { threshold: Some(0.2), hysteresis_width: Some(0.1), ..Default::default() };
+    let narrow = Components { valve: Servovalve { spool, ..hose().valve }, ..hose() };
+    assert_eq!(Actuator::new(narrow).unwrap_err().problems.len(), 1);
     assert!(Actuator::new(leaking(hose(), -1.0)).is_err());
 }
 

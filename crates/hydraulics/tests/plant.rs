@@ -241,7 +241,7 @@ fn a_limited_pump_settles_where_the_machine_rests() {
         let idle = components.supply.pressure;
         // at standstill the areas have no effect
         let balance = Balance::at(components, 0.25);
-        let found = balance.settled_supply(&unit, idle, Steady::Command(rig.rest.state[0]));
+        let found = balance.settled_supply(&unit, Steady::Command(rig.rest.state[0]));
         let rests = supply_pressure(&rig.machine, f64::NAN, &rig.rest.state);
         if found.taken < unit.pump_flow {
             assert!((found.supply.pressure / rests - 1.0).abs() < 1e-9, "rig {number}: {found:?} {rests}");

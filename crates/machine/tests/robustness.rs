@@ -12,7 +12,7 @@ use phea_hydraulics::machine::{
     INDICATORS, LoadModel, Machine, MachineOptions, MachineSignals, PowerUnit, PumpLimited, StartValues,
 };
 use phea_hydraulics::reference_rig::{benchmark_components, components, hose_line, stopped};
-use phea_hydraulics::servovalve::{SpoolImperfection, Supply};
+use phea_hydraulics::servovalve::{Servovalve, SpoolImperfection, Supply};
 use phea_hydraulics::signal::Signal;
 use phea_hydraulics::stiffness::StiffnessModel;
 
@@ -172,12 +172,12 @@ fn walls_are_met_with_every_friction() {
     };
     for friction in frictions {
         let options = MachineOptions {
-            spool,
             load: LoadModel::Wall { mass: 8.0, damping: 50.0, gap: 5e-3, contact },
             friction_regular_velocity: Some(1e-4),
             ..MachineOptions::default()
         };
-        let rig = Components { friction, ..components(hose_line(), StiffnessModel::ByVolume) };
+        let rig = components(hose_line(), StiffnessModel::ByVolume);
+        let rig = Components { friction, valve: Servovalve { spool, ..rig.valve }, ..rig };
         let course = [(0.1, 2.0), (0.8, -2.0)];
         let (result, outputs) =
             drive(machine_of(rig, &options), &at(0.25), 1.5, &course, Profile::constant(0.25));

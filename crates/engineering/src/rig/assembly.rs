@@ -10,8 +10,8 @@ use phea_hydraulics::line::{Anchoring, Hose, Line, Pipe, PipeWall, Stiffening};
 use phea_hydraulics::linkage::{Linkage, STANDARD_GRAVITY};
 use phea_hydraulics::series::{SeriesElement, SeriesSpring, SeriesTravel, Transmission};
 use phea_hydraulics::servovalve::{
-    Edges, LeakageShape, OpeningLaw, OpeningShape, Servovalve, Supply, flow_coefficient_from_rating,
-    leakage_coefficient_from_rating,
+    Edges, LeakageShape, OpeningLaw, OpeningShape, Servovalve, SpoolImperfection, Supply,
+    flow_coefficient_from_rating, leakage_coefficient_from_rating,
 };
 use phea_hydraulics::stroke::{ActuatorStroke, FURTHER_STAGES, PistonStage, Telescope};
 
@@ -207,10 +207,17 @@ fn valve<S: Scalar>(declared: &project::Valve, numbers: &Numbers<'_, S>, supply_
         },
         leakage_model: declared.leakage_model,
         tare_flow,
+        tare_reference_drop: tare_drop,
         nominal_voltage: at("nominal_voltage", declared.nominal_voltage),
         natural_frequency: at("natural_frequency", declared.natural_frequency),
         damping_ratio: at("damping_ratio", declared.damping_ratio),
         transition_pressure: at("transition_pressure", declared.transition_pressure),
+        spool: SpoolImperfection {
+            null_bias: at("null_bias", declared.null_bias),
+            hysteresis_width: declared.hysteresis.map(|width| at("hysteresis", width)),
+            threshold: declared.threshold.map(|threshold| at("threshold", threshold)),
+            rate_limit: declared.rate_limit.map(|limit| at("rate_limit", limit)),
+        },
     }
 }
 

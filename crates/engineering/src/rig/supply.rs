@@ -37,9 +37,7 @@ pub fn settled_supply<S: Scalar>(
 ) -> Option<SettledSupply<S>> {
     match power_unit(declared, numbers) {
         PowerUnit::Constant => None,
-        PowerUnit::PumpLimited(unit) => {
-            Some(balance.settled_supply(&unit, tare_drop(declared, numbers, balance), steady))
-        }
+        PowerUnit::PumpLimited(unit) => Some(balance.settled_supply(&unit, steady)),
     }
 }
 
@@ -52,8 +50,7 @@ pub(crate) fn yielding_supply<S: Scalar>(
     side: SpoolDirection<S>,
 ) -> Option<YieldingSupply<S>> {
     let PowerUnit::PumpLimited(unit) = power_unit(declared, numbers) else { return None };
-    let drops = [balance.supply.pressure, tare_drop(declared, numbers, balance)];
-    Some(YieldingSupply::new(&unit, balance, drops, settled, side))
+    Some(YieldingSupply::new(&unit, balance, balance.supply.pressure, settled, side))
 }
 
 /// Power in W that the valve takes from the supply at the operating point: leakage and tare flow
@@ -64,13 +61,12 @@ pub(crate) fn yielding_supply<S: Scalar>(
 /// ```
 ///
 /// What a pump delivers beyond that, through its relief valve, is not in it.
-pub(crate) fn power_at_rest(declared: &project::DeclaredActuator, rig: &Rig) -> f64 {
+pub(crate) fn power_at_rest(rig: &Rig) -> f64 {
     if let Some(found) = rig.supply {
         return found.taken * found.supply.pressure;
     }
     let components = rig.actuator.components();
     let (valve, supply, point) = (&components.valve, &components.supply, &rig.point);
-    let drop = tare_drop(declared, &Numbers::declared(), &Balance::at(components, rig.point.position));
     let edges = edge_flows(
         valve,
         supply,
@@ -78,15 +74,5 @@ pub(crate) fn power_at_rest(declared: &project::DeclaredActuator, rig: &Rig) -> 
         point.pressure_a,
         point.pressure_b,
     );
-    supply.pressure * (edges.supply_to_a + edges.supply_to_b + tare_flow(valve, supply, drop))
-}
-
-/// Drop in Pa at which the tare flow is stated: that of the stated supply where none is stated.
-fn tare_drop<S: Scalar>(
-    declared: &project::DeclaredActuator,
-    numbers: &Numbers<'_, S>,
-    balance: &Balance<S>,
-) -> S {
-    let whole = balance.supply.pressure - balance.supply.tank_pressure;
-    declared.valve.tare_pressure.map_or(whole, |drop| numbers.at("valve.tare_pressure", drop))
+    supply.pressure * (edges.supply_to_a + edges.supply_to_b + tare_flow(valve, supply))
 }

@@ -9,7 +9,6 @@ use phea_hydraulics::contact::Contact;
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::machine::{LoadModel, Machine, MachineOptions, PowerUnit};
-use phea_hydraulics::servovalve::SpoolImperfection;
 use phea_machine::{Control, Sampled};
 
 use super::SimulateError;
@@ -239,13 +238,6 @@ pub fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions,
     };
     let fed_back = project.controller.as_ref().and_then(|controller| controller.pressure_feedback);
     Ok(MachineOptions {
-        spool: SpoolImperfection {
-            null_bias: declared.valve.null_bias,
-            hysteresis_width: declared.valve.hysteresis,
-            threshold: declared.valve.threshold,
-            rate_limit: declared.valve.rate_limit,
-        },
-        tare_reference_drop: declared.valve.tare_pressure,
         friction_regular_velocity,
         power_unit: power_unit(declared, &Numbers::declared()),
         load: load(&declared.load, declared.motion())?,

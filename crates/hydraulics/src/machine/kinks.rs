@@ -33,11 +33,11 @@ impl<S: Scalar> Machine<S> {
         let load = self.load_of(&state, &ground);
         let end = self.end_of(&load);
         let joint = self.joint(&state, vector, &end.motion);
-        write(self.spool.convert(&mut constant::<S, T>).opening(&state.spool));
-        if self.spool.threshold.is_some() || self.spool.hysteresis_width.is_some() {
+        write(self.valve.spool.convert(&mut constant::<S, T>).opening(&state.spool));
+        if self.valve.spool.threshold.is_some() || self.valve.spool.hysteresis_width.is_some() {
             write(state.spool.spool_rate);
         }
-        if let Some(limit) = self.spool.rate_limit {
+        if let Some(limit) = self.valve.spool.rate_limit {
             write(constant::<S, T>(limit) - state.spool.spool_rate.abs());
         }
         if !matches!(self.friction, MovingFriction::Viscous { .. }) {

@@ -1,7 +1,6 @@
 use super::{LoadModel, PowerUnit};
 use crate::line::{DynamicLine, StiffeningMember};
 use crate::parameter::{ParameterError, Problems};
-use crate::servovalve::SpoolImperfection;
 
 /// Absolute vapour pressure of mineral oil, Pa: a few pascals at working temperatures, negligible
 /// compared with an atmosphere.
@@ -11,11 +10,6 @@ pub(crate) const VAPOUR_PRESSURE_ABSOLUTE: f64 = 0.0;
 /// constant supply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MachineOptions {
-    /// Null bias, hysteresis, threshold and rate limit of the spool.
-    pub spool: SpoolImperfection,
-    /// Pressure drop p_S - p_T at which the valve's tare flow is stated, Pa; if absent, that of the
-    /// actuator's own supply.
-    pub tare_reference_drop: Option<f64>,
     /// Velocity that smooths the jump of a static friction curve, m/s; needed only for such a
     /// curve.
     pub friction_regular_velocity: Option<f64>,
@@ -51,8 +45,6 @@ pub struct MachineOptions {
 impl Default for MachineOptions {
     fn default() -> MachineOptions {
         MachineOptions {
-            spool: SpoolImperfection::default(),
-            tare_reference_drop: None,
             friction_regular_velocity: None,
             power_unit: PowerUnit::Constant,
             load: LoadModel::Prescribed,
@@ -72,10 +64,6 @@ impl MachineOptions {
     /// Impossible options; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
-        problems.component("valve", self.spool.problems());
-        if let Some(drop) = self.tare_reference_drop {
-            problems.positive("valve.tare_reference_drop", drop);
-        }
         if let Some(velocity) = self.friction_regular_velocity {
             problems.positive("cylinder.friction.regular_velocity", velocity);
         }

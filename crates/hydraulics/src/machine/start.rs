@@ -147,7 +147,7 @@ impl Machine {
             pressure_a: point.pressure_a,
             pressure_b: point.pressure_b,
             force: 0.0,
-            spool: point.command + self.spool.null_bias,
+            spool: point.command + self.valve.spool.null_bias,
         };
         check(&start, self.cylinder.stroke)?;
         let mut state = MachineState::zero();

@@ -11,7 +11,9 @@ use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
 use phea_hydraulics::line::Line;
 use phea_hydraulics::machine::{LoadModel, Machine, MachineOptions, StartValues};
-use phea_hydraulics::servovalve::{LeakageModel, LeakageShape, OpeningLaw, Servovalve, Supply};
+use phea_hydraulics::servovalve::{
+    LeakageModel, LeakageShape, OpeningLaw, Servovalve, SpoolImperfection, Supply,
+};
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::stroke::ActuatorStroke;
 
@@ -91,10 +93,12 @@ pub(crate) fn components(chance: &mut Chance) -> Components {
             leakage_shape: LeakageShape::Common(100.0),
             leakage_model: LeakageModel::EachEdge,
             tare_flow: 0.0,
+            tare_reference_drop: pressure,
             nominal_voltage: 10.0,
             natural_frequency: chance.decades(300.0, 1500.0),
             damping_ratio: chance.between(0.6, 1.1),
             transition_pressure: chance.decades(1e3, 3e4),
+            spool: SpoolImperfection::default(),
         },
         line_a: line,
         line_b: line,

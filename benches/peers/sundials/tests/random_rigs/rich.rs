@@ -67,8 +67,8 @@ pub(crate) fn enrich(chance: &mut Chance, components: &mut Components, options: 
     let Components { supply, cylinder, force_sensor, .. } = *components;
     let most_force = supply.pressure * cylinder.area_a;
     let width = chance.happens(0.5).then(|| 10.0 * chance.decades(1e-3, 3e-2));
-    options.spool.hysteresis_width = width;
-    options.spool.threshold = chance
+    components.valve.spool.hysteresis_width = width;
+    components.valve.spool.threshold = chance
         .happens(0.5)
         .then(|| width.map_or(10.0 * chance.decades(3e-4, 1e-2), |width| width * chance.between(0.05, 0.9)));
     components.cylinder.end_stops = chance

@@ -171,9 +171,9 @@ fn features(components: &Components, options: &MachineOptions, control: &Control
         ("unequal areas", components.cylinder.area_a != components.cylinder.area_b),
         ("bristles", matches!(components.friction, Friction::LuGre(_))),
         ("smoothed Stribeck", matches!(components.friction, Friction::Stribeck(_))),
-        ("rate limit", options.spool.rate_limit.is_some()),
-        ("hysteresis", options.spool.hysteresis_width.is_some()),
-        ("threshold", options.spool.threshold.is_some()),
+        ("rate limit", components.valve.spool.rate_limit.is_some()),
+        ("hysteresis", components.valve.spool.hysteresis_width.is_some()),
+        ("threshold", components.valve.spool.threshold.is_some()),
         ("pump", pump.is_some()),
         ("accumulator", pump.is_some_and(|pump| pump.accumulator.is_some())),
         ("end stops", components.cylinder.end_stops.is_some()),
@@ -199,14 +199,16 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
     let leakage = flow_coefficient * chance.decades(1e-3, 3e-2);
     let stroke = chance.decades(0.05, 1.0);
     let air = !like_benchmark && chance.happens(0.3);
+    let fluid = Fluid {
+        bulk_modulus: chance.decades(2e8, 2e9),
+        density: 870.0,
+        kinematic_viscosity: 46e-6,
+        entrained_air: air.then(|| bubbles(chance)),
+    };
+    let tank_pressure = chance.between(0.0, 0.05) * pressure;
     Components {
-        fluid: Fluid {
-            bulk_modulus: chance.decades(2e8, 2e9),
-            density: 870.0,
-            kinematic_viscosity: 46e-6,
-            entrained_air: air.then(|| bubbles(chance)),
-        },
-        supply: Supply { pressure, tank_pressure: chance.between(0.0, 0.05) * pressure },
+        fluid,
+        supply: Supply { pressure, tank_pressure },
         valve: Servovalve {
             flow_coefficients: chance.edges(flow_coefficient),
             opening: OpeningLaw::Proportional,
@@ -214,10 +216,12 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
             leakage_shape: LeakageShape::Common(chance.decades(10.0, 300.0)),
             leakage_model: LeakageModel::EachEdge,
             tare_flow: 0.0,
+            tare_reference_drop: pressure - tank_pressure,
             nominal_voltage: 10.0,
             natural_frequency: chance.decades(150.0, 3000.0),
             damping_ratio: chance.between(0.4, 1.3),
             transition_pressure: chance.decades(1e2, 1e5),
+            spool: SpoolImperfection::default(),
         },
         line_a: line(chance, area_a * stroke),
         line_b: line(chance, area_a * stroke),
@@ -295,7 +299,7 @@ fn options(chance: &mut Chance, components: &mut Components) -> MachineOptions {
         stiffness,
         damping: most_force * chance.decades(1e-3, 0.3),
     };
-    let spool = SpoolImperfection {
+    components.valve.spool = SpoolImperfection {
         null_bias: 10.0 * chance.between(-0.01, 0.01),
         rate_limit: chance.happens(0.3).then(|| chance.decades(300.0, 3e4)),
         ..SpoolImperfection::default()
@@ -314,7 +318,6 @@ fn options(chance: &mut Chance, components: &mut Components) -> MachineOptions {
         .happens(0.3)
         .then(|| Contact { stiffness: most_force / chance.decades(1e-5, 0.3), relative_damping: 1.0 });
     MachineOptions {
-        spool,
         power_unit,
         friction_regular_velocity: Some(chance.decades(1e-4, 1e-2)),
         load: if chance.happens(0.3) { load } else { LoadModel::Prescribed },
