@@ -4,6 +4,7 @@
 mod accumulator;
 mod assembly;
 mod cross_port;
+mod friction;
 mod gas;
 mod ideal_valve;
 mod in_loop;

@@ -140,8 +140,7 @@ impl Machine {
             return Err(MachineError::UnyieldingLoad);
         }
         let components = actuator.components();
-        let friction = MovingFriction::new(&components.friction, options.friction_regular_velocity)
-            .ok_or(MachineError::StaticFriction)?;
+        let friction = MovingFriction::new(&components.friction).ok_or(MachineError::StaticFriction)?;
         let none = DynamicLine::Segments(Segments::lumped(0.0));
         let mut machine = Machine {
             valve: components.valve,

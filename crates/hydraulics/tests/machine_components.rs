@@ -251,9 +251,10 @@ fn air_softens_each_chamber_by_its_own_pressure() {
 fn slow_bristles_are_the_static_curve() {
     let Friction::LuGre(lugre) = benchmark_components().friction else { unreachable!() };
     let curve = lugre.curve;
-    let bristles = MovingFriction::new(&Friction::LuGre(lugre), None).unwrap();
-    let smooth = MovingFriction::new(&Friction::Stribeck(curve), Some(1e-6)).unwrap();
-    assert_eq!(MovingFriction::new(&Friction::Stribeck(curve), None), None);
+    let bristles = MovingFriction::new(&Friction::LuGre(lugre)).unwrap();
+    let smoothed = |regular_velocity| MovingFriction::new(&Friction::Stribeck { curve, regular_velocity });
+    let smooth = smoothed(Some(1e-6)).unwrap();
+    assert_eq!(smoothed(None), None);
     let velocity = |time: f64| 0.02 * sin(0.05 * time);
     let mut state = [0.0];
     for index in 0..240_000 {

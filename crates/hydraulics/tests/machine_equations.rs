@@ -60,7 +60,6 @@ fn pump() -> PumpLimited {
 fn full() -> MachineOptions {
     let contact = Contact { stiffness: 1e8, relative_damping: 0.3 };
     MachineOptions {
-        friction_regular_velocity: Some(1e-3),
         power_unit: PowerUnit::PumpLimited(pump()),
         load: LoadModel::Wall { mass: 8.0, damping: 50.0, gap: 2e-3, contact },
         ..MachineOptions::default()
@@ -79,8 +78,9 @@ fn hose() -> Components {
     components(hose_line(), StiffnessModel::ByVolume)
 }
 
-/// Unequal areas and lines, air, and a static friction curve that differs by direction.
-fn asymmetric() -> Components {
+/// Unequal areas and lines, air, and a static friction curve that differs by direction, smoothed by
+/// this velocity in m/s.
+fn asymmetric(regular_velocity: f64) -> Components {
     let [area_a, area_b] = [0.0, 0.022].map(|rod| annulus_area(0.05, rod));
     let air = Some(EntrainedAir { volume_fraction: 0.02, polytropic_exponent: 1.4 });
     let curve = Stribeck {
@@ -95,7 +95,7 @@ fn asymmetric() -> Components {
         fluid: Fluid { entrained_air: air, ..hose().fluid },
         cylinder: Cylinder { area_a, area_b, dead_volume_a: 2e-5, dead_volume_b: 1e-5, ..cylinder() },
         line_b: pipe_line(),
-        friction: Friction::Stribeck(curve),
+        friction: Friction::Stribeck { curve, regular_velocity: Some(regular_velocity) },
         ..hose()
     }
 }
@@ -104,13 +104,12 @@ fn asymmetric() -> Components {
 pub(super) fn machines() -> Vec<Machine> {
     let plain = MachineOptions::default();
     let sprung = MachineOptions {
-        friction_regular_velocity: Some(1e-4),
         load: LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e6, damping: 200.0 },
         power_unit: PowerUnit::PumpLimited(PumpLimited { accumulator: None, ..pump() }),
         ..plain
     };
     let rough = Components { friction: benchmark_components().friction, ..hose() };
-    let uniform = Components { stiffness_model: StiffnessModel::Uniform, ..asymmetric() };
+    let uniform = Components { stiffness_model: StiffnessModel::Uniform, ..asymmetric(1e-3) };
     let conduit = Conduit::of_line(&hose_line(), &hose().fluid, 35e5, StiffeningMember::Nominal).unwrap();
     let waves = DynamicLine::TransmissionLine(TransmissionLine::of_conduit(&conduit, END_SHARE).unwrap());
     let segments = DynamicLine::Segments(Segments::new(&conduit, 2, LaminarFriction::Steady).unwrap());
@@ -118,7 +117,7 @@ pub(super) fn machines() -> Vec<Machine> {
         machine_of(benchmark_components(), &plain),
         machine_of(hose(), &plain),
         machine_of(imperfect(rough), &full()),
-        machine_of(asymmetric(), &sprung),
+        machine_of(asymmetric(1e-4), &sprung),
         machine_of(imperfect(uniform), &full()),
         machine_of(hose(), &MachineOptions { lines: Some([waves, segments]), ..plain }),
         machine_of(imperfect(rough), &MachineOptions { lines: Some([segments, waves]), ..full() }),
@@ -331,7 +330,7 @@ fn starts_that_cannot_be_are_refused() {
         machine.start(&vacuum),
         Err(MachineError::ImpossibleStart { quantity: "pressure_a", .. })
     ));
-    let rough = Components { friction: static_friction(), ..benchmark_components() };
+    let rough = Components { friction: static_friction(None), ..benchmark_components() };
     let refused = Machine::new(&Actuator::new(rough).unwrap(), &MachineOptions::default());
     assert_eq!(refused, Err(MachineError::StaticFriction));
     let soft = Contact { stiffness: 1e4, relative_damping: 0.0 };
@@ -340,18 +339,16 @@ fn starts_that_cannot_be_are_refused() {
         Machine::new(&soft, &MachineOptions::default()),
         Err(MachineError::ChamberVanishes { .. })
     ));
-    let narrow = MachineOptions { friction_regular_velocity: Some(-1.0), ..MachineOptions::default() };
-    let Err(MachineError::Impossible { problems }) = Machine::new(&actuator, &narrow) else { panic!() };
-    assert_eq!(problems.len(), 1);
     let spool = SpoolImperfection { threshold: Some(0.2), hysteresis_width: Some(0.1), ..Default::default() };
-    let narrow = Components { valve: Servovalve { spool, ..hose().valve }, ..hose() };
-    assert_eq!(Actuator::new(narrow).unwrap_err().problems.len(), 1);
+    let (valve, friction) = (Servovalve { spool, ..hose().valve }, static_friction(Some(-1.0)));
+    let narrow = Components { valve, friction, ..hose() };
+    assert_eq!(Actuator::new(narrow).unwrap_err().problems.len(), 2);
     assert!(Actuator::new(leaking(hose(), -1.0)).is_err());
 }
 
-fn static_friction() -> Friction {
+fn static_friction(regular_velocity: Option<f64>) -> Friction {
     let Friction::LuGre(lugre) = benchmark_components().friction else { unreachable!() };
-    Friction::Stribeck(lugre.curve)
+    Friction::Stribeck { curve: lugre.curve, regular_velocity }
 }
 
 /// Lanes compute the result of each separate machine, bit for bit.

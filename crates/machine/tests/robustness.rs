@@ -161,8 +161,8 @@ fn lost_supplies_and_reversed_pressures_are_no_error() {
 #[test]
 fn walls_are_met_with_every_friction() {
     let Friction::LuGre(lugre) = benchmark_components().friction else { unreachable!() };
-    let frictions =
-        [Friction::Viscous { viscous: 100.0 }, Friction::Stribeck(lugre.curve), Friction::LuGre(lugre)];
+    let smoothed = Friction::Stribeck { curve: lugre.curve, regular_velocity: Some(1e-4) };
+    let frictions = [Friction::Viscous { viscous: 100.0 }, smoothed, Friction::LuGre(lugre)];
     let contact = Contact { stiffness: 5e7, relative_damping: 0.5 };
     let spool = SpoolImperfection {
         null_bias: 0.014,
@@ -173,7 +173,6 @@ fn walls_are_met_with_every_friction() {
     for friction in frictions {
         let options = MachineOptions {
             load: LoadModel::Wall { mass: 8.0, damping: 50.0, gap: 5e-3, contact },
-            friction_regular_velocity: Some(1e-4),
             ..MachineOptions::default()
         };
         let rig = components(hose_line(), StiffnessModel::ByVolume);

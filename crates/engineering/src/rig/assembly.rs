@@ -5,7 +5,6 @@ use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
-use phea_hydraulics::friction::{Friction, FrictionLevels, LuGre, Stribeck};
 use phea_hydraulics::line::{Anchoring, Hose, Line, Pipe, PipeWall, Stiffening};
 use phea_hydraulics::linkage::{Linkage, STANDARD_GRAVITY};
 use phea_hydraulics::series::{SeriesElement, SeriesSpring, SeriesTravel, Transmission};
@@ -16,12 +15,13 @@ use phea_hydraulics::servovalve::{
 use phea_hydraulics::stroke::{ActuatorStroke, FURTHER_STAGES, PistonStage, Telescope};
 
 use super::cross_port::cross_port;
+use super::friction::friction;
 use super::gas::{accumulator, adjustment};
 use super::numbers::Numbers;
 use crate::project::{
     self, BoundedNumber, Component, DeclaredAccumulator, DeclaredNeck, DeclaredSeries, DeclaredSpring,
-    DeclaredTransmission, DeclaredWeight, EdgeCoefficients, FrictionLaw, HoseExpansion, LineVolume,
-    NullLeakage, RatedFlow, StribeckCurve, ValveCoefficients,
+    DeclaredTransmission, DeclaredWeight, EdgeCoefficients, HoseExpansion, LineVolume, NullLeakage,
+    RatedFlow, ValveCoefficients,
 };
 
 /// Kinematic viscosity of ISO VG 46 oil at 40 degrees Celsius, m2/s: used where a project states
@@ -465,41 +465,4 @@ fn end_stops<S: Scalar>(declared: Option<project::EndStops>, numbers: &Numbers<'
         stiffness: numbers.at("end_stops.stiffness", stops.stiffness),
         relative_damping: numbers.at("end_stops.relative_damping", stops.relative_damping),
     })
-}
-
-fn friction<S: Scalar>(
-    declared: Option<&project::DeclaredFriction>,
-    numbers: &Numbers<'_, S>,
-) -> Friction<S> {
-    let Some(declared) = declared else { return Friction::Viscous { viscous: S::from(0.0) } };
-    let numbers = numbers.within("friction");
-    let at = |key: &str, value: f64| numbers.at(key, value);
-    let viscous = at("viscous", declared.viscous);
-    let stribeck = |curve: &StribeckCurve| Stribeck {
-        coulomb: at("coulomb", curve.coulomb),
-        static_friction: at("static", curve.static_friction),
-        stribeck_velocity: at("stribeck_velocity", curve.stribeck_velocity),
-        stribeck_exponent: at("stribeck_exponent", curve.stribeck_exponent),
-        viscous,
-        retracting: declared.retracting.map(|back| {
-            let numbers = numbers.within("retracting");
-            let or = |key: &str, own: Option<f64>, extending: S| {
-                own.map_or(extending, |value| numbers.at(key, value))
-            };
-            FrictionLevels {
-                coulomb: or("coulomb", back.coulomb, at("coulomb", curve.coulomb)),
-                static_friction: or("static", back.static_friction, at("static", curve.static_friction)),
-                viscous: or("viscous", back.viscous, viscous),
-            }
-        }),
-    };
-    match &declared.law {
-        FrictionLaw::Viscous => Friction::Viscous { viscous },
-        FrictionLaw::Stribeck { curve, .. } => Friction::Stribeck(stribeck(curve)),
-        FrictionLaw::LuGre { curve, bristle_stiffness, bristle_damping } => Friction::LuGre(LuGre {
-            curve: stribeck(curve),
-            bristle_stiffness: at("bristle_stiffness", *bristle_stiffness),
-            bristle_damping: at("bristle_damping", *bristle_damping),
-        }),
-    }
 }

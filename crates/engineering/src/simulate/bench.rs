@@ -13,7 +13,7 @@ use phea_machine::{Control, Sampled};
 
 use super::SimulateError;
 use super::line_limits::LineLimits;
-use crate::project::{self, FrictionLaw, Project, Scenario};
+use crate::project::{self, Project, Scenario};
 use crate::quantity::{MotionKind, Units};
 use crate::rig::{Numbers, OfMotion, Rig, lines, power_unit, pressure_ratio, velocity_gain};
 use crate::setup::Setup;
@@ -232,13 +232,8 @@ fn between_samples(
 /// The parts of the machine other than its actuator, whatever acts on it.
 pub fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions, SimulateError> {
     let Some(declared) = &project.actuator else { return Ok(MachineOptions::default()) };
-    let friction_regular_velocity = match declared.friction().map(|friction| &friction.law) {
-        Some(FrictionLaw::Stribeck { regular_velocity, .. }) => *regular_velocity,
-        Some(FrictionLaw::Viscous | FrictionLaw::LuGre { .. }) | None => None,
-    };
     let fed_back = project.controller.as_ref().and_then(|controller| controller.pressure_feedback);
     Ok(MachineOptions {
-        friction_regular_velocity,
         power_unit: power_unit(declared, &Numbers::declared()),
         load: load(&declared.load, declared.motion())?,
         velocity_gain: velocity_gain(declared, &Numbers::declared()).unwrap_or(1.0),

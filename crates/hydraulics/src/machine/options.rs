@@ -10,9 +10,6 @@ pub(crate) const VAPOUR_PRESSURE_ABSOLUTE: f64 = 0.0;
 /// constant supply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MachineOptions {
-    /// Velocity that smooths the jump of a static friction curve, m/s; needed only for such a
-    /// curve.
-    pub friction_regular_velocity: Option<f64>,
     /// Source of the supply pressure.
     pub power_unit: PowerUnit,
     /// Load on the force sensor.
@@ -45,7 +42,6 @@ pub struct MachineOptions {
 impl Default for MachineOptions {
     fn default() -> MachineOptions {
         MachineOptions {
-            friction_regular_velocity: None,
             power_unit: PowerUnit::Constant,
             load: LoadModel::Prescribed,
             velocity_gain: 1.0,
@@ -64,9 +60,6 @@ impl MachineOptions {
     /// Impossible options; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
-        if let Some(velocity) = self.friction_regular_velocity {
-            problems.positive("cylinder.friction.regular_velocity", velocity);
-        }
         if let PowerUnit::PumpLimited(unit) = self.power_unit {
             problems.component("supply", unit.problems());
         }

@@ -22,7 +22,7 @@ use phea_hydraulics::servovalve::{
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::stroke::ActuatorStroke;
 
-use crate::rig::{Chance, Control, Refusal, Rig};
+use crate::rig::{Chance, Control, Refusal, Rig, smoothed};
 
 const REFERENCE_S: f64 = 0.05;
 const MOTION_S: f64 = 0.3;
@@ -33,13 +33,9 @@ const REST_S: f64 = 0.2;
 pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     let mut chance = Chance::of(number, 0x9e37_79b9_7f4a_7c15);
     let components = components(&mut chance);
-    let options = MachineOptions {
-        friction_regular_velocity: Some(chance.decades(1e-4, 1e-3)),
-        ..MachineOptions::default()
-    };
     let control = control(&mut chance, &components);
     let actuator = Actuator::new(components).map_err(Refusal::Actuator)?;
-    let machine = Machine::new(&actuator, &options).map_err(Refusal::Machine)?;
+    let machine = Machine::new(&actuator, &MachineOptions::default()).map_err(Refusal::Machine)?;
 
     let pressure = 0.5 * components.supply.pressure;
     let position = components.cylinder.stroke.middle();
@@ -145,13 +141,14 @@ fn friction(chance: &mut Chance, most_force: f64, mass: f64) -> Friction {
         viscous: steepest * chance.decades(0.02, 0.3),
         retracting: None,
     };
-    if chance.happens(0.6) {
+    let friction = if chance.happens(0.6) {
         let bristle_stiffness = coulomb / chance.decades(3e-6, 5e-5);
         let bristle_damping = chance.decades(0.05, 1.0) * (bristle_stiffness * mass).sqrt();
         Friction::LuGre(LuGre { curve, bristle_stiffness, bristle_damping })
     } else {
-        Friction::Stribeck(curve)
-    }
+        Friction::Stribeck { curve, regular_velocity: None }
+    };
+    smoothed(friction, chance.decades(1e-4, 1e-3))
 }
 
 /// Gains for a crossover that does not ring by itself.

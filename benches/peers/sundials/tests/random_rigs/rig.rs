@@ -170,7 +170,7 @@ fn features(components: &Components, options: &MachineOptions, control: &Control
         ("air", components.fluid.entrained_air.is_some()),
         ("unequal areas", components.cylinder.area_a != components.cylinder.area_b),
         ("bristles", matches!(components.friction, Friction::LuGre(_))),
-        ("smoothed Stribeck", matches!(components.friction, Friction::Stribeck(_))),
+        ("smoothed Stribeck", matches!(components.friction, Friction::Stribeck { .. })),
         ("rate limit", components.valve.spool.rate_limit.is_some()),
         ("hysteresis", components.valve.spool.hysteresis_width.is_some()),
         ("threshold", components.valve.spool.threshold.is_some()),
@@ -284,7 +284,15 @@ fn friction(chance: &mut Chance, most_force: f64, mass: f64, bristles: bool) -> 
     } else if kind < 2.0 {
         Friction::Viscous { viscous }
     } else {
-        Friction::Stribeck(curve)
+        Friction::Stribeck { curve, regular_velocity: None }
+    }
+}
+
+/// This friction, the jump of a static curve smoothed by a velocity in m/s.
+pub(crate) fn smoothed(friction: Friction, velocity: f64) -> Friction {
+    match friction {
+        Friction::Stribeck { curve, .. } => Friction::Stribeck { curve, regular_velocity: Some(velocity) },
+        other => other,
     }
 }
 
@@ -317,9 +325,9 @@ fn options(chance: &mut Chance, components: &mut Components) -> MachineOptions {
     components.cylinder.end_stops = chance
         .happens(0.3)
         .then(|| Contact { stiffness: most_force / chance.decades(1e-5, 0.3), relative_damping: 1.0 });
+    components.friction = smoothed(components.friction, chance.decades(1e-4, 1e-2));
     MachineOptions {
         power_unit,
-        friction_regular_velocity: Some(chance.decades(1e-4, 1e-2)),
         load: if chance.happens(0.3) { load } else { LoadModel::Prescribed },
         ..MachineOptions::default()
     }
