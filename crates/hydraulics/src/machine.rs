@@ -170,7 +170,7 @@ impl Machine {
             velocity_gain: options.velocity_gain,
             pressure_ratio: options.pressure_ratio,
             external_force: options.external_force,
-            vapour_pressure: options.vapour_pressure_absolute - ATMOSPHERIC_PRESSURE_ABSOLUTE,
+            vapour_pressure: components.fluid.vapour_pressure_absolute - ATMOSPHERIC_PRESSURE_ABSOLUTE,
             layout: Layout::default(),
         };
         machine.layout = Layout::of(&machine);

@@ -115,6 +115,7 @@ pub fn components(line: Line, stiffness_model: StiffnessModel) -> Components {
             density: 870.0,
             kinematic_viscosity: 46e-6,
             entrained_air: None,
+            vapour_pressure_absolute: 0.0,
         },
         supply: Supply { pressure: 70e5, tank_pressure: 0.0 },
         valve: valve(),

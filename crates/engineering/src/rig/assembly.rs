@@ -160,6 +160,7 @@ fn fluid<S: Scalar>(declared: &project::DeclaredFluid, numbers: &Numbers<'_, S>)
             volume_fraction: at("entrained_air", fraction),
             polytropic_exponent: at("polytropic_exponent", declared.polytropic_exponent),
         }),
+        vapour_pressure_absolute: at("vapour_pressure", declared.vapour_pressure),
     }
 }
 

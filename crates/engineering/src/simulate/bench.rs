@@ -41,8 +41,6 @@ pub struct ControlledMachine {
     pub gas_wall_celsius: [Option<f64>; 2],
     /// What lines A and B bear.
     pub line_limits: [LineLimits; 2],
-    /// Pa absolute, below which the oil cavitates.
-    pub vapour_pressure_pa: f64,
     /// Motion of the rig.
     pub units: Units,
 }
@@ -123,10 +121,6 @@ impl ControlledMachine {
             relief_shut_pa: relief_shut_pa(project),
             gas_wall_celsius: gas_wall_celsius(project),
             line_limits: LineLimits::of(project),
-            vapour_pressure_pa: project
-                .actuator
-                .as_ref()
-                .map_or(0.0, |actuator| actuator.fluid.vapour_pressure),
             units: project.units,
         }
     }
@@ -240,7 +234,6 @@ pub fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions,
         pressure_ratio: fed_back.map_or(1.0, |fed_back| pressure_ratio(&fed_back, actuator.components())),
         external_force: false,
         moving_setting: false,
-        vapour_pressure_absolute: declared.fluid.vapour_pressure,
         member: StiffeningMember::Nominal,
         gas_pressure_limits: gas_pressure_limits(declared, actuator),
         lines: lines(

@@ -2,10 +2,6 @@ use super::{LoadModel, PowerUnit};
 use crate::line::{DynamicLine, StiffeningMember};
 use crate::parameter::{ParameterError, Problems};
 
-/// Absolute vapour pressure of mineral oil, Pa: a few pascals at working temperatures, negligible
-/// compared with an atmosphere.
-pub(crate) const VAPOUR_PRESSURE_ABSOLUTE: f64 = 0.0;
-
 /// Parts of a machine other than its actuator. The default adds nothing: a prescribed load on a
 /// constant supply.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,10 +21,6 @@ pub struct MachineOptions {
     /// True if the setting of adjusted accumulators moves, as an input of the machine: its change
     /// from rest, and its rate. Otherwise they remain at their setting at rest.
     pub moving_setting: bool,
-    /// Pressure in Pa absolute below which a chamber is reported to cavitate. Fluid with entrained
-    /// air expands before it boils and never reaches vacuum: for it, state the pressure at which
-    /// dissolved air is released.
-    pub vapour_pressure_absolute: f64,
     /// Member of the hoses' stiffening interval.
     pub member: StiffeningMember,
     /// Pressure limits of the gas of the accumulators at A and B, Pa gauge: a run reports when they
@@ -48,7 +40,6 @@ impl Default for MachineOptions {
             pressure_ratio: 1.0,
             external_force: false,
             moving_setting: false,
-            vapour_pressure_absolute: VAPOUR_PRESSURE_ABSOLUTE,
             member: StiffeningMember::Nominal,
             gas_pressure_limits: [None; 2],
             lines: None,
@@ -70,7 +61,6 @@ impl MachineOptions {
         problems.component("load", self.load.problems());
         problems.positive("velocity_sensor.gain", self.velocity_gain);
         problems.not_negative("controller.pressure_feedback.ratio", self.pressure_ratio);
-        problems.not_negative("fluid.vapour_pressure_absolute", self.vapour_pressure_absolute);
         problems.into_vec()
     }
 }

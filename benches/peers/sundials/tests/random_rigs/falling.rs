@@ -85,7 +85,13 @@ fn components(chance: &mut Chance) -> Components {
         effective_bulk_modulus: chance.decades(2e8, 1.4e9),
     };
     Components {
-        fluid: Fluid { bulk_modulus: 1.4e9, density: 870.0, kinematic_viscosity: 46e-6, entrained_air: None },
+        fluid: Fluid {
+            bulk_modulus: 1.4e9,
+            density: 870.0,
+            kinematic_viscosity: 46e-6,
+            entrained_air: None,
+            vapour_pressure_absolute: 0.0,
+        },
         supply: Supply { pressure, tank_pressure: 0.0 },
         valve: Servovalve {
             flow_coefficients: chance.edges(flow_coefficient),

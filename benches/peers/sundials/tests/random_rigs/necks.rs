@@ -84,6 +84,7 @@ pub(crate) fn components(chance: &mut Chance) -> Components {
             density: 870.0,
             kinematic_viscosity: 46e-6,
             entrained_air: None,
+            vapour_pressure_absolute: 0.0,
         },
         supply: Supply { pressure, tank_pressure: 0.0 },
         valve: Servovalve {

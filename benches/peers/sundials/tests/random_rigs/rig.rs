@@ -204,6 +204,7 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
         density: 870.0,
         kinematic_viscosity: 46e-6,
         entrained_air: air.then(|| bubbles(chance)),
+        vapour_pressure_absolute: 0.0,
     };
     let tank_pressure = chance.between(0.0, 0.05) * pressure;
     Components {
