@@ -69,8 +69,8 @@ pub(crate) use plant::with_supply;
 pub use plant::{LoadLever, YieldingLoad, linear, plant, rod_end, sides, stated};
 pub use series::{series_coil, stall_force, waves_right_to};
 
+pub use supply::settled_supply;
 pub(crate) use supply::{power_at_rest, yielding_supply};
-pub use supply::{power_unit, settled_supply};
 
 /// A rig with everything that procedures compute with.
 #[derive(Clone, Debug, PartialEq)]
@@ -236,7 +236,7 @@ impl Rig {
         let numbers = Numbers::declared();
         let (position, steady) = place(project, components, &numbers);
         let balance = Balance::at(components, position);
-        let supply = settled_supply(declared, &numbers, &balance, steady)
+        let supply = settled_supply(&components.power_unit, &balance, steady)
             .filter(|found| found.supply.pressure.is_finite());
         // the valve at the pressure of the pump, lines and stall forces at the stated one
         let settled = supply.map_or(components.supply, |found| found.supply);
@@ -257,7 +257,8 @@ impl Rig {
         let linear = parameters::replaced(&derived, stated(&parameters));
         let (internal_leakage, dynamic_feedback) = components.cross_admittance(pressures);
         let load = load_at(&declared.load, &numbers, components, &point);
-        let yielding = supply.and_then(|found| yielding_supply(declared, &numbers, &balance, &found, side));
+        let unit = &components.power_unit;
+        let yielding = supply.and_then(|found| yielding_supply(unit, &balance, &found, side));
         let unseen = yielding.is_none_or(|supply| are_equal([supply.edges])) && !has_gas_states(declared);
         let equal = are_equal(sides(&two_pressure)) && unseen;
         let one_pressure = states_one_pressure(&parameters, &[]) || equal;

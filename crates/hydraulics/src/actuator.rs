@@ -12,6 +12,7 @@ use crate::friction::Friction;
 use crate::line::{Line, StiffeningMember};
 use crate::linkage::Linkage;
 use crate::parameter::{ParameterError, ParameterRequirement, Problems};
+use crate::power_unit::PowerUnit;
 use crate::series::SeriesElement;
 use crate::servovalve::{Servovalve, Supply};
 use crate::stiffness::{ChamberCompliance, StiffnessModel, chamber_compliance};
@@ -21,8 +22,10 @@ use crate::stiffness::{ChamberCompliance, StiffnessModel, chamber_compliance};
 pub struct Components<S = f64> {
     /// The fluid throughout.
     pub fluid: Fluid<S>,
-    /// Supply and tank pressures.
+    /// Supply and tank pressures: those that an idle pump holds.
     pub supply: Supply<S>,
+    /// Source of the supply pressure.
+    pub power_unit: PowerUnit<S>,
     /// The servovalve.
     pub valve: Servovalve<S>,
     /// The line between port A and chamber A.
@@ -198,6 +201,7 @@ impl Actuator {
         let mut problems = Problems::default();
         problems.component("fluid", fluid.problems());
         problems.component("supply", supply.problems());
+        problems.component("supply", components.power_unit.problems());
         problems.component("valve", valve.problems());
         problems.component("line.a", line_a.problems());
         problems.component("line.b", line_b.problems());

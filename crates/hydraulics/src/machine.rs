@@ -145,7 +145,7 @@ impl Machine {
         let mut machine = Machine {
             valve: components.valve,
             supply: components.supply,
-            power_unit: options.power_unit,
+            power_unit: components.power_unit,
             cylinder: components.cylinder,
             chambers: match options.lines {
                 None => Chambers::new(actuator, options.member),

@@ -13,6 +13,7 @@ use crate::force_sensor::ForceSensor;
 use crate::friction::{Friction, LuGre, Stribeck};
 use crate::line::{Hose, Line, Pipe, PipeWall, Stiffening};
 use crate::linear::LinearParameters;
+use crate::power_unit::PowerUnit;
 use crate::servovalve::{
     Edges, LeakageModel, LeakageShape, OpeningLaw, Servovalve, SpoolImperfection, Supply,
 };
@@ -118,6 +119,7 @@ pub fn components(line: Line, stiffness_model: StiffnessModel) -> Components {
             vapour_pressure_absolute: 0.0,
         },
         supply: Supply { pressure: 70e5, tank_pressure: 0.0 },
+        power_unit: PowerUnit::Constant,
         valve: valve(),
         line_a: line,
         line_b: line,

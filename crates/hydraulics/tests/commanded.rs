@@ -106,13 +106,12 @@ pub(super) fn supply_pressure(machine: &Machine, stated: f64, state: &[f64]) -> 
 /// ports and of the supply in Pa.
 pub(super) fn yielding(
     actuator: &Actuator,
-    unit: &PowerUnit,
     command: f64,
     ports: [f64; 2],
     pressure: f64,
 ) -> Option<YieldingSupply> {
-    let PowerUnit::PumpLimited(unit) = unit else { return None };
     let components = actuator.components();
+    let PowerUnit::PumpLimited(unit) = &components.power_unit else { return None };
     let supply = Supply { pressure, ..components.supply };
     let settled = SettledSupply { supply, settled: Settled { command, pressures: ports }, taken: f64::NAN };
     let idle = components.supply.pressure;

@@ -489,11 +489,11 @@ fn ledgers_close_with_a_linkage() {
             cylinder: Cylinder { stroke: ActuatorStroke::Limited(STROKE), ..rig.cylinder },
             linkage: Some(linkage.level_at(1.2).with_moment(15.0)),
             series: series(number as u64, &mut |low, high| (low * high).sqrt()),
+            power_unit: pump(),
             ..rig
         };
         let external_force = load.moves();
-        let options =
-            MachineOptions { load, external_force, power_unit: pump(), ..MachineOptions::default() };
+        let options = MachineOptions { load, external_force, ..MachineOptions::default() };
         let [duration, width] = if rig.series.is_some() { [0.06, 2e-6] } else { [0.2, 1e-5] };
         check(&machine_of(rig, &options), &motion, &start, duration, width);
     }

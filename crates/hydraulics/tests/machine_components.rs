@@ -312,9 +312,9 @@ fn pump() -> PumpLimited {
 #[test]
 fn a_pump_gives_what_it_has() {
     let unit = PumpLimited { accumulator: None, ..pump() };
-    let options = MachineOptions { power_unit: PowerUnit::PumpLimited(unit), ..MachineOptions::default() };
     let rig = components(hose_line(), StiffnessModel::ByVolume);
-    let (actuator, machine) = (Actuator::new(rig).unwrap(), machine_of(rig, &options));
+    let rig = Components { power_unit: PowerUnit::PumpLimited(unit), ..rig };
+    let (actuator, machine) = (Actuator::new(rig).unwrap(), machine_of(rig, &MachineOptions::default()));
     let idle = operating_point(&actuator, 0.25, Condition::Load(SteadyLoad::Force(0.0))).unwrap();
     let rest = machine.rest(&idle).unwrap();
     let outputs = machine.signals(&rest.state, &rest.inputs);
@@ -324,7 +324,7 @@ fn a_pump_gives_what_it_has() {
     assert!(taken > 7e-6 && taken < 4e-5);
     let load = MachineOptions {
         load: LoadModel::SpringMassDamper { mass: 5.0, stiffness: 0.0, damping: 5e3 },
-        ..options
+        ..MachineOptions::default()
     };
     let machine = machine_of(rig, &load);
     let start = StartValues { position: 0.1, pressure_a: 35e5, pressure_b: 35e5, ..StartValues::default() };

@@ -146,8 +146,8 @@ fn ledgers_close_against_a_prescribed_motion() {
     let start = StartValues { position: 0.25, pressure_a: 35e5, pressure_b: 30e5, ..StartValues::default() };
     let passive = Components { friction: passive_friction(), ..benchmark_components() };
     check(&machine_of(passive, &MachineOptions::default()), &motion, &start, 0.3, 2e-5);
-    let pumped = MachineOptions { power_unit: pump(), ..Default::default() };
-    check(&machine_of(leaking(asymmetric(), 2e-12), &pumped), &motion, &start, 0.3, 2e-5);
+    let pumped = Components { power_unit: pump(), ..leaking(asymmetric(), 2e-12) };
+    check(&machine_of(pumped, &MachineOptions::default()), &motion, &start, 0.3, 2e-5);
 }
 
 #[test]
@@ -160,15 +160,10 @@ fn ledgers_close_with_loads_of_their_own() {
     for load in [sprung, walled] {
         let pushed = MachineOptions { load, external_force: true, ..MachineOptions::default() };
         check(&machine_of(asymmetric(), &pushed), &motion, &start, 0.3, 1e-5);
-        let options = MachineOptions { load, power_unit: pump(), ..MachineOptions::default() };
+        let options = MachineOptions { load, ..MachineOptions::default() };
+        let pumped = Components { power_unit: pump(), ..asymmetric() };
+        check(&machine_of(pumped, &options), &motion, &start, 0.3, 1e-5);
         check(&machine_of(asymmetric(), &options), &motion, &start, 0.3, 1e-5);
-        check(
-            &machine_of(asymmetric(), &MachineOptions { load, ..Default::default() }),
-            &motion,
-            &start,
-            0.3,
-            1e-5,
-        );
     }
 }
 
@@ -215,10 +210,11 @@ fn ledgers_close_in_the_end_stops() {
 fn the_rig_is_the_sum_of_its_components() {
     let contact = Contact { stiffness: 3e7, relative_damping: 0.4 };
     let load = LoadModel::Wall { mass: 8.0, damping: 50.0, gap: 4e-4, contact };
-    let with_pump = MachineOptions { load, power_unit: pump(), ..Default::default() };
-    let plain = MachineOptions::default();
-    for (options, more) in [(with_pump, vec![2e-6, 0.25, 0.1, 66e5]), (plain, vec![2e-6])] {
-        let machine = machine_of(leaking(asymmetric(), 2e-12), &options);
+    let options = MachineOptions { load, ..Default::default() };
+    let plain = leaking(asymmetric(), 2e-12);
+    let with_pump = machine_of(Components { power_unit: pump(), ..plain }, &options);
+    let plain = machine_of(plain, &MachineOptions::default());
+    for (machine, more) in [(with_pump, vec![2e-6, 0.25, 0.1, 66e5]), (plain, vec![2e-6])] {
         let mut state = vec![0.7, 20.0, 41e5, 22e5, 3e-4, 0.08];
         state.extend(more);
         let ledger = machine.ledger(&state, &[0.2498, 0.05]).unwrap();
@@ -289,9 +285,9 @@ pub(super) fn check_instant(name: &str, machine: &Machine, state: &[f64], comman
 #[test]
 fn what_is_stored_changes_by_what_enters_and_is_lost() {
     let mut seed = 7;
-    let options = MachineOptions { power_unit: charged_pump(75e5, 1.4), ..MachineOptions::default() };
     let mut machines = rich_machines();
-    machines.push(("gas at its precharge", machine_of(asymmetric(), &options)));
+    let charged = Components { power_unit: charged_pump(75e5, 1.4), ..asymmetric() };
+    machines.push(("gas at its precharge", machine_of(charged, &MachineOptions::default())));
     for ((name, machine), (pressure, share)) in
         machines.iter().flat_map(|named| [(named, (35e5, 4.0)), (named, (0.0, 0.13))])
     {

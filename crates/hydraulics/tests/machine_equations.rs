@@ -60,18 +60,18 @@ fn pump() -> PumpLimited {
 fn full() -> MachineOptions {
     let contact = Contact { stiffness: 1e8, relative_damping: 0.3 };
     MachineOptions {
-        power_unit: PowerUnit::PumpLimited(pump()),
         load: LoadModel::Wall { mass: 8.0, damping: 50.0, gap: 2e-3, contact },
         ..MachineOptions::default()
     }
 }
 
-/// Components with all imperfections of the spool, leakage and end stops.
+/// Components with all imperfections of the spool, a pump, leakage and end stops.
 fn imperfect(components: Components) -> Components {
     let spool = SpoolImperfection { threshold: Some(0.04), rate_limit: Some(4000.0), ..measured_spool() };
     let valve = Servovalve { spool, ..components.valve };
     let contact = Contact { stiffness: 1e8, relative_damping: 0.3 };
-    stopped(leaking(Components { valve, ..components }, 3e-13), contact)
+    let power_unit = PowerUnit::PumpLimited(pump());
+    stopped(leaking(Components { valve, power_unit, ..components }, 3e-13), contact)
 }
 
 fn hose() -> Components {
@@ -105,9 +105,10 @@ pub(super) fn machines() -> Vec<Machine> {
     let plain = MachineOptions::default();
     let sprung = MachineOptions {
         load: LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e6, damping: 200.0 },
-        power_unit: PowerUnit::PumpLimited(PumpLimited { accumulator: None, ..pump() }),
         ..plain
     };
+    let without_gas = PumpLimited { accumulator: None, ..pump() };
+    let pumped = Components { power_unit: PowerUnit::PumpLimited(without_gas), ..asymmetric(1e-4) };
     let rough = Components { friction: benchmark_components().friction, ..hose() };
     let uniform = Components { stiffness_model: StiffnessModel::Uniform, ..asymmetric(1e-3) };
     let conduit = Conduit::of_line(&hose_line(), &hose().fluid, 35e5, StiffeningMember::Nominal).unwrap();
@@ -117,7 +118,7 @@ pub(super) fn machines() -> Vec<Machine> {
         machine_of(benchmark_components(), &plain),
         machine_of(hose(), &plain),
         machine_of(imperfect(rough), &full()),
-        machine_of(asymmetric(1e-4), &sprung),
+        machine_of(pumped, &sprung),
         machine_of(imperfect(uniform), &full()),
         machine_of(hose(), &MachineOptions { lines: Some([waves, segments]), ..plain }),
         machine_of(imperfect(rough), &MachineOptions { lines: Some([segments, waves]), ..full() }),

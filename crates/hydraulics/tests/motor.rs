@@ -230,7 +230,7 @@ fn a_leaking_motor_rests_at_its_operating_point() {
 fn turning_machines() -> Vec<(&'static str, Machine)> {
     let rig = asymmetric();
     let of = |rig, power_unit| {
-        machine_of(leaking(rig, 2e-12), &MachineOptions { power_unit, ..MachineOptions::default() })
+        machine_of(Components { power_unit, ..leaking(rig, 2e-12) }, &MachineOptions::default())
     };
     let gas = |gas_volume, precharge_pressure, polytropic_exponent| {
         Some(Accumulator { gas_volume, precharge_pressure, polytropic_exponent })

@@ -36,7 +36,6 @@ use super::commanded::{
 struct Drawn {
     actuator: Actuator,
     machine: Machine,
-    unit: PowerUnit,
     rest: InitialCondition,
     friction: f64,
     load: LinearLoad,
@@ -113,11 +112,11 @@ fn drawn(number: u64) -> Drawn {
         necks: necks(number),
         thermal_time_constants: thermal_time_constants(number),
         adjustments: gas_valves(number),
+        power_unit: power_unit(number),
         ..parts
     };
     let actuator = Actuator::new(parts).unwrap();
-    let unit = power_unit(number);
-    let options = MachineOptions { load, power_unit: unit, ..MachineOptions::default() };
+    let options = MachineOptions { load, ..MachineOptions::default() };
     let machine = Machine::new(&actuator, &options).unwrap();
     let (position, command) = (spread(0.05, 0.45), spread(0.01, 2.0));
     // a wall cannot pull: the next command pushes harder
@@ -136,7 +135,7 @@ fn drawn(number: u64) -> Drawn {
             LinearLoad::Yielding { mass, damping, stiffness }
         }
     };
-    Drawn { actuator, machine, unit, rest, friction, load }
+    Drawn { actuator, machine, rest, friction, load }
 }
 
 /// Operating point of a machine that rests in this state, its piston at a position in m.
@@ -158,7 +157,7 @@ pub(super) fn point_at(position: f64, state: &[f64]) -> OperatingPoint {
 /// those of the chambers or slightly different.
 pub(super) fn plant_at_rest(
     actuator: &Actuator,
-    (machine, unit): (&Machine, &PowerUnit),
+    machine: &Machine,
     (position, ports, state): (f64, [f64; 2], &[f64]),
     load: LinearLoad,
 ) -> (LinearPlant, [f64; 2]) {
@@ -173,7 +172,7 @@ pub(super) fn plant_at_rest(
     let [pressure_a, pressure_b] = ports;
     let point = OperatingPoint { pressure_a, pressure_b, ..point_at(position, state) };
     let parameters = two_pressure_linear_parameters(&model, &point, SpoolDirection::Extending);
-    let supply = yielding(actuator, unit, state[0], ports, supplied);
+    let supply = yielding(actuator, state[0], ports, supplied);
     let (across, dynamic_feedback) = components.cross_admittance(pressures);
     let gas = components.gas_branches(pressures);
     let compliances = without_branches(components, pressures, parameters.compliances);
@@ -190,7 +189,7 @@ impl Drawn {
         let moved = if self.load == LinearLoad::Prescribed { 0.0 } else { state[6] };
         let position = self.rest.inputs[0] + moved + state[4];
         let pressures = [state[2], state[3]];
-        plant_at_rest(&self.actuator, (&self.machine, &self.unit), (position, pressures, state), self.load).0
+        plant_at_rest(&self.actuator, &self.machine, (position, pressures, state), self.load).0
     }
 
     /// Paths F_e/U_C and F_e/X_0 from the machine's own derivatives.
@@ -236,8 +235,8 @@ fn a_limited_pump_settles_where_the_machine_rests() {
     let mut counted = [0, 0];
     for number in 0..300 {
         let rig = drawn(number);
-        let PowerUnit::PumpLimited(unit) = rig.unit else { continue };
         let components = rig.actuator.components();
+        let PowerUnit::PumpLimited(unit) = components.power_unit else { continue };
         let idle = components.supply.pressure;
         // at standstill the areas have no effect
         let balance = Balance::at(components, 0.25);

@@ -89,8 +89,10 @@ const CREEPING: LineModel = LineModel::Creeping { relaxation_time: 0.02 };
 pub(super) fn rich_machines() -> Vec<(&'static str, Machine)> {
     let rig = asymmetric();
     let hoses = Components { line_b: hose_line(), ..rig };
-    let of = |rig, options: MachineOptions| machine_of(leaking(rig, 2e-12), &options);
-    let with = |power_unit, lines| MachineOptions { power_unit, lines, ..MachineOptions::default() };
+    let of = |rig, (power_unit, options): (PowerUnit, MachineOptions)| {
+        machine_of(Components { power_unit, ..leaking(rig, 2e-12) }, &options)
+    };
+    let with = |power_unit, lines| (power_unit, MachineOptions { lines, ..MachineOptions::default() });
     let uniform = foamy(
         Components { friction: passive_friction(), ..benchmark_components() },
         StiffnessModel::Uniform,
@@ -99,8 +101,8 @@ pub(super) fn rich_machines() -> Vec<(&'static str, Machine)> {
     let by_volume = foamy(rig, StiffnessModel::ByVolume, 1.4);
     let all = foamy(hoses, StiffnessModel::Uniform, 1.2);
     let load = LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
-    let everything =
-        MachineOptions { load, ..with(charged_pump(40e5, 1.3), lines_of(&all, [FULL, SMEARED])) };
+    let (power_unit, lines) = with(charged_pump(40e5, 1.3), lines_of(&all, [FULL, SMEARED]));
+    let everything = (power_unit, MachineOptions { load, ..lines });
     let segments = with(pump(), lines_of(&rig, [SMEARED, PLAIN]));
     let gas = |gas_volume, precharge_pressure, polytropic_exponent| {
         Some(Accumulator { gas_volume, precharge_pressure, polytropic_exponent })
@@ -171,19 +173,19 @@ fn adjusted_machines() -> [(&'static str, Machine); 3] {
     let of_valves =
         Components { adjustments: valves, thermal_time_constants: [None, Some(0.05)], ..isothermal };
     let valve_and_gas = Components { adjustments: [valves[0], adjustment(less)], ..at_chambers(rig) };
-    let moving = |power_unit, lines| MachineOptions {
+    let moving = |lines| MachineOptions {
         load: LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 },
         external_force: true,
         moving_setting: true,
-        power_unit,
         lines,
         ..MachineOptions::default()
     };
-    let of = |rig, options: MachineOptions| machine_of(leaking(rig, 2e-12), &options);
+    let of =
+        |rig, power_unit, lines| machine_of(Components { power_unit, ..leaking(rig, 2e-12) }, &moving(lines));
     let lines = lines_of(&rig, [SMEARED, PLAIN]);
     [
-        ("gas that is moved", of(of_gas, moving(charged_pump(40e5, 1.4), None))),
-        ("gas with heat behind valves that move", of(of_valves, moving(pump(), lines))),
-        ("gas behind a valve, and moved", of(valve_and_gas, moving(PowerUnit::Constant, None))),
+        ("gas that is moved", of(of_gas, charged_pump(40e5, 1.4), None)),
+        ("gas with heat behind valves that move", of(of_valves, pump(), lines)),
+        ("gas behind a valve, and moved", of(valve_and_gas, PowerUnit::Constant, None)),
     ]
 }

@@ -178,9 +178,9 @@ fn ledgers_close_through_the_stages() {
     ];
     for load in loads {
         let external_force = load.moves();
-        let options =
-            MachineOptions { load, external_force, power_unit: pump(), ..MachineOptions::default() };
-        check(&machine_of(with(telescope, asymmetric()), &options), &motion, &start, 0.2, 1e-5);
+        let options = MachineOptions { load, external_force, ..MachineOptions::default() };
+        let rig = Components { power_unit: pump(), ..with(telescope, asymmetric()) };
+        check(&machine_of(rig, &options), &motion, &start, 0.2, 1e-5);
     }
     let air = Some(EntrainedAir { volume_fraction: 5e-3, polytropic_exponent: 1.2 });
     let gas = Accumulator { gas_volume: 2e-5, precharge_pressure: 15e5, polytropic_exponent: 1.2 };

@@ -250,7 +250,6 @@ struct Resting {
     actuator: Actuator,
     lines: Option<[DynamicLine; 2]>,
     load: LoadModel,
-    unit: PowerUnit,
     machine: Machine,
     position: f64,
     rest: InitialCondition,
@@ -282,6 +281,7 @@ fn parts(draw: &mut Draw, number: u64, kinds: &[Linkage; 4]) -> (Components, [Dr
         cross_port,
         series,
         linkage,
+        power_unit: power_unit(number),
         ..rig
     };
     (rig, of_gas)
@@ -321,7 +321,7 @@ fn moving_lines(draw: &mut Draw, rig: &Actuator) -> Option<[DynamicLine; 2]> {
     Some([of(&parts.line_a, numbers[0], times[0]), of(&parts.line_b, numbers[1], times[1])])
 }
 
-fn resting(draw: &mut Draw, number: u64, rig: Components) -> Resting {
+fn resting(draw: &mut Draw, rig: Components) -> Resting {
     let turns = rig.linkage.is_some() || rig.cylinder.stroke == ActuatorStroke::Unlimited;
     let actuator = Actuator::new(rig).unwrap();
     let (mass, stiffness, damping) = match turns {
@@ -333,15 +333,13 @@ fn resting(draw: &mut Draw, number: u64, rig: Components) -> Resting {
         false => LoadModel::SpringMassDamper { mass, stiffness, damping },
     };
     draw.parts.extend(load.moves().then_some("sprung load"));
-    let unit = power_unit(number);
-    draw.parts.extend((unit != PowerUnit::Constant).then_some("pump"));
+    draw.parts.extend((rig.power_unit != PowerUnit::Constant).then_some("pump"));
     let lines = moving_lines(draw, &actuator);
-    let options =
-        MachineOptions { load, power_unit: unit, moving_setting: true, lines, ..MachineOptions::default() };
+    let options = MachineOptions { load, moving_setting: true, lines, ..MachineOptions::default() };
     let machine = Machine::new(&actuator, &options).unwrap();
     let position = draw.spread(0.1, 0.9) * rig.cylinder.stroke.length().unwrap_or(7.0);
     let rest = rest(draw, &actuator, &machine, position);
-    Resting { actuator, lines, load, unit, machine, position, rest }
+    Resting { actuator, lines, load, machine, position, rest }
 }
 
 /// Load at its held position, and the motion of its ground for the rod's end.
@@ -383,19 +381,19 @@ fn pressure_feedback(draw: &mut Draw, actuator: &Actuator) -> Option<PressureFee
 fn drawn(number: u64, kinds: &[Linkage; 4]) -> Drawn {
     let mut draw = Draw::new(90, number);
     let (rig, of_gas) = parts(&mut draw, number, kinds);
-    let Resting { actuator, lines, load, unit, machine, position, rest } = resting(&mut draw, number, rig);
+    let Resting { actuator, lines, load, machine, position, rest } = resting(&mut draw, rig);
     let outputs = machine.signals(&rest.state, &rest.all_inputs());
     assert!((outputs.piston.position - position).abs() < 1e-11, "{number}");
     let (force, angle) = (outputs.hydraulic_force, outputs.joint.position);
     let (own, turned) = linear_load(&load, rig.linkage.as_ref(), force, angle);
-    let (pressures, of_machine) = (outputs.pressures, (&machine, &unit));
+    let pressures = outputs.pressures;
     let (plant, behind) = match lines {
         Some(lines) => {
-            let (plant, behind) = plant_behind(&actuator, of_machine, lines, (position, &rest), own);
+            let (plant, behind) = plant_behind(&actuator, &machine, lines, (position, &rest), own);
             (plant, Some(behind))
         }
         None => {
-            let (plant, _) = plant_at_rest(&actuator, of_machine, (position, pressures, &rest.state), own);
+            let (plant, _) = plant_at_rest(&actuator, &machine, (position, pressures, &rest.state), own);
             (plant, None)
         }
     };

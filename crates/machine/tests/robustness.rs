@@ -134,12 +134,8 @@ fn lost_supplies_and_reversed_pressures_are_no_error() {
         effective_bulk_modulus: 1e9,
         accumulator: None,
     };
-    let options = MachineOptions {
-        power_unit: PowerUnit::PumpLimited(unit),
-        load: free_load(),
-        ..MachineOptions::default()
-    };
-    let rig = hose_rig();
+    let options = MachineOptions { load: free_load(), ..MachineOptions::default() };
+    let rig = Components { power_unit: PowerUnit::PumpLimited(unit), ..hose_rig() };
     let course = [(0.5, 5.0), (1.0, -5.0), (1.5, 0.0)];
     let (result, outputs) =
         drive(machine_of(rig, &options), &at(0.25), 3.0, &course, Profile::constant(0.25));

@@ -18,6 +18,7 @@ use super::cross_port::cross_port;
 use super::friction::friction;
 use super::gas::{accumulator, adjustment};
 use super::numbers::Numbers;
+use super::supply::power_unit;
 use crate::project::{
     self, BoundedNumber, Component, DeclaredAccumulator, DeclaredNeck, DeclaredSeries, DeclaredSpring,
     DeclaredTransmission, DeclaredWeight, EdgeCoefficients, HoseExpansion, LineVolume, NullLeakage,
@@ -64,6 +65,7 @@ pub fn components<S: Scalar>(
             .map(|(side, line)| adjustment(line.accumulator.as_ref()?, &numbers.of_line(side), &fluid)),
         fluid,
         supply: Supply { pressure, tank_pressure },
+        power_unit: power_unit(declared, numbers),
         valve: valve(&declared.valve, numbers, pressure - tank_pressure),
         line_a: line("a", &declared.line.a),
         line_b: line("b", &declared.line.b),

@@ -12,7 +12,10 @@ use super::numbers::Numbers;
 use crate::project::{self, SupplyModel};
 
 /// Where the supply pressure comes from.
-pub fn power_unit<S: Scalar>(declared: &project::DeclaredActuator, numbers: &Numbers<'_, S>) -> PowerUnit<S> {
+pub(super) fn power_unit<S: Scalar>(
+    declared: &project::DeclaredActuator,
+    numbers: &Numbers<'_, S>,
+) -> PowerUnit<S> {
     let SupplyModel::PumpLimited(pump) = &declared.supply.model else { return PowerUnit::Constant };
     let of_supply = numbers.within("supply");
     let at = |key: &str, value: f64| of_supply.at(key, value);
@@ -30,27 +33,25 @@ pub fn power_unit<S: Scalar>(declared: &project::DeclaredActuator, numbers: &Num
 /// The settled state of a limited pump with valve and chambers, given the balance at the stated
 /// supply; `None` for a constant pressure.
 pub fn settled_supply<S: Scalar>(
-    declared: &project::DeclaredActuator,
-    numbers: &Numbers<'_, S>,
+    power_unit: &PowerUnit<S>,
     balance: &Balance<S>,
     steady: Steady<S>,
 ) -> Option<SettledSupply<S>> {
-    match power_unit(declared, numbers) {
+    match power_unit {
         PowerUnit::Constant => None,
-        PowerUnit::PumpLimited(unit) => Some(balance.settled_supply(&unit, steady)),
+        PowerUnit::PumpLimited(unit) => Some(balance.settled_supply(unit, steady)),
     }
 }
 
 /// That supply for small motions.
 pub(crate) fn yielding_supply<S: Scalar>(
-    declared: &project::DeclaredActuator,
-    numbers: &Numbers<'_, S>,
+    power_unit: &PowerUnit<S>,
     balance: &Balance<S>,
     settled: &SettledSupply<S>,
     side: SpoolDirection<S>,
 ) -> Option<YieldingSupply<S>> {
-    let PowerUnit::PumpLimited(unit) = power_unit(declared, numbers) else { return None };
-    Some(YieldingSupply::new(&unit, balance, balance.supply.pressure, settled, side))
+    let PowerUnit::PumpLimited(unit) = power_unit else { return None };
+    Some(YieldingSupply::new(unit, balance, balance.supply.pressure, settled, side))
 }
 
 /// Power in W that the valve takes from the supply at the operating point: leakage and tare flow

@@ -4,7 +4,7 @@
 use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{CommandedPlant, Sensed, SimulationSettings};
-use phea_hydraulics::actuator::Actuator;
+use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use phea_hydraulics::line::StiffeningMember;
@@ -15,7 +15,7 @@ use super::SimulateError;
 use super::line_limits::LineLimits;
 use crate::project::{self, Project, Scenario};
 use crate::quantity::{MotionKind, Units};
-use crate::rig::{Numbers, OfMotion, Rig, lines, power_unit, pressure_ratio, velocity_gain};
+use crate::rig::{Numbers, OfMotion, Rig, lines, pressure_ratio, velocity_gain};
 use crate::setup::Setup;
 
 /// A machine with its controller.
@@ -111,6 +111,7 @@ impl ControlledMachine {
         (control, feed_forward): (Control, f64),
     ) -> ControlledMachine {
         ControlledMachine {
+            relief_shut_pa: relief_shut_pa(rig.actuator.components()),
             rig,
             machine,
             control,
@@ -118,7 +119,6 @@ impl ControlledMachine {
             feed_forward,
             expansion_stated_at: expansion_stated_at(project),
             force_capacity_n: capacity(project),
-            relief_shut_pa: relief_shut_pa(project),
             gas_wall_celsius: gas_wall_celsius(project),
             line_limits: LineLimits::of(project),
             units: project.units,
@@ -149,10 +149,9 @@ fn rig_and_machine(
 }
 
 /// Where the relief valve of a limited pump is shut, Pa.
-fn relief_shut_pa(project: &Project) -> Option<f64> {
-    let declared = project.actuator.as_ref()?;
-    match power_unit(declared, &Numbers::declared()) {
-        PowerUnit::PumpLimited(unit) => Some(declared.supply.pressure - unit.relief_override),
+fn relief_shut_pa(components: &Components) -> Option<f64> {
+    match components.power_unit {
+        PowerUnit::PumpLimited(unit) => Some(components.supply.pressure - unit.relief_override),
         PowerUnit::Constant => None,
     }
 }
@@ -228,7 +227,6 @@ pub fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions,
     let Some(declared) = &project.actuator else { return Ok(MachineOptions::default()) };
     let fed_back = project.controller.as_ref().and_then(|controller| controller.pressure_feedback);
     Ok(MachineOptions {
-        power_unit: power_unit(declared, &Numbers::declared()),
         load: load(&declared.load, declared.motion())?,
         velocity_gain: velocity_gain(declared, &Numbers::declared()).unwrap_or(1.0),
         pressure_ratio: fed_back.map_or(1.0, |fed_back| pressure_ratio(&fed_back, actuator.components())),

@@ -1,4 +1,4 @@
-use super::{LoadModel, PowerUnit};
+use super::LoadModel;
 use crate::line::{DynamicLine, StiffeningMember};
 use crate::parameter::{ParameterError, Problems};
 
@@ -6,8 +6,6 @@ use crate::parameter::{ParameterError, Problems};
 /// constant supply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MachineOptions {
-    /// Source of the supply pressure.
-    pub power_unit: PowerUnit,
     /// Load on the force sensor.
     pub load: LoadModel,
     /// Ratio of the measured to the true velocity of the load: 1 + e, e being the error of the
@@ -34,7 +32,6 @@ pub struct MachineOptions {
 impl Default for MachineOptions {
     fn default() -> MachineOptions {
         MachineOptions {
-            power_unit: PowerUnit::Constant,
             load: LoadModel::Prescribed,
             velocity_gain: 1.0,
             pressure_ratio: 1.0,
@@ -51,9 +48,6 @@ impl MachineOptions {
     /// Impossible options; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
-        if let PowerUnit::PumpLimited(unit) = self.power_unit {
-            problems.component("supply", unit.problems());
-        }
         let limits = self.gas_pressure_limits.iter().zip(["line.a", "line.b"]);
         for (limit, line) in limits.filter_map(|(limit, line)| Some(((*limit)?, line))) {
             problems.positive(&format!("{line}.accumulator.maximum_pressure"), limit);

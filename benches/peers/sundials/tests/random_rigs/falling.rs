@@ -15,7 +15,7 @@ use phea_hydraulics::fluid::Fluid;
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
 use phea_hydraulics::line::Line;
-use phea_hydraulics::machine::{Machine, MachineOptions, StartValues};
+use phea_hydraulics::machine::{Machine, MachineOptions, PowerUnit, StartValues};
 use phea_hydraulics::servovalve::{
     LeakageModel, LeakageShape, OpeningLaw, Servovalve, SpoolImperfection, Supply,
 };
@@ -93,6 +93,7 @@ fn components(chance: &mut Chance) -> Components {
             vapour_pressure_absolute: 0.0,
         },
         supply: Supply { pressure, tank_pressure: 0.0 },
+        power_unit: PowerUnit::Constant,
         valve: Servovalve {
             flow_coefficients: chance.edges(flow_coefficient),
             opening: OpeningLaw::Proportional,

@@ -10,7 +10,7 @@ use phea_hydraulics::fluid::Fluid;
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
 use phea_hydraulics::line::Line;
-use phea_hydraulics::machine::{LoadModel, Machine, MachineOptions, StartValues};
+use phea_hydraulics::machine::{LoadModel, Machine, MachineOptions, PowerUnit, StartValues};
 use phea_hydraulics::servovalve::{
     LeakageModel, LeakageShape, OpeningLaw, Servovalve, SpoolImperfection, Supply,
 };
@@ -87,6 +87,7 @@ pub(crate) fn components(chance: &mut Chance) -> Components {
             vapour_pressure_absolute: 0.0,
         },
         supply: Supply { pressure, tank_pressure: 0.0 },
+        power_unit: PowerUnit::Constant,
         valve: Servovalve {
             flow_coefficients: chance.edges(flow_coefficient),
             opening: OpeningLaw::Proportional,

@@ -74,7 +74,7 @@ pub(crate) fn enrich(chance: &mut Chance, components: &mut Components, options: 
     components.cylinder.end_stops = chance
         .happens(0.6)
         .then(|| Contact { stiffness: most_force / chance.decades(1e-6, 1e-3), relative_damping: 1.0 });
-    if let PowerUnit::PumpLimited(pump) = &mut options.power_unit {
+    if let PowerUnit::PumpLimited(pump) = &mut components.power_unit {
         pump.accumulator = chance.happens(0.5).then(|| Accumulator {
             gas_volume: pump.volume * chance.decades(0.1, 10.0),
             precharge_pressure: supply.pressure * chance.between(0.3, 1.1),

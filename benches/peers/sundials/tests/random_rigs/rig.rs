@@ -165,7 +165,7 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
 }
 
 fn features(components: &Components, options: &MachineOptions, control: &Control) -> Vec<&'static str> {
-    let pump = if let PowerUnit::PumpLimited(pump) = options.power_unit { Some(pump) } else { None };
+    let pump = if let PowerUnit::PumpLimited(pump) = components.power_unit { Some(pump) } else { None };
     let has = [
         ("air", components.fluid.entrained_air.is_some()),
         ("unequal areas", components.cylinder.area_a != components.cylinder.area_b),
@@ -210,6 +210,7 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
     Components {
         fluid,
         supply: Supply { pressure, tank_pressure },
+        power_unit: PowerUnit::Constant,
         valve: Servovalve {
             flow_coefficients: chance.edges(flow_coefficient),
             opening: OpeningLaw::Proportional,
@@ -320,7 +321,9 @@ fn options(chance: &mut Chance, components: &mut Components) -> MachineOptions {
         effective_bulk_modulus: 1e9,
         accumulator: None,
     };
-    let power_unit = if chance.happens(0.2) { PowerUnit::PumpLimited(pump) } else { PowerUnit::Constant };
+    if chance.happens(0.2) {
+        components.power_unit = PowerUnit::PumpLimited(pump);
+    }
     components.cylinder.internal_leakage =
         chance.happens(0.5).then(|| flow / supply.pressure * chance.decades(1e-4, 1e-1));
     components.cylinder.end_stops = chance
@@ -328,7 +331,6 @@ fn options(chance: &mut Chance, components: &mut Components) -> MachineOptions {
         .then(|| Contact { stiffness: most_force / chance.decades(1e-5, 0.3), relative_damping: 1.0 });
     components.friction = smoothed(components.friction, chance.decades(1e-4, 1e-2));
     MachineOptions {
-        power_unit,
         load: if chance.happens(0.3) { load } else { LoadModel::Prescribed },
         ..MachineOptions::default()
     }
