@@ -10,6 +10,7 @@ mod ideal_valve;
 mod in_loop;
 mod largest_flow;
 mod lines;
+mod load;
 mod numbers;
 mod of_motion;
 mod outside;

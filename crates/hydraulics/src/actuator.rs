@@ -11,6 +11,7 @@ use crate::force_sensor::ForceSensor;
 use crate::friction::Friction;
 use crate::line::{Line, StiffeningMember};
 use crate::linkage::Linkage;
+use crate::load::Load;
 use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 use crate::power_unit::PowerUnit;
 use crate::series::SeriesElement;
@@ -54,6 +55,8 @@ pub struct Components<S = f64> {
     pub series: Option<SeriesElement<S>>,
     /// Linkage between rod and a load that turns; `None` if the load moves with the rod.
     pub linkage: Option<Linkage<S>>,
+    /// Load on the force sensor.
+    pub load: Load<S>,
     /// Bulk modulus used for the chambers.
     pub stiffness_model: StiffnessModel,
 }
@@ -231,6 +234,7 @@ impl Actuator {
         problems.component("force_sensor", force_sensor.problems());
         problems.component("series", components.series.map_or(Vec::new(), |series| series.problems()));
         problems.component("linkage", components.linkage.map_or(Vec::new(), |linkage| linkage.problems()));
+        problems.component("load", components.load.problems());
         let not_empty = ParameterRequirement::ChamberNotEmpty;
         let volume_a = cylinder.dead_volume_a + line_a.volume();
         let volume_b = cylinder.dead_volume_b + line_b.volume();

@@ -15,7 +15,7 @@
 //! sensor         d(x - x_L)/dt = v - v_L,   F_e = K_S (x - x_L)          thesis (4.45)
 //! series         spring or oil between sensor and load, or absent         SeriesElement
 //! bristles       dz/dt                                          thesis (4.30), corrected: LuGre
-//! load           prescribed, or d(x_L - x_0)/dt, dv_L/dt         LoadModel; behind a Linkage theta for x
+//! load           prescribed, or d(x_L - x_0)/dt, dv_L/dt         Load; behind a Linkage theta for x
 //! supply         constant, or dp_S/dt                           PowerUnit
 //! lines          lumped, or states and waves of their own       DynamicLine
 //! ```
@@ -45,7 +45,7 @@ pub use crate::accumulator::Accumulator;
 pub use crate::power_unit::{PowerUnit, PumpLimited};
 pub use chambers::{AeratedChambers, Chambers};
 pub use ledger::{Account, ENERGY_ACCOUNTS, Ledger, OIL_ACCOUNTS};
-pub use load::{LoadModel, Motion};
+pub use load::Motion;
 pub use options::{MachineError, MachineOptions};
 pub use signals::{INDICATORS, MachineSignals};
 pub use start::{InitialCondition, StartValues};
@@ -62,6 +62,7 @@ use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use crate::friction::MovingFriction;
 use crate::line::{DynamicLine, Segments};
 use crate::linkage::Linkage;
+use crate::load::Load;
 use crate::series::MovingSeries;
 use crate::servovalve::{Servovalve, Supply};
 use equations::constant;
@@ -70,7 +71,7 @@ use state::Layout;
 
 /// Actuator with its load and its power unit, in motion. Parameters are numbers, or lanes of them.
 ///
-/// Its inputs are the position in m and the velocity in m/s of the load's ground ([`LoadModel`]; in
+/// Its inputs are the position in m and the velocity in m/s of the load's ground ([`Load`]; in
 /// rad and rad/s behind a linkage), the external force in N (N m) if there is one
 /// ([`MachineOptions::external_force`]), the change of the setting of its accumulators and its rate
 /// in 1/s if it moves ([`MachineOptions::moving_setting`]), and then the waves that arrive from
@@ -115,7 +116,7 @@ pub struct Machine<S = f64> {
     sensor_stiffness: S,
     series: Option<MovingSeries<S>>,
     linkage: Option<Linkage<S>>,
-    load: LoadModel<S>,
+    load: Load<S>,
     velocity_gain: S,
     /// Factor phi of the pressure signal p_A - phi p_B.
     pressure_ratio: S,
@@ -128,7 +129,8 @@ impl Machine {
     /// Machine of an actuator with these options.
     ///
     /// # Errors
-    /// All impossible options; a static friction curve without the velocity that smooths its jump;
+    /// All impossible options; a load in front of a wall without a mass; a static friction curve
+    /// without the velocity that smooths its jump;
     /// end stops so soft, or dead volumes so small, that the supply pressure would press the piston
     /// through the last fluid of a chamber; an external force on a load that does not yield.
     pub fn new(actuator: &Actuator, options: &MachineOptions) -> Result<Machine, MachineError> {
@@ -136,10 +138,13 @@ impl Machine {
         if !problems.is_empty() {
             return Err(MachineError::Impossible { problems });
         }
-        if options.external_force && !options.load.moves() {
+        let components = actuator.components();
+        if matches!(components.load, Load::Wall { mass: None, .. }) {
+            return Err(MachineError::LoadWithoutMass);
+        }
+        if options.external_force && !components.load.moves() {
             return Err(MachineError::UnyieldingLoad);
         }
-        let components = actuator.components();
         let friction = MovingFriction::new(&components.friction).ok_or(MachineError::StaticFriction)?;
         let none = DynamicLine::Segments(Segments::lumped(0.0));
         let mut machine = Machine {
@@ -166,7 +171,7 @@ impl Machine {
             sensor_stiffness: components.force_sensor.stiffness,
             series: components.series.map(|series| series.in_motion(&components.fluid, options.member)),
             linkage: components.linkage,
-            load: options.load,
+            load: components.load,
             velocity_gain: options.velocity_gain,
             pressure_ratio: options.pressure_ratio,
             external_force: options.external_force,

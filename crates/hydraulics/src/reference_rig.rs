@@ -13,6 +13,7 @@ use crate::force_sensor::ForceSensor;
 use crate::friction::{Friction, LuGre, Stribeck};
 use crate::line::{Hose, Line, Pipe, PipeWall, Stiffening};
 use crate::linear::LinearParameters;
+use crate::load::Load;
 use crate::power_unit::PowerUnit;
 use crate::servovalve::{
     Edges, LeakageModel, LeakageShape, OpeningLaw, Servovalve, SpoolImperfection, Supply,
@@ -133,6 +134,7 @@ pub fn components(line: Line, stiffness_model: StiffnessModel) -> Components {
         force_sensor: ForceSensor { stiffness: 2e7 },
         series: None,
         linkage: None,
+        load: Load::Prescribed,
         stiffness_model,
     }
 }

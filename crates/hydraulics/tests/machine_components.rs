@@ -11,9 +11,9 @@ use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, EntrainedAir, Fluid};
 use phea_hydraulics::friction::{Friction, MovingFriction};
 use phea_hydraulics::line::{Line, StiffeningMember};
+use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{
-    Accumulator, Chambers, INDICATORS, LoadModel, Machine, MachineOptions, PowerUnit, PumpLimited,
-    StartValues,
+    Accumulator, Chambers, INDICATORS, Machine, MachineOptions, PowerUnit, PumpLimited, StartValues,
 };
 use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
 use phea_hydraulics::reference_rig::{
@@ -322,11 +322,8 @@ fn a_pump_gives_what_it_has() {
     // leakage and tare flow of the valve do not pass the relief valve
     assert!((supply - (70e5 - 5e5 * taken / unit.pump_flow)).abs() < 1.0);
     assert!(taken > 7e-6 && taken < 4e-5);
-    let load = MachineOptions {
-        load: LoadModel::SpringMassDamper { mass: 5.0, stiffness: 0.0, damping: 5e3 },
-        ..MachineOptions::default()
-    };
-    let machine = machine_of(rig, &load);
+    let load = Load::SpringMassDamper { mass: 5.0, stiffness: 0.0, damping: 5e3 };
+    let machine = machine_of(Components { load, ..rig }, &MachineOptions::default());
     let start = StartValues { position: 0.1, pressure_a: 35e5, pressure_b: 35e5, ..StartValues::default() };
     let beginning = machine.start(&start).unwrap();
     let mut state = beginning.state;
@@ -381,10 +378,10 @@ fn tare_flow_is_the_supplys() {
 #[test]
 fn indicators_turn_negative_with_their_events() {
     let contact = Contact { stiffness: 1e8, relative_damping: 0.0 };
-    let load = LoadModel::Wall { mass: 8.0, damping: 50.0, gap: 1e-3, contact };
-    let options = MachineOptions { load, ..MachineOptions::default() };
+    let Contact { stiffness, relative_damping } = contact;
+    let load = Load::Wall { mass: Some(8.0), damping: 50.0, stiffness, gap: 1e-3, relative_damping };
     let rig = stopped(components(hose_line(), StiffnessModel::ByVolume), contact);
-    let machine = machine_of(rig, &options);
+    let machine = machine_of(Components { load, ..rig }, &MachineOptions::default());
     let negative = |pressure_a: f64, position: f64, ground: f64| {
         let state = [0.0, 0.0, pressure_a, 30e5, 0.0, 0.0, position - ground, 0.0];
         let mut indicators = [0.0; INDICATORS.len()];

@@ -14,9 +14,9 @@ use phea_hydraulics::friction::{Friction, FrictionLevels, Stribeck};
 use phea_hydraulics::line::{
     Conduit, DynamicLine, END_SHARE, LaminarFriction, Segments, StiffeningMember, TransmissionLine,
 };
+use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{
-    Accumulator, INDICATORS, LoadModel, Machine, MachineError, MachineOptions, MachineSignals, PowerUnit,
-    PumpLimited,
+    Accumulator, INDICATORS, Machine, MachineError, MachineOptions, MachineSignals, PowerUnit, PumpLimited,
 };
 use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
 use phea_hydraulics::reference_rig::{
@@ -56,22 +56,15 @@ fn pump() -> PumpLimited {
     }
 }
 
-/// Rig with all options at once.
-fn full() -> MachineOptions {
-    let contact = Contact { stiffness: 1e8, relative_damping: 0.3 };
-    MachineOptions {
-        load: LoadModel::Wall { mass: 8.0, damping: 50.0, gap: 2e-3, contact },
-        ..MachineOptions::default()
-    }
-}
-
-/// Components with all imperfections of the spool, a pump, leakage and end stops.
-fn imperfect(components: Components) -> Components {
+/// Components with all imperfections of the spool, a pump, leakage, end stops and a wall.
+fn full(components: Components) -> Components {
     let spool = SpoolImperfection { threshold: Some(0.04), rate_limit: Some(4000.0), ..measured_spool() };
     let valve = Servovalve { spool, ..components.valve };
     let contact = Contact { stiffness: 1e8, relative_damping: 0.3 };
     let power_unit = PowerUnit::PumpLimited(pump());
-    stopped(leaking(Components { valve, power_unit, ..components }, 3e-13), contact)
+    let Contact { stiffness, relative_damping } = contact;
+    let load = Load::Wall { mass: Some(8.0), damping: 50.0, stiffness, gap: 2e-3, relative_damping };
+    stopped(leaking(Components { valve, power_unit, load, ..components }, 3e-13), contact)
 }
 
 fn hose() -> Components {
@@ -103,12 +96,12 @@ fn asymmetric(regular_velocity: f64) -> Components {
 /// Rigs with all possible options, on very different actuators.
 pub(super) fn machines() -> Vec<Machine> {
     let plain = MachineOptions::default();
-    let sprung = MachineOptions {
-        load: LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e6, damping: 200.0 },
-        ..plain
-    };
     let without_gas = PumpLimited { accumulator: None, ..pump() };
-    let pumped = Components { power_unit: PowerUnit::PumpLimited(without_gas), ..asymmetric(1e-4) };
+    let sprung = Components {
+        power_unit: PowerUnit::PumpLimited(without_gas),
+        load: Load::SpringMassDamper { mass: 20.0, stiffness: 3e6, damping: 200.0 },
+        ..asymmetric(1e-4)
+    };
     let rough = Components { friction: benchmark_components().friction, ..hose() };
     let uniform = Components { stiffness_model: StiffnessModel::Uniform, ..asymmetric(1e-3) };
     let conduit = Conduit::of_line(&hose_line(), &hose().fluid, 35e5, StiffeningMember::Nominal).unwrap();
@@ -117,11 +110,11 @@ pub(super) fn machines() -> Vec<Machine> {
     vec![
         machine_of(benchmark_components(), &plain),
         machine_of(hose(), &plain),
-        machine_of(imperfect(rough), &full()),
-        machine_of(pumped, &sprung),
-        machine_of(imperfect(uniform), &full()),
+        machine_of(full(rough), &plain),
+        machine_of(sprung, &plain),
+        machine_of(full(uniform), &plain),
         machine_of(hose(), &MachineOptions { lines: Some([waves, segments]), ..plain }),
-        machine_of(imperfect(rough), &MachineOptions { lines: Some([segments, waves]), ..full() }),
+        machine_of(full(rough), &MachineOptions { lines: Some([segments, waves]), ..plain }),
     ]
 }
 

@@ -22,9 +22,8 @@ use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::Line;
 use phea_hydraulics::linkage::{LinkageGeometry, PivotTriangle};
-use phea_hydraulics::machine::{
-    ENERGY_ACCOUNTS, LoadModel, Machine, MachineOptions, OIL_ACCOUNTS, StartValues,
-};
+use phea_hydraulics::load::Load;
+use phea_hydraulics::machine::{ENERGY_ACCOUNTS, Machine, MachineOptions, OIL_ACCOUNTS, StartValues};
 use phea_hydraulics::reference_rig::{components, cylinder};
 use phea_hydraulics::servovalve::{Edges, Servovalve, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
@@ -375,13 +374,14 @@ fn a_linkage_is_lossless_at_its_joint() {
 #[test]
 fn a_linkage_is_lossless_before_a_load_with_weight() {
     let stiffness = 8e3;
-    let load = LoadModel::SpringMassDamper { mass: 0.2, stiffness, damping: 0.0 };
+    let load = Load::SpringMassDamper { mass: 0.2, stiffness, damping: 0.0 };
     for (number, linkage) in (0..).zip(linkages()) {
         let rig = Components {
             linkage: Some(linkage.level_at(1.2).with_moment(15.0)),
+            load,
             ..with_stroke(ActuatorStroke::Limited(STROKE))
         };
-        let machine = machine_of(rig, &MachineOptions { load, ..MachineOptions::default() });
+        let machine = machine_of(rig, &MachineOptions::default());
         let start = StartValues { position: 0.04, ..at_rest(REST) };
         let held = machine.start(&start).unwrap().state[6];
         // in addition to the torque that holds the weight at rest

@@ -9,14 +9,14 @@ use phea_dynamics::random::{share, stream};
 use phea_dynamics::simulation::small_signal;
 use phea_hydraulics::accumulator::Accumulator;
 use phea_hydraulics::actuator::{Actuator, Components};
-use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::linear::linear_model_coefficients;
-use phea_hydraulics::machine::{InitialCondition, LoadModel, Machine, MachineOptions, PowerUnit};
+use phea_hydraulics::load::Load;
+use phea_hydraulics::machine::{InitialCondition, Machine, MachineOptions, PowerUnit};
 use phea_hydraulics::operating_point::{Balance, Condition, OperatingPoint, Steady, operating_point};
 use phea_hydraulics::plant::{LinearLoad, LinearPlant};
 use phea_hydraulics::reference_rig::{components, cylinder, hose_line, leaking, nominal_plant, pipe_line};
@@ -99,11 +99,11 @@ fn drawn(number: u64) -> Drawn {
     let parts = Components { cylinder: turning(parts.cylinder, number), ..parts };
     let (mass, stiffness, damping) = (spread(1.0, 500.0), spread(1e4, 1e8), spread(10.0, 1e4));
     let leakage = if number % 4 == 1 { 0.0 } else { spread(1e-14, 1e-10) };
-    let contact = Contact { stiffness, relative_damping: spread(0.01, 1.0) };
+    let relative_damping = spread(0.01, 1.0);
     let load = match number % 3 {
-        0 => LoadModel::Prescribed,
-        1 => LoadModel::SpringMassDamper { mass, stiffness, damping },
-        _ => LoadModel::Wall { mass, damping, gap: 1e-3, contact },
+        0 => Load::Prescribed,
+        1 => Load::SpringMassDamper { mass, stiffness, damping },
+        _ => Load::Wall { mass: Some(mass), damping, stiffness, gap: 1e-3, relative_damping },
     };
     let parts = if leakage > 0.0 { leaking(parts, leakage) } else { parts };
     let parts = Components {
@@ -113,11 +113,11 @@ fn drawn(number: u64) -> Drawn {
         thermal_time_constants: thermal_time_constants(number),
         adjustments: gas_valves(number),
         power_unit: power_unit(number),
+        load,
         ..parts
     };
     let actuator = Actuator::new(parts).unwrap();
-    let options = MachineOptions { load, ..MachineOptions::default() };
-    let machine = Machine::new(&actuator, &options).unwrap();
+    let machine = Machine::new(&actuator, &MachineOptions::default()).unwrap();
     let (position, command) = (spread(0.05, 0.45), spread(0.01, 2.0));
     // a wall cannot pull: the next command pushes harder
     let rests = (0..20).map(|step| {
@@ -128,10 +128,10 @@ fn drawn(number: u64) -> Drawn {
     // the wall is pressed by K d_0, and its damping grows with this force
     let pressed = rest.state[4] * actuator.components().force_sensor.stiffness / stiffness;
     let load = match load {
-        LoadModel::Prescribed => LinearLoad::Prescribed,
-        LoadModel::SpringMassDamper { .. } => LinearLoad::Yielding { mass, damping, stiffness },
-        LoadModel::Wall { .. } => {
-            let damping = damping + contact.stiffness * contact.relative_damping * pressed;
+        Load::Prescribed => LinearLoad::Prescribed,
+        Load::SpringMassDamper { .. } => LinearLoad::Yielding { mass, damping, stiffness },
+        Load::Wall { .. } => {
+            let damping = damping + stiffness * relative_damping * pressed;
             LinearLoad::Yielding { mass, damping, stiffness }
         }
     };

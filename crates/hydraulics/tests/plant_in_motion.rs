@@ -21,7 +21,8 @@ use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::{
     DynamicLine, END_SHARE, LaminarFriction, Line, LineModel, Segments, StiffeningMember,
 };
-use phea_hydraulics::machine::{Chambers, InitialCondition, LoadModel, Machine, MachineOptions};
+use phea_hydraulics::load::Load;
+use phea_hydraulics::machine::{Chambers, InitialCondition, Machine, MachineOptions};
 use phea_hydraulics::operating_point::{Condition, operating_point};
 use phea_hydraulics::plant::{BehindLines, ChamberDynamics, LinearLoad, LinearPlant, PlantInMotion};
 use phea_hydraulics::reference_rig::{components, cylinder, hose, hose_line, leaking, pipe_line};
@@ -57,11 +58,11 @@ pub(crate) struct Drawn {
 }
 
 /// Every third load is prescribed, the others are sprung.
-fn loads(number: u64, mass: f64, stiffness: f64, damping: f64) -> (LoadModel, LinearLoad) {
+fn loads(number: u64, mass: f64, stiffness: f64, damping: f64) -> (Load, LinearLoad) {
     if number.is_multiple_of(3) {
-        return (LoadModel::Prescribed, LinearLoad::Prescribed);
+        return (Load::Prescribed, LinearLoad::Prescribed);
     }
-    let sprung = LoadModel::SpringMassDamper { mass, stiffness, damping };
+    let sprung = Load::SpringMassDamper { mass, stiffness, damping };
     (sprung, LinearLoad::Yielding { mass, damping, stiffness })
 }
 
@@ -145,7 +146,6 @@ pub(crate) fn drawn(number: u64) -> Drawn {
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
     let (parts, models) = parts(number, &mut spread);
     let actuator = Actuator::new(parts).unwrap();
-    let parts = actuator.components();
     let line = |line: &Line, model: &LineModel| {
         DynamicLine::new(line, &parts.fluid, actuator.mean_pressure(), StiffeningMember::Nominal, model)
             .unwrap()
@@ -153,7 +153,8 @@ pub(crate) fn drawn(number: u64) -> Drawn {
     let lines = [line(&parts.line_a, &models[0]), line(&parts.line_b, &models[1])];
     let (mass, stiffness, damping) = (spread(1.0, 500.0), spread(1e4, 1e8), spread(10.0, 1e4));
     let (load, linear_load) = loads(number, mass, stiffness, damping);
-    let options = MachineOptions { load, lines: Some(lines), ..MachineOptions::default() };
+    let actuator = Actuator::new(Components { load, ..parts }).unwrap();
+    let options = MachineOptions { lines: Some(lines), ..MachineOptions::default() };
     let machine = Machine::new(&actuator, &options).unwrap();
     let condition = Condition::Command(spread(0.01, 2.0));
     let rest = machine.rest(&operating_point(&actuator, spread(0.05, 0.45), condition).unwrap()).unwrap();

@@ -9,7 +9,8 @@ use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::friction::{Friction, LuGre, LuGrePassivity};
 use phea_hydraulics::line::{DynamicLine, LaminarFriction, LineModel, StiffeningMember};
-use phea_hydraulics::machine::{Accumulator, LoadModel, Machine, MachineOptions, PowerUnit, PumpLimited};
+use phea_hydraulics::load::Load;
+use phea_hydraulics::machine::{Accumulator, Machine, MachineOptions, PowerUnit, PumpLimited};
 use phea_hydraulics::reference_rig::{
     benchmark_components, components, cylinder, hose_line, leaking, pipe_line,
 };
@@ -99,10 +100,8 @@ pub(super) fn rich_machines() -> Vec<(&'static str, Machine)> {
         1.0,
     );
     let by_volume = foamy(rig, StiffnessModel::ByVolume, 1.4);
-    let all = foamy(hoses, StiffnessModel::Uniform, 1.2);
-    let load = LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
-    let (power_unit, lines) = with(charged_pump(40e5, 1.3), lines_of(&all, [FULL, SMEARED]));
-    let everything = (power_unit, MachineOptions { load, ..lines });
+    let load = Load::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
+    let all = Components { load, ..foamy(hoses, StiffnessModel::Uniform, 1.2) };
     let segments = with(pump(), lines_of(&rig, [SMEARED, PLAIN]));
     let gas = |gas_volume, precharge_pressure, polytropic_exponent| {
         Some(Accumulator { gas_volume, precharge_pressure, polytropic_exponent })
@@ -139,7 +138,7 @@ pub(super) fn rich_machines() -> Vec<(&'static str, Machine)> {
         ("air, one modulus", of(uniform, with(PowerUnit::Constant, None))),
         ("segments", of(rig, with(PowerUnit::Constant, lines_of(&rig, [SMEARED, PLAIN])))),
         ("creep", of(hoses, with(pump(), lines_of(&hoses, [FULL, CREEPING])))),
-        ("all", of(all, everything)),
+        ("all", of(all, with(charged_pump(40e5, 1.3), lines_of(&all, [FULL, SMEARED])))),
     ];
     machines.extend(adjusted_machines());
     machines
@@ -174,14 +173,15 @@ fn adjusted_machines() -> [(&'static str, Machine); 3] {
         Components { adjustments: valves, thermal_time_constants: [None, Some(0.05)], ..isothermal };
     let valve_and_gas = Components { adjustments: [valves[0], adjustment(less)], ..at_chambers(rig) };
     let moving = |lines| MachineOptions {
-        load: LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 },
         external_force: true,
         moving_setting: true,
         lines,
         ..MachineOptions::default()
     };
-    let of =
-        |rig, power_unit, lines| machine_of(Components { power_unit, ..leaking(rig, 2e-12) }, &moving(lines));
+    let load = Load::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
+    let of = |rig, power_unit, lines| {
+        machine_of(Components { power_unit, load, ..leaking(rig, 2e-12) }, &moving(lines))
+    };
     let lines = lines_of(&rig, [SMEARED, PLAIN]);
     [
         ("gas that is moved", of(of_gas, charged_pump(40e5, 1.4), None)),

@@ -15,7 +15,8 @@ use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::{DynamicLine, END_SHARE, Line, LineModel, Pipe, PipeWall, StiffeningMember};
 use phea_hydraulics::linkage::Linkage;
-use phea_hydraulics::machine::{InitialCondition, LoadModel, Machine, MachineOptions, PowerUnit};
+use phea_hydraulics::load::Load;
+use phea_hydraulics::machine::{InitialCondition, Machine, MachineOptions, PowerUnit};
 use phea_hydraulics::operating_point::{Condition, operating_point};
 use phea_hydraulics::plant::{
     BehindLines, LinearLoad, LinearPlant, LinearSeries, PlantInMotion, PressureFeedback, SeriesOutput,
@@ -249,7 +250,6 @@ struct Drawn {
 struct Resting {
     actuator: Actuator,
     lines: Option<[DynamicLine; 2]>,
-    load: LoadModel,
     machine: Machine,
     position: f64,
     rest: InitialCondition,
@@ -323,33 +323,34 @@ fn moving_lines(draw: &mut Draw, rig: &Actuator) -> Option<[DynamicLine; 2]> {
 
 fn resting(draw: &mut Draw, rig: Components) -> Resting {
     let turns = rig.linkage.is_some() || rig.cylinder.stroke == ActuatorStroke::Unlimited;
-    let actuator = Actuator::new(rig).unwrap();
     let (mass, stiffness, damping) = match turns {
         true => (draw.spread(0.05, 5.0), draw.spread(1e2, 1e5), draw.spread(0.1, 30.0)),
         false => (draw.spread(1.0, 500.0), draw.spread(1e4, 1e8), draw.spread(10.0, 1e4)),
     };
     let load = match draw.part("prescribed load", 0.4) {
-        true => LoadModel::Prescribed,
-        false => LoadModel::SpringMassDamper { mass, stiffness, damping },
+        true => Load::Prescribed,
+        false => Load::SpringMassDamper { mass, stiffness, damping },
     };
     draw.parts.extend(load.moves().then_some("sprung load"));
     draw.parts.extend((rig.power_unit != PowerUnit::Constant).then_some("pump"));
+    let rig = Components { load, ..rig };
+    let actuator = Actuator::new(rig).unwrap();
     let lines = moving_lines(draw, &actuator);
-    let options = MachineOptions { load, moving_setting: true, lines, ..MachineOptions::default() };
+    let options = MachineOptions { moving_setting: true, lines, ..MachineOptions::default() };
     let machine = Machine::new(&actuator, &options).unwrap();
     let position = draw.spread(0.1, 0.9) * rig.cylinder.stroke.length().unwrap_or(7.0);
     let rest = rest(draw, &actuator, &machine, position);
-    Resting { actuator, lines, load, machine, position, rest }
+    Resting { actuator, lines, machine, position, rest }
 }
 
 /// Load at its held position, and the motion of its ground for the rod's end.
-fn linear_load(load: &LoadModel, linkage: Option<&Linkage>, force: f64, angle: f64) -> (LinearLoad, f64) {
+fn linear_load(load: &Load, linkage: Option<&Linkage>, force: f64, angle: f64) -> (LinearLoad, f64) {
     let end = linkage.map(|linkage| linkage.end(angle));
     let own = match (*load, end) {
-        (LoadModel::SpringMassDamper { mass, stiffness, damping }, None) => {
+        (Load::SpringMassDamper { mass, stiffness, damping }, None) => {
             LinearLoad::Yielding { mass, damping, stiffness }
         }
-        (LoadModel::SpringMassDamper { mass, stiffness, damping }, Some(end)) => {
+        (Load::SpringMassDamper { mass, stiffness, damping }, Some(end)) => {
             let weight = linkage.and_then(|linkage| linkage.weight_at(angle));
             LinearLoad::Linked {
                 inertia: mass,
@@ -381,11 +382,11 @@ fn pressure_feedback(draw: &mut Draw, actuator: &Actuator) -> Option<PressureFee
 fn drawn(number: u64, kinds: &[Linkage; 4]) -> Drawn {
     let mut draw = Draw::new(90, number);
     let (rig, of_gas) = parts(&mut draw, number, kinds);
-    let Resting { actuator, lines, load, machine, position, rest } = resting(&mut draw, rig);
+    let Resting { actuator, lines, machine, position, rest } = resting(&mut draw, rig);
     let outputs = machine.signals(&rest.state, &rest.all_inputs());
     assert!((outputs.piston.position - position).abs() < 1e-11, "{number}");
     let (force, angle) = (outputs.hydraulic_force, outputs.joint.position);
-    let (own, turned) = linear_load(&load, rig.linkage.as_ref(), force, angle);
+    let (own, turned) = linear_load(&actuator.components().load, rig.linkage.as_ref(), force, angle);
     let pressures = outputs.pressures;
     let (plant, behind) = match lines {
         Some(lines) => {

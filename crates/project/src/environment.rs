@@ -2,6 +2,7 @@
 
 use super::key::{key, plain};
 use super::visitor::{Variants, Visitor};
+pub use phea_hydraulics::load::Load;
 use phea_quantity::{
     ANGULAR_FREQUENCY, DAMPING, FORCE, INVERSE_VELOCITY, LENGTH, MASS, RATIO, STIFFNESS, TIME, VELOCITY,
 };
@@ -70,54 +71,30 @@ impl DeclaredVelocitySensor {
     }
 }
 
-/// Load on which the force acts.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub enum Load {
-    /// Motion prescribed by the scenario, for any force.
-    #[default]
-    Prescribed,
-    /// Mass, spring and damper.
-    SpringMassDamper {
-        /// Mass, kg.
-        mass: f64,
-        /// Stiffness, N/m.
-        stiffness: f64,
-        /// Damping, N·s/m.
-        damping: f64,
-    },
-    /// Guided mass; free up to the gap, then the wall.
-    Wall {
-        /// Mass, kg; needed only for a load that moves freely.
-        mass: Option<f64>,
-        /// Damping of its guide, N·s/m.
-        damping: f64,
-        /// Stiffness of the wall, N/m.
-        stiffness: f64,
-        /// Free play before the wall is touched, m.
-        gap: f64,
-        /// Damping of the wall relative to its elastic force, s/m.
-        relative_damping: f64,
-    },
+/// Load while its table is visited: its type belongs to the physics.
+#[derive(Clone)]
+struct LoadTable(Load);
+
+/// Visits the table of a load.
+pub(crate) fn visit_load<V: Visitor>(load: &mut Load, v: &mut V) {
+    let mut table = LoadTable(*load);
+    v.variant(plain("model", "Which load."), &mut table, false);
+    *load = table.0;
 }
 
-impl Load {
-    pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        v.variant(plain("model", "Which load."), self, false);
-    }
-}
-
-impl Variants for Load {
-    fn all(&self) -> Vec<Load> {
+impl Variants for LoadTable {
+    fn all(&self) -> Vec<LoadTable> {
         let (damping, stiffness) = (0.0, 0.0);
-        vec![
+        let all = [
             Load::Prescribed,
             Load::SpringMassDamper { mass: 0.0, stiffness, damping },
             Load::Wall { mass: None, damping, stiffness, gap: 0.0, relative_damping: 0.0 },
-        ]
+        ];
+        all.map(LoadTable).to_vec()
     }
 
     fn word(&self) -> &'static str {
-        match self {
+        match self.0 {
             Load::Prescribed => "prescribed",
             Load::SpringMassDamper { .. } => "spring_mass_damper",
             Load::Wall { .. } => "wall",
@@ -129,7 +106,7 @@ impl Variants for Load {
         let spring = key("stiffness", &STIFFNESS, "Stiffness of the load or of the wall.").of_load();
         let damper =
             key("damping", &DAMPING, "Damping of the load or of its guide.").of_load().not_negative().or(0.0);
-        match self {
+        match &mut self.0 {
             Load::Prescribed => {}
             Load::SpringMassDamper { mass, stiffness, damping } => {
                 v.quantity(kilograms, mass);

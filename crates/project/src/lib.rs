@@ -317,7 +317,7 @@ impl DeclaredActuator {
         let k = plain("linkage", "What lies between the rod and a load that turns; absent: nothing.");
         v.table(k, &mut self.linkage, DeclaredLinkage::visit);
         v.load_moves((!v.names_everything()).then(|| self.load_motion()));
-        v.table_or_default(plain("load", "What the force acts on."), &mut self.load, Load::visit);
+        v.table_or_default(plain("load", "What the force acts on."), &mut self.load, environment::visit_load);
     }
 
     /// All tables with their names.

@@ -17,6 +17,7 @@ use phea_hydraulics::stroke::{ActuatorStroke, FURTHER_STAGES, PistonStage, Teles
 use super::cross_port::cross_port;
 use super::friction::friction;
 use super::gas::{accumulator, adjustment};
+use super::load::load;
 use super::numbers::Numbers;
 use super::supply::power_unit;
 use crate::project::{
@@ -84,6 +85,7 @@ pub fn components<S: Scalar>(
         linkage: declared.linkage.as_ref().map(|linkage| {
             self::linkage(linkage, declared.cylinder.stroke, &numbers.within("linkage.weight"))
         }),
+        load: load(&declared.load, numbers),
         stiffness_model: declared.line.compliance,
     }
 }

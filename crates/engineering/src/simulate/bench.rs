@@ -5,10 +5,9 @@ use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{CommandedPlant, Sensed, SimulationSettings};
 use phea_hydraulics::actuator::{Actuator, Components};
-use phea_hydraulics::contact::Contact;
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use phea_hydraulics::line::StiffeningMember;
-use phea_hydraulics::machine::{LoadModel, Machine, MachineOptions, PowerUnit};
+use phea_hydraulics::machine::{Machine, MachineError, MachineOptions, PowerUnit};
 use phea_machine::{Control, Sampled};
 
 use super::SimulateError;
@@ -143,9 +142,20 @@ fn rig_and_machine(
     let rig = setup.rig()?;
     let MachineOptions { external_force, moving_setting, .. } = *driven;
     let options = MachineOptions { external_force, moving_setting, ..options(setup.project, &rig.actuator)? };
-    let machine = Machine::new(&rig.actuator, &options)
-        .map_err(|error| SimulateError::Machine(OfMotion { motion: rig.motion, error }))?;
+    let machine = machine_of(rig.motion, &rig.actuator, &options)?;
     Ok((rig.clone(), Sensed::new(machine, &setup.sensor)?))
+}
+
+/// The machine of an actuator that moves in this way.
+pub fn machine_of(
+    motion: MotionKind,
+    actuator: &Actuator,
+    options: &MachineOptions,
+) -> Result<Machine, SimulateError> {
+    Machine::new(actuator, options).map_err(|error| match error {
+        MachineError::LoadWithoutMass => SimulateError::LoadMass(motion),
+        error => SimulateError::Machine(OfMotion { motion, error }),
+    })
 }
 
 /// Where the relief valve of a limited pump is shut, Pa.
@@ -227,7 +237,6 @@ pub fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions,
     let Some(declared) = &project.actuator else { return Ok(MachineOptions::default()) };
     let fed_back = project.controller.as_ref().and_then(|controller| controller.pressure_feedback);
     Ok(MachineOptions {
-        load: load(&declared.load, declared.motion())?,
         velocity_gain: velocity_gain(declared, &Numbers::declared()).unwrap_or(1.0),
         pressure_ratio: fed_back.map_or(1.0, |fed_back| pressure_ratio(&fed_back, actuator.components())),
         external_force: false,
@@ -254,20 +263,5 @@ fn gas_pressure_limits(declared: &project::DeclaredActuator, actuator: &Actuator
         let (ratio, atmosphere) = (declared[side]?.maximum_pressure_ratio?, ATMOSPHERIC_PRESSURE_ABSOLUTE);
         let at_rest = actuator.components().accumulators[side]?.precharge_pressure;
         Some(ratio * (at_rest + atmosphere) - atmosphere)
-    })
-}
-
-fn load(declared: &project::Load, motion: MotionKind) -> Result<LoadModel, SimulateError> {
-    Ok(match *declared {
-        project::Load::Prescribed => LoadModel::Prescribed,
-        project::Load::SpringMassDamper { mass, stiffness, damping } => {
-            LoadModel::SpringMassDamper { mass, stiffness, damping }
-        }
-        project::Load::Wall { mass, damping, stiffness, gap, relative_damping } => LoadModel::Wall {
-            mass: mass.ok_or(SimulateError::LoadMass(motion))?,
-            damping,
-            gap,
-            contact: Contact { stiffness, relative_damping },
-        },
     })
 }

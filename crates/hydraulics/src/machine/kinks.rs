@@ -5,7 +5,7 @@ use phea_dynamics::scalar::{Parameters, Scalar};
 
 use super::equations::constant;
 use super::signals::ground_of;
-use super::{LoadModel, Machine, PowerUnit};
+use super::{Machine, PowerUnit};
 use crate::contact::Contact;
 use crate::friction::MovingFriction;
 use crate::series::MovingSeries;
@@ -50,9 +50,9 @@ impl<S: Scalar> Machine<S> {
             press(-from_a, -state.velocity);
             press(-to_b, state.velocity);
         }
-        if let LoadModel::Wall { contact, .. } = &self.load {
+        if let Some(wall) = self.load.wall() {
             let clearance = self.load.convert(&mut constant::<S, T>).clearance(&load, &ground);
-            write_contact(contact, -clearance, load.velocity - ground.velocity, write);
+            write_contact(&wall, -clearance, load.velocity - ground.velocity, write);
         }
         if let Some(MovingSeries::Spring(spring)) = &self.series
             && spring.travel.is_some()

@@ -1,4 +1,3 @@
-use super::LoadModel;
 use crate::line::{DynamicLine, StiffeningMember};
 use crate::parameter::{ParameterError, Problems};
 
@@ -6,8 +5,6 @@ use crate::parameter::{ParameterError, Problems};
 /// constant supply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MachineOptions {
-    /// Load on the force sensor.
-    pub load: LoadModel,
     /// Ratio of the measured to the true velocity of the load: 1 + e, e being the error of the
     /// sensor's gain.
     pub velocity_gain: f64,
@@ -32,7 +29,6 @@ pub struct MachineOptions {
 impl Default for MachineOptions {
     fn default() -> MachineOptions {
         MachineOptions {
-            load: LoadModel::Prescribed,
             velocity_gain: 1.0,
             pressure_ratio: 1.0,
             external_force: false,
@@ -52,7 +48,6 @@ impl MachineOptions {
         for (limit, line) in limits.filter_map(|(limit, line)| Some(((*limit)?, line))) {
             problems.positive(&format!("{line}.accumulator.maximum_pressure"), limit);
         }
-        problems.component("load", self.load.problems());
         problems.positive("velocity_sensor.gain", self.velocity_gain);
         problems.not_negative("controller.pressure_feedback.ratio", self.pressure_ratio);
         problems.into_vec()
@@ -72,6 +67,9 @@ pub enum MachineError {
     /// that smooths it, or bristles.
     #[error("static Stribeck friction jumps at standstill: state a regular velocity, or use LuGre friction")]
     StaticFriction,
+    /// A load in front of a wall without a mass: nothing determines its motion.
+    #[error("a load in front of a wall is simulated with the mass that moves beyond the force sensor")]
+    LoadWithoutMass,
     /// An external force on a load whose motion is prescribed: it would have no effect.
     #[error("an external force moves no load whose motion is prescribed: it needs one with a mass")]
     UnyieldingLoad,

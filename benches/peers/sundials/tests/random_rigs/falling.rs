@@ -15,6 +15,7 @@ use phea_hydraulics::fluid::Fluid;
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
 use phea_hydraulics::line::Line;
+use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{Machine, MachineOptions, PowerUnit, StartValues};
 use phea_hydraulics::servovalve::{
     LeakageModel, LeakageShape, OpeningLaw, Servovalve, SpoolImperfection, Supply,
@@ -117,6 +118,7 @@ fn components(chance: &mut Chance) -> Components {
         cross_port: None,
         series: None,
         linkage: None,
+        load: Load::Prescribed,
         cylinder: Cylinder {
             area_a,
             area_b,

@@ -10,7 +10,8 @@ use phea_hydraulics::fluid::Fluid;
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
 use phea_hydraulics::line::Line;
-use phea_hydraulics::machine::{LoadModel, Machine, MachineOptions, PowerUnit, StartValues};
+use phea_hydraulics::load::Load;
+use phea_hydraulics::machine::{Machine, MachineOptions, PowerUnit, StartValues};
 use phea_hydraulics::servovalve::{
     LeakageModel, LeakageShape, OpeningLaw, Servovalve, SpoolImperfection, Supply,
 };
@@ -24,17 +25,17 @@ const DURATION_S: f64 = 0.4;
 /// The rig of this number.
 pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     let mut chance = Chance::of(number, 0x2545_f491_4f6c_dd1d);
-    let components = components(&mut chance);
+    let mut components = components(&mut chance);
     let mass = components.cylinder.moving_mass * chance.decades(0.1, 3.0);
     let stiffness = components.force_sensor.stiffness * chance.decades(1e-2, 0.3);
     let damping = 0.2 * (stiffness * mass).sqrt();
     let sprung = chance.happens(0.4);
-    let load =
-        if sprung { LoadModel::SpringMassDamper { mass, stiffness, damping } } else { LoadModel::Prescribed };
-    let options = MachineOptions { load, ..MachineOptions::default() };
+    if sprung {
+        components.load = Load::SpringMassDamper { mass, stiffness, damping };
+    }
     let control = control(&mut chance, &components);
     let actuator = Actuator::new(components).map_err(Refusal::Actuator)?;
-    let machine = Machine::new(&actuator, &options).map_err(Refusal::Machine)?;
+    let machine = Machine::new(&actuator, &MachineOptions::default()).map_err(Refusal::Machine)?;
     let pressure = 0.5 * components.supply.pressure;
     let position = components.cylinder.stroke.middle();
     let start =
@@ -111,6 +112,7 @@ pub(crate) fn components(chance: &mut Chance) -> Components {
         cross_port: None,
         series: None,
         linkage: None,
+        load: Load::Prescribed,
         cylinder: Cylinder {
             area_a,
             area_b,

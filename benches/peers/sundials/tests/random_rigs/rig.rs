@@ -11,9 +11,8 @@ use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
 use phea_hydraulics::line::{DynamicLine, Line, LineError};
-use phea_hydraulics::machine::{
-    LoadModel, Machine, MachineError, MachineOptions, PowerUnit, PumpLimited, StartValues,
-};
+use phea_hydraulics::load::Load;
+use phea_hydraulics::machine::{Machine, MachineError, MachineOptions, PowerUnit, PumpLimited, StartValues};
 use phea_hydraulics::servovalve::{
     Edges, LeakageModel, LeakageShape, OpeningLaw, Servovalve, SpoolImperfection, Supply,
 };
@@ -113,13 +112,15 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     let mut chance = Chance::of(number, 0x1405_7b7e_f767_814f);
     let (like_benchmark, rich) = (number.is_multiple_of(4), number % 4 == 2);
     let mut components = components(&mut chance, like_benchmark);
-    let mut options =
-        if like_benchmark { MachineOptions::default() } else { options(&mut chance, &mut components) };
+    if !like_benchmark {
+        complete(&mut chance, &mut components);
+    }
+    let mut options = MachineOptions::default();
     if rich {
         if number % 20 == 10 {
             options.lines = Some(rich::lines(&mut chance, &mut components).map_err(Refusal::Line)?);
         }
-        rich::enrich(&mut chance, &mut components, &mut options);
+        rich::enrich(&mut chance, &mut components);
     }
     let control = control(&mut chance, &components, like_benchmark);
     let actuator = Actuator::new(components).map_err(Refusal::Actuator)?;
@@ -129,7 +130,7 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     let inside = chance.between(0.2, 0.8);
     let most = components.supply.pressure * components.cylinder.area_b;
     let size = most * chance.decades(0.02, 0.7);
-    let pulls = chance.happens(0.5) && !matches!(options.load, LoadModel::Wall { .. });
+    let pulls = chance.happens(0.5) && !matches!(components.load::Wall { .. });
     let sign = if pulls { -1.0 } else { 1.0 };
     let mut share = inside;
     if rich && components.cylinder.end_stops.is_some() && chance.happens(0.5) {
@@ -177,8 +178,8 @@ fn features(components: &Components, options: &MachineOptions, control: &Control
         ("pump", pump.is_some()),
         ("accumulator", pump.is_some_and(|pump| pump.accumulator.is_some())),
         ("end stops", components.cylinder.end_stops.is_some()),
-        ("spring load", matches!(options.load, LoadModel::SpringMassDamper { .. })),
-        ("wall", matches!(options.load, LoadModel::Wall { .. })),
+        ("spring load", matches!(components.load::SpringMassDamper { .. })),
+        ("wall", matches!(components.load::Wall { .. })),
         ("segments", matches!(options.lines, Some([DynamicLine::Segments(_), _]))),
         ("one wave", matches!(options.lines, Some([DynamicLine::TransmissionLine(_), _]))),
         ("two waves", matches!(options.lines, Some([DynamicLine::TwoWave(_), _]))),
@@ -234,6 +235,7 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
         cross_port: None,
         series: None,
         linkage: None,
+        load: Load::Prescribed,
         cylinder: Cylinder {
             area_a,
             area_b,
@@ -298,13 +300,13 @@ pub(crate) fn smoothed(friction: Friction, velocity: f64) -> Friction {
     }
 }
 
-/// Leakage across the piston and end stops are the cylinder's.
-fn options(chance: &mut Chance, components: &mut Components) -> MachineOptions {
+/// Adds spool, pump, leakage, end stops and load.
+fn complete(chance: &mut Chance, components: &mut Components) {
     let Components { supply, cylinder, force_sensor, .. } = *components;
     let most_force = supply.pressure * cylinder.area_a;
     let flow = components.valve.flow_coefficients.supply_to_a * (0.5 * supply.pressure).sqrt();
     let stiffness = force_sensor.stiffness * chance.decades(1e-2, 1.0);
-    let load = LoadModel::SpringMassDamper {
+    let load = Load::SpringMassDamper {
         mass: cylinder.moving_mass * chance.decades(0.1, 10.0),
         stiffness,
         damping: most_force * chance.decades(1e-3, 0.3),
@@ -330,9 +332,8 @@ fn options(chance: &mut Chance, components: &mut Components) -> MachineOptions {
         .happens(0.3)
         .then(|| Contact { stiffness: most_force / chance.decades(1e-5, 0.3), relative_damping: 1.0 });
     components.friction = smoothed(components.friction, chance.decades(1e-4, 1e-2));
-    MachineOptions {
-        load: if chance.happens(0.3) { load } else { LoadModel::Prescribed },
-        ..MachineOptions::default()
+    if chance.happens(0.3) {
+        components.load = load;
     }
 }
 
