@@ -1,5 +1,4 @@
 use phea_dynamics::scalar::{Parameters, Scalar};
-use phea_hydraulics::accumulator::Neck;
 use phea_hydraulics::actuator::{Actuator, ActuatorError, Components};
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
@@ -19,9 +18,9 @@ use super::cross_port::cross_port;
 use super::gas::chamber_gas;
 use super::numbers::Numbers;
 use crate::project::{
-    self, BoundedNumber, Component, DeclaredAccumulator, DeclaredNeck, DeclaredSeries, DeclaredSpring,
-    DeclaredTransmission, DeclaredWeight, EdgeCoefficients, FrictionLaw, HoseExpansion, LineVolume,
-    NullLeakage, RatedFlow, StribeckCurve, ValveCoefficients,
+    self, BoundedNumber, Component, DeclaredSeries, DeclaredSpring, DeclaredTransmission, DeclaredWeight,
+    EdgeCoefficients, FrictionLaw, HoseExpansion, LineVolume, NullLeakage, RatedFlow, StribeckCurve,
+    ValveCoefficients,
 };
 
 /// Kinematic viscosity of ISO VG 46 oil at 40 degrees Celsius, m2/s: used where a project states
@@ -244,19 +243,6 @@ fn line<S: Scalar>(
             }
         }
     }
-}
-
-/// The neck of an accumulator declared in the line that `numbers` are of; density, kinematic
-/// viscosity and bulk modulus are those of the oil in it.
-pub(super) fn neck<S: Scalar>(
-    declared: &DeclaredAccumulator,
-    numbers: &Numbers<'_, S>,
-    oil: [S; 3],
-) -> Option<Neck<S>> {
-    let DeclaredNeck { diameter, length, loss_coefficient } = declared.neck?;
-    let at = |key: &str, value: f64| numbers.at(key, value);
-    let size = [at("accumulator.neck_diameter", diameter), at("accumulator.neck_length", length)];
-    Some(Neck::round(size, oil, at("accumulator.neck_loss_coefficient", loss_coefficient)))
 }
 
 /// Pressures in Pa at which the expansion of a hose is evaluated.

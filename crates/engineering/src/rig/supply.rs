@@ -23,7 +23,10 @@ pub fn power_unit<S: Scalar>(declared: &project::DeclaredActuator, numbers: &Num
         relief_override: at("relief_override", pump.relief_override),
         volume: at("volume", pump.volume),
         effective_bulk_modulus: modulus.map_or_else(of_fluid, |value| at("effective_bulk_modulus", value)),
-        accumulator: pump.accumulator.as_ref().map(|declared| accumulator(declared, &of_supply)),
+        accumulator: pump
+            .accumulator
+            .as_ref()
+            .map(|declared| accumulator(declared, &of_supply.within("accumulator"))),
     })
 }
 
