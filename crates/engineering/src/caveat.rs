@@ -270,7 +270,7 @@ fn gas_valve(setup: &Setup<'_>) -> Option<Caveat> {
         return None;
     }
     let components = *setup.rig().ok()?.actuator.components();
-    let valves = [0, 1].map(|side| components.gas_valve(side).filter(|valve| !valve.shut));
+    let valves = [0, 1].map(|side| components.gas_in_use(side)?.valve());
     let valve = valves.into_iter().flatten().next()?;
     let covers = |name: &String| name.ends_with(SETTING_PATH) || name.ends_with(TRANSITION_PATH);
     let has_range = setup.project.uncertainty.iter().any(|uncertain| covers(&uncertain.name));

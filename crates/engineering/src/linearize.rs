@@ -15,6 +15,7 @@ use phea_dynamics::frequency::{PassivityReport, logarithmic_grid, passivity};
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::order::sorted_distinct;
 use phea_dynamics::portable;
+use phea_hydraulics::accumulator::ChamberGas;
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::impedance::{
     Asymptote, closed_loop_impedance, closed_loop_port, final_force_after_load_step, load_motion_of,
@@ -296,7 +297,8 @@ pub fn stroke_stiffness(rig: &Rig, member: StiffeningMember) -> StrokeStiffness 
 pub fn stiffness_at_settings(rig: &Rig) -> Vec<(f64, StrokeStiffness)> {
     let components = rig.actuator.components();
     let pressures = [rig.point.pressure_a, rig.point.pressure_b];
-    let rests = |setting: f64| components.adjustments.iter().flatten().all(|of| of.setting == setting);
+    let settings = || components.gas.iter().flatten().filter_map(ChamberGas::setting);
+    let rests = |setting: f64| settings().all(|at_rest| at_rest == setting);
     let of = |setting: f64| {
         let there = components_at_setting(components, setting);
         (setting, there.chamber_compliance(pressures, StiffeningMember::Nominal).over_stroke())

@@ -244,7 +244,7 @@ impl Rig {
         let at_valve = Actuator::new(Components { supply: settled, ..*components })?;
         let unbalanced = |error| RigError::OperatingPoint(OfMotion { motion: project.motion(), error });
         let point = operating_point(&at_valve, position, steady.into()).map_err(unbalanced)?;
-        accumulator::charged(declared, &components.accumulators, &point)?;
+        accumulator::charged(declared, &components.gas, &point)?;
         let pressures = [point.pressure_a, point.pressure_b];
         let supply = supply
             .map(|found| SettledSupply { settled: Settled { command: point.command, pressures }, ..found });

@@ -3,12 +3,14 @@
 mod adjustment;
 mod bladder;
 mod branch;
+mod chamber_gas;
 mod heat;
 mod neck;
 
-pub use adjustment::{AdjustedPart, Adjustment, GasValve, MovedGas};
+pub use adjustment::{AdjustedGas, GasValve, MovedGas};
 pub use bladder::Bladder;
 pub use branch::{GasBranch, NeckImpedance};
+pub use chamber_gas::{ChamberGas, GasContent, GasPassage, SealedGas};
 pub use heat::{GasRelaxation, HEAT_CAPACITY_RATIO, HeatedGas, RelaxingGas};
 pub use neck::Neck;
 

@@ -3,7 +3,7 @@
 
 use phea_dynamics::scalar::Scalar;
 
-use crate::accumulator::{Accumulator, Adjustment, GasBranch, GasValve, Neck, RelaxingGas};
+use crate::accumulator::{ChamberGas, GasBranch};
 use crate::cross_port::{CrossFlow, CrossPort, DynamicFeedback};
 use crate::cylinder::Cylinder;
 use crate::fluid::Fluid;
@@ -33,16 +33,8 @@ pub struct Components<S = f64> {
     pub line_a: Line<S>,
     /// The line between port B and chamber B.
     pub line_b: Line<S>,
-    /// Accumulators at chambers A and B: each has the pressure of its chamber.
-    pub accumulators: [Option<Accumulator<S>>; 2],
-    /// Necks of these accumulators; without effect on a side without an accumulator.
-    pub necks: [Option<Neck<S>>; 2],
-    /// Thermal time constants of their gas, s; such gas has a polytropic exponent of 1. Without
-    /// effect on a side without an accumulator.
-    pub thermal_time_constants: [Option<S>; 2],
-    /// Adjustments of these accumulators in operation, relative to the gas above, which is that at
-    /// rest; without effect on a side without an accumulator.
-    pub adjustments: [Option<Adjustment<S>>; 2],
+    /// Gas at chambers A and B.
+    pub gas: [Option<ChamberGas<S>>; 2],
     /// Valve between the chambers, at the cylinder.
     pub cross_port: Option<CrossPort<S>>,
     /// The cylinder.
@@ -74,61 +66,26 @@ impl<S: Scalar> Components<S> {
     /// Compliance of the gas at either chamber in m3/Pa, at chamber pressures in Pa; `None` without
     /// an accumulator, or if a shut valve excludes it.
     pub fn gas_compliance(&self, pressures: [S; 2]) -> [Option<S>; 2] {
-        [0, 1].map(|side| Some(self.gas_in_use(side)?.compliance(pressures[side])))
+        [0, 1].map(|side| Some(self.gas_in_use(side)?.at_rest().compliance(pressures[side])))
     }
 
     /// Gas at a chamber, unless a valve before it is shut at rest.
-    fn gas_in_use(&self, side: usize) -> Option<&Accumulator<S>> {
-        self.accumulators[side].as_ref().filter(|_| !self.gas_valve(side).is_some_and(|valve| valve.shut))
-    }
-
-    /// Valve between a chamber and its gas.
-    pub fn gas_valve(&self, side: usize) -> Option<&GasValve<S>> {
-        self.adjustments[side].as_ref()?.valve()
-    }
-
-    /// Adjustments of the accumulators that are present.
-    pub(crate) fn adjustments_in_use(&self) -> [Option<Adjustment<S>>; 2] {
-        [0, 1].map(|side| self.accumulators[side].and(self.adjustments[side]))
-    }
-
-    /// Necks of the accumulators that are present.
-    pub(crate) fn necks_in_use(&self) -> [Option<Neck<S>>; 2] {
-        [0, 1].map(|side| self.accumulators[side].and(self.necks[side]))
-    }
-
-    /// Thermal time constants of the accumulators that are present.
-    pub(crate) fn thermal_time_constants_in_use(&self) -> [Option<S>; 2] {
-        [0, 1].map(|side| self.accumulators[side].and(self.thermal_time_constants[side]))
+    pub fn gas_in_use(&self, side: usize) -> Option<&ChamberGas<S>> {
+        self.gas[side].as_ref().filter(|gas| !gas.valve().is_some_and(|valve| valve.shut))
     }
 
     /// Gas at either chamber that is behind a neck or a valve or exchanges heat, at chamber
     /// pressures in Pa; `None` behind a shut valve.
     pub fn gas_branches(&self, pressures: [S; 2]) -> [Option<GasBranch<S>>; 2] {
-        [0, 1].map(|side| {
-            let (gas, pressure) = (*self.gas_in_use(side)?, pressures[side]);
-            let (neck, time_constant) = (&self.necks[side], self.thermal_time_constants[side]);
-            let relaxing = time_constant.map(|time_constant| RelaxingGas { gas, time_constant });
-            let later = relaxing.map(|gas| gas.relaxation(pressure));
-            let branch = GasBranch::of(gas.compliance(pressure), later, neck.as_ref());
-            match self.adjustments[side].as_ref().and_then(|of| Some((of.setting, of.valve()?))) {
-                Some((opening, valve)) => {
-                    Some(branch.behind_valve(valve.conductance(opening), valve.compliance))
-                }
-                None => (neck.is_some() || later.is_some()).then_some(branch),
-            }
-        })
+        [0, 1].map(|side| self.gas_in_use(side)?.branch(pressures[side]))
     }
 
     /// Compliance of the gas of these branches at rest, without the oil of their necks, m3/Pa; zero
     /// without a branch.
     pub fn branch_compliance(&self, pressures: [S; 2]) -> [S; 2] {
-        let gas = self.gas_compliance(pressures);
         [0, 1].map(|side| {
-            let is_branch = self.necks[side].is_some()
-                || self.thermal_time_constants[side].is_some()
-                || self.gas_valve(side).is_some();
-            gas[side].filter(|_| is_branch).unwrap_or(S::from(0.0))
+            let branch = self.gas_in_use(side).filter(|gas| gas.is_branch());
+            branch.map_or(S::from(0.0), |gas| gas.at_rest().compliance(pressures[side]))
         })
     }
 
@@ -143,39 +100,6 @@ impl<S: Scalar> Components<S> {
         let steady = self.cross_flow().map_or(S::from(0.0), |flow| flow.slope(pressure_a - pressure_b));
         (steady, self.cross_port.as_ref().and_then(DynamicFeedback::of))
     }
-}
-
-/// Impossible parameters of gas that exchanges heat.
-fn heat_problems(gas: &Accumulator, time_constant: f64) -> Vec<ParameterError> {
-    let mut problems = Problems::default();
-    problems.positive("thermal_time_constant", time_constant);
-    let index = gas.polytropic_exponent;
-    let one = ParameterRequirement::IsothermalWithHeat;
-    problems.require("polytropic_exponent", index, index == 1.0, one);
-    problems.into_vec()
-}
-
-/// Impossible parameters of an accumulator that is adjusted.
-fn adjustment_problems(
-    gas: &Accumulator,
-    adjustment: &Adjustment,
-    (neck, time_constant): (Option<Neck>, Option<f64>),
-) -> Vec<ParameterError> {
-    let mut problems = Problems::default();
-    problems.all(adjustment.problems(gas));
-    match adjustment.valve() {
-        Some(_) => {
-            let alone = ParameterRequirement::NoNeckNextToValve;
-            let diameter = neck.map_or(0.0, |neck| neck.inertance);
-            problems.require("neck_inertance", diameter, neck.is_none(), alone);
-        }
-        None => {
-            let alone = ParameterRequirement::NoHeatWithChangedGas;
-            let time = time_constant.unwrap_or(0.0);
-            problems.require("thermal_time_constant", time, time_constant.is_none(), alone);
-        }
-    }
-    problems.into_vec()
 }
 
 /// Error for components that do not make an actuator: every impossible parameter.
@@ -200,7 +124,6 @@ impl Actuator {
     pub fn new(components: Components) -> Result<Actuator, ActuatorError> {
         let Components { fluid, supply, valve, line_a, line_b, cylinder, friction, force_sensor, .. } =
             components;
-        let accumulators = components.accumulators;
         let mut problems = Problems::default();
         problems.component("fluid", fluid.problems());
         problems.component("supply", supply.problems());
@@ -208,25 +131,8 @@ impl Actuator {
         problems.component("valve", valve.problems());
         problems.component("line.a", line_a.problems());
         problems.component("line.b", line_b.problems());
-        for (gas, path) in accumulators.iter().zip(["line.a.accumulator", "line.b.accumulator"]) {
+        for (gas, path) in components.gas.iter().zip(["line.a.accumulator", "line.b.accumulator"]) {
             problems.component(path, gas.map_or(Vec::new(), |gas| gas.problems()));
-        }
-        for (side, path) in ["line.a.accumulator", "line.b.accumulator"].into_iter().enumerate() {
-            let gas = accumulators[side].zip(components.thermal_time_constants[side]);
-            problems.component(path, gas.map_or(Vec::new(), |(gas, time)| heat_problems(&gas, time)));
-        }
-        for (neck, path) in components.necks.iter().zip(["line.a.accumulator", "line.b.accumulator"]) {
-            problems.component(path, neck.map_or(Vec::new(), |neck| neck.problems()));
-        }
-        for (side, path) in ["line.a.accumulator", "line.b.accumulator"].into_iter().enumerate() {
-            let adjusted = accumulators[side].zip(components.adjustments[side]);
-            problems.component(
-                path,
-                adjusted.map_or(Vec::new(), |(gas, adjustment)| {
-                    let beside = (components.necks[side], components.thermal_time_constants[side]);
-                    adjustment_problems(&gas, &adjustment, beside)
-                }),
-            );
         }
         problems.component("cross_port", components.cross_port.map_or(Vec::new(), |port| port.problems()));
         problems.component("cylinder", cylinder.problems());

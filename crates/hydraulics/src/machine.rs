@@ -54,7 +54,7 @@ pub use state::MachineState;
 use phea_dynamics::scalar::{Parameters, Scalar};
 use phea_dynamics::simulation::{Lane, Plant, Sliding};
 
-use crate::accumulator::{Adjustment, Neck};
+use crate::accumulator::ChamberGas;
 use crate::actuator::Actuator;
 use crate::cross_port::CrossPort;
 use crate::cylinder::Cylinder;
@@ -103,12 +103,9 @@ pub struct Machine<S = f64> {
     power_unit: PowerUnit<S>,
     cylinder: Cylinder<S>,
     chambers: Chambers<S>,
-    accumulators: [Option<Accumulator<S>>; 2],
-    necks: [Option<Neck<S>>; 2],
-    thermal_time_constants: [Option<S>; 2],
+    /// Gas at chambers A and B, adjusted only by a valve or if its setting moves.
+    gas: [Option<ChamberGas<S>>; 2],
     gas_pressure_limits: [Option<S>; 2],
-    /// Adjustment of gas that is added and removed, only if its setting moves.
-    adjustments: [Option<Adjustment<S>>; 2],
     moving_setting: bool,
     cross_port: Option<CrossPort<S>>,
     lines: [DynamicLine<S>; 2],
@@ -159,11 +156,8 @@ impl Machine {
                     Chambers::behind_lines(actuator, options.member, added)
                 }
             },
-            accumulators: components.accumulators,
-            necks: components.necks_in_use(),
-            thermal_time_constants: components.thermal_time_constants_in_use(),
+            gas: components.gas.map(|gas| Some(gas?.of_machine(options.moving_setting))),
             gas_pressure_limits: options.gas_pressure_limits,
-            adjustments: components.adjustments_in_use().map(|of| of?.of_machine(options.moving_setting)),
             moving_setting: options.moving_setting,
             cross_port: components.cross_port,
             lines: options.lines.unwrap_or([none; 2]),
@@ -198,9 +192,8 @@ impl Machine {
     /// `change`: they are constant at any value.
     pub fn shut_gas(&self, change: f64) -> Vec<usize> {
         let settings: [f64; 2] = self.settings([change, 0.0]);
-        let shut = [0, 1].map(|side| {
-            self.adjustments[side].is_some_and(|of| of.valve().is_some()) && settings[side] == 0.0
-        });
+        let has_valve = self.gas.map(|gas| gas.is_some_and(|gas| gas.valve().is_some()));
+        let shut = [0, 1].map(|side| has_valve[side] && settings[side] == 0.0);
         self.layout.gas_places(shut)
     }
 
@@ -236,7 +229,7 @@ impl Machine {
 
     /// True if the gas at chambers A and B exchanges heat.
     pub fn has_heated_gas(&self) -> [bool; 2] {
-        self.thermal_time_constants.map(|time| time.is_some())
+        self.layout.heated()
     }
 
     /// True if end stops hold the piston at the ends of its stroke.
@@ -269,8 +262,7 @@ impl Machine {
 
 phea_dynamics::parameters! {
     Machine {
-        valve, supply, power_unit, cylinder, chambers, accumulators,
-        necks, thermal_time_constants, gas_pressure_limits, adjustments, moving_setting: kept,
+        valve, supply, power_unit, cylinder, chambers, gas, gas_pressure_limits, moving_setting: kept,
         cross_port, lines, friction, sensor_stiffness, series, linkage, load, velocity_gain,
         pressure_ratio, external_force: kept, vapour_pressure, layout: kept,
     }

@@ -52,15 +52,6 @@ pub enum ParameterRequirement {
     /// Counts of segments.
     #[error("from 1 to 8")]
     SegmentCount,
-    /// Exponent of a gas whose heat is modelled.
-    #[error("1 together with a thermal time constant")]
-    IsothermalWithHeat,
-    /// Neck of an accumulator behind a valve.
-    #[error("absent where a valve lies between chamber and gas")]
-    NoNeckNextToValve,
-    /// Thermal time constant of gas whose amount changes.
-    #[error("absent where gas is added and taken")]
-    NoHeatWithChangedGas,
     /// Volume of a chamber and its line at the end of the stroke.
     #[error("positive together with the line's volume: an empty chamber has no pressure")]
     ChamberNotEmpty,

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use phea_dynamics::simulation::Plant;
-use phea_hydraulics::accumulator::Accumulator;
+use phea_hydraulics::accumulator::{Accumulator, ChamberGas};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::line::{Line, StiffeningMember};
 use phea_hydraulics::machine::{INDICATORS, Machine, MachineOptions};
@@ -14,7 +14,7 @@ use phea_hydraulics::stiffness::{StiffnessModel, hydraulic_stiffness};
 /// Rig of the thesis with lines of negligible volume, and this gas at both chambers.
 fn rig(gas: Option<Accumulator>) -> Components {
     let line = Line::Volume { volume: 1e-12, effective_bulk_modulus: 1.45e9 };
-    Components { accumulators: [gas; 2], ..components(line, StiffnessModel::ByVolume) }
+    Components { gas: [gas.map(ChamberGas::from); 2], ..components(line, StiffnessModel::ByVolume) }
 }
 
 fn stiffness(components: &Components, pressures: [f64; 2]) -> f64 {
@@ -51,7 +51,10 @@ fn without_gas_it_is_the_rig_without_accumulator() {
             precharge_pressure: 10e5,
             polytropic_exponent: 1.4,
         });
-        let rig = Components { accumulators: [gas; 2], ..components(hose_line(), StiffnessModel::ByVolume) };
+        let rig = Components {
+            gas: [gas.map(ChamberGas::from); 2],
+            ..components(hose_line(), StiffnessModel::ByVolume)
+        };
         let actuator = Actuator::new(rig).unwrap();
         let machine = Machine::new(&actuator, &MachineOptions::default()).unwrap();
         let mut rates = vec![0.0; machine.states()];
@@ -74,11 +77,11 @@ fn without_gas_it_is_the_rig_without_accumulator() {
 #[test]
 fn gas_is_shut_off_below_its_precharge() {
     let gas = Accumulator { gas_volume: 2e-5, precharge_pressure: 20e5, polytropic_exponent: 1.4 };
-    let of = |accumulators| {
-        let rig = Components { accumulators, ..components(pipe_line(), StiffnessModel::ByVolume) };
+    let of = |gas| {
+        let rig = Components { gas, ..components(pipe_line(), StiffnessModel::ByVolume) };
         Machine::new(&Actuator::new(rig).unwrap(), &MachineOptions::default()).unwrap()
     };
-    let (with, without) = (of([Some(gas), None]), of([None; 2]));
+    let (with, without) = (of([Some(gas.into()), None]), of([None; 2]));
     let place = |name: &str| INDICATORS.iter().position(|known| *known == name).unwrap();
     for (pressure, in_use) in [(19.7e5, false), (20.3e5, true)] {
         let state = [1.0, 0.0, pressure, 30e5, 1e-4, 0.05];
@@ -110,7 +113,7 @@ fn impossible_gas_is_refused() {
         (1e-5, 10e5, 1.7, "polytropic_exponent"),
     ] {
         let gas = Accumulator { gas_volume, precharge_pressure, polytropic_exponent };
-        let refused = Actuator::new(Components { accumulators: [None, Some(gas)], ..rig(None) }).unwrap_err();
+        let refused = Actuator::new(Components { gas: [None, Some(gas.into())], ..rig(None) }).unwrap_err();
         assert_eq!(refused.problems.len(), 1);
         assert_eq!(refused.problems[0].quantity, format!("line.b.accumulator.{quantity}"));
     }

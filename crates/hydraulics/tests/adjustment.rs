@@ -7,7 +7,8 @@ use phea_dynamics::portable::{exp, pow, sin};
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::accumulator::{
-    Accumulator, AdjustedPart, Adjustment, Bladder, GasBranch, GasValve, MovedGas, Neck,
+    Accumulator, AdjustedGas, Bladder, ChamberGas, GasBranch, GasContent, GasPassage, GasValve, MovedGas,
+    Neck, SealedGas,
 };
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::machine::{ENERGY_ACCOUNTS, INDICATORS, Machine, MachineOptions, StartValues};
@@ -16,12 +17,17 @@ use phea_hydraulics::signal::Signal;
 use phea_hydraulics::stiffness::StiffnessModel;
 
 use super::machine_conservation::{machine_of, random, step};
-use super::neck::{bladder, responses};
+use super::neck::{behind as necked, bladder, responses};
 
 const ATMOSPHERE: f64 = 101_325.0;
 const GAS: Accumulator = Accumulator { gas_volume: 2e-5, precharge_pressure: 15e5, polytropic_exponent: 1.3 };
-const VALVE: GasValve =
-    GasValve { flow_coefficient: 3e-8, transition_pressure: 1e4, compliance: 1e-15, shut: false };
+const VALVE: GasValve = GasValve {
+    setting: 0.5,
+    flow_coefficient: 3e-8,
+    transition_pressure: 1e4,
+    compliance: 1e-15,
+    shut: false,
+};
 
 /// A quarter turn before the sine.
 fn cos(angle: f64) -> f64 {
@@ -32,32 +38,35 @@ fn moving() -> MachineOptions {
     MachineOptions { moving_setting: true, ..MachineOptions::default() }
 }
 
-fn adjusted(part: AdjustedPart, setting: f64, neck: Option<Neck>) -> Components {
-    Components {
-        accumulators: [Some(GAS), None],
-        adjustments: [Some(Adjustment { setting, part }), None],
-        necks: [neck, None],
-        ..components(pipe_line(), StiffnessModel::ByVolume)
-    }
+fn with_gas(gas: ChamberGas) -> Components {
+    Components { gas: [Some(gas), None], ..components(pipe_line(), StiffnessModel::ByVolume) }
+}
+
+fn behind(valve: GasValve) -> Components {
+    let (content, passage) = (GasContent::Polytropic(GAS), GasPassage::Valve(valve));
+    with_gas(ChamberGas::Sealed(SealedGas { content, passage }))
+}
+
+/// Gas that is adjusted by a volume in m3 and a precharge in Pa.
+fn adjusted([volume_rise, precharge_rise]: [f64; 2], setting: f64) -> AdjustedGas {
+    AdjustedGas { at_rest: GAS, setting, volume_rise, precharge_rise, neck: None }
 }
 
 /// A fixed setting equals the accumulator declared with the values of that setting, in every rate.
 #[test]
 fn a_frozen_setting_is_the_declared_accumulator() {
     let neck = Neck::round([6e-3, 0.04], [870.0, 46e-6, 1.45e9], 1.5);
-    let part = AdjustedPart::Gas { gas_volume: 3e-5, precharge_pressure: -4e5 };
     let mut seed = 52;
     for neck in [None, Some(neck)] {
+        let adjusting = AdjustedGas { neck, ..adjusted([3e-5, -4e5], 0.25) };
         for change in [-0.25, 0.0, 0.3, 0.75] {
-            let machine = machine_of(adjusted(part, 0.25, neck), &moving());
+            let machine = machine_of(with_gas(ChamberGas::Adjusted(adjusting)), &moving());
             let gas = Accumulator {
                 gas_volume: GAS.gas_volume + 3e-5 * change,
                 precharge_pressure: GAS.precharge_pressure - 4e5 * change,
                 ..GAS
             };
-            let declared = Components { adjustments: [None; 2], ..adjusted(part, 0.25, neck) };
-            let declared = Components { accumulators: [Some(gas), None], ..declared };
-            let declared = machine_of(declared, &MachineOptions::default());
+            let declared = machine_of(with_gas(necked(gas, neck)), &MachineOptions::default());
             for _ in 0..50 {
                 let mut of = |middle: f64, scale: f64| middle + scale * random(&mut seed);
                 let state = [
@@ -99,18 +108,17 @@ fn a_frozen_setting_is_the_declared_accumulator() {
 fn its_work_is_that_of_the_polytrope() {
     for exponent in [1.0, 1.4] {
         let gas = Accumulator { polytropic_exponent: exponent, ..GAS };
-        for (gas_volume, precharge_pressure) in [(2e-5, 0.0), (-8e-6, 0.0), (0.0, 10e5), (1e-5, -5e5)] {
-            let part = AdjustedPart::Gas { gas_volume, precharge_pressure };
-            let adjustment = Adjustment { setting: 0.0, part };
+        for rises in [[2e-5, 0.0], [-8e-6, 0.0], [0.0, 10e5], [1e-5, -5e5]] {
+            let adjusted = AdjustedGas { at_rest: gas, ..adjusted(rises, 0.0) };
             let held = gas.oil(35e5);
             // pressure and work, over the setting at constant rate
             let mut state = vec![35e5, 0.0];
             let mut rates = |change: f64, state: &[f64]| {
-                let moved = adjustment.moved(&gas, change, 1.0);
+                let moved = adjusted.moved(change, 1.0);
                 vec![-moved.oil_rate(state[0]) / moved.gas.compliance(state[0]), moved.power(state[0])]
             };
             (0..4000).for_each(|index| step(&mut state, f64::from(index) / 4000.0, 1.0 / 4000.0, &mut rates));
-            let last = adjustment.moved(&gas, 1.0, 0.0).gas;
+            let last = adjusted.moved(1.0, 0.0).gas;
             // ORIGIN: analytic, P = P_0 (V_0/(V_0 - V_oil))^n and the integral of p dV_oil from the
             // precharge on
             let ideal = |gas: &Accumulator| {
@@ -153,8 +161,7 @@ fn held_energy(gas: &Accumulator, pressure: f64) -> f64 {
 #[test]
 fn a_swinging_stiffness_pumps_half_its_rate_times_the_square() {
     let middle = GAS.oil(35e5);
-    let adjustment =
-        Adjustment { setting: 0.5, part: AdjustedPart::Gas { gas_volume: 8e-6, precharge_pressure: -3e5 } };
+    let adjusted = adjusted([8e-6, -3e5], 0.5);
     // ORIGIN: analytic, the pressure of gas that holds this oil, and its stiffness dp/dV_oil = n
     // P/V
     let pressure = |gas: &Accumulator, oil: f64| {
@@ -162,7 +169,7 @@ fn a_swinging_stiffness_pumps_half_its_rate_times_the_square() {
         (gas.precharge_pressure + ATMOSPHERE) * pow(ratio, gas.polytropic_exponent) - ATMOSPHERE
     };
     let stiffness = |change: f64| {
-        let gas = adjustment.moved(&GAS, change, 0.0).gas;
+        let gas = adjusted.moved(change, 0.0).gas;
         gas.polytropic_exponent * (pressure(&gas, middle) + ATMOSPHERE) / (gas.gas_volume - middle)
     };
     for phase in [0.0, 0.9, 2.0, 4.0] {
@@ -173,7 +180,7 @@ fn a_swinging_stiffness_pumps_half_its_rate_times_the_square() {
             for index in 0..steps {
                 let time = std::f64::consts::TAU * f64::from(index) / f64::from(steps);
                 let ((change, rate), moved_by) = (setting(time), size * sin(time));
-                let moved: MovedGas = adjustment.moved(&GAS, change, rate);
+                let moved: MovedGas = adjusted.moved(change, rate);
                 pumped += moved.power(pressure(&moved.gas, middle + moved_by));
                 let slope = (stiffness(change + 1e-5) - stiffness(change - 1e-5)) / 2e-5 * rate;
                 told += 0.5 * slope * moved_by * moved_by;
@@ -200,7 +207,7 @@ fn switched(
     let mut state = vec![start[0], start[1], 0.0, 0.0];
     let mut rates = |time: f64, state: &[f64]| {
         let (drop, entering) = (state[0] - state[1], flow(time));
-        let through = VALVE.flow(opening(time), drop);
+        let through = GasValve { setting: opening(time), ..VALVE }.flow(0.0, drop);
         let behind = GAS.compliance(state[1]) + VALVE.compliance;
         vec![(entering - through) / compliance, through / behind, state[0] * entering, drop * through]
     };
@@ -312,7 +319,7 @@ fn its_conductance_has_two_limits() {
 /// preserves the pressure of its gas.
 #[test]
 fn a_shut_valve_keeps_its_gas() {
-    let parts = adjusted(AdjustedPart::Valve(GasValve { shut: true, ..VALVE }), 0.0, None);
+    let parts = behind(GasValve { setting: 0.0, shut: true, ..VALVE });
     assert_eq!((parts.gas_branches([35e5; 2]), parts.gas_compliance([35e5; 2])), ([None; 2], [None; 2]));
     let machine = machine_of(parts, &moving());
     assert_eq!((machine.shut_gas(0.0), machine.shut_gas(0.1)), (vec![6], vec![]));
@@ -331,8 +338,7 @@ fn a_shut_valve_keeps_its_gas() {
 /// The precharge at which the gas is shut off moves with the setting.
 #[test]
 fn it_is_empty_at_the_precharge_of_its_setting() {
-    let part = AdjustedPart::Gas { gas_volume: 0.0, precharge_pressure: 10e5 };
-    let machine = machine_of(adjusted(part, 0.0, None), &moving());
+    let machine = machine_of(with_gas(ChamberGas::Adjusted(adjusted([0.0, 10e5], 0.0))), &moving());
     let place = INDICATORS.iter().position(|known| *known == "accumulator_empty_a").unwrap();
     for change in [0.0, 0.4, 1.0] {
         for (above, shut) in [(1.0, false), (-1.0, true)] {
@@ -347,9 +353,8 @@ fn it_is_empty_at_the_precharge_of_its_setting() {
 /// A machine at rest with a setting that can move stays at rest.
 #[test]
 fn it_rests_like_the_declared_one() {
-    for part in [AdjustedPart::Valve(VALVE), AdjustedPart::Gas { gas_volume: 1e-5, precharge_pressure: 0.0 }]
-    {
-        let machine: Machine = machine_of(adjusted(part, 0.5, None), &moving());
+    for rig in [behind(VALVE), with_gas(ChamberGas::Adjusted(adjusted([1e-5, 0.0], 0.5)))] {
+        let machine: Machine = machine_of(rig, &moving());
         let start =
             StartValues { position: 0.25, pressure_a: 35e5, pressure_b: 35e5, ..StartValues::default() };
         let beginning = machine.start(&start).unwrap();
@@ -359,31 +364,21 @@ fn it_rests_like_the_declared_one() {
     }
 }
 
-/// Settings outside 0 to 1, gas that vanishes within the range, a valve of zero size, and
-/// incompatible options are rejected by path.
+/// Settings outside 0 to 1, gas that vanishes within the range, and a valve of zero size are
+/// rejected by path.
 #[test]
 fn impossible_adjustments_are_refused() {
-    let gas = AdjustedPart::Gas { gas_volume: 1e-5, precharge_pressure: 0.0 };
-    let vanishing = AdjustedPart::Gas { gas_volume: -3e-5, precharge_pressure: 0.0 };
-    let narrow = AdjustedPart::Valve(GasValve { flow_coefficient: 0.0, ..VALVE });
-    let neck = Neck::round([6e-3, 0.04], [870.0, 46e-6, 1.45e9], 1.5);
-    let isothermal = Accumulator { polytropic_exponent: 1.0, ..GAS };
+    let gas = |rises, setting| with_gas(ChamberGas::Adjusted(adjusted(rises, setting)));
     let cases = [
-        (gas, 1.5, None, None, "adjustment.setting"),
-        (gas, f64::NAN, None, None, "adjustment.setting"),
-        (vanishing, 0.0, None, None, "adjustment.gas_volume"),
-        (narrow, 0.5, None, None, "adjustment.flow_coefficient"),
-        (AdjustedPart::Valve(VALVE), 0.5, Some(neck), None, "neck_inertance"),
-        (gas, 0.5, None, Some(1.0), "thermal_time_constant"),
+        (gas([1e-5, 0.0], 1.5), "setting"),
+        (gas([1e-5, 0.0], f64::NAN), "setting"),
+        (behind(GasValve { setting: -0.1, ..VALVE }), "setting"),
+        (gas([-3e-5, 0.0], 0.0), "gas_volume"),
+        (behind(GasValve { flow_coefficient: 0.0, ..VALVE }), "flow_coefficient"),
     ];
-    for (part, setting, neck, time, name) in cases {
-        let parts = Components {
-            accumulators: [Some(isothermal), None],
-            thermal_time_constants: [time, None],
-            ..adjusted(part, setting, neck)
-        };
+    for (parts, name) in cases {
         let refused = Actuator::new(parts).unwrap_err().to_string();
-        assert!(refused.contains(&format!("line.a.accumulator.{name}")), "{refused}");
+        assert!(refused.contains(&format!("line.a.accumulator.adjustment.{name}")), "{refused}");
     }
 }
 
@@ -392,7 +387,7 @@ fn impossible_adjustments_are_refused() {
 fn a_small_drop_decays_exponentially() {
     let (compliance, opening) = (2e-12, 0.4);
     let gas = GAS.compliance(35e5) + VALVE.compliance;
-    let conductance = VALVE.conductance(opening);
+    let conductance = GasValve { setting: opening, ..VALVE }.conductance();
     let time = 0.5 * compliance / conductance;
     let [chamber, behind, ..] =
         switched([35e5 + 10.0, 35e5], compliance, |_| opening, |_| 0.0, (time, 2000), |_| ());
@@ -405,8 +400,7 @@ fn a_small_drop_decays_exponentially() {
 fn a_limit_follows_the_precharge() {
     let limit = 4.0 * (GAS.precharge_pressure + ATMOSPHERE) - ATMOSPHERE;
     let options = MachineOptions { gas_pressure_limits: [Some(limit), None], ..moving() };
-    let part = AdjustedPart::Gas { gas_volume: 1e-5, precharge_pressure: -6e5 };
-    let machine = machine_of(adjusted(part, 0.25, None), &options);
+    let machine = machine_of(with_gas(ChamberGas::Adjusted(adjusted([1e-5, -6e5], 0.25))), &options);
     let place = INDICATORS.iter().position(|known| *known == "accumulator_overpressure_a").unwrap();
     for change in [-0.25, 0.0, 0.3, 0.75] {
         // ORIGIN: analytic, P_2 = 4 P_0(u), absolute
@@ -423,7 +417,7 @@ fn a_limit_follows_the_precharge() {
 /// The throttling loss of a valve equals the loss in the account of the neck in its place.
 #[test]
 fn what_a_valve_throttles_is_lost_in_its_account() {
-    let machine = machine_of(adjusted(AdjustedPart::Valve(VALVE), 0.5, None), &moving());
+    let machine = machine_of(behind(VALVE), &moving());
     let mut seed = 7;
     for change in [-0.5, -0.2, 0.0, 0.5] {
         for _ in 0..20 {

@@ -7,7 +7,9 @@ use phea_dynamics::portable::pow;
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::scalar::{Dual, Scalar};
 use phea_dynamics::simulation::{DIRECTIONS, Plant, System, small_signal};
-use phea_hydraulics::accumulator::{AdjustedPart, Adjustment, GasValve, Neck};
+use phea_hydraulics::accumulator::{
+    ChamberGas, GasContent, GasPassage, GasValve, Neck, RelaxingGas, SealedGas,
+};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cross_port::{CrossPort, Restrictor};
 use phea_hydraulics::machine::{Accumulator, InitialCondition, Machine, PowerUnit, PumpLimited};
@@ -36,7 +38,7 @@ pub(super) fn power_unit(number: u64) -> PowerUnit {
 }
 
 /// Necks of the accumulators at the chambers, for two out of three numbers.
-pub(super) fn necks(number: u64) -> [Option<Neck>; 2] {
+fn necks(number: u64) -> [Option<Neck>; 2] {
     let mut state = stream(43, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
     [0.0, 0.0].map(|_| {
@@ -47,14 +49,14 @@ pub(super) fn necks(number: u64) -> [Option<Neck>; 2] {
 }
 
 /// Thermal time constants of the gas at the chambers, for half of the numbers.
-pub(super) fn thermal_time_constants(number: u64) -> [Option<f64>; 2] {
+fn thermal_time_constants(number: u64) -> [Option<f64>; 2] {
     let mut state = stream(47, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
     [0, 1].map(|_| (spread(1.0, 4.0) > 2.0).then_some(spread(1e-3, 1e2)))
 }
 
-/// Valves between chambers and gas, for half of the chambers whose gas has no neck.
-pub(super) fn gas_valves(number: u64) -> [Option<Adjustment>; 2] {
+/// Passages between chambers and gas: a valve for half of the chambers whose gas has no neck.
+fn passages(number: u64) -> [GasPassage; 2] {
     let mut state = stream(59, number);
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
     necks(number).map(|neck| {
@@ -62,10 +64,42 @@ pub(super) fn gas_valves(number: u64) -> [Option<Adjustment>; 2] {
             flow_coefficient: spread(1e-9, 1e-7),
             transition_pressure: spread(1e3, 1e5),
             compliance: spread(1e-16, 1e-13),
+            setting: spread(1e-2, 1.0),
             shut: false,
         };
-        let of = Adjustment { setting: spread(1e-2, 1.0), part: AdjustedPart::Valve(valve) };
-        (neck.is_none() && spread(1.0, 4.0) > 2.0).then_some(of)
+        match neck {
+            Some(neck) => GasPassage::Neck(neck),
+            None if spread(1.0, 4.0) > 2.0 => GasPassage::Valve(valve),
+            None => GasPassage::Open,
+        }
+    })
+}
+
+/// Gas at one chamber, both or none, in use at most states of rest, from this source of random
+/// numbers.
+pub(super) fn chamber_gas(source: u64, number: u64) -> [Option<ChamberGas>; 2] {
+    let mut state = stream(source, number);
+    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let has_gas = [number % 8 < 3, (1..5).contains(&(number % 8))];
+    let (heat, passages) = (thermal_time_constants(number), passages(number));
+    [0, 1].map(|side| {
+        has_gas[side].then(|| {
+            let (gas_volume, precharge_pressure) = (spread(1e-6, 1e-4), spread(2e5, 20e5));
+            let content = match heat[side] {
+                None => {
+                    let polytropic_exponent = spread(1.0, 1.6);
+                    GasContent::Polytropic(Accumulator {
+                        gas_volume,
+                        precharge_pressure,
+                        polytropic_exponent,
+                    })
+                }
+                Some(time_constant) => {
+                    GasContent::Relaxing(RelaxingGas { gas_volume, precharge_pressure, time_constant })
+                }
+            };
+            ChamberGas::Sealed(SealedGas { content, passage: passages[side] })
+        })
     })
 }
 

@@ -6,26 +6,29 @@
 use phea_dynamics::portable::{exp, pow, sin};
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::simulation::Plant;
-use phea_hydraulics::accumulator::{Accumulator, GasBranch, Neck, RelaxingGas};
+use phea_hydraulics::accumulator::{
+    Accumulator, ChamberGas, GasBranch, GasContent, GasPassage, Neck, RelaxingGas, SealedGas,
+};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::machine::{INDICATORS, Machine, MachineOptions, StartValues};
 use phea_hydraulics::reference_rig::{components, pipe_line};
 use phea_hydraulics::stiffness::StiffnessModel;
 
 use super::machine_conservation::{machine_of, step};
-use super::neck::responses;
+use super::neck::{behind, responses};
 
 const ATMOSPHERE: f64 = 101_325.0;
 const GAS: Accumulator = Accumulator { gas_volume: 2e-5, precharge_pressure: 15e5, polytropic_exponent: 1.0 };
+const HEATED: RelaxingGas = RelaxingGas { gas_volume: 2e-5, precharge_pressure: 15e5, time_constant: 0.4 };
 
 fn machine(gas: Accumulator, thermal_time_constant: Option<f64>) -> Machine {
     let rig = components(pipe_line(), StiffnessModel::ByVolume);
-    let parts = Components {
-        accumulators: [Some(gas); 2],
-        thermal_time_constants: [thermal_time_constant; 2],
-        ..rig
+    let content = match thermal_time_constant {
+        None => GasContent::Polytropic(gas),
+        Some(time_constant) => GasContent::Relaxing(RelaxingGas { time_constant, ..HEATED }),
     };
-    machine_of(parts, &MachineOptions::default())
+    let gas = ChamberGas::Sealed(SealedGas { content, passage: GasPassage::Open });
+    machine_of(Components { gas: [Some(gas); 2], ..rig }, &MachineOptions::default())
 }
 
 /// Pressure and theta - 1 of the gas, then the additions of `more`, over a flow into it.
@@ -56,7 +59,7 @@ fn driven(
 fn the_time_constant_has_two_limits() {
     let isothermal = GAS.compliance(35e5);
     let branch = |time_constant: f64, neck: Option<&Neck>| {
-        let later = RelaxingGas { gas: GAS, time_constant }.relaxation(35e5);
+        let later = RelaxingGas { time_constant, ..HEATED }.relaxation(35e5);
         Some(GasBranch::of(isothermal, Some(later), neck))
     };
     let plain = |compliance: f64, neck: &Neck| Some(GasBranch::of(compliance, None, Some(neck)));
@@ -84,8 +87,7 @@ fn the_time_constant_has_two_limits() {
 /// The admittance has the closed form C_T s (1 + tau s)/(1 + gamma tau s).
 #[test]
 fn small_motions_are_a_lead_of_gamma() {
-    let RelaxingGas { gas, time_constant } = RelaxingGas { gas: GAS, time_constant: 3.0 };
-    let later = RelaxingGas { gas, time_constant }.relaxation(35e5);
+    let later = RelaxingGas { time_constant: 3.0, ..HEATED }.relaxation(35e5);
     // ORIGIN: analytic, P_0 V_0/P^2 of isothermal gas; its fraction 1 - 1/gamma follows after gamma
     // tau
     let at_rest = (15e5 + ATMOSPHERE) * 2e-5 / ((35e5 + ATMOSPHERE) * (35e5 + ATMOSPHERE));
@@ -97,7 +99,7 @@ fn small_motions_are_a_lead_of_gamma() {
 /// pressure with it.
 #[test]
 fn held_gas_cools_exponentially() {
-    let gas = RelaxingGas { gas: GAS, time_constant: 0.7 };
+    let gas = RelaxingGas { time_constant: 0.7, ..HEATED };
     let (pressure, warming) = (40e5, 0.12);
     driven(
         &gas,
@@ -123,7 +125,7 @@ fn fast_gas_is_adiabatic_and_slow_gas_isothermal() {
     for (time_constant, index, duration, steps, tolerance) in
         [(1e14, 1.4, 1.0, 20_000, 1e-9), (1e-6, 1.0, 0.1, 100_000, 1e-6)]
     {
-        let gas = RelaxingGas { gas: GAS, time_constant };
+        let gas = RelaxingGas { time_constant, ..HEATED };
         let flow = |time: f64| 0.2 * volume * 10.0 * sin(20.0 * time);
         driven(&gas, [30e5, 0.0], flow, (duration, steps), |time, [found, ..]| {
             let left = volume * (1.0 - 0.2 * pow(sin(10.0 * time), 2.0));
@@ -136,7 +138,7 @@ fn fast_gas_is_adiabatic_and_slow_gas_isothermal() {
 /// A cycle between both limits, and ten such cycles.
 #[test]
 fn a_cycle_is_that_of_scipy() {
-    let gas = RelaxingGas { gas: GAS, time_constant: 0.4 };
+    let gas = HEATED;
     let volume = 2e-5 * (15e5 + ATMOSPHERE) / (35e5 + ATMOSPHERE);
     let flow = |time: f64| 0.3 * volume * 3.0 * sin(3.0 * time + std::f64::consts::FRAC_PI_2);
     let found = driven(&gas, [35e5, 0.0], flow, (20.0, 40_000), |_, _| ());
@@ -186,14 +188,13 @@ fn it_is_passive_under_random_flows() {
     for number in 0..64 {
         let mut random = stream(48, number);
         let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut random));
-        let gas = Accumulator {
+        let gas = RelaxingGas {
             gas_volume: spread(1e-6, 1e-3),
             precharge_pressure: spread(2e5, 20e5),
-            polytropic_exponent: 1.0,
+            time_constant: spread(0.02, 20.0),
         };
-        let gas = RelaxingGas { gas, time_constant: spread(0.02, 20.0) };
-        let rest = gas.gas.precharge_pressure * spread(1.2, 4.0);
-        let volume = gas.gas.gas_volume - gas.at(rest, 0.0).oil;
+        let rest = gas.precharge_pressure * spread(1.2, 4.0);
+        let volume = gas.gas_volume - gas.at(rest, 0.0).oil;
         let waves = [0; 4].map(|_| [spread(0.005, 0.05), spread(0.3, 60.0), spread(0.1, 6.0)]);
         let flow = |time: f64| -> f64 {
             waves.iter().map(|[size, rate, phase]| volume * size * rate * sin(rate * time + phase)).sum()
@@ -240,10 +241,10 @@ fn it_is_shut_off_by_the_pressure_of_its_own_temperature() {
 /// A pressure limit of the maker is reported when the pressure of the gas exceeds it.
 #[test]
 fn too_much_pressure_is_told() {
-    let rig =
-        Components { accumulators: [Some(GAS), None], ..components(pipe_line(), StiffnessModel::ByVolume) };
-    let neck =
-        Components { necks: [Some(Neck::round([6e-3, 0.04], [870.0, 46e-6, 1.45e9], 1.5)), None], ..rig };
+    let rig = components(pipe_line(), StiffnessModel::ByVolume);
+    let rig = Components { gas: [Some(GAS.into()), None], ..rig };
+    let neck = Neck::round([6e-3, 0.04], [870.0, 46e-6, 1.45e9], 1.5);
+    let neck = Components { gas: [Some(behind(GAS, Some(neck))), None], ..rig };
     let options = MachineOptions { gas_pressure_limits: [Some(60e5), None], ..MachineOptions::default() };
     let place = |name: &str| INDICATORS.iter().position(|known| *known == name).unwrap();
     for (parts, behind) in [(rig, None), (neck, Some(61e5))] {
@@ -262,21 +263,16 @@ fn too_much_pressure_is_told() {
     assert!(refused.contains("line.b.accumulator.maximum_pressure"), "{refused}");
 }
 
-/// A zero time constant, and gas with an exponent of its own as well, are rejected by their path.
+/// A time constant that is not positive is rejected by its path.
 #[test]
 fn impossible_heat_is_refused() {
-    let polytropic = Accumulator { polytropic_exponent: 1.4, ..GAS };
-    let cases = [
-        (GAS, 0.0, "thermal_time_constant"),
-        (GAS, f64::NAN, "thermal_time_constant"),
-        (polytropic, 1.0, "polytropic_exponent"),
-    ];
-    for (gas, time, name) in cases {
+    for time_constant in [0.0, f64::NAN] {
         let rig = components(pipe_line(), StiffnessModel::ByVolume);
-        let parts =
-            Components { accumulators: [None, Some(gas)], thermal_time_constants: [None, Some(time)], ..rig };
+        let content = GasContent::Relaxing(RelaxingGas { time_constant, ..HEATED });
+        let gas = ChamberGas::Sealed(SealedGas { content, passage: GasPassage::Open });
+        let parts = Components { gas: [None, Some(gas)], ..rig };
         let refused = Actuator::new(parts).unwrap_err();
         assert_eq!(refused.problems.len(), 1);
-        assert_eq!(refused.problems[0].quantity, format!("line.b.accumulator.{name}"));
+        assert_eq!(refused.problems[0].quantity, "line.b.accumulator.thermal_time_constant");
     }
 }

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use phea_dynamics::simulation::Plant;
+use phea_hydraulics::accumulator::ChamberGas;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, chamber_volumes};
@@ -232,9 +233,9 @@ fn turning_machines() -> Vec<(&'static str, Machine)> {
         machine_of(Components { power_unit, ..leaking(rig, 2e-12) }, &MachineOptions::default())
     };
     let gas = |gas_volume, precharge_pressure, polytropic_exponent| {
-        Some(Accumulator { gas_volume, precharge_pressure, polytropic_exponent })
+        Some(ChamberGas::from(Accumulator { gas_volume, precharge_pressure, polytropic_exponent }))
     };
-    let at_chambers = |rig| Components { accumulators: [gas(2e-5, 8e5, 1.4), gas(5e-6, 3e5, 1.0)], ..rig };
+    let at_chambers = |rig| Components { gas: [gas(2e-5, 8e5, 1.4), gas(5e-6, 3e5, 1.0)], ..rig };
     let seeping = Cylinder { external_leakage: Some(2e-12), ..rig.cylinder };
     let vane = Components { cylinder: seeping, ..rig };
     // such a motor discharges on one side the flow that it takes in on the other

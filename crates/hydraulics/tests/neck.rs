@@ -9,7 +9,9 @@ use num_complex::Complex64;
 use phea_dynamics::portable::{exp, pow, sin};
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::simulation::Plant;
-use phea_hydraulics::accumulator::{Accumulator, Bladder, GasBranch, Neck, NeckImpedance};
+use phea_hydraulics::accumulator::{
+    Accumulator, Bladder, ChamberGas, GasBranch, GasContent, GasPassage, Neck, NeckImpedance, SealedGas,
+};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::machine::{ENERGY_ACCOUNTS, INDICATORS, Machine, MachineOptions, StartValues};
 use phea_hydraulics::plant::{ChamberDynamics, LinearLoad, LinearPlant, PlantInMotion, YieldingSupply};
@@ -26,7 +28,14 @@ const NECK_FLOW: usize = 6;
 
 fn machine(gas: [Option<Accumulator>; 2], necks: [Option<Neck>; 2]) -> Machine {
     let rig = components(pipe_line(), StiffnessModel::ByVolume);
-    machine_of(Components { accumulators: gas, necks, ..rig }, &MachineOptions::default())
+    let gas = [0, 1].map(|side| Some(behind(gas[side]?, necks[side])));
+    machine_of(Components { gas, ..rig }, &MachineOptions::default())
+}
+
+/// Polytropic gas behind a neck, or at its chamber.
+pub(super) fn behind(gas: Accumulator, neck: Option<Neck>) -> ChamberGas {
+    let passage = neck.map_or(GasPassage::Open, GasPassage::Neck);
+    ChamberGas::Sealed(SealedGas { content: GasContent::Polytropic(gas), passage })
 }
 
 /// Bladder of gas behind a neck.
@@ -300,7 +309,7 @@ fn impossible_necks_are_refused() {
     ];
     for (neck, name) in cases {
         let rig = components(pipe_line(), StiffnessModel::ByVolume);
-        let parts = Components { accumulators: [None, Some(gas)], necks: [None, Some(neck)], ..rig };
+        let parts = Components { gas: [None, Some(behind(gas, Some(neck)))], ..rig };
         let refused = Actuator::new(parts).unwrap_err().to_string();
         assert!(refused.contains("line.b.accumulator") && refused.contains(name), "{refused}");
     }

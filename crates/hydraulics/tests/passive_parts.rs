@@ -14,7 +14,9 @@
 use phea_dynamics::portable::{cos, ln, pow, sin};
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::simulation::Plant;
-use phea_hydraulics::accumulator::{Accumulator, AdjustedPart, Adjustment, GasValve};
+use phea_hydraulics::accumulator::{
+    Accumulator, ChamberGas, GasContent, GasPassage, GasValve, RelaxingGas, SealedGas,
+};
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::cross_port::{CrossPort, Restrictor};
 use phea_hydraulics::cylinder::Cylinder;
@@ -261,7 +263,7 @@ fn polytropic_gas_is_lossless() {
         };
         let lines = [5e-12, SOFT_LINE];
         let machine = machine_of(
-            Components { accumulators: [Some(gas), None], ..closed(lines) },
+            Components { gas: [Some(gas.into()), None], ..closed(lines) },
             &MachineOptions::default(),
         );
         let power = |now: &Now| now.state[2] * now.leaving(lines)[0];
@@ -282,17 +284,14 @@ fn polytropic_gas_is_lossless() {
 fn gas_with_heat_is_passive() {
     for number in 0..RUNS {
         let mut spread = spreads(number);
-        let gas = Accumulator {
+        let gas = RelaxingGas {
             gas_volume: spread(2e-5, 6e-5),
             precharge_pressure: spread(2e5, 6e5),
-            polytropic_exponent: 1.0,
+            time_constant: spread(3e-3, 0.1),
         };
         let lines = [LINE, SOFT_LINE];
-        let rig = Components {
-            accumulators: [Some(gas), None],
-            thermal_time_constants: [Some(spread(3e-3, 0.1)), None],
-            ..closed(lines)
-        };
+        let sealed = SealedGas { content: GasContent::Relaxing(gas), passage: GasPassage::Open };
+        let rig = Components { gas: [Some(ChamberGas::Sealed(sealed)), None], ..closed(lines) };
         let machine = machine_of(rig, &MachineOptions::default());
         let amount = (gas.precharge_pressure + ATMOSPHERE) * gas.gas_volume;
         let at_first = amount / (REST + ATMOSPHERE);
@@ -326,12 +325,12 @@ fn a_gas_valve_is_passive() {
             flow_coefficient: spread(3e-8, 3e-7),
             transition_pressure: spread(1e4, 1e5),
             compliance: spread(1e-14, 1e-13),
+            setting: spread(0.1, 1.0),
             shut: false,
         };
-        let of = Adjustment { setting: spread(0.1, 1.0), part: AdjustedPart::Valve(valve) };
         let lines = [LINE, SOFT_LINE];
-        let rig =
-            Components { accumulators: [Some(gas), None], adjustments: [Some(of), None], ..closed(lines) };
+        let sealed = SealedGas { content: GasContent::Polytropic(gas), passage: GasPassage::Valve(valve) };
+        let rig = Components { gas: [Some(ChamberGas::Sealed(sealed)), None], ..closed(lines) };
         let machine = machine_of(rig, &MachineOptions::default());
         let power = |now: &Now| (now.state[2] - REST) * now.leaving(lines)[0];
         let stored = |now: &Now| {

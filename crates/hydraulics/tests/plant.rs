@@ -7,7 +7,6 @@ use num_complex::Complex64;
 use phea_dynamics::portable::pow;
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::simulation::small_signal;
-use phea_hydraulics::accumulator::Accumulator;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
@@ -28,8 +27,7 @@ use phea_hydraulics::two_pressure::{
 };
 
 use super::commanded::{
-    Commanded, cross_port, gas_valves, necks, power_unit, supply_pressure, thermal_time_constants,
-    without_branches, yielding,
+    Commanded, chamber_gas, cross_port, power_unit, supply_pressure, without_branches, yielding,
 };
 
 /// Rig for every number, with all options that lumped lines allow in the plant.
@@ -39,20 +37,6 @@ struct Drawn {
     rest: InitialCondition,
     friction: f64,
     load: LinearLoad,
-}
-
-/// Gas at one chamber, both or none, in use at most states of rest.
-fn accumulators(number: u64) -> [Option<Accumulator>; 2] {
-    let mut state = stream(12, number);
-    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
-    let heat = thermal_time_constants(number);
-    [(number % 8 < 3, heat[0]), ((1..5).contains(&(number % 8)), heat[1])].map(|(has_gas, heat)| {
-        has_gas.then(|| Accumulator {
-            gas_volume: spread(1e-6, 1e-4),
-            precharge_pressure: spread(2e5, 20e5),
-            polytropic_exponent: heat.map_or_else(|| spread(1.0, 1.6), |_| 1.0),
-        })
-    })
 }
 
 /// Some leak to the tank, some rotate without limit, and some are telescopic, mostly within a
@@ -107,11 +91,8 @@ fn drawn(number: u64) -> Drawn {
     };
     let parts = if leakage > 0.0 { leaking(parts, leakage) } else { parts };
     let parts = Components {
-        accumulators: accumulators(number),
+        gas: chamber_gas(12, number),
         cross_port: cross_port(number),
-        necks: necks(number),
-        thermal_time_constants: thermal_time_constants(number),
-        adjustments: gas_valves(number),
         power_unit: power_unit(number),
         load,
         ..parts

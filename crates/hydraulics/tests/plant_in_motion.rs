@@ -12,7 +12,6 @@ use phea_dynamics::random::{share, stream};
 use phea_dynamics::simulation::small_signal;
 use phea_dynamics::uncertain_plant::RationalCoefficients;
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
-use phea_hydraulics::accumulator::Accumulator;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
@@ -28,9 +27,7 @@ use phea_hydraulics::plant::{BehindLines, ChamberDynamics, LinearLoad, LinearPla
 use phea_hydraulics::reference_rig::{components, cylinder, hose, hose_line, leaking, pipe_line};
 use phea_hydraulics::stiffness::StiffnessModel;
 
-use super::commanded::{
-    Commanded, cross_port, gas_valves, necks, power_unit, thermal_time_constants, without_branches,
-};
+use super::commanded::{Commanded, chamber_gas, cross_port, power_unit, without_branches};
 use super::plant::plant_at_rest;
 
 pub(super) fn model(number: u64, time: f64) -> LineModel {
@@ -89,20 +86,6 @@ pub(super) fn plant_behind(
     (plant, BehindLines { lines, chambers: own, lumped, leaking })
 }
 
-/// Gas at one chamber, both or none, in use at most states of rest.
-fn accumulators(number: u64) -> [Option<Accumulator>; 2] {
-    let mut state = stream(24, number);
-    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
-    let heat = thermal_time_constants(number);
-    [(number % 8 < 3, heat[0]), ((1..5).contains(&(number % 8)), heat[1])].map(|(has_gas, heat)| {
-        has_gas.then(|| Accumulator {
-            gas_volume: spread(1e-6, 1e-4),
-            precharge_pressure: spread(2e5, 20e5),
-            polytropic_exponent: heat.map_or_else(|| spread(1.0, 1.6), |_| 1.0),
-        })
-    })
-}
-
 /// Components of a rig for every number and the models of its lines, with numbers drawn by
 /// `spread`.
 fn parts(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> (Components, [LineModel; 2]) {
@@ -127,11 +110,8 @@ fn parts(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> (Components, 
         ..reference
     };
     let parts = Components {
-        accumulators: accumulators(number),
+        gas: chamber_gas(24, number),
         cross_port: cross_port(number),
-        necks: necks(number),
-        thermal_time_constants: thermal_time_constants(number),
-        adjustments: gas_valves(number),
         power_unit: power_unit(number),
         ..leaking(parts, leakage)
     };

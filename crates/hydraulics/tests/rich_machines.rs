@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
-use phea_hydraulics::accumulator::{AdjustedPart, Adjustment, GasValve, Neck};
+use phea_hydraulics::accumulator::{
+    AdjustedGas, ChamberGas, GasContent, GasPassage, GasValve, Neck, RelaxingGas, SealedGas,
+};
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::cross_port::{CrossPort, Restrictor};
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
@@ -103,19 +105,12 @@ pub(super) fn rich_machines() -> Vec<(&'static str, Machine)> {
     let load = Load::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
     let all = Components { load, ..foamy(hoses, StiffnessModel::Uniform, 1.2) };
     let segments = with(pump(), lines_of(&rig, [SMEARED, PLAIN]));
-    let gas = |gas_volume, precharge_pressure, polytropic_exponent| {
-        Some(Accumulator { gas_volume, precharge_pressure, polytropic_exponent })
-    };
-    let at_chambers = |rig| Components { accumulators: [gas(2e-5, 8e5, 1.4), gas(5e-6, 3e5, 1.0)], ..rig };
-    let neck = |diameter| Some(Neck::round([diameter, 0.04], [870.0, 46e-6, 1.45e9], 1.5));
-    let necked = |rig| Components { necks: [neck(6e-3), neck(4e-3)], ..at_chambers(rig) };
-    let half_necked = Components { necks: [None, neck(6e-3)], ..at_chambers(by_volume) };
-    let heated = |rig: Components, thermal_time_constants| Components {
-        accumulators: [gas(2e-5, 8e5, 1.0), gas(5e-6, 3e5, 1.0)],
-        thermal_time_constants,
-        ..rig
-    };
-    let at_one = Components { accumulators: [None, gas(1e-5, 5e5, 1.25)], ..by_volume };
+    let (open, necks) = ([GasPassage::Open; 2], [neck(6e-3), neck(4e-3)].map(GasPassage::Neck));
+    let necked = |rig| with_gas(rig, POLYTROPIC, necks);
+    let half_necked = with_gas(by_volume, POLYTROPIC, [GasPassage::Open, GasPassage::Neck(neck(6e-3))]);
+    let heated = |rig, time_constants, passages| with_gas(rig, relaxing(time_constants), passages);
+    let gas = Accumulator { gas_volume: 1e-5, precharge_pressure: 5e5, polytropic_exponent: 1.25 };
+    let at_one = Components { gas: [None, Some(gas.into())], ..by_volume };
     let port =
         |restrictor, capacity| Components { cross_port: Some(CrossPort { restrictor, capacity }), ..rig };
     let orifice = Restrictor::Orifice { flow_coefficient: 2e-9, transition_pressure: 1e4 };
@@ -125,12 +120,12 @@ pub(super) fn rich_machines() -> Vec<(&'static str, Machine)> {
         ("an orifice between them", of(port(orifice, None), with(PowerUnit::Constant, None))),
         ("laminar feedback", of(port(laminar, Some(3e-13)), with(pump(), None))),
         ("feedback behind lines", of(port(orifice, Some(3e-13)), segments)),
-        ("gas with heat", of(heated(rig, [Some(0.02), None]), with(charged_pump(40e5, 1.4), None))),
-        ("gas with heat behind necks", of(heated(necked(rig), [Some(0.3), Some(0.01)]), with(pump(), None))),
-        ("gas with heat behind a line", of(heated(by_volume, [None, Some(0.05)]), segments)),
+        ("gas with heat", of(heated(rig, [Some(0.02), None], open), with(charged_pump(40e5, 1.4), None))),
+        ("gas with heat behind necks", of(heated(rig, [Some(0.3), Some(0.01)], necks), with(pump(), None))),
+        ("gas with heat behind a line", of(heated(by_volume, [None, Some(0.05)], open), segments)),
         ("gas behind necks", of(necked(rig), with(charged_pump(40e5, 1.4), None))),
         ("gas behind a neck and a line", of(half_necked, segments)),
-        ("gas at the chambers", of(at_chambers(rig), with(charged_pump(40e5, 1.4), None))),
+        ("gas at the chambers", of(with_gas(rig, POLYTROPIC, open), with(charged_pump(40e5, 1.4), None))),
         ("gas behind a line", of(at_one, segments)),
         ("gas", of(rig, with(charged_pump(40e5, 1.4), None))),
         ("isothermal gas", of(rig, with(charged_pump(40e5, 1.0), None))),
@@ -144,34 +139,63 @@ pub(super) fn rich_machines() -> Vec<(&'static str, Machine)> {
     machines
 }
 
+/// Polytropic gas at the chambers.
+const LARGE: Accumulator =
+    Accumulator { gas_volume: 2e-5, precharge_pressure: 8e5, polytropic_exponent: 1.4 };
+const SMALL: Accumulator =
+    Accumulator { gas_volume: 5e-6, precharge_pressure: 3e5, polytropic_exponent: 1.0 };
+const POLYTROPIC: [GasContent; 2] = [GasContent::Polytropic(LARGE), GasContent::Polytropic(SMALL)];
+
+/// Isothermal gas, or gas with a thermal time constant in s, at the chambers.
+fn relaxing(time_constants: [Option<f64>; 2]) -> [GasContent; 2] {
+    [0, 1].map(|side| {
+        let gas = Accumulator { polytropic_exponent: 1.0, ..[LARGE, SMALL][side] };
+        let Accumulator { gas_volume, precharge_pressure, .. } = gas;
+        match time_constants[side] {
+            None => GasContent::Polytropic(gas),
+            Some(time_constant) => {
+                GasContent::Relaxing(RelaxingGas { gas_volume, precharge_pressure, time_constant })
+            }
+        }
+    })
+}
+
+fn neck(diameter: f64) -> Neck {
+    Neck::round([diameter, 0.04], [870.0, 46e-6, 1.45e9], 1.5)
+}
+
+fn with_gas(rig: Components, contents: [GasContent; 2], passages: [GasPassage; 2]) -> Components {
+    let sealed = |side| SealedGas { content: contents[side], passage: passages[side] };
+    Components { gas: [0, 1].map(|side| Some(ChamberGas::Sealed(sealed(side)))), ..rig }
+}
+
 /// Rigs whose accumulators are adjusted while an external force acts on their load.
 fn adjusted_machines() -> [(&'static str, Machine); 3] {
     let rig = asymmetric();
     let by_volume = foamy(rig, StiffnessModel::ByVolume, 1.4);
-    let gas = |gas_volume, precharge_pressure, polytropic_exponent| {
-        Some(Accumulator { gas_volume, precharge_pressure, polytropic_exponent })
-    };
-    let at_chambers = |rig| Components { accumulators: [gas(2e-5, 8e5, 1.4), gas(5e-6, 3e5, 1.0)], ..rig };
-    let isothermal = Components { accumulators: [gas(2e-5, 8e5, 1.0), gas(5e-6, 3e5, 1.0)], ..by_volume };
-    let neck = Some(Neck::round([6e-3, 0.04], [870.0, 46e-6, 1.45e9], 1.5));
     // gas that is moved, at one chamber behind a neck, and gas behind valves, at one chamber with
     // heat
-    let adjustment = |part| Some(Adjustment { setting: 0.5, part });
-    let more = AdjustedPart::Gas { gas_volume: 8e-6, precharge_pressure: -2e5 };
-    let less = AdjustedPart::Gas { gas_volume: -3e-6, precharge_pressure: 1e5 };
-    let valve = |flow_coefficient| {
+    let more =
+        AdjustedGas { at_rest: LARGE, setting: 0.5, volume_rise: 8e-6, precharge_rise: -2e5, neck: None };
+    let less =
+        AdjustedGas { at_rest: SMALL, setting: 0.5, volume_rise: -3e-6, precharge_rise: 1e5, neck: None };
+    let behind_neck = AdjustedGas { neck: Some(neck(6e-3)), ..less };
+    let moved = |gas| Some(ChamberGas::Adjusted(gas));
+    let of_gas = Components { gas: [moved(more), moved(behind_neck)], ..rig };
+    let valves = [3e-8, 1e-8].map(|flow_coefficient| {
         let (transition_pressure, compliance) = (1e4, 3e-15);
-        AdjustedPart::Valve(GasValve { flow_coefficient, transition_pressure, compliance, shut: false })
-    };
-    let of_gas = Components {
-        adjustments: [adjustment(more), adjustment(less)],
-        necks: [None, neck],
-        ..at_chambers(rig)
-    };
-    let valves = [adjustment(valve(3e-8)), adjustment(valve(1e-8))];
-    let of_valves =
-        Components { adjustments: valves, thermal_time_constants: [None, Some(0.05)], ..isothermal };
-    let valve_and_gas = Components { adjustments: [valves[0], adjustment(less)], ..at_chambers(rig) };
+        let setting = 0.5;
+        GasPassage::Valve(GasValve {
+            setting,
+            flow_coefficient,
+            transition_pressure,
+            compliance,
+            shut: false,
+        })
+    });
+    let of_valves = with_gas(by_volume, relaxing([None, Some(0.05)]), valves);
+    let of_valve = with_gas(rig, POLYTROPIC, valves).gas[0];
+    let valve_and_gas = Components { gas: [of_valve, moved(less)], ..rig };
     let moving = |lines| MachineOptions {
         external_force: true,
         moving_setting: true,

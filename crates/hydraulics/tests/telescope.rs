@@ -184,11 +184,8 @@ fn ledgers_close_through_the_stages() {
     let air = Some(EntrainedAir { volume_fraction: 5e-3, polytropic_exponent: 1.2 });
     let gas = Accumulator { gas_volume: 2e-5, precharge_pressure: 15e5, polytropic_exponent: 1.2 };
     let rig = with(telescope, asymmetric());
-    let rig = Components {
-        fluid: Fluid { entrained_air: air, ..rig.fluid },
-        accumulators: [Some(gas), None],
-        ..rig
-    };
+    let rig =
+        Components { fluid: Fluid { entrained_air: air, ..rig.fluid }, gas: [Some(gas.into()), None], ..rig };
     check(&machine_of(rig, &MachineOptions::default()), &motion, &start, 0.2, 1e-5);
 }
 

@@ -6,7 +6,9 @@ use num_complex::Complex64;
 use phea_dynamics::controller::InnerFeedback;
 use phea_dynamics::portable::pow;
 use phea_dynamics::random::{share, stream};
-use phea_hydraulics::accumulator::{Accumulator, AdjustedPart, Adjustment, GasValve, Neck};
+use phea_hydraulics::accumulator::{
+    Accumulator, AdjustedGas, ChamberGas, GasContent, GasPassage, GasValve, Neck, RelaxingGas, SealedGas,
+};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cross_port::{CrossPort, Restrictor};
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
@@ -94,44 +96,43 @@ impl Draw {
 }
 
 /// Gas at a chamber, with all its options.
-#[derive(Default)]
-struct Gas {
-    accumulator: Option<Accumulator>,
-    neck: Option<Neck>,
-    heat: Option<f64>,
-    adjustment: Option<Adjustment>,
-}
-
-fn gas(draw: &mut Draw) -> Gas {
+fn gas(draw: &mut Draw) -> Option<ChamberGas> {
     if share(&mut draw.state) > 0.65 {
-        return Gas::default();
+        return None;
     }
     let heat = draw.part("gas with heat", 0.4).then(|| draw.spread(1e-3, 1e2));
     draw.parts.extend(heat.is_none().then_some("polytropic gas"));
     let (gas_volume, precharge_pressure) = (draw.spread(1e-6, 1e-4), draw.spread(1e5, 15e5));
     let polytropic_exponent = heat.map_or_else(|| draw.spread(1.0, 1.6), |_| 1.0);
+    let at_rest = Accumulator { gas_volume, precharge_pressure, polytropic_exponent };
     let size = [draw.spread(2e-3, 1e-2), draw.spread(1e-2, 0.3)];
     let neck =
         draw.part("neck", 0.35).then(|| Neck::round(size, [870.0, draw.spread(1e-5, 1e-4), 1.45e9], 1.5));
     let shut = neck.is_none() && draw.part("shut gas valve", 0.2);
     let valve = shut || neck.is_none() && draw.part("gas valve", 0.4);
     let (setting, moved) = (draw.spread(1e-2, 1.0), draw.spread(0.1, 0.6));
-    let part = if valve {
-        Some(AdjustedPart::Valve(GasValve {
+    let passage = if valve {
+        GasPassage::Valve(GasValve {
+            setting: if shut { 0.0 } else { setting },
             flow_coefficient: draw.spread(1e-9, 1e-7),
             transition_pressure: draw.spread(1e3, 1e5),
             compliance: draw.spread(1e-16, 1e-13),
             shut,
-        }))
+        })
     } else if heat.is_none() && draw.part("gas that is added", 0.6) {
-        let (gas_volume, precharge_pressure) = (moved * gas_volume, -0.8 * moved * precharge_pressure);
-        Some(AdjustedPart::Gas { gas_volume, precharge_pressure })
+        let (volume_rise, precharge_rise) = (moved * gas_volume, -0.8 * moved * precharge_pressure);
+        let gas = AdjustedGas { at_rest, setting, volume_rise, precharge_rise, neck };
+        return Some(ChamberGas::Adjusted(gas));
     } else {
-        None
+        neck.map_or(GasPassage::Open, GasPassage::Neck)
     };
-    let adjustment = part.map(|part| Adjustment { setting: if shut { 0.0 } else { setting }, part });
-    let accumulator = Some(Accumulator { gas_volume, precharge_pressure, polytropic_exponent });
-    Gas { accumulator, neck, heat, adjustment }
+    let content = match heat {
+        None => GasContent::Polytropic(at_rest),
+        Some(time_constant) => {
+            GasContent::Relaxing(RelaxingGas { gas_volume, precharge_pressure, time_constant })
+        }
+    };
+    Some(ChamberGas::Sealed(SealedGas { content, passage }))
 }
 
 /// Motor with unlimited rotation, or a cylinder of this stroke in m, with its friction and its
@@ -269,15 +270,12 @@ fn parts(draw: &mut Draw, number: u64, kinds: &[Linkage; 4]) -> (Components, [Dr
     draw.parts.extend(cross_port.iter().map(name_of));
     let series = if motor { None } else { series(draw, number) };
     let mut of_gas = [Draw::new(91, number), Draw::new(92, number)];
-    let [gas_a, gas_b] = of_gas.each_mut().map(gas);
+    let gas = of_gas.each_mut().map(gas);
     let rig = Components {
         fluid: Fluid { entrained_air: air, ..rig.fluid },
         line_a,
         line_b,
-        accumulators: [gas_a.accumulator, gas_b.accumulator],
-        necks: [gas_a.neck, gas_b.neck],
-        thermal_time_constants: [gas_a.heat, gas_b.heat],
-        adjustments: [gas_a.adjustment, gas_b.adjustment],
+        gas,
         cross_port,
         series,
         linkage,
@@ -407,8 +405,8 @@ fn drawn(number: u64, kinds: &[Linkage; 4]) -> Drawn {
         pressure_feedback: pressure_feedback(&mut draw, &actuator),
         ..plant
     };
-    for ((of_gas, gas), pressure) in of_gas.into_iter().zip(rig.accumulators).zip(pressures) {
-        let in_use = gas.is_some_and(|gas| gas.least_pressure() < pressure);
+    for ((of_gas, gas), pressure) in of_gas.into_iter().zip(rig.gas).zip(pressures) {
+        let in_use = gas.is_some_and(|gas| gas.at_rest().least_pressure() < pressure);
         draw.parts.extend(of_gas.parts.into_iter().filter(|_| in_use));
     }
     Drawn { machine, rest, turned, plant, behind, parts: draw.parts }

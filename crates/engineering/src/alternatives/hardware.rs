@@ -156,17 +156,17 @@ fn oil_volume(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, NoNumber> {
     let (cylinder, point) = (&components.cylinder, &rig.point);
     let [chamber_a, chamber_b] = chamber_volumes(cylinder, point.position);
     let pressures = [point.pressure_a, point.pressure_b];
-    let held = components.accumulators.iter().zip(pressures);
-    let held: f64 = held.filter_map(|(gas, pressure)| Some(gas.as_ref()?.oil(pressure))).sum();
+    let held = components.gas.iter().zip(pressures);
+    let held: f64 = held.filter_map(|(gas, pressure)| Some(gas.as_ref()?.at_rest().oil(pressure))).sum();
     let closed = transmission(rig).map_or(0.0, |transmission| transmission.oil_volume());
     Ok(lines_volume(declared, rig)? + chamber_a + chamber_b + held + closed)
 }
 
 /// Of the accumulators at the chambers, at their precharge.
 fn gas_volume(_: &DeclaredActuator, rig: &Rig) -> Result<f64, NoNumber> {
-    let gas = rig.actuator.components().accumulators;
+    let gas = rig.actuator.components().gas;
     if gas.iter().all(Option::is_none) {
         return Err(NoNumber::NoAccumulator);
     }
-    Ok(gas.iter().flatten().map(|gas| gas.gas_volume).sum())
+    Ok(gas.iter().flatten().map(|gas| gas.at_rest().gas_volume).sum())
 }

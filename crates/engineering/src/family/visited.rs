@@ -142,8 +142,7 @@ impl Visited {
         let all = open.all(values);
         let components = components(open.declared, &Numbers::open(open.names, &all));
         let is_shut = |side: usize, pressure: f64| {
-            let open = !components.gas_valve(side).is_some_and(|valve| valve.shut);
-            open && components.accumulators[side].is_some_and(|gas| pressure < gas.precharge_pressure)
+            components.gas_in_use(side).is_some_and(|gas| pressure < gas.at_rest().precharge_pressure)
         };
         let chambers = [('A', 0, pressure_a), ('B', 1, pressure_b)];
         chambers.into_iter().find(|(_, side, pressure)| is_shut(*side, *pressure)).map(|(name, ..)| name)

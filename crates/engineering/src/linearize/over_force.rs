@@ -1,6 +1,7 @@
 //! Hydraulic stiffness over the force that is held at standstill: gas is the stiffer, the more it
 //! is compressed.
 
+use phea_hydraulics::accumulator::ChamberGas;
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::operating_point::{Condition, OperatingPoint, SteadyLoad, operating_point};
@@ -51,8 +52,10 @@ pub fn stiffness_over_force(rig: &Rig) -> Option<StiffnessOverForce> {
     let along = |components: &Components| -> Vec<f64> {
         points.iter().map(|point| stiffness(components, point)).collect()
     };
-    let at_rest = along(&Components { adjustments: [None; 2], ..*components });
-    let rests = |setting: f64| components.adjustments.iter().flatten().all(|of| of.setting == setting);
+    let sealed = components.gas.map(|gas| Some(ChamberGas::Sealed(gas?.sealed())));
+    let at_rest = along(&Components { gas: sealed, ..*components });
+    let settings = || components.gas.iter().flatten().filter_map(ChamberGas::setting);
+    let rests = |setting: f64| settings().all(|at_rest| at_rest == setting);
     let others = [0.0, 0.5, 1.0].into_iter().filter(|setting| !rests(*setting));
     let others = others.map(|setting| (setting, along(&components_at_setting(components, setting))));
     Some(StiffnessOverForce {
@@ -67,11 +70,11 @@ pub fn stiffness_over_force(rig: &Rig) -> Option<StiffnessOverForce> {
 fn stiffness(components: &Components, point: &OperatingPoint) -> f64 {
     let pressures = [point.pressure_a, point.pressure_b];
     let is_shut_off = components
-        .accumulators
+        .gas
         .iter()
         .zip(pressures)
         // the ends of the forces lie at this pressure
-        .any(|(gas, pressure)| gas.is_some_and(|gas| pressure < gas.least_pressure() - 1.0));
+        .any(|(gas, pressure)| gas.is_some_and(|gas| pressure < gas.at_rest().least_pressure() - 1.0));
     match is_shut_off {
         true => f64::NAN,
         false => hydraulic_stiffness(

@@ -1,8 +1,7 @@
 //! Accumulators at the chambers: whether their gas is in use at the operating point, and within
 //! which forces.
 
-use phea_hydraulics::accumulator::Accumulator;
-use phea_hydraulics::actuator::Components;
+use phea_hydraulics::accumulator::{Accumulator, ChamberGas};
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use phea_hydraulics::operating_point::{Condition, OperatingPoint, operating_point};
 
@@ -83,14 +82,14 @@ pub(crate) fn accumulator_place(declared: &DeclaredActuator) -> [&'static str; 2
 /// Refuses an accumulator whose gas is shut off at the operating point.
 pub(super) fn charged(
     declared: &DeclaredActuator,
-    accumulators: &[Option<Accumulator>; 2],
+    gas: &[Option<ChamberGas>; 2],
     point: &OperatingPoint,
 ) -> Result<(), EmptyAccumulator> {
-    let sides = accumulators.iter().zip(accumulator_place(declared));
+    let sides = gas.iter().zip(accumulator_place(declared));
     let line = &declared.line;
     let chambers = [('A', point.pressure_a, &line.a), ('B', point.pressure_b, &line.b)];
     for ((gas, place), (side, pressure, line)) in sides.zip(chambers) {
-        let Some(Accumulator { precharge_pressure, .. }) = *gas else { continue };
+        let Some(Accumulator { precharge_pressure, .. }) = gas.map(|gas| gas.at_rest()) else { continue };
         if let Some(precharge_pressure) = highest_precharge(line).filter(|highest| pressure < *highest) {
             let place = if place == "line.accumulator" {
                 "line.accumulator.adjustment"
@@ -120,11 +119,6 @@ fn highest_precharge(line: &DeclaredLine) -> Option<f64> {
 /// Bisections of the command: the width of its interval then is rounding.
 const ROUNDS: usize = 60;
 
-/// Whether a valve is shut before the gas at a chamber at rest.
-fn shut(components: &Components, side: usize) -> bool {
-    components.gas_valve(side).is_some_and(|valve| valve.shut)
-}
-
 /// Where the gas at one of the chambers is shut off as the rig holds more and more force at
 /// standstill; `None` without accumulators, and where the operating point does not stand still.
 ///
@@ -133,7 +127,7 @@ fn shut(components: &Components, side: usize) -> bool {
 /// ```
 pub fn charged_range(rig: &Rig) -> Option<ChargedRange> {
     let components = rig.actuator.components();
-    let [gas_a, gas_b] = [0, 1].map(|side| components.accumulators[side].filter(|_| !shut(components, side)));
+    let [gas_a, gas_b] = [0, 1].map(|side| components.gas_in_use(side).map(ChamberGas::at_rest));
     if gas_a.or(gas_b).is_none() || rig.point.velocity != 0.0 {
         return None;
     }

@@ -1,5 +1,4 @@
 use phea_dynamics::scalar::{Parameters, Scalar};
-use phea_hydraulics::accumulator::Neck;
 use phea_hydraulics::actuator::{Actuator, ActuatorError, Components};
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
@@ -16,14 +15,13 @@ use phea_hydraulics::stroke::{ActuatorStroke, FURTHER_STAGES, PistonStage, Teles
 
 use super::cross_port::cross_port;
 use super::friction::friction;
-use super::gas::{accumulator, adjustment};
+use super::gas::chamber_gas;
 use super::load::load;
 use super::numbers::Numbers;
 use super::supply::power_unit;
 use crate::project::{
-    self, BoundedNumber, Component, DeclaredAccumulator, DeclaredNeck, DeclaredSeries, DeclaredSpring,
-    DeclaredTransmission, DeclaredWeight, EdgeCoefficients, HoseExpansion, LineVolume, NullLeakage,
-    RatedFlow, ValveCoefficients,
+    self, BoundedNumber, Component, DeclaredSeries, DeclaredSpring, DeclaredTransmission, DeclaredWeight,
+    EdgeCoefficients, HoseExpansion, LineVolume, NullLeakage, RatedFlow, ValveCoefficients,
 };
 
 /// Kinematic viscosity of ISO VG 46 oil at 40 degrees Celsius, m2/s: used where a project states
@@ -49,21 +47,10 @@ pub fn components<S: Scalar>(
     let pressures = ExpansionPressures::of(pressure, tank_pressure);
     let line = |side, declared: &project::DeclaredLine| line(declared, &numbers.of_line(side), pressures);
     let fluid = fluid(&declared.fluid, numbers);
-    let neck = |side, line: &project::DeclaredLine| {
-        neck(
-            line.accumulator.as_ref(),
-            &numbers.of_line(side),
-            [fluid.density, fluid.kinematic_viscosity, fluid.bulk_modulus],
-        )
-    };
     Components {
-        necks: [neck("a", &declared.line.a), neck("b", &declared.line.b)],
-        thermal_time_constants: [("a", &declared.line.a), ("b", &declared.line.b)].map(|(side, line)| {
-            let declared = line.accumulator.as_ref()?.thermal_time_constant?;
-            Some(numbers.of_line(side).at("accumulator.thermal_time_constant", declared))
+        gas: [("a", &declared.line.a), ("b", &declared.line.b)].map(|(side, line)| {
+            Some(chamber_gas(line.accumulator.as_ref()?, &numbers.of_line(side), &fluid))
         }),
-        adjustments: [("a", &declared.line.a), ("b", &declared.line.b)]
-            .map(|(side, line)| adjustment(line.accumulator.as_ref()?, &numbers.of_line(side), &fluid)),
         fluid,
         supply: Supply { pressure, tank_pressure },
         power_unit: power_unit(declared, numbers),
@@ -71,8 +58,6 @@ pub fn components<S: Scalar>(
         line_a: line("a", &declared.line.a),
         line_b: line("b", &declared.line.b),
         cross_port: cross_port(declared.cross_port.as_ref(), numbers, fluid.density),
-        accumulators: [("a", &declared.line.a), ("b", &declared.line.b)]
-            .map(|(side, line)| accumulator(line.accumulator.as_ref(), &numbers.of_line(side))),
         cylinder: match &declared.motor {
             None => cylinder(&declared.cylinder, numbers),
             Some(motor) => motor_as_cylinder(motor, numbers),
@@ -269,19 +254,6 @@ fn line<S: Scalar>(
             }
         }
     }
-}
-
-/// The neck of an accumulator declared in the line that `numbers` are of; density, kinematic
-/// viscosity and bulk modulus are those of the oil in it.
-fn neck<S: Scalar>(
-    declared: Option<&DeclaredAccumulator>,
-    numbers: &Numbers<'_, S>,
-    oil: [S; 3],
-) -> Option<Neck<S>> {
-    let DeclaredNeck { diameter, length, loss_coefficient } = declared?.neck?;
-    let at = |key: &str, value: f64| numbers.at(key, value);
-    let size = [at("accumulator.neck_diameter", diameter), at("accumulator.neck_length", length)];
-    Some(Neck::round(size, oil, at("accumulator.neck_loss_coefficient", loss_coefficient)))
 }
 
 /// Pressures in Pa at which the expansion of a hose is evaluated.

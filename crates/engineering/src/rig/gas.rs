@@ -1,130 +1,125 @@
-//! Accumulators as they are declared, with what of them is adjusted.
+//! Declared accumulators as the gas of `phea_hydraulics`.
 
 use phea_dynamics::scalar::Scalar;
-use phea_hydraulics::accumulator::{Accumulator, AdjustedPart, Adjustment, GasValve};
+use phea_hydraulics::accumulator::{
+    Accumulator, AdjustedGas, ChamberGas, GasContent, GasPassage, GasValve, Neck, RelaxingGas, SealedGas,
+};
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, Fluid};
 
 use super::cross_port::edge;
 use super::numbers::Numbers;
-use crate::project::{AdjustmentKind, DeclaredAccumulator, DeclaredGasValve, GasAtOne, GasTemperatures};
+use crate::project::{
+    AdjustmentKind, DeclaredAccumulator, DeclaredAdjustment, DeclaredGasValve, DeclaredNeck, GasAtOne,
+    GasTemperatures,
+};
 use crate::quantity::ZERO_CELSIUS;
 
-/// Within the table of a line.
-const TABLE: [&str; 2] = ["accumulator", "adjustment"];
-
-/// An accumulator declared in the table that `numbers` are within, at its working temperature and
-/// the setting at rest of its adjustment; with a thermal time constant it is isothermal at rest.
+/// Polytropic gas of an accumulator declared in the table that `numbers` are within, at its working
+/// temperature and setting 0.
 pub(super) fn accumulator<S: Scalar>(
-    declared: Option<&DeclaredAccumulator>,
+    declared: &DeclaredAccumulator,
     numbers: &Numbers<'_, S>,
-) -> Option<Accumulator<S>> {
-    let declared = declared?;
-    Some(at_rest(declared, numbers, warm(declared, numbers)))
-}
-
-/// The same at setting 0.
-fn warm<S: Scalar>(declared: &DeclaredAccumulator, numbers: &Numbers<'_, S>) -> Accumulator<S> {
-    let polytropic = || numbers.at("accumulator.polytropic_exponent", declared.polytropic_exponent);
+) -> Accumulator<S> {
     let stated = Accumulator {
-        gas_volume: numbers.at("accumulator.gas_volume", declared.gas_volume),
-        precharge_pressure: numbers.at("accumulator.precharge_pressure", declared.precharge_pressure),
-        polytropic_exponent: declared.thermal_time_constant.map_or_else(polytropic, |_| S::from(1.0)),
+        gas_volume: numbers.at("gas_volume", declared.gas_volume),
+        precharge_pressure: numbers.at("precharge_pressure", declared.precharge_pressure),
+        polytropic_exponent: numbers.at("polytropic_exponent", declared.polytropic_exponent),
     };
     let Some(GasTemperatures { precharge, working }) = declared.temperatures else { return stated };
     let absolute = |path: &str, celsius: f64| numbers.at(path, celsius) + S::from(ZERO_CELSIUS);
-    let precharge = absolute("accumulator.precharge_temperature", precharge);
-    stated.at_temperature([precharge, absolute("accumulator.working_temperature", working)])
+    let precharge = absolute("precharge_temperature", precharge);
+    stated.at_temperature([precharge, absolute("working_temperature", working)])
 }
 
-fn setting<S: Scalar>(declared: &DeclaredAccumulator, numbers: &Numbers<'_, S>) -> S {
-    numbers.at("accumulator.adjustment.setting", declared.adjustment.map_or(0.0, |of| of.setting))
+/// Gas at a chamber, declared in the line that `numbers` are of. The reader rejects a neck next to
+/// a valve, and heat of gas that is added and removed.
+pub(super) fn chamber_gas<S: Scalar>(
+    declared: &DeclaredAccumulator,
+    numbers: &Numbers<'_, S>,
+    fluid: &Fluid<S>,
+) -> ChamberGas<S> {
+    let numbers = numbers.within("accumulator");
+    let gas = accumulator(declared, &numbers);
+    let neck = declared.neck.map(|declared| neck(&declared, &numbers, fluid));
+    let passage = match declared.adjustment {
+        None => neck.map_or(GasPassage::Open, GasPassage::Neck),
+        Some(DeclaredAdjustment { kind: AdjustmentKind::Valve(valve), setting }) => {
+            let dead_volume = valve.dead_volume(declared.gas_volume);
+            GasPassage::Valve(gas_valve((&valve, setting, dead_volume), &numbers, fluid))
+        }
+        Some(DeclaredAdjustment { kind: AdjustmentKind::Gas(last), setting }) => {
+            let stated = numbers.at("precharge_pressure", declared.precharge_pressure);
+            return ChamberGas::Adjusted(adjusted((gas, stated), (&last, setting), neck, &numbers));
+        }
+    };
+    let Accumulator { gas_volume, precharge_pressure, .. } = gas;
+    let content = match declared.thermal_time_constant {
+        None => GasContent::Polytropic(gas),
+        Some(time_constant) => {
+            let time_constant = numbers.at("thermal_time_constant", time_constant);
+            GasContent::Relaxing(RelaxingGas { gas_volume, precharge_pressure, time_constant })
+        }
+    };
+    ChamberGas::Sealed(SealedGas { content, passage })
 }
 
-/// What the setting adds to the gas from 0 to 1, which is `first` at 0: volume in m3, precharge in
-/// Pa.
+/// Gas that is added and removed: from `first`, whose precharge in Pa is `stated` for another
+/// temperature, at setting 0, to `last` at setting 1.
 ///
 /// ```text
 /// P_1 = (P_{stated, 1} - P_{stated, 0}) P_0/P_{stated, 0}             absolute: the temperature acts on both alike
 /// ```
-fn rises<S: Scalar>(
-    declared: &DeclaredAccumulator,
-    last: &GasAtOne,
+fn adjusted<S: Scalar>(
+    (first, stated): (Accumulator<S>, S),
+    (last, setting): (&GasAtOne, f64),
+    neck: Option<Neck<S>>,
     numbers: &Numbers<'_, S>,
-    first: &Accumulator<S>,
-) -> [S; 2] {
-    let zero = S::from(0.0);
-    let rise = |key: &'static str, first: S, last: Option<f64>| {
-        let [table, inner] = TABLE;
-        last.map_or(zero, |last| numbers.within(table).within(inner).at(key, last) - first)
+) -> AdjustedGas<S> {
+    let numbers = numbers.within("adjustment");
+    let rise = |key: &str, first: S, last: Option<f64>| {
+        last.map_or(S::from(0.0), |last| numbers.at(key, last) - first)
     };
     let atmosphere = S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
-    let stated = numbers.at("accumulator.precharge_pressure", declared.precharge_pressure);
     let warming = (first.precharge_pressure + atmosphere) / (stated + atmosphere);
-    [
-        rise("gas_volume", first.gas_volume, last.gas_volume),
-        rise("precharge_pressure", stated, last.precharge_pressure) * warming,
-    ]
+    let volume_rise = rise("gas_volume", first.gas_volume, last.gas_volume);
+    let precharge_rise = rise("precharge_pressure", stated, last.precharge_pressure) * warming;
+    let setting = numbers.at("setting", setting);
+    let at_rest = Accumulator {
+        gas_volume: first.gas_volume + volume_rise * setting,
+        precharge_pressure: first.precharge_pressure + precharge_rise * setting,
+        ..first
+    };
+    AdjustedGas { at_rest, setting, volume_rise, precharge_rise, neck }
 }
 
-/// The gas at its setting of rest, which is `first` at setting 0.
-fn at_rest<S: Scalar>(
-    declared: &DeclaredAccumulator,
+/// Valve with this setting at rest and a volume in m3 between valve and gas.
+fn gas_valve<S: Scalar>(
+    (valve, setting, dead_volume): (&DeclaredGasValve, f64, f64),
     numbers: &Numbers<'_, S>,
-    first: Accumulator<S>,
-) -> Accumulator<S> {
-    let Some(AdjustmentKind::Gas(last)) = declared.adjustment.map(|of| of.kind) else { return first };
-    let [volume, precharge] = rises(declared, &last, numbers, &first);
-    let setting = setting(declared, numbers);
-    Accumulator {
-        gas_volume: first.gas_volume + volume * setting,
-        precharge_pressure: first.precharge_pressure + precharge * setting,
-        ..first
+    fluid: &Fluid<S>,
+) -> GasValve<S> {
+    let numbers = numbers.within("adjustment");
+    let [flow_coefficient, transition_pressure] = edge(&valve.orifice, &numbers, fluid.density);
+    GasValve {
+        setting: numbers.at("setting", setting),
+        flow_coefficient,
+        transition_pressure,
+        compliance: numbers.at("dead_volume", dead_volume) / fluid.bulk_modulus,
+        shut: setting == 0.0 && !numbers.is_open("setting"),
     }
 }
 
-/// The adjustment of an accumulator declared in the line that `numbers` are of.
-pub(super) fn adjustment<S: Scalar>(
-    declared: &DeclaredAccumulator,
-    numbers: &Numbers<'_, S>,
-    fluid: &Fluid<S>,
-) -> Option<Adjustment<S>> {
-    let part = match &declared.adjustment?.kind {
-        AdjustmentKind::Gas(last) => {
-            let [gas_volume, precharge_pressure] = rises(declared, last, numbers, &warm(declared, numbers));
-            AdjustedPart::Gas { gas_volume, precharge_pressure }
-        }
-        AdjustmentKind::Valve(valve) => AdjustedPart::Valve(gas_valve(declared, valve, numbers, fluid)),
-    };
-    Some(Adjustment { setting: setting(declared, numbers), part })
+/// Neck filled with this fluid.
+fn neck<S: Scalar>(declared: &DeclaredNeck, numbers: &Numbers<'_, S>, fluid: &Fluid<S>) -> Neck<S> {
+    let size = [numbers.at("neck_diameter", declared.diameter), numbers.at("neck_length", declared.length)];
+    let oil = [fluid.density, fluid.kinematic_viscosity, fluid.bulk_modulus];
+    Neck::round(size, oil, numbers.at("neck_loss_coefficient", declared.loss_coefficient))
 }
 
 /// A rig with the setting of every adjustment there, for slow motions: an open valve is the gas at
 /// its chamber, a shut one no gas.
 pub fn components_at_setting(components: &Components, setting: f64) -> Components {
-    let accumulators = [0, 1].map(|side| {
-        let gas = components.accumulators[side]?;
-        let Some(of) = components.adjustments[side] else { return Some(gas) };
-        let shut = of.valve().is_some() && setting == 0.0;
-        (!shut).then(|| of.moved(&gas, setting - of.setting, 0.0).gas)
-    });
-    Components { accumulators, adjustments: [None; 2], ..*components }
-}
-
-fn gas_valve<S: Scalar>(
-    declared: &DeclaredAccumulator,
-    valve: &DeclaredGasValve,
-    numbers: &Numbers<'_, S>,
-    fluid: &Fluid<S>,
-) -> GasValve<S> {
-    let [table, inner] = TABLE;
-    let within = numbers.within(table).within(inner);
-    let is_shut = declared.adjustment.is_some_and(|of| of.setting == 0.0);
-    let [flow_coefficient, transition_pressure] = edge(&valve.orifice, &within, fluid.density);
-    GasValve {
-        flow_coefficient,
-        transition_pressure,
-        compliance: within.at("dead_volume", valve.dead_volume(declared.gas_volume)) / fluid.bulk_modulus,
-        shut: is_shut && !within.is_open("setting"),
-    }
+    let gas = components.gas.map(|gas| Some(ChamberGas::Sealed(gas?.at_setting(setting)?)));
+    Components { gas, ..*components }
 }

@@ -26,7 +26,10 @@ pub(super) fn power_unit<S: Scalar>(
         relief_override: at("relief_override", pump.relief_override),
         volume: at("volume", pump.volume),
         effective_bulk_modulus: modulus.map_or_else(of_fluid, |value| at("effective_bulk_modulus", value)),
-        accumulator: accumulator(pump.accumulator.as_ref(), &of_supply),
+        accumulator: pump
+            .accumulator
+            .as_ref()
+            .map(|declared| accumulator(declared, &of_supply.within("accumulator"))),
     })
 }
 

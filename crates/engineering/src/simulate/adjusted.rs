@@ -33,8 +33,7 @@ impl AdjustmentWatch {
     /// Of a machine that has an adjustment.
     pub(super) fn of(bench: &ControlledMachine) -> Option<AdjustmentWatch> {
         let machine = &bench.machine;
-        let has_valve =
-            bench.rig.actuator.components().adjustments.iter().flatten().any(|of| of.valve().is_some());
+        let has_valve = bench.rig.actuator.components().gas.iter().flatten().any(|gas| gas.valve().is_some());
         let [states, inputs] = bench.control.size();
         machine.has_adjustment().then(|| AdjustmentWatch {
             work: AdjustmentWork { throttled_j: has_valve.then_some(0.0), ..AdjustmentWork::default() },

@@ -261,7 +261,7 @@ fn gas_pressure_limits(declared: &project::DeclaredActuator, actuator: &Actuator
     let declared = [&declared.line.a, &declared.line.b].map(|line| line.accumulator.as_ref());
     [0, 1].map(|side| {
         let (ratio, atmosphere) = (declared[side]?.maximum_pressure_ratio?, ATMOSPHERIC_PRESSURE_ABSOLUTE);
-        let at_rest = actuator.components().accumulators[side]?.precharge_pressure;
+        let at_rest = actuator.components().gas[side]?.at_rest().precharge_pressure;
         Some(ratio * (at_rest + atmosphere) - atmosphere)
     })
 }

@@ -35,7 +35,7 @@ impl GasWatch {
         let names = bench.machine.state_names();
         let place = |name: &str| names.iter().position(|known| known == name);
         let one = |place: usize| SignalSum::of(wanted, bench.control.size(), move |state, _| state[place]);
-        let gas = bench.rig.actuator.components().accumulators;
+        let gas = bench.rig.actuator.components().gas;
         let watch = |(side, chamber): (usize, char)| {
             gas[side]?;
             let pressure = place(&format!("gas_pressure_{chamber}_pa"))

@@ -124,7 +124,7 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
 
 /// Parts beside which the procedure's model does not hold.
 fn refuse_what_no_hose_is_sized_for(components: &Components) -> Result<(), SizingError> {
-    if components.accumulators.iter().any(Option::is_some) {
+    if components.gas.iter().any(Option::is_some) {
         return Err(SizingError::Accumulator);
     }
     if components.cross_port.is_some_and(|port| port.capacity.is_some()) {

@@ -2,7 +2,7 @@
 //! a valve between the chambers that damps the mode of the load cell.
 
 use phea_dynamics::linear::{Polynomial, TransferFunction};
-use phea_hydraulics::accumulator::Accumulator;
+use phea_hydraulics::accumulator::{Accumulator, ChamberGas};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use phea_hydraulics::line::{Line, Pipe, PipeWall, StiffeningMember};
@@ -164,10 +164,7 @@ impl OtherMeansProblem {
         let components = Components {
             line_a: *line,
             line_b: *line,
-            accumulators: [gas; 2],
-            necks: [None; 2],
-            thermal_time_constants: [None; 2],
-            adjustments: [None; 2],
+            gas: [gas.map(ChamberGas::from); 2],
             ..*self.actuator.components()
         };
         components.chamber_compliance(pressures, StiffeningMember::Nominal).over_stroke().minimum

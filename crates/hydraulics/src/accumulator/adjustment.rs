@@ -9,37 +9,31 @@
 
 use phea_dynamics::scalar::Scalar;
 
-use super::Accumulator;
+use super::{Accumulator, Neck};
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use crate::orifice::{flow, regular_root_slope};
 use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
-/// Adjusted part of an accumulator, and its setting at rest.
+/// Gas that is added and removed in operation. Units: 1, m3, Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Adjustment<S = f64> {
+pub struct AdjustedGas<S = f64> {
+    /// Gas at the setting at rest.
+    pub at_rest: Accumulator<S>,
     /// Setting at rest, from 0 to 1.
     pub setting: S,
-    /// Adjusted part.
-    pub part: AdjustedPart<S>,
+    /// Increase V_1 of its volume from setting 0 to 1.
+    pub volume_rise: S,
+    /// Increase p_1 of its precharge from setting 0 to 1.
+    pub precharge_rise: S,
+    /// Neck between chamber and gas; `None` without one.
+    pub neck: Option<Neck<S>>,
 }
 
-/// Part that a setting adjusts.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum AdjustedPart<S = f64> {
-    /// Gas, adjusted by this amount from setting 0 to 1.
-    Gas {
-        /// Volume V_1, m3.
-        gas_volume: S,
-        /// Pressure p_1, Pa.
-        precharge_pressure: S,
-    },
-    /// Opening of a valve between chamber and gas: shut at 0, fully open at 1.
-    Valve(GasValve<S>),
-}
-
-/// Valve between a chamber and the gas of its accumulator. Units: m3/(s Pa^0.5), Pa, m3/Pa.
+/// Valve between a chamber and the gas of its accumulator. Units: 1, m3/(s Pa^0.5), Pa, m3/Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GasValve<S = f64> {
+    /// Setting at rest: shut at 0, fully open at 1.
+    pub setting: S,
     /// Flow coefficient K, fully open.
     pub flow_coefficient: S,
     /// Pressure drop below which the square root is regularised.
@@ -61,101 +55,69 @@ pub struct MovedGas<S = f64> {
     pub precharge_rate: S,
 }
 
-impl Adjustment {
-    /// Impossible parameters of this adjustment of the gas from its state at rest; empty if there
-    /// are none.
-    pub fn problems(&self, at_rest: &Accumulator) -> Vec<ParameterError> {
+impl AdjustedGas {
+    /// Impossible parameters of this gas; empty if there are none.
+    pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
-        let is_share = (0.0..=1.0).contains(&self.setting);
-        problems.require(
-            "adjustment.setting",
-            self.setting,
-            is_share,
-            ParameterRequirement::FractionWithEnds,
-        );
-        match self.part {
-            AdjustedPart::Gas { .. } => {
-                let ends = [-self.setting, 1.0 - self.setting];
-                for moved in ends.map(|change| self.moved(at_rest, change, 0.0).gas) {
-                    problems.component("adjustment", moved.problems());
-                }
-            }
-            AdjustedPart::Valve(valve) => {
-                problems.positive("adjustment.flow_coefficient", valve.flow_coefficient);
-                problems.positive("adjustment.transition_pressure", valve.transition_pressure);
-                problems.positive("adjustment.compliance", valve.compliance);
-            }
+        problems.all(self.at_rest.problems());
+        problems.all(self.neck.map_or(Vec::new(), |neck| neck.problems()));
+        problems.all(setting_problems(self.setting));
+        let ends = [-self.setting, 1.0 - self.setting];
+        for moved in ends.map(|change| self.moved(change, 0.0).gas) {
+            problems.component("adjustment", moved.problems());
         }
         problems.into_vec()
     }
 }
 
-phea_dynamics::parameters! { Adjustment { setting, part } }
+impl GasValve {
+    /// Impossible parameters of this valve; empty if there are none.
+    pub fn problems(&self) -> Vec<ParameterError> {
+        let mut problems = Problems::default();
+        problems.all(setting_problems(self.setting));
+        problems.positive("adjustment.flow_coefficient", self.flow_coefficient);
+        problems.positive("adjustment.transition_pressure", self.transition_pressure);
+        problems.positive("adjustment.compliance", self.compliance);
+        problems.into_vec()
+    }
+}
+
+fn setting_problems(setting: f64) -> Vec<ParameterError> {
+    let mut problems = Problems::default();
+    let is_share = (0.0..=1.0).contains(&setting);
+    problems.require("adjustment.setting", setting, is_share, ParameterRequirement::FractionWithEnds);
+    problems.into_vec()
+}
+
+phea_dynamics::parameters! { AdjustedGas { at_rest, setting, volume_rise, precharge_rise, neck } }
 phea_dynamics::parameters! {
-    AdjustedPart = AdjustedPart::Gas { gas_volume, precharge_pressure } | AdjustedPart::Valve(valve)
-}
-phea_dynamics::parameters! {
-    GasValve { flow_coefficient, transition_pressure, compliance, shut: kept }
+    GasValve { setting, flow_coefficient, transition_pressure, compliance, shut: kept }
 }
 
-impl<S: Copy> Adjustment<S> {
-    /// Adjustment within a machine: `None` for gas whose setting does not move. A valve that is
-    /// shut at rest is known from its setting.
-    pub(crate) fn of_machine(self, moves: bool) -> Option<Adjustment<S>> {
-        let part = match self.part {
-            AdjustedPart::Valve(valve) => AdjustedPart::Valve(GasValve { shut: false, ..valve }),
-            gas @ AdjustedPart::Gas { .. } => moves.then_some(gas)?,
-        };
-        Some(Adjustment { part, ..self })
-    }
-
-    /// Valve between chamber and gas, if the adjustment has one.
-    pub fn valve(&self) -> Option<&GasValve<S>> {
-        match &self.part {
-            AdjustedPart::Valve(valve) => Some(valve),
-            AdjustedPart::Gas { .. } => None,
-        }
-    }
-}
-
-impl<S: Scalar> Adjustment<S> {
-    /// Rise of the precharge after the setting has moved by `change`, Pa.
-    pub(crate) fn precharge_rise<T: Scalar + From<S>>(&self, change: T) -> T {
-        match self.part {
-            AdjustedPart::Gas { precharge_pressure, .. } => T::from(precharge_pressure) * change,
-            AdjustedPart::Valve(_) => T::from(0.0),
-        }
-    }
-
-    /// Adjusted gas from the gas `at_rest`, after the setting has moved by `change`, at a rate of
-    /// the setting of `rate` in 1/s.
-    pub fn moved(&self, at_rest: &Accumulator<S>, change: S, rate: S) -> MovedGas<S> {
-        match self.part {
-            AdjustedPart::Valve(_) => {
-                MovedGas { gas: *at_rest, volume_rate: S::from(0.0), precharge_rate: S::from(0.0) }
-            }
-            AdjustedPart::Gas { gas_volume, precharge_pressure } => MovedGas {
-                gas: Accumulator {
-                    gas_volume: at_rest.gas_volume + gas_volume * change,
-                    precharge_pressure: at_rest.precharge_pressure + precharge_pressure * change,
-                    ..*at_rest
-                },
-                volume_rate: gas_volume * rate,
-                precharge_rate: precharge_pressure * rate,
+impl<S: Scalar> AdjustedGas<S> {
+    /// Gas after the setting has moved by `change`, at a rate of the setting of `rate` in 1/s.
+    pub fn moved(&self, change: S, rate: S) -> MovedGas<S> {
+        MovedGas {
+            gas: Accumulator {
+                gas_volume: self.at_rest.gas_volume + self.volume_rise * change,
+                precharge_pressure: self.at_rest.precharge_pressure + self.precharge_rise * change,
+                ..self.at_rest
             },
+            volume_rate: self.volume_rise * rate,
+            precharge_rate: self.precharge_rise * rate,
         }
     }
 }
 
 impl<S: Scalar> GasValve<S> {
-    /// Flow into the gas for a drop p - p_g in Pa, at an opening from 0 to 1, m3/s.
-    pub fn flow(&self, opening: S, drop: S) -> S {
-        flow(opening * self.flow_coefficient, drop, self.transition_pressure)
+    /// Flow into the gas for a drop p - p_g in Pa, after the setting has moved by `change`, m3/s.
+    pub fn flow(&self, change: S, drop: S) -> S {
+        flow((self.setting + change) * self.flow_coefficient, drop, self.transition_pressure)
     }
 
-    /// Conductance at zero drop, which is that of the transition, m3/(s Pa).
-    pub fn conductance(&self, opening: S) -> S {
-        opening * self.flow_coefficient * regular_root_slope(S::from(0.0), self.transition_pressure)
+    /// Conductance at rest and zero drop, which is that of the transition, m3/(s Pa).
+    pub fn conductance(&self) -> S {
+        self.setting * self.flow_coefficient * regular_root_slope(S::from(0.0), self.transition_pressure)
     }
 }
 

@@ -4,6 +4,7 @@ use phea_dynamics::scalar::Scalar;
 
 use super::{Accumulator, LIFTING};
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
+use crate::parameter::{ParameterError, Problems};
 
 /// Ratio gamma of the specific heats of a diatomic ideal gas, a good approximation for nitrogen up
 /// to 200 bar.
@@ -26,15 +27,18 @@ pub const HEAT_CAPACITY_RATIO: f64 = 1.4;
 /// ```
 /// use phea_hydraulics::accumulator::{Accumulator, RelaxingGas};
 /// let gas = Accumulator { gas_volume: 1e-5, precharge_pressure: 15e5, polytropic_exponent: 1.0 };
-/// let relaxing = RelaxingGas { gas, time_constant: 2.0 };
+/// let relaxing = RelaxingGas { gas_volume: 1e-5, precharge_pressure: 15e5, time_constant: 2.0 };
+/// assert_eq!(relaxing.isothermal(), gas);
 /// let heated = relaxing.at(35e5, 0.0);
 /// assert!((1.4 * heated.compliance / gas.compliance(35e5) - 1.0_f64).abs() < 1e-14);
 /// assert_eq!(heated.heat, 0.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RelaxingGas<S = f64> {
-    /// Gas at the temperature of its wall, with a polytropic exponent of 1.
-    pub gas: Accumulator<S>,
+    /// Volume V_0 of the gas at its precharge and the temperature of its wall, m3.
+    pub gas_volume: S,
+    /// Precharge pressure p_0 at the temperature of its wall, Pa gauge.
+    pub precharge_pressure: S,
     /// Thermal time constant tau, s.
     pub time_constant: S,
 }
@@ -59,7 +63,25 @@ pub struct HeatedGas<S = f64> {
     relaxing: S,
 }
 
+impl RelaxingGas {
+    /// Impossible parameters of this gas; empty if there are none.
+    pub fn problems(&self) -> Vec<ParameterError> {
+        let mut problems = Problems::default();
+        problems.all(self.isothermal().problems());
+        problems.positive("thermal_time_constant", self.time_constant);
+        problems.into_vec()
+    }
+}
+
+phea_dynamics::parameters! { RelaxingGas { gas_volume, precharge_pressure, time_constant } }
+
 impl<S: Scalar> RelaxingGas<S> {
+    /// Gas in slow motion, which remains at the temperature of its wall.
+    pub fn isothermal(&self) -> Accumulator<S> {
+        let RelaxingGas { gas_volume, precharge_pressure, .. } = *self;
+        Accumulator { gas_volume, precharge_pressure, polytropic_exponent: S::from(1.0) }
+    }
+
     /// Gas at a pressure in Pa gauge and theta - 1.
     ///
     /// ```text
@@ -71,17 +93,17 @@ impl<S: Scalar> RelaxingGas<S> {
         let (one, zero, band) = (S::from(1.0), S::from(0.0), S::from(LIFTING));
         let above_one = S::from(HEAT_CAPACITY_RATIO - 1.0);
         let atmosphere = S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
-        let precharge = self.gas.precharge_pressure + atmosphere;
+        let precharge = self.precharge_pressure + atmosphere;
         let (temperature, absolute) = (one + warming, pressure + atmosphere);
         let lifting = precharge * temperature;
         let ratio = absolute / lifting;
         let above = ratio - one;
         let share = ((above + band) / (band + band)).maximum(zero).minimum(one);
         let squeezed = one + S::select(above.less_than(band), band * share.squared(), above);
-        let isothermal = self.gas.gas_volume * share / (lifting * squeezed.squared());
+        let isothermal = self.gas_volume * share / (lifting * squeezed.squared());
         let steeper = one + above_one * share * (ratio / squeezed).squared();
-        let capacity = precharge * self.gas.gas_volume / above_one;
-        let oil = self.gas.gas_volume * (one - one / squeezed);
+        let capacity = precharge * self.gas_volume / above_one;
+        let oil = self.gas_volume * (one - one / squeezed);
         let relaxing = warming / self.time_constant;
         HeatedGas {
             compliance: isothermal / steeper,
@@ -100,14 +122,13 @@ impl<S: Scalar> RelaxingGas<S> {
     /// q/p = s C_T (1 + tau s)/(1 + G tau s),    G = 1 + (gamma - 1) k: gamma after the bladder has lifted
     /// ```
     pub fn relaxation(&self, pressure: S) -> GasRelaxation<S> {
-        let at_rest = self.gas.compliance(pressure);
+        let at_rest = self.isothermal().compliance(pressure);
         let HeatedGas { compliance, .. } = self.at(pressure, S::from(0.0));
         let above_one = S::from(HEAT_CAPACITY_RATIO - 1.0);
-        let precharge = self.gas.precharge_pressure + S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
+        let precharge = self.precharge_pressure + S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
         // k = C_T P^2/(P_0 V_0)
         let absolute = pressure + S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
-        let steeper =
-            S::from(1.0) + above_one * at_rest * absolute.squared() / (precharge * self.gas.gas_volume);
+        let steeper = S::from(1.0) + above_one * at_rest * absolute.squared() / (precharge * self.gas_volume);
         GasRelaxation { compliance: at_rest - compliance, time: steeper * self.time_constant }
     }
 }

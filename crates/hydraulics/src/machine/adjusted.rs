@@ -3,32 +3,32 @@
 use phea_dynamics::scalar::{Parameters, Scalar};
 
 use super::Machine;
-use crate::accumulator::{Adjustment, MovedGas};
+use crate::accumulator::{ChamberGas, MovedGas};
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 
 impl<S: Scalar> Machine<S> {
-    /// Adjustment of the gas at a chamber.
-    fn adjustment<T: Scalar + From<S>>(&self, side: usize) -> Option<Adjustment<T>> {
-        self.adjustments[side].map(|of| of.convert(&mut T::from))
-    }
-
     /// Gas at a chamber at its setting; `None` without an accumulator.
     pub(super) fn moved_gas<T: Scalar + From<S>>(
         &self,
         side: usize,
         [change, rate]: [T; 2],
     ) -> Option<MovedGas<T>> {
-        let gas = self.accumulators[side]?.convert(&mut T::from);
+        let gas = self.gas[side].as_ref()?;
         let zero = T::from(0.0);
-        let still = MovedGas { gas, volume_rate: zero, precharge_rate: zero };
-        Some(self.adjustment(side).map_or(still, |of: Adjustment<T>| of.moved(&gas, change, rate)))
+        Some(match gas.adjusted() {
+            Some(of) => of.convert(&mut T::from).moved(change, rate),
+            None => {
+                let gas = gas.at_rest().convert(&mut T::from);
+                MovedGas { gas, volume_rate: zero, precharge_rate: zero }
+            }
+        })
     }
 
     /// Settings of the accumulators at both chambers; zero for one that is not adjusted.
     pub(super) fn settings<T: Scalar + From<S>>(&self, [change, _]: [T; 2]) -> [T; 2] {
         [0, 1].map(|side| {
-            let of: Option<Adjustment<T>> = self.adjustment(side);
-            of.map_or(T::from(0.0), |of| of.setting + change)
+            let at_rest = self.gas[side].as_ref().and_then(ChamberGas::setting);
+            at_rest.map_or(T::from(0.0), |setting| T::from(setting) + change)
         })
     }
 
@@ -49,8 +49,8 @@ impl<S: Scalar> Machine<S> {
         [change, _]: [T; 2],
         drop: T,
     ) -> Option<T> {
-        let of = self.adjustment(side)?;
-        Some(of.valve()?.flow(of.setting + change, drop))
+        let valve = self.gas[side].as_ref()?.valve()?;
+        Some(valve.convert(&mut T::from).flow(change, drop))
     }
 
     /// Largest permitted pressures of the gas at either chamber, Pa: the limit at rest is a
@@ -62,12 +62,12 @@ impl<S: Scalar> Machine<S> {
     pub(super) fn gas_limits<T: Scalar + From<S>>(&self, [change, _]: [T; 2]) -> [Option<T>; 2] {
         [0, 1].map(|side| {
             let limit = T::from(self.gas_pressure_limits[side]?);
-            let Some((gas, of)) = self.accumulators[side].zip(self.adjustments[side]) else {
+            let Some(of) = self.gas[side].as_ref().and_then(ChamberGas::adjusted) else {
                 return Some(limit);
             };
             let atmosphere = T::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
-            let ratio = (limit + atmosphere) / (T::from(gas.precharge_pressure) + atmosphere);
-            Some(limit + ratio * of.precharge_rise(change))
+            let ratio = (limit + atmosphere) / (T::from(of.at_rest.precharge_pressure) + atmosphere);
+            Some(limit + ratio * (T::from(of.precharge_rise) * change))
         })
     }
 
@@ -92,8 +92,6 @@ impl<S: Scalar> Machine<S> {
 
     /// Compliance of the oil between the chamber and its gas: in a neck, or behind a valve, m3/Pa.
     pub(super) fn before_gas<T: Scalar + From<S>>(&self, side: usize) -> T {
-        let neck = self.necks[side].map(|neck| neck.compliance);
-        let valve = self.adjustments[side].and_then(|of| Some(of.valve()?.compliance));
-        T::from(neck.or(valve).unwrap_or(S::from(0.0)))
+        T::from(self.gas[side].as_ref().map_or(S::from(0.0), ChamberGas::oil_before))
     }
 }

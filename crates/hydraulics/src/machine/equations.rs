@@ -1,7 +1,8 @@
 use phea_dynamics::scalar::{LocalFunction, Parameters, Scalar};
 
 use super::signals::ground_of;
-use super::{Accumulator, Machine, MachineState, Motion, PowerUnit};
+use super::{Machine, MachineState, Motion, PowerUnit};
+use crate::accumulator::{ChamberGas, GasContent, GasPassage, SealedGas};
 use crate::cross_port::CrossPort;
 use crate::friction::FrictionForce;
 use crate::operating_point::hydraulic_force;
@@ -118,16 +119,18 @@ impl<S: Scalar> Machine<S> {
     #[inline(always)]
     pub(super) fn compliance<T: Scalar + From<S>>(&self, state: &MachineState<T>, position: T) -> [T; 2] {
         let [oil_a, oil_b] = self.oil_compliance(state, position);
-        let [gas_a, gas_b] = &self.accumulators;
-        let [apart_a, apart_b] = self.layout.gas_at();
-        let with = |oil: T, gas: &Option<Accumulator<S>>, apart: bool, pressure: T| match gas {
-            Some(gas) if !apart => {
+        let [gas_a, gas_b] = &self.gas;
+        let with = |oil: T, gas: &Option<ChamberGas<S>>, pressure: T| match gas {
+            Some(ChamberGas::Sealed(SealedGas {
+                content: GasContent::Polytropic(gas),
+                passage: GasPassage::Open,
+            })) => {
                 let [gas] = T::local(gas, [pressure]);
                 oil + gas
             }
             _ => oil,
         };
-        [with(oil_a, gas_a, apart_a, state.pressure_a), with(oil_b, gas_b, apart_b, state.pressure_b)]
+        [with(oil_a, gas_a, state.pressure_a), with(oil_b, gas_b, state.pressure_b)]
     }
 
     /// Compliance without accumulators, which vanishes with the volume of a chamber.

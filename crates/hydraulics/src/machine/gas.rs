@@ -5,7 +5,7 @@ use phea_dynamics::scalar::{Parameters, Scalar};
 
 use super::Machine;
 use super::equations::constant;
-use crate::accumulator::{Bladder, HeatedGas, RelaxingGas};
+use crate::accumulator::{Bladder, HeatedGas, Neck};
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 
 /// States of the gas at both chambers, or their rates; states that a machine lacks are zero.
@@ -68,7 +68,7 @@ impl<S: Scalar> Machine<S> {
         let (behind, precharges) = (self.layout.behind(), self.precharges(gas, setting));
         [0, 1].map(|side| {
             let precharge_pressure = precharges[side].filter(|_| behind[side])?;
-            let stated = self.accumulators[side]?;
+            let stated = self.gas[side].as_ref()?.at_rest();
             let absolute = stated.precharge_pressure + S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
             let of_gas = stated.gas_volume / (stated.polytropic_exponent * absolute);
             Some(Bladder {
@@ -87,9 +87,11 @@ impl<S: Scalar> Machine<S> {
         [change, _]: [T; 2],
     ) -> [Option<T>; 2] {
         [0, 1].map(|side| {
-            let stated: T = constant(self.accumulators[side]?.precharge_pressure);
-            let precharge = self.adjustments[side].map_or(stated, |of| stated + of.precharge_rise(change));
-            Some(match self.thermal_time_constants[side] {
+            let chamber_gas = self.gas[side].as_ref()?;
+            let stated: T = constant(chamber_gas.at_rest().precharge_pressure);
+            let rise = chamber_gas.adjusted().map(|of| T::from(of.precharge_rise));
+            let precharge = rise.map_or(stated, |rise| stated + rise * change);
+            Some(match chamber_gas.relaxing() {
                 None => precharge,
                 Some(_) => {
                     precharge + (precharge + T::from(ATMOSPHERIC_PRESSURE_ABSOLUTE)) * gas.warmings[side]
@@ -103,11 +105,14 @@ impl<S: Scalar> Machine<S> {
     pub(super) fn told_of_gas<T: Scalar + From<S>>(&self, vector: &[T], setting: [T; 2]) -> [[T; 2]; 2] {
         let gas = self.layout.read_gas(vector);
         let zero = T::from(0.0);
-        let ratios = [0, 1].map(|side| match self.thermal_time_constants[side] {
-            Some(_) => T::from(1.0) + gas.warmings[side],
-            None => zero,
-        });
+        let heated = self.layout.heated();
+        let ratios = [0, 1].map(|side| if heated[side] { T::from(1.0) + gas.warmings[side] } else { zero });
         [self.gas_pressures([zero; 2], &gas, setting), ratios]
+    }
+
+    /// Neck between a chamber and its gas.
+    pub(super) fn neck<T: Scalar + From<S>>(&self, side: usize) -> Option<Neck<T>> {
+        Some(self.gas[side].as_ref()?.neck()?.convert(&mut constant::<S, T>))
     }
 
     /// Gas that exchanges heat, at these pressures of the oil at it in Pa.
@@ -118,10 +123,8 @@ impl<S: Scalar> Machine<S> {
     ) -> HeatedSides<T> {
         let warmings = states.warmings;
         [0, 1].map(|side| {
-            let (gas, time_constant) = self.accumulators[side].zip(self.thermal_time_constants[side])?;
-            let gas = gas.convert(&mut constant::<S, T>);
-            let relaxing = RelaxingGas { gas, time_constant: constant(time_constant) };
-            Some(relaxing.at(pressures[side], warmings[side]))
+            let gas = self.gas[side].as_ref()?.relaxing()?.convert(&mut constant::<S, T>);
+            Some(gas.at(pressures[side], warmings[side]))
         })
     }
 
@@ -184,7 +187,7 @@ impl<S: Scalar> Machine<S> {
                 own[side] = into[side] / oil;
                 continue;
             };
-            let neck = self.necks[side].map(|neck| neck.convert(&mut T::from));
+            let neck = self.neck(side);
             let drop = chambers[side] - pressure;
             let through = neck.map(|_| gas.neck_flows[side]).or(self.through_gas_valve(side, setting, drop));
             let of_gas = match through {

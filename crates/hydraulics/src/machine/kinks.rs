@@ -86,7 +86,7 @@ impl<S: Scalar> Machine<S> {
         (vector, inputs): (&[T], &[T]),
         write: &mut dyn FnMut(T),
     ) {
-        if self.accumulators.iter().all(Option::is_none) {
+        if self.gas.iter().all(Option::is_none) {
             return;
         }
         let (gas, setting) = (self.layout.read_gas(vector), self.layout.setting(inputs));

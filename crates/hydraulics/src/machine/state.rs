@@ -107,17 +107,18 @@ impl<T: Scalar> MachineState<T> {
 
 impl Layout {
     pub(super) fn of<S: Copy>(machine: &Machine<S>) -> Layout {
+        let gas = [0, 1].map(|side| machine.gas[side].as_ref());
         let mut layout = Layout {
             bristle: machine.friction.has_bristles(),
             load: machine.load.moves(),
             supply: machine.power_unit.yields(),
             spool_friction: machine.valve.spool.threshold.is_some(),
             magnetic_lag: machine.valve.spool.hysteresis_width.is_some(),
-            necks: machine.necks.map(|neck| neck.is_some()),
-            valves: machine.adjustments.map(|of| of.is_some_and(|of| of.valve().is_some())),
-            moved: machine.adjustments.map(|of| of.is_some_and(|of| of.valve().is_none())),
+            necks: gas.map(|gas| gas.is_some_and(|gas| gas.neck().is_some())),
+            valves: gas.map(|gas| gas.is_some_and(|gas| gas.valve().is_some())),
+            moved: gas.map(|gas| gas.is_some_and(|gas| gas.adjusted().is_some())),
             setting: machine.moving_setting,
-            heat: machine.thermal_time_constants.map(|time| time.is_some()),
+            heat: gas.map(|gas| gas.is_some_and(|gas| gas.relaxing().is_some())),
             capacity: machine.cross_port.is_some_and(|port| port.capacity.is_some()),
             series: SeriesStates::of(machine.series.as_ref()),
             columns: match &machine.series {
@@ -218,6 +219,11 @@ impl Layout {
     #[inline(always)]
     pub(super) fn behind(&self) -> [bool; 2] {
         [self.necks[0] || self.valves[0], self.necks[1] || self.valves[1]]
+    }
+
+    /// True if the gas at each chamber exchanges heat.
+    pub(super) fn heated(&self) -> [bool; 2] {
+        self.heat
     }
 
     /// True if gas at a chamber has states of its own, or is adjusted.

@@ -53,7 +53,7 @@ fn at_settings(
     point: &OperatingPoint,
     list: &mut List,
 ) {
-    if components.adjustments.iter().all(Option::is_none) {
+    if components.gas.iter().flatten().all(|gas| gas.setting().is_none()) {
         return;
     }
     for (name, setting) in
@@ -91,7 +91,7 @@ const WITH_GAS_OF_A_MOTOR: [&str; 3] = [
 pub(super) fn accumulators(project: &Project, rig: &Rig, list: &mut List) {
     let components = rig.actuator.components();
     let pressures = [rig.point.pressure_a, rig.point.pressure_b];
-    let [gas_a, gas_b] = components.accumulators;
+    let [gas_a, gas_b] = components.gas;
     if gas_a.or(gas_b).is_none() {
         return;
     }
@@ -99,7 +99,8 @@ pub(super) fn accumulators(project: &Project, rig: &Rig, list: &mut List) {
     let lines = project.actuator.as_ref().map(|actuator| [&actuator.line.a, &actuator.line.b]);
     let declared = lines.map_or([None; 2], |lines| lines.map(|line| line.accumulator.as_ref()));
     for (side, gas, place) in [("a", gas_a, 0), ("b", gas_b, 1)] {
-        let Some(gas) = gas else { continue };
+        let Some(chamber_gas) = gas else { continue };
+        let gas = chamber_gas.at_rest();
         let pressure = pressures[place];
         let compliance = "C_{acc} = (V_0/(n P)) (P_0/P)^(1/n)";
         let name = |what: &str| format!("line.{side}.accumulator.{what}");
@@ -110,14 +111,14 @@ pub(super) fn accumulators(project: &Project, rig: &Rig, list: &mut List) {
         if let Some(branch) = components.gas_branches(pressures)[place] {
             of_branch(&branch, &name, list);
         }
-        if let Some(adjustment) = components.adjustments[place] {
+        if let Some(setting) = chamber_gas.setting() {
             let equation = "s of the adjustment, at rest";
-            list.add(name("setting"), "s", adjustment.setting, "1", equation);
+            list.add(name("setting"), "s", setting, "1", equation);
         }
         let volume = gas.gas_volume - gas.oil(pressure);
         list.add(name("gas_volume_at_point"), "V", volume, "m3", "V = V_0 (P_0/P)^(1/n)");
     }
-    let bare = Components { accumulators: [None; 2], ..*components };
+    let bare = Components { gas: [None; 2], ..*components };
     let at = |components: &Components, point: &OperatingPoint| {
         let pressures = [point.pressure_a, point.pressure_b];
         let chambers = components.chamber_compliance(pressures, StiffeningMember::Nominal);

@@ -66,9 +66,10 @@ fn figure(rig: &Rig, stroke: f64, units: Units) -> Figure {
     let told = format!(
         "Hydraulic stiffness against {piston} {position}: the declared model with its band of dynamic stiffening, and the other model"
     );
-    let caption = match rig.actuator.components().adjustments {
-        [None, None] => format!("{told}."),
-        _ => format!(
+    let gas = rig.actuator.components().gas;
+    let caption = match gas.iter().flatten().all(|gas| gas.setting().is_none()) {
+        true => format!("{told}."),
+        false => format!(
             "{told}, both at the setting of rest, and the declared model at other settings of the accumulators, for slow motions."
         ),
     };

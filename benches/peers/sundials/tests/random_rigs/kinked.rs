@@ -21,12 +21,7 @@ const KINDS: [&str; 4] = ["end stops", "wall", "stages", "stick-slip"];
 pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     let mut chance = Chance::of(number, 0x6a09_e667_f3bc_c909);
     let kind = KINDS[(number % 4) as usize];
-    let mut components = Components {
-        accumulators: [None; 2],
-        necks: [None; 2],
-        thermal_time_constants: [None; 2],
-        ..necks::components(&mut chance)
-    };
+    let mut components = Components { gas: [None; 2], ..necks::components(&mut chance) };
     let length = 2.0 * components.cylinder.stroke.middle();
     let most = components.supply.pressure * components.cylinder.area_b;
     let sign = if chance.happens(0.5) { 1.0 } else { -1.0 };

@@ -3,7 +3,9 @@
 
 use phea_dynamics::controller::AntiWindup;
 use phea_dynamics::simulation::Profile;
-use phea_hydraulics::accumulator::{Accumulator, HEAT_CAPACITY_RATIO, Neck};
+use phea_hydraulics::accumulator::{
+    Accumulator, ChamberGas, GasContent, GasPassage, HEAT_CAPACITY_RATIO, Neck, RelaxingGas, SealedGas,
+};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::Cylinder;
 use phea_hydraulics::fluid::Fluid;
@@ -49,7 +51,7 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     let distance = -sign * 2.0 * position * chance.decades(1e-3, 2e-2);
     let motion = Profile::smooth_step(0.1, chance.decades(1e-2, 0.1), distance);
     let shut = "gas behind necks";
-    let heat = components.thermal_time_constants[0].map(|_| "gas with heat");
+    let heat = components.gas[0].and_then(|gas| gas.relaxing().map(|_| "gas with heat"));
     Ok(Rig {
         machine,
         start: beginning.state,
@@ -77,8 +79,7 @@ pub(crate) fn components(chance: &mut Chance) -> Components {
     let volume = area_a * stroke * chance.decades(3e-2, 0.3);
     let line = Line::Volume { volume, effective_bulk_modulus: chance.decades(3e8, 1.4e9) };
     let time_constant = chance.happens(0.4).then(|| chance.decades(0.05, 3.0));
-    let [gas_a, gas_b] =
-        [0; 2].map(|_| gas(chance, area_a * stroke, 0.5 * pressure, time_constant.is_some()));
+    let gas = [0; 2].map(|_| Some(gas(chance, area_a * stroke, 0.5 * pressure, time_constant)));
     Components {
         fluid: Fluid {
             bulk_modulus: 1.45e9,
@@ -105,10 +106,7 @@ pub(crate) fn components(chance: &mut Chance) -> Components {
         },
         line_a: line,
         line_b: line,
-        accumulators: [Some(gas_a.0), Some(gas_b.0)],
-        necks: [Some(gas_a.1), Some(gas_b.1)],
-        adjustments: [None; 2],
-        thermal_time_constants: [time_constant; 2],
+        gas,
         cross_port: None,
         series: None,
         linkage: None,
@@ -147,14 +145,21 @@ fn friction(chance: &mut Chance, most_force: f64, moving_mass: f64) -> Friction 
 }
 
 /// Gas that a force between a third and the most of the actuator shuts off, and its neck.
-fn gas(chance: &mut Chance, swept: f64, pressure: f64, exchanges_heat: bool) -> (Accumulator, Neck) {
-    let gas = Accumulator {
-        gas_volume: swept * chance.decades(1e-2, 0.3),
-        precharge_pressure: pressure * chance.between(0.3, 1.1),
-        polytropic_exponent: if exchanges_heat { 1.0 } else { chance.between(1.0, HEAT_CAPACITY_RATIO) },
+fn gas(chance: &mut Chance, swept: f64, pressure: f64, time_constant: Option<f64>) -> ChamberGas {
+    let gas_volume = swept * chance.decades(1e-2, 0.3);
+    let precharge_pressure = pressure * chance.between(0.3, 1.1);
+    let content = match time_constant {
+        Some(time_constant) => {
+            GasContent::Relaxing(RelaxingGas { gas_volume, precharge_pressure, time_constant })
+        }
+        None => {
+            let polytropic_exponent = chance.between(1.0, HEAT_CAPACITY_RATIO);
+            GasContent::Polytropic(Accumulator { gas_volume, precharge_pressure, polytropic_exponent })
+        }
     };
     let size = [chance.decades(2e-3, 1e-2), chance.decades(5e-3, 0.2)];
-    (gas, Neck::round(size, [870.0, 46e-6, 1.45e9], chance.between(0.5, 2.0)))
+    let neck = Neck::round(size, [870.0, 46e-6, 1.45e9], chance.between(0.5, 2.0));
+    ChamberGas::Sealed(SealedGas { content, passage: GasPassage::Neck(neck) })
 }
 
 /// Gains for a crossover that does not ring by itself.

@@ -7,7 +7,7 @@ use super::super::signals::ground_of;
 use super::super::{Accumulator, Chambers, Machine, MachineState, Motion, PowerUnit};
 use super::Account;
 use super::volume::{DensityLaw, Volume};
-use crate::accumulator::{HeatedGas, MovedGas};
+use crate::accumulator::{HeatedGas, MovedGas, Neck};
 use crate::line::{DynamicLine, LineContent};
 use crate::stroke::ActuatorStroke;
 
@@ -275,7 +275,8 @@ impl<S: Scalar> Machine<S> {
             }
         };
         let of = |side: usize, into: T, oil: T| {
-            let neck = self.necks[side].map(|_| states.neck_flows[side]);
+            let neck: Option<Neck<T>> = self.neck(side);
+            let neck = neck.map(|_| states.neck_flows[side]);
             let drop = chambers[side] - pressures[side];
             match neck.or_else(|| self.through_gas_valve(side, setting, drop)) {
                 None => own(side, into, oil),
@@ -294,7 +295,7 @@ impl<S: Scalar> Machine<S> {
     ) -> [NeckInstant<T>; 2] {
         let (zero, half) = (T::from(0.0), T::from(0.5));
         [0, 1].map(|side| {
-            let neck = self.necks[side].map(|neck| neck.convert(&mut constant::<S, T>));
+            let neck: Option<Neck<T>> = self.neck(side);
             if !self.layout.behind()[side] {
                 let none = Account { stored: zero, inflow: zero, lost: zero };
                 return NeckInstant { oil: none, energy: none };
