@@ -48,9 +48,7 @@ pub(crate) use ideal_valve::stand_in_coefficient;
 use ideal_valve::{in_the_limit, shut};
 pub use ideal_valve::{is_ideal, reduced, two_pressures};
 pub use in_loop::{FeedForwardPath, PressureFeedbackPath};
-pub(crate) use in_loop::{
-    inner_feedback, limits_load_motion, pressure_ratio, velocity_gain, with_controller_of,
-};
+pub(crate) use in_loop::{inner_feedback, limits_load_motion, pressure_ratio, with_controller_of};
 pub use largest_flow::{FlowLimit, LargestFlow, largest_flow};
 pub use lines::{in_motion, line_model, lines};
 pub(crate) use lines::{quarter_wave, quarter_wave_of};
@@ -267,7 +265,7 @@ impl Rig {
         let pushed = load.map_or(LinearLoad::Prescribed, |load| load.linear());
         let plant = plant(&two_pressure, &linear, one_pressure, internal_leakage, pushed);
         let area_stiffness = components.cylinder.area_stiffness(point.position, pressures);
-        let velocity_sensor = VelocitySensor::shown_by(velocity_gain(declared, &numbers));
+        let velocity_sensor = VelocitySensor::shown_by(components.velocity_gain);
         let plant = LinearPlant { dynamic_feedback, series, area_stiffness, velocity_sensor, ..plant };
         let plant = match yielding {
             Some(of) if !(one_pressure && unseen) => with_supply(plant, shut(of, &model, &point), &leaking),

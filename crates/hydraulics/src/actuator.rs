@@ -49,6 +49,9 @@ pub struct Components<S = f64> {
     pub linkage: Option<Linkage<S>>,
     /// Load on the force sensor.
     pub load: Load<S>,
+    /// Ratio of the measured to the true velocity of the load: 1 + e, e being the error of the
+    /// sensor's gain; `None` without an error.
+    pub velocity_gain: Option<S>,
     /// Bulk modulus used for the chambers.
     pub stiffness_model: StiffnessModel,
 }
@@ -141,6 +144,9 @@ impl Actuator {
         problems.component("series", components.series.map_or(Vec::new(), |series| series.problems()));
         problems.component("linkage", components.linkage.map_or(Vec::new(), |linkage| linkage.problems()));
         problems.component("load", components.load.problems());
+        if let Some(gain) = components.velocity_gain {
+            problems.positive("velocity_sensor.gain", gain);
+        }
         let not_empty = ParameterRequirement::ChamberNotEmpty;
         let volume_a = cylinder.dead_volume_a + line_a.volume();
         let volume_b = cylinder.dead_volume_b + line_b.volume();

@@ -157,7 +157,7 @@ impl Machine {
                 }
             },
             gas: components.gas.map(|gas| Some(gas?.of_machine(options.moving_setting))),
-            gas_pressure_limits: options.gas_pressure_limits,
+            gas_pressure_limits: components.gas.map(|gas| gas?.pressure_limit()),
             moving_setting: options.moving_setting,
             cross_port: components.cross_port,
             lines: options.lines.unwrap_or([none; 2]),
@@ -166,7 +166,7 @@ impl Machine {
             series: components.series.map(|series| series.in_motion(&components.fluid, options.member)),
             linkage: components.linkage,
             load: components.load,
-            velocity_gain: options.velocity_gain,
+            velocity_gain: components.velocity_gain.unwrap_or(1.0),
             pressure_ratio: options.pressure_ratio,
             external_force: options.external_force,
             vapour_pressure: components.fluid.vapour_pressure_absolute - ATMOSPHERIC_PRESSURE_ABSOLUTE,

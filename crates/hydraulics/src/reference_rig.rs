@@ -132,6 +132,7 @@ pub fn components(line: Line, stiffness_model: StiffnessModel) -> Components {
         series: None,
         linkage: None,
         load: Load::Prescribed,
+        velocity_gain: None,
         stiffness_model,
     }
 }

@@ -98,7 +98,7 @@ pub(super) fn chamber_gas(source: u64, number: u64) -> [Option<ChamberGas>; 2] {
                     GasContent::Relaxing(RelaxingGas { gas_volume, precharge_pressure, time_constant })
                 }
             };
-            ChamberGas::Sealed(SealedGas { content, passage: passages[side] })
+            ChamberGas::Sealed(SealedGas { content, passage: passages[side], maximum_pressure_ratio: None })
         })
     })
 }

@@ -290,7 +290,11 @@ fn gas_with_heat_is_passive() {
             time_constant: spread(3e-3, 0.1),
         };
         let lines = [LINE, SOFT_LINE];
-        let sealed = SealedGas { content: GasContent::Relaxing(gas), passage: GasPassage::Open };
+        let sealed = SealedGas {
+            content: GasContent::Relaxing(gas),
+            passage: GasPassage::Open,
+            maximum_pressure_ratio: None,
+        };
         let rig = Components { gas: [Some(ChamberGas::Sealed(sealed)), None], ..closed(lines) };
         let machine = machine_of(rig, &MachineOptions::default());
         let amount = (gas.precharge_pressure + ATMOSPHERE) * gas.gas_volume;
@@ -329,7 +333,11 @@ fn a_gas_valve_is_passive() {
             shut: false,
         };
         let lines = [LINE, SOFT_LINE];
-        let sealed = SealedGas { content: GasContent::Polytropic(gas), passage: GasPassage::Valve(valve) };
+        let sealed = SealedGas {
+            content: GasContent::Polytropic(gas),
+            passage: GasPassage::Valve(valve),
+            maximum_pressure_ratio: None,
+        };
         let rig = Components { gas: [Some(ChamberGas::Sealed(sealed)), None], ..closed(lines) };
         let machine = machine_of(rig, &MachineOptions::default());
         let power = |now: &Now| (now.state[2] - REST) * now.leaving(lines)[0];

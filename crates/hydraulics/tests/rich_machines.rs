@@ -165,7 +165,8 @@ fn neck(diameter: f64) -> Neck {
 }
 
 fn with_gas(rig: Components, contents: [GasContent; 2], passages: [GasPassage; 2]) -> Components {
-    let sealed = |side| SealedGas { content: contents[side], passage: passages[side] };
+    let sealed =
+        |side| SealedGas { content: contents[side], passage: passages[side], maximum_pressure_ratio: None };
     Components { gas: [0, 1].map(|side| Some(ChamberGas::Sealed(sealed(side)))), ..rig }
 }
 
@@ -175,10 +176,22 @@ fn adjusted_machines() -> [(&'static str, Machine); 3] {
     let by_volume = foamy(rig, StiffnessModel::ByVolume, 1.4);
     // gas that is moved, at one chamber behind a neck, and gas behind valves, at one chamber with
     // heat
-    let more =
-        AdjustedGas { at_rest: LARGE, setting: 0.5, volume_rise: 8e-6, precharge_rise: -2e5, neck: None };
-    let less =
-        AdjustedGas { at_rest: SMALL, setting: 0.5, volume_rise: -3e-6, precharge_rise: 1e5, neck: None };
+    let more = AdjustedGas {
+        at_rest: LARGE,
+        setting: 0.5,
+        volume_rise: 8e-6,
+        precharge_rise: -2e5,
+        neck: None,
+        maximum_pressure_ratio: None,
+    };
+    let less = AdjustedGas {
+        at_rest: SMALL,
+        setting: 0.5,
+        volume_rise: -3e-6,
+        precharge_rise: 1e5,
+        neck: None,
+        maximum_pressure_ratio: None,
+    };
     let behind_neck = AdjustedGas { neck: Some(neck(6e-3)), ..less };
     let moved = |gas| Some(ChamberGas::Adjusted(gas));
     let of_gas = Components { gas: [moved(more), moved(behind_neck)], ..rig };

@@ -121,7 +121,8 @@ fn gas(draw: &mut Draw) -> Option<ChamberGas> {
         })
     } else if heat.is_none() && draw.part("gas that is added", 0.6) {
         let (volume_rise, precharge_rise) = (moved * gas_volume, -0.8 * moved * precharge_pressure);
-        let gas = AdjustedGas { at_rest, setting, volume_rise, precharge_rise, neck };
+        let gas =
+            AdjustedGas { at_rest, setting, volume_rise, precharge_rise, neck, maximum_pressure_ratio: None };
         return Some(ChamberGas::Adjusted(gas));
     } else {
         neck.map_or(GasPassage::Open, GasPassage::Neck)
@@ -132,7 +133,7 @@ fn gas(draw: &mut Draw) -> Option<ChamberGas> {
             GasContent::Relaxing(RelaxingGas { gas_volume, precharge_pressure, time_constant })
         }
     };
-    Some(ChamberGas::Sealed(SealedGas { content, passage }))
+    Some(ChamberGas::Sealed(SealedGas { content, passage, maximum_pressure_ratio: None }))
 }
 
 /// Motor with unlimited rotation, or a cylinder of this stroke in m, with its friction and its

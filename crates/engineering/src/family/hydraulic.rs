@@ -30,7 +30,7 @@ use super::{NoEffect, ProjectFamilyError};
 use crate::project::{DeclaredActuator, LINEAR_PARAMETERS, Project};
 use crate::rig::{
     self, Numbers, Rig, components, has_gas_states, linear, load_at, place, plant, settled_supply,
-    spool_side, stated, velocity_gain, with_gas, with_supply, yielding_supply,
+    spool_side, stated, with_gas, with_supply, yielding_supply,
 };
 use crate::setup::Setup;
 
@@ -193,8 +193,8 @@ impl Open<'_> {
         };
         let pressures = [place.point.pressure_a, place.point.pressure_b];
         let plant = with_gas(plant, &place.components, &place.chambers, pressures);
-        let gain = velocity_gain(self.declared, &numbers);
-        let velocity_sensor = VelocitySensor { gain, ..plant.velocity_sensor };
+        let velocity_sensor =
+            VelocitySensor { gain: place.components.velocity_gain, ..plant.velocity_sensor };
         let force = place.point.hydraulic_force;
         let series = LinearSeries::of_components(&place.components, force);
         let dynamic_feedback = place.dynamic_feedback;

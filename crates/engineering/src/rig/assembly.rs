@@ -16,6 +16,7 @@ use phea_hydraulics::stroke::{ActuatorStroke, FURTHER_STAGES, PistonStage, Teles
 use super::cross_port::cross_port;
 use super::friction::friction;
 use super::gas::chamber_gas;
+use super::in_loop::velocity_gain;
 use super::load::load;
 use super::numbers::Numbers;
 use super::supply::power_unit;
@@ -71,6 +72,7 @@ pub fn components<S: Scalar>(
             self::linkage(linkage, declared.cylinder.stroke, &numbers.within("linkage.weight"))
         }),
         load: load(&declared.load, numbers),
+        velocity_gain: velocity_gain(declared, numbers),
         stiffness_model: declared.line.compliance,
     }
 }

@@ -5,7 +5,6 @@ use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{CommandedPlant, Sensed, SimulationSettings};
 use phea_hydraulics::actuator::{Actuator, Components};
-use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::machine::{Machine, MachineError, MachineOptions, PowerUnit};
 use phea_machine::{Control, Sampled};
@@ -14,7 +13,7 @@ use super::SimulateError;
 use super::line_limits::LineLimits;
 use crate::project::{self, Project, Scenario};
 use crate::quantity::{MotionKind, Units};
-use crate::rig::{Numbers, OfMotion, Rig, lines, pressure_ratio, velocity_gain};
+use crate::rig::{OfMotion, Rig, lines, pressure_ratio};
 use crate::setup::Setup;
 
 /// A machine with its controller.
@@ -237,31 +236,15 @@ pub fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions,
     let Some(declared) = &project.actuator else { return Ok(MachineOptions::default()) };
     let fed_back = project.controller.as_ref().and_then(|controller| controller.pressure_feedback);
     Ok(MachineOptions {
-        velocity_gain: velocity_gain(declared, &Numbers::declared()).unwrap_or(1.0),
         pressure_ratio: fed_back.map_or(1.0, |fed_back| pressure_ratio(&fed_back, actuator.components())),
         external_force: false,
         moving_setting: false,
         member: StiffeningMember::Nominal,
-        gas_pressure_limits: gas_pressure_limits(declared, actuator),
         lines: lines(
             &declared.line,
             [&actuator.components().line_a, &actuator.components().line_b],
             &actuator.components().fluid,
             actuator.mean_pressure(),
         )?,
-    })
-}
-
-/// What the makers permit for the accumulators at the chambers, in Pa gauge.
-///
-/// ```text
-/// P_2 = (p_2/p_0) P_0,     absolute, P_0 at the working temperature and the setting at rest
-/// ```
-fn gas_pressure_limits(declared: &project::DeclaredActuator, actuator: &Actuator) -> [Option<f64>; 2] {
-    let declared = [&declared.line.a, &declared.line.b].map(|line| line.accumulator.as_ref());
-    [0, 1].map(|side| {
-        let (ratio, atmosphere) = (declared[side]?.maximum_pressure_ratio?, ATMOSPHERIC_PRESSURE_ABSOLUTE);
-        let at_rest = actuator.components().gas[side]?.at_rest().precharge_pressure;
-        Some(ratio * (at_rest + atmosphere) - atmosphere)
     })
 }

@@ -124,6 +124,7 @@ impl<S: Scalar> Machine<S> {
             Some(ChamberGas::Sealed(SealedGas {
                 content: GasContent::Polytropic(gas),
                 passage: GasPassage::Open,
+                ..
             })) => {
                 let [gas] = T::local(gas, [pressure]);
                 oil + gas

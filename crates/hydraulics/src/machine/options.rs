@@ -5,9 +5,6 @@ use crate::parameter::{ParameterError, Problems};
 /// constant supply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MachineOptions {
-    /// Ratio of the measured to the true velocity of the load: 1 + e, e being the error of the
-    /// sensor's gain.
-    pub velocity_gain: f64,
     /// Factor phi of the pressure signal p_A - phi p_B that a controller may feed back.
     pub pressure_ratio: f64,
     /// True if an external force acts on the load, as an input of the machine; requires a load with
@@ -18,9 +15,6 @@ pub struct MachineOptions {
     pub moving_setting: bool,
     /// Member of the hoses' stiffening interval.
     pub member: StiffeningMember,
-    /// Pressure limits of the gas of the accumulators at A and B, Pa gauge: a run reports when they
-    /// are exceeded.
-    pub gas_pressure_limits: [Option<f64>; 2],
     /// Lines between valve and chambers with dynamics of their own, A first; if absent, each
     /// chamber has one pressure with its line.
     pub lines: Option<[DynamicLine; 2]>,
@@ -29,12 +23,10 @@ pub struct MachineOptions {
 impl Default for MachineOptions {
     fn default() -> MachineOptions {
         MachineOptions {
-            velocity_gain: 1.0,
             pressure_ratio: 1.0,
             external_force: false,
             moving_setting: false,
             member: StiffeningMember::Nominal,
-            gas_pressure_limits: [None; 2],
             lines: None,
         }
     }
@@ -44,11 +36,6 @@ impl MachineOptions {
     /// Impossible options; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
-        let limits = self.gas_pressure_limits.iter().zip(["line.a", "line.b"]);
-        for (limit, line) in limits.filter_map(|(limit, line)| Some(((*limit)?, line))) {
-            problems.positive(&format!("{line}.accumulator.maximum_pressure"), limit);
-        }
-        problems.positive("velocity_sensor.gain", self.velocity_gain);
         problems.not_negative("controller.pressure_feedback.ratio", self.pressure_ratio);
         problems.into_vec()
     }

@@ -116,6 +116,7 @@ fn components(chance: &mut Chance) -> Components {
         series: None,
         linkage: None,
         load: Load::Prescribed,
+        velocity_gain: None,
         cylinder: Cylinder {
             area_a,
             area_b,

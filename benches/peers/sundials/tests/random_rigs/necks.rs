@@ -111,6 +111,7 @@ pub(crate) fn components(chance: &mut Chance) -> Components {
         series: None,
         linkage: None,
         load: Load::Prescribed,
+        velocity_gain: None,
         cylinder: Cylinder {
             area_a,
             area_b,
@@ -159,7 +160,7 @@ fn gas(chance: &mut Chance, swept: f64, pressure: f64, time_constant: Option<f64
     };
     let size = [chance.decades(2e-3, 1e-2), chance.decades(5e-3, 0.2)];
     let neck = Neck::round(size, [870.0, 46e-6, 1.45e9], chance.between(0.5, 2.0));
-    ChamberGas::Sealed(SealedGas { content, passage: GasPassage::Neck(neck) })
+    ChamberGas::Sealed(SealedGas { content, passage: GasPassage::Neck(neck), maximum_pressure_ratio: None })
 }
 
 /// Gains for a crossover that does not ring by itself.

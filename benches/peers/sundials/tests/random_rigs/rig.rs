@@ -233,6 +233,7 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
         series: None,
         linkage: None,
         load: Load::Prescribed,
+        velocity_gain: None,
         cylinder: Cylinder {
             area_a,
             area_b,
