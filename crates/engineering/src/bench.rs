@@ -20,7 +20,7 @@ use phea_dynamics::random::stream;
 use phea_dynamics::simulation::{ProfileError, SimulationError};
 use phea_dynamics::watch::{Stopped, Watch, tell};
 use phea_hydraulics::line::LineError;
-use phea_hydraulics::servovalve::{OilLaw, SlowSpool, SpoolImperfection, TestStand, WarmOil, ramp_delay};
+use phea_hydraulics::servovalve::{OilLaw, SlowSpool, TestStand, WarmOil, ramp_delay};
 
 use self::command_path::CommandPath;
 pub(crate) use self::instrument::Instruments;
@@ -219,20 +219,13 @@ pub fn bench(setup: &Setup<'_>, watch: Watch<'_>) -> Result<Vec<BenchRun>, Bench
     let stand = TestStand {
         valve: components.valve,
         supply: components.supply,
-        tare_reference_drop: declared.valve.tare_drop(&declared.supply),
         pump: pump(declared, settings),
         meter_coefficient: f64::INFINITY,
-    };
-    let spool = SpoolImperfection {
-        null_bias: declared.valve.null_bias,
-        hysteresis_width: declared.valve.hysteresis,
-        threshold: declared.valve.threshold,
-        rate_limit: None,
     };
     let series = wanted(settings);
     let mut runs = Vec::with_capacity(series.len());
     for series in series {
-        runs.push(record(series, (&stand, &spool), settings, rows as usize, watch)?);
+        runs.push(record(series, &stand, settings, rows as usize, watch)?);
     }
     Ok(runs)
 }
@@ -278,7 +271,7 @@ fn pump(declared: &DeclaredActuator, settings: &Bench) -> Option<[f64; 2]> {
 /// One test from its first row to its last; the spool starts without memory.
 fn record(
     series: BenchSeries,
-    (stand, spool): (&TestStand, &SpoolImperfection),
+    stand: &TestStand,
     settings: &Bench,
     rows: usize,
     watch: Watch<'_>,
@@ -307,7 +300,7 @@ fn record(
         let command = instruments.command(nominal_voltage * path.at(time / settings.duration));
         let lag = delay * (command - before) / settings.sample_time;
         before = command;
-        let opening = spool.slow_opening(&mut memory, command) - lag;
+        let opening = stand.valve.spool.slow_opening(&mut memory, command) - lag;
         let oil = settings.oil_temperature.map(|oil| oil_at(&oil, time / settings.duration));
         let warm = oil.map_or(stand, |(_, oil)| TestStand {
             valve: oil.valve(&stand.valve),

@@ -4,11 +4,13 @@
 mod accumulator;
 mod assembly;
 mod cross_port;
+mod friction;
 mod gas;
 mod ideal_valve;
 mod in_loop;
 mod largest_flow;
 mod lines;
+mod load;
 mod numbers;
 mod of_motion;
 mod outside;
@@ -46,9 +48,7 @@ pub(crate) use ideal_valve::stand_in_coefficient;
 use ideal_valve::{in_the_limit, shut};
 pub use ideal_valve::{is_ideal, reduced, two_pressures};
 pub use in_loop::{FeedForwardPath, PressureFeedbackPath};
-pub(crate) use in_loop::{
-    inner_feedback, limits_load_motion, pressure_ratio, velocity_gain, with_controller_of,
-};
+pub(crate) use in_loop::{inner_feedback, limits_load_motion, pressure_ratio, with_controller_of};
 pub use largest_flow::{FlowLimit, LargestFlow, largest_flow};
 pub use lines::{in_motion, line_model, lines};
 pub(crate) use lines::{quarter_wave, quarter_wave_of};
@@ -68,8 +68,8 @@ pub(crate) use plant::with_supply;
 pub use plant::{LoadLever, YieldingLoad, linear, plant, rod_end, sides, stated};
 pub use series::{series_coil, stall_force, waves_right_to};
 
+pub use supply::settled_supply;
 pub(crate) use supply::{power_at_rest, yielding_supply};
-pub use supply::{power_unit, settled_supply};
 
 /// A rig with everything that procedures compute with.
 #[derive(Clone, Debug, PartialEq)]
@@ -235,7 +235,7 @@ impl Rig {
         let numbers = Numbers::declared();
         let (position, steady) = place(project, components, &numbers);
         let balance = Balance::at(components, position);
-        let supply = settled_supply(declared, &numbers, &balance, steady)
+        let supply = settled_supply(&components.power_unit, &balance, steady)
             .filter(|found| found.supply.pressure.is_finite());
         // the valve at the pressure of the pump, lines and stall forces at the stated one
         let settled = supply.map_or(components.supply, |found| found.supply);
@@ -256,7 +256,8 @@ impl Rig {
         let linear = parameters::replaced(&derived, stated(&parameters));
         let (internal_leakage, dynamic_feedback) = components.cross_admittance(pressures);
         let load = load_at(&declared.load, &numbers, components, &point);
-        let yielding = supply.and_then(|found| yielding_supply(declared, &numbers, &balance, &found, side));
+        let unit = &components.power_unit;
+        let yielding = supply.and_then(|found| yielding_supply(unit, &balance, &found, side));
         let unseen = yielding.is_none_or(|supply| are_equal([supply.edges])) && !has_gas_states(declared);
         let equal = are_equal(sides(&two_pressure)) && unseen;
         let one_pressure = states_one_pressure(&parameters, &[]) || equal;
@@ -264,7 +265,7 @@ impl Rig {
         let pushed = load.map_or(LinearLoad::Prescribed, |load| load.linear());
         let plant = plant(&two_pressure, &linear, one_pressure, internal_leakage, pushed);
         let area_stiffness = components.cylinder.area_stiffness(point.position, pressures);
-        let velocity_sensor = VelocitySensor::shown_by(velocity_gain(declared, &numbers));
+        let velocity_sensor = VelocitySensor::shown_by(components.velocity_gain);
         let plant = LinearPlant { dynamic_feedback, series, area_stiffness, velocity_sensor, ..plant };
         let plant = match yielding {
             Some(of) if !(one_pressure && unseen) => with_supply(plant, shut(of, &model, &point), &leaking),

@@ -11,7 +11,9 @@ use crate::force_sensor::ForceSensor;
 use crate::friction::Friction;
 use crate::line::{Line, StiffeningMember};
 use crate::linkage::Linkage;
+use crate::load::Load;
 use crate::parameter::{ParameterError, ParameterRequirement, Problems};
+use crate::power_unit::PowerUnit;
 use crate::series::SeriesElement;
 use crate::servovalve::{Servovalve, Supply};
 use crate::stiffness::{ChamberCompliance, StiffnessModel, chamber_compliance};
@@ -21,8 +23,10 @@ use crate::stiffness::{ChamberCompliance, StiffnessModel, chamber_compliance};
 pub struct Components<S = f64> {
     /// The fluid throughout.
     pub fluid: Fluid<S>,
-    /// Supply and tank pressures.
+    /// Supply and tank pressures: those that an idle pump holds.
     pub supply: Supply<S>,
+    /// Source of the supply pressure.
+    pub power_unit: PowerUnit<S>,
     /// The servovalve.
     pub valve: Servovalve<S>,
     /// The line between port A and chamber A.
@@ -43,6 +47,11 @@ pub struct Components<S = f64> {
     pub series: Option<SeriesElement<S>>,
     /// Linkage between rod and a load that turns; `None` if the load moves with the rod.
     pub linkage: Option<Linkage<S>>,
+    /// Load on the force sensor.
+    pub load: Load<S>,
+    /// Ratio of the measured to the true velocity of the load: 1 + e, e being the error of the
+    /// sensor's gain; `None` without an error.
+    pub velocity_gain: Option<S>,
     /// Bulk modulus used for the chambers.
     pub stiffness_model: StiffnessModel,
 }
@@ -121,6 +130,7 @@ impl Actuator {
         let mut problems = Problems::default();
         problems.component("fluid", fluid.problems());
         problems.component("supply", supply.problems());
+        problems.component("supply", components.power_unit.problems());
         problems.component("valve", valve.problems());
         problems.component("line.a", line_a.problems());
         problems.component("line.b", line_b.problems());
@@ -133,6 +143,10 @@ impl Actuator {
         problems.component("force_sensor", force_sensor.problems());
         problems.component("series", components.series.map_or(Vec::new(), |series| series.problems()));
         problems.component("linkage", components.linkage.map_or(Vec::new(), |linkage| linkage.problems()));
+        problems.component("load", components.load.problems());
+        if let Some(gain) = components.velocity_gain {
+            problems.positive("velocity_sensor.gain", gain);
+        }
         let not_empty = ParameterRequirement::ChamberNotEmpty;
         let volume_a = cylinder.dead_volume_a + line_a.volume();
         let volume_b = cylinder.dead_volume_b + line_b.volume();

@@ -20,6 +20,10 @@ pub struct Fluid<S = f64> {
     pub kinematic_viscosity: S,
     /// Air bubbles, absent by default.
     pub entrained_air: Option<EntrainedAir<S>>,
+    /// Pressure in Pa absolute below which a chamber is reported to cavitate: a few pascals for
+    /// mineral oil at working temperatures. Fluid with entrained air expands before it boils and
+    /// never reaches vacuum: for it, state the pressure at which dissolved air is released.
+    pub vapour_pressure_absolute: S,
 }
 
 /// Free air carried as bubbles (dissolved air does not soften the fluid and does not count).
@@ -38,6 +42,7 @@ impl Fluid {
         problems.positive("bulk_modulus", self.bulk_modulus);
         problems.positive("density", self.density);
         problems.positive("kinematic_viscosity", self.kinematic_viscosity);
+        problems.not_negative("vapour_pressure_absolute", self.vapour_pressure_absolute);
         if let Some(EntrainedAir { volume_fraction, polytropic_exponent }) = self.entrained_air {
             let is_fraction = (0.0..1.0).contains(&volume_fraction);
             problems.require(
@@ -65,7 +70,10 @@ impl<S: Scalar> Fluid<S> {
     /// # Example
     /// ```
     /// use phea_hydraulics::fluid::{EntrainedAir, Fluid};
-    /// let clean = Fluid { bulk_modulus: 1.45e9, density: 870.0, kinematic_viscosity: 46e-6, entrained_air: None };
+    /// let clean = Fluid {
+    ///     bulk_modulus: 1.45e9, density: 870.0, kinematic_viscosity: 46e-6, entrained_air: None,
+    ///     vapour_pressure_absolute: 0.0,
+    /// };
     /// assert_eq!(clean.modulus_at(35e5), 1.45e9);
     /// let air = EntrainedAir { volume_fraction: 0.01, polytropic_exponent: 1.4 };
     /// let foamy = Fluid { entrained_air: Some(air), ..clean };

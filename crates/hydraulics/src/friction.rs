@@ -25,7 +25,12 @@ pub enum Friction<S = f64> {
         viscous: S,
     },
     /// Steady curve, including its jump at zero velocity.
-    Stribeck(Stribeck<S>),
+    Stribeck {
+        /// Steady curve.
+        curve: Stribeck<S>,
+        /// Velocity v_r that smooths the jump in motion, m/s; without it nothing can be simulated.
+        regular_velocity: Option<S>,
+    },
     /// Bristles: the steady curve with a spring-like beginning.
     LuGre(LuGre<S>),
 }
@@ -36,7 +41,7 @@ impl<S: Copy> Friction<S> {
     pub fn viscous(&self) -> S {
         match self {
             Friction::Viscous { viscous } => *viscous,
-            Friction::Stribeck(curve) => curve.viscous,
+            Friction::Stribeck { curve, .. } => curve.viscous,
             Friction::LuGre(lugre) => lugre.curve.viscous,
         }
     }
@@ -47,7 +52,7 @@ impl Friction {
     pub fn viscous_by_direction(&self) -> [f64; 2] {
         match self {
             Friction::Viscous { viscous } => [*viscous; 2],
-            Friction::Stribeck(curve) | Friction::LuGre(LuGre { curve, .. }) => {
+            Friction::Stribeck { curve, .. } | Friction::LuGre(LuGre { curve, .. }) => {
                 curve.both_levels().map(|levels| levels.viscous)
             }
         }
@@ -61,7 +66,14 @@ impl Friction {
                 problems.not_negative("viscous", *viscous);
                 problems.into_vec()
             }
-            Friction::Stribeck(curve) => curve.problems(),
+            Friction::Stribeck { curve, regular_velocity } => {
+                let mut problems = Problems::default();
+                problems.all(curve.problems());
+                if let Some(velocity) = regular_velocity {
+                    problems.positive("regular_velocity", *velocity);
+                }
+                problems.into_vec()
+            }
             Friction::LuGre(lugre) => lugre.problems(),
         }
     }

@@ -26,6 +26,7 @@ pub mod impedance;
 pub mod line;
 pub mod linear;
 pub mod linkage;
+pub mod load;
 pub mod machine;
 pub mod operating_point;
 pub mod orifice;

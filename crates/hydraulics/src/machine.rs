@@ -15,7 +15,7 @@
 //! sensor         d(x - x_L)/dt = v - v_L,   F_e = K_S (x - x_L)          thesis (4.45)
 //! series         spring or oil between sensor and load, or absent         SeriesElement
 //! bristles       dz/dt                                          thesis (4.30), corrected: LuGre
-//! load           prescribed, or d(x_L - x_0)/dt, dv_L/dt         LoadModel; behind a Linkage theta for x
+//! load           prescribed, or d(x_L - x_0)/dt, dv_L/dt         Load; behind a Linkage theta for x
 //! supply         constant, or dp_S/dt                           PowerUnit
 //! lines          lumped, or states and waves of their own       DynamicLine
 //! ```
@@ -45,7 +45,7 @@ pub use crate::accumulator::Accumulator;
 pub use crate::power_unit::{PowerUnit, PumpLimited};
 pub use chambers::{AeratedChambers, Chambers};
 pub use ledger::{Account, ENERGY_ACCOUNTS, Ledger, OIL_ACCOUNTS};
-pub use load::{LoadModel, Motion};
+pub use load::Motion;
 pub use options::{MachineError, MachineOptions};
 pub use signals::{INDICATORS, MachineSignals};
 pub use start::{InitialCondition, StartValues};
@@ -62,15 +62,16 @@ use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use crate::friction::MovingFriction;
 use crate::line::{DynamicLine, Segments};
 use crate::linkage::Linkage;
+use crate::load::Load;
 use crate::series::MovingSeries;
-use crate::servovalve::{Servovalve, SpoolImperfection, Supply};
+use crate::servovalve::{Servovalve, Supply};
 use equations::constant;
 use signals::ground_of;
 use state::Layout;
 
 /// Actuator with its load and its power unit, in motion. Parameters are numbers, or lanes of them.
 ///
-/// Its inputs are the position in m and the velocity in m/s of the load's ground ([`LoadModel`]; in
+/// Its inputs are the position in m and the velocity in m/s of the load's ground ([`Load`]; in
 /// rad and rad/s behind a linkage), the external force in N (N m) if there is one
 /// ([`MachineOptions::external_force`]), the change of the setting of its accumulators and its rate
 /// in 1/s if it moves ([`MachineOptions::moving_setting`]), and then the waves that arrive from
@@ -98,8 +99,6 @@ use state::Layout;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Machine<S = f64> {
     valve: Servovalve<S>,
-    spool: SpoolImperfection<S>,
-    tare_reference_drop: S,
     supply: Supply<S>,
     power_unit: PowerUnit<S>,
     cylinder: Cylinder<S>,
@@ -114,7 +113,7 @@ pub struct Machine<S = f64> {
     sensor_stiffness: S,
     series: Option<MovingSeries<S>>,
     linkage: Option<Linkage<S>>,
-    load: LoadModel<S>,
+    load: Load<S>,
     velocity_gain: S,
     /// Factor phi of the pressure signal p_A - phi p_B.
     pressure_ratio: S,
@@ -127,7 +126,8 @@ impl Machine {
     /// Machine of an actuator with these options.
     ///
     /// # Errors
-    /// All impossible options; a static friction curve without the velocity that smooths its jump;
+    /// All impossible options; a load in front of a wall without a mass; a static friction curve
+    /// without the velocity that smooths its jump;
     /// end stops so soft, or dead volumes so small, that the supply pressure would press the piston
     /// through the last fluid of a chamber; an external force on a load that does not yield.
     pub fn new(actuator: &Actuator, options: &MachineOptions) -> Result<Machine, MachineError> {
@@ -135,20 +135,19 @@ impl Machine {
         if !problems.is_empty() {
             return Err(MachineError::Impossible { problems });
         }
-        if options.external_force && !options.load.moves() {
+        let components = actuator.components();
+        if matches!(components.load, Load::Wall { mass: None, .. }) {
+            return Err(MachineError::LoadWithoutMass);
+        }
+        if options.external_force && !components.load.moves() {
             return Err(MachineError::UnyieldingLoad);
         }
-        let components = actuator.components();
-        let friction = MovingFriction::new(&components.friction, options.friction_regular_velocity)
-            .ok_or(MachineError::StaticFriction)?;
-        let Supply { pressure, tank_pressure } = components.supply;
+        let friction = MovingFriction::new(&components.friction).ok_or(MachineError::StaticFriction)?;
         let none = DynamicLine::Segments(Segments::lumped(0.0));
         let mut machine = Machine {
             valve: components.valve,
-            spool: options.spool,
-            tare_reference_drop: options.tare_reference_drop.unwrap_or(pressure - tank_pressure),
             supply: components.supply,
-            power_unit: options.power_unit,
+            power_unit: components.power_unit,
             cylinder: components.cylinder,
             chambers: match options.lines {
                 None => Chambers::new(actuator, options.member),
@@ -158,7 +157,7 @@ impl Machine {
                 }
             },
             gas: components.gas.map(|gas| Some(gas?.of_machine(options.moving_setting))),
-            gas_pressure_limits: options.gas_pressure_limits,
+            gas_pressure_limits: components.gas.map(|gas| gas?.pressure_limit()),
             moving_setting: options.moving_setting,
             cross_port: components.cross_port,
             lines: options.lines.unwrap_or([none; 2]),
@@ -166,11 +165,11 @@ impl Machine {
             sensor_stiffness: components.force_sensor.stiffness,
             series: components.series.map(|series| series.in_motion(&components.fluid, options.member)),
             linkage: components.linkage,
-            load: options.load,
-            velocity_gain: options.velocity_gain,
+            load: components.load,
+            velocity_gain: components.velocity_gain.unwrap_or(1.0),
             pressure_ratio: options.pressure_ratio,
             external_force: options.external_force,
-            vapour_pressure: options.vapour_pressure_absolute - ATMOSPHERIC_PRESSURE_ABSOLUTE,
+            vapour_pressure: components.fluid.vapour_pressure_absolute - ATMOSPHERIC_PRESSURE_ABSOLUTE,
             layout: Layout::default(),
         };
         machine.layout = Layout::of(&machine);
@@ -263,8 +262,7 @@ impl Machine {
 
 phea_dynamics::parameters! {
     Machine {
-        valve, spool, tare_reference_drop, supply, power_unit, cylinder, chambers, gas,
-        gas_pressure_limits, moving_setting: kept,
+        valve, supply, power_unit, cylinder, chambers, gas, gas_pressure_limits, moving_setting: kept,
         cross_port, lines, friction, sensor_stiffness, series, linkage, load, velocity_gain,
         pressure_ratio, external_force: kept, vapour_pressure, layout: kept,
     }

@@ -153,25 +153,10 @@ impl OperatingPoint {
 /// With unequal edges at null the pressures differ from half the supply pressure, and push the
 /// piston:
 /// ```
-/// # use phea_hydraulics::{actuator::*, cylinder::*, fluid::*, force_sensor::*, friction::*, line::*};
-/// # use phea_hydraulics::{operating_point::*, servovalve::*, stiffness::*, stroke::ActuatorStroke};
+/// # use phea_hydraulics::{actuator::Actuator, line::Line, reference_rig::components};
+/// # use phea_hydraulics::{operating_point::*, stiffness::StiffnessModel};
 /// # let line = Line::Volume { volume: 1.9e-4, effective_bulk_modulus: 2.6e8 };
-/// # let actuator = Actuator::new(Components {
-/// #     fluid: Fluid { bulk_modulus: 1.45e9, density: 870.0, kinematic_viscosity: 46e-6, entrained_air: None },
-/// #     supply: Supply { pressure: 70e5, tank_pressure: 0.0 },
-/// #     valve: Servovalve {
-/// #         flow_coefficients: Edges::from_array([3.2e-7, 2.5e-7, 2.0e-7, 3.85e-7]),
-/// #         opening: OpeningLaw::Proportional,
-/// #         leakage_coefficients: Edges::from_array([2.35e-9, 2.2e-9, 1.7e-9, 2.35e-9]),
-/// #         leakage_shape: LeakageShape::Common(100.0), leakage_model: LeakageModel::EachEdge, tare_flow: 7.55e-6, nominal_voltage: 10.0,
-/// #         natural_frequency: 1099.0, damping_ratio: 0.9, transition_pressure: 1e3,
-/// #     },
-/// #     line_a: line, line_b: line, gas: [None; 2], cross_port: None, series: None, linkage: None,
-/// #     cylinder: Cylinder { area_a: 1.58336e-3, area_b: 1.58336e-3, stroke: ActuatorStroke::Limited(0.5), moving_mass: 13.1,
-/// #         dead_volume_a: 0.0, dead_volume_b: 0.0, internal_leakage: None, external_leakage: None, end_stops: None },
-/// #     friction: Friction::Viscous { viscous: 100.0 }, force_sensor: ForceSensor { stiffness: 2e7 },
-/// #     stiffness_model: StiffnessModel::Uniform,
-/// # })?;
+/// # let actuator = Actuator::new(components(line, StiffnessModel::Uniform))?;
 /// let null = operating_point(&actuator, 0.25, Condition::Command(0.0))?;
 /// assert!((null.pressure_a - 37.3e5).abs() < 0.05e5 && (null.pressure_b - 24.0e5).abs() < 0.05e5);
 /// let idle = operating_point(&actuator, 0.25, Condition::Load(SteadyLoad::Force(0.0)))?;

@@ -5,7 +5,10 @@
 /// # Example
 /// ```
 /// use phea_hydraulics::fluid::Fluid;
-/// let vacuum = Fluid { bulk_modulus: 0.0, density: 870.0, kinematic_viscosity: 46e-6, entrained_air: None };
+/// let vacuum = Fluid {
+///     bulk_modulus: 0.0, density: 870.0, kinematic_viscosity: 46e-6, entrained_air: None,
+///     vapour_pressure_absolute: 0.0,
+/// };
 /// assert_eq!(vacuum.problems()[0].to_string(), "bulk_modulus is 0, but must be positive");
 /// ```
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -42,8 +42,18 @@ pub struct PumpLimited<S = f64> {
     pub accumulator: Option<Accumulator<S>>,
 }
 
-impl PumpLimited {
+impl PowerUnit {
     /// Impossible parameters of this power unit; empty if there are none.
+    pub fn problems(&self) -> Vec<ParameterError> {
+        match self {
+            PowerUnit::Constant => Vec::new(),
+            PowerUnit::PumpLimited(unit) => unit.problems(),
+        }
+    }
+}
+
+impl PumpLimited {
+    /// Impossible parameters of this pump; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.not_negative("pump_flow", self.pump_flow);

@@ -13,6 +13,8 @@ use crate::force_sensor::ForceSensor;
 use crate::friction::{Friction, LuGre, Stribeck};
 use crate::line::{Hose, Line, Pipe, PipeWall, Stiffening};
 use crate::linear::LinearParameters;
+use crate::load::Load;
+use crate::power_unit::PowerUnit;
 use crate::servovalve::{
     Edges, LeakageModel, LeakageShape, OpeningLaw, Servovalve, SpoolImperfection, Supply,
 };
@@ -80,10 +82,12 @@ pub fn valve() -> Servovalve {
         leakage_shape: LeakageShape::Common(100.0),
         leakage_model: LeakageModel::EachEdge,
         tare_flow: 7.55e-6,
+        tare_reference_drop: 70e5,
         nominal_voltage: 10.0,
         natural_frequency: 1099.0,
         damping_ratio: 0.9,
         transition_pressure: 1e3,
+        spool: SpoolImperfection::default(),
     }
 }
 
@@ -113,8 +117,10 @@ pub fn components(line: Line, stiffness_model: StiffnessModel) -> Components {
             density: 870.0,
             kinematic_viscosity: 46e-6,
             entrained_air: None,
+            vapour_pressure_absolute: 0.0,
         },
         supply: Supply { pressure: 70e5, tank_pressure: 0.0 },
+        power_unit: PowerUnit::Constant,
         valve: valve(),
         line_a: line,
         line_b: line,
@@ -125,6 +131,8 @@ pub fn components(line: Line, stiffness_model: StiffnessModel) -> Components {
         force_sensor: ForceSensor { stiffness: 2e7 },
         series: None,
         linkage: None,
+        load: Load::Prescribed,
+        velocity_gain: None,
         stiffness_model,
     }
 }

@@ -111,6 +111,8 @@ pub struct Servovalve<S = f64> {
     pub leakage_model: LeakageModel,
     /// Flow of the hydraulic amplifier q_tare, m3/s; without effect on the motion.
     pub tare_flow: S,
+    /// Pressure drop p_S - p_T at which the tare flow is stated, Pa.
+    pub tare_reference_drop: S,
     /// Voltage of full opening U_Cn, V.
     pub nominal_voltage: S,
     /// Natural frequency w_nv of the spool, rad/s.
@@ -119,6 +121,8 @@ pub struct Servovalve<S = f64> {
     pub damping_ratio: S,
     /// Drop below which an edge's flow is laminar, Pa: [`crate::orifice::regular_root`].
     pub transition_pressure: S,
+    /// Null bias, hysteresis, threshold and rate limit of the spool.
+    pub spool: SpoolImperfection<S>,
 }
 
 /// Leakage of an edge of an ideal valve, m3/(s Pa^0.5): 10^-7 of that of ordinary edges. The spool
@@ -157,10 +161,12 @@ impl Servovalve {
             }
         }
         problems.not_negative("tare_flow", self.tare_flow);
+        problems.positive("tare_reference_drop", self.tare_reference_drop);
         problems.positive("nominal_voltage", self.nominal_voltage);
         problems.positive("natural_frequency", self.natural_frequency);
         problems.positive("damping_ratio", self.damping_ratio);
         problems.positive("transition_pressure", self.transition_pressure);
+        problems.all(self.spool.problems());
         problems.into_vec()
     }
 }
@@ -168,7 +174,7 @@ impl Servovalve {
 phea_dynamics::parameters! {
     Servovalve {
         flow_coefficients, opening, leakage_coefficients, leakage_shape, leakage_model: kept, tare_flow,
-        nominal_voltage, natural_frequency, damping_ratio, transition_pressure,
+        tare_reference_drop, nominal_voltage, natural_frequency, damping_ratio, transition_pressure, spool,
     }
 }
 

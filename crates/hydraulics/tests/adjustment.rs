@@ -44,12 +44,19 @@ fn with_gas(gas: ChamberGas) -> Components {
 
 fn behind(valve: GasValve) -> Components {
     let (content, passage) = (GasContent::Polytropic(GAS), GasPassage::Valve(valve));
-    with_gas(ChamberGas::Sealed(SealedGas { content, passage }))
+    with_gas(ChamberGas::Sealed(SealedGas { content, passage, maximum_pressure_ratio: None }))
 }
 
 /// Gas that is adjusted by a volume in m3 and a precharge in Pa.
 fn adjusted([volume_rise, precharge_rise]: [f64; 2], setting: f64) -> AdjustedGas {
-    AdjustedGas { at_rest: GAS, setting, volume_rise, precharge_rise, neck: None }
+    AdjustedGas {
+        at_rest: GAS,
+        setting,
+        volume_rise,
+        precharge_rise,
+        neck: None,
+        maximum_pressure_ratio: None,
+    }
 }
 
 /// A fixed setting equals the accumulator declared with the values of that setting, in every rate.
@@ -398,9 +405,8 @@ fn a_small_drop_decays_exponentially() {
 /// A limit is a multiple of the precharge: the setting moves both in proportion.
 #[test]
 fn a_limit_follows_the_precharge() {
-    let limit = 4.0 * (GAS.precharge_pressure + ATMOSPHERE) - ATMOSPHERE;
-    let options = MachineOptions { gas_pressure_limits: [Some(limit), None], ..moving() };
-    let machine = machine_of(with_gas(ChamberGas::Adjusted(adjusted([1e-5, -6e5], 0.25))), &options);
+    let limited = AdjustedGas { maximum_pressure_ratio: Some(4.0), ..adjusted([1e-5, -6e5], 0.25) };
+    let machine = machine_of(with_gas(ChamberGas::Adjusted(limited)), &moving());
     let place = INDICATORS.iter().position(|known| *known == "accumulator_overpressure_a").unwrap();
     for change in [-0.25, 0.0, 0.3, 0.75] {
         // ORIGIN: analytic, P_2 = 4 P_0(u), absolute

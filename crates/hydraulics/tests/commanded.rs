@@ -98,7 +98,7 @@ pub(super) fn chamber_gas(source: u64, number: u64) -> [Option<ChamberGas>; 2] {
                     GasContent::Relaxing(RelaxingGas { gas_volume, precharge_pressure, time_constant })
                 }
             };
-            ChamberGas::Sealed(SealedGas { content, passage: passages[side] })
+            ChamberGas::Sealed(SealedGas { content, passage: passages[side], maximum_pressure_ratio: None })
         })
     })
 }
@@ -140,20 +140,18 @@ pub(super) fn supply_pressure(machine: &Machine, stated: f64, state: &[f64]) -> 
 /// ports and of the supply in Pa.
 pub(super) fn yielding(
     actuator: &Actuator,
-    unit: &PowerUnit,
     command: f64,
     ports: [f64; 2],
     pressure: f64,
 ) -> Option<YieldingSupply> {
-    let PowerUnit::PumpLimited(unit) = unit else { return None };
     let components = actuator.components();
+    let PowerUnit::PumpLimited(unit) = &components.power_unit else { return None };
     let supply = Supply { pressure, ..components.supply };
     let settled = SettledSupply { supply, settled: Settled { command, pressures: ports }, taken: f64::NAN };
     let idle = components.supply.pressure;
-    let drops = [idle, idle - components.supply.tank_pressure];
     // at standstill the areas have no effect
     let balance = Balance::at(components, 0.25);
-    Some(YieldingSupply::new(unit, &balance, drops, &settled, SpoolDirection::Extending))
+    Some(YieldingSupply::new(unit, &balance, idle, &settled, SpoolDirection::Extending))
 }
 
 /// Machine, and the gain from the load's velocity to the command, V s/m.

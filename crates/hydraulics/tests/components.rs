@@ -33,6 +33,7 @@ fn air_softens_less_the_higher_the_pressure() {
         density: 870.0,
         kinematic_viscosity: 46e-6,
         entrained_air: Some(EntrainedAir { volume_fraction, polytropic_exponent: 1.4 }),
+        vapour_pressure_absolute: 0.0,
     };
     let mut last = 0.0;
     for pressure in [0.0, 5e5, 20e5, 70e5, 300e5] {

@@ -27,7 +27,8 @@ fn machine(gas: Accumulator, thermal_time_constant: Option<f64>) -> Machine {
         None => GasContent::Polytropic(gas),
         Some(time_constant) => GasContent::Relaxing(RelaxingGas { time_constant, ..HEATED }),
     };
-    let gas = ChamberGas::Sealed(SealedGas { content, passage: GasPassage::Open });
+    let gas =
+        ChamberGas::Sealed(SealedGas { content, passage: GasPassage::Open, maximum_pressure_ratio: None });
     machine_of(Components { gas: [Some(gas); 2], ..rig }, &MachineOptions::default())
 }
 
@@ -241,13 +242,18 @@ fn it_is_shut_off_by_the_pressure_of_its_own_temperature() {
 #[test]
 fn too_much_pressure_is_told() {
     let rig = components(pipe_line(), StiffnessModel::ByVolume);
-    let rig = Components { gas: [Some(GAS.into()), None], ..rig };
+    let limited = |gas: ChamberGas, ratio| {
+        Some(ChamberGas::Sealed(SealedGas { maximum_pressure_ratio: Some(ratio), ..gas.sealed() }))
+    };
+    // of 60 bar
+    let ratio = (60e5 + ATMOSPHERE) / (15e5 + ATMOSPHERE);
     let neck = Neck::round([6e-3, 0.04], [870.0, 46e-6, 1.45e9], 1.5);
-    let neck = Components { gas: [Some(behind(GAS, Some(neck))), None], ..rig };
-    let options = MachineOptions { gas_pressure_limits: [Some(60e5), None], ..MachineOptions::default() };
+    let neck = Components { gas: [limited(behind(GAS, Some(neck)), ratio), None], ..rig };
+    let impossible = Components { gas: [None, limited(GAS.into(), -1.0)], ..rig };
+    let rig = Components { gas: [limited(GAS.into(), ratio), None], ..rig };
     let place = |name: &str| INDICATORS.iter().position(|known| *known == name).unwrap();
     for (parts, behind) in [(rig, None), (neck, Some(61e5))] {
-        let machine = machine_of(parts, &options);
+        let machine = machine_of(parts, &MachineOptions::default());
         for (pressure, over) in [(59e5, behind.is_some()), (61e5, true)] {
             let mut state = vec![0.0, 0.0, pressure, 65e5, 0.0, 0.0];
             state.extend(behind.into_iter().flat_map(|behind| [0.0, behind]));
@@ -257,9 +263,8 @@ fn too_much_pressure_is_told() {
             assert!(indicators[place("accumulator_overpressure_b")] > 0.0);
         }
     }
-    let impossible = MachineOptions { gas_pressure_limits: [None, Some(-1.0)], ..MachineOptions::default() };
-    let refused = Machine::new(&Actuator::new(rig).unwrap(), &impossible).unwrap_err().to_string();
-    assert!(refused.contains("line.b.accumulator.maximum_pressure"), "{refused}");
+    let refused = Actuator::new(impossible).unwrap_err().to_string();
+    assert!(refused.contains("line.b.accumulator.maximum_pressure_ratio"), "{refused}");
 }
 
 /// A time constant that is not positive is rejected by its path.
@@ -268,7 +273,11 @@ fn impossible_heat_is_refused() {
     for time_constant in [0.0, f64::NAN] {
         let rig = components(pipe_line(), StiffnessModel::ByVolume);
         let content = GasContent::Relaxing(RelaxingGas { time_constant, ..HEATED });
-        let gas = ChamberGas::Sealed(SealedGas { content, passage: GasPassage::Open });
+        let gas = ChamberGas::Sealed(SealedGas {
+            content,
+            passage: GasPassage::Open,
+            maximum_pressure_ratio: None,
+        });
         let parts = Components { gas: [None, Some(gas)], ..rig };
         let refused = Actuator::new(parts).unwrap_err();
         assert_eq!(refused.problems.len(), 1);

@@ -8,7 +8,6 @@ use phea_dynamics::random::{share, stream};
 use phea_dynamics::scalar::{Interval, Parameters};
 use phea_dynamics::simulation::{Plant, small_signal};
 use phea_hydraulics::actuator::{Actuator, Components};
-use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::Cylinder;
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::Friction;
@@ -16,7 +15,8 @@ use phea_hydraulics::line::{Line, StiffeningMember};
 use phea_hydraulics::linkage::{
     FourBar, Linkage, LinkageError, LinkageGeometry, LinkageTable, PivotTriangle, RodEnd, STANDARD_GRAVITY,
 };
-use phea_hydraulics::machine::{InitialCondition, LoadModel, Machine, MachineOptions, StartValues};
+use phea_hydraulics::load::Load;
+use phea_hydraulics::machine::{InitialCondition, Machine, MachineOptions, StartValues};
 use phea_hydraulics::operating_point::{Condition, operating_point};
 use phea_hydraulics::plant::{LinearLoad, LinearPlant, LinearSeries, PlantInMotion};
 use phea_hydraulics::reference_rig::{components, cylinder, hose_line, nominal_plant, pipe_line};
@@ -218,8 +218,8 @@ fn a_knee_swings_by_its_lagrangian() {
 }
 
 fn swings(rig: Components, expected: [[f64; 3]; 3]) {
-    let load = LoadModel::SpringMassDamper { mass: 0.2, stiffness: 60.0, damping: 0.8 };
-    let machine = machine_of(rig, &MachineOptions { load, ..MachineOptions::default() });
+    let load = Load::SpringMassDamper { mass: 0.2, stiffness: 60.0, damping: 0.8 };
+    let machine = machine_of(Components { load, ..rig }, &MachineOptions::default());
     let start = StartValues { position: 0.02, pressure_a: 30e5, pressure_b: 15e5, ..StartValues::default() };
     let beginning = machine.start(&start).unwrap();
     let mut state = beginning.state.clone();
@@ -259,17 +259,18 @@ fn straight() -> Linkage {
 }
 
 /// Loads in linear quantities, and equivalent loads on that lever.
-fn pairs() -> [[LoadModel; 2]; 3] {
+fn pairs() -> [[Load; 2]; 3] {
     let square = ARM * ARM;
     let sprung =
-        |by: f64| LoadModel::SpringMassDamper { mass: 20.0 * by, stiffness: 3e5 * by, damping: 200.0 * by };
-    let walled = |by: f64, arm: f64| LoadModel::Wall {
-        mass: 20.0 * by,
+        |by: f64| Load::SpringMassDamper { mass: 20.0 * by, stiffness: 3e5 * by, damping: 200.0 * by };
+    let walled = |by: f64, arm: f64| Load::Wall {
+        mass: Some(20.0 * by),
         damping: 200.0 * by,
+        stiffness: 3e7 * by,
         gap: 4e-4 / arm,
-        contact: Contact { stiffness: 3e7 * by, relative_damping: 0.4 * arm },
+        relative_damping: 0.4 * arm,
     };
-    [[LoadModel::Prescribed; 2], [sprung(1.0), sprung(square)], [walled(1.0, 1.0), walled(square, ARM)]]
+    [[Load::Prescribed; 2], [sprung(1.0), sprung(square)], [walled(1.0, 1.0), walled(square, ARM)]]
 }
 
 /// A constant lever arm: the rig with the load in linear quantities, by all its rates.
@@ -279,8 +280,8 @@ fn a_constant_lever_is_a_load_in_other_units() {
     for [plain, turning] in pairs() {
         let external_force = plain.moves();
         let of = |load, linkage| {
-            let options = MachineOptions { load, external_force, ..MachineOptions::default() };
-            machine_of(Components { linkage, ..asymmetric() }, &options)
+            let options = MachineOptions { external_force, ..MachineOptions::default() };
+            machine_of(Components { linkage, load, ..asymmetric() }, &options)
         };
         let (one, other) = (of(plain, None), of(turning, Some(straight())));
         for place in 0..40 {
@@ -361,10 +362,10 @@ fn drawn(number: u64) -> Drawn {
     let linkage = if number % 2 == 1 { weighed } else { linkage };
     let rig = Components { linkage: Some(linkage), ..rig };
     let (mass, stiffness, damping) = (spread(0.05, 5.0), spread(1e2, 1e5), spread(0.1, 30.0));
-    let contact = Contact { stiffness, relative_damping: spread(0.01, 1.0) };
-    let load = load(number, [mass, stiffness, damping], contact);
-    let actuator = Actuator::new(rig).unwrap();
-    let machine = Machine::new(&actuator, &MachineOptions { load, ..MachineOptions::default() }).unwrap();
+    let relative_damping = spread(0.01, 1.0);
+    let load = load(number, [mass, stiffness, damping], relative_damping);
+    let actuator = Actuator::new(Components { load, ..rig }).unwrap();
+    let machine = Machine::new(&actuator, &MachineOptions::default()).unwrap();
     let position = spread(0.005, 0.075);
     // to either side, but a wall cannot pull
     let sign = if number % 3 == 1 && number.is_multiple_of(2) { -1.0 } else { 1.0 };
@@ -379,10 +380,9 @@ fn drawn(number: u64) -> Drawn {
     let [gravity, falling] = weight.map_or([0.0; 2], |weight| [weight.torque, weight.stiffness]);
     let compressed = machine.signals(&rest.state, &rest.inputs).series_deflection;
     assert!((end.position + rest.state[4] + compressed - position).abs() < 1e-11, "{number}");
-    let pressed =
-        if number % 3 == 2 { contact.relative_damping * (force * end.lever_arm + gravity) } else { 0.0 };
+    let pressed = if number % 3 == 2 { relative_damping * (force * end.lever_arm + gravity) } else { 0.0 };
     let own = match load {
-        LoadModel::Prescribed => LinearLoad::Prescribed,
+        Load::Prescribed => LinearLoad::Prescribed,
         _ => LinearLoad::Linked {
             inertia: mass,
             damping: damping + pressed,
@@ -398,11 +398,11 @@ fn drawn(number: u64) -> Drawn {
     Drawn { machine, rest, sensor, end, plant }
 }
 
-fn load(number: u64, [mass, stiffness, damping]: [f64; 3], contact: Contact) -> LoadModel {
+fn load(number: u64, [mass, stiffness, damping]: [f64; 3], relative_damping: f64) -> Load {
     match number % 3 {
-        0 => LoadModel::Prescribed,
-        1 => LoadModel::SpringMassDamper { mass, stiffness, damping },
-        _ => LoadModel::Wall { mass, damping, gap: 0.02, contact },
+        0 => Load::Prescribed,
+        1 => Load::SpringMassDamper { mass, stiffness, damping },
+        _ => Load::Wall { mass: Some(mass), damping, stiffness, gap: 0.02, relative_damping },
     }
 }
 
@@ -476,11 +476,10 @@ fn the_plant_is_the_machine_for_small_motions() {
 fn ledgers_close_with_a_linkage() {
     let motion = Motion { amplitude: 0.3, bias: 0.05, ground: 0.0, ground_amplitude: 0.05 };
     let start = StartValues { position: 0.04, pressure_a: 35e5, pressure_b: 30e5, ..StartValues::default() };
-    let contact = Contact { stiffness: 3e5, relative_damping: 0.4 };
     let loads = [
-        LoadModel::Prescribed,
-        LoadModel::SpringMassDamper { mass: 0.2, stiffness: 4e3, damping: 2.0 },
-        LoadModel::Wall { mass: 0.2, damping: 2.0, gap: 0.02, contact },
+        Load::Prescribed,
+        Load::SpringMassDamper { mass: 0.2, stiffness: 4e3, damping: 2.0 },
+        Load::Wall { mass: Some(0.2), damping: 2.0, stiffness: 3e5, gap: 0.02, relative_damping: 0.4 },
     ];
     let cases = linkages().into_iter().flat_map(|linkage| loads.map(|load| (linkage, load)));
     for (number, (linkage, load)) in cases.enumerate() {
@@ -489,11 +488,12 @@ fn ledgers_close_with_a_linkage() {
             cylinder: Cylinder { stroke: ActuatorStroke::Limited(STROKE), ..rig.cylinder },
             linkage: Some(linkage.level_at(1.2).with_moment(15.0)),
             series: series(number as u64, &mut |low, high| (low * high).sqrt()),
+            power_unit: pump(),
+            load,
             ..rig
         };
         let external_force = load.moves();
-        let options =
-            MachineOptions { load, external_force, power_unit: pump(), ..MachineOptions::default() };
+        let options = MachineOptions { external_force, ..MachineOptions::default() };
         let [duration, width] = if rig.series.is_some() { [0.06, 2e-6] } else { [0.2, 1e-5] };
         check(&machine_of(rig, &options), &motion, &start, duration, width);
     }

@@ -11,9 +11,9 @@ use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, EntrainedAir, Fluid};
 use phea_hydraulics::friction::{Friction, MovingFriction};
 use phea_hydraulics::line::{Line, StiffeningMember};
+use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{
-    Accumulator, Chambers, INDICATORS, LoadModel, Machine, MachineOptions, PowerUnit, PumpLimited,
-    StartValues,
+    Accumulator, Chambers, INDICATORS, Machine, MachineOptions, PowerUnit, PumpLimited, StartValues,
 };
 use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
 use phea_hydraulics::reference_rig::{
@@ -251,9 +251,10 @@ fn air_softens_each_chamber_by_its_own_pressure() {
 fn slow_bristles_are_the_static_curve() {
     let Friction::LuGre(lugre) = benchmark_components().friction else { unreachable!() };
     let curve = lugre.curve;
-    let bristles = MovingFriction::new(&Friction::LuGre(lugre), None).unwrap();
-    let smooth = MovingFriction::new(&Friction::Stribeck(curve), Some(1e-6)).unwrap();
-    assert_eq!(MovingFriction::new(&Friction::Stribeck(curve), None), None);
+    let bristles = MovingFriction::new(&Friction::LuGre(lugre)).unwrap();
+    let smoothed = |regular_velocity| MovingFriction::new(&Friction::Stribeck { curve, regular_velocity });
+    let smooth = smoothed(Some(1e-6)).unwrap();
+    assert_eq!(smoothed(None), None);
     let velocity = |time: f64| 0.02 * sin(0.05 * time);
     let mut state = [0.0];
     for index in 0..240_000 {
@@ -311,9 +312,9 @@ fn pump() -> PumpLimited {
 #[test]
 fn a_pump_gives_what_it_has() {
     let unit = PumpLimited { accumulator: None, ..pump() };
-    let options = MachineOptions { power_unit: PowerUnit::PumpLimited(unit), ..MachineOptions::default() };
     let rig = components(hose_line(), StiffnessModel::ByVolume);
-    let (actuator, machine) = (Actuator::new(rig).unwrap(), machine_of(rig, &options));
+    let rig = Components { power_unit: PowerUnit::PumpLimited(unit), ..rig };
+    let (actuator, machine) = (Actuator::new(rig).unwrap(), machine_of(rig, &MachineOptions::default()));
     let idle = operating_point(&actuator, 0.25, Condition::Load(SteadyLoad::Force(0.0))).unwrap();
     let rest = machine.rest(&idle).unwrap();
     let outputs = machine.signals(&rest.state, &rest.inputs);
@@ -321,11 +322,8 @@ fn a_pump_gives_what_it_has() {
     // leakage and tare flow of the valve do not pass the relief valve
     assert!((supply - (70e5 - 5e5 * taken / unit.pump_flow)).abs() < 1.0);
     assert!(taken > 7e-6 && taken < 4e-5);
-    let load = MachineOptions {
-        load: LoadModel::SpringMassDamper { mass: 5.0, stiffness: 0.0, damping: 5e3 },
-        ..options
-    };
-    let machine = machine_of(rig, &load);
+    let load = Load::SpringMassDamper { mass: 5.0, stiffness: 0.0, damping: 5e3 };
+    let machine = machine_of(Components { load, ..rig }, &MachineOptions::default());
     let start = StartValues { position: 0.1, pressure_a: 35e5, pressure_b: 35e5, ..StartValues::default() };
     let beginning = machine.start(&start).unwrap();
     let mut state = beginning.state;
@@ -363,12 +361,11 @@ fn accumulators_hold_a_polytropic_gas() {
 /// of the pressure.
 #[test]
 fn tare_flow_is_the_supplys() {
-    let options = MachineOptions { tare_reference_drop: Some(70e5), ..MachineOptions::default() };
     let with = |pressure: f64, tare_flow: f64| {
         let rig = components(hose_line(), StiffnessModel::ByVolume);
         let supply = phea_hydraulics::servovalve::Supply { pressure, tank_pressure: 0.0 };
         let valve = phea_hydraulics::servovalve::Servovalve { tare_flow, ..rig.valve };
-        let machine = machine_of(Components { supply, valve, ..rig }, &options);
+        let machine = machine_of(Components { supply, valve, ..rig }, &MachineOptions::default());
         machine.signals(&[0.3, 0.0, 20e5, 15e5, 0.0, 0.0], &[0.2, 0.0]).supply_flow
     };
     for (pressure, share) in [(70e5, 1.0), (17.5e5, 0.5)] {
@@ -381,10 +378,10 @@ fn tare_flow_is_the_supplys() {
 #[test]
 fn indicators_turn_negative_with_their_events() {
     let contact = Contact { stiffness: 1e8, relative_damping: 0.0 };
-    let load = LoadModel::Wall { mass: 8.0, damping: 50.0, gap: 1e-3, contact };
-    let options = MachineOptions { load, ..MachineOptions::default() };
+    let Contact { stiffness, relative_damping } = contact;
+    let load = Load::Wall { mass: Some(8.0), damping: 50.0, stiffness, gap: 1e-3, relative_damping };
     let rig = stopped(components(hose_line(), StiffnessModel::ByVolume), contact);
-    let machine = machine_of(rig, &options);
+    let machine = machine_of(Components { load, ..rig }, &MachineOptions::default());
     let negative = |pressure_a: f64, position: f64, ground: f64| {
         let state = [0.0, 0.0, pressure_a, 30e5, 0.0, 0.0, position - ground, 0.0];
         let mut indicators = [0.0; INDICATORS.len()];

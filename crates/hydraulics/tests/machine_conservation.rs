@@ -9,8 +9,9 @@ use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::friction::{Friction, LuGre, LuGrePassivity};
 use phea_hydraulics::line::{END_SHARE, LineModel};
+use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{
-    Account, ENERGY_ACCOUNTS, LoadModel, Machine, MachineError, MachineOptions, OIL_ACCOUNTS, StartValues,
+    Account, ENERGY_ACCOUNTS, Machine, MachineError, MachineOptions, OIL_ACCOUNTS, StartValues,
 };
 use phea_hydraulics::reference_rig::{benchmark_components, leaking, stopped};
 use phea_hydraulics::servovalve::Servovalve;
@@ -146,29 +147,25 @@ fn ledgers_close_against_a_prescribed_motion() {
     let start = StartValues { position: 0.25, pressure_a: 35e5, pressure_b: 30e5, ..StartValues::default() };
     let passive = Components { friction: passive_friction(), ..benchmark_components() };
     check(&machine_of(passive, &MachineOptions::default()), &motion, &start, 0.3, 2e-5);
-    let pumped = MachineOptions { power_unit: pump(), ..Default::default() };
-    check(&machine_of(leaking(asymmetric(), 2e-12), &pumped), &motion, &start, 0.3, 2e-5);
+    let pumped = Components { power_unit: pump(), ..leaking(asymmetric(), 2e-12) };
+    check(&machine_of(pumped, &MachineOptions::default()), &motion, &start, 0.3, 2e-5);
 }
 
 #[test]
 fn ledgers_close_with_loads_of_their_own() {
     let motion = Motion { amplitude: 1.5, bias: 0.4, ground: 0.0, ground_amplitude: 1e-3 };
     let start = StartValues { position: 0.25, pressure_a: 35e5, pressure_b: 30e5, ..StartValues::default() };
-    let contact = Contact { stiffness: 3e7, relative_damping: 0.4 };
-    let sprung = LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
-    let walled = LoadModel::Wall { mass: 8.0, damping: 50.0, gap: 4e-4, contact };
+    let sprung = Load::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
+    let walled =
+        Load::Wall { mass: Some(8.0), damping: 50.0, stiffness: 3e7, gap: 4e-4, relative_damping: 0.4 };
     for load in [sprung, walled] {
-        let pushed = MachineOptions { load, external_force: true, ..MachineOptions::default() };
-        check(&machine_of(asymmetric(), &pushed), &motion, &start, 0.3, 1e-5);
-        let options = MachineOptions { load, power_unit: pump(), ..MachineOptions::default() };
-        check(&machine_of(asymmetric(), &options), &motion, &start, 0.3, 1e-5);
-        check(
-            &machine_of(asymmetric(), &MachineOptions { load, ..Default::default() }),
-            &motion,
-            &start,
-            0.3,
-            1e-5,
-        );
+        let rig = Components { load, ..asymmetric() };
+        let pushed = MachineOptions { external_force: true, ..MachineOptions::default() };
+        check(&machine_of(rig, &pushed), &motion, &start, 0.3, 1e-5);
+        let pumped = Components { power_unit: pump(), ..rig };
+        for rig in [pumped, rig] {
+            check(&machine_of(rig, &MachineOptions::default()), &motion, &start, 0.3, 1e-5);
+        }
     }
 }
 
@@ -177,13 +174,12 @@ fn ledgers_close_with_loads_of_their_own() {
 #[test]
 fn ledgers_close_in_the_end_stops() {
     let contact = Contact { stiffness: 1e8, relative_damping: 0.5 };
-    let load = LoadModel::SpringMassDamper { mass: 5.0, stiffness: 0.0, damping: 100.0 };
-    let options = MachineOptions { load, ..MachineOptions::default() };
+    let load = Load::SpringMassDamper { mass: 5.0, stiffness: 0.0, damping: 100.0 };
     // an open edge at zero drop and a small chamber are too fast for this method if the root's
     // transition is short
     let rig = asymmetric();
     let valve = Servovalve { transition_pressure: 1e5, ..rig.valve };
-    let machine = machine_of(stopped(Components { valve, ..rig }, contact), &options);
+    let machine = machine_of(stopped(Components { valve, load, ..rig }, contact), &MachineOptions::default());
     for (position, bias) in [(0.002, -4.0), (0.498, 4.0)] {
         let motion = Motion { amplitude: 2.0, bias, ground: 0.0, ground_amplitude: 0.0 };
         let start = StartValues { position, pressure_a: 20e5, pressure_b: 20e5, ..StartValues::default() };
@@ -213,12 +209,12 @@ fn ledgers_close_in_the_end_stops() {
 /// Nothing is lost between components: their total inflow is the flow across the rig's border.
 #[test]
 fn the_rig_is_the_sum_of_its_components() {
-    let contact = Contact { stiffness: 3e7, relative_damping: 0.4 };
-    let load = LoadModel::Wall { mass: 8.0, damping: 50.0, gap: 4e-4, contact };
-    let with_pump = MachineOptions { load, power_unit: pump(), ..Default::default() };
-    let plain = MachineOptions::default();
-    for (options, more) in [(with_pump, vec![2e-6, 0.25, 0.1, 66e5]), (plain, vec![2e-6])] {
-        let machine = machine_of(leaking(asymmetric(), 2e-12), &options);
+    let load =
+        Load::Wall { mass: Some(8.0), damping: 50.0, stiffness: 3e7, gap: 4e-4, relative_damping: 0.4 };
+    let plain = leaking(asymmetric(), 2e-12);
+    let with_pump = Components { power_unit: pump(), load, ..plain };
+    let [with_pump, plain] = [with_pump, plain].map(|rig| machine_of(rig, &MachineOptions::default()));
+    for (machine, more) in [(with_pump, vec![2e-6, 0.25, 0.1, 66e5]), (plain, vec![2e-6])] {
         let mut state = vec![0.7, 20.0, 41e5, 22e5, 3e-4, 0.08];
         state.extend(more);
         let ledger = machine.ledger(&state, &[0.2498, 0.05]).unwrap();
@@ -289,9 +285,9 @@ pub(super) fn check_instant(name: &str, machine: &Machine, state: &[f64], comman
 #[test]
 fn what_is_stored_changes_by_what_enters_and_is_lost() {
     let mut seed = 7;
-    let options = MachineOptions { power_unit: charged_pump(75e5, 1.4), ..MachineOptions::default() };
     let mut machines = rich_machines();
-    machines.push(("gas at its precharge", machine_of(asymmetric(), &options)));
+    let charged = Components { power_unit: charged_pump(75e5, 1.4), ..asymmetric() };
+    machines.push(("gas at its precharge", machine_of(charged, &MachineOptions::default())));
     for ((name, machine), (pressure, share)) in
         machines.iter().flat_map(|named| [(named, (35e5, 4.0)), (named, (0.0, 0.13))])
     {
@@ -372,9 +368,9 @@ fn lugre_takes_energy_under_its_condition_and_may_give_it_outside() {
 /// power is the power that the load and the rig absorb.
 #[test]
 fn a_force_from_outside_acts_on_the_load_alone() {
-    let load = LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
-    let options = MachineOptions { load, external_force: true, ..MachineOptions::default() };
-    let machine = machine_of(asymmetric(), &options);
+    let load = Load::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
+    let options = MachineOptions { external_force: true, ..MachineOptions::default() };
+    let machine = machine_of(Components { load, ..asymmetric() }, &options);
     let start = StartValues {
         position: 0.25,
         pressure_a: 35e5,

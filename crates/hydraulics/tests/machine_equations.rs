@@ -14,9 +14,9 @@ use phea_hydraulics::friction::{Friction, FrictionLevels, Stribeck};
 use phea_hydraulics::line::{
     Conduit, DynamicLine, END_SHARE, LaminarFriction, Segments, StiffeningMember, TransmissionLine,
 };
+use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{
-    Accumulator, INDICATORS, LoadModel, Machine, MachineError, MachineOptions, MachineSignals, PowerUnit,
-    PumpLimited,
+    Accumulator, INDICATORS, Machine, MachineError, MachineOptions, MachineSignals, PowerUnit, PumpLimited,
 };
 use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
 use phea_hydraulics::reference_rig::{
@@ -56,28 +56,24 @@ fn pump() -> PumpLimited {
     }
 }
 
-/// Rig with all options at once.
-fn full() -> MachineOptions {
+/// Components with all imperfections of the spool, a pump, leakage, end stops and a wall.
+fn full(components: Components) -> Components {
+    let spool = SpoolImperfection { threshold: Some(0.04), rate_limit: Some(4000.0), ..measured_spool() };
+    let valve = Servovalve { spool, ..components.valve };
     let contact = Contact { stiffness: 1e8, relative_damping: 0.3 };
-    MachineOptions {
-        spool: SpoolImperfection { threshold: Some(0.04), rate_limit: Some(4000.0), ..measured_spool() },
-        friction_regular_velocity: Some(1e-3),
-        power_unit: PowerUnit::PumpLimited(pump()),
-        load: LoadModel::Wall { mass: 8.0, damping: 50.0, gap: 2e-3, contact },
-        ..MachineOptions::default()
-    }
-}
-
-fn leaking_and_stopped(components: Components) -> Components {
-    stopped(leaking(components, 3e-13), Contact { stiffness: 1e8, relative_damping: 0.3 })
+    let power_unit = PowerUnit::PumpLimited(pump());
+    let Contact { stiffness, relative_damping } = contact;
+    let load = Load::Wall { mass: Some(8.0), damping: 50.0, stiffness, gap: 2e-3, relative_damping };
+    stopped(leaking(Components { valve, power_unit, load, ..components }, 3e-13), contact)
 }
 
 fn hose() -> Components {
     components(hose_line(), StiffnessModel::ByVolume)
 }
 
-/// Unequal areas and lines, air, and a static friction curve that differs by direction.
-fn asymmetric() -> Components {
+/// Unequal areas and lines, air, and a static friction curve that differs by direction, smoothed by
+/// this velocity in m/s.
+fn asymmetric(regular_velocity: f64) -> Components {
     let [area_a, area_b] = [0.0, 0.022].map(|rod| annulus_area(0.05, rod));
     let air = Some(EntrainedAir { volume_fraction: 0.02, polytropic_exponent: 1.4 });
     let curve = Stribeck {
@@ -92,7 +88,7 @@ fn asymmetric() -> Components {
         fluid: Fluid { entrained_air: air, ..hose().fluid },
         cylinder: Cylinder { area_a, area_b, dead_volume_a: 2e-5, dead_volume_b: 1e-5, ..cylinder() },
         line_b: pipe_line(),
-        friction: Friction::Stribeck(curve),
+        friction: Friction::Stribeck { curve, regular_velocity: Some(regular_velocity) },
         ..hose()
     }
 }
@@ -100,25 +96,25 @@ fn asymmetric() -> Components {
 /// Rigs with all possible options, on very different actuators.
 pub(super) fn machines() -> Vec<Machine> {
     let plain = MachineOptions::default();
-    let sprung = MachineOptions {
-        friction_regular_velocity: Some(1e-4),
-        load: LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e6, damping: 200.0 },
-        power_unit: PowerUnit::PumpLimited(PumpLimited { accumulator: None, ..pump() }),
-        ..plain
+    let without_gas = PumpLimited { accumulator: None, ..pump() };
+    let sprung = Components {
+        power_unit: PowerUnit::PumpLimited(without_gas),
+        load: Load::SpringMassDamper { mass: 20.0, stiffness: 3e6, damping: 200.0 },
+        ..asymmetric(1e-4)
     };
     let rough = Components { friction: benchmark_components().friction, ..hose() };
-    let uniform = Components { stiffness_model: StiffnessModel::Uniform, ..asymmetric() };
+    let uniform = Components { stiffness_model: StiffnessModel::Uniform, ..asymmetric(1e-3) };
     let conduit = Conduit::of_line(&hose_line(), &hose().fluid, 35e5, StiffeningMember::Nominal).unwrap();
     let waves = DynamicLine::TransmissionLine(TransmissionLine::of_conduit(&conduit, END_SHARE).unwrap());
     let segments = DynamicLine::Segments(Segments::new(&conduit, 2, LaminarFriction::Steady).unwrap());
     vec![
         machine_of(benchmark_components(), &plain),
         machine_of(hose(), &plain),
-        machine_of(leaking_and_stopped(rough), &full()),
-        machine_of(asymmetric(), &sprung),
-        machine_of(leaking_and_stopped(uniform), &full()),
+        machine_of(full(rough), &plain),
+        machine_of(sprung, &plain),
+        machine_of(full(uniform), &plain),
         machine_of(hose(), &MachineOptions { lines: Some([waves, segments]), ..plain }),
-        machine_of(leaking_and_stopped(rough), &MachineOptions { lines: Some([segments, waves]), ..full() }),
+        machine_of(full(rough), &MachineOptions { lines: Some([segments, waves]), ..plain }),
     ]
 }
 
@@ -328,7 +324,7 @@ fn starts_that_cannot_be_are_refused() {
         machine.start(&vacuum),
         Err(MachineError::ImpossibleStart { quantity: "pressure_a", .. })
     ));
-    let rough = Components { friction: static_friction(), ..benchmark_components() };
+    let rough = Components { friction: static_friction(None), ..benchmark_components() };
     let refused = Machine::new(&Actuator::new(rough).unwrap(), &MachineOptions::default());
     assert_eq!(refused, Err(MachineError::StaticFriction));
     let soft = Contact { stiffness: 1e4, relative_damping: 0.0 };
@@ -338,15 +334,15 @@ fn starts_that_cannot_be_are_refused() {
         Err(MachineError::ChamberVanishes { .. })
     ));
     let spool = SpoolImperfection { threshold: Some(0.2), hysteresis_width: Some(0.1), ..Default::default() };
-    let narrow = MachineOptions { spool, friction_regular_velocity: Some(-1.0), ..MachineOptions::default() };
-    let Err(MachineError::Impossible { problems }) = Machine::new(&actuator, &narrow) else { panic!() };
-    assert_eq!(problems.len(), 2);
+    let (valve, friction) = (Servovalve { spool, ..hose().valve }, static_friction(Some(-1.0)));
+    let narrow = Components { valve, friction, ..hose() };
+    assert_eq!(Actuator::new(narrow).unwrap_err().problems.len(), 2);
     assert!(Actuator::new(leaking(hose(), -1.0)).is_err());
 }
 
-fn static_friction() -> Friction {
+fn static_friction(regular_velocity: Option<f64>) -> Friction {
     let Friction::LuGre(lugre) = benchmark_components().friction else { unreachable!() };
-    Friction::Stribeck(lugre.curve)
+    Friction::Stribeck { curve: lugre.curve, regular_velocity }
 }
 
 /// Lanes compute the result of each separate machine, bit for bit.

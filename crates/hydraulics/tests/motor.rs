@@ -13,7 +13,8 @@ use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
 use phea_hydraulics::line::{Line, StiffeningMember};
 use phea_hydraulics::linear::LinearParameters;
-use phea_hydraulics::machine::{Accumulator, LoadModel, Machine, MachineOptions, PowerUnit, StartValues};
+use phea_hydraulics::load::Load;
+use phea_hydraulics::machine::{Accumulator, Machine, MachineOptions, PowerUnit, StartValues};
 use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
 use phea_hydraulics::plant::{LinearLoad, LinearPlant};
 use phea_hydraulics::reference_rig::{benchmark_components, components, hose_line, leaking};
@@ -87,13 +88,12 @@ fn close(one: f64, other: f64, what: &str) {
 
 /// State of a machine after 0.2 s under a command and a sprung load: position, force, pressures.
 fn driven(rig: Components, arm: f64) -> [f64; 4] {
-    let load = LoadModel::SpringMassDamper {
+    let load = Load::SpringMassDamper {
         mass: 20.0 * arm * arm,
         stiffness: 3e5 * arm * arm,
         damping: 200.0 * arm * arm,
     };
-    let options = MachineOptions { load, ..MachineOptions::default() };
-    let machine = Machine::new(&Actuator::new(rig).unwrap(), &options).unwrap();
+    let machine = machine_of(Components { load, ..rig }, &MachineOptions::default());
     let start =
         StartValues { position: 0.25 / arm, pressure_a: 35e5, pressure_b: 30e5, ..StartValues::default() };
     let beginning = machine.start(&start).unwrap();
@@ -180,10 +180,9 @@ fn turning_on_changes_no_volume() {
     let rig = on_lever(cylinder_rig());
     let turning = Cylinder { stroke: ActuatorStroke::Unlimited, end_stops: None, ..rig.cylinder };
     assert_eq!(chamber_volumes(&turning, 0.0), chamber_volumes(&turning, 1e5));
-    let load = LoadModel::SpringMassDamper { mass: 0.05, stiffness: 0.0, damping: 0.5 };
-    let options = MachineOptions { load, ..MachineOptions::default() };
-    let actuator = Actuator::new(Components { cylinder: turning, ..rig }).unwrap();
-    let machine = Machine::new(&actuator, &options).unwrap();
+    let load = Load::SpringMassDamper { mass: 0.05, stiffness: 0.0, damping: 0.5 };
+    let actuator = Actuator::new(Components { cylinder: turning, load, ..rig }).unwrap();
+    let machine = Machine::new(&actuator, &MachineOptions::default()).unwrap();
     let start = StartValues { pressure_a: 35e5, pressure_b: 30e5, ..StartValues::default() };
     let beginning = machine.start(&start).unwrap();
     let mut state = beginning.state;
@@ -231,7 +230,7 @@ fn a_leaking_motor_rests_at_its_operating_point() {
 fn turning_machines() -> Vec<(&'static str, Machine)> {
     let rig = asymmetric();
     let of = |rig, power_unit| {
-        machine_of(leaking(rig, 2e-12), &MachineOptions { power_unit, ..MachineOptions::default() })
+        machine_of(Components { power_unit, ..leaking(rig, 2e-12) }, &MachineOptions::default())
     };
     let gas = |gas_volume, precharge_pressure, polytropic_exponent| {
         Some(ChamberGas::from(Accumulator { gas_volume, precharge_pressure, polytropic_exponent }))

@@ -35,7 +35,11 @@ fn machine(gas: [Option<Accumulator>; 2], necks: [Option<Neck>; 2]) -> Machine {
 /// Polytropic gas behind a neck, or at its chamber.
 pub(super) fn behind(gas: Accumulator, neck: Option<Neck>) -> ChamberGas {
     let passage = neck.map_or(GasPassage::Open, GasPassage::Neck);
-    ChamberGas::Sealed(SealedGas { content: GasContent::Polytropic(gas), passage })
+    ChamberGas::Sealed(SealedGas {
+        content: GasContent::Polytropic(gas),
+        passage,
+        maximum_pressure_ratio: None,
+    })
 }
 
 /// Bladder of gas with a neck.

@@ -24,9 +24,8 @@ use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::Line;
 use phea_hydraulics::linkage::{LinkageGeometry, PivotTriangle};
-use phea_hydraulics::machine::{
-    ENERGY_ACCOUNTS, LoadModel, Machine, MachineOptions, OIL_ACCOUNTS, StartValues,
-};
+use phea_hydraulics::load::Load;
+use phea_hydraulics::machine::{ENERGY_ACCOUNTS, Machine, MachineOptions, OIL_ACCOUNTS, StartValues};
 use phea_hydraulics::reference_rig::{components, cylinder};
 use phea_hydraulics::servovalve::{Edges, Servovalve, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
@@ -291,7 +290,11 @@ fn gas_with_heat_is_passive() {
             time_constant: spread(3e-3, 0.1),
         };
         let lines = [LINE, SOFT_LINE];
-        let sealed = SealedGas { content: GasContent::Relaxing(gas), passage: GasPassage::Open };
+        let sealed = SealedGas {
+            content: GasContent::Relaxing(gas),
+            passage: GasPassage::Open,
+            maximum_pressure_ratio: None,
+        };
         let rig = Components { gas: [Some(ChamberGas::Sealed(sealed)), None], ..closed(lines) };
         let machine = machine_of(rig, &MachineOptions::default());
         let amount = (gas.precharge_pressure + ATMOSPHERE) * gas.gas_volume;
@@ -330,7 +333,11 @@ fn a_gas_valve_is_passive() {
             shut: false,
         };
         let lines = [LINE, SOFT_LINE];
-        let sealed = SealedGas { content: GasContent::Polytropic(gas), passage: GasPassage::Valve(valve) };
+        let sealed = SealedGas {
+            content: GasContent::Polytropic(gas),
+            passage: GasPassage::Valve(valve),
+            maximum_pressure_ratio: None,
+        };
         let rig = Components { gas: [Some(ChamberGas::Sealed(sealed)), None], ..closed(lines) };
         let machine = machine_of(rig, &MachineOptions::default());
         let power = |now: &Now| (now.state[2] - REST) * now.leaving(lines)[0];
@@ -374,13 +381,14 @@ fn a_linkage_is_lossless_at_its_joint() {
 #[test]
 fn a_linkage_is_lossless_before_a_load_with_weight() {
     let stiffness = 8e3;
-    let load = LoadModel::SpringMassDamper { mass: 0.2, stiffness, damping: 0.0 };
+    let load = Load::SpringMassDamper { mass: 0.2, stiffness, damping: 0.0 };
     for (number, linkage) in (0..).zip(linkages()) {
         let rig = Components {
             linkage: Some(linkage.level_at(1.2).with_moment(15.0)),
+            load,
             ..with_stroke(ActuatorStroke::Limited(STROKE))
         };
-        let machine = machine_of(rig, &MachineOptions { load, ..MachineOptions::default() });
+        let machine = machine_of(rig, &MachineOptions::default());
         let start = StartValues { position: 0.04, ..at_rest(REST) };
         let held = machine.start(&start).unwrap().state[6];
         // in addition to the torque that holds the weight at rest

@@ -8,14 +8,14 @@ use phea_dynamics::portable::pow;
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::simulation::small_signal;
 use phea_hydraulics::actuator::{Actuator, Components};
-use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::linear::linear_model_coefficients;
-use phea_hydraulics::machine::{InitialCondition, LoadModel, Machine, MachineOptions, PowerUnit};
+use phea_hydraulics::load::Load;
+use phea_hydraulics::machine::{InitialCondition, Machine, MachineOptions, PowerUnit};
 use phea_hydraulics::operating_point::{Balance, Condition, OperatingPoint, Steady, operating_point};
 use phea_hydraulics::plant::{LinearLoad, LinearPlant};
 use phea_hydraulics::reference_rig::{components, cylinder, hose_line, leaking, nominal_plant, pipe_line};
@@ -34,7 +34,6 @@ use super::commanded::{
 struct Drawn {
     actuator: Actuator,
     machine: Machine,
-    unit: PowerUnit,
     rest: InitialCondition,
     friction: f64,
     load: LinearLoad,
@@ -84,18 +83,22 @@ fn drawn(number: u64) -> Drawn {
     let parts = Components { cylinder: turning(parts.cylinder, number), ..parts };
     let (mass, stiffness, damping) = (spread(1.0, 500.0), spread(1e4, 1e8), spread(10.0, 1e4));
     let leakage = if number % 4 == 1 { 0.0 } else { spread(1e-14, 1e-10) };
-    let contact = Contact { stiffness, relative_damping: spread(0.01, 1.0) };
+    let relative_damping = spread(0.01, 1.0);
     let load = match number % 3 {
-        0 => LoadModel::Prescribed,
-        1 => LoadModel::SpringMassDamper { mass, stiffness, damping },
-        _ => LoadModel::Wall { mass, damping, gap: 1e-3, contact },
+        0 => Load::Prescribed,
+        1 => Load::SpringMassDamper { mass, stiffness, damping },
+        _ => Load::Wall { mass: Some(mass), damping, stiffness, gap: 1e-3, relative_damping },
     };
     let parts = if leakage > 0.0 { leaking(parts, leakage) } else { parts };
-    let parts = Components { gas: chamber_gas(12, number), cross_port: cross_port(number), ..parts };
+    let parts = Components {
+        gas: chamber_gas(12, number),
+        cross_port: cross_port(number),
+        power_unit: power_unit(number),
+        load,
+        ..parts
+    };
     let actuator = Actuator::new(parts).unwrap();
-    let unit = power_unit(number);
-    let options = MachineOptions { load, power_unit: unit, ..MachineOptions::default() };
-    let machine = Machine::new(&actuator, &options).unwrap();
+    let machine = Machine::new(&actuator, &MachineOptions::default()).unwrap();
     let (position, command) = (spread(0.05, 0.45), spread(0.01, 2.0));
     // a wall cannot pull: the next command pushes harder
     let rests = (0..20).map(|step| {
@@ -106,14 +109,14 @@ fn drawn(number: u64) -> Drawn {
     // the wall is pressed by K d_0, and its damping grows with this force
     let pressed = rest.state[4] * actuator.components().force_sensor.stiffness / stiffness;
     let load = match load {
-        LoadModel::Prescribed => LinearLoad::Prescribed,
-        LoadModel::SpringMassDamper { .. } => LinearLoad::Yielding { mass, damping, stiffness },
-        LoadModel::Wall { .. } => {
-            let damping = damping + contact.stiffness * contact.relative_damping * pressed;
+        Load::Prescribed => LinearLoad::Prescribed,
+        Load::SpringMassDamper { .. } => LinearLoad::Yielding { mass, damping, stiffness },
+        Load::Wall { .. } => {
+            let damping = damping + stiffness * relative_damping * pressed;
             LinearLoad::Yielding { mass, damping, stiffness }
         }
     };
-    Drawn { actuator, machine, unit, rest, friction, load }
+    Drawn { actuator, machine, rest, friction, load }
 }
 
 /// Operating point of a machine that rests in this state, its piston at a position in m.
@@ -135,7 +138,7 @@ pub(super) fn point_at(position: f64, state: &[f64]) -> OperatingPoint {
 /// those of the chambers or slightly different.
 pub(super) fn plant_at_rest(
     actuator: &Actuator,
-    (machine, unit): (&Machine, &PowerUnit),
+    machine: &Machine,
     (position, ports, state): (f64, [f64; 2], &[f64]),
     load: LinearLoad,
 ) -> (LinearPlant, [f64; 2]) {
@@ -150,7 +153,7 @@ pub(super) fn plant_at_rest(
     let [pressure_a, pressure_b] = ports;
     let point = OperatingPoint { pressure_a, pressure_b, ..point_at(position, state) };
     let parameters = two_pressure_linear_parameters(&model, &point, SpoolDirection::Extending);
-    let supply = yielding(actuator, unit, state[0], ports, supplied);
+    let supply = yielding(actuator, state[0], ports, supplied);
     let (across, dynamic_feedback) = components.cross_admittance(pressures);
     let gas = components.gas_branches(pressures);
     let compliances = without_branches(components, pressures, parameters.compliances);
@@ -167,7 +170,7 @@ impl Drawn {
         let moved = if self.load == LinearLoad::Prescribed { 0.0 } else { state[6] };
         let position = self.rest.inputs[0] + moved + state[4];
         let pressures = [state[2], state[3]];
-        plant_at_rest(&self.actuator, (&self.machine, &self.unit), (position, pressures, state), self.load).0
+        plant_at_rest(&self.actuator, &self.machine, (position, pressures, state), self.load).0
     }
 
     /// Paths F_e/U_C and F_e/X_0 from the machine's own derivatives.
@@ -213,12 +216,12 @@ fn a_limited_pump_settles_where_the_machine_rests() {
     let mut counted = [0, 0];
     for number in 0..300 {
         let rig = drawn(number);
-        let PowerUnit::PumpLimited(unit) = rig.unit else { continue };
         let components = rig.actuator.components();
+        let PowerUnit::PumpLimited(unit) = components.power_unit else { continue };
         let idle = components.supply.pressure;
         // at standstill the areas have no effect
         let balance = Balance::at(components, 0.25);
-        let found = balance.settled_supply(&unit, idle, Steady::Command(rig.rest.state[0]));
+        let found = balance.settled_supply(&unit, Steady::Command(rig.rest.state[0]));
         let rests = supply_pressure(&rig.machine, f64::NAN, &rig.rest.state);
         if found.taken < unit.pump_flow {
             assert!((found.supply.pressure / rests - 1.0).abs() < 1e-9, "rig {number}: {found:?} {rests}");

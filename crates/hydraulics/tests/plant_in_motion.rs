@@ -20,7 +20,8 @@ use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::{
     DynamicLine, END_SHARE, LaminarFriction, Line, LineModel, Segments, StiffeningMember,
 };
-use phea_hydraulics::machine::{Chambers, InitialCondition, LoadModel, Machine, MachineOptions, PowerUnit};
+use phea_hydraulics::load::Load;
+use phea_hydraulics::machine::{Chambers, InitialCondition, Machine, MachineOptions};
 use phea_hydraulics::operating_point::{Condition, operating_point};
 use phea_hydraulics::plant::{BehindLines, ChamberDynamics, LinearLoad, LinearPlant, PlantInMotion};
 use phea_hydraulics::reference_rig::{components, cylinder, hose, hose_line, leaking, pipe_line};
@@ -54,11 +55,11 @@ pub(crate) struct Drawn {
 }
 
 /// Every third load is prescribed, the others are sprung.
-fn loads(number: u64, mass: f64, stiffness: f64, damping: f64) -> (LoadModel, LinearLoad) {
+fn loads(number: u64, mass: f64, stiffness: f64, damping: f64) -> (Load, LinearLoad) {
     if number.is_multiple_of(3) {
-        return (LoadModel::Prescribed, LinearLoad::Prescribed);
+        return (Load::Prescribed, LinearLoad::Prescribed);
     }
-    let sprung = LoadModel::SpringMassDamper { mass, stiffness, damping };
+    let sprung = Load::SpringMassDamper { mass, stiffness, damping };
     (sprung, LinearLoad::Yielding { mass, damping, stiffness })
 }
 
@@ -67,14 +68,14 @@ fn loads(number: u64, mass: f64, stiffness: f64, damping: f64) -> (LoadModel, Li
 /// those of the chambers.
 pub(super) fn plant_behind(
     actuator: &Actuator,
-    (machine, unit): (&Machine, &PowerUnit),
+    machine: &Machine,
     lines: [DynamicLine; 2],
     (position, rest): (f64, &InitialCondition),
     load: LinearLoad,
 ) -> (LinearPlant, BehindLines) {
     let parts = actuator.components();
     let ports = machine.signals(&rest.state, &rest.all_inputs()).port_pressures;
-    let (plant, lumped) = plant_at_rest(actuator, (machine, unit), (position, ports, &rest.state), load);
+    let (plant, lumped) = plant_at_rest(actuator, machine, (position, ports, &rest.state), load);
     let pressures = [rest.state[2], rest.state[3]];
     let oil = Chambers::behind_lines(actuator, StiffeningMember::Nominal, [0.0; 2]);
     let (oil, gas) = (oil.compliance(position, pressures), parts.gas_compliance(pressures));
@@ -111,6 +112,7 @@ fn parts(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> (Components, 
     let parts = Components {
         gas: chamber_gas(24, number),
         cross_port: cross_port(number),
+        power_unit: power_unit(number),
         ..leaking(parts, leakage)
     };
     // every fifth leaks to the tank as well, from the chamber side of its lines
@@ -124,7 +126,6 @@ pub(crate) fn drawn(number: u64) -> Drawn {
     let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
     let (parts, models) = parts(number, &mut spread);
     let actuator = Actuator::new(parts).unwrap();
-    let parts = actuator.components();
     let line = |line: &Line, model: &LineModel| {
         DynamicLine::new(line, &parts.fluid, actuator.mean_pressure(), StiffeningMember::Nominal, model)
             .unwrap()
@@ -132,14 +133,14 @@ pub(crate) fn drawn(number: u64) -> Drawn {
     let lines = [line(&parts.line_a, &models[0]), line(&parts.line_b, &models[1])];
     let (mass, stiffness, damping) = (spread(1.0, 500.0), spread(1e4, 1e8), spread(10.0, 1e4));
     let (load, linear_load) = loads(number, mass, stiffness, damping);
-    let unit = power_unit(number);
-    let options = MachineOptions { load, lines: Some(lines), power_unit: unit, ..MachineOptions::default() };
+    let actuator = Actuator::new(Components { load, ..parts }).unwrap();
+    let options = MachineOptions { lines: Some(lines), ..MachineOptions::default() };
     let machine = Machine::new(&actuator, &options).unwrap();
     let condition = Condition::Command(spread(0.01, 2.0));
     let rest = machine.rest(&operating_point(&actuator, spread(0.05, 0.45), condition).unwrap()).unwrap();
     let moves = linear_load != LinearLoad::Prescribed;
     let position = rest.inputs[0] + if moves { rest.state[6] } else { 0.0 } + rest.state[4];
-    let (plant, behind) = plant_behind(&actuator, (&machine, &unit), lines, (position, &rest), linear_load);
+    let (plant, behind) = plant_behind(&actuator, &machine, lines, (position, &rest), linear_load);
     Drawn {
         machine,
         inputs: [&rest.inputs[..], &rest.waves[..]].concat(),

@@ -11,7 +11,8 @@ use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::friction::{Friction, LuGre, LuGrePassivity};
 use phea_hydraulics::line::{DynamicLine, LaminarFriction, LineModel, StiffeningMember};
-use phea_hydraulics::machine::{Accumulator, LoadModel, Machine, MachineOptions, PowerUnit, PumpLimited};
+use phea_hydraulics::load::Load;
+use phea_hydraulics::machine::{Accumulator, Machine, MachineOptions, PowerUnit, PumpLimited};
 use phea_hydraulics::reference_rig::{
     benchmark_components, components, cylinder, hose_line, leaking, pipe_line,
 };
@@ -91,18 +92,18 @@ const CREEPING: LineModel = LineModel::Creeping { relaxation_time: 0.02 };
 pub(super) fn rich_machines() -> Vec<(&'static str, Machine)> {
     let rig = asymmetric();
     let hoses = Components { line_b: hose_line(), ..rig };
-    let of = |rig, options: MachineOptions| machine_of(leaking(rig, 2e-12), &options);
-    let with = |power_unit, lines| MachineOptions { power_unit, lines, ..MachineOptions::default() };
+    let of = |rig, (power_unit, options): (PowerUnit, MachineOptions)| {
+        machine_of(Components { power_unit, ..leaking(rig, 2e-12) }, &options)
+    };
+    let with = |power_unit, lines| (power_unit, MachineOptions { lines, ..MachineOptions::default() });
     let uniform = foamy(
         Components { friction: passive_friction(), ..benchmark_components() },
         StiffnessModel::Uniform,
         1.0,
     );
     let by_volume = foamy(rig, StiffnessModel::ByVolume, 1.4);
-    let all = foamy(hoses, StiffnessModel::Uniform, 1.2);
-    let load = LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
-    let everything =
-        MachineOptions { load, ..with(charged_pump(40e5, 1.3), lines_of(&all, [FULL, SMEARED])) };
+    let load = Load::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
+    let all = Components { load, ..foamy(hoses, StiffnessModel::Uniform, 1.2) };
     let segments = with(pump(), lines_of(&rig, [SMEARED, PLAIN]));
     let (open, necks) = ([GasPassage::Open; 2], [neck(6e-3), neck(4e-3)].map(GasPassage::Neck));
     let necked = |rig| with_gas(rig, POLYTROPIC, necks);
@@ -132,7 +133,7 @@ pub(super) fn rich_machines() -> Vec<(&'static str, Machine)> {
         ("air, one modulus", of(uniform, with(PowerUnit::Constant, None))),
         ("segments", of(rig, with(PowerUnit::Constant, lines_of(&rig, [SMEARED, PLAIN])))),
         ("creep", of(hoses, with(pump(), lines_of(&hoses, [FULL, CREEPING])))),
-        ("all", of(all, everything)),
+        ("all", of(all, with(charged_pump(40e5, 1.3), lines_of(&all, [FULL, SMEARED])))),
     ];
     machines.extend(adjusted_machines());
     machines
@@ -164,7 +165,8 @@ fn neck(diameter: f64) -> Neck {
 }
 
 fn with_gas(rig: Components, contents: [GasContent; 2], passages: [GasPassage; 2]) -> Components {
-    let sealed = |side| SealedGas { content: contents[side], passage: passages[side] };
+    let sealed =
+        |side| SealedGas { content: contents[side], passage: passages[side], maximum_pressure_ratio: None };
     Components { gas: [0, 1].map(|side| Some(ChamberGas::Sealed(sealed(side)))), ..rig }
 }
 
@@ -174,10 +176,22 @@ fn adjusted_machines() -> [(&'static str, Machine); 3] {
     let by_volume = foamy(rig, StiffnessModel::ByVolume, 1.4);
     // gas that is moved, at one chamber behind a neck, and gas behind valves, at one chamber with
     // heat
-    let more =
-        AdjustedGas { at_rest: LARGE, setting: 0.5, volume_rise: 8e-6, precharge_rise: -2e5, neck: None };
-    let less =
-        AdjustedGas { at_rest: SMALL, setting: 0.5, volume_rise: -3e-6, precharge_rise: 1e5, neck: None };
+    let more = AdjustedGas {
+        at_rest: LARGE,
+        setting: 0.5,
+        volume_rise: 8e-6,
+        precharge_rise: -2e5,
+        neck: None,
+        maximum_pressure_ratio: None,
+    };
+    let less = AdjustedGas {
+        at_rest: SMALL,
+        setting: 0.5,
+        volume_rise: -3e-6,
+        precharge_rise: 1e5,
+        neck: None,
+        maximum_pressure_ratio: None,
+    };
     let behind_neck = AdjustedGas { neck: Some(neck(6e-3)), ..less };
     let moved = |gas| Some(ChamberGas::Adjusted(gas));
     let of_gas = Components { gas: [moved(more), moved(behind_neck)], ..rig };
@@ -195,19 +209,20 @@ fn adjusted_machines() -> [(&'static str, Machine); 3] {
     let of_valves = with_gas(by_volume, relaxing([None, Some(0.05)]), valves);
     let of_valve = with_gas(rig, POLYTROPIC, valves).gas[0];
     let valve_and_gas = Components { gas: [of_valve, moved(less)], ..rig };
-    let moving = |power_unit, lines| MachineOptions {
-        load: LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 },
+    let moving = |lines| MachineOptions {
         external_force: true,
         moving_setting: true,
-        power_unit,
         lines,
         ..MachineOptions::default()
     };
-    let of = |rig, options: MachineOptions| machine_of(leaking(rig, 2e-12), &options);
+    let load = Load::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
+    let of = |rig, power_unit, lines| {
+        machine_of(Components { power_unit, load, ..leaking(rig, 2e-12) }, &moving(lines))
+    };
     let lines = lines_of(&rig, [SMEARED, PLAIN]);
     [
-        ("gas that is moved", of(of_gas, moving(charged_pump(40e5, 1.4), None))),
-        ("gas with heat behind valves that move", of(of_valves, moving(pump(), lines))),
-        ("gas behind a valve, and moved", of(valve_and_gas, moving(PowerUnit::Constant, None))),
+        ("gas that is moved", of(of_gas, charged_pump(40e5, 1.4), None)),
+        ("gas with heat behind valves that move", of(of_valves, pump(), lines)),
+        ("gas behind a valve, and moved", of(valve_and_gas, PowerUnit::Constant, None)),
     ]
 }

@@ -13,9 +13,8 @@ use phea_hydraulics::contact::Contact;
 use phea_hydraulics::force_sensor::{ForceSensor, in_series};
 use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::{DynamicLine, END_SHARE, LineModel, StiffeningMember};
-use phea_hydraulics::machine::{
-    ENERGY_ACCOUNTS, InitialCondition, LoadModel, Machine, MachineOptions, StartValues,
-};
+use phea_hydraulics::load::Load;
+use phea_hydraulics::machine::{ENERGY_ACCOUNTS, InitialCondition, Machine, MachineOptions, StartValues};
 use phea_hydraulics::operating_point::{Condition, OperatingPoint, operating_point};
 use phea_hydraulics::plant::{
     BehindLines, LinearLoad, LinearPlant, LinearSeries, PlantInMotion, SeriesOutput, VelocitySensor,
@@ -81,17 +80,16 @@ pub(super) fn drawn_with(series: SeriesElement, number: u64) -> Drawn {
         series: Some(series),
         ..components(hose_line(), StiffnessModel::ByVolume)
     };
-    let actuator = Actuator::new(parts).unwrap();
     let (mass, stiffness, damping) = (spread(1.0, 500.0), spread(1e4, 1e8), spread(10.0, 1e4));
     let (load, linear) = match number % 5 {
-        0 | 1 => (LoadModel::Prescribed, LinearLoad::Prescribed),
+        0 | 1 => (Load::Prescribed, LinearLoad::Prescribed),
         _ => (
-            LoadModel::SpringMassDamper { mass, stiffness, damping },
+            Load::SpringMassDamper { mass, stiffness, damping },
             LinearLoad::Yielding { mass, damping, stiffness },
         ),
     };
-    let options = MachineOptions { load, ..MachineOptions::default() };
-    let machine = Machine::new(&actuator, &options).unwrap();
+    let actuator = Actuator::new(Components { load, ..parts }).unwrap();
+    let machine = Machine::new(&actuator, &MachineOptions::default()).unwrap();
     let condition = Condition::Command(spread(0.01, 2.0));
     let point = operating_point(&actuator, spread(0.1, 0.4), condition).unwrap();
     let rest = machine.rest(&point).unwrap();
@@ -289,12 +287,11 @@ fn a_spring_alone_is_a_softer_sensor() {
         travel: None,
         force_from: ForceFrom::Sensor,
     };
-    let load = LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
-    let options = MachineOptions { load, ..MachineOptions::default() };
+    let load = Load::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
     let plain = components(hose_line(), StiffnessModel::ByVolume);
     let softer = ForceSensor { stiffness: in_series(plain.force_sensor.stiffness, 2.24e6) };
-    let machines =
-        [Components { force_sensor: softer, ..plain }, rig(spring)].map(|parts| machine_of(parts, &options));
+    let machines = [Components { force_sensor: softer, ..plain }, rig(spring)]
+        .map(|parts| machine_of(Components { load, ..parts }, &MachineOptions::default()));
     let share = softer.stiffness / 2.24e6;
     let motion = Motion { amplitude: 1.5, bias: 0.4, ground: 0.0, ground_amplitude: 1e-3 };
     let start = StartValues {
@@ -336,9 +333,9 @@ fn ledgers_close() {
         force: 500.0,
         ..StartValues::default()
     };
-    let sprung = LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
+    let sprung = Load::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
     for number in 0..8 {
-        for load in [LoadModel::Prescribed, sprung] {
+        for load in [Load::Prescribed, sprung] {
             let own = element(number);
             // a few newtons reach the ends of a short travel
             let travel = own.travel.map(|travel| SeriesTravel { travel: 2e-4, ..travel });
@@ -352,10 +349,7 @@ fn ledgers_close() {
             // is short
             let parts = rig(SeriesSpring { travel: ends, ..own });
             let valve = Servovalve { transition_pressure: 1e5, ..parts.valve };
-            let machine = machine_of(
-                Components { valve, ..parts },
-                &MachineOptions { load, ..MachineOptions::default() },
-            );
+            let machine = machine_of(Components { valve, load, ..parts }, &MachineOptions::default());
             check(&machine, &motion, &start, 0.1, 5e-6);
         }
     }

@@ -8,11 +8,11 @@ use phea_dynamics::scalar::{Dual, Interval, Parameters};
 use phea_dynamics::simulation::{DIRECTIONS, Plant};
 use phea_hydraulics::accumulator::Accumulator;
 use phea_hydraulics::actuator::{Actuator, ActuatorError, Components};
-use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, chamber_volumes};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::line::StiffeningMember;
-use phea_hydraulics::machine::{LoadModel, MachineOptions, StartValues};
+use phea_hydraulics::load::Load;
+use phea_hydraulics::machine::{MachineOptions, StartValues};
 use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
 use phea_hydraulics::reference_rig::cylinder;
 use phea_hydraulics::servovalve::Supply;
@@ -170,17 +170,16 @@ fn ledgers_close_through_the_stages() {
     let start = StartValues { position: 0.199, pressure_a: 35e5, pressure_b: 30e5, ..StartValues::default() };
     let close = [stage(0.2, [0.7, 0.9]), stage(0.202, [0.4, 1.2]), None];
     let telescope = Telescope { stages: close, ..three(1.5e-3) };
-    let contact = Contact { stiffness: 3e7, relative_damping: 0.4 };
     let loads = [
-        LoadModel::Prescribed,
-        LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 },
-        LoadModel::Wall { mass: 20.0, damping: 200.0, gap: 1e-4, contact },
+        Load::Prescribed,
+        Load::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 },
+        Load::Wall { mass: Some(20.0), damping: 200.0, stiffness: 3e7, gap: 1e-4, relative_damping: 0.4 },
     ];
     for load in loads {
         let external_force = load.moves();
-        let options =
-            MachineOptions { load, external_force, power_unit: pump(), ..MachineOptions::default() };
-        check(&machine_of(with(telescope, asymmetric()), &options), &motion, &start, 0.2, 1e-5);
+        let options = MachineOptions { external_force, ..MachineOptions::default() };
+        let rig = Components { power_unit: pump(), load, ..with(telescope, asymmetric()) };
+        check(&machine_of(rig, &options), &motion, &start, 0.2, 1e-5);
     }
     let air = Some(EntrainedAir { volume_fraction: 5e-3, polytropic_exponent: 1.2 });
     let gas = Accumulator { gas_volume: 2e-5, precharge_pressure: 15e5, polytropic_exponent: 1.2 };

@@ -17,7 +17,8 @@ use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::{DynamicLine, END_SHARE, Line, LineModel, Pipe, PipeWall, StiffeningMember};
 use phea_hydraulics::linkage::Linkage;
-use phea_hydraulics::machine::{InitialCondition, LoadModel, Machine, MachineOptions, PowerUnit};
+use phea_hydraulics::load::Load;
+use phea_hydraulics::machine::{InitialCondition, Machine, MachineOptions, PowerUnit};
 use phea_hydraulics::operating_point::{Condition, operating_point};
 use phea_hydraulics::plant::{
     BehindLines, LinearLoad, LinearPlant, LinearSeries, PlantInMotion, PressureFeedback, SeriesOutput,
@@ -120,7 +121,8 @@ fn gas(draw: &mut Draw) -> Option<ChamberGas> {
         })
     } else if heat.is_none() && draw.part("gas that is added", 0.6) {
         let (volume_rise, precharge_rise) = (moved * gas_volume, -0.8 * moved * precharge_pressure);
-        let gas = AdjustedGas { at_rest, setting, volume_rise, precharge_rise, neck };
+        let gas =
+            AdjustedGas { at_rest, setting, volume_rise, precharge_rise, neck, maximum_pressure_ratio: None };
         return Some(ChamberGas::Adjusted(gas));
     } else {
         neck.map_or(GasPassage::Open, GasPassage::Neck)
@@ -131,7 +133,7 @@ fn gas(draw: &mut Draw) -> Option<ChamberGas> {
             GasContent::Relaxing(RelaxingGas { gas_volume, precharge_pressure, time_constant })
         }
     };
-    Some(ChamberGas::Sealed(SealedGas { content, passage }))
+    Some(ChamberGas::Sealed(SealedGas { content, passage, maximum_pressure_ratio: None }))
 }
 
 /// Motor with unlimited rotation, or a cylinder of this stroke in m, with its friction and its
@@ -250,8 +252,6 @@ struct Drawn {
 struct Resting {
     actuator: Actuator,
     lines: Option<[DynamicLine; 2]>,
-    load: LoadModel,
-    unit: PowerUnit,
     machine: Machine,
     position: f64,
     rest: InitialCondition,
@@ -280,6 +280,7 @@ fn parts(draw: &mut Draw, number: u64, kinds: &[Linkage; 4]) -> (Components, [Dr
         cross_port,
         series,
         linkage,
+        power_unit: power_unit(number),
         ..rig
     };
     (rig, of_gas)
@@ -319,37 +320,36 @@ fn moving_lines(draw: &mut Draw, rig: &Actuator) -> Option<[DynamicLine; 2]> {
     Some([of(&parts.line_a, numbers[0], times[0]), of(&parts.line_b, numbers[1], times[1])])
 }
 
-fn resting(draw: &mut Draw, number: u64, rig: Components) -> Resting {
+fn resting(draw: &mut Draw, rig: Components) -> Resting {
     let turns = rig.linkage.is_some() || rig.cylinder.stroke == ActuatorStroke::Unlimited;
-    let actuator = Actuator::new(rig).unwrap();
     let (mass, stiffness, damping) = match turns {
         true => (draw.spread(0.05, 5.0), draw.spread(1e2, 1e5), draw.spread(0.1, 30.0)),
         false => (draw.spread(1.0, 500.0), draw.spread(1e4, 1e8), draw.spread(10.0, 1e4)),
     };
     let load = match draw.part("prescribed load", 0.4) {
-        true => LoadModel::Prescribed,
-        false => LoadModel::SpringMassDamper { mass, stiffness, damping },
+        true => Load::Prescribed,
+        false => Load::SpringMassDamper { mass, stiffness, damping },
     };
     draw.parts.extend(load.moves().then_some("sprung load"));
-    let unit = power_unit(number);
-    draw.parts.extend((unit != PowerUnit::Constant).then_some("pump"));
+    draw.parts.extend((rig.power_unit != PowerUnit::Constant).then_some("pump"));
+    let rig = Components { load, ..rig };
+    let actuator = Actuator::new(rig).unwrap();
     let lines = moving_lines(draw, &actuator);
-    let options =
-        MachineOptions { load, power_unit: unit, moving_setting: true, lines, ..MachineOptions::default() };
+    let options = MachineOptions { moving_setting: true, lines, ..MachineOptions::default() };
     let machine = Machine::new(&actuator, &options).unwrap();
     let position = draw.spread(0.1, 0.9) * rig.cylinder.stroke.length().unwrap_or(7.0);
     let rest = rest(draw, &actuator, &machine, position);
-    Resting { actuator, lines, load, unit, machine, position, rest }
+    Resting { actuator, lines, machine, position, rest }
 }
 
 /// Load at its held position, and the motion of its ground for the rod's end.
-fn linear_load(load: &LoadModel, linkage: Option<&Linkage>, force: f64, angle: f64) -> (LinearLoad, f64) {
+fn linear_load(load: &Load, linkage: Option<&Linkage>, force: f64, angle: f64) -> (LinearLoad, f64) {
     let end = linkage.map(|linkage| linkage.end(angle));
     let own = match (*load, end) {
-        (LoadModel::SpringMassDamper { mass, stiffness, damping }, None) => {
+        (Load::SpringMassDamper { mass, stiffness, damping }, None) => {
             LinearLoad::Yielding { mass, damping, stiffness }
         }
-        (LoadModel::SpringMassDamper { mass, stiffness, damping }, Some(end)) => {
+        (Load::SpringMassDamper { mass, stiffness, damping }, Some(end)) => {
             let weight = linkage.and_then(|linkage| linkage.weight_at(angle));
             LinearLoad::Linked {
                 inertia: mass,
@@ -381,19 +381,19 @@ fn pressure_feedback(draw: &mut Draw, actuator: &Actuator) -> Option<PressureFee
 fn drawn(number: u64, kinds: &[Linkage; 4]) -> Drawn {
     let mut draw = Draw::new(90, number);
     let (rig, of_gas) = parts(&mut draw, number, kinds);
-    let Resting { actuator, lines, load, unit, machine, position, rest } = resting(&mut draw, number, rig);
+    let Resting { actuator, lines, machine, position, rest } = resting(&mut draw, rig);
     let outputs = machine.signals(&rest.state, &rest.all_inputs());
     assert!((outputs.piston.position - position).abs() < 1e-11, "{number}");
     let (force, angle) = (outputs.hydraulic_force, outputs.joint.position);
-    let (own, turned) = linear_load(&load, rig.linkage.as_ref(), force, angle);
-    let (pressures, of_machine) = (outputs.pressures, (&machine, &unit));
+    let (own, turned) = linear_load(&actuator.components().load, rig.linkage.as_ref(), force, angle);
+    let pressures = outputs.pressures;
     let (plant, behind) = match lines {
         Some(lines) => {
-            let (plant, behind) = plant_behind(&actuator, of_machine, lines, (position, &rest), own);
+            let (plant, behind) = plant_behind(&actuator, &machine, lines, (position, &rest), own);
             (plant, Some(behind))
         }
         None => {
-            let (plant, _) = plant_at_rest(&actuator, of_machine, (position, pressures, &rest.state), own);
+            let (plant, _) = plant_at_rest(&actuator, &machine, (position, pressures, &rest.state), own);
             (plant, None)
         }
     };

@@ -16,7 +16,8 @@ use phea_hydraulics::line::{
     Conduit, DynamicLine, LaminarFriction, Line, LineModel, Pipe, PipeWall, Segments, StiffeningMember,
 };
 use phea_hydraulics::linear::{LinearParameters, transfer_functions};
-use phea_hydraulics::machine::{INDICATORS, LoadModel, Machine, MachineOptions, StartValues};
+use phea_hydraulics::load::Load;
+use phea_hydraulics::machine::{INDICATORS, Machine, MachineOptions, StartValues};
 use phea_hydraulics::operating_point::{Condition, operating_point};
 use phea_hydraulics::plant::{
     LinearElement, LinearLoad, LinearPlant, LinearSeries, PlantInMotion, SeriesOutput,
@@ -298,7 +299,7 @@ fn a_pull_beyond_its_filling_is_reported() {
     };
     // oil that evaporates at 0 Pa absolute
     let tears = -1e-3 * (2e5 + 101_325.0);
-    let vapour = MachineOptions::default().vapour_pressure_absolute;
+    let vapour = components(hose_line(), StiffnessModel::ByVolume).fluid.vapour_pressure_absolute;
     assert!((indicated(0.0) - (2e5 + 101_325.0 - vapour)).abs() < 1e-6);
     assert!(indicated(0.999 * tears + 1e-3 * vapour) > 0.0 && indicated(1.001 * tears) < 0.0);
 }
@@ -313,13 +314,13 @@ fn ledgers_close() {
         force: 500.0,
         ..StartValues::default()
     };
-    let sprung = LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
+    let sprung = Load::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
     for number in 0..6 {
-        for load in [LoadModel::Prescribed, sprung] {
+        for load in [Load::Prescribed, sprung] {
             let parts = rig(transmission(number));
             let valve = Servovalve { transition_pressure: 1e5, ..parts.valve };
-            let options = MachineOptions { load, ..MachineOptions::default() };
-            check(&machine_of(Components { valve, ..parts }, &options), &motion, &start, 0.1, 5e-6);
+            let machine = machine_of(Components { valve, load, ..parts }, &MachineOptions::default());
+            check(&machine, &motion, &start, 0.1, 5e-6);
         }
     }
     // the rig's lines are in segments

@@ -8,11 +8,12 @@ use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::friction::Friction;
+use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{
-    INDICATORS, LoadModel, Machine, MachineOptions, MachineSignals, PowerUnit, PumpLimited, StartValues,
+    INDICATORS, Machine, MachineOptions, MachineSignals, PowerUnit, PumpLimited, StartValues,
 };
 use phea_hydraulics::reference_rig::{benchmark_components, components, hose_line, stopped};
-use phea_hydraulics::servovalve::{SpoolImperfection, Supply};
+use phea_hydraulics::servovalve::{Servovalve, SpoolImperfection, Supply};
 use phea_hydraulics::signal::Signal;
 use phea_hydraulics::stiffness::StiffnessModel;
 
@@ -61,8 +62,8 @@ fn hose_rig() -> Components {
     stopped(components(hose_line(), StiffnessModel::ByVolume), contact)
 }
 
-fn free_load() -> LoadModel {
-    LoadModel::SpringMassDamper { mass: 5.0, stiffness: 0.0, damping: 300.0 }
+fn free_load() -> Load {
+    Load::SpringMassDamper { mass: 5.0, stiffness: 0.0, damping: 300.0 }
 }
 
 /// A valve that is shut for half a minute: the pressures settle at the balance of leakage, without
@@ -85,10 +86,10 @@ fn a_shut_valve_settles() {
 /// is reported, and it returns.
 #[test]
 fn a_piston_meets_its_end_stops() {
-    let options = MachineOptions { load: free_load(), ..MachineOptions::default() };
-    let rig = hose_rig();
+    let rig = Components { load: free_load(), ..hose_rig() };
     let course = [(0.0, 10.0), (1.0, -10.0), (3.5, 0.0)];
-    let (result, outputs) = drive(machine_of(rig, &options), &at(0.4), 4.0, &course, Profile::constant(0.4));
+    let machine = machine_of(rig, &MachineOptions::default());
+    let (result, outputs) = drive(machine, &at(0.4), 4.0, &course, Profile::constant(0.4));
     assert_eq!(result.outcome.status, Status::Completed);
     assert!(happened(&result, "end_stop_b") && happened(&result, "end_stop_a"));
     let position = column(&outputs, Signal::Position);
@@ -135,15 +136,11 @@ fn lost_supplies_and_reversed_pressures_are_no_error() {
         effective_bulk_modulus: 1e9,
         accumulator: None,
     };
-    let options = MachineOptions {
-        power_unit: PowerUnit::PumpLimited(unit),
-        load: free_load(),
-        ..MachineOptions::default()
-    };
-    let rig = hose_rig();
+    let power_unit = PowerUnit::PumpLimited(unit);
+    let rig = Components { power_unit, load: free_load(), ..hose_rig() };
+    let machine = machine_of(rig, &MachineOptions::default());
     let course = [(0.5, 5.0), (1.0, -5.0), (1.5, 0.0)];
-    let (result, outputs) =
-        drive(machine_of(rig, &options), &at(0.25), 3.0, &course, Profile::constant(0.25));
+    let (result, outputs) = drive(machine, &at(0.25), 3.0, &course, Profile::constant(0.25));
     assert_eq!(result.outcome.status, Status::Completed);
     let supply = column(&outputs, Signal::SupplyPressure);
     assert!(supply[0] > 60e5 && supply[supply.len() - 1] < 5e5);
@@ -162,9 +159,10 @@ fn lost_supplies_and_reversed_pressures_are_no_error() {
 #[test]
 fn walls_are_met_with_every_friction() {
     let Friction::LuGre(lugre) = benchmark_components().friction else { unreachable!() };
-    let frictions =
-        [Friction::Viscous { viscous: 100.0 }, Friction::Stribeck(lugre.curve), Friction::LuGre(lugre)];
-    let contact = Contact { stiffness: 5e7, relative_damping: 0.5 };
+    let smoothed = Friction::Stribeck { curve: lugre.curve, regular_velocity: Some(1e-4) };
+    let frictions = [Friction::Viscous { viscous: 100.0 }, smoothed, Friction::LuGre(lugre)];
+    let load =
+        Load::Wall { mass: Some(8.0), damping: 50.0, stiffness: 5e7, gap: 5e-3, relative_damping: 0.5 };
     let spool = SpoolImperfection {
         null_bias: 0.014,
         hysteresis_width: Some(0.128),
@@ -172,16 +170,11 @@ fn walls_are_met_with_every_friction() {
         rate_limit: Some(3000.0),
     };
     for friction in frictions {
-        let options = MachineOptions {
-            spool,
-            load: LoadModel::Wall { mass: 8.0, damping: 50.0, gap: 5e-3, contact },
-            friction_regular_velocity: Some(1e-4),
-            ..MachineOptions::default()
-        };
-        let rig = Components { friction, ..components(hose_line(), StiffnessModel::ByVolume) };
+        let rig = components(hose_line(), StiffnessModel::ByVolume);
+        let rig = Components { friction, valve: Servovalve { spool, ..rig.valve }, load, ..rig };
+        let machine = machine_of(rig, &MachineOptions::default());
         let course = [(0.1, 2.0), (0.8, -2.0)];
-        let (result, outputs) =
-            drive(machine_of(rig, &options), &at(0.25), 1.5, &course, Profile::constant(0.25));
+        let (result, outputs) = drive(machine, &at(0.25), 1.5, &course, Profile::constant(0.25));
         assert_eq!(result.outcome.status, Status::Completed);
         assert!(happened(&result, "load_contact") && result.outcome.work.steps < 20_000);
         let force = column(&outputs, Signal::Force);

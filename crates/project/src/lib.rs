@@ -88,6 +88,7 @@ pub use design::*;
 pub use diagnostic::*;
 pub use direction::*;
 pub use environment::*;
+pub use phea_hydraulics::load::Load;
 pub use family::*;
 pub use fluid::*;
 pub use identify::*;

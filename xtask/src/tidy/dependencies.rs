@@ -13,7 +13,7 @@ use crate::repository::Repository;
 /// repository that each may use.
 const ALLOWED: &[(&str, &str)] = &[
     ("crates/dynamics", ""),
-    ("crates/hydraulics", "dynamics quantity"),
+    ("crates/hydraulics", "dynamics quantity table"),
     ("crates/qft", "dynamics"),
     ("crates/machine", "dynamics hydraulics"),
     ("crates/quantity", "dynamics"),

@@ -18,6 +18,7 @@ use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::Cylinder;
 use phea_hydraulics::machine::{Machine, MachineOptions, StartValues};
 use phea_hydraulics::reference_rig::{benchmark_components, components, pipe_line};
+use phea_hydraulics::servovalve::Servovalve;
 use phea_hydraulics::stiffness::StiffnessModel;
 use sundials::{Following, Kicks, Method, follow};
 
@@ -32,11 +33,11 @@ fn main() {
     let rig = Components {
         friction: benchmark_components().friction,
         cylinder: Cylinder { area_a: area, area_b: area, ..rig.cylinder },
+        valve: Servovalve { tare_reference_drop: 210e5, ..rig.valve },
         ..rig
     };
     let actuator = Actuator::new(rig).expect("the rig of the thesis");
-    let options = MachineOptions { tare_reference_drop: Some(210e5), ..MachineOptions::default() };
-    let machine = Machine::new(&actuator, &options).expect("its machine");
+    let machine = Machine::new(&actuator, &MachineOptions::default()).expect("its machine");
     let start = StartValues { position: 0.25, pressure_a: 35e5, pressure_b: 35e5, ..StartValues::default() };
     let beginning = machine.start(&start).expect("inside the stroke");
     let gains = Element::ProportionalIntegral { proportional_gain: 5e-4, integral_gain: 2e-3 };

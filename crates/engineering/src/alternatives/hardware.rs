@@ -48,7 +48,7 @@ impl JudgedAlternative {
         let kilogram = fitting(1.0, &MASS);
         let inertia = fitting(1.0, motion.dimension(&MASS));
         let length = of(|declared, rig| retracted_length(declared, rig).map_err(NoNumber::Length));
-        let power = of(|declared, rig| Ok(power_at_rest(declared, rig)));
+        let power = of(|_, rig| Ok(power_at_rest(rig)));
         [
             column(ColumnKey::ActuatorLength, metre, 3, length),
             column(ColumnKey::LinesLength, metre, 3, of(lines_length)),

@@ -7,18 +7,19 @@ use phea_dynamics::simulation::{
     Amplification, Attention, Input, InputSchedule, Observer, Outcome, Sampler, SimulationError,
     SimulationSettings, Stretch, Task,
 };
-use phea_hydraulics::machine::{Machine, MachineOptions};
+use phea_hydraulics::machine::MachineOptions;
 use phea_machine::{Control, ControllerSamples, Digital, Watcher};
 
 use super::plan::{Draw, Plan};
 use super::range::OutsideRange;
 use super::row::{Ran, Row, RowOutcome, numbers};
-use crate::rig::{OfMotion, RigError, actuator};
+use crate::rig::{RigError, actuator};
 use crate::setup::Setup;
 use crate::simulate::{
     COMMAND_LIMIT, ControlledMachine, Divergence, ERRORS_AMPLIFIED, Follower, LineLimits, LineWatch,
     Occurrence, PassAgreement, PassPlan, PassResult, PreparedScenario, REPEATED, Repetition, SimulateError,
-    StoppedRun, amplification, course_of, moved, occurrences, options, outside_model_s, run_status,
+    StoppedRun, amplification, course_of, machine_of, moved, occurrences, options, outside_model_s,
+    run_status,
 };
 
 /// A run that is ready to be simulated.
@@ -75,8 +76,7 @@ pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
         let external_force = plan.bench.machine.has_external_force();
         let moving_setting = plan.bench.machine.has_moving_setting();
         let options = MachineOptions { external_force, moving_setting, ..options(&project, &actuator)? };
-        let machine = Machine::new(&actuator, &options)
-            .map_err(|error| SimulateError::Machine(OfMotion { motion: project.motion(), error }))?;
+        let machine = machine_of(project.motion(), &actuator, &options)?;
         let mut bench = plan.bench.around(machine, actuator);
         bench.line_limits = LineLimits::of(&project);
         if let (Control::Sampled(sampled), Some(seed)) = (&mut bench.control, draw.noise_seed) {

@@ -11,6 +11,7 @@ use phea_hydraulics::actuator::Components;
 use phea_hydraulics::cross_port::DynamicFeedback;
 use phea_hydraulics::line::{LineError, StiffeningMember};
 use phea_hydraulics::linear::LinearParameters;
+use phea_hydraulics::machine::PowerUnit;
 use phea_hydraulics::operating_point::{
     Balance, OperatingPoint, Settled, SettledSupply, Steady, hydraulic_force,
 };
@@ -29,7 +30,7 @@ use super::{NoEffect, ProjectFamilyError};
 use crate::project::{DeclaredActuator, LINEAR_PARAMETERS, Project};
 use crate::rig::{
     self, Numbers, Rig, components, has_gas_states, linear, load_at, place, plant, settled_supply,
-    spool_side, stated, velocity_gain, with_gas, with_supply, yielding_supply,
+    spool_side, stated, with_gas, with_supply, yielding_supply,
 };
 use crate::setup::Setup;
 
@@ -124,7 +125,8 @@ impl Open<'_> {
     pub(super) fn balance<S: Scalar>(&self, values: &[S]) -> (S, Steady<S>, Balance<S>) {
         let all = self.all(values);
         let numbers = Numbers::open(self.names, &all);
-        self.settled(&numbers, self.idle(&components(self.declared, &numbers), &numbers))
+        let components = components(self.declared, &numbers);
+        Self::settled(&components.power_unit, self.idle(&components, &numbers))
     }
 
     /// The same with the supply as it is stated.
@@ -140,11 +142,10 @@ impl Open<'_> {
     }
 
     fn settled<S: Scalar>(
-        &self,
-        numbers: &Numbers<'_, S>,
+        power_unit: &PowerUnit<S>,
         (position, steady, idle): (S, Steady<S>, Balance<S>),
     ) -> (S, Steady<S>, Balance<S>) {
-        let found = settled_supply(self.declared, numbers, &idle, steady);
+        let found = settled_supply(power_unit, &idle, steady);
         let supply = found.map_or(idle.supply, |found| found.supply);
         (position, steady, Balance { supply, ..idle })
     }
@@ -192,8 +193,8 @@ impl Open<'_> {
         };
         let pressures = [place.point.pressure_a, place.point.pressure_b];
         let plant = with_gas(plant, &place.components, &place.chambers, pressures);
-        let gain = velocity_gain(self.declared, &numbers);
-        let velocity_sensor = VelocitySensor { gain, ..plant.velocity_sensor };
+        let velocity_sensor =
+            VelocitySensor { gain: place.components.velocity_gain, ..plant.velocity_sensor };
         let force = place.point.hydraulic_force;
         let series = LinearSeries::of_components(&place.components, force);
         let dynamic_feedback = place.dynamic_feedback;
@@ -227,7 +228,7 @@ impl Open<'_> {
         let known = &self.rig.point;
         match (moved, &self.rig.supply) {
             (true, _) => {
-                let (_, _, balance) = self.settled(&numbers, (position, steady, idle));
+                let (_, _, balance) = Self::settled(&components.power_unit, (position, steady, idle));
                 let settled = match self.start {
                     None => balance.settle(steady),
                     Some(start) => balance.settle_from(steady, start.at(values)),
@@ -271,7 +272,7 @@ impl Open<'_> {
         let open = self.names.iter().map(String::as_str).zip(all.iter().copied());
         let linear = linear(&chambers, known.chain(open.filter(|(name, _)| is_linear(name))));
         let settled = SettledSupply { supply, settled: at, taken: none };
-        let supply = yielding_supply(self.declared, &numbers, &idle, &settled, side);
+        let supply = yielding_supply(&components.power_unit, &idle, &settled, side);
         let (leakage, dynamic_feedback) = components.cross_admittance(pressures);
         RigAtPoint { components, point, chambers, linear, leakage, dynamic_feedback, supply }
     }

@@ -44,10 +44,7 @@ pub(super) fn within_reach(project: &Project) -> Result<Vec<Uncertain>, ProjectF
 pub(super) fn limits(project: &Project) -> Option<[f64; 2]> {
     let declared = project.actuator.as_ref()?;
     let components = components(declared, &Numbers::declared());
-    let drop = components.supply.pressure - components.supply.tank_pressure;
-    let reference = declared.valve.tare_pressure.unwrap_or(drop);
-    let left =
-        (declared.supply.flow()? - tare_flow(&components.valve, &components.supply, reference)).max(0.0);
+    let left = (declared.supply.flow()? - tare_flow(&components.valve, &components.supply)).max(0.0);
     let [area_a, area_b] = components.cylinder.greatest_areas();
     Some([-left / area_b, left / area_a])
 }

@@ -78,7 +78,10 @@ const BEYOND: f64 = 0.1;
 ///     side: LineSide::A,
 ///     differs_from_other: false,
 ///     line: Line::Volume { volume: 1e-3, effective_bulk_modulus: 1e9 },
-///     fluid: Fluid { bulk_modulus: 1.45e9, density: 870.0, kinematic_viscosity: 46e-6, entrained_air: None },
+///     fluid: Fluid {
+///         bulk_modulus: 1.45e9, density: 870.0, kinematic_viscosity: 46e-6, entrained_air: None,
+///         vapour_pressure_absolute: 0.0,
+///     },
 ///     pressure: 35e5,
 ///     motion: LineMotion::Lumped,
 ///     piston_area: 0.0,

@@ -4,23 +4,25 @@ use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
-use phea_hydraulics::friction::{Friction, FrictionLevels, LuGre, Stribeck};
 use phea_hydraulics::line::{Anchoring, Hose, Line, Pipe, PipeWall, Stiffening};
 use phea_hydraulics::linkage::{Linkage, STANDARD_GRAVITY};
 use phea_hydraulics::series::{SeriesElement, SeriesSpring, SeriesTravel, Transmission};
 use phea_hydraulics::servovalve::{
-    Edges, LeakageShape, OpeningLaw, OpeningShape, Servovalve, Supply, flow_coefficient_from_rating,
-    leakage_coefficient_from_rating,
+    Edges, LeakageShape, OpeningLaw, OpeningShape, Servovalve, SpoolImperfection, Supply,
+    flow_coefficient_from_rating, leakage_coefficient_from_rating,
 };
 use phea_hydraulics::stroke::{ActuatorStroke, FURTHER_STAGES, PistonStage, Telescope};
 
 use super::cross_port::cross_port;
+use super::friction::friction;
 use super::gas::chamber_gas;
+use super::in_loop::velocity_gain;
+use super::load::load;
 use super::numbers::Numbers;
+use super::supply::power_unit;
 use crate::project::{
     self, BoundedNumber, Component, DeclaredSeries, DeclaredSpring, DeclaredTransmission, DeclaredWeight,
-    EdgeCoefficients, FrictionLaw, HoseExpansion, LineVolume, NullLeakage, RatedFlow, StribeckCurve,
-    ValveCoefficients,
+    EdgeCoefficients, HoseExpansion, LineVolume, NullLeakage, RatedFlow, ValveCoefficients,
 };
 
 /// Kinematic viscosity of ISO VG 46 oil at 40 degrees Celsius, m2/s: used where a project states
@@ -52,6 +54,7 @@ pub fn components<S: Scalar>(
         }),
         fluid,
         supply: Supply { pressure, tank_pressure },
+        power_unit: power_unit(declared, numbers),
         valve: valve(&declared.valve, numbers, pressure - tank_pressure),
         line_a: line("a", &declared.line.a),
         line_b: line("b", &declared.line.b),
@@ -68,6 +71,8 @@ pub fn components<S: Scalar>(
         linkage: declared.linkage.as_ref().map(|linkage| {
             self::linkage(linkage, declared.cylinder.stroke, &numbers.within("linkage.weight"))
         }),
+        load: load(&declared.load, numbers),
+        velocity_gain: velocity_gain(declared, numbers),
         stiffness_model: declared.line.compliance,
     }
 }
@@ -145,6 +150,7 @@ fn fluid<S: Scalar>(declared: &project::DeclaredFluid, numbers: &Numbers<'_, S>)
             volume_fraction: at("entrained_air", fraction),
             polytropic_exponent: at("polytropic_exponent", declared.polytropic_exponent),
         }),
+        vapour_pressure_absolute: at("vapour_pressure", declared.vapour_pressure),
     }
 }
 
@@ -192,10 +198,17 @@ fn valve<S: Scalar>(declared: &project::Valve, numbers: &Numbers<'_, S>, supply_
         },
         leakage_model: declared.leakage_model,
         tare_flow,
+        tare_reference_drop: tare_drop,
         nominal_voltage: at("nominal_voltage", declared.nominal_voltage),
         natural_frequency: at("natural_frequency", declared.natural_frequency),
         damping_ratio: at("damping_ratio", declared.damping_ratio),
         transition_pressure: at("transition_pressure", declared.transition_pressure),
+        spool: SpoolImperfection {
+            null_bias: at("null_bias", declared.null_bias),
+            hysteresis_width: declared.hysteresis.map(|width| at("hysteresis", width)),
+            threshold: declared.threshold.map(|threshold| at("threshold", threshold)),
+            rate_limit: declared.rate_limit.map(|limit| at("rate_limit", limit)),
+        },
     }
 }
 
@@ -430,41 +443,4 @@ fn end_stops<S: Scalar>(declared: Option<project::EndStops>, numbers: &Numbers<'
         stiffness: numbers.at("end_stops.stiffness", stops.stiffness),
         relative_damping: numbers.at("end_stops.relative_damping", stops.relative_damping),
     })
-}
-
-fn friction<S: Scalar>(
-    declared: Option<&project::DeclaredFriction>,
-    numbers: &Numbers<'_, S>,
-) -> Friction<S> {
-    let Some(declared) = declared else { return Friction::Viscous { viscous: S::from(0.0) } };
-    let numbers = numbers.within("friction");
-    let at = |key: &str, value: f64| numbers.at(key, value);
-    let viscous = at("viscous", declared.viscous);
-    let stribeck = |curve: &StribeckCurve| Stribeck {
-        coulomb: at("coulomb", curve.coulomb),
-        static_friction: at("static", curve.static_friction),
-        stribeck_velocity: at("stribeck_velocity", curve.stribeck_velocity),
-        stribeck_exponent: at("stribeck_exponent", curve.stribeck_exponent),
-        viscous,
-        retracting: declared.retracting.map(|back| {
-            let numbers = numbers.within("retracting");
-            let or = |key: &str, own: Option<f64>, extending: S| {
-                own.map_or(extending, |value| numbers.at(key, value))
-            };
-            FrictionLevels {
-                coulomb: or("coulomb", back.coulomb, at("coulomb", curve.coulomb)),
-                static_friction: or("static", back.static_friction, at("static", curve.static_friction)),
-                viscous: or("viscous", back.viscous, viscous),
-            }
-        }),
-    };
-    match &declared.law {
-        FrictionLaw::Viscous => Friction::Viscous { viscous },
-        FrictionLaw::Stribeck { curve, .. } => Friction::Stribeck(stribeck(curve)),
-        FrictionLaw::LuGre { curve, bristle_stiffness, bristle_damping } => Friction::LuGre(LuGre {
-            curve: stribeck(curve),
-            bristle_stiffness: at("bristle_stiffness", *bristle_stiffness),
-            bristle_damping: at("bristle_damping", *bristle_damping),
-        }),
-    }
 }

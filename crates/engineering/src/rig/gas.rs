@@ -42,6 +42,8 @@ pub(super) fn chamber_gas<S: Scalar>(
     let numbers = numbers.within("accumulator");
     let gas = accumulator(declared, &numbers);
     let neck = declared.neck.map(|declared| neck(&declared, &numbers, fluid));
+    let maximum_pressure_ratio =
+        declared.maximum_pressure_ratio.map(|ratio| numbers.at("maximum_pressure_ratio", ratio));
     let passage = match declared.adjustment {
         None => neck.map_or(GasPassage::Open, GasPassage::Neck),
         Some(DeclaredAdjustment { kind: AdjustmentKind::Valve(valve), setting }) => {
@@ -50,7 +52,8 @@ pub(super) fn chamber_gas<S: Scalar>(
         }
         Some(DeclaredAdjustment { kind: AdjustmentKind::Gas(last), setting }) => {
             let stated = numbers.at("precharge_pressure", declared.precharge_pressure);
-            return ChamberGas::Adjusted(adjusted((gas, stated), (&last, setting), neck, &numbers));
+            let adjusted = adjusted((gas, stated), (&last, setting), neck, &numbers);
+            return ChamberGas::Adjusted(AdjustedGas { maximum_pressure_ratio, ..adjusted });
         }
     };
     let Accumulator { gas_volume, precharge_pressure, .. } = gas;
@@ -61,7 +64,7 @@ pub(super) fn chamber_gas<S: Scalar>(
             GasContent::Relaxing(RelaxingGas { gas_volume, precharge_pressure, time_constant })
         }
     };
-    ChamberGas::Sealed(SealedGas { content, passage })
+    ChamberGas::Sealed(SealedGas { content, passage, maximum_pressure_ratio })
 }
 
 /// Gas that is added and removed: from `first`, whose precharge in Pa is `stated` for another
@@ -90,7 +93,7 @@ fn adjusted<S: Scalar>(
         precharge_pressure: first.precharge_pressure + precharge_rise * setting,
         ..first
     };
-    AdjustedGas { at_rest, setting, volume_rise, precharge_rise, neck }
+    AdjustedGas { at_rest, setting, volume_rise, precharge_rise, neck, maximum_pressure_ratio: None }
 }
 
 /// Valve with this setting at rest and a volume in m3 between valve and gas.

@@ -228,7 +228,7 @@ pub(crate) fn with_controller_of(mut project: Project, rig: &Rig) -> Project {
 }
 
 /// Shown velocity of the load over the true one; `None` where its gain has no error.
-pub(crate) fn velocity_gain<S: Scalar>(declared: &DeclaredActuator, numbers: &Numbers<'_, S>) -> Option<S> {
+pub(super) fn velocity_gain<S: Scalar>(declared: &DeclaredActuator, numbers: &Numbers<'_, S>) -> Option<S> {
     let sensor = declared.velocity_sensor.as_ref()?;
     let open = numbers.get(GAIN_ERROR);
     let stated = sensor.gain_error.map(S::from);

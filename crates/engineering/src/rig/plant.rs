@@ -13,7 +13,7 @@ use phea_hydraulics::two_pressure::{TwoPressureLinearParameters, reduce};
 use super::numbers::Numbers;
 use super::parameters::{ParameterOrigin, ResolvedParameter, replaced};
 use super::place::shortened;
-use crate::project::{self, DeclaredAdjustment};
+use crate::project::{self, DeclaredAdjustment, Load};
 
 /// Parameters of the linear model that presuppose one load pressure.
 const OF_LOAD_PRESSURE: [&str; 4] =
@@ -82,18 +82,18 @@ pub fn rod_end<S: Scalar>(
 
 /// The load at an operating point; `None` where its motion is prescribed.
 pub(crate) fn load_at<S: Scalar>(
-    declared: &project::Load,
+    declared: &Load,
     numbers: &Numbers<'_, S>,
     components: &Components<S>,
     point: &OperatingPoint<S>,
 ) -> Option<YieldingLoad<S>> {
     let force = point.hydraulic_force;
     match rod_end(components, point) {
-        None => yielding_load(declared, numbers, force),
+        None => yielding_load(declared, numbers, &components.load, force),
         Some((end, weight)) => {
             let torque = force * end.lever_arm;
             let torque = weight.map_or(torque, |weight| torque + weight.torque);
-            let turned = yielding_load(declared, numbers, torque)?;
+            let turned = yielding_load(declared, numbers, &components.load, torque)?;
             let lever = LoadLever {
                 arm: end.lever_arm,
                 geometric_stiffness: -(force * end.lever_slope),
@@ -108,31 +108,31 @@ pub(crate) fn load_at<S: Scalar>(
 /// prescribed. The load is in contact with a wall where the force presses on it, or where there is
 /// no gap. Hunt and Crossley's damping K c d of a wall pressed by d = F/K is c F.
 fn yielding_load<S: Scalar>(
-    declared: &project::Load,
+    declared: &Load,
     numbers: &Numbers<'_, S>,
+    load: &Load<S>,
     force: S,
 ) -> Option<YieldingLoad<S>> {
     let none = S::from(0.0);
-    let of_load = numbers.within("load");
-    let at = |key: &str, value: f64| of_load.at(key, value);
-    match *declared {
-        project::Load::Prescribed => None,
-        project::Load::SpringMassDamper { mass, stiffness, damping } => Some(YieldingLoad {
-            mass: at("mass", mass),
-            damping: at("damping", damping),
-            stiffness: at("stiffness", stiffness),
+    match *load {
+        Load::Prescribed => None,
+        Load::SpringMassDamper { mass, stiffness, damping } => Some(YieldingLoad {
+            mass,
+            damping,
+            stiffness,
             contact_damping: none,
-            is_free: stiffness == 0.0 && of_load.get("stiffness").is_none(),
+            is_free: matches!(declared, Load::SpringMassDamper { stiffness: 0.0, .. })
+                && !numbers.is_open("load.stiffness"),
             lever: None,
         }),
-        project::Load::Wall { mass, damping, stiffness, gap, relative_damping } => {
-            let wall = at("stiffness", stiffness);
+        Load::Wall { mass, damping, stiffness: wall, relative_damping, .. } => {
             let touched = S::select(none.less_than(force), wall, none);
+            let has_no_gap = matches!(declared, Load::Wall { gap: 0.0, .. });
             Some(YieldingLoad {
-                mass: at("mass", mass?),
-                damping: at("damping", damping),
-                stiffness: if gap == 0.0 { wall } else { touched },
-                contact_damping: at("relative_damping", relative_damping) * force.maximum(none),
+                mass: mass?,
+                damping,
+                stiffness: if has_no_gap { wall } else { touched },
+                contact_damping: relative_damping * force.maximum(none),
                 is_free: false,
                 lever: None,
             })

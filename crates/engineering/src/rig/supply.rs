@@ -12,7 +12,10 @@ use super::numbers::Numbers;
 use crate::project::{self, SupplyModel};
 
 /// Where the supply pressure comes from.
-pub fn power_unit<S: Scalar>(declared: &project::DeclaredActuator, numbers: &Numbers<'_, S>) -> PowerUnit<S> {
+pub(super) fn power_unit<S: Scalar>(
+    declared: &project::DeclaredActuator,
+    numbers: &Numbers<'_, S>,
+) -> PowerUnit<S> {
     let SupplyModel::PumpLimited(pump) = &declared.supply.model else { return PowerUnit::Constant };
     let of_supply = numbers.within("supply");
     let at = |key: &str, value: f64| of_supply.at(key, value);
@@ -33,30 +36,25 @@ pub fn power_unit<S: Scalar>(declared: &project::DeclaredActuator, numbers: &Num
 /// The settled state of a limited pump with valve and chambers, given the balance at the stated
 /// supply; `None` for a constant pressure.
 pub fn settled_supply<S: Scalar>(
-    declared: &project::DeclaredActuator,
-    numbers: &Numbers<'_, S>,
+    power_unit: &PowerUnit<S>,
     balance: &Balance<S>,
     steady: Steady<S>,
 ) -> Option<SettledSupply<S>> {
-    match power_unit(declared, numbers) {
+    match power_unit {
         PowerUnit::Constant => None,
-        PowerUnit::PumpLimited(unit) => {
-            Some(balance.settled_supply(&unit, tare_drop(declared, numbers, balance), steady))
-        }
+        PowerUnit::PumpLimited(unit) => Some(balance.settled_supply(unit, steady)),
     }
 }
 
 /// That supply for small motions.
 pub(crate) fn yielding_supply<S: Scalar>(
-    declared: &project::DeclaredActuator,
-    numbers: &Numbers<'_, S>,
+    power_unit: &PowerUnit<S>,
     balance: &Balance<S>,
     settled: &SettledSupply<S>,
     side: SpoolDirection<S>,
 ) -> Option<YieldingSupply<S>> {
-    let PowerUnit::PumpLimited(unit) = power_unit(declared, numbers) else { return None };
-    let drops = [balance.supply.pressure, tare_drop(declared, numbers, balance)];
-    Some(YieldingSupply::new(&unit, balance, drops, settled, side))
+    let PowerUnit::PumpLimited(unit) = power_unit else { return None };
+    Some(YieldingSupply::new(unit, balance, balance.supply.pressure, settled, side))
 }
 
 /// Power in W that the valve takes from the supply at the operating point: leakage and tare flow
@@ -67,13 +65,12 @@ pub(crate) fn yielding_supply<S: Scalar>(
 /// ```
 ///
 /// What a pump delivers beyond that, through its relief valve, is not in it.
-pub(crate) fn power_at_rest(declared: &project::DeclaredActuator, rig: &Rig) -> f64 {
+pub(crate) fn power_at_rest(rig: &Rig) -> f64 {
     if let Some(found) = rig.supply {
         return found.taken * found.supply.pressure;
     }
     let components = rig.actuator.components();
     let (valve, supply, point) = (&components.valve, &components.supply, &rig.point);
-    let drop = tare_drop(declared, &Numbers::declared(), &Balance::at(components, rig.point.position));
     let edges = edge_flows(
         valve,
         supply,
@@ -81,15 +78,5 @@ pub(crate) fn power_at_rest(declared: &project::DeclaredActuator, rig: &Rig) -> 
         point.pressure_a,
         point.pressure_b,
     );
-    supply.pressure * (edges.supply_to_a + edges.supply_to_b + tare_flow(valve, supply, drop))
-}
-
-/// Drop in Pa at which the tare flow is stated: that of the stated supply where none is stated.
-fn tare_drop<S: Scalar>(
-    declared: &project::DeclaredActuator,
-    numbers: &Numbers<'_, S>,
-    balance: &Balance<S>,
-) -> S {
-    let whole = balance.supply.pressure - balance.supply.tank_pressure;
-    declared.valve.tare_pressure.map_or(whole, |drop| numbers.at("valve.tare_pressure", drop))
+    supply.pressure * (edges.supply_to_a + edges.supply_to_b + tare_flow(valve, supply))
 }

@@ -4,19 +4,16 @@
 use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{CommandedPlant, Sensed, SimulationSettings};
-use phea_hydraulics::actuator::Actuator;
-use phea_hydraulics::contact::Contact;
-use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
+use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::line::StiffeningMember;
-use phea_hydraulics::machine::{LoadModel, Machine, MachineOptions, PowerUnit};
-use phea_hydraulics::servovalve::SpoolImperfection;
+use phea_hydraulics::machine::{Machine, MachineError, MachineOptions, PowerUnit};
 use phea_machine::{Control, Sampled};
 
 use super::SimulateError;
 use super::line_limits::LineLimits;
-use crate::project::{self, FrictionLaw, Project, Scenario};
+use crate::project::{self, Project, Scenario};
 use crate::quantity::{MotionKind, Units};
-use crate::rig::{Numbers, OfMotion, Rig, lines, power_unit, pressure_ratio, velocity_gain};
+use crate::rig::{OfMotion, Rig, lines, pressure_ratio};
 use crate::setup::Setup;
 
 /// A machine with its controller.
@@ -42,8 +39,6 @@ pub struct ControlledMachine {
     pub gas_wall_celsius: [Option<f64>; 2],
     /// What lines A and B bear.
     pub line_limits: [LineLimits; 2],
-    /// Pa absolute, below which the oil cavitates.
-    pub vapour_pressure_pa: f64,
     /// Motion of the rig.
     pub units: Units,
 }
@@ -114,6 +109,7 @@ impl ControlledMachine {
         (control, feed_forward): (Control, f64),
     ) -> ControlledMachine {
         ControlledMachine {
+            relief_shut_pa: relief_shut_pa(rig.actuator.components()),
             rig,
             machine,
             control,
@@ -121,13 +117,8 @@ impl ControlledMachine {
             feed_forward,
             expansion_stated_at: expansion_stated_at(project),
             force_capacity_n: capacity(project),
-            relief_shut_pa: relief_shut_pa(project),
             gas_wall_celsius: gas_wall_celsius(project),
             line_limits: LineLimits::of(project),
-            vapour_pressure_pa: project
-                .actuator
-                .as_ref()
-                .map_or(0.0, |actuator| actuator.fluid.vapour_pressure),
             units: project.units,
         }
     }
@@ -150,16 +141,26 @@ fn rig_and_machine(
     let rig = setup.rig()?;
     let MachineOptions { external_force, moving_setting, .. } = *driven;
     let options = MachineOptions { external_force, moving_setting, ..options(setup.project, &rig.actuator)? };
-    let machine = Machine::new(&rig.actuator, &options)
-        .map_err(|error| SimulateError::Machine(OfMotion { motion: rig.motion, error }))?;
+    let machine = machine_of(rig.motion, &rig.actuator, &options)?;
     Ok((rig.clone(), Sensed::new(machine, &setup.sensor)?))
 }
 
+/// The machine of an actuator that moves in this way.
+pub fn machine_of(
+    motion: MotionKind,
+    actuator: &Actuator,
+    options: &MachineOptions,
+) -> Result<Machine, SimulateError> {
+    Machine::new(actuator, options).map_err(|error| match error {
+        MachineError::LoadWithoutMass => SimulateError::LoadMass(motion),
+        error => SimulateError::Machine(OfMotion { motion, error }),
+    })
+}
+
 /// Where the relief valve of a limited pump is shut, Pa.
-fn relief_shut_pa(project: &Project) -> Option<f64> {
-    let declared = project.actuator.as_ref()?;
-    match power_unit(declared, &Numbers::declared()) {
-        PowerUnit::PumpLimited(unit) => Some(declared.supply.pressure - unit.relief_override),
+fn relief_shut_pa(components: &Components) -> Option<f64> {
+    match components.power_unit {
+        PowerUnit::PumpLimited(unit) => Some(components.supply.pressure - unit.relief_override),
         PowerUnit::Constant => None,
     }
 }
@@ -233,63 +234,17 @@ fn between_samples(
 /// The parts of the machine other than its actuator, whatever acts on it.
 pub fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions, SimulateError> {
     let Some(declared) = &project.actuator else { return Ok(MachineOptions::default()) };
-    let friction_regular_velocity = match declared.friction().map(|friction| &friction.law) {
-        Some(FrictionLaw::Stribeck { regular_velocity, .. }) => *regular_velocity,
-        Some(FrictionLaw::Viscous | FrictionLaw::LuGre { .. }) | None => None,
-    };
     let fed_back = project.controller.as_ref().and_then(|controller| controller.pressure_feedback);
     Ok(MachineOptions {
-        spool: SpoolImperfection {
-            null_bias: declared.valve.null_bias,
-            hysteresis_width: declared.valve.hysteresis,
-            threshold: declared.valve.threshold,
-            rate_limit: declared.valve.rate_limit,
-        },
-        tare_reference_drop: declared.valve.tare_pressure,
-        friction_regular_velocity,
-        power_unit: power_unit(declared, &Numbers::declared()),
-        load: load(&declared.load, declared.motion())?,
-        velocity_gain: velocity_gain(declared, &Numbers::declared()).unwrap_or(1.0),
         pressure_ratio: fed_back.map_or(1.0, |fed_back| pressure_ratio(&fed_back, actuator.components())),
         external_force: false,
         moving_setting: false,
-        vapour_pressure_absolute: declared.fluid.vapour_pressure,
         member: StiffeningMember::Nominal,
-        gas_pressure_limits: gas_pressure_limits(declared, actuator),
         lines: lines(
             &declared.line,
             [&actuator.components().line_a, &actuator.components().line_b],
             &actuator.components().fluid,
             actuator.mean_pressure(),
         )?,
-    })
-}
-
-/// What the makers permit for the accumulators at the chambers, in Pa gauge.
-///
-/// ```text
-/// P_2 = (p_2/p_0) P_0,     absolute, P_0 at the working temperature and the setting at rest
-/// ```
-fn gas_pressure_limits(declared: &project::DeclaredActuator, actuator: &Actuator) -> [Option<f64>; 2] {
-    let declared = [&declared.line.a, &declared.line.b].map(|line| line.accumulator.as_ref());
-    [0, 1].map(|side| {
-        let (ratio, atmosphere) = (declared[side]?.maximum_pressure_ratio?, ATMOSPHERIC_PRESSURE_ABSOLUTE);
-        let at_rest = actuator.components().gas[side]?.at_rest().precharge_pressure;
-        Some(ratio * (at_rest + atmosphere) - atmosphere)
-    })
-}
-
-fn load(declared: &project::Load, motion: MotionKind) -> Result<LoadModel, SimulateError> {
-    Ok(match *declared {
-        project::Load::Prescribed => LoadModel::Prescribed,
-        project::Load::SpringMassDamper { mass, stiffness, damping } => {
-            LoadModel::SpringMassDamper { mass, stiffness, damping }
-        }
-        project::Load::Wall { mass, damping, stiffness, gap, relative_damping } => LoadModel::Wall {
-            mass: mass.ok_or(SimulateError::LoadMass(motion))?,
-            damping,
-            gap,
-            contact: Contact { stiffness, relative_damping },
-        },
     })
 }

@@ -157,7 +157,7 @@ impl LineWatch {
         let own = &bench.line_limits[side];
         let components = bench.rig.actuator.components();
         let [length_m, bore_m] = size(&[components.line_a, components.line_b][side]);
-        let vapour_pa = bench.vapour_pressure_pa - ATMOSPHERIC_PRESSURE_ABSOLUTE;
+        let vapour_pa = components.fluid.vapour_pressure_absolute - ATMOSPHERIC_PRESSURE_ABSOLUTE;
         let above = |limit, value: f64| WatchedLimit::new(limit, [f64::NEG_INFINITY, value]);
         let below = |value: f64| WatchedLimit::new(RigLimit::VapourPressure, [value, f64::INFINITY]);
         let [in_chamber, in_line] = [self.add(below(vapour_pa)), self.add(below(vapour_pa))];

@@ -27,6 +27,8 @@ pub struct AdjustedGas<S = f64> {
     pub precharge_rise: S,
     /// Neck between chamber and gas; `None` without one.
     pub neck: Option<Neck<S>>,
+    /// Highest permitted pressure over the precharge, both absolute, if stated.
+    pub maximum_pressure_ratio: Option<S>,
 }
 
 /// Valve between a chamber and the gas of its accumulator. Units: 1, m3/(s Pa^0.5), Pa, m3/Pa.
@@ -89,7 +91,7 @@ fn setting_problems(setting: f64) -> Vec<ParameterError> {
     problems.into_vec()
 }
 
-phea_dynamics::parameters! { AdjustedGas { at_rest, setting, volume_rise, precharge_rise, neck } }
+phea_dynamics::parameters! { AdjustedGas { at_rest, setting, volume_rise, precharge_rise, neck, maximum_pressure_ratio } }
 phea_dynamics::parameters! {
     GasValve { setting, flow_coefficient, transition_pressure, compliance, shut: kept }
 }

@@ -3,6 +3,7 @@
 use phea_dynamics::scalar::Scalar;
 
 use super::{Accumulator, AdjustedGas, GasBranch, GasValve, Neck, RelaxingGas};
+use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use crate::parameter::{ParameterError, Problems};
 
 /// Accumulator at a chamber.
@@ -14,7 +15,7 @@ use crate::parameter::{ParameterError, Problems};
 /// let gas = Accumulator { gas_volume: 1e-5, precharge_pressure: 15e5, polytropic_exponent: 1.2 };
 /// let neck = Neck::round([6e-3, 40e-3], [870.0, 46e-6, 1.45e9], 1.5);
 /// let (content, passage) = (GasContent::Polytropic(gas), GasPassage::Neck(neck));
-/// let behind = ChamberGas::Sealed(SealedGas { content, passage });
+/// let behind = ChamberGas::Sealed(SealedGas { content, passage, maximum_pressure_ratio: None });
 /// assert_eq!(behind.at_rest(), ChamberGas::from(gas).at_rest());
 /// assert!(behind.branch(35e5).is_some() && ChamberGas::from(gas).branch(35e5).is_none());
 /// ```
@@ -33,6 +34,8 @@ pub struct SealedGas<S = f64> {
     pub content: GasContent<S>,
     /// Passage between chamber and gas.
     pub passage: GasPassage<S>,
+    /// Highest permitted pressure over the precharge, both absolute, if stated.
+    pub maximum_pressure_ratio: Option<S>,
 }
 
 /// Gas by its law.
@@ -59,7 +62,7 @@ impl<S> From<Accumulator<S>> for ChamberGas<S> {
     /// Polytropic gas with the pressure of its chamber.
     fn from(gas: Accumulator<S>) -> ChamberGas<S> {
         let content = GasContent::Polytropic(gas);
-        ChamberGas::Sealed(SealedGas { content, passage: GasPassage::Open })
+        ChamberGas::Sealed(SealedGas { content, passage: GasPassage::Open, maximum_pressure_ratio: None })
     }
 }
 
@@ -77,10 +80,13 @@ impl ChamberGas {
 
     /// Impossible parameters of this gas; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
+        let mut problems = Problems::default();
+        if let Some(ratio) = self.maximum_pressure_ratio() {
+            problems.positive("maximum_pressure_ratio", ratio);
+        }
         match self {
-            ChamberGas::Adjusted(gas) => gas.problems(),
-            ChamberGas::Sealed(SealedGas { content, passage }) => {
-                let mut problems = Problems::default();
+            ChamberGas::Adjusted(gas) => problems.all(gas.problems()),
+            ChamberGas::Sealed(SealedGas { content, passage, .. }) => {
                 problems.all(match content {
                     GasContent::Polytropic(gas) => gas.problems(),
                     GasContent::Relaxing(gas) => gas.problems(),
@@ -90,14 +96,14 @@ impl ChamberGas {
                     GasPassage::Neck(neck) => neck.problems(),
                     GasPassage::Valve(valve) => valve.problems(),
                 });
-                problems.into_vec()
             }
         }
+        problems.into_vec()
     }
 }
 
 phea_dynamics::parameters! { ChamberGas = ChamberGas::Sealed(gas) | ChamberGas::Adjusted(gas) }
-phea_dynamics::parameters! { SealedGas { content, passage } }
+phea_dynamics::parameters! { SealedGas { content, passage, maximum_pressure_ratio } }
 phea_dynamics::parameters! { GasContent = GasContent::Polytropic(gas) | GasContent::Relaxing(gas) }
 phea_dynamics::parameters! {
     GasPassage = GasPassage::Open | GasPassage::Neck(neck) | GasPassage::Valve(valve)
@@ -138,14 +144,35 @@ impl<S> ChamberGas<S> {
     }
 }
 
+impl<S: Copy> ChamberGas<S> {
+    /// Highest permitted pressure over the precharge, both absolute, if stated.
+    pub fn maximum_pressure_ratio(&self) -> Option<S> {
+        match self {
+            ChamberGas::Adjusted(gas) => gas.maximum_pressure_ratio,
+            ChamberGas::Sealed(gas) => gas.maximum_pressure_ratio,
+        }
+    }
+}
+
 impl<S: Scalar> ChamberGas<S> {
+    /// Highest permitted pressure at rest, Pa gauge; `None` without one.
+    ///
+    /// ```text
+    /// P_2 = (p_2/p_0) P_0,     absolute, P_0 at the working temperature and the setting at rest
+    /// ```
+    pub(crate) fn pressure_limit(&self) -> Option<S> {
+        let atmosphere = S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
+        let at_rest = self.at_rest().precharge_pressure;
+        Some(self.maximum_pressure_ratio()? * (at_rest + atmosphere) - atmosphere)
+    }
+
     /// Gas within a machine: sealed if its setting does not move. A valve that is shut at rest is
     /// known from its setting.
     pub(crate) fn of_machine(self, moves: bool) -> ChamberGas<S> {
         match self {
-            ChamberGas::Sealed(SealedGas { content, passage: GasPassage::Valve(valve) }) => {
+            ChamberGas::Sealed(gas @ SealedGas { passage: GasPassage::Valve(valve), .. }) => {
                 let passage = GasPassage::Valve(GasValve { shut: false, ..valve });
-                ChamberGas::Sealed(SealedGas { content, passage })
+                ChamberGas::Sealed(SealedGas { passage, ..gas })
             }
             ChamberGas::Adjusted(_) if !moves => ChamberGas::Sealed(self.sealed()),
             gas => gas,
@@ -156,13 +183,13 @@ impl<S: Scalar> ChamberGas<S> {
     #[must_use]
     pub fn sealed(&self) -> SealedGas<S> {
         match *self {
-            ChamberGas::Sealed(SealedGas { content, passage: GasPassage::Valve(_) }) => {
-                SealedGas { content, passage: GasPassage::Open }
+            ChamberGas::Sealed(gas @ SealedGas { passage: GasPassage::Valve(_), .. }) => {
+                SealedGas { passage: GasPassage::Open, ..gas }
             }
             ChamberGas::Sealed(gas) => gas,
-            ChamberGas::Adjusted(AdjustedGas { at_rest, neck, .. }) => {
+            ChamberGas::Adjusted(AdjustedGas { at_rest, neck, maximum_pressure_ratio, .. }) => {
                 let passage = neck.map_or(GasPassage::Open, GasPassage::Neck);
-                SealedGas { content: GasContent::Polytropic(at_rest), passage }
+                SealedGas { content: GasContent::Polytropic(at_rest), passage, maximum_pressure_ratio }
             }
         }
     }

@@ -39,15 +39,15 @@ pub struct FrictionForce<S> {
 }
 
 impl MovingFriction {
-    /// Friction that can be integrated: the static curve needs a velocity in m/s that smooths its
-    /// jump, the others ignore it. `None` if it is missing.
-    pub fn new(friction: &Friction, regular_velocity: Option<f64>) -> Option<MovingFriction> {
+    /// Friction that can be integrated; `None` for a static curve without the velocity that smooths
+    /// its jump.
+    pub fn new(friction: &Friction) -> Option<MovingFriction> {
         match *friction {
             Friction::Viscous { viscous } => Some(MovingFriction::Viscous { viscous }),
-            Friction::Stribeck(curve) => regular_velocity.map(|regular_velocity| MovingFriction::Stribeck {
+            Friction::Stribeck { curve, regular_velocity } => Some(MovingFriction::Stribeck {
                 curve,
                 shape: curve.shape(),
-                regular_velocity,
+                regular_velocity: regular_velocity?,
             }),
             Friction::LuGre(lugre) => Some(MovingFriction::LuGre { lugre, shape: lugre.curve.shape() }),
         }
@@ -91,7 +91,7 @@ impl<S: Scalar> MovingFriction<S> {
     /// # Example
     /// ```
     /// use phea_hydraulics::friction::{Friction, MovingFriction};
-    /// let friction = MovingFriction::new(&Friction::Viscous { viscous: 100.0 }, None).unwrap();
+    /// let friction = MovingFriction::new(&Friction::Viscous { viscous: 100.0 }).unwrap();
     /// assert_eq!(friction.at(0.25, 0.0).force, 25.0);
     /// ```
     #[inline(always)]

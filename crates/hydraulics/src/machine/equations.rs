@@ -124,6 +124,7 @@ impl<S: Scalar> Machine<S> {
             Some(ChamberGas::Sealed(SealedGas {
                 content: GasContent::Polytropic(gas),
                 passage: GasPassage::Open,
+                ..
             })) => {
                 let [gas] = T::local(gas, [pressure]);
                 oil + gas
@@ -146,7 +147,7 @@ impl<S: Scalar> Machine<S> {
         state: &MachineState<T>,
         [port_a, port_b]: [T; 2],
     ) -> Flows<T> {
-        let opening = self.spool.convert(&mut constant::<S, T>).opening(&state.spool);
+        let opening = self.valve.spool.convert(&mut constant::<S, T>).opening(&state.spool);
         let valve = ValveEdges { valve: &self.valve, supply: &self.supply };
         let edges = Edges::from_array(match self.power_unit {
             PowerUnit::Constant => T::local(&valve, [opening, port_a, port_b]),
@@ -209,7 +210,7 @@ impl<S: Scalar> Machine<S> {
 
     pub(super) fn tare_flow_of<T: Scalar + From<S>>(&self, state: &MachineState<T>) -> T {
         let valve = self.valve.convert(&mut constant::<S, T>);
-        tare_flow(&valve, &self.supply_of(state), constant(self.tare_reference_drop))
+        tare_flow(&valve, &self.supply_of(state))
     }
 
     /// Areas A_A and A_B at a position of the piston in m, m2.
@@ -286,7 +287,7 @@ impl<S: Scalar> Machine<S> {
             [into[0] / compliances[0], into[1] / compliances[1]]
         };
         let state_rates = MachineState {
-            spool: self.spool.convert(&mut constant::<S, T>).rates(&valve, &state.spool, command),
+            spool: valve.spool.rates(&valve, &state.spool, command),
             pressure_a,
             pressure_b,
             deflection: joint.deflection_rate,

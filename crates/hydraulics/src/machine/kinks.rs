@@ -5,7 +5,7 @@ use phea_dynamics::scalar::{Parameters, Scalar};
 
 use super::equations::constant;
 use super::signals::ground_of;
-use super::{LoadModel, Machine, PowerUnit};
+use super::{Machine, PowerUnit};
 use crate::contact::Contact;
 use crate::friction::MovingFriction;
 use crate::series::MovingSeries;
@@ -33,11 +33,11 @@ impl<S: Scalar> Machine<S> {
         let load = self.load_of(&state, &ground);
         let end = self.end_of(&load);
         let joint = self.joint(&state, vector, &end.motion);
-        write(self.spool.convert(&mut constant::<S, T>).opening(&state.spool));
-        if self.spool.threshold.is_some() || self.spool.hysteresis_width.is_some() {
+        write(self.valve.spool.convert(&mut constant::<S, T>).opening(&state.spool));
+        if self.valve.spool.threshold.is_some() || self.valve.spool.hysteresis_width.is_some() {
             write(state.spool.spool_rate);
         }
-        if let Some(limit) = self.spool.rate_limit {
+        if let Some(limit) = self.valve.spool.rate_limit {
             write(constant::<S, T>(limit) - state.spool.spool_rate.abs());
         }
         if !matches!(self.friction, MovingFriction::Viscous { .. }) {
@@ -50,9 +50,9 @@ impl<S: Scalar> Machine<S> {
             press(-from_a, -state.velocity);
             press(-to_b, state.velocity);
         }
-        if let LoadModel::Wall { contact, .. } = &self.load {
+        if let Some(wall) = self.load.wall() {
             let clearance = self.load.convert(&mut constant::<S, T>).clearance(&load, &ground);
-            write_contact(contact, -clearance, load.velocity - ground.velocity, write);
+            write_contact(&wall, -clearance, load.velocity - ground.velocity, write);
         }
         if let Some(MovingSeries::Spring(spring)) = &self.series
             && spring.travel.is_some()

@@ -1,31 +1,10 @@
-use super::{LoadModel, PowerUnit};
 use crate::line::{DynamicLine, StiffeningMember};
 use crate::parameter::{ParameterError, Problems};
-use crate::servovalve::SpoolImperfection;
-
-/// Absolute vapour pressure of mineral oil, Pa: a few pascals at working temperatures, negligible
-/// compared with an atmosphere.
-pub(crate) const VAPOUR_PRESSURE_ABSOLUTE: f64 = 0.0;
 
 /// Parts of a machine other than its actuator. The default adds nothing: a prescribed load on a
 /// constant supply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MachineOptions {
-    /// Null bias, hysteresis, threshold and rate limit of the spool.
-    pub spool: SpoolImperfection,
-    /// Pressure drop p_S - p_T at which the valve's tare flow is stated, Pa; if absent, that of the
-    /// actuator's own supply.
-    pub tare_reference_drop: Option<f64>,
-    /// Velocity that smooths the jump of a static friction curve, m/s; needed only for such a
-    /// curve.
-    pub friction_regular_velocity: Option<f64>,
-    /// Source of the supply pressure.
-    pub power_unit: PowerUnit,
-    /// Load on the force sensor.
-    pub load: LoadModel,
-    /// Ratio of the measured to the true velocity of the load: 1 + e, e being the error of the
-    /// sensor's gain.
-    pub velocity_gain: f64,
     /// Factor phi of the pressure signal p_A - phi p_B that a controller may feed back.
     pub pressure_ratio: f64,
     /// True if an external force acts on the load, as an input of the machine; requires a load with
@@ -34,15 +13,8 @@ pub struct MachineOptions {
     /// True if the setting of adjusted accumulators moves, as an input of the machine: its change
     /// from rest, and its rate. Otherwise they remain at their setting at rest.
     pub moving_setting: bool,
-    /// Pressure in Pa absolute below which a chamber is reported to cavitate. Fluid with entrained
-    /// air expands before it boils and never reaches vacuum: for it, state the pressure at which
-    /// dissolved air is released.
-    pub vapour_pressure_absolute: f64,
     /// Member of the hoses' stiffening interval.
     pub member: StiffeningMember,
-    /// Pressure limits of the gas of the accumulators at A and B, Pa gauge: a run reports when they
-    /// are exceeded.
-    pub gas_pressure_limits: [Option<f64>; 2],
     /// Lines between valve and chambers with dynamics of their own, A first; if absent, each
     /// chamber has one pressure with its line.
     pub lines: Option<[DynamicLine; 2]>,
@@ -51,18 +23,10 @@ pub struct MachineOptions {
 impl Default for MachineOptions {
     fn default() -> MachineOptions {
         MachineOptions {
-            spool: SpoolImperfection::default(),
-            tare_reference_drop: None,
-            friction_regular_velocity: None,
-            power_unit: PowerUnit::Constant,
-            load: LoadModel::Prescribed,
-            velocity_gain: 1.0,
             pressure_ratio: 1.0,
             external_force: false,
             moving_setting: false,
-            vapour_pressure_absolute: VAPOUR_PRESSURE_ABSOLUTE,
             member: StiffeningMember::Nominal,
-            gas_pressure_limits: [None; 2],
             lines: None,
         }
     }
@@ -72,24 +36,7 @@ impl MachineOptions {
     /// Impossible options; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
-        problems.component("valve", self.spool.problems());
-        if let Some(drop) = self.tare_reference_drop {
-            problems.positive("valve.tare_reference_drop", drop);
-        }
-        if let Some(velocity) = self.friction_regular_velocity {
-            problems.positive("cylinder.friction.regular_velocity", velocity);
-        }
-        if let PowerUnit::PumpLimited(unit) = self.power_unit {
-            problems.component("supply", unit.problems());
-        }
-        let limits = self.gas_pressure_limits.iter().zip(["line.a", "line.b"]);
-        for (limit, line) in limits.filter_map(|(limit, line)| Some(((*limit)?, line))) {
-            problems.positive(&format!("{line}.accumulator.maximum_pressure"), limit);
-        }
-        problems.component("load", self.load.problems());
-        problems.positive("velocity_sensor.gain", self.velocity_gain);
         problems.not_negative("controller.pressure_feedback.ratio", self.pressure_ratio);
-        problems.not_negative("fluid.vapour_pressure_absolute", self.vapour_pressure_absolute);
         problems.into_vec()
     }
 }
@@ -107,6 +54,9 @@ pub enum MachineError {
     /// that smooths it, or bristles.
     #[error("static Stribeck friction jumps at standstill: state a regular velocity, or use LuGre friction")]
     StaticFriction,
+    /// A load in front of a wall without a mass: nothing determines its motion.
+    #[error("a load in front of a wall is simulated with the mass that moves beyond the force sensor")]
+    LoadWithoutMass,
     /// An external force on a load whose motion is prescribed: it would have no effect.
     #[error("an external force moves no load whose motion is prescribed: it needs one with a mass")]
     UnyieldingLoad,

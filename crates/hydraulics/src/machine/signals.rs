@@ -194,7 +194,7 @@ impl<S: Scalar> Machine<S> {
         MachineSignals {
             force: self.measured_force(&state),
             spool: state.spool.spool,
-            opening: self.spool.convert(&mut constant::<S, T>).opening(&state.spool),
+            opening: self.valve.spool.convert(&mut constant::<S, T>).opening(&state.spool),
             pressures: [state.pressure_a, state.pressure_b],
             port_pressures: ports,
             supply_pressure: self.supply_of(&state).pressure,

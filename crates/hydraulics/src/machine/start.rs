@@ -2,9 +2,10 @@ use phea_dynamics::simulation::Plant;
 
 use super::balance::Kept;
 use super::series::HeldJoint;
-use super::{LoadModel, Machine, MachineError, MachineState};
+use super::{Machine, MachineError, MachineState};
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use crate::friction::MovingFriction;
+use crate::load::Load;
 use crate::operating_point::OperatingPoint;
 use crate::stroke::ActuatorStroke;
 
@@ -147,7 +148,7 @@ impl Machine {
             pressure_a: point.pressure_a,
             pressure_b: point.pressure_b,
             force: 0.0,
-            spool: point.command + self.spool.null_bias,
+            spool: point.command + self.valve.spool.null_bias,
         };
         check(&start, self.cylinder.stroke)?;
         let mut state = MachineState::zero();
@@ -237,16 +238,16 @@ impl Machine {
     }
 }
 
-impl LoadModel {
+impl Load {
     /// Distance x_L - x_0 at which the load is held with this force in N, m; `None` if there is
     /// none.
     pub(super) fn held_at(&self, force: f64) -> Option<f64> {
         match *self {
-            LoadModel::Prescribed => Some(0.0),
-            LoadModel::SpringMassDamper { stiffness, .. } if stiffness > 0.0 => Some(force / stiffness),
-            LoadModel::SpringMassDamper { .. } => (force.abs() <= ROUNDED_FORCE).then_some(0.0),
-            LoadModel::Wall { .. } if force.abs() <= ROUNDED_FORCE => Some(0.0),
-            LoadModel::Wall { gap, contact, .. } => (force > 0.0).then_some(gap + force / contact.stiffness),
+            Load::Prescribed => Some(0.0),
+            Load::SpringMassDamper { stiffness, .. } if stiffness > 0.0 => Some(force / stiffness),
+            Load::SpringMassDamper { .. } => (force.abs() <= ROUNDED_FORCE).then_some(0.0),
+            Load::Wall { .. } if force.abs() <= ROUNDED_FORCE => Some(0.0),
+            Load::Wall { gap, stiffness, .. } => (force > 0.0).then_some(gap + force / stiffness),
         }
     }
 }

@@ -22,8 +22,7 @@ pub struct SettledSupply<S = f64> {
 const ROUNDS: [usize; 2] = [6, 9];
 
 impl<S: Scalar> Balance<S> {
-    /// Equilibrium of a limited pump; this balance has the pressure that the pump holds when idle;
-    /// `tare_drop` in Pa is the drop at which the tare flow is stated.
+    /// Equilibrium of a limited pump; this balance has the pressure that the pump holds when idle.
     ///
     /// ```text
     /// p_S = p_idle - dp_o q_S(p_S)/q_pump         down to p_idle - dp_o, at which the relief valve is shut
@@ -43,20 +42,20 @@ impl<S: Scalar> Balance<S> {
     /// let unit = PumpLimited {
     ///     pump_flow: 1.67e-4, relief_override: 5e5, volume: 1e-3, effective_bulk_modulus: 1e9, accumulator: None,
     /// };
-    /// let found = balance.settled_supply(&unit, 70e5, Steady::Command(0.0));
+    /// let found = balance.settled_supply(&unit, Steady::Command(0.0));
     /// assert!((found.supply.pressure - (70e5 - 5e5 * found.taken / 1.67e-4)).abs() < 1e-3);
     /// assert!((found.taken * 6e4 - 0.92).abs() < 0.01);
     /// ```
-    pub fn settled_supply(&self, unit: &PumpLimited<S>, tare_drop: S, steady: Steady<S>) -> SettledSupply<S> {
+    pub fn settled_supply(&self, unit: &PumpLimited<S>, steady: Steady<S>) -> SettledSupply<S> {
         let mut pressure = self.supply.pressure;
-        let mut found = self.taking(pressure, tare_drop, steady);
+        let mut found = self.taking(pressure, steady);
         for _ in 0..ROUNDS[usize::from(self.leaks())] {
             let falls = unit.relief_override * (found.taken / unit.pump_flow).minimum(S::from(1.0));
             let slope = falls / (S::from(2.0) * (pressure - self.supply.tank_pressure));
             let slope = S::select(found.taken.less_than(unit.pump_flow), slope, S::from(0.0));
             let next = pressure + (self.supply.pressure - falls - pressure) / (S::from(1.0) + slope);
             pressure = self.within_relief(next, unit, steady);
-            found = self.taking(pressure, tare_drop, steady);
+            found = self.taking(pressure, steady);
         }
         found
     }
@@ -76,13 +75,13 @@ impl<S: Scalar> Balance<S> {
         S::select(still, not_below.minimum(idle), not_below)
     }
 
-    fn taking(&self, pressure: S, tare_drop: S, steady: Steady<S>) -> SettledSupply<S> {
+    fn taking(&self, pressure: S, steady: Steady<S>) -> SettledSupply<S> {
         let supply = Supply { pressure, ..self.supply };
         let settled = Balance { supply, ..*self }.settle(steady);
         let [pressure_a, pressure_b] = settled.pressures;
         let conductances = edge_conductances(&self.valve, settled.command);
         let edges = edge_flows(&self.valve, &supply, &conductances, pressure_a, pressure_b);
-        let taken = edges.supply_to_a + edges.supply_to_b + tare_flow(&self.valve, &supply, tare_drop);
+        let taken = edges.supply_to_a + edges.supply_to_b + tare_flow(&self.valve, &supply);
         SettledSupply { supply, settled, taken }
     }
 }

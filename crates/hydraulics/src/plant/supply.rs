@@ -33,12 +33,11 @@ pub struct YieldingSupply<S = f64> {
 
 impl<S: Scalar> YieldingSupply<S> {
     /// Supply of a power unit at an equilibrium of supply, valve and chambers; `stated` is the
-    /// pressure in Pa that an idle pump holds, and `tare_drop` the drop in Pa at which the tare
-    /// flow is stated.
+    /// pressure in Pa that an idle pump holds.
     pub fn new(
         unit: &PumpLimited<S>,
         balance: &Balance<S>,
-        [stated, tare_drop]: [S; 2],
+        stated: S,
         settled: &SettledSupply<S>,
         direction: SpoolDirection<S>,
     ) -> YieldingSupply<S> {
@@ -48,7 +47,7 @@ impl<S: Scalar> YieldingSupply<S> {
         let relief = S::select(opens.less_than(pressure), relief, S::from(0.0));
         let drop = pressure - settled.supply.tank_pressure;
         let tare = valve.tare_flow * regular_root_slope(drop, valve.transition_pressure)
-            / regular_root(tare_drop, valve.transition_pressure);
+            / regular_root(valve.tare_reference_drop, valve.transition_pressure);
         let at = &settled.settled;
         let found = supply_coefficients(valve, &settled.supply, at.command, at.pressures, direction);
         YieldingSupply {

@@ -223,9 +223,7 @@ pub struct ControlCoefficients<S = f64> {
 /// # use phea_hydraulics::servovalve::*;
 /// # let valve = Servovalve {
 /// #     flow_coefficients: Edges::equal(2.97e-7), leakage_coefficients: Edges::equal(2.40e-9),
-/// #     opening: OpeningLaw::Proportional,
-/// #     leakage_shape: LeakageShape::Common(100.0), leakage_model: LeakageModel::EachEdge, tare_flow: 7.55e-6, nominal_voltage: 10.0,
-/// #     natural_frequency: 1099.0, damping_ratio: 0.9, transition_pressure: 1e3,
+/// #     ..phea_hydraulics::reference_rig::valve()
 /// # };
 /// let supply = Supply { pressure: 70e5, tank_pressure: 0.0 };
 /// let null = control_coefficients(&valve, &supply, 0.0, 0.0, SpoolDirection::Mean);
@@ -266,13 +264,7 @@ pub fn control_coefficients<S: Scalar>(
 /// The edges of Table 5.1 at 70 bar: 6.51e-5 m3/(s V) extending and 4.13e-5 retracting:
 /// ```
 /// # use phea_hydraulics::servovalve::*;
-/// # let valve = Servovalve {
-/// #     flow_coefficients: Edges::from_array([3.2e-7, 2.5e-7, 2.0e-7, 3.85e-7]),
-/// #     opening: OpeningLaw::Proportional,
-/// #     leakage_coefficients: Edges::equal(2.40e-9),
-/// #     leakage_shape: LeakageShape::Common(100.0), leakage_model: LeakageModel::EachEdge, tare_flow: 7.55e-6, nominal_voltage: 10.0,
-/// #     natural_frequency: 1099.0, damping_ratio: 0.9, transition_pressure: 1e3,
-/// # };
+/// # let valve = phea_hydraulics::reference_rig::valve();
 /// let supply = Supply { pressure: 70e5, tank_pressure: 0.0 };
 /// let area = 1.58336e-3;
 /// let flow_gain = |direction| velocity_gain(&valve, &supply, [area, area], 0.0, direction).map(|v| area * v);

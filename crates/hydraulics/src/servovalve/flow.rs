@@ -160,12 +160,10 @@ pub fn edge_flows<S: Scalar>(
 /// For equal edges at null and half the supply pressure, the leakage into a chamber equals that out
 /// of it:
 /// ```
-/// use phea_hydraulics::servovalve::{Edges, LeakageModel, LeakageShape, OpeningLaw, Servovalve, Supply, chamber_flows};
+/// use phea_hydraulics::reference_rig::valve;
+/// use phea_hydraulics::servovalve::{Edges, Servovalve, Supply, chamber_flows};
 /// let valve = Servovalve {
-///     flow_coefficients: Edges::equal(2.97e-7), leakage_coefficients: Edges::equal(2.48e-9),
-///     opening: OpeningLaw::Proportional,
-///     leakage_shape: LeakageShape::Common(100.0), leakage_model: LeakageModel::EachEdge, tare_flow: 7.55e-6, nominal_voltage: 10.0,
-///     natural_frequency: 1099.0, damping_ratio: 0.9, transition_pressure: 1e3,
+///     flow_coefficients: Edges::equal(2.97e-7), leakage_coefficients: Edges::equal(2.48e-9), ..valve()
 /// };
 /// let supply = Supply { pressure: 70e5, tank_pressure: 0.0 };
 /// let flows = chamber_flows(&valve, &supply, 0.0, 35e5, 35e5);

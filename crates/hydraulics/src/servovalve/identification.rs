@@ -202,7 +202,7 @@ impl TestedValve {
         inputs: &[TestInput],
     ) -> Vec<TestOutput> {
         let valve = self.servovalve(coefficients);
-        let openings = openings(coefficients, inputs);
+        let openings = openings(&valve.spool, inputs);
         let one = |(input, opening): (&TestInput, f64)| {
             let valve = valve_in(&valve, input.oil);
             let found = match circuit {
@@ -211,7 +211,7 @@ impl TestedValve {
                     connected_ports(&valve, &input.supply, opening, input.load_pressure)
                 }
             };
-            let tare = tare_flow(&valve, &input.supply, self.tare_reference_drop);
+            let tare = tare_flow(&valve, &input.supply);
             let PortState { pressure_a, pressure_b, supply_flow, port_flow } = found;
             TestOutput { pressure_a, pressure_b, leak_flow: supply_flow + tare, port_flow }
         };
@@ -268,10 +268,10 @@ impl TestedValve {
             let edges = edge_conductances(&valve, opening).to_array();
             let [pressure_a, pressure_b, supply_flow, port_flow] = Sensitive::local(&ports, edges);
             let supply = input.supply.convert(&mut Sensitive::from);
-            let tare = tare_flow(&valve, &supply, Sensitive::from(self.tare_reference_drop));
+            let tare = tare_flow(&valve, &supply);
             TestOutput { pressure_a, pressure_b, leak_flow: supply_flow + tare, port_flow }
         };
-        inputs.iter().zip(&known).zip(openings(&open, inputs)).map(one).collect()
+        inputs.iter().zip(&known).zip(openings(&valve.spool, inputs)).map(one).collect()
     }
 
     fn servovalve<S: Scalar>(&self, coefficients: &StaticCoefficients<S>) -> Servovalve<S> {
@@ -289,11 +289,18 @@ impl TestedValve {
             },
             leakage_model: self.leakage_model,
             tare_flow: coefficients.tare_flow,
+            tare_reference_drop: S::from(self.tare_reference_drop),
             nominal_voltage: S::from(self.nominal_voltage),
             // a spool at rest has no dynamics
             natural_frequency: S::from(1.0),
             damping_ratio: S::from(1.0),
             transition_pressure: S::from(self.transition_pressure),
+            spool: SpoolImperfection {
+                null_bias: coefficients.null_bias,
+                hysteresis_width: Some(coefficients.hysteresis_width),
+                threshold: None,
+                rate_limit: None,
+            },
         }
     }
 }
@@ -305,13 +312,7 @@ fn valve_in<S: Scalar>(valve: &Servovalve<S>, oil: WarmOil) -> Cow<'_, Servovalv
 }
 
 /// Position of the edges in V row by row.
-fn openings<S: Scalar>(coefficients: &StaticCoefficients<S>, inputs: &[TestInput]) -> Vec<S> {
-    let spool = SpoolImperfection {
-        null_bias: coefficients.null_bias,
-        hysteresis_width: Some(coefficients.hysteresis_width),
-        threshold: None,
-        rate_limit: None,
-    };
+fn openings<S: Scalar>(spool: &SpoolImperfection<S>, inputs: &[TestInput]) -> Vec<S> {
     let mut memory = None;
     let begun = |input: &TestInput, followed| SlowSpool {
         magnetic_lag: S::from(input.memory),

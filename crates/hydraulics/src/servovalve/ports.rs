@@ -41,12 +41,10 @@ const LOADED_STEPS: usize = 6;
 /// # Example
 /// Equal edges at null hold half the supply pressure in both ports:
 /// ```
-/// use phea_hydraulics::servovalve::{Edges, LeakageModel, LeakageShape, OpeningLaw, Servovalve, Supply, blocked_ports};
+/// use phea_hydraulics::reference_rig::valve;
+/// use phea_hydraulics::servovalve::{Edges, Servovalve, Supply, blocked_ports};
 /// let valve = Servovalve {
-///     flow_coefficients: Edges::equal(2.97e-7), leakage_coefficients: Edges::equal(2.48e-9),
-///     opening: OpeningLaw::Proportional,
-///     leakage_shape: LeakageShape::Common(100.0), leakage_model: LeakageModel::EachEdge, tare_flow: 7.55e-6, nominal_voltage: 10.0,
-///     natural_frequency: 1099.0, damping_ratio: 0.9, transition_pressure: 1e3,
+///     flow_coefficients: Edges::equal(2.97e-7), leakage_coefficients: Edges::equal(2.48e-9), ..valve()
 /// };
 /// let supply = Supply { pressure: 70e5, tank_pressure: 0.0 };
 /// let found = blocked_ports(&valve, &supply, 0.0);

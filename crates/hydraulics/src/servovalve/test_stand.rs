@@ -12,8 +12,6 @@ pub struct TestStand {
     pub valve: Servovalve,
     /// Stated supply and tank pressures.
     pub supply: Supply,
-    /// Drop at which the tare flow is stated.
-    pub tare_reference_drop: f64,
     /// Flow of the pump, and the rise of pressure over which its relief valve opens; `None` for a
     /// constant supply.
     pub pump: Option<[f64; 2]>,
@@ -49,8 +47,8 @@ impl TestStand {
     /// use phea_hydraulics::reference_rig::valve;
     /// use phea_hydraulics::servovalve::{PortCircuit, Supply, TestStand};
     /// let stand = TestStand {
-    ///     valve: valve(), supply: Supply { pressure: 70e5, tank_pressure: 0.0 }, tare_reference_drop: 70e5,
-    ///     pump: Some([1.6e-4, 5e5]), meter_coefficient: f64::INFINITY,
+    ///     valve: valve(), supply: Supply { pressure: 70e5, tank_pressure: 0.0 }, pump: Some([1.6e-4, 5e5]),
+    ///     meter_coefficient: f64::INFINITY,
     /// };
     /// let found = stand.settled(PortCircuit::Connected, 3.0);
     /// assert!(found.supply_pressure < 55e5);
@@ -60,7 +58,7 @@ impl TestStand {
         let at = |pressure: f64| {
             let supply = Supply { pressure, ..self.supply };
             let ports = self.ports(&supply, circuit, opening);
-            let tare_flow = tare_flow(&self.valve, &supply, self.tare_reference_drop);
+            let tare_flow = tare_flow(&self.valve, &supply);
             StandState { supply_pressure: pressure, ports, tare_flow }
         };
         let Some([pump_flow, relief_override]) = self.pump else { return at(self.supply.pressure) };

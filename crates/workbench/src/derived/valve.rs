@@ -224,8 +224,8 @@ fn edges(declared: &project::Valve, supply: &project::DeclaredSupply, rig: &Rig,
         list.stated(mean(edges.in_order()), "[valve.leakage_coefficients], the mean of its edges", None);
     }
     if declared.tare_flow > 0.0 {
-        let (tare, supply) = (declared.tare_drop(supply), &rig.actuator.components().supply);
-        let flow = phea_hydraulics::servovalve::tare_flow(valve, supply, tare);
+        let supply = &rig.actuator.components().supply;
+        let flow = phea_hydraulics::servovalve::tare_flow(valve, supply);
         list.add(
             "valve.tare_flow",
             "q_tare",

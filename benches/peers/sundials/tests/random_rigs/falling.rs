@@ -15,12 +15,15 @@ use phea_hydraulics::fluid::Fluid;
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
 use phea_hydraulics::line::Line;
-use phea_hydraulics::machine::{Machine, MachineOptions, StartValues};
-use phea_hydraulics::servovalve::{LeakageModel, LeakageShape, OpeningLaw, Servovalve, Supply};
+use phea_hydraulics::load::Load;
+use phea_hydraulics::machine::{Machine, MachineOptions, PowerUnit, StartValues};
+use phea_hydraulics::servovalve::{
+    LeakageModel, LeakageShape, OpeningLaw, Servovalve, SpoolImperfection, Supply,
+};
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::stroke::ActuatorStroke;
 
-use crate::rig::{Chance, Control, Refusal, Rig};
+use crate::rig::{Chance, Control, Refusal, Rig, smoothed};
 
 const REFERENCE_S: f64 = 0.05;
 const MOTION_S: f64 = 0.3;
@@ -31,13 +34,9 @@ const REST_S: f64 = 0.2;
 pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     let mut chance = Chance::of(number, 0x9e37_79b9_7f4a_7c15);
     let components = components(&mut chance);
-    let options = MachineOptions {
-        friction_regular_velocity: Some(chance.decades(1e-4, 1e-3)),
-        ..MachineOptions::default()
-    };
     let control = control(&mut chance, &components);
     let actuator = Actuator::new(components).map_err(Refusal::Actuator)?;
-    let machine = Machine::new(&actuator, &options).map_err(Refusal::Machine)?;
+    let machine = Machine::new(&actuator, &MachineOptions::default()).map_err(Refusal::Machine)?;
 
     let pressure = 0.5 * components.supply.pressure;
     let position = components.cylinder.stroke.middle();
@@ -87,8 +86,15 @@ fn components(chance: &mut Chance) -> Components {
         effective_bulk_modulus: chance.decades(2e8, 1.4e9),
     };
     Components {
-        fluid: Fluid { bulk_modulus: 1.4e9, density: 870.0, kinematic_viscosity: 46e-6, entrained_air: None },
+        fluid: Fluid {
+            bulk_modulus: 1.4e9,
+            density: 870.0,
+            kinematic_viscosity: 46e-6,
+            entrained_air: None,
+            vapour_pressure_absolute: 0.0,
+        },
         supply: Supply { pressure, tank_pressure: 0.0 },
+        power_unit: PowerUnit::Constant,
         valve: Servovalve {
             flow_coefficients: chance.edges(flow_coefficient),
             opening: OpeningLaw::Proportional,
@@ -96,10 +102,12 @@ fn components(chance: &mut Chance) -> Components {
             leakage_shape: LeakageShape::Common(100.0),
             leakage_model: LeakageModel::EachEdge,
             tare_flow: 0.0,
+            tare_reference_drop: pressure,
             nominal_voltage: 10.0,
             natural_frequency: chance.decades(300.0, 2000.0),
             damping_ratio: chance.between(0.6, 1.1),
             transition_pressure: 1e3,
+            spool: SpoolImperfection::default(),
         },
         line_a: line,
         line_b: line,
@@ -107,6 +115,8 @@ fn components(chance: &mut Chance) -> Components {
         cross_port: None,
         series: None,
         linkage: None,
+        load: Load::Prescribed,
+        velocity_gain: None,
         cylinder: Cylinder {
             area_a,
             area_b,
@@ -138,13 +148,14 @@ fn friction(chance: &mut Chance, most_force: f64, mass: f64) -> Friction {
         viscous: steepest * chance.decades(0.02, 0.3),
         retracting: None,
     };
-    if chance.happens(0.6) {
+    let friction = if chance.happens(0.6) {
         let bristle_stiffness = coulomb / chance.decades(3e-6, 5e-5);
         let bristle_damping = chance.decades(0.05, 1.0) * (bristle_stiffness * mass).sqrt();
         Friction::LuGre(LuGre { curve, bristle_stiffness, bristle_damping })
     } else {
-        Friction::Stribeck(curve)
-    }
+        Friction::Stribeck { curve, regular_velocity: None }
+    };
+    smoothed(friction, chance.decades(1e-4, 1e-3))
 }
 
 /// Gains for a crossover at which the loop itself does not ring.

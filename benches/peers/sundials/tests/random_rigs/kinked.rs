@@ -5,7 +5,8 @@ use phea_dynamics::simulation::Profile;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::friction::Friction;
-use phea_hydraulics::machine::{LoadModel, Machine, MachineOptions, StartValues};
+use phea_hydraulics::load::Load;
+use phea_hydraulics::machine::{Machine, MachineOptions, StartValues};
 use phea_hydraulics::stroke::{ActuatorStroke, PistonStage, Telescope};
 
 use crate::necks;
@@ -25,7 +26,6 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     let most = components.supply.pressure * components.cylinder.area_b;
     let sign = if chance.happens(0.5) { 1.0 } else { -1.0 };
     let mut position = 0.5 * length;
-    let mut options = MachineOptions::default();
     let mut way = sign * length * chance.decades(1e-3, 2e-2);
     match kind {
         "end stops" => {
@@ -36,7 +36,7 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
             let left = way.abs() * chance.between(0.3, 0.95);
             position = if sign > 0.0 { length - left } else { left };
         }
-        "wall" => options.load = wall(&mut chance, &components, way.abs()),
+        "wall" => components.load = wall(&mut chance, &components, way.abs()),
         "stages" => {
             let transition = length * chance.decades(3e-4, 2e-2);
             way = sign * transition * chance.decades(0.5, 20.0);
@@ -47,7 +47,7 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     }
     let control = necks::control(&mut chance, &components);
     let actuator = Actuator::new(components).map_err(Refusal::Actuator)?;
-    let machine = Machine::new(&actuator, &options).map_err(Refusal::Machine)?;
+    let machine = Machine::new(&actuator, &MachineOptions::default()).map_err(Refusal::Machine)?;
     let pressure = 0.5 * components.supply.pressure;
     let start =
         StartValues { position, pressure_a: pressure, pressure_b: pressure, ..StartValues::default() };
@@ -85,16 +85,14 @@ fn ground(chance: &mut Chance, way: f64) -> Profile {
     motion.expect("a positive duration")
 }
 
-fn wall(chance: &mut Chance, components: &Components, gap: f64) -> LoadModel {
+fn wall(chance: &mut Chance, components: &Components, gap: f64) -> Load {
     let most_force = components.supply.pressure * components.cylinder.area_a;
-    LoadModel::Wall {
-        mass: components.cylinder.moving_mass * chance.decades(0.1, 3.0),
+    Load::Wall {
+        mass: Some(components.cylinder.moving_mass * chance.decades(0.1, 3.0)),
         damping: most_force * chance.decades(1e-2, 0.3),
         gap: gap * chance.decades(0.05, 1.0),
-        contact: Contact {
-            stiffness: components.force_sensor.stiffness * chance.decades(0.1, 10.0),
-            relative_damping: chance.decades(0.1, 10.0),
-        },
+        stiffness: components.force_sensor.stiffness * chance.decades(0.1, 10.0),
+        relative_damping: chance.decades(0.1, 10.0),
     }
 }
 

@@ -12,8 +12,11 @@ use phea_hydraulics::fluid::Fluid;
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
 use phea_hydraulics::line::Line;
-use phea_hydraulics::machine::{LoadModel, Machine, MachineOptions, StartValues};
-use phea_hydraulics::servovalve::{LeakageModel, LeakageShape, OpeningLaw, Servovalve, Supply};
+use phea_hydraulics::load::Load;
+use phea_hydraulics::machine::{Machine, MachineOptions, PowerUnit, StartValues};
+use phea_hydraulics::servovalve::{
+    LeakageModel, LeakageShape, OpeningLaw, Servovalve, SpoolImperfection, Supply,
+};
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::stroke::ActuatorStroke;
 
@@ -24,17 +27,17 @@ const DURATION_S: f64 = 0.4;
 /// The rig of this number.
 pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     let mut chance = Chance::of(number, 0x2545_f491_4f6c_dd1d);
-    let components = components(&mut chance);
+    let mut components = components(&mut chance);
     let mass = components.cylinder.moving_mass * chance.decades(0.1, 3.0);
     let stiffness = components.force_sensor.stiffness * chance.decades(1e-2, 0.3);
     let damping = 0.2 * (stiffness * mass).sqrt();
     let sprung = chance.happens(0.4);
-    let load =
-        if sprung { LoadModel::SpringMassDamper { mass, stiffness, damping } } else { LoadModel::Prescribed };
-    let options = MachineOptions { load, ..MachineOptions::default() };
+    if sprung {
+        components.load = Load::SpringMassDamper { mass, stiffness, damping };
+    }
     let control = control(&mut chance, &components);
     let actuator = Actuator::new(components).map_err(Refusal::Actuator)?;
-    let machine = Machine::new(&actuator, &options).map_err(Refusal::Machine)?;
+    let machine = Machine::new(&actuator, &MachineOptions::default()).map_err(Refusal::Machine)?;
     let pressure = 0.5 * components.supply.pressure;
     let position = components.cylinder.stroke.middle();
     let start =
@@ -83,8 +86,10 @@ pub(crate) fn components(chance: &mut Chance) -> Components {
             density: 870.0,
             kinematic_viscosity: 46e-6,
             entrained_air: None,
+            vapour_pressure_absolute: 0.0,
         },
         supply: Supply { pressure, tank_pressure: 0.0 },
+        power_unit: PowerUnit::Constant,
         valve: Servovalve {
             flow_coefficients: chance.edges(flow_coefficient),
             opening: OpeningLaw::Proportional,
@@ -92,10 +97,12 @@ pub(crate) fn components(chance: &mut Chance) -> Components {
             leakage_shape: LeakageShape::Common(100.0),
             leakage_model: LeakageModel::EachEdge,
             tare_flow: 0.0,
+            tare_reference_drop: pressure,
             nominal_voltage: 10.0,
             natural_frequency: chance.decades(300.0, 1500.0),
             damping_ratio: chance.between(0.6, 1.1),
             transition_pressure: chance.decades(1e3, 3e4),
+            spool: SpoolImperfection::default(),
         },
         line_a: line,
         line_b: line,
@@ -103,6 +110,8 @@ pub(crate) fn components(chance: &mut Chance) -> Components {
         cross_port: None,
         series: None,
         linkage: None,
+        load: Load::Prescribed,
+        velocity_gain: None,
         cylinder: Cylinder {
             area_a,
             area_b,
@@ -151,7 +160,7 @@ fn gas(chance: &mut Chance, swept: f64, pressure: f64, time_constant: Option<f64
     };
     let size = [chance.decades(2e-3, 1e-2), chance.decades(5e-3, 0.2)];
     let neck = Neck::round(size, [870.0, 46e-6, 1.45e9], chance.between(0.5, 2.0));
-    ChamberGas::Sealed(SealedGas { content, passage: GasPassage::Neck(neck) })
+    ChamberGas::Sealed(SealedGas { content, passage: GasPassage::Neck(neck), maximum_pressure_ratio: None })
 }
 
 /// Gains for a crossover at which the loop itself does not ring.

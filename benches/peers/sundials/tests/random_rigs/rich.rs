@@ -7,7 +7,8 @@ use phea_hydraulics::line::{
     Anchoring, DynamicLine, END_SHARE, Hose, LaminarFriction, Line, LineError, LineModel, Pipe, PipeWall,
     Stiffening, StiffeningMember,
 };
-use phea_hydraulics::machine::{Accumulator, LoadModel, MachineOptions, PowerUnit};
+use phea_hydraulics::load::Load;
+use phea_hydraulics::machine::{Accumulator, PowerUnit};
 
 use crate::rig::Chance;
 
@@ -62,19 +63,19 @@ fn pipe(chance: &mut Chance, bore: f64, length: f64) -> Line {
     Line::Pipe { pipe: Pipe { bore, wall }, length }
 }
 
-/// Adds richer parts to these components and options.
-pub(crate) fn enrich(chance: &mut Chance, components: &mut Components, options: &mut MachineOptions) {
+/// Adds to these components what makes a machine rich.
+pub(crate) fn enrich(chance: &mut Chance, components: &mut Components) {
     let Components { supply, cylinder, force_sensor, .. } = *components;
     let most_force = supply.pressure * cylinder.area_a;
     let width = chance.happens(0.5).then(|| 10.0 * chance.decades(1e-3, 3e-2));
-    options.spool.hysteresis_width = width;
-    options.spool.threshold = chance
+    components.valve.spool.hysteresis_width = width;
+    components.valve.spool.threshold = chance
         .happens(0.5)
         .then(|| width.map_or(10.0 * chance.decades(3e-4, 1e-2), |width| width * chance.between(0.05, 0.9)));
     components.cylinder.end_stops = chance
         .happens(0.6)
         .then(|| Contact { stiffness: most_force / chance.decades(1e-6, 1e-3), relative_damping: 1.0 });
-    if let PowerUnit::PumpLimited(pump) = &mut options.power_unit {
+    if let PowerUnit::PumpLimited(pump) = &mut components.power_unit {
         pump.accumulator = chance.happens(0.5).then(|| Accumulator {
             gas_volume: pump.volume * chance.decades(0.1, 10.0),
             precharge_pressure: supply.pressure * chance.between(0.3, 1.1),
@@ -82,14 +83,12 @@ pub(crate) fn enrich(chance: &mut Chance, components: &mut Components, options: 
         });
     }
     if chance.happens(0.4) {
-        options.load = LoadModel::Wall {
-            mass: cylinder.moving_mass * chance.decades(0.1, 10.0),
+        components.load = Load::Wall {
+            mass: Some(cylinder.moving_mass * chance.decades(0.1, 10.0)),
             damping: most_force * chance.decades(1e-3, 0.3),
             gap: 2.0 * cylinder.stroke.middle() * chance.decades(1e-4, 1e-2),
-            contact: Contact {
-                stiffness: force_sensor.stiffness * chance.decades(0.1, 10.0),
-                relative_damping: chance.decades(0.1, 10.0),
-            },
+            stiffness: force_sensor.stiffness * chance.decades(0.1, 10.0),
+            relative_damping: chance.decades(0.1, 10.0),
         };
     }
 }

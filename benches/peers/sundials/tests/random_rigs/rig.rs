@@ -11,9 +11,8 @@ use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
 use phea_hydraulics::line::{DynamicLine, Line, LineError};
-use phea_hydraulics::machine::{
-    LoadModel, Machine, MachineError, MachineOptions, PowerUnit, PumpLimited, StartValues,
-};
+use phea_hydraulics::load::Load;
+use phea_hydraulics::machine::{Machine, MachineError, MachineOptions, PowerUnit, PumpLimited, StartValues};
 use phea_hydraulics::servovalve::{
     Edges, LeakageModel, LeakageShape, OpeningLaw, Servovalve, SpoolImperfection, Supply,
 };
@@ -113,13 +112,15 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     let mut chance = Chance::of(number, 0x1405_7b7e_f767_814f);
     let (like_benchmark, rich) = (number.is_multiple_of(4), number % 4 == 2);
     let mut components = components(&mut chance, like_benchmark);
-    let mut options =
-        if like_benchmark { MachineOptions::default() } else { options(&mut chance, &mut components) };
+    if !like_benchmark {
+        complete(&mut chance, &mut components);
+    }
+    let mut options = MachineOptions::default();
     if rich {
         if number % 20 == 10 {
             options.lines = Some(rich::lines(&mut chance, &mut components).map_err(Refusal::Line)?);
         }
-        rich::enrich(&mut chance, &mut components, &mut options);
+        rich::enrich(&mut chance, &mut components);
     }
     let control = control(&mut chance, &components, like_benchmark);
     let actuator = Actuator::new(components).map_err(Refusal::Actuator)?;
@@ -129,7 +130,7 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     let inside = chance.between(0.2, 0.8);
     let most = components.supply.pressure * components.cylinder.area_b;
     let size = most * chance.decades(0.02, 0.7);
-    let pulls = chance.happens(0.5) && !matches!(options.load, LoadModel::Wall { .. });
+    let pulls = chance.happens(0.5) && !matches!(components.load::Wall { .. });
     let sign = if pulls { -1.0 } else { 1.0 };
     let mut share = inside;
     if rich && components.cylinder.end_stops.is_some() && chance.happens(0.5) {
@@ -165,20 +166,20 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
 }
 
 fn features(components: &Components, options: &MachineOptions, control: &Control) -> Vec<&'static str> {
-    let pump = if let PowerUnit::PumpLimited(pump) = options.power_unit { Some(pump) } else { None };
+    let pump = if let PowerUnit::PumpLimited(pump) = components.power_unit { Some(pump) } else { None };
     let has = [
         ("air", components.fluid.entrained_air.is_some()),
         ("unequal areas", components.cylinder.area_a != components.cylinder.area_b),
         ("bristles", matches!(components.friction, Friction::LuGre(_))),
-        ("smoothed Stribeck", matches!(components.friction, Friction::Stribeck(_))),
-        ("rate limit", options.spool.rate_limit.is_some()),
-        ("hysteresis", options.spool.hysteresis_width.is_some()),
-        ("threshold", options.spool.threshold.is_some()),
+        ("smoothed Stribeck", matches!(components.friction, Friction::Stribeck { .. })),
+        ("rate limit", components.valve.spool.rate_limit.is_some()),
+        ("hysteresis", components.valve.spool.hysteresis_width.is_some()),
+        ("threshold", components.valve.spool.threshold.is_some()),
         ("pump", pump.is_some()),
         ("accumulator", pump.is_some_and(|pump| pump.accumulator.is_some())),
         ("end stops", components.cylinder.end_stops.is_some()),
-        ("spring load", matches!(options.load, LoadModel::SpringMassDamper { .. })),
-        ("wall", matches!(options.load, LoadModel::Wall { .. })),
+        ("spring load", matches!(components.load::SpringMassDamper { .. })),
+        ("wall", matches!(components.load::Wall { .. })),
         ("segments", matches!(options.lines, Some([DynamicLine::Segments(_), _]))),
         ("one wave", matches!(options.lines, Some([DynamicLine::TransmissionLine(_), _]))),
         ("two waves", matches!(options.lines, Some([DynamicLine::TwoWave(_), _]))),
@@ -199,14 +200,18 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
     let leakage = flow_coefficient * chance.decades(1e-3, 3e-2);
     let stroke = chance.decades(0.05, 1.0);
     let air = !like_benchmark && chance.happens(0.3);
+    let fluid = Fluid {
+        bulk_modulus: chance.decades(2e8, 2e9),
+        density: 870.0,
+        kinematic_viscosity: 46e-6,
+        entrained_air: air.then(|| bubbles(chance)),
+        vapour_pressure_absolute: 0.0,
+    };
+    let tank_pressure = chance.between(0.0, 0.05) * pressure;
     Components {
-        fluid: Fluid {
-            bulk_modulus: chance.decades(2e8, 2e9),
-            density: 870.0,
-            kinematic_viscosity: 46e-6,
-            entrained_air: air.then(|| bubbles(chance)),
-        },
-        supply: Supply { pressure, tank_pressure: chance.between(0.0, 0.05) * pressure },
+        fluid,
+        supply: Supply { pressure, tank_pressure },
+        power_unit: PowerUnit::Constant,
         valve: Servovalve {
             flow_coefficients: chance.edges(flow_coefficient),
             opening: OpeningLaw::Proportional,
@@ -214,10 +219,12 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
             leakage_shape: LeakageShape::Common(chance.decades(10.0, 300.0)),
             leakage_model: LeakageModel::EachEdge,
             tare_flow: 0.0,
+            tare_reference_drop: pressure - tank_pressure,
             nominal_voltage: 10.0,
             natural_frequency: chance.decades(150.0, 3000.0),
             damping_ratio: chance.between(0.4, 1.3),
             transition_pressure: chance.decades(1e2, 1e5),
+            spool: SpoolImperfection::default(),
         },
         line_a: line(chance, area_a * stroke),
         line_b: line(chance, area_a * stroke),
@@ -225,6 +232,8 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
         cross_port: None,
         series: None,
         linkage: None,
+        load: Load::Prescribed,
+        velocity_gain: None,
         cylinder: Cylinder {
             area_a,
             area_b,
@@ -277,22 +286,30 @@ fn friction(chance: &mut Chance, most_force: f64, mass: f64, bristles: bool) -> 
     } else if kind < 2.0 {
         Friction::Viscous { viscous }
     } else {
-        Friction::Stribeck(curve)
+        Friction::Stribeck { curve, regular_velocity: None }
     }
 }
 
-/// Leakage across the piston and end stops belong to the cylinder.
-fn options(chance: &mut Chance, components: &mut Components) -> MachineOptions {
+/// This friction, the jump of a static curve smoothed by a velocity in m/s.
+pub(crate) fn smoothed(friction: Friction, velocity: f64) -> Friction {
+    match friction {
+        Friction::Stribeck { curve, .. } => Friction::Stribeck { curve, regular_velocity: Some(velocity) },
+        other => other,
+    }
+}
+
+/// Adds spool, pump, leakage, end stops and load.
+fn complete(chance: &mut Chance, components: &mut Components) {
     let Components { supply, cylinder, force_sensor, .. } = *components;
     let most_force = supply.pressure * cylinder.area_a;
     let flow = components.valve.flow_coefficients.supply_to_a * (0.5 * supply.pressure).sqrt();
     let stiffness = force_sensor.stiffness * chance.decades(1e-2, 1.0);
-    let load = LoadModel::SpringMassDamper {
+    let load = Load::SpringMassDamper {
         mass: cylinder.moving_mass * chance.decades(0.1, 10.0),
         stiffness,
         damping: most_force * chance.decades(1e-3, 0.3),
     };
-    let spool = SpoolImperfection {
+    components.valve.spool = SpoolImperfection {
         null_bias: 10.0 * chance.between(-0.01, 0.01),
         rate_limit: chance.happens(0.3).then(|| chance.decades(300.0, 3e4)),
         ..SpoolImperfection::default()
@@ -304,18 +321,17 @@ fn options(chance: &mut Chance, components: &mut Components) -> MachineOptions {
         effective_bulk_modulus: 1e9,
         accumulator: None,
     };
-    let power_unit = if chance.happens(0.2) { PowerUnit::PumpLimited(pump) } else { PowerUnit::Constant };
+    if chance.happens(0.2) {
+        components.power_unit = PowerUnit::PumpLimited(pump);
+    }
     components.cylinder.internal_leakage =
         chance.happens(0.5).then(|| flow / supply.pressure * chance.decades(1e-4, 1e-1));
     components.cylinder.end_stops = chance
         .happens(0.3)
         .then(|| Contact { stiffness: most_force / chance.decades(1e-5, 0.3), relative_damping: 1.0 });
-    MachineOptions {
-        spool,
-        power_unit,
-        friction_regular_velocity: Some(chance.decades(1e-4, 1e-2)),
-        load: if chance.happens(0.3) { load } else { LoadModel::Prescribed },
-        ..MachineOptions::default()
+    components.friction = smoothed(components.friction, chance.decades(1e-4, 1e-2));
+    if chance.happens(0.3) {
+        components.load = load;
     }
 }
 
