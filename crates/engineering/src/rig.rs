@@ -9,6 +9,7 @@ mod ideal_valve;
 mod in_loop;
 mod largest_flow;
 mod lines;
+mod load;
 mod numbers;
 mod of_motion;
 mod outside;
@@ -52,6 +53,8 @@ pub(crate) use in_loop::{
 pub use largest_flow::{FlowLimit, LargestFlow, largest_flow};
 pub use lines::{in_motion, line_model, lines};
 pub(crate) use lines::{quarter_wave, quarter_wave_of};
+pub(crate) use load::load_at;
+pub use load::rod_end;
 pub use numbers::Numbers;
 pub use of_motion::OfMotion;
 pub use outside::OutsideParameter;
@@ -61,11 +64,10 @@ pub use place::place;
 pub(crate) use place::spool_side;
 pub(crate) use plant::are_equal;
 pub(crate) use plant::has_gas_states;
-pub(crate) use plant::load_at;
 pub(crate) use plant::states_one_pressure;
 pub(crate) use plant::with_gas;
 pub(crate) use plant::with_supply;
-pub use plant::{LoadLever, YieldingLoad, linear, plant, rod_end, sides, stated};
+pub use plant::{linear, plant, sides, stated};
 pub use series::{series_coil, stall_force, waves_right_to};
 
 pub(crate) use supply::{power_at_rest, yielding_supply};
@@ -99,8 +101,6 @@ pub struct Rig {
     /// Conductance from chamber to chamber at the operating point in m3/(s Pa): leakage across the
     /// piston, and a valve between the chambers that no capacity closes.
     pub internal_leakage: f64,
-    /// The load on the force sensor, if it can move under force.
-    pub load: Option<YieldingLoad>,
     /// The linear plant of every verdict: nominal, at the operating point, with lumped lines.
     pub plant: LinearPlant,
     /// The same with its lines in motion, which is then the plant of every verdict; `None` where
@@ -166,6 +166,11 @@ impl Rig {
             None => parameters.sensor_stiffness,
         };
         LinearParameters { sensor_stiffness, ..*parameters }
+    }
+
+    /// Whether the load can move under force.
+    pub fn load_moves(&self) -> bool {
+        self.plant.load != LinearLoad::Prescribed
     }
 
     /// Stiffness of the load at the operating point in N/m at the rod; `None` where the motion of
@@ -261,8 +266,7 @@ impl Rig {
         let equal = are_equal(sides(&two_pressure)) && unseen;
         let one_pressure = states_one_pressure(&parameters, &[]) || equal;
         let series = LinearSeries::of_components(components, point.hydraulic_force);
-        let pushed = load.map_or(LinearLoad::Prescribed, |load| load.linear());
-        let plant = plant(&two_pressure, &linear, one_pressure, internal_leakage, pushed);
+        let plant = plant(&two_pressure, &linear, one_pressure, internal_leakage, load);
         let area_stiffness = components.cylinder.area_stiffness(point.position, pressures);
         let velocity_sensor = VelocitySensor::shown_by(velocity_gain(declared, &numbers));
         let plant = LinearPlant { dynamic_feedback, series, area_stiffness, velocity_sensor, ..plant };
@@ -284,7 +288,6 @@ impl Rig {
             parameters,
             linear,
             internal_leakage,
-            load,
             plant,
             in_motion,
             fed: FeedForwardPath::of(project, &linear, rate_sensor),

@@ -14,9 +14,7 @@ use phea_hydraulics::linear::LinearParameters;
 use phea_hydraulics::operating_point::{
     Balance, OperatingPoint, Settled, SettledSupply, Steady, hydraulic_force,
 };
-use phea_hydraulics::plant::{
-    LinearLoad, LinearPlant, LinearSeries, PlantInMotion, VelocitySensor, YieldingSupply,
-};
+use phea_hydraulics::plant::{LinearPlant, LinearSeries, PlantInMotion, VelocitySensor, YieldingSupply};
 use phea_hydraulics::servovalve::Supply;
 use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, two_pressure_linear_parameters,
@@ -182,7 +180,6 @@ impl Open<'_> {
         let all = self.all(values);
         let numbers = Numbers::open(self.names, &all);
         let load = load_at(&self.declared.load, &numbers, &place.components, &place.point);
-        let load = load.map_or(LinearLoad::Prescribed, |load| load.linear());
         let plant = plant(&place.chambers, &place.linear, equal.one_pressure, place.leakage, load);
         let plant = match place.supply {
             Some(supply) if !(equal.one_pressure && equal.edges) || has_gas_states(self.declared) => {

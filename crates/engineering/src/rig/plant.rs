@@ -4,15 +4,11 @@
 use phea_dynamics::scalar::Scalar;
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::linear::LinearParameters;
-use phea_hydraulics::linkage::{RodEnd, WeightAt};
-use phea_hydraulics::operating_point::OperatingPoint;
 use phea_hydraulics::plant::{ChamberDynamics, LinearLoad, LinearPlant, YieldingSupply};
 use phea_hydraulics::servovalve::ChamberCoefficients;
 use phea_hydraulics::two_pressure::{TwoPressureLinearParameters, reduce};
 
-use super::numbers::Numbers;
 use super::parameters::{ParameterOrigin, ResolvedParameter, replaced};
-use super::place::shortened;
 use crate::project::{self, DeclaredAdjustment};
 
 /// Parameters of the linear model that presuppose one load pressure.
@@ -20,125 +16,6 @@ const OF_LOAD_PRESSURE: [&str; 4] =
     ["piston_area", "flow_gain", "flow_pressure_coefficient", "hydraulic_stiffness"];
 /// Chambers whose numbers differ by less, relative to them, are equal.
 const EQUAL: f64 = 1e-9;
-
-/// The load in the plant. Units: kg, N s/m, N/m; behind a linkage kg m2, N m s/rad, N m/rad.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct YieldingLoad<S = f64> {
-    /// Moving mass.
-    pub mass: S,
-    /// Damping of the load itself.
-    pub damping: S,
-    /// Zero where the load touches no wall.
-    pub stiffness: S,
-    /// Damping of the contact with a wall.
-    pub contact_damping: S,
-    /// Whether no stiffness is declared and none is uncertain: a free mass.
-    pub is_free: bool,
-    /// `None` without a linkage.
-    pub lever: Option<LoadLever<S>>,
-}
-
-/// The lever arm of a linkage at a force. Units: m, N m/rad.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LoadLever<S = f64> {
-    /// r = g'
-    pub arm: S,
-    /// -F g'': by the change of the arm under the force.
-    pub geometric_stiffness: S,
-    /// k_w: by the change of the torque of its weight; `None` without one.
-    pub weight_stiffness: Option<S>,
-}
-
-impl<S: Scalar> YieldingLoad<S> {
-    /// The load in the linear plant, its damping and that of the contact in one.
-    pub fn linear(&self) -> LinearLoad<S> {
-        let (mass, stiffness) = (self.mass, self.stiffness);
-        let damping = self.damping + self.contact_damping;
-        match self.lever {
-            None if self.is_free => LinearLoad::Free { mass, damping },
-            None => LinearLoad::Yielding { mass, damping, stiffness },
-            Some(LoadLever { arm, geometric_stiffness, weight_stiffness }) => {
-                let geometric_stiffness =
-                    weight_stiffness.map_or(geometric_stiffness, |weight| geometric_stiffness + weight);
-                LinearLoad::Linked { inertia: mass, damping, stiffness, geometric_stiffness, lever_arm: arm }
-            }
-        }
-    }
-}
-
-/// The load's end of the rod at an operating point, and the weight of the load there; `None`
-/// without a linkage. The force sensor, and what lies in series with it, is compressed by the force
-/// there.
-pub fn rod_end<S: Scalar>(
-    components: &Components<S>,
-    point: &OperatingPoint<S>,
-) -> Option<(RodEnd<S>, Option<WeightAt<S>>)> {
-    let linkage = components.linkage.as_ref()?;
-    let [shortened, _] = shortened(components, point.hydraulic_force);
-    let position = point.position - shortened;
-    let angle = linkage.angle(position);
-    Some((linkage.end(angle), linkage.weight_at(angle)))
-}
-
-/// The load at an operating point; `None` where its motion is prescribed.
-pub(crate) fn load_at<S: Scalar>(
-    declared: &project::Load,
-    numbers: &Numbers<'_, S>,
-    components: &Components<S>,
-    point: &OperatingPoint<S>,
-) -> Option<YieldingLoad<S>> {
-    let force = point.hydraulic_force;
-    match rod_end(components, point) {
-        None => yielding_load(declared, numbers, force),
-        Some((end, weight)) => {
-            let torque = force * end.lever_arm;
-            let torque = weight.map_or(torque, |weight| torque + weight.torque);
-            let turned = yielding_load(declared, numbers, torque)?;
-            let lever = LoadLever {
-                arm: end.lever_arm,
-                geometric_stiffness: -(force * end.lever_slope),
-                weight_stiffness: weight.map(|weight| weight.stiffness),
-            };
-            Some(YieldingLoad { lever: Some(lever), ..turned })
-        }
-    }
-}
-
-/// The load itself at a force on it in N, or a torque in N m; `None` where its motion is
-/// prescribed. The load is in contact with a wall where the force presses on it, or where there is
-/// no gap. Hunt and Crossley's damping K c d of a wall pressed by d = F/K is c F.
-fn yielding_load<S: Scalar>(
-    declared: &project::Load,
-    numbers: &Numbers<'_, S>,
-    force: S,
-) -> Option<YieldingLoad<S>> {
-    let none = S::from(0.0);
-    let of_load = numbers.within("load");
-    let at = |key: &str, value: f64| of_load.at(key, value);
-    match *declared {
-        project::Load::Prescribed => None,
-        project::Load::SpringMassDamper { mass, stiffness, damping } => Some(YieldingLoad {
-            mass: at("mass", mass),
-            damping: at("damping", damping),
-            stiffness: at("stiffness", stiffness),
-            contact_damping: none,
-            is_free: stiffness == 0.0 && of_load.get("stiffness").is_none(),
-            lever: None,
-        }),
-        project::Load::Wall { mass, damping, stiffness, gap, relative_damping } => {
-            let wall = at("stiffness", stiffness);
-            let touched = S::select(none.less_than(force), wall, none);
-            Some(YieldingLoad {
-                mass: at("mass", mass?),
-                damping: at("damping", damping),
-                stiffness: if gap == 0.0 { wall } else { touched },
-                contact_damping: at("relative_damping", relative_damping) * force.maximum(none),
-                is_free: false,
-                lever: None,
-            })
-        }
-    }
-}
 
 /// Whether the project states a parameter of the linear model that presupposes one load pressure;
 /// `uncertain` are names of its numbers.
