@@ -10,12 +10,12 @@ use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use phea_hydraulics::operating_point::{Settled, operating_point};
 use phea_qft::family::{Coordinate, Extent, UncertainFamily};
 
-use super::hydraulic::{Equal, Open};
+use super::hydraulic::Open;
 use super::moved::{self, MovedNumber};
 use super::{NoOperatingPoint, ProjectFamilyError};
 use crate::project::{DeclaredActuator, Project};
 use crate::rig::{
-    Numbers, OfMotion, Rig, RigError, are_equal, components, has_gas_states, sides, states_one_pressure,
+    Equal, Numbers, OfMotion, Rig, RigError, UnsolvedRig, are_equal, components, sides, states_one_pressure,
 };
 use crate::setup::Setup;
 
@@ -57,7 +57,7 @@ impl Visited {
         let open = Open { project, declared, rig: &rig, names: &names, moved: &by_directions, start: None };
         let all: Vec<&str> = own.iter().map(String::as_str).collect();
         let settled = Expression::record(&all, |values| {
-            let (_, steady, balance) = open.balance(values);
+            let UnsolvedRig { steady, balance, .. } = open.balanced(values);
             let Settled { command, pressures: [a, b] } = balance.settle(steady);
             vec![command, a, b]
         });
@@ -78,11 +78,9 @@ impl Visited {
         let equal = |from: usize, to: usize| {
             pairs.iter().all(|pairs| are_equal(pairs.iter().copied().take(to).skip(from)))
         };
-        let edges = equal(0, 1);
         let chambers = are_equal(sides(&rig.two_pressure)) && equal(1, usize::MAX);
-        let equal_sides = chambers && edges && !has_gas_states(declared);
-        let one_pressure = states_one_pressure(&rig.parameters, &names) || equal_sides;
-        let equal = Equal { one_pressure, edges };
+        let is_stated = states_one_pressure(&rig.parameters, &names);
+        let equal = Equal::new(declared, [chambers, equal(0, 1)], is_stated);
         Ok(Visited { rig, names, by_directions, moved, equal, movers, settled })
     }
 
@@ -94,13 +92,10 @@ impl Visited {
 
     /// The error at a plant; `None` if its recorded pressures are those of its operating point.
     pub(super) fn problem(&self, open: &Open<'_>, values: &[f64]) -> Option<NoOperatingPoint> {
-        let (position, steady, balance) = open.balance(values);
+        let UnsolvedRig { components, position, steady, balance } = open.balanced(values);
         let results = self.settled.evaluate(values);
         let &[command, pressure_a, pressure_b] = results.first_chunk()?;
         let settled = Settled { command, pressures: [pressure_a, pressure_b] };
-        let all = open.all(values);
-        let numbers = Numbers::open(open.names, &all);
-        let components = components(open.declared, &numbers);
         let sound = balance.error(steady, &settled) <= EXACT
             && command.abs() <= balance.valve.nominal_voltage
             && pressure_a.min(pressure_b) > -ATMOSPHERIC_PRESSURE_ABSOLUTE

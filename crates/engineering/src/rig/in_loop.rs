@@ -42,18 +42,19 @@ impl Rig {
     /// ```
     #[must_use]
     pub fn in_loop(&self) -> Rig {
-        let plant = LinearPlant { virtual_impedance: self.virtual_impedance, ..self.plant };
         let moving = self.in_motion.map(|moving| moving.beside(self.virtual_impedance));
-        let plant = self.with_inner_paths(plant);
+        let plant = self.with_inner_paths(self.plant);
         Rig { in_motion: self.as_response(moving, &plant), plant, ..self.clone() }
     }
 
-    /// A plant with what is fed forward and back in it without delay.
+    /// A plant with what the loop adds to it, all of the declared rig: the virtual impedance, and
+    /// what is fed forward and back without delay.
     pub(crate) fn with_inner_paths<S: Scalar>(&self, plant: LinearPlant<S>) -> LinearPlant<S> {
         let plant = self.fed.map_or(plant, |fed| fed.at_once(plant));
         let pressure_feedback = self.fed_back.and_then(|back| back.at_once());
         let pressure_signal = self.fed_back.and_then(|back| back.sampled_ratio());
-        LinearPlant { pressure_feedback, pressure_signal, ..plant }
+        let virtual_impedance = self.virtual_impedance;
+        LinearPlant { virtual_impedance, pressure_feedback, pressure_signal, ..plant }
     }
 
     /// The plant without polynomials as it appears to the loop: with these lines in motion, or with
@@ -227,12 +228,15 @@ pub(crate) fn with_controller_of(mut project: Project, rig: &Rig) -> Project {
     project
 }
 
-/// Shown velocity of the load over the true one; `None` where its gain has no error.
-pub(crate) fn velocity_gain<S: Scalar>(declared: &DeclaredActuator, numbers: &Numbers<'_, S>) -> Option<S> {
+/// Relative error e of the gain of the velocity sensor, which shows 1 + e times the velocity of the
+/// load; `None` where it has none.
+pub(crate) fn velocity_gain_error<S: Scalar>(
+    declared: &DeclaredActuator,
+    numbers: &Numbers<'_, S>,
+) -> Option<S> {
     let sensor = declared.velocity_sensor.as_ref()?;
-    let open = numbers.get(GAIN_ERROR);
     let stated = (sensor.gain_error != 0.0).then(|| S::from(sensor.gain_error));
-    open.or(stated).map(|error| S::from(1.0) + error)
+    numbers.get(GAIN_ERROR).or(stated)
 }
 
 /// Whether a specification limits the path that a prescribed load has into the loop.

@@ -16,7 +16,7 @@ use super::SimulateError;
 use super::line_limits::LineLimits;
 use crate::project::{self, FrictionLaw, Project, Scenario};
 use crate::quantity::{MotionKind, Units};
-use crate::rig::{Numbers, OfMotion, Rig, lines, power_unit, pressure_ratio, velocity_gain};
+use crate::rig::{Numbers, OfMotion, Rig, lines, power_unit, pressure_ratio, velocity_gain_error};
 use crate::setup::Setup;
 
 /// A machine with its controller.
@@ -249,7 +249,7 @@ pub fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions,
         friction_regular_velocity,
         power_unit: power_unit(declared, &Numbers::declared()),
         load: load(&declared.load, declared.motion())?,
-        velocity_gain: velocity_gain(declared, &Numbers::declared()).unwrap_or(1.0),
+        velocity_gain: velocity_gain_error(declared, &Numbers::declared()).map_or(1.0, |error| 1.0 + error),
         pressure_ratio: fed_back.map_or(1.0, |fed_back| pressure_ratio(&fed_back, actuator.components())),
         external_force: false,
         moving_setting: false,
