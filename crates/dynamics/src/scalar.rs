@@ -43,6 +43,8 @@ use crate::portable;
 pub trait Scalar:
     Copy
     + Debug
+    + Default
+    + PartialEq
     + From<f64>
     + Add<Output = Self>
     + Sub<Output = Self>

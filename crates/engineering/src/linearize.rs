@@ -202,7 +202,7 @@ pub fn linearize(
         corrected_decomposition: against_full(&decomposed[1]),
         truncation: against_full(&first_order_model(&leaking)?),
         modes: dominance(&plant.command),
-        load_yields: rig.load.is_some(),
+        load_yields: rig.load_moves(),
         first_order_has_load: rig.load_stiffness().is_some(),
         open_loop: open_loop_view(rig, [&port, &plant])?,
         closed_loop_absent: absence(feedback.as_ref(), closed_loop.as_ref()),
@@ -262,7 +262,7 @@ fn is_fifth_order(rig: &Rig) -> bool {
     matches!(rig.plant.chambers, ChamberDynamics::LoadPressure { .. })
         && rig.internal_leakage == 0.0
         && rig.plant.dynamic_feedback.is_none()
-        && rig.load.is_none()
+        && !rig.load_moves()
         && rig.plant.supply.is_none()
         && rig.plant.series.is_none_or(|series| series.is_spring_alone())
 }
@@ -270,7 +270,7 @@ fn is_fifth_order(rig: &Rig) -> bool {
 /// True if the ground of the load moves instead of the load: with a virtual impedance the output of
 /// the plant is not only the force.
 fn moves_ground(rig: &Rig) -> bool {
-    rig.load.is_some() && rig.virtual_impedance.is_none()
+    rig.load_moves() && rig.virtual_impedance.is_none()
 }
 
 fn closed_loop_view(rig: &Rig, controller: &TransferFunction) -> Result<PortView, LinearError> {

@@ -3,7 +3,9 @@
 
 mod accumulator;
 mod assembly;
+mod at_point;
 mod cross_port;
+mod declared;
 mod friction;
 mod gas;
 mod ideal_valve;
@@ -11,7 +13,6 @@ mod in_loop;
 mod largest_flow;
 mod lines;
 mod load;
-mod numbers;
 mod of_motion;
 mod outside;
 mod parameters;
@@ -24,16 +25,14 @@ use num_complex::Complex64;
 use phea_dynamics::controller::{RateSensor, VirtualImpedance};
 use phea_hydraulics::actuator::{Actuator, ActuatorError, Components};
 use phea_hydraulics::force_sensor::in_series;
-use phea_hydraulics::line::{LineError, StiffeningMember};
+use phea_hydraulics::line::LineError;
 use phea_hydraulics::linear::LinearParameters;
 use phea_hydraulics::operating_point::{
-    Balance, Condition, OperatingPoint, OperatingPointError, Settled, SettledSupply, operating_point,
+    Condition, OperatingPoint, OperatingPointError, Settled, SettledSupply, operating_point,
 };
-use phea_hydraulics::plant::{LinearLoad, LinearPlant, LinearSeries, PlantInMotion, VelocitySensor};
+use phea_hydraulics::plant::{LinearLoad, LinearPlant, PlantInMotion};
 use phea_hydraulics::servovalve::SpoolDirection;
-use phea_hydraulics::two_pressure::{
-    TwoPressureLinearParameters, TwoPressureModel, two_pressure_linear_parameters,
-};
+use phea_hydraulics::two_pressure::{TwoPressureLinearParameters, TwoPressureModel};
 
 use crate::project::{self, Project};
 use crate::quantity::MotionKind;
@@ -42,34 +41,28 @@ pub(crate) use accumulator::accumulator_place;
 pub use accumulator::{ChargedRange, EmptyAccumulator, charged_range};
 pub(crate) use assembly::{ExpansionPressures, VolumetricExpansion, hose, stiffening};
 pub use assembly::{actuator, components};
+pub(crate) use at_point::{RigAtPoint, UnsolvedRig};
 pub use cross_port::{CrossPortAtPoint, cross_port_at_point};
+pub use declared::DeclaredRig;
 pub use gas::components_at_setting;
 pub(crate) use ideal_valve::stand_in_coefficient;
-use ideal_valve::{in_the_limit, shut};
 pub use ideal_valve::{is_ideal, reduced, two_pressures};
 pub use in_loop::{FeedForwardPath, PressureFeedbackPath};
 pub(crate) use in_loop::{inner_feedback, limits_load_motion, pressure_ratio, with_controller_of};
 pub use largest_flow::{FlowLimit, LargestFlow, largest_flow};
-pub use lines::{in_motion, line_model, lines};
+pub use lines::{line_model, lines};
 pub(crate) use lines::{quarter_wave, quarter_wave_of};
-pub use numbers::Numbers;
+pub use load::rod_end;
 pub use of_motion::OfMotion;
 pub use outside::OutsideParameter;
 pub(crate) use outside::outside;
+pub(crate) use parameters::stated;
 pub use parameters::{ParameterOrigin, ResolvedParameter};
 pub use place::place;
-pub(crate) use place::spool_side;
-pub(crate) use plant::are_equal;
-pub(crate) use plant::has_gas_states;
-pub(crate) use plant::load_at;
-pub(crate) use plant::states_one_pressure;
-pub(crate) use plant::with_gas;
-pub(crate) use plant::with_supply;
-pub use plant::{LoadLever, YieldingLoad, linear, plant, rod_end, sides, stated};
+pub(crate) use plant::{Equal, are_equal, sides, states_one_pressure};
 pub use series::{series_coil, stall_force, waves_right_to};
-
+pub(crate) use supply::power_at_rest;
 pub use supply::settled_supply;
-pub(crate) use supply::{power_at_rest, yielding_supply};
 
 /// A rig with everything that procedures compute with.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,8 +92,6 @@ pub struct Rig {
     /// Conductance from chamber to chamber at the operating point in m3/(s Pa): leakage across the
     /// piston, and a valve between the chambers that no capacity closes.
     pub internal_leakage: f64,
-    /// The load on the force sensor, if it can move under force.
-    pub load: Option<YieldingLoad>,
     /// The linear plant of every verdict: nominal, at the operating point, with lumped lines.
     pub plant: LinearPlant,
     /// The same with its lines in motion, which is then the plant of every verdict; `None` where
@@ -168,6 +159,11 @@ impl Rig {
         LinearParameters { sensor_stiffness, ..*parameters }
     }
 
+    /// True if the load can move under force.
+    pub fn load_moves(&self) -> bool {
+        self.plant.load != LinearLoad::Prescribed
+    }
+
     /// Stiffness of the load at the operating point in N/m at the rod; `None` where the motion of
     /// the load is prescribed, or no stiffness holds it.
     pub fn load_stiffness(&self) -> Option<f64> {
@@ -232,63 +228,47 @@ impl Rig {
     ) -> Result<Rig, RigError> {
         let actuator = assembly::actuator(declared)?;
         let components = actuator.components();
-        let numbers = Numbers::declared();
-        let (position, steady) = place(project, components, &numbers);
-        let balance = Balance::at(components, position);
-        let supply = settled_supply(&components.power_unit, &balance, steady)
-            .filter(|found| found.supply.pressure.is_finite());
+        let plain = DeclaredRig::plain(project, declared);
+        let unsolved = UnsolvedRig::of(&plain);
+        // a pump that settles nowhere leaves its error to the point at the stated pressure
+        let supply = unsolved.settled_supply().filter(|found| found.supply.pressure.is_finite());
         // the valve at the pressure of the pump, lines and stall forces at the stated one
         let settled = supply.map_or(components.supply, |found| found.supply);
         let at_valve = Actuator::new(Components { supply: settled, ..*components })?;
+        let (position, condition) = (unsolved.position, Condition::from(unsolved.steady));
         let unbalanced = |error| RigError::OperatingPoint(OfMotion { motion: project.motion(), error });
-        let point = operating_point(&at_valve, position, steady.into()).map_err(unbalanced)?;
+        let point = operating_point(&at_valve, position, condition).map_err(unbalanced)?;
         accumulator::charged(declared, &components.gas, &point)?;
         let pressures = [point.pressure_a, point.pressure_b];
         let supply = supply
             .map(|found| SettledSupply { settled: Settled { command: point.command, pressures }, ..found });
-        let friction = components.friction.viscous();
-        let model = TwoPressureModel::new(&at_valve, pressures, StiffeningMember::Nominal, friction);
-        let side = place::spool_side(project, &numbers);
-        let leaking = two_pressure_linear_parameters(&model, &point, side);
-        let two_pressure = in_the_limit(&leaking, &model, &point);
-        let derived = reduced(&two_pressure);
+        let solved = (settled, point);
+        let at = RigAtPoint::of(&plain, &unsolved, solved, stated(project));
+        // steps that choose, for numbers only: no small motions of a supply that settles nowhere,
+        // the edges of the valve as it leaks, then the limit of an ideal one, which passes no flow
+        let at = RigAtPoint { supply: at.supply.filter(|_| supply.is_some()), ..at };
+        let edges = at.supply.is_none_or(|supply| are_equal([supply.edges]));
+        let at = at.in_the_limit(stated(project));
+        let derived = reduced(&at.chambers);
         let parameters = parameters::resolve(project, &derived);
-        let linear = parameters::replaced(&derived, stated(&parameters));
-        let (internal_leakage, dynamic_feedback) = components.cross_admittance(pressures);
-        let load = load_at(&declared.load, &numbers, components, &point);
-        let unit = &components.power_unit;
-        let yielding = supply.and_then(|found| yielding_supply(unit, &balance, &found, side));
-        let unseen = yielding.is_none_or(|supply| are_equal([supply.edges])) && !has_gas_states(declared);
-        let equal = are_equal(sides(&two_pressure)) && unseen;
-        let one_pressure = states_one_pressure(&parameters, &[]) || equal;
-        let series = LinearSeries::of_components(components, point.hydraulic_force);
-        let pushed = load.map_or(LinearLoad::Prescribed, |load| load.linear());
-        let plant = plant(&two_pressure, &linear, one_pressure, internal_leakage, pushed);
-        let area_stiffness = components.cylinder.area_stiffness(point.position, pressures);
-        let velocity_sensor = VelocitySensor::shown_by(components.velocity_gain);
-        let plant = LinearPlant { dynamic_feedback, series, area_stiffness, velocity_sensor, ..plant };
-        let plant = match yielding {
-            Some(of) if !(one_pressure && unseen) => with_supply(plant, shut(of, &model, &point), &leaking),
-            _ => plant,
-        };
-        let plant = with_gas(plant, components, &two_pressure, pressures);
-        let in_motion = in_motion(&declared.line, components, &point, &two_pressure, &plant)?;
+        let alike = [are_equal(sides(&at.chambers)), edges];
+        let plant = at.plant(Equal::new(declared, alike, states_one_pressure(&parameters, &[])));
+        let in_motion = at.in_motion(&declared.line, &plant)?;
         Ok(Rig {
             motion: declared.motion(),
             actuator,
             point,
             supply,
-            condition: Condition::from(steady),
-            model,
-            two_pressure,
+            condition,
+            model: at.model,
+            two_pressure: at.chambers,
             derived,
             parameters,
-            linear,
-            internal_leakage,
-            load,
+            linear: at.linear,
+            internal_leakage: at.leakage,
             plant,
             in_motion,
-            fed: FeedForwardPath::of(project, &linear, rate_sensor),
+            fed: FeedForwardPath::of(project, &at.linear, rate_sensor),
             fed_back: PressureFeedbackPath::of(project, components),
             virtual_impedance,
         })

@@ -150,12 +150,7 @@ impl<S: Scalar> LinearPlant<S> {
         LinearPlant {
             valve_natural_frequency: parameters.valve_natural_frequency,
             valve_damping_ratio: parameters.valve_damping_ratio,
-            chambers: ChamberDynamics::LoadPressure {
-                useful_area: parameters.useful_area,
-                flow_gain: parameters.flow_gain,
-                flow_pressure_coefficient: parameters.flow_pressure_coefficient,
-                hydraulic_stiffness: parameters.hydraulic_stiffness,
-            },
+            chambers: ChamberDynamics::from(parameters),
             internal_leakage: leakage,
             dynamic_feedback: None,
             gas: [None; 2],
@@ -181,16 +176,10 @@ impl<S: Scalar> LinearPlant<S> {
         leakage: S,
         load: LinearLoad<S>,
     ) -> LinearPlant<S> {
-        let chambers = &parameters.chambers;
         LinearPlant {
             valve_natural_frequency: parameters.valve_natural_frequency,
             valve_damping_ratio: parameters.valve_damping_ratio,
-            chambers: ChamberDynamics::TwoPressures {
-                areas: parameters.areas,
-                compliances: parameters.compliances,
-                flow_gains: [chambers.flow_gain_a, chambers.flow_gain_b],
-                flow_pressures: [chambers.flow_pressure_a, chambers.flow_pressure_b],
-            },
+            chambers: ChamberDynamics::from(parameters),
             internal_leakage: leakage,
             dynamic_feedback: None,
             gas: [None; 2],

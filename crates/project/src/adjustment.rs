@@ -2,6 +2,7 @@
 
 use super::DeclaredActuator;
 use super::cross_port::DeclaredOrifice;
+use phea_dynamics::scalar::Scalar;
 use phea_quantity::{PRESSURE, RATIO, VOLUME};
 use phea_table::{TableNumber, Variants, Visitor};
 use phea_table::{key, plain};
@@ -105,10 +106,10 @@ impl<S: TableNumber> DeclaredAdjustment<S> {
     }
 }
 
-impl DeclaredGasValve {
+impl<S: Scalar> DeclaredGasValve<S> {
     /// Volume of the oil between the valve and this gas, m³.
-    pub fn dead_volume(&self, gas_volume: f64) -> f64 {
-        self.dead_volume.unwrap_or(DEAD_SHARE * gas_volume)
+    pub fn dead_volume(&self, gas_volume: S) -> S {
+        self.dead_volume.unwrap_or_else(|| S::from(DEAD_SHARE) * gas_volume)
     }
 }
 

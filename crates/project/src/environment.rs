@@ -1,10 +1,7 @@
 //! Tables `[force_sensor]`, `[velocity_sensor]` and `[load]`.
 
-use phea_quantity::{
-    ANGULAR_FREQUENCY, DAMPING, FORCE, INVERSE_VELOCITY, LENGTH, MASS, RATIO, STIFFNESS, TIME, VELOCITY,
-};
-use phea_table::{TableNumber, Variants, Visitor};
-use phea_table::{key, plain};
+use phea_quantity::{ANGULAR_FREQUENCY, FORCE, RATIO, STIFFNESS, TIME, VELOCITY};
+use phea_table::{TableNumber, Visitor, key};
 
 /// Load cell.
 #[derive(Clone, Debug, Default, PartialEq)]

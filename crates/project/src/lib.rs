@@ -88,7 +88,6 @@ pub use design::*;
 pub use diagnostic::*;
 pub use direction::*;
 pub use environment::*;
-pub use phea_hydraulics::load::Load;
 pub use family::*;
 pub use fluid::*;
 pub use identify::*;
@@ -107,6 +106,7 @@ pub use misfit::*;
 pub use motor::*;
 pub use open_rig::OpenRig;
 pub use operating_point::DeclaredOperatingPoint;
+pub use phea_hydraulics::load::Load;
 pub use plant::*;
 pub use published::*;
 pub use read::sha256;
@@ -125,7 +125,9 @@ pub use valve::*;
 pub use verification::*;
 
 pub(crate) use input_signal::InputUnit;
-pub use phea_table::{AcceptedRange, Formula, FormulaError, Key, Motions, Ratio, Variable, word_of};
+pub use phea_table::{
+    AcceptedRange, Formula, FormulaError, Key, Motions, Ratio, Variable, once_read, word_of,
+};
 pub(crate) use phea_table::{TableNumber, Visitor, key, plain};
 pub(crate) use reader::Reader;
 pub use rewrite::{RewriteError, snippet, with_elements, with_laws, with_line_model, with_pressure_feedback};

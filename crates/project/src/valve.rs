@@ -188,14 +188,14 @@ impl EdgeCoefficients {
     pub fn each_mut(&mut self) -> [&mut f64; 4] {
         [&mut self.supply_to_a, &mut self.a_to_tank, &mut self.supply_to_b, &mut self.b_to_tank]
     }
-
-    /// Numbers in the order of edges 3, 4, 5, 6.
-    pub fn in_order(&self) -> [f64; 4] {
-        [self.supply_to_a, self.a_to_tank, self.supply_to_b, self.b_to_tank]
-    }
 }
 
 impl<S: TableNumber> EdgeCoefficients<S> {
+    /// Numbers in the order of edges 3, 4, 5, 6.
+    pub fn in_order(&self) -> [S; 4] {
+        [self.supply_to_a, self.a_to_tank, self.supply_to_b, self.b_to_tank]
+    }
+
     fn visit_shapes<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("supply_to_a", &RATIO, "λ of edge 3, from supply to chamber A.").not_negative();
         v.quantity(k, &mut self.supply_to_a);

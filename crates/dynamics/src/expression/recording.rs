@@ -34,13 +34,26 @@ fn key(node: Node) -> [u64; 5] {
     }
 }
 
-/// Number that remembers how it was computed.
-#[derive(Clone, Copy, Debug)]
+/// Number that remembers how it was computed. Two are equal if they are one known number or one
+/// entry, not if they only have equal values for some parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Recorded<'tape> {
     /// Known number, not yet on any tape.
     Constant(f64),
     /// Result of a recorded operation.
     Node(TapeEntry<'tape>),
+}
+
+impl Default for Recorded<'_> {
+    fn default() -> Self {
+        Recorded::Constant(0.0)
+    }
+}
+
+impl PartialEq for TapeEntry<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self.tape, other.tape) && self.index == other.index
+    }
 }
 
 /// Position on a tape.

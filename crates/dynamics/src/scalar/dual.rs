@@ -150,6 +150,12 @@ impl<const N: usize, S: Scalar> Neg for Dual<N, S> {
     }
 }
 
+impl<const N: usize, S: Scalar> Default for Dual<N, S> {
+    fn default() -> Self {
+        Dual::constant(S::default())
+    }
+}
+
 impl<const N: usize, S: Scalar> Scalar for Dual<N, S> {
     type Mask = S::Mask;
 

@@ -20,7 +20,7 @@ use crate::portable;
 /// assert!(third.low() < third.high() && third.high() - third.low() < 1e-15);
 /// assert_eq!(Interval::from(1.0) / x, Interval::WHOLE);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Interval {
     low: f64,
     high: f64,

@@ -23,7 +23,7 @@ pub const LANES: usize = 4;
 /// let limited = Scalar::select(drops.less_than(Lanes::from(5.0)), drops, Lanes::from(5.0));
 /// assert_eq!(limited, Lanes([4.0, 5.0, 5.0, 5.0]));
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(align(32))]
 pub struct Lanes(pub [f64; LANES]);
 

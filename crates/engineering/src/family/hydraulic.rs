@@ -1,37 +1,23 @@
 //! The uncertain plant of an actuator: the linear plant of its rig over parameters of the linear
 //! model and over numbers of the project.
 //!
-//! There is one chain from the project to the plant, that of [`Rig`]; here it runs over recorded
-//! numbers. Pressures that depend on an uncertain number are recorded with it, see
+//! The chain from the project to the plant is that of [`RigAtPoint`], here over recorded numbers.
+//! Pressures that depend on an uncertain number are recorded with it, see
 //! [`phea_hydraulics::operating_point::Balance::settle`].
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant};
-use phea_hydraulics::actuator::Components;
-use phea_hydraulics::cross_port::DynamicFeedback;
-use phea_hydraulics::line::{LineError, StiffeningMember};
-use phea_hydraulics::linear::LinearParameters;
-use phea_hydraulics::machine::PowerUnit;
-use phea_hydraulics::operating_point::{
-    Balance, OperatingPoint, Settled, SettledSupply, Steady, hydraulic_force,
-};
-use phea_hydraulics::plant::{
-    LinearLoad, LinearPlant, LinearSeries, PlantInMotion, VelocitySensor, YieldingSupply,
-};
+use phea_hydraulics::line::LineError;
+use phea_hydraulics::operating_point::{Balance, Settled};
+use phea_hydraulics::plant::{LinearPlant, PlantInMotion};
 use phea_hydraulics::servovalve::Supply;
-use phea_hydraulics::two_pressure::{
-    TwoPressureLinearParameters, TwoPressureModel, two_pressure_linear_parameters,
-};
 
 use super::moved::{self, MovedNumber};
 use super::start::BalanceStart;
 use super::visited::Visited;
 use super::{NoEffect, ProjectFamilyError};
-use crate::project::{DeclaredActuator, LINEAR_PARAMETERS, Project};
-use crate::rig::{
-    self, Numbers, Rig, components, has_gas_states, linear, load_at, place, plant, settled_supply,
-    spool_side, stated, with_gas, with_supply, yielding_supply,
-};
+use crate::project::{DeclaredActuator, LINEAR_PARAMETERS, OpenRig, Project};
+use crate::rig::{DeclaredRig, Equal, Rig, RigAtPoint, UnsolvedRig, stated};
 use crate::setup::Setup;
 
 /// Records the plant with the uncertain numbers as parameters and all others at their values.
@@ -79,7 +65,7 @@ pub(super) fn in_motion(
     let Some(declared) = &project.actuator else { return Ok(None) };
     let open = visited.open(project, declared);
     let (place, plant) = open.plant(values, visited.moved, visited.equal);
-    let moving = rig::in_motion(&declared.line, &place.components, &place.point, &place.chambers, &plant)?;
+    let moving = place.in_motion(&declared.line, &plant)?;
     Ok(visited.rig.as_response(moving, &plant))
 }
 
@@ -90,50 +76,32 @@ pub(super) struct Open<'a> {
     pub(super) rig: &'a Rig,
     /// Of the parameters, then of what their directions move.
     pub(super) names: &'a [String],
+    /// The rig with these numbers open.
+    pub(super) table: &'a OpenRig,
     pub(super) moved: &'a [MovedNumber],
     /// What the balance is solved from; by halving where it is absent.
     pub(super) start: Option<&'a BalanceStart>,
 }
 
-/// A rig at its operating point.
-pub(super) struct RigAtPoint<S> {
-    /// With the supply as it is stated.
-    pub(super) components: Components<S>,
-    pub(super) point: OperatingPoint<S>,
-    pub(super) chambers: TwoPressureLinearParameters<S>,
-    /// With the parameters of the linear model that `[linear]` and `[uncertainty]` state.
-    pub(super) linear: LinearParameters<S>,
-    /// From chamber to chamber.
-    pub(super) leakage: S,
-    pub(super) dynamic_feedback: Option<DynamicFeedback<S>>,
-    /// `None` where the supply has a constant pressure.
-    pub(super) supply: Option<YieldingSupply<S>>,
-}
-
-/// Equalities between both sides of every plant of a family.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Equal {
-    /// Both chambers are equal, or their parameters are stated: one load pressure describes them.
-    pub(super) one_pressure: bool,
-    /// Their coupling to the supply is equal, so that it does not affect the difference of their
-    /// pressures.
-    pub(super) edges: bool,
-}
-
 impl Open<'_> {
-    /// What determines the pressures, with the settled supply.
-    pub(super) fn balance<S: Scalar>(&self, values: &[S]) -> (S, Steady<S>, Balance<S>) {
+    /// The declared rig with these values of its open numbers.
+    pub(super) fn rig_with<S: Scalar>(&self, values: &[S]) -> DeclaredRig<'_, S> {
         let all = self.all(values);
-        let numbers = Numbers::open(self.names, &all);
-        let components = components(self.declared, &numbers);
-        Self::settled(&components.power_unit, self.idle(&components, &numbers))
+        DeclaredRig::open((self.project, self.declared), self.table, self.names, &all)
     }
 
-    /// The same with the supply as it is stated.
-    pub(super) fn stated<S: Scalar>(&self, values: &[S]) -> (S, Steady<S>, Balance<S>) {
-        let all = self.all(values);
-        let numbers = Numbers::open(self.names, &all);
-        self.idle(&components(self.declared, &numbers), &numbers)
+    /// The rig before its pressures are solved, with the supply as it is stated.
+    pub(super) fn unsolved<S: Scalar>(&self, values: &[S]) -> UnsolvedRig<S> {
+        UnsolvedRig::of(&self.rig_with(values))
+    }
+
+    /// The rig before its pressures are solved, its balance with the settled supply.
+    pub(super) fn balanced<S: Scalar>(&self, values: &[S]) -> UnsolvedRig<S> {
+        let unsolved = self.unsolved(values);
+        let found = unsolved.settled_supply();
+        let supply = found.map_or(unsolved.balance.supply, |found| found.supply);
+        let balance = Balance { supply, ..unsolved.balance };
+        UnsolvedRig { balance, ..unsolved }
     }
 
     /// The values of all open numbers.
@@ -141,38 +109,19 @@ impl Open<'_> {
         moved::values(parameters, self.moved)
     }
 
-    fn settled<S: Scalar>(
-        power_unit: &PowerUnit<S>,
-        (position, steady, idle): (S, Steady<S>, Balance<S>),
-    ) -> (S, Steady<S>, Balance<S>) {
-        let found = settled_supply(power_unit, &idle, steady);
-        let supply = found.map_or(idle.supply, |found| found.supply);
-        (position, steady, Balance { supply, ..idle })
-    }
-
-    /// The same with the supply as it is stated.
-    fn idle<S: Scalar>(
-        &self,
-        components: &Components<S>,
-        numbers: &Numbers<'_, S>,
-    ) -> (S, Steady<S>, Balance<S>) {
-        let (position, steady) = place(self.project, components, numbers);
-        (position, steady, Balance::at(components, position))
-    }
-
-    /// The rig with these values, and its plant with lumped lines as the loop sees it. What is fed
-    /// forward and back and the virtual impedance are those of the declared rig.
+    /// The rig with these values, and its plant with lumped lines as the loop sees it. Its
+    /// pressures are those of the declared rig if nothing changes them, and so are the virtual
+    /// impedance and what is fed forward and back.
     pub(super) fn plant<S: Scalar>(
         &self,
         values: &[S],
         moved: bool,
         equal: Equal,
     ) -> (RigAtPoint<S>, LinearPlant<S>) {
-        let solved = self.solved(values, moved);
-        self.plant_at(values, solved, equal)
+        self.plant_at(values, self.solved(values, moved), equal)
     }
 
-    /// The same with supply, spool and pressures at these values.
+    /// The rig and its plant with supply, spool and pressures at these.
     pub(super) fn plant_at<S: Scalar>(
         &self,
         values: &[S],
@@ -180,101 +129,42 @@ impl Open<'_> {
         equal: Equal,
     ) -> (RigAtPoint<S>, LinearPlant<S>) {
         let place = self.place_at(values, solved);
-        let all = self.all(values);
-        let numbers = Numbers::open(self.names, &all);
-        let load = load_at(&self.declared.load, &numbers, &place.components, &place.point);
-        let load = load.map_or(LinearLoad::Prescribed, |load| load.linear());
-        let plant = plant(&place.chambers, &place.linear, equal.one_pressure, place.leakage, load);
-        let plant = match place.supply {
-            Some(supply) if !(equal.one_pressure && equal.edges) || has_gas_states(self.declared) => {
-                with_supply(plant, supply, &place.chambers)
-            }
-            _ => plant,
-        };
-        let pressures = [place.point.pressure_a, place.point.pressure_b];
-        let plant = with_gas(plant, &place.components, &place.chambers, pressures);
-        let velocity_sensor =
-            VelocitySensor { gain: place.components.velocity_gain, ..plant.velocity_sensor };
-        let force = place.point.hydraulic_force;
-        let series = LinearSeries::of_components(&place.components, force);
-        let dynamic_feedback = place.dynamic_feedback;
-        let virtual_impedance = self.rig.virtual_impedance;
-        let cylinder = &place.components.cylinder;
-        let area_stiffness = cylinder.area_stiffness(place.point.position, pressures);
-        let plant = LinearPlant {
-            series,
-            velocity_sensor,
-            dynamic_feedback,
-            virtual_impedance,
-            area_stiffness,
-            ..plant
-        };
-        (place, self.rig.with_inner_paths(plant))
+        let plant = self.rig.with_inner_paths(place.plant(equal));
+        (place, plant)
     }
 
     /// The rig with these values; its pressures are those of the declared rig if nothing changes
     /// them.
     pub(super) fn place<S: Scalar>(&self, values: &[S], moved: bool) -> RigAtPoint<S> {
-        let solved = self.solved(values, moved);
-        self.place_at(values, solved)
+        self.place_at(values, self.solved(values, moved))
     }
 
     /// Supply, spool and pressures at the operating point.
     pub(super) fn solved<S: Scalar>(&self, values: &[S], moved: bool) -> (Supply<S>, Settled<S>) {
-        let all = self.all(values);
-        let numbers = Numbers::open(self.names, &all);
-        let components = components(self.declared, &numbers);
-        let (position, steady, idle) = self.idle(&components, &numbers);
-        let known = &self.rig.point;
-        match (moved, &self.rig.supply) {
-            (true, _) => {
-                let (_, _, balance) = Self::settled(&components.power_unit, (position, steady, idle));
-                let settled = match self.start {
-                    None => balance.settle(steady),
-                    Some(start) => balance.settle_from(steady, start.at(values)),
-                };
-                (balance.supply, settled)
-            }
-            (false, found) => {
-                let pressure = found.map_or(idle.supply.pressure, |found| S::from(found.supply.pressure));
-                let pressures = [known.pressure_a, known.pressure_b].map(S::from);
-                (Supply { pressure, ..idle.supply }, Settled { command: S::from(known.command), pressures })
-            }
+        if moved {
+            let UnsolvedRig { steady, balance, .. } = self.balanced(values);
+            let settled = match self.start {
+                None => balance.settle(steady),
+                Some(start) => balance.settle_from(steady, start.at(values)),
+            };
+            return (balance.supply, settled);
         }
+        let (known, idle) = (&self.rig.point, self.unsolved(values).balance.supply);
+        let pressure = self.rig.supply.map_or(idle.pressure, |found| S::from(found.supply.pressure));
+        let pressures = [known.pressure_a, known.pressure_b].map(S::from);
+        (Supply { pressure, ..idle }, Settled { command: S::from(known.command), pressures })
     }
 
     /// The rig with these values, and with supply, spool and pressures at these.
-    fn place_at<S: Scalar>(&self, values: &[S], (supply, at): (Supply<S>, Settled<S>)) -> RigAtPoint<S> {
+    fn place_at<S: Scalar>(&self, values: &[S], (supply, settled): (Supply<S>, Settled<S>)) -> RigAtPoint<S> {
         let all = self.all(values);
-        let numbers = Numbers::open(self.names, &all);
-        let components = components(self.declared, &numbers);
-        let (position, steady, idle) = self.idle(&components, &numbers);
-        let Settled { command, pressures } = at;
-        let balance = Balance { supply, ..idle };
-        let none = S::from(0.0);
-        let [pressure_a, pressure_b] = pressures;
-        let point = OperatingPoint {
-            position,
-            command,
-            pressure_a,
-            pressure_b,
-            velocity: if let Steady::Moving { velocity, .. } = steady { velocity } else { none },
-            hydraulic_force: hydraulic_force(balance.areas, pressures),
-            net_flow_a: none,
-            net_flow_b: none,
-        };
-        let friction = components.friction.viscous();
-        let settled_components = Components { supply, ..components };
-        let model = TwoPressureModel::of(&settled_components, pressures, StiffeningMember::Nominal, friction);
-        let side = spool_side(self.project, &numbers);
-        let chambers = two_pressure_linear_parameters(&model, &point, side);
-        let known = stated(&self.rig.parameters).map(|(name, value)| (name, S::from(value)));
+        let rig = self.rig_with(values);
+        let unsolved = UnsolvedRig::of(&rig);
+        let known = stated(self.project).map(|(name, value)| (name, S::from(value)));
         let open = self.names.iter().map(String::as_str).zip(all.iter().copied());
-        let linear = linear(&chambers, known.chain(open.filter(|(name, _)| is_linear(name))));
-        let settled = SettledSupply { supply, settled: at, taken: none };
-        let supply = yielding_supply(&components.power_unit, &idle, &settled, side);
-        let (leakage, dynamic_feedback) = components.cross_admittance(pressures);
-        RigAtPoint { components, point, chambers, linear, leakage, dynamic_feedback, supply }
+        let linear = known.chain(open.filter(|(name, _)| is_linear(name)));
+        let solved = (supply, unsolved.point(settled));
+        RigAtPoint::of(&rig, &unsolved, solved, linear)
     }
 }
 

@@ -68,8 +68,8 @@ fn signs(visited: &Visited, open: &Open<'_>, family: &UncertainFamily) -> Option
     let recorded = Expression::record(&names, |values| {
         let (own, solved) = values.split_at(own.len());
         let &[command, a, b, pressure] = solved else { return Vec::new() };
-        let (_, _, balance) = open.stated(own);
-        let solved = (Supply { pressure, ..balance.supply }, Settled { command, pressures: [a, b] });
+        let supply = Supply { pressure, ..open.unsolved(own).balance.supply };
+        let solved = (supply, Settled { command, pressures: [a, b] });
         let plant = open.plant_at(own, solved, visited.equal).1.coefficients();
         let paths = [Some(plant.command), plant.disturbance].into_iter().flatten();
         paths.flat_map(|path| path.numerator.into_iter().chain(path.denominator)).collect()

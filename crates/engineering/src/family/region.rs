@@ -5,7 +5,7 @@ use phea_hydraulics::servovalve::tare_flow;
 use super::ProjectFamilyError;
 use crate::project::{Project, Uncertain};
 use crate::quantity::{VELOCITY, display};
-use crate::rig::{Numbers, components};
+use crate::rig::components;
 
 /// Path of the number that a pump limits.
 const PATH: &str = "operating_point.velocity";
@@ -43,7 +43,7 @@ pub(super) fn within_reach(project: &Project) -> Result<Vec<Uncertain>, ProjectF
 /// Least and greatest velocity that the pump can supply, m/s; `None` if no flow is declared.
 pub(super) fn limits(project: &Project) -> Option<[f64; 2]> {
     let declared = project.actuator.as_ref()?;
-    let components = components(declared, &Numbers::declared());
+    let components = components(declared, declared);
     let left = (declared.supply.flow()? - tare_flow(&components.valve, &components.supply)).max(0.0);
     let [area_a, area_b] = components.cylinder.greatest_areas();
     Some([-left / area_b, left / area_a])

@@ -17,6 +17,7 @@ use phea_hydraulics::operating_point::{Balance, Settled, Steady};
 use super::hydraulic::Open;
 use super::visited::Visited;
 use crate::project::{Project, SupplyModel};
+use crate::rig::UnsolvedRig;
 
 /// Number of points of a polynomial along each number, for one, two and three numbers that move the
 /// operating point.
@@ -69,7 +70,7 @@ impl BalanceStart {
         let is_range = |index: &&usize| parameters.get(**index).is_some_and(|one| one.minimum < one.maximum);
         let movers: Vec<usize> = visited.movers.iter().filter(is_range).copied().collect();
         let nominal: Vec<f64> = parameters.iter().map(|one| one.nominal).collect();
-        let (_, steady, balance) = fitted.open.balance(&nominal);
+        let UnsolvedRig { steady, balance, .. } = fitted.open.balanced(&nominal);
         let halves = match steady {
             Steady::Moving { .. } => true,
             Steady::Command(_) => balance.across.is_some() || balance.outward.is_some(),
@@ -248,7 +249,7 @@ impl Fitted<'_> {
             box_of.iter().map(|[low, high]| [0.5 * (low + high), 0.5 * (high - low)]).collect();
         grid(&ranges, &places).all(|at| {
             let values = self.values(movers, &at);
-            let (_, steady, balance) = self.open.balance(&values);
+            let UnsolvedRig { steady, balance, .. } = self.open.balanced(&values);
             let [command, a, b] = polynomials.at(movers, &values);
             let found = balance.settle_from(steady, Settled { command, pressures: [a, b] });
             let settled = self.visited.settled.evaluate(&values);

@@ -10,13 +10,11 @@ use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use phea_hydraulics::operating_point::{Settled, operating_point};
 use phea_qft::family::{Coordinate, Extent, UncertainFamily};
 
-use super::hydraulic::{Equal, Open};
+use super::hydraulic::Open;
 use super::moved::{self, MovedNumber};
 use super::{NoOperatingPoint, ProjectFamilyError};
-use crate::project::{DeclaredActuator, Project};
-use crate::rig::{
-    Numbers, OfMotion, Rig, RigError, are_equal, components, has_gas_states, sides, states_one_pressure,
-};
+use crate::project::{DeclaredActuator, OpenRig, Project};
+use crate::rig::{Equal, OfMotion, Rig, RigError, UnsolvedRig, are_equal, sides, states_one_pressure};
 use crate::setup::Setup;
 
 /// Relative error of a pressure that is negligible.
@@ -32,6 +30,8 @@ pub(super) struct Visited {
     pub(super) rig: Rig,
     /// Names of the parameters, then of the numbers that their directions move.
     names: Vec<String>,
+    /// The rig with these numbers open.
+    table: OpenRig,
     /// Numbers that directions move.
     by_directions: Vec<MovedNumber>,
     /// True if the pressures depend on an uncertain number.
@@ -54,10 +54,12 @@ impl Visited {
         let own: Vec<String> = parameters.iter().map(|parameter| parameter.name.clone()).collect();
         let by_directions = moved::moved(project, &own);
         let names = moved::names(&own, &by_directions);
-        let open = Open { project, declared, rig: &rig, names: &names, moved: &by_directions, start: None };
+        let table = OpenRig::new(declared, &project.resolved_operating_point(), &names);
+        let moved = &by_directions;
+        let open = Open { project, declared, rig: &rig, names: &names, table: &table, moved, start: None };
         let all: Vec<&str> = own.iter().map(String::as_str).collect();
         let settled = Expression::record(&all, |values| {
-            let (_, steady, balance) = open.balance(values);
+            let UnsolvedRig { steady, balance, .. } = open.balanced(values);
             let Settled { command, pressures: [a, b] } = balance.settle(steady);
             vec![command, a, b]
         });
@@ -78,29 +80,24 @@ impl Visited {
         let equal = |from: usize, to: usize| {
             pairs.iter().all(|pairs| are_equal(pairs.iter().copied().take(to).skip(from)))
         };
-        let edges = equal(0, 1);
         let chambers = are_equal(sides(&rig.two_pressure)) && equal(1, usize::MAX);
-        let equal_sides = chambers && edges && !has_gas_states(declared);
-        let one_pressure = states_one_pressure(&rig.parameters, &names) || equal_sides;
-        let equal = Equal { one_pressure, edges };
-        Ok(Visited { rig, names, by_directions, moved, equal, movers, settled })
+        let is_stated = states_one_pressure(&rig.parameters, &names);
+        let equal = Equal::new(declared, [chambers, equal(0, 1)], is_stated);
+        Ok(Visited { rig, names, table, by_directions, moved, equal, movers, settled })
     }
 
     /// The rig with its uncertain numbers as variables.
     pub(super) fn open<'a>(&'a self, project: &'a Project, declared: &'a DeclaredActuator) -> Open<'a> {
-        let (names, moved) = (&self.names, &self.by_directions);
-        Open { project, declared, rig: &self.rig, names, moved, start: None }
+        let Visited { rig, names, table, by_directions: moved, .. } = self;
+        Open { project, declared, rig, names, table, moved, start: None }
     }
 
     /// Error at a plant; `None` if its recorded pressures are those of its operating point.
     pub(super) fn problem(&self, open: &Open<'_>, values: &[f64]) -> Option<NoOperatingPoint> {
-        let (position, steady, balance) = open.balance(values);
+        let UnsolvedRig { components, position, steady, balance } = open.balanced(values);
         let results = self.settled.evaluate(values);
         let &[command, pressure_a, pressure_b] = results.first_chunk()?;
         let settled = Settled { command, pressures: [pressure_a, pressure_b] };
-        let all = open.all(values);
-        let numbers = Numbers::open(open.names, &all);
-        let components = components(open.declared, &numbers);
         let sound = balance.error(steady, &settled) <= EXACT
             && command.abs() <= balance.valve.nominal_voltage
             && pressure_a.min(pressure_b) > -ATMOSPHERIC_PRESSURE_ABSOLUTE
@@ -139,8 +136,7 @@ impl Visited {
     /// Chamber, A or B, whose pressure is below the precharge of its gas at a plant.
     pub(super) fn shut_gas(&self, open: &Open<'_>, values: &[f64]) -> Option<char> {
         let &[_, pressure_a, pressure_b] = self.settled.evaluate(values).first_chunk()?;
-        let all = open.all(values);
-        let components = components(open.declared, &Numbers::open(open.names, &all));
+        let components = open.rig_with(values).components();
         let is_shut = |side: usize, pressure: f64| {
             components.gas_in_use(side).is_some_and(|gas| pressure < gas.at_rest().precharge_pressure)
         };

@@ -1,5 +1,7 @@
 //! A linkage over the stroke: lever arm, and the inertia of the load reflected to the rod.
 
+use phea_hydraulics::plant::LinearLoad;
+
 use crate::rig::{Rig, rod_end};
 
 /// Number of positions at which the lever arm is evaluated to find its least and greatest value.
@@ -56,7 +58,10 @@ pub fn linkage_places(rig: &Rig) -> Vec<LinkagePlace> {
         return vec![];
     };
     let here = rod_end(components, &rig.point);
-    let inertia = rig.load.map(|load| load.mass);
+    let inertia = match rig.plant.load {
+        LinearLoad::Linked { inertia, .. } => Some(inertia),
+        LinearLoad::Prescribed | LinearLoad::Yielding { .. } | LinearLoad::Free { .. } => None,
+    };
     let place = |at: LinkagePosition, position_m: f64| {
         let angle_rad = linkage.angle(position_m);
         let lever_arm_m = linkage.end(angle_rad).lever_arm;

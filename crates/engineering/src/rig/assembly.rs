@@ -17,12 +17,10 @@ use super::cross_port::cross_port;
 use super::friction::friction;
 use super::gas::chamber_gas;
 use super::in_loop::velocity_gain;
-use super::load::load;
-use super::numbers::Numbers;
 use super::supply::power_unit;
 use crate::project::{
     self, BoundedNumber, Component, DeclaredSeries, DeclaredSpring, DeclaredTransmission, DeclaredWeight,
-    EdgeCoefficients, HoseExpansion, LineVolume, NullLeakage, RatedFlow, ValveCoefficients,
+    EdgeCoefficients, HoseExpansion, LineVolume, NullLeakage, RatedFlow, ValveCoefficients, once_read,
 };
 
 /// Kinematic viscosity of ISO VG 46 oil at 40 degrees Celsius, m2/s: used where a project states
@@ -34,150 +32,122 @@ pub(super) const KINEMATIC_VISCOSITY: f64 = 46e-6;
 /// # Errors
 /// Every parameter that is impossible as physics.
 pub fn actuator(declared: &project::DeclaredActuator) -> Result<Actuator, ActuatorError> {
-    Actuator::new(components(declared, &Numbers::declared()))
+    Actuator::new(components(declared, declared))
 }
 
-/// The same over any scalar, before it is checked: each number of the project is looked up by its
-/// path.
+/// Components of the declared rig over any scalar, not yet checked. `plain` is the same rig in plain
+/// numbers: a linkage over the stroke is reduced to polynomials, whose geometry is never open.
 pub fn components<S: Scalar>(
-    declared: &project::DeclaredActuator,
-    numbers: &Numbers<'_, S>,
+    plain: &project::DeclaredActuator,
+    declared: &project::DeclaredActuator<S>,
 ) -> Components<S> {
-    let pressure = numbers.at("supply.pressure", declared.supply.pressure);
-    let tank_pressure = numbers.at("supply.tank_pressure", declared.supply.tank_pressure);
+    let pressure = declared.supply.pressure;
+    let tank_pressure = declared.supply.tank_pressure;
     let pressures = ExpansionPressures::of(pressure, tank_pressure);
-    let line = |side, declared: &project::DeclaredLine| line(declared, &numbers.of_line(side), pressures);
-    let fluid = fluid(&declared.fluid, numbers);
+    let fluid = fluid(&declared.fluid);
     Components {
-        gas: [("a", &declared.line.a), ("b", &declared.line.b)].map(|(side, line)| {
-            Some(chamber_gas(line.accumulator.as_ref()?, &numbers.of_line(side), &fluid))
-        }),
+        gas: [&declared.line.a, &declared.line.b]
+            .map(|line| Some(chamber_gas(line.accumulator.as_ref()?, &fluid))),
         fluid,
         supply: Supply { pressure, tank_pressure },
-        power_unit: power_unit(declared, numbers),
-        valve: valve(&declared.valve, numbers, pressure - tank_pressure),
-        line_a: line("a", &declared.line.a),
-        line_b: line("b", &declared.line.b),
-        cross_port: cross_port(declared.cross_port.as_ref(), numbers, fluid.density),
+        power_unit: power_unit(declared),
+        valve: valve(&declared.valve, pressure - tank_pressure),
+        line_a: line(&declared.line.a, pressures),
+        line_b: line(&declared.line.b, pressures),
+        cross_port: cross_port(declared.cross_port.as_ref(), fluid.density),
         cylinder: match &declared.motor {
-            None => cylinder(&declared.cylinder, numbers),
-            Some(motor) => motor_as_cylinder(motor, numbers),
+            None => cylinder(&declared.cylinder),
+            Some(motor) => motor_as_cylinder(motor),
         },
-        friction: friction(declared.friction(), &numbers.within(declared.moving_part())),
-        force_sensor: ForceSensor {
-            stiffness: numbers.at("force_sensor.stiffness", declared.force_sensor.stiffness),
-        },
-        series: declared.series.as_ref().map(|series| self::series(series, &numbers.within("series"))),
-        linkage: declared.linkage.as_ref().map(|linkage| {
-            self::linkage(linkage, declared.cylinder.stroke, &numbers.within("linkage.weight"))
+        friction: friction(declared.friction()),
+        force_sensor: ForceSensor { stiffness: declared.force_sensor.stiffness },
+        series: declared.series.as_ref().map(series),
+        linkage: plain.linkage.as_ref().map(|geometry| {
+            let weight = declared.linkage.as_ref().and_then(|linkage| linkage.weight);
+            linkage(geometry, plain.cylinder.stroke, weight)
         }),
-        load: load(&declared.load, numbers),
-        velocity_gain: velocity_gain(declared, numbers),
+        load: declared.load,
+        velocity_gain: velocity_gain(declared),
         stiffness_model: declared.line.compliance,
     }
 }
 
 /// The linkage over the declared stroke; [`Actuator::new`] refuses one that does not exist.
 fn linkage<S: Scalar>(
-    declared: &project::DeclaredLinkage,
+    geometry: &project::DeclaredLinkage,
     stroke: f64,
-    numbers: &Numbers<'_, S>,
+    weight: Option<DeclaredWeight<S>>,
 ) -> Linkage<S> {
-    let Ok(reduced) = declared.reduced(stroke) else { return Linkage::impossible() };
-    let Some(DeclaredWeight { mass, centre_distance, .. }) = declared.weight else {
+    let Ok(reduced) = geometry.reduced(stroke) else { return Linkage::impossible() };
+    let Some(DeclaredWeight { mass, centre_distance, .. }) = weight else {
         return reduced.linkage.convert(&mut S::from);
     };
-    let moment = numbers.at("mass", mass) * numbers.at("centre_distance", centre_distance);
+    let moment = mass * centre_distance;
     reduced.linkage.convert(&mut S::from).with_moment(moment * S::from(STANDARD_GRAVITY))
 }
 
 /// What lies between force sensor and load.
-fn series<S: Scalar>(declared: &DeclaredSeries, numbers: &Numbers<'_, S>) -> SeriesElement<S> {
+fn series<S: Scalar>(declared: &DeclaredSeries<S>) -> SeriesElement<S> {
     match declared {
-        DeclaredSeries::Spring(declared) => SeriesElement::Spring(spring(declared, numbers)),
-        DeclaredSeries::Transmission(declared) => {
-            SeriesElement::Transmission(transmission(declared, numbers))
-        }
+        DeclaredSeries::Spring(declared) => SeriesElement::Spring(spring(declared)),
+        DeclaredSeries::Transmission(declared) => SeriesElement::Transmission(transmission(declared)),
     }
 }
 
 /// The expansion of its hose is that at the filling pressure.
-fn transmission<S: Scalar>(declared: &DeclaredTransmission, numbers: &Numbers<'_, S>) -> Transmission<S> {
-    let at = |key: &str, value: f64| numbers.at(key, value);
-    let filling_pressure = at("filling_pressure", declared.filling_pressure);
+fn transmission<S: Scalar>(declared: &DeclaredTransmission<S>) -> Transmission<S> {
+    let filling_pressure = declared.filling_pressure;
     let pressures = ExpansionPressures { working: filling_pressure, operating: filling_pressure };
     Transmission {
-        piston_area: at("piston_area", declared.piston_area),
-        line: line(&declared.line, &numbers.within("line"), pressures),
-        end_volume: at("end_volume", declared.end_volume),
+        piston_area: declared.piston_area,
+        line: line(&declared.line, pressures),
+        end_volume: declared.end_volume,
         filling_pressure,
         segments: declared.segments as usize,
     }
 }
 
 /// A damper, a mass or a progression of zero is left out.
-fn spring<S: Scalar>(declared: &DeclaredSpring, numbers: &Numbers<'_, S>) -> SeriesSpring<S> {
-    let at = |key: &str, value: f64| numbers.at(key, value);
-    let where_any = |key: &str, value: Option<f64>| numbers.get(key).or(value.map(S::from));
+fn spring<S: Scalar>(declared: &DeclaredSpring<S>) -> SeriesSpring<S> {
     SeriesSpring {
-        stiffness: at("stiffness", declared.stiffness),
-        damping: where_any("damping", declared.damping),
-        mass: where_any("mass", declared.mass),
+        stiffness: declared.stiffness,
+        damping: declared.damping,
+        mass: declared.mass,
         travel: declared.travel.map(|travel| SeriesTravel {
-            travel: at("travel", travel),
-            progression: where_any("progression", declared.progression),
-            ends: declared.stop_stiffness.map(|stiffness| Contact {
-                stiffness: at("stop_stiffness", stiffness),
-                relative_damping: at("stop_damping", declared.stop_damping),
-            }),
+            travel,
+            progression: declared.progression,
+            ends: declared
+                .stop_stiffness
+                .map(|stiffness| Contact { stiffness, relative_damping: declared.stop_damping }),
         }),
         force_from: declared.force_from,
     }
 }
 
-fn fluid<S: Scalar>(declared: &project::DeclaredFluid, numbers: &Numbers<'_, S>) -> Fluid<S> {
-    let numbers = numbers.within("fluid");
-    let at = |key: &str, value: f64| numbers.at(key, value);
-    let holds = |fraction: &f64| *fraction > 0.0 || numbers.is_open("fluid.entrained_air");
+fn fluid<S: Scalar>(declared: &project::DeclaredFluid<S>) -> Fluid<S> {
     Fluid {
-        bulk_modulus: at("bulk_modulus", declared.bulk_modulus),
-        density: at("density", declared.density),
-        kinematic_viscosity: at(
-            "kinematic_viscosity",
-            declared.kinematic_viscosity.unwrap_or(KINEMATIC_VISCOSITY),
-        ),
-        entrained_air: declared.entrained_air.filter(holds).map(|fraction| EntrainedAir {
-            volume_fraction: at("entrained_air", fraction),
-            polytropic_exponent: at("polytropic_exponent", declared.polytropic_exponent),
+        bulk_modulus: declared.bulk_modulus,
+        density: declared.density,
+        kinematic_viscosity: declared.kinematic_viscosity.unwrap_or(S::from(KINEMATIC_VISCOSITY)),
+        entrained_air: declared.entrained_air.and_then(once_read).map(|volume_fraction| EntrainedAir {
+            volume_fraction,
+            polytropic_exponent: declared.polytropic_exponent,
         }),
-        vapour_pressure_absolute: at("vapour_pressure", declared.vapour_pressure),
+        vapour_pressure_absolute: declared.vapour_pressure,
     }
 }
 
 /// ValveCoefficients as declared; without them, those of the data sheet, equal for all edges.
-fn valve<S: Scalar>(declared: &project::Valve, numbers: &Numbers<'_, S>, supply_drop: S) -> Servovalve<S> {
-    let numbers = numbers.within("valve");
-    let at = |key: &str, value: f64| numbers.at(key, value);
-    let edges = |table: &'static str, edges: EdgeCoefficients| {
-        let [supply_to_a, a_to_tank, supply_to_b, b_to_tank] = edges.in_order();
-        let numbers = numbers.within(table);
-        let at = |key: &str, value: f64| numbers.at(key, value);
-        Edges {
-            supply_to_a: at("supply_to_a", supply_to_a),
-            a_to_tank: at("a_to_tank", a_to_tank),
-            supply_to_b: at("supply_to_b", supply_to_b),
-            b_to_tank: at("b_to_tank", b_to_tank),
-        }
-    };
-    let opening = opening(declared, &numbers);
-    let tare_flow = at("tare_flow", declared.tare_flow);
-    let tare_drop = declared.tare_pressure.map_or(supply_drop, |drop| at("tare_pressure", drop));
+fn valve<S: Scalar>(declared: &project::Valve<S>, supply_drop: S) -> Servovalve<S> {
+    let edges = |edges: EdgeCoefficients<S>| Edges::from_array(edges.in_order());
+    let opening = opening(declared);
+    let tare_flow = declared.tare_flow;
+    let tare_drop = declared.tare_pressure.unwrap_or(supply_drop);
     Servovalve {
         flow_coefficients: match declared.flow {
-            ValveCoefficients::Edges { edges: flow, .. } => edges("flow_coefficients", flow),
+            ValveCoefficients::Edges { edges: flow, .. } => edges(flow),
             ValveCoefficients::Rated(RatedFlow { flow, pressure_drop }) => {
-                let drop = at("nominal_pressure_drop", pressure_drop);
-                let rated = flow_coefficient_from_rating(at("nominal_flow", flow), drop);
+                let rated = flow_coefficient_from_rating(flow, pressure_drop);
                 // the data sheet's flow is that of full travel
                 let [positive, negative] = opening.full().map(|full| rated / full);
                 Edges::from_array([positive, negative, negative, positive])
@@ -186,73 +156,61 @@ fn valve<S: Scalar>(declared: &project::Valve, numbers: &Numbers<'_, S>, supply_
         opening,
         leakage_coefficients: match declared.leakage {
             ValveCoefficients::Edges { edges: leakage, .. } if is_shut(leakage) => Edges::vanishing(),
-            ValveCoefficients::Edges { edges: leakage, .. } => edges("leakage_coefficients", leakage),
+            ValveCoefficients::Edges { edges: leakage, .. } => edges(leakage),
             ValveCoefficients::Rated(NullLeakage { flow, pressure, .. }) => {
-                let (leakage, pressure) = (at("null_leakage", flow), at("null_leakage_pressure", pressure));
-                Edges::equal(leakage_coefficient_from_rating(leakage, tare_flow, tare_drop, pressure))
+                Edges::equal(leakage_coefficient_from_rating(flow, tare_flow, tare_drop, pressure))
             }
         },
         leakage_shape: match declared.leakage_shapes {
-            Some(shapes) => LeakageShape::ByEdge(edges("leakage_shapes", shapes)),
-            None => LeakageShape::Common(at("leakage_shape", declared.leakage_shape)),
+            Some(shapes) => LeakageShape::ByEdge(edges(shapes)),
+            None => LeakageShape::Common(declared.leakage_shape),
         },
         leakage_model: declared.leakage_model,
         tare_flow,
         tare_reference_drop: tare_drop,
-        nominal_voltage: at("nominal_voltage", declared.nominal_voltage),
-        natural_frequency: at("natural_frequency", declared.natural_frequency),
-        damping_ratio: at("damping_ratio", declared.damping_ratio),
-        transition_pressure: at("transition_pressure", declared.transition_pressure),
+        nominal_voltage: declared.nominal_voltage,
+        natural_frequency: declared.natural_frequency,
+        damping_ratio: declared.damping_ratio,
+        transition_pressure: declared.transition_pressure,
         spool: SpoolImperfection {
-            null_bias: at("null_bias", declared.null_bias),
-            hysteresis_width: declared.hysteresis.map(|width| at("hysteresis", width)),
-            threshold: declared.threshold.map(|threshold| at("threshold", threshold)),
-            rate_limit: declared.rate_limit.map(|limit| at("rate_limit", limit)),
+            null_bias: declared.null_bias,
+            hysteresis_width: declared.hysteresis,
+            threshold: declared.threshold,
+            rate_limit: declared.rate_limit,
         },
     }
 }
 
 /// How the declared edges open: in proportion where neither lap nor saturation is stated.
-fn opening<S: Scalar>(declared: &project::Valve, numbers: &Numbers<'_, S>) -> OpeningLaw<S> {
-    let saturation = numbers.get("saturation").or(declared.saturation.map(S::from));
-    if declared.lap.is_none() && saturation.is_none() {
+fn opening<S: Scalar>(declared: &project::Valve<S>) -> OpeningLaw<S> {
+    let project::Valve { lap, saturation, .. } = declared;
+    if lap.is_none() && saturation.is_none() {
         return OpeningLaw::Proportional;
     }
-    let lap = declared.lap.unwrap_or_default();
+    let lap = lap.unwrap_or_default();
     OpeningLaw::Shaped(OpeningShape {
-        lap_positive: numbers.at("lap.positive", lap.positive),
-        lap_negative: numbers.at("lap.negative", lap.negative),
+        lap_positive: lap.positive,
+        lap_negative: lap.negative,
         saturation: saturation.unwrap_or(S::from(0.0)),
     })
 }
 
 /// Whether no edge leaks: an ideal valve.
-fn is_shut(leakage: EdgeCoefficients) -> bool {
-    leakage.in_order().iter().all(|edge| *edge == 0.0)
+fn is_shut<S: Scalar>(leakage: EdgeCoefficients<S>) -> bool {
+    leakage.in_order().into_iter().all(|edge| once_read(edge).is_none())
 }
 
 /// The line as physics.
-fn line<S: Scalar>(
-    declared: &project::DeclaredLine,
-    numbers: &Numbers<'_, S>,
-    pressures: ExpansionPressures<S>,
-) -> Line<S> {
-    let at = |key: &str, value: f64| numbers.at(key, value);
+fn line<S: Scalar>(declared: &project::DeclaredLine<S>, pressures: ExpansionPressures<S>) -> Line<S> {
     match &declared.component {
-        Component::Volume(LineVolume { volume, effective_bulk_modulus }) => Line::Volume {
-            volume: at("volume", *volume),
-            effective_bulk_modulus: at("effective_bulk_modulus", *effective_bulk_modulus),
-        },
-        Component::Pipe { pipe, length } => {
-            Line::Pipe { pipe: self::pipe(pipe, numbers), length: at("length", *length) }
+        Component::Volume(LineVolume { volume, effective_bulk_modulus }) => {
+            Line::Volume { volume: *volume, effective_bulk_modulus: *effective_bulk_modulus }
         }
+        Component::Pipe { pipe, length } => Line::Pipe { pipe: self::pipe(pipe), length: *length },
         Component::Hose { properties, length, .. } => {
-            let expansion = VolumetricExpansion::of(&properties.expansion, numbers);
-            let stiffening = stiffening(declared.dynamic_stiffening, numbers);
-            Line::Hose {
-                hose: hose(at("bore", properties.bore), expansion, pressures, stiffening),
-                length: at("length", *length),
-            }
+            let expansion = VolumetricExpansion::of(&properties.expansion);
+            let stiffening = stiffening(declared.dynamic_stiffening);
+            Line::Hose { hose: hose(properties.bore, expansion, pressures, stiffening), length: *length }
         }
     }
 }
@@ -283,12 +241,13 @@ pub(crate) struct VolumetricExpansion<S = f64> {
 
 impl<S: Scalar> VolumetricExpansion<S> {
     /// As it is declared.
-    pub(crate) fn of(declared: &HoseExpansion, numbers: &Numbers<'_, S>) -> VolumetricExpansion<S> {
-        let measured = declared.measured().map(|value| numbers.at("volumetric_expansion", value));
-        let pressure = declared.pressure().map(|value| numbers.at("volumetric_expansion_pressure", value));
+    pub(crate) fn of(declared: &HoseExpansion<S>) -> VolumetricExpansion<S> {
+        let measured = declared.measured();
+        let pressure = declared.pressure();
         let slope = match (declared, measured, pressure) {
             (HoseExpansion::Measured { .. }, Some(measured), Some(pressure)) => measured / pressure,
-            _ => numbers.at("volumetric_expansion_slope", declared.slope()),
+            (HoseExpansion::Slope { slope, .. }, ..) => *slope,
+            (HoseExpansion::Measured { .. }, ..) => S::from(0.0),
         };
         VolumetricExpansion { measured, at: pressure, slope }
     }
@@ -320,127 +279,86 @@ pub(crate) fn hose<S: Scalar>(
 }
 
 /// A ratio without a spread is one uncertain number, one with a spread has three.
-pub(crate) fn stiffening<S: Scalar>(
-    declared: Option<BoundedNumber>,
-    numbers: &Numbers<'_, S>,
-) -> Stiffening<S> {
-    let BoundedNumber { nominal, minimum, maximum } = declared.unwrap_or(BoundedNumber::exactly(1.0));
-    let at = |part: &str, value: f64| {
-        let whole = numbers.get("dynamic_stiffening");
-        whole.unwrap_or_else(|| numbers.within("dynamic_stiffening").at(part, value))
-    };
-    Stiffening {
-        nominal: at("nominal", nominal),
-        minimum: at("minimum", minimum),
-        maximum: at("maximum", maximum),
-    }
+pub(crate) fn stiffening<S: Scalar>(declared: Option<BoundedNumber<S>>) -> Stiffening<S> {
+    let BoundedNumber { nominal, minimum, maximum } =
+        declared.unwrap_or(BoundedNumber::exactly(S::from(1.0)));
+    Stiffening { nominal, minimum, maximum }
 }
 
-fn pipe<S: Scalar>(declared: &project::DeclaredPipe, numbers: &Numbers<'_, S>) -> Pipe<S> {
-    let numbers = numbers.within("pipe");
-    let at = |key: &str, value: f64| numbers.at(key, value);
+fn pipe<S: Scalar>(declared: &project::DeclaredPipe<S>) -> Pipe<S> {
     let wall = declared.wall.map_or(PipeWall::Rigid, |wall| PipeWall::Elastic {
-        thickness: at("wall_thickness", wall.thickness),
-        youngs_modulus: at("youngs_modulus", wall.youngs_modulus),
-        poisson_ratio: at("poisson_ratio", declared.poisson_ratio),
+        thickness: wall.thickness,
+        youngs_modulus: wall.youngs_modulus,
+        poisson_ratio: declared.poisson_ratio,
         anchoring: Anchoring::Throughout,
         thick: true,
     });
-    Pipe { bore: at("bore", declared.bore), wall }
+    Pipe { bore: declared.bore, wall }
 }
 
-fn cylinder<S: Scalar>(declared: &project::DeclaredCylinder, numbers: &Numbers<'_, S>) -> Cylinder<S> {
-    let numbers = numbers.within("cylinder");
-    let at = |key: &str, value: f64| numbers.at(key, value);
-    let both = |pair, key: &str, single| on_both_sides(pair, key, single, &numbers);
+fn cylinder<S: Scalar>(declared: &project::DeclaredCylinder<S>) -> Cylinder<S> {
     let [area_a, area_b] = match (declared.piston_areas, declared.piston_area) {
         (None, None) => {
-            let piston = at("piston_diameter", declared.piston_diameter.unwrap_or(0.0));
-            let rods = both(declared.rod_diameters, "rod_diameter", declared.rod_diameter);
+            let piston = declared.piston_diameter.unwrap_or_default();
+            let rods = on_both_sides(declared.rod_diameters, declared.rod_diameter);
             rods.map(|rod| annulus_area(piston, rod))
         }
-        (areas, area) => both(areas, "piston_area", area),
+        (areas, area) => on_both_sides(areas, area),
     };
-    let [dead_volume_a, dead_volume_b] = both(declared.dead_volumes, "dead_volume", declared.dead_volume);
+    let [dead_volume_a, dead_volume_b] = on_both_sides(declared.dead_volumes, declared.dead_volume);
     Cylinder {
         area_a,
         area_b,
-        stroke: stroke(declared, [area_a, area_b], &at),
-        moving_mass: at("moving_mass", declared.moving_mass),
+        stroke: stroke(declared, [area_a, area_b]),
+        moving_mass: declared.moving_mass,
         dead_volume_a,
         dead_volume_b,
-        internal_leakage: declared.internal_leakage.map(|value| at("internal_leakage", value)),
+        internal_leakage: declared.internal_leakage,
         external_leakage: None,
-        end_stops: end_stops(declared.end_stops, &numbers),
+        end_stops: end_stops(declared.end_stops),
     }
 }
 
 /// The stroke with the stages of a telescopic piston, whose areas are those declared, also where
 /// those of the first stage are uncertain.
 fn stroke<S: Scalar>(
-    declared: &project::DeclaredCylinder,
+    declared: &project::DeclaredCylinder<S>,
     [first_a, first_b]: [S; 2],
-    at: &impl Fn(&str, f64) -> S,
 ) -> ActuatorStroke<S> {
-    let stroke = at("stroke", declared.stroke);
+    let stroke = declared.stroke;
     if declared.stages.is_empty() {
         return ActuatorStroke::Limited(stroke);
     }
     let mut stages = [None; FURTHER_STAGES];
-    for (index, (place, stage)) in stages.iter_mut().zip(&declared.stages).enumerate() {
-        let at = |key: &str, value: f64| at(&format!("stage[{index}].{key}"), value);
-        let [area_a, area_b] = match stage.piston_areas {
-            Some(areas) => areas.map(S::from),
-            None => [at("piston_area", stage.areas_m2()[0]); 2],
-        };
-        *place =
-            Some(PistonStage { from: at("from", stage.from), ratios: [area_a / first_a, area_b / first_b] });
+    for (place, stage) in stages.iter_mut().zip(&declared.stages) {
+        let [area_a, area_b] = on_both_sides(stage.piston_areas, stage.piston_area);
+        *place = Some(PistonStage { from: stage.from, ratios: [area_a / first_a, area_b / first_b] });
     }
-    ActuatorStroke::Telescopic(Telescope {
-        stroke,
-        stages,
-        transition: at("stage_transition", declared.stage_transition),
-    })
+    ActuatorStroke::Telescopic(Telescope { stroke, stages, transition: declared.stage_transition })
 }
 
 /// A motor in the equations of a cylinder: its displacement is the area of both chambers.
-fn motor_as_cylinder<S: Scalar>(declared: &project::DeclaredMotor, numbers: &Numbers<'_, S>) -> Cylinder<S> {
-    let numbers = numbers.within("motor");
-    let at = |key: &str, value: f64| numbers.at(key, value);
-    let displacement = at("displacement", declared.displacement);
-    let [dead_volume_a, dead_volume_b] =
-        on_both_sides(declared.dead_volumes, "dead_volume", declared.dead_volume, &numbers);
+fn motor_as_cylinder<S: Scalar>(declared: &project::DeclaredMotor<S>) -> Cylinder<S> {
+    let displacement = declared.displacement;
+    let [dead_volume_a, dead_volume_b] = on_both_sides(declared.dead_volumes, declared.dead_volume);
     Cylinder {
         area_a: displacement,
         area_b: displacement,
-        stroke: declared
-            .stroke
-            .map_or(ActuatorStroke::Unlimited, |stroke| ActuatorStroke::Limited(at("stroke", stroke))),
-        moving_mass: at("inertia", declared.inertia),
+        stroke: declared.stroke.map_or(ActuatorStroke::Unlimited, ActuatorStroke::Limited),
+        moving_mass: declared.inertia,
         dead_volume_a,
         dead_volume_b,
-        internal_leakage: declared.internal_leakage.map(|value| at("internal_leakage", value)),
-        external_leakage: declared.case_leakage.map(|value| at("case_leakage", value)),
-        end_stops: end_stops(declared.end_stops, &numbers),
+        internal_leakage: declared.internal_leakage,
+        external_leakage: declared.case_leakage,
+        end_stops: end_stops(declared.end_stops),
     }
 }
 
-/// Two numbers in one key are never uncertain; one number for both sides can be.
-fn on_both_sides<S: Scalar>(
-    pair: Option<[f64; 2]>,
-    key: &str,
-    single: Option<f64>,
-    numbers: &Numbers<'_, S>,
-) -> [S; 2] {
-    match pair {
-        Some(pair) => pair.map(S::from),
-        None => [numbers.at(key, single.unwrap_or(0.0)); 2],
-    }
+/// Numbers of both sides: a pair, or one number for both.
+fn on_both_sides<S: Scalar>(pair: Option<[S; 2]>, single: Option<S>) -> [S; 2] {
+    pair.unwrap_or([single.unwrap_or_default(); 2])
 }
 
-fn end_stops<S: Scalar>(declared: Option<project::EndStops>, numbers: &Numbers<'_, S>) -> Option<Contact<S>> {
-    declared.map(|stops| Contact {
-        stiffness: numbers.at("end_stops.stiffness", stops.stiffness),
-        relative_damping: numbers.at("end_stops.relative_damping", stops.relative_damping),
-    })
+fn end_stops<S: Scalar>(declared: Option<project::EndStops<S>>) -> Option<Contact<S>> {
+    declared.map(|stops| Contact { stiffness: stops.stiffness, relative_damping: stops.relative_damping })
 }

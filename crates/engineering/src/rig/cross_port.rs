@@ -4,63 +4,55 @@ use phea_dynamics::scalar::Scalar;
 use phea_hydraulics::cross_port::{CrossPort, Restrictor, orifice_coefficient};
 
 use super::Rig;
-use super::numbers::Numbers;
 use crate::project::{
     CrossPortKind, DeclaredCapacity, DeclaredCrossPort, DeclaredOrifice, DeclaredRestrictor, OrificeSize,
 };
 
 /// As physics, in a fluid of this density in kg/m3.
 pub(super) fn cross_port<S: Scalar>(
-    declared: Option<&DeclaredCrossPort>,
-    numbers: &Numbers<'_, S>,
+    declared: Option<&DeclaredCrossPort<S>>,
     density: S,
 ) -> Option<CrossPort<S>> {
-    let numbers = numbers.within("cross_port");
-    let laminar =
-        |conductance: f64| Restrictor::Laminar { conductance: numbers.at("conductance", conductance) };
-    let edge = |declared: &DeclaredOrifice| {
-        let [flow_coefficient, transition_pressure] = edge(declared, &numbers, density);
+    let edge = |declared: &DeclaredOrifice<S>| {
+        let [flow_coefficient, transition_pressure] = edge(declared, density);
         Restrictor::Orifice { flow_coefficient, transition_pressure }
     };
     Some(match &declared?.kind {
         CrossPortKind::Laminar { conductance } => {
-            CrossPort { restrictor: laminar(*conductance), capacity: None }
+            CrossPort { restrictor: Restrictor::Laminar { conductance: *conductance }, capacity: None }
         }
         CrossPortKind::Orifice(declared) => CrossPort { restrictor: edge(declared), capacity: None },
         CrossPortKind::DynamicPressureFeedback { restrictor, capacity } => CrossPort {
             restrictor: match restrictor {
-                DeclaredRestrictor::Laminar { conductance } => laminar(*conductance),
+                DeclaredRestrictor::Laminar { conductance } => {
+                    Restrictor::Laminar { conductance: *conductance }
+                }
                 DeclaredRestrictor::Orifice(declared) => edge(declared),
             },
-            capacity: Some(self::capacity(capacity, &numbers)),
+            capacity: Some(self::capacity(capacity)),
         },
     })
 }
 
 /// Flow coefficient in m3/(s Pa^0.5) and transition pressure in Pa of an orifice in a fluid of this
 /// density in kg/m3.
-pub(super) fn edge<S: Scalar>(declared: &DeclaredOrifice, numbers: &Numbers<'_, S>, density: S) -> [S; 2] {
+pub(super) fn edge<S: Scalar>(declared: &DeclaredOrifice<S>, density: S) -> [S; 2] {
     let flow_coefficient = match declared.size {
-        OrificeSize::Diameter { diameter, discharge_coefficient } => orifice_coefficient(
-            numbers.at("discharge_coefficient", discharge_coefficient),
-            numbers.at("diameter", diameter),
-            density,
-        ),
-        OrificeSize::Flow { flow, pressure_drop } => {
-            numbers.at("flow", flow) / numbers.at("pressure_drop", pressure_drop).sqrt()
+        OrificeSize::Diameter { diameter, discharge_coefficient } => {
+            orifice_coefficient(discharge_coefficient, diameter, density)
         }
+        OrificeSize::Flow { flow, pressure_drop } => flow / pressure_drop.sqrt(),
     };
-    [flow_coefficient, numbers.at("transition_pressure", declared.transition_pressure)]
+    [flow_coefficient, declared.transition_pressure]
 }
 
 /// C_cp = A_cp^2/k_cp of a piston between springs.
-fn capacity<S: Scalar>(declared: &DeclaredCapacity, numbers: &Numbers<'_, S>) -> S {
+fn capacity<S: Scalar>(declared: &DeclaredCapacity<S>) -> S {
     match *declared {
-        DeclaredCapacity::Stated(capacity) => numbers.at("capacity", capacity),
+        DeclaredCapacity::Stated(capacity) => capacity,
         DeclaredCapacity::Piston { diameter, stiffness } => {
-            let diameter = numbers.at("piston_diameter", diameter);
             let area = S::from(std::f64::consts::FRAC_PI_4) * diameter.squared();
-            area.squared() / numbers.at("spring_stiffness", stiffness)
+            area.squared() / stiffness
         }
     }
 }

@@ -8,7 +8,6 @@ use phea_hydraulics::actuator::Components;
 use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, Fluid};
 
 use super::cross_port::edge;
-use super::numbers::Numbers;
 use crate::project::{
     AdjustmentKind, DeclaredAccumulator, DeclaredAdjustment, DeclaredGasValve, DeclaredNeck, GasAtOne,
     GasTemperatures,
@@ -17,42 +16,30 @@ use crate::quantity::ZERO_CELSIUS;
 
 /// Polytropic gas of an accumulator declared in the table that `numbers` are within, at its working
 /// temperature and setting 0.
-pub(super) fn accumulator<S: Scalar>(
-    declared: &DeclaredAccumulator,
-    numbers: &Numbers<'_, S>,
-) -> Accumulator<S> {
+pub(super) fn accumulator<S: Scalar>(declared: &DeclaredAccumulator<S>) -> Accumulator<S> {
     let stated = Accumulator {
-        gas_volume: numbers.at("gas_volume", declared.gas_volume),
-        precharge_pressure: numbers.at("precharge_pressure", declared.precharge_pressure),
-        polytropic_exponent: numbers.at("polytropic_exponent", declared.polytropic_exponent),
+        gas_volume: declared.gas_volume,
+        precharge_pressure: declared.precharge_pressure,
+        polytropic_exponent: declared.polytropic_exponent,
     };
     let Some(GasTemperatures { precharge, working }) = declared.temperatures else { return stated };
-    let absolute = |path: &str, celsius: f64| numbers.at(path, celsius) + S::from(ZERO_CELSIUS);
-    let precharge = absolute("precharge_temperature", precharge);
-    stated.at_temperature([precharge, absolute("working_temperature", working)])
+    stated.at_temperature([precharge, working].map(|celsius| celsius + S::from(ZERO_CELSIUS)))
 }
 
-/// Gas at a chamber, declared in the line that `numbers` are of. The reader rejects a neck next to
+/// Gas at a chamber. The reader rejects a neck next to
 /// a valve, and heat of gas that is added and removed.
-pub(super) fn chamber_gas<S: Scalar>(
-    declared: &DeclaredAccumulator,
-    numbers: &Numbers<'_, S>,
-    fluid: &Fluid<S>,
-) -> ChamberGas<S> {
-    let numbers = numbers.within("accumulator");
-    let gas = accumulator(declared, &numbers);
-    let neck = declared.neck.map(|declared| neck(&declared, &numbers, fluid));
-    let maximum_pressure_ratio =
-        declared.maximum_pressure_ratio.map(|ratio| numbers.at("maximum_pressure_ratio", ratio));
+pub(super) fn chamber_gas<S: Scalar>(declared: &DeclaredAccumulator<S>, fluid: &Fluid<S>) -> ChamberGas<S> {
+    let gas = accumulator(declared);
+    let neck = declared.neck.map(|declared| neck(&declared, fluid));
+    let maximum_pressure_ratio = declared.maximum_pressure_ratio;
     let passage = match declared.adjustment {
         None => neck.map_or(GasPassage::Open, GasPassage::Neck),
         Some(DeclaredAdjustment { kind: AdjustmentKind::Valve(valve), setting }) => {
-            let dead_volume = valve.dead_volume(declared.gas_volume);
-            GasPassage::Valve(gas_valve((&valve, setting, dead_volume), &numbers, fluid))
+            GasPassage::Valve(gas_valve((&valve, setting, declared.gas_volume), fluid))
         }
         Some(DeclaredAdjustment { kind: AdjustmentKind::Gas(last), setting }) => {
-            let stated = numbers.at("precharge_pressure", declared.precharge_pressure);
-            let adjusted = adjusted((gas, stated), (&last, setting), neck, &numbers);
+            let stated = declared.precharge_pressure;
+            let adjusted = adjusted((gas, stated), (&last, setting), neck);
             return ChamberGas::Adjusted(AdjustedGas { maximum_pressure_ratio, ..adjusted });
         }
     };
@@ -60,7 +47,6 @@ pub(super) fn chamber_gas<S: Scalar>(
     let content = match declared.thermal_time_constant {
         None => GasContent::Polytropic(gas),
         Some(time_constant) => {
-            let time_constant = numbers.at("thermal_time_constant", time_constant);
             GasContent::Relaxing(RelaxingGas { gas_volume, precharge_pressure, time_constant })
         }
     };
@@ -75,19 +61,15 @@ pub(super) fn chamber_gas<S: Scalar>(
 /// ```
 fn adjusted<S: Scalar>(
     (first, stated): (Accumulator<S>, S),
-    (last, setting): (&GasAtOne, f64),
+    (last, setting): (&GasAtOne<S>, Option<S>),
     neck: Option<Neck<S>>,
-    numbers: &Numbers<'_, S>,
 ) -> AdjustedGas<S> {
-    let numbers = numbers.within("adjustment");
-    let rise = |key: &str, first: S, last: Option<f64>| {
-        last.map_or(S::from(0.0), |last| numbers.at(key, last) - first)
-    };
+    let rise = |first: S, last: Option<S>| last.map_or(S::from(0.0), |last| last - first);
     let atmosphere = S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
     let warming = (first.precharge_pressure + atmosphere) / (stated + atmosphere);
-    let volume_rise = rise("gas_volume", first.gas_volume, last.gas_volume);
-    let precharge_rise = rise("precharge_pressure", stated, last.precharge_pressure) * warming;
-    let setting = numbers.at("setting", setting);
+    let volume_rise = rise(first.gas_volume, last.gas_volume);
+    let precharge_rise = rise(stated, last.precharge_pressure) * warming;
+    let setting = setting.unwrap_or_default();
     let at_rest = Accumulator {
         gas_volume: first.gas_volume + volume_rise * setting,
         precharge_pressure: first.precharge_pressure + precharge_rise * setting,
@@ -96,28 +78,26 @@ fn adjusted<S: Scalar>(
     AdjustedGas { at_rest, setting, volume_rise, precharge_rise, neck, maximum_pressure_ratio: None }
 }
 
-/// Valve with this setting at rest and a volume in m3 between valve and gas.
+/// Valve with this setting at rest before gas of this volume in m3.
 fn gas_valve<S: Scalar>(
-    (valve, setting, dead_volume): (&DeclaredGasValve, f64, f64),
-    numbers: &Numbers<'_, S>,
+    (valve, setting, gas_volume): (&DeclaredGasValve<S>, Option<S>, S),
     fluid: &Fluid<S>,
 ) -> GasValve<S> {
-    let numbers = numbers.within("adjustment");
-    let [flow_coefficient, transition_pressure] = edge(&valve.orifice, &numbers, fluid.density);
+    let [flow_coefficient, transition_pressure] = edge(&valve.orifice, fluid.density);
     GasValve {
-        setting: numbers.at("setting", setting),
+        setting: setting.unwrap_or_default(),
         flow_coefficient,
         transition_pressure,
-        compliance: numbers.at("dead_volume", dead_volume) / fluid.bulk_modulus,
-        shut: setting == 0.0 && !numbers.is_open("setting"),
+        compliance: valve.dead_volume(gas_volume) / fluid.bulk_modulus,
+        shut: setting.is_none(),
     }
 }
 
 /// Neck filled with this fluid.
-fn neck<S: Scalar>(declared: &DeclaredNeck, numbers: &Numbers<'_, S>, fluid: &Fluid<S>) -> Neck<S> {
-    let size = [numbers.at("neck_diameter", declared.diameter), numbers.at("neck_length", declared.length)];
+fn neck<S: Scalar>(declared: &DeclaredNeck<S>, fluid: &Fluid<S>) -> Neck<S> {
+    let size = [declared.diameter, declared.length];
     let oil = [fluid.density, fluid.kinematic_viscosity, fluid.bulk_modulus];
-    Neck::round(size, oil, numbers.at("neck_loss_coefficient", declared.loss_coefficient))
+    Neck::round(size, oil, declared.loss_coefficient)
 }
 
 /// A rig with the setting of every adjustment there, for slow motions: an open valve is the gas at

@@ -16,6 +16,9 @@ use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, reduce, two_pressure_linear_parameters,
 };
 
+use super::at_point::RigAtPoint;
+use super::parameters::replaced;
+
 /// Opening of a metering edge over the leakage of the stand-in, up to which the edge is shut: under
 /// a load the spool is as far from null as the leakage requires.
 const SHUT: f64 = 1e3;
@@ -43,7 +46,7 @@ pub fn two_pressures(
 }
 
 /// These parameters; of an ideal valve that is shut, their limit.
-pub(super) fn in_the_limit(
+fn in_the_limit(
     found: &TwoPressureLinearParameters,
     model: &TwoPressureModel,
     point: &OperatingPoint,
@@ -56,15 +59,18 @@ pub(super) fn in_the_limit(
     TwoPressureLinearParameters { chambers, ..*found }
 }
 
-/// A supply that yields, whose pressure moves no flow through a valve that is shut.
-pub(super) fn shut(
-    supply: YieldingSupply,
-    model: &TwoPressureModel,
-    point: &OperatingPoint,
-) -> YieldingSupply {
-    match is_shut_at(&model.valve, point) {
-        true => YieldingSupply { edges: [0.0; 2], ..supply },
-        false => supply,
+impl RigAtPoint {
+    /// The rig with these stated parameters in the limit of an ideal valve that is shut, where the
+    /// pressure of a supply that yields moves no flow. Whether it is shut is decided by the spool,
+    /// so that the plants of a family, whose spool is not a number, have the stand-in.
+    pub(super) fn in_the_limit<'n>(self, stated: impl Iterator<Item = (&'n str, f64)>) -> RigAtPoint {
+        let chambers = in_the_limit(&self.chambers, &self.model, &self.point);
+        let linear = replaced(&reduced(&chambers), stated);
+        let supply = match is_shut_at(&self.model.valve, &self.point) {
+            true => self.supply.map(|supply| YieldingSupply { edges: [0.0; 2], ..supply }),
+            false => self.supply,
+        };
+        RigAtPoint { chambers, linear, supply, ..self }
     }
 }
 

@@ -10,11 +10,9 @@ use phea_hydraulics::linear::LinearParameters;
 use phea_hydraulics::plant::{LinearPlant, PlantInMotion, PressureFeedback, VelocitySensor};
 
 use super::Rig;
-use super::numbers::Numbers;
 use crate::project::{DeclaredActuator, DeclaredPressureFeedback, Load, PressureSignal, Project};
 
 /// The error of the velocity sensor's gain.
-const GAIN_ERROR: &str = "velocity_sensor.gain_error";
 
 impl Rig {
     /// The same rig with its virtual impedance, whose plant gives out y = F_e + Z_v X_L, with the
@@ -228,11 +226,9 @@ pub(crate) fn with_controller_of(mut project: Project, rig: &Rig) -> Project {
 }
 
 /// Shown velocity of the load over the true one; `None` where its gain has no error.
-pub(super) fn velocity_gain<S: Scalar>(declared: &DeclaredActuator, numbers: &Numbers<'_, S>) -> Option<S> {
-    let sensor = declared.velocity_sensor.as_ref()?;
-    let open = numbers.get(GAIN_ERROR);
-    let stated = sensor.gain_error.map(S::from);
-    open.or(stated).map(|error| S::from(1.0) + error)
+pub(super) fn velocity_gain<S: Scalar>(declared: &DeclaredActuator<S>) -> Option<S> {
+    let error = declared.velocity_sensor.as_ref()?.gain_error?;
+    Some(S::from(1.0) + error)
 }
 
 /// Whether a specification limits the path that a prescribed load has into the loop.

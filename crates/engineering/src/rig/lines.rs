@@ -8,47 +8,48 @@ use phea_hydraulics::line::{
     BraidedWall, Conduit, DynamicLine, END_SHARE, Hose, LaminarFriction, Line, LineError, LineModel,
     Stiffening, StiffeningMember,
 };
-use phea_hydraulics::operating_point::OperatingPoint;
 use phea_hydraulics::plant::{BehindLines, LinearPlant, PlantInMotion};
 use phea_hydraulics::servovalve::Supply;
 use phea_hydraulics::stiffness::compliance_at;
-use phea_hydraulics::two_pressure::TwoPressureLinearParameters;
 
 use super::Rig;
+use super::at_point::RigAtPoint;
 use super::plant::without_branches;
 use crate::project::{self, LineMotion, LineSegments, LineWall};
 
-/// The plant with lines in motion in place of its lumped ones; `None` where both are lumped.
-///
-/// # Errors
-/// A line that its model cannot describe.
-pub fn in_motion(
-    declared: &project::DeclaredLines,
-    components: &Components,
-    point: &OperatingPoint,
-    chambers: &TwoPressureLinearParameters,
-    plant: &LinearPlant,
-) -> Result<Option<PlantInMotion>, LineError> {
-    let [line_a, line_b] = [components.line_a, components.line_b].map(stiffened_alike);
-    let Supply { pressure, tank_pressure } = components.supply;
-    let moving = lines(declared, [&line_a, &line_b], &components.fluid, 0.5 * (pressure + tank_pressure))?;
-    let [line_a, line_b] = [line_a, line_b].map(without_volume);
-    let bare = Components { line_a, line_b, ..*components };
-    let bare = bare.chamber_compliance([point.pressure_a, point.pressure_b], StiffeningMember::Nominal);
-    let pressures = [point.pressure_a, point.pressure_b];
-    let own = |compliances| match plant.gas {
-        [None, None] => compliances,
-        _ => without_branches(components, pressures, compliances),
-    };
-    let chambers_alone = own(compliance_at(&bare, point.position));
-    let leakage = components.cylinder.external_leakage.unwrap_or(0.0);
-    let of_valve = &chambers.chambers;
-    let leaking = [of_valve.flow_pressure_a, of_valve.flow_pressure_b].map(|whole| leakage / whole);
-    Ok(moving.map(|lines| {
-        let lumped = own(chambers.compliances);
-        let behind = BehindLines { lines, chambers: chambers_alone, lumped, leaking };
-        PlantInMotion::new(plant, &behind)
-    }))
+impl RigAtPoint {
+    /// Its plant with lines in motion in place of the lumped ones; `None` where both are lumped.
+    ///
+    /// # Errors
+    /// A line that its model cannot describe.
+    pub(crate) fn in_motion(
+        &self,
+        declared: &project::DeclaredLines,
+        plant: &LinearPlant,
+    ) -> Result<Option<PlantInMotion>, LineError> {
+        let RigAtPoint { components, point, chambers, .. } = self;
+        let [line_a, line_b] = [components.line_a, components.line_b].map(stiffened_alike);
+        let Supply { pressure, tank_pressure } = components.supply;
+        let moving =
+            lines(declared, [&line_a, &line_b], &components.fluid, 0.5 * (pressure + tank_pressure))?;
+        let [line_a, line_b] = [line_a, line_b].map(without_volume);
+        let bare = Components { line_a, line_b, ..*components };
+        let bare = bare.chamber_compliance([point.pressure_a, point.pressure_b], StiffeningMember::Nominal);
+        let pressures = [point.pressure_a, point.pressure_b];
+        let own = |compliances| match plant.gas {
+            [None, None] => compliances,
+            _ => without_branches(components, pressures, compliances),
+        };
+        let chambers_alone = own(compliance_at(&bare, point.position));
+        let leakage = components.cylinder.external_leakage.unwrap_or(0.0);
+        let of_valve = &chambers.chambers;
+        let leaking = [of_valve.flow_pressure_a, of_valve.flow_pressure_b].map(|whole| leakage / whole);
+        Ok(moving.map(|lines| {
+            let lumped = own(chambers.compliances);
+            let behind = BehindLines { lines, chambers: chambers_alone, lumped, leaking };
+            PlantInMotion::new(plant, &behind)
+        }))
+    }
 }
 
 /// A hose with a single stiffening ratio: that of a member of a family need not lie in the declared

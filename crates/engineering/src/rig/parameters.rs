@@ -61,18 +61,28 @@ pub(super) fn replaced<'n, S: Copy>(
     linear
 }
 
+/// The value of a parameter that the project states, and where.
+fn stated_value(project: &Project, name: &str) -> Option<(f64, ParameterOrigin)> {
+    let linear = project.linear.get(name).map(|value| (value, ParameterOrigin::Linear));
+    let uncertain = project.uncertainty.iter().find(|uncertain| uncertain.name == name);
+    linear.or_else(|| uncertain.map(|uncertain| (uncertain.nominal, ParameterOrigin::Uncertainty)))
+}
+
+/// The parameters of the linear model that the project states: name and value.
+pub(crate) fn stated(project: &Project) -> impl Iterator<Item = (&'static str, f64)> {
+    let names = LINEAR_PARAMETERS.iter().map(|parameter| parameter.key.name);
+    names.filter_map(|name| stated_value(project, name).map(|(value, _)| (name, value)))
+}
+
 pub(super) fn resolve(project: &Project, derived: &LinearParameters) -> Vec<ResolvedParameter> {
     LINEAR_PARAMETERS
         .iter()
         .filter_map(|parameter| {
             let name = parameter.key.name;
             let derived = *parameter_field(&mut derived.clone(), name)?;
+            let stated = stated_value(project, name);
+            let (value, origin) = stated.unwrap_or((derived, ParameterOrigin::Derived));
             let uncertain = project.uncertainty.iter().find(|uncertain| uncertain.name == name);
-            let (value, origin) = match (project.linear.get(name), uncertain) {
-                (Some(value), _) => (value, ParameterOrigin::Linear),
-                (None, Some(uncertain)) => (uncertain.nominal, ParameterOrigin::Uncertainty),
-                (None, None) => (derived, ParameterOrigin::Derived),
-            };
             let bounds = uncertain.map(|uncertain| [uncertain.minimum, uncertain.maximum]);
             Some(ResolvedParameter { name, value, origin, derived, bounds })
         })

@@ -6,35 +6,30 @@ use phea_hydraulics::actuator::Components;
 use phea_hydraulics::operating_point::{Steady, SteadyLoad};
 use phea_hydraulics::servovalve::SpoolDirection;
 
-use super::numbers::Numbers;
+use super::declared::DeclaredRig;
 use crate::project::{self, Project};
 
 /// The position in m (in rad, of a motor) and the condition for the pressures. At null the piston
 /// is blocked; with a command it moves, without load pressure unless one is declared,
 /// thesis (4.18); with a velocity there is no load unless one is declared. A load that yields and
 /// has a weight is held, unless a load or a command is declared; a free mass takes no force.
-pub fn place<S: Scalar>(
-    project: &Project,
-    components: &Components<S>,
-    numbers: &Numbers<'_, S>,
-) -> (S, Steady<S>) {
-    let declared = project.resolved_operating_point();
-    let numbers = numbers.within("operating_point");
-    let at = |name: &str, value: Option<f64>| value.map(|value| numbers.at(name, value));
-    let position = at("position", declared.position).unwrap_or(components.cylinder.stroke.middle());
-    let project::DeclaredOperatingPoint { load_pressure, load_force, velocity, command, .. } = declared;
-    let pressure = at("load_pressure", load_pressure);
-    let force = at("load_force", load_force);
+pub fn place<S: Scalar>(rig: &DeclaredRig<'_, S>, components: &Components<S>) -> (S, Steady<S>) {
+    let project::DeclaredOperatingPoint { position, load_pressure, load_force, velocity, .. } =
+        rig.operating_point;
+    // a command is never open
+    let command = rig.project.operating_point.command;
+    let position = position.unwrap_or(components.cylinder.stroke.middle());
     let none = S::from(0.0);
-    let at_rest = || weight_held(project, components, position).or_else(|| is_free(project).then_some(none));
-    let force = force.or_else(|| at_rest().filter(|_| command.is_none()));
-    let load = pressure.map(SteadyLoad::Pressure).or(force.map(SteadyLoad::Force));
-    let steady = match (command, pressure) {
+    let at_rest =
+        || weight_held(rig.project, components, position).or_else(|| is_free(rig.project).then_some(none));
+    let force = load_force.or_else(|| at_rest().filter(|_| command.is_none()));
+    let load = load_pressure.map(SteadyLoad::Pressure).or(force.map(SteadyLoad::Force));
+    let steady = match (command, load_pressure) {
         (Some(command), Some(pressure)) => Steady::Matched(S::from(command), pressure),
         (Some(command), None) if command != 0.0 => Steady::Matched(S::from(command), none),
         _ if load.is_none() && velocity.is_none() => Steady::Command(none),
         _ => Steady::Moving {
-            velocity: at("velocity", velocity).unwrap_or(none),
+            velocity: velocity.unwrap_or(none),
             load: load.unwrap_or(SteadyLoad::Force(none)),
         },
     };
@@ -51,9 +46,8 @@ fn is_free(project: &Project) -> bool {
 
 /// The side of null from which the slopes of a spool at null are taken; without a stated one their
 /// mean is the nominal plant.
-pub(crate) fn spool_side<S: Scalar>(project: &Project, numbers: &Numbers<'_, S>) -> SpoolDirection<S> {
-    let declared = project.resolved_operating_point().spool_side.unwrap_or(0.0);
-    SpoolDirection::Between(numbers.at("operating_point.spool_side", declared))
+pub(crate) fn spool_side<S: Scalar>(rig: &DeclaredRig<'_, S>) -> SpoolDirection<S> {
+    SpoolDirection::Between(rig.operating_point.spool_side.unwrap_or_default())
 }
 
 /// The force that holds the weight of a load that yields; `None` where there is none.

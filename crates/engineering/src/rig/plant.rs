@@ -1,19 +1,16 @@
-//! The linear plant of a rig: at its operating point, with its load, its leakage and the parameters
-//! that the project states.
+//! The linear plant of a rig at its operating point, with its load, its leakage and the parameters
+//! that the project states, over any scalar.
 
 use phea_dynamics::scalar::Scalar;
+use phea_hydraulics::accumulator::GasBranch;
 use phea_hydraulics::actuator::Components;
-use phea_hydraulics::linear::LinearParameters;
-use phea_hydraulics::linkage::{RodEnd, WeightAt};
-use phea_hydraulics::operating_point::OperatingPoint;
-use phea_hydraulics::plant::{ChamberDynamics, LinearLoad, LinearPlant, YieldingSupply};
+use phea_hydraulics::plant::{ChamberDynamics, LinearPlant, LinearSeries, VelocitySensor, YieldingSupply};
 use phea_hydraulics::servovalve::ChamberCoefficients;
-use phea_hydraulics::two_pressure::{TwoPressureLinearParameters, reduce};
+use phea_hydraulics::two_pressure::TwoPressureLinearParameters;
 
-use super::numbers::Numbers;
-use super::parameters::{ParameterOrigin, ResolvedParameter, replaced};
-use super::place::shortened;
-use crate::project::{self, DeclaredAdjustment, Load};
+use super::at_point::RigAtPoint;
+use super::parameters::{ParameterOrigin, ResolvedParameter};
+use crate::project::{self, DeclaredAdjustment};
 
 /// Parameters of the linear model that presuppose one load pressure.
 const OF_LOAD_PRESSURE: [&str; 4] =
@@ -21,121 +18,120 @@ const OF_LOAD_PRESSURE: [&str; 4] =
 /// Chambers whose numbers differ by less, relative to them, are equal.
 const EQUAL: f64 = 1e-9;
 
-/// The load in the plant. Units: kg, N s/m, N/m; behind a linkage kg m2, N m s/rad, N m/rad.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct YieldingLoad<S = f64> {
-    /// Moving mass.
-    pub mass: S,
-    /// Damping of the load itself.
-    pub damping: S,
-    /// Zero where the load touches no wall.
-    pub stiffness: S,
-    /// Damping of the contact with a wall.
-    pub contact_damping: S,
-    /// Whether no stiffness is declared and none is uncertain: a free mass.
-    pub is_free: bool,
-    /// `None` without a linkage.
-    pub lever: Option<LoadLever<S>>,
+/// Equalities between both sides of a plant, or of every plant of a family. They are decided by
+/// numbers and given to the plant, whose equations do not branch on a value.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Equal {
+    /// Both chambers are equal, or their parameters are stated: one load pressure describes them.
+    pub(crate) one_pressure: bool,
+    /// Both chambers follow the pressure of the supply alike, so that it does not affect the
+    /// difference of their pressures.
+    pub(crate) unseen: bool,
 }
 
-/// The lever arm of a linkage at a force. Units: m, N m/rad.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LoadLever<S = f64> {
-    /// r = g'
-    pub arm: S,
-    /// -F g'': by the change of the arm under the force.
-    pub geometric_stiffness: S,
-    /// k_w: by the change of the torque of its weight; `None` without one.
-    pub weight_stiffness: Option<S>,
+impl Equal {
+    /// Equalities of a rig with equal chambers, with equal coupling of both to the supply, and with
+    /// a stated parameter that presupposes one load pressure. Gas with states of its own makes the
+    /// chambers differ.
+    pub(crate) fn new(
+        declared: &project::DeclaredActuator,
+        [chambers, edges]: [bool; 2],
+        is_stated: bool,
+    ) -> Equal {
+        let unseen = edges && !has_gas_states(declared);
+        Equal { one_pressure: is_stated || chambers && unseen, unseen }
+    }
 }
 
-impl<S: Scalar> YieldingLoad<S> {
-    /// The load in the linear plant, its damping and that of the contact in one.
-    pub fn linear(&self) -> LinearLoad<S> {
-        let (mass, stiffness) = (self.mass, self.stiffness);
-        let damping = self.damping + self.contact_damping;
-        match self.lever {
-            None if self.is_free => LinearLoad::Free { mass, damping },
-            None => LinearLoad::Yielding { mass, damping, stiffness },
-            Some(LoadLever { arm, geometric_stiffness, weight_stiffness }) => {
-                let geometric_stiffness =
-                    weight_stiffness.map_or(geometric_stiffness, |weight| geometric_stiffness + weight);
-                LinearLoad::Linked { inertia: mass, damping, stiffness, geometric_stiffness, lever_arm: arm }
+impl<S: Scalar> RigAtPoint<S> {
+    /// The linear plant with lumped lines, without what the loop adds to it.
+    pub(crate) fn plant(&self, equal: Equal) -> LinearPlant<S> {
+        let RigAtPoint { components, point, linear, .. } = self;
+        let pressures = [point.pressure_a, point.pressure_b];
+        let chambers = match equal.one_pressure {
+            true => ChamberDynamics::from(linear),
+            false => ChamberDynamics::from(&self.chambers),
+        };
+        let supply = self.supply.filter(|_| !(equal.one_pressure && equal.unseen));
+        let supply = supply.map(|supply| self.supply_of(&chambers, supply));
+        let (chambers, gas) = self.with_gas(chambers, pressures);
+        LinearPlant {
+            valve_natural_frequency: linear.valve_natural_frequency,
+            valve_damping_ratio: linear.valve_damping_ratio,
+            chambers,
+            internal_leakage: self.leakage,
+            dynamic_feedback: self.dynamic_feedback,
+            gas,
+            moving_mass: linear.moving_mass,
+            viscous_friction: linear.viscous_friction,
+            sensor_stiffness: linear.sensor_stiffness,
+            load: self.load,
+            supply,
+            velocity_sensor: VelocitySensor { gain: components.velocity_gain, ..VelocitySensor::default() },
+            series: LinearSeries::of_components(components, point.hydraulic_force),
+            area_stiffness: components.cylinder.area_stiffness(point.position, pressures),
+            load_velocity_feed_forward: None,
+            virtual_impedance: None,
+            pressure_feedback: None,
+            pressure_signal: None,
+        }
+    }
+
+    /// A limited supply of these chambers. Where a stated number changes the valve in the model
+    /// with one load pressure, the flow from the supply changes in proportion.
+    fn supply_of(&self, chambers: &ChamberDynamics<S>, supply: YieldingSupply<S>) -> YieldingSupply<S> {
+        match *chambers {
+            ChamberDynamics::TwoPressures { .. } => supply,
+            ChamberDynamics::LoadPressure { flow_gain, flow_pressure_coefficient, .. } => {
+                let (two, own) = (S::from(2.0), &self.leaking);
+                let both = two * flow_pressure_coefficient;
+                let [edge_a, edge_b] = supply.edges;
+                YieldingSupply {
+                    edges: [edge_a * both / own.flow_pressure_a, edge_b * both / own.flow_pressure_b],
+                    flow_gain: supply.flow_gain * two * flow_gain / (own.flow_gain_a + own.flow_gain_b),
+                    ..supply
+                }
             }
         }
     }
-}
 
-/// The load's end of the rod at an operating point, and the weight of the load there; `None`
-/// without a linkage. The force sensor, and what lies in series with it, is compressed by the force
-/// there.
-pub fn rod_end<S: Scalar>(
-    components: &Components<S>,
-    point: &OperatingPoint<S>,
-) -> Option<(RodEnd<S>, Option<WeightAt<S>>)> {
-    let linkage = components.linkage.as_ref()?;
-    let [shortened, _] = shortened(components, point.hydraulic_force);
-    let position = point.position - shortened;
-    let angle = linkage.angle(position);
-    Some((linkage.end(angle), linkage.weight_at(angle)))
-}
-
-/// The load at an operating point; `None` where its motion is prescribed.
-pub(crate) fn load_at<S: Scalar>(
-    declared: &Load,
-    numbers: &Numbers<'_, S>,
-    components: &Components<S>,
-    point: &OperatingPoint<S>,
-) -> Option<YieldingLoad<S>> {
-    let force = point.hydraulic_force;
-    match rod_end(components, point) {
-        None => yielding_load(declared, numbers, &components.load, force),
-        Some((end, weight)) => {
-            let torque = force * end.lever_arm;
-            let torque = weight.map_or(torque, |weight| torque + weight.torque);
-            let turned = yielding_load(declared, numbers, &components.load, torque)?;
-            let lever = LoadLever {
-                arm: end.lever_arm,
-                geometric_stiffness: -(force * end.lever_slope),
-                weight_stiffness: weight.map(|weight| weight.stiffness),
-            };
-            Some(YieldingLoad { lever: Some(lever), ..turned })
+    /// Chambers next to the gas of accumulators that lies behind a neck or a valve or exchanges
+    /// heat, and that gas: a pressure a chamber. Where a stated number makes the chambers stiffer
+    /// than their parts are, the gas is stiffened alike.
+    fn with_gas(
+        &self,
+        dynamics: ChamberDynamics<S>,
+        pressures: [S; 2],
+    ) -> (ChamberDynamics<S>, [Option<GasBranch<S>>; 2]) {
+        let RigAtPoint { components, chambers, .. } = self;
+        let gas = components.gas_branches(pressures);
+        if gas.iter().all(Option::is_none) {
+            return (dynamics, gas);
         }
-    }
-}
-
-/// The load itself at a force on it in N, or a torque in N m; `None` where its motion is
-/// prescribed. The load is in contact with a wall where the force presses on it, or where there is
-/// no gap. Hunt and Crossley's damping K c d of a wall pressed by d = F/K is c F.
-fn yielding_load<S: Scalar>(
-    declared: &Load,
-    numbers: &Numbers<'_, S>,
-    load: &Load<S>,
-    force: S,
-) -> Option<YieldingLoad<S>> {
-    let none = S::from(0.0);
-    match *load {
-        Load::Prescribed => None,
-        Load::SpringMassDamper { mass, stiffness, damping } => Some(YieldingLoad {
-            mass,
-            damping,
-            stiffness,
-            contact_damping: none,
-            is_free: matches!(declared, Load::SpringMassDamper { stiffness: 0.0, .. })
-                && !numbers.is_open("load.stiffness"),
-            lever: None,
-        }),
-        Load::Wall { mass, damping, stiffness: wall, relative_damping, .. } => {
-            let touched = S::select(none.less_than(force), wall, none);
-            let has_no_gap = matches!(declared, Load::Wall { gap: 0.0, .. });
-            Some(YieldingLoad {
-                mass: mass?,
-                damping,
-                stiffness: if has_no_gap { wall } else { touched },
-                contact_damping: relative_damping * force.maximum(none),
-                is_free: false,
-                lever: None,
-            })
+        let alone = without_branches(components, pressures, chambers.compliances);
+        match dynamics {
+            ChamberDynamics::TwoPressures { areas, flow_gains, flow_pressures, .. } => {
+                let compliances = alone;
+                (ChamberDynamics::TwoPressures { areas, compliances, flow_gains, flow_pressures }, gas)
+            }
+            ChamberDynamics::LoadPressure {
+                useful_area,
+                flow_gain,
+                flow_pressure_coefficient,
+                hydraulic_stiffness,
+            } => {
+                let two = S::from(2.0);
+                let stated = two * useful_area.squared() / hydraulic_stiffness;
+                let [share_a, share_b] = chambers.compliances.map(|own| stated / own);
+                let [gas_a, gas_b] = gas;
+                let chambers = ChamberDynamics::TwoPressures {
+                    areas: [useful_area; 2],
+                    compliances: [alone[0] * share_a, alone[1] * share_b],
+                    flow_gains: [flow_gain; 2],
+                    flow_pressures: [two * flow_pressure_coefficient; 2],
+                };
+                (chambers, [gas_a.map(|gas| gas.softened(share_a)), gas_b.map(|gas| gas.softened(share_b))])
+            }
         }
     }
 }
@@ -154,105 +150,9 @@ pub(crate) fn are_equal(sides: impl IntoIterator<Item = [f64; 2]>) -> bool {
 }
 
 /// Areas, compliances and flow-pressure coefficients of both chambers.
-pub fn sides<S: Scalar>(chambers: &TwoPressureLinearParameters<S>) -> [[S; 2]; 3] {
+pub(crate) fn sides<S: Scalar>(chambers: &TwoPressureLinearParameters<S>) -> [[S; 2]; 3] {
     let ChamberCoefficients { flow_pressure_a, flow_pressure_b, .. } = chambers.chambers;
     [chambers.areas, chambers.compliances, [flow_pressure_a, flow_pressure_b]]
-}
-
-/// The parameters of the fifth-order model from these chambers, replaced by the stated ones, in
-/// their order.
-pub fn linear<'n, S: Scalar>(
-    chambers: &TwoPressureLinearParameters<S>,
-    stated: impl Iterator<Item = (&'n str, S)>,
-) -> LinearParameters<S> {
-    replaced(&reduce(chambers), stated)
-}
-
-/// The plant of these chambers with the stated parameters.
-pub fn plant<S: Scalar>(
-    chambers: &TwoPressureLinearParameters<S>,
-    linear: &LinearParameters<S>,
-    one_pressure: bool,
-    leakage: S,
-    load: LinearLoad<S>,
-) -> LinearPlant<S> {
-    if one_pressure {
-        return LinearPlant::of_load_pressure(linear, leakage, load);
-    }
-    let stated = TwoPressureLinearParameters {
-        moving_mass: linear.moving_mass,
-        viscous_friction: linear.viscous_friction,
-        sensor_stiffness: linear.sensor_stiffness,
-        valve_natural_frequency: linear.valve_natural_frequency,
-        valve_damping_ratio: linear.valve_damping_ratio,
-        ..*chambers
-    };
-    LinearPlant::of_two_pressures(&stated, leakage, load)
-}
-
-/// The same plant with a limited supply. Where a stated number changes the valve in the model with
-/// one load pressure, the flow from the supply changes in proportion.
-pub(crate) fn with_supply<S: Scalar>(
-    plant: LinearPlant<S>,
-    supply: YieldingSupply<S>,
-    chambers: &TwoPressureLinearParameters<S>,
-) -> LinearPlant<S> {
-    let supply = match plant.chambers {
-        ChamberDynamics::TwoPressures { .. } => supply,
-        ChamberDynamics::LoadPressure { flow_gain, flow_pressure_coefficient, .. } => {
-            let (two, own) = (S::from(2.0), &chambers.chambers);
-            let both = two * flow_pressure_coefficient;
-            let [edge_a, edge_b] = supply.edges;
-            YieldingSupply {
-                edges: [edge_a * both / own.flow_pressure_a, edge_b * both / own.flow_pressure_b],
-                flow_gain: supply.flow_gain * two * flow_gain / (own.flow_gain_a + own.flow_gain_b),
-                ..supply
-            }
-        }
-    };
-    LinearPlant { supply: Some(supply), ..plant }
-}
-
-/// The same plant with the gas of accumulators that lies behind a neck or a valve or exchanges
-/// heat, and with a pressure a chamber. Where a stated number makes these chambers stiffer than
-/// their parts are, the gas is stiffened alike.
-pub(crate) fn with_gas<S: Scalar>(
-    plant: LinearPlant<S>,
-    components: &Components<S>,
-    chambers: &TwoPressureLinearParameters<S>,
-    pressures: [S; 2],
-) -> LinearPlant<S> {
-    let gas = components.gas_branches(pressures);
-    if gas.iter().all(Option::is_none) {
-        return plant;
-    }
-    let alone = without_branches(components, pressures, chambers.compliances);
-    match plant.chambers {
-        ChamberDynamics::TwoPressures { areas, flow_gains, flow_pressures, .. } => {
-            let chambers =
-                ChamberDynamics::TwoPressures { areas, compliances: alone, flow_gains, flow_pressures };
-            LinearPlant { chambers, gas, ..plant }
-        }
-        ChamberDynamics::LoadPressure {
-            useful_area,
-            flow_gain,
-            flow_pressure_coefficient,
-            hydraulic_stiffness,
-        } => {
-            let two = S::from(2.0);
-            let stated = two * useful_area.squared() / hydraulic_stiffness;
-            let [share_a, share_b] = chambers.compliances.map(|own| stated / own);
-            let [gas_a, gas_b] = gas;
-            let chambers = ChamberDynamics::TwoPressures {
-                areas: [useful_area; 2],
-                compliances: [alone[0] * share_a, alone[1] * share_b],
-                flow_gains: [flow_gain; 2],
-                flow_pressures: [two * flow_pressure_coefficient; 2],
-            };
-            let gas = [gas_a.map(|gas| gas.softened(share_a)), gas_b.map(|gas| gas.softened(share_b))];
-            LinearPlant { chambers, gas, ..plant }
-        }
-    }
 }
 
 /// Compliances of both chambers in m3/Pa less that of the gas behind necks and with heat.
@@ -266,16 +166,10 @@ pub(crate) fn without_branches<S: Scalar>(
 }
 
 /// Whether gas lies behind a neck or a valve or exchanges heat.
-pub(crate) fn has_gas_states(declared: &project::DeclaredActuator) -> bool {
+fn has_gas_states(declared: &project::DeclaredActuator) -> bool {
     let gas = [&declared.line.a, &declared.line.b].map(|line| line.accumulator.as_ref());
     gas.into_iter().flatten().any(|gas| {
         let valve = gas.adjustment.as_ref().and_then(DeclaredAdjustment::valve);
         gas.neck.is_some() || gas.thermal_time_constant.is_some() || valve.is_some()
     })
-}
-
-/// The parameters of the linear model that the project states: name and value.
-pub fn stated(parameters: &[ResolvedParameter]) -> impl Iterator<Item = (&'static str, f64)> {
-    let stated = parameters.iter().filter(|one| one.origin != ParameterOrigin::Derived);
-    stated.map(|one| (one.name, one.value))
 }

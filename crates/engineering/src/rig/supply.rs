@@ -8,28 +8,17 @@ use phea_hydraulics::servovalve::{SpoolDirection, edge_conductances, edge_flows,
 
 use super::Rig;
 use super::gas::accumulator;
-use super::numbers::Numbers;
 use crate::project::{self, SupplyModel};
 
 /// Where the supply pressure comes from.
-pub(super) fn power_unit<S: Scalar>(
-    declared: &project::DeclaredActuator,
-    numbers: &Numbers<'_, S>,
-) -> PowerUnit<S> {
+pub(super) fn power_unit<S: Scalar>(declared: &project::DeclaredActuator<S>) -> PowerUnit<S> {
     let SupplyModel::PumpLimited(pump) = &declared.supply.model else { return PowerUnit::Constant };
-    let of_supply = numbers.within("supply");
-    let at = |key: &str, value: f64| of_supply.at(key, value);
-    let of_fluid = || numbers.at("fluid.bulk_modulus", declared.fluid.bulk_modulus);
-    let modulus = pump.effective_bulk_modulus;
     PowerUnit::PumpLimited(PumpLimited {
-        pump_flow: at("flow", pump.flow),
-        relief_override: at("relief_override", pump.relief_override),
-        volume: at("volume", pump.volume),
-        effective_bulk_modulus: modulus.map_or_else(of_fluid, |value| at("effective_bulk_modulus", value)),
-        accumulator: pump
-            .accumulator
-            .as_ref()
-            .map(|declared| accumulator(declared, &of_supply.within("accumulator"))),
+        pump_flow: pump.flow,
+        relief_override: pump.relief_override,
+        volume: pump.volume,
+        effective_bulk_modulus: pump.effective_bulk_modulus.unwrap_or(declared.fluid.bulk_modulus),
+        accumulator: pump.accumulator.as_ref().map(accumulator),
     })
 }
 

@@ -5,7 +5,7 @@ use phea_hydraulics::servovalve::Supply;
 
 use super::TimeRequirement;
 use crate::project::{DeclaredActuator, Project};
-use crate::rig::{Numbers, components};
+use crate::rig::components;
 use crate::setup::Setup;
 
 /// Forces that a rig reaches, and forces that its sensor withstands.
@@ -101,7 +101,7 @@ pub enum ForceLimit {
 
 impl ForceLimits {
     pub(crate) fn of(project: &Project, actuator: &DeclaredActuator) -> ForceLimits {
-        let Components { cylinder, supply, .. } = components(actuator, &Numbers::declared());
+        let Components { cylinder, supply, .. } = components(actuator, actuator);
         let range = project.uncertainty.iter().find(|one| one.name == "supply.pressure");
         let lowest = range.map(|range| range.minimum).filter(|lowest| *lowest < supply.pressure);
         let pressures = std::iter::once(supply.pressure).chain(lowest);

@@ -10,9 +10,7 @@ use super::{
 use crate::catalogue::{Catalogue, CatalogueKind, DASH_SIZES};
 use crate::caveat::overlap;
 use crate::project::{self, HoseProperties, Load, Project, SettlingTime, Speed};
-use crate::rig::{
-    ExpansionPressures, Numbers, Rig, RigError, VolumetricExpansion, hose, largest_flow, stiffening,
-};
+use crate::rig::{ExpansionPressures, Rig, RigError, VolumetricExpansion, hose, largest_flow, stiffening};
 use crate::setup::Setup;
 use crate::simulate::time_requirements;
 
@@ -201,8 +199,8 @@ fn hoses(actuator: &project::DeclaredActuator, catalogue: &Catalogue) -> Vec<Hos
     let pressures = ExpansionPressures::of(actuator.supply.pressure, actuator.supply.tank_pressure);
     let option = |name: HoseName, properties: [&HoseProperties; 2]| {
         let hoses = [0, 1].map(|side: usize| {
-            let expansion = VolumetricExpansion::of(&properties[side].expansion, &Numbers::declared());
-            let stiffening = stiffening(stiffenings[side], &Numbers::declared());
+            let expansion = VolumetricExpansion::of(&properties[side].expansion);
+            let stiffening = stiffening(stiffenings[side]);
             hose(properties[side].bore, expansion, pressures, stiffening)
         });
         let [working_a, working_b] = properties.map(|hose| hose.working_pressure);

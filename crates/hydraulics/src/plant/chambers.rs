@@ -5,7 +5,9 @@ use phea_dynamics::scalar::Scalar;
 
 use super::supply::{Coupled, YieldingSupply};
 use crate::accumulator::GasBranch;
+use crate::linear::LinearParameters;
 use crate::linear::polynomial::{product, scaled, sum};
+use crate::two_pressure::TwoPressureLinearParameters;
 
 /// Dynamics of the pressures. Units: m2, m3/(s V), m3/(s Pa), N/m, m3/Pa.
 ///
@@ -43,6 +45,30 @@ pub enum ChamberDynamics<S = f64> {
         flow_pressures: [S; 2],
     },
 }
+
+impl<S: Scalar> From<&LinearParameters<S>> for ChamberDynamics<S> {
+    fn from(parameters: &LinearParameters<S>) -> ChamberDynamics<S> {
+        ChamberDynamics::LoadPressure {
+            useful_area: parameters.useful_area,
+            flow_gain: parameters.flow_gain,
+            flow_pressure_coefficient: parameters.flow_pressure_coefficient,
+            hydraulic_stiffness: parameters.hydraulic_stiffness,
+        }
+    }
+}
+
+impl<S: Scalar> From<&TwoPressureLinearParameters<S>> for ChamberDynamics<S> {
+    fn from(parameters: &TwoPressureLinearParameters<S>) -> ChamberDynamics<S> {
+        let chambers = &parameters.chambers;
+        ChamberDynamics::TwoPressures {
+            areas: parameters.areas,
+            compliances: parameters.compliances,
+            flow_gains: [chambers.flow_gain_a, chambers.flow_gain_b],
+            flow_pressures: [chambers.flow_pressure_a, chambers.flow_pressure_b],
+        }
+    }
+}
+
 /// Polynomials D, N_u and N_v, highest power first, or their values.
 pub(super) struct ChamberPolynomials<T> {
     pub(super) own: T,

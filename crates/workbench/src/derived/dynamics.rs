@@ -20,7 +20,7 @@ pub(super) fn dynamics(rig: &Rig, list: &mut List) {
         }
         (false, false) => list.motion.either("K_{eq} = K_H K_S/(K_H + K_S)", "K_{eq} = K_θ K_S/(K_θ + K_S)"),
     };
-    list.group(match (rig.load.is_some(), rig.load_stiffness().is_some()) {
+    list.group(match (rig.load_moves(), rig.load_stiffness().is_some()) {
         (true, true) => "Dynamics against the load, with the values in use",
         (true, false) => {
             "Dynamics with the load held still, as no stiffness holds it, with the values in use"
@@ -49,11 +49,11 @@ pub(super) fn dynamics(rig: &Rig, list: &mut List) {
         .motion
         .either(("dynamics.force_rate_gain", "N/(s.V)"), ("dynamics.torque_rate_gain", "N.m/(s.V)"));
     list.add(name, symbol, factors.hydraulic_gain, unit, equation);
-    if rig.load.is_some() {
+    if rig.load_moves() {
         list.group("Dynamics with the load held still, with the values in use");
     }
     held_still(rig, list);
-    if rig.load.is_some() {
+    if rig.load_moves() {
         list.group("Modes of the plant, with its load and the values in use");
     }
     modes(rig, list);

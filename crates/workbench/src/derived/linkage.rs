@@ -36,8 +36,8 @@ pub(super) fn linkage(project: &Project, rig: &Rig, list: &mut List) {
     }
     let force = rig.point.hydraulic_force;
     list.add("linkage.torque_at_point", "τ", force * end.lever_arm, "N.m", "τ = F_H r");
-    if let Some(lever) = rig.load.and_then(|load| load.lever) {
-        let stiffness = lever.geometric_stiffness / (lever.arm * lever.arm);
+    if rig.load_moves() {
+        let stiffness = -(force * end.lever_slope) / (end.lever_arm * end.lever_arm);
         list.add("linkage.geometric_stiffness", "k_g", stiffness, "N/m", "k_g = -F_H g''(θ)/r^2");
     }
     if let Some(weight) = weight {
