@@ -50,7 +50,7 @@ pub use ideal_valve::{is_ideal, reduced, two_pressures};
 pub use in_loop::{FeedForwardPath, PressureFeedbackPath};
 pub(crate) use in_loop::{inner_feedback, limits_load_motion, pressure_ratio, with_controller_of};
 pub use largest_flow::{FlowLimit, LargestFlow, largest_flow};
-pub use lines::{in_motion, line_model, lines};
+pub use lines::{in_motion, line_model};
 pub(crate) use lines::{quarter_wave, quarter_wave_of};
 pub use numbers::Numbers;
 pub use of_motion::OfMotion;
@@ -272,7 +272,7 @@ impl Rig {
             _ => plant,
         };
         let plant = with_gas(plant, components, &two_pressure, pressures);
-        let in_motion = in_motion(&declared.line, components, &point, &two_pressure, &plant)?;
+        let in_motion = in_motion(components, &point, &two_pressure, &plant)?;
         Ok(Rig {
             motion: declared.motion(),
             actuator,

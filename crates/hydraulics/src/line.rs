@@ -22,7 +22,7 @@ mod travelling_waves;
 mod two_wave;
 
 pub use blocked::BlockedLine;
-pub use braided_wall::BraidedWall;
+pub use braided_wall::{BraidedWall, LineWall};
 pub use conduit::{Conduit, LineError};
 pub use dynamic_line::DynamicLine;
 pub use hose::{Hose, Stiffening, static_hose_modulus};

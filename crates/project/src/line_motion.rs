@@ -3,6 +3,7 @@
 use super::key::{Key, key, plain};
 use super::visitor::{Kinds, Variants, Visitor};
 use phea_hydraulics::line::LaminarFriction;
+pub use phea_hydraulics::line::LineWall;
 use phea_quantity::{MASS_PER_LENGTH, RATIO, STRAIN_PER_FORCE, STRAIN_PER_PRESSURE, TIME};
 
 /// Dynamic model of a line with its parameters.
@@ -44,19 +45,6 @@ pub struct LineSegments {
     pub friction: Option<LaminarFriction>,
     /// Relaxation time of a wall that creeps, s; elastic if absent.
     pub relaxation_time: Option<f64>,
-}
-
-/// Data of a hose's wall that moves along its axis; absent values are assumed.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct LineWall {
-    /// Mass per length, kg/m.
-    pub mass_per_length: Option<f64>,
-    /// Area strain per pressure without tension, 1/Pa.
-    pub pressure_compliance: Option<f64>,
-    /// Area strain per tension, 1/N.
-    pub coupling_compliance: Option<f64>,
-    /// Axial strain per tension, 1/N.
-    pub axial_compliance: Option<f64>,
 }
 
 static FRICTIONS: [(&str, Option<LaminarFriction>); 2] = [
@@ -111,7 +99,7 @@ impl Variants for LineMotion {
             LineMotion::TwoWave { end_share, wall } => {
                 v.optional(share, end_share);
                 let k = plain("wall", "The wall of a hose with two waves; what is absent is assumed.");
-                v.table(k, wall, LineWall::visit);
+                v.table(k, wall, visit_wall);
             }
         }
     }
@@ -183,15 +171,14 @@ impl LineSegments {
     }
 }
 
-impl LineWall {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let k = key("mass_per_length", &MASS_PER_LENGTH, "Mass of a metre of wall.").positive();
-        v.optional(k, &mut self.mass_per_length);
-        let k = key("pressure_compliance", &STRAIN_PER_PRESSURE, "Area strain per pressure, no tension.");
-        v.optional(k.not_negative(), &mut self.pressure_compliance);
-        let k = key("coupling_compliance", &STRAIN_PER_FORCE, "Area strain per tension; negative: a braid.");
-        v.optional(k, &mut self.coupling_compliance);
-        let k = key("axial_compliance", &STRAIN_PER_FORCE, "Axial strain per tension.").positive();
-        v.optional(k, &mut self.axial_compliance);
-    }
+/// Visits the table of a wall, whose type belongs to the physics.
+fn visit_wall<V: Visitor>(wall: &mut LineWall, v: &mut V) {
+    let k = key("mass_per_length", &MASS_PER_LENGTH, "Mass of a metre of wall.").positive();
+    v.optional(k, &mut wall.mass_per_length);
+    let k = key("pressure_compliance", &STRAIN_PER_PRESSURE, "Area strain per pressure, no tension.");
+    v.optional(k.not_negative(), &mut wall.pressure_compliance);
+    let k = key("coupling_compliance", &STRAIN_PER_FORCE, "Area strain per tension; negative: a braid.");
+    v.optional(k, &mut wall.coupling_compliance);
+    let k = key("axial_compliance", &STRAIN_PER_FORCE, "Axial strain per tension.").positive();
+    v.optional(k, &mut wall.axial_compliance);
 }

@@ -79,7 +79,7 @@ pub(super) fn in_motion(
     let Some(declared) = &project.actuator else { return Ok(None) };
     let open = visited.open(project, declared);
     let (place, plant) = open.plant(values, visited.moved, visited.equal);
-    let moving = rig::in_motion(&declared.line, &place.components, &place.point, &place.chambers, &plant)?;
+    let moving = rig::in_motion(&place.components, &place.point, &place.chambers, &plant)?;
     Ok(visited.rig.as_response(moving, &plant))
 }
 

@@ -104,7 +104,7 @@ impl KnownLine {
 
     /// Its motion as declared.
     pub(crate) fn declared_model(&self) -> LineModel {
-        line_model(&self.motion, &self.line)
+        line_model(&self.motion)
     }
 
     /// Its motion with waves that are all but exact where no volume at the ends is stated: those

@@ -17,6 +17,7 @@ use super::cross_port::cross_port;
 use super::friction::friction;
 use super::gas::chamber_gas;
 use super::in_loop::velocity_gain;
+use super::lines::line_model;
 use super::load::load;
 use super::numbers::Numbers;
 use super::supply::power_unit;
@@ -58,6 +59,7 @@ pub fn components<S: Scalar>(
         valve: valve(&declared.valve, numbers, pressure - tank_pressure),
         line_a: line("a", &declared.line.a),
         line_b: line("b", &declared.line.b),
+        line_models: [&declared.line.a, &declared.line.b].map(|line| line_model(&line.motion)),
         cross_port: cross_port(declared.cross_port.as_ref(), numbers, fluid.density),
         cylinder: match &declared.motor {
             None => cylinder(&declared.cylinder, numbers),
