@@ -50,7 +50,7 @@ pub use ideal_valve::{is_ideal, reduced, two_pressures};
 pub use in_loop::{FeedForwardPath, PressureFeedbackPath};
 pub(crate) use in_loop::{inner_feedback, limits_load_motion, pressure_ratio, with_controller_of};
 pub use largest_flow::{FlowLimit, LargestFlow, largest_flow};
-pub use lines::{line_model, lines};
+pub use lines::line_model;
 pub(crate) use lines::{quarter_wave, quarter_wave_of};
 pub use load::rod_end;
 pub use of_motion::OfMotion;
@@ -253,7 +253,7 @@ impl Rig {
         let parameters = parameters::resolve(project, &derived);
         let alike = [are_equal(sides(&at.chambers)), edges];
         let plant = at.plant(Equal::new(declared, alike, states_one_pressure(&parameters, &[])));
-        let in_motion = at.in_motion(&declared.line, &plant)?;
+        let in_motion = at.in_motion(&plant)?;
         Ok(Rig {
             motion: declared.motion(),
             actuator,

@@ -72,7 +72,7 @@ pub(crate) use run::{outside_model_s, run_status};
 pub use run_status::RunStatus;
 pub use saved::{NotSaved, SavedState};
 
-pub use bench::{machine_of, options};
+pub use bench::machine_of;
 pub(crate) use course::{PreparedScenario, course_of};
 pub use course::{ScenarioDrive, driven};
 pub(crate) use file_names::table_names;

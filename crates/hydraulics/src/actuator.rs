@@ -9,7 +9,7 @@ use crate::cylinder::Cylinder;
 use crate::fluid::Fluid;
 use crate::force_sensor::ForceSensor;
 use crate::friction::Friction;
-use crate::line::{Line, StiffeningMember};
+use crate::line::{DynamicLine, Line, LineError, LineModel, StiffeningMember};
 use crate::linkage::Linkage;
 use crate::load::Load;
 use crate::parameter::{ParameterError, ParameterRequirement, Problems};
@@ -33,6 +33,9 @@ pub struct Components<S = f64> {
     pub line_a: Line<S>,
     /// The line between port B and chamber B.
     pub line_b: Line<S>,
+    /// Models of lines A and B in motion. Their numbers are plain: lines in motion have no plant in
+    /// recorded numbers, and none of these numbers is uncertain.
+    pub line_models: [LineModel; 2],
     /// Gas at chambers A and B.
     pub gas: [Option<ChamberGas<S>>; 2],
     /// Valve between the chambers, at the cylinder.
@@ -105,6 +108,40 @@ impl<S: Scalar> Components<S> {
     }
 }
 
+impl Components {
+    /// Pressure in Pa midway between supply and tank.
+    fn mean_pressure(&self) -> f64 {
+        0.5 * (self.supply.pressure + self.supply.tank_pressure)
+    }
+
+    /// Lines A and B by their models of motion; `None` if both are lumped.
+    ///
+    /// # Errors
+    /// A line that its model does not fit.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_hydraulics::actuator::Components;
+    /// use phea_hydraulics::line::{END_SHARE, LineModel, StiffeningMember};
+    /// # use phea_hydraulics::{reference_rig::{components, hose_line}, stiffness::StiffnessModel};
+    /// let lumped = components(hose_line(), StiffnessModel::ByVolume);
+    /// assert_eq!(lumped.lines_in_motion(StiffeningMember::Nominal), Ok(None));
+    /// let waves = LineModel::TransmissionLine { end_share: END_SHARE };
+    /// let moving = Components { line_models: [waves, LineModel::Lumped], ..lumped };
+    /// let [line_a, line_b] = moving.lines_in_motion(StiffeningMember::Nominal)?.unwrap();
+    /// assert_eq!((line_a.delays().len(), line_b.delays().len()), (2, 0));
+    /// # Ok::<(), phea_hydraulics::line::LineError>(())
+    /// ```
+    pub fn lines_in_motion(&self, member: StiffeningMember) -> Result<Option<[DynamicLine; 2]>, LineError> {
+        if self.line_models == [LineModel::Lumped; 2] {
+            return Ok(None);
+        }
+        let of = |line, model| DynamicLine::new(line, &self.fluid, self.mean_pressure(), member, model);
+        let [model_a, model_b] = &self.line_models;
+        Ok(Some([of(&self.line_a, model_a)?, of(&self.line_b, model_b)?]))
+    }
+}
+
 /// Error for components that do not make an actuator: every impossible parameter.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}", problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
@@ -166,7 +203,7 @@ impl Actuator {
     /// Pressure in Pa at which the fluid's modulus is evaluated without an operating point: midway
     /// between supply and tank, the pressure in the chambers of an idle symmetric actuator.
     pub fn mean_pressure(&self) -> f64 {
-        0.5 * (self.0.supply.pressure + self.0.supply.tank_pressure)
+        self.0.mean_pressure()
     }
 
     /// Compliance of both chambers with their lines and accumulators, at chamber pressures in Pa

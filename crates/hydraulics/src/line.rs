@@ -10,6 +10,7 @@ mod braided_wall;
 mod conduit;
 mod dynamic_line;
 mod hose;
+mod keys;
 mod laminar_friction;
 mod line_model;
 mod line_response;
@@ -22,7 +23,7 @@ mod travelling_waves;
 mod two_wave;
 
 pub use blocked::BlockedLine;
-pub use braided_wall::BraidedWall;
+pub use braided_wall::{BraidedWall, LineWall};
 pub use conduit::{Conduit, LineError};
 pub use dynamic_line::DynamicLine;
 pub use hose::{Hose, Stiffening, static_hose_modulus};

@@ -126,7 +126,8 @@ impl Machine {
     /// Machine of an actuator with these options.
     ///
     /// # Errors
-    /// All impossible options; a load in front of a wall without a mass; a static friction curve
+    /// All impossible options; a load in front of a wall without a mass; a line that its
+    /// model does not fit; a static friction curve
     /// without the velocity that smooths its jump;
     /// end stops so soft, or dead volumes so small, that the supply pressure would press the piston
     /// through the last fluid of a chamber; an external force on a load that does not yield.
@@ -142,6 +143,7 @@ impl Machine {
         if options.external_force && !components.load.moves() {
             return Err(MachineError::UnyieldingLoad);
         }
+        let lines = components.lines_in_motion(options.member)?;
         let friction = MovingFriction::new(&components.friction).ok_or(MachineError::StaticFriction)?;
         let none = DynamicLine::Segments(Segments::lumped(0.0));
         let mut machine = Machine {
@@ -149,7 +151,7 @@ impl Machine {
             supply: components.supply,
             power_unit: components.power_unit,
             cylinder: components.cylinder,
-            chambers: match options.lines {
+            chambers: match lines {
                 None => Chambers::new(actuator, options.member),
                 Some(lines) => {
                     let added = lines.map(|line| line.chamber_compliance());
@@ -160,7 +162,7 @@ impl Machine {
             gas_pressure_limits: components.gas.map(|gas| gas?.pressure_limit()),
             moving_setting: options.moving_setting,
             cross_port: components.cross_port,
-            lines: options.lines.unwrap_or([none; 2]),
+            lines: lines.unwrap_or([none; 2]),
             friction,
             sensor_stiffness: components.force_sensor.stiffness,
             series: components.series.map(|series| series.in_motion(&components.fluid, options.member)),

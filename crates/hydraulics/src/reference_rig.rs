@@ -11,7 +11,7 @@ use crate::cylinder::Cylinder;
 use crate::fluid::Fluid;
 use crate::force_sensor::ForceSensor;
 use crate::friction::{Friction, LuGre, Stribeck};
-use crate::line::{Hose, Line, Pipe, PipeWall, Stiffening};
+use crate::line::{Hose, Line, LineModel, Pipe, PipeWall, Stiffening};
 use crate::linear::LinearParameters;
 use crate::load::Load;
 use crate::power_unit::PowerUnit;
@@ -124,6 +124,7 @@ pub fn components(line: Line, stiffness_model: StiffnessModel) -> Components {
         valve: valve(),
         line_a: line,
         line_b: line,
+        line_models: [LineModel::Lumped; 2],
         gas: [None; 2],
         cross_port: None,
         cylinder: cylinder(),

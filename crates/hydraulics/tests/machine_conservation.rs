@@ -16,9 +16,7 @@ use phea_hydraulics::machine::{
 use phea_hydraulics::reference_rig::{benchmark_components, leaking, stopped};
 use phea_hydraulics::servovalve::Servovalve;
 
-use super::rich_machines::{
-    PLAIN, asymmetric, charged_pump, lines_of, passive_friction, pump, rich_machines,
-};
+use super::rich_machines::{PLAIN, asymmetric, charged_pump, passive_friction, pump, rich_machines};
 
 /// Classical Runge-Kutta step of rates that depend on time.
 pub(super) fn step(state: &mut [f64], time: f64, width: f64, rates: &mut dyn FnMut(f64, &[f64]) -> Vec<f64>) {
@@ -314,8 +312,8 @@ fn what_is_stored_changes_by_what_enters_and_is_lost() {
 fn waves_have_no_ledger() {
     let rig = asymmetric();
     let waves = LineModel::TransmissionLine { end_share: END_SHARE };
-    let options = MachineOptions { lines: lines_of(&rig, [PLAIN, waves]), ..MachineOptions::default() };
-    let machine = machine_of(rig, &options);
+    let rig = Components { line_models: [PLAIN, waves], ..rig };
+    let machine = machine_of(rig, &MachineOptions::default());
     let start = StartValues { position: 0.25, pressure_a: 35e5, pressure_b: 30e5, ..StartValues::default() };
     let beginning = machine.start(&start).unwrap();
     assert!(machine.ledger(&beginning.state, &beginning.all_inputs()).is_none());

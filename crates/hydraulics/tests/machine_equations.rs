@@ -11,9 +11,7 @@ use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::friction::{Friction, FrictionLevels, Stribeck};
-use phea_hydraulics::line::{
-    Conduit, DynamicLine, END_SHARE, LaminarFriction, Segments, StiffeningMember, TransmissionLine,
-};
+use phea_hydraulics::line::{END_SHARE, LaminarFriction, LineModel};
 use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{
     Accumulator, INDICATORS, Machine, MachineError, MachineOptions, MachineSignals, PowerUnit, PumpLimited,
@@ -104,17 +102,17 @@ pub(super) fn machines() -> Vec<Machine> {
     };
     let rough = Components { friction: benchmark_components().friction, ..hose() };
     let uniform = Components { stiffness_model: StiffnessModel::Uniform, ..asymmetric(1e-3) };
-    let conduit = Conduit::of_line(&hose_line(), &hose().fluid, 35e5, StiffeningMember::Nominal).unwrap();
-    let waves = DynamicLine::TransmissionLine(TransmissionLine::of_conduit(&conduit, END_SHARE).unwrap());
-    let segments = DynamicLine::Segments(Segments::new(&conduit, 2, LaminarFriction::Steady).unwrap());
+    let waves = LineModel::TransmissionLine { end_share: END_SHARE };
+    let friction = LaminarFriction::Steady;
+    let segments = LineModel::Segments { count: 2, friction, relaxation_time: None };
     vec![
         machine_of(benchmark_components(), &plain),
         machine_of(hose(), &plain),
         machine_of(full(rough), &plain),
         machine_of(sprung, &plain),
         machine_of(full(uniform), &plain),
-        machine_of(hose(), &MachineOptions { lines: Some([waves, segments]), ..plain }),
-        machine_of(full(rough), &MachineOptions { lines: Some([segments, waves]), ..plain }),
+        machine_of(Components { line_models: [waves, segments], ..hose() }, &plain),
+        machine_of(Components { line_models: [segments, waves], ..full(rough) }, &plain),
     ]
 }
 

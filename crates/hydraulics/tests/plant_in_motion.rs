@@ -18,7 +18,7 @@ use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::{
-    DynamicLine, END_SHARE, LaminarFriction, Line, LineModel, Segments, StiffeningMember,
+    DynamicLine, END_SHARE, LaminarFriction, Line, LineModel, LineWall, Segments, StiffeningMember,
 };
 use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{Chambers, InitialCondition, Machine, MachineOptions};
@@ -38,7 +38,7 @@ pub(super) fn model(number: u64, time: f64) -> LineModel {
         1 => LineModel::Creeping { relaxation_time: time },
         2 | 3 => LineModel::Segments { count: 1 + (number % 7) as usize, friction, relaxation_time: None },
         4 => LineModel::TransmissionLine { end_share: END_SHARE },
-        _ if number % 12 == 5 => LineModel::TwoWave { end_share: END_SHARE, wall: None },
+        _ if number % 12 == 5 => LineModel::TwoWave { end_share: END_SHARE, wall: LineWall::default() },
         _ => LineModel::Segments { count: 3, friction, relaxation_time: Some(time) },
     }
 }
@@ -133,9 +133,8 @@ pub(crate) fn drawn(number: u64) -> Drawn {
     let lines = [line(&parts.line_a, &models[0]), line(&parts.line_b, &models[1])];
     let (mass, stiffness, damping) = (spread(1.0, 500.0), spread(1e4, 1e8), spread(10.0, 1e4));
     let (load, linear_load) = loads(number, mass, stiffness, damping);
-    let actuator = Actuator::new(Components { load, ..parts }).unwrap();
-    let options = MachineOptions { lines: Some(lines), ..MachineOptions::default() };
-    let machine = Machine::new(&actuator, &options).unwrap();
+    let actuator = Actuator::new(Components { load, line_models: models, ..parts }).unwrap();
+    let machine = Machine::new(&actuator, &MachineOptions::default()).unwrap();
     let condition = Condition::Command(spread(0.01, 2.0));
     let rest = machine.rest(&operating_point(&actuator, spread(0.05, 0.45), condition).unwrap()).unwrap();
     let moves = linear_load != LinearLoad::Prescribed;

@@ -10,7 +10,7 @@ use phea_hydraulics::cross_port::{CrossPort, Restrictor};
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::friction::{Friction, LuGre, LuGrePassivity};
-use phea_hydraulics::line::{DynamicLine, LaminarFriction, LineModel, StiffeningMember};
+use phea_hydraulics::line::{LaminarFriction, LineModel};
 use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{Accumulator, Machine, MachineOptions, PowerUnit, PumpLimited};
 use phea_hydraulics::reference_rig::{
@@ -68,14 +68,6 @@ pub(super) fn foamy(
     Components { fluid: Fluid { entrained_air: air, ..rig.fluid }, stiffness_model, ..rig }
 }
 
-/// Rig with dynamics of both lines.
-pub(super) fn lines_of(rig: &Components, models: [LineModel; 2]) -> Option<[DynamicLine; 2]> {
-    let [model_a, model_b] = models;
-    let of =
-        |line, model| DynamicLine::new(line, &rig.fluid, 35e5, StiffeningMember::Nominal, &model).unwrap();
-    Some([of(&rig.line_a, model_a), of(&rig.line_b, model_b)])
-}
-
 /// Segments with all their options.
 const FULL: LineModel = LineModel::Segments {
     count: 3,
@@ -92,10 +84,11 @@ const CREEPING: LineModel = LineModel::Creeping { relaxation_time: 0.02 };
 pub(super) fn rich_machines() -> Vec<(&'static str, Machine)> {
     let rig = asymmetric();
     let hoses = Components { line_b: hose_line(), ..rig };
-    let of = |rig, (power_unit, options): (PowerUnit, MachineOptions)| {
-        machine_of(Components { power_unit, ..leaking(rig, 2e-12) }, &options)
+    let of = |rig, (power_unit, line_models): (PowerUnit, [LineModel; 2])| {
+        machine_of(Components { power_unit, line_models, ..leaking(rig, 2e-12) }, &MachineOptions::default())
     };
-    let with = |power_unit, lines| (power_unit, MachineOptions { lines, ..MachineOptions::default() });
+    let lumped = [LineModel::Lumped; 2];
+    let with = |power_unit| (power_unit, lumped);
     let uniform = foamy(
         Components { friction: passive_friction(), ..benchmark_components() },
         StiffnessModel::Uniform,
@@ -104,7 +97,7 @@ pub(super) fn rich_machines() -> Vec<(&'static str, Machine)> {
     let by_volume = foamy(rig, StiffnessModel::ByVolume, 1.4);
     let load = Load::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
     let all = Components { load, ..foamy(hoses, StiffnessModel::Uniform, 1.2) };
-    let segments = with(pump(), lines_of(&rig, [SMEARED, PLAIN]));
+    let segments = (pump(), [SMEARED, PLAIN]);
     let (open, necks) = ([GasPassage::Open; 2], [neck(6e-3), neck(4e-3)].map(GasPassage::Neck));
     let necked = |rig| with_gas(rig, POLYTROPIC, necks);
     let half_necked = with_gas(by_volume, POLYTROPIC, [GasPassage::Open, GasPassage::Neck(neck(6e-3))]);
@@ -116,24 +109,24 @@ pub(super) fn rich_machines() -> Vec<(&'static str, Machine)> {
     let orifice = Restrictor::Orifice { flow_coefficient: 2e-9, transition_pressure: 1e4 };
     let laminar = Restrictor::Laminar { conductance: 1e-11 };
     let mut machines = vec![
-        ("a laminar valve between the chambers", of(port(laminar, None), with(pump(), None))),
-        ("an orifice between them", of(port(orifice, None), with(PowerUnit::Constant, None))),
-        ("laminar feedback", of(port(laminar, Some(3e-13)), with(pump(), None))),
+        ("a laminar valve between the chambers", of(port(laminar, None), with(pump()))),
+        ("an orifice between them", of(port(orifice, None), with(PowerUnit::Constant))),
+        ("laminar feedback", of(port(laminar, Some(3e-13)), with(pump()))),
         ("feedback behind lines", of(port(orifice, Some(3e-13)), segments)),
-        ("gas with heat", of(heated(rig, [Some(0.02), None], open), with(charged_pump(40e5, 1.4), None))),
-        ("gas with heat behind necks", of(heated(rig, [Some(0.3), Some(0.01)], necks), with(pump(), None))),
+        ("gas with heat", of(heated(rig, [Some(0.02), None], open), with(charged_pump(40e5, 1.4)))),
+        ("gas with heat behind necks", of(heated(rig, [Some(0.3), Some(0.01)], necks), with(pump()))),
         ("gas with heat behind a line", of(heated(by_volume, [None, Some(0.05)], open), segments)),
-        ("gas behind necks", of(necked(rig), with(charged_pump(40e5, 1.4), None))),
+        ("gas behind necks", of(necked(rig), with(charged_pump(40e5, 1.4)))),
         ("gas behind a neck and a line", of(half_necked, segments)),
-        ("gas at the chambers", of(with_gas(rig, POLYTROPIC, open), with(charged_pump(40e5, 1.4), None))),
+        ("gas at the chambers", of(with_gas(rig, POLYTROPIC, open), with(charged_pump(40e5, 1.4)))),
         ("gas behind a line", of(at_one, segments)),
-        ("gas", of(rig, with(charged_pump(40e5, 1.4), None))),
-        ("isothermal gas", of(rig, with(charged_pump(40e5, 1.0), None))),
-        ("air", of(by_volume, with(pump(), None))),
-        ("air, one modulus", of(uniform, with(PowerUnit::Constant, None))),
-        ("segments", of(rig, with(PowerUnit::Constant, lines_of(&rig, [SMEARED, PLAIN])))),
-        ("creep", of(hoses, with(pump(), lines_of(&hoses, [FULL, CREEPING])))),
-        ("all", of(all, with(charged_pump(40e5, 1.3), lines_of(&all, [FULL, SMEARED])))),
+        ("gas", of(rig, with(charged_pump(40e5, 1.4)))),
+        ("isothermal gas", of(rig, with(charged_pump(40e5, 1.0)))),
+        ("air", of(by_volume, with(pump()))),
+        ("air, one modulus", of(uniform, with(PowerUnit::Constant))),
+        ("segments", of(rig, (PowerUnit::Constant, [SMEARED, PLAIN]))),
+        ("creep", of(hoses, (pump(), [FULL, CREEPING]))),
+        ("all", of(all, (charged_pump(40e5, 1.3), [FULL, SMEARED]))),
     ];
     machines.extend(adjusted_machines());
     machines
@@ -209,20 +202,15 @@ fn adjusted_machines() -> [(&'static str, Machine); 3] {
     let of_valves = with_gas(by_volume, relaxing([None, Some(0.05)]), valves);
     let of_valve = with_gas(rig, POLYTROPIC, valves).gas[0];
     let valve_and_gas = Components { gas: [of_valve, moved(less)], ..rig };
-    let moving = |lines| MachineOptions {
-        external_force: true,
-        moving_setting: true,
-        lines,
-        ..MachineOptions::default()
-    };
+    let moving = MachineOptions { external_force: true, moving_setting: true, ..MachineOptions::default() };
     let load = Load::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
-    let of = |rig, power_unit, lines| {
-        machine_of(Components { power_unit, load, ..leaking(rig, 2e-12) }, &moving(lines))
+    let of = |rig, power_unit, line_models| {
+        machine_of(Components { power_unit, load, line_models, ..leaking(rig, 2e-12) }, &moving)
     };
-    let lines = lines_of(&rig, [SMEARED, PLAIN]);
+    let lumped = [LineModel::Lumped; 2];
     [
-        ("gas that is moved", of(of_gas, charged_pump(40e5, 1.4), None)),
-        ("gas with heat behind valves that move", of(of_valves, pump(), lines)),
-        ("gas behind a valve, and moved", of(valve_and_gas, PowerUnit::Constant, None)),
+        ("gas that is moved", of(of_gas, charged_pump(40e5, 1.4), lumped)),
+        ("gas with heat behind valves that move", of(of_valves, pump(), [SMEARED, PLAIN])),
+        ("gas behind a valve, and moved", of(valve_and_gas, PowerUnit::Constant, lumped)),
     ]
 }

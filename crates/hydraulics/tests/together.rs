@@ -300,24 +300,22 @@ fn rest(draw: &mut Draw, rig: &Actuator, machine: &Machine, position: f64) -> In
     rests.find(within).unwrap()
 }
 
-/// Dynamic lines, of every possible model.
-fn moving_lines(draw: &mut Draw, rig: &Actuator) -> Option<[DynamicLine; 2]> {
+/// Models of lines in motion, of every kind.
+fn moving_lines(draw: &mut Draw, parts: &Components) -> [LineModel; 2] {
     if !draw.part("lines in motion", 0.4) {
-        return None;
+        return [LineModel::Lumped; 2];
     }
-    let parts = rig.components();
     let (first, second) = (draw.spread(1.0, 2.0), draw.spread(1.0, 2.0));
     let numbers = [first, second].map(|drawn| (1e6 * drawn) as u64);
+    let pressure = 0.5 * (parts.supply.pressure + parts.supply.tank_pressure);
     let of = |line: &Line, number: u64, time: f64| {
-        let of_model = |model: &LineModel| {
-            DynamicLine::new(line, &parts.fluid, rig.mean_pressure(), StiffeningMember::Nominal, model)
-        };
+        let found = model(number, time);
+        let moving = DynamicLine::new(line, &parts.fluid, pressure, StiffeningMember::Nominal, &found);
         // a pipe neither creeps nor has two waves
-        let waves = LineModel::TransmissionLine { end_share: END_SHARE };
-        of_model(&model(number, time)).or_else(|_| of_model(&waves)).unwrap()
+        moving.map_or(LineModel::TransmissionLine { end_share: END_SHARE }, |_| found)
     };
     let times = [draw.spread(1e-4, 0.1), draw.spread(1e-4, 0.1)];
-    Some([of(&parts.line_a, numbers[0], times[0]), of(&parts.line_b, numbers[1], times[1])])
+    [of(&parts.line_a, numbers[0], times[0]), of(&parts.line_b, numbers[1], times[1])]
 }
 
 fn resting(draw: &mut Draw, rig: Components) -> Resting {
@@ -333,9 +331,10 @@ fn resting(draw: &mut Draw, rig: Components) -> Resting {
     draw.parts.extend(load.moves().then_some("sprung load"));
     draw.parts.extend((rig.power_unit != PowerUnit::Constant).then_some("pump"));
     let rig = Components { load, ..rig };
-    let actuator = Actuator::new(rig).unwrap();
-    let lines = moving_lines(draw, &actuator);
-    let options = MachineOptions { moving_setting: true, lines, ..MachineOptions::default() };
+    let line_models = moving_lines(draw, &rig);
+    let actuator = Actuator::new(Components { line_models, ..rig }).unwrap();
+    let lines = actuator.components().lines_in_motion(StiffeningMember::Nominal).unwrap();
+    let options = MachineOptions { moving_setting: true, ..MachineOptions::default() };
     let machine = Machine::new(&actuator, &options).unwrap();
     let position = draw.spread(0.1, 0.9) * rig.cylinder.stroke.length().unwrap_or(7.0);
     let rest = rest(draw, &actuator, &machine, position);

@@ -326,10 +326,10 @@ fn ledgers_close() {
     // the rig's lines are in segments
     let parts = rig(transmission(2));
     let model = LineModel::Segments { count: 3, friction: LaminarFriction::Steady, relaxation_time: None };
-    let line = DynamicLine::new(&hose_line(), &parts.fluid, 35e5, StiffeningMember::Nominal, &model).unwrap();
     let valve = Servovalve { transition_pressure: 1e5, ..parts.valve };
-    let options = MachineOptions { lines: Some([line; 2]), ..MachineOptions::default() };
-    check(&machine_of(Components { valve, ..parts }, &options), &motion, &start, 0.1, 5e-6);
+    let machine =
+        machine_of(Components { valve, line_models: [model; 2], ..parts }, &MachineOptions::default());
+    check(&machine, &motion, &start, 0.1, 5e-6);
 }
 
 /// Accounts at any state, including unreachable ones.

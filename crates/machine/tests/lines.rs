@@ -4,12 +4,11 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use phea_dynamics::simulation::{Plant, Profile, SimulationSettings, Status};
-use phea_hydraulics::actuator::Actuator;
+use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::line::{
-    Conduit, DynamicLine, END_SHARE, LaminarFriction, Line, Segments, StiffeningMember, TransmissionLine,
-    TwoWaveHose,
+    Conduit, END_SHARE, LaminarFriction, Line, LineModel, LineWall, StiffeningMember,
 };
-use phea_hydraulics::machine::{Machine, MachineOptions};
+use phea_hydraulics::machine::{Chambers, Machine, MachineOptions};
 use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
 use phea_hydraulics::reference_rig::{components, hose, hose_line};
 use phea_hydraulics::stiffness::StiffnessModel;
@@ -20,32 +19,24 @@ fn actuator() -> Actuator {
     Actuator::new(components(hose_line(), StiffnessModel::ByVolume)).unwrap()
 }
 
-fn conduit() -> Conduit {
-    Conduit::of_line(&hose_line(), &actuator().components().fluid, 35e5, StiffeningMember::Nominal).unwrap()
+fn machine(model: LineModel) -> Machine {
+    let components = Components { line_models: [model; 2], ..*actuator().components() };
+    Machine::new(&Actuator::new(components).unwrap(), &MachineOptions::default()).unwrap()
 }
 
-fn machine(line: Option<DynamicLine>) -> Machine {
-    let options = MachineOptions { lines: line.map(|line| [line; 2]), ..MachineOptions::default() };
-    Machine::new(&actuator(), &options).unwrap()
+fn segments(count: usize) -> LineModel {
+    LineModel::Segments { count, friction: LaminarFriction::FrequencyDependent, relaxation_time: None }
 }
 
-fn segments(count: usize) -> DynamicLine {
-    DynamicLine::Segments(Segments::new(&conduit(), count, LaminarFriction::FrequencyDependent).unwrap())
-}
+const WAVES: LineModel = LineModel::TransmissionLine { end_share: END_SHARE };
 
-fn waves() -> DynamicLine {
-    DynamicLine::TransmissionLine(TransmissionLine::of_conduit(&conduit(), END_SHARE).unwrap())
-}
-
-fn two_waves() -> DynamicLine {
-    let fluid = actuator().components().fluid;
-    let hose = TwoWaveHose::assumed(&hose(), 1.5, &fluid, 35e5, StiffeningMember::Nominal);
-    DynamicLine::TwoWave(hose.in_time(END_SHARE).unwrap())
+fn two_waves() -> LineModel {
+    LineModel::TwoWave { end_share: END_SHARE, wall: LineWall::default() }
 }
 
 /// Force every millisecond, N, while the load moves smoothly by 2 mm, beginning 20 ms after a rest
 /// at 2 kN.
-fn forces(line: Option<DynamicLine>, motion_s: f64, duration_s: f64) -> Vec<f64> {
+fn forces(line: LineModel, motion_s: f64, duration_s: f64) -> Vec<f64> {
     let machine = machine(line);
     let point = operating_point(&actuator(), 0.2, Condition::Load(SteadyLoad::Force(2e3))).unwrap();
     let rest = machine.rest(&point).unwrap();
@@ -68,28 +59,25 @@ fn largest_difference(one: &[f64], other: &[f64]) -> f64 {
 /// the chamber.
 #[test]
 fn one_capacity_is_the_lumped_line() {
-    let compliance = hose_line().compliance(1.45e9, StiffeningMember::Nominal);
-    let lumped = machine(None);
-    let capacity = machine(Some(DynamicLine::Segments(Segments::lumped(compliance))));
-    let state = [0.4, 3.0, 41e5, 22e5, 1e-4, 0.03];
-    let [mut one, mut other] = [[f64::NAN; 6]; 2];
-    lumped.rates(&state, 0.7, &[0.31, 0.01], &mut one);
-    capacity.rates(&state, 0.7, &[0.31, 0.01], &mut other);
-    assert!(one.iter().zip(other).all(|(a, b)| (a - b).abs() <= 1e-13 * a.abs()), "{one:?} {other:?}");
-    assert_eq!(lumped.ledger(&state, &[0.31, 0.01]), capacity.ledger(&state, &[0.31, 0.01]));
+    let (actuator, member) = (actuator(), StiffeningMember::Nominal);
+    let compliance = hose_line().compliance(1.45e9, member);
+    let [lumped, capacity] =
+        [Chambers::new(&actuator, member), Chambers::behind_lines(&actuator, member, [compliance; 2])]
+            .map(|chambers| chambers.compliance(0.31, [41e5, 22e5]));
+    assert!(lumped.iter().zip(&capacity).all(|(a, b)| (a - b).abs() <= 1e-13 * a), "{lumped:?} {capacity:?}");
 }
 
 /// Every line acts as its compliance in slow motion; in fast motion they differ.
 #[test]
 fn slow_motions_see_the_lumped_line() {
-    let compare = |line: DynamicLine, motion_s: f64| {
-        let lumped = forces(None, motion_s, motion_s + 0.04);
-        let other = forces(Some(line), motion_s, motion_s + 0.04);
+    let compare = |line: LineModel, motion_s: f64| {
+        let lumped = forces(LineModel::Lumped, motion_s, motion_s + 0.04);
+        let other = forces(line, motion_s, motion_s + 0.04);
         let peak = lumped.iter().map(|force| (force - lumped[0]).abs()).fold(0.0, f64::max);
         assert!(peak > 500.0);
         largest_difference(&lumped, &other) / peak
     };
-    for line in [segments(4), waves(), two_waves()] {
+    for line in [segments(4), WAVES, two_waves()] {
         let (slow, fast) = (compare(line, 0.4), compare(line, 0.02));
         assert!(slow < 0.01 && fast > 3.0 * slow, "{slow} {fast}");
     }
@@ -99,16 +87,15 @@ fn slow_motions_see_the_lumped_line() {
 /// length.
 #[test]
 fn segments_become_a_transmission_line() {
-    let travelling = forces(Some(waves()), 0.02, 0.05);
-    let errors =
-        [2, 4, 8].map(|count| largest_difference(&forces(Some(segments(count)), 0.02, 0.05), &travelling));
+    let travelling = forces(WAVES, 0.02, 0.05);
+    let errors = [2, 4, 8].map(|count| largest_difference(&forces(segments(count), 0.02, 0.05), &travelling));
     assert!(errors[1] < 0.6 * errors[0] && errors[2] < 0.02 * 4e3, "{errors:?}");
 }
 
 /// A pulse at the valve has no effect before its wave has arrived.
 #[test]
 fn nothing_is_felt_before_the_wave_arrives() {
-    let machine = machine(Some(waves()));
+    let machine = machine(WAVES);
     let point = operating_point(&actuator(), 0.2, Condition::Load(SteadyLoad::Force(0.0))).unwrap();
     let rest = machine.rest(&point).unwrap();
     let ground = Profile::constant(rest.inputs[0]);
@@ -133,13 +120,11 @@ fn nothing_is_felt_before_the_wave_arrives() {
 fn steady_motions_stay() {
     let line = Line::Hose { hose: hose(), length: 3.0 };
     let rig = components(line, StiffnessModel::Uniform);
-    let actuator = Actuator::new(rig).unwrap();
     let conduit = Conduit::of_line(&line, &rig.fluid, 35e5, StiffeningMember::Nominal).unwrap();
-    let waves = DynamicLine::TransmissionLine(TransmissionLine::of_conduit(&conduit, END_SHARE).unwrap());
-    let creeping = DynamicLine::Segments(Segments::new(&conduit, 3, LaminarFriction::Steady).unwrap());
-    for lines in [[waves, creeping], [creeping, waves]] {
-        let options = MachineOptions { lines: Some(lines), ..MachineOptions::default() };
-        let machine = Machine::new(&actuator, &options).unwrap();
+    let segments = LineModel::Segments { count: 3, friction: LaminarFriction::Steady, relaxation_time: None };
+    for line_models in [[WAVES, segments], [segments, WAVES]] {
+        let actuator = Actuator::new(Components { line_models, ..rig }).unwrap();
+        let machine = Machine::new(&actuator, &MachineOptions::default()).unwrap();
         let point = operating_point(&actuator, 0.2, Condition::Motion(2.0, SteadyLoad::Force(1e3))).unwrap();
         let steady = machine.rest(&point).unwrap();
         let signals = machine.signals(&steady.state, &steady.all_inputs());

@@ -1,7 +1,8 @@
 //! Dynamic model of a line: `model` of `[line]`, and its keys.
 
 use phea_hydraulics::line::LaminarFriction;
-use phea_quantity::{MASS_PER_LENGTH, RATIO, STRAIN_PER_FORCE, STRAIN_PER_PRESSURE, TIME};
+pub use phea_hydraulics::line::LineWall;
+use phea_quantity::{RATIO, TIME};
 use phea_table::{Key, key, plain};
 use phea_table::{Kinds, TableNumber, Variants, Visitor};
 
@@ -44,19 +45,6 @@ pub struct LineSegments<S = f64> {
     pub friction: Option<LaminarFriction>,
     /// Relaxation time of a wall that creeps, s; elastic if absent.
     pub relaxation_time: Option<S>,
-}
-
-/// Data of a hose's wall that moves along its axis; absent values are assumed.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct LineWall<S = f64> {
-    /// Mass per length, kg/m.
-    pub mass_per_length: Option<S>,
-    /// Area strain per pressure without tension, 1/Pa.
-    pub pressure_compliance: Option<S>,
-    /// Area strain per tension, 1/N.
-    pub coupling_compliance: Option<S>,
-    /// Axial strain per tension, 1/N.
-    pub axial_compliance: Option<S>,
 }
 
 static FRICTIONS: [(&str, Option<LaminarFriction>); 2] = [
@@ -182,18 +170,5 @@ impl<S: TableNumber> LineSegments<S> {
         let k = plain("friction", "Laminar friction in segments; absent: \"frequency_dependent\".");
         v.choice(k, &FRICTIONS, &mut self.friction, false);
         v.optional(RELAXATION, &mut self.relaxation_time);
-    }
-}
-
-impl<S: TableNumber> LineWall<S> {
-    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
-        let k = key("mass_per_length", &MASS_PER_LENGTH, "Mass of a metre of wall.").positive();
-        v.optional(k, &mut self.mass_per_length);
-        let k = key("pressure_compliance", &STRAIN_PER_PRESSURE, "Area strain per pressure, no tension.");
-        v.optional(k.not_negative(), &mut self.pressure_compliance);
-        let k = key("coupling_compliance", &STRAIN_PER_FORCE, "Area strain per tension; negative: a braid.");
-        v.optional(k, &mut self.coupling_compliance);
-        let k = key("axial_compliance", &STRAIN_PER_FORCE, "Axial strain per tension.").positive();
-        v.optional(k, &mut self.axial_compliance);
     }
 }

@@ -18,8 +18,7 @@ use crate::setup::Setup;
 use crate::simulate::{
     COMMAND_LIMIT, ControlledMachine, Divergence, ERRORS_AMPLIFIED, Follower, LineLimits, LineWatch,
     Occurrence, PassAgreement, PassPlan, PassResult, PreparedScenario, REPEATED, Repetition, SimulateError,
-    StoppedRun, amplification, course_of, machine_of, moved, occurrences, options, outside_model_s,
-    run_status,
+    StoppedRun, amplification, course_of, machine_of, moved, occurrences, outside_model_s, run_status,
 };
 
 /// A run that is ready to be simulated.
@@ -75,8 +74,8 @@ pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
         };
         let external_force = plan.bench.machine.has_external_force();
         let moving_setting = plan.bench.machine.has_moving_setting();
-        let options = MachineOptions { external_force, moving_setting, ..options(&project, &actuator)? };
-        let machine = machine_of(project.motion(), &actuator, &options)?;
+        let driven = MachineOptions { external_force, moving_setting, ..MachineOptions::default() };
+        let machine = machine_of(&project, &actuator, &driven)?;
         let mut bench = plan.bench.around(machine, actuator);
         bench.line_limits = LineLimits::of(&project);
         if let (Control::Sampled(sampled), Some(seed)) = (&mut bench.control, draw.noise_seed) {

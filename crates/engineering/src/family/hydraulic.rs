@@ -65,7 +65,7 @@ pub(super) fn in_motion(
     let Some(declared) = &project.actuator else { return Ok(None) };
     let open = visited.open(project, declared);
     let (place, plant) = open.plant(values, visited.moved, visited.equal);
-    let moving = place.in_motion(&declared.line, &plant)?;
+    let moving = place.in_motion(&plant)?;
     Ok(visited.rig.as_response(moving, &plant))
 }
 

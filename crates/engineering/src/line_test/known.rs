@@ -104,7 +104,7 @@ impl KnownLine {
 
     /// Model of its motion as declared.
     pub(crate) fn declared_model(&self) -> LineModel {
-        line_model(&self.motion, &self.line)
+        line_model(&self.motion)
     }
 
     /// Model of its motion with nearly exact waves if no volume at the ends is stated: the end

@@ -17,6 +17,7 @@ use super::cross_port::cross_port;
 use super::friction::friction;
 use super::gas::chamber_gas;
 use super::in_loop::velocity_gain;
+use super::lines::line_model;
 use super::supply::power_unit;
 use crate::project::{
     self, BoundedNumber, Component, DeclaredSeries, DeclaredSpring, DeclaredTransmission, DeclaredWeight,
@@ -54,6 +55,7 @@ pub fn components<S: Scalar>(
         valve: valve(&declared.valve, pressure - tank_pressure),
         line_a: line(&declared.line.a, pressures),
         line_b: line(&declared.line.b, pressures),
+        line_models: [&plain.line.a, &plain.line.b].map(|line| line_model(&line.motion)),
         cross_port: cross_port(declared.cross_port.as_ref(), fluid.density),
         cylinder: match &declared.motor {
             None => cylinder(&declared.cylinder),

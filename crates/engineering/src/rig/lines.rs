@@ -3,35 +3,27 @@
 use std::f64::consts::FRAC_PI_2;
 
 use phea_hydraulics::actuator::Components;
-use phea_hydraulics::fluid::Fluid;
 use phea_hydraulics::line::{
-    BraidedWall, Conduit, DynamicLine, END_SHARE, Hose, LaminarFriction, Line, LineError, LineModel,
-    Stiffening, StiffeningMember,
+    Conduit, END_SHARE, LaminarFriction, Line, LineError, LineModel, Stiffening, StiffeningMember,
 };
 use phea_hydraulics::plant::{BehindLines, LinearPlant, PlantInMotion};
-use phea_hydraulics::servovalve::Supply;
 use phea_hydraulics::stiffness::compliance_at;
 
 use super::Rig;
 use super::at_point::RigAtPoint;
 use super::plant::without_branches;
-use crate::project::{self, LineMotion, LineSegments, LineWall};
+use crate::project::{LineMotion, LineSegments};
 
 impl RigAtPoint {
     /// Its plant with lines in motion in place of the lumped ones; `None` where both are lumped.
     ///
     /// # Errors
     /// A line that its model cannot describe.
-    pub(crate) fn in_motion(
-        &self,
-        declared: &project::DeclaredLines,
-        plant: &LinearPlant,
-    ) -> Result<Option<PlantInMotion>, LineError> {
+    pub(crate) fn in_motion(&self, plant: &LinearPlant) -> Result<Option<PlantInMotion>, LineError> {
         let RigAtPoint { components, point, chambers, .. } = self;
         let [line_a, line_b] = [components.line_a, components.line_b].map(stiffened_alike);
-        let Supply { pressure, tank_pressure } = components.supply;
-        let moving =
-            lines(declared, [&line_a, &line_b], &components.fluid, 0.5 * (pressure + tank_pressure))?;
+        let moving = Components { line_a, line_b, ..*components };
+        let moving = moving.lines_in_motion(StiffeningMember::Nominal)?;
         let [line_a, line_b] = [line_a, line_b].map(without_volume);
         let bare = Components { line_a, line_b, ..*components };
         let bare = bare.chamber_compliance([point.pressure_a, point.pressure_b], StiffeningMember::Nominal);
@@ -74,30 +66,8 @@ fn without_volume(mut line: Line) -> Line {
     line
 }
 
-/// These lines with the declared models of motion, filled with a fluid at a mean pressure in Pa;
-/// `None` where both are lumped.
-///
-/// # Errors
-/// A line that its model cannot describe.
-pub fn lines(
-    declared: &project::DeclaredLines,
-    lines: [&Line; 2],
-    fluid: &Fluid,
-    pressure: f64,
-) -> Result<Option<[DynamicLine; 2]>, LineError> {
-    let [a, b] = [&declared.a.motion, &declared.b.motion];
-    if a.is_lumped() && b.is_lumped() {
-        return Ok(None);
-    }
-    let of = |line: &Line, motion: &LineMotion| {
-        DynamicLine::new(line, fluid, pressure, StiffeningMember::Nominal, &line_model(motion, line))
-    };
-    let [line_a, line_b] = lines;
-    Ok(Some([of(line_a, a)?, of(line_b, b)?]))
-}
-
 /// The model of a line in motion as it is declared.
-pub fn line_model(motion: &LineMotion, line: &Line) -> LineModel {
+pub fn line_model(motion: &LineMotion) -> LineModel {
     let share = |stated: &Option<f64>| stated.unwrap_or(END_SHARE);
     match motion {
         LineMotion::Automatic | LineMotion::Lumped => LineModel::Lumped,
@@ -107,9 +77,7 @@ pub fn line_model(motion: &LineMotion, line: &Line) -> LineModel {
             LineModel::TransmissionLine { end_share: share(end_share) }
         }
         LineMotion::TwoWave { end_share, wall } => {
-            let hose = if let Line::Hose { hose, .. } = line { Some(hose) } else { None };
-            let wall = wall.as_ref().zip(hose).map(|(wall, hose)| braided_wall(wall, hose));
-            LineModel::TwoWave { end_share: share(end_share), wall }
+            LineModel::TwoWave { end_share: share(end_share), wall: wall.unwrap_or_default() }
         }
     }
 }
@@ -119,21 +87,6 @@ fn segmented(declared: &LineSegments) -> LineModel {
         count: declared.count() as usize,
         friction: declared.friction.unwrap_or(LaminarFriction::FrequencyDependent),
         relaxation_time: declared.relaxation_time,
-    }
-}
-
-/// Values that are not stated are assumed, except those that follow from others: a braid at its
-/// neutral angle, and the catalogue's expansion.
-fn braided_wall(declared: &LineWall, hose: &Hose) -> BraidedWall {
-    let assumed = BraidedWall::assumed(hose, StiffeningMember::Nominal);
-    let axial_compliance = declared.axial_compliance.unwrap_or(assumed.axial_compliance);
-    let coupling_compliance = declared.coupling_compliance.unwrap_or(-axial_compliance);
-    let mass_per_length = declared.mass_per_length.unwrap_or(assumed.mass_per_length);
-    let member = StiffeningMember::Nominal;
-    let wall = BraidedWall::of_hose(hose, member, axial_compliance, coupling_compliance, mass_per_length);
-    BraidedWall {
-        pressure_compliance: declared.pressure_compliance.unwrap_or(wall.pressure_compliance),
-        ..wall
     }
 }
 

@@ -5,15 +5,14 @@ use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{CommandedPlant, Sensed, SimulationSettings};
 use phea_hydraulics::actuator::{Actuator, Components};
-use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::machine::{Machine, MachineError, MachineOptions, PowerUnit};
 use phea_machine::{Control, Sampled};
 
 use super::SimulateError;
 use super::line_limits::LineLimits;
 use crate::project::{self, Project, Scenario};
-use crate::quantity::{MotionKind, Units};
-use crate::rig::{OfMotion, Rig, lines, pressure_ratio};
+use crate::quantity::Units;
+use crate::rig::{OfMotion, Rig, pressure_ratio};
 use crate::setup::Setup;
 
 /// A machine with its controller.
@@ -139,19 +138,24 @@ fn rig_and_machine(
     driven: &MachineOptions,
 ) -> Result<(Rig, Sensed<Machine>), SimulateError> {
     let rig = setup.rig()?;
-    let MachineOptions { external_force, moving_setting, .. } = *driven;
-    let options = MachineOptions { external_force, moving_setting, ..options(setup.project, &rig.actuator)? };
-    let machine = machine_of(rig.motion, &rig.actuator, &options)?;
+    let machine = machine_of(setup.project, &rig.actuator, driven)?;
     Ok((rig.clone(), Sensed::new(machine, &setup.sensor)?))
 }
 
-/// The machine of an actuator that moves in this way.
+/// The machine of an actuator under the controller of a project, with the inputs that `driven` has.
+///
+/// # Errors
+/// [`SimulateError`] where there is no such machine.
 pub fn machine_of(
-    motion: MotionKind,
+    project: &Project,
     actuator: &Actuator,
-    options: &MachineOptions,
+    driven: &MachineOptions,
 ) -> Result<Machine, SimulateError> {
-    Machine::new(actuator, options).map_err(|error| match error {
+    let fed_back = project.controller.as_ref().and_then(|controller| controller.pressure_feedback);
+    let pressure_ratio = fed_back.map_or(1.0, |fed_back| pressure_ratio(&fed_back, actuator.components()));
+    let motion = project.motion();
+    Machine::new(actuator, &MachineOptions { pressure_ratio, ..*driven }).map_err(|error| match error {
+        MachineError::Line(error) => SimulateError::Line(error),
         MachineError::LoadWithoutMass => SimulateError::LoadMass(motion),
         error => SimulateError::Machine(OfMotion { motion, error }),
     })
@@ -229,22 +233,4 @@ fn between_samples(
         return Ok(std::mem::take(&mut controller.prefilter).transfer_function()?);
     }
     Ok(TransferFunction::gain_only(1.0))
-}
-
-/// The parts of the machine other than its actuator, whatever acts on it.
-pub fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions, SimulateError> {
-    let Some(declared) = &project.actuator else { return Ok(MachineOptions::default()) };
-    let fed_back = project.controller.as_ref().and_then(|controller| controller.pressure_feedback);
-    Ok(MachineOptions {
-        pressure_ratio: fed_back.map_or(1.0, |fed_back| pressure_ratio(&fed_back, actuator.components())),
-        external_force: false,
-        moving_setting: false,
-        member: StiffeningMember::Nominal,
-        lines: lines(
-            &declared.line,
-            [&actuator.components().line_a, &actuator.components().line_b],
-            &actuator.components().fluid,
-            actuator.mean_pressure(),
-        )?,
-    })
 }

@@ -12,10 +12,10 @@ pub use closed_loop::NoClosedLoop;
 use num_complex::Complex64;
 use phea_dynamics::order::sorted_distinct;
 use phea_dynamics::simulation::SimulationSettings;
-use phea_hydraulics::machine::{InitialCondition, Machine};
+use phea_hydraulics::machine::{InitialCondition, Machine, MachineOptions};
 
 use super::SimulateError;
-use super::bench::{machine_of, options, settings};
+use super::bench::{machine_of, settings};
 use crate::quantity::Units;
 use crate::rig::{OfMotion, Rig};
 use crate::setup::Setup;
@@ -143,7 +143,7 @@ pub fn frequency_response(
 fn rested(setup: &Setup<'_>) -> Result<RestedMachine, SimulateError> {
     let (project, rig) = (setup.project, setup.rig()?.clone());
     let impossible = |error| SimulateError::Machine(OfMotion { motion: rig.motion, error });
-    let machine = machine_of(rig.motion, &rig.actuator, &options(project, &rig.actuator)?)?;
+    let machine = machine_of(project, &rig.actuator, &MachineOptions::default())?;
     let rest = machine.rest(&rig.point).map_err(impossible)?;
     let force_n = phea_machine::force(&machine, &rest.state);
     let components = rig.actuator.components();

@@ -22,6 +22,19 @@ pub struct BraidedWall {
     pub axial_compliance: f64,
 }
 
+/// Data of a hose's wall that moves along its axis; absent values are assumed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LineWall<S = f64> {
+    /// Mass per length, kg/m.
+    pub mass_per_length: Option<S>,
+    /// Area strain per pressure without tension, 1/Pa.
+    pub pressure_compliance: Option<S>,
+    /// Area strain per tension, 1/N.
+    pub coupling_compliance: Option<S>,
+    /// Axial strain per tension, 1/N.
+    pub axial_compliance: Option<S>,
+}
+
 /// Assumed outer diameter of the wall of a half-inch thermoplastic hose, m.
 const OUTER_DIAMETER: f64 = 20.3e-3;
 /// Assumed density of its polyamide, polyester braid and polyurethane, kg/m3.
@@ -110,6 +123,31 @@ impl BraidedWall {
         let area = std::f64::consts::FRAC_PI_4 * (OUTER_DIAMETER * OUTER_DIAMETER - bore * bore);
         let stiffness = hose.dynamic_stiffening.member(member) * TUBE_MODULUS * area;
         BraidedWall::neutral(hose, member, stiffness, WALL_DENSITY * area)
+    }
+
+    /// Wall of these data. Absent ones are assumed, except those that follow from others: a braid at
+    /// its neutral angle, and the catalogue's expansion.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_hydraulics::line::{BraidedWall, LineWall, StiffeningMember};
+    /// let (hose, member) = (phea_hydraulics::reference_rig::hose(), StiffeningMember::Nominal);
+    /// let assumed = BraidedWall::assumed(&hose, member);
+    /// assert_eq!(BraidedWall::stated(&hose, member, &LineWall::default()), assumed);
+    /// let heavy = BraidedWall::stated(&hose, member, &LineWall { mass_per_length: Some(0.5), ..LineWall::default() });
+    /// assert_eq!(heavy, BraidedWall { mass_per_length: 0.5, ..assumed });
+    /// ```
+    pub fn stated(hose: &Hose, member: StiffeningMember, wall: &LineWall) -> BraidedWall {
+        let assumed = BraidedWall::assumed(hose, member);
+        let axial_compliance = wall.axial_compliance.unwrap_or(assumed.axial_compliance);
+        let coupling_compliance = wall.coupling_compliance.unwrap_or(-axial_compliance);
+        let mass_per_length = wall.mass_per_length.unwrap_or(assumed.mass_per_length);
+        let found =
+            BraidedWall::of_hose(hose, member, axial_compliance, coupling_compliance, mass_per_length);
+        BraidedWall {
+            pressure_compliance: wall.pressure_compliance.unwrap_or(found.pressure_compliance),
+            ..found
+        }
     }
 
     /// Impossible parameters of this wall; empty if there are none. The sign of its stored energy

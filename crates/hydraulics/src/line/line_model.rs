@@ -1,6 +1,6 @@
 use super::{
-    BraidedWall, Conduit, DynamicLine, Hose, LaminarFriction, Line, LineError, Segments, StandardLinearSolid,
-    StiffeningMember, TransmissionLine, TwoWaveHose,
+    BraidedWall, Conduit, DynamicLine, Hose, LaminarFriction, Line, LineError, LineWall, Segments,
+    StandardLinearSolid, StiffeningMember, TransmissionLine, TwoWaveHose,
 };
 use crate::fluid::Fluid;
 
@@ -33,8 +33,8 @@ pub enum LineModel {
     TwoWave {
         /// Fraction of the compliance at each end, normally [`super::END_SHARE`].
         end_share: f64,
-        /// Wall; if absent, that of [`BraidedWall::assumed`].
-        wall: Option<BraidedWall>,
+        /// Wall.
+        wall: LineWall,
     },
 }
 
@@ -97,7 +97,7 @@ impl DynamicLine {
             }
             LineModel::TwoWave { end_share, wall } => {
                 let (hose, length) = (hose_of(line)?, conduit()?.length);
-                let wall = wall.unwrap_or_else(|| BraidedWall::assumed(hose, member));
+                let wall = BraidedWall::stated(hose, member, &wall);
                 let hose = TwoWaveHose::new(hose, length, fluid, pressure, wall);
                 hose.in_time(end_share).map(DynamicLine::TwoWave)
             }

@@ -1,8 +1,8 @@
-use crate::line::{DynamicLine, StiffeningMember};
+use crate::line::{LineError, StiffeningMember};
 use crate::parameter::{ParameterError, Problems};
 
-/// Parts of a machine other than its actuator. The default adds nothing: a prescribed load on a
-/// constant supply.
+/// What acts on a machine in a run, what a controller reads of it, and the member of its hoses'
+/// stiffening. The default adds nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MachineOptions {
     /// Factor phi of the pressure signal p_A - phi p_B that a controller may feed back.
@@ -15,9 +15,6 @@ pub struct MachineOptions {
     pub moving_setting: bool,
     /// Member of the hoses' stiffening interval.
     pub member: StiffeningMember,
-    /// Lines between valve and chambers with dynamics of their own, A first; if absent, each
-    /// chamber has one pressure with its line.
-    pub lines: Option<[DynamicLine; 2]>,
 }
 
 impl Default for MachineOptions {
@@ -27,7 +24,6 @@ impl Default for MachineOptions {
             external_force: false,
             moving_setting: false,
             member: StiffeningMember::Nominal,
-            lines: None,
         }
     }
 }
@@ -50,6 +46,9 @@ pub enum MachineError {
         /// All impossible parameters.
         problems: Vec<ParameterError>,
     },
+    /// A line that its model does not fit.
+    #[error(transparent)]
+    Line(#[from] LineError),
     /// A static friction curve with a jump, which no integrator can resolve; it needs a velocity
     /// that smooths it, or bristles.
     #[error("static Stribeck friction jumps at standstill: state a regular velocity, or use LuGre friction")]

@@ -4,7 +4,7 @@ use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{
     Input, InputSchedule, Profile, Simulated, SimulationSettings, Status, System, simulate,
 };
-use phea_hydraulics::line::{Conduit, DynamicLine, LineModel, StiffeningMember, TransmissionLine};
+use phea_hydraulics::line::{Conduit, DynamicLine, LineModel, LineWall, StiffeningMember, TransmissionLine};
 use phea_hydraulics::reference_rig::hose_line;
 
 use super::oracle::{conduit, fluid};
@@ -97,7 +97,7 @@ fn all_models_of_a_hose_take_up_a_slow_flow_alike() {
             relaxation_time: None,
         },
         LineModel::TransmissionLine { end_share: 0.01 },
-        LineModel::TwoWave { end_share: 0.01, wall: None },
+        LineModel::TwoWave { end_share: 0.01, wall: LineWall::default() },
     ];
     let compliance = hose_line().compliance(1.45e9, StiffeningMember::Nominal);
     for model in models {

@@ -3,8 +3,8 @@
 use num_complex::Complex64;
 use phea_dynamics::scalar::{Lanes, Parameters};
 use phea_hydraulics::line::{
-    Conduit, DynamicLine, END_SHARE, LaminarFriction, Line, LineError, LineModel, LineResponse, Segments,
-    StandardLinearSolid, StiffeningMember, TransmissionLine, friction_factor,
+    Conduit, DynamicLine, END_SHARE, LaminarFriction, Line, LineError, LineModel, LineResponse, LineWall,
+    Segments, StandardLinearSolid, StiffeningMember, TransmissionLine, friction_factor,
 };
 use phea_hydraulics::reference_rig::{hose, hose_line, pipe_line};
 
@@ -132,7 +132,7 @@ fn every_model_of_a_hose_keeps_to_its_sheet() {
         (5.0, LineModel::Lumped),
         (5.0, segments(None)),
         (5.0, LineModel::TransmissionLine { end_share }),
-        (5.0, LineModel::TwoWave { end_share, wall: None }),
+        (5.0, LineModel::TwoWave { end_share, wall: LineWall::default() }),
         (1.0, LineModel::Creeping { relaxation_time: 0.02 }),
         (1.0, segments(Some(0.02))),
     ] {

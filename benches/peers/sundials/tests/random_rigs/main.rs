@@ -192,7 +192,6 @@ fn refused(refusal: Refusal) -> String {
     match refusal {
         Refusal::Actuator(error) => error.to_string(),
         Refusal::Machine(error) => error.to_string(),
-        Refusal::Line(error) => error.to_string(),
     }
 }
 

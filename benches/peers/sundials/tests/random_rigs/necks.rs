@@ -11,7 +11,7 @@ use phea_hydraulics::cylinder::Cylinder;
 use phea_hydraulics::fluid::Fluid;
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
-use phea_hydraulics::line::Line;
+use phea_hydraulics::line::{Line, LineModel};
 use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{Machine, MachineOptions, PowerUnit, StartValues};
 use phea_hydraulics::servovalve::{
@@ -106,6 +106,7 @@ pub(crate) fn components(chance: &mut Chance) -> Components {
         },
         line_a: line,
         line_b: line,
+        line_models: [LineModel::Lumped; 2],
         gas,
         cross_port: None,
         series: None,

@@ -4,16 +4,15 @@
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::line::{
-    Anchoring, DynamicLine, END_SHARE, Hose, LaminarFriction, Line, LineError, LineModel, Pipe, PipeWall,
-    Stiffening, StiffeningMember,
+    Anchoring, END_SHARE, Hose, LaminarFriction, Line, LineModel, LineWall, Pipe, PipeWall, Stiffening,
 };
 use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{Accumulator, PowerUnit};
 
 use crate::rig::Chance;
 
-/// Two equal lines, hoses or pipes, and their model in motion.
-pub(crate) fn lines(chance: &mut Chance, components: &mut Components) -> Result<[DynamicLine; 2], LineError> {
+/// Makes both lines equal, hoses or pipes, and sets them in motion.
+pub(crate) fn lines(chance: &mut Chance, components: &mut Components) {
     let is_hose = chance.happens(0.6);
     let bore = 12.7e-3 * (components.cylinder.area_a / 1.6e-3).sqrt() * chance.between(0.5, 1.5);
     // Waves to and fro along shorter lines take CVODE minutes.
@@ -34,10 +33,9 @@ pub(crate) fn lines(chance: &mut Chance, components: &mut Components) -> Result<
     } else if kind < 0.85 || !is_hose {
         LineModel::TransmissionLine { end_share: END_SHARE }
     } else {
-        LineModel::TwoWave { end_share: END_SHARE, wall: None }
+        LineModel::TwoWave { end_share: END_SHARE, wall: LineWall::default() }
     };
-    DynamicLine::new(&line, &components.fluid, pressure, StiffeningMember::Nominal, &model)
-        .map(|line| [line; 2])
+    components.line_models = [model; 2];
 }
 
 fn hose(chance: &mut Chance, bore: f64, length: f64, pressure: f64) -> Line {

@@ -10,7 +10,7 @@ use phea_hydraulics::cylinder::Cylinder;
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
-use phea_hydraulics::line::{DynamicLine, Line, LineError};
+use phea_hydraulics::line::{Line, LineModel};
 use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{Machine, MachineError, MachineOptions, PowerUnit, PumpLimited, StartValues};
 use phea_hydraulics::servovalve::{
@@ -74,7 +74,6 @@ impl Rig {
 pub(crate) enum Refusal {
     Actuator(ActuatorError),
     Machine(MachineError),
-    Line(LineError),
 }
 
 /// Source of random numbers.
@@ -115,16 +114,15 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     if !like_benchmark {
         complete(&mut chance, &mut components);
     }
-    let mut options = MachineOptions::default();
     if rich {
         if number % 20 == 10 {
-            options.lines = Some(rich::lines(&mut chance, &mut components).map_err(Refusal::Line)?);
+            rich::lines(&mut chance, &mut components);
         }
         rich::enrich(&mut chance, &mut components);
     }
     let control = control(&mut chance, &components, like_benchmark);
     let actuator = Actuator::new(components).map_err(Refusal::Actuator)?;
-    let machine = Machine::new(&actuator, &options).map_err(Refusal::Machine)?;
+    let machine = Machine::new(&actuator, &MachineOptions::default()).map_err(Refusal::Machine)?;
 
     let pressure = 0.5 * components.supply.pressure;
     let inside = chance.between(0.2, 0.8);
@@ -161,11 +159,11 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
         duration_s: DURATION_S,
         twin: like_benchmark
             .then(|| twin(&components, &control, &start, sign * size, distance, motion_of_twin)),
-        features: features(&components, &options, &control),
+        features: features(&components, &control),
     })
 }
 
-fn features(components: &Components, options: &MachineOptions, control: &Control) -> Vec<&'static str> {
+fn features(components: &Components, control: &Control) -> Vec<&'static str> {
     let pump = if let PowerUnit::PumpLimited(pump) = components.power_unit { Some(pump) } else { None };
     let has = [
         ("air", components.fluid.entrained_air.is_some()),
@@ -180,9 +178,12 @@ fn features(components: &Components, options: &MachineOptions, control: &Control
         ("end stops", components.cylinder.end_stops.is_some()),
         ("spring load", matches!(components.load::SpringMassDamper { .. })),
         ("wall", matches!(components.load::Wall { .. })),
-        ("segments", matches!(options.lines, Some([DynamicLine::Segments(_), _]))),
-        ("one wave", matches!(options.lines, Some([DynamicLine::TransmissionLine(_), _]))),
-        ("two waves", matches!(options.lines, Some([DynamicLine::TwoWave(_), _]))),
+        (
+            "segments",
+            matches!(components.line_models[0], LineModel::Segments { .. } | LineModel::Creeping { .. }),
+        ),
+        ("one wave", matches!(components.line_models[0], LineModel::TransmissionLine { .. })),
+        ("two waves", matches!(components.line_models[0], LineModel::TwoWave { .. })),
         ("sampled", control.sample_time_s.is_some()),
         ("late", control.delay_s > 0.0),
     ];
@@ -228,6 +229,7 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
         },
         line_a: line(chance, area_a * stroke),
         line_b: line(chance, area_a * stroke),
+        line_models: [LineModel::Lumped; 2],
         gas: [None; 2],
         cross_port: None,
         series: None,
