@@ -12,11 +12,11 @@ use phea_quantity::{Price, PricedBy};
 
 /// Values of a table in the order of its keys, some of its numbers open.
 #[derive(Clone, Debug, PartialEq)]
-pub struct OpenTable(Vec<Entry>);
+pub struct OpenTable(Vec<TableEntry>);
 
 /// Value in a table.
 #[derive(Clone, Debug, PartialEq)]
-enum Entry {
+enum TableEntry {
     /// Optional value or table that is absent.
     Absent,
     /// Table that is present.
@@ -79,7 +79,7 @@ enum Segment {
 pub struct OpenTableWriter<'a> {
     paths: &'a [String],
     place: Vec<Segment>,
-    entries: Vec<Entry>,
+    entries: Vec<TableEntry>,
 }
 
 impl OpenTableWriter<'_> {
@@ -106,14 +106,14 @@ impl OpenTableWriter<'_> {
     }
 
     fn number(&mut self, key: Key, value: f64) {
-        self.entries.push(self.index(key).map_or(Entry::Known(value), Entry::Open));
+        self.entries.push(self.index(key).map_or(TableEntry::Known(value), TableEntry::Open));
     }
 
     fn present<T>(&mut self, field: &mut Option<T>, visit: impl FnOnce(&mut T, &mut Self)) {
         match field {
-            None => self.entries.push(Entry::Absent),
+            None => self.entries.push(TableEntry::Absent),
             Some(field) => {
-                self.entries.push(Entry::Present);
+                self.entries.push(TableEntry::Present);
                 visit(field, self);
             }
         }
@@ -133,7 +133,7 @@ impl Visitor for OpenTableWriter<'_> {
 
     fn unless_zero(&mut self, key: Key, field: &mut Option<f64>) {
         match (self.index(key), *field) {
-            (None, None) => self.entries.push(Entry::Absent),
+            (None, None) => self.entries.push(TableEntry::Absent),
             (_, number) => self.number(key, number.unwrap_or_default()),
         }
     }
@@ -143,18 +143,18 @@ impl Visitor for OpenTableWriter<'_> {
     }
 
     fn pair(&mut self, _key: Key, field: &mut Option<[f64; 2]>) {
-        self.present(field, |pair, writer| writer.entries.extend(pair.map(Entry::Known)));
+        self.present(field, |pair, writer| writer.entries.extend(pair.map(TableEntry::Known)));
     }
 
     fn quantities(&mut self, _key: Key, field: &mut Vec<f64>, _required: bool) {
-        self.entries.push(Entry::Whole(field.len()));
-        self.entries.extend(field.iter().copied().map(Entry::Known));
+        self.entries.push(TableEntry::Whole(field.len()));
+        self.entries.extend(field.iter().copied().map(TableEntry::Known));
     }
 
     fn complexes(&mut self, _key: Key, _field: &mut Vec<[f64; 2]>) {}
 
     fn count(&mut self, _key: Key, field: &mut u32) {
-        self.entries.push(Entry::Whole(*field as usize));
+        self.entries.push(TableEntry::Whole(*field as usize));
     }
 
     fn optional_count(&mut self, key: Key, field: &mut Option<u32>) {
@@ -162,15 +162,15 @@ impl Visitor for OpenTableWriter<'_> {
     }
 
     fn flag(&mut self, _key: Key, field: &mut bool) {
-        self.entries.push(Entry::Flag(*field));
+        self.entries.push(TableEntry::Flag(*field));
     }
 
     fn text(&mut self, _key: Key, field: &mut Option<String>, _required: bool) {
-        self.entries.push(field.clone().map_or(Entry::Absent, Entry::Text));
+        self.entries.push(field.clone().map_or(TableEntry::Absent, TableEntry::Text));
     }
 
     fn price(&mut self, _key: Key, _by: PricedBy, field: &mut Option<Price>) {
-        self.entries.push(field.map_or(Entry::Absent, Entry::Price));
+        self.entries.push(field.map_or(TableEntry::Absent, TableEntry::Price));
     }
 
     fn texts(&mut self, _key: Key, _field: &mut Vec<String>) {}
@@ -183,12 +183,12 @@ impl Visitor for OpenTableWriter<'_> {
         _required: bool,
     ) {
         let chosen = words.iter().position(|(_, value)| value == field);
-        self.entries.push(chosen.map_or(Entry::Absent, Entry::Whole));
+        self.entries.push(chosen.map_or(TableEntry::Absent, TableEntry::Whole));
     }
 
     fn variant<T: Variants>(&mut self, _key: Key, field: &mut T, _required: bool) {
         let chosen = field.all().iter().position(|one| one.word() == field.word());
-        self.entries.push(chosen.map_or(Entry::Absent, Entry::Whole));
+        self.entries.push(chosen.map_or(TableEntry::Absent, TableEntry::Whole));
         field.visit(self);
     }
 
@@ -218,7 +218,7 @@ impl Visitor for OpenTableWriter<'_> {
     }
 
     fn tables<T: Default>(&mut self, key: Key, field: &mut Vec<T>, visit: impl Fn(&mut T, &mut Self)) {
-        self.entries.push(Entry::Whole(field.len()));
+        self.entries.push(TableEntry::Whole(field.len()));
         for (index, item) in field.iter_mut().enumerate() {
             self.within(Segment::Item(key.name, index), |writer| visit(item, writer));
         }
@@ -254,7 +254,7 @@ impl Visitor for OpenTableWriter<'_> {
     }
 
     fn form(&mut self, _key: Key, field: ValueForm) -> ValueForm {
-        self.entries.push(Entry::Form(field));
+        self.entries.push(TableEntry::Form(field));
         field
     }
 }
@@ -262,29 +262,29 @@ impl Visitor for OpenTableWriter<'_> {
 /// Second visit: fills a table from the list.
 #[derive(Debug)]
 pub struct OpenTableReader<'a, S> {
-    entries: std::slice::Iter<'a, Entry>,
+    entries: std::slice::Iter<'a, TableEntry>,
     open: &'a [S],
 }
 
 impl<S: TableNumber> OpenTableReader<'_, S> {
     fn number(&mut self) -> Option<S> {
         match self.entries.next()? {
-            Entry::Known(number) => Some(S::from(*number)),
-            Entry::Open(index) => self.open.get(*index).copied(),
+            TableEntry::Known(number) => Some(S::from(*number)),
+            TableEntry::Open(index) => self.open.get(*index).copied(),
             _ => None,
         }
     }
 
     fn whole(&mut self) -> Option<usize> {
         match self.entries.next()? {
-            Entry::Whole(number) => Some(*number),
+            TableEntry::Whole(number) => Some(*number),
             _ => None,
         }
     }
 
     fn if_present<T>(&mut self, read: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
         match self.entries.next()? {
-            Entry::Present => read(self),
+            TableEntry::Present => read(self),
             _ => None,
         }
     }
@@ -329,21 +329,21 @@ impl<S: TableNumber> Visitor<S> for OpenTableReader<'_, S> {
     }
 
     fn flag(&mut self, _key: Key, field: &mut bool) {
-        if let Some(Entry::Flag(flag)) = self.entries.next() {
+        if let Some(TableEntry::Flag(flag)) = self.entries.next() {
             *field = *flag;
         }
     }
 
     fn text(&mut self, _key: Key, field: &mut Option<String>, _required: bool) {
         *field = match self.entries.next() {
-            Some(Entry::Text(text)) => Some(text.clone()),
+            Some(TableEntry::Text(text)) => Some(text.clone()),
             _ => None,
         };
     }
 
     fn price(&mut self, _key: Key, _by: PricedBy, field: &mut Option<Price>) {
         *field = match self.entries.next() {
-            Some(Entry::Price(price)) => Some(*price),
+            Some(TableEntry::Price(price)) => Some(*price),
             _ => None,
         };
     }
@@ -428,7 +428,7 @@ impl<S: TableNumber> Visitor<S> for OpenTableReader<'_, S> {
 
     fn form(&mut self, _key: Key, field: ValueForm) -> ValueForm {
         match self.entries.next() {
-            Some(Entry::Form(form)) => *form,
+            Some(TableEntry::Form(form)) => *form,
             _ => field,
         }
     }

@@ -1,8 +1,8 @@
 //! Single description of every table for reading, printing and listing.
 //!
-//! Each type has one `visit` function that names its keys with its fields. A
-//! reader fills the fields from the file, a printer writes them, a listing collects the possible
-//! keys: so each key is defined in one place.
+//! Each type has one `visit` function that names its keys with its fields. A reader fills the
+//! fields from the file, a printer writes them, a listing collects the possible keys, and an open
+//! table fills the type over other numbers: so each key is defined in one place.
 
 use crate::catalogue_kind::CatalogueKind;
 use crate::formula::Formula;
@@ -53,8 +53,8 @@ pub trait Visitor<S: TableNumber = f64>: Sized {
     fn load_moves(&mut self, _motion: Option<MotionKind>) {}
     /// Number; required unless the key has a default.
     fn quantity(&mut self, key: Key, field: &mut S);
-    /// Number whose absence means zero: zero is read as absence, so that a part of size zero is left
-    /// out.
+    /// Number whose absence means zero: zero is read as absence, so that a part of size zero is
+    /// left out.
     fn unless_zero(&mut self, key: Key, field: &mut Option<S>) {
         let mut number = field.unwrap_or_default();
         self.quantity(key, &mut number);

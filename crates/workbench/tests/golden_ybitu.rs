@@ -66,8 +66,8 @@ fn areas_and_moduli_of_the_hose_rig() {
 fn stiffness_of_the_pipe_rig() {
     let linear = linearize(PIPE, &[]);
     for range in ["by_volume", "uniform"] {
-        // A rigid wall leaves the fluid's modulus everywhere, so that both models agree. ORIGIN:
-        // recomputed by comparisons/recompute_rig.py
+        // A rigid wall leaves the fluid's modulus everywhere, so that both models agree.
+        // ORIGIN: recomputed by comparisons/recompute_rig.py
         within(number(&linear, &format!("stiffness.{range}.0")), 17_060_791.0, 0.5);
         within(number(&linear, &format!("stiffness.{range}.1")), 1.2437026e8, 5.0);
     }

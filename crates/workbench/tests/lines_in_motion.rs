@@ -164,8 +164,8 @@ fn the_wall_of_two_waves_is_assumed_or_stated() {
     let heavy = largest(&assumed, &of(&["line.wall.mass_per_length=1 kg/m"]));
     assert!(heavy > 0.1, "{heavy} N");
     // a wall without coupling has one wave, whose compliance is that of a lumped line; the wave of
-    // the wall is equally fast, because the steady resistance lags like the faster of both. ORIGIN:
-    // analytic, 1/(535.002^2 1e-9) kg/m
+    // the wall is equally fast, because the steady resistance lags like the faster of both.
+    // ORIGIN: analytic, 1/(535.002^2 1e-9) kg/m
     let uncoupled = [
         "line.wall.coupling_compliance=1e-12",
         "line.wall.axial_compliance=1e-9",

@@ -84,8 +84,8 @@ fn gas_has_that_stiffness_where_it_is_declared() {
     near(precharge + 101_325.0, 0.9 * (ends[0].min(ends[1]) + 101_325.0), 1e-9);
 }
 
-/// Linear parameters of Table 6.3, with the hose of 2.24 MN/m and the pipe of 17.1 MN/m. ORIGIN:
-/// recomputed by comparisons/recompute_cross_port.py
+/// Linear parameters of Table 6.3, with the hose of 2.24 MN/m and the pipe of 17.1 MN/m.
+/// ORIGIN: recomputed by comparisons/recompute_cross_port.py
 #[test]
 fn a_valve_damps_the_load_cell() {
     let hose = "linear.hydraulic_stiffness=2.24e6";

@@ -36,8 +36,8 @@ pub fn actuator(declared: &project::DeclaredActuator) -> Result<Actuator, Actuat
     Actuator::new(components(declared, declared))
 }
 
-/// Components of the declared rig over any scalar, not yet checked. `plain` is the same rig in plain
-/// numbers: a linkage over the stroke is reduced to polynomials, whose geometry is never open.
+/// Components of the declared rig over any scalar, not yet checked. `plain` is the rig in its own
+/// numbers: its linkage, whose geometry is never open, is reduced to polynomials over the stroke.
 pub fn components<S: Scalar>(
     plain: &project::DeclaredActuator,
     declared: &project::DeclaredActuator<S>,

@@ -125,8 +125,8 @@ impl BraidedWall {
         BraidedWall::neutral(hose, member, stiffness, WALL_DENSITY * area)
     }
 
-    /// Wall of these data. Absent ones are assumed, except those that follow from others: a braid at
-    /// its neutral angle, and the catalogue's expansion.
+    /// Wall of these data. Absent ones are assumed, except those that follow from others: a braid
+    /// at its neutral angle, and the catalogue's expansion.
     ///
     /// # Example
     /// ```
