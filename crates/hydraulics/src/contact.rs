@@ -1,5 +1,7 @@
 //! Surface that is pressed into: an end stop, a wall.
 
+mod keys;
+
 use phea_dynamics::scalar::Scalar;
 
 use crate::parameter::{ParameterError, Problems};
@@ -14,7 +16,7 @@ use crate::parameter::{ParameterError, Problems};
 /// vibroimpact", Journal of Applied Mechanics 42(2), with a flat contact (exponent 1). The damping
 /// grows with the penetration, so that the force has no jump at touch; its coefficient of
 /// restitution is 1 - 2 c v/3 for slow impacts at v. It absorbs energy in any motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Contact<S = f64> {
     /// Stiffness K in N/m.
     pub stiffness: S,

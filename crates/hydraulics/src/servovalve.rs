@@ -4,6 +4,7 @@
 mod coefficients;
 mod flow;
 mod identification;
+mod keys;
 mod oil_temperature;
 mod opening;
 mod ports;
@@ -39,7 +40,7 @@ use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
 /// Set of one number for each of the valve's four edges; the thesis numbers them 3, 4, 5, 6 in this
 /// order.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Edges<S = f64> {
     /// Edge 3, from supply to A.
     pub supply_to_a: S,
@@ -67,6 +68,11 @@ impl<S: Copy> Edges<S> {
     /// Edges from numbers in the order 3, 4, 5, 6.
     pub fn from_array([supply_to_a, a_to_tank, supply_to_b, b_to_tank]: [S; 4]) -> Edges<S> {
         Edges { supply_to_a, a_to_tank, supply_to_b, b_to_tank }
+    }
+
+    /// All four numbers, mutable.
+    pub fn each_mut(&mut self) -> [&mut S; 4] {
+        [&mut self.supply_to_a, &mut self.a_to_tank, &mut self.supply_to_b, &mut self.b_to_tank]
     }
 
     /// Numbers in the order 3, 4, 5, 6.

@@ -3,9 +3,9 @@
 use std::f64::consts::FRAC_PI_4;
 
 use super::misfit::DeclaredMisfit;
+use phea_hydraulics::contact::Contact;
 use phea_quantity::{
-    AREA, DAMPING, FLOW_PRESSURE_COEFFICIENT, FORCE, INVERSE_VELOCITY, LENGTH, MASS, RATIO, STIFFNESS,
-    VELOCITY, VOLUME,
+    AREA, DAMPING, FLOW_PRESSURE_COEFFICIENT, FORCE, LENGTH, MASS, RATIO, STIFFNESS, VELOCITY, VOLUME,
 };
 use phea_table::CatalogueKind;
 use phea_table::{TableNumber, Variants, Visitor};
@@ -44,7 +44,7 @@ pub struct DeclaredCylinder<S = f64> {
     /// Laminar leakage across the piston, m³/(s·Pa).
     pub internal_leakage: Option<S>,
     /// End stops of the piston; if absent, the ends are only reported.
-    pub end_stops: Option<EndStops<S>>,
+    pub end_stops: Option<Contact<S>>,
     /// Friction of seals and bearings.
     pub friction: Option<DeclaredFriction<S>>,
 }
@@ -77,24 +77,6 @@ impl<S: TableNumber> DeclaredStage<S> {
         let k = key("piston_areas", &AREA, "Areas the pressure acts on in chamber A and in chamber B.");
         v.pair(k.positive(), &mut self.piston_areas);
         v.one_of(&["piston_areas", "piston_area"], true);
-    }
-}
-
-/// End stops at both ends of the stroke.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct EndStops<S = f64> {
-    /// Stiffness, N/m.
-    pub stiffness: S,
-    /// Damping relative to the elastic force, s/m.
-    pub relative_damping: S,
-}
-
-impl<S: TableNumber> EndStops<S> {
-    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
-        v.quantity(key("stiffness", &STIFFNESS, "Of each stop.").of_motion().positive(), &mut self.stiffness);
-        let k =
-            key("relative_damping", &INVERSE_VELOCITY, "Damping relative to the elastic force.").of_motion();
-        v.quantity(k.not_negative().or(0.0), &mut self.relative_damping);
     }
 }
 
@@ -172,7 +154,7 @@ impl<S: TableNumber> DeclaredCylinder<S> {
         let k = key("internal_leakage", &FLOW_PRESSURE_COEFFICIENT, "Laminar leakage across the piston.");
         v.optional(k.positive(), &mut self.internal_leakage);
         let k = plain("end_stops", "End stops of the piston at both ends; absent: none.");
-        v.table(k, &mut self.end_stops, EndStops::visit);
+        v.table(k, &mut self.end_stops, Contact::visit);
         let k = plain("friction", "Friction of seals and bearings; absent: none.");
         v.table(k, &mut self.friction, DeclaredFriction::visit_of_cylinder);
     }

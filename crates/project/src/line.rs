@@ -2,9 +2,9 @@
 
 use super::cost::LineCost;
 use super::fluid::DeclaredAccumulator;
-use super::interval::BoundedNumber;
 use super::line_motion::LineMotion;
 use super::misfit::DeclaredMisfit;
+use phea_hydraulics::line::Stiffening;
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_quantity::{DENSITY, EXPANSION_SLOPE, LENGTH, PRESSURE, RATIO, VOLUME, VOLUME_PER_LENGTH};
 use phea_table::CatalogueKind;
@@ -28,7 +28,7 @@ pub struct DeclaredLine<S = f64> {
     /// Component of the line.
     pub component: Component<S>,
     /// Ratio r_β of dynamic to static modulus of the hose.
-    pub dynamic_stiffening: Option<BoundedNumber<S>>,
+    pub dynamic_stiffening: Option<Stiffening<S>>,
     /// Dynamic model.
     pub motion: LineMotion<S>,
     /// Accumulator at its chamber end.
@@ -213,8 +213,7 @@ impl<S: TableNumber> DeclaredLine<S> {
     }
 
     fn visit_stiffening<V: Visitor<S>>(&mut self, v: &mut V) {
-        let k = key("dynamic_stiffening", &RATIO, "r_β, the hose's dynamic over its static modulus.");
-        BoundedNumber::visit(v, k.at_least(1.0), &mut self.dynamic_stiffening);
+        Stiffening::visit(&mut self.dynamic_stiffening, v);
     }
 
     pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {

@@ -2,7 +2,9 @@
 
 use phea_quantity::{ANGLE, DISPLACEMENT, FLOW_PRESSURE_COEFFICIENT, INERTIA, MotionKind, VOLUME};
 
-use super::{DeclaredActuator, DeclaredFriction, EndStops};
+use phea_hydraulics::contact::Contact;
+
+use super::{DeclaredActuator, DeclaredFriction};
 use phea_table::{Motions, key, plain};
 use phea_table::{TableNumber, Visitor};
 
@@ -26,7 +28,7 @@ pub struct DeclaredMotor<S = f64> {
     /// Laminar leakage of each chamber through the case to the tank, m³/(s·Pa).
     pub case_leakage: Option<S>,
     /// End stops; if absent, the ends are only reported.
-    pub end_stops: Option<EndStops<S>>,
+    pub end_stops: Option<Contact<S>>,
     /// Friction of seals and bearings.
     pub friction: Option<DeclaredFriction<S>>,
 }
@@ -59,7 +61,7 @@ impl<S: TableNumber> DeclaredMotor<S> {
         );
         v.optional(k.positive(), &mut self.case_leakage);
         let k = plain("end_stops", "End stops at both ends of the stroke; absent: none.");
-        v.table(k, &mut self.end_stops, EndStops::visit);
+        v.table(k, &mut self.end_stops, Contact::visit);
         let k = plain("friction", "Friction of seals and bearings; absent: none.");
         v.table(k, &mut self.friction, DeclaredFriction::visit);
     }

@@ -1,10 +1,8 @@
 //! Table `[valve]`.
 
 use super::{DeclaredMisfit, DeclaredSupply, PartCost};
-use phea_hydraulics::servovalve::LeakageModel;
-use phea_quantity::{
-    ANGULAR_FREQUENCY, FLOW, FLOW_COEFFICIENT, PRESSURE, RATIO, TIME, VOLTAGE, VOLTAGE_RATE,
-};
+use phea_hydraulics::servovalve::{Edges, LeakageModel};
+use phea_quantity::{ANGULAR_FREQUENCY, FLOW, PRESSURE, RATIO, TIME, VOLTAGE, VOLTAGE_RATE};
 use phea_table::CatalogueKind;
 use phea_table::{TableNumber, Visitor};
 use phea_table::{key, plain};
@@ -27,7 +25,7 @@ pub struct Valve<S = f64> {
     /// Shape λ of sech(λ U/U_n) in the leakage; zero gives constant leakage.
     pub leakage_shape: S,
     /// Shape λ of each edge, in place of the common one.
-    pub leakage_shapes: Option<EdgeCoefficients<S>>,
+    pub leakage_shapes: Option<Edges<S>>,
     /// Meaning of λ and the leakage coefficients away from null.
     pub leakage_model: LeakageModel,
     /// Pilot stage flow from supply to tank, m³/s.
@@ -78,7 +76,7 @@ pub enum ValveCoefficients<R, S = f64> {
     /// Coefficients declared for each edge, m³/(s·√Pa).
     Edges {
         /// Declared coefficients.
-        edges: EdgeCoefficients<S>,
+        edges: Edges<S>,
         /// Additional data sheet values.
         rating: Option<R>,
     },
@@ -114,7 +112,7 @@ impl<R: Default, S> Default for ValveCoefficients<R, S> {
 
 impl<R, S> ValveCoefficients<R, S> {
     /// Coefficients of each edge, if declared.
-    pub fn edges(&self) -> Option<&EdgeCoefficients<S>> {
+    pub fn edges(&self) -> Option<&Edges<S>> {
         if let ValveCoefficients::Edges { edges, .. } = self { Some(edges) } else { None }
     }
 
@@ -126,14 +124,14 @@ impl<R, S> ValveCoefficients<R, S> {
         }
     }
 
-    fn into_parts(self) -> (Option<EdgeCoefficients<S>>, Option<R>) {
+    fn into_parts(self) -> (Option<Edges<S>>, Option<R>) {
         match self {
             ValveCoefficients::Edges { edges, rating } => (Some(edges), rating),
             ValveCoefficients::Rated(rating) => (None, Some(rating)),
         }
     }
 
-    fn of_parts(edges: Option<EdgeCoefficients<S>>, rating: Option<R>) -> Option<ValveCoefficients<R, S>> {
+    fn of_parts(edges: Option<Edges<S>>, rating: Option<R>) -> Option<ValveCoefficients<R, S>> {
         match (edges, rating) {
             (Some(edges), rating) => Some(ValveCoefficients::Edges { edges, rating }),
             (None, rating) => rating.map(ValveCoefficients::Rated),
@@ -170,55 +168,6 @@ impl<S: TableNumber> NullLeakage<S> {
     }
 }
 
-/// Set of one number for each edge of a four-way spool.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct EdgeCoefficients<S = f64> {
-    /// Edge 3.
-    pub supply_to_a: S,
-    /// Edge 4.
-    pub a_to_tank: S,
-    /// Edge 5.
-    pub supply_to_b: S,
-    /// Edge 6.
-    pub b_to_tank: S,
-}
-
-impl EdgeCoefficients {
-    /// All four numbers, mutable.
-    pub fn each_mut(&mut self) -> [&mut f64; 4] {
-        [&mut self.supply_to_a, &mut self.a_to_tank, &mut self.supply_to_b, &mut self.b_to_tank]
-    }
-}
-
-impl<S: TableNumber> EdgeCoefficients<S> {
-    /// Numbers in the order of edges 3, 4, 5, 6.
-    pub fn in_order(&self) -> [S; 4] {
-        [self.supply_to_a, self.a_to_tank, self.supply_to_b, self.b_to_tank]
-    }
-
-    fn visit_shapes<V: Visitor<S>>(&mut self, v: &mut V) {
-        let k = key("supply_to_a", &RATIO, "λ of edge 3, from supply to chamber A.").not_negative();
-        v.quantity(k, &mut self.supply_to_a);
-        let k = key("a_to_tank", &RATIO, "λ of edge 4, from chamber A to tank.").not_negative();
-        v.quantity(k, &mut self.a_to_tank);
-        let k = key("supply_to_b", &RATIO, "λ of edge 5, from supply to chamber B.").not_negative();
-        v.quantity(k, &mut self.supply_to_b);
-        let k = key("b_to_tank", &RATIO, "λ of edge 6, from chamber B to tank.").not_negative();
-        v.quantity(k, &mut self.b_to_tank);
-    }
-
-    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
-        let k = key("supply_to_a", &FLOW_COEFFICIENT, "Edge 3, from supply to chamber A.").not_negative();
-        v.quantity(k, &mut self.supply_to_a);
-        let k = key("a_to_tank", &FLOW_COEFFICIENT, "Edge 4, from chamber A to tank.").not_negative();
-        v.quantity(k, &mut self.a_to_tank);
-        let k = key("supply_to_b", &FLOW_COEFFICIENT, "Edge 5, from supply to chamber B.").not_negative();
-        v.quantity(k, &mut self.supply_to_b);
-        let k = key("b_to_tank", &FLOW_COEFFICIENT, "Edge 6, from chamber B to tank.").not_negative();
-        v.quantity(k, &mut self.b_to_tank);
-    }
-}
-
 impl Valve {
     /// Pressure drop from supply to tank at which the tare flow is stated, Pa.
     pub fn tare_drop(&self, supply: &DeclaredSupply) -> f64 {
@@ -242,7 +191,7 @@ impl<S: TableNumber> Valve<S> {
         let k = key("leakage_shape", &RATIO, "λ of sech(λ U/U_n) in the leakage; 0 keeps it constant.");
         v.quantity(k.not_negative().or(0.0), &mut self.leakage_shape);
         let k = plain("leakage_shapes", "λ of each edge, in place of `leakage_shape`: a table, or an array.");
-        v.record(k, &mut self.leakage_shapes, EdgeCoefficients::visit_shapes);
+        v.record(k, &mut self.leakage_shapes, Edges::visit_shapes);
         let k = plain("leakage_model", "What follows sech(λ U/U_n): each edge's leakage, or the valve's.");
         v.choice(k, &LEAKAGE_MODELS, &mut self.leakage_model, false);
         let k = key("tare_flow", &FLOW, "Pilot stage flow from supply to tank.").not_negative().or(0.0);
@@ -260,9 +209,9 @@ impl<S: TableNumber> Valve<S> {
         let (mut edges, mut rating) = std::mem::take(&mut self.flow).into_parts();
         let (mut leaking_edges, mut leakage) = std::mem::take(&mut self.leakage).into_parts();
         let flows = plain("flow_coefficients", "K_v3 to K_v6: a table, or an array in this order.");
-        v.record(flows, &mut edges, EdgeCoefficients::visit);
+        v.record(flows, &mut edges, Edges::visit_coefficients);
         let leaks = plain("leakage_coefficients", "K_vin3 to K_vin6: a table, or an array in this order.");
-        v.record(leaks, &mut leaking_edges, EdgeCoefficients::visit);
+        v.record(leaks, &mut leaking_edges, Edges::visit_coefficients);
         let k = plain("lap", "Overlap of the edges, positive and negative command; below zero: underlap.");
         v.record(k, &mut self.lap, ValveLap::visit);
         let k = key("saturation", &RATIO, "c of the opening u/(1 + c u), beyond the lap; 0: in proportion.");

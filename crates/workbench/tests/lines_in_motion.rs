@@ -294,3 +294,21 @@ fn the_linear_model_knows_no_motion() {
         "{error}"
     );
 }
+
+/// A valve that does not leak is the limit of one that leaks ever less, behind lines with waves as
+/// well: its response exists.
+#[test]
+fn a_valve_without_leakage_has_a_response_with_waves() {
+    let response = |leakage: &str| {
+        let edges = ["supply_to_a", "a_to_tank", "supply_to_b", "b_to_tank"];
+        let edges = edges.map(|edge| format!("valve.leakage_coefficients.{edge}={leakage}"));
+        let settings: Vec<&str> =
+            ["line.model=transmission_line"].into_iter().chain(edges.iter().map(String::as_str)).collect();
+        let loaded = load(&settings);
+        let setup = Setup::new(&loaded.project).unwrap();
+        [1.0, 30.0, 900.0].map(|frequency| setup.rig().unwrap().response(frequency))
+    };
+    for (ideal, leaking) in response("0").into_iter().zip(response("1e-15")) {
+        assert!((ideal - leaking).norm_sqr() < 1e-6 * leaking.norm_sqr(), "{ideal} {leaking}");
+    }
+}

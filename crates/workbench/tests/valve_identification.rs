@@ -314,7 +314,7 @@ fn the_identified_valve_goes_back_into_a_project() {
     let project = format!("{before}{named}\n[cylinder]{after}");
     let loaded = load(&project, &[], &[]);
     let valve = &loaded.project.actuator.as_ref().unwrap().valve;
-    let edges = valve.flow.edges().unwrap().in_order();
+    let edges = valve.flow.edges().unwrap().to_array();
     assert!((edges[0] / 3.2e-7 - 1.0).abs() < 1e-2 && (valve.null_bias - 0.014).abs() < 2e-3);
     assert!((valve.tare_drop(&loaded.project.actuator.as_ref().unwrap().supply) - 70e5).abs() < 1.0);
     let checked = json(&project, &[], &[], &Request::Check);

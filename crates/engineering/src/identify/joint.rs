@@ -3,14 +3,12 @@
 use nalgebra::{DMatrix, SymmetricEigen};
 use phea_dynamics::order::sort_by_number;
 use phea_dynamics::portable::{erfc, pow};
-use phea_hydraulics::servovalve::{Edges, OpeningShape};
+use phea_hydraulics::servovalve::OpeningShape;
 
 use super::variables::{HYSTERESIS, Kind};
 use super::{COEFFICIENT_NAMES, Identification};
 use crate::family::{ProjectFamilyError, gain_slopes};
-use crate::project::{
-    EdgeCoefficients, NumberChanges, Project, UncertaintyDirection, ValveCoefficients, ValveLap,
-};
+use crate::project::{NumberChanges, Project, UncertaintyDirection, ValveCoefficients, ValveLap};
 use crate::setup::Setup;
 
 /// Probability that the true coefficients are in the region.
@@ -136,10 +134,10 @@ pub fn with_valve(project: &Project, found: &Identification) -> Option<Project> 
     let mut project = project.clone();
     let valve = &mut project.actuator.as_mut()?.valve;
     let all = found.coefficients;
-    let (flow, leakage) = (edges(all.flow_coefficients), edges(all.leakage_coefficients));
+    let (flow, leakage) = (all.flow_coefficients, all.leakage_coefficients);
     valve.flow = ValveCoefficients::Edges { edges: flow, rating: valve.flow.rating().copied() };
     valve.leakage = ValveCoefficients::Edges { edges: leakage, rating: valve.leakage.rating().copied() };
-    let shapes = edges(all.leakage_shapes);
+    let shapes = all.leakage_shapes;
     valve.leakage_shape = shapes.supply_to_a;
     valve.leakage_shapes = found.tested.terms.leakage_by_edge.then_some(shapes);
     let OpeningShape { lap_positive: positive, lap_negative: negative, saturation } = all.opening;
@@ -154,11 +152,6 @@ pub fn with_valve(project: &Project, found: &Identification) -> Option<Project> 
     let may_vanish = width.is_none_or(|width| width.interval[0] == 0.0);
     valve.hysteresis = (!may_vanish).then_some(all.hysteresis_width);
     Some(project)
-}
-
-fn edges(edges: Edges) -> EdgeCoefficients {
-    let Edges { supply_to_a, a_to_tank, supply_to_b, b_to_tank } = edges;
-    EdgeCoefficients { supply_to_a, a_to_tank, supply_to_b, b_to_tank }
 }
 
 /// Matrix D L: change of each coefficient of the plant with independent standard normal numbers.

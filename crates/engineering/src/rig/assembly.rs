@@ -20,8 +20,8 @@ use super::in_loop::velocity_gain;
 use super::lines::line_model;
 use super::supply::power_unit;
 use crate::project::{
-    self, BoundedNumber, Component, DeclaredSeries, DeclaredSpring, DeclaredTransmission, DeclaredWeight,
-    EdgeCoefficients, HoseExpansion, LineVolume, NullLeakage, RatedFlow, ValveCoefficients, once_read,
+    self, Component, DeclaredSeries, DeclaredSpring, DeclaredTransmission, DeclaredWeight, HoseExpansion,
+    LineVolume, NullLeakage, RatedFlow, ValveCoefficients, once_read,
 };
 
 /// Kinematic viscosity of ISO VG 46 oil at 40 degrees Celsius, m2/s: used where a project states
@@ -141,13 +141,12 @@ fn fluid<S: Scalar>(declared: &project::DeclaredFluid<S>) -> Fluid<S> {
 
 /// ValveCoefficients as declared; without them, those of the data sheet, equal for all edges.
 fn valve<S: Scalar>(declared: &project::Valve<S>, supply_drop: S) -> Servovalve<S> {
-    let edges = |edges: EdgeCoefficients<S>| Edges::from_array(edges.in_order());
     let opening = opening(declared);
     let tare_flow = declared.tare_flow;
     let tare_drop = declared.tare_pressure.unwrap_or(supply_drop);
     Servovalve {
         flow_coefficients: match declared.flow {
-            ValveCoefficients::Edges { edges: flow, .. } => edges(flow),
+            ValveCoefficients::Edges { edges: flow, .. } => flow,
             ValveCoefficients::Rated(RatedFlow { flow, pressure_drop }) => {
                 let rated = flow_coefficient_from_rating(flow, pressure_drop);
                 // the data sheet's flow is that of full travel
@@ -158,13 +157,13 @@ fn valve<S: Scalar>(declared: &project::Valve<S>, supply_drop: S) -> Servovalve<
         opening,
         leakage_coefficients: match declared.leakage {
             ValveCoefficients::Edges { edges: leakage, .. } if is_shut(leakage) => Edges::vanishing(),
-            ValveCoefficients::Edges { edges: leakage, .. } => edges(leakage),
+            ValveCoefficients::Edges { edges: leakage, .. } => leakage,
             ValveCoefficients::Rated(NullLeakage { flow, pressure, .. }) => {
                 Edges::equal(leakage_coefficient_from_rating(flow, tare_flow, tare_drop, pressure))
             }
         },
         leakage_shape: match declared.leakage_shapes {
-            Some(shapes) => LeakageShape::ByEdge(edges(shapes)),
+            Some(shapes) => LeakageShape::ByEdge(shapes),
             None => LeakageShape::Common(declared.leakage_shape),
         },
         leakage_model: declared.leakage_model,
@@ -198,8 +197,8 @@ fn opening<S: Scalar>(declared: &project::Valve<S>) -> OpeningLaw<S> {
 }
 
 /// Whether no edge leaks: an ideal valve.
-fn is_shut<S: Scalar>(leakage: EdgeCoefficients<S>) -> bool {
-    leakage.in_order().into_iter().all(|edge| once_read(edge).is_none())
+fn is_shut<S: Scalar>(leakage: Edges<S>) -> bool {
+    leakage.to_array().into_iter().all(|edge| once_read(edge).is_none())
 }
 
 /// The line as physics.
@@ -281,10 +280,8 @@ pub(crate) fn hose<S: Scalar>(
 }
 
 /// A ratio without a spread is one uncertain number, one with a spread has three.
-pub(crate) fn stiffening<S: Scalar>(declared: Option<BoundedNumber<S>>) -> Stiffening<S> {
-    let BoundedNumber { nominal, minimum, maximum } =
-        declared.unwrap_or(BoundedNumber::exactly(S::from(1.0)));
-    Stiffening { nominal, minimum, maximum }
+pub(crate) fn stiffening<S: Scalar>(declared: Option<Stiffening<S>>) -> Stiffening<S> {
+    declared.unwrap_or(Stiffening::certain(S::from(1.0)))
 }
 
 fn pipe<S: Scalar>(declared: &project::DeclaredPipe<S>) -> Pipe<S> {
@@ -317,7 +314,7 @@ fn cylinder<S: Scalar>(declared: &project::DeclaredCylinder<S>) -> Cylinder<S> {
         dead_volume_b,
         internal_leakage: declared.internal_leakage,
         external_leakage: None,
-        end_stops: end_stops(declared.end_stops),
+        end_stops: declared.end_stops,
     }
 }
 
@@ -352,15 +349,11 @@ fn motor_as_cylinder<S: Scalar>(declared: &project::DeclaredMotor<S>) -> Cylinde
         dead_volume_b,
         internal_leakage: declared.internal_leakage,
         external_leakage: declared.case_leakage,
-        end_stops: end_stops(declared.end_stops),
+        end_stops: declared.end_stops,
     }
 }
 
 /// Numbers of both sides: a pair, or one number for both.
 fn on_both_sides<S: Scalar>(pair: Option<[S; 2]>, single: Option<S>) -> [S; 2] {
     pair.unwrap_or([single.unwrap_or_default(); 2])
-}
-
-fn end_stops<S: Scalar>(declared: Option<project::EndStops<S>>) -> Option<Contact<S>> {
-    declared.map(|stops| Contact { stiffness: stops.stiffness, relative_damping: stops.relative_damping })
 }

@@ -7,6 +7,7 @@ use phea_hydraulics::line::{
     Conduit, END_SHARE, LaminarFriction, Line, LineError, LineModel, Stiffening, StiffeningMember,
 };
 use phea_hydraulics::plant::{BehindLines, LinearPlant, PlantInMotion};
+use phea_hydraulics::servovalve::ChamberCoefficients;
 use phea_hydraulics::stiffness::compliance_at;
 
 use super::Rig;
@@ -34,8 +35,9 @@ impl RigAtPoint {
         };
         let chambers_alone = own(compliance_at(&bare, point.position));
         let leakage = components.cylinder.external_leakage.unwrap_or(0.0);
-        let of_valve = &chambers.chambers;
-        let leaking = [of_valve.flow_pressure_a, of_valve.flow_pressure_b].map(|whole| leakage / whole);
+        // in the limit of an ideal valve both coefficients would vanish
+        let ChamberCoefficients { flow_pressure_a, flow_pressure_b, .. } = self.leaking;
+        let leaking = [flow_pressure_a, flow_pressure_b].map(|whole| leakage / whole);
         Ok(moving.map(|lines| {
             let lumped = own(chambers.compliances);
             let behind = BehindLines { lines, chambers: chambers_alone, lumped, leaking };

@@ -26,7 +26,7 @@ pub struct Hose<S = f64> {
 /// Ratio r_beta of dynamic to static wall modulus as an interval: nylon braid 4 to 5 (Johnston et
 /// al. 2010), measured far above the frequencies of force control, so uncertain there. One at zero
 /// frequency.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stiffening<S = f64> {
     /// Value for a nominal calculation.
     pub nominal: S,
@@ -36,14 +36,12 @@ pub struct Stiffening<S = f64> {
     pub maximum: S,
 }
 
-impl Stiffening {
+impl<S: Copy> Stiffening<S> {
     /// Ratio without uncertainty.
-    pub fn certain(ratio: f64) -> Stiffening {
+    pub fn certain(ratio: S) -> Stiffening<S> {
         Stiffening { nominal: ratio, minimum: ratio, maximum: ratio }
     }
-}
 
-impl<S: Copy> Stiffening<S> {
     /// Ratio for one member of the interval.
     pub fn member(&self, member: StiffeningMember) -> S {
         match member {

@@ -42,8 +42,8 @@ fn shut_valve(project: &Project, actuator: &DeclaredActuator, check: &mut Check<
     let ValveCoefficients::Edges { edges, .. } = &actuator.valve.leakage else { return };
     let is_shut = |edge: &f64| *edge <= 0.0;
     let is_moved = project.uncertainty.iter().any(|one| one.name.starts_with("valve.leakage_coefficients"));
-    let is_ideal = edges.in_order().iter().all(|edge| *edge == 0.0) && !is_moved;
-    if is_ideal || !edges.in_order().iter().any(is_shut) {
+    let is_ideal = edges.to_array().iter().all(|edge| *edge == 0.0) && !is_moved;
+    if is_ideal || !edges.to_array().iter().any(is_shut) {
         return;
     }
     let message =

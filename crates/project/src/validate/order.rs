@@ -1,8 +1,9 @@
 //! Pairs of values of which one may not be above the other.
 
 use super::{Check, last};
+use crate::Bench;
 use crate::toml_text::quoted;
-use crate::{Bench, BoundedNumber};
+use phea_hydraulics::line::Stiffening;
 
 impl Check<'_, '_> {
     /// Value as in the file or the setting, without quotes; empty if it is not stated.
@@ -90,8 +91,8 @@ impl Check<'_, '_> {
     }
 
     /// Checks a number between two others, each stated.
-    pub(super) fn interval(&mut self, path: &str, interval: Option<BoundedNumber>) {
-        let Some(BoundedNumber { nominal, minimum, maximum }) = interval else { return };
+    pub(super) fn interval(&mut self, path: &str, interval: Option<Stiffening>) {
+        let Some(Stiffening { nominal, minimum, maximum }) = interval else { return };
         self.bounds(path, [minimum, nominal, maximum]);
     }
 

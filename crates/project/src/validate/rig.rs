@@ -182,7 +182,7 @@ fn valve(valve: &Valve, supply: &DeclaredSupply, check: &mut Check<'_, '_>) {
     for (side, _) in laps.filter(|(_, lap)| lap.abs() >= 1.0) {
         check.error(&format!("valve.lap.{side}"), "a lap is less than the full travel of the spool, 100 %");
     }
-    if valve.flow.edges().is_some_and(|edges| edges.in_order().iter().all(|edge| *edge == 0.0)) {
+    if valve.flow.edges().is_some_and(|edges| edges.to_array().iter().all(|edge| *edge == 0.0)) {
         check.error("valve.flow_coefficients", "all flow coefficients are zero: the valve never opens");
     }
     let Some(NullLeakage { flow, maximum, pressure }) = valve.leakage.rating() else { return };

@@ -3,9 +3,9 @@
 
 use super::Check;
 use super::rig;
-use crate::{
-    BoundedNumber, DeclaredActuator, DeclaredSeries, DeclaredSpring, DeclaredTransmission, Project, Uncertain,
-};
+use phea_hydraulics::line::Stiffening;
+
+use crate::{DeclaredActuator, DeclaredSeries, DeclaredSpring, DeclaredTransmission, Project, Uncertain};
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE as ATMOSPHERE;
 use phea_quantity::{self as quantity, AREA, FORCE, LENGTH, PRESSURE, STIFFNESS};
 
@@ -22,7 +22,7 @@ fn transmission(actuator: &DeclaredActuator, declared: &DeclaredTransmission, ch
     if check.declared("series.line") {
         rig::line(&declared.line, "series.line", check);
     }
-    if let Some(BoundedNumber { nominal, minimum, maximum }) = declared.line.dynamic_stiffening
+    if let Some(Stiffening { nominal, minimum, maximum }) = declared.line.dynamic_stiffening
         && (minimum, maximum) != (nominal, nominal)
     {
         let message = "only `nominal` counts here: the line of a transmission has one stiffness";

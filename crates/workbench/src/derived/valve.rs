@@ -213,7 +213,7 @@ fn edges(declared: &project::Valve, supply: &project::DeclaredSupply, rig: &Rig,
         let [positive, negative] = valve.opening.full();
         let rated = flow_coefficient_from_rating(flow, pressure_drop) / f64::midpoint(positive, negative);
         list.add("valve.flow_coefficient_rated", "K_vp", rated, COEFFICIENT, FROM_RATING);
-        list.stated(mean(edges.in_order()), "[valve.flow_coefficients], the mean of its edges", None);
+        list.stated(mean(edges.to_array()), "[valve.flow_coefficients], the mean of its edges", None);
     }
     if let ValveCoefficients::Edges { edges, rating: Some(NullLeakage { flow, pressure, .. }) } =
         declared.leakage
@@ -221,7 +221,7 @@ fn edges(declared: &project::Valve, supply: &project::DeclaredSupply, rig: &Rig,
         let tare = declared.tare_drop(supply);
         let rated = leakage_coefficient_from_rating(flow, declared.tare_flow, tare, pressure);
         list.add("valve.leakage_coefficient_rated", "K_vinp", rated, COEFFICIENT, FROM_LEAKAGE);
-        list.stated(mean(edges.in_order()), "[valve.leakage_coefficients], the mean of its edges", None);
+        list.stated(mean(edges.to_array()), "[valve.leakage_coefficients], the mean of its edges", None);
     }
     if declared.tare_flow > 0.0 {
         let supply = &rig.actuator.components().supply;
