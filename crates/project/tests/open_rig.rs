@@ -53,3 +53,12 @@ fn the_position_of_the_operating_point_may_be_open() {
     let open = OpenRig::new(project.actuator.as_ref().unwrap(), &project.operating_point, &paths);
     assert_eq!(open.operating_point(&[0.2]).position, Some(0.2));
 }
+
+#[test]
+fn an_open_number_is_present_where_the_project_states_none() {
+    let project = read(phea_project::STARTER);
+    let paths = ["operating_point.spool_side".to_string()];
+    let open = OpenRig::new(project.actuator.as_ref().unwrap(), &project.operating_point, &paths);
+    assert_eq!(project.operating_point.spool_side, None);
+    assert_eq!(open.operating_point(&[-1.0]).spool_side, Some(-1.0));
+}

@@ -38,8 +38,8 @@ enum TableEntry {
 }
 
 impl OpenTable {
-    /// The table with the numbers at these paths open. A number at a path that the table lacks is
-    /// ignored; one of a side takes precedence over the same of both sides.
+    /// The table with the numbers at these paths open, also those that are absent. A path that the
+    /// table lacks is ignored; the number of a side precedes that of both sides.
     pub fn new<T: Clone>(
         table: &T,
         paths: &[String],
@@ -139,7 +139,8 @@ impl Visitor for OpenTableWriter<'_> {
     }
 
     fn optional(&mut self, key: Key, field: &mut Option<f64>) {
-        self.present(field, |number, writer| writer.number(key, *number));
+        let mut number = field.or(self.index(key).map(|_| 0.0));
+        self.present(&mut number, |number, writer| writer.number(key, *number));
     }
 
     fn pair(&mut self, _key: Key, field: &mut Option<[f64; 2]>) {
