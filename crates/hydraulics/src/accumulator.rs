@@ -1,17 +1,21 @@
 //! Gas-charged accumulator at the supply, or at the line of a chamber.
 
 mod adjustment;
+mod adjustment_keys;
 mod bladder;
 mod branch;
 mod chamber_gas;
 mod heat;
+mod keys;
 mod neck;
 
 pub use adjustment::{AdjustedGas, GasValve, MovedGas};
+pub use adjustment_keys::{AdjustmentKind, DeclaredAdjustment, DeclaredGasValve, GasAtOne};
 pub use bladder::Bladder;
 pub use branch::{GasBranch, NeckImpedance};
 pub use chamber_gas::{ChamberGas, GasContent, GasPassage, SealedGas};
 pub use heat::{GasRelaxation, HEAT_CAPACITY_RATIO, HeatedGas, RelaxingGas};
+pub use keys::{DeclaredAccumulator, DeclaredNeck, GasTemperatures};
 pub use neck::Neck;
 
 use phea_dynamics::scalar::{LocalFunction, Parameters, Scalar};

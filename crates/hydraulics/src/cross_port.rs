@@ -12,6 +12,12 @@
 //! pressure difference p_cp is that of the chambers, and nothing flows. Source: Merritt, Hydraulic
 //! Control Systems (1967), which uses it to damp a lightly damped load.
 
+mod keys;
+
+pub use keys::{
+    CrossPortKind, DeclaredCapacity, DeclaredCrossPort, DeclaredOrifice, DeclaredRestrictor, OrificeSize,
+};
+
 use phea_dynamics::scalar::Scalar;
 
 use crate::orifice::{flow, regular_root_slope};

@@ -1,6 +1,12 @@
 //! Cylinder, or the motor in its place: areas, stroke, moving mass and chamber volumes, symmetric
 //! or not.
 
+mod keys;
+mod motor_keys;
+
+pub use keys::{DeclaredCylinder, DeclaredStage};
+pub use motor_keys::DeclaredMotor;
+
 use phea_dynamics::scalar::{Parameters, Scalar};
 
 use crate::contact::Contact;

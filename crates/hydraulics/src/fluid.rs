@@ -1,5 +1,9 @@
 //! Hydraulic fluid and the air entrained in it.
 
+mod keys;
+
+pub use keys::DeclaredFluid;
+
 use phea_dynamics::scalar::Scalar;
 
 use crate::parameter::{ParameterError, ParameterRequirement, Problems};

@@ -1,5 +1,9 @@
 //! Force sensor: a stiff spring between rod and load, whose deflection is the measurement.
 
+mod keys;
+
+pub use keys::DeclaredForceSensor;
+
 use phea_dynamics::scalar::Scalar;
 
 use crate::parameter::{ParameterError, Problems};

@@ -1,11 +1,13 @@
 //! Friction of the piston and rods: viscous, Stribeck or LuGre, and the one slope that a linear
 //! model uses.
 
+mod keys;
 mod lugre;
 mod moving;
 mod stribeck;
 mod tested;
 
+pub use keys::{DeclaredFriction, FrictionLaw, RetractingFriction, StribeckCurve};
 pub use lugre::{LuGre, LuGrePassivity};
 pub use moving::{FrictionForce, MovingFriction};
 pub use stribeck::{FrictionLevels, Stribeck, StribeckShape};

@@ -40,3 +40,4 @@ pub mod signal;
 pub mod stiffness;
 pub mod stroke;
 pub mod two_pressure;
+pub mod velocity_sensor;

@@ -10,10 +10,12 @@ mod braided_wall;
 mod conduit;
 mod dynamic_line;
 mod hose;
+mod hose_keys;
 mod keys;
 mod laminar_friction;
 mod line_model;
 mod line_response;
+mod motion_keys;
 mod pipe;
 mod segments;
 mod standard_linear_solid;
@@ -27,9 +29,14 @@ pub use braided_wall::{BraidedWall, LineWall};
 pub use conduit::{Conduit, LineError};
 pub use dynamic_line::DynamicLine;
 pub use hose::{Hose, Stiffening, static_hose_modulus};
+pub use keys::{
+    Component, DeclaredLine, DeclaredLines, DeclaredPipe, ElasticWall, HoseExpansion, HoseProperties,
+    LineVolume,
+};
 pub use laminar_friction::friction_factor;
 pub use line_model::LineModel;
 pub use line_response::LineResponse;
+pub use motion_keys::{LineMotion, LineSegments};
 pub use pipe::{Anchoring, Pipe, PipeWall, pipe_wall_compliance};
 pub(crate) use segments::LineContent;
 pub use segments::{LaminarFriction, Segments};

@@ -11,8 +11,12 @@
 
 mod chebyshev;
 mod geometry;
+mod keys;
 mod weight;
 
+pub use keys::{
+    CylinderTriangle, DeclaredLinkage, DeclaredLinks, DeclaredWeight, FourBarBranch, LinkageKind,
+};
 pub use weight::{LinkedWeight, STANDARD_GRAVITY, WeightAt};
 
 use phea_dynamics::scalar::Scalar;

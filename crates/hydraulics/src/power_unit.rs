@@ -1,5 +1,9 @@
 //! Source of the supply pressure: a constant pressure, or a pump with its relief valve.
 
+mod keys;
+
+pub use keys::{DeclaredSupply, Pump, SupplyModel};
+
 use phea_dynamics::scalar::Scalar;
 
 use crate::accumulator::Accumulator;

@@ -11,11 +11,13 @@
 //! the oil's acceleration and of line friction, which the line's fixings hold and not the load.
 
 mod coil;
+mod keys;
 mod oil_column;
 mod spring;
 mod transmission;
 
 pub use coil::{CoilPair, CoilWire, LEAST_ACTIVE_COILS, coil_pair};
+pub use keys::{DeclaredSeries, DeclaredSpring, DeclaredTransmission, SpringCoil};
 pub use oil_column::OilColumn;
 pub use spring::{SeriesSpring, SeriesTravel};
 pub use transmission::{MOST_SEGMENTS, Transmission};

@@ -2,6 +2,7 @@
 //! sheets.
 
 mod coefficients;
+mod edge_keys;
 mod flow;
 mod identification;
 mod keys;
@@ -12,6 +13,8 @@ mod slow_motion;
 mod spool;
 mod tare;
 mod test_stand;
+
+pub use keys::{LEAKAGE_MODELS, NullLeakage, RatedFlow, Valve, ValveCoefficients, ValveLap};
 
 pub(crate) use coefficients::supply_coefficients;
 pub use coefficients::{

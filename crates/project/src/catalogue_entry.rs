@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::line::HoseProperties;
+use super::HoseProperties;
 use super::tree::TreeNode;
 use phea_table::CatalogueKind;
 

@@ -63,7 +63,7 @@ impl Project {
     /// Hoses and pipes for which the project states no model.
     pub fn lines_without_model(&self) -> impl Iterator<Item = &DeclaredLine> {
         let lines = self.actuator.iter().flat_map(|actuator| [&actuator.line.a, &actuator.line.b]);
-        lines.filter(|line| line.leaves_model_open())
+        lines.filter(|line| leaves_model_open(line))
     }
 
     /// True if the load is a mass without stiffness, whose plant is not computed behind lines with
@@ -79,15 +79,13 @@ impl Project {
     #[must_use]
     pub fn with_chosen_lines(mut self, with_waves: bool) -> Project {
         let lines = self.actuator.iter_mut().flat_map(|own| [&mut own.line.a, &mut own.line.b]);
-        for line in lines.filter(|line| line.leaves_model_open()) {
+        for line in lines.filter(|line| leaves_model_open(line)) {
             line.motion = motion(with_waves);
         }
         self
     }
 }
 
-impl DeclaredLine {
-    fn leaves_model_open(&self) -> bool {
-        self.motion == LineMotion::Automatic && self.length().is_some()
-    }
+fn leaves_model_open(line: &DeclaredLine) -> bool {
+    line.motion == LineMotion::Automatic && line.length().is_some()
 }

@@ -15,7 +15,7 @@
 //!
 //! Internally, all numbers are SI. Keys are a contract: other tools read them.
 
-mod adjustment;
+mod actuator;
 mod alternative;
 mod bench;
 mod campaign;
@@ -23,28 +23,18 @@ pub mod catalogue;
 mod catalogue_entry;
 mod chosen_lines;
 mod controller;
-mod cost;
-mod cross_port;
-mod cylinder;
 mod design;
 mod diagnostic;
 mod direction;
-mod environment;
 mod family;
-mod fluid;
 mod identify;
 mod input_signal;
 mod limit;
-mod line;
-mod line_motion;
 mod linear;
-mod linkage;
 mod listing;
 mod load_case;
 mod loaded;
 mod measured;
-mod misfit;
-mod motor;
 mod named_files;
 mod open_rig;
 mod operating_point;
@@ -59,7 +49,6 @@ mod rewrite;
 mod scenario;
 mod schema;
 mod sensor;
-mod series;
 mod setting;
 mod simulation;
 mod sizing;
@@ -70,41 +59,55 @@ mod toml_text;
 mod tree;
 mod uncertainty;
 mod validate;
-mod valve;
 mod verification;
 mod written_units;
 
-pub use adjustment::*;
+pub use actuator::DeclaredActuator;
 pub use alternative::*;
 pub use bench::*;
 pub use campaign::*;
 pub use chosen_lines::*;
 pub use controller::*;
-pub use cost::*;
-pub use cross_port::*;
-pub use cylinder::*;
 pub use design::*;
 pub use diagnostic::*;
 pub use direction::*;
-pub use environment::*;
 pub use family::*;
-pub use fluid::*;
 pub use identify::*;
 pub use input_signal::{Amplitudes, InputSignal, Multisine};
 pub use limit::*;
-pub use line::*;
-pub use line_motion::*;
 pub use linear::*;
-pub use linkage::*;
 pub use listing::KeyEntry;
 pub use load_case::*;
 pub use loaded::*;
 pub use measured::*;
-pub use misfit::*;
-pub use motor::*;
 pub use open_rig::OpenRig;
 pub use operating_point::DeclaredOperatingPoint;
+pub use phea_hydraulics::accumulator::{
+    AdjustmentKind, DeclaredAccumulator, DeclaredAdjustment, DeclaredGasValve, DeclaredNeck, GasAtOne,
+    GasTemperatures,
+};
+pub use phea_hydraulics::cross_port::{
+    CrossPortKind, DeclaredCapacity, DeclaredCrossPort, DeclaredOrifice, DeclaredRestrictor, OrificeSize,
+};
+pub use phea_hydraulics::cylinder::{DeclaredCylinder, DeclaredMotor, DeclaredStage};
+pub use phea_hydraulics::fluid::DeclaredFluid;
+pub use phea_hydraulics::force_sensor::DeclaredForceSensor;
+pub use phea_hydraulics::friction::{DeclaredFriction, FrictionLaw, RetractingFriction, StribeckCurve};
+pub use phea_hydraulics::line::{
+    Component, DeclaredLine, DeclaredLines, DeclaredPipe, ElasticWall, HoseExpansion, HoseProperties,
+    LineMotion, LineSegments, LineVolume, LineWall,
+};
+pub use phea_hydraulics::linkage::{
+    CylinderTriangle, DeclaredLinkage, DeclaredLinks, DeclaredWeight, FourBarBranch, LinkageKind,
+};
 pub use phea_hydraulics::load::Load;
+pub use phea_hydraulics::power_unit::{DeclaredSupply, Pump, SupplyModel};
+pub use phea_hydraulics::series::{DeclaredSeries, DeclaredSpring, DeclaredTransmission, SpringCoil};
+pub use phea_hydraulics::servovalve::{
+    LEAKAGE_MODELS, NullLeakage, RatedFlow, Valve, ValveCoefficients, ValveLap,
+};
+pub use phea_hydraulics::velocity_sensor::DeclaredVelocitySensor;
+pub use phea_table::{DeclaredMisfit, LineCost, PartCost};
 pub use plant::*;
 pub use published::*;
 pub use read::sha256;
@@ -114,12 +117,10 @@ pub use recorded::*;
 pub use scenario::*;
 pub use schema::schema;
 pub use sensor::*;
-pub use series::*;
 pub use simulation::*;
 pub use sizing::*;
 pub use specification::*;
 pub use uncertainty::*;
-pub use valve::*;
 pub use verification::*;
 
 pub(crate) use input_signal::InputUnit;
@@ -134,7 +135,7 @@ pub use tree::{Entry, TreeNode, Value as TreeValue, read as read_tree, value_or_
 pub use written_units::WrittenUnits;
 
 use phea_dynamics::portable;
-use phea_quantity::{MotionKind, RATIO, Units};
+use phea_quantity::{RATIO, Units};
 
 /// Commented project as a starting point.
 pub const STARTER: &str = include_str!("starter.toml");
@@ -250,100 +251,4 @@ impl Project {
         let k = plain("load_case", "Other values under which all alternatives are judged again.");
         v.tables(k, &mut self.load_cases, LoadCase::visit);
     }
-}
-
-/// Hydraulic actuator and its load.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct DeclaredActuator<S = f64> {
-    /// Oil.
-    pub fluid: DeclaredFluid<S>,
-    /// Pressure supply.
-    pub supply: DeclaredSupply<S>,
-    /// Servovalve.
-    pub valve: Valve<S>,
-    /// Cylinder; the default value if the rig has a motor.
-    pub cylinder: DeclaredCylinder<S>,
-    /// Motor in place of the cylinder.
-    pub motor: Option<DeclaredMotor<S>>,
-    /// Lines between valve and cylinder.
-    pub line: DeclaredLines<S>,
-    /// Valve between the chambers, if there is one.
-    pub cross_port: Option<DeclaredCrossPort<S>>,
-    /// Load cell.
-    pub force_sensor: DeclaredForceSensor<S>,
-    /// Sensor of the load velocity; if absent, the true velocity is known immediately.
-    pub velocity_sensor: Option<DeclaredVelocitySensor<S>>,
-    /// Element between load cell and load; if absent, the cell acts directly on the load.
-    pub series: Option<DeclaredSeries<S>>,
-    /// Linkage between rod and load; if absent, the load moves with the rod.
-    pub linkage: Option<DeclaredLinkage<S>>,
-    /// Load on which the force acts.
-    pub load: Load<S>,
-}
-
-impl DeclaredActuator {
-    /// Required tables of an actuator, in addition to one of [`DeclaredActuator::MOVING`].
-    const REQUIRED: [&'static str; 5] = ["fluid", "supply", "valve", "line", "force_sensor"];
-    /// Tables of which exactly one describes the moving part.
-    const MOVING: [&'static str; 2] = ["cylinder", "motor"];
-    /// Optional tables.
-    const OPTIONAL: [&'static str; 5] = ["cross_port", "velocity_sensor", "series", "linkage", "load"];
-
-    /// All tables with their names.
-    fn tables() -> impl Iterator<Item = &'static str> + Clone {
-        Self::REQUIRED.into_iter().chain(Self::MOVING).chain(Self::OPTIONAL)
-    }
-}
-
-impl<S: TableNumber> DeclaredActuator<S> {
-    fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
-        required(plain("fluid", "The oil."), &mut self.fluid, DeclaredFluid::visit, v);
-        required(plain("supply", "The pressure supply."), &mut self.supply, DeclaredSupply::visit, v);
-        required(plain("valve", "The servovalve."), &mut self.valve, Valve::visit, v);
-        self.visit_moving(v);
-        required(plain("line", "From the valve to each chamber."), &mut self.line, DeclaredLines::visit, v);
-        let k = plain("cross_port", "A valve between the chambers.");
-        v.table(k, &mut self.cross_port, DeclaredCrossPort::visit);
-        required(
-            plain("force_sensor", "The load cell."),
-            &mut self.force_sensor,
-            DeclaredForceSensor::visit,
-            v,
-        );
-        v.table(
-            plain("velocity_sensor", "What the velocity of the load is measured with."),
-            &mut self.velocity_sensor,
-            DeclaredVelocitySensor::visit,
-        );
-        let k = plain("series", "A spring or transmission between force sensor and load; absent: none.");
-        v.table(k, &mut self.series, DeclaredSeries::visit);
-        let k = plain("linkage", "What lies between the rod and a load that turns; absent: nothing.");
-        v.table(k, &mut self.linkage, DeclaredLinkage::visit);
-        v.load_moves((!v.names_everything()).then(|| self.load_motion()));
-        v.table_or_default(plain("load", "What the force acts on."), &mut self.load, Load::visit);
-    }
-
-    /// Visits the moving part: a motor, or otherwise a cylinder. The keys of all other tables
-    /// measure its motion.
-    fn visit_moving<V: Visitor<S>>(&mut self, v: &mut V) {
-        let k = plain("motor", "A rotary actuator in place of the cylinder.");
-        v.table(k, &mut self.motor, DeclaredMotor::visit);
-        v.moves(Some(MotionKind::Linear));
-        if self.motor.is_none() || v.names_everything() {
-            required(plain("cylinder", "The cylinder."), &mut self.cylinder, DeclaredCylinder::visit, v);
-        }
-        v.moves((!v.names_everything()).then(|| self.motion()));
-    }
-}
-
-/// Table that a schema marks as required in addition to that of the plant.
-fn required<S: TableNumber, T: Default, V: Visitor<S>>(
-    key: Key,
-    field: &mut T,
-    visit: impl Fn(&mut T, &mut V),
-    v: &mut V,
-) {
-    let mut table = Some(std::mem::take(field));
-    v.table(key, &mut table, visit);
-    *field = table.unwrap_or_default();
 }

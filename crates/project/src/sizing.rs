@@ -1,6 +1,6 @@
 //! Tables `[sizing]` and `[sizing.other_means]`.
 
-use super::series::SpringCoil;
+use super::SpringCoil;
 use phea_quantity::{
     FLOW_GAIN, FLOW_PRESSURE_COEFFICIENT, FORCE, LENGTH, PERCENT, RATIO, STIFFNESS, TIME, VELOCITY,
     VOLTAGE_PER_FORCE,

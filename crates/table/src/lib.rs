@@ -5,14 +5,18 @@
 //! files is left to `phea_project`.
 
 mod catalogue_kind;
+mod cost;
 mod formula;
 mod key;
+mod misfit;
 mod open_table;
 mod visitor;
 
 pub use catalogue_kind::CatalogueKind;
+pub use cost::{LineCost, PartCost};
 pub use formula::{Formula, FormulaError, Ratio, Variable};
 pub use key::{AcceptedRange, Key, Motions, key, plain};
+pub use misfit::DeclaredMisfit;
 pub use open_table::{OpenTable, OpenTableReader, OpenTableWriter};
 pub use visitor::{
     FormulaShape, Kinds, NamedNumber, TableNumber, ValueForm, Variants, Visitor, once_read, word_of,

@@ -1,11 +1,9 @@
 //! Table `[line.accumulator.adjustment]`: an accumulator that is adjusted in operation.
 
-use super::DeclaredActuator;
-use super::cross_port::DeclaredOrifice;
+use crate::cross_port::DeclaredOrifice;
 use phea_dynamics::scalar::Scalar;
 use phea_quantity::{PRESSURE, RATIO, VOLUME};
-use phea_table::{TableNumber, Variants, Visitor};
-use phea_table::{key, plain};
+use phea_table::{TableNumber, Variants, Visitor, key, plain};
 
 /// Adjusted part of an accumulator, with a setting from 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -99,7 +97,8 @@ impl DeclaredAdjustment {
 }
 
 impl<S: TableNumber> DeclaredAdjustment<S> {
-    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
+    /// Visits the keys of the table.
+    pub fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         v.variant(plain("kind", "What the setting moves."), &mut self.kind, true);
         let k = key("setting", &RATIO, "Its value at rest, from 0, as declared or shut, to 1.");
         v.unless_zero(k.at_least(0.0).at_most(1.0).or(0.0), &mut self.setting);
@@ -110,12 +109,5 @@ impl<S: Scalar> DeclaredGasValve<S> {
     /// Volume of the oil between the valve and this gas, m³.
     pub fn dead_volume(&self, gas_volume: S) -> S {
         self.dead_volume.unwrap_or_else(|| S::from(DEAD_SHARE) * gas_volume)
-    }
-}
-
-impl DeclaredActuator {
-    /// Adjustments of the accumulators at chambers A and B.
-    pub fn adjustments(&self) -> [Option<DeclaredAdjustment>; 2] {
-        [&self.line.a, &self.line.b].map(|line| line.accumulator.as_ref()?.adjustment)
     }
 }

@@ -1,9 +1,8 @@
 //! Costs and masses of parts: `price` and `mass` in the declaration of a part, for a line also per
 //! length.
 
+use crate::{TableNumber, Visitor, key, plain};
 use phea_quantity::{MASS, MASS_PER_LENGTH, Price, PricedBy};
-use phea_table::{TableNumber, Visitor};
-use phea_table::{key, plain};
 
 /// Stated cost and mass of a part.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -26,14 +25,16 @@ pub struct LineCost<S = f64> {
 }
 
 impl<S: TableNumber> PartCost<S> {
-    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
+    /// Visits the keys of the table.
+    pub fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         v.price(plain("price", "What the part costs."), PricedBy::Piece, &mut self.price);
         v.optional(key("mass", &MASS, "Mass of the part.").not_negative(), &mut self.mass);
     }
 }
 
 impl<S: TableNumber> LineCost<S> {
-    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
+    /// Visits the keys of the table.
+    pub fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = plain("price", "Of one line, in addition to `price_per_length`: its fittings, or all of it.");
         v.price(k, PricedBy::Piece, &mut self.ends.price);
         let k = plain("price_per_length", "Of a metre of it.");

@@ -1,10 +1,9 @@
 //! Dynamic model of a line: `model` of `[line]`, and its keys.
 
-use phea_hydraulics::line::LaminarFriction;
-pub use phea_hydraulics::line::LineWall;
+use super::LineWall;
+use crate::line::LaminarFriction;
 use phea_quantity::{RATIO, TIME};
-use phea_table::{Key, key, plain};
-use phea_table::{Kinds, TableNumber, Variants, Visitor};
+use phea_table::{Key, Kinds, TableNumber, Variants, Visitor, key, plain};
 
 /// Dynamic model of a line with its parameters.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -107,10 +106,9 @@ impl<S: TableNumber> Variants<S> for LineMotion<S> {
 
 impl LineMotion {
     /// Keys that belong to single models.
-    pub(crate) const KEYS: [&'static str; 5] =
-        ["segments", "friction", "relaxation_time", "end_share", "wall"];
+    pub const KEYS: [&'static str; 5] = ["segments", "friction", "relaxation_time", "end_share", "wall"];
     /// Models as kinds: a side that chooses its model also has that model's keys of its own.
-    pub(crate) const MODELS: Kinds = Kinds { chosen_by: &["model"], keys: &LineMotion::KEYS };
+    pub const MODELS: Kinds = Kinds { chosen_by: &["model"], keys: &LineMotion::KEYS };
 
     /// Word of its model in a project file.
     pub fn model(&self) -> &'static str {
@@ -153,7 +151,7 @@ impl LineSegments {
     }
 
     /// Largest number of segments with this friction and this wall.
-    pub(crate) fn most(&self) -> u32 {
+    pub fn most(&self) -> u32 {
         let lags = if self.friction == Some(LaminarFriction::Steady) { 0 } else { 5 };
         let creeping = u32::from(self.relaxation_time.is_some());
         // a wall creeps at both ends of each segment

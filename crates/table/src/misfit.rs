@@ -1,9 +1,8 @@
 //! Key `misfit` of the valve, of its lines and of the friction: the residual of recordings with the
 //! identified numbers.
 
+use crate::{TableNumber, Visitor, key, plain};
 use phea_quantity::{RATIO, significant};
-use phea_table::{TableNumber, Visitor};
-use phea_table::{key, plain};
 
 /// Greatest misfit of the numbers of a part that were identified from recordings.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -19,7 +18,7 @@ impl DeclaredMisfit {
     ///
     /// # Example
     /// ```
-    /// use phea_project::DeclaredMisfit;
+    /// use phea_table::DeclaredMisfit;
     /// let misfit = DeclaredMisfit { share: 0.0123, at: Some("force of \"a\".csv".to_string()) };
     /// assert_eq!(misfit.in_toml(), "{ share = 0.0123, at = \"force of /a/.csv\" }");
     /// ```
@@ -36,7 +35,7 @@ impl DeclaredMisfit {
 
 impl<S: TableNumber> DeclaredMisfit<S> {
     /// Visits the key `misfit` of a part.
-    pub(crate) fn visit<V: Visitor<S>>(misfit: &mut Option<DeclaredMisfit<S>>, v: &mut V) {
+    pub fn visit<V: Visitor<S>>(misfit: &mut Option<DeclaredMisfit<S>>, v: &mut V) {
         let k = plain("misfit", "What these numbers leave unexplained of recordings, as identified.");
         v.table(k, misfit, |misfit, v| {
             let k = key("share", &RATIO, "Root mean square of the misfit, over the range of the signal.");

@@ -1,15 +1,13 @@
 //! Table `[series]` with `[series.coil]` or `[series.line]`: the spring or the hydraulic
 //! transmission between force sensor and load.
 
-use phea_hydraulics::series::{ForceFrom, MOST_SEGMENTS};
+use crate::series::{ForceFrom, MOST_SEGMENTS};
 
-use super::cost::PartCost;
-use super::line::DeclaredLine;
+use crate::line::DeclaredLine;
 use phea_quantity::{
     AREA, DAMPING, DENSITY, INVERSE_VELOCITY, LENGTH, MASS, PRESSURE, PricedBy, RATIO, STIFFNESS, VOLUME,
 };
-use phea_table::{TableNumber, Variants, Visitor};
-use phea_table::{key, plain};
+use phea_table::{PartCost, TableNumber, Variants, Visitor, key, plain};
 
 /// Element between force sensor and load.
 #[derive(Clone, Debug, PartialEq)]
@@ -120,7 +118,8 @@ impl DeclaredSeries {
 }
 
 impl<S: TableNumber> DeclaredSeries<S> {
-    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
+    /// Visits the keys of the table.
+    pub fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         v.variant(plain("kind", "What lies between force sensor and load."), self, false);
     }
 }
@@ -212,7 +211,8 @@ impl<S: TableNumber> DeclaredSpring<S> {
 }
 
 impl<S: TableNumber> SpringCoil<S> {
-    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
+    /// Visits the keys of the table.
+    pub fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("index", &RATIO, "Mean diameter of the coil over the diameter of the wire.");
         v.quantity(k.at_least(3.0).at_most(20.0), &mut self.index);
         let k =

@@ -1,34 +1,7 @@
-//! Tables `[force_sensor]`, `[velocity_sensor]` and `[load]`.
+//! Table `[velocity_sensor]`.
 
-use phea_quantity::{ANGULAR_FREQUENCY, FORCE, RATIO, STIFFNESS, TIME, VELOCITY};
+use phea_quantity::{ANGULAR_FREQUENCY, RATIO, TIME, VELOCITY};
 use phea_table::{TableNumber, Visitor, key};
-
-/// Load cell.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct DeclaredForceSensor<S = f64> {
-    /// Stiffness K_S, N/m: of the cell in series with its environment if the load is a prescribed
-    /// motion.
-    pub stiffness: S,
-    /// Root mean square of the white noise at a sampled controller, N.
-    pub noise: S,
-    /// Largest permitted force in both directions, N.
-    pub capacity: Option<S>,
-}
-
-impl<S: TableNumber> DeclaredForceSensor<S> {
-    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
-        let k = key("stiffness", &STIFFNESS, "K_S: with a prescribed load motion, of cell and environment.")
-            .of_motion();
-        v.quantity(k.positive(), &mut self.stiffness);
-        let k =
-            key("noise", &FORCE, "Root mean square of the white noise in what a sampled controller sees.")
-                .of_motion();
-        v.quantity(k.not_negative().or(0.0), &mut self.noise);
-        let k =
-            key("capacity", &FORCE, "The force that it survives, in both directions.").of_motion().positive();
-        v.optional(k, &mut self.capacity);
-    }
-}
 
 /// Sensor of the load velocity, which a controller may feed forward.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -48,7 +21,8 @@ pub struct DeclaredVelocitySensor<S = f64> {
 }
 
 impl<S: TableNumber> DeclaredVelocitySensor<S> {
-    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
+    /// Visits the keys of the table.
+    pub fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("gain_error", &RATIO, "Shown velocity over the true one, less one.").above(-1.0);
         v.unless_zero(k.or(0.0), &mut self.gain_error);
         let k = key("delay", &TIME, "From the velocity until it is shown.").not_negative();

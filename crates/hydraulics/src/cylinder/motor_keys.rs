@@ -1,12 +1,11 @@
 //! Table `[motor]`, in place of `[cylinder]`: a rotary actuator.
 
 use phea_quantity::{ANGLE, DISPLACEMENT, FLOW_PRESSURE_COEFFICIENT, INERTIA, MotionKind, VOLUME};
+use phea_table::{TableNumber, Visitor, key, plain};
 
-use phea_hydraulics::contact::Contact;
+use crate::contact::Contact;
 
-use super::{DeclaredActuator, DeclaredFriction};
-use phea_table::{Motions, key, plain};
-use phea_table::{TableNumber, Visitor};
+use crate::friction::DeclaredFriction;
 
 /// Hydraulic motor or vane actuator; its angle grows while oil enters chamber A.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -34,7 +33,8 @@ pub struct DeclaredMotor<S = f64> {
 }
 
 impl<S: TableNumber> DeclaredMotor<S> {
-    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
+    /// Visits the keys of the table.
+    pub fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         v.moves(Some(MotionKind::Rotary));
         let k = key("displacement", &DISPLACEMENT, "What a chamber takes for an angle; torque per pressure.");
         v.quantity(k.positive(), &mut self.displacement);
@@ -64,70 +64,5 @@ impl<S: TableNumber> DeclaredMotor<S> {
         v.table(k, &mut self.end_stops, Contact::visit);
         let k = plain("friction", "Friction of seals and bearings; absent: none.");
         v.table(k, &mut self.friction, DeclaredFriction::visit);
-    }
-}
-
-impl<S> DeclaredActuator<S> {
-    /// Motion of the actuator.
-    ///
-    /// # Example
-    /// ```
-    /// use phea_project::{DeclaredActuator, DeclaredMotor};
-    /// use phea_quantity::MotionKind;
-    /// let cylinder = DeclaredActuator::default();
-    /// assert_eq!(cylinder.motion(), MotionKind::Linear);
-    /// let motor = DeclaredActuator { motor: Some(DeclaredMotor::default()), ..cylinder };
-    /// assert_eq!((motor.motion(), motor.stroke()), (MotionKind::Rotary, None));
-    /// ```
-    pub fn motion(&self) -> MotionKind {
-        if self.motor.is_some() { MotionKind::Rotary } else { MotionKind::Linear }
-    }
-
-    /// Motion of the load, which also turns behind a linkage.
-    pub fn load_motion(&self) -> MotionKind {
-        if self.linkage.is_some() { MotionKind::Rotary } else { self.motion() }
-    }
-
-    /// Motions of actuator and load.
-    pub fn motions(&self) -> Motions {
-        Motions { rig: self.motion(), load: self.load_motion() }
-    }
-
-    /// Table that describes the moving part.
-    pub fn moving_part(&self) -> &'static str {
-        if self.motor.is_some() { "motor" } else { "cylinder" }
-    }
-
-    /// Friction of seals and bearings.
-    pub fn friction(&self) -> Option<&DeclaredFriction<S>> {
-        self.motor.as_ref().map_or(self.cylinder.friction.as_ref(), |motor| motor.friction.as_ref())
-    }
-}
-
-impl DeclaredActuator {
-    /// Stroke in m or rad; `None` for a motor that rotates without limit.
-    pub fn stroke(&self) -> Option<f64> {
-        self.motor.as_ref().map_or(Some(self.cylinder.stroke), |motor| motor.stroke)
-    }
-
-    /// True if a position in m or rad is beyond the end of the stroke.
-    pub(crate) fn is_beyond(&self, position: f64) -> bool {
-        self.stroke().is_some_and(|stroke| stroke > 0.0 && position > stroke)
-    }
-
-    /// Friction of seals and bearings, mutable.
-    pub fn friction_mut(&mut self) -> Option<&mut DeclaredFriction> {
-        match &mut self.motor {
-            Some(motor) => motor.friction.as_mut(),
-            None => self.cylinder.friction.as_mut(),
-        }
-    }
-
-    /// Moving mass in kg or inertia in kg·m², mutable.
-    pub fn moving_mass_mut(&mut self) -> &mut f64 {
-        match &mut self.motor {
-            Some(motor) => &mut motor.inertia,
-            None => &mut self.cylinder.moving_mass,
-        }
     }
 }

@@ -1,9 +1,7 @@
 //! Table `[cross_port]`: a valve between the chambers.
 
-use super::cost::PartCost;
 use phea_quantity::{CAPACITY, FLOW, FLOW_PRESSURE_COEFFICIENT, LENGTH, PRESSURE, RATIO, STIFFNESS};
-use phea_table::{Key, key, once_read, plain};
-use phea_table::{TableNumber, Variants, Visitor};
+use phea_table::{Key, PartCost, TableNumber, Variants, Visitor, key, once_read, plain};
 
 /// Valve between the chambers, at the cylinder.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -105,7 +103,8 @@ impl<S: Default> Default for OrificeSize<S> {
 }
 
 impl<S: TableNumber> DeclaredOrifice<S> {
-    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
+    /// Visits the keys of the table.
+    pub fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         v.one_of(&["diameter", "flow"], true);
         let mut parts = OrificeParts::of(Some(self));
         parts.visit(v);
@@ -128,7 +127,8 @@ impl DeclaredCrossPort {
 }
 
 impl<S: TableNumber> DeclaredCrossPort<S> {
-    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
+    /// Visits the keys of the table.
+    pub fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         v.variant(plain("kind", "What lies between the chambers."), &mut self.kind, true);
         self.cost.visit(v);
     }

@@ -1,11 +1,10 @@
 //! Table `[linkage]`: a linkage between the rod and a load that turns about a joint.
 
-use phea_hydraulics::linkage::{
+use crate::linkage::{
     FourBar, LinkageError, LinkageGeometry, LinkageTable, PivotTriangle, ReducedLinkage, STANDARD_GRAVITY,
 };
 use phea_quantity::{ANGLE, LENGTH, MASS};
-use phea_table::{TableNumber, Variants, Visitor};
-use phea_table::{key, plain};
+use phea_table::{TableNumber, Variants, Visitor, key, plain};
 
 /// Linkage: the angle of the joint grows while the rod extends.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -140,7 +139,8 @@ impl DeclaredLinkage {
 }
 
 impl<S: TableNumber> DeclaredLinkage<S> {
-    pub(crate) fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
+    /// Visits the keys of the table.
+    pub fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         v.variant(plain("kind", "What the linkage is made of."), &mut self.kind, true);
         let k = plain("weight", "The weight of the load, which gravity turns about the joint; absent: none.");
         v.table(k, &mut self.weight, DeclaredWeight::visit);
