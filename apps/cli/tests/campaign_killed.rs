@@ -64,7 +64,7 @@ fn spread(start: u32) -> f64 {
 /// Files with their final names are complete after any kill, and repeating the command produces all
 /// of them.
 #[test]
-fn a_campaign_goes_on_after_any_kill_to_the_same_bytes() {
+fn a_campaign_continues_after_any_kill_to_the_same_bytes() {
     let folder = folder();
     let asked = std::env::var("PHEA_KILLS").ok().and_then(|text| text.parse().ok());
     let begun = Instant::now();

@@ -164,7 +164,7 @@ fn every_outcome_has_its_exit_status_and_one_json_object() {
 
 /// A refusal is printed to standard error only, and an answer to standard output.
 #[test]
-fn people_are_told_of_a_refusal_on_standard_error() {
+fn a_refusal_is_printed_on_standard_error() {
     let folder = folder("people");
     let outcomes: [(&[&str], i32); 7] = [
         (&["check", "plant.toml"], 0),
@@ -207,7 +207,7 @@ fn a_bad_row_of_a_measurement_has_its_place() {
 /// Changes are made in the order of the command line; the file is written to the stated path, and
 /// is identical if nothing changes.
 #[test]
-fn shape_writes_what_was_asked_for_and_nothing_else() {
+fn shape_writes_the_requested_files_only() {
     let folder = folder("shape");
     let text = |name: &str| std::fs::read_to_string(folder.join(name)).expect("a text");
     let before = text("loop.toml");
@@ -243,7 +243,7 @@ fn shape_writes_what_was_asked_for_and_nothing_else() {
 }
 
 #[test]
-fn a_reader_that_goes_away_is_no_error() {
+fn a_closed_pipe_is_no_error() {
     let folder = folder("pipe");
     let mut child = Command::new(env!("CARGO_BIN_EXE_phea"))
         .current_dir(&folder)
@@ -261,7 +261,7 @@ fn a_reader_that_goes_away_is_no_error() {
 /// of a campaign that was never interrupted.
 #[cfg(unix)]
 #[test]
-fn a_campaign_goes_on_after_ctrl_c() {
+fn a_campaign_continues_after_ctrl_c() {
     let folder = folder("ctrl_c");
     let campaign = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/benchmark/campaign.toml");
     std::fs::copy(campaign, folder.join("campaign.toml")).expect("the example");
@@ -298,7 +298,7 @@ fn a_campaign_goes_on_after_ctrl_c() {
 }
 
 #[test]
-fn new_writes_a_project_that_passes_and_never_over_another() {
+fn new_writes_a_valid_project_and_replaces_none() {
     let folder = folder("new");
     assert_eq!(phea(&folder, &["new", "rig"]).status.code(), Some(0));
     // the user must state the working pressure of the hose

@@ -44,7 +44,7 @@ fn not_written(output: &Output) {
 
 /// A table of two thousand rows, and a project that is saved over another.
 #[test]
-fn a_file_that_does_not_fit_is_not_there() {
+fn a_file_that_does_not_fit_is_absent() {
     let folder = folder("full_disk");
     let closed = format!("{EXAMPLES}/benchmark/closed_loop.toml");
     let simulate = ["simulate", &closed, "--out", "out", "--set", "scenario.0.duration=2 s"];
@@ -86,7 +86,7 @@ fn a_signal_about_a_large_file_is_an_error() {
 /// The files of a command receive their names together: if one does not fit, none is there, and
 /// those of an earlier run remain.
 #[test]
-fn files_of_which_one_does_not_fit_are_not_there() {
+fn all_files_are_absent_if_one_does_not_fit() {
     let folder = folder("full_disk_together");
     let project = "schema = 1\n[plant]\nnumerator = \"1\"\ndenominator = \"s + 1\"\n[[specification]]\n\
                    kind = \"robust_stability\"\nlimit = 1.2\nfrequencies = [1]\nband = [0, inf]\n";
@@ -110,7 +110,7 @@ fn files_of_which_one_does_not_fit_are_not_there() {
 
 /// A campaign has complete rows only, and continues once there is room again.
 #[test]
-fn a_campaign_on_a_full_disk_goes_on_where_there_is_room_again() {
+fn a_campaign_on_a_full_disk_continues_once_space_is_free() {
     let folder = folder("full_disk_campaign");
     let project = format!("{EXAMPLES}/benchmark/campaign.toml");
     let campaign = |out: &'static str| {
@@ -133,7 +133,7 @@ fn a_campaign_on_a_full_disk_goes_on_where_there_is_room_again() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn an_answer_that_nobody_takes_is_not_given() {
+fn an_answer_that_cannot_be_printed_is_a_failure() {
     let full = fs::OpenOptions::new().write(true).open("/dev/full").expect("the device");
     let project = format!("{EXAMPLES}/ybitu/hose.toml");
     let mut command = Command::new(env!("CARGO_BIN_EXE_phea"));

@@ -176,7 +176,7 @@ fn no_option_writes_over_an_input() {
 
 /// Files of other commands, of earlier runs and of other names are written as before.
 #[test]
-fn what_was_not_read_is_written() {
+fn a_file_that_is_not_an_input_is_replaced() {
     let folder = folder("written");
     for _ in 0..2 {
         let output = phea(&folder, &["verify", "loop.toml", "--certificate", "proof.json", "--out", "."]);

@@ -41,7 +41,7 @@ fn the_transform_is_the_sum_of_its_definition_for_every_length() {
 
 /// Parseval's theorem: sum |x|^2 = sum |X|^2 / N.
 #[test]
-fn the_transform_keeps_the_power() {
+fn the_transform_preserves_the_power() {
     for length in [256, 1000, 1009] {
         let signal = noise(3, length);
         let lines = Transform::new(length).of_real(&signal);
@@ -90,7 +90,7 @@ fn a_multisine_without_noise_gives_the_response_of_a_first_order_system_exactly(
 }
 
 #[test]
-fn a_decaying_transient_is_left_behind_with_the_periods_that_are_discarded() {
+fn discarded_periods_remove_a_decaying_transient() {
     let [input, mut output] = multisine(8);
     for (n, value) in output.iter_mut().enumerate() {
         *value += 5.0 * exp(-(n as f64) * STEP / 0.02);

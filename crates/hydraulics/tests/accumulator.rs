@@ -44,7 +44,7 @@ fn ten_millilitres_of_gas_do_the_work_of_the_hose() {
 /// Results of the machine at a state as the gas volume tends to zero: proportionally those of the
 /// rig without it.
 #[test]
-fn without_gas_it_is_the_rig_without_accumulator() {
+fn an_accumulator_without_gas_leaves_the_rig_unchanged() {
     let rates = |gas_volume: Option<f64>| {
         let gas = gas_volume.map(|gas_volume| Accumulator {
             gas_volume,

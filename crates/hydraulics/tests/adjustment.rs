@@ -311,7 +311,7 @@ fn its_conductance_has_two_limits() {
 /// A valve that is shut at rest removes both the gas and its oil from the plant; the machine
 /// preserves the pressure of its gas.
 #[test]
-fn a_shut_valve_keeps_its_gas() {
+fn a_shut_valve_holds_its_gas() {
     let parts = adjusted(AdjustedPart::Valve(GasValve { shut: true, ..VALVE }), 0.0, None);
     assert_eq!((parts.gas_branches([35e5; 2]), parts.gas_compliance([35e5; 2])), ([None; 2], [None; 2]));
     let machine = machine_of(parts, &moving());
@@ -422,7 +422,7 @@ fn a_limit_follows_the_precharge() {
 
 /// The throttling loss of a valve equals the loss in the account of the neck in its place.
 #[test]
-fn what_a_valve_throttles_is_lost_in_its_account() {
+fn a_valve_dissipates_its_throttled_power() {
     let machine = machine_of(adjusted(AdjustedPart::Valve(VALVE), 0.5, None), &moving());
     let mut seed = 7;
     for change in [-0.5, -0.2, 0.0, 0.5] {

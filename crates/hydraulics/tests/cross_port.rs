@@ -128,7 +128,7 @@ fn the_impedance_stays_passive() {
 
 /// Results of the machine for a vanishing valve: those of the machine without it.
 #[test]
-fn a_valve_that_is_shut_is_none() {
+fn a_shut_valve_has_no_effect() {
     let rates = |cross_port: Option<CrossPort>| {
         let machine = Machine::new(&actuator(cross_port), &MachineOptions::default()).unwrap();
         let mut state = vec![1.0, 20.0, 41e5, 28e5, 1e-4, 0.05];
@@ -178,7 +178,7 @@ fn a_laminar_valve_is_leakage() {
 /// Feedback leaks nothing at rest: the equilibrium is that without it, and its capacity holds the
 /// pressure difference.
 #[test]
-fn feedback_leaves_the_equilibrium_alone() {
+fn feedback_leaves_the_equilibrium_unchanged() {
     for port in [laminar(1e-9, Some(1e-12)), orifice(1e-7, Some(1e-12))] {
         let [bare, with] = [None, Some(port)].map(|port| {
             let rig = actuator(port);

@@ -56,7 +56,7 @@ fn rows(force: &KnottedForce) -> Vec<f64> {
 }
 
 #[test]
-fn a_pressed_mass_moves_as_the_equations_say() {
+fn a_pressed_mass_satisfies_the_equations() {
     let lugre = LuGre::from_array(NUMBERS);
     let force = rows(&released());
     let exact = runge_kutta(&lugre, [0.0; 2], &force, 1e-3, 200);
@@ -73,7 +73,7 @@ fn a_pressed_mass_moves_as_the_equations_say() {
 }
 
 #[test]
-fn a_mass_that_creeps_on_soft_bristles_moves_as_the_equations_say() {
+fn a_mass_that_creeps_on_soft_bristles_satisfies_the_equations() {
     let soft = LuGre::same_both_ways([80.0, 120.0, 0.01, 1.5, 100.0, 2e4, 6e3]);
     let force = rows(&released());
     let exact = runge_kutta(&soft, [0.0; 2], &force, 1e-3, 200);
@@ -132,7 +132,7 @@ fn shaking() -> MultisineForce {
 const BEGINNING: [f64; 2] = [-1e-3, 2e-6];
 
 #[test]
-fn a_shaken_mass_moves_as_the_equations_say() {
+fn a_shaken_mass_satisfies_the_equations() {
     let lugre = LuGre::from_array(NUMBERS);
     let force = shaking();
     let fine = force.along(599 * 20 + 1, 1e-5);

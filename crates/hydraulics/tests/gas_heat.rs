@@ -238,7 +238,7 @@ fn it_is_shut_off_by_the_pressure_of_its_own_temperature() {
 
 /// A pressure limit of the maker is reported when the pressure of the gas exceeds it.
 #[test]
-fn too_much_pressure_is_told() {
+fn excess_pressure_is_reported() {
     let rig =
         Components { accumulators: [Some(GAS), None], ..components(pipe_line(), StiffnessModel::ByVolume) };
     let neck =

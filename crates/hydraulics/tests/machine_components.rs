@@ -61,7 +61,7 @@ fn load_step(time: f64) -> [f64; 2] {
 ///
 /// ORIGIN: other tool, CVODE at a tolerance of 1e-12 on equal equations written in C
 #[test]
-fn the_benchmark_runs_as_the_reference_says() {
+fn the_benchmark_agrees_with_the_reference() {
     let machine = machine_of(benchmark_components(), &MachineOptions::default());
     let start = StartValues { position: 0.25, pressure_a: 35e5, pressure_b: 35e5, ..StartValues::default() };
     let mut state = machine.start(&start).unwrap().state;
@@ -154,7 +154,7 @@ fn a_slow_cycle_finds_null_at_bias_and_half_width() {
 /// relative to a steadily moving command. The memories of the machine follow the lagging spool:
 /// next to a reversal that changes the opening by up to twice the lag.
 #[test]
-fn the_machine_is_as_late_as_a_slow_test_says() {
+fn the_machine_has_the_hysteresis_of_a_slow_test() {
     let spool = measured_spool();
     let track = spool_run(&spool, 12.0, |time| 0.6 * triangle(time / 8.0));
     let mut memory = SlowSpool::at(0.0);
@@ -274,7 +274,7 @@ fn slow_bristles_are_the_static_curve() {
 /// A mass thrown at a contact comes back with 1 - 2 c v/3 of its speed: Hunt and Crossley's result
 /// for slow impacts.
 #[test]
-fn contacts_restitute_as_hunt_and_crossley_say() {
+fn contacts_restitute_after_hunt_and_crossley() {
     for relative_damping in [0.0, 0.05, 0.2] {
         let contact = Contact { stiffness: 1e6, relative_damping };
         let (mass, speed) = (4.0, 0.1);
@@ -309,7 +309,7 @@ fn pump() -> PumpLimited {
 /// A pump holds nearly the stated pressure while it has flow to spare; if more is required, it
 /// limits the velocity and the pressure falls.
 #[test]
-fn a_pump_gives_what_it_has() {
+fn a_pump_delivers_its_available_flow() {
     let unit = PumpLimited { accumulator: None, ..pump() };
     let options = MachineOptions { power_unit: PowerUnit::PumpLimited(unit), ..MachineOptions::default() };
     let rig = components(hose_line(), StiffnessModel::ByVolume);

@@ -371,7 +371,7 @@ fn lugre_takes_energy_under_its_condition_and_may_give_it_outside() {
 /// Newton's law of the load: an external force changes only its acceleration, by F_x/m, and its
 /// power is the power that the load and the rig absorb.
 #[test]
-fn a_force_from_outside_acts_on_the_load_alone() {
+fn an_external_force_acts_on_the_load_only() {
     let load = LoadModel::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
     let options = MachineOptions { load, external_force: true, ..MachineOptions::default() };
     let machine = machine_of(asymmetric(), &options);

@@ -258,7 +258,7 @@ fn a_machine_with_everything_is_the_text_of_its_equations() {
 
 /// Forces that a machine reports accelerate its piston: M dv/dt = F_H + F_stops - F_fr - F_e.
 #[test]
-fn forces_that_are_told_accelerate_the_piston() {
+fn recorded_forces_accelerate_the_piston() {
     let mut stopped = 0;
     for machine in machines() {
         let mut noise = Noise(23);

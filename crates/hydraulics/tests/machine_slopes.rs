@@ -37,7 +37,7 @@ fn seeded(
 /// Derivatives by dual numbers agree with central differences, and differ from zero only within the
 /// pattern.
 #[test]
-fn jacobians_are_slopes_and_keep_to_their_pattern() {
+fn jacobians_are_slopes_within_their_sparsity_pattern() {
     let mut noise = Noise(7);
     for machine in machines() {
         let count = machine.states();

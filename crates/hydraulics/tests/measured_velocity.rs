@@ -18,7 +18,7 @@ use super::plant_in_motion::drawn;
 /// K_x (1 + e) H_v e^(-s tau), with lines in motion; with lumped lines and without delay the
 /// quotient of polynomials, which without error equals that without sensor.
 #[test]
-fn a_measured_feed_forward_is_the_machine_with_what_its_sensor_shows() {
+fn a_measured_feed_forward_is_the_machine_with_its_sensor_reading() {
     for number in 0..36 {
         let rig = drawn(number);
         let (fed, error) = (25.0, -0.3 + 0.6 * number as f64 / 35.0);

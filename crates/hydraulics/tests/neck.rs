@@ -89,7 +89,7 @@ fn a_neck_has_two_limits() {
 
 /// A neck without inertance and resistance has no effect, exactly.
 #[test]
-fn without_inertance_and_resistance_there_is_none() {
+fn a_neck_without_inertance_and_resistance_has_no_effect() {
     let neck = Some(NeckImpedance { inertance: 0.0, resistance: 0.0 });
     let gas = GasBranch { compliance: 3e-12, relaxation: None, neck, valve: None };
     for frequency in [1e-3, 1.0, 50.0, 700.0, 2e3] {
@@ -275,7 +275,7 @@ fn oil_in_a_neck_cavitates() {
 
 /// A neck without flow has no effect: the machine rests as with the gas at its chamber.
 #[test]
-fn at_rest_it_is_not_seen() {
+fn a_neck_has_no_effect_at_rest() {
     for number in 0..16 {
         let parts = drawn(number);
         let gas = parts.map(|(gas, _)| Some(gas));

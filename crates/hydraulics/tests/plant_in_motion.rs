@@ -413,7 +413,7 @@ fn compliance_is_that_of_the_lumped_line() {
 /// Responses between two frequencies are in the disc of both, which shrinks onto the response; and
 /// the response stays below its roll-off from its first frequency on.
 #[test]
-fn what_bounds_it_holds_it() {
+fn enclosures_contain_the_response() {
     let mut state = 8;
     for number in 0..108 {
         let rig = drawn(number);

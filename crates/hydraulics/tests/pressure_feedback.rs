@@ -60,7 +60,7 @@ fn it_damps_as_leakage_does() {
 /// A high pass leaves the plant at rest unchanged; without one the valve must hold k p_L against
 /// the leakage, and the gain at rest falls by the factor K_c/(K_c + K_qU k).
 #[test]
-fn a_high_pass_leaves_the_rest_alone() {
+fn a_high_pass_leaves_the_equilibrium_unchanged() {
     let parameters = nominal_plant();
     let plain = LinearPlant::of_load_pressure(&parameters, 0.0, LinearLoad::Prescribed);
     let at_rest = |feedback| {

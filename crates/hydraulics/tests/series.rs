@@ -221,7 +221,7 @@ pub(super) fn responds_as_its_polynomials(rig: &Drawn, number: u64) -> usize {
 /// A rigid spring has no effect: in the linear plant, with lines in motion and in the machine at
 /// rest and in small motions.
 #[test]
-fn a_rigid_spring_is_no_spring() {
+fn a_rigid_spring_has_no_effect() {
     let rigid = |damping| SeriesSpring {
         stiffness: 1e25,
         damping,
@@ -281,7 +281,7 @@ fn a_rigid_spring_is_no_spring() {
 
 /// A spring without damper and mass is equivalent to a softer force sensor, in the machine too.
 #[test]
-fn a_spring_alone_is_a_softer_sensor() {
+fn a_spring_without_mass_is_a_softer_sensor() {
     let spring = SeriesSpring {
         stiffness: 2.24e6,
         damping: None,

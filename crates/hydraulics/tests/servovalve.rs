@@ -122,7 +122,7 @@ fn leakage_adds_to_the_flow_gain_under_load() {
 /// The total leakage with a leakage curve on each edge is not greatest at null, as thesis (4.14)
 /// requires.
 #[test]
-fn total_leakage_peaks_beside_null() {
+fn total_leakage_peaks_next_to_null() {
     // ORIGIN: recomputed by comparisons/recompute_rig.py (plain square roots, blocked ports)
     let cases = [
         (valve(), 1.0, 1.0816865, 2.9372e-3),

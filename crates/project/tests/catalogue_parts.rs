@@ -29,7 +29,7 @@ fn pipe_a(actuator: &DeclaredActuator) -> &DeclaredPipe {
 }
 
 #[test]
-fn an_entry_gives_what_the_table_does_not_state() {
+fn an_entry_supplies_unstated_values() {
     let found = actuator(&[]);
     // ORIGIN: data sheet: Parker, tube fittings catalogue 4300, page R4, 14 x 2
     let pipe = pipe_a(&found);
@@ -45,7 +45,7 @@ fn an_entry_gives_what_the_table_does_not_state() {
 /// Values of the project override those of the entry, also if it states the rods or the areas in
 /// another way.
 #[test]
-fn what_the_project_states_goes_before_its_entry() {
+fn a_stated_value_takes_precedence_over_the_catalogue_entry() {
     assert_eq!(pipe_a(&actuator(&["line.pipe.bore=9.8 mm"])).bore, 0.0098);
     assert_eq!(actuator(&["cylinder.rod_diameter=28 mm"]).cylinder.rod_diameters_m(), [0.028; 2]);
     assert_eq!(actuator(&["cylinder.piston_area=12 cm2"]).cylinder.effective_areas_m2(), [12e-4; 2]);

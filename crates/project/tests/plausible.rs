@@ -20,7 +20,7 @@ fn warnings(text: &str, settings: &[&str]) -> Vec<String> {
 }
 
 #[test]
-fn a_unit_that_was_forgotten_is_asked_for() {
+fn a_forgotten_unit_is_requested() {
     for (setting, told) in [
         (
             "cylinder.piston_diameter=63",
@@ -47,7 +47,7 @@ fn a_unit_that_was_forgotten_is_asked_for() {
 
 /// A factor of ten beyond the usual range may be a special rig, without a warning.
 #[test]
-fn unusual_rigs_are_not_asked_about() {
+fn unusual_rigs_need_no_confirmation() {
     for setting in ["cylinder.piston_diameter=2", "line.length=200 m", "force_sensor.stiffness=1 kN/mm"] {
         assert_eq!(warnings(HOSE, &[setting]), Vec::<String>::new(), "{setting}");
     }

@@ -53,7 +53,7 @@ fn specifications() -> [Specification; 1] {
 /// Transfer of plants from one audit to the other, which saves work and does not change the
 /// results.
 #[test]
-fn both_audits_find_what_they_find_alone() {
+fn audits_in_one_pass_agree_with_separate_audits() {
     for extent in [Extent::Box, Extent::Members] {
         let (family, around) = (family(extent), sampled_loop());
         let problem = AuditProblem {
@@ -110,7 +110,7 @@ fn audit_and_proof_do_not_depend_on_the_workers() {
 /// Stopped audits: an audit stops at once when its watch requests it, and reports its progress
 /// until then.
 #[test]
-fn an_audit_stops_where_it_is_told() {
+fn an_audit_can_be_stopped() {
     let (family, around) = (family(Extent::Box), sampled_loop());
     let problem = AuditProblem {
         family: &family,

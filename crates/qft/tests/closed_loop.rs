@@ -209,7 +209,7 @@ fn measured_lag_at(a: f64, points: i32) -> MeasuredPlant {
 /// A measured plant equals the plant at its points, is close to it between them, and does not exist
 /// beyond them.
 #[test]
-fn a_measured_plant_stands_for_the_plant() {
+fn a_measured_plant_replaces_the_plant() {
     let (a, sensor) = (30.0, rational(&[80.0], &[1.0, 80.0]));
     let around = compensation(timing(None, 0.003), sensor);
     let (measured, exact) =
@@ -269,7 +269,7 @@ fn the_images_of_a_measured_plant_are_summed() {
 }
 
 #[test]
-fn a_plant_that_answers_before_it_is_asked_is_refused() {
+fn a_plant_with_negative_delay_is_refused() {
     for sample_time in [None, Some(SAMPLE_TIME)] {
         let around = compensation(timing(sample_time, 0.004), unity());
         let early = plant(&[1.0], &[1.0, 1.0], -0.001);

@@ -385,7 +385,7 @@ fn its_poles_are_those_of_the_loop_in_states() {
 
 /// Folded from their responses, P', H and Pd' equal those of the polynomials.
 #[test]
-fn hidden_polynomials_fold_onto_the_same() {
+fn hidden_polynomials_fold_onto_equal_frequencies() {
     let mut state = 9;
     for number in 0..20 {
         let plant = Drawn::new(&mut state);
@@ -413,7 +413,7 @@ fn hidden_polynomials_fold_onto_the_same() {
 
 /// The audit of a family finds the worst case of a dense grid of responses.
 #[test]
-fn an_audit_sees_it() {
+fn an_audit_includes_the_inner_feedback() {
     let gains = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 1.0, maximum: 2.0 };
     let plant = UncertainPlant::record(vec![gains], |p| {
         let denominator = vec![1.0.into(), 12.0.into(), 90.0.into()];

@@ -132,7 +132,7 @@ fn every_solved_element_passes_its_point() {
 /// Points on the boundary of an element's reach, at 10 rad/s from L = 1: rejected there, solved
 /// slightly inside.
 #[test]
-fn the_ends_of_what_can_be_reached_are_where_they_are_said_to_be() {
+fn the_ends_of_the_reachable_range_are_as_stated() {
     let at = |pattern, magnitude_db: f64, phase_deg: f64| {
         let wanted = WantedPoint {
             frequency_rad_per_s: 10.0,
@@ -162,7 +162,7 @@ fn the_ends_of_what_can_be_reached_are_where_they_are_said_to_be() {
 
 /// A first-order element reaches one curve: both coordinates are accepted only on it.
 #[test]
-fn a_real_pole_reaches_its_curve_and_says_so() {
+fn a_real_pole_reaches_its_curve_and_reports_it() {
     let wanted = |magnitude_db| WantedPoint {
         frequency_rad_per_s: 10.0,
         magnitude_db: Some(magnitude_db),
@@ -211,7 +211,7 @@ fn loop_of(elements: Vec<Element>) -> Compensation {
 /// Two independent evaluations of a loop agree: a plant with a negative margin means a forbidden
 /// loop, and after the required change of gain no margin is negative.
 #[test]
-fn what_a_margin_asks_for_brings_it_to_zero() {
+fn the_required_change_brings_a_margin_to_zero() {
     let family = box_family();
     let specification = |requirement| Specification {
         requirement,

@@ -436,7 +436,7 @@ fn a_limit_given_as_a_table_is_that_of_the_audit() {
 
 /// Correlated parameters: a nominal plant away from their line nevertheless belongs to the family.
 #[test]
-fn a_plant_beside_the_box_is_in_the_proof() {
+fn an_additional_plant_is_in_the_proof() {
     let parameter =
         |name: &str, nominal| UncertainParameter { name: name.into(), nominal, minimum: 1.0, maximum: 2.0 };
     let plant =

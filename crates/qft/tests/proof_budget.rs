@@ -9,7 +9,7 @@ use crate::proof::{blind, problem, random_problem};
 /// A proof with any budget reports the remainder: from a frequency on, or nothing; a larger budget
 /// never proves less, and no budget leads to a false claim.
 #[test]
-fn a_proof_within_a_budget_says_what_remains() {
+fn a_proof_within_a_budget_reports_the_remainder() {
     let mut last = 0;
     for points in [0, 2_000, 20_000, 200_000, 100_000_000] {
         let mut shown = 0;

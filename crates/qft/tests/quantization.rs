@@ -219,7 +219,7 @@ fn settled_commands(controller: &Controller, quantization: &Quantization) -> Vec
 /// Single precision would move the integrator of (z - 1)(z - p): 1 + p and p are not rounded alike.
 /// A rounded integrator remains one, and the limit of the loop at zero frequency is unchanged.
 #[test]
-fn an_integrator_stays_one() {
+fn an_integrator_remains_an_integrator() {
     for frequency in [3.0, 11.0, 70.0, 500.0] {
         let elements = vec![Element::Integrator, Element::Gain(2.0), Element::RealPole { frequency }];
         let controller = controller(elements, 0.0);
@@ -245,7 +245,7 @@ fn an_integrator_stays_one() {
 /// The audited controller has the response of the deployed sections, and more bits bring it closer
 /// to the controller designed.
 #[test]
-fn what_is_verified_is_what_is_deployed() {
+fn the_verified_controller_is_the_deployed_one() {
     let elements = vec![
         Element::ProportionalIntegral { proportional_gain: 0.3, integral_gain: 0.7 },
         Element::Notch { natural_frequency: 60.0, zero_damping_ratio: 0.05, pole_damping_ratio: 0.7 },
@@ -296,7 +296,7 @@ fn what_is_verified_is_what_is_deployed() {
 }
 
 #[test]
-fn what_cannot_be_is_refused() {
+fn impossible_requests_are_refused() {
     for (bits, range) in [(0, [0.0, 1.0]), (33, [0.0, 1.0]), (8, [1.0, 1.0]), (8, [0.0, f64::INFINITY])] {
         assert!(Converter::new(bits, range).is_err());
     }

@@ -218,7 +218,7 @@ fn a_search_counts_poles_as_those_of_the_polynomials() {
 
 /// The table of a response equals that response to 0.2 %, also between its points.
 #[test]
-fn tables_hold_what_is_between_their_points() {
+fn tables_enclose_values_between_their_points() {
     let mut state = 5;
     for _ in 0..40 {
         let plant = hidden(&mut state);

@@ -147,7 +147,7 @@ fn no_loop_has_less_than_its_own_peaks_guarantee() {
 }
 
 #[test]
-fn only_constant_limits_on_the_two_loop_functions_say_something() {
+fn only_constant_limits_on_the_two_loop_functions_imply_margins() {
     let rational = Limit::Rational(real_loop(1.0, &[], &[-1.0]));
     for (requirement, expected) in [
         (
@@ -175,7 +175,7 @@ fn the_thesis_limit_of_one_point_three_is_a_little_less_than_its_five_decibels()
 }
 
 #[test]
-fn the_delay_limit_allows_no_loop_more_delay_than_it_bears() {
+fn the_delay_limit_permits_no_more_delay_than_a_loop_tolerates() {
     let loops = [
         real_loop(1.0, &[], &[0.0]),
         real_loop(30.0, &[], &[0.0]),
@@ -206,7 +206,7 @@ fn the_delay_limit_allows_no_loop_more_delay_than_it_bears() {
 }
 
 #[test]
-fn an_integrator_bears_a_quarter_turn_and_is_promised_one_radian() {
+fn an_integrator_tolerates_a_quarter_turn_and_is_guaranteed_one_radian() {
     let gain = 7.0;
     let open = real_loop(gain, &[], &[0.0]);
     assert!(close(margins(&open).delay_margin_s(), PI / 2.0 / gain, 1e-12));
@@ -222,7 +222,7 @@ fn an_integrator_bears_a_quarter_turn_and_is_promised_one_radian() {
 }
 
 #[test]
-fn what_is_no_margin_has_no_limit() {
+fn invalid_margins_have_no_limit() {
     let refused = |result: Result<f64, MarginError>| matches!(result, Err(MarginError::OutOfRange { .. }));
     for value in [1.0, 0.5, -2.0, f64::NAN, f64::INFINITY] {
         assert!(refused(robust_stability_limit_for_gain_increase(value)), "{value}");

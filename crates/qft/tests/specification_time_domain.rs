@@ -48,7 +48,7 @@ impl Numbers {
 
 // ORIGIN: recomputed by comparisons/recompute_specifications.py
 #[test]
-fn the_printed_limits_do_not_meet_their_wish() {
+fn the_printed_limits_miss_their_requirement() {
     let pair = [c(-36.8, 27.6), c(-36.8, -27.6)];
     let upper = check_upper(&factored(2116.0 / 75.0, &[c(-75.0, 0.0)], &pair), &UPPER).unwrap();
     assert!(close(upper.reached.overshoot_percent, 2.194563521, 1e-8));
@@ -101,7 +101,7 @@ fn exact_limits_are_those_of_an_independent_root_finder() {
 }
 
 #[test]
-fn exact_limits_meet_any_wish_whatever_the_extra_root() {
+fn exact_limits_meet_any_requirement_for_every_extra_root() {
     let mut numbers = Numbers(7);
     for _ in 0..20 {
         let overshoot_percent = numbers.between(0.1, 40.0);
@@ -141,7 +141,7 @@ fn exact_limits_meet_any_wish_whatever_the_extra_root() {
 /// The settling time jumps where an extreme of the response reaches the band; no natural frequency
 /// then settles at exactly the required time, and the faster side of the jump is used.
 #[test]
-fn where_the_settling_time_jumps_the_wish_is_met_with_time_to_spare() {
+fn at_a_jump_of_the_settling_time_the_requirement_is_met_early() {
     let wish = UpperWish { overshoot_percent: 99.9, settling_time_s: 0.1, settling_band_percent: 1.0 };
     let zero = ExtraRoot::At { rad_per_s: 30.0 };
     let limit = tracking_upper(&wish, zero, Translation::Exact).unwrap();
@@ -157,7 +157,7 @@ fn where_the_settling_time_jumps_the_wish_is_met_with_time_to_spare() {
 }
 
 #[test]
-fn a_wish_ten_times_as_fast_has_limits_ten_times_as_fast() {
+fn a_requirement_ten_times_as_fast_has_limits_ten_times_as_fast() {
     let fast = UpperWish { settling_time_s: UPPER.settling_time_s / 10.0, ..UPPER };
     for (zero, scaled) in [
         (ExtraRoot::None, ExtraRoot::None),
@@ -197,7 +197,7 @@ fn no_overshoot_means_critical_damping_or_a_zero_that_cancels_the_slow_pole() {
 }
 
 #[test]
-fn rules_of_thumb_follow_the_thesis_and_keep_to_their_band() {
+fn rules_of_thumb_follow_the_thesis_within_their_band() {
     let rule = Translation::Rule(SettlingRule::OnePercentThesis);
     let upper = tracking_upper(&UPPER, ExtraRoot::At { rad_per_s: 75.0 }, rule).unwrap();
     assert!(close(upper.natural_frequency_rad_per_s * upper.damping_ratio * 0.1, 5.0, 1e-12));
@@ -273,7 +273,7 @@ fn modes_far_apart_and_light_damping_are_followed_to_the_end() {
 }
 
 #[test]
-fn what_has_no_answer_is_refused_and_what_never_settles_says_so() {
+fn unsolvable_requirements_are_refused_and_unsettled_responses_reported() {
     let half = factored(5.0, &[], &[c(-10.0, 0.0)]);
     let check = check_lower(&half, &LOWER).unwrap();
     assert!(

@@ -167,7 +167,7 @@ fn a_loop_that_has_no_solution_is_not_resolved() {
 
 /// Closed-loop poles over nine decades, of which the slowest one decides.
 #[test]
-fn slow_poles_beside_fast_ones() {
+fn slow_poles_next_to_fast_ones() {
     let slow = [1e-3, 0.1, 1.0, 1e2, 1e4, 1e6];
     let expanded = slow.iter().fold(Polynomial::new(vec![1.0]), |product, root| {
         product.product(&Polynomial::new(vec![1.0, *root]))

@@ -61,7 +61,7 @@ fn an_integrator_with_samples_of_delay() {
 /// Loop 1/(z - 1), which has a sixth of a turn of phase margin at w T = pi/3: one sample of delay,
 /// which also brings k T = 1 to its limit.
 #[test]
-fn a_whole_sample_is_borne_exactly() {
+fn a_whole_sample_is_tolerated_exactly() {
     for samples in [0.0, 4.0, 40.0] {
         let limit = 2.0 * sin(PI / (4.0 * samples + 6.0));
         let found = found(vec![Element::Gain(limit / SAMPLE)], (&[1.0], &[1.0, 0.0]), samples * SAMPLE);
@@ -75,7 +75,7 @@ fn a_whole_sample_is_borne_exactly() {
 /// until m = 1/(k T), for 1 < k T < 4/3. The family's margin is that of its largest gain, to the
 /// last digits, although phase over frequency gives 0.66.
 #[test]
-fn a_fraction_of_a_sample_is_borne_exactly() {
+fn a_fraction_of_a_sample_is_tolerated_exactly() {
     let gain = UncertainParameter { name: "k".into(), nominal: 0.6, minimum: 0.5, maximum: 1.25 };
     let plant = UncertainPlant::record(vec![gain], |p| PlantCoefficients {
         command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] },
@@ -165,7 +165,7 @@ fn nothing_is_cancelled() {
 /// The slow poles of a sampled loop are those of the continuous one to the order of the sample
 /// time, at any speed.
 #[test]
-fn slow_poles_keep_their_digits() {
+fn slow_poles_lose_no_digit() {
     let integral = Element::ProportionalIntegral { proportional_gain: 1e-3, integral_gain: 1e-9 };
     let found = found(vec![integral], (&[1.0], &[1.0, 1.0]), 0.0);
     // s^2 + 1.001 s + 1e-9: the slow root, and half a sample of the hold times its square is

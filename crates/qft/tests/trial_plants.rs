@@ -109,7 +109,7 @@ fn equal_poles_and_continuous_loops_are_whole() {
 /// The searches of an audit sample only the plants at their ends as a whole: the others are
 /// evaluated by their modes.
 #[test]
-fn a_search_tries_plants_without_sampling_them_as_a_whole() {
+fn a_search_tests_plants_without_sampling_them_as_a_whole() {
     let parameter =
         |name: &str| UncertainParameter { name: name.into(), nominal: 1.0, minimum: 0.5, maximum: 2.0 };
     let plant = UncertainPlant::record(vec![parameter("k"), parameter("m")], |p| PlantCoefficients {

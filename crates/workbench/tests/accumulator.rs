@@ -26,7 +26,7 @@ fn gas_compliance(gas_volume: f64, precharge: f64, index: f64, pressure: f64) ->
 
 /// The gas of each side at the pressure of its own chamber, with the two sides different.
 #[test]
-fn check_derives_what_the_gas_yields_and_the_stiffness_with_and_without() {
+fn check_derives_the_compliance_of_gas_and_the_stiffness_with_and_without_it() {
     let told = check(BOTH, &["operating_point.load_force=1 kN"]);
     let pressures = ["a", "b"].map(|side| derived(&told, &format!("operating_point.pressure_{side}")));
     let expected =
@@ -45,7 +45,7 @@ fn check_derives_what_the_gas_yields_and_the_stiffness_with_and_without() {
 /// The force at which `check` reports that the gas is shut off brings a chamber down to its
 /// precharge.
 #[test]
-fn at_the_limits_of_force_a_chamber_stands_just_above_its_precharge() {
+fn at_the_limits_of_force_a_chamber_is_just_above_its_precharge() {
     let told = check(GAS, &[]);
     for (end, chamber) in [("least", "a"), ("greatest", "b")] {
         let force = derived(&told, &format!("line.{chamber}.accumulator.{end}_force"));
@@ -163,7 +163,7 @@ fn gas_that_is_shut_off_at_the_operating_point_is_refused() {
 
 /// Gas that is shut off is rejected at the key, in the file or in the alternative that sets it.
 #[test]
-fn what_shuts_off_the_gas_is_refused_at_its_place() {
+fn a_precharge_above_the_chamber_pressure_is_refused_at_its_place() {
     let line_of = |text: &str, key: &str| 1 + text.lines().position(|line| line.contains(key)).unwrap();
     let place = |text: &str, request: &Request| {
         let refused = try_answer(text, &[], &[], request).unwrap_err();
@@ -187,7 +187,7 @@ fn what_shuts_off_the_gas_is_refused_at_its_place() {
 /// A family whose precharge exceeds the pressure of a chamber states at how many of its plants;
 /// otherwise it states nothing.
 #[test]
-fn a_verdict_tells_at_how_many_plants_the_gas_is_shut_off() {
+fn a_verdict_counts_the_plants_whose_gas_is_shut_off() {
     let caveat = |most: f64| {
         let range = format!(
             "uncertainty.\"line.accumulator.precharge_pressure\"={{ nominal = 15e5, minimum = 15e5, maximum = {most:e}, points = 3 }}"

@@ -60,7 +60,7 @@ fn a_setting_is_the_declared_accumulator() {
 
 /// A shut valve leaves the rig without an accumulator; an opening one does not.
 #[test]
-fn a_shut_valve_is_no_accumulator() {
+fn a_shut_valve_disconnects_the_accumulator() {
     let text = without_uncertainty(GAS);
     let (before, after) = text.split_once("[line.accumulator]").unwrap();
     let (_, after) = after.split_once("\n[").unwrap();
@@ -107,7 +107,7 @@ fn check_derives_the_stiffness_of_each_setting() {
 
 /// Settings that a verdict does not cover are reported.
 #[test]
-fn a_verdict_says_that_settings_stand() {
+fn a_verdict_reports_that_settings_are_frozen() {
     let text = without_uncertainty(GAS);
     let said = |more: &[&str]| {
         json(&text, &[&[LIMIT], more].concat(), &[], &Request::Verify { proof: false, on_machine: false })
@@ -124,7 +124,7 @@ fn a_verdict_says_that_settings_stand() {
 
 /// A simulation of a moving setting states its work; one of a setting beyond its range is rejected.
 #[test]
-fn a_simulation_tells_the_work_of_a_setting() {
+fn a_simulation_reports_the_work_of_a_setting() {
     let text = without_uncertainty(GAS);
     let scenario = |change: &str| {
         format!(
@@ -170,7 +170,7 @@ fn rows_of(settings: &[&str]) -> (serde_json::Value, Vec<std::collections::BTree
 /// The loss in the valves is the integral of their drops times their flows, which the rows contain
 /// too.
 #[test]
-fn the_loss_of_switching_is_told() {
+fn the_loss_of_switching_is_reported() {
     let scenario = "scenario=[{ name = \"moves\", duration = \"0.3 s\", output_step = \"0.02 ms\", reference = [{ at = 0, force = \"1 kN\" }, \
          { at = \"0.05 s\", force = \"3 kN\" }], setting_change = [{ at = \"0.15 s\", change = 0.5 }] }]";
     let (found, rows) = rows_of(&[&at(VALVE, 0.0), scenario]);
@@ -206,7 +206,7 @@ fn the_loss_of_switching_is_told() {
 /// Peaks of gas are those of the solution; the temperature of gas too fast for heat exchange
 /// follows the adiabate.
 #[test]
-fn peaks_of_gas_are_told() {
+fn peaks_of_gas_are_reported() {
     let scenario = "scenario=[{ name = \"moves\", duration = \"0.5 s\", output_step = \"0.1 ms\", reference = [{ at = 0, force = \"1 kN\" }, \
          { at = \"0.1 s\", force = \"3 kN\" }] }]";
     let gas = "line.accumulator={ gas_volume = \"14 mL\", precharge_pressure = \"15 bar\", thermal_time_constant = \"1e7 s\" }";

@@ -131,7 +131,7 @@ fn the_two_pressure_model_leaks() {
 
 /// Models that hold the load still are named as such, in text, JSON and table.
 #[test]
-fn what_holds_the_load_still_is_named() {
+fn the_component_that_holds_the_load_is_named() {
     let load = specimen("15 kN/mm");
     let request = Request::Linearize { sweep: None };
     let [with, without] = [&[&load[..]][..], &[]].map(|settings| answer(RIG, settings, &[], &request));

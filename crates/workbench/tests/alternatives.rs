@@ -172,7 +172,7 @@ fn a_spring_on_the_rod_has_a_length() {
 /// Under a load case each alternative is designed with the settings of the case; the alternative's
 /// own settings come last.
 #[test]
-fn a_load_case_is_what_set_makes_of_every_alternative() {
+fn a_load_case_equals_every_alternative_with_set() {
     let text =
         format!("{LOOP}\n[[load_case]]\nname = \"slow\"\nset = {{ \"plant.denominator\" = \"s + 0.5\" }}\n");
     let found = answer(&text, &[], &[], &asked(true));
@@ -275,7 +275,7 @@ fn every_column_has_a_name() {
 /// The ranges of the rig that an alternative changes, and only these; without the option the check
 /// reports this.
 #[test]
-fn ranges_follow_the_rig_where_that_is_asked() {
+fn ranges_follow_the_rig_if_requested() {
     let pipe = "\n[[alternative]]\nname = \"pipe\"\nRECENTRE\n[alternative.set]\n\
                 \"line\" = { pipe = { bore = \"10.5 mm\" }, length = \"0.35 m\", compliance = \"uniform\" }\n";
     let text = |recentre: &str| format!("{HOSE}{}", pipe.replace("RECENTRE", recentre));
@@ -370,7 +370,7 @@ fn each_written_project_is_the_one_that_was_driven() {
 
 /// Results that are finished when the watch stops are returned; the rest is named.
 #[test]
-fn a_stop_keeps_what_is_finished() {
+fn a_stop_returns_the_finished_alternatives() {
     let mut watch = |progress: phea_workbench::command::Progress| progress.share < 0.34;
     let stopped =
         answer_into(&source(LOOP), &load(LOOP, &[], &[]), &[], &asked(false), None, &mut watch).unwrap();
@@ -414,7 +414,7 @@ pub(super) fn stands_in(row: &str, output: &str) -> bool {
 /// The commands that story and book have in common are in both, and the story's output is compared
 /// with the command's.
 #[test]
-fn the_book_says_what_the_story_shows() {
+fn the_book_agrees_with_the_story() {
     let story = include_str!("../../../examples/13_alternatives.md");
     let shared = ["as declared", "pipe", "hose by volume", "accumulators"];
     let rows = rows_of_the_book(10);
@@ -428,7 +428,7 @@ fn the_book_says_what_the_story_shows() {
 /// Every row of the book, under every load.
 #[test]
 #[ignore = "thirty-nine designs, nineteen of them infeasible"]
-fn soak_the_book_says_what_the_comparison_shows() {
+fn soak_the_book_agrees_with_the_comparison() {
     let project = include_str!("../../../examples/ybitu/compliance.toml");
     let found = answer(project, &[], &[], &asked(false));
     let rows = [rows_of_the_book(10), rows_of_the_book(8)].concat();

@@ -19,7 +19,7 @@ const SWEEP: &str = "line.length=0.5 m..4 m";
 /// Table, figure and findings of the book are those of the command that it states.
 #[test]
 #[ignore = "eighteen designs"]
-fn soak_the_book_says_what_the_front_shows() {
+fn soak_the_book_agrees_with_the_front() {
     for stated in [BY_VOLUME, COLUMNS, SWEEP] {
         assert!(BOOK.contains(stated), "{stated}");
     }
@@ -65,7 +65,7 @@ fn front(columns: &str, sweep: &str) -> Request {
 
 /// Dominance of the points, compared with its definition; identical bytes from two threads at once.
 #[test]
-fn a_front_is_what_nothing_dominates() {
+fn a_front_consists_of_the_undominated_rows() {
     let request = front("high_frequency_gain_db,swept:more", "plant.delay=1 ms..20 ms");
     let ask = || answer(LOOP, &[], &[], &request);
     let [found, again] = std::thread::scope(|scope| {
@@ -132,7 +132,7 @@ fn a_front_may_go_over_feasibility() {
 
 /// A request that is rejected before anything is designed.
 #[test]
-fn a_front_that_cannot_be_says_why() {
+fn an_impossible_front_has_its_reason() {
     let refused = |columns: &str, sweep: &str| {
         crate::ask::try_answer(LOOP, &[], &[], &front(columns, sweep)).unwrap_err().to_string()
     };

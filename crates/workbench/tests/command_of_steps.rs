@@ -70,7 +70,7 @@ fn a_gain_around_a_lag_in_closed_form() {
 
 /// The first command is K F(inf), for the continuous prefilter and for the sampled one.
 #[test]
-fn the_first_command_is_what_passes_at_once() {
+fn the_first_command_is_the_direct_feedthrough() {
     within(command(&around(None, true))[0].1, GAIN * 40.0 / 10.0, 1e-9);
     let sampled = around(Some(SAMPLE_TIME_S), true);
     let passes = sampled.prefilter_of_step().unwrap().gain();
@@ -169,7 +169,7 @@ fn a_small_step_of_the_nonlinear_rig_takes_the_linear_command() {
 /// The sensor's capacity is reached before the valve's.
 // ORIGIN: analytic, fractions of the command of the unlimited design
 #[test]
-fn a_design_keeps_the_command_of_its_step() {
+fn a_design_limits_the_command_of_its_step() {
     let text = simple_rig();
     let (rig, _) = text.split_once("[controller]").unwrap();
     let rig = rig.replace("[force_sensor]\n", "[force_sensor]\ncapacity = \"2.5 kN\"\n");

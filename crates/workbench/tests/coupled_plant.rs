@@ -105,7 +105,7 @@ fn audited(project: &Project) -> ProjectAudit {
 /// Declared effects that are not in the linear loop are reported above everything else, and no
 /// verdict is met.
 #[test]
-fn what_is_not_counted_is_told_first() {
+fn uncounted_effects_are_reported_first() {
     let met = audited(&satisfied(&[]));
     assert_eq!(met.audit.verdict, Verdict::Met);
     for (settings, key) in [
@@ -308,7 +308,7 @@ fn a_path_that_no_specification_limits_decides_nothing() {
 /// with that rig is reported.
 // ORIGIN: thesis, Table 6.3, and K_c of the edges of Table 5.1
 #[test]
-fn a_family_that_does_not_contain_the_rig_says_so_first() {
+fn a_family_that_does_not_contain_the_rig_is_reported_first() {
     let view = audited(&satisfied(&[]));
     let [outside] = &view.caveats[..] else { panic!("{:?}", view.caveats) };
     let UncountedEffect::OutsideFamily(OutsideFamily { parameters, with_rig }) = &outside.effect else {

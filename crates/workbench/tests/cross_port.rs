@@ -16,7 +16,7 @@ const VISCOUS: &str = "cylinder.friction={ model = \"viscous\", viscous = \"100 
 
 /// Flow, loss and gain at rest of a laminar valve and of an orifice, under load.
 #[test]
-fn check_derives_what_a_valve_costs_at_rest() {
+fn check_derives_the_loss_of_a_valve_at_rest() {
     let loaded = "operating_point.load_force=2 kN";
     let told = check(PIPE, &[LAMINAR, loaded]);
     let drop = derived(&told, "operating_point.pressure_a") - derived(&told, "operating_point.pressure_b");
@@ -39,7 +39,7 @@ fn check_derives_what_a_valve_costs_at_rest() {
 
 /// The static error of a controller without integral action, and none for one that integrates.
 #[test]
-fn check_tells_the_static_error() {
+fn check_reports_the_static_error() {
     let proportional = ["controller.numerator=0.0005", "controller.denominator=1"];
     let told = check(PIPE, &[&[LAMINAR][..], &proportional].concat());
     let [gain, without] =
@@ -80,7 +80,7 @@ fn feedback_costs_nothing_at_rest() {
 /// An orifice without a drop is reported first, and no verdict is met with it unless the range of
 /// its transition is stated.
 #[test]
-fn an_orifice_without_a_drop_is_told_first() {
+fn an_orifice_without_a_drop_is_reported_first() {
     let told = json(FEEDBACK, &[], &[], &Request::Verify { proof: false, on_machine: false });
     assert_eq!(told["verdict"], "not_proven", "{told}");
     assert!(
@@ -162,7 +162,7 @@ fn sizing_counts_a_leak_and_refuses_a_capacity() {
 /// Models of a linearisation that leave feedback out report this; a laminar valve is in all of
 /// them.
 #[test]
-fn models_without_feedback_say_so() {
+fn models_without_feedback_are_reported() {
     let text = |settings: &[&str]| answer(PIPE, settings, &[], &Request::Linearize { sweep: None }).text;
     let feedback =
         "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1e-10, capacity = 1e-12 }";
@@ -181,7 +181,7 @@ fn models_without_feedback_say_so() {
 /// decomposed model, with the feedback of the comparison in the book the 0.09 for which it was
 /// sized, while the decomposed model has not changed.
 #[test]
-fn check_tells_the_damping_with_the_valve_in_it() {
+fn check_reports_the_damping_including_the_valve() {
     let feedback = "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1.07644e-10, piston_diameter = \"12 mm\", spring_stiffness = \"30 N/mm\" }";
     let [alone, damped] = [&[][..], &[feedback]].map(|settings| check(PIPE, settings));
     let [alone, damped] = [alone, damped].map(|told| {

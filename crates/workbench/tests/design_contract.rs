@@ -28,7 +28,7 @@ fn begun(project: &str, settings: &[&str], seed: Option<u32>) -> (DesignProblem,
 }
 
 #[test]
-fn the_section_becomes_what_a_design_begins_with() {
+fn the_design_section_is_the_start_of_a_design() {
     let (problem, options) = begun(TIMED, &[], None);
     assert_eq!((problem.timing.sample_time_s, problem.timing.delay_s), (Some(0.001), 0.0005));
     assert_eq!(problem.minimum_delay_margin_s, 0.002);
@@ -106,7 +106,7 @@ fn the_gain_of_a_structure_is_wide_and_of_the_right_sign() {
 }
 
 #[test]
-fn a_controller_may_give_its_timing_alone() {
+fn a_controller_may_state_its_timing_only() {
     let object = json(TIMED, &[], &[], &Request::Check);
     assert_eq!(object["command"], "check");
     let refused =
@@ -183,7 +183,7 @@ fn allowed_errors_of_the_converters_are_specifications() {
 /// The law in an answer is the one with the coefficients stored in the computer, and its
 /// verification is that law's.
 #[test]
-fn the_answer_is_what_is_deployed() {
+fn the_answer_is_the_deployed_controller() {
     let single = json(CONVERTED, &["controller.quantization.coefficients=\"f32\""], &[], &DESIGN);
     assert_eq!(single["status"], "met");
     assert_eq!(single["controller"]["domain"], "z");
@@ -196,7 +196,7 @@ fn the_answer_is_what_is_deployed() {
 }
 
 #[test]
-fn two_limits_that_no_loop_keeps_together_are_explained() {
+fn two_limits_that_no_loop_satisfies_together_are_explained() {
     let source = Memory::default().with("mistake.toml", CONTRADICTORY);
     let project = project::read(&source, "mistake.toml", &[], &[]).unwrap().project;
     let given = robust_problem(&source, &Setup::new(&project).unwrap()).unwrap();

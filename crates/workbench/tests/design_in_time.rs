@@ -19,7 +19,7 @@ fn with_step(timing: &str) -> ProjectDesign {
 /// that does not is missed, whatever its steps.
 // ORIGIN: written by hand, within and beyond 5 % and 1.5 s
 #[test]
-fn a_structure_whose_steps_alone_miss_is_missed_in_time() {
+fn a_structure_that_fails_by_its_steps_only_fails_in_time() {
     let mut view = with_step("");
     let structure =
         |ending: StructureEnding, [overshoot_percent, settling_time_s]: [f64; 2]| ReachedStructure {

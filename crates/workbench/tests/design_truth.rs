@@ -80,7 +80,7 @@ fn the_rig_with_pipes_is_met() {
 /// the hoses and the tolerated delay are those of the written controller when it is verified
 /// against these limits only; and the nonlinear rig agrees with it, with waves in its hoses too.
 #[test]
-fn the_rig_with_hoses_is_met_within_what_may_be_built() {
+fn the_rig_with_hoses_is_met_within_the_permitted_frequency() {
     let (design, verified) = with_verified(built_hose());
     assert_met(&design, &verified, [4.0, 3.0]);
     assert_eq!(design["machine"]["verdict"], "agrees_but_for_settling");

@@ -53,7 +53,7 @@ const MOVING: &str = "operating_point.velocity=\"20 mm/s\"";
 /// The enclosures of the pressures are too wide while the piston moves: a search decides, and names
 /// the parameters that move the leading coefficient.
 #[test]
-fn where_a_search_decides_the_parameters_are_named() {
+fn if_a_search_decides_the_parameters_are_named() {
     let verify = Request::Verify { proof: false, on_machine: false };
     let settings = ["fluid.entrained_air=0.005", MOVING];
     let found = json(&format!("{RIG}{LOOP}"), &settings, &[], &verify);

@@ -67,7 +67,7 @@ fn same(csv: impl Into<Vec<u8>>, with_load_motion: bool) {
 /// A response is recovered to 1e-12 from every way to write it: units, wrapped and unwrapped
 /// phases, comments, line ends, byte order mark, quotes and spaces.
 #[test]
-fn what_is_written_is_read() {
+fn written_families_read_back() {
     let rows = |header: &str, row: &dyn Fn(f64, [Complex64; 2], f64) -> String| {
         let mut turns = 0.0;
         let lines: Vec<String> = frequencies()
@@ -178,7 +178,7 @@ fn decimal_commas_are_read_between_semicolons() {
 }
 
 #[test]
-fn columns_must_say_what_they_hold() {
+fn columns_must_state_their_quantity() {
     refuses(
         "frequency_hz,magnitud_dB,phase_deg\n1,0,0\n",
         &["1:14 unknown column `magnitud_dB`; did you mean `magnitude_db`?"],
@@ -205,7 +205,7 @@ fn columns_must_say_what_they_hold() {
 }
 
 #[test]
-fn files_that_are_none_are_told() {
+fn files_without_a_response_are_reported() {
     refuses("", &["0:0 the file is empty; a row with the names of the columns"]);
     refuses(
         "frequency_hz,real,imaginary\n# nothing\n",

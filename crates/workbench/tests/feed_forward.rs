@@ -50,7 +50,7 @@ fn lag(parameters: &LinearParameters) -> f64 {
 }
 
 #[test]
-fn the_exact_gain_is_what_cancels_the_load_in_the_linear_model() {
+fn the_exact_gain_cancels_the_load_in_the_linear_model() {
     for line in ["pipe", "hose"] {
         let parameters = Setup::rig_of(&load(line, &[])).unwrap().linear;
         let model = linear_model(&parameters).unwrap();
@@ -66,7 +66,7 @@ fn the_exact_gain_is_what_cancels_the_load_in_the_linear_model() {
 
 /// The remaining fraction of the force of a slow motion is 1 - a + a tau s.
 #[test]
-fn what_is_left_grows_with_the_lag() {
+fn the_remainder_grows_with_the_lag() {
     // ORIGIN: recomputed by book/recompute_theory.py
     for (line, quoted) in [("hose", 1.69e-3), ("pipe", 1.65e-3)] {
         let tau = lag(&Setup::rig_of(&load(line, &[])).unwrap().linear);
@@ -175,7 +175,7 @@ fn settings_of(part: &str) -> Vec<String> {
 }
 
 #[test]
-fn the_tables_are_what_the_machine_does() {
+fn the_tables_agree_with_the_machine() {
     let (columns, peaks) = table("peak, N");
     let (same_columns, commands) = table("rms, V");
     assert!(columns == same_columns && peaks.len() == 18 && commands.len() == 18);
@@ -201,7 +201,7 @@ fn the_tables_are_what_the_machine_does() {
 }
 
 #[test]
-fn a_load_that_reacts_is_what_the_page_says() {
+fn a_load_that_reacts_agrees_with_the_page() {
     let mass = "load={ model = \"spring_mass_damper\", mass = 100, stiffness = 2e5, damping = 500 }";
     let (shares, rows) = table("rms with a reacting load, V");
     assert!(shares.len() == 6 && rows.len() == 2);

@@ -84,7 +84,7 @@ fn a_measurement_file_of_labview_is_the_same_record() {
 }
 
 #[test]
-fn a_chart_is_named_as_what_it_is() {
+fn a_chart_is_refused_as_a_chart() {
     let head = "Current (mA) - Plot 0\tFlow (GPM) - Plot 0\tCurrent (mA) - Plot 1\tFlow (GPM) - Plot 1\n";
     let chart = table(head, 1.0, |row, _| format!("{row}00u\t25.{row}m\t\t"));
     let found = refused(chart);

@@ -82,7 +82,7 @@ fn the_design_is_that_of_the_damped_rig() {
 /// with the feedback that was found: up to the predicted gains they satisfy the limits of a design,
 /// except for plants between those used in the design; a tenth beyond they do not.
 #[test]
-fn proportional_loops_have_the_gains_that_were_foretold() {
+fn proportional_loops_have_the_predicted_gains() {
     let text = few_plants();
     // a resonance between two plants may pass the highest bandwidth
     let free = loaded(&text, &[FREE, "design.highest_bandwidth=inf"]);
@@ -118,7 +118,7 @@ fn proportional_loops_have_the_gains_that_were_foretold() {
 /// A table without a gain feeds nothing back until a design has found one, which every command
 /// reports; a stated gain is fed back unchanged.
 #[test]
-fn a_feedback_that_is_still_to_be_found_is_told() {
+fn a_pending_feedback_is_reported() {
     let feedback = "controller.pressure_feedback={ signal = \"load_pressure\" }";
     let is_told = |settings: &[&str]| {
         let warnings = loaded(RIG, settings).warnings;

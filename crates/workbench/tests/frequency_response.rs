@@ -96,7 +96,7 @@ fn the_amplitude_goes_to_zero_and_with_it_the_difference() {
 /// Waves in the lines, a delayed command and a sensor that lags: the linearised machine has delays,
 /// and agrees with small sines.
 #[test]
-fn delays_are_part_of_what_is_linearised() {
+fn delays_are_included_in_the_linearisation() {
     let line = "line={ hose = \"eaton_synflex_3130_08\", length = \"1.5 m\", model = \"transmission_line\" }";
     let late = "controller.delay=2 ms";
     let sensor = "sensor={ numerator = \"2000\", denominator = \"s + 2000\", delay = \"0.5 ms\" }";
@@ -182,7 +182,7 @@ fn a_supply_that_yields_is_in_the_linear_plant() {
 
 /// The fundamental between the samples of a sampled loop is that of the held command.
 #[test]
-fn a_sampled_loop_is_that_of_the_linear_plant_behind_its_hold() {
+fn a_sampled_loop_is_that_of_the_linear_plant_after_its_hold() {
     for settings in [
         vec!["controller.sample_time=1 ms"],
         vec![
@@ -240,7 +240,7 @@ fn a_preloaded_progressive_spring_is_linearised_under_its_load() {
 /// A sensor with a DC gain of 2: the loop rests where the sensor reads twice the force of the
 /// operating point, and is linearised there.
 #[test]
-fn a_loop_rests_at_what_its_sensor_shows() {
+fn a_loop_rests_at_its_sensor_reading() {
     let sensor = "sensor={ numerator = \"4000\", denominator = \"s + 2000\" }";
     let leaky = "controller.denominator=s + 1";
     for more in [&[][..], &[leaky], &[leaky, "controller.sample_time=1 ms"]] {
@@ -302,7 +302,7 @@ fn the_answer_has_its_keys_files_and_figures() {
 }
 
 #[test]
-fn options_that_are_none_are_refused() {
+fn invalid_options_are_refused() {
     let cases = [
         (
             FrequencyOptions { amplitude: Some("0 V".into()), ..Default::default() },

@@ -48,7 +48,7 @@ fn levels_of_both_directions_come_back_from_the_bench() {
 
 /// A family must contain the viscous friction of both directions.
 #[test]
-fn a_family_without_the_viscous_friction_of_one_direction_is_told() {
+fn a_family_without_the_viscous_friction_of_one_direction_is_reported() {
     let anything =
         "specification=[{ kind = \"robust_stability\", limit = 1000, frequencies = [1], band = [1, 2] }]";
     let verify = |settings: &[&str]| {

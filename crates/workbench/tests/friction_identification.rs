@@ -97,7 +97,7 @@ fn the_steady_curve_comes_back_without_noise() {
 /// is determined, and the intervals contain the truth: three standard deviations here, because six
 /// numbers are checked.
 #[test]
-fn a_noisy_bench_tells_all_but_the_damper() {
+fn a_noisy_bench_identifies_all_but_the_damper() {
     let found: Value = serde_json::from_str(&without_the_shaken().json).unwrap();
     is_open(&found, "bristle_damping_n_s_per_m", "slow runs do not show it");
     holds_the_truth(&found, &TRUTH[..6]);
@@ -105,7 +105,7 @@ fn a_noisy_bench_tells_all_but_the_damper() {
 
 /// Every coefficient is determined with all four recordings.
 #[test]
-fn a_noisy_bench_tells_all_of_the_friction() {
+fn a_noisy_bench_identifies_all_of_the_friction() {
     let answer = from_all();
     assert!(answer.affirmative, "{}", answer.text);
     holds_the_truth(&serde_json::from_str(&answer.json).unwrap(), &TRUTH);
@@ -125,7 +125,7 @@ fn holds_the_truth(found: &Value, truths: &[(&str, f64)]) {
 
 /// A coefficient on which nothing in the recordings depends is open, with the reason.
 #[test]
-fn what_the_recordings_do_not_tell_is_open() {
+fn parameters_that_are_not_identifiable_are_left_open() {
     let settings = ["bench.friction={ velocities = 6, releases = 0 }"];
     let sliding = found(&settings, &[SLIDING]);
     is_open(&sliding, "bristle_damping_n_s_per_m", "slow runs do not show it");
@@ -202,7 +202,7 @@ fn refused(table: &str, expected: &[&str]) {
 }
 
 #[test]
-fn files_that_are_no_runs_are_refused_with_their_places() {
+fn other_files_are_refused_with_their_places() {
     refused(
         "time_s,positon_mm,pressure_a_bar,pressure_b_bar\n0,1,2,3\n",
         &["run.csv:1", "position", "positon_mm"],

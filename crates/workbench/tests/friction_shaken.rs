@@ -37,7 +37,7 @@ fn parsed(source: &Memory, files: &[&str]) -> Value {
 /// The information in the default run (1 um and 5 kPa of noise, 5000 rows in a second, a force of
 /// 40 N) leaves a standard deviation of 3.7 % of the damping, and of 0.7 % of the stiffness.
 #[test]
-fn a_shaken_piston_tells_the_damping_of_its_bristles() {
+fn a_shaken_piston_identifies_the_damping_of_its_bristles() {
     // ORIGIN: analytic, by differences of the integrated equations: 1.96 times 3.7 %, and a margin
     // of a third
     tells(&found(&["bench.friction={ velocities = 8 }"], &[SLIDING, SHAKEN]), 0.1);
@@ -45,7 +45,7 @@ fn a_shaken_piston_tells_the_damping_of_its_bristles() {
 
 /// A scale with a resolution of 1 um gives readings no worse than its noise.
 #[test]
-fn a_position_that_is_read_in_steps_tells_it_too() {
+fn a_quantised_position_identifies_it_too() {
     let settings = ["bench.friction={ velocities = 8, position_resolution = \"1 um\" }"];
     tells(&found(&settings, &[SLIDING, SHAKEN]), 0.1);
 }
@@ -130,7 +130,7 @@ fn table(rows: &[[f64; 2]], noise: [f64; 2], seed: u64) -> String {
 /// A sum of sines needs no common period, and may begin in motion: the first 100 rows are not
 /// recorded.
 #[test]
-fn equations_of_another_hand_come_back() {
+fn independently_written_equations_are_recovered() {
     let rows = integrated(4137);
     let source = recorded(&["bench.friction={ velocities = 8 }"]);
     let source = source.with("own.csv", table(&rows[100..], [0.5, 5.0], 1));
@@ -140,7 +140,7 @@ fn equations_of_another_hand_come_back() {
 /// The rod of the complete machine is held by a load cell and its environment, and its valve is
 /// shaken: chambers, hoses, spool and load cell take part.
 #[test]
-fn the_whole_machine_tells_the_damping_of_its_bristles() {
+fn the_whole_machine_identifies_the_damping_of_its_bristles() {
     let (before, _) = HOSE.split_once("[[scenario]]").unwrap();
     let scenario = r#"
 [[scenario]]
@@ -179,7 +179,7 @@ command = [
 
 /// A recording that does not determine them is reported with the change that would.
 #[test]
-fn a_shaken_piston_that_tells_too_little_says_what_would() {
+fn insufficient_shaking_is_reported_with_a_sufficient_one() {
     let files = [SLIDING, SHAKEN];
     let with =
         |shaken: &str| found(&[&format!("bench.friction={{ velocities = 6, shaken = {shaken} }}")], &files);
@@ -195,7 +195,7 @@ fn a_shaken_piston_that_tells_too_little_says_what_would() {
 
 /// A force that is not a sum of sines is not known between its rows.
 #[test]
-fn a_blow_is_no_sum_of_sines() {
+fn a_blow_is_not_taken_for_a_sum_of_sines() {
     let mut rows = integrated(1000);
     let mut state = [0.0, 0.0, 0.0];
     for (index, row) in rows.iter_mut().enumerate() {

@@ -158,7 +158,7 @@ fn clean_fast_runs_of_a_hard_seal() {
 }
 
 #[test]
-fn clean_fast_runs_of_a_seal_that_hardly_falls() {
+fn clean_fast_runs_of_a_seal_with_hardly_falling_friction() {
     clean_fast_runs_hold(&of_levels(100.0, 110.0, 60.0));
 }
 

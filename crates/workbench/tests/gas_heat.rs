@@ -123,7 +123,7 @@ fn a_precharge_that_is_too_high_when_warm_is_refused() {
 
 /// Effects that the reduced models leave out are reported.
 #[test]
-fn what_does_not_count_it_is_told() {
+fn models_without_it_are_reported() {
     let text = with_gas("thermal_time_constant = \"2 s\"");
     let models = answer(&text, &[], &[], &Request::Linearize { sweep: None }).text;
     assert!(models.contains("line.accumulator.thermal_time_constant is counted in the plant"), "{models}");
@@ -136,7 +136,7 @@ fn what_does_not_count_it_is_told() {
 
 /// Every frequency of every plant of the box is proven or refuted with heat as without.
 #[test]
-fn verify_answers_with_heat() {
+fn verify_includes_heat() {
     let opened = "uncertainty={ \"line.accumulator.thermal_time_constant\" = { nominal = \"2 s\", minimum = \"1 s\", maximum = \"6 s\", points = 2 } }";
     let text = with_gas("thermal_time_constant = \"2 s\"");
     let told = json(&text, &[LIMIT, opened], &[], &Request::Verify { proof: false, on_machine: false });
@@ -149,7 +149,7 @@ const CERTAIN: &str = "uncertainty.\"line.accumulator.precharge_pressure\".minim
 /// A run reports the time at which the gas exceeds the maker's limit, which the supply pressure
 /// does not do.
 #[test]
-fn a_run_tells_where_the_limit_of_the_maker_is_passed() {
+fn a_run_reports_where_the_limit_of_the_manufacturer_is_exceeded() {
     let scenario = "scenario=[{ name = \"pressed\", duration = \"0.6 s\", load_motion = { kind = \"smooth_step\", start = \"0.1 s\", duration = \"20 ms\", distance = \"-20 mm\" } }]";
     let ask = |ratio: &str| {
         let limit = format!("line.accumulator.maximum_pressure_ratio={ratio}");
@@ -213,7 +213,7 @@ fn the_gas_of_a_run_is_adiabatic_where_it_has_no_time_for_heat() {
 
 /// Figures show the gas of a rig that has such gas, side by side, and of no other.
 #[test]
-fn figures_have_the_gas_that_is_there() {
+fn figures_show_the_declared_gas() {
     let request = Request::Simulate(SimulateRequest { figures: true, ..SimulateRequest::default() });
     let drawn = |text: &str| {
         let files = answer(text, &[PRESSED], &[], &request).files;

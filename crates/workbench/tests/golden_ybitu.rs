@@ -152,7 +152,7 @@ fn the_gain_for_the_hose_that_was_bought() {
 }
 
 #[test]
-fn the_pole_of_the_gain_and_what_a_proportional_loop_reaches() {
+fn the_pole_of_the_gain_and_the_reach_of_a_proportional_loop() {
     let size = size(HOSE, &[]);
     // ORIGIN: recomputed by comparisons/recompute_rig.py
     within(number(&size, "pole_gain_v_per_n"), 2.0959013e-5, 5e-13);

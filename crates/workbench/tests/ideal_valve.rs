@@ -73,7 +73,7 @@ fn ideal_project() -> String {
 /// Printed values for an ideal valve are the limits: zero if the leakage is a factor, infinite if
 /// something is divided by it, and no number of its stand-in.
 #[test]
-fn no_command_prints_the_stand_in_of_an_ideal_valve() {
+fn no_command_prints_the_substitute_of_an_ideal_valve() {
     let text = ideal_project();
     let range = "uncertainty={ \"supply.pressure\" = { nominal = \"70 bar\", minimum = \"60 bar\", maximum = \"80 bar\" } }";
     let differential = text.replace("rod_diameter = \"22 mm\"", "rod_diameters = [\"22 mm\", \"36 mm\"]");

@@ -53,7 +53,7 @@ fn driven(project: &Project) -> ScenarioRun {
 }
 
 #[test]
-fn an_impedance_of_zero_is_none() {
+fn an_impedance_of_zero_is_absent() {
     let zero = "controller.impedance={ stiffness = 0, damping = 0, mass = 0, filter_time = \"2 ms\" }";
     for load in [&[][..], &[SPRUNG, GENTLE]] {
         let [with, without] = [benchmark(&[load, &[zero]].concat()), benchmark(load)];
@@ -70,7 +70,7 @@ fn moved() -> LinearPlant {
 
 /// Z = (Z_o + G P Z_v/s)/(1 + G P), which tends to Z_v/s as G grows.
 #[test]
-fn the_port_tends_to_what_is_asked() {
+fn the_port_tends_to_the_required_impedance() {
     let impedance = VirtualImpedance { stiffness: 2e5, damping: 4e3, mass: 30.0, filter_time_s: 1e-3 };
     let plant = moved();
     let alone = transfer_functions(&plant.coefficients()).unwrap();
@@ -121,7 +121,7 @@ fn a_damper_makes_a_late_spring_passive() {
 
 /// The values printed by `linearize` are those of the port to which its band and its points refer.
 #[test]
-fn what_is_shown_is_the_port() {
+fn the_printed_impedance_is_that_of_the_port() {
     let project = read(
         HOSE,
         &[
@@ -214,7 +214,7 @@ fn an_admittance_is_an_impedance() {
 /// Prescribed motion of the load changes only the verdict on load_motion; a load that yields
 /// changes all verdicts.
 #[test]
-fn the_verdict_speaks_of_the_loop_that_exists() {
+fn the_verdict_is_about_the_declared_loop() {
     let margins = |settings: &[&str]| {
         let text = HOSE.to_string();
         let project = read(&text, settings);
@@ -233,7 +233,7 @@ fn the_verdict_speaks_of_the_loop_that_exists() {
 /// Active and passive compliance in one table: a pipe whose loop has a virtual spring and damper,
 /// next to hose and pipe.
 #[test]
-fn alternatives_state_what_is_asked_beside_what_is_shown() {
+fn alternatives_state_the_required_and_the_reached_impedance() {
     let (head, _) = HOSE.split_once("[uncertainty]").unwrap();
     let text = format!(
         "{head}{}",
@@ -338,7 +338,7 @@ filter_time = "5 ms"
 /// A load that yields: the proof is of the loop with its impedance, and the machine steps as this
 /// loop predicts.
 #[test]
-fn a_proof_and_a_trial_are_of_the_loop_with_it() {
+fn a_proof_and_a_trial_include_the_impedance() {
     let text = yielding();
     let found = answer(&text, &[], &[], &Request::Verify { proof: true, on_machine: true });
     let found: Value = serde_json::from_str(&found.json).unwrap();
@@ -363,7 +363,7 @@ fn a_proof_and_a_trial_are_of_the_loop_with_it() {
 /// Report, linear models and derived quantities state the impedance; a controller that is stated
 /// for the position is not designed.
 #[test]
-fn every_answer_speaks_of_it() {
+fn every_answer_mentions_the_impedance() {
     let position = "controller.impedance.form=admittance";
     let law = "controller.numerator=60*s + 300";
     let page =

@@ -57,7 +57,7 @@ fn specifications_in_conflict_are_named_by_their_tables() {
 
 /// A step beyond the rig is reported once by `check`, with its line.
 #[test]
-fn a_step_beyond_the_stall_force_is_told_once() {
+fn a_step_beyond_the_stall_force_is_reported_once() {
     let text = rig("settling_time = \"5 s\"\namplitude = \"60 kN\"\n");
     let words = crate::ask::answer(&text, &[], &[], &Request::Check).text;
     assert_eq!(words.matches("the piston stalls at").count(), 1, "{words}");
@@ -65,7 +65,7 @@ fn a_step_beyond_the_stall_force_is_told_once() {
 
 /// Limits of 0.5 on |T| and of less than 0.5 on |S| leave no loop, because S + T = 1.
 #[test]
-fn limits_of_s_and_t_that_add_up_to_less_than_one() {
+fn limits_of_s_and_t_whose_sum_is_less_than_one() {
     let of = |sensitivity: f64| {
         let both = [
             limit("sensitivity", &sensitivity.to_string(), "[1, 2]"),

@@ -87,7 +87,7 @@ fn answered() -> Vec<(String, Value)> {
 }
 
 #[test]
-fn every_object_says_what_it_is_and_of_which_file() {
+fn every_object_states_its_kind_and_file() {
     // the report need not design a controller or simulate for this
     let (project, _) = HOSE.split_once("[design]").unwrap();
     for request in requests() {
@@ -104,7 +104,7 @@ fn every_object_says_what_it_is_and_of_which_file() {
 }
 
 #[test]
-fn the_hash_is_of_the_bytes_and_settings_stand_beside_it() {
+fn the_hash_is_of_the_bytes_and_settings_are_listed_next_to_it() {
     let (plain, set) = (json(HOSE, &[], &[], &Request::Check), {
         json(HOSE, &["line.length=\"2 m\""], &[FICTITIOUS], &Request::Check)
     });
@@ -200,7 +200,7 @@ fn check_lists_derived_quantities() {
 }
 
 #[test]
-fn check_says_where_a_stated_value_contradicts_the_derived_one() {
+fn check_reports_a_stated_value_that_contradicts_the_derived_one() {
     let object = json(HOSE, &["linear.hydraulic_stiffness=4.4e6"], &[], &Request::Check);
     let rows = object["derived"].as_array().unwrap();
     let row = rows.iter().find(|row| row["name"] == "linear.hydraulic_stiffness").unwrap();
@@ -214,7 +214,7 @@ fn check_says_where_a_stated_value_contradicts_the_derived_one() {
 /// Limit (6.28) overshoots by 2.2 % while 1 % is required; nine tenths of it never settle within 1
 /// % of the reference.
 #[test]
-fn check_holds_tracking_limits_against_their_wishes() {
+fn check_compares_tracking_limits_with_their_requirements() {
     let wishes = |settings: &[&str]| json(HOSE, settings, &[], &Request::Check)["wishes"].clone();
     let stated = wishes(&[]);
     let [upper, lower] = [&stated[0], &stated[1]];

@@ -17,7 +17,7 @@ const SHORT: [&str; 4] = [
 const SAID: &str = "the growth of a deviation from one to the next is not followed";
 
 #[test]
-fn a_run_without_a_carried_deviation_says_so() {
+fn a_run_without_a_carried_deviation_reports_it() {
     let simulate = |settings: &[&str], check: bool| {
         let settings = [&SHORT, settings].concat();
         let request = Request::Simulate(SimulateRequest { check, ..SimulateRequest::default() });

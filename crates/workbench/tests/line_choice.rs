@@ -170,7 +170,7 @@ fn a_designed_project_states_the_chosen_model() {
 
 /// A free mass cannot be computed with waves: its lines remain lumped, with the reason.
 #[test]
-fn what_is_not_computed_with_waves_stays_lumped() {
+fn answers_without_waves_use_lumped_lines() {
     let settings = ["load.stiffness=0", "operating_point.load_force=0", "design.highest_bandwidth=300"];
     let found = chosen(&rig_to_be_designed(), &settings);
     assert_eq!(found["model"], "lumped");
@@ -195,7 +195,7 @@ fn a_quarter_wave_that_limits_the_bandwidth_is_not_compared_with_itself() {
 /// A design without a limit on its bandwidth may use the default bandwidth, although nothing
 /// requires it.
 #[test]
-fn a_design_without_a_limit_on_its_bandwidth_has_waves_where_the_rig_leaves_it_as_much() {
+fn a_design_without_a_bandwidth_limit_has_waves_if_the_rig_permits_the_bandwidth() {
     let rig = rig_to_be_designed();
     let [default, unlimited] = [&[][..], &["design.highest_bandwidth=inf"]].map(|own| chosen(&rig, own));
     assert_eq!(unlimited["reached_rad_per_s"], default["reached_rad_per_s"]);

@@ -153,7 +153,7 @@ fn one_of_two_unequal_lines_is_identified_and_written_for_its_side() {
 /// An accumulator remains at its chamber: test and result are those of the line only, and this is
 /// reported.
 #[test]
-fn an_accumulator_is_said_to_be_left_out() {
+fn an_accumulator_is_reported_as_neglected() {
     let gas = "line.accumulator={ gas_volume = \"10 mL\", precharge_pressure = \"15 bar\" }";
     let quick =
         ["bench.line.pressures=[\"25 bar\", \"45 bar\"]", "bench.line.frequencies=[\"1 Hz\", \"40 Hz\"]"];
@@ -207,7 +207,7 @@ fn air_shows_with_a_modulus_that_grows_with_the_pressure() {
 }
 
 #[test]
-fn what_a_recording_does_not_tell_is_not_determined_with_the_reason() {
+fn unidentifiable_parameters_are_not_determined_with_the_reason() {
     let files = benched(HOSE, &CREEPING);
     let of = |word: &str| {
         let own: Vec<_> = files.iter().filter(|(name, _)| name.contains(word)).cloned().collect();
@@ -261,7 +261,7 @@ fn refused(text: &str, expected: &[&str]) {
 }
 
 #[test]
-fn recordings_that_are_none_of_a_line_are_refused_with_the_place() {
+fn recordings_not_of_a_line_are_refused_with_the_place() {
     let rows = |heading: &str, row: &dyn Fn(u32) -> String| {
         (0..30).fold(format!("{heading}\n"), |text, index| format!("{text}{}\n", row(index)))
     };

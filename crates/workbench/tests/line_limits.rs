@@ -77,7 +77,7 @@ fn flow_beyond_laminar_is_reported_where_laminar_friction_is_computed() {
 /// Permissible pressures of a pipe, at every node: they are reported if they are below the peak of
 /// a run without them.
 #[test]
-fn pressures_that_a_pipe_bears_are_watched() {
+fn pressures_beyond_the_limit_of_a_pipe_are_reported() {
     let free = run(&[SEGMENTS]);
     assert!(exceeded(&free, "working_pressure", "line_a").is_none());
     let with = |working: &str, burst: &str| {
@@ -138,7 +138,7 @@ fn a_line_cavitates_where_its_waves_meet() {
 /// Re = 4 q/(pi d nu) in the neck of an accumulator and in the line of a transmission: turbulent
 /// with thin oil, laminar with thick.
 #[test]
-fn flow_in_necks_and_transmissions_is_watched() {
+fn flow_in_necks_and_transmissions_is_reported_if_not_laminar() {
     let neck = ["line.accumulator.neck_diameter=6 mm", "line.accumulator.neck_length=40 mm"];
     let accumulator = include_str!("../../../examples/ybitu/accumulator.toml");
     let transmission = include_str!("../../../examples/ybitu/transmission.toml");

@@ -54,7 +54,7 @@ fn the_family_follows_a_payload() {
 /// The family with a progressive spring or a transmission on the rod, whose deflection follows from
 /// the position of the joint.
 #[test]
-fn the_family_follows_what_lies_in_series() {
+fn the_family_follows_the_spring_in_series() {
     for series in SERIES {
         follows_the_position(&KNEE.replacen("[linkage]", &format!("[series]\n{series}\n[linkage]"), 1));
     }
@@ -157,7 +157,7 @@ fn a_weight_is_held_at_rest() {
 /// Output of `linearize` and the report on the impedance about the joint, for a spring K instead of
 /// Z s: the torque F g' of a force F_0 - K (x - x_0) falls with the angle by r^2 (K + k_g).
 #[test]
-fn the_impedance_about_the_joint_is_told() {
+fn the_impedance_about_the_joint_is_reported() {
     let project = project_of(KNEE, &[]);
     let setup = Setup::new(&project).unwrap();
     let rig = setup.rig().unwrap();
@@ -237,7 +237,7 @@ fn a_straight_table_is_a_load_in_other_units() {
 
 /// The load turns, and its weight is a mass at a length.
 #[test]
-fn a_report_says_what_the_load_is() {
+fn a_report_describes_the_load() {
     let weight = include_str!("../../project/tests/valid/linkage_weight.toml");
     let loaded = load(weight, &[], &[]);
     let setup = Setup::new(&loaded.project).unwrap();

@@ -55,7 +55,7 @@ fn recordings_of_the_model_have_no_misfit() {
 /// a meter that loses a constant flow, which the pressures do not show: in each case the flow is
 /// named, and its residual has the size of the change that no coefficients produce.
 #[test]
-fn a_flow_that_no_valve_of_the_model_has_is_told() {
+fn a_flow_that_no_valve_of_the_model_has_is_reported() {
     let limited = identified(|_, _, flow| flow.min(9.0));
     let drifting = identified(|share, _, flow| flow * (1.0 + 0.1 * share));
     let losing = identified(|_, command, flow| flow * (1.0 - (0.3 / command.abs().max(0.3))));

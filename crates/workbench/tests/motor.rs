@@ -130,7 +130,7 @@ fn the_verdict_is_that_of_the_cylinder_on_its_lever() {
 /// T_e = D (K_qA/(K_cA + G_e (1 + K_cA R)) + K_qB/(K_cB + G_e (1 + K_cB R))) U_C,     R = 128 rho nu L/(pi d^4)
 /// ```
 #[test]
-fn it_leaks_behind_its_lines() {
+fn it_leaks_after_its_lines() {
     let tight = rig(Some(0.04)).replace("internal_leakage", "case_leakage").replace("10 mm", "2 mm");
     let leakage = 2e-13;
     let resistance = 128.0 * 870.0 * 46e-6 / (std::f64::consts::PI * 16e-12);
@@ -234,7 +234,7 @@ fn symbols_of_a_cylinder(text: &str) -> Vec<String> {
 
 /// Texts of the user are unchanged, whatever words are in them.
 #[test]
-fn texts_of_the_user_stay() {
+fn texts_of_the_user_are_unchanged() {
     let text = rig(Some(0.04)).replace(
         "force = 40 }",
         "force = 40, published = { source = \"force of the piston\", overshoot_percent = 3 } }",
@@ -394,7 +394,7 @@ fn check(project: &str, request: &Request) {
 }
 
 #[test]
-fn nothing_is_said_in_newtons_or_millimetres() {
+fn newtons_and_millimetres_are_absent() {
     let with_figures = SimulateRequest { figures: true, ..SimulateRequest::default() };
     for request in [
         Request::Check,
@@ -429,7 +429,7 @@ fn nothing_is_said_in_newtons_or_millimetres() {
 }
 
 #[test]
-fn what_does_not_treat_a_motor_refuses_it() {
+fn commands_without_support_for_a_motor_refuse_it() {
     let requests = [
         Request::Size { gain: None, length: None },
         Request::Bench,

@@ -31,7 +31,7 @@ const RIGS: [&[&str]; 6] = [
 /// A neck whose length tends to zero has no effect, in every form of the plant; the one of an
 /// example is not short.
 #[test]
-fn a_short_neck_is_none() {
+fn a_short_neck_has_no_effect() {
     let text = without_uncertainty(GAS);
     for settings in RIGS {
         let [none, short, own] =
@@ -83,7 +83,7 @@ fn check_derives_the_resonance_of_a_neck() {
 
 /// Effects that a verdict and the reduced models leave out are reported, and nothing otherwise.
 #[test]
-fn what_does_not_count_it_is_told() {
+fn models_without_it_are_reported() {
     let lossless = "line.accumulator.neck_loss_coefficient=0";
     for (text, necks, told) in [(NECK, &[][..], true), (NECK, &[lossless], false), (BOTH, &[], false)] {
         let verdict = json(
@@ -107,7 +107,7 @@ fn what_does_not_count_it_is_told() {
 /// The controller of the example stabilises every plant of its family with the gas at the chamber,
 /// but not with a neck between them.
 #[test]
-fn a_verdict_sees_the_resonance() {
+fn a_verdict_includes_the_resonance() {
     let stable = |necks: &[&str]| {
         json(GAS, necks, &[], &Request::Verify { proof: false, on_machine: false })["stable"]
             .as_bool()

@@ -236,7 +236,7 @@ fn unequal_areas_and_a_wall_follow() {
 /// A family that contains a point without equilibrium is rejected with the place and the reason,
 /// and never silently wrong.
 #[test]
-fn points_without_balance_are_refused_by_name() {
+fn points_without_balance_are_refused_with_their_name() {
     let refused = |lines: &[(&str, [f64; 3])]| {
         family(&Setup::new(&loaded(&text(&ranges(lines), "", ""))).unwrap(), &Memory::default())
             .unwrap_err()
@@ -264,7 +264,7 @@ fn points_without_balance_are_refused_by_name() {
 
 /// The refusal points to the key that names the point without equilibrium, with a remedy.
 #[test]
-fn a_point_without_balance_has_its_place_and_a_cure() {
+fn a_point_without_balance_has_its_place_and_a_remedy() {
     let refused = |text: &str| {
         let source = Memory::default().with("p.toml", text);
         let loaded = project::read(&source, "p.toml", &[], &[]).unwrap_or_else(|report| panic!("{report}"));

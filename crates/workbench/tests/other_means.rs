@@ -27,7 +27,7 @@ fn number(value: &Value, path: &str) -> f64 {
 /// ORIGIN: analytic, a rigid pipe at both chambers of a symmetric cylinder, K_H = 2 A^2
 /// beta/(V_line + A L/2) at mid stroke
 #[test]
-fn a_pipe_is_long() {
+fn the_equivalent_pipe_is_long() {
     let told = found(&[]);
     let area = std::f64::consts::FRAC_PI_4 * (0.05 * 0.05 - 0.022 * 0.022);
     let stiffness = number(&told, "stiffness_n_per_m");
@@ -41,7 +41,7 @@ fn a_pipe_is_long() {
 /// Chambers and spring in series have the stiffness of the hose; the coils hold the stall force,
 /// like those of `[series.coil]`.
 #[test]
-fn a_spring_stands_in_series() {
+fn a_spring_is_in_series() {
     let told = found(&[]);
     let [hose, chambers, spring] =
         ["stiffness_n_per_m", "chambers_n_per_m", "spring.stiffness_n_per_m"].map(|path| number(&told, path));
@@ -61,7 +61,7 @@ fn a_spring_stands_in_series() {
 /// The rig that declares the gas has the required stiffness at its stiffest point, and its gas is
 /// in use at all forces.
 #[test]
-fn gas_has_that_stiffness_where_it_is_declared() {
+fn declared_gas_has_the_required_stiffness() {
     let told = found(&[]);
     let [volume, precharge] =
         ["gas.gas_volume_m3", "gas.precharge_pressure_pa"].map(|path| number(&told, path));
@@ -105,7 +105,7 @@ fn a_valve_damps_the_load_cell() {
 /// A part that is not requested or is impossible has its reason; without the table there is no
 /// statement on other means.
 #[test]
-fn what_cannot_be_has_its_reason() {
+fn impossible_means_have_their_reason() {
     let alone = "sizing.other_means={ stiffness = \"30 MN/m\", force_range = [\"-20 kN\", \"4 kN\"] }";
     let told = found(&[alone]);
     for means in ["pipe", "spring"] {
@@ -126,7 +126,7 @@ fn what_cannot_be_has_its_reason() {
 /// A sized alternative has the gas, spring, pipe or valve that `size` finds for the declared
 /// project.
 #[test]
-fn an_alternative_takes_what_is_found() {
+fn an_alternative_uses_the_result() {
     let told = found(&[]);
     let (before, _) = COMPLIANCE.split_once("[[load_case]]").unwrap();
     let pipe = "\"line\" = { pipe = { bore = \"10.5 mm\" }, length = \"0.35 m\", compliance = \"uniform\"";

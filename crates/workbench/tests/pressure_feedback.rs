@@ -114,7 +114,7 @@ fn of_loop(settings: &[&str], hertz: u32) -> Complex64 {
 /// The loop that acts on a moving load is that of the linear model, without delay, with delay,
 /// sampled, and with waves.
 #[test]
-fn a_load_that_moves_finds_the_loop() {
+fn a_moving_load_is_in_the_loop() {
     let mut moved = 0.0_f64;
     for settings in [
         &[][..],
@@ -138,7 +138,7 @@ fn a_load_that_moves_finds_the_loop() {
 /// A machine that rests under a controller without integral action: the feedback at rest is part of
 /// its command.
 #[test]
-fn it_rests_with_what_is_fed_back() {
+fn the_rig_rests_with_its_fed_back_pressure() {
     let proportional = ["controller.numerator=0.0005", "controller.denominator=1"];
     for (feedback, sampled) in FEEDBACKS.into_iter().flat_map(|one| [(one, ""), (one, "1 ms")]) {
         let sampled = format!("controller.sample_time={sampled}");

@@ -44,7 +44,7 @@ macro_rules! example {
 /// sixth is unstable.
 // ORIGIN: recomputed by comparisons/recompute_audit.py
 #[test]
-fn published_examples_lie_in_their_enclosures() {
+fn published_examples_are_in_their_enclosures() {
     let (edge_plants, _) = proven(example!("edge_plants"), &[]);
     for (row, truth) in edge_plants["specifications"].as_array().unwrap().iter().zip([-0.335, -0.014, -11.62])
     {
@@ -140,7 +140,7 @@ fn the_design_of_the_rig_is_proven() {
 }
 
 #[test]
-fn a_certificate_is_read_as_it_was_written_and_refused_where_it_is_none() {
+fn certificates_round_trip_and_other_files_are_refused() {
     let (_, text) = proven(example!("servo"), &[]);
     let answer = check_certificate(&text).unwrap();
     assert!(answer.affirmative && answer.text.contains("Every claim holds"));
@@ -264,7 +264,7 @@ fn a_certificate_is_compared_with_a_project() {
 /// A certificate holds without its claim of stability, and then both its text and its JSON state
 /// that stability is not claimed.
 #[test]
-fn a_certificate_without_stability_says_so() {
+fn a_certificate_without_stability_reports_it() {
     let (_, text) = proven(COMPARED, &[]);
     let mut file: Value = serde_json::from_str(&text).unwrap();
     let claims = file["claims"].as_array_mut().unwrap();
@@ -283,7 +283,7 @@ fn a_certificate_without_stability_says_so() {
 /// half of the tolerance.
 // ORIGIN: analytic, 20 log10(1/0.9994) = 0.0052 dB
 #[test]
-fn what_is_proven_within_the_tolerance_says_so() {
+fn a_proof_within_the_tolerance_reports_it() {
     let text = |limit: f64| {
         format!(
             "schema = 1\ntitle = \"lag\"\n[plant]\nnumerator = \"k\"\ndenominator = \"s\"\n\

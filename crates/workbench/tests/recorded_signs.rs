@@ -89,7 +89,7 @@ fn one_wrong_sign_is_named_and_the_proposed_setting_turns_it() {
 /// The drop of the meter is not known without both port pressures: a warning is given, and none if
 /// both are recorded.
 #[test]
-fn a_drop_that_was_not_recorded_is_warned_of() {
+fn an_unrecorded_pressure_drop_has_a_warning() {
     let told = |text: &str| -> Vec<String> {
         let read = read(text, "").unwrap_or_else(|refusal| panic!("{refusal}"));
         read.warnings.into_iter().map(|one| one.message).collect()

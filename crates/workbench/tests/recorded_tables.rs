@@ -88,7 +88,7 @@ fn told(text: &mut String, diagnostics: &[Diagnostic]) {
 }
 
 #[test]
-fn every_kind_of_file_is_read_right_or_refused_with_the_reason() {
+fn every_kind_of_file_is_read_correctly_or_refused_with_the_reason() {
     let files = corpus();
     assert!(files.len() >= 60, "{} files", files.len());
     let reference = files.iter().find(|file| name(file) == "reference.csv").unwrap();

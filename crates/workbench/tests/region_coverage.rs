@@ -84,7 +84,7 @@ fn regions_across_a_jump_are_those_of_dense_samples() {
 /// Random regions: three hundred, by `cargo xtask ci soak`.
 #[test]
 #[ignore = "takes minutes"]
-fn soak_three_hundred_regions_against_dense_samples() {
+fn soak_three_hundred_regions_agree_with_dense_samples() {
     let judged = covered(0..380, Choosing::Nothing);
     println!("{judged} regions");
     assert!(judged >= 300);

@@ -36,7 +36,7 @@ fn worst_margin(audit: &Value) -> f64 {
 /// Order 4 is not sufficient over the box of Table 6.3 and with waves in the rig itself: the limits
 /// must be relaxed, and with the controller for wider limits the machine with waves comes to rest.
 #[test]
-fn what_cannot_be_had_with_waves_is_told() {
+fn infeasibility_with_waves_is_reported() {
     let said = designed_hose();
     let object = object(said);
     let repair = &object["repair"];
@@ -94,7 +94,7 @@ const EXACT: [&str; 3] = [UNLIMITED[0], UNLIMITED[1], "verification.tolerance=0.
 
 /// A controller that the machine with waves contradicts is replaced by one suitable for both.
 #[test]
-fn a_design_is_repaired_where_it_can_be() {
+fn a_design_is_repaired_if_possible() {
     let first = object(&answer(&wider(), &EXACT, &[], &LEFT));
     assert_eq!((&first["status"], &first["machine"]["verdict"]), (&"met".into(), &"contradicts".into()));
     assert_eq!((&first["repair"], &first["repair_reason"]), (&Value::Null, &"it was not asked for".into()));
@@ -129,7 +129,7 @@ fn a_design_is_repaired_where_it_can_be() {
 /// A command that reaches its limit at once is in no linear plant: no plant is added, and the
 /// answer states the change to make.
 #[test]
-fn what_no_plant_explains_is_told() {
+fn an_unexplained_contradiction_is_reported() {
     let settings = [
         "line.model=segments",
         "line.segments=4",

@@ -45,7 +45,7 @@ fn texts(project: &str, settings: &[&str]) -> Vec<String> {
 
 /// The chapter on the impedance states its location.
 #[test]
-fn the_impedance_of_a_linkage_is_told_at_the_rod_and_about_the_joint() {
+fn the_impedance_of_a_linkage_is_stated_at_the_rod_and_about_the_joint() {
     let page = |project: &str| {
         let answer =
             try_answer(drawn(project), &[], &[], &Request::Report { files: true, alternatives: false })
@@ -85,7 +85,7 @@ fn a_lever_has_its_kind_and_its_arm() {
 
 /// The gas at the setting of rest: between both ends in proportion to the setting.
 #[test]
-fn adjusted_gas_is_told_where_it_rests() {
+fn adjusted_gas_is_stated_at_rest() {
     for (setting, volume) in [("0", "3.5 mL"), ("0.5", "8.85 mL"), ("1", "14.2 mL")] {
         let set = format!("line.accumulator.adjustment.setting={setting}");
         let gas = format!("{volume}, 15 bar");
@@ -97,7 +97,7 @@ fn adjusted_gas_is_told_where_it_rests() {
 }
 
 #[test]
-fn a_telescopic_piston_tells_its_stages_and_a_motor_its_symbols() {
+fn a_telescopic_piston_lists_its_stages_and_a_motor_its_symbols() {
     says(&texts(TELESCOPIC, &[]), &["50/22 mm, 500 mm in 3 stages"]);
     let found = texts(TURNING, &[]);
     says(&found, &["θ", "J", "Te", "Tref", "0.005 kg.m2"]);

@@ -100,7 +100,7 @@ fn agreement_words(answer: &Value) -> &str {
 /// One report of the hose compared with the commands that it repeats: verdicts of `verify` and
 /// `design`, numbers of `simulate`.
 #[test]
-fn both_controllers_stand_there_as_the_commands_tell_them() {
+fn both_controllers_agree_with_their_commands() {
     let (source, nrmse) = measured_hose();
     let loaded = load(&source, &[]);
     let told = report(&source, &loaded, &Setup::new(&loaded.project).unwrap(), None, &mut |_| true).unwrap();
@@ -194,7 +194,7 @@ fn curves(report: &Report) {
 }
 
 #[test]
-fn what_to_do_next_follows_from_the_results() {
+fn the_next_steps_follow_from_the_results() {
     let next = |text: &str, settings: &[&str]| report_of(text, settings).decision.next;
     let undesigned = without(HOSE, "[design] ", "[[scenario]]");
     let given = next(&undesigned, &[]);
@@ -226,7 +226,7 @@ fn what_to_do_next_follows_from_the_results() {
 
 /// A page for a rig without a controller has no columns and states this.
 #[test]
-fn cards_tell_load_lines_and_hose() {
+fn cards_state_load_lines_and_hose() {
     let (rig, _) = HOSE.split_once("[uncertainty]").unwrap();
     let page = plain(&opening(&report_of(rig, &[])));
     for words in [

@@ -166,7 +166,7 @@ fn a_required_step_is_counted() {
 
 /// A step that is the only requirement is judged like one next to limits, sampled or not.
 #[test]
-fn a_step_needs_no_limit_beside_it() {
+fn a_step_needs_no_further_limit() {
     let step = "[[specification]]\nkind = \"step\"\nsettling_time = \"4 s\"\n";
     for controller in ["", "sample_time = \"1 ms\""] {
         let (object, words) = verify(&project(step, controller));
@@ -181,7 +181,7 @@ fn a_step_needs_no_limit_beside_it() {
 }
 
 #[test]
-fn what_belongs_to_a_step_and_what_does_not_is_told() {
+fn misplaced_keys_of_a_step_are_reported() {
     let of = |specification: &str| refusal(&project(specification, ""));
     let nothing = of("[[specification]]\nkind = \"step\"\namplitude = \"1 kN\"\n");
     assert!(nothing.contains("nothing is required of the step"), "{nothing}");
@@ -195,7 +195,7 @@ fn what_belongs_to_a_step_and_what_does_not_is_told() {
 
 /// The ends of Wilson's interval are the solutions of |k/n - p| = z sqrt(p (1 - p)/n).
 #[test]
-fn the_interval_of_a_share_satisfies_its_equation() {
+fn the_interval_of_a_fraction_satisfies_its_equation() {
     let z = 1.959_963_984_540_054_f64;
     for (satisfied, runs) in [(1, 7), (56, 60), (9_700, 10_000)] {
         let share = satisfied as f64 / runs as f64;
@@ -240,7 +240,7 @@ fn a_campaign_counts_the_runs_that_satisfy() {
 /// The nonlinear rig is driven by the required step, and every run is compared with the
 /// requirement.
 #[test]
-fn every_run_is_held_against_the_required_step() {
+fn every_run_is_compared_with_the_required_step() {
     let request = Request::Verify { proof: false, on_machine: true };
     let of = |step: &str| answer(&rig(step), &request).0;
     for (most_s, verdict) in [(30.0, "satisfies"), (1e-4, "misses")] {
@@ -266,7 +266,7 @@ fn every_run_is_held_against_the_required_step() {
 /// Requirements on every step are tested in both directions, and in the three largest steps of the
 /// scenarios, each pair of references once; a step with its own size is tested only with that.
 #[test]
-fn a_requirement_of_every_step_is_tried_both_ways_and_in_scenarios() {
+fn a_requirement_of_every_step_is_tested_both_ways_and_in_scenarios() {
     let request = Request::Verify { proof: false, on_machine: true };
     let scenario = "[[scenario]]\nname = \"pull\"\nduration = \"2 s\"\nreference = [\
         { at = \"0 s\", force = \"0 N\" }, { at = \"0.5 s\", force = \"-600 N\" }, \
@@ -346,7 +346,7 @@ fn the_worst_corner_is_that_of_rigs_declared_as_corners() {
 
 /// A scenario is compared with the requirement too: the worst of its steps is that of its events.
 #[test]
-fn a_simulated_scenario_is_held_against_what_is_required() {
+fn a_simulated_scenario_is_compared_with_its_requirement() {
     let of = |step: &str| {
         let (found, text) = answer(&rig(step), &Request::Simulate(Default::default()));
         let run = &found["scenarios"][0];
@@ -399,7 +399,7 @@ fn the_peak_of_a_fast_swing_is_not_missed() {
 /// 1 % of overshoot lead to 1.8 %, and to a step that settles sooner than required. The design that
 /// is written satisfies its step when it is verified separately.
 #[test]
-fn steps_lead_where_limits_of_tracking_do_not() {
+fn steps_lead_the_design_without_limits_of_tracking() {
     let text = "schema = 1\ntitle = \"steps\"\n[plant]\nnumerator = \"k*a\"\ndenominator = \"(s + 0.5)*(s + a)\"\n\
                 [uncertainty]\nk = { nominal = 1, minimum = 1, maximum = 6, spacing = \"log\" }\n\
                 a = { nominal = 8, minimum = 5, maximum = 10 }\n\
@@ -457,7 +457,7 @@ fn of_its_own(object: &Value) {
 ///
 /// ORIGIN: analytic.
 #[test]
-fn a_step_that_no_gain_satisfies_is_answered() {
+fn a_step_that_no_gain_satisfies_is_reported() {
     for band_percent in [2.0, 1e-5] {
         let text = format!(
             "schema = 1\ntitle = \"slow\"\n[plant]\nnumerator = \"4000\"\ndenominator = \"s^3 + 20*s^2 + 400*s\"\n\

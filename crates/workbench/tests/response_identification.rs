@@ -181,7 +181,7 @@ fn remainder(frequency: f64, pole: f64) -> f64 {
 
 /// The complete path: the identification gives a family that `verify` audits.
 #[test]
-fn what_is_identified_is_a_family_that_verify_audits() {
+fn an_identified_response_is_a_family_that_verify_audits() {
     // ten periods of 0.2 s of lines 1, 2, 4, 9 through 5/(0.05 s + 1), and some more
     let times: Vec<f64> = (0..2000).map(|n| f64::from(n) * 1e-3).collect();
     let plant = |w: f64, gain: f64| gain / Complex64::new(1.0, 0.05 * w);
@@ -237,7 +237,7 @@ fn what_is_identified_is_a_family_that_verify_audits() {
 
 /// Frequencies at which noise hides the output are incoherent, and are listed with the reason.
 #[test]
-fn what_noise_hides_is_left_out_with_the_reason() {
+fn frequencies_hidden_by_noise_are_left_out_with_the_reason() {
     let mut state = stream(3, 0);
     let times: Vec<f64> = (0..4096).map(|n| f64::from(n) * 2e-3).collect();
     let inputs: Vec<f64> = times.iter().map(|_| normal(&mut state)).collect();
@@ -325,7 +325,7 @@ fn with_reference([times, references, inputs, outputs]: &[Vec<f64>; 4]) -> Strin
 
 /// A closed loop is rejected without its reference, and with it gives the plant instead of -1/C.
 #[test]
-fn a_closed_loop_shows_its_plant_by_the_reference_alone() {
+fn a_closed_loop_identifies_its_plant_from_the_reference() {
     let usual = ResponseSettings::default();
     let signals = closed_loop(20_000, 60.0);
     let [times, _, inputs, outputs] = &signals;
@@ -384,7 +384,7 @@ fn by_controller(signals: &[Vec<f64>; 4], controller: &str) -> Result<Answer, Id
 
 /// A controller that is a gain reconstructs the reference that was not recorded.
 #[test]
-fn a_declared_controller_takes_the_place_of_the_reference() {
+fn a_declared_controller_replaces_the_reference() {
     let law =
         |gain: f64| format!("elements = [{{ kind = \"gain\", value = {gain} }}]\nsample_time = \"1 ms\"");
     let signals = closed_loop(20_000, 300.0);
@@ -448,7 +448,7 @@ fn a_declared_controller_has_its_samples_and_its_delay() {
 
 /// Rows that are early and late throughout are resampled to even ones, and this is reported.
 #[test]
-fn uneven_rows_are_moved_and_said_to_be() {
+fn uneven_rows_are_resampled_and_reported() {
     let mut state = stream(8, 0);
     let plant = |w: f64| 5.0 / Complex64::new(1.0, 0.05 * w);
     let lines: Vec<f64> =
@@ -481,7 +481,7 @@ fn uneven_rows_are_moved_and_said_to_be() {
 
 /// A square that is added to the output falls on even lines of an odd multisine.
 #[test]
-fn what_is_not_linear_is_warned_of() {
+fn nonlinear_responses_have_a_warning() {
     let angle = |row: i32, line: f64| 2.0 * std::f64::consts::PI * f64::from(row % 500) / 500.0 * line;
     let times: Vec<f64> = (0..3000).map(|row| f64::from(row) * 1e-3).collect();
     let inputs: Vec<f64> =

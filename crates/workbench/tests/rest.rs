@@ -203,7 +203,7 @@ fn a_proportional_controller_rests_with_its_error() {
 }
 
 #[test]
-fn where_there_is_no_rest_it_is_said_why() {
+fn an_absent_rest_has_its_reason() {
     // more than the supply can provide
     let text = still(BENCHMARK, "reference = [{ at = 0, force = \"50 kN\" }]");
     let error = run(&text, &[]).unwrap_err();

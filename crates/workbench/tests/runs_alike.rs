@@ -147,7 +147,7 @@ fn a_run_that_begins_some_samples_later_is_the_same() {
 
 /// The text of a comparison contains the statement of a single run on its repetition.
 #[test]
-fn a_comparison_says_what_a_run_says() {
+fn a_comparison_agrees_with_its_runs() {
     let said = answer(CONTINUOUS, &SLOW, &[], &Request::Simulate(SimulateRequest::default())).text;
     let sentence = said.lines().find(|line| line.contains("of the last two passes")).unwrap().trim();
     let projects = [(); 2].map(|()| load(CONTINUOUS, &SLOW, &[]));

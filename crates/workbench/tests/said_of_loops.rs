@@ -88,7 +88,7 @@ const ALONE: &str = "family.operating_region has positions alone";
 /// A region that has positions only is that of a piston blocked at null; its force is stated, and
 /// zero force is a different region.
 #[test]
-fn a_region_of_positions_alone_states_its_force() {
+fn a_region_of_positions_only_states_its_force() {
     let region = |text: &str| format!("family.operating_region={{ position = {text} }}");
     let positions = region("[\"50 mm\", \"400 mm\"]");
     let none = "uncertainty={}";
@@ -131,7 +131,7 @@ const BESIDE: &str = "the valve leaks most beside null";
 /// Two humps of the leakage are stated with the numbers of the blocked valve, for a cylinder and
 /// for a motor; a leakage that is highest at null is not mentioned.
 #[test]
-fn a_valve_that_leaks_most_beside_null_is_told() {
+fn a_valve_that_leaks_most_next_to_null_is_reported() {
     // every command on the linear loop states it, like `check`
     let humps = "valve.leakage_shape=40";
     for request in [Request::Check, VERIFY, Request::Linearize { sweep: None }] {

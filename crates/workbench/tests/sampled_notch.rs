@@ -31,7 +31,7 @@ const VERIFY: Request = Request::Verify { proof: false, on_machine: false };
 /// Tustin's rule moves w to 2/T atan(w T/2), which makes the loop unstable and is reported; with
 /// the frequency stated, or matched roots, it is stable and nothing is reported.
 #[test]
-fn a_moved_notch_is_reported_and_can_be_kept() {
+fn a_moved_notch_is_reported_and_can_be_preserved() {
     let moved = answer(LOOP, &[], &[], &VERIFY);
     // ORIGIN: analytic, 1000 atan(1)
     assert!(
@@ -57,7 +57,7 @@ fn a_moved_notch_is_reported_and_can_be_kept() {
 /// Commands use the sampled controller, whose response is that of the continuous one at the stated
 /// frequency.
 #[test]
-fn the_response_is_kept_at_the_stated_frequency() {
+fn the_response_is_preserved_at_the_stated_frequency() {
     for frequency in [200.0, 777.0, 1500.0] {
         let key = format!("controller.discretization_frequency={frequency}");
         let loaded = load(LOOP, &[&key], &[]);
@@ -75,7 +75,7 @@ fn the_response_is_kept_at_the_stated_frequency() {
 
 /// A stated frequency that cannot be preserved is rejected, or reported to have no effect.
 #[test]
-fn a_frequency_that_cannot_be_kept() {
+fn a_frequency_that_cannot_be_preserved() {
     let read = |settings: &[&str]| {
         let settings: Vec<String> = settings.iter().map(|one| one.to_string()).collect();
         phea_workbench::project::read(&crate::ask::source(LOOP), "rig.toml", &settings, &[])

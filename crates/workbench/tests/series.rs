@@ -86,7 +86,7 @@ fn its_numbers_may_be_uncertain() {
 /// Infinite stiffness: verdict's plant, impedance and the reduced models are those of the rig
 /// without a spring.
 #[test]
-fn a_rigid_spring_is_none() {
+fn a_rigid_spring_has_no_effect() {
     let text = without_series();
     let plain = linearized(&project_of(&text, &[]));
     let rigid = linearized(&project_of(&text, &["series={ stiffness = 1e22 }"]));
@@ -208,7 +208,7 @@ fn lines_in_motion_and_the_spring_go_together() {
 /// A progressive spring is reported before the verdict; effects that the reduced models leave out
 /// are reported with them.
 #[test]
-fn what_is_not_counted_is_told() {
+fn uncounted_effects_are_reported() {
     let spring =
         "series={ stiffness = \"2.24 MN/m\", damping = 500, travel = \"5.5 mm\", progression = 0.2 }";
     let said = answer(SERIES, &[spring], &[], &Request::Verify { proof: false, on_machine: false });

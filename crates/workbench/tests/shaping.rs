@@ -60,7 +60,7 @@ const POLYNOMIALS: &str = "[controller]                # given\nnumerator = \"0.
 
 // ORIGIN: analytic
 #[test]
-fn changes_are_made_in_the_order_in_which_they_stand() {
+fn changes_are_made_in_their_order() {
     let changes = [
         (Change::Add, "{ kind = \"pole\", frequency = 200 }"),
         (Change::Add, "{ kind = \"gain\", value = 3 }"),
@@ -83,7 +83,7 @@ fn changes_are_made_in_the_order_in_which_they_stand() {
 /// A file without a change remains as it is, whatever the form of its controller; with a change,
 /// only the lines of the controller differ, and the controller reads back as printed.
 #[test]
-fn everything_else_stays_byte_for_byte() {
+fn everything_else_is_unchanged_byte_for_byte() {
     let lead = (Change::Add, "{ kind = \"lead\", zero_frequency = 5, pole_frequency = 50 }");
     let inline = "controller = { numerator = \"2\", delay = \"1 ms\", denominator = \"s + 9\" }\n";
     let (head, tail) = SERVO.split_once("[plant]").unwrap();
@@ -147,7 +147,7 @@ fn is_controller(line: &str) -> bool {
 }
 
 #[test]
-fn comments_stay_with_their_elements() {
+fn comments_remain_with_their_elements() {
     let listed = "[controller]\nelements = [\n    # first\n    { kind = \"gain\", value = 2.50 },   # loud, too\n    \
                   { kind = \"zero\", frequency = \"1 Hz\" }, # corner\n    # the end\n]\ndelay = \"1 ms\" # slow\n";
     let changes =
@@ -178,7 +178,7 @@ fn comments_stay_with_their_elements() {
 }
 
 #[test]
-fn polynomials_become_a_general_element_and_lose_nothing() {
+fn polynomials_become_an_exact_general_element() {
     let saved =
         shaped(&format!("{SERVO}{POLYNOMIALS}"), &[(Change::Pass, "gain through 0 dB at 10 rad/s")]).1;
     let [gain, general] = &elements(&saved)[..] else { panic!("{saved}") };
@@ -292,7 +292,7 @@ fn margins_are_those_of_the_worst_plant_the_worst_first() {
 }
 
 #[test]
-fn the_prefilter_is_shaped_by_itself() {
+fn the_prefilter_is_shaped_independently() {
     let project =
         format!("{SERVO}{POLYNOMIALS}\n[prefilter] # soft\nnumerator = \"1\"\ndenominator = \"s + 1\"\n");
     let changes = [(Change::Pass, "pole through -90 deg at 2 rad/s"), (Change::Disable, "1")];
@@ -324,7 +324,7 @@ fn refusal(change: Change, text: &str) -> (String, usize, String) {
 }
 
 #[test]
-fn what_cannot_be_changed_is_refused_with_its_place() {
+fn impossible_changes_are_refused_with_their_place() {
     let check = |change, text, message: &str, column, help: &str| {
         assert_eq!(refusal(change, text), (message.to_string(), column, help.to_string()), "{text}");
     };
@@ -369,7 +369,7 @@ fn what_cannot_be_changed_is_refused_with_its_place() {
 
 // ORIGIN: written by hand
 #[test]
-fn what_an_element_cannot_do_is_said_in_words() {
+fn unreachable_points_of_an_element_are_described_in_words() {
     let message = |pattern, magnitude_db, phase_deg, timing: Timing| {
         let wanted = WantedPoint { frequency_rad_per_s: 20.0, magnitude_db, phase_deg };
         let (size, phase) = (10_f64.powf(-0.5), -150_f64.to_radians());

@@ -82,7 +82,7 @@ fn the_estimate_covers_the_error() {
 }
 
 #[test]
-fn an_answer_tells_the_check_where_it_was_asked_for() {
+fn an_answer_contains_the_check_if_requested() {
     let ask = |settings: &[&str], request: &Request| {
         let answer = command::answer(&Memory::default(), &load(settings), &[], request).unwrap();
         assert!(answer.affirmative);
@@ -152,7 +152,7 @@ fn a_run_reports_where_errors_may_be_visible() {
 
 /// A run that is stopped during its check is returned, with the time that the check reached.
 #[test]
-fn a_check_that_is_stopped_compares_what_there_is() {
+fn a_stopped_check_compares_the_rows_so_far() {
     let project = load(&[SHORT]).project;
     let mut watch = |progress: command::Progress| progress.share < 0.75;
     let stopped = simulate_checked(&Memory::default(), &Setup::new(&project).unwrap(), None, &mut watch)

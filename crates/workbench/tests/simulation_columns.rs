@@ -48,7 +48,7 @@ fn spool_and_opening_differ_by_bias_and_hysteresis() {
 
 /// The command at the valve is the controller's output one delay earlier.
 #[test]
-fn the_command_behind_the_delay_is_that_before_it_later() {
+fn the_command_after_the_delay_is_the_earlier_one_before_it() {
     let looks = 8;
     // a sample every quarter of a millisecond
     let continuous = record_of(&["controller.delay=2 ms", "simulation.tolerance=1e-9"]);
@@ -88,7 +88,7 @@ fn proportional_and_integral_part_are_the_command() {
 }
 
 #[test]
-fn the_limit_is_all_between_the_unlimited_command_and_that_given_out() {
+fn the_limit_is_the_only_difference_between_unlimited_and_issued_command() {
     for extra in [None, Some("controller.sample_time=1 ms")] {
         let mut settings = vec!["controller.saturation=0.3 V"];
         settings.extend(extra);
@@ -104,7 +104,7 @@ fn the_limit_is_all_between_the_unlimited_command_and_that_given_out() {
 /// A sensor H = 1 measures the force itself; with 1/(tau s + 1) the measurement satisfies its
 /// equation, here by the trapezoid rule.
 #[test]
-fn the_measurement_is_the_force_behind_the_sensor() {
+fn the_measurement_is_the_force_after_the_sensor() {
     let plain = record_of(&[]);
     assert_eq!(plain.signal(Signal::Measurement), plain.signal(Signal::Force));
     let late = record_of(&["sensor={ numerator = \"100\", denominator = \"s + 100\" }"]);

@@ -139,7 +139,7 @@ fn small_motions_are_those_of_the_linearised_rig() {
 /// static friction. The viscous friction is so large that the curve never falls; otherwise the
 /// piston would vibrate on its sensor, and nothing would be slow.
 #[test]
-fn at_slow_velocity_bristles_give_the_static_curve() {
+fn at_low_velocity_bristles_have_the_static_curve() {
     let slow = [
         "scenario.0.load_motion={ kind = \"sine\", amplitude = \"5 mm\", frequency = \"1 rad/s\" }",
         "scenario.0.reference=[]",
@@ -166,7 +166,7 @@ fn at_slow_velocity_bristles_give_the_static_curve() {
 /// motion of the load their impulse is the change of the piston's momentum, and at rest only the
 /// friction remains, which the bristles still hold.
 #[test]
-fn friction_lies_between_hydraulic_and_measured_force() {
+fn friction_is_the_difference_of_hydraulic_and_measured_force() {
     const MOVING_MASS_KG: f64 = 13.1;
     let run = run(&["simulation.tolerance=1e-8"]);
     let [hydraulic, friction, force, velocity] =
@@ -227,7 +227,7 @@ fn swings(run: &ScenarioRun) -> usize {
 }
 
 #[test]
-fn a_hose_feels_load_steps_less_than_a_pipe() {
+fn a_hose_responds_less_to_load_steps_than_a_pipe() {
     // ORIGIN: other tool, Runge-Kutta in fixed steps on equal equations, written independently:
     // peaks in N
     let expected = [(0.02, 5813.0, 8901.0), (0.05, 2803.0, 4527.0), (0.1, 1604.0, 2546.0)];

@@ -249,7 +249,7 @@ fn rows_that_do_not_divide_the_scenario() {
 /// A scenario whose table no disk could hold is rejected at its key, with the requested and the
 /// allowed size.
 #[test]
-fn more_rows_than_are_held() {
+fn more_rows_than_are_stored() {
     for (setting, asked) in [
         ("scenario.0.duration=1e6 s", "1.00e9"),
         ("scenario.0.output_step=1e-12 s", "5.00e12"),

@@ -105,7 +105,7 @@ fn accepted(size: &Value) -> Vec<(String, String)> {
 }
 
 #[test]
-fn what_is_accepted_has_nothing_against_it() {
+fn accepted_hoses_have_no_rejection() {
     let size = size(HOSE, None, None);
     assert_eq!(size["candidates"].as_array().unwrap().len(), NAMES.len() * MODELS.len() * 2);
     let mut expected = Vec::new();

@@ -108,7 +108,7 @@ fn a_sized_alternative_keeps_its_unequal_hoses() {
 }
 
 #[test]
-fn the_search_ends_at_the_length_there_is() {
+fn the_search_ends_at_the_available_length() {
     // The largest gain requires the longest available hose: half the stock, or the longest
     // acceptable line.
     for (settings, length) in [
@@ -231,7 +231,7 @@ fn at_the_pole_of_the_gain_the_stiffness_is_infinite() {
 }
 
 #[test]
-fn a_wall_that_does_not_give_leaves_the_oil_alone() {
+fn a_rigid_wall_leaves_the_compliance_of_the_oil_only() {
     let rigid = |model: &str| {
         let setting = "line.volumetric_expansion_slope=\"1e-22 m3/(m.Pa)\"";
         let size = size_for_length(HOSE, &[setting], "1.5 m");

@@ -112,7 +112,7 @@ fn margins_become_limits() {
 /// The thesis' limits (6.28, 6.29) with their requirements in time behave as stated in the errata;
 /// required directly, they are met.
 #[test]
-fn wishes_in_time_are_checked() {
+fn requirements_in_time_are_checked() {
     let given = "[[specification]]\nkind = \"tracking\"\nfrequencies = [1]\n\
         [specification.upper]\nnumerator = \"2116*(s + 75)/75\"\ndenominator = \"s^2 + 73.6*s + 2116\"\n\
         overshoot_percent = 1\nsettling_time = \"0.1 s\"\nsettling_band_percent = 1\n\
@@ -142,7 +142,7 @@ fn wishes_in_time_are_checked() {
 }
 
 #[test]
-fn a_wish_without_a_limit_is_told_with_its_place() {
+fn a_requirement_without_a_limit_is_reported_with_its_place() {
     let lower = "upper = 2\nlower = { settling_time = \"0.3 s\", settling_band_percent = 1, pole = 1 }";
     let error = one("tracking", lower).unwrap_err();
     assert_eq!((error.number, error.key), (1, "lower"));
@@ -152,7 +152,7 @@ fn a_wish_without_a_limit_is_told_with_its_place() {
 /// Printed digits suffice to show the difference.
 // ORIGIN: written by hand
 #[test]
-fn checks_of_wishes_read_as_sentences() {
+fn checks_of_requirements_read_as_sentences() {
     let upper = "upper = { overshoot_percent = 1, settling_time = \"0.1 s\", settling_band_percent = 1 }";
     let sentence = |side: usize, gain: f64, settling_time: &str| {
         let text = format!(

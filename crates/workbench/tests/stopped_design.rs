@@ -36,7 +36,7 @@ fn names(answer: &Answer) -> Vec<&str> {
 /// controller and lists every missing part, and none is affirmative.
 // ORIGIN: written by hand, the stages in their order
 #[test]
-fn a_stopped_design_lists_what_it_lacks() {
+fn a_stopped_design_lists_its_missing_stages() {
     let cases = [
         ("nonlinear simulation", json!(["machine", "relaxations", "templates_and_bounds"])),
         ("relaxing each limit", json!(["relaxations", "templates_and_bounds"])),
@@ -64,7 +64,7 @@ fn a_stopped_design_lists_what_it_lacks() {
 /// A design stopped in the first stage has no answer, unless the search already had a controller,
 /// which is the best so far; the reason names the stage and the parts that were not begun.
 #[test]
-fn a_design_that_is_stopped_at_once_says_what_was_not_begun() {
+fn a_design_stopped_at_once_lists_the_stages_not_begun() {
     let (_, stages) = stopped_in("no stage at all");
     let first = stages[0];
     let (found, seen) = stopped_in(first);

@@ -57,7 +57,7 @@ fn each_value_is_that_of_linearize() {
 
 /// The stated parameters fix the plant, and this is reported.
 #[test]
-fn a_key_that_the_plant_does_not_follow_is_told() {
+fn a_key_without_effect_on_the_plant_is_reported() {
     let swept = swept(HOSE, "line.length=0.5..3", 3);
     let rows = swept["sweep"].as_array().unwrap();
     assert_eq!(swept["swept"]["plant_follows"], false);
@@ -92,7 +92,7 @@ fn ends_take_units_as_in_the_file() {
 }
 
 #[test]
-fn what_is_no_sweep_is_refused_with_what_would_be_one() {
+fn an_invalid_sweep_is_refused_with_a_valid_one() {
     for (range, words) in [
         ("line.lenght=0.5..3", "did you mean `line.length`?"),
         ("valve.model=1..2", "only a number can be swept"),

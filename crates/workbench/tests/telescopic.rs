@@ -79,7 +79,7 @@ fn the_machine_agrees_with_the_linear_loop() {
 
 /// The machine agrees with a linkage, too.
 #[test]
-fn behind_a_linkage_the_machine_agrees_too() {
+fn with_a_linkage_the_machine_agrees_too() {
     let rig = include_str!("../../project/tests/valid/linkage.toml");
     let stage = "cylinder.stage=[{ from = \"30 mm\", piston_area = \"10 cm2\" }]";
     for position in ["20 mm", "30 mm", "45 mm"] {
@@ -110,7 +110,7 @@ fn a_steady_motion_through_a_transition_is_not_proven() {
 
 /// Parts that accept one pair of areas only reject several.
 #[test]
-fn one_pair_of_areas_is_told_apart_from_several() {
+fn one_pair_of_areas_is_distinguished_from_several() {
     let said = try_answer(HOSE, &[STAGE], &[], &size_request(None, None)).unwrap_err().to_string();
     assert!(said.contains("sizing has one area over the stroke"), "{said}");
     let source = Memory::default().with("run.csv", "time_s,position_mm,force_n\n0,1,2\n");

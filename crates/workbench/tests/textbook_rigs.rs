@@ -107,7 +107,7 @@ fn refused(text: &str, settings: &[&str]) -> String {
 
 /// A limit that leaves no rig is rejected at its place, with a remedy.
 #[test]
-fn limits_without_a_rig_have_a_place_and_a_cure() {
+fn limits_without_a_rig_have_a_place_and_a_remedy() {
     let empty = refused(&MASS.replace("dead_volume = \"20 mL\"\n", ""), &[]);
     assert!(empty.contains("rig.toml:22") && empty.contains("cylinder.dead_volume"), "{empty}");
     let shut = refused(&MASS.replacen("1e-12", "0", 1), &[]);

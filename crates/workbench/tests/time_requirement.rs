@@ -72,7 +72,7 @@ fn a_step_far_beyond_the_requirement_is_computed_until_it_settles() {
 
 /// Limits that are stated are only compared with the requirement.
 #[test]
-fn a_stated_limit_is_not_replaced_by_what_was_required_of_it() {
+fn a_stated_limit_is_not_replaced_by_its_requirement() {
     let stated = "{ numerator = \"1\", denominator = \"10*s + 1\", settling_time = \"3 s\", settling_band_percent = 2 }";
     let text = project("numerator = \"k\"\ndenominator = \"s\"", GAINS, "", stated);
     let (object, _) = verify(&text);
@@ -118,7 +118,7 @@ fn steps_of_delayed_and_of_sampled_loops_agree() {
 /// Prefilter F = (10 s + 1)/(0.1 s + 1) rises by a factor of a hundred, 40 dB; a lag amplifies
 /// nothing.
 #[test]
-fn a_prefilter_that_amplifies_is_told() {
+fn a_prefilter_that_amplifies_is_reported() {
     let plain = project("numerator = \"k\"\ndenominator = \"s\"", GAINS, "", &lower(5.0));
     let of = |prefilter: &str| {
         verify(&plain.replace("[prefilter]\nnumerator = \"1\"\ndenominator = \"1\"", prefilter))

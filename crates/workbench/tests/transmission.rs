@@ -98,7 +98,7 @@ fn small_steps_on_the_machine_are_those_of_the_linear_loop() {
 /// A pull of 2 kN on oil with a filling pressure of 2 bar tears it off, which is an event of the
 /// run and a warning before it.
 #[test]
-fn a_run_says_where_the_oil_tears_off() {
+fn a_run_reports_where_the_oil_column_separates() {
     let scenario = "scenario=[{ name = \"pull\", duration = \"1 s\", reference = [{ at = \"0.1 s\", force = \"-2 kN\" }] }]";
     let said = answer(
         TRANSMISSION,
@@ -116,7 +116,7 @@ fn a_run_says_where_the_oil_tears_off() {
 
 /// Length, price and mass of an alternative include both cylinders, the hose and its oil.
 #[test]
-fn what_it_costs_and_weighs() {
+fn cost_and_mass_are_reported() {
     let length = |settings: &[&str]| retracted_length(&load(TRANSMISSION, settings, &[]).project);
     // ORIGIN: analytic, 0.5 m of stroke, 0.3 m and two cylinders of 0.2 m
     near(length(&["cylinder.dead_length=0.3 m"]).unwrap(), 1.2, 1e-12);
@@ -144,7 +144,7 @@ fn what_it_costs_and_weighs() {
 
 /// Models with one load pressure treat its oil as a spring, and report this.
 #[test]
-fn the_reduced_models_say_what_they_leave_out() {
+fn the_reduced_models_report_their_neglected_effects() {
     let page = answer(TRANSMISSION, &["series.segments=1"], &[], &Request::Linearize { sweep: None });
     assert!(
         page.text.contains(
@@ -157,7 +157,7 @@ fn the_reduced_models_say_what_they_leave_out() {
 
 /// A motor cannot have a transmission; a linkage can.
 #[test]
-fn a_motor_has_no_place_for_it() {
+fn a_motor_refuses_a_transmission() {
     let read = |rig: &str| {
         let source = Memory::default().with("rig.toml", rig);
         project::read(&source, "rig.toml", &[PIPE.to_string()], &[]).map(|_| ())

@@ -172,7 +172,7 @@ fn references(run: &Value) -> [f64; 2] {
 /// A lost motion of the spool is visible on the way back, but not in a step from rest; and the
 /// greatest overshoot and the remaining oscillation are those of a separate run.
 #[test]
-fn lost_motion_shows_on_the_way_back() {
+fn lost_motion_appears_on_the_way_back() {
     for (threshold, agreement) in
         [("valve.threshold=0.02", "differs"), ("valve.threshold=0.1", "contradicts")]
     {
@@ -210,7 +210,7 @@ fn lost_motion_shows_on_the_way_back() {
 /// A worst plant that differs from the declared rig only by the side of null has another linear
 /// loop, but the machine of the declared rig.
 #[test]
-fn a_side_of_null_is_no_other_machine() {
+fn a_side_of_null_does_not_change_the_machine() {
     let object = tried(&["valve.hysteresis=0.4", "valve.threshold=0.02"]);
     let [declared, worst] =
         ["the rig as declared", "the worst plant of 1 robust stability"].map(|what| run(&object, what));
@@ -224,7 +224,7 @@ fn a_side_of_null_is_no_other_machine() {
 /// A spool of limited speed: a tenth of the force is reached as the linear loop predicts, but not
 /// the largest step at which nothing saturates.
 #[test]
-fn a_slow_spool_shows_in_the_largest_step() {
+fn a_slow_spool_appears_in_the_largest_step() {
     let object = tried(&["valve.rate_limit=40 V/s"]);
     let tenth = run(&object, "the rig as declared");
     assert_eq!((&tenth["step"], &tenth["agreement"]), (&"tenth_of_supply_force".into(), &"agrees".into()));
@@ -236,7 +236,7 @@ fn a_slow_spool_shows_in_the_largest_step() {
 
 /// The largest step is within command and sensor, and one that is a quarter larger would not be.
 #[test]
-fn the_largest_step_stays_within_command_and_sensor() {
+fn the_largest_step_is_within_command_and_sensor() {
     let object = tried(&["force_sensor.capacity=5 kN"]);
     // ORIGIN: analytic, the stated capacity, less the overshoot of the force
     let [_, to] = references(run(&object, "the rig as declared, largest step"));
@@ -255,7 +255,7 @@ fn the_largest_step_stays_within_command_and_sensor() {
 /// it does not make it either: with a valve that leaks a lot in the middle, a large step is faster
 /// than the linear loop about null, with waves or without.
 #[test]
-fn waves_are_blamed_only_where_lumped_lines_agree_better() {
+fn waves_are_named_as_the_cause_only_if_lumped_lines_agree_better() {
     let edges = ["supply_to_a", "a_to_tank", "supply_to_b", "b_to_tank"];
     let mut settings: Vec<String> =
         edges.iter().map(|edge| format!("valve.leakage_coefficients.{edge}=1.5e-7")).collect();

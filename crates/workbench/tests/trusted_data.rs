@@ -114,7 +114,7 @@ fn an_area_needs_no_rod() {
 
 /// A name with dots, written without quotes, is answered with the way to quote it.
 #[test]
-fn a_name_that_was_not_quoted_is_told_how() {
+fn an_unquoted_name_is_reported_with_the_quoted_form() {
     let setting =
         "uncertainty.cylinder.moving_mass={ nominal = 13.1, minimum = 12, maximum = 14 }".to_string();
     let source = Memory::default().with("rig.toml", HOSE);

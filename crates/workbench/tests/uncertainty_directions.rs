@@ -136,7 +136,7 @@ fn the_family_has_ninety_five_of_a_hundred_valves_that_the_recordings_allow() {
 /// K_qU and K_c of valves within the region are within the box that the family visits, even if most
 /// directions are left out, up to the omitted part.
 #[test]
-fn directions_that_are_left_out_matter_little() {
+fn neglected_directions_have_little_effect() {
     let found = identification();
     let every = joint_region(found, &rig(), 0.0).unwrap();
     let region = joint_region(found, &rig(), 0.02).unwrap();
@@ -170,7 +170,7 @@ fn directions_that_are_left_out_matter_little() {
 
 /// A valve that is known exactly is one valve: the family is only that of its operating region.
 #[test]
-fn what_is_known_exactly_has_no_directions() {
+fn exact_parameters_have_no_directions() {
     let mut found = identification().clone();
     found.deviations = [0.0; STATIC_COEFFICIENTS];
     let region = joint_region(&found, &rig(), 0.0).unwrap();
@@ -185,7 +185,7 @@ fn what_is_known_exactly_has_no_directions() {
 }
 
 #[test]
-fn no_family_is_written_of_what_the_recordings_do_not_determine() {
+fn no_family_is_written_of_undetermined_parameters() {
     let mut found = identification().clone();
     found.estimates[4] = None;
     assert_eq!(

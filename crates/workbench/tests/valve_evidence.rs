@@ -16,7 +16,7 @@ const FEW_ROWS: &str = "bench.sample_time=2";
 /// Recordings made with either model support it, and its coefficients are the true ones of the
 /// table.
 #[test]
-fn recordings_speak_for_the_model_that_made_them() {
+fn recordings_favour_the_model_that_generated_them() {
     for (settings, model) in [(vec![FEW_ROWS], "each_edge"), (vec![FEW_ROWS, ONE_CURVE], "one_curve")] {
         let found = identified(&recorded(&settings));
         assert_eq!(found["leakage_model"], model);
@@ -38,7 +38,7 @@ fn recordings_speak_for_the_model_that_made_them() {
 /// each have equal leakage far from null only if K_vin differs by sqrt(2); fitted with the wrong
 /// model, the recordings give other numbers.
 #[test]
-fn the_wrong_model_says_so_first() {
+fn the_wrong_model_is_reported_first() {
     let files = recorded(&[FEW_ROWS, ONE_CURVE]);
     let asked = IdentifyRequest { leakage_model: Some(LeakageModel::EachEdge), ..files_of(&files) };
     let answer = try_asked(&files, &asked).unwrap();
@@ -72,7 +72,7 @@ fn the_fragment_is_for_the_model_it_names() {
 
 /// Metering only, with a coarse meter: the models differ where it reads zero.
 #[test]
-fn recordings_that_do_not_decide_say_so() {
+fn undecided_recordings_are_reported() {
     let coarse = ["bench.flow_meter.minimum=\"3 L/min\"", "bench.pressure_noise=\"2 bar\"", FEW_ROWS];
     let files: Vec<_> = recorded(&coarse).into_iter().filter(|(name, _)| name == "metering.csv").collect();
     let answer = try_asked(&files, &files_of(&files)).unwrap();
@@ -84,7 +84,7 @@ fn recordings_that_do_not_decide_say_so() {
 
 /// A quantity that may be absent has an interval from zero, not a confident one away from it.
 #[test]
-fn what_may_be_zero_has_a_bound_from_above() {
+fn possibly_zero_parameters_have_an_upper_bound() {
     // a meter that does not indicate the direction shows the magnitude of its noise
     let cases = [
         ("valve.hysteresis=\"1e-9 V\"", "/hysteresis_v", 0.0, 2e-3),
@@ -108,7 +108,7 @@ fn what_may_be_zero_has_a_bound_from_above() {
 /// that do not move there: most rows of the leakage then carry no information, or only noise. The
 /// tare flow has an upper bound, and the leakage is still found.
 #[test]
-fn a_valve_without_tare_flow_has_a_bound_from_above_by_every_meter() {
+fn a_valve_without_tare_flow_has_an_upper_bound_from_every_meter() {
     let cases = [
         (vec!["bench.leak_meter.signed=true"], 3e-8),
         // ORIGIN: analytic, the mean magnitude of noise of 0.005 L/min is 6.6e-8 m3/s
@@ -154,7 +154,7 @@ fn coarse_converters_do_not_make_the_noise_vanish() {
 
 /// The fragment does not state a hysteresis that may be absent.
 #[test]
-fn a_hysteresis_that_may_be_none_is_a_comment() {
+fn a_possibly_absent_hysteresis_is_a_comment() {
     let files = recorded(&["valve.hysteresis=\"1e-9 V\"", FEW_ROWS]);
     let answer = try_asked(&files, &files_of(&files)).unwrap();
     let fragment = String::from_utf8(answer.files[0].bytes.clone()).unwrap();
@@ -185,7 +185,7 @@ fn the_bootstrap_agrees_with_the_linearised_intervals() {
 /// A valve with a threshold, which the model lacks: the correlation of neighbouring residuals
 /// widens the intervals.
 #[test]
-fn the_bootstrap_sees_what_the_model_leaves_unexplained() {
+fn the_bootstrap_includes_the_unexplained_residual() {
     let files = recorded(&["valve.threshold=\"80 mV\"", FEW_ROWS]);
     let asked = IdentifyRequest { bootstrap: 50, ..files_of(&files) };
     let found: Value = serde_json::from_str(&try_asked(&files, &asked).unwrap().json).unwrap();
@@ -196,7 +196,7 @@ fn the_bootstrap_sees_what_the_model_leaves_unexplained() {
 }
 
 #[test]
-fn a_bootstrap_tells_its_progress_and_stops_when_asked() {
+fn a_bootstrap_reports_its_progress_and_can_be_stopped() {
     let files = recorded(&[FEW_ROWS]);
     let source =
         files.iter().fold(Memory::default(), |source, (name, text)| source.with(name, text.as_str()));

@@ -73,7 +73,7 @@ pub(crate) fn interval(found: &Value, path: &str) -> Option<[f64; 2]> {
 }
 
 #[test]
-fn without_noise_the_valve_is_found_to_what_the_converters_leave() {
+fn without_noise_the_valve_is_identified_within_converter_resolution() {
     let quiet = [
         "bench.pressure_noise=0",
         "bench.leak_meter.noise=0",
@@ -92,7 +92,7 @@ fn without_noise_the_valve_is_found_to_what_the_converters_leave() {
 /// of the project the lag is taken into account; with another one it counts as hysteresis, by twice
 /// the lag.
 #[test]
-fn the_lag_of_the_spool_is_no_hysteresis() {
+fn the_lag_of_the_spool_is_not_identified_as_hysteresis() {
     let slow = ["valve.natural_frequency=\"30 Hz\"", "valve.damping_ratio=0.9"];
     let files = recorded(&slow);
     let source =
@@ -117,7 +117,7 @@ fn the_lag_of_the_spool_is_no_hysteresis() {
 }
 
 #[test]
-fn outliers_are_not_believed() {
+fn outliers_are_rejected() {
     let mut files = recorded(&[]);
     for (_, text) in &mut files {
         let rows = text.lines().enumerate().map(|(index, line)| {
@@ -139,7 +139,7 @@ fn outliers_are_not_believed() {
 /// valve: such rows are left out, and reported. The numbers without them agree with those of the
 /// complete files, within their intervals.
 #[test]
-fn commands_that_stand_out_are_left_out() {
+fn outlying_commands_are_left_out() {
     let files = recorded(&[]);
     let spoilt: Vec<(String, String)> = files
         .iter()
@@ -175,7 +175,7 @@ fn commands_that_stand_out_are_left_out() {
 /// A metering test without others: none of the tare flow passes through the meter, nor leakage
 /// below its resolution.
 #[test]
-fn metering_alone_does_not_tell_the_leakage() {
+fn metering_does_not_identify_the_leakage() {
     let files: Vec<_> = recorded(&[]).into_iter().filter(|(name, _)| name == "metering.csv").collect();
     let answer = try_identify(&files, 6).unwrap();
     assert!(!answer.affirmative);
@@ -206,7 +206,7 @@ fn metering_alone_does_not_tell_the_leakage() {
 /// Edges in series cannot be distinguished from the flow only, without pressures: only K_3
 /// K_6/sqrt(K_3^2 + K_6^2) passes the meter.
 #[test]
-fn a_flow_alone_does_not_tell_edges_in_series_apart() {
+fn a_flow_does_not_distinguish_edges_in_series() {
     let files = recorded(&["bench.flow_meter.pressure_drop=0"]);
     let (_, text) = files.iter().find(|(name, _)| name == "metering.csv").unwrap();
     let columns = |line: &str| {
@@ -230,7 +230,7 @@ fn a_flow_alone_does_not_tell_edges_in_series_apart() {
 
 /// Semicolons, decimal commas, a preamble, units in a separate row: all give identical numbers.
 #[test]
-fn files_of_every_kind_say_the_same() {
+fn files_of_every_kind_give_equal_answers() {
     let files = recorded(&[]);
     let spreadsheet = |(name, text): &(String, String)| {
         let mut lines = text.lines();
@@ -276,7 +276,7 @@ fn cell(row: usize, column: usize, with: &'static str) -> impl Fn(usize, &str) -
 }
 
 #[test]
-fn files_that_are_no_tests_are_refused_with_their_place() {
+fn other_files_are_refused_with_their_place() {
     let cases = [
         (cell(3, 3, "over"), "`over` is not a number", "leakage.csv:4:"),
         (cell(4, 0, "1"), "the time of the row before", "leakage.csv:5:1"),

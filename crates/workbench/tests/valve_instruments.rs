@@ -153,7 +153,7 @@ fn a_stated_accuracy_is_in_the_intervals() {
 /// A transducer that reads 0.3 bar too much leaves a misfit if no accuracy is stated, and none if
 /// its stated accuracy covers the error; 3 bar are beyond that.
 #[test]
-fn what_a_stated_accuracy_explains_is_no_misfit() {
+fn deviations_within_the_stated_accuracy_are_no_misfit() {
     use crate::ask::{HOSE, load};
     use phea_workbench::command::{IdentifyRequest, identify_watched};
     use phea_workbench::source::Memory;

@@ -65,7 +65,7 @@ fn near(numbers: &Value, name: &str, expected: f64, share: f64) {
 /// The first column of Table 5.1 with one curve for the whole leakage, as in equations 4.12 to
 /// 4.14: the calculations return every number printed in section 5.2.
 #[test]
-fn the_published_numbers_come_back_from_the_valve_they_describe() {
+fn the_published_numbers_are_identified_from_their_valve() {
     let edges = equal_edges();
     let edges: Vec<&str> = edges.iter().map(String::as_str).collect();
     let settings = [&IDEAL[..], &MEASURED, &edges, &["valve.leakage_model=one_curve"]].concat();
@@ -88,7 +88,7 @@ fn the_published_numbers_come_back_from_the_valve_they_describe() {
 /// edges are unequal, and two of them in series pass less than a mean of the four; and its leakage
 /// coefficients are all below the 2.488e-9 of the peak.
 #[test]
-fn the_optimised_valve_agrees_where_it_can() {
+fn the_optimised_valve_agrees_where_comparable() {
     let found = numbers(&MEASURED);
     // ORIGIN: thesis section 5.2.1
     near(&found, "tare_flow_m3_per_s", 7.55e-6, 5e-3);
@@ -120,7 +120,7 @@ fn the_optimised_valve_agrees_where_it_can() {
 /// the flow give a null 8 mV too high, because the spool still remembers the reversal where they
 /// begin.
 #[test]
-fn nulls_and_what_follows_from_them_have_intervals() {
+fn nulls_and_derived_quantities_have_intervals() {
     // ORIGIN: thesis section 5.2.1, and the null between its two directions
     const TRUTH: [(&str, f64); 4] = [
         ("null_rising_v", 0.078),
@@ -236,7 +236,7 @@ fn the_pressure_sensitivity_is_that_of_the_dividers() {
 /// The flow gain of a valve with an overlap is that beyond the overlap, and is not called the gain
 /// at null: K_c at null does not follow from it.
 #[test]
-fn the_numbers_of_a_valve_with_lap_say_where_they_are_read() {
+fn the_numbers_of_a_valve_with_lap_state_their_command() {
     let overlap = "valve.lap={ positive = 0.003, negative = 0.003 }";
     let [with, without] = [vec![overlap], vec![]].map(|lap| identified(&[&MEASURED[..], &lap].concat()));
     let [of_lap, proportional] = [&with, &without].map(|answer| -> Value {
@@ -265,7 +265,7 @@ fn the_numbers_of_a_valve_with_lap_say_where_they_are_read() {
 
 /// The numbers are printed with their equations and the published values.
 #[test]
-fn the_table_stands_beside_the_published_numbers() {
+fn the_table_is_next_to_the_published_numbers() {
     let text = identified(&MEASURED).text;
     for words in ["Numbers of section 5.2", "tare flow in the leakage at null", "2.488e-9", "42.6 to 65.0 %"]
     {

@@ -78,7 +78,7 @@ fn leakage_by_edge_is_identified() {
 /// edges, so that the pressure at A is that of a valve with an overlap and the one at B that of a
 /// valve without. No lap of the model explains both, which is reported with the reason.
 #[test]
-fn laps_that_differ_within_a_pair_are_told() {
+fn laps_that_differ_within_a_pair_are_reported() {
     let lapped = recorded(&["valve.lap={ positive = 0.004, negative = 0.004 }"]);
     let file = |(name, text): &(String, String)| {
         let of_lap = &lapped.iter().find(|(other, _)| other == name).unwrap().1;
@@ -110,7 +110,7 @@ fn laps_that_differ_within_a_pair_are_told() {
 
 /// Lap and saturation together are both found, whichever is taken first.
 #[test]
-fn lap_and_saturation_are_told_apart() {
+fn lap_and_saturation_are_distinguished() {
     let settings = ["valve.lap={ positive = 0.004, negative = 0.002 }", "valve.saturation=0.5"];
     let found = identified(&recorded(&settings));
     let mut terms = taken(&found);
@@ -122,7 +122,7 @@ fn lap_and_saturation_are_told_apart() {
 /// A term that no recording requires is not taken: the valve of the thesis with other seeds and
 /// noise.
 #[test]
-fn nothing_is_taken_of_a_valve_without_terms() {
+fn a_valve_without_terms_has_none_identified() {
     for settings in [
         ["bench.seed=2", "bench.pressure_noise=\"0.05 bar\""],
         ["bench.seed=3", "bench.pressure_noise=\"0.5 bar\""],

@@ -48,7 +48,7 @@ fn worst(project: &Project) -> f64 {
 
 /// A sensor without error changes no bit of a run and of a verdict; one with an error changes both.
 #[test]
-fn a_sensor_without_error_is_none() {
+fn a_sensor_without_error_has_no_effect() {
     for settings in [vec![FED], vec![FED, SPRUNG], [&[FED], &SAMPLED[..]].concat()] {
         let with = |sensor: &[&str]| rig(&[&settings[..], sensor].concat());
         let (none, exact) = (with(&[]), with(&["velocity_sensor={ gain_error = 0, delay = 0, noise = 0 }"]));
@@ -135,7 +135,7 @@ fn with_family(settings: &[&str]) -> Loaded {
 /// Filters leave the plants quotients of polynomials: the result of the search is proven over every
 /// error of the gain. A delay does not, and the verdict with proof reports this and is not met.
 #[test]
-fn it_is_proven_where_the_plants_are_quotients() {
+fn stability_is_proven_for_rational_plants() {
     let filter = "velocity_sensor={ filter_frequency = \"200 Hz\" }";
     let delay = "velocity_sensor={ delay = \"0.5 ms\" }";
     let damped = SPRUNG.replace("500 N.s/m", "2000 N.s/m");
@@ -159,7 +159,7 @@ fn it_is_proven_where_the_plants_are_quotients() {
 
 /// The machine of the worst plant has that plant's error, and behaves like its linear loop.
 #[test]
-fn the_worst_error_is_tried_on_the_machine() {
+fn the_worst_error_is_tested_on_the_machine() {
     let sensor = "velocity_sensor={ filter_frequency = \"200 Hz\", delay = \"0.5 ms\" }";
     let loaded = with_family(&["controller.load_velocity_feed_forward={}", sensor]);
     let answer = command::answer(
@@ -210,7 +210,7 @@ fn samples(project: &Project) -> [Vec<f64>; 2] {
 /// standard errors of 19,000 samples that are nearly independent, the force, whose samples are
 /// correlated over some 20 ms, of a twentieth as many.
 #[test]
-fn noise_reaches_command_and_force_as_the_verdict_says() {
+fn noise_in_command_and_force_agrees_with_the_verdict() {
     let control = "controller={ numerator = \"0.0002*s + 0.002\", denominator = \"s\", sample_time = \"1 ms\", delay = \"0.5 ms\", load_velocity_feed_forward = { gain = 20 } }";
     let friction = "cylinder.friction={ model = \"viscous\", viscous = \"300 N.s/m\" }";
     let noise =
@@ -240,7 +240,7 @@ fn noise_reaches_command_and_force_as_the_verdict_says() {
 /// Noise of pressures that are fed back, which reaches the command through its filters, has the
 /// stated rms too.
 #[test]
-fn noise_of_pressures_reaches_command_and_force_as_the_verdict_says() {
+fn pressure_noise_in_command_and_force_agrees_with_the_verdict() {
     let control = "controller={ numerator = \"0.0002*s + 0.002\", denominator = \"s\", sample_time = \"1 ms\", delay = \"0.5 ms\" }";
     let friction = "cylinder.friction={ model = \"viscous\", viscous = \"300 N.s/m\" }";
     for (filters, load) in [("", "load={}"), (", high_pass = \"2 Hz\", low_pass = \"150 Hz\"", SPRUNG)] {
@@ -270,7 +270,7 @@ fn noise_of_pressures_reaches_command_and_force_as_the_verdict_says() {
 /// Samples are rounded to whole steps after the noise is added; equal seeds give equal bits, and
 /// other seeds others.
 #[test]
-fn what_it_shows_is_rounded_and_reproducible() {
+fn the_sensor_reading_is_rounded_and_reproducible() {
     let control = "controller={ elements = [{ kind = \"gain\", value = 1e-15 }], sample_time = \"1 ms\", load_velocity_feed_forward = { gain = 20 } }";
     let of = |seed: u32, sensor: &str| {
         let seed = format!("simulation.seed={seed}");

@@ -25,7 +25,7 @@ const INTEGRATOR: &str = "schema = 1\ntitle = \"integrator\"\n[plant]\nnumerator
     denominator = \"1\"\n[[specification]]\nkind = \"robust_stability\"\nlimit = 1.1\nfrequencies = [1, 5]\nband = [0, inf]\n";
 
 #[test]
-fn the_keys_that_stay_are_there() {
+fn the_stable_keys_are_present() {
     let object = verify(INTEGRATOR, &[]);
     assert_eq!(object["verdict"], "met");
     assert_eq!(object["evidence"], "search");
@@ -49,7 +49,7 @@ fn the_keys_that_stay_are_there() {
 }
 
 #[test]
-fn the_audit_of_the_thesis_finds_what_its_grid_hid() {
+fn the_audit_of_the_thesis_finds_violations_between_its_grid_points() {
     let object = verify(HOSE, &[]);
     assert_eq!((object["verdict"].as_str(), object["stable"].as_bool()), (Some("violated"), Some(true)));
     let robust = &object["specifications"][0];
@@ -68,7 +68,7 @@ fn the_audit_of_the_thesis_finds_what_its_grid_hid() {
 }
 
 #[test]
-fn what_cannot_be_met_is_not_called_met() {
+fn unreachable_limits_are_not_reported_as_met() {
     // unstable: it meets no specification
     let unstable = verify(INTEGRATOR, &["controller.numerator=\"-1\"", "specification.0.limit=1000"]);
     assert_eq!((unstable["verdict"].as_str(), unstable["stable"].as_bool()), (Some("violated"), Some(false)));
@@ -84,7 +84,7 @@ fn what_cannot_be_met_is_not_called_met() {
 }
 
 #[test]
-fn the_text_says_the_verdict_first_and_what_it_rests_on() {
+fn the_text_begins_with_the_verdict_and_its_basis() {
     let text = answer(HOSE, &[], &[], &Request::Verify { proof: false, on_machine: false }).text;
     assert!(text.starts_with("Verdict: violated\n"));
     for words in ["11.89", "at the design frequencies alone it would have passed", "a search is not a proof"]
@@ -96,7 +96,7 @@ fn the_text_says_the_verdict_first_and_what_it_rests_on() {
 /// An effect that a simulation adds to the command and that a model does not include is reported by
 /// every command on that model.
 #[test]
-fn a_feed_forward_is_told_to_be_left_out() {
+fn a_neglected_feed_forward_is_reported() {
     let words = "that [controller] feeds forward";
     let shape = Request::Shape { shaped: Shaped::Controller, changes: vec![] };
     for (text, request) in [
@@ -132,7 +132,7 @@ fn without_a_controller_there_is_nothing_to_verify() {
 }
 
 #[test]
-fn a_watcher_sees_progress_rise_and_can_stop_it() {
+fn progress_increases_and_the_command_can_be_stopped() {
     let loaded = ask::load(HOSE, &[], &[]);
     let source = ask::source(HOSE);
     let mut shares = Vec::new();
@@ -154,7 +154,7 @@ fn a_watcher_sees_progress_rise_and_can_stop_it() {
 }
 
 #[test]
-fn a_number_set_outside_of_its_own_range_is_refused_with_the_cure() {
+fn a_number_set_outside_of_its_range_is_refused_with_the_remedy() {
     let refused = try_answer(
         HOSE,
         &["linear.flow_pressure_coefficient=0"],

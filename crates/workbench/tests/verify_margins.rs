@@ -88,7 +88,7 @@ fn around_an_unstable_plant_the_gain_may_not_fall() {
 /// The loop k e^(-s T)/s is stable up to k = pi/(2 T): a family beyond that has no margins, a
 /// nominal loop below it has some.
 #[test]
-fn an_unstable_family_has_no_margins_and_says_why() {
+fn an_unstable_family_has_no_margins_with_the_reason() {
     let beyond = DELAYED.replace("maximum = 4", "maximum = 16");
     let margins = &json(&beyond, &[], &[], &VERIFY)["margins"];
     assert!(margins["family"].is_null() && margins["phase_deg"].is_null());
@@ -129,7 +129,7 @@ fn of_key<'a>(below: &'a [Value], key: &str) -> Option<&'a Value> {
 /// The modulus margin of the audit compared with the limit of a design, by default or as stated; a
 /// plant of polynomials has no default.
 #[test]
-fn a_loop_says_which_limits_of_a_design_it_does_not_keep() {
+fn a_loop_lists_the_design_limits_that_it_violates() {
     let said = answer(HOSE, &[], &[], &VERIFY);
     let object: Value = serde_json::from_str(&said.json).unwrap();
     let found = object["below_design"].as_array().unwrap();
@@ -156,7 +156,7 @@ fn a_loop_says_which_limits_of_a_design_it_does_not_keep() {
 
 /// Plant k/s under a gain of 1: |1 + L| is 1 at least, and the phase may lag by a right angle.
 #[test]
-fn a_loop_that_keeps_the_limits_of_a_design_says_which() {
+fn a_loop_lists_the_design_limits_that_it_satisfies() {
     let plant = DELAYED.replace("delay = \"0.1 s\"\n", "");
     let said = answer(&plant, &["design.modulus_margin=0.9"], &[], &VERIFY);
     let object: Value = serde_json::from_str(&said.json).unwrap();

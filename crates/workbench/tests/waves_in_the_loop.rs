@@ -59,7 +59,7 @@ fn the_published_loop_is_unstable_with_waves() {
 
 /// The predicted step is the machine's, if the loop is stable.
 #[test]
-fn the_step_that_is_predicted_is_the_machines() {
+fn the_predicted_step_is_that_of_the_machine() {
     let object = asked(
         &Request::Verify { proof: false, on_machine: true },
         &["line.model=segments", "line.segments=8", "line.relaxation_time=1 ms"],

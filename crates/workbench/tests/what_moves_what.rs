@@ -21,7 +21,7 @@ use phea_workbench::source::Memory;
 
 use linear::linear_parameters_follow_from_what_is_listed;
 use rigs::{absent_tables, is_within, others, rigs};
-use unused::what_moves_nothing_is_used;
+use unused::unmoved_keys_are_used;
 
 const GUIDE: &str = include_str!("../../../book/src/guide/what_moves_what.md");
 /// Tables that declare the rig and its loop; the others state its requirements.
@@ -189,7 +189,7 @@ fn row(key: &str, moves: &BTreeSet<&str>) -> String {
 /// The guide's table agrees with the computed effects, key by key; for a key that moves nothing it
 /// states the reason, and a command must answer differently because of it.
 #[test]
-fn the_table_of_the_guide_is_what_happens() {
+fn the_table_of_the_guide_is_correct() {
     let keys = keys();
     let moved = Mutex::new(Moved::new());
     on_every_rig(|text, settings| try_keys(text, settings, &keys, &moved));
@@ -223,5 +223,5 @@ fn the_table_of_the_guide_is_what_happens() {
     let gone: Vec<&&str> = told.keys().filter(|key| !moved.contains_key(**key)).collect();
     assert!(wrong.is_empty() && gone.is_empty(), "{}\nnot tried: {gone:?}", wrong.join("\n"));
     linear_parameters_follow_from_what_is_listed(&moved, &keys);
-    what_moves_nothing_is_used(&still, &keys);
+    unmoved_keys_are_used(&still, &keys);
 }

@@ -168,7 +168,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_polynomial_is_met_everywhere() {
+    fn a_polynomial_is_interpolated_exactly() {
         let wave = |t: f64| 1.0 - 2.0 * t + t.powi(5) - 0.5 * t.powi(11);
         let values = std::array::from_fn(|index| wave(point(index)));
         for part in [0.0, 0.01, 0.37, 0.5, 0.99, 1.0] {

@@ -82,7 +82,7 @@ fn course(motion: &Profile, output_step_s: f64) -> InputSchedule {
 }
 
 #[test]
-fn a_stiff_oscillator_moves_alike_under_both_methods() {
+fn both_methods_agree_on_a_stiff_oscillator() {
     let motions = [
         Profile::smooth_step(1.0, 0.01, 2.0).unwrap(),
         Profile::first_order(1.0, 0.02, 2.0).unwrap(),
@@ -111,7 +111,7 @@ fn a_stiff_oscillator_moves_alike_under_both_methods() {
 }
 
 #[test]
-fn samples_and_late_commands_act_alike() {
+fn samples_and_delayed_commands_have_equal_effects() {
     let motion = Profile::smooth_step(1.0, 0.1, 2.0).unwrap();
     // Rows that fall on samples, and rows that do not.
     for (output_step_s, delay_s) in [(0.05, 0.0), (0.05, 0.013), (0.07, 0.031)] {
@@ -196,7 +196,7 @@ fn a_delayed_wave_arrives_as_it_was_sent() {
 }
 
 #[test]
-fn waves_that_the_start_does_not_tell_are_refused() {
+fn waves_without_a_known_history_are_refused() {
     let course = InputSchedule { duration_s: 1.0, output_step_s: 0.1, inputs: vec![] };
     let answer = follow(&Late, &[1.0], &course, None, &Following::new(1e-6, Method::Adams));
     assert!(matches!(answer, Err(CvodeError::Argument(_))));

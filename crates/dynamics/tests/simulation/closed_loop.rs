@@ -113,7 +113,7 @@ fn answer(function: &TransferFunction, height: f64, after_s: f64, times: &[f64])
 }
 
 #[test]
-fn a_linear_loop_answers_as_its_transfer_function() {
+fn a_linear_loop_responds_as_its_transfer_function() {
     let (plant, controller) = (Chain::new(vec![-1.0, -3.0, -50.0], 100.0), dynamic());
     let feedback = controller.feedback.transfer_function().unwrap();
     let path = plant.transfer_function().series(&feedback).unwrap();
@@ -131,7 +131,7 @@ fn a_linear_loop_answers_as_its_transfer_function() {
 
 /// A load at the plant's input: P/(1 + L), and zero when it is fed forward.
 #[test]
-fn a_load_is_answered_and_fed_forward() {
+fn a_load_is_rejected_and_fed_forward() {
     let (chain, mut controller) = (Chain::new(vec![-1.0, -3.0], 10.0), dynamic());
     controller.prefilter = Compensator::default();
     let feedback = controller.feedback.transfer_function().unwrap();
@@ -217,7 +217,7 @@ fn by_short_steps(anti_windup: AntiWindup) -> Vec<f64> {
 }
 
 #[test]
-fn a_limited_loop_winds_up_and_does_not() {
+fn a_limited_loop_winds_up_only_without_anti_windup() {
     let mut greatest = Vec::new();
     for anti_windup in [AntiWindup::None, AntiWindup::BackCalculation, AntiWindup::Clamping] {
         let exact = by_short_steps(anti_windup);
@@ -236,7 +236,7 @@ fn a_limited_loop_winds_up_and_does_not() {
 /// The limited command is never above its limit, and the indicator of the limit shows when it is
 /// active.
 #[test]
-fn the_limit_is_kept_and_told() {
+fn the_limit_is_satisfied_and_reported() {
     let result = saturating(AntiWindup::BackCalculation, 1e-8);
     let events = &result.outcome.events;
     assert!(events.first().is_some_and(|event| event.rising && (event.time_s - 0.1).abs() < 1e-9));
@@ -254,7 +254,7 @@ fn the_limit_is_kept_and_told() {
 }
 
 #[test]
-fn what_cannot_act_continuously_is_refused() {
+fn a_controller_without_a_continuous_form_is_refused() {
     let plant = Chain::new(vec![-1.0], 1.0);
     let improper =
         Controller { feedback: Compensator::new(vec![Element::Differentiator]), ..Controller::default() };

@@ -175,7 +175,7 @@ fn samples_do_not_hide_growth() {
 /// A simulation too long for the oscillation that would have to be resolved ends, and identifies
 /// the mode.
 #[test]
-fn what_cannot_be_resolved_is_told() {
+fn unresolvable_growth_is_reported() {
     let law = TwoMasses { omega: 1e4, alpha: 20.0 };
     let settings = SimulationSettings { maximum_steps: 2_000, ..settings(1e-3, Method::Rosenbrock) };
     let course = course(1e3, 1e3, vec![]);
@@ -275,7 +275,7 @@ impl System<f64> for Loosening {
 }
 
 #[test]
-fn an_oscillation_that_was_not_there_is_seen_when_it_comes_up() {
+fn an_oscillation_that_begins_late_is_detected() {
     let motion = Profile::sine(0.0, 1e-3, 7.0).unwrap();
     let course = course(2.0, 2.0, vec![Input::Value(motion)]);
     let begin = [0.0; 3];

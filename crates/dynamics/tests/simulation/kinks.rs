@@ -23,7 +23,7 @@ impl Law for Bent {
 /// Result y(1) = (p^2 + (1 - p)^2)/2 at a thousand p. Rejected and shortened steps do not end where
 /// their error estimate is blind; the remaining errors are first attempts that happen to begin so.
 #[test]
-fn a_kink_is_met_to_the_tolerance_wherever_it_lies() {
+fn a_kink_is_located_to_the_tolerance_anywhere() {
     for tolerance in [1e-4, 1e-6, 1e-8] {
         let mut refused = 0;
         let mut errors: Vec<f64> = (0..1000)
@@ -62,7 +62,7 @@ impl Law for Marked {
 /// No step with a listed kink errs by more than a few tolerances, for any position of the kink,
 /// including first attempts.
 #[test]
-fn a_known_kink_is_met_by_every_step() {
+fn every_step_ends_at_a_known_kink() {
     for tolerance in [1e-4, 1e-6, 1e-8] {
         for index in 0..1000 {
             let place = 1e-3 + 9.98e-4 * f64::from(index);

@@ -266,7 +266,7 @@ fn neighbours(cases: &[Case], waves: usize) {
 
 /// A neighbour that becomes infinite does not affect the others.
 #[test]
-fn a_neighbour_that_fails_fails_alone() {
+fn a_failing_neighbour_does_not_affect_the_others() {
     let mut cases = cases();
     let good = cases.clone();
     for index in [1, 4, 9] {
@@ -325,7 +325,7 @@ impl<'a, E> Queue<'a, E> for Ends<'a> {
 }
 
 #[test]
-fn who_stands_still_is_not_moved_by_a_neighbour() {
+fn a_lane_at_rest_is_not_moved_by_a_neighbour() {
     let course =
         |profile| InputSchedule { duration_s: 1.0, output_step_s: 1.0, inputs: vec![Input::Value(profile)] };
     let (still, moving) =
@@ -336,7 +336,7 @@ fn who_stands_still_is_not_moved_by_a_neighbour() {
 }
 
 #[test]
-fn a_state_that_is_not_there_is_not_looked_at() {
+fn an_absent_state_is_not_evaluated() {
     let course = InputSchedule {
         duration_s: 1.0,
         output_step_s: 1.0,

@@ -68,7 +68,7 @@ fn the_error_follows_the_tolerance_and_the_work_its_fifth_root() {
 
 /// The invariant of x'' = -x drifts no faster than the tolerance allows.
 #[test]
-fn the_energy_of_an_oscillator_is_kept() {
+fn the_energy_of_an_oscillator_is_conserved() {
     for method in METHODS {
         let result =
             run_by(method, &Lawful(Oscillator(1.0), 1.0), &[0.6, 0.8], &course(200.0, 1.0, vec![]), 1e-10);

@@ -38,7 +38,7 @@ fn steps_of_an_input_are_integrated_exactly() {
 
 /// Rows at a break show the inputs after it, and the state is continuous.
 #[test]
-fn the_answer_to_a_step_begins_at_the_step() {
+fn the_response_to_a_step_begins_at_the_step() {
     for tolerance in [1e-4, 1e-7, 1e-10] {
         let inputs = vec![Input::Value(Profile::steps(0.0, &[(0.25, 1000.0), (0.5, -1000.0)]).unwrap())];
         let result = run(&Lawful(Lag, 1000.0), &[0.0], &course(1.0, 0.125, inputs), tolerance);

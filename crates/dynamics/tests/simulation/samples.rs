@@ -160,7 +160,7 @@ fn a_million_samples_a_second() {
 
 /// A delay too short for any step to end within it.
 #[test]
-fn a_delay_below_rounding_is_none() {
+fn a_delay_below_rounding_is_ignored() {
     check(0.1, 1e-19, 40);
 }
 
@@ -267,7 +267,7 @@ impl Plant<f64> for Bent {
 /// Precomputed matrices from sample to sample, or a method without them: one result, within the
 /// tolerance.
 #[test]
-fn a_bent_plant_gets_from_sample_to_sample() {
+fn a_curved_plant_is_integrated_from_sample_to_sample() {
     let plant = CommandedPlant::on_hold(Bent, &TransferFunction::gain_only(1.0)).unwrap();
     for (sample_time_s, delay_s) in [(1e-3, 0.0), (1e-3, 0.4e-3), (0.02, 0.0), (0.02, 0.03)] {
         let reference = Profile::steps(1.0, &[(2.0, -2.0), (4.0, 5.0), (4.5013, 0.0)]).unwrap();

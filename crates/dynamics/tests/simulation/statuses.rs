@@ -82,7 +82,7 @@ fn driven<E: System<f64> + Clone>(
 }
 
 #[test]
-fn a_solution_that_ends_is_told_with_its_time() {
+fn the_time_at_which_a_solution_ends_is_reported() {
     let result = driven(&Lawful(Blow, 1.0), &[1.0], &course(2.0, 1e-3, vec![]), 100_000);
     let (Status::StepTooSmall { time_s } | Status::NotFinite { time_s }) = result.outcome.status else {
         panic!("{:?}", result.outcome);
@@ -92,7 +92,7 @@ fn a_solution_that_ends_is_told_with_its_time() {
 }
 
 #[test]
-fn the_root_of_a_negative_number_is_told_with_its_time() {
+fn the_time_of_a_root_of_a_negative_number_is_reported() {
     let result = driven(&Lawful(Draining, 1.0), &[1.0], &course(5.0, 1e-2, vec![]), 100_000);
     let Status::NotFinite { time_s } = result.outcome.status else { panic!("{:?}", result.outcome) };
     // dt = -dy/(sqrt(y) + 0.1): 2 - 0.2 ln(11)
@@ -101,7 +101,7 @@ fn the_root_of_a_negative_number_is_told_with_its_time() {
 }
 
 #[test]
-fn what_grows_beyond_all_numbers_is_no_row() {
+fn an_overflowing_state_yields_no_row() {
     let result = driven(&Lawful(Growing, 1.0), &[1.0], &course(2.0, 1e-4, vec![]), 1_000_000);
     let (Status::StepTooSmall { time_s } | Status::NotFinite { time_s }) = result.outcome.status else {
         panic!("{:?}", result.outcome);
@@ -124,7 +124,7 @@ fn work_is_bounded() {
 /// The watch receives the time of each step and stops at the first that is late enough; the rows
 /// before are retained.
 #[test]
-fn stopping_it() {
+fn a_simulation_can_be_stopped() {
     let system = Lawful(Oscillator(1.0), 1.0);
     let course = course(100.0, 0.5, vec![]);
     let mut asked = Vec::new();
@@ -183,7 +183,7 @@ fn refused(
 }
 
 #[test]
-fn what_does_not_fit_is_refused() {
+fn mismatched_arguments_are_refused() {
     let good = course(1.0, 0.1, vec![Input::Value(Profile::constant(1.0))]);
     let setting = |error| match error {
         SimulationError::Setting { what, .. } => what,

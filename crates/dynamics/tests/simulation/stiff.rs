@@ -42,7 +42,7 @@ fn a_fast_mode_restricts_no_step() {
 
 /// y follows w = sin(3 t) exactly, however stiffly it is coupled to it.
 #[test]
-fn what_is_bound_stiffly_follows() {
+fn a_stiffly_coupled_state_follows() {
     let sine = Profile::sine(0.0, 1.0, 3.0).unwrap();
     let course = course(4.0, 0.013, vec![Input::Value(sine.clone()), Input::Rate(sine)]);
     for tolerance in [1e-5, 1e-8] {
@@ -151,7 +151,7 @@ impl System<f64> for Linear {
 
 /// Seven states need more colours than one evaluation has directions; modes at 1, 30 and 1e5 rad/s.
 #[test]
-fn a_linear_system_answers_as_its_matrix_exponential() {
+fn a_linear_system_responds_as_its_matrix_exponential() {
     let size = 7;
     let a = DMatrix::from_fn(size, size, |row, column| {
         let mixed = portable::sin((3 * row + 5 * column + 1) as f64);

@@ -108,7 +108,7 @@ fn models() -> Vec<DynamicLine> {
 /// Joukowsky: the onset of a flow raises the pressure by Z_c q; after T it arrives at the shut end,
 /// doubled.
 #[test]
-fn a_step_of_flow_rises_and_arrives_as_joukowsky_says() {
+fn a_step_of_flow_follows_joukowsky() {
     let smooth = Conduit { kinematic_viscosity: 1e-12, ..conduit() };
     let share = 2e-3;
     let line = DynamicLine::TransmissionLine(TransmissionLine::of_conduit(&smooth, share).unwrap());

@@ -42,7 +42,7 @@ fn assert_same(one: &Design, other: &Design) {
 }
 
 #[test]
-fn a_plant_beside_the_family_counts_as_a_member_does() {
+fn an_additional_plant_counts_as_a_member() {
     let both = regulation(&[LATE]);
     let truth = designed(&both, options());
     assert_met(&both, &truth, TrackingJudgement::Spread);
@@ -63,7 +63,7 @@ fn a_plant_beside_the_family_counts_as_a_member_does() {
 }
 
 #[test]
-fn a_design_goes_on_with_a_plant_that_it_takes_in() {
+fn a_design_continues_with_an_added_plant() {
     let both = regulation(&[LATE]);
     let mut problem = regulation(&[]);
     let alone = design(&problem, &options(), &mut unwatched).unwrap();
@@ -80,7 +80,7 @@ fn a_design_goes_on_with_a_plant_that_it_takes_in() {
 /// Limits that a plant and a second one cannot both satisfy have the relaxation of a family of
 /// both.
 #[test]
-fn what_cannot_be_had_with_it_is_told_with_the_least_relaxation() {
+fn infeasibility_with_it_is_reported_with_the_least_relaxation() {
     let too_late = [4.0, 0.4];
     let relaxation = |design: &Design| match &design.status {
         DesignStatus::Infeasible(relaxation) => relaxation.relaxation_db,

@@ -38,7 +38,7 @@ fn regulation(gain_in_path: f64, rate_feed_forward: f64) -> DesignProblem {
 }
 
 #[test]
-fn what_is_fed_forward_is_worth_as_much_as_in_the_path() {
+fn a_feed_forward_is_equivalent_to_its_path() {
     let options = || least_gain(structure("I Z P", [0.01, 1e4], [0.01, 1e3], [0.1, 2.0]), 1);
     let [alone, path, fed] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|[path, fed]| {
         let problem = regulation(path, fed);

@@ -90,7 +90,7 @@ fn names(outcome: &DesignOutcome) -> Vec<NamedStructure> {
 /// Limits on the error that vanish with w require an integrator, so that a pure gain fails at low
 /// frequency; it is searched first if this is requested.
 #[test]
-fn a_gain_alone_is_tried_before_those_with_an_integrator() {
+fn a_pure_gain_is_tested_before_structures_with_an_integrator() {
     let choice = |with_gain_alone| {
         let ControllerChoice::Any { maximum_order, from, earned_per_pole_db, .. } = any(6.0).controller
         else {
@@ -139,7 +139,7 @@ fn a_longer_structure_must_earn_its_poles() {
 /// An integrator and a resonance have |L| = K/(2 D w) at the resonance, so that |T| <= 1.5 lets K
 /// reach 0.6 * 2 D w = 0.24 without a notch. A notch at the resonance lets it reach half of w.
 #[test]
-fn a_notch_lies_upon_the_resonance() {
+fn a_notch_is_at_the_resonance() {
     let problem = resonance(4.0);
     let of = |name| {
         let controller = ControllerChoice::Named { name, earned_per_pole_db: f64::INFINITY };
@@ -205,7 +205,7 @@ fn a_notch_is_its_closed_form() {
 /// bound: a pair has two real poles if its damping ratio is more than 1, one of them above its
 /// natural frequency.
 #[test]
-fn no_pole_is_faster_than_may_be_built() {
+fn no_pole_exceeds_the_permitted_frequency() {
     let fastest_rad_per_s = 40.0;
     // no controller of these orders satisfies it, so that all of them are searched
     let hard = problem(resonant(), vec![stability(1.001, &[0.3, 1.0, 3.0, 10.0, 30.0]), slow_errors(60.0)]);

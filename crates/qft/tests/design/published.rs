@@ -91,7 +91,7 @@ fn a_wheel_with_less_gain_than_published() {
 /// s^2 + C k s + C k a - 2.5:       stable for C k a > 2.5;      |T| = C k a/(C k a - 2.5) at rest
 /// ```
 #[test]
-fn a_gain_alone_for_an_unstable_plant() {
+fn a_pure_gain_for_an_unstable_plant() {
     let plant = uncertain(&[("k", 1.0, 1.0, 10.0), ("a", 0.1, 0.1, 1.0)], |p| {
         (vec![p[0], p[0] * p[1]], vec![1.0.into(), 0.0.into(), (-2.5).into()])
     });

@@ -64,7 +64,7 @@ fn integrator_problem(greatest: f64, [sensitivity, complementary]: [f64; 2]) -> 
 /// both reached:  (c - 1) a^2 b^2 R^2 - c (a^2 + b^2) R + c = 0
 /// ```
 #[test]
-fn the_relaxation_of_a_gain_alone_is_that_of_its_closed_form() {
+fn the_relaxation_of_a_pure_gain_has_its_closed_form() {
     for (greatest, [a, b]) in [(1.0, [0.3, 0.6]), (2.0, [0.3, 0.6]), (2.0, [0.7, 0.7])] {
         let problem = integrator_problem(greatest, [a, b]);
         let c = f64::powi(greatest, 2);

@@ -17,7 +17,7 @@ const FREQUENCIES: usize = 600;
 const WITHIN_DB: f64 = 1e-3;
 
 #[test]
-fn every_plant_keeps_the_reserve() {
+fn every_plant_satisfies_the_reserve() {
     let problem = example_d();
     for reserve_db in [0.5, 0.2] {
         let structure = structure("Z PP", [1e-2, 1e4], [0.1, 1e5], [0.1, 5.0]);

@@ -125,7 +125,7 @@ fn specifications(
 }
 
 #[test]
-fn what_is_reached_is_possible_and_half_of_it_is_not() {
+fn reached_limits_are_possible_and_half_of_them_are_not() {
     let mut draw = Draw(7);
     let (mut judged, mut impossible) = (0, 0);
     while judged < 12 {

@@ -66,7 +66,7 @@ fn contradiction_is_named() {
 /// A margin that hardly changes has a large multiplier, up to which the penalty must grow; if the
 /// tolerance exceeds its change, it has no effect.
 #[test]
-fn nearly_flat_margin_is_kept_or_tolerated() {
+fn nearly_flat_margin_is_satisfied_or_tolerated() {
     let mut problem = Formula::new(1, |x| (x[0] - 3.0).powi(2), |x| vec![1e-4 * (1.0 - x[0])]);
     let mut ended = |reserve_db: f64, tolerance_db: f64| {
         let options = DescentOptions { reserve_db, tolerance_db, ..DescentOptions::new(Aim::Objective) };

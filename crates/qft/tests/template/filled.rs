@@ -10,7 +10,7 @@ use super::support::{
 /// Real and imaginary part are quadratic in the parameters: images are folded, and their rim is
 /// partly the image of interior points of the box.
 #[test]
-fn no_random_plant_lies_outside() {
+fn no_random_plant_is_outside() {
     let options = TemplateOptions::default();
     for dimension in 2..=4 {
         for seed in 101..113 {
@@ -61,7 +61,7 @@ fn nearest(family: &UncertainFamily, target: Complex64) -> Complex64 {
 /// Holes narrower than a tolerance count as filled, so that a plant may be half a tolerance away,
 /// but no farther.
 #[test]
-fn what_an_outline_winds_around_is_a_plant() {
+fn every_point_inside_an_outline_is_a_plant() {
     let options = TemplateOptions::default();
     let mut inside = 0;
     for seed in 201..209 {

@@ -73,7 +73,7 @@ fn a_box_without_uncertainty_is_its_nominal_plant() {
 }
 
 #[test]
-fn between_members_nothing_is_claimed() {
+fn no_enclosure_is_claimed_between_members() {
     let motor = motor();
     let members = motor.members().to_vec();
     let alone =
@@ -127,7 +127,7 @@ fn correlated_parameters_draw_a_line() {
 }
 
 #[test]
-fn what_cannot_be_is_refused() {
+fn impossible_requests_are_refused() {
     let family = Family::Uncertain(motor());
     for (phase_deg, magnitude_db) in [(0.0, 0.5), (90.0, 0.5), (2.0, -1.0), (2.0, f64::NAN)] {
         let options = TemplateOptions { phase_deg, magnitude_db, ..TemplateOptions::default() };

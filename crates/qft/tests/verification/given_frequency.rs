@@ -102,7 +102,7 @@ fn spread_left(case: &Case, frequency: f64, allowed: f64) -> f64 {
 /// Lightly damped boxes whose resonances pass the given frequencies, 24 of them: none of 7,200
 /// plants is worse than the result.
 #[test]
-fn no_plant_of_a_close_look_is_worse_at_a_given_frequency() {
+fn no_plant_of_a_dense_grid_is_worse_at_a_given_frequency() {
     let mut missed = Vec::new();
     for seed in 0..24 {
         let mut case = damped_case(100 + seed, [0.002, 0.02], 1.0, 1.0, COARSE);
@@ -131,7 +131,7 @@ fn no_plant_of_a_close_look_is_worse_at_a_given_frequency() {
 
 /// Spread of both plants over twelve boxes of this kind: none is worse than the result.
 #[test]
-fn no_two_plants_of_a_close_look_spread_further_at_a_given_frequency() {
+fn no_two_plants_of_a_dense_grid_spread_further_at_a_given_frequency() {
     let mut missed = Vec::new();
     for seed in 0..12 {
         let mut case = damped_case(200 + seed, [0.002, 0.02], 1.0, 1.0, COARSE);

@@ -26,7 +26,7 @@ fn parts_in_a_row_are_the_whole() {
 }
 
 #[test]
-fn an_interrupted_campaign_goes_on_to_the_same_bytes() {
+fn an_interrupted_campaign_continues_to_the_same_bytes() {
     let loaded = load(&SHORT);
     let asked = request(30, Shard::default());
     let mut whole = Page::default();
@@ -82,7 +82,7 @@ impl RowStore for Pages {
 /// Rows ahead of a slower run are not simulated again; torn ones, those of other campaigns and
 /// those already in the table are skipped.
 #[test]
-fn rows_that_waited_are_not_driven_again() {
+fn rows_stored_ahead_are_not_simulated_again() {
     let loaded = load(&SHORT);
     let asked = request(30, Shard::default());
     let whole = uninterrupted(&loaded, &asked);
@@ -127,7 +127,7 @@ fn stopping_leaves_whole_rows() {
 }
 
 #[test]
-fn a_table_of_another_campaign_is_left_alone() {
+fn a_table_of_another_campaign_is_left_unchanged() {
     let loaded = load(&SHORT);
     let asked = request(4, Shard::default());
     let mut page = Page::default();
@@ -194,7 +194,7 @@ fn damaged_rows_are_refused_with_their_line() {
 
 /// A row with a valid checksum whose numbers are not those of its draw.
 #[test]
-fn kept_numbers_are_those_that_are_drawn() {
+fn stored_numbers_are_the_drawn_ones() {
     let loaded = load(&SHORT);
     let plan = plan(&[]);
     let mut rows = plan.rows(0..3, lanes(1)).unwrap();

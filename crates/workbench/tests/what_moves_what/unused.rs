@@ -18,7 +18,7 @@ const UNUSED: [&str; 2] = ["series.line.minimum_bend_radius", "valve.response_ti
 
 /// Checks that on some rig another value of each of these keys is rejected or answered differently,
 /// unless the key is in [`UNUSED`].
-pub(super) fn what_moves_nothing_is_used(still: &BTreeSet<&str>, keys: &[KeyEntry]) {
+pub(super) fn unmoved_keys_are_used(still: &BTreeSet<&str>, keys: &[KeyEntry]) {
     let open = Mutex::new(still.clone());
     on_every_rig(|text, settings| {
         let own = loaded(text, settings).unwrap();
