@@ -280,21 +280,21 @@ fn a_campaign_continues_after_ctrl_c() {
         .expect("phea starts");
     let table = |out: &str| std::fs::read_to_string(folder.join(out).join("runs.csv")).unwrap_or_default();
     while table("stopped").lines().count() < 2 {
-        assert!(child.try_wait().expect("it can be asked").is_none(), "it ended by itself");
+        assert!(child.try_wait().expect("its status can be read").is_none(), "it ended before the signal");
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
     let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill");
     assert!(killed.success());
     assert_eq!(child.wait().expect("phea ends").code(), Some(1));
-    let kept = table("stopped");
-    let rows = kept.lines().count() - 1;
-    assert!(rows > 0 && rows < 200_000 && kept.ends_with('\n'), "{rows} rows");
+    let stored = table("stopped");
+    let rows = stored.lines().count() - 1;
+    assert!(rows > 0 && rows < 200_000 && stored.ends_with('\n'), "{rows} rows");
     for out in ["stopped", "whole"] {
         let arguments = arguments(out, rows + 10);
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
         assert_eq!(phea(&folder, &arguments).status.code(), Some(0), "{out}");
     }
-    assert!(table("stopped").starts_with(&kept) && table("stopped") == table("whole"));
+    assert!(table("stopped").starts_with(&stored) && table("stopped") == table("whole"));
 }
 
 #[test]

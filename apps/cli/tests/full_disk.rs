@@ -58,8 +58,8 @@ fn a_file_that_does_not_fit_is_absent() {
     fs::write(folder.join("out/step and load motion.csv"), "before").unwrap();
     not_written(&limited(&folder, 64, &simulate));
     let names = names(&folder.join("out"));
-    let kept = names.first().map(|name| fs::read_to_string(folder.join("out").join(name)).unwrap());
-    assert_eq!((names.len(), kept.as_deref()), (1, Some("before")));
+    let stored = names.first().map(|name| fs::read_to_string(folder.join("out").join(name)).unwrap());
+    assert_eq!((names.len(), stored.as_deref()), (1, Some("before")));
     not_written(&limited(&folder, 1, &["new", "rig"]));
     assert_eq!(self::names(&folder.join("rig")), [] as [String; 0]);
 }
@@ -104,8 +104,8 @@ fn all_files_are_absent_if_one_does_not_fit() {
         fs::write(folder.join("out").join(file), "before").unwrap();
     }
     not_written(&limited(&folder, 8, &design));
-    let is_kept = |file: &String| fs::read_to_string(folder.join("out").join(file)).unwrap() == "before";
-    assert!(written.iter().all(is_kept) && names(&folder.join("out")).len() == written.len());
+    let is_unchanged = |file: &String| fs::read_to_string(folder.join("out").join(file)).unwrap() == "before";
+    assert!(written.iter().all(is_unchanged) && names(&folder.join("out")).len() == written.len());
 }
 
 /// A campaign has complete rows only, and continues once there is room again.
@@ -121,14 +121,14 @@ fn a_campaign_on_a_full_disk_continues_once_space_is_free() {
     let arguments = campaign("full");
     let arguments: Vec<&str> = arguments.lines().collect();
     not_written(&limited(&folder, 32, &arguments));
-    let kept = text("full");
-    assert!(kept.is_empty() || kept.ends_with('\n'), "{} bytes", kept.len());
+    let stored = text("full");
+    assert!(stored.is_empty() || stored.ends_with('\n'), "{} bytes", stored.len());
     let whole = campaign("whole");
     for arguments in [arguments, whole.lines().collect()] {
         let output = Command::new(env!("CARGO_BIN_EXE_phea")).current_dir(&folder).args(arguments).output();
         assert_eq!(output.unwrap().status.code(), Some(0));
     }
-    assert!(text("full").starts_with(&kept) && text("full") == text("whole"));
+    assert!(text("full").starts_with(&stored) && text("full") == text("whole"));
 }
 
 #[cfg(target_os = "linux")]

@@ -47,7 +47,7 @@ fn rows_are_streamed_to_the_disk() {
     let mut most = 0;
     let status = loop {
         most = most.max(most_memory_kb(child.id()).unwrap_or(0));
-        if let Some(status) = child.try_wait().expect("it can be asked") {
+        if let Some(status) = child.try_wait().expect("its status can be read") {
             break status;
         }
         sleep(Duration::from_millis(20));

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-mod kept;
+mod stored;
 
 use phea_hydraulics::signal::Signal;
 use std::fs;
@@ -122,7 +122,7 @@ fn an_open_loop_is_drawn_as_a_closed_one_is() {
         .collect();
     assert_eq!(spreads, [3, 3]);
     for run in 0..2 {
-        let request = CampaignRequest { seed: 1, asked: CampaignRuns::One(run), files: false };
+        let request = CampaignRequest { seed: 1, runs: CampaignRuns::One(run), files: false };
         let answer = command::answer(&source, &loaded, &[], &Request::Campaign(request)).unwrap();
         assert!(answer.text.contains("open loop"), "{}", answer.text);
         let project = plan.settings(&plan.draw(run));
@@ -217,10 +217,10 @@ impl RowStore for Page {
 
 fn request(runs: u64, shard: Shard) -> CampaignRequest {
     let wanted = RequestedRuns { runs, shard, effort: lanes(2) };
-    CampaignRequest { seed: 1, asked: CampaignRuns::All(wanted), files: false }
+    CampaignRequest { seed: 1, runs: CampaignRuns::All(wanted), files: false }
 }
 
-fn kept(loaded: &Loaded, request: &CampaignRequest, page: &mut Page) -> Result<String, CommandError> {
+fn resumed(loaded: &Loaded, request: &CampaignRequest, page: &mut Page) -> Result<String, CommandError> {
     command::campaign_watched(&source(), loaded, &[], request, (Some(page), None), &mut |_| true)
         .map(|answer| answer.json)
 }
@@ -350,11 +350,11 @@ fn the_keys_of_the_answer_are_stable() {
 fn the_parquet_table_agrees_with_the_text() {
     let mass = "campaign.parameters.\"cylinder.moving_mass\"={ minimum = 0.001, maximum = 3, distribution = \"normal\" }";
     let loaded = load(&[&SHORT as &[&str], &[mass]].concat());
-    let asked = CampaignRequest { files: true, ..request(300, Shard::default()) };
+    let requested = CampaignRequest { files: true, ..request(300, Shard::default()) };
     let mut page = Page::default();
     let mut go_on = |_| true;
     let answer =
-        command::campaign_watched(&source(), &loaded, &[], &asked, (Some(&mut page), None), &mut go_on)
+        command::campaign_watched(&source(), &loaded, &[], &requested, (Some(&mut page), None), &mut go_on)
             .unwrap();
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("campaign.parquet");
     fs::write(&path, &answer.files.iter().find(|file| file.name == "runs.parquet").unwrap().bytes).unwrap();
@@ -390,8 +390,8 @@ fn the_parquet_table_agrees_with_the_text() {
 #[test]
 fn runs_that_do_not_settle_are_counted_next_to_the_quantiles() {
     let loaded = load(&SHORT);
-    let asked = Request::Campaign(request(20, Shard::default()));
-    let answer = command::answer(&source(), &loaded, &[], &asked).unwrap();
+    let requested = Request::Campaign(request(20, Shard::default()));
+    let answer = command::answer(&source(), &loaded, &[], &requested).unwrap();
     let json: Value = serde_json::from_str(&answer.json).unwrap();
     let events = json["metrics"].as_array().unwrap();
     let settling = |event: &Value| {
@@ -429,8 +429,8 @@ fn the_worst_of_runs_that_do_not_settle_overshoots_most() {
     let loaded =
         project::read(&source, "required.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"));
     let plan = Plan::new(&source, &loaded, 1).unwrap();
-    let asked = RequestedRuns { runs: 20, shard: Shard::default(), effort: lanes(1) };
-    let rows = phea_workbench::campaign::campaign(&plan, asked, None, &mut |_| true).unwrap();
+    let requested = RequestedRuns { runs: 20, shard: Shard::default(), effort: lanes(1) };
+    let rows = phea_workbench::campaign::campaign(&plan, requested, None, &mut |_| true).unwrap();
     let summary = Summary::of(&plan, &rows);
     let (run, reached) = summary.requirements[0].judged.unwrap().worst.unwrap();
     assert_eq!(reached.settling_time_s, f64::INFINITY);

@@ -18,7 +18,7 @@ use phea_qft::closed_loop::Compensation;
 use phea_workbench::command::Request;
 use phea_workbench::setup::Setup;
 
-use crate::ask::{HOSE, json, load, number, source, within};
+use crate::run_command::{HOSE, json, load, number, source, within};
 
 const GAIN: f64 = 3.0;
 const PLANT: f64 = 20.0;
@@ -177,8 +177,8 @@ fn a_design_limits_the_command_of_its_step() {
         "{rig}[design]\nstructure = \"pi\"\nhighest_bandwidth = \"inf\"\n[[scenario]]\nname = \"step\"\nduration = \"2 s\"\n\
          reference = [{{ at = \"0.5 s\", force = \"2 kN\" }}]\n"
     );
-    let designed = |share: f64| {
-        let setting = format!("design.command_of_steps={share}");
+    let designed = |fraction: f64| {
+        let setting = format!("design.command_of_steps={fraction}");
         json(&text, &[&setting], &[], &Request::Design { seed: None, stages: false, repair: false })
     };
     let own = |design: &serde_json::Value| {
@@ -191,10 +191,10 @@ fn a_design_limits_the_command_of_its_step() {
     let largest_v = command(&free, "largest_v");
     within(command(&free, "largest_step_n"), 2500.0, 1e-9);
     assert_eq!(own(&free)["command"]["step_limit"], "sensor");
-    let share = 0.085 * largest_v;
-    let kept = designed(share);
-    assert_eq!(kept["status"], "met", "{}", kept["limits"]);
-    assert!(command(&kept, "largest_v") <= 10.0 * share * 1.001);
+    let fraction = 0.085 * largest_v;
+    let limited = designed(fraction);
+    assert_eq!(limited["status"], "met", "{}", limited["limits"]);
+    assert!(command(&limited, "largest_v") <= 10.0 * fraction * 1.001);
     let at_rest_v = command(&free, "at_rest_v");
     let beyond = designed(0.05 * at_rest_v);
     assert_eq!(beyond["status"], "command_beyond_valve");

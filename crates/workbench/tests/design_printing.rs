@@ -68,7 +68,7 @@ fn design(problem: &DesignProblem, coefficients: CoefficientFormat, status: Desi
         format => rounded(&law, format).unwrap().controller,
     };
     let compensation = Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap();
-    let asked = AuditProblem {
+    let problem = AuditProblem {
         family: &problem.family,
         compensation: &compensation,
         specifications: &problem.specifications,
@@ -95,7 +95,7 @@ fn design(problem: &DesignProblem, coefficients: CoefficientFormat, status: Desi
         starts: None,
         objective_db: 34.0,
         beside: vec![],
-        audit: audit(&asked, &mut unwatched).unwrap(),
+        audit: audit(&problem, &mut unwatched).unwrap(),
         binding: vec![margin(1, 1.0, 0.0, plant)],
         rounds: vec![DesignRound {
             structure,
@@ -229,12 +229,12 @@ fn a_sampled_design_is_written_as_found_and_printed_as_deployed() {
 #[test]
 fn a_prefilter_that_acts_between_samples_remains_continuous() {
     let sampled = PROJECT.replace("TIMING\n", "sample_time = \"2 ms\"\n");
-    for (beside, says) in [("continuous = true\n", true), ("", false)] {
+    for (beside, is_continuous) in [("continuous = true\n", true), ("", false)] {
         let (_, loaded, view) = view(&format!("{sampled}{beside}"), DesignStatus::Met);
         let law = format!("[prefilter]\ngain = 6\npoles = [-6]\n{beside}");
         let written = String::from_utf8(files(&loaded, &view).remove(0).bytes).unwrap();
         assert!(written.ends_with(&law) && text(&loaded, &view).contains(&law), "{written}");
-        assert_eq!(self::loaded(&written).1.project.prefilter.unwrap().continuous, says);
+        assert_eq!(self::loaded(&written).1.project.prefilter.unwrap().continuous, is_continuous);
     }
 }
 

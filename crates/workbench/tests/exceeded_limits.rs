@@ -5,15 +5,15 @@
 use phea_workbench::command::Request;
 use serde_json::Value;
 
-use super::ask::answer;
+use super::run_command::answer;
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 
 /// Limits exceeded in the first scenario, a step to 4 kN at 2 s; and the text.
 fn exceeded(text: &str, settings: &[&str]) -> (Vec<Value>, String) {
-    let said = answer(text, settings, &[], &Request::Simulate(Default::default()));
-    let object: Value = serde_json::from_str(&said.json).unwrap();
-    (object["scenarios"][0]["exceeded"].as_array().unwrap().clone(), said.text)
+    let output = answer(text, settings, &[], &Request::Simulate(Default::default()));
+    let object: Value = serde_json::from_str(&output.json).unwrap();
+    (object["scenarios"][0]["exceeded"].as_array().unwrap().clone(), output.text)
 }
 
 #[test]

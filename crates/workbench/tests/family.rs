@@ -105,10 +105,10 @@ fn correlated_parameters_move_together() {
     assert_eq!(family.coordinates().len(), 2);
     assert_eq!(family.members().len(), 1 + 9 + 50);
     for values in &family.members()[1..] {
-        let share = portable::ln(values[0]) / portable::ln(4.0);
-        assert!(((values[1] - 2.0) / 4.0 - share).abs() < 1e-14, "{values:?}");
-        assert!(((6.0 - values[2]) / 2.0 - share).abs() < 1e-14, "{values:?}");
-        assert!((family.shares(values)[0] - share).abs() < 1e-14);
+        let fraction = portable::ln(values[0]) / portable::ln(4.0);
+        assert!(((values[1] - 2.0) / 4.0 - fraction).abs() < 1e-14, "{values:?}");
+        assert!(((6.0 - values[2]) / 2.0 - fraction).abs() < 1e-14, "{values:?}");
+        assert!((family.shares(values)[0] - fraction).abs() < 1e-14);
     }
 }
 

@@ -220,8 +220,9 @@ fn files_without_a_response_are_reported() {
 
 #[test]
 fn a_limit_on_load_motion_needs_its_columns() {
-    let wish = "[[specification]]\nkind = \"load_motion\"\nlimit = 1\nfrequencies = [1]\n";
-    let error = read(&format!("{PROJECT}{wish}"), "frequency_hz,real,imaginary\n1,1,0\n").unwrap_err();
+    let specification = "[[specification]]\nkind = \"load_motion\"\nlimit = 1\nfrequencies = [1]\n";
+    let error =
+        read(&format!("{PROJECT}{specification}"), "frequency_hz,real,imaginary\n1,1,0\n").unwrap_err();
     assert_eq!(error, ProjectFamilyError::LoadMotion("a.csv".to_string()));
 }
 
@@ -304,6 +305,6 @@ fn discs_and_tolerance_decide_the_verdict() {
     let tolerance = format!("[verification]\ntolerance = \"{} dB\"\n", -worst + 0.01);
     let tolerated = verified("", &csv(0.5), &tolerance);
     assert_eq!(json(&tolerated)["verdict"], "met", "{}", tolerated.text);
-    let told = json(&tolerated)["tolerance_db"].as_f64().unwrap();
-    assert!((told - (0.01 - worst)).abs() < 1e-9, "{told}");
+    let tolerance_db = json(&tolerated)["tolerance_db"].as_f64().unwrap();
+    assert!((tolerance_db - (0.01 - worst)).abs() < 1e-9, "{tolerance_db}");
 }

@@ -265,9 +265,10 @@ fn sines_below_break_away_see_the_bristles() {
     assert!((held - 2.0 / 3.0).abs() < 0.05, "{held}");
 }
 
-fn answered(settings: &[&str], options: FrequencyOptions, figures: bool) -> Result<Answer, String> {
-    let asked = SimulateRequest { frequency_response: Some(options), figures, ..SimulateRequest::default() };
-    let request = Request::Simulate(asked);
+fn output(settings: &[&str], options: FrequencyOptions, figures: bool) -> Result<Answer, String> {
+    let requested =
+        SimulateRequest { frequency_response: Some(options), figures, ..SimulateRequest::default() };
+    let request = Request::Simulate(requested);
     command::answer(&Memory::default(), &load(settings), &[], &request).map_err(|error| error.to_string())
 }
 
@@ -275,7 +276,7 @@ fn answered(settings: &[&str], options: FrequencyOptions, figures: bool) -> Resu
 fn the_answer_has_its_keys_files_and_figures() {
     let options =
         FrequencyOptions { frequencies: Some("20, 50 rad/s".to_string()), ..FrequencyOptions::default() };
-    let answer = answered(&SMOOTH, options, true).unwrap();
+    let answer = output(&SMOOTH, options, true).unwrap();
     assert!(answer.affirmative);
     let json: Value = serde_json::from_str(&answer.json).unwrap();
     assert_eq!((&json["command"], &json["scenarios"]), (&"simulate".into(), &serde_json::json!([])));
@@ -319,7 +320,7 @@ fn invalid_options_are_refused() {
         ),
     ];
     for (options, words) in cases {
-        let error = answered(&[], options, false).unwrap_err();
+        let error = output(&[], options, false).unwrap_err();
         assert!(error.starts_with(words), "{error}");
     }
 }
@@ -363,14 +364,14 @@ fn a_unit_holds_for_the_numbers_before_it() {
 
 #[test]
 fn the_amplitude_of_a_motor_s_reference_is_a_torque() {
-    let asked = |text: &str, motion: MotionKind| {
+    let requested = |text: &str, motion: MotionKind| {
         FrequencyOptions { reference_amplitude: Some(text.to_string()), ..FrequencyOptions::default() }
             .request(motion)
             .map(|request| request.reference_amplitude_n)
             .map_err(|error| error.to_string())
     };
-    assert_eq!(asked("400 N.m", MotionKind::Rotary), Ok(Some(400.0)));
-    assert_eq!(asked("4 kN", MotionKind::Linear), Ok(Some(4000.0)));
-    let refused = asked("400 N", MotionKind::Rotary).unwrap_err();
+    assert_eq!(requested("400 N.m", MotionKind::Rotary), Ok(Some(400.0)));
+    assert_eq!(requested("4 kN", MotionKind::Linear), Ok(Some(4000.0)));
+    let refused = requested("400 N", MotionKind::Rotary).unwrap_err();
     assert!(refused.contains("expected a torque, found a force"), "{refused}");
 }

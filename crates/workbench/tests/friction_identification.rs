@@ -4,7 +4,7 @@
 
 use std::sync::LazyLock;
 
-use crate::ask::{HOSE, answer, load};
+use crate::run_command::{HOSE, answer, load};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{FrictionRequest, IdentifyError, Request, friction_watched};
 use phea_workbench::project;
@@ -59,9 +59,9 @@ pub(crate) fn recorded(settings: &[&str]) -> Memory {
 }
 
 pub(crate) fn identified(source: &Memory, files: &[&str]) -> Result<Answer, IdentifyError> {
-    let asked =
+    let request =
         FrictionRequest { files: files.iter().map(|file| file.to_string()).collect(), figures: false };
-    friction_watched(source, Some(&load(HOSE, &[], &[])), &asked, &mut |_| true)
+    friction_watched(source, Some(&load(HOSE, &[], &[])), &request, &mut |_| true)
 }
 
 #[track_caller]
@@ -79,7 +79,7 @@ pub(crate) fn interval(found: &Value, key: &str) -> [f64; 2] {
 pub(crate) fn is_open(found: &Value, key: &str, reason: &str) {
     let one = &found["friction"][key];
     assert!(one["value"].is_null(), "{key}: {one}");
-    assert!(one["reason"].as_str().is_some_and(|said| said.contains(reason)), "{key}: {one}");
+    assert!(one["reason"].as_str().is_some_and(|message| message.contains(reason)), "{key}: {one}");
 }
 
 /// The steady curve is recovered without noise, to the rounding of the files.
@@ -172,8 +172,8 @@ fn an_error_of_the_zero_is_no_friction() {
 #[test]
 fn the_fragment_is_a_table_of_a_project() {
     let open = "# bristle_damping: not determined, slow runs do not show it";
-    let said = String::from_utf8(without_the_shaken().files[0].bytes.clone()).unwrap();
-    assert!(said.contains(open), "{said}");
+    let message = String::from_utf8(without_the_shaken().files[0].bytes.clone()).unwrap();
+    assert!(message.contains(open), "{message}");
     let answer = from_all();
     let fragment = answer.files.iter().find(|file| file.name == "friction.toml").unwrap();
     let fragment = String::from_utf8(fragment.bytes.clone()).unwrap();
@@ -192,12 +192,12 @@ fn the_fragment_is_a_table_of_a_project() {
 fn refused(table: &str, expected: &[&str]) {
     let source = Memory::default().with("run.csv", table);
     let error = identified(&source, &["run.csv"]).map(|answer| answer.text).unwrap_err();
-    let said = match &error {
+    let message = match &error {
         IdentifyError::Files(report) => report.to_string(),
         other => other.to_string(),
     };
     for text in expected {
-        assert!(said.contains(text), "{said}\nlacks: {text}");
+        assert!(message.contains(text), "{message}\nlacks: {text}");
     }
 }
 

@@ -7,7 +7,7 @@ use phea_workbench::campaign::{Effort, RequestedRuns, Shard};
 use phea_workbench::command::{CampaignRequest, CampaignRuns, Request, SimulateRequest};
 use serde_json::Value;
 
-use super::ask::{HOSE, json};
+use super::run_command::{HOSE, json};
 
 /// A valve that shuts within a millisecond at the end of a pipe of 10 m: the column of oil in the
 /// pipe is torn off.
@@ -97,8 +97,8 @@ fn pressures_beyond_the_limit_of_a_pipe_are_reported() {
             .fold(0.0, f64::max)
     };
     // the supply has 100 bar, and the surge exceeds it
-    let bears = with("1000 bar", "2000 bar");
-    assert_eq!((any(&bears, "working_pressure"), any(&bears, "burst_pressure")), (0.0, 0.0));
+    let strong = with("1000 bar", "2000 bar");
+    assert_eq!((any(&strong, "working_pressure"), any(&strong, "burst_pressure")), (0.0, 0.0));
     let yields = with("40 bar", "45 bar");
     let peak = any(&yields, "working_pressure");
     assert!(peak > 45e5 && any(&yields, "burst_pressure") == peak, "{yields}");
@@ -163,7 +163,7 @@ fn a_campaign_lists_limits_of_lines() {
     let text = format!(
         "{HAMMER}[campaign]\nparameters = {{ \"supply.pressure\" = {{ minimum = \"99 bar\", maximum = \"101 bar\" }} }}\n"
     );
-    let request = |asked| Request::Campaign(CampaignRequest { seed: 1, asked, files: false });
+    let request = |runs| Request::Campaign(CampaignRequest { seed: 1, runs, files: false });
     let runs = RequestedRuns { runs: 2, shard: Shard::default(), effort: Effort::default() };
     let all = json(&text, &[SEGMENTS], &[], &request(CampaignRuns::All(runs)));
     let kinds: Vec<&str> =

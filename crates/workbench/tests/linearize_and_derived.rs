@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{HOSE, PIPE, check, derived, linearize, near, number, within};
+use crate::run_command::{HOSE, PIPE, check, derived, linearize, near, number, within};
 use num_complex::Complex64;
 use serde_json::Value;
 

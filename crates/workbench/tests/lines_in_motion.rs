@@ -248,13 +248,13 @@ fn a_campaign_varies_numbers_that_are_not_counts() {
         let settings =
             [settings, &["scenario.0.duration=0.1 s", "scenario.0.load_motion.start=0.05 s"]].concat();
         let plan = Plan::new(&Memory::default(), &load(&settings), 1).unwrap();
-        let alone = plan.rows(0..6, Effort { threads: 1, lanes: false }).unwrap();
+        let one_by_one = plan.rows(0..6, Effort { threads: 1, lanes: false }).unwrap();
         assert!(
-            alone.iter().all(|row| row.ran().is_some_and(|ran| ran.status == RunStatus::Completed)),
+            one_by_one.iter().all(|row| row.ran().is_some_and(|ran| ran.status == RunStatus::Completed)),
             "{settings:?}"
         );
-        assert_eq!(alone, plan.rows(0..6, Effort { threads: 1, lanes: true }).unwrap(), "{settings:?}");
-        let peaks: Vec<_> = alone.iter().map(|row| row.ran().unwrap().metrics.clone()).collect();
+        assert_eq!(one_by_one, plan.rows(0..6, Effort { threads: 1, lanes: true }).unwrap(), "{settings:?}");
+        let peaks: Vec<_> = one_by_one.iter().map(|row| row.ran().unwrap().metrics.clone()).collect();
         assert!(peaks.windows(2).all(|pair| pair[0] != pair[1]));
     }
     for path in ["line.segments", "line.b.segments"] {

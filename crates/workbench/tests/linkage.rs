@@ -16,7 +16,7 @@ use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{ControlledMachine, Metric, ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
 
-use super::ask::{HOSE, load, project_of, try_answer};
+use super::run_command::{HOSE, load, project_of, try_answer};
 
 const KNEE: &str = include_str!("../../../examples/leg/knee.toml");
 const FREQUENCIES: [f64; 6] = [0.1, 3.0, 30.0, 300.0, 2000.0, 9000.0];
@@ -171,14 +171,15 @@ fn the_impedance_about_the_joint_is_reported() {
         (force - stiffness * (end.position - here.position_m)) * end.lever_arm
     };
     let falls = (torque(here.angle_rad - step) - torque(here.angle_rad + step)) / (2.0 * step);
-    let told = here.lever_arm_m * here.lever_arm_m * (stiffness + geometric);
-    assert!((falls / told - 1.0).abs() < 1e-6, "{falls} {told}");
+    let expected_rate = here.lever_arm_m * here.lever_arm_m * (stiffness + geometric);
+    assert!((falls / expected_rate - 1.0).abs() < 1e-6, "{falls} {expected_rate}");
     // the geometric stiffness is not lost in rounding
     assert!((geometric / stiffness).abs() > 1e-3, "{geometric}");
     let sentence = "about the joint it is r² (Z + k_g/s), in N·m·s/rad, with the lever arm r = 49.84 mm";
-    let answered = |text: &str| try_answer(text, &[], &[], &Request::Linearize { sweep: None }).unwrap().text;
-    assert!(answered(KNEE).contains(sentence));
-    assert!(!answered(HOSE).contains("joint"));
+    let found_answer =
+        |text: &str| try_answer(text, &[], &[], &Request::Linearize { sweep: None }).unwrap().text;
+    assert!(found_answer(KNEE).contains(sentence));
+    assert!(!found_answer(HOSE).contains("joint"));
 }
 
 fn run(project: &Project) -> ScenarioRun {

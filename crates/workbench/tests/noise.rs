@@ -120,13 +120,13 @@ fn a_filter_passes_its_fraction_of_the_noise() {
         let filter = format!(", {{ kind = \"pole\", frequency = {frequency} }}]");
         let (filtered, _) = seen(&filter, "force_sensor.noise=20 N");
         let lag = 1.0 / frequency;
-        let share = (SAMPLE_TIME_S / (2.0 * lag + SAMPLE_TIME_S)).sqrt();
+        let fraction = (SAMPLE_TIME_S / (2.0 * lag + SAMPLE_TIME_S)).sqrt();
         // neighbours with a correlation of a = (2 tau - T)/(2 tau + T) carry less information on
         // the rms, by (1 + a^2)/(1 - a^2)
         let alike = (2.0 * lag - SAMPLE_TIME_S) / (2.0 * lag + SAMPLE_TIME_S);
         let fewer = (1.0 + alike * alike) / (1.0 - alike * alike);
         let allowed = 5.0 * (fewer / (2.0 * filtered.len() as f64)).sqrt();
-        let found = rms(&filtered) / (20.0 * share);
+        let found = rms(&filtered) / (20.0 * fraction);
         assert!((found - 1.0).abs() < allowed, "{frequency}: {found}");
     }
 }

@@ -268,8 +268,8 @@ fn a_point_without_balance_has_its_place_and_a_remedy() {
     let refused = |text: &str| {
         let source = Memory::default().with("p.toml", text);
         let loaded = project::read(&source, "p.toml", &[], &[]).unwrap_or_else(|report| panic!("{report}"));
-        let asked = Request::Verify { proof: false, on_machine: false };
-        let error = command::answer(&source, &loaded, &[], &asked).unwrap_err();
+        let request = Request::Verify { proof: false, on_machine: false };
+        let error = command::answer(&source, &loaded, &[], &request).unwrap_err();
         let place = error.refusal().unwrap_or_else(|| panic!("{error}")).diagnostics[0].clone();
         let line = text.lines().nth(place.line - 1).unwrap().to_string();
         assert!(place.message.starts_with("no operating point at ") && place.help.is_some(), "{place:?}");

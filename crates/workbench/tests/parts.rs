@@ -4,7 +4,7 @@
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
 use crate::alternatives::{judged, rig};
-use crate::ask::{HOSE, answer, try_answer};
+use crate::run_command::{HOSE, answer, try_answer};
 use phea_workbench::command::Request;
 use serde_json::Value;
 

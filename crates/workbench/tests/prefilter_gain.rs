@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{json, number};
+use crate::run_command::{json, number};
 use phea_workbench::command::Request;
 use serde_json::Value;
 
@@ -80,14 +80,14 @@ fn a_prefilter_has_its_gain_and_the_loop_tracks() {
 /// until something limits the effect of a disturbance.
 #[test]
 fn superfluous_feedback_is_reported() {
-    let tells = |design: &Value| design["explanations"].to_string().contains("nothing asks for feedback");
-    assert!(tells(&designed(&[], "")));
+    let explains = |design: &Value| design["explanations"].to_string().contains("nothing asks for feedback");
+    assert!(explains(&designed(&[], "")));
     let limit = "[[specification]]\nkind = \"sensitivity\"\nlimit = 0.5\nfrequencies = [1]\nband = [0, 1]\n";
-    assert!(!tells(&designed(&[], limit)));
+    assert!(!explains(&designed(&[], limit)));
     // plants that differ by more than the limits allow need feedback
     let uncertain = "[uncertainty]\nk = { nominal = 1, minimum = 0.5, maximum = 2, points = 3 }\n";
     let settings = ["plant.numerator=\"50*k\""];
-    assert!(!tells(&designed(&settings, uncertain)));
+    assert!(!explains(&designed(&settings, uncertain)));
 }
 
 /// Torque control of a motor of 80 cm3 against a torsional specimen, with a friction of a tenth of

@@ -13,7 +13,7 @@ use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{FrequencyRequest, MachineResponses, frequency_response, simulate_project};
 use phea_workbench::source::Memory;
 
-use super::ask::project_of;
+use super::run_command::project_of;
 use super::shaken_load;
 
 const BENCHMARK: &str = include_str!("../../../examples/benchmark/closed_loop.toml");
@@ -229,7 +229,7 @@ fn the_delay_margin_is_that_of_all_loops() {
         };
         let margin_s = audited(delay_s).delay_margin.expect("a stable family").delay_s;
         assert!(margin_s > 1e-4 && margin_s < 5e-3, "{margin_s}");
-        let verdict = |share: f64| audited(delay_s + share * margin_s).stability.verdict;
+        let verdict = |fraction: f64| audited(delay_s + fraction * margin_s).stability.verdict;
         assert_eq!(verdict(0.97), Verdict::Met, "{settings:?} {margin_s}");
         assert_eq!(verdict(1.03), Verdict::Violated, "{settings:?} {margin_s}");
     }

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::{HOSE, answer, designed_hose, json};
+use crate::run_command::{HOSE, answer, designed_hose, json};
 use phea_workbench::answer::Answer;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -147,9 +147,9 @@ fn certificates_round_trip_and_other_files_are_refused() {
     let object: Value = serde_json::from_str(&answer.json).unwrap();
     assert_eq!(object["claims"].as_array().map(Vec::len), Some(7));
     // a claim that is not true: the ratio that is not exceeded is reduced
-    let lowered = text.replacen("\"ratio\":0.99", "\"ratio\":0.89", 2);
-    assert_ne!(lowered, text);
-    let rejected = check_certificate(&lowered).unwrap();
+    let tampered = text.replacen("\"ratio\":0.99", "\"ratio\":0.89", 2);
+    assert_ne!(tampered, text);
+    let rejected = check_certificate(&tampered).unwrap();
     let object: Value = serde_json::from_str(&rejected.json).unwrap();
     assert_eq!((rejected.affirmative, object["valid"].as_bool()), (false, Some(false)));
     assert!(object["rejected_claim"].is_number() && object["reason"].is_string());
@@ -293,9 +293,9 @@ fn a_proof_within_the_tolerance_reports_it() {
         )
     };
     for (limit, is_allowed) in [(0.9994, true), (1.01, false)] {
-        let said = answer(&text(limit), &[], &[], &PROVEN);
-        let object: Value = serde_json::from_str(&said.json).unwrap();
-        assert_eq!(object["specifications"][0]["verdict"], "met", "{}", said.text);
-        assert_eq!(said.text.contains(", within the 0.01 dB allowed"), is_allowed, "{}", said.text);
+        let output = answer(&text(limit), &[], &[], &PROVEN);
+        let object: Value = serde_json::from_str(&output.json).unwrap();
+        assert_eq!(object["specifications"][0]["verdict"], "met", "{}", output.text);
+        assert_eq!(output.text.contains(", within the 0.01 dB allowed"), is_allowed, "{}", output.text);
     }
 }

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{json, number, within};
+use crate::run_command::{json, number, within};
 use phea_workbench::command::Request;
 use serde_json::Value;
 

@@ -126,8 +126,8 @@ fn the_growth_of_a_sampled_loop_is_that_of_its_force() {
             .collect();
         let (first, last) = (peaks[0], peaks[peaks.len() - 1]);
         let measured = portable::ln(last[1] / first[1]) / (last[0] - first[0]);
-        let told = logarithm / (until - from);
-        assert!((told / measured - 1.0).abs() < 0.1, "{more:?}: {told} {measured} {grown}");
+        let rate = logarithm / (until - from);
+        assert!((rate / measured - 1.0).abs() < 0.1, "{more:?}: {rate} {measured} {grown}");
     }
 }
 

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::{HOSE, contradictory_report, load};
+use crate::run_command::{HOSE, contradictory_report, load};
 use phea_workbench::command::{CommandError, Progress};
 use phea_workbench::report::{Report, report};
 use phea_workbench::setup::Setup;
@@ -144,10 +144,10 @@ fn a_sampled_loop_is_reported_with_the_effect_of_sampling() {
     }
     assert_eq!(row(chapter, "verdict").len(), 4);
     let continuous = report_of(LAG, &["controller.delay=\"0 s\""]);
-    let alone = self::chapter(&continuous).unwrap();
+    let only_controller = self::chapter(&continuous).unwrap();
     for name in ["high-frequency gain", "order of controller and prefilter"] {
         let without_samples = row(chapter, name)[3].replace(", of the continuous law", "");
-        assert_eq!(without_samples, row(alone, name)[2], "{name}");
+        assert_eq!(without_samples, row(only_controller, name)[2], "{name}");
     }
     assert!(chapter.contains("The last column is the design for the continuous loop without delay"));
 }

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{self, HOSE, PIPE, answer, load, try_answer};
+use crate::run_command::{self, HOSE, PIPE, answer, load, try_answer};
 use std::sync::OnceLock;
 
 use phea_workbench::answer::{Answer, picture_of};
@@ -15,7 +15,7 @@ use resvg::usvg::roxmltree::{Document, Node};
 
 const PLANT: &str = include_str!("truth/plant.toml");
 
-fn ask_for_report(project: &str) -> Answer {
+fn report_answer(project: &str) -> Answer {
     answer(&without_design(project), &[], &[], &Request::Report { files: true, alternatives: false })
 }
 
@@ -39,12 +39,12 @@ pub(crate) fn nominal() -> String {
 /// The reports of both rigs as their command writes them, drawn once.
 fn hose() -> &'static Answer {
     static ANSWER: OnceLock<Answer> = OnceLock::new();
-    ANSWER.get_or_init(|| ask_for_report(HOSE))
+    ANSWER.get_or_init(|| report_answer(HOSE))
 }
 
 fn pipe() -> &'static Answer {
     static ANSWER: OnceLock<Answer> = OnceLock::new();
-    ANSWER.get_or_init(|| ask_for_report(PIPE))
+    ANSWER.get_or_init(|| report_answer(PIPE))
 }
 
 fn page(answer: &Answer) -> &str {
@@ -294,7 +294,7 @@ fn figures_come_as_svg_and_png_under_names_of_their_own() {
 
 #[test]
 fn the_same_project_gives_the_same_bytes() {
-    let (one, other) = (hose(), ask_for_report(HOSE));
+    let (one, other) = (hose(), report_answer(HOSE));
     assert_eq!(one.json, other.json);
     for (one, other) in one.files.iter().zip(&other.files) {
         assert_eq!(one.name, other.name);
@@ -338,7 +338,7 @@ fn another_plant_is_checked_and_refused_elsewhere_with_the_reason() {
     for request in [
         Request::Report { files: true, alternatives: false },
         Request::Linearize { sweep: None },
-        ask::size_request(None, None),
+        run_command::size_request(None, None),
     ] {
         let error = try_answer(PLANT, &[], &[], &request).unwrap_err().to_string();
         assert!(error.contains("[plant]") && error.contains("[cylinder]"), "{error}");
@@ -483,6 +483,7 @@ fn an_unstable_loop_is_reported_as_unstable_without_metrics() {
     let (_, step) = plain_hose().summary.iter().find(|(name, _)| *name == "Nominal linear loop").unwrap();
     assert!(step.contains("% overshoot, settles in "), "{step}");
     // A proportional loop ends away from its reference: it does not settle in the band.
-    let beside = report_of(&nominal(), &["controller.numerator=\"0.0001\"", "controller.denominator=\"1\""]);
-    assert!(!beside.html.contains("settles in not"));
+    let other_loop =
+        report_of(&nominal(), &["controller.numerator=\"0.0001\"", "controller.denominator=\"1\""]);
+    assert!(!other_loop.html.contains("settles in not"));
 }

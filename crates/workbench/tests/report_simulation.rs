@@ -183,10 +183,14 @@ fn assumptions_follow_from_stated_values() {
         .replace("time_constant = \"50 ms\"", "settling_time = \"200 ms\"\nsettling_band_percent = 1");
     let (rig, _) = text.split_once("[[scenario]]").unwrap();
     let report = reported(rig, &["line.compliance=by_volume"]);
-    let told = chapter(&report, "provenance");
-    assert!(told.contains("follows from the stated settling time, and it settles to 1 % in 4.61"), "{told}");
+    let assumptions = chapter(&report, "provenance");
     assert!(
-        told.contains("at the mean of supply and tank pressure") && !told.contains("at the supply pressure")
+        assumptions.contains("follows from the stated settling time, and it settles to 1 % in 4.61"),
+        "{assumptions}"
+    );
+    assert!(
+        assumptions.contains("at the mean of supply and tank pressure")
+            && !assumptions.contains("at the supply pressure")
     );
 }
 

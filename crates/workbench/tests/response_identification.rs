@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
 
-use crate::ask;
+use crate::run_command;
 use num_complex::Complex64;
 use phea_dynamics::portable::{exp_complex, magnitude};
 use phea_dynamics::random::{normal, stream};
@@ -83,8 +83,8 @@ fn identified(
 ) -> Result<Answer, IdentifyError> {
     let source = Memory::default().with("bench/shaken.csv", table);
     let files = vec!["bench/shaken.csv".to_string()];
-    let asked = ResponseRequest { files, settings: *settings, figures: false };
-    response_watched(&source, loaded, &asked, &mut |_| true)
+    let request = ResponseRequest { files, settings: *settings, figures: false };
+    response_watched(&source, loaded, &request, &mut |_| true)
 }
 
 fn member(answer: &Answer) -> Value {
@@ -199,9 +199,9 @@ fn an_identified_response_is_a_family_that_verify_audits() {
         table("time_s,input,output", [&times, &inputs, &outputs])
     };
     let files = vec!["a/run.csv".to_string(), "b/run.csv".to_string()];
-    let asked = ResponseRequest { files, settings: ResponseSettings::default(), figures: true };
+    let request = ResponseRequest { files, settings: ResponseSettings::default(), figures: true };
     let source = Memory::default().with("a/run.csv", shaken(5.0)).with("b/run.csv", shaken(8.0));
-    let answer = response_watched(&source, None, &asked, &mut |_| true).unwrap();
+    let answer = response_watched(&source, None, &request, &mut |_| true).unwrap();
     let names: Vec<&str> = answer.files.iter().map(|file| file.name.as_str()).collect();
     assert_eq!(names[..3], ["run.response.csv", "run-2.response.csv", "measured.toml"]);
     assert_eq!(names.len(), 5, "a picture of each: {names:?}");
@@ -259,7 +259,7 @@ fn frequencies_hidden_by_noise_are_left_out_with_the_reason() {
 
 #[track_caller]
 fn refused(text: &str, settings: &ResponseSettings, expected: &[&str]) {
-    ask::refused(identified(text, None, settings), expected);
+    run_command::refused(identified(text, None, settings), expected);
 }
 
 #[test]
@@ -363,10 +363,10 @@ fn the_project_may_state_the_loop() {
             format!("{BENCHMARK}\n[[identify.response]]\nfile = \"shaken.csv\"\nloop = \"{word}\"\n");
         let source = Memory::default().with("rig.toml", project).with("shaken.csv", text.as_str());
         let loaded = project::read(&source, "rig.toml", &[], &[]).unwrap_or_else(|report| panic!("{report}"));
-        let asked = ResponseRequest::default();
-        response_watched(&source, Some(&loaded), &asked, &mut |_| true)
+        let request = ResponseRequest::default();
+        response_watched(&source, Some(&loaded), &request, &mut |_| true)
     };
-    ask::refused(stated("closed"), &["no column says what moved it"]);
+    run_command::refused(stated("closed"), &["no column says what moved it"]);
     assert_eq!(member(&stated("open").unwrap())["method"], "local_polynomials");
 }
 
@@ -400,12 +400,13 @@ fn a_declared_controller_replaces_the_reference() {
     }
     for moves in [0.0, 20.0] {
         let half = by_controller(&closed_loop(20_000, moves), &law(0.002));
-        ask::refused(half, &["[controller] was not that of the test", "y + u/C"]);
+        run_command::refused(half, &["[controller] was not that of the test", "y + u/C"]);
     }
     let still = closed_loop(20_000, 0.0);
-    ask::refused(by_controller(&still, &law(0.004)), &["nothing moved the loop from outside"]);
+    run_command::refused(by_controller(&still, &law(0.004)), &["nothing moved the loop from outside"]);
     let limited = format!("{}\nsaturation = \"1 V\"", law(0.004));
-    ask::refused(by_controller(&signals, &limited), &["`command` is at the limit of [controller] in"]);
+    let at_limit = ["`command` is at the limit of [controller] in"];
+    run_command::refused(by_controller(&signals, &limited), &at_limit);
 }
 
 /// A controller that integrates, acts in every fourth row and two rows late: the discs contain the

@@ -24,9 +24,9 @@ fn still(text: &str, reference: &str) -> String {
     let before = text.split("[[scenario]]").next().unwrap();
     let settings = text.find("[simulation]").map_or("", |place| &text[place..]);
     let own = settings.split("[[").next().unwrap();
-    let kept = if before.contains("[simulation]") { "" } else { own };
+    let table = if before.contains("[simulation]") { "" } else { own };
     format!(
-        "{before}\n{kept}\n[[scenario]]\nname = \"still\"\nduration = \"1 s\"\noutput_step = \"10 ms\"\n{reference}\n"
+        "{before}\n{table}\n[[scenario]]\nname = \"still\"\nduration = \"1 s\"\noutput_step = \"10 ms\"\n{reference}\n"
     )
 }
 

@@ -225,25 +225,25 @@ fn an_external_force_moves_the_load_by_its_spring() {
         ));
         run_with(&text.replace("[controller]", &format!("{SPRUNG}[controller]")), &Memory::default())
     };
-    let alone = of("");
+    let unpushed = of("");
     let pushed =
         of("external_force = { kind = \"ramp\", start = \"1 s\", duration = \"0.2 s\", force = \"800 N\" }");
     let end = |run: &ScenarioRun, signal: Signal| last(run.record.signal(signal));
     // ORIGIN: analytic, F_x/k = 800/2e6
-    let moved = end(&pushed, Signal::LoadPosition) - end(&alone, Signal::LoadPosition);
+    let moved = end(&pushed, Signal::LoadPosition) - end(&unpushed, Signal::LoadPosition);
     assert!((moved - 4e-4).abs() < 2e-6, "{moved}");
     assert!(
-        (end(&pushed, Signal::Force) - 1e3).abs() < 2.0 && (end(&alone, Signal::Force) - 1e3).abs() < 2.0
+        (end(&pushed, Signal::Force) - 1e3).abs() < 2.0 && (end(&unpushed, Signal::Force) - 1e3).abs() < 2.0
     );
     assert_eq!(last(pushed.record.signal(Signal::ExternalForce)), 800.0);
-    assert!(alone.record.signal(Signal::ExternalForce).is_empty());
+    assert!(unpushed.record.signal(Signal::ExternalForce).is_empty());
     let (window, metrics) = pushed.windows.last().unwrap();
     assert_eq!((window.cause, window.start_s), (Cause::ExternalForce { about_joint: false }, 1.0));
     assert!(metrics.disturbance_peak_n.unwrap() > 1.0);
     // no effect before it begins
-    let before = row(&alone, 0.9);
+    let before = row(&unpushed, 0.9);
     let known = |run: &ScenarioRun| run.record.signal(Signal::Force)[before];
-    assert!((known(&alone) - known(&pushed)).abs() < 0.1, "{} {}", known(&alone), known(&pushed));
+    assert!((known(&unpushed) - known(&pushed)).abs() < 0.1, "{} {}", known(&unpushed), known(&pushed));
 }
 
 #[test]
@@ -286,9 +286,10 @@ fn halves_are_the_whole(change: impl Fn(String) -> String + Copy, tolerance_n: f
     let [one, other] = continued(&first, second, change);
     let forces = whole.record.signal(Signal::Force);
     let half = row(&whole, 0.5);
-    let looks = |run: &ScenarioRun| run.record.signal(Signal::Force);
+    let forces_of = |run: &ScenarioRun| run.record.signal(Signal::Force);
     // steps that end at other breaks than those of the whole run
-    let first = forces.iter().zip(looks(&one)).map(|(whole, half)| (whole - half).abs()).fold(0.0, f64::max);
+    let first =
+        forces.iter().zip(forces_of(&one)).map(|(whole, half)| (whole - half).abs()).fold(0.0, f64::max);
     assert!(first < tolerance_n, "{first}");
     let apart = |signal: Signal| {
         let (whole, other) = (whole.record.signal(signal), other.record.signal(signal));
@@ -446,8 +447,8 @@ fn an_expansion_is_carried_on_beyond_its_pressure_with_a_warning() {
         project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"))
     };
     let warned = |loaded: &Loaded| {
-        let told = loaded.warnings.iter().filter(|found| found.message.contains("expansion"));
-        told.map(|found| found.message.clone()).collect::<Vec<_>>()
+        let expansion_warnings = loaded.warnings.iter().filter(|found| found.message.contains("expansion"));
+        expansion_warnings.map(|found| found.message.clone()).collect::<Vec<_>>()
     };
     let loaded = read(&settings);
     let words = "the expansion of the hose is stated at 70 bar, and the supply has 100 bar: in between it is carried on along its slope";

@@ -297,14 +297,14 @@ fn answer(text: &str, settings: &[&str], request: &Request) -> command::CommandE
 
 #[test]
 fn impossible_simulations_are_refused_in_words() {
-    let says = |settings: &[&str], words: &str| {
+    let refused_with = |settings: &[&str], words: &str| {
         let error = answer(BENCHMARK, settings, &Request::Simulate(Default::default())).to_string();
         assert!(error.contains(words), "{error}");
     };
-    says(&["cylinder.friction.model=stribeck"], "regular velocity");
+    refused_with(&["cylinder.friction.model=stribeck"], "regular velocity");
     let wall = ["load={ model = \"wall\", mass = 10, stiffness = 1e6 }", "scenario.0.start.force=-5 N"];
-    says(&["load={ model = \"wall\", stiffness = 1e6 }"], "`mass`");
-    says(&wall, "a start with force of -5 is impossible");
+    refused_with(&["load={ model = \"wall\", stiffness = 1e6 }"], "`mass`");
+    refused_with(&wall, "a start with force of -5 is impossible");
     let thick = answer(
         HOSE,
         &["line.model=transmission_line", "fluid.kinematic_viscosity=1 m2/s"],
@@ -363,8 +363,8 @@ fn a_stopped_run_returns_its_rows_so_far() {
     let json: Value = serde_json::from_str(&answer.json).unwrap();
     let scenario = &json["scenarios"][0];
     assert_eq!(scenario["status"], "cancelled");
-    let ended = scenario["ended_s"].as_f64().unwrap();
-    assert!((2.5..5.0).contains(&ended), "{ended}");
+    let end_s = scenario["ended_s"].as_f64().unwrap();
+    assert!((2.5..5.0).contains(&end_s), "{end_s}");
     assert_eq!(scenario["events"][1]["metrics"]["settling_time_s_reason"], "the run ended before");
     assert!(!held.into_files()[0].bytes.is_empty());
 }
@@ -373,7 +373,7 @@ fn a_stopped_run_returns_its_rows_so_far() {
 /// reported.
 #[test]
 fn a_long_scenario_reports_its_sample_interval() {
-    for (duration, look_s, told) in [("5 s", 0.25e-3, false), ("2000 s", 5e-3, true)] {
+    for (duration, interval_s, long) in [("5 s", 0.25e-3, false), ("2000 s", 5e-3, true)] {
         let (duration, rows) = (format!("scenario.0.duration={duration}"), "scenario.0.output_step=5 s");
         let loaded = load(BENCHMARK, &[&duration, rows]);
         let answer =
@@ -381,8 +381,8 @@ fn a_long_scenario_reports_its_sample_interval() {
                 .unwrap();
         let json: Value = serde_json::from_str(&answer.json).unwrap();
         let found = json["scenarios"][0]["look_s"].as_f64().unwrap();
-        assert!((found / look_s - 1.0).abs() < 1e-9, "{found}");
-        assert_eq!(answer.text.contains("is drawn from samples every 5.00 ms only"), told, "{}", answer.text);
+        assert!((found / interval_s - 1.0).abs() < 1e-9, "{found}");
+        assert_eq!(answer.text.contains("is drawn from samples every 5.00 ms only"), long, "{}", answer.text);
     }
 }
 

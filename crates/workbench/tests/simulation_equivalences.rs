@@ -80,7 +80,7 @@ fn small_signal(rig: &Rig, shaken: &Shaken, amplitude: f64, frequency: f64) -> C
     let period = TAU / frequency;
     // the slowest pole is near 0.5 rad/s
     let settled = (25.0 / period).ceil();
-    let course = InputSchedule {
+    let schedule = InputSchedule {
         duration_s: (settled + 2.5) * period,
         output_step_s: period / ROWS_PER_PERIOD,
         inputs,
@@ -89,7 +89,7 @@ fn small_signal(rig: &Rig, shaken: &Shaken, amplitude: f64, frequency: f64) -> C
     let mut forces = Forces::default();
     let task = Task {
         start: rest.state,
-        course: &course,
+        course: &schedule,
         sampler: None,
         observer: Box::new(&mut forces) as Watcher,
     };
@@ -180,13 +180,13 @@ fn friction_is_the_difference_of_hydraulic_and_measured_force() {
         .collect();
     let [from, until] = [3.0, 3.5].map(|time: f64| (time / run.look_s).round() as usize);
     let (mut impulse, mut of_friction, mut fastest) = (0.0, 0.0, 0.0_f64);
-    for look in from..until {
-        let over = |values: &[f64]| 0.5 * (values[look] + values[look + 1]) * run.look_s;
+    for sample in from..until {
+        let over = |values: &[f64]| 0.5 * (values[sample] + values[sample + 1]) * run.look_s;
         impulse += over(&left);
         of_friction += over(&friction).abs();
-        let momentum = MOVING_MASS_KG * (velocity[look + 1] - velocity[from]);
+        let momentum = MOVING_MASS_KG * (velocity[sample + 1] - velocity[from]);
         fastest = fastest.max(momentum.abs());
-        assert!((impulse - momentum).abs() < 1e-3, "{look}: {impulse} N s, not {momentum} N s");
+        assert!((impulse - momentum).abs() < 1e-3, "{sample}: {impulse} N s, not {momentum} N s");
     }
     assert!(of_friction > 5.0 && fastest > 1.0, "{of_friction} N s, {fastest} N s");
     let last = left.len() - 1;

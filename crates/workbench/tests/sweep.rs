@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::{HOSE, answer, try_answer};
+use crate::run_command::{HOSE, answer, try_answer};
 use phea_workbench::command::Request;
 use phea_workbench::linearize::SweepRequest;
 use serde_json::Value;
@@ -39,14 +39,14 @@ fn each_value_is_that_of_linearize() {
     for (row, length) in rows.iter().zip([0.5, 1.0, 1.5, 2.0, 2.5, 3.0]) {
         assert_eq!(row["value"].as_f64(), Some(length));
         let setting = format!("line.length={length}");
-        let alone: Value =
+        let single: Value =
             serde_json::from_str(&answer(&hose, &[&setting], &[], &Request::Linearize { sweep: None }).json)
                 .unwrap();
         for end in ["minimum_n_per_m", "maximum_n_per_m"] {
-            assert_eq!(row["stiffness"][end], alone["stiffness"][end], "{length} {end}");
+            assert_eq!(row["stiffness"][end], single["stiffness"][end], "{length} {end}");
         }
-        assert_eq!(row["poles"]["plant"], alone["poles"]["plant"], "{length}");
-        assert_eq!(row["passive"]["closed_loop"], alone["passivity"]["closed_loop"]["passive"], "{length}");
+        assert_eq!(row["poles"]["plant"], single["poles"]["plant"], "{length}");
+        assert_eq!(row["passive"]["closed_loop"], single["passivity"]["closed_loop"]["passive"], "{length}");
         // more hose, more compliance
         let stiffness = row["stiffness"]["minimum_n_per_m"].as_f64().unwrap();
         assert!(stiffness < before, "{length}");

@@ -6,7 +6,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::ask::{HOSE, answer, json, load};
+use crate::run_command::{HOSE, answer, json, load};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{IdentifyError, IdentifyRequest, Request, identify_watched};
 use phea_workbench::source::Memory;
@@ -44,18 +44,18 @@ pub(crate) fn files_of(files: &[(String, String)]) -> IdentifyRequest {
     IdentifyRequest { files, starts: Some(1), seed: 1, ..IdentifyRequest::default() }
 }
 
-pub(crate) fn try_asked(
+pub(crate) fn try_request(
     files: &[(String, String)],
-    asked: &IdentifyRequest,
+    request: &IdentifyRequest,
 ) -> Result<Answer, IdentifyError> {
     let source =
         files.iter().fold(Memory::default(), |source, (name, text)| source.with(name, text.as_str()));
     // the tare flow of the project is stated at 70 bar
-    identify_watched(&source, Some(&load(HOSE, &[], &[])), asked, &mut |_| true)
+    identify_watched(&source, Some(&load(HOSE, &[], &[])), request, &mut |_| true)
 }
 
 fn try_identify(files: &[(String, String)], starts: usize) -> Result<Answer, IdentifyError> {
-    try_asked(files, &IdentifyRequest { starts: Some(starts), ..files_of(files) })
+    try_request(files, &IdentifyRequest { starts: Some(starts), ..files_of(files) })
 }
 
 pub(crate) fn identified(files: &[(String, String)]) -> Value {
@@ -98,10 +98,10 @@ fn the_lag_of_the_spool_is_not_identified_as_hysteresis() {
     let source =
         files.iter().fold(Memory::default(), |source, (name, text)| source.with(name, text.as_str()));
     let of = |settings: &[&str]| -> (f64, f64) {
-        let asked =
+        let request =
             identify_watched(&source, Some(&load(HOSE, settings, &[])), &files_of(&files), &mut |_| true);
         let found: Value =
-            serde_json::from_str(&asked.unwrap_or_else(|error| panic!("{error}")).json).unwrap();
+            serde_json::from_str(&request.unwrap_or_else(|error| panic!("{error}")).json).unwrap();
         let [low, high] = interval(&found, "/hysteresis_v").unwrap();
         (f64::midpoint(low, high) - 0.128, 0.5 * (high - low))
     };
@@ -166,8 +166,8 @@ fn outlying_commands_are_left_out() {
         assert!(away < 0.5 * (high - low), "{path}: {away} beside {low} to {high}");
     }
     let warnings = found["warnings"].as_array().unwrap();
-    let told = |one: &&Value| one["message"].as_str().unwrap().contains("stands out of the rows");
-    assert_eq!(warnings.iter().filter(told).count(), files.len(), "{warnings:?}");
+    let is_outlier = |one: &&Value| one["message"].as_str().unwrap().contains("stands out of the rows");
+    assert_eq!(warnings.iter().filter(is_outlier).count(), files.len(), "{warnings:?}");
     let left_out = |found: &Value| found["tests"][0]["rows_left_out"].as_u64().unwrap();
     assert!(left_out(&clean) == 0 && left_out(&found) >= 4, "{}", found["tests"][0]);
 }

@@ -40,18 +40,18 @@ fn refusal(source: &Memory, settings: &[&str]) -> String {
 #[test]
 fn the_bench_reports_the_declared_valve() {
     let quick = "bench={ sample_time = \"10 s\" }";
-    let told = |settings: &[&str]| {
+    let check_of = |settings: &[&str]| {
         let source = source(IDENTIFIED, 0);
         command::answer(&source, &read(&source, settings), &[], &Request::Bench).unwrap()
     };
-    let answer = told(&[quick]);
+    let answer = check_of(&[quick]);
     assert!(
         answer.text.trim_start().starts_with("The valve under test is the declared one"),
         "{}",
         answer.text
     );
     assert!(answer.json.contains("\"remarks\""), "{}", answer.json);
-    assert!(!told(&[quick, "identify.use=nothing"]).json.contains("\"remarks\""));
+    assert!(!check_of(&[quick, "identify.use=nothing"]).json.contains("\"remarks\""));
 }
 
 /// Values used by `check` are the truth of the bench that made the files; the hash is that of the

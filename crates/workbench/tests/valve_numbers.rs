@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::{HOSE, answer, json, load};
+use crate::run_command::{HOSE, answer, json, load};
 use phea_workbench::command::{IdentifyRequest, Request, identify_watched};
 use phea_workbench::source::Memory;
 use serde_json::Value;
@@ -47,8 +47,8 @@ fn identified(settings: &[&str]) -> phea_workbench::answer::Answer {
     let source = recorded.into_iter().fold(Memory::default(), |source, file| {
         source.with(&file.name, String::from_utf8(file.bytes).unwrap())
     });
-    let asked = IdentifyRequest { files, starts: Some(1), ..IdentifyRequest::default() };
-    identify_watched(&source, Some(&load(HOSE, settings, &[])), &asked, &mut |_| true).unwrap()
+    let request = IdentifyRequest { files, starts: Some(1), ..IdentifyRequest::default() };
+    identify_watched(&source, Some(&load(HOSE, settings, &[])), &request, &mut |_| true).unwrap()
 }
 
 fn numbers(settings: &[&str]) -> Value {
@@ -57,9 +57,9 @@ fn numbers(settings: &[&str]) -> Value {
 }
 
 #[track_caller]
-fn near(numbers: &Value, name: &str, expected: f64, share: f64) {
+fn near(numbers: &Value, name: &str, expected: f64, fraction: f64) {
     let found = numbers[name].as_f64().unwrap_or_else(|| panic!("no {name} in {numbers}"));
-    assert!((found / expected - 1.0).abs() < share, "{name}: {found:e} is not {expected:e}");
+    assert!((found / expected - 1.0).abs() < fraction, "{name}: {found:e} is not {expected:e}");
 }
 
 /// The first column of Table 5.1 with one curve for the whole leakage, as in equations 4.12 to
@@ -148,8 +148,8 @@ fn nulls_and_derived_quantities_have_intervals() {
         assert!(all.iter().all(|[low, high]| high - low < 0.02), "{name}: {all:?}");
     }
     let [low, high] = of(&read[0], "tare_share");
-    let share = read[0]["tare_share"].as_f64().unwrap();
-    assert!(low < share && share < high && high - low < 0.02 * share, "{low} {share} {high}");
+    let fraction = read[0]["tare_share"].as_f64().unwrap();
+    assert!(low < fraction && fraction < high && high - low < 0.02 * fraction, "{low} {fraction} {high}");
     assert_eq!(read[0]["null_methods"], serde_json::json!(["leakage_centre", "leakage_centre"]));
     for (file, method) in [("metering.csv", "flow_lines"), ("pressure_gain.csv", "equal_pressures")] {
         let found = read_from(&[file], &[&settings[..], &["bench.sample_time=\"2 s\""]].concat(), 1);
@@ -171,8 +171,9 @@ fn read_from(files: &[&str], settings: &[&str], seed: u32) -> Value {
         source.with(&file.name, String::from_utf8(file.bytes).unwrap())
     });
     let files: Vec<String> = files.iter().map(|file| (*file).to_string()).collect();
-    let asked = IdentifyRequest { files, starts: Some(1), ..IdentifyRequest::default() };
-    let found = identify_watched(&source, Some(&load(HOSE, &settings, &[])), &asked, &mut |_| true).unwrap();
+    let request = IdentifyRequest { files, starts: Some(1), ..IdentifyRequest::default() };
+    let found =
+        identify_watched(&source, Some(&load(HOSE, &settings, &[])), &request, &mut |_| true).unwrap();
     let found: Value = serde_json::from_str(&found.json).unwrap();
     found["simple_calculations"].clone()
 }
@@ -204,13 +205,13 @@ fn slopes_at_null_are_those_of_the_linear_model() {
 #[test]
 fn the_pressure_sensitivity_is_that_of_the_dividers() {
     let [flow, leak] = [[3.2e-7, 2.5e-7, 2.0e-7, 3.85e-7], [2.35e-9, 2.2e-9, 1.7e-9, 2.35e-9]];
-    for share in [1.0, 0.4, 0.2] {
+    for fraction in [1.0, 0.4, 0.2] {
         let load = |command: f64| {
             let u = command / 10.0;
             let secant = 1.0 / phea_dynamics::portable::cosh(100.0 * u);
             let [forward, backward] = [u.max(0.0), (-u).max(0.0)];
             let openings = [forward, backward, backward, forward];
-            let edge = |index: usize| flow[index] * openings[index] + share * leak[index] * secant;
+            let edge = |index: usize| flow[index] * openings[index] + fraction * leak[index] * secant;
             let between = |supply: f64, tank: f64| supply * supply / (supply * supply + tank * tank);
             70e5 * (between(edge(0), edge(1)) - between(edge(2), edge(3)))
         };
@@ -220,7 +221,7 @@ fn the_pressure_sensitivity_is_that_of_the_dividers() {
             if load(middle) < 0.0 { low = middle } else { high = middle }
         }
         let truth = (load(high + 1e-5) - load(low - 1e-5)) / (high - low + 2e-5);
-        let edges = leak.map(|one| format!("{:e}", share * one)).join(", ");
+        let edges = leak.map(|one| format!("{:e}", fraction * one)).join(", ");
         let setting = format!("valve.leakage_coefficients=[{edges}]");
         let settings = [&setting, "valve.leakage_shape=100", "bench.duration=\"480 s\""];
         let found = numbers(&settings);
@@ -228,7 +229,7 @@ fn the_pressure_sensitivity_is_that_of_the_dividers() {
         let interval = &found["confidence_95"]["pressure_sensitivity_pa_per_v"];
         let [low, high] = [0, 1].map(|end| interval[end].as_f64().unwrap());
         // the curve is not quite a cubic with a kink: 1 % remains
-        assert!((value / truth - 1.0).abs() < 0.02, "{share}: {truth}, {value}");
+        assert!((value / truth - 1.0).abs() < 0.02, "{fraction}: {truth}, {value}");
         assert!((0.98 * low..1.02 * high).contains(&truth) && high - low < 0.2 * truth, "{low} {high}");
     }
 }
@@ -293,8 +294,8 @@ fn the_recordings_of_the_example_are_made_by_its_bench() {
     let source = RECORDED
         .into_iter()
         .fold(Memory::default(), |source, (name, text)| source.with(&format!("recorded/{name}"), text));
-    let asked = IdentifyRequest { starts: Some(1), figures: true, ..IdentifyRequest::default() };
-    let found = identify_watched(&source, Some(&load(BENCH, &[], &[])), &asked, &mut |_| true).unwrap();
+    let request = IdentifyRequest { starts: Some(1), figures: true, ..IdentifyRequest::default() };
+    let found = identify_watched(&source, Some(&load(BENCH, &[], &[])), &request, &mut |_| true).unwrap();
     let drawn: Vec<&str> = found.files.iter().filter_map(|file| file.name.strip_suffix(".svg")).collect();
     // ORIGIN: thesis Figures 5.3, 5.6, 5.4, 5.7, 5.8, the pressure gain, 5.5, 5.9, 5.10, the
     // sensitivity, 5.11, 5.12

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::{HOSE, answer};
+use crate::run_command::{HOSE, answer};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::Request;
 use serde_json::Value;

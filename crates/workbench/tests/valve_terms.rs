@@ -3,8 +3,8 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask;
-use crate::valve_identification::{TRUTH, files_of, identified, recorded, try_asked, value};
+use crate::run_command;
+use crate::valve_identification::{TRUTH, files_of, identified, recorded, try_request, value};
 use phea_workbench::command::{self, Request};
 use phea_workbench::project;
 use phea_workbench::source::Memory;
@@ -98,13 +98,13 @@ fn laps_that_differ_within_a_pair_are_reported() {
     };
     let blocked = recorded(&[]).into_iter().filter(|(name, _)| !name.starts_with("metering"));
     let files: Vec<(String, String)> = blocked.collect::<Vec<_>>().iter().map(file).collect();
-    let answer = try_asked(&files, &files_of(&files)).unwrap_or_else(|error| panic!("{error}"));
+    let answer = try_request(&files, &files_of(&files)).unwrap_or_else(|error| panic!("{error}"));
     let found: Value = serde_json::from_str(&answer.json).unwrap();
     assert!(!found["misfits"].as_array().unwrap().is_empty(), "{}", found["signals"]);
     assert!(taken(&found).contains(&"lap"), "{}", found["terms"]);
     assert!(answer.text.contains("the laps of the two differ"), "{}", answer.text);
     // equal laps are explained, and no others are mentioned
-    let alike = try_asked(&lapped, &files_of(&lapped)).unwrap_or_else(|error| panic!("{error}"));
+    let alike = try_request(&lapped, &files_of(&lapped)).unwrap_or_else(|error| panic!("{error}"));
     assert!(!alike.text.contains("the laps of the two differ"), "{}", alike.text);
 }
 
@@ -146,8 +146,11 @@ fn a_project_takes_the_lap_of_its_recordings() {
     let used = |files: &[(String, String)], setting: &str| {
         let names: Vec<String> =
             files.iter().map(|(name, _)| format!("[[identify.recording]]\nfile = \"{name}\"\n")).collect();
-        let text =
-            ask::HOSE.replacen("[[specification]]", &format!("{}\n[[specification]]", names.concat()), 1);
+        let text = run_command::HOSE.replacen(
+            "[[specification]]",
+            &format!("{}\n[[specification]]", names.concat()),
+            1,
+        );
         let text = text.replacen("[fluid]", "[identify]\nuse = \"valve_and_uncertainty\"\n\n[fluid]", 1);
         let source = files.iter().fold(Memory::default().with("rig.toml", text), |all, (name, text)| {
             all.with(name, text.as_str())

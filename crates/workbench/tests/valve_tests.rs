@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::{HOSE, load};
+use crate::run_command::{HOSE, load};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{Request, answer};
 use phea_workbench::source::Memory;

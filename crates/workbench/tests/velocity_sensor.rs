@@ -218,21 +218,21 @@ fn noise_in_command_and_force_agrees_with_the_verdict() {
     for load in ["load={}", SPRUNG] {
         let project = still(&[control, friction, noise, load]);
         let view = audited(&project);
-        let told = view.velocity_noise.as_ref().unwrap();
-        assert!((told.rms - 1e-3 * (13.0_f64 / 12.0).sqrt()).abs() < 1e-12);
-        let effect = told.effect.as_ref().unwrap();
+        let noise = view.velocity_noise.as_ref().unwrap();
+        assert!((noise.rms - 1e-3 * (13.0_f64 / 12.0).sqrt()).abs() < 1e-12);
+        let effect = noise.effect.as_ref().unwrap();
         // K times the noise passes with a prescribed load at rest, and the controller reacts little
         if load != SPRUNG {
-            assert!((effect.command_rms_v / (20.0 * told.rms) - 1.0).abs() < 0.02, "{effect:?}");
+            assert!((effect.command_rms_v / (20.0 * noise.rms) - 1.0).abs() < 0.02, "{effect:?}");
         }
         let [commands, forces] = samples(&project);
         let [command, force] = [rms(&commands) / effect.command_rms_v, rms(&forces) / effect.force_rms_n];
         assert!((command - 1.0).abs() < 0.03, "{load}: {command}");
         assert!((force - 1.0).abs() < 0.12, "{load}: {force}");
         assert!(
-            noise_sentence(told, &view.names).contains("mV rms"),
+            noise_sentence(noise, &view.names).contains("mV rms"),
             "{}",
-            noise_sentence(told, &view.names)
+            noise_sentence(noise, &view.names)
         );
     }
 }
@@ -248,9 +248,9 @@ fn pressure_noise_in_command_and_force_agrees_with_the_verdict() {
             format!("controller.pressure_feedback={{ gain = \"0.1 V/bar\", noise = \"0.2 bar\"{filters} }}");
         let project = still(&[control, &feedback, friction, load]);
         let view = audited(&project);
-        let told = view.pressure_noise.as_ref().unwrap();
-        assert_eq!((told.rms, view.velocity_noise.is_none()), (0.2e5, true));
-        let effect = told.effect.as_ref().unwrap();
+        let noise = view.pressure_noise.as_ref().unwrap();
+        assert_eq!((noise.rms, view.velocity_noise.is_none()), (0.2e5, true));
+        let effect = noise.effect.as_ref().unwrap();
         if filters.is_empty() {
             // little returns within a sample: k n
             assert!((effect.command_rms_v / 0.02 - 1.0).abs() < 0.1, "{effect:?}");
@@ -260,9 +260,9 @@ fn pressure_noise_in_command_and_force_agrees_with_the_verdict() {
         assert!((command - 1.0).abs() < 0.03, "{load}: {command}");
         assert!((force - 1.0).abs() < 0.15, "{load}: {force}");
         assert!(
-            noise_sentence(told, &view.names).contains("mV rms"),
+            noise_sentence(noise, &view.names).contains("mV rms"),
             "{}",
-            noise_sentence(told, &view.names)
+            noise_sentence(noise, &view.names)
         );
     }
 }
@@ -304,10 +304,10 @@ fn a_campaign_draws_the_gain_error() {
         let loaded = loaded(CAMPAIGN, &settings);
         let source = Memory::default().with("rig.toml", CAMPAIGN);
         let plan = Plan::new(&source, &loaded, 1).unwrap();
-        let alone = plan.rows(0..12, Effort { threads: 1, lanes: false }).unwrap();
+        let one_by_one = plan.rows(0..12, Effort { threads: 1, lanes: false }).unwrap();
         assert_eq!(
             plan.table(&plan.rows(0..12, Effort { threads: 2, lanes: true }).unwrap()),
-            plan.table(&alone)
+            plan.table(&one_by_one)
         );
         for run in 0..2 {
             let force_n = plan.forces(run..run + 1, Effort { threads: 1, lanes: true }).unwrap().remove(0);

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{self, HOSE, answer, json, try_answer};
+use crate::run_command::{self, HOSE, answer, json, try_answer};
 use phea_workbench::command::{CommandError, Progress, Request, answer_into};
 use phea_workbench::plant_names::{PlantNames, plant_text};
 use phea_workbench::shaping::Shaped;
@@ -104,18 +104,18 @@ fn a_neglected_feed_forward_is_reported() {
         (INTEGRATOR, Request::Verify { proof: false, on_machine: false }),
         (INTEGRATOR, shape),
     ] {
-        for (settings, told) in [
+        for (settings, is_reported) in [
             (vec![], false),
             (vec!["controller.load_velocity_feed_forward={ gain = 0 }"], false),
             (vec!["controller.load_velocity_feed_forward={ gain = 20 }"], true),
         ] {
-            let said = answer(text, &settings, &[], &request);
-            let object: Value = serde_json::from_str(&said.json).unwrap();
+            let output = answer(text, &settings, &[], &request);
+            let object: Value = serde_json::from_str(&output.json).unwrap();
             let warnings = object["warnings"].as_array().unwrap();
             let of_it = warnings.iter().filter(|warning| warning.as_str().unwrap().contains(words));
             assert_eq!(
-                (said.text.contains(words), of_it.count()),
-                (told, usize::from(told)),
+                (output.text.contains(words), of_it.count()),
+                (is_reported, usize::from(is_reported)),
                 "{}",
                 request.name()
             );
@@ -133,8 +133,8 @@ fn without_a_controller_there_is_nothing_to_verify() {
 
 #[test]
 fn progress_increases_and_the_command_can_be_stopped() {
-    let loaded = ask::load(HOSE, &[], &[]);
-    let source = ask::source(HOSE);
+    let loaded = run_command::load(HOSE, &[], &[]);
+    let source = run_command::source(HOSE);
     let mut shares = Vec::new();
     let mut watch = |progress: Progress| {
         shares.push(progress.share);
@@ -150,7 +150,7 @@ fn progress_increases_and_the_command_can_be_stopped() {
     );
     assert!(matches!(stopped, Err(CommandError::Stopped(_))));
     assert_eq!(shares.len(), 50);
-    assert!(shares.is_sorted() && shares.iter().all(|share| (0.0..=1.0).contains(share)));
+    assert!(shares.is_sorted() && shares.iter().all(|fraction| (0.0..=1.0).contains(fraction)));
 }
 
 #[test]
@@ -192,12 +192,12 @@ fn a_loop_around_an_unstable_plant_states_how_far_its_gain_may_fall() {
         .replace("k = { nominal = 1, minimum = 1, maximum = 2", "k = { nominal = 4, minimum = 4, maximum = 8")
         .replace("numerator = \"1\"", "numerator = \"2\"");
     let request = Request::Verify { proof: false, on_machine: false };
-    let said = answer(&unstable, &[], &[], &request);
-    let object: Value = serde_json::from_str(&said.json).unwrap();
+    let output = answer(&unstable, &[], &[], &request);
+    let object: Value = serde_json::from_str(&output.json).unwrap();
     // ORIGIN: analytic, 20 log10(1/8)
     close(&object["gain_reduction_db"], -18.0618, 1e-5);
-    assert!(said.text.contains("becomes unstable where that falls by 18.1 dB"), "{}", said.text);
-    let said = answer(INTEGRATOR, &[], &[], &request);
-    assert!(!said.text.contains("needs its gain"), "{}", said.text);
+    assert!(output.text.contains("becomes unstable where that falls by 18.1 dB"), "{}", output.text);
+    let output = answer(INTEGRATOR, &[], &[], &request);
+    assert!(!output.text.contains("needs its gain"), "{}", output.text);
     assert_eq!(verify(INTEGRATOR, &[])["gain_reduction_db"], "-inf");
 }

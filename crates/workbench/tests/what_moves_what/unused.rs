@@ -33,8 +33,8 @@ pub(super) fn unmoved_keys_are_used(still: &BTreeSet<&str>, keys: &[KeyEntry]) {
                 loaded(text, &changed)
             };
             let is_used = |other: &Loaded| {
-                let before = || before.get_or_init(|| answers(&own));
-                other.project != own.project && *before() != answers(other)
+                let before = || before.get_or_init(|| outputs(&own));
+                other.project != own.project && *before() != outputs(other)
             };
             let near: Vec<Option<Loaded>> = others(entry, &own.project).0.iter().map(with).collect();
             let Some(accepted) = near.iter().flatten().next() else { continue };
@@ -59,7 +59,7 @@ fn far(entry: &KeyEntry, own: &Loaded) -> Vec<String> {
 
 /// Output of the quick commands on a project, the warnings when it is read, and its length, which
 /// `alternatives` compares.
-fn answers(loaded: &Loaded) -> String {
+fn outputs(loaded: &Loaded) -> String {
     let source = Memory::default();
     let text = |request: &Request| match answer(&source, loaded, &[], request) {
         Ok(answer) => answer.text,

@@ -18,7 +18,7 @@ const LOOP: &str = "schema = 1\n[plant]\nnumerator = \"1\"\ndenominator = \"s + 
      band = [0, inf]\n";
 
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("inputs_kept").join(name);
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("inputs_protected").join(name);
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).expect("a folder");
     let driven = fs::read_to_string(format!("{EXAMPLES}/benchmark/closed_loop.toml")).expect("the example");
