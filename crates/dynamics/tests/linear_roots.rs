@@ -176,9 +176,9 @@ fn degenerate_polynomials() {
     assert_eq!(Polynomial::new(vec![3.0, 0.0, 0.0]).roots(), Ok(vec![real(0.0), real(0.0)]));
     assert!(matches!(Polynomial::new(vec![1.0, f64::NAN]).roots(), Err(LinearError::NotFinite { .. })));
     assert!(matches!(Polynomial::new(vec![f64::INFINITY, 1.0]).roots(), Err(LinearError::NotFinite { .. })));
-    let alone = Complex64::new(-1.0, 2.0);
-    let refused = Polynomial::from_roots(1.0, &[alone]);
-    assert_eq!(refused, Err(LinearError::MissingConjugate { root: alone }));
+    let unpaired = Complex64::new(-1.0, 2.0);
+    let refused = Polynomial::from_roots(1.0, &[unpaired]);
+    assert_eq!(refused, Err(LinearError::MissingConjugate { root: unpaired }));
 }
 
 #[test]

@@ -222,8 +222,8 @@ fn numbers_are_short_and_never_negative_zero() {
 fn markup_changes_symbols_and_leaves_names_unchanged() {
     let plain = |text: &str| pieces(text).iter().all(|(_, level)| *level == Level::Line);
     for name in ["eaton_synflex_3130_08", "my_rig.toml", "a_", "_", "^", "x^y", "K_", "{}", "_{", "F_1-x_"] {
-        let kept: String = pieces(name).into_iter().map(|(text, _)| text).collect();
-        assert!(plain(name) || name.starts_with("F_1"), "{name}: {kept}");
+        let remaining: String = pieces(name).into_iter().map(|(text, _)| text).collect();
+        assert!(plain(name) || name.starts_with("F_1"), "{name}: {remaining}");
     }
     let script = |text: &str| {
         pieces(text)
@@ -268,18 +268,18 @@ fn a_simplified_curve_is_close_to_the_original() {
                 at
             })
             .collect();
-        let kept = simplify::polyline(&points);
-        assert_eq!((kept.first(), kept.last()), (points.first(), points.last()));
+        let remaining = simplify::polyline(&points);
+        assert_eq!((remaining.first(), remaining.last()), (points.first(), points.last()));
         for p in &points {
             let away =
-                kept.windows(2).map(|pair| distance(*p, pair[0], pair[1])).fold(f64::INFINITY, f64::min);
+                remaining.windows(2).map(|pair| distance(*p, pair[0], pair[1])).fold(f64::INFINITY, f64::min);
             assert!(away <= 2.0 * simplify::TOLERANCE, "{away}");
         }
     }
     let resonance: Vec<Point> =
         (0..2000).map(|i| point(0.2 * f64::from(i), 100.0 / (0.01 + f64::from(i - 1000).abs()))).collect();
-    let kept = simplify::polyline(&resonance);
-    assert!(kept.len() < 300 && kept.contains(&resonance[1000]), "{} points", kept.len());
+    let remaining = simplify::polyline(&resonance);
+    assert!(remaining.len() < 300 && remaining.contains(&resonance[1000]), "{} points", remaining.len());
 }
 
 /// Distance of a point from the segment between two others.

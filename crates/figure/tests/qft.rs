@@ -245,11 +245,11 @@ fn violated_areas_begin_where_the_limit_is_crossed() {
 fn the_other_loop_is_judged_by_the_same_limit() {
     let (one, rising) =
         (magnitudes(&[0.1, 10.0], &[1.0, 1.0]), magnitudes(&[0.1, 0.3, 10.0], &[0.1, 0.3, 10.0]));
-    let kept = magnitudes(&[0.1, 10.0], &[0.5, 0.5]);
+    let satisfied = magnitudes(&[0.1, 10.0], &[0.5, 0.5]);
     let envelope = |name: &str, greatest| FamilyEnvelope { name: name.to_string(), greatest, least: None };
     let chart = FamilyMagnitude {
         upper_limit: Some(one),
-        envelopes: vec![envelope("one", kept), envelope("other", rising)],
+        envelopes: vec![envelope("one", satisfied), envelope("other", rising)],
         ..FamilyMagnitude::default()
     };
     let figure = chart.draw(&Words::new("f", "f", "f"));

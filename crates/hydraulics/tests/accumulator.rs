@@ -82,7 +82,7 @@ fn gas_is_shut_off_below_its_precharge() {
     let place = |name: &str| INDICATORS.iter().position(|known| *known == name).unwrap();
     for (pressure, in_use) in [(19.7e5, false), (20.3e5, true)] {
         let state = [1.0, 0.0, pressure, 30e5, 1e-4, 0.05];
-        let told = |machine: &Machine| {
+        let indicators_of = |machine: &Machine| {
             let mut indicators = vec![0.0; machine.indicators()];
             machine.indicate(&state, &[0.25, 0.0], &mut indicators);
             indicators
@@ -92,7 +92,7 @@ fn gas_is_shut_off_below_its_precharge() {
             machine.rates(&state, 1.0, &[0.25, 0.0], &mut rates);
             rates[2]
         };
-        let (found, bare) = (told(&with), told(&without));
+        let (found, bare) = (indicators_of(&with), indicators_of(&without));
         assert_eq!(found[place("accumulator_empty_a")] > 0.0, in_use);
         assert!(found[place("accumulator_empty_b")] > 0.0 && bare[place("accumulator_empty_a")] > 0.0);
         assert_eq!(found[place("empty_a")], bare[place("empty_a")]);

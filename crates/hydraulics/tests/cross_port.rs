@@ -98,11 +98,11 @@ fn it_damps_the_resonance_on_the_load_cell() {
     assert!((damping_ratio(&hose, 1.501_26e-9, None) / 0.030_347_3 - 1.0).abs() < 1e-5);
     assert!(damping_ratio(&hose, 1.3e-9, None) < 0.030_347 && damping_ratio(&hose, 1.7e-9, None) < 0.030_347);
     assert!((damping_ratio(&pipe, 1.076_44e-10, None) / 0.1 - 1.0).abs() < 1e-5);
-    for (share, expected) in [(1.0, 0.071_136_0), (3.0, 0.092_290_6)] {
-        let capacity = share * pipe.useful_area * pipe.useful_area / pipe.hydraulic_stiffness;
+    for (ratio, expected) in [(1.0, 0.071_136_0), (3.0, 0.092_290_6)] {
+        let capacity = ratio * pipe.useful_area * pipe.useful_area / pipe.hydraulic_stiffness;
         let feedback = DynamicFeedback { conductance: 1.076_44e-10, capacity };
         let found = damping_ratio(&pipe, 0.0, Some(feedback));
-        assert!((found / expected - 1.0).abs() < 1e-5, "{share} {found}");
+        assert!((found / expected - 1.0).abs() < 1e-5, "{ratio} {found}");
     }
 }
 

@@ -26,7 +26,7 @@ fn runge_kutta(
     let h = time_step / steps as f64;
     for ends in force.windows(2) {
         for step in 0..steps {
-            let at = |share: f64| ends[0] + (ends[1] - ends[0]) * (step as f64 + share) / steps as f64;
+            let at = |fraction: f64| ends[0] + (ends[1] - ends[0]) * (step as f64 + fraction) / steps as f64;
             let add = |rate: [f64; 3], by: f64| std::array::from_fn(|i| state[i] + by * rate[i]);
             let first = rates(state, at(0.0));
             let second = rates(add(first, h / 2.0), at(0.5));
@@ -51,7 +51,7 @@ fn rows(force: &KnottedForce) -> Vec<f64> {
     force
         .shares()
         .into_iter()
-        .map(|(knot, share)| force.forces[knot] * (1.0 - share) + force.forces[knot + 1] * share)
+        .map(|(knot, fraction)| force.forces[knot] * (1.0 - fraction) + force.forces[knot + 1] * fraction)
         .collect()
 }
 
@@ -196,8 +196,8 @@ fn the_force_after_a_reversal_is_that_of_the_bristles() {
         deflection += h * lugre.bristle_rate(velocity, middle);
     }
     // remainder of the initial force: of the spring and of the damper of the bristles
-    let share = 1.0 - lugre.bristle_damping * velocity.abs() / lugre.curve.sliding_force(velocity);
-    let left = lugre.bristle_stiffness * (9e-6 - settled) * share;
+    let fraction = 1.0 - lugre.bristle_damping * velocity.abs() / lugre.curve.sliding_force(velocity);
+    let left = lugre.bristle_stiffness * (9e-6 - settled) * fraction;
     let length = velocity.abs() * h;
     for block in 0..4 {
         let (from, to) = (block * 1000, (block + 1) * 1000);

@@ -27,12 +27,12 @@ fn step(state: &mut [f64], time: f64, width: f64, rates: &mut impl FnMut(f64, &[
     let count = state.len();
     let mut slopes = [[0.0; 12]; 4];
     let mut trial = [0.0; 12];
-    for (stage, share) in [0.0, 0.5, 0.5, 1.0].into_iter().enumerate() {
+    for (stage, fraction) in [0.0, 0.5, 0.5, 1.0].into_iter().enumerate() {
         for index in 0..count {
             let slope = if stage == 0 { 0.0 } else { slopes[stage - 1][index] };
-            trial[index] = state[index] + share * width * slope;
+            trial[index] = state[index] + fraction * width * slope;
         }
-        rates(time + share * width, &trial[..count], &mut slopes[stage][..count]);
+        rates(time + fraction * width, &trial[..count], &mut slopes[stage][..count]);
     }
     for (index, value) in state.iter_mut().enumerate() {
         let [first, second, third, fourth] = slopes.map(|slope| slope[index]);
@@ -50,9 +50,9 @@ fn indicator(name: &str) -> usize {
 
 /// Smooth step of the load by 5 mm from 3.0 to 3.1 s: position and velocity.
 fn load_step(time: f64) -> [f64; 2] {
-    let share = ((time - 3.0) / 0.1).clamp(0.0, 1.0);
-    let position = share * share * share * (10.0 - 15.0 * share + 6.0 * share * share);
-    let slope = 30.0 * share * share * (1.0 - share) * (1.0 - share);
+    let fraction = ((time - 3.0) / 0.1).clamp(0.0, 1.0);
+    let position = fraction * fraction * fraction * (10.0 - 15.0 * fraction + 6.0 * fraction * fraction);
+    let slope = 30.0 * fraction * fraction * (1.0 - fraction) * (1.0 - fraction);
     [0.25 + 5e-3 * position, 5e-3 * slope / 0.1]
 }
 
@@ -371,9 +371,9 @@ fn tare_flow_is_the_supplys() {
         let machine = machine_of(Components { supply, valve, ..rig }, &options);
         machine.signals(&[0.3, 0.0, 20e5, 15e5, 0.0, 0.0], &[0.2, 0.0]).supply_flow
     };
-    for (pressure, share) in [(70e5, 1.0), (17.5e5, 0.5)] {
+    for (pressure, fraction) in [(70e5, 1.0), (17.5e5, 0.5)] {
         let tare = with(pressure, 7.55e-6) - with(pressure, 0.0);
-        assert!((tare / (share * 7.55e-6) - 1.0).abs() < 1e-6);
+        assert!((tare / (fraction * 7.55e-6) - 1.0).abs() < 1e-6);
     }
 }
 

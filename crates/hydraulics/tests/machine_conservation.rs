@@ -21,8 +21,8 @@ use super::rich_machines::{
 
 /// Classical Runge-Kutta step of rates that depend on time.
 pub(super) fn step(state: &mut [f64], time: f64, width: f64, rates: &mut dyn FnMut(f64, &[f64]) -> Vec<f64>) {
-    let along = |state: &[f64], slope: &[f64], share: f64| -> Vec<f64> {
-        state.iter().zip(slope).map(|(value, slope)| value + share * width * slope).collect()
+    let along = |state: &[f64], slope: &[f64], fraction: f64| -> Vec<f64> {
+        state.iter().zip(slope).map(|(value, slope)| value + fraction * width * slope).collect()
     };
     let first = rates(time, state);
     let second = rates(time + 0.5 * width, &along(state, &first, 0.5));
@@ -292,7 +292,7 @@ fn what_is_stored_changes_by_what_enters_and_is_lost() {
     let options = MachineOptions { power_unit: charged_pump(75e5, 1.4), ..MachineOptions::default() };
     let mut machines = rich_machines();
     machines.push(("gas at its precharge", machine_of(asymmetric(), &options)));
-    for ((name, machine), (pressure, share)) in
+    for ((name, machine), (pressure, fraction)) in
         machines.iter().flat_map(|named| [(named, (35e5, 4.0)), (named, (0.0, 0.13))])
     {
         let start = StartValues {
@@ -305,7 +305,7 @@ fn what_is_stored_changes_by_what_enters_and_is_lost() {
         for _ in 0..20 {
             let around = beginning.state.iter().zip(machine.scales());
             let state: Vec<f64> =
-                around.map(|(value, scale)| value + share * scale * random(&mut seed)).collect();
+                around.map(|(value, scale)| value + fraction * scale * random(&mut seed)).collect();
             let inputs = [0.25 + 0.2 * random(&mut seed), 0.1 * random(&mut seed)];
             check_instant(name, machine, &state, random(&mut seed), inputs);
         }
@@ -393,16 +393,16 @@ fn an_external_force_acts_on_the_load_only() {
         machine.rates(&state, 1.0, &inputs, &mut rates);
         (rates, machine.ledger(&state, &inputs).unwrap())
     };
-    let ((still, alone), (pushed, ledger)) = (at(0.0), at(700.0));
+    let ((still, unpushed), (pushed, ledger)) = (at(0.0), at(700.0));
     for (index, (one, other)) in still.iter().zip(&pushed).enumerate() {
         let expected = if index == velocity { 700.0 / 20.0 } else { 0.0 };
         assert!((other - one - expected).abs() < 1e-9 * one.abs().max(1.0), "{index}: {one} {other}");
     }
     for name in ["load", "rig"] {
         let place = ENERGY_ACCOUNTS.iter().position(|known| *known == name).unwrap();
-        let gained = ledger.energy[place].inflow - alone.energy[place].inflow;
+        let gained = ledger.energy[place].inflow - unpushed.energy[place].inflow;
         assert!(
-            (gained - 700.0 * 0.4).abs() < 1e-9 * alone.energy[place].inflow.abs().max(1e3),
+            (gained - 700.0 * 0.4).abs() < 1e-9 * unpushed.energy[place].inflow.abs().max(1e3),
             "{name}: {gained}"
         );
     }

@@ -228,10 +228,10 @@ fn direction_decides_at_null_and_the_mean_is_between() {
 
 fn direction_decides(valve: &Servovalve) {
     let at = |direction| chamber_coefficients(valve, &SUPPLY, 0.0, 37e5, 24e5, direction);
-    let beside = |spool| chamber_coefficients(valve, &SUPPLY, spool, 37e5, 24e5, SpoolDirection::Mean);
+    let next_to_null = |spool| chamber_coefficients(valve, &SUPPLY, spool, 37e5, 24e5, SpoolDirection::Mean);
     let (extending, retracting, mean) =
         (at(SpoolDirection::Extending), at(SpoolDirection::Retracting), at(SpoolDirection::Mean));
-    for (one_sided, limit) in [(extending, beside(1e-12)), (retracting, beside(-1e-12))] {
+    for (one_sided, limit) in [(extending, next_to_null(1e-12)), (retracting, next_to_null(-1e-12))] {
         assert!((one_sided.flow_gain_a / limit.flow_gain_a - 1.0).abs() < 1e-9);
         assert!((one_sided.flow_gain_b / limit.flow_gain_b - 1.0).abs() < 1e-9);
     }

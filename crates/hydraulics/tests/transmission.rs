@@ -142,12 +142,12 @@ fn its_line_is_the_line_in_segments() {
     for number in 0..60 {
         let own = Transmission { segments: 1 + number as usize % 8, ..transmission(number) };
         let segments = Segments::new(&conduit(&own), own.segments, LaminarFriction::Steady).unwrap();
-        let told = held_back(own);
+        let found_response = held_back(own);
         for frequency in [0.3, 20.0, 500.0, 4e3] {
             let s = Complex64::new(0.0, frequency);
             let line = DynamicLine::Segments(segments).transfer_matrix(s);
             let expected = line.impedance * s * (own.piston_area * own.piston_area);
-            let error = (at(&told, s) / expected - 1.0).norm_sqr().sqrt();
+            let error = (at(&found_response, s) / expected - 1.0).norm_sqr().sqrt();
             assert!(error < 1e-10, "{number} at {frequency}: {error}");
         }
     }

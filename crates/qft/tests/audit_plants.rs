@@ -64,12 +64,12 @@ fn audits_in_one_pass_agree_with_separate_audits() {
             tolerance_db: TOLERANCE_DB,
         };
         let stability = family_stability(&family, &around, &mut unwatched).unwrap();
-        let (alone, _) = audit_specifications(&problem, &mut unwatched).unwrap();
+        let (separate, _) = audit_specifications(&problem, &mut unwatched).unwrap();
         let audit = audit(&problem, &mut unwatched).unwrap();
         assert_eq!(audit.stability, stability.finding);
         assert_eq!(audit.delay_margin, stability.delay_margin);
         assert_eq!(audit.stability.verdict, Verdict::Met, "{:?}", audit.stability);
-        assert_eq!(audit.specifications, alone);
+        assert_eq!(audit.specifications, separate);
     }
 }
 
@@ -99,10 +99,10 @@ fn audit_and_proof_do_not_depend_on_the_workers() {
             let proof = prove(&problem, &audit, options, &mut unwatched).unwrap();
             (audit, proof)
         };
-        let alone = found(Workers::CALLER);
-        assert_eq!(alone.0, audit(&problem, &mut unwatched).unwrap());
+        let separate = found(Workers::CALLER);
+        assert_eq!(separate.0, audit(&problem, &mut unwatched).unwrap());
         for at_once in [1, 2, 5] {
-            assert_eq!(found(Workers { at_once, work: backwards }), alone, "{at_once}");
+            assert_eq!(found(Workers { at_once, work: backwards }), separate, "{at_once}");
         }
     }
 }

@@ -275,17 +275,17 @@ fn a_pole_that_touches_infinity_is_reported_if_the_square_is_recorded() {
 /// unbounded: the two squares are equal, and their difference retains the width of both.
 #[test]
 fn a_leading_coefficient_without_enclosures_is_searched_for() {
-    let build = |share: f64| {
+    let build = |fraction: f64| {
         family(&[("x", 0.0, 0.0, 1.0)], Spacing::Linear, move |p| {
             let from = p[0] - 0.5.into();
             let unit = (p[0] * p[0] - p[0] + 0.25.into() - from * from + 1e-7.into()).times(1e7);
-            let leading = -(p[0].times(share) / unit) + 1.0.into();
+            let leading = -(p[0].times(fraction) / unit) + 1.0.into();
             rational(vec![1.0.into()], vec![leading, 1.0.into(), 0.0.into()], 0.0)
         })
     };
-    let kept = audit(&build(0.6), &Controller::default(), &[sensitivity(3.0)]);
-    assert_eq!(kept.stability.verdict, Verdict::Met, "{:?}", kept.stability);
-    let found = kept.stability.infinity.expect("a search");
+    let stable = audit(&build(0.6), &Controller::default(), &[sensitivity(3.0)]);
+    assert_eq!(stable.stability.verdict, Verdict::Met, "{:?}", stable.stability);
+    let found = stable.stability.infinity.expect("a search");
     assert!((found.least_share - 0.4).abs() < 1e-6 && found.parameters == [0], "{found:?}");
     assert_eq!(value(&found.plant), 1.0);
     let changed = audit(&build(1.25), &Controller::default(), &[sensitivity(3.0)]);

@@ -60,13 +60,13 @@ fn fractions_and_values_are_inverse_to_each_other() {
     let members = random(&plant(), &coordinates(), 200, 42).unwrap();
     let family = UncertainFamily::new(plant(), coordinates(), members, Extent::Box).unwrap();
     for values in &family.members()[1..] {
-        let shares = family.shares(values);
-        let again = family.values(&shares);
+        let fractions = family.shares(values);
+        let again = family.values(&fractions);
         for (one, other) in values.iter().zip(&again) {
             assert!((one / other - 1.0).abs() < 1e-13, "{values:?} {again:?}");
         }
-        assert!((shares[1] - (values[1] - 1.0) / 99.0).abs() < 1e-14);
-        assert!((shares[1] - (1.0 - portable::ln(values[2]) / portable::ln(100.0))).abs() < 1e-13);
+        assert!((fractions[1] - (values[1] - 1.0) / 99.0).abs() < 1e-14);
+        assert!((fractions[1] - (1.0 - portable::ln(values[2]) / portable::ln(100.0))).abs() < 1e-13);
     }
     // Fractions beyond the ends are clamped to them, missing ones count as zero; the ends are
     // exact.

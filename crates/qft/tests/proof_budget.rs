@@ -17,9 +17,9 @@ fn a_proof_within_a_budget_reports_the_remainder() {
             let random = random_problem(seed, seed % 2 == 1);
             let Family::Uncertain(family) = &random.family else { panic!("a box") };
             let nominal = family.plant().nominal();
-            let asked = problem(&random.family, &random.compensation, &random.specifications);
+            let audited = problem(&random.family, &random.compensation, &random.specifications);
             let options = ProofOptions { points_maximum: points, ..ProofOptions::default() };
-            let proof = prove(&asked, &blind(&random, nominal), options, &mut unwatched).unwrap();
+            let proof = prove(&audited, &blind(&random, nominal), options, &mut unwatched).unwrap();
             if let Some(certificate) = &proof.certificate {
                 assert_eq!(check(certificate), Ok(()), "seed {seed}");
             }

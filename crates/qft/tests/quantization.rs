@@ -113,7 +113,7 @@ fn run(controller: &Controller, quantization: Option<&Quantization>, samples: us
     let sampled = controller.sampled(SAMPLE).unwrap();
     let mut state = sampled.at_rest();
     let decay = exp(-5.0 * SAMPLE);
-    let (mut output, mut waiting) = (0.0, 0.0);
+    let (mut output, mut pending) = (0.0, 0.0);
     let mut record = Vec::new();
     for sample in 0..samples {
         let reference = if sample < samples / 2 { 0.7 + 0.2 * sin(0.03 * sample as f64) } else { 0.618 };
@@ -125,8 +125,8 @@ fn run(controller: &Controller, quantization: Option<&Quantization>, samples: us
         let command = sampled.step(&mut state, reference, measured).command;
         let command = act.map_or(command, |converter| converter.rounded(command));
         record.push([output, command]);
-        output = decay * output + (1.0 - decay) * waiting;
-        waiting = command;
+        output = decay * output + (1.0 - decay) * pending;
+        pending = command;
     }
     record
 }
@@ -203,15 +203,15 @@ fn settled_commands(controller: &Controller, quantization: &Quantization) -> Vec
     let sampled = controller.sampled(SAMPLE).unwrap();
     let mut state = sampled.at_rest();
     let decay = exp(-5.0 * SAMPLE);
-    let (mut output, mut waiting) = (0.0, 0.0);
+    let (mut output, mut pending) = (0.0, 0.0);
     let (measure, act) = (quantization.measurement.unwrap(), quantization.command.unwrap());
     let reference = measure.rounded(0.6155);
     let mut commands = Vec::new();
     for _ in 0..20_000 {
         let command = act.rounded(sampled.step(&mut state, reference, measure.rounded(output)).command);
         commands.push(command);
-        output = decay * output + (1.0 - decay) * waiting;
-        waiting = command;
+        output = decay * output + (1.0 - decay) * pending;
+        pending = command;
     }
     commands.split_off(15_000)
 }
@@ -234,12 +234,12 @@ fn an_integrator_remains_an_integrator() {
         }
     }
     // rounded coefficient by coefficient it would have moved
-    let kept = |frequency| {
+    let satisfied_at = |frequency| {
         let controller = controller(vec![Element::Integrator, Element::RealPole { frequency }], 0.0);
         let [a1, a2] = Section::in_series(around(&controller).feedback()).unwrap()[0].denominator;
         1.0 + f64::from(a1 as f32) + f64::from(a2 as f32) == 0.0
     };
-    assert!(!(kept(3.0) && kept(11.0) && kept(70.0)));
+    assert!(!(satisfied_at(3.0) && satisfied_at(11.0) && satisfied_at(70.0)));
 }
 
 /// The audited controller has the response of the deployed sections, and more bits bring it closer

@@ -204,9 +204,9 @@ fn the_boundary_is_located_exactly() {
         (PI / 2.0, 1e-12, late, None),
     ] {
         let mut judged = gain_around(member, sample_time_s);
-        for share in [1e-2, 1e-5, resolution] {
-            assert!(judged(limit * (1.0 - share)).0, "{limit} less {share}");
-            assert!(!judged(limit * (1.0 + share)).0, "{limit} more {share}");
+        for fraction in [1e-2, 1e-5, resolution] {
+            assert!(judged(limit * (1.0 - fraction)).0, "{limit} less {fraction}");
+            assert!(!judged(limit * (1.0 + fraction)).0, "{limit} more {fraction}");
         }
         assert!(!judged(limit).0, "{limit}");
         assert!(judged(1e-9 * limit).0);

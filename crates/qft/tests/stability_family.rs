@@ -141,12 +141,12 @@ fn the_worst_value_beyond_a_jump_is_found() {
     let plant = UncertainPlant::record(vec![parameter], |p| {
         let [off, away] = [p[0] - 0.35.into(), p[0] - 0.4775.into()];
         let before = (off * off).times(-4.0) + 1.0.into();
-        let behind = (away * away).times(1270.0) + 1.0.into();
+        let slower = (away * away).times(1270.0) + 1.0.into();
         let chosen = |one, other| Scalar::select(p[0].less_than(0.47.into()), one, other);
         PlantCoefficients {
             command: RationalCoefficients {
                 numerator: vec![chosen(before, 1.05.into())],
-                denominator: vec![chosen(1.0.into(), behind), 0.0.into()],
+                denominator: vec![chosen(1.0.into(), slower), 0.0.into()],
             },
             disturbance: None,
             dead_time_s: 0.0.into(),

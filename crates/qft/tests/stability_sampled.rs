@@ -32,11 +32,11 @@ fn found(elements: Vec<Element>, plant: (&[f64], &[f64]), delay_s: f64) -> Membe
 /// Plant k/s, held and sampled, is k T/(z - 1): one pole at 1 - k T.
 #[test]
 fn an_integrator_has_one_pole() {
-    for share in [1e-9, 1e-3, 0.3, 1.7, 2.1] {
-        let found = found(vec![Element::Gain(share / SAMPLE)], (&[1.0], &[1.0, 0.0]), 0.0);
-        let expected = log1p(-share.min(2.0 - share)) / SAMPLE;
-        assert!((found.largest_real_part.unwrap() / expected - 1.0).abs() < 1e-9, "{share}");
-        assert_eq!(found.status == StabilityStatus::Stable, share < 2.0);
+    for gain_ratio in [1e-9, 1e-3, 0.3, 1.7, 2.1] {
+        let found = found(vec![Element::Gain(gain_ratio / SAMPLE)], (&[1.0], &[1.0, 0.0]), 0.0);
+        let expected = log1p(-gain_ratio.min(2.0 - gain_ratio)) / SAMPLE;
+        assert!((found.largest_real_part.unwrap() / expected - 1.0).abs() < 1e-9, "{gain_ratio}");
+        assert_eq!(found.status == StabilityStatus::Stable, gain_ratio < 2.0);
     }
 }
 
@@ -46,8 +46,8 @@ fn an_integrator_has_one_pole() {
 fn an_integrator_with_samples_of_delay() {
     for samples in [0_u32, 1, 3, 20, 40, 300] {
         let limit = 2.0 * sin(PI / f64::from(4 * samples + 2));
-        for (share, stable) in [(1.0 - 1e-6, true), (1.0 + 1e-6, false)] {
-            let gain = vec![Element::Gain(share * limit / SAMPLE)];
+        for (gain_ratio, stable) in [(1.0 - 1e-6, true), (1.0 + 1e-6, false)] {
+            let gain = vec![Element::Gain(gain_ratio * limit / SAMPLE)];
             let found = found(gain, (&[1.0], &[1.0, 0.0]), f64::from(samples) * SAMPLE);
             assert_eq!(found.status == StabilityStatus::Stable, stable, "{samples}: {found:?}");
             assert_eq!(found.largest_real_part.is_some(), samples < 24);

@@ -36,7 +36,7 @@ impl Waves {
     }
 
     /// True if nothing is delayed.
-    pub(crate) fn are_none(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.delays.is_empty()
     }
 
@@ -124,7 +124,7 @@ pub(crate) fn integrate_delayed(
     let mut of_rates = inputs.clone();
     let mut rates = |time: f64, state: &[f64], rates: &mut [f64]| {
         inputs_at(time, &waves.borrow(), &mut of_rates);
-        system.is_asked_at(time);
+        system.is_evaluated_at(time);
         system.rates(state, &of_rates, rates);
     };
     let shortest = waves.borrow().shortest();

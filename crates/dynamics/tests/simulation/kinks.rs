@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use phea_dynamics::portable;
 use phea_dynamics::scalar::Scalar;
 
-use super::laws::{Law, Lawful, course, last, run};
+use super::laws::{Law, Lawful, last, run, schedule};
 
 /// x' = 1,  y' = |x - p|
 #[derive(Clone)]
@@ -30,7 +30,7 @@ fn a_kink_is_located_to_the_tolerance_anywhere() {
             .map(|index| {
                 let place = 0.2 + 7e-4 * f64::from(index);
                 let law = Lawful(Bent(place), 1.0);
-                let result = run(&law, &[0.0; 2], &course(1.0, 1.0, vec![]), tolerance);
+                let result = run(&law, &[0.0; 2], &schedule(1.0, 1.0, vec![]), tolerance);
                 refused += result.outcome.work.rejected;
                 let exact = 0.5 * (place * place + (1.0 - place) * (1.0 - place));
                 (last(&result, 1) - exact).abs() / tolerance
@@ -67,7 +67,7 @@ fn every_step_ends_at_a_known_kink() {
         for index in 0..1000 {
             let place = 1e-3 + 9.98e-4 * f64::from(index);
             let law = Lawful(Marked(place), 1.0);
-            let result = run(&law, &[0.0; 2], &course(1.0, 1.0, vec![]), tolerance);
+            let result = run(&law, &[0.0; 2], &schedule(1.0, 1.0, vec![]), tolerance);
             let exact = 0.5 * (place * place + (1.0 - place) * (1.0 - place));
             let error = (last(&result, 1) - exact).abs() / tolerance;
             assert!(error < 4.0, "{tolerance:e} at {place}: {error}");
@@ -105,7 +105,7 @@ fn a_ball_comes_back_to_its_height() {
             let touch = 2.0 * (PI - portable::atan2(speed * frequency, 1.0)) / frequency;
             let period = 2.0 * speed + touch;
             let law = Lawful(Ball(stiffness), 1.0);
-            let result = run(&law, &[height, 0.0], &course(period, period, vec![]), 1e-7);
+            let result = run(&law, &[height, 0.0], &schedule(period, period, vec![]), 1e-7);
             let error = [last(&result, 0) - height, last(&result, 1)].map(f64::abs);
             assert!(error[0] < 2e-6 && error[1] < 2e-5, "{stiffness} from {height}: {error:?}");
         }
@@ -138,7 +138,7 @@ fn bristles_follow_their_closed_form_through_reversals() {
         for index in 1..=100 {
             let until = 0.4 * f64::from(index);
             let result =
-                run(&Lawful(Bristles, 1.0), &[0.0, 1.0, 0.0], &course(until, until, vec![]), tolerance);
+                run(&Lawful(Bristles, 1.0), &[0.0, 1.0, 0.0], &schedule(until, until, vec![]), tolerance);
             // ORIGIN: analytic, z = s + (z_0 - s) exp(-way), s the sign of the velocity
             let (mut bristle, mut time, mut sign) = (0.0, 0.0_f64, 1.0);
             let mut reversal = 0.5 * PI;

@@ -221,8 +221,11 @@ fn a_line_without_waves_is_refused() {
     let thin = Conduit { bore: 1e-3, ..conduit() };
     let refused = TransmissionLine::of_conduit(&thin, END_SHARE);
     assert!(matches!(refused, Err(LineError::Overdamped { dissipation, .. }) if dissipation > 0.1));
-    for share in [0.0, 0.5, f64::NAN] {
-        assert!(matches!(TransmissionLine::of_conduit(&conduit(), share), Err(LineError::Impossible { .. })));
+    for end_fraction in [0.0, 0.5, f64::NAN] {
+        assert!(matches!(
+            TransmissionLine::of_conduit(&conduit(), end_fraction),
+            Err(LineError::Impossible { .. })
+        ));
     }
     let no_line = Segments::lumped(0.0);
     assert_eq!((no_line.states(), no_line.chamber_compliance()), (0, 0.0));

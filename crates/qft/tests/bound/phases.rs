@@ -78,10 +78,14 @@ fn any_grid_of_phases_ends() {
 fn interpolated_db(bound: &Bound, phase: f64) -> Option<Vec<f64>> {
     let right = bound.phases_rad.iter().position(|place| *place > phase)?;
     let (from, to) = (bound.phases_rad[right - 1], bound.phases_rad[right]);
-    let share = (phase - from) / (to - from);
+    let fraction = (phase - from) / (to - from);
     let [left, right] = [right - 1, right].map(|place| bound.forbidden[place].intervals());
     let between = |(left, right): (&f64, &f64)| {
-        if left == right { decibel(*left) } else { decibel(*left) * (1.0 - share) + decibel(*right) * share }
+        if left == right {
+            decibel(*left)
+        } else {
+            decibel(*left) * (1.0 - fraction) + decibel(*right) * fraction
+        }
     };
     let ends = left.iter().flatten().zip(right.iter().flatten());
     (left.len() == right.len()).then(|| ends.map(between).collect())

@@ -72,8 +72,8 @@ fn the_relaxation_of_a_pure_gain_has_its_closed_form() {
         let ratio = 2.0 * c / (linear + (linear * linear - 4.0 * square * c).sqrt());
         let expected_db = 10.0 * ratio.log10();
         for seed in 1..=3 {
-            let alone = structure("", [1e-3, 1e3], [1.0, 1.0], [1.0, 1.0]);
-            let design = designed(&problem, least_gain(alone, seed));
+            let pure_gain = structure("", [1e-3, 1e3], [1.0, 1.0], [1.0, 1.0]);
+            let design = designed(&problem, least_gain(pure_gain, seed));
             let found = relaxation(&design);
             assert!((found.relaxation_db - expected_db).abs() < 1e-3, "{found:?}, not {expected_db} dB");
             let gain = design.controller.feedback.transfer_function().unwrap().gain();
@@ -107,8 +107,8 @@ fn a_required_delay_is_relaxed_with_the_limits() {
         DesignProblem { minimum_delay_margin_s: delay_s, ..problem(integrator(1.0), specifications) };
     let square = (std::f64::consts::FRAC_PI_2 / delay_s).powi(2);
     let ratio = ((1.0 + 4.0 * square / (a * a)).sqrt() - 1.0) / (2.0 * square);
-    let alone = structure("", [1e-3, 1e3], [1.0, 1.0], [1.0, 1.0]);
-    let design = designed(&problem, least_gain(alone, 1));
+    let pure_gain = structure("", [1e-3, 1e3], [1.0, 1.0], [1.0, 1.0]);
+    let design = designed(&problem, least_gain(pure_gain, 1));
     let found = relaxation(&design);
     assert!((found.relaxation_db - 10.0 * ratio.log10()).abs() < 1e-3, "{found:?}");
     let reached = design.audit.delay_margin.as_ref().unwrap().delay_s;

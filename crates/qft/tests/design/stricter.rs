@@ -23,7 +23,7 @@ fn structures_that_fail_weaker_limits_are_not_tested_for_stricter_ones() {
     let after = design_stricter(&stricter, &options, &before, &mut unwatched).unwrap();
     let anew = design_after(&stricter, &options, &before, &mut unwatched).unwrap();
     let shortest = |outcome: &DesignOutcome| {
-        outcome.tried().iter().map(|tried| tried.structure.order().unwrap()).min().unwrap()
+        outcome.tried().iter().map(|structure| structure.structure.order().unwrap()).min().unwrap()
     };
     assert!(shortest(&anew) < order, "{} {order}", shortest(&anew));
     assert_eq!(shortest(&after), order);

@@ -15,8 +15,8 @@ fn the_band_agrees_with_every_member() {
     let (compensation, members, specification) = servo();
     let frequencies = spaced(0.05, 10.0, 17);
     let band = PrefilterBand::of_family(&compensation, &members, &frequencies, &specification).unwrap();
-    let asked = band.points().iter().filter(|point| point.frequency_rad_per_s >= 0.05);
-    for (point, &frequency) in asked.zip(&frequencies) {
+    let requested = band.points().iter().filter(|point| point.frequency_rad_per_s >= 0.05);
+    for (point, &frequency) in requested.zip(&frequencies) {
         assert_eq!(point.frequency_rad_per_s, frequency);
         for prefilter in [Complex64::new(0.3, 0.1), Complex64::new(-1.1, 0.2), Complex64::new(0.0, 0.8)] {
             let margin = |member: &phea_qft::closed_loop::Member| {

@@ -122,13 +122,13 @@ fn a_template_calls_its_progress_callback_at_each_plant() {
     let at = |watch: Watch<'_>| {
         Templates::new(&family, &around, &[1.0], options).next_watched(watch).expect("one frequency")
     };
-    let mut asked = 0;
+    let mut calls = 0;
     let whole = at(&mut |_| {
-        asked += 1;
+        calls += 1;
         true
     });
-    assert_eq!(whole.map(|built| built.evaluations), Ok(asked));
-    for last in [1, asked / 2, asked] {
+    assert_eq!(whole.map(|built| built.evaluations), Ok(calls));
+    for last in [1, calls / 2, calls] {
         let mut left = last;
         let stopped = at(&mut |_| {
             left -= 1;

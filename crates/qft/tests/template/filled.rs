@@ -4,7 +4,7 @@ use phea_qft::family::UncertainFamily;
 use phea_qft::template::{Resolution, TemplateOptions};
 
 use super::support::{
-    Shares, apart, beyond, built, coefficients, family, from_rim, quadratic_family, random_values, winding,
+    Random, apart, beyond, built, coefficients, family, from_rim, quadratic_family, random_values, winding,
 };
 
 /// Real and imaginary part are quadratic in the parameters: images are folded, and their rim is
@@ -67,11 +67,11 @@ fn every_point_inside_an_outline_is_a_plant() {
     for seed in 201..209 {
         let family = quadratic_family(2, seed);
         let outlines = built(&family, 1.0).template.outlines;
-        let mut shares = Shares(seed);
+        let mut random = Random(seed);
         for _ in 0..60 {
-            let pick = |share: f64| outlines[0][(share * outlines[0].len() as f64) as usize];
-            let (first, second) = (pick(shares.draw()), pick(shares.draw()));
-            let response = first + (second - first) * shares.draw();
+            let pick = |fraction: f64| outlines[0][(fraction * outlines[0].len() as f64) as usize];
+            let (first, second) = (pick(random.draw()), pick(random.draw()));
+            let response = first + (second - first) * random.draw();
             let filled = outlines.iter().any(|outline| winding(outline, response) != 0);
             if filled && from_rim(&outlines, response, &options) > 0.05 {
                 inside += 1;

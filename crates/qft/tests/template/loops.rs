@@ -76,7 +76,7 @@ fn a_box_without_uncertainty_is_its_nominal_plant() {
 fn no_enclosure_is_claimed_between_members() {
     let motor = motor();
     let members = motor.members().to_vec();
-    let alone =
+    let nominal_only =
         UncertainFamily::new(motor.plant().clone(), motor.coordinates().to_vec(), members, Extent::Members)
             .unwrap();
     let measured = |name: &str, gain: f64| MeasuredPlant {
@@ -91,7 +91,7 @@ fn no_enclosure_is_claimed_between_members() {
     };
     let measured = MeasuredFamily::new(vec![measured("first", 1.0), measured("second", 2.0)]).unwrap();
     let options = TemplateOptions::default();
-    for (family, count) in [(Family::Uncertain(alone), 4), (Family::Measured(measured), 2)] {
+    for (family, count) in [(Family::Uncertain(nominal_only), 4), (Family::Measured(measured), 2)] {
         let built = template(&family, &plain_loop(), 0.5, &options).unwrap();
         assert_eq!((built.template.points.len(), built.evaluations), (count, count));
         assert!(built.template.outlines.is_empty());

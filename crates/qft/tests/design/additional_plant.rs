@@ -47,13 +47,13 @@ fn an_additional_plant_counts_as_a_member() {
     let truth = designed(&both, options());
     assert_met(&both, &truth, TrackingJudgement::Spread);
 
-    let alone = regulation(&[]);
-    let without = designed(&alone, options());
-    assert_met(&alone, &without, TrackingJudgement::Spread);
+    let family_only = regulation(&[]);
+    let without = designed(&family_only, options());
+    assert_met(&family_only, &without, TrackingJudgement::Spread);
     // the additional plant matters: the design without it violates a limit for it
     assert_eq!(audited(&both, &without, TrackingJudgement::Spread).verdict, Verdict::Violated);
 
-    let beside = DesignProblem { beside: vec![lagging(LATE)], ..alone };
+    let beside = DesignProblem { beside: vec![lagging(LATE)], ..family_only };
     let found = designed(&beside, options());
     assert_met(&beside, &found, TrackingJudgement::Spread);
     assert_eq!(found.beside.len(), 1);
@@ -66,10 +66,10 @@ fn an_additional_plant_counts_as_a_member() {
 fn a_design_continues_with_an_added_plant() {
     let both = regulation(&[LATE]);
     let mut problem = regulation(&[]);
-    let alone = design(&problem, &options(), &mut unwatched).unwrap();
-    let rounds = alone.design.as_ref().unwrap().rounds.clone();
+    let family_only = design(&problem, &options(), &mut unwatched).unwrap();
+    let rounds = family_only.design.as_ref().unwrap().rounds.clone();
     problem.beside.push(lagging(LATE));
-    let outcome = design_again(&problem, &options(), alone, &mut unwatched).unwrap();
+    let outcome = design_again(&problem, &options(), family_only, &mut unwatched).unwrap();
     let found = &outcome.design.unwrap();
     assert_eq!(found.status, DesignStatus::Met);
     assert!(found.rounds.starts_with(&rounds) && found.rounds.len() > rounds.len());
