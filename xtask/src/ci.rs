@@ -96,10 +96,10 @@ pub(crate) fn run(root: &Path, wanted: &[&str]) -> bool {
         stages.iter().filter(|(name, _)| is_chosen(name)).copied().collect()
     };
     let shown = Runner { root, target: &target, settings: settings(&target), log: None };
-    let kept = Runner { log: Some(&log), ..shown };
+    let runner = Runner { log: Some(&log), ..shown };
     let mut results = shown.all(&chosen(&FIRST, true));
     std::thread::scope(|scope| {
-        let aside = scope.spawn(|| kept.all(&chosen(&ASIDE, true)));
+        let aside = scope.spawn(|| runner.all(&chosen(&ASIDE, true)));
         results.extend(shown.all(&chosen(&TESTS, true)));
         results.extend(aside.join().unwrap_or_default());
     });
@@ -118,10 +118,10 @@ fn target(root: &Path) -> PathBuf {
 /// one and each package is compiled in one piece; empty if cargo has already stored something of
 /// phea.
 fn settings(target: &Path) -> &'static [(&'static str, &'static str)] {
-    let kept = std::fs::read_dir(target.join("debug").join("incremental"));
-    let mut names = kept.into_iter().flatten().flatten().map(|entry| entry.file_name());
-    let is_kept = names.any(|name| name.to_string_lossy().starts_with("phea_"));
-    if is_kept { &[] } else { &[("CARGO_INCREMENTAL", "0"), ("CARGO_PROFILE_DEV_CODEGEN_UNITS", "1")] }
+    let runner = std::fs::read_dir(target.join("debug").join("incremental"));
+    let mut names = runner.into_iter().flatten().flatten().map(|entry| entry.file_name());
+    let is_incremental = names.any(|name| name.to_string_lossy().starts_with("phea_"));
+    if is_incremental { &[] } else { &[("CARGO_INCREMENTAL", "0"), ("CARGO_PROFILE_DEV_CODEGEN_UNITS", "1")] }
 }
 
 fn summary(results: &[(&str, Outcome, Duration)], strict: bool) -> bool {
@@ -280,7 +280,7 @@ fn soak(runner: &Runner) -> Outcome {
     let robust = "test --release -p phea-qft --test all -- --ignored";
     // A thousand rigs of each family, solved with both phea and CVODE.
     let rigs = "test --release --workspace --test random_rigs -- 1000 --test-threads=1";
-    let ended = [
+    let outcomes = [
         mutation(runner),
         runner.cargo_with(killed, &[("PHEA_KILLS", "100")]),
         runner.cargo(identified),
@@ -288,6 +288,7 @@ fn soak(runner: &Runner) -> Outcome {
         runner.cargo(rigs),
         comparisons::soak(runner),
     ];
-    let failed: Vec<&str> = ended.iter().map(Outcome::remark).filter(|remark| !remark.is_empty()).collect();
+    let failed: Vec<&str> =
+        outcomes.iter().map(Outcome::remark).filter(|remark| !remark.is_empty()).collect();
     if failed.is_empty() { Outcome::Passed } else { Outcome::Failed(failed.join("; ")) }
 }

@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn groups_are_written_out() {
+    fn groups_are_expanded() {
         let text = "use std::{\n    fs,\n    time::{Instant as Now, Duration},\n};\nfn f() { g::h(x) }\n";
         let file = RustFile::new("crates/a/src/lib.rs", text);
         let found = paths(file.shipped());

@@ -9,10 +9,10 @@ use crate::file_system::FileSystem;
 
 /// Files that must remain unchanged.
 #[derive(Debug, Default)]
-pub(crate) struct Inputs(Vec<KeptFile>);
+pub(crate) struct Inputs(Vec<InputFile>);
 
 #[derive(Debug)]
-struct KeptFile {
+struct InputFile {
     /// Path as written by the user or the project.
     named: String,
     /// Path without links, and the name in its own folder, which may be a link.
@@ -23,7 +23,7 @@ struct KeptFile {
 impl Inputs {
     /// The regular files among these paths.
     pub(crate) fn of(paths: impl IntoIterator<Item = String>) -> Inputs {
-        Inputs(paths.into_iter().filter_map(KeptFile::of).collect())
+        Inputs(paths.into_iter().filter_map(InputFile::of).collect())
     }
 
     /// The files of projects, and the files that those name.
@@ -39,11 +39,11 @@ impl Inputs {
 
     /// Rejects a path at which a file would replace one of these: by an equal name, by one that
     /// differs only in case, through a link, or as another name of an input file.
-    pub(crate) fn expect_kept(&self, output: &Path) -> Result<(), String> {
+    pub(crate) fn reject_replacement(&self, output: &Path) -> Result<(), String> {
         let place = resolved(output);
         let metadata = fs::metadata(&place).ok().filter(Metadata::is_file);
         let place = fs::canonicalize(&place).unwrap_or(place);
-        let is_same = |input: &&KeptFile| {
+        let is_same = |input: &&InputFile| {
             input.places.iter().any(|own| is_one_place(own, &place))
                 || metadata.as_ref().is_some_and(|other| is_one_file(&input.metadata, other))
         };
@@ -57,7 +57,7 @@ impl Inputs {
 
     /// Rejects a folder in which one of the files that may be written, by their names, would
     /// replace one of these.
-    pub(crate) fn expect_kept_in(
+    pub(crate) fn reject_replacement_in(
         &self,
         folder: &Path,
         may_write: impl Fn(&str) -> bool,
@@ -66,21 +66,21 @@ impl Inputs {
         for entry in fs::read_dir(resolved(folder)).into_iter().flatten().flatten() {
             let name = entry.file_name();
             if name.to_str().is_some_and(&may_write) {
-                self.expect_kept(&folder.join(name))?;
+                self.reject_replacement(&folder.join(name))?;
             }
         }
         Ok(())
     }
 }
 
-impl KeptFile {
-    fn of(named: String) -> Option<KeptFile> {
+impl InputFile {
+    fn of(named: String) -> Option<InputFile> {
         let metadata = fs::metadata(&named).ok().filter(Metadata::is_file)?;
         let path = Path::new(&named);
         let target = fs::canonicalize(path).ok()?;
         let own = path.file_name().map(|name| resolved(parent(path)).join(name));
         let places = [own.unwrap_or_else(|| target.clone()), target];
-        Some(KeptFile { named, places, metadata })
+        Some(InputFile { named, places, metadata })
     }
 }
 

@@ -15,18 +15,18 @@ impl Interruption {
     /// Installs the handler. The first Ctrl-C requests the command to stop with its result so far,
     /// the second ends it at once.
     pub(crate) fn listen() -> Interruption {
-        let asked = Arc::new(AtomicBool::new(false));
-        let heard = Arc::clone(&asked);
+        let request = Arc::new(AtomicBool::new(false));
+        let handled = Arc::clone(&request);
         // if no handler can be installed, Ctrl-C ends the command as usual
         let _ = ctrlc::set_handler(move || {
-            if heard.swap(true, Ordering::Relaxed) {
+            if handled.swap(true, Ordering::Relaxed) {
                 std::process::exit(INTERRUPTED);
             }
         });
-        Interruption(asked)
+        Interruption(request)
     }
 
-    pub(crate) fn is_asked(&self) -> bool {
+    pub(crate) fn is_requested(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 }

@@ -7,9 +7,9 @@ mod failure;
 mod file_system;
 mod inputs;
 mod interruption;
+mod messages;
 mod output;
 mod run;
-mod voice;
 
 use std::process::ExitCode;
 
@@ -19,6 +19,6 @@ fn main() -> ExitCode {
     interruption::survive_large_files();
     match arguments::Arguments::try_parse() {
         Ok(arguments) => run::run(arguments),
-        Err(error) => run::misused(&error),
+        Err(error) => run::usage_error(&error),
     }
 }

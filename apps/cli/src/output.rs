@@ -41,7 +41,7 @@ impl Destination for Folder<'_> {
         let path = self.path.join(name);
         let refuse = |reason| WriteError { path: path.display().to_string(), reason };
         let file = Pending::begin(&path).map_err(|error| refuse(reason(&error)))?;
-        self.inputs.expect_kept(&path).map_err(refuse)?;
+        self.inputs.reject_replacement(&path).map_err(refuse)?;
         let mut begun = self.begun.borrow_mut();
         if !begun.contains(&path) {
             begun.push(path);
@@ -187,7 +187,7 @@ pub(crate) fn write(folder: &Path, files: &[OutputFile], inputs: &Inputs) -> Res
 fn completed(path: &Path, bytes: &[u8], inputs: &Inputs) -> Result<(PathBuf, Complete), String> {
     let mut pending = Pending::begin(path).map_err(|error| unwritten(path, &error))?;
     // once its folder exists, the path is final
-    inputs.expect_kept(path)?;
+    inputs.reject_replacement(path)?;
     let complete = pending.file.write_all(bytes).and_then(|()| pending.complete());
     complete.map_err(|error| unwritten(path, &error)).map(|complete| (path.to_path_buf(), complete))
 }

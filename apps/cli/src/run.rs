@@ -22,8 +22,8 @@ use crate::failure::{DONE, Failure, NO, WRONG_INPUT};
 use crate::file_system::{FileSystem, reason};
 use crate::inputs::Inputs;
 use crate::interruption::Interruption;
+use crate::messages::{ProgressLine, print, print_error};
 use crate::output::{Folder, expect_folder, write, write_as};
-use crate::voice::{ProgressLine, complain, say};
 
 pub(crate) fn run(arguments: Arguments) -> ExitCode {
     let outcome = match arguments.command {
@@ -39,7 +39,7 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
             let request = Request::Verify { proof: prove || certificate.is_some(), on_machine };
             on_project(&common, &request, certificate.as_deref())
         }
-        Command::CheckCertificate(asked) => told(asked.json, checked(&asked)),
+        Command::CheckCertificate(arguments) => print_answer(arguments.json, checked_certificate(&arguments)),
         Command::Shape { common, changes, prefilter, save } => {
             let shaped = if prefilter { Shaped::Prefilter } else { Shaped::Controller };
             on_project(&common, &Request::Shape { shaped, changes: changes.0 }, save.as_deref())
@@ -68,7 +68,7 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
             });
             on_project(&common, &request, None)
         }
-        Command::Compare(several) => told(several.json, compared(&several)),
+        Command::Compare(several) => print_answer(several.json, compared(&several)),
         Command::Alternatives { common, front, sweep, points, frequencies } => {
             let files = common.out.is_some();
             let request = AlternativesRequest { files, front, sweep, points, frequencies };
@@ -77,31 +77,31 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
         Command::Campaign { common, runs, seed, shard, run, threads } => {
             campaign::request(runs, seed, shard.as_deref(), run, (threads, common.out.is_some()))
                 .map_err(|message| Failure::wrong_input(format!("error: {message}")))
-                .and_then(|request| told(common.json, campaign::answered(&common, &request)))
+                .and_then(|request| print_answer(common.json, campaign::answer_with_files(&common, &request)))
         }
         Command::Bench(common) => on_project(&common, &Request::Bench, None),
-        Command::Identify(recorded) => told(recorded.json, identify::answered(&recorded)),
+        Command::Identify(recorded) => print_answer(recorded.json, identify::answer_with_files(&recorded)),
         Command::Report { common, alternatives } => {
             on_project(&common, &Request::Report { files: common.out.is_some(), alternatives }, None)
         }
     };
-    ended(outcome)
+    exit_status(outcome)
 }
 
 /// An invalid command line, or one that requests help.
-pub(crate) fn misused(error: &clap::Error) -> ExitCode {
+pub(crate) fn usage_error(error: &clap::Error) -> ExitCode {
     if !error.use_stderr() {
-        return ended(say(&error.render().to_string()).map(|()| DONE));
+        return exit_status(print(&error.render().to_string()).map(|()| DONE));
     }
     let number = misread_number(error);
     if std::env::args_os().any(|argument| argument == "--json") {
         let text = number.unwrap_or_else(|| error.to_string());
         let message = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
-        let said = say(&format!("{}\n", command::failure_json(None, None, message)));
-        return ended(said.and(Err(Failure::wrong_input(text))));
+        let printed = print(&format!("{}\n", command::failure_json(None, None, message)));
+        return exit_status(printed.and(Err(Failure::wrong_input(text))));
     }
     match number {
-        Some(text) => complain(&text),
+        Some(text) => print_error(&text),
         None => {
             let _ = error.print();
         }
@@ -129,9 +129,9 @@ fn misread_number(error: &clap::Error) -> Option<String> {
     Some(format!("error: {option} {value}: {words}"))
 }
 
-fn ended(outcome: Result<u8, Failure>) -> ExitCode {
+fn exit_status(outcome: Result<u8, Failure>) -> ExitCode {
     ExitCode::from(outcome.unwrap_or_else(|failure| {
-        complain(&failure.text);
+        print_error(&failure.text);
         failure.status
     }))
 }
@@ -150,7 +150,7 @@ fn new(folder: &Path) -> Result<u8, Failure> {
     let file = OutputFile::new("project.toml", STARTER);
     let path = write_as(&folder.join(&file.name), &file, &Inputs::default())
         .map_err(|message| Failure::not_written(&message))?;
-    say(&format!("Wrote {}. Next: phea check {0}\n", path.display()))?;
+    print(&format!("Wrote {}. Next: phea check {0}\n", path.display()))?;
     Ok(DONE)
 }
 
@@ -171,15 +171,17 @@ fn schema(out: Option<&Path>) -> Result<u8, Failure> {
             }
             let written = write(folder, &[file], &Inputs::default());
             let written = written.map_err(|message| Failure::not_written(&message))?;
-            say(&written_sentence(&written))?;
+            print(&written_sentence(&written))?;
         }
-        None => say(&String::from_utf8_lossy(&file.bytes))?,
+        None => print(&String::from_utf8_lossy(&file.bytes))?,
     }
     Ok(DONE)
 }
 
 /// Checks a certificate again.
-fn checked(Certified { file, project, settings, .. }: &Certified) -> Result<(Answer, Vec<PathBuf>), Failure> {
+fn checked_certificate(
+    Certified { file, project, settings, .. }: &Certified,
+) -> Result<(Answer, Vec<PathBuf>), Failure> {
     let explain = |reason: String| {
         let message = format!("{}: {reason}", file.display());
         let json = command::failure_json(Some("check-certificate"), None, &message);
@@ -201,19 +203,19 @@ fn checked(Certified { file, project, settings, .. }: &Certified) -> Result<(Ans
 /// Answers a request on a project; if a path is named, the designed or shaped project or the
 /// certificate is also written to it.
 fn on_project(common: &Common, request: &Request, save: Option<&Path>) -> Result<u8, Failure> {
-    told(common.json, answered(common, request, save))
+    print_answer(common.json, answer_with_files(common, request, save))
 }
 
 /// Prints an answer with the files that were written, or the reason why there is none.
-fn told(json: bool, outcome: Result<(Answer, Vec<PathBuf>), Failure>) -> Result<u8, Failure> {
+fn print_answer(json: bool, outcome: Result<(Answer, Vec<PathBuf>), Failure>) -> Result<u8, Failure> {
     match outcome {
-        Ok((answer, _)) if json => say(&format!("{}\n", answer.json)).map(|()| status(&answer)),
+        Ok((answer, _)) if json => print(&format!("{}\n", answer.json)).map(|()| status(&answer)),
         Ok((answer, written)) => {
-            say(&format!("{}{}", answer.text, written_sentence(&written))).map(|()| status(&answer))
+            print(&format!("{}{}", answer.text, written_sentence(&written))).map(|()| status(&answer))
         }
         Err(failure) => {
             if json {
-                say(&format!("{}\n", failure.json))?;
+                print(&format!("{}\n", failure.json))?;
             }
             Err(failure)
         }
@@ -231,14 +233,14 @@ fn compared(several: &Several) -> Result<(Answer, Vec<PathBuf>), Failure> {
         return Err(Failure::wrong_input("error: no project"));
     };
     let inputs = Inputs::of_projects(&loaded);
-    expect_kept(&inputs, (&request, first), [several.out.as_deref(), None])?;
+    reject_replaced_inputs(&inputs, (&request, first), [several.out.as_deref(), None])?;
     expect_folders([several.out.as_deref(), None]).map_err(|message| failed(&request, first, &message))?;
     let mut line = ProgressLine::default();
     let interruption = Interruption::listen();
     let figures = several.out.is_some();
     let answer = command::compare_watched(&FileSystem, &loaded, figures, &mut |progress| {
         line.show(progress);
-        !interruption.is_asked()
+        !interruption.is_requested()
     });
     line.clear();
     let answer = answer.map_err(|error| refused(first, &request, (&error, line.stage())))?;
@@ -256,7 +258,7 @@ fn status(answer: &Answer) -> u8 {
 }
 
 /// Returns the answer, and the files that were written.
-fn answered(
+fn answer_with_files(
     common: &Common,
     request: &Request,
     save: Option<&Path>,
@@ -265,19 +267,20 @@ fn answered(
     let loaded = load(&path, &common.settings, &common.catalogues, request.name())?;
     let explain = |message: String| failed(request, &loaded, &message);
     let inputs = Inputs::of_projects([&loaded]);
-    let page = page_alone(common, request);
-    expect_kept(&inputs, (request, &loaded), [common.out.as_deref(), save.or(page.as_deref())])?;
+    let page = default_report_path(common, request);
+    reject_replaced_inputs(&inputs, (request, &loaded), [common.out.as_deref(), save.or(page.as_deref())])?;
     expect_folders([common.out.as_deref(), save.and_then(Path::parent)]).map_err(explain)?;
     let mut line = ProgressLine::default();
     // commands that can return their best result so far receive a stop request; all others have
     // nothing to save
-    let keeps = matches!(request, Request::Design { .. } | Request::Simulate(_) | Request::Alternatives(_));
-    let interruption = keeps.then(Interruption::listen);
+    let returns_partial_result =
+        matches!(request, Request::Design { .. } | Request::Simulate(_) | Request::Alternatives(_));
+    let interruption = returns_partial_result.then(Interruption::listen);
     let tables = common.out.as_deref().map(|folder| Folder::new(folder, &inputs));
     let destination = tables.as_ref().map(|tables| tables as &dyn Destination);
     let mut watch = |progress| {
         line.show(progress);
-        !interruption.as_ref().is_some_and(Interruption::is_asked)
+        !interruption.as_ref().is_some_and(Interruption::is_requested)
     };
     let catalogues = &common.catalogues;
     let answer = command::answer_into(&FileSystem, &loaded, catalogues, request, destination, &mut watch);
@@ -312,7 +315,7 @@ fn load(path: &str, settings: &[String], catalogues: &[String], command: &str) -
         Failure::wrong_input(report.render(styled())).with_json(json)
     })?;
     if !loaded.warnings.is_empty() {
-        complain(&project::render(&loaded.warnings, &loaded.texts, styled()));
+        print_error(&project::render(&loaded.warnings, &loaded.texts, styled()));
     }
     Ok(loaded)
 }
@@ -350,23 +353,23 @@ fn written_sentence(written: &[PathBuf]) -> String {
 }
 
 /// Path of a report without `--out`: one page named after the project.
-fn page_alone(common: &Common, request: &Request) -> Option<PathBuf> {
-    let alone = common.out.is_none() && matches!(request, Request::Report { .. });
+fn default_report_path(common: &Common, request: &Request) -> Option<PathBuf> {
+    let is_default = common.out.is_none() && matches!(request, Request::Report { .. });
     let stem = common.project.file_stem().unwrap_or_default().to_string_lossy();
-    alone.then(|| Path::new(".").join(format!("{stem}-report.html")))
+    is_default.then(|| Path::new(".").join(format!("{stem}-report.html")))
 }
 
 /// Rejects, before any work, a folder or a file in which the answer would replace an input.
-fn expect_kept(
+fn reject_replaced_inputs(
     inputs: &Inputs,
     (request, loaded): (&Request, &Loaded),
     [folder, file]: [Option<&Path>; 2],
 ) -> Result<(), Failure> {
     let names = OutputNames::of(loaded, request);
     let in_folder =
-        folder.map_or(Ok(()), |folder| inputs.expect_kept_in(folder, |name| names.contains(name)));
-    let kept = in_folder.and_then(|()| file.map_or(Ok(()), |file| inputs.expect_kept(file)));
-    kept.map_err(|message| {
+        folder.map_or(Ok(()), |folder| inputs.reject_replacement_in(folder, |name| names.contains(name)));
+    let outcome = in_folder.and_then(|()| file.map_or(Ok(()), |file| inputs.reject_replacement(file)));
+    outcome.map_err(|message| {
         let json = command::failure_json(Some(request.name()), Some(&loaded.sha256), &message);
         Failure::wrong_input(format!("error: {message}")).with_json(json)
     })

@@ -5,6 +5,6 @@ mod campaign;
 mod campaign_killed;
 mod exit_status;
 mod full_disk;
-mod inputs_kept;
+mod inputs_protected;
 mod stories;
 mod streamed_rows;

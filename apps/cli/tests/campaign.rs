@@ -88,7 +88,7 @@ fn parts_in_one_folder_have_files_of_their_own() {
 }
 
 #[test]
-fn what_is_in_the_way_and_what_cannot_be_is_said_plainly() {
+fn obstacles_and_impossible_requests_have_plain_messages() {
     let folder = folder("campaign_words");
     fs::write(folder.join("afile"), "").expect("written");
     for (more, status, words) in [

@@ -64,15 +64,15 @@ fn spread(start: u32) -> f64 {
 /// Files with their final names are complete after any kill, and repeating the command produces all
 /// of them.
 #[test]
-fn a_campaign_goes_on_after_any_kill_to_the_same_bytes() {
+fn a_campaign_continues_after_any_kill_to_the_same_bytes() {
     let folder = folder();
-    let asked = std::env::var("PHEA_KILLS").ok().and_then(|text| text.parse().ok());
+    let requested = std::env::var("PHEA_KILLS").ok().and_then(|text| text.parse().ok());
     let begun = Instant::now();
     assert!(campaign(&folder.join("whole"), "1").wait().expect("phea ends").success());
     let took = begun.elapsed().as_secs_f64();
     let whole = files(&folder.join("whole"));
     let (mut kills, mut starts) = (0, 0);
-    while kills < asked.unwrap_or(KILLS) {
+    while kills < requested.unwrap_or(KILLS) {
         let threads = ["1", "2", "4"][kills % 3];
         let out = folder.join("killed");
         let _ = fs::remove_dir_all(&out);
@@ -82,18 +82,18 @@ fn a_campaign_goes_on_after_any_kill_to_the_same_bytes() {
             let mut child = campaign(&out, threads);
             starts += 1;
             sleep(Duration::from_secs_f64(0.6 * took * spread(starts)));
-            let ended = child.try_wait().expect("it can be asked").is_some();
+            let ended = child.try_wait().expect("its status can be read").is_some();
             child.kill().expect("it can be killed");
             let (ran, _) = (begun.elapsed().as_secs_f64(), child.wait().expect("it is gone"));
             if ended {
                 break;
             }
             kills += 1;
-            let kept = rows(&out);
-            assert!(kept >= before, "{kept} rows after {before}");
-            let lost = ran - (kept - before) as f64 * took / RUNS as f64;
+            let stored = rows(&out);
+            assert!(stored >= before, "{stored} rows after {before}");
+            let lost = ran - (stored - before) as f64 * took / RUNS as f64;
             println!(
-                "kill {kills}, {threads} threads, {ran:.2} s: {kept} of {RUNS} rows, {lost:.2} s more than they take"
+                "kill {kills}, {threads} threads, {ran:.2} s: {stored} of {RUNS} rows, {lost:.2} s more than they take"
             );
             for (name, bytes) in files(&out).iter().filter(|(name, _)| !name.starts_with("runs.csv")) {
                 assert!(whole.contains(&(name.clone(), bytes.clone())), "{name} is not whole");

@@ -164,7 +164,7 @@ fn every_outcome_has_its_exit_status_and_one_json_object() {
 
 /// A refusal is printed to standard error only, and an answer to standard output.
 #[test]
-fn people_are_told_of_a_refusal_on_standard_error() {
+fn a_refusal_is_printed_on_standard_error() {
     let folder = folder("people");
     let outcomes: [(&[&str], i32); 7] = [
         (&["check", "plant.toml"], 0),
@@ -207,7 +207,7 @@ fn a_bad_row_of_a_measurement_has_its_place() {
 /// Changes are made in the order of the command line; the file is written to the stated path, and
 /// is identical if nothing changes.
 #[test]
-fn shape_writes_what_was_asked_for_and_nothing_else() {
+fn shape_writes_the_requested_files_only() {
     let folder = folder("shape");
     let text = |name: &str| std::fs::read_to_string(folder.join(name)).expect("a text");
     let before = text("loop.toml");
@@ -243,7 +243,7 @@ fn shape_writes_what_was_asked_for_and_nothing_else() {
 }
 
 #[test]
-fn a_reader_that_goes_away_is_no_error() {
+fn a_closed_pipe_is_no_error() {
     let folder = folder("pipe");
     let mut child = Command::new(env!("CARGO_BIN_EXE_phea"))
         .current_dir(&folder)
@@ -261,7 +261,7 @@ fn a_reader_that_goes_away_is_no_error() {
 /// of a campaign that was never interrupted.
 #[cfg(unix)]
 #[test]
-fn a_campaign_goes_on_after_ctrl_c() {
+fn a_campaign_continues_after_ctrl_c() {
     let folder = folder("ctrl_c");
     let campaign = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/benchmark/campaign.toml");
     std::fs::copy(campaign, folder.join("campaign.toml")).expect("the example");
@@ -280,25 +280,25 @@ fn a_campaign_goes_on_after_ctrl_c() {
         .expect("phea starts");
     let table = |out: &str| std::fs::read_to_string(folder.join(out).join("runs.csv")).unwrap_or_default();
     while table("stopped").lines().count() < 2 {
-        assert!(child.try_wait().expect("it can be asked").is_none(), "it ended by itself");
+        assert!(child.try_wait().expect("its status can be read").is_none(), "it ended before the signal");
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
     let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill");
     assert!(killed.success());
     assert_eq!(child.wait().expect("phea ends").code(), Some(1));
-    let kept = table("stopped");
-    let rows = kept.lines().count() - 1;
-    assert!(rows > 0 && rows < 200_000 && kept.ends_with('\n'), "{rows} rows");
+    let stored = table("stopped");
+    let rows = stored.lines().count() - 1;
+    assert!(rows > 0 && rows < 200_000 && stored.ends_with('\n'), "{rows} rows");
     for out in ["stopped", "whole"] {
         let arguments = arguments(out, rows + 10);
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
         assert_eq!(phea(&folder, &arguments).status.code(), Some(0), "{out}");
     }
-    assert!(table("stopped").starts_with(&kept) && table("stopped") == table("whole"));
+    assert!(table("stopped").starts_with(&stored) && table("stopped") == table("whole"));
 }
 
 #[test]
-fn new_writes_a_project_that_passes_and_never_over_another() {
+fn new_writes_a_valid_project_and_replaces_none() {
     let folder = folder("new");
     assert_eq!(phea(&folder, &["new", "rig"]).status.code(), Some(0));
     // the user must state the working pressure of the hose

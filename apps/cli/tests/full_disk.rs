@@ -44,7 +44,7 @@ fn not_written(output: &Output) {
 
 /// A table of two thousand rows, and a project that is saved over another.
 #[test]
-fn a_file_that_does_not_fit_is_not_there() {
+fn a_file_that_does_not_fit_is_absent() {
     let folder = folder("full_disk");
     let closed = format!("{EXAMPLES}/benchmark/closed_loop.toml");
     let simulate = ["simulate", &closed, "--out", "out", "--set", "scenario.0.duration=2 s"];
@@ -58,8 +58,8 @@ fn a_file_that_does_not_fit_is_not_there() {
     fs::write(folder.join("out/step and load motion.csv"), "before").unwrap();
     not_written(&limited(&folder, 64, &simulate));
     let names = names(&folder.join("out"));
-    let kept = names.first().map(|name| fs::read_to_string(folder.join("out").join(name)).unwrap());
-    assert_eq!((names.len(), kept.as_deref()), (1, Some("before")));
+    let stored = names.first().map(|name| fs::read_to_string(folder.join("out").join(name)).unwrap());
+    assert_eq!((names.len(), stored.as_deref()), (1, Some("before")));
     not_written(&limited(&folder, 1, &["new", "rig"]));
     assert_eq!(self::names(&folder.join("rig")), [] as [String; 0]);
 }
@@ -86,7 +86,7 @@ fn a_signal_about_a_large_file_is_an_error() {
 /// The files of a command receive their names together: if one does not fit, none is there, and
 /// those of an earlier run remain.
 #[test]
-fn files_of_which_one_does_not_fit_are_not_there() {
+fn all_files_are_absent_if_one_does_not_fit() {
     let folder = folder("full_disk_together");
     let project = "schema = 1\n[plant]\nnumerator = \"1\"\ndenominator = \"s + 1\"\n[[specification]]\n\
                    kind = \"robust_stability\"\nlimit = 1.2\nfrequencies = [1]\nband = [0, inf]\n";
@@ -104,13 +104,13 @@ fn files_of_which_one_does_not_fit_are_not_there() {
         fs::write(folder.join("out").join(file), "before").unwrap();
     }
     not_written(&limited(&folder, 8, &design));
-    let is_kept = |file: &String| fs::read_to_string(folder.join("out").join(file)).unwrap() == "before";
-    assert!(written.iter().all(is_kept) && names(&folder.join("out")).len() == written.len());
+    let is_unchanged = |file: &String| fs::read_to_string(folder.join("out").join(file)).unwrap() == "before";
+    assert!(written.iter().all(is_unchanged) && names(&folder.join("out")).len() == written.len());
 }
 
 /// A campaign has complete rows only, and continues once there is room again.
 #[test]
-fn a_campaign_on_a_full_disk_goes_on_where_there_is_room_again() {
+fn a_campaign_on_a_full_disk_continues_once_space_is_free() {
     let folder = folder("full_disk_campaign");
     let project = format!("{EXAMPLES}/benchmark/campaign.toml");
     let campaign = |out: &'static str| {
@@ -121,19 +121,19 @@ fn a_campaign_on_a_full_disk_goes_on_where_there_is_room_again() {
     let arguments = campaign("full");
     let arguments: Vec<&str> = arguments.lines().collect();
     not_written(&limited(&folder, 32, &arguments));
-    let kept = text("full");
-    assert!(kept.is_empty() || kept.ends_with('\n'), "{} bytes", kept.len());
+    let stored = text("full");
+    assert!(stored.is_empty() || stored.ends_with('\n'), "{} bytes", stored.len());
     let whole = campaign("whole");
     for arguments in [arguments, whole.lines().collect()] {
         let output = Command::new(env!("CARGO_BIN_EXE_phea")).current_dir(&folder).args(arguments).output();
         assert_eq!(output.unwrap().status.code(), Some(0));
     }
-    assert!(text("full").starts_with(&kept) && text("full") == text("whole"));
+    assert!(text("full").starts_with(&stored) && text("full") == text("whole"));
 }
 
 #[cfg(target_os = "linux")]
 #[test]
-fn an_answer_that_nobody_takes_is_not_given() {
+fn an_answer_that_cannot_be_printed_is_a_failure() {
     let full = fs::OpenOptions::new().write(true).open("/dev/full").expect("the device");
     let project = format!("{EXAMPLES}/ybitu/hose.toml");
     let mut command = Command::new(env!("CARGO_BIN_EXE_phea"));

@@ -28,7 +28,7 @@ fn most_memory_kb(process: u32) -> Option<u64> {
 
 #[test]
 #[ignore = "writes two gigabytes"]
-fn two_gigabytes_of_rows_are_never_held() {
+fn rows_are_streamed_to_the_disk() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("streamed_rows");
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).expect("a folder");
@@ -47,7 +47,7 @@ fn two_gigabytes_of_rows_are_never_held() {
     let mut most = 0;
     let status = loop {
         most = most.max(most_memory_kb(child.id()).unwrap_or(0));
-        if let Some(status) = child.try_wait().expect("it can be asked") {
+        if let Some(status) = child.try_wait().expect("its status can be read") {
             break status;
         }
         sleep(Duration::from_millis(20));

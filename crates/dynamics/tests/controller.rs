@@ -60,7 +60,7 @@ fn the_running_controller_has_the_response_of_its_transfer_function() {
 }
 
 #[test]
-fn a_sampled_compensator_is_taken_as_it_is_and_refused_at_another_sample_time() {
+fn a_sampled_compensator_is_used_unchanged_and_refused_at_another_sample_time() {
     let pole = vec![Complex64::new(0.5, 0.0)];
     let domain = TimeDomain::Discrete { sample_time_s: 0.01 };
     let function = TransferFunction::from_factors(0.5, vec![], pole).unwrap().in_domain(domain).unwrap();
@@ -107,7 +107,7 @@ fn anti_windup_leaves_the_limit_at_once() {
 }
 
 #[test]
-fn the_prefilter_acts_on_the_reference_alone() {
+fn the_prefilter_acts_on_the_reference_only() {
     let unit = Controller {
         feedback: Compensator::new(vec![Element::Gain(2.0)]),
         prefilter: Compensator::new(vec![Element::Gain(0.5)]),

@@ -30,8 +30,8 @@ fn tustin_is_the_continuous_response_at_a_warped_frequency() {
     let system = loop_system();
     for step in [1e-2, 1e-3, 1e-5] {
         let sampled = system.discretized(step, Discretization::Tustin).unwrap();
-        for share in [1e-4, 1e-2, 0.3, 0.7, 0.99] {
-            let w = share * std::f64::consts::PI / step;
+        for fraction in [1e-4, 1e-2, 0.3, 0.7, 0.99] {
+            let w = fraction * std::f64::consts::PI / step;
             let warped = 2.0 / step * tan(w * step / 2.0);
             let (found, truth) = (sampled.at_frequency(w), system.at_frequency(warped));
             assert!(magnitude(found - truth) < 1e-9 * magnitude(truth), "{found} {truth} at {w}");

@@ -276,7 +276,7 @@ fn networks_of_passive_elements_are_passive() {
 }
 
 #[test]
-fn each_condition_of_passivity_fails_alone() {
+fn each_condition_of_passivity_can_fail_independently() {
     // 1: a single unstable pole. Re (s - 4)/(s - 1) = (4 + w^2)/(1 + w^2) on the axis
     let unstable = passivity(&rational(&[1.0, -4.0], &[1.0, -1.0])).unwrap();
     assert!(unstable.bands.is_empty());

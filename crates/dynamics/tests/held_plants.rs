@@ -86,7 +86,7 @@ const CASES: [Case; 5] = [
 ];
 
 #[test]
-fn what_dies_within_a_sample_leaves_the_rest_exact() {
+fn modes_that_decay_within_a_sample_leave_the_rest_exact() {
     for (gain, zeros, poles, sample_time_s, dead_time_s, truths) in CASES {
         let plant = TransferFunction::from_factors(gain, zeros.to_vec(), poles.to_vec()).unwrap();
         let plant = plant.with_dead_time(dead_time_s).unwrap();

@@ -136,7 +136,7 @@ fn a_double_root_far_from_the_others() {
 }
 
 #[test]
-fn roots_that_can_be_told_apart_are() {
+fn distinguishable_roots_are_separated() {
     let truth = [real(-1.0), real(-1.0 - 1e-6)];
     let found = Polynomial::from_roots(1.0, &truth).unwrap().roots().unwrap();
     assert!(worst_error(&found, &truth) < 1e-9, "{found:?}");
@@ -146,7 +146,7 @@ fn roots_that_can_be_told_apart_are() {
 }
 
 #[test]
-fn roots_on_the_axes_stay_there() {
+fn roots_on_the_axes_remain_there() {
     let undamped = Polynomial::new(vec![1.0, 0.0, 25.0, 0.0, 144.0]).roots().unwrap(); // (s^2 + 9)(s^2 + 16)
     for (root, frequency) in undamped.iter().zip([3.0, 3.0, 4.0, 4.0]) {
         assert!(root.re == 0.0 && (root.im.abs() - frequency).abs() < 1e-15, "{root}");
@@ -176,9 +176,9 @@ fn degenerate_polynomials() {
     assert_eq!(Polynomial::new(vec![3.0, 0.0, 0.0]).roots(), Ok(vec![real(0.0), real(0.0)]));
     assert!(matches!(Polynomial::new(vec![1.0, f64::NAN]).roots(), Err(LinearError::NotFinite { .. })));
     assert!(matches!(Polynomial::new(vec![f64::INFINITY, 1.0]).roots(), Err(LinearError::NotFinite { .. })));
-    let alone = Complex64::new(-1.0, 2.0);
-    let refused = Polynomial::from_roots(1.0, &[alone]);
-    assert_eq!(refused, Err(LinearError::MissingConjugate { root: alone }));
+    let unpaired = Complex64::new(-1.0, 2.0);
+    let refused = Polynomial::from_roots(1.0, &[unpaired]);
+    assert_eq!(refused, Err(LinearError::MissingConjugate { root: unpaired }));
 }
 
 #[test]
@@ -222,7 +222,7 @@ fn algebra() {
 /// Roots from nearby points equal roots from unknown starts, if they are found: for random
 /// polynomials with or without an integrator, whose coefficients change by up to a tenth.
 #[test]
-fn roots_from_near_are_those_from_nowhere() {
+fn roots_from_a_near_start_equal_those_from_scratch() {
     let mut seeded = Seeded(11);
     let (mut found, mut all) = (0, 0);
     for case in 0..200 {

@@ -157,7 +157,7 @@ fn a_common_pole_appears_once_in_a_sum() {
 }
 
 #[test]
-fn closing_a_loop_moves_a_slow_pole_beside_a_fast_one() {
+fn closing_a_loop_moves_a_slow_pole_next_to_a_fast_one() {
     // ORIGIN: analytic. (s + 1e-3)(s + 1e6) + 1e3 = s^2 + (1e6 + 1e-3) s + 2e3: the slow root is
     // -c/b (1 + c/b^2 + ...)
     let plant = TransferFunction::from_factors(1e3, vec![], vec![c(-1e-3, 0.0), c(-1e6, 0.0)]).unwrap();

@@ -70,7 +70,7 @@ fn a_smooth_step_starts_and_ends_at_rest() {
 }
 
 #[test]
-fn a_first_order_step_gets_a_share_of_its_way_in_each_time_constant() {
+fn a_first_order_step_covers_an_equal_fraction_in_each_time_constant() {
     let motion = Profile::first_order(1.0, 0.05, 5e-3).unwrap();
     assert_eq!((motion.value(1.0), motion.rate(1.0)), (0.0, 5e-3 / 0.05));
     assert!((motion.value(1.05) - 5e-3 * (1.0 - portable::exp(-1.0))).abs() < 1e-15);
@@ -79,7 +79,7 @@ fn a_first_order_step_gets_a_share_of_its_way_in_each_time_constant() {
 }
 
 #[test]
-fn a_chirp_ends_with_its_final_frequency_and_stays_where_it_ends() {
+fn a_chirp_ends_at_its_final_frequency_and_remains_at_its_final_value() {
     let (duration, frequencies) = (2.0, [10.0, 50.0]);
     let chirp = Profile::chirp(1.0, duration, 3.0, frequencies).unwrap();
     // the phase is the mean frequency times the duration
@@ -95,7 +95,7 @@ fn a_chirp_ends_with_its_final_frequency_and_stays_where_it_ends() {
 }
 
 #[test]
-fn a_table_takes_its_points_and_keeps_its_shape() {
+fn a_table_passes_through_its_points_and_preserves_its_shape() {
     let times = [0.0, 0.3, 0.4, 1.0, 1.7];
     let values = [0.0, 1.0, 8.0, 8.5, 8.5];
     let table = Profile::table(&times, &values).unwrap();
@@ -135,7 +135,7 @@ fn a_table_on_a_line_is_the_line_and_on_a_fine_grid_the_function() {
 }
 
 #[test]
-fn what_is_no_function_of_time_is_refused() {
+fn invalid_functions_of_time_are_refused() {
     let positive = |result: Result<Profile, ProfileError>| match result {
         Err(ProfileError::OutOfRange { value, .. }) => value,
         other => panic!("{other:?}"),
@@ -195,7 +195,7 @@ fn a_multisine_of_one_is_a_sine_and_equal_amplitudes_have_the_phases_of_the_clos
 }
 
 #[test]
-fn what_is_held_or_begins_late_is_constant_beyond() {
+fn held_and_late_signals_are_constant_outside_their_range() {
     let sine = Profile::sine(0.0, 2.0, 5.0).unwrap();
     let held = sine.clone().held_from(0.3);
     assert_eq!(

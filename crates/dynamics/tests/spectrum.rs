@@ -41,7 +41,7 @@ fn the_transform_is_the_sum_of_its_definition_for_every_length() {
 
 /// Parseval's theorem: sum |x|^2 = sum |X|^2 / N.
 #[test]
-fn the_transform_keeps_the_power() {
+fn the_transform_preserves_the_power() {
     for length in [256, 1000, 1009] {
         let signal = noise(3, length);
         let lines = Transform::new(length).of_real(&signal);
@@ -90,7 +90,7 @@ fn a_multisine_without_noise_gives_the_response_of_a_first_order_system_exactly(
 }
 
 #[test]
-fn a_decaying_transient_is_left_behind_with_the_periods_that_are_discarded() {
+fn discarded_periods_remove_a_decaying_transient() {
     let [input, mut output] = multisine(8);
     for (n, value) in output.iter_mut().enumerate() {
         *value += 5.0 * exp(-(n as f64) * STEP / 0.02);
@@ -216,8 +216,8 @@ fn signals_without_relation_are_coherent_in_5_of_100_cases() {
     let points = blocks.points();
     let limit = least_coherence(blocks.independent());
     let count = points.iter().filter(|point| point.coherence > limit).count();
-    let share = count as f64 / points.len() as f64;
-    assert!((0.03..0.07).contains(&share), "{share} of {}", points.len());
+    let fraction = count as f64 / points.len() as f64;
+    assert!((0.03..0.07).contains(&fraction), "{fraction} of {}", points.len());
 }
 
 #[test]
@@ -351,8 +351,8 @@ fn an_input_that_is_held_cannot_act_within_its_row() {
         let output: Vec<f64> = signals.map(|((now, last), noise)| last + 0.5 * now + noise).collect();
         assert_eq!(feedback(&input, &output, WithinRow::Possible), 0.0, "{seed}");
         // ORIGIN: analytic, 0.25 of a variance of 1.25
-        let share = feedback(&input, &output, WithinRow::Impossible);
-        assert!((share - 0.2).abs() < 0.04, "{seed}: {share}");
+        let fraction = feedback(&input, &output, WithinRow::Impossible);
+        assert!((fraction - 0.2).abs() < 0.04, "{seed}: {fraction}");
     }
 }
 

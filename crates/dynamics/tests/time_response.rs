@@ -46,7 +46,7 @@ fn real_poles_over_six_decades() {
 }
 
 #[test]
-fn an_integrator_beside_a_resonance() {
+fn an_integrator_next_to_a_resonance() {
     // ORIGIN: analytic. w^2/(s (s^2 + w^2)): y = t - sin(wt)/w, here a thousand periods
     let w = 2938.0;
     let system = factored(w * w, &[], &[c(0.0, 0.0), c(0.0, w), c(0.0, -w)]);
@@ -299,7 +299,7 @@ fn from_a_specification_to_the_model_and_back() {
 }
 
 #[test]
-fn the_tracking_bounds_as_printed_are_not_what_they_claim() {
+fn the_printed_tracking_bounds_miss_their_requirements() {
     // ORIGIN: thesis section 6.4, its tracking bounds evaluated: upper 2.2 % and 0.126 s, lower
     // 0.356 s (1 % bands)
     let upper = factored(2116.0 / 75.0, &[c(-75.0, 0.0)], &[c(-36.8, 27.6), c(-36.8, -27.6)]);

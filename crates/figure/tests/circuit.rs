@@ -72,7 +72,7 @@ fn a_motor_has_its_own_symbols() {
 /// Each further stage is a sleeve of two walls inside the previous one, up to the number that can
 /// be distinguished.
 #[test]
-fn stages_lie_one_in_another() {
+fn stages_are_nested() {
     let with = |stages: usize| circuit(|schematic| schematic.further_stages = stages);
     let piston = rectangles(&with(0)).len();
     for stages in 1..=5 {

@@ -35,7 +35,7 @@ fn of(role: Role, theme: Theme) -> Rgb {
 const THEMES: [Theme; 2] = [Theme::Light, Theme::Dark];
 
 #[test]
-fn text_and_lines_stand_out_and_decoration_stays_behind() {
+fn text_and_lines_have_more_contrast_than_decoration() {
     for theme in THEMES {
         let page = of(Role::Background, theme);
         for role in ROLES {
@@ -116,7 +116,7 @@ const APART: f64 = 0.08;
 const FIRST_APART: f64 = 0.12;
 
 #[test]
-fn series_stay_apart_for_every_kind_of_sight() {
+fn series_are_distinguishable_for_every_kind_of_sight() {
     for theme in THEMES {
         for (sight, matrix) in &SIGHT {
             for i in 0..SERIES_COUNT {
@@ -131,7 +131,7 @@ fn series_stay_apart_for_every_kind_of_sight() {
 }
 
 #[test]
-fn steps_of_the_ramp_grow_lighter_and_stay_apart() {
+fn steps_of_the_ramp_grow_lighter_and_are_distinguishable() {
     for theme in THEMES {
         for i in 1..RAMP_COUNT {
             let (below, above) = (Role::Ramp(i - 1), Role::Ramp(i));

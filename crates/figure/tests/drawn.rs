@@ -85,7 +85,7 @@ fn text_is_as_wide_as_the_rasteriser_sets_it() {
 }
 
 #[test]
-fn pictures_have_the_size_asked_for() {
+fn pictures_have_the_requested_size() {
     let figure = gallery::stiffness();
     let size = |bytes: &[u8]| -> (u32, u32) {
         let read = |at: usize| u32::from_be_bytes(bytes[at..at + 4].try_into().unwrap());
@@ -123,7 +123,7 @@ fn the_softest_point_is_marked() {
 }
 
 #[test]
-fn poles_tell_their_value() {
+fn poles_show_their_value() {
     let svg = notes(&gallery::circuit());
     assert!(svg.contains("50/22 mm, stroke 500 mm"));
     let svg = notes(&gallery::poles(phea_figure::PoleMapScale::SignedLogarithmic));

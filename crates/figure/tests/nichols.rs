@@ -90,7 +90,7 @@ fn a_loop_far_from_0_db_leaves_the_frame() {
 
 /// Labels of three adjacent loops, with space on both sides, are not on a loop.
 #[test]
-fn labels_stay_off_loops_where_room_exists() {
+fn labels_do_not_cover_loops_if_there_is_room() {
     let upright = |phase: f64| FrequencySeries {
         name: format!("{phase}"),
         frequencies_rad_per_s: (0..=80).map(|i| 1.0 + f64::from(i)).collect(),
@@ -114,7 +114,7 @@ fn labels_stay_off_loops_where_room_exists() {
 
 /// The earliest position is rejected in favour of one that is not close to another text.
 #[test]
-fn labels_keep_away_from_each_other() {
+fn labels_do_not_overlap() {
     let frame = Rectangle { left: 0.0, top: 0.0, right: 300.0, bottom: 40.0 };
     let text = |left: f64| Rectangle { left, top: 10.0, right: left + 40.0, bottom: 26.0 };
     let mut occupancy = placement::Occupancy::default();

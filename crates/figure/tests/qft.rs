@@ -118,7 +118,7 @@ fn a_hole_is_an_edge_of_its_own() {
 /// Every end of any spans is on exactly one edge, and an edge is closed or begins and ends at the
 /// outermost phases.
 #[test]
-fn every_end_lies_on_one_edge() {
+fn every_end_is_on_one_edge() {
     let mut state = 7_u64;
     let mut unit = move || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -150,7 +150,7 @@ fn every_end_lies_on_one_edge() {
 
 /// Labels without space are omitted: on these charts every label must find space.
 #[test]
-fn every_frequency_and_every_violation_has_its_words() {
+fn every_frequency_and_every_violation_is_labelled() {
     let texts = |name: &str| -> Vec<String> {
         let figure = gallery_qft::all().into_iter().find(|figure| figure.name == name).unwrap();
         figure.scene.texts().map(|text| text.content.clone()).collect()
@@ -245,11 +245,11 @@ fn violated_areas_begin_where_the_limit_is_crossed() {
 fn the_other_loop_is_judged_by_the_same_limit() {
     let (one, rising) =
         (magnitudes(&[0.1, 10.0], &[1.0, 1.0]), magnitudes(&[0.1, 0.3, 10.0], &[0.1, 0.3, 10.0]));
-    let kept = magnitudes(&[0.1, 10.0], &[0.5, 0.5]);
+    let satisfied = magnitudes(&[0.1, 10.0], &[0.5, 0.5]);
     let envelope = |name: &str, greatest| FamilyEnvelope { name: name.to_string(), greatest, least: None };
     let chart = FamilyMagnitude {
         upper_limit: Some(one),
-        envelopes: vec![envelope("one", kept), envelope("other", rising)],
+        envelopes: vec![envelope("one", satisfied), envelope("other", rising)],
         ..FamilyMagnitude::default()
     };
     let figure = chart.draw(&Words::new("f", "f", "f"));
@@ -286,7 +286,7 @@ fn the_band_of_a_prefilter_ends_where_its_edges_cross() {
 
 /// Every loop has its own shape of marks, and a violation is crossed out on its own loop and turn.
 #[test]
-fn a_violation_lies_on_the_loop_that_it_belongs_to() {
+fn a_violation_is_on_its_own_loop() {
     let w = vec![1.0, 10.0];
     let level = |phase: f64, magnitude: f64| FrequencySeries {
         name: format!("at {phase}"),

@@ -44,7 +44,7 @@ fn ten_millilitres_of_gas_do_the_work_of_the_hose() {
 /// Results of the machine at a state as the gas volume tends to zero: proportionally those of the
 /// rig without it.
 #[test]
-fn without_gas_it_is_the_rig_without_accumulator() {
+fn an_accumulator_without_gas_leaves_the_rig_unchanged() {
     let rates = |gas_volume: Option<f64>| {
         let gas = gas_volume.map(|gas_volume| Accumulator {
             gas_volume,
@@ -85,7 +85,7 @@ fn gas_is_shut_off_below_its_precharge() {
     let place = |name: &str| INDICATORS.iter().position(|known| *known == name).unwrap();
     for (pressure, in_use) in [(19.7e5, false), (20.3e5, true)] {
         let state = [1.0, 0.0, pressure, 30e5, 1e-4, 0.05];
-        let told = |machine: &Machine| {
+        let indicators_of = |machine: &Machine| {
             let mut indicators = vec![0.0; machine.indicators()];
             machine.indicate(&state, &[0.25, 0.0], &mut indicators);
             indicators
@@ -95,7 +95,7 @@ fn gas_is_shut_off_below_its_precharge() {
             machine.rates(&state, 1.0, &[0.25, 0.0], &mut rates);
             rates[2]
         };
-        let (found, bare) = (told(&with), told(&without));
+        let (found, bare) = (indicators_of(&with), indicators_of(&without));
         assert_eq!(found[place("accumulator_empty_a")] > 0.0, in_use);
         assert!(found[place("accumulator_empty_b")] > 0.0 && bare[place("accumulator_empty_a")] > 0.0);
         assert_eq!(found[place("empty_a")], bare[place("empty_a")]);

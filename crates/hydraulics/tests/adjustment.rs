@@ -183,20 +183,20 @@ fn a_swinging_stiffness_pumps_half_its_rate_times_the_square() {
         let setting = |time: f64| (0.3 * sin(2.0 * time + phase), 0.6 * cos(2.0 * time + phase));
         let gap = |size: f64| {
             let steps = 4000;
-            let (mut pumped, mut told) = (0.0, 0.0);
+            let (mut pumped, mut reported) = (0.0, 0.0);
             for index in 0..steps {
                 let time = std::f64::consts::TAU * f64::from(index) / f64::from(steps);
                 let ((change, rate), moved_by) = (setting(time), size * sin(time));
                 let moved: MovedGas = adjusted.moved(change, rate);
                 pumped += moved.power(pressure(&moved.gas, middle + moved_by));
                 let slope = (stiffness(change + 1e-5) - stiffness(change - 1e-5)) / 2e-5 * rate;
-                told += 0.5 * slope * moved_by * moved_by;
+                reported += 0.5 * slope * moved_by * moved_by;
             }
-            (pumped / told - 1.0, told)
+            (pumped / reported - 1.0, reported)
         };
-        let ((wide, told), (narrow, _)) = (gap(0.02 * GAS.gas_volume), gap(0.01 * GAS.gas_volume));
+        let ((wide, reported), (narrow, _)) = (gap(0.02 * GAS.gas_volume), gap(0.01 * GAS.gas_volume));
         // the remainder falls with the square of the amplitude
-        assert!(told.abs() > 0.0 && narrow.abs() < 1e-2, "{phase}: {narrow} {wide}");
+        assert!(reported.abs() > 0.0 && narrow.abs() < 1e-2, "{phase}: {narrow} {wide}");
         assert!((wide / narrow - 4.0).abs() < 0.2, "{phase}: {wide} {narrow}");
     }
 }
@@ -237,8 +237,9 @@ fn switching_loses_what_two_compliances_lose() {
     assert_eq!(nothing, 0.0);
     let gap = |drop: f64| {
         let start = [35e5 + drop, 35e5];
-        let [chamber, behind, _, lost] = switched(start, compliance, opened, |_| 0.0, (0.4, 200_000), |_| ());
-        assert!((chamber - behind).abs() < 1e-3 * drop.abs(), "{chamber} {behind}");
+        let [chamber, gas_side, _, lost] =
+            switched(start, compliance, opened, |_| 0.0, (0.4, 200_000), |_| ());
+        assert!((chamber - gas_side).abs() < 1e-3 * drop.abs(), "{chamber} {gas_side}");
         // ORIGIN: analytic, the energy of two springs that are joined
         lost / (0.5 * compliance * gas / (compliance + gas) * drop * drop) - 1.0
     };
@@ -248,8 +249,8 @@ fn switching_loses_what_two_compliances_lose() {
         assert!((wide / narrow - 2.0).abs() < 0.3, "{wide} {narrow}");
     }
     // shut, it separates both
-    let kept = switched([50e5, 20e5], compliance, |_| 0.0, |_| 0.0, (0.1, 1000), |_| ());
-    assert_eq!(kept, [50e5, 20e5, 0.0, 0.0]);
+    let held = switched([50e5, 20e5], compliance, |_| 0.0, |_| 0.0, (0.1, 1000), |_| ());
+    assert_eq!(held, [50e5, 20e5, 0.0, 0.0]);
 }
 
 /// Output energy never exceeds the input for any flow at a constant opening.
@@ -265,11 +266,11 @@ fn a_frozen_opening_is_passive() {
             waves.iter().map(wave).sum()
         };
         let rest = 35e5;
-        let whole = |[chamber, behind, ..]: [f64; 4]| {
+        let whole = |[chamber, gas_side, ..]: [f64; 4]| {
             let of_gas = |pressure: f64| held_energy(&GAS, pressure) - rest * GAS.oil(pressure);
             let oil = 0.5 * compliance * (chamber - rest) * (chamber - rest);
-            let between = 0.5 * VALVE.compliance * (behind - rest) * (behind - rest);
-            oil + between + of_gas(behind) - of_gas(rest)
+            let between = 0.5 * VALVE.compliance * (gas_side - rest) * (gas_side - rest);
+            oil + between + of_gas(gas_side) - of_gas(rest)
         };
         let (mut entered, mut last) = (0.0, [0.0; 4]);
         let mut oil = 0.0;
@@ -304,20 +305,20 @@ fn a_frozen_opening_is_passive() {
 #[test]
 fn its_conductance_has_two_limits() {
     let gas = GAS.compliance(35e5);
-    let behind =
+    let gas_side =
         |conductance: f64| Some(GasBranch::of(gas, None, None).behind_valve(conductance, VALVE.compliance));
     let gap = |one: &[num_complex::Complex64], other: &[num_complex::Complex64]| {
         let gaps = one.iter().zip(other).map(|(one, other)| (one / other - 1.0).norm_sqr().sqrt());
         gaps.fold(0.0, f64::max)
     };
     for frequency in [1e-3, 1.0, 50.0, 700.0, 2e3] {
-        let open = responses([8e-13; 2], [behind(1e3), None], frequency);
+        let open = responses([8e-13; 2], [gas_side(1e3), None], frequency);
         let at_chamber = responses([8e-13 + gas + VALVE.compliance, 8e-13], [None; 2], frequency);
         assert!(gap(&open, &at_chamber) < 1e-9, "{frequency} rad/s");
-        let shut = responses([8e-13; 2], [behind(1e-26), None], frequency);
+        let shut = responses([8e-13; 2], [gas_side(1e-26), None], frequency);
         let without = responses([8e-13; 2], [None; 2], frequency);
         assert!(gap(&shut, &without) < 1e-9, "{frequency} rad/s");
-        let between = responses([8e-13; 2], [behind(1e-11), None], frequency);
+        let between = responses([8e-13; 2], [gas_side(1e-11), None], frequency);
         assert!(!(0.5..=100.0).contains(&frequency) || gap(&between, &at_chamber) > 1e-3);
     }
 }
@@ -325,7 +326,7 @@ fn its_conductance_has_two_limits() {
 /// A valve that is shut at rest removes both the gas and its oil from the plant; the machine
 /// preserves the pressure of its gas.
 #[test]
-fn a_shut_valve_keeps_its_gas() {
+fn a_shut_valve_holds_its_gas() {
     let parts = behind(GasValve { setting: 0.0, shut: true, ..VALVE });
     assert_eq!((parts.gas_branches([35e5; 2]), parts.gas_compliance([35e5; 2])), ([None; 2], [None; 2]));
     let machine = machine_of(parts, &moving());
@@ -396,10 +397,10 @@ fn a_small_drop_decays_exponentially() {
     let gas = GAS.compliance(35e5) + VALVE.compliance;
     let conductance = GasValve { setting: opening, ..VALVE }.conductance();
     let time = 0.5 * compliance / conductance;
-    let [chamber, behind, ..] =
+    let [chamber, gas_side, ..] =
         switched([35e5 + 10.0, 35e5], compliance, |_| opening, |_| 0.0, (time, 2000), |_| ());
     let expected = 10.0 * exp(-time * conductance * (1.0 / compliance + 1.0 / gas));
-    assert!(((chamber - behind) / expected - 1.0).abs() < 1e-5, "{} {expected}", chamber - behind);
+    assert!(((chamber - gas_side) / expected - 1.0).abs() < 1e-5, "{} {expected}", chamber - gas_side);
 }
 
 /// A limit is a multiple of the precharge: the setting moves both in proportion.
@@ -422,7 +423,7 @@ fn a_limit_follows_the_precharge() {
 
 /// The throttling loss of a valve equals the loss in the account of the neck in its place.
 #[test]
-fn what_a_valve_throttles_is_lost_in_its_account() {
+fn a_valve_dissipates_its_throttled_power() {
     let machine = machine_of(behind(VALVE), &moving());
     let mut seed = 7;
     for change in [-0.5, -0.2, 0.0, 0.5] {
@@ -445,9 +446,9 @@ fn what_a_valve_throttles_is_lost_in_its_account() {
                 .filter(|(name, _)| name.starts_with("neck_"))
                 .map(|(_, account)| account.lost)
                 .sum();
-            let told = machine.throttled_at_gas(&state, &inputs);
-            assert!(told >= 0.0 && (told - lost).abs() <= 1e-12 * lost, "{told} {lost}");
-            assert_eq!(told == 0.0, change == -0.5);
+            let reported = machine.throttled_at_gas(&state, &inputs);
+            assert!(reported >= 0.0 && (reported - lost).abs() <= 1e-12 * lost, "{reported} {lost}");
+            assert_eq!(reported == 0.0, change == -0.5);
         }
     }
 }

@@ -88,7 +88,7 @@ fn elastic_pipe_is_a_little_softer_than_its_fluid() {
 /// The thesis multiplies a modulus of the expanded bore by the unexpanded volume; a hose's sheet
 /// states the expansion of its wall.
 #[test]
-fn a_hose_takes_up_what_its_sheet_says() {
+fn a_hose_has_the_expansion_of_its_data_sheet() {
     let (hose, line) = (hose(), hose_line());
     let bore_area = std::f64::consts::FRAC_PI_4 * 12.7e-3 * 12.7e-3;
     for (member, r_beta) in [(StiffeningMember::Minimum, 4.0), (StiffeningMember::Nominal, 5.0)] {

@@ -98,11 +98,11 @@ fn it_damps_the_resonance_on_the_load_cell() {
     assert!((damping_ratio(&hose, 1.501_26e-9, None) / 0.030_347_3 - 1.0).abs() < 1e-5);
     assert!(damping_ratio(&hose, 1.3e-9, None) < 0.030_347 && damping_ratio(&hose, 1.7e-9, None) < 0.030_347);
     assert!((damping_ratio(&pipe, 1.076_44e-10, None) / 0.1 - 1.0).abs() < 1e-5);
-    for (share, expected) in [(1.0, 0.071_136_0), (3.0, 0.092_290_6)] {
-        let capacity = share * pipe.useful_area * pipe.useful_area / pipe.hydraulic_stiffness;
+    for (ratio, expected) in [(1.0, 0.071_136_0), (3.0, 0.092_290_6)] {
+        let capacity = ratio * pipe.useful_area * pipe.useful_area / pipe.hydraulic_stiffness;
         let feedback = DynamicFeedback { conductance: 1.076_44e-10, capacity };
         let found = damping_ratio(&pipe, 0.0, Some(feedback));
-        assert!((found / expected - 1.0).abs() < 1e-5, "{share} {found}");
+        assert!((found / expected - 1.0).abs() < 1e-5, "{ratio} {found}");
     }
 }
 
@@ -128,7 +128,7 @@ fn the_impedance_stays_passive() {
 
 /// Results of the machine for a vanishing valve: those of the machine without it.
 #[test]
-fn a_valve_that_is_shut_is_none() {
+fn a_shut_valve_has_no_effect() {
     let rates = |cross_port: Option<CrossPort>| {
         let machine = Machine::new(&actuator(cross_port), &MachineOptions::default()).unwrap();
         let mut state = vec![1.0, 20.0, 41e5, 28e5, 1e-4, 0.05];
@@ -178,7 +178,7 @@ fn a_laminar_valve_is_leakage() {
 /// Feedback leaks nothing at rest: the equilibrium is that without it, and its capacity holds the
 /// pressure difference.
 #[test]
-fn feedback_leaves_the_equilibrium_alone() {
+fn feedback_leaves_the_equilibrium_unchanged() {
     for port in [laminar(1e-9, Some(1e-12)), orifice(1e-7, Some(1e-12))] {
         let [bare, with] = [None, Some(port)].map(|port| {
             let rig = actuator(port);

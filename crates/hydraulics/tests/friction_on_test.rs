@@ -26,7 +26,7 @@ fn runge_kutta(
     let h = time_step / steps as f64;
     for ends in force.windows(2) {
         for step in 0..steps {
-            let at = |share: f64| ends[0] + (ends[1] - ends[0]) * (step as f64 + share) / steps as f64;
+            let at = |fraction: f64| ends[0] + (ends[1] - ends[0]) * (step as f64 + fraction) / steps as f64;
             let add = |rate: [f64; 3], by: f64| std::array::from_fn(|i| state[i] + by * rate[i]);
             let first = rates(state, at(0.0));
             let second = rates(add(first, h / 2.0), at(0.5));
@@ -51,12 +51,12 @@ fn rows(force: &KnottedForce) -> Vec<f64> {
     force
         .shares()
         .into_iter()
-        .map(|(knot, share)| force.forces[knot] * (1.0 - share) + force.forces[knot + 1] * share)
+        .map(|(knot, fraction)| force.forces[knot] * (1.0 - fraction) + force.forces[knot + 1] * fraction)
         .collect()
 }
 
 #[test]
-fn a_pressed_mass_moves_as_the_equations_say() {
+fn a_pressed_mass_satisfies_the_equations() {
     let lugre = LuGre::from_array(NUMBERS);
     let force = rows(&released());
     let exact = runge_kutta(&lugre, [0.0; 2], &force, 1e-3, 200);
@@ -73,7 +73,7 @@ fn a_pressed_mass_moves_as_the_equations_say() {
 }
 
 #[test]
-fn a_mass_that_creeps_on_soft_bristles_moves_as_the_equations_say() {
+fn a_mass_that_creeps_on_soft_bristles_satisfies_the_equations() {
     let soft = LuGre::same_both_ways([80.0, 120.0, 0.01, 1.5, 100.0, 2e4, 6e3]);
     let force = rows(&released());
     let exact = runge_kutta(&soft, [0.0; 2], &force, 1e-3, 200);
@@ -132,7 +132,7 @@ fn shaking() -> MultisineForce {
 const BEGINNING: [f64; 2] = [-1e-3, 2e-6];
 
 #[test]
-fn a_shaken_mass_moves_as_the_equations_say() {
+fn a_shaken_mass_satisfies_the_equations() {
     let lugre = LuGre::from_array(NUMBERS);
     let force = shaking();
     let fine = force.along(599 * 20 + 1, 1e-5);
@@ -196,8 +196,8 @@ fn the_force_after_a_reversal_is_that_of_the_bristles() {
         deflection += h * lugre.bristle_rate(velocity, middle);
     }
     // remainder of the initial force: of the spring and of the damper of the bristles
-    let share = 1.0 - lugre.bristle_damping * velocity.abs() / lugre.curve.sliding_force(velocity);
-    let left = lugre.bristle_stiffness * (9e-6 - settled) * share;
+    let fraction = 1.0 - lugre.bristle_damping * velocity.abs() / lugre.curve.sliding_force(velocity);
+    let left = lugre.bristle_stiffness * (9e-6 - settled) * fraction;
     let length = velocity.abs() * h;
     for block in 0..4 {
         let (from, to) = (block * 1000, (block + 1) * 1000);

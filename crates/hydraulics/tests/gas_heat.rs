@@ -74,9 +74,9 @@ fn the_time_constant_has_two_limits() {
             let found = responses([8e-13; 2], [branch(time_constant, None), None], frequency);
             let lumped = responses([8e-13 + compliance, 8e-13], [None; 2], frequency);
             assert!(gap(&found, &lumped) < 1e-9, "{time_constant} s at {frequency} rad/s");
-            let behind = responses([8e-13; 2], [branch(time_constant, Some(&neck)), None], frequency);
+            let with_neck = responses([8e-13; 2], [branch(time_constant, Some(&neck)), None], frequency);
             let without = responses([8e-13; 2], [plain(compliance, &neck), None], frequency);
-            assert!(gap(&behind, &without) < 1e-9, "{time_constant} s behind a neck at {frequency} rad/s");
+            assert!(gap(&with_neck, &without) < 1e-9, "{time_constant} s behind a neck at {frequency} rad/s");
         }
     }
     let middle = responses([8e-13; 2], [branch(1.0, None); 2], 1.0);
@@ -223,7 +223,7 @@ fn it_is_passive_under_random_flows() {
 fn it_is_shut_off_by_the_pressure_of_its_own_temperature() {
     let machine = machine(GAS, Some(1.0));
     let place = INDICATORS.iter().position(|known| *known == "accumulator_empty_a").unwrap();
-    let told = |pressure: f64, warming: f64| {
+    let excess = |pressure: f64, warming: f64| {
         let state = [0.0, 0.0, pressure, 30e5, 0.0, 0.0, warming, 0.0];
         let mut indicators = vec![0.0; machine.indicators()];
         machine.indicate(&state, &[0.25, 0.0], &mut indicators);
@@ -234,13 +234,13 @@ fn it_is_shut_off_by_the_pressure_of_its_own_temperature() {
     };
     let edge = |warming: f64| (15e5 + ATMOSPHERE) * (1.0 + warming) - ATMOSPHERE;
     for warming in [-0.1, 0.0, 0.1] {
-        assert!(told(edge(warming) + 1.0, warming) > 0.0 && told(edge(warming) - 1.0, warming) < 0.0);
+        assert!(excess(edge(warming) + 1.0, warming) > 0.0 && excess(edge(warming) - 1.0, warming) < 0.0);
     }
 }
 
 /// A pressure limit of the maker is reported when the pressure of the gas exceeds it.
 #[test]
-fn too_much_pressure_is_told() {
+fn excess_pressure_is_reported() {
     let rig = components(pipe_line(), StiffnessModel::ByVolume);
     let limited = |gas: ChamberGas, ratio| {
         Some(ChamberGas::Sealed(SealedGas { maximum_pressure_ratio: Some(ratio), ..gas.sealed() }))
@@ -252,11 +252,11 @@ fn too_much_pressure_is_told() {
     let impossible = Components { gas: [None, limited(GAS.into(), -1.0)], ..rig };
     let rig = Components { gas: [limited(GAS.into(), ratio), None], ..rig };
     let place = |name: &str| INDICATORS.iter().position(|known| *known == name).unwrap();
-    for (parts, behind) in [(rig, None), (neck, Some(61e5))] {
+    for (parts, gas_pressure) in [(rig, None), (neck, Some(61e5))] {
         let machine = machine_of(parts, &MachineOptions::default());
-        for (pressure, over) in [(59e5, behind.is_some()), (61e5, true)] {
+        for (pressure, over) in [(59e5, gas_pressure.is_some()), (61e5, true)] {
             let mut state = vec![0.0, 0.0, pressure, 65e5, 0.0, 0.0];
-            state.extend(behind.into_iter().flat_map(|behind| [0.0, behind]));
+            state.extend(gas_pressure.into_iter().flat_map(|gas_pressure| [0.0, gas_pressure]));
             let mut indicators = vec![0.0; machine.indicators()];
             machine.indicate(&state, &[0.25, 0.0], &mut indicators);
             assert_eq!(indicators[place("accumulator_overpressure_a")] < 0.0, over);

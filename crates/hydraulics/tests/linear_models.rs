@@ -252,7 +252,7 @@ fn hydraulic_mode_dominates_more_the_softer_it_is() {
 }
 
 #[test]
-fn a_share_that_does_not_exist_has_its_reason() {
+fn an_absent_fraction_has_its_reason() {
     let pole = |re| Complex64::new(re, 0.0);
     let of = |poles: &[f64]| {
         let poles = poles.iter().map(|re| pole(*re)).collect();

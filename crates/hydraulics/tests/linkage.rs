@@ -463,8 +463,8 @@ fn the_plant_is_the_machine_for_small_motions() {
                 (alike_command, command),
                 (alike_ground, ground),
             ];
-            for (told, own) in pairs {
-                let error = (told / own - 1.0).norm_sqr().sqrt();
+            for (found_response, own) in pairs {
+                let error = (found_response / own - 1.0).norm_sqr().sqrt();
                 assert!(error < 1e-7, "rig {number} at {w} rad/s: {error}");
             }
         }

@@ -27,12 +27,12 @@ fn step(state: &mut [f64], time: f64, width: f64, rates: &mut impl FnMut(f64, &[
     let count = state.len();
     let mut slopes = [[0.0; 12]; 4];
     let mut trial = [0.0; 12];
-    for (stage, share) in [0.0, 0.5, 0.5, 1.0].into_iter().enumerate() {
+    for (stage, fraction) in [0.0, 0.5, 0.5, 1.0].into_iter().enumerate() {
         for index in 0..count {
             let slope = if stage == 0 { 0.0 } else { slopes[stage - 1][index] };
-            trial[index] = state[index] + share * width * slope;
+            trial[index] = state[index] + fraction * width * slope;
         }
-        rates(time + share * width, &trial[..count], &mut slopes[stage][..count]);
+        rates(time + fraction * width, &trial[..count], &mut slopes[stage][..count]);
     }
     for (index, value) in state.iter_mut().enumerate() {
         let [first, second, third, fourth] = slopes.map(|slope| slope[index]);
@@ -50,9 +50,9 @@ fn indicator(name: &str) -> usize {
 
 /// Smooth step of the load by 5 mm from 3.0 to 3.1 s: position and velocity.
 fn load_step(time: f64) -> [f64; 2] {
-    let share = ((time - 3.0) / 0.1).clamp(0.0, 1.0);
-    let position = share * share * share * (10.0 - 15.0 * share + 6.0 * share * share);
-    let slope = 30.0 * share * share * (1.0 - share) * (1.0 - share);
+    let fraction = ((time - 3.0) / 0.1).clamp(0.0, 1.0);
+    let position = fraction * fraction * fraction * (10.0 - 15.0 * fraction + 6.0 * fraction * fraction);
+    let slope = 30.0 * fraction * fraction * (1.0 - fraction) * (1.0 - fraction);
     [0.25 + 5e-3 * position, 5e-3 * slope / 0.1]
 }
 
@@ -61,7 +61,7 @@ fn load_step(time: f64) -> [f64; 2] {
 ///
 /// ORIGIN: other tool, CVODE at a tolerance of 1e-12 on equal equations written in C
 #[test]
-fn the_benchmark_runs_as_the_reference_says() {
+fn the_benchmark_agrees_with_the_reference() {
     let machine = machine_of(benchmark_components(), &MachineOptions::default());
     let start = StartValues { position: 0.25, pressure_a: 35e5, pressure_b: 35e5, ..StartValues::default() };
     let mut state = machine.start(&start).unwrap().state;
@@ -154,7 +154,7 @@ fn a_slow_cycle_finds_null_at_bias_and_half_width() {
 /// relative to a steadily moving command. The memories of the machine follow the lagging spool:
 /// next to a reversal that changes the opening by up to twice the lag.
 #[test]
-fn the_machine_is_as_late_as_a_slow_test_says() {
+fn the_machine_has_the_hysteresis_of_a_slow_test() {
     let spool = measured_spool();
     let track = spool_run(&spool, 12.0, |time| 0.6 * triangle(time / 8.0));
     let mut memory = SlowSpool::at(0.0);
@@ -275,7 +275,7 @@ fn slow_bristles_are_the_static_curve() {
 /// A mass thrown at a contact comes back with 1 - 2 c v/3 of its speed: Hunt and Crossley's result
 /// for slow impacts.
 #[test]
-fn contacts_restitute_as_hunt_and_crossley_say() {
+fn contacts_restitute_after_hunt_and_crossley() {
     for relative_damping in [0.0, 0.05, 0.2] {
         let contact = Contact { stiffness: 1e6, relative_damping };
         let (mass, speed) = (4.0, 0.1);
@@ -310,7 +310,7 @@ fn pump() -> PumpLimited {
 /// A pump holds nearly the stated pressure while it has flow to spare; if more is required, it
 /// limits the velocity and the pressure falls.
 #[test]
-fn a_pump_gives_what_it_has() {
+fn a_pump_delivers_its_available_flow() {
     let unit = PumpLimited { accumulator: None, ..pump() };
     let rig = components(hose_line(), StiffnessModel::ByVolume);
     let rig = Components { power_unit: PowerUnit::PumpLimited(unit), ..rig };
@@ -368,9 +368,9 @@ fn tare_flow_is_the_supplys() {
         let machine = machine_of(Components { supply, valve, ..rig }, &MachineOptions::default());
         machine.signals(&[0.3, 0.0, 20e5, 15e5, 0.0, 0.0], &[0.2, 0.0]).supply_flow
     };
-    for (pressure, share) in [(70e5, 1.0), (17.5e5, 0.5)] {
+    for (pressure, fraction) in [(70e5, 1.0), (17.5e5, 0.5)] {
         let tare = with(pressure, 7.55e-6) - with(pressure, 0.0);
-        assert!((tare / (share * 7.55e-6) - 1.0).abs() < 1e-6);
+        assert!((tare / (fraction * 7.55e-6) - 1.0).abs() < 1e-6);
     }
 }
 

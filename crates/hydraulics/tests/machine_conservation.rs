@@ -20,8 +20,8 @@ use super::rich_machines::{PLAIN, asymmetric, charged_pump, passive_friction, pu
 
 /// Classical Runge-Kutta step of rates that depend on time.
 pub(super) fn step(state: &mut [f64], time: f64, width: f64, rates: &mut dyn FnMut(f64, &[f64]) -> Vec<f64>) {
-    let along = |state: &[f64], slope: &[f64], share: f64| -> Vec<f64> {
-        state.iter().zip(slope).map(|(value, slope)| value + share * width * slope).collect()
+    let along = |state: &[f64], slope: &[f64], fraction: f64| -> Vec<f64> {
+        state.iter().zip(slope).map(|(value, slope)| value + fraction * width * slope).collect()
     };
     let first = rates(time, state);
     let second = rates(time + 0.5 * width, &along(state, &first, 0.5));
@@ -286,7 +286,7 @@ fn what_is_stored_changes_by_what_enters_and_is_lost() {
     let mut machines = rich_machines();
     let charged = Components { power_unit: charged_pump(75e5, 1.4), ..asymmetric() };
     machines.push(("gas at its precharge", machine_of(charged, &MachineOptions::default())));
-    for ((name, machine), (pressure, share)) in
+    for ((name, machine), (pressure, fraction)) in
         machines.iter().flat_map(|named| [(named, (35e5, 4.0)), (named, (0.0, 0.13))])
     {
         let start = StartValues {
@@ -299,7 +299,7 @@ fn what_is_stored_changes_by_what_enters_and_is_lost() {
         for _ in 0..20 {
             let around = beginning.state.iter().zip(machine.scales());
             let state: Vec<f64> =
-                around.map(|(value, scale)| value + share * scale * random(&mut seed)).collect();
+                around.map(|(value, scale)| value + fraction * scale * random(&mut seed)).collect();
             let inputs = [0.25 + 0.2 * random(&mut seed), 0.1 * random(&mut seed)];
             check_instant(name, machine, &state, random(&mut seed), inputs);
         }
@@ -365,7 +365,7 @@ fn lugre_takes_energy_under_its_condition_and_may_give_it_outside() {
 /// Newton's law of the load: an external force changes only its acceleration, by F_x/m, and its
 /// power is the power that the load and the rig absorb.
 #[test]
-fn a_force_from_outside_acts_on_the_load_alone() {
+fn an_external_force_acts_on_the_load_only() {
     let load = Load::SpringMassDamper { mass: 20.0, stiffness: 3e5, damping: 200.0 };
     let options = MachineOptions { external_force: true, ..MachineOptions::default() };
     let machine = machine_of(Components { load, ..asymmetric() }, &options);
@@ -387,16 +387,16 @@ fn a_force_from_outside_acts_on_the_load_alone() {
         machine.rates(&state, 1.0, &inputs, &mut rates);
         (rates, machine.ledger(&state, &inputs).unwrap())
     };
-    let ((still, alone), (pushed, ledger)) = (at(0.0), at(700.0));
+    let ((still, unpushed), (pushed, ledger)) = (at(0.0), at(700.0));
     for (index, (one, other)) in still.iter().zip(&pushed).enumerate() {
         let expected = if index == velocity { 700.0 / 20.0 } else { 0.0 };
         assert!((other - one - expected).abs() < 1e-9 * one.abs().max(1.0), "{index}: {one} {other}");
     }
     for name in ["load", "rig"] {
         let place = ENERGY_ACCOUNTS.iter().position(|known| *known == name).unwrap();
-        let gained = ledger.energy[place].inflow - alone.energy[place].inflow;
+        let gained = ledger.energy[place].inflow - unpushed.energy[place].inflow;
         assert!(
-            (gained - 700.0 * 0.4).abs() < 1e-9 * alone.energy[place].inflow.abs().max(1e3),
+            (gained - 700.0 * 0.4).abs() < 1e-9 * unpushed.energy[place].inflow.abs().max(1e3),
             "{name}: {gained}"
         );
     }

@@ -252,7 +252,7 @@ fn a_machine_with_everything_is_the_text_of_its_equations() {
 
 /// Forces that a machine reports accelerate its piston: M dv/dt = F_H + F_stops - F_fr - F_e.
 #[test]
-fn forces_that_are_told_accelerate_the_piston() {
+fn recorded_forces_accelerate_the_piston() {
     let mut stopped = 0;
     for machine in machines() {
         let mut noise = Noise(23);
@@ -361,9 +361,9 @@ fn lanes_are_machines_side_by_side() {
             (0..machine.inputs()).map(|index| side_by_side(&|start| start.2[index])).collect();
         let mut rates = vec![Lanes::from(f64::NAN); count];
         all.rates(&state, side_by_side(&|start| start.1), &inputs, &mut rates);
-        for (lane, alone) in machines.iter().enumerate() {
+        for (lane, single) in machines.iter().enumerate() {
             let (state, command, inputs) = &starts[lane];
-            for (found, expected) in rates.iter().zip(rates_of(alone, state, *command, inputs)) {
+            for (found, expected) in rates.iter().zip(rates_of(single, state, *command, inputs)) {
                 assert_eq!(found.0[lane].to_bits(), expected.to_bits());
             }
         }

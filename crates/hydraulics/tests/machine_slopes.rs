@@ -37,7 +37,7 @@ fn seeded(
 /// Derivatives by dual numbers agree with central differences, and differ from zero only within the
 /// pattern.
 #[test]
-fn jacobians_are_slopes_and_keep_to_their_pattern() {
+fn jacobians_are_slopes_within_their_sparsity_pattern() {
     let mut noise = Noise(7);
     for machine in machines() {
         let count = machine.states();
@@ -71,11 +71,11 @@ fn jacobians_are_slopes_and_keep_to_their_pattern() {
                     moved[column] += by;
                     rates_of(&machine, &moved, command, &inputs)
                 };
-                let (ahead, behind, near) = (moved(step), moved(-step), moved(0.5 * step));
+                let (above, below, near) = (moved(step), moved(-step), moved(0.5 * step));
                 for (row, rate) in rates.iter().enumerate() {
                     let slope = rate.gradient()[column % DIRECTIONS];
                     assert!(slope == 0.0 || pattern[row].includes(column), "({row}, {column})");
-                    let difference = (ahead[row] - behind[row]) / (2.0 * step);
+                    let difference = (above[row] - below[row]) / (2.0 * step);
                     let kink = (near[row] - plain[row]) / (0.5 * step);
                     let rounding = 1e-9 * plain[row].abs().max(machine.scales()[row]) / step;
                     let allowed = 1e-6 * slope.abs() + 2.0 * (kink - difference).abs() + rounding;

@@ -18,7 +18,7 @@ use super::plant_in_motion::drawn;
 /// K_x (1 + e) H_v e^(-s tau), with lines in motion; with lumped lines and without delay the
 /// quotient of polynomials, which without error equals that without sensor.
 #[test]
-fn a_measured_feed_forward_is_the_machine_with_what_its_sensor_shows() {
+fn a_measured_feed_forward_is_the_machine_with_its_sensor_reading() {
     for number in 0..36 {
         let rig = drawn(number);
         let (fed, error) = (25.0, -0.3 + 0.6 * number as f64 / 35.0);
@@ -38,7 +38,7 @@ fn a_measured_feed_forward_is_the_machine_with_what_its_sensor_shows() {
         let within = VelocitySensor { filter, ..shown };
         let rational =
             LinearPlant { velocity_sensor: within, load_velocity_feed_forward: Some(fed), ..plant };
-        let (rational, alone) = (rational.coefficients(), rig.plant.coefficients());
+        let (rational, without_sensor) = (rational.coefficients(), rig.plant.coefficients());
         let lumped = PlantInMotion::lumped(&rig.plant);
         for step in 0..14 {
             let frequency = 0.01 * pow(1e6, f64::from(step) / 13.0);
@@ -53,15 +53,18 @@ fn a_measured_feed_forward_is_the_machine_with_what_its_sensor_shows() {
             };
             let [[force, velocity], [ground_force, ground_velocity]] = rig.force_and_velocity(frequency);
             let expected = closed(late, [force, ground_force], [velocity, ground_velocity]);
-            let quotients = [&alone.command, alone.disturbance.as_ref().unwrap()]
+            let quotients = [&without_sensor.command, without_sensor.disturbance.as_ref().unwrap()]
                 .map(|path| path.at_frequency(frequency));
             let of_quotients = closed(at_once, quotients, lumped.load_velocity(s));
-            let told = [&rational.command, rational.disturbance.as_ref().unwrap()]
+            let found_response = [&rational.command, rational.disturbance.as_ref().unwrap()]
                 .map(|path| path.at_frequency(frequency));
-            let pairs =
-                moving.response(s).into_iter().zip(expected).chain(told.into_iter().zip(of_quotients));
-            for (told, expected) in pairs {
-                let error = (told / expected - 1.0).norm_sqr().sqrt();
+            let pairs = moving
+                .response(s)
+                .into_iter()
+                .zip(expected)
+                .chain(found_response.into_iter().zip(of_quotients));
+            for (found_response, expected) in pairs {
+                let error = (found_response / expected - 1.0).norm_sqr().sqrt();
                 assert!(error < 1e-7, "rig {number} at {frequency} rad/s: {error}");
             }
         }

@@ -91,18 +91,18 @@ fn apart(length: f64, compliances: [f64; 2], frequency: f64) -> f64 {
 /// is shut off; between them it does neither.
 #[test]
 fn a_neck_has_two_limits() {
-    let (lumped, alone) = ([8e-13 + 3e-12, 9e-13], [8e-13, 9e-13]);
+    let (lumped, without_gas) = ([8e-13 + 3e-12, 9e-13], [8e-13, 9e-13]);
     for frequency in [1e-3, 1.0, 50.0, 700.0, 2e3] {
         assert!(apart(1e-12, lumped, frequency) < 1e-9, "{frequency}: {}", apart(1e-12, lumped, frequency));
-        assert!(apart(1e12, alone, frequency) < 1e-9, "{frequency}");
+        assert!(apart(1e12, without_gas, frequency) < 1e-9, "{frequency}");
     }
     assert!(apart(0.04, lumped, 1e-3) < 1e-6);
-    assert!(apart(0.04, lumped, 700.0).min(apart(0.04, alone, 700.0)) > 0.1);
+    assert!(apart(0.04, lumped, 700.0).min(apart(0.04, without_gas, 700.0)) > 0.1);
 }
 
 /// A neck without inertance and resistance has no effect, exactly.
 #[test]
-fn without_inertance_and_resistance_there_is_none() {
+fn a_neck_without_inertance_and_resistance_has_no_effect() {
     let neck = Some(NeckImpedance { inertance: 0.0, resistance: 0.0 });
     let gas = GasBranch { compliance: 3e-12, relaxation: None, neck, valve: None };
     for frequency in [1e-3, 1.0, 50.0, 700.0, 2e3] {
@@ -257,11 +257,11 @@ fn it_is_empty_at_the_pressure_of_its_gas() {
     let neck = Neck::round([6e-3, 0.04], OIL, 1.5);
     let machine = machine([Some(gas), Some(gas)], [Some(neck), None]);
     let place = |name: &str| INDICATORS.iter().position(|known| *known == name).unwrap();
-    for (chamber, behind) in [(19e5, 21e5), (21e5, 19e5)] {
-        let state = [1.0, 0.0, chamber, chamber, 1e-4, 0.05, 1e-5, bladder(&gas, &neck).within(behind)];
+    for (chamber, gas_pressure) in [(19e5, 21e5), (21e5, 19e5)] {
+        let state = [1.0, 0.0, chamber, chamber, 1e-4, 0.05, 1e-5, bladder(&gas, &neck).within(gas_pressure)];
         let mut indicators = vec![0.0; machine.indicators()];
         machine.indicate(&state, &[0.25, 0.0], &mut indicators);
-        assert_eq!(indicators[place("accumulator_empty_a")] > 0.0, behind > 20e5);
+        assert_eq!(indicators[place("accumulator_empty_a")] > 0.0, gas_pressure > 20e5);
         assert_eq!(indicators[place("accumulator_empty_b")] > 0.0, chamber > 20e5);
         assert!(indicators[place("cavitation_a")] > 0.0 && indicators[place("cavitation_b")] > 0.0);
     }
@@ -275,20 +275,20 @@ fn oil_in_a_neck_cavitates() {
     let neck = Neck::round([6e-3, 0.04], OIL, 1.5);
     let machine = machine([Some(gas); 2], [Some(neck), None]);
     let place = INDICATORS.iter().position(|known| *known == "cavitation_a").unwrap();
-    let told = |chamber: f64, behind: f64| {
-        let state = [1.0, 0.0, chamber, 30e5, 1e-4, 0.05, 1e-5, bladder(&gas, &neck).within(behind)];
+    let excess = |chamber: f64, gas_pressure: f64| {
+        let state = [1.0, 0.0, chamber, 30e5, 1e-4, 0.05, 1e-5, bladder(&gas, &neck).within(gas_pressure)];
         let mut indicators = vec![0.0; machine.indicators()];
         machine.indicate(&state, &[0.25, 0.0], &mut indicators);
         indicators[place]
     };
-    assert!(told(20e5, 20e5) > 0.0 && told(20e5, -2e5) < 0.0 && told(-2e5, 20e5) < 0.0);
+    assert!(excess(20e5, 20e5) > 0.0 && excess(20e5, -2e5) < 0.0 && excess(-2e5, 20e5) < 0.0);
     // except for the rounding of the state over the softness of the oil
-    assert!((told(20e5, -2e5) - told(-2e5, 20e5)).abs() < 1e-3);
+    assert!((excess(20e5, -2e5) - excess(-2e5, 20e5)).abs() < 1e-3);
 }
 
 /// A neck without flow has no effect: the machine rests as with the gas at its chamber.
 #[test]
-fn at_rest_it_is_not_seen() {
+fn a_neck_has_no_effect_at_rest() {
     for number in 0..16 {
         let parts = drawn(number);
         let gas = parts.map(|(gas, _)| Some(gas));

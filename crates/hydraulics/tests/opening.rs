@@ -133,7 +133,7 @@ fn an_overlap_is_a_dead_band_of_the_metered_flow() {
 
 /// An underlap of both pairs doubles the flow gain about null, an overlap nearly removes it.
 #[test]
-fn lap_changes_the_gain_about_null_as_it_must() {
+fn lap_changes_the_gain_about_null_by_its_closed_form() {
     let gain = |lap: f64| {
         let shape = OpeningShape { lap_positive: lap, lap_negative: lap, saturation: 0.0 };
         let valve =
@@ -203,7 +203,7 @@ fn leakage_by_edge_divides_the_supply() {
 }
 
 #[test]
-fn impossible_shapes_are_told() {
+fn impossible_shapes_are_reported() {
     let shape = OpeningShape { lap_positive: 1.0, lap_negative: f64::NAN, saturation: -0.1 };
     let valve = shaped(shape, LeakageModel::EachEdge);
     let named: Vec<String> = valve.problems().into_iter().map(|problem| problem.to_string()).collect();

@@ -112,7 +112,7 @@ fn load_rises_with_the_command_that_holds_it() {
 }
 
 #[test]
-fn what_cannot_be_is_refused_with_numbers() {
+fn impossible_operating_points_are_refused_with_numbers() {
     let actuator = Actuator::new(rig()).unwrap();
     let refused = |position, condition| operating_point(&actuator, position, condition).unwrap_err();
     assert_eq!(

@@ -201,8 +201,8 @@ fn it_is_the_machine_for_small_motions() {
         for step in 0..20 {
             let frequency = 1e-3 * pow(1e7, f64::from(step) / 19.0);
             let [command, ground] = rig.small_signal(feed_forward, frequency);
-            for (told, own) in [(&coefficients.command, command), (&disturbance, ground)] {
-                let error = (told.at_frequency(frequency) / own - 1.0).norm_sqr().sqrt();
+            for (found_response, own) in [(&coefficients.command, command), (&disturbance, ground)] {
+                let error = (found_response.at_frequency(frequency) / own - 1.0).norm_sqr().sqrt();
                 assert!(error < 1e-7, "rig {number} at {frequency} rad/s: {error}");
             }
         }

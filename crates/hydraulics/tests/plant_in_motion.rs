@@ -66,7 +66,7 @@ fn loads(number: u64, mass: f64, stiffness: f64, damping: f64) -> (Load, LinearL
 /// Plant with these lines when its machine is at rest, with its piston at a position in m: the
 /// leakage flows through the lines, so that the pressures at the valve's ports differ slightly from
 /// those of the chambers.
-pub(super) fn plant_behind(
+pub(super) fn plant_with_lines(
     actuator: &Actuator,
     machine: &Machine,
     lines: [DynamicLine; 2],
@@ -139,7 +139,7 @@ pub(crate) fn drawn(number: u64) -> Drawn {
     let rest = machine.rest(&operating_point(&actuator, spread(0.05, 0.45), condition).unwrap()).unwrap();
     let moves = linear_load != LinearLoad::Prescribed;
     let position = rest.inputs[0] + if moves { rest.state[6] } else { 0.0 } + rest.state[4];
-    let (plant, behind) = plant_behind(&actuator, &machine, lines, (position, &rest), linear_load);
+    let (plant, behind) = plant_with_lines(&actuator, &machine, lines, (position, &rest), linear_load);
     Drawn {
         machine,
         inputs: [&rest.inputs[..], &rest.waves[..]].concat(),
@@ -194,9 +194,9 @@ fn it_is_the_machine_for_small_motions() {
         for step in 0..14 {
             let frequency = 0.01 * pow(1e6, f64::from(step) / 13.0);
             let own = rig.small_signal(feed_forward, frequency);
-            let told = moving.response(Complex64::new(0.0, frequency));
-            for (told, own) in told.into_iter().zip(own) {
-                let error = (told / own - 1.0).norm_sqr().sqrt();
+            let found_response = moving.response(Complex64::new(0.0, frequency));
+            for (found_response, own) in found_response.into_iter().zip(own) {
+                let error = (found_response / own - 1.0).norm_sqr().sqrt();
                 assert!(error < 1e-7, "rig {number} at {frequency} rad/s: {error}");
             }
         }
@@ -221,16 +221,19 @@ fn the_velocity_of_the_load_is_that_of_the_machine() {
             let s = Complex64::new(0.0, frequency);
             let apart = |one: Complex64, other: Complex64| (one / other - 1.0).norm_sqr().sqrt();
             let [[_, command], [_, ground]] = rig.force_and_velocity(frequency);
-            let told = moving.load_velocity(s);
+            let found_response = moving.load_velocity(s);
             if rig.plant.load == LinearLoad::Prescribed {
-                assert_eq!((told, own.0.rate.clone()), ([Complex64::ZERO, s], None));
+                assert_eq!((found_response, own.0.rate.clone()), ([Complex64::ZERO, s], None));
                 continue;
             }
             yielding += 1;
-            for (told, own) in told.into_iter().zip([command, ground]) {
-                assert!(apart(told, own) < 1e-7, "rig {number} at {frequency} rad/s: {told} {own}");
+            for (found_response, own) in found_response.into_iter().zip([command, ground]) {
+                assert!(
+                    apart(found_response, own) < 1e-7,
+                    "rig {number} at {frequency} rad/s: {found_response} {own}"
+                );
             }
-            let [alone, back] = [&own, &closed].map(|(coefficients, lumped)| {
+            let [without_path, back] = [&own, &closed].map(|(coefficients, lumped)| {
                 let rate = coefficients.rate.as_ref().unwrap();
                 let found = lumped.load_velocity(s);
                 for (numerator, found) in [&rate.command, &rate.disturbance].into_iter().zip(found) {
@@ -240,9 +243,9 @@ fn the_velocity_of_the_load_is_that_of_the_machine() {
                 }
                 found
             });
-            for (back, alone_of_path) in back.into_iter().zip(alone) {
+            for (back, without_path_response) in back.into_iter().zip(without_path) {
                 assert!(
-                    apart(back, alone_of_path / (1.0 - gain * alone[0])) < 1e-7,
+                    apart(back, without_path_response / (1.0 - gain * without_path[0])) < 1e-7,
                     "rig {number} at {frequency}"
                 );
             }
@@ -267,9 +270,9 @@ fn a_late_feed_forward_is_the_machine_with_a_late_command() {
             let [[force, velocity], [ground_force, ground_velocity]] = rig.force_and_velocity(frequency);
             let back = gain * force / (1.0 - gain * velocity);
             let expected = [back / gain, ground_force + back * ground_velocity];
-            let told = moving.response(s);
-            for (told, expected) in told.into_iter().zip(expected) {
-                let error = (told / expected - 1.0).norm_sqr().sqrt();
+            let found_response = moving.response(s);
+            for (found_response, expected) in found_response.into_iter().zip(expected) {
+                let error = (found_response / expected - 1.0).norm_sqr().sqrt();
                 assert!(error < 1e-7, "rig {number} at {frequency} rad/s: {error}");
             }
         }
@@ -304,14 +307,14 @@ fn poles_of_a_late_plant_are_counted() {
         0.0,
         LinearLoad::Yielding { mass: 100.0, damping: 500.0, stiffness: 2e5 },
     );
-    let alone = Polynomial::new(plant.coefficients().command.denominator);
+    let without_path = Polynomial::new(plant.coefficients().command.denominator);
     let mut seen = [0; 3];
     for gain in [5.0, 20.0, 29.0, 40.0] {
         let fed = LinearPlant { load_velocity_feed_forward: Some(gain), ..plant }
             .coefficients()
             .command
             .denominator;
-        let back = Polynomial::new(fed).sum(&alone.scaled(-1.0));
+        let back = Polynomial::new(fed).sum(&without_path.scaled(-1.0));
         // the count with a filter is that of a longer product of polynomials
         let filter = RateFilter::FirstOrder { frequency_rad_per_s: 30.0 };
         let lag = Polynomial::new(filter.denominator());
@@ -321,7 +324,7 @@ fn poles_of_a_late_plant_are_counted() {
                 let one = Polynomial::new(vec![part * part / 12.0, sign * part / 2.0, 1.0]);
                 (0..6).fold(Polynomial::new(vec![1.0]), |product, _| product.product(&one))
             };
-            let own = alone.product(&lag).product(&quotient(1.0));
+            let own = without_path.product(&lag).product(&quotient(1.0));
             let characteristic = own.sum(&back.product(&quotient(-1.0)));
             let growing = characteristic.roots().unwrap().iter().filter(|root| root.re > 0.0).count();
             let late = PlantInMotion::lumped(&plant).fed_forward(Some(gain)).filtered(filter).late(delay);
@@ -333,7 +336,7 @@ fn poles_of_a_late_plant_are_counted() {
                 let one = Polynomial::new(vec![part * part / 12.0, sign * part / 2.0, 1.0]);
                 (0..6).fold(Polynomial::new(vec![1.0]), |product, _| product.product(&one))
             };
-            let characteristic = alone.product(&quotient(1.0)).sum(&back.product(&quotient(-1.0)));
+            let characteristic = without_path.product(&quotient(1.0)).sum(&back.product(&quotient(-1.0)));
             let growing = characteristic.roots().unwrap().iter().filter(|root| root.re > 0.0).count();
             let late = PlantInMotion::lumped(&plant).fed_forward(Some(gain));
             let late = late.late(delay);
@@ -393,7 +396,7 @@ fn compliance_is_that_of_the_lumped_line() {
 /// Responses between two frequencies are in the disc of both, which shrinks onto the response; and
 /// the response stays below its roll-off from its first frequency on.
 #[test]
-fn what_bounds_it_holds_it() {
+fn enclosures_contain_the_response() {
     let mut state = 8;
     for number in 0..108 {
         let rig = drawn(number);
@@ -443,8 +446,11 @@ fn slowly_it_is_a_quotient_of_polynomials() {
         let [command, load] = RespondingPlant::response(&moving, frequency);
         let known = slow.command.at_frequency(frequency);
         let known_load = slow.disturbance.as_ref().unwrap().at_frequency(frequency);
-        for (told, known) in [(command, known), (load, known_load)] {
-            assert!((told / known - 1.0).norm_sqr().sqrt() < 1e-4, "rig {number}: {told} {known}");
+        for (found_response, known) in [(command, known), (load, known_load)] {
+            assert!(
+                (found_response / known - 1.0).norm_sqr().sqrt() < 1e-4,
+                "rig {number}: {found_response} {known}"
+            );
         }
     }
 }

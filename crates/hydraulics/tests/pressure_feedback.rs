@@ -60,7 +60,7 @@ fn it_damps_as_leakage_does() {
 /// A high pass leaves the plant at rest unchanged; without one the valve must hold k p_L against
 /// the leakage, and the gain at rest falls by the factor K_c/(K_c + K_qU k).
 #[test]
-fn a_high_pass_leaves_the_rest_alone() {
+fn a_high_pass_leaves_the_equilibrium_unchanged() {
     let parameters = nominal_plant();
     let plain = LinearPlant::of_load_pressure(&parameters, 0.0, LinearLoad::Prescribed);
     let at_rest = |feedback| {
@@ -104,9 +104,10 @@ fn a_delay_turns_what_is_fed_back() {
             };
             // the signal by the command follows from the effect of a gain only
             let unit = InnerFeedback { gain: 1e-7, ..InnerFeedback::default() };
-            let [[alone, _], [with, _]] = [plain.response(s), at(unit, 0.0)];
-            let signal = (alone / with - 1.0) / unit.gain;
-            let expected = alone / (1.0 + back.filter.response(s) * exp_complex(-s * delay) * signal);
+            let [[without_feedback, _], [with, _]] = [plain.response(s), at(unit, 0.0)];
+            let signal = (without_feedback / with - 1.0) / unit.gain;
+            let expected =
+                without_feedback / (1.0 + back.filter.response(s) * exp_complex(-s * delay) * signal);
             let found = at(back.filter, delay)[0];
             let error = (found / expected - 1.0).norm_sqr().sqrt();
             assert!(error < 1e-6, "rig {number} at {frequency} rad/s: {error}");

@@ -138,8 +138,8 @@ pub(super) fn is_the_machine(rig: &Drawn, number: u64) {
         for step in 0..20 {
             let frequency = 1e-2 * pow(1e6, f64::from(step) / 19.0);
             let [command, ground] = rig.small_signal(signal, gain, frequency);
-            for (told, own) in [(&coefficients.command, command), (&disturbance, ground)] {
-                let error = (told.at_frequency(frequency) / own - 1.0).norm_sqr().sqrt();
+            for (found_response, own) in [(&coefficients.command, command), (&disturbance, ground)] {
+                let error = (found_response.at_frequency(frequency) / own - 1.0).norm_sqr().sqrt();
                 assert!(error < 1e-6, "rig {number}, {signal:?} at {frequency} rad/s: {error}");
             }
         }
@@ -164,11 +164,14 @@ pub(super) fn velocity_is_that_of_the_machine(rig: &Drawn, number: u64) {
             polynomial.iter().fold(Complex64::ZERO, |sum, one| sum * s + *one)
         };
         let own = rig.small_signal(Signal::LoadVelocity, 0.0, frequency);
-        let told =
+        let found_response =
             [&rate.command, &rate.disturbance].map(|path| at(path) / at(&coefficients.command.denominator));
         let moving = lumped.load_velocity(Complex64::new(0.0, frequency));
-        for ((own, told), moving) in own.into_iter().zip(told).zip(moving) {
-            assert!((told / own - 1.0).norm_sqr() < 1e-14, "rig {number} at {frequency}: {told} {own}");
+        for ((own, found_response), moving) in own.into_iter().zip(found_response).zip(moving) {
+            assert!(
+                (found_response / own - 1.0).norm_sqr() < 1e-14,
+                "rig {number} at {frequency}: {found_response} {own}"
+            );
             assert!((moving / own - 1.0).norm_sqr() < 1e-14, "rig {number} at {frequency}: {moving} {own}");
         }
     }
@@ -198,8 +201,8 @@ pub(super) fn responds_as_its_polynomials(rig: &Drawn, number: u64) -> usize {
     for step in 0..20 {
         let frequency = 1e-2 * pow(1e7, f64::from(step) / 19.0);
         let [command, ground] = moving.response(Complex64::new(0.0, frequency));
-        for (own, told) in [(command, &coefficients.command), (ground, &disturbance)] {
-            assert!((own / told.at_frequency(frequency) - 1.0).norm_sqr() < 1e-18, "rig {number}");
+        for (own, found_response) in [(command, &coefficients.command), (ground, &disturbance)] {
+            assert!((own / found_response.at_frequency(frequency) - 1.0).norm_sqr() < 1e-18, "rig {number}");
         }
         use phea_dynamics::uncertain_plant::responding::RespondingPlant;
         let Some(bound) = moving.roll_off(frequency) else { continue };
@@ -219,7 +222,7 @@ pub(super) fn responds_as_its_polynomials(rig: &Drawn, number: u64) -> usize {
 /// A rigid spring has no effect: in the linear plant, with lines in motion and in the machine at
 /// rest and in small motions.
 #[test]
-fn a_rigid_spring_is_no_spring() {
+fn a_rigid_spring_has_no_effect() {
     let rigid = |damping| SeriesSpring {
         stiffness: 1e25,
         damping,
@@ -279,7 +282,7 @@ fn a_rigid_spring_is_no_spring() {
 
 /// A spring without damper and mass is equivalent to a softer force sensor, in the machine too.
 #[test]
-fn a_spring_alone_is_a_softer_sensor() {
+fn a_spring_without_mass_is_a_softer_sensor() {
     let spring = SeriesSpring {
         stiffness: 2.24e6,
         damping: None,

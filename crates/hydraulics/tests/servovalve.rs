@@ -122,7 +122,7 @@ fn leakage_adds_to_the_flow_gain_under_load() {
 /// The total leakage with a leakage curve on each edge is not greatest at null, as thesis (4.14)
 /// requires.
 #[test]
-fn total_leakage_peaks_beside_null() {
+fn total_leakage_peaks_next_to_null() {
     // ORIGIN: recomputed by comparisons/recompute_rig.py (plain square roots, blocked ports)
     let cases = [
         (valve(), 1.0, 1.0816865, 2.9372e-3),
@@ -228,10 +228,10 @@ fn direction_decides_at_null_and_the_mean_is_between() {
 
 fn direction_decides(valve: &Servovalve) {
     let at = |direction| chamber_coefficients(valve, &SUPPLY, 0.0, 37e5, 24e5, direction);
-    let beside = |spool| chamber_coefficients(valve, &SUPPLY, spool, 37e5, 24e5, SpoolDirection::Mean);
+    let next_to_null = |spool| chamber_coefficients(valve, &SUPPLY, spool, 37e5, 24e5, SpoolDirection::Mean);
     let (extending, retracting, mean) =
         (at(SpoolDirection::Extending), at(SpoolDirection::Retracting), at(SpoolDirection::Mean));
-    for (one_sided, limit) in [(extending, beside(1e-12)), (retracting, beside(-1e-12))] {
+    for (one_sided, limit) in [(extending, next_to_null(1e-12)), (retracting, next_to_null(-1e-12))] {
         assert!((one_sided.flow_gain_a / limit.flow_gain_a - 1.0).abs() < 1e-9);
         assert!((one_sided.flow_gain_b / limit.flow_gain_b - 1.0).abs() < 1e-9);
     }

@@ -217,7 +217,7 @@ const NAMES: [&str; 15] =
 /// A single recording is valid for every point of a box that brings the spool through null, and
 /// differentiating it gives the derivatives of the point itself, by the implicit function theorem.
 #[test]
-fn a_recorded_point_is_right_everywhere_with_its_derivatives() {
+fn a_recorded_point_has_correct_derivatives_everywhere() {
     for leakage_model in [LeakageModel::EachEdge, LeakageModel::OneCurve] {
         check_recorded_point(leakage_model);
     }
@@ -268,7 +268,7 @@ fn check_recorded_point(leakage_model: LeakageModel) {
 
 /// Equal pressures cause no leakage, which leaves the operating point unchanged.
 #[test]
-fn leakage_leaves_equal_pressures_alone() {
+fn leakage_leaves_equal_pressures_unchanged() {
     let balance = |leakage: f64| Balance {
         valve: phea_hydraulics::reference_rig::valve_with_equal_edges(),
         supply: Supply { pressure: 70e5, tank_pressure: 0.0 },

@@ -185,7 +185,7 @@ fn lengths_undo_stiffnesses_in_both_models() {
 ///
 /// ORIGIN: analytic, the least of A_A^2/C_A + A_B^2/C_B over the stroke
 #[test]
-fn unequal_lines_share_the_compliance() {
+fn unequal_lines_divide_the_compliance() {
     let narrow = Hose { bore: 9.5e-3, expansion_slope: 1.1e-12, operating_expansion: 5e-6, ..hose() };
     let (cylinder, member) = (asymmetric(), StiffeningMember::Nominal);
     let mut within = 0;

@@ -81,7 +81,7 @@ fn intervals_enclose_it() {
 
 /// A stage of equal areas leaves a machine unchanged to the bit.
 #[test]
-fn a_stage_of_the_same_areas_is_none() {
+fn a_stage_of_equal_areas_has_no_effect() {
     let same = Telescope { stroke: 0.5, stages: [stage(0.2, [1.0; 2]), None, None], transition: 0.05 };
     let options = MachineOptions::default();
     let [plain, stages] = [asymmetric(), with(same, asymmetric())].map(|rig| machine_of(rig, &options));

@@ -32,7 +32,7 @@ use phea_hydraulics::stroke::{ActuatorStroke, PistonStage, Telescope};
 use super::commanded::{amplitudes, cross_port, power_unit, signal_of, slopes};
 use super::linkage::{STROKE, linkages};
 use super::plant::{plant_at_rest, telescope};
-use super::plant_in_motion::{model, plant_behind};
+use super::plant_in_motion::{model, plant_with_lines};
 use super::series::element;
 use super::transmission::transmission;
 
@@ -388,7 +388,7 @@ fn drawn(number: u64, kinds: &[Linkage; 4]) -> Drawn {
     let pressures = outputs.pressures;
     let (plant, behind) = match lines {
         Some(lines) => {
-            let (plant, behind) = plant_behind(&actuator, &machine, lines, (position, &rest), own);
+            let (plant, behind) = plant_with_lines(&actuator, &machine, lines, (position, &rest), own);
             (plant, Some(behind))
         }
         None => {
@@ -448,15 +448,15 @@ fn apart(rig: &Drawn) -> f64 {
         let amplitudes = amplitudes(machine, rest, (gain, *turned), frequency);
         let of = [0, 1, 2, 3, 4].map(|one| amplitudes.each_ref().map(|of| signal_of(of, &signals[one])));
         let [force, felt, velocity] = closed(plant.pressure_feedback, s, of);
-        let mut told = vec![(moving[0].response(s), force), (moving[1].response(s), felt)];
-        told.extend((plant.load != LinearLoad::Prescribed).then(|| (moving[0].load_velocity(s), velocity)));
+        let mut pairs = vec![(moving[0].response(s), force), (moving[1].response(s), felt)];
+        pairs.extend((plant.load != LinearLoad::Prescribed).then(|| (moving[0].load_velocity(s), velocity)));
         let of_polynomials = polynomials.iter().zip([force, felt]).filter(|_| behind.is_none());
-        told.extend(of_polynomials.map(|(plant, own)| {
+        pairs.extend(of_polynomials.map(|(plant, own)| {
             let by_motion = plant.disturbance.as_ref().unwrap().at_frequency(frequency);
             ([plant.command.at_frequency(frequency), by_motion], own)
         }));
-        for (told, own) in told.into_iter().flat_map(|(told, own)| told.into_iter().zip(own)) {
-            worst = worst.max((told / own - 1.0).norm_sqr().sqrt());
+        for (found, own) in pairs.into_iter().flat_map(|(found, own)| found.into_iter().zip(own)) {
+            worst = worst.max((found / own - 1.0).norm_sqr().sqrt());
         }
     }
     worst

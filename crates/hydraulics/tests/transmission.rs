@@ -143,12 +143,12 @@ fn its_line_is_the_line_in_segments() {
     for number in 0..60 {
         let own = Transmission { segments: 1 + number as usize % 8, ..transmission(number) };
         let segments = Segments::new(&conduit(&own), own.segments, LaminarFriction::Steady).unwrap();
-        let told = held_back(own);
+        let found_response = held_back(own);
         for frequency in [0.3, 20.0, 500.0, 4e3] {
             let s = Complex64::new(0.0, frequency);
             let line = DynamicLine::Segments(segments).transfer_matrix(s);
             let expected = line.impedance * s * (own.piston_area * own.piston_area);
-            let error = (at(&told, s) / expected - 1.0).norm_sqr().sqrt();
+            let error = (at(&found_response, s) / expected - 1.0).norm_sqr().sqrt();
             assert!(error < 1e-10, "{number} at {frequency}: {error}");
         }
     }
@@ -356,7 +356,7 @@ fn it_is_passive_under_random_motions_of_its_ports() {
 /// Port of the load with its force fed back: F_L/X_L of the loop, by eliminating the command from
 /// both paths.
 #[test]
-fn the_port_of_a_loop_counts_what_the_oil_holds_back() {
+fn the_port_of_a_loop_includes_the_inertia_of_the_oil() {
     use phea_dynamics::linear::{Polynomial, TransferFunction};
     use phea_hydraulics::impedance::closed_loop_port;
     let of = |coefficients: &[f64]| Polynomial::new(coefficients.to_vec());
@@ -385,7 +385,7 @@ fn the_port_of_a_loop_counts_what_the_oil_holds_back() {
 /// The only impedance at the load above all resonances is that of the oil at its own piston, and
 /// the line states the frequency limit.
 #[test]
-fn at_last_the_load_meets_the_oil_at_its_piston() {
+fn the_load_meets_the_oil_at_its_piston_at_high_frequency() {
     for number in (0..40).filter(|number| number % 5 < 2) {
         let plant = drawn(number).plant;
         let LinearElement::Oil(column) = plant.series.unwrap().element else { panic!("{plant:?}") };

@@ -141,9 +141,9 @@ fn check_sensitivities(tested: &TestedValve) {
         let inputs = commands.map(|command| TestInput::new(command, SUPPLY, load(command)));
         let found = tested.sensitive_outputs(&coefficients, circuit, &inputs);
         for index in 0..STATIC_COEFFICIENTS {
-            let at = |share: f64| {
+            let at = |change: f64| {
                 let mut numbers = coefficients.to_array();
-                numbers[index] *= 1.0 + share;
+                numbers[index] *= 1.0 + change;
                 tested.outputs(&StaticCoefficients::from_array(numbers), circuit, &inputs)
             };
             let (less, more) = (at(-1e-5), at(1e-5));

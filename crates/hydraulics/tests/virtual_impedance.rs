@@ -49,13 +49,13 @@ fn check(found: Complex64, expected: Complex64, what: &str) {
 #[test]
 fn the_output_is_that_of_the_machine() {
     for number in 0..36 {
-        let (rig, beside) = (drawn(number), impedance(number));
-        let moving = PlantInMotion::new(&rig.plant, &rig.behind).beside(Some(beside));
+        let (rig, own_impedance) = (drawn(number), impedance(number));
+        let moving = PlantInMotion::new(&rig.plant, &rig.behind).beside(Some(own_impedance));
         let (fed, delay) = (25.0, 2e-3);
         let with_both = moving.fed_forward(Some(fed)).late(delay);
         for frequency in frequencies() {
             let s = Complex64::new(0.0, frequency);
-            let own = beside.response(s) / s;
+            let own = own_impedance.response(s) / s;
             let [[force, velocity], [ground_force, ground_velocity]] = rig.force_and_velocity(frequency);
             let expected = [force + own * velocity, ground_force + own * ground_velocity];
             for (found, expected) in moving.response(s).into_iter().zip(expected) {
@@ -76,7 +76,7 @@ fn the_output_is_that_of_the_machine() {
 #[test]
 fn the_quotients_are_force_and_motion() {
     for number in 0..48 {
-        let beside = impedance(number);
+        let own_impedance = impedance(number);
         let output =
             [SeriesOutput::Sensor, SeriesOutput::Deflection, SeriesOutput::OnLoad][number as usize % 3];
         let spring = LinearSpring { stiffness: 8e5, damping: Some(300.0), mass: Some(4.0) };
@@ -86,12 +86,12 @@ fn the_quotients_are_force_and_motion() {
             load_velocity_feed_forward: (number % 3 == 1).then_some(12.0),
             ..drawn(number).plant
         };
-        let seen = LinearPlant { virtual_impedance: Some(beside), ..plain }.coefficients();
+        let seen = LinearPlant { virtual_impedance: Some(own_impedance), ..plain }.coefficients();
         let force = plain.coefficients();
         let lumped = PlantInMotion::lumped(&plain);
         for frequency in frequencies() {
             let s = Complex64::new(0.0, frequency);
-            let own = beside.response(s) / s;
+            let own = own_impedance.response(s) / s;
             let moved = lumped.load_velocity(s);
             let paths = [
                 (&seen.command, &force.command, moved[0]),

@@ -94,7 +94,7 @@ fn segments_become_a_transmission_line() {
 
 /// A pulse at the valve has no effect before its wave has arrived.
 #[test]
-fn nothing_is_felt_before_the_wave_arrives() {
+fn the_far_end_is_at_rest_until_the_wave_arrives() {
     let machine = machine(WAVES);
     let point = operating_point(&actuator(), 0.2, Condition::Load(SteadyLoad::Force(0.0))).unwrap();
     let rest = machine.rest(&point).unwrap();
@@ -117,7 +117,7 @@ fn nothing_is_felt_before_the_wave_arrives() {
 
 /// Lines of any kind of hose preserve a steady motion, including the pressure drop along them.
 #[test]
-fn steady_motions_stay() {
+fn steady_motions_remain_steady() {
     let line = Line::Hose { hose: hose(), length: 3.0 };
     let rig = components(line, StiffnessModel::Uniform);
     let conduit = Conduit::of_line(&line, &rig.fluid, 35e5, StiffeningMember::Nominal).unwrap();

@@ -17,7 +17,7 @@ fn other(alternatives: &str, settings: &[&str]) -> Result<Loaded, Refusal> {
 
 /// An alternative equals the project with its settings on the command line.
 #[test]
-fn an_alternative_is_what_set_makes_of_the_project() {
+fn an_alternative_equals_the_project_with_set() {
     let forms = [
         "set = { \"supply.pressure\" = \"80 bar\", \"line.length\" = \"2 m\" }",
         "[alternative.set]\n\"supply.pressure\" = \"80 bar\"\n\"line.length\" = \"2 m\"",
@@ -62,7 +62,7 @@ fn alternatives_are_printed_as_they_are_read() {
 
 /// An error in a value or key has its place in the table of the alternative.
 #[test]
-fn errors_stand_where_they_are_written() {
+fn errors_have_their_place_in_the_file() {
     let first = STARTER.lines().count() + 2;
     let text = "[[alternative]]\nname = \"wrong\"\n[alternative.set]\n\"line.lenght\" = \"2 m\"\nsupply.pressure = \"80 mm\"\n";
     let refusal = other(text, &[]).unwrap_err();
@@ -96,7 +96,7 @@ fn a_warning_of_the_project_is_not_repeated() {
 
 /// A load case is set before the alternative sets its own values, and is listed like them.
 #[test]
-fn an_alternative_has_the_last_word_in_a_load_case() {
+fn an_alternative_takes_precedence_over_a_load_case() {
     let text = "[[load_case]]\nname = \"other\"\nset = { \"supply.pressure\" = \"80 bar\", \"line.length\" = \"3 m\" }\n\
                 [[alternative]]\nname = \"long\"\nset = { \"line.length\" = \"2 m\" }\n";
     let source = Memory::default();

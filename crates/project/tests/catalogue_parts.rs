@@ -29,7 +29,7 @@ fn pipe_a(actuator: &DeclaredActuator) -> &DeclaredPipe {
 }
 
 #[test]
-fn an_entry_gives_what_the_table_does_not_state() {
+fn an_entry_supplies_unstated_values() {
     let found = actuator(&[]);
     // ORIGIN: data sheet: Parker, tube fittings catalogue 4300, page R4, 14 x 2
     let pipe = pipe_a(&found);
@@ -45,13 +45,13 @@ fn an_entry_gives_what_the_table_does_not_state() {
 /// Values of the project override those of the entry, also if it states the rods or the areas in
 /// another way.
 #[test]
-fn what_the_project_states_goes_before_its_entry() {
+fn a_stated_value_takes_precedence_over_the_catalogue_entry() {
     assert_eq!(pipe_a(&actuator(&["line.pipe.bore=9.8 mm"])).bore, 0.0098);
     assert_eq!(actuator(&["cylinder.rod_diameter=28 mm"]).cylinder.rod_diameters_m(), [0.028; 2]);
     assert_eq!(actuator(&["cylinder.piston_area=12 cm2"]).cylinder.effective_areas_m2(), [12e-4; 2]);
     let warnings = read(&["supply.pressure=350 bar"]).unwrap().warnings;
-    let told = |message: &str| warnings.iter().any(|found| found.message == message);
-    assert!(told("the pipe's `working_pressure` is below the supply pressure"), "{warnings:?}");
+    let is_warned = |message: &str| warnings.iter().any(|found| found.message == message);
+    assert!(is_warned("the pipe's `working_pressure` is below the supply pressure"), "{warnings:?}");
     let misspelt =
         read(&["line.pipe.model=\"parker_eo_14x22\"", "cylinder.model=\"iso_6020_2_50\""]).unwrap_err();
     // values that the entries would have supplied are not requested
@@ -113,12 +113,12 @@ fn the_numbers_of_cylinders_agree() {
 fn the_pipe_of_a_transmission_has_its_limit() {
     let text = include_str!("valid/transmission_pipe.toml");
     let source = Memory::default().with("rig.toml", text);
-    let told = |settings: &[&str]| {
+    let is_warned = |settings: &[&str]| {
         let settings: Vec<String> = settings.iter().map(|one| one.to_string()).collect();
         let loaded =
             phea_project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|found| panic!("{found}"));
         loaded.warnings.iter().any(|found| found.message.contains("the pipe's `working_pressure` is"))
     };
-    assert!(told(&["series.line.pipe.working_pressure=20 bar"]));
-    assert!(!told(&["series.line.pipe.working_pressure=900 bar"]) && !told(&[]));
+    assert!(is_warned(&["series.line.pipe.working_pressure=20 bar"]));
+    assert!(!is_warned(&["series.line.pipe.working_pressure=900 bar"]) && !is_warned(&[]));
 }

@@ -155,7 +155,7 @@ fn a_misspelt_choice_is_the_only_error() {
 /// Tables that a check compares with each other, in which the default of a kind would contradict
 /// the text.
 #[test]
-fn nothing_follows_from_a_misspelt_kind_elsewhere() {
+fn a_misspelt_kind_causes_no_further_error() {
     let plant = "schema = 1\n[plant]\nnumerator = \"1\"\ndenominator = \"s\"\n";
     let structure = |kind: &str| {
         format!(

@@ -67,7 +67,7 @@ fn refuse(text: &str, message: &str, at: std::ops::Range<usize>) {
 }
 
 #[test]
-fn refusals_point() {
+fn refusals_have_their_position() {
     refuse("", "an empty formula", 0..0);
     refuse("s + ", "the formula ends where a number or name should follow", 4..4);
     refuse("2s + 1", "unexpected `s`", 1..2);

@@ -45,7 +45,7 @@ fn findings(bytes: &[u8]) -> (String, bool) {
 }
 
 #[test]
-fn every_malformed_project_is_refused_as_written_beside_it() {
+fn every_malformed_project_has_its_expected_error() {
     let files = corpus();
     assert!(files.len() >= 60, "{} files", files.len());
     let mut wrong = String::new();

@@ -65,7 +65,7 @@ fn a_spread_of_ten_percent_is_a_tenth() {
 
 /// Forms of a limit are not among the listed keys.
 #[test]
-fn a_wish_in_time_takes_percent_in_text() {
+fn a_requirement_in_time_accepts_percent_in_text() {
     let text = |overshoot: &str, band: &str| {
         format!(
             "schema = 1\n[plant]\nnumerator = \"1\"\ndenominator = \"s\"\n[[specification]]\nkind = \"tracking\"\nfrequencies = [1]\nlower = 1e-3\n[specification.upper]\novershoot_percent = {overshoot}\nsettling_time = \"0.1 s\"\nsettling_band_percent = {band}\n"

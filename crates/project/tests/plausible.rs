@@ -15,13 +15,13 @@ fn warnings(text: &str, settings: &[&str]) -> Vec<String> {
     let settings: Vec<String> = settings.iter().map(ToString::to_string).collect();
     let loaded =
         project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"));
-    let told = loaded.warnings.iter().map(|warning| warning.message.clone());
-    told.filter(|message| message.contains(" have ")).collect()
+    let messages = loaded.warnings.iter().map(|warning| warning.message.clone());
+    messages.filter(|message| message.contains(" have ")).collect()
 }
 
 #[test]
-fn a_unit_that_was_forgotten_is_asked_for() {
-    for (setting, told) in [
+fn a_forgotten_unit_is_requested() {
+    for (setting, messages) in [
         (
             "cylinder.piston_diameter=63",
             "`piston_diameter` is 63 m: pistons have 10 mm to 500 mm; was 63 mm meant?",
@@ -41,13 +41,13 @@ fn a_unit_that_was_forgotten_is_asked_for() {
         ),
         ("line.length=1500", "`length` is 1500 m: lines have 50 mm to 30 m; was 1.5 m meant?"),
     ] {
-        assert_eq!(warnings(HOSE, &[setting]), [told], "{setting}");
+        assert_eq!(warnings(HOSE, &[setting]), [messages], "{setting}");
     }
 }
 
 /// A factor of ten beyond the usual range may be a special rig, without a warning.
 #[test]
-fn unusual_rigs_are_not_asked_about() {
+fn unusual_rigs_need_no_confirmation() {
     for setting in ["cylinder.piston_diameter=2", "line.length=200 m", "force_sensor.stiffness=1 kN/mm"] {
         assert_eq!(warnings(HOSE, &[setting]), Vec::<String>::new(), "{setting}");
     }
@@ -61,9 +61,9 @@ fn unusual_rigs_are_not_asked_about() {
                 else {
                     continue;
                 };
-                let told: Vec<_> =
+                let messages: Vec<_> =
                     loaded.warnings.iter().filter(|one| one.message.contains(" have ")).collect();
-                assert!(told.is_empty(), "{}: {told:?}", path.display());
+                assert!(messages.is_empty(), "{}: {messages:?}", path.display());
             }
         }
     }

@@ -94,7 +94,7 @@ fn line_ends_and_byte_order_mark_do_not_matter() {
 }
 
 #[test]
-fn settings_come_before_everything_else() {
+fn settings_take_precedence_over_everything_else() {
     let source = Memory::default().with("rig.toml", HOSE);
     let set = |settings: &[&str]| {
         let settings: Vec<String> = settings.iter().map(|text| (*text).to_string()).collect();
@@ -180,7 +180,7 @@ help: did you mean `bar`?"#;
 
 /// A missing file is reported with a file of similar name.
 #[test]
-fn a_misspelt_file_is_told_with_its_neighbour() {
+fn a_misspelt_file_is_reported_with_the_closest_name() {
     let source = Memory::default().with("rigs/hose.toml", HOSE).with("rigs/notes.txt", "");
     let help = |path: &str| {
         let report = project::read(&source, path, &[], &[]).expect_err("no such file");
@@ -241,7 +241,7 @@ fn warns(text: &str, message: &str) {
 }
 
 #[test]
-fn what_has_no_effect_is_told() {
+fn keys_without_effect_are_reported() {
     let rig = include_str!("valid/volumes.toml");
     let friction = "friction = { model = \"viscous\", viscous = 299";
     let with_coulomb = rig.replace(friction, &format!("{friction}, coulomb = 80"));
@@ -304,7 +304,7 @@ fn the_measured_valve_adds_its_null_to_that_of_the_examples() {
 }
 
 #[test]
-fn a_side_inherits_what_it_does_not_say() {
+fn a_side_inherits_unstated_values() {
     // ORIGIN: written by hand in these lines; the slope is Ledezma (2019), Table A.1
     let [pipe, own] =
         ["[line.b]\npipe = { bore = \"10 mm\" }\n", "[line.b]\nbore = \"9 mm\"\n"].map(|side| {
@@ -332,7 +332,7 @@ fn a_side_inherits_what_it_does_not_say() {
 }
 
 #[test]
-fn areas_come_from_diameters_or_stand_for_themselves() {
+fn areas_are_derived_from_diameters_or_stated() {
     let diameters = DeclaredCylinder {
         piston_diameter: Some(0.05),
         rod_diameter: Some(0.022),
@@ -358,7 +358,7 @@ const MOTOR: &str = include_str!("valid/motor.toml");
 /// A printed controller of a motor reads back equal when pasted into its project: torques have the
 /// units of a rig that turns.
 #[test]
-fn what_is_pasted_into_the_project_of_a_motor_is_what_was_printed() {
+fn printed_fragments_can_be_pasted_into_the_project_of_a_motor() {
     let quantization = "quantization = { command_bits = 12, command_range = [\"-10 V\", \"10 V\"], measurement_bits = 12, \
                         measurement_range = [\"-500 N.m\", \"500 N.m\"], allowed_force_error = \"2 N.m\" }\n";
     let text = MOTOR.replace("sample_time = \"1 ms\"\n", &format!("sample_time = \"1 ms\"\n{quantization}"));

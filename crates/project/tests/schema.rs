@@ -9,7 +9,7 @@ use phea_project::{keys, schema};
 use serde_json::Value;
 
 #[test]
-fn the_schema_beside_the_book_is_what_the_command_prints() {
+fn the_schema_in_the_book_is_printed_by_the_command() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../book/src/phea.schema.json");
     let committed = std::fs::read_to_string(path).expect("the schema is committed");
     let same = committed == format!("{:#}\n", schema());
@@ -36,7 +36,7 @@ fn names(schema: &Value, found: &mut BTreeSet<String>) {
 }
 
 #[test]
-fn every_key_that_is_listed_is_in_the_schema_with_what_it_means() {
+fn every_listed_key_is_in_the_schema_with_its_meaning() {
     let mut found = BTreeSet::new();
     names(&schema(), &mut found);
     for entry in keys().iter().filter(|entry| entry.key.name != "NAME") {

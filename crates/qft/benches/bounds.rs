@@ -106,11 +106,11 @@ fn compare(task: &Task) -> bool {
         task.phases
     );
     let ours: Vec<GainIntervals> = bounds.into_iter().flatten().collect();
-    task.drivers.iter().all(|driver| beside(task, driver, seconds, &ours))
+    task.drivers.iter().all(|driver| compare_with_peer(task, driver, seconds, &ours))
 }
 
 /// Compares with one driver.
-fn beside(task: &Task, driver: &str, seconds: f64, ours: &[GainIntervals]) -> bool {
+fn compare_with_peer(task: &Task, driver: &str, seconds: f64, ours: &[GainIntervals]) -> bool {
     let mut fastest = f64::INFINITY;
     let mut values = Vec::new();
     for _ in 0..PEER_RUNS {

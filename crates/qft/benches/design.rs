@@ -70,7 +70,7 @@ fn run() -> Result<bool, Failure> {
     let mut all_reached = true;
     for task in &TASKS {
         for seed in 1..=3 {
-            all_reached &= beside(task, &problem, seed)?;
+            all_reached &= compare_with_peer(task, &problem, seed)?;
         }
     }
     Ok(all_reached)
@@ -78,7 +78,7 @@ fn run() -> Result<bool, Failure> {
 
 /// Runs both from one seed, prints times, gains and ratio; returns true if phea's result meets the
 /// limits with nearly the least gain.
-fn beside(task: &Task, problem: &DesignProblem, seed: u64) -> Result<bool, Failure> {
+fn compare_with_peer(task: &Task, problem: &DesignProblem, seed: u64) -> Result<bool, Failure> {
     let (seconds, design) = timed(task, problem, seed)?;
     println!(
         "{seconds:>10.3} s  phea, {} poles, seed {seed}: {:.3} dB, {:?} after {} rounds",

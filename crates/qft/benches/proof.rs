@@ -186,16 +186,16 @@ fn bisected(uncertain: usize, ratio: f64) -> Result<Effort, Failure> {
     let mut whole: Part = vec![BAND_RAD_PER_S.map(portable::ln)];
     whole.extend(PARAMETERS.iter().take(uncertain).map(|&(_, low, high)| [low, high]));
     let begun = Instant::now();
-    let mut waiting = vec![(whole.clone(), 1.0)];
+    let mut pending = vec![(whole.clone(), 1.0)];
     let (mut boxes, mut leaves, mut shown) = (0, 0, 0.0);
-    while let Some((part, share)) = waiting.pop() {
+    while let Some((part, fraction)) = pending.pop() {
         boxes += 1;
         if boxes > BOXES_MAXIMUM {
             break;
         }
         if satisfies(&part, [numerator, denominator], ratio * LIMIT) {
             leaves += 1;
-            shown += share;
+            shown += fraction;
             continue;
         }
         let width = |axis: usize| (part[axis][1] - part[axis][0]) / (whole[axis][1] - whole[axis][0]);
@@ -204,7 +204,7 @@ fn bisected(uncertain: usize, ratio: f64) -> Result<Effort, Failure> {
         let (mut lower, mut upper) = (part.clone(), part);
         lower[widest][1] = middle;
         upper[widest][0] = middle;
-        waiting.extend([(upper, 0.5 * share), (lower, 0.5 * share)]);
+        pending.extend([(upper, 0.5 * fraction), (lower, 0.5 * fraction)]);
     }
     Ok(Effort { leaves, seconds: begun.elapsed().as_secs_f64(), shown })
 }

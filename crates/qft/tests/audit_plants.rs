@@ -53,7 +53,7 @@ fn specifications() -> [Specification; 1] {
 /// Transfer of plants from one audit to the other, which saves work and does not change the
 /// results.
 #[test]
-fn both_audits_find_what_they_find_alone() {
+fn audits_in_one_pass_agree_with_separate_audits() {
     for extent in [Extent::Box, Extent::Members] {
         let (family, around) = (family(extent), sampled_loop());
         let problem = AuditProblem {
@@ -64,12 +64,12 @@ fn both_audits_find_what_they_find_alone() {
             tolerance_db: TOLERANCE_DB,
         };
         let stability = family_stability(&family, &around, &mut unwatched).unwrap();
-        let (alone, _) = audit_specifications(&problem, &mut unwatched).unwrap();
+        let (separate, _) = audit_specifications(&problem, &mut unwatched).unwrap();
         let audit = audit(&problem, &mut unwatched).unwrap();
         assert_eq!(audit.stability, stability.finding);
         assert_eq!(audit.delay_margin, stability.delay_margin);
         assert_eq!(audit.stability.verdict, Verdict::Met, "{:?}", audit.stability);
-        assert_eq!(audit.specifications, alone);
+        assert_eq!(audit.specifications, separate);
     }
 }
 
@@ -99,10 +99,10 @@ fn audit_and_proof_do_not_depend_on_the_workers() {
             let proof = prove(&problem, &audit, options, &mut unwatched).unwrap();
             (audit, proof)
         };
-        let alone = found(Workers::CALLER);
-        assert_eq!(alone.0, audit(&problem, &mut unwatched).unwrap());
+        let separate = found(Workers::CALLER);
+        assert_eq!(separate.0, audit(&problem, &mut unwatched).unwrap());
         for at_once in [1, 2, 5] {
-            assert_eq!(found(Workers { at_once, work: backwards }), alone, "{at_once}");
+            assert_eq!(found(Workers { at_once, work: backwards }), separate, "{at_once}");
         }
     }
 }
@@ -110,7 +110,7 @@ fn audit_and_proof_do_not_depend_on_the_workers() {
 /// Stopped audits: an audit stops at once when its watch requests it, and reports its progress
 /// until then.
 #[test]
-fn an_audit_stops_where_it_is_told() {
+fn an_audit_can_be_stopped() {
     let (family, around) = (family(Extent::Box), sampled_loop());
     let problem = AuditProblem {
         family: &family,

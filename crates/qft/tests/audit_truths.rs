@@ -147,7 +147,7 @@ fn two_faster_poles_are_stable() {
 
 // ORIGIN: recomputed by comparisons/recompute_sampling.py
 #[test]
-fn a_slow_resonance_beside_fast_poles_is_unstable() {
+fn a_slow_resonance_next_to_fast_poles_is_unstable() {
     let (fast, slow): (f64, f64) = (391.422, 0.606991);
     let factors: [&[f64]; 3] = [
         &[1.0 / 375.266, 1.0],
@@ -228,7 +228,7 @@ fn leading<'t>(p: &[Recorded<'t>]) -> Recorded<'t> {
 /// Plant with ((x - 0.37)^2 - 0.001) s^2 + s: a pole at 1/(0.001 - (x - 0.37)^2), unstable for |x -
 /// 0.37| < 0.0316.
 #[test]
-fn a_pole_that_passes_through_infinity_is_met() {
+fn a_pole_that_passes_through_infinity_is_found() {
     let plant = family(&[("x", 0.0, 0.0, 1.0)], Spacing::Linear, |p| {
         rational(vec![1.0.into()], vec![leading(p), 1.0.into(), 0.0.into()], 0.0)
     });
@@ -252,7 +252,7 @@ fn a_pole_that_passes_through_infinity_is_met() {
 /// sign: its pole is at -1/(x - 0.5)^2. No enclosure can distinguish the expanded square from a
 /// change of sign.
 #[test]
-fn a_pole_that_touches_infinity_is_told_where_the_square_is_recorded() {
+fn a_pole_that_touches_infinity_is_reported_if_the_square_is_recorded() {
     let build = |expanded: bool| {
         family(&[("x", 0.0, 0.0, 1.0)], Spacing::Linear, move |p| {
             let from = p[0] - 0.5.into();
@@ -275,17 +275,17 @@ fn a_pole_that_touches_infinity_is_told_where_the_square_is_recorded() {
 /// unbounded: the two squares are equal, and their difference retains the width of both.
 #[test]
 fn a_leading_coefficient_without_enclosures_is_searched_for() {
-    let build = |share: f64| {
+    let build = |fraction: f64| {
         family(&[("x", 0.0, 0.0, 1.0)], Spacing::Linear, move |p| {
             let from = p[0] - 0.5.into();
             let unit = (p[0] * p[0] - p[0] + 0.25.into() - from * from + 1e-7.into()).times(1e7);
-            let leading = -(p[0].times(share) / unit) + 1.0.into();
+            let leading = -(p[0].times(fraction) / unit) + 1.0.into();
             rational(vec![1.0.into()], vec![leading, 1.0.into(), 0.0.into()], 0.0)
         })
     };
-    let kept = audit(&build(0.6), &Controller::default(), &[sensitivity(3.0)]);
-    assert_eq!(kept.stability.verdict, Verdict::Met, "{:?}", kept.stability);
-    let found = kept.stability.infinity.expect("a search");
+    let stable = audit(&build(0.6), &Controller::default(), &[sensitivity(3.0)]);
+    assert_eq!(stable.stability.verdict, Verdict::Met, "{:?}", stable.stability);
+    let found = stable.stability.infinity.expect("a search");
     assert!((found.least_share - 0.4).abs() < 1e-6 && found.parameters == [0], "{found:?}");
     assert_eq!(value(&found.plant), 1.0);
     let changed = audit(&build(1.25), &Controller::default(), &[sensitivity(3.0)]);
@@ -296,7 +296,7 @@ fn a_leading_coefficient_without_enclosures_is_searched_for() {
 /// Gain at infinity |L(inf)| = 1.001 - (x - 0.37)^2, which exceeds one for |x - 0.37| < 0.0316:
 /// with dead time infinitely many poles are unstable there.
 #[test]
-fn a_gain_at_infinity_that_passes_one_inside_the_box_is_met() {
+fn a_gain_at_infinity_that_passes_one_inside_the_box_is_found() {
     let build = |dead_time_s: f64| {
         family(&[("x", 0.0, 0.0, 1.0)], Spacing::Linear, move |p| {
             let gain = -leading(p) + 1.0.into();

@@ -48,11 +48,11 @@ fn sampled(
     plant: PlantCoefficients<f64>,
     delay_s: f64,
     sensor: TransferFunction,
-    look: impl Fn(Complex64, MemberResponse),
+    examine: impl Fn(Complex64, MemberResponse),
 ) {
     let member = compensation(timing(Some(SAMPLE_TIME), delay_s), sensor).member(plant).unwrap();
     for frequency in FREQUENCIES {
-        look(z(frequency), member.response(frequency).unwrap());
+        examine(z(frequency), member.response(frequency).unwrap());
     }
 }
 
@@ -156,20 +156,20 @@ fn a_continuous_loop_carries_delay_and_sensor() {
 /// (z - e)) after a sample and a fraction of one. The loop is unchanged.
 #[test]
 fn a_rate_that_is_fed_forward_is_a_path_of_the_disturbance() {
-    let (a, gain, share) = (30.0, 0.7, 0.0037);
+    let (a, gain, fraction) = (30.0, 0.7, 0.0037);
     let disturbance = Some(RationalCoefficients { numerator: vec![-3.0, 0.0], denominator: vec![1.0, 5.0] });
     let plant = PlantCoefficients { disturbance, ..plant(&[a], &[1.0, a], 0.0) };
     let sensor = rational(&[80.0], &[1.0, 80.0]);
-    let (e, r) = (portable::exp(-a * SAMPLE_TIME), portable::exp(-a * (SAMPLE_TIME - share)));
+    let (e, r) = (portable::exp(-a * SAMPLE_TIME), portable::exp(-a * (SAMPLE_TIME - fraction)));
     for sample_time_s in [None, Some(SAMPLE_TIME)] {
-        let own = timing(sample_time_s, SAMPLE_TIME + share);
+        let own = timing(sample_time_s, SAMPLE_TIME + fraction);
         let [fed, own] = [Timing { rate_feed_forward: gain, ..own }, own]
             .map(|timing| compensation(timing, sensor.clone()));
         let member = fed.member(plant.clone()).unwrap();
         for frequency in FREQUENCIES {
             let (s, z) = (Complex64::new(0.0, frequency), z(frequency));
             let late = match sample_time_s {
-                None => a / (s + a) * portable::exp_complex(-s * (SAMPLE_TIME + share)),
+                None => a / (s + a) * portable::exp_complex(-s * (SAMPLE_TIME + fraction)),
                 Some(_) => (1.0 - r + (r - e) / z) / (z - e) / z,
             };
             let without = own.plant_response(plant.clone(), frequency).unwrap();
@@ -209,7 +209,7 @@ fn measured_lag_at(a: f64, points: i32) -> MeasuredPlant {
 /// A measured plant equals the plant at its points, is close to it between them, and does not exist
 /// beyond them.
 #[test]
-fn a_measured_plant_stands_for_the_plant() {
+fn a_measured_plant_replaces_the_plant() {
     let (a, sensor) = (30.0, rational(&[80.0], &[1.0, 80.0]));
     let around = compensation(timing(None, 0.003), sensor);
     let (measured, exact) =
@@ -269,7 +269,7 @@ fn the_images_of_a_measured_plant_are_summed() {
 }
 
 #[test]
-fn a_plant_that_answers_before_it_is_asked_is_refused() {
+fn a_plant_with_negative_delay_is_refused() {
     for sample_time in [None, Some(SAMPLE_TIME)] {
         let around = compensation(timing(sample_time, 0.004), unity());
         let early = plant(&[1.0], &[1.0, 1.0], -0.001);

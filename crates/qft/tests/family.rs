@@ -56,17 +56,17 @@ fn coordinates() -> Vec<Coordinate> {
 }
 
 #[test]
-fn shares_and_values_are_inverse_to_each_other() {
+fn fractions_and_values_are_inverse_to_each_other() {
     let members = random(&plant(), &coordinates(), 200, 42).unwrap();
     let family = UncertainFamily::new(plant(), coordinates(), members, Extent::Box).unwrap();
     for values in &family.members()[1..] {
-        let shares = family.shares(values);
-        let again = family.values(&shares);
+        let fractions = family.shares(values);
+        let again = family.values(&fractions);
         for (one, other) in values.iter().zip(&again) {
             assert!((one / other - 1.0).abs() < 1e-13, "{values:?} {again:?}");
         }
-        assert!((shares[1] - (values[1] - 1.0) / 99.0).abs() < 1e-14);
-        assert!((shares[1] - (1.0 - portable::ln(values[2]) / portable::ln(100.0))).abs() < 1e-13);
+        assert!((fractions[1] - (values[1] - 1.0) / 99.0).abs() < 1e-14);
+        assert!((fractions[1] - (1.0 - portable::ln(values[2]) / portable::ln(100.0))).abs() < 1e-13);
     }
     // Fractions beyond the ends are clamped to them, missing ones count as zero; the ends are
     // exact.
@@ -75,7 +75,7 @@ fn shares_and_values_are_inverse_to_each_other() {
 }
 
 #[test]
-fn a_grid_holds_its_corners_and_stays_within_the_box() {
+fn a_grid_contains_its_corners_and_remains_within_the_box() {
     let (all, corners) =
         (grid(&plant(), &coordinates()).unwrap(), vertices(&plant(), &coordinates()).unwrap());
     assert_eq!((all.len(), corners.len()), (20, 4));
@@ -92,7 +92,7 @@ fn a_grid_holds_its_corners_and_stays_within_the_box() {
 }
 
 #[test]
-fn what_is_no_family_is_refused() {
+fn invalid_families_are_refused() {
     let refused = |coordinates: Vec<Coordinate>, members: Vec<Vec<f64>>| {
         UncertainFamily::new(plant(), coordinates, members, Extent::Members).unwrap_err()
     };
@@ -125,7 +125,7 @@ fn measured(frequencies: &[f64], command: Vec<Complex64>) -> MeasuredPlant {
 /// Linear interpolation in dB and phase over the logarithm of frequency: c (jw)^n is exact between
 /// its points.
 #[test]
-fn powers_of_s_are_met_between_the_points() {
+fn powers_of_s_are_interpolated_exactly() {
     let power = |w: f64| 3.0 / (Complex64::new(0.0, w) * Complex64::new(0.0, w) * Complex64::new(0.0, w));
     let frequencies = [0.1, 0.7, 40.0];
     let plant = measured(&frequencies, frequencies.map(power).to_vec());
@@ -138,7 +138,7 @@ fn powers_of_s_are_met_between_the_points() {
 
 /// The shorter way from 170 to -170 degrees passes through 180.
 #[test]
-fn the_phase_goes_the_shorter_way() {
+fn the_phase_is_interpolated_along_the_shorter_arc() {
     let turn = |degrees: f64| {
         let angle = degrees * std::f64::consts::PI / 180.0;
         Complex64::new(portable::cos(angle), portable::sin(angle))

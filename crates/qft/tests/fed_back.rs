@@ -147,13 +147,13 @@ fn a_sensor_of_the_rate_is_a_path_of_its_own() {
             let expected = held(&force, delay, z) / back;
             let from_disturbance =
                 s * (s + 1.0) / ((s + a) * (s + b)) * w / (s + w) * exp_complex(-s * later);
-            let alone = without.response(frequency).unwrap();
+            let own = without.response(frequency).unwrap();
             for found in [
                 member.response(frequency).unwrap(),
                 around.plant_response(plant.clone(), frequency).unwrap(),
             ] {
                 close(found.plant, expected, 1e-11);
-                close(found.sensor, alone.sensor, 1e-11);
+                close(found.sensor, own.sensor, 1e-11);
                 close(found.load_motion, -3.0 * s / (s + 5.0) + gain * from_disturbance * expected, 1e-11);
             }
         }
@@ -363,18 +363,18 @@ fn its_poles_are_those_of_the_loop_in_states() {
         }
         assert_eq!(found.status == StabilityStatus::Stable, stable, "{number}: {found:?} {expected}");
         seen[usize::from(stable)] += 1;
-        let mut asked = SampleStability::new(&around, vec![member]);
-        assert_eq!(asked.is_stable(around.feedback()).unwrap(), stable, "{number}");
+        let mut stability = SampleStability::new(&around, vec![member]);
+        assert_eq!(stability.is_stable(around.feedback()).unwrap(), stable, "{number}");
         if number % 5 != 0 {
             continue;
         }
         let hidden = around.responding(Arc::new(plant.clone()));
-        let mut asked = SampleStability::new(&around, vec![hidden.clone()]);
+        let mut stability = SampleStability::new(&around, vec![hidden.clone()]);
         match member_stability(&hidden, &around).status {
             StabilityStatus::NotResolved(_) => {}
             status => {
                 assert_eq!(status == StabilityStatus::Stable, stable, "{number}: {status:?} {expected}");
-                assert_eq!(asked.is_stable(around.feedback()).unwrap(), stable, "{number}");
+                assert_eq!(stability.is_stable(around.feedback()).unwrap(), stable, "{number}");
                 hidden_seen[usize::from(stable)] += 1;
             }
         }
@@ -385,7 +385,7 @@ fn its_poles_are_those_of_the_loop_in_states() {
 
 /// Folded from their responses, P', H and Pd' equal those of the polynomials.
 #[test]
-fn hidden_polynomials_fold_onto_the_same() {
+fn hidden_polynomials_fold_onto_equal_frequencies() {
     let mut state = 9;
     for number in 0..20 {
         let plant = Drawn::new(&mut state);
@@ -413,7 +413,7 @@ fn hidden_polynomials_fold_onto_the_same() {
 
 /// The audit of a family finds the worst case of a dense grid of responses.
 #[test]
-fn an_audit_sees_it() {
+fn an_audit_includes_the_inner_feedback() {
     let gains = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 1.0, maximum: 2.0 };
     let plant = UncertainPlant::record(vec![gains], |p| {
         let denominator = vec![1.0.into(), 12.0.into(), 90.0.into()];

@@ -136,7 +136,7 @@ fn family() -> Vec<Rig> {
 /// The result is within one hundredth of the best gain and corner of a fine grid, and better than
 /// no feedback.
 #[test]
-fn it_is_as_good_as_the_best_of_a_grid() {
+fn the_gain_is_at_least_as_good_as_the_best_of_a_grid() {
     let limits = InnerLoopLimits { delay_margin_s: 0.02, ..FREE };
     let problem = problem(&family(), limits);
     let found = problem.best().unwrap().unwrap();

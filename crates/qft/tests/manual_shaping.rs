@@ -22,9 +22,9 @@ use phea_qft::template::{TemplateOptions, template};
 use phea_qft::verification::TrackingJudgement;
 
 /// Fractions in [0, 1) from a linear congruential generator (Knuth 1997, MMIX).
-struct Shares(u64);
+struct Random(u64);
 
-impl Shares {
+impl Random {
     fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
@@ -77,15 +77,15 @@ fn response(element: Element, timing: Timing, frequency: f64) -> Complex64 {
 /// the stated reach.
 #[test]
 fn every_solved_element_passes_its_point() {
-    let mut shares = Shares(1);
+    let mut random = Random(1);
     let sampled = Timing { sample_time_s: Some(1e-3), ..Timing::default() };
     for pattern in PATTERNS {
         let (mut passed, mut refused) = (0, 0);
         for round in 0..3000 {
             let timing = if round % 2 == 0 { Timing::default() } else { sampled };
-            let frequency = 10_f64.powf(shares.between(0.0, 3.0));
-            let [present_db, present_deg] = [shares.between(-40.0, 40.0), shares.between(-360.0, 0.0)];
-            let [raise, turn] = [shares.between(-30.0, 30.0), shares.between(-179.0, 180.0)];
+            let frequency = 10_f64.powf(random.between(0.0, 3.0));
+            let [present_db, present_deg] = [random.between(-40.0, 40.0), random.between(-360.0, 0.0)];
+            let [raise, turn] = [random.between(-30.0, 30.0), random.between(-179.0, 180.0)];
             let wants = if matches!(pattern, ElementPattern::Gain | ElementPattern::NotchHere { .. }) {
                 0
             } else {
@@ -132,7 +132,7 @@ fn every_solved_element_passes_its_point() {
 /// Points on the boundary of an element's reach, at 10 rad/s from L = 1: rejected there, solved
 /// slightly inside.
 #[test]
-fn the_ends_of_what_can_be_reached_are_where_they_are_said_to_be() {
+fn the_ends_of_the_reachable_range_are_as_stated() {
     let at = |pattern, magnitude_db: f64, phase_deg: f64| {
         let wanted = WantedPoint {
             frequency_rad_per_s: 10.0,
@@ -142,7 +142,7 @@ fn the_ends_of_what_can_be_reached_are_where_they_are_said_to_be() {
         pass_through(pattern, &wanted, Complex64::new(1.0, 0.0), &Timing::default())
     };
     let lift = -20.0 * 60_f64.to_radians().cos().log10();
-    let beside = ElementPattern::NotchBeside { natural_frequency: 20.0 };
+    let near_notch = ElementPattern::NotchBeside { natural_frequency: 20.0 };
     for (pattern, edge_db, inward_db, edge_deg, inward_deg) in [
         (ElementPattern::Lead, lift, 0.01_f64, 60.0, 0.0),
         (ElementPattern::Lag, -lift, -0.01, -60.0, 0.0),
@@ -151,7 +151,7 @@ fn the_ends_of_what_can_be_reached_are_where_they_are_said_to_be() {
         (ElementPattern::ComplexZeros, lift, -0.01, 60.0, 0.0),
         (ElementPattern::ProportionalIntegral, 3.0, 0.0, -90.0, 0.01),
         (ElementPattern::ProportionalIntegral, 3.0, 0.0, 0.0, -0.01),
-        (beside, -lift, -0.01, -60.0, 0.0),
+        (near_notch, -lift, -0.01, -60.0, 0.0),
     ] {
         let outside = at(pattern, edge_db - inward_db, edge_deg - inward_deg);
         assert!(matches!(outside, Err(PassError::Unreachable { .. })), "{pattern:?}: {outside:?}");
@@ -162,7 +162,7 @@ fn the_ends_of_what_can_be_reached_are_where_they_are_said_to_be() {
 
 /// A first-order element reaches one curve: both coordinates are accepted only on it.
 #[test]
-fn a_real_pole_reaches_its_curve_and_says_so() {
+fn a_real_pole_reaches_its_curve_and_reports_it() {
     let wanted = |magnitude_db| WantedPoint {
         frequency_rad_per_s: 10.0,
         magnitude_db: Some(magnitude_db),
@@ -211,7 +211,7 @@ fn loop_of(elements: Vec<Element>) -> Compensation {
 /// Two independent evaluations of a loop agree: a plant with a negative margin means a forbidden
 /// loop, and after the required change of gain no margin is negative.
 #[test]
-fn what_a_margin_asks_for_brings_it_to_zero() {
+fn the_required_change_brings_a_margin_to_zero() {
     let family = box_family();
     let specification = |requirement| Specification {
         requirement,
@@ -225,13 +225,13 @@ fn what_a_margin_asks_for_brings_it_to_zero() {
     ];
     let built = template(&family, &loop_of(vec![]), 2.0, &TemplateOptions::default()).unwrap();
     let chart = DesignChart::new(&family, vec![built.template], &specifications).unwrap();
-    let mut shares = Shares(3);
+    let mut random = Random(3);
     let (mut violated, mut moved) = (0, 0);
     for _ in 0..300 {
-        let gain = Element::Gain(10_f64.powf(shares.between(-1.0, 1.5)));
+        let gain = Element::Gain(10_f64.powf(random.between(-1.0, 1.5)));
         let lag = Element::ComplexPoles {
-            natural_frequency: 10_f64.powf(shares.between(-0.5, 2.0)),
-            damping_ratio: shares.between(0.2, 1.5),
+            natural_frequency: 10_f64.powf(random.between(-0.5, 2.0)),
+            damping_ratio: random.between(0.2, 1.5),
         };
         let elements = vec![gain, lag];
         let margins = chart.margins(&loop_of(elements.clone()), TrackingJudgement::Spread);
@@ -255,22 +255,22 @@ fn what_a_margin_asks_for_brings_it_to_zero() {
     assert!(violated > 100 && moved > 100, "{violated} {moved}");
 }
 
-fn random_edit(shares: &mut Shares, count: usize) -> Edit {
-    let [one, other] = [0, 1].map(|_| 10_f64.powf(shares.between(-1.0, 3.0)));
-    let element = match shares.below(4) {
+fn random_edit(random: &mut Random, count: usize) -> Edit {
+    let [one, other] = [0, 1].map(|_| 10_f64.powf(random.between(-1.0, 3.0)));
+    let element = match random.below(4) {
         0 => Element::Integrator,
         1 => Element::RealPole { frequency: one },
         2 => Element::LeadLag { zero_frequency: one, pole_frequency: other },
         _ => Element::Gain(one),
     };
-    let enabled = shares.next() < 0.7;
-    match shares.below(6) {
-        0 if count > 0 => Edit::Remove(shares.below(count)),
-        1 if count > 0 => Edit::Replace(shares.below(count), element),
-        2 if count > 0 => Edit::Enable(shares.below(count), enabled),
-        3 if count > 0 => Edit::Move { from: shares.below(count), to: shares.below(count) },
-        4 => Edit::ScaleGain(shares.between(0.1, 10.0)),
-        _ => Edit::Add { at: shares.below(count + 1), stage: Stage { element, enabled } },
+    let enabled = random.next() < 0.7;
+    match random.below(6) {
+        0 if count > 0 => Edit::Remove(random.below(count)),
+        1 if count > 0 => Edit::Replace(random.below(count), element),
+        2 if count > 0 => Edit::Enable(random.below(count), enabled),
+        3 if count > 0 => Edit::Move { from: random.below(count), to: random.below(count) },
+        4 => Edit::ScaleGain(random.between(0.1, 10.0)),
+        _ => Edit::Add { at: random.below(count + 1), stage: Stage { element, enabled } },
     }
 }
 
@@ -278,11 +278,11 @@ fn random_edit(shares: &mut Shares, count: usize) -> Edit {
 /// elements' responses.
 #[test]
 fn edited_elements_multiply() {
-    let mut shares = Shares(2);
+    let mut random = Random(2);
     for _ in 0..100 {
         let mut state = Compensator::new(vec![Element::Gain(2.0), Element::Integrator]);
-        for _ in 0..shares.below(40) {
-            state = apply(&state, &random_edit(&mut shares, state.stages.len())).unwrap();
+        for _ in 0..random.below(40) {
+            state = apply(&state, &random_edit(&mut random, state.stages.len())).unwrap();
             let product = state
                 .stages
                 .iter()

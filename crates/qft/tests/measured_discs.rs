@@ -91,7 +91,7 @@ fn drawn(state: &mut u64, integrators: usize) -> TransferFunction {
 /// Sixty measurements with noise of 3 % in every row: none gets a false verdict, of stability or of
 /// a limit, and at least fifty get one. The truth is given by the poles and the closed form.
 #[test]
-fn noise_makes_no_verdict_false_and_few_impossible() {
+fn noise_makes_no_verdict_false_and_leaves_few_undecided() {
     let frequencies = logarithmic_grid(0.1, 300.0, 200).unwrap();
     let (noise, rows) = (0.03, 200.0);
     // 1 - 0.05/n puts each row inside, with 95 % probability all of them
@@ -140,7 +140,7 @@ fn noise_makes_no_verdict_false_and_few_impossible() {
 /// Closed loops over a disc: the worst and the certain margin correspond to the greatest and the
 /// least magnitude of plants sampled within it.
 #[test]
-fn a_disc_is_judged_like_its_plants() {
+fn a_disc_has_the_verdict_of_its_plants() {
     // ORIGIN: analytic, images and supports of a circle, sampled
     let frequencies = [0.5, 1.0, 2.0];
     for (centre, radius, gain) in [
@@ -232,7 +232,7 @@ fn found(plant: &MeasuredPlant) -> MemberStability {
 /// with positive feedback still has one unstable pole, with negative feedback none, for any such
 /// row; likewise with one integrator and with none.
 #[test]
-fn one_row_does_not_make_an_integrator() {
+fn one_row_is_no_evidence_of_an_integrator() {
     let frequencies = logarithmic_grid(0.1, 300.0, 200).unwrap();
     let lead =
         |sign: f64| function(&[4.0 * sign, 20.0 * sign], &[1.0 / 4800.0, 140.0 / 4800.0, 1.0, 0.0, 0.0]);

@@ -224,9 +224,9 @@ pub(crate) fn sound(problems: std::ops::Range<u64>, points: usize, sampled: bool
         let random = random_problem(seed, sampled);
         let Family::Uncertain(family) = &random.family else { panic!("a box") };
         let plant = family.plant();
-        let asked = problem(&random.family, &random.compensation, &random.specifications);
+        let problem_of = problem(&random.family, &random.compensation, &random.specifications);
         let options = ProofOptions { width_db: 0.2, leaves_maximum: 1000, ..ProofOptions::default() };
-        let proof = prove(&asked, &blind(&random, plant.nominal()), options, &mut unwatched).unwrap();
+        let proof = prove(&problem_of, &blind(&random, plant.nominal()), options, &mut unwatched).unwrap();
         // every claim was already checked, one by one
         if seed % 20 == 0 {
             assert_eq!(check(proof.certificate.as_ref().unwrap()), Ok(()), "seed {seed}");
@@ -238,8 +238,8 @@ pub(crate) fn sound(problems: std::ops::Range<u64>, points: usize, sampled: bool
                 0 => share(state).round(),
                 _ => share(state),
             };
-            let shares: Vec<f64> = family.coordinates().iter().map(|_| coordinate()).collect();
-            let values = family.values(&shares);
+            let fractions: Vec<f64> = family.coordinates().iter().map(|_| coordinate()).collect();
+            let values = family.values(&fractions);
             let highest = random.compensation.highest_frequency_rad_per_s().min(300.0);
             let frequency = between(state, 0.003, highest);
             never_contradicted(&random, &proof, &values, frequency, seed);
@@ -309,10 +309,10 @@ fn a_certificate_that_was_tampered_with_is_rejected() {
     // a greater mass ratio of the piston: every proven limit is reduced below the value reached
     for (index, claim) in genuine.claims.iter().enumerate() {
         if let Claim::Limited { ratio, .. } = claim {
-            let lowered = ratio / 1.01;
+            let tampered = ratio / 1.01;
             assert!(altered(&|other| {
                 if let Claim::Limited { ratio, .. } = &mut other.claims[index] {
-                    *ratio = lowered;
+                    *ratio = tampered;
                 }
             }));
         }
@@ -436,7 +436,7 @@ fn a_limit_given_as_a_table_is_that_of_the_audit() {
 
 /// Correlated parameters: a nominal plant away from their line nevertheless belongs to the family.
 #[test]
-fn a_plant_beside_the_box_is_in_the_proof() {
+fn an_additional_plant_is_in_the_proof() {
     let parameter =
         |name: &str, nominal| UncertainParameter { name: name.into(), nominal, minimum: 1.0, maximum: 2.0 };
     let plant =

@@ -9,7 +9,7 @@ use crate::proof::{blind, problem, random_problem};
 /// A proof with any budget reports the remainder: from a frequency on, or nothing; a larger budget
 /// never proves less, and no budget leads to a false claim.
 #[test]
-fn a_proof_within_a_budget_says_what_remains() {
+fn a_proof_within_a_budget_reports_the_remainder() {
     let mut last = 0;
     for points in [0, 2_000, 20_000, 200_000, 100_000_000] {
         let mut shown = 0;
@@ -17,9 +17,9 @@ fn a_proof_within_a_budget_says_what_remains() {
             let random = random_problem(seed, seed % 2 == 1);
             let Family::Uncertain(family) = &random.family else { panic!("a box") };
             let nominal = family.plant().nominal();
-            let asked = problem(&random.family, &random.compensation, &random.specifications);
+            let audited = problem(&random.family, &random.compensation, &random.specifications);
             let options = ProofOptions { points_maximum: points, ..ProofOptions::default() };
-            let proof = prove(&asked, &blind(&random, nominal), options, &mut unwatched).unwrap();
+            let proof = prove(&audited, &blind(&random, nominal), options, &mut unwatched).unwrap();
             if let Some(certificate) = &proof.certificate {
                 assert_eq!(check(certificate), Ok(()), "seed {seed}");
             }

@@ -72,17 +72,17 @@ fn family_of(
     let parameters =
         vec![parameter("pressure", 2.0, 3.0), parameter("length", 1.0, 1.5), parameter("heat", 0.1, 0.9)];
     let plant = UncertainPlant::record(parameters, equations).unwrap();
-    let alone = |index| Coordinate {
+    let single = |index| Coordinate {
         parameters: vec![index],
         opposed: vec![],
         spacing: vec![Spacing::Linear],
         points: 2,
     };
     let coordinates = match together {
-        false => (0..3).map(alone).collect(),
+        false => (0..3).map(single).collect(),
         true => {
             let spacing = vec![Spacing::Logarithmic; 2];
-            vec![Coordinate { parameters: vec![0, 2], opposed: vec![2], spacing, points: 3 }, alone(1)]
+            vec![Coordinate { parameters: vec![0, 2], opposed: vec![2], spacing, points: 3 }, single(1)]
         }
     };
     let members = vertices(&plant, &coordinates).unwrap();
@@ -135,8 +135,8 @@ fn enclosures_hold_for_coefficients_that_are_no_polynomials() {
         let Family::Uncertain(own) = &family else { panic!("a box") };
         let state = &mut stream(31, u64::from(together));
         for _ in 0..2000 {
-            let shares: Vec<f64> = own.coordinates().iter().map(|_| share(state)).collect();
-            let values = own.values(&shares);
+            let fractions: Vec<f64> = own.coordinates().iter().map(|_| share(state)).collect();
+            let values = own.values(&fractions);
             let highest = compensation.highest_frequency_rad_per_s().min(30.0);
             let frequency = 0.02 * phea_dynamics::portable::pow(highest / 0.02, share(state));
             let plant = compensation.response_of(own.plant(), &values, frequency).unwrap();

@@ -29,7 +29,7 @@ fn law() -> Compensation {
 /// frequencies from 0.01 to 10,000 rad/s, so that the loop seems correct. The proof refutes it with
 /// a plant and a frequency where the limit is exceeded by more than 1.5 dB.
 #[test]
-fn what_a_grid_flatters_is_refuted() {
+fn an_optimistic_grid_verdict_is_refuted() {
     let loop_ = law();
     let Family::Uncertain(family) = thesis_family([3; 6]) else { panic!("a box") };
     let mut greatest = 0.0_f64;

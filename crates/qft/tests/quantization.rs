@@ -113,7 +113,7 @@ fn run(controller: &Controller, quantization: Option<&Quantization>, samples: us
     let sampled = controller.sampled(SAMPLE).unwrap();
     let mut state = sampled.at_rest();
     let decay = exp(-5.0 * SAMPLE);
-    let (mut output, mut waiting) = (0.0, 0.0);
+    let (mut output, mut pending) = (0.0, 0.0);
     let mut record = Vec::new();
     for sample in 0..samples {
         let reference = if sample < samples / 2 { 0.7 + 0.2 * sin(0.03 * sample as f64) } else { 0.618 };
@@ -125,8 +125,8 @@ fn run(controller: &Controller, quantization: Option<&Quantization>, samples: us
         let command = sampled.step(&mut state, reference, measured).command;
         let command = act.map_or(command, |converter| converter.rounded(command));
         record.push([output, command]);
-        output = decay * output + (1.0 - decay) * waiting;
-        waiting = command;
+        output = decay * output + (1.0 - decay) * pending;
+        pending = command;
     }
     record
 }
@@ -203,15 +203,15 @@ fn settled_commands(controller: &Controller, quantization: &Quantization) -> Vec
     let sampled = controller.sampled(SAMPLE).unwrap();
     let mut state = sampled.at_rest();
     let decay = exp(-5.0 * SAMPLE);
-    let (mut output, mut waiting) = (0.0, 0.0);
+    let (mut output, mut pending) = (0.0, 0.0);
     let (measure, act) = (quantization.measurement.unwrap(), quantization.command.unwrap());
     let reference = measure.rounded(0.6155);
     let mut commands = Vec::new();
     for _ in 0..20_000 {
         let command = act.rounded(sampled.step(&mut state, reference, measure.rounded(output)).command);
         commands.push(command);
-        output = decay * output + (1.0 - decay) * waiting;
-        waiting = command;
+        output = decay * output + (1.0 - decay) * pending;
+        pending = command;
     }
     commands.split_off(15_000)
 }
@@ -219,7 +219,7 @@ fn settled_commands(controller: &Controller, quantization: &Quantization) -> Vec
 /// Single precision would move the integrator of (z - 1)(z - p): 1 + p and p are not rounded alike.
 /// A rounded integrator remains one, and the limit of the loop at zero frequency is unchanged.
 #[test]
-fn an_integrator_stays_one() {
+fn an_integrator_remains_an_integrator() {
     for frequency in [3.0, 11.0, 70.0, 500.0] {
         let elements = vec![Element::Integrator, Element::Gain(2.0), Element::RealPole { frequency }];
         let controller = controller(elements, 0.0);
@@ -234,18 +234,18 @@ fn an_integrator_stays_one() {
         }
     }
     // rounded coefficient by coefficient it would have moved
-    let kept = |frequency| {
+    let satisfied_at = |frequency| {
         let controller = controller(vec![Element::Integrator, Element::RealPole { frequency }], 0.0);
         let [a1, a2] = Section::in_series(around(&controller).feedback()).unwrap()[0].denominator;
         1.0 + f64::from(a1 as f32) + f64::from(a2 as f32) == 0.0
     };
-    assert!(!(kept(3.0) && kept(11.0) && kept(70.0)));
+    assert!(!(satisfied_at(3.0) && satisfied_at(11.0) && satisfied_at(70.0)));
 }
 
 /// The audited controller has the response of the deployed sections, and more bits bring it closer
 /// to the controller designed.
 #[test]
-fn what_is_verified_is_what_is_deployed() {
+fn the_verified_controller_is_the_deployed_one() {
     let elements = vec![
         Element::ProportionalIntegral { proportional_gain: 0.3, integral_gain: 0.7 },
         Element::Notch { natural_frequency: 60.0, zero_damping_ratio: 0.05, pole_damping_ratio: 0.7 },
@@ -296,7 +296,7 @@ fn what_is_verified_is_what_is_deployed() {
 }
 
 #[test]
-fn what_cannot_be_is_refused() {
+fn impossible_requests_are_refused() {
     for (bits, range) in [(0, [0.0, 1.0]), (33, [0.0, 1.0]), (8, [1.0, 1.0]), (8, [0.0, f64::INFINITY])] {
         assert!(Converter::new(bits, range).is_err());
     }

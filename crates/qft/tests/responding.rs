@@ -189,12 +189,12 @@ fn a_search_counts_poles_as_those_of_the_polynomials() {
         let around = compensation(&mut state, plant.natural);
         let shown = around.member(plant.shown()).unwrap();
         let is_stable = member_stability(&shown, &around).status == StabilityStatus::Stable;
-        let asked =
+        let stability_of =
             |member| SampleStability::new(&around, vec![member]).is_stable(around.feedback()).unwrap();
         let range = plant.range_rad_per_s();
         let measured = around.measured(&tabulated(&plant, range, FINE));
         let of_table = member_stability(&measured, &around).status == StabilityStatus::Stable;
-        assert_eq!(asked(measured), of_table, "{plant:?}");
+        assert_eq!(stability_of(measured), of_table, "{plant:?}");
         let open = |frequency: f64| {
             let response = shown.response(frequency).unwrap();
             response.plant * response.sensor * around.feedback().at_frequency(frequency)
@@ -206,7 +206,7 @@ fn a_search_counts_poles_as_those_of_the_polynomials() {
         }
         let integrates = !around.feedback().poles().is_empty();
         let [below, above] = range.map(|frequency| magnitude(open(frequency)));
-        let own = asked(around.responding(Arc::new(plant)));
+        let own = stability_of(around.responding(Arc::new(plant)));
         if above < 0.45 && (below > 30.0 || !integrates) {
             assert_eq!(own, is_stable, "{plant:?}");
             found[usize::from(is_stable)] += 1;
@@ -218,15 +218,15 @@ fn a_search_counts_poles_as_those_of_the_polynomials() {
 
 /// The table of a response equals that response to 0.2 %, also between its points.
 #[test]
-fn tables_hold_what_is_between_their_points() {
+fn tables_enclose_values_between_their_points() {
     let mut state = 5;
     for _ in 0..40 {
         let plant = hidden(&mut state);
         let table = tabulated(&plant, plant.range_rad_per_s(), FINE);
         for pair in table.frequencies_rad_per_s.windows(2) {
             let between = pair[0] + share(&mut state) * (pair[1] - pair[0]);
-            let (told, _) = table.response(between).unwrap();
-            let error = magnitude(told / plant.at(Complex64::new(0.0, between))[0] - 1.0);
+            let (interpolated, _) = table.response(between).unwrap();
+            let error = magnitude(interpolated / plant.at(Complex64::new(0.0, between))[0] - 1.0);
             assert!(error < 3e-3, "{plant:?} at {between}: {error}");
         }
     }

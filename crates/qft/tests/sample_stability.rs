@@ -170,7 +170,7 @@ fn delayed_loops_are_judged_as_by_their_turns() {
 /// Loops made to have one pair of poles damped by a millionth, one way or the other, among others
 /// over five decades.
 #[test]
-fn a_millionth_of_damping_is_told() {
+fn a_millionth_of_damping_is_resolved() {
     let (mut random, mut tally) = (Random(5), Tally::default());
     for sign in [1.0, -1.0].repeat(200) {
         let others = random.below(7);
@@ -194,7 +194,7 @@ fn a_millionth_of_damping_is_told() {
 /// Stability limits to the last digits: k = 6 for k/(s (s + 1) (s + 2)), k T = 2 for sampled k/s,
 /// k = pi/2 for k e^(-s)/s.
 #[test]
-fn the_boundary_is_where_it_is() {
+fn the_boundary_is_located_exactly() {
     let cubic = plant(&[1.0], &[1.0, 3.0, 2.0, 0.0], 0.0);
     let integrator = plant(&[1.0], &[1.0, 0.0], 0.0);
     let late = plant(&[1.0], &[1.0, 0.0], 1.0);
@@ -204,9 +204,9 @@ fn the_boundary_is_where_it_is() {
         (PI / 2.0, 1e-12, late, None),
     ] {
         let mut judged = gain_around(member, sample_time_s);
-        for share in [1e-2, 1e-5, resolution] {
-            assert!(judged(limit * (1.0 - share)).0, "{limit} less {share}");
-            assert!(!judged(limit * (1.0 + share)).0, "{limit} more {share}");
+        for fraction in [1e-2, 1e-5, resolution] {
+            assert!(judged(limit * (1.0 - fraction)).0, "{limit} less {fraction}");
+            assert!(!judged(limit * (1.0 + fraction)).0, "{limit} more {fraction}");
         }
         assert!(!judged(limit).0, "{limit}");
         assert!(judged(1e-9 * limit).0);

@@ -122,8 +122,8 @@ fn limits_give_margins_and_margins_give_the_limits_back() {
 fn no_loop_has_less_than_its_own_peaks_guarantee() {
     let mut gains_bound = 0;
     for (poles, top) in [(vec![0.0], 20.0), (vec![0.0, -1.0], 20.0), (vec![0.0, -1.0, -2.0], 5.9)] {
-        for share in [0.01, 0.1, 0.3, 0.6, 0.8, 0.9] {
-            let open = real_loop(top * share, &[], &poles);
+        for fraction in [0.01, 0.1, 0.3, 0.6, 0.8, 0.9] {
+            let open = real_loop(top * fraction, &[], &poles);
             let grid = logarithmic_grid(1e-4, 1e4, 40_000).unwrap();
             // the peak between the points of the grid is higher by no more than this
             let peak = |closed: fn(Complex64) -> f64| {
@@ -147,7 +147,7 @@ fn no_loop_has_less_than_its_own_peaks_guarantee() {
 }
 
 #[test]
-fn only_constant_limits_on_the_two_loop_functions_say_something() {
+fn only_constant_limits_on_the_two_loop_functions_imply_margins() {
     let rational = Limit::Rational(real_loop(1.0, &[], &[-1.0]));
     for (requirement, expected) in [
         (
@@ -175,7 +175,7 @@ fn the_thesis_limit_of_one_point_three_is_a_little_less_than_its_five_decibels()
 }
 
 #[test]
-fn the_delay_limit_allows_no_loop_more_delay_than_it_bears() {
+fn the_delay_limit_permits_no_more_delay_than_a_loop_tolerates() {
     let loops = [
         real_loop(1.0, &[], &[0.0]),
         real_loop(30.0, &[], &[0.0]),
@@ -192,37 +192,37 @@ fn the_delay_limit_allows_no_loop_more_delay_than_it_bears() {
         assert!(closed.is_stable());
         let true_margin = margins(&open).delay_margin_s();
         // the longest delay whose limit is satisfied, by bisection
-        let keeps = |delay: f64| {
+        let satisfies = |delay: f64| {
             let limit = delay_margin_limit(delay).unwrap();
             grid.iter().all(|w| complementary(open.at_frequency(*w)) <= limit.magnitude(*w).unwrap())
         };
-        let (mut kept, mut broken) = (0.0, 4.0 * true_margin);
+        let (mut satisfied, mut broken) = (0.0, 4.0 * true_margin);
         for _ in 0..20 {
-            let middle = 0.5 * (kept + broken);
-            if keeps(middle) { kept = middle } else { broken = middle }
+            let middle = 0.5 * (satisfied + broken);
+            if satisfies(middle) { satisfied = middle } else { broken = middle }
         }
-        assert!(0.3 * true_margin < kept && kept <= true_margin, "{kept} {true_margin}");
+        assert!(0.3 * true_margin < satisfied && satisfied <= true_margin, "{satisfied} {true_margin}");
     }
 }
 
 #[test]
-fn an_integrator_bears_a_quarter_turn_and_is_promised_one_radian() {
+fn an_integrator_tolerates_a_quarter_turn_and_is_guaranteed_one_radian() {
     let gain = 7.0;
     let open = real_loop(gain, &[], &[0.0]);
     assert!(close(margins(&open).delay_margin_s(), PI / 2.0 / gain, 1e-12));
     // |L/(1+L)| = k/sqrt(w^2 + k^2) tends to k/w from below: the limit 1/(w tau) is met with tau =
     // 1/k, but with no longer delay
-    let kept = |delay: f64| {
+    let satisfied = |delay: f64| {
         let limit = delay_margin_limit(delay).unwrap();
         [1e-3, 1.0, 1e3, 1e6]
             .iter()
             .all(|w| complementary(open.at_frequency(*w)) <= limit.magnitude(*w).unwrap())
     };
-    assert!(kept(1.0 / gain) && !kept(1.01 / gain));
+    assert!(satisfied(1.0 / gain) && !satisfied(1.01 / gain));
 }
 
 #[test]
-fn what_is_no_margin_has_no_limit() {
+fn invalid_margins_have_no_limit() {
     let refused = |result: Result<f64, MarginError>| matches!(result, Err(MarginError::OutOfRange { .. }));
     for value in [1.0, 0.5, -2.0, f64::NAN, f64::INFINITY] {
         assert!(refused(robust_stability_limit_for_gain_increase(value)), "{value}");

@@ -63,7 +63,7 @@ fn as_scanned(lower: &Limit, upper: &Limit, band: [f64; 2]) -> TrackingSpread {
 
 // ORIGIN: recomputed by comparisons/recompute_specifications.py
 #[test]
-fn the_printed_limits_part_steadily() {
+fn the_spread_of_the_printed_limits_increases_steadily() {
     let upper = function(&[2116.0 / 75.0, 2116.0], &[1.0, 73.6, 2116.0]);
     let lower = function(&[20_000.0], &[1.0, 90.0, 2400.0, 20_000.0]);
     for (frequency, stated) in
@@ -80,7 +80,7 @@ fn the_printed_limits_part_steadily() {
 
 // ORIGIN: recomputed by comparisons/recompute_specifications.py
 #[test]
-fn limits_that_cross_say_where_and_how_far() {
+fn crossing_limits_are_reported_with_place_and_distance() {
     let upper = function(&[100.0], &[1.0, 8.0, 100.0]);
     let lower = function(&[900.0], &[1.0, 60.0, 900.0]);
     match tracking_spread(&lower, &upper, [0.0, 500.0]).unwrap().order {

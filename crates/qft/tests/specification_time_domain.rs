@@ -48,7 +48,7 @@ impl Numbers {
 
 // ORIGIN: recomputed by comparisons/recompute_specifications.py
 #[test]
-fn the_printed_limits_do_not_meet_their_wish() {
+fn the_printed_limits_miss_their_requirement() {
     let pair = [c(-36.8, 27.6), c(-36.8, -27.6)];
     let upper = check_upper(&factored(2116.0 / 75.0, &[c(-75.0, 0.0)], &pair), &UPPER).unwrap();
     assert!(close(upper.reached.overshoot_percent, 2.194563521, 1e-8));
@@ -78,16 +78,16 @@ fn exact_limits_are_those_of_an_independent_root_finder() {
     let at = |rad_per_s| ExtraRoot::At { rad_per_s };
     let times = |natural_frequencies| ExtraRoot::Times { natural_frequencies };
     let wide = UpperWish { overshoot_percent: 5.0, settling_band_percent: 2.0, ..UPPER };
-    for (wish, zero, damping, natural) in [
+    for (required, zero, damping, natural) in [
         (UPPER, ExtraRoot::None, 0.826085055, 41.9161150),
         (UPPER, at(75.0), 0.837470485, 36.1277855),
         (UPPER, times(1.5), 0.852504940, 33.4499794),
         (wide, at(75.0), 0.739041262, 52.2683398),
     ] {
-        let limit = tracking_upper(&wish, zero, Translation::Exact).unwrap();
+        let limit = tracking_upper(&required, zero, Translation::Exact).unwrap();
         assert!(close(limit.damping_ratio, damping, 2e-9), "{limit:?}");
         assert!(close(limit.natural_frequency_rad_per_s, natural, 1e-6), "{limit:?}");
-        assert!(close(limit.check.reached.overshoot_percent, wish.overshoot_percent, 1e-8));
+        assert!(close(limit.check.reached.overshoot_percent, required.overshoot_percent, 1e-8));
         assert!(close(settling(&limit.check), 0.1, 1e-9));
         assert_eq!(limit.check.outcome(), WishOutcome::Met);
     }
@@ -101,13 +101,13 @@ fn exact_limits_are_those_of_an_independent_root_finder() {
 }
 
 #[test]
-fn exact_limits_meet_any_wish_whatever_the_extra_root() {
+fn exact_limits_meet_any_requirement_for_every_extra_root() {
     let mut numbers = Numbers(7);
     for _ in 0..20 {
         let overshoot_percent = numbers.between(0.1, 40.0);
         let settling_time_s = numbers.between(0.01, 10.0);
         let settling_band_percent = numbers.between(0.5, 8.0);
-        let wish = UpperWish { overshoot_percent, settling_time_s, settling_band_percent };
+        let required = UpperWish { overshoot_percent, settling_time_s, settling_band_percent };
         // zeros below the natural frequency make the second-order part overdamped
         let extra = [
             ExtraRoot::None,
@@ -115,25 +115,25 @@ fn exact_limits_meet_any_wish_whatever_the_extra_root() {
             ExtraRoot::Times { natural_frequencies: numbers.between(0.3, 4.0) },
         ];
         for zero in extra {
-            let limit = tracking_upper(&wish, zero, Translation::Exact).unwrap();
-            assert_eq!(limit.check.outcome(), WishOutcome::Met, "{wish:?} {zero:?} {limit:?}");
+            let limit = tracking_upper(&required, zero, Translation::Exact).unwrap();
+            assert_eq!(limit.check.outcome(), WishOutcome::Met, "{required:?} {zero:?} {limit:?}");
             let overshoot = limit.check.reached.overshoot_percent;
-            assert!(close(overshoot, overshoot_percent, 1e-7), "{overshoot} {wish:?} {zero:?}");
+            assert!(close(overshoot, overshoot_percent, 1e-7), "{overshoot} {required:?} {zero:?}");
             // slightly slower in frequency is too late in time
             let (settled, slower) = (settling(&limit.check), 1.0 - 1e-6);
             assert!(settled <= settling_time_s * (1.0 + 1e-9));
             if zero == ExtraRoot::None {
                 let natural = limit.natural_frequency_rad_per_s * slower;
                 let late = SecondOrder::new(natural, limit.damping_ratio).unwrap().transfer_function();
-                let late = check_upper(&late, &wish).unwrap();
+                let late = check_upper(&late, &required).unwrap();
                 assert!(settling(&late) > settling_time_s, "{late:?}");
             }
         }
-        let wish = LowerWish { settling_time_s, settling_band_percent };
+        let required = LowerWish { settling_time_s, settling_band_percent };
         for pole in extra {
-            let limit = tracking_lower(&wish, pole, Translation::Exact).unwrap();
-            assert_eq!(limit.check.outcome(), WishOutcome::Met, "{wish:?} {pole:?} {limit:?}");
-            assert!(close(settling(&limit.check) / settling_time_s, 1.0, 1e-8), "{wish:?} {pole:?}");
+            let limit = tracking_lower(&required, pole, Translation::Exact).unwrap();
+            assert_eq!(limit.check.outcome(), WishOutcome::Met, "{required:?} {pole:?} {limit:?}");
+            assert!(close(settling(&limit.check) / settling_time_s, 1.0, 1e-8), "{required:?} {pole:?}");
         }
     }
 }
@@ -141,10 +141,10 @@ fn exact_limits_meet_any_wish_whatever_the_extra_root() {
 /// The settling time jumps where an extreme of the response reaches the band; no natural frequency
 /// then settles at exactly the required time, and the faster side of the jump is used.
 #[test]
-fn where_the_settling_time_jumps_the_wish_is_met_with_time_to_spare() {
-    let wish = UpperWish { overshoot_percent: 99.9, settling_time_s: 0.1, settling_band_percent: 1.0 };
+fn at_a_jump_of_the_settling_time_the_requirement_is_met_early() {
+    let required = UpperWish { overshoot_percent: 99.9, settling_time_s: 0.1, settling_band_percent: 1.0 };
     let zero = ExtraRoot::At { rad_per_s: 30.0 };
-    let limit = tracking_upper(&wish, zero, Translation::Exact).unwrap();
+    let limit = tracking_upper(&required, zero, Translation::Exact).unwrap();
     assert_eq!(limit.check.outcome(), WishOutcome::Met);
     assert!(settling(&limit.check) < 0.099, "{limit:?}");
     // the third extreme, half a period after the second, is as large as the band
@@ -157,7 +157,7 @@ fn where_the_settling_time_jumps_the_wish_is_met_with_time_to_spare() {
 }
 
 #[test]
-fn a_wish_ten_times_as_fast_has_limits_ten_times_as_fast() {
+fn a_requirement_ten_times_as_fast_has_limits_ten_times_as_fast() {
     let fast = UpperWish { settling_time_s: UPPER.settling_time_s / 10.0, ..UPPER };
     for (zero, scaled) in [
         (ExtraRoot::None, ExtraRoot::None),
@@ -172,14 +172,15 @@ fn a_wish_ten_times_as_fast_has_limits_ten_times_as_fast() {
     }
     // a fixed zero far above has almost no effect; so the damping changes
     let fixed = ExtraRoot::At { rad_per_s: 75.0 };
-    let [slow, fast] = [UPPER, fast].map(|wish| tracking_upper(&wish, fixed, Translation::Exact).unwrap());
+    let [slow, fast] =
+        [UPPER, fast].map(|required| tracking_upper(&required, fixed, Translation::Exact).unwrap());
     assert!((fast.damping_ratio - slow.damping_ratio).abs() > 0.01);
 }
 
 #[test]
 fn no_overshoot_means_critical_damping_or_a_zero_that_cancels_the_slow_pole() {
-    let wish = UpperWish { overshoot_percent: 0.0, ..UPPER };
-    let none = tracking_upper(&wish, ExtraRoot::None, Translation::Exact).unwrap();
+    let required = UpperWish { overshoot_percent: 0.0, ..UPPER };
+    let none = tracking_upper(&required, ExtraRoot::None, Translation::Exact).unwrap();
     let lower = tracking_lower(
         &LowerWish { settling_time_s: 0.1, settling_band_percent: 1.0 },
         ExtraRoot::None,
@@ -187,7 +188,7 @@ fn no_overshoot_means_critical_damping_or_a_zero_that_cancels_the_slow_pole() {
     );
     assert_eq!(none.function, lower.unwrap().function);
     let slow = ExtraRoot::Times { natural_frequencies: 0.5 };
-    let limit = tracking_upper(&wish, slow, Translation::Exact).unwrap();
+    let limit = tracking_upper(&required, slow, Translation::Exact).unwrap();
     let natural = limit.natural_frequency_rad_per_s;
     // (s + w/2) cancels, w^2/(w/2) = 2 w remains: a lag that settles after ln 100 of its time
     // constants
@@ -197,7 +198,7 @@ fn no_overshoot_means_critical_damping_or_a_zero_that_cancels_the_slow_pole() {
 }
 
 #[test]
-fn rules_of_thumb_follow_the_thesis_and_keep_to_their_band() {
+fn rules_of_thumb_follow_the_thesis_within_their_band() {
     let rule = Translation::Rule(SettlingRule::OnePercentThesis);
     let upper = tracking_upper(&UPPER, ExtraRoot::At { rad_per_s: 75.0 }, rule).unwrap();
     assert!(close(upper.natural_frequency_rad_per_s * upper.damping_ratio * 0.1, 5.0, 1e-12));
@@ -223,8 +224,8 @@ fn a_root_too_slow_is_refused_at_its_own_settling_time() {
     assert!(matches!(lower(fastest * (1.0 - 1e-4)), Err(TimeDomainError::ExtraRootTooSlow { .. })));
     // the tail due to a zero is as large as the overshoot: it takes ln(overshoot/band)/z
     let upper = |zero: f64, overshoot_percent: f64| {
-        let wish = UpperWish { overshoot_percent, ..UPPER };
-        tracking_upper(&wish, ExtraRoot::At { rad_per_s: zero }, Translation::Exact)
+        let required = UpperWish { overshoot_percent, ..UPPER };
+        tracking_upper(&required, ExtraRoot::At { rad_per_s: zero }, Translation::Exact)
     };
     assert!(matches!(upper(1.0, 5.0), Err(TimeDomainError::ExtraRootTooSlow { .. })));
     assert_eq!(upper(1.0, 1.0).unwrap().check.outcome(), WishOutcome::Met);
@@ -243,8 +244,9 @@ fn the_check_agrees_with_dense_samples_of_any_response() {
             (0..(4.0 * numbers.next()) as usize).map(|_| c(-numbers.between(5.0, 60.0), 0.0)).collect();
         let unscaled = factored(1.0, &zeros, &poles);
         let function = factored(1.0 / unscaled.dc_gain(), &zeros, &poles).with_dead_time(0.05).unwrap();
-        let wish = UpperWish { overshoot_percent: 10.0, settling_time_s: 1.0, settling_band_percent: 2.0 };
-        let check = check_upper(&function, &wish).unwrap();
+        let required =
+            UpperWish { overshoot_percent: 10.0, settling_time_s: 1.0, settling_band_percent: 2.0 };
+        let check = check_upper(&function, &required).unwrap();
         let times = uniform_times(20.0, 80_001).unwrap();
         let values = step_response(&function, &times).unwrap();
         let metrics = step_metrics(&times, &values, StepBaseline::unit(), 2.0).unwrap();
@@ -273,7 +275,7 @@ fn modes_far_apart_and_light_damping_are_followed_to_the_end() {
 }
 
 #[test]
-fn what_has_no_answer_is_refused_and_what_never_settles_says_so() {
+fn unsolvable_requirements_are_refused_and_unsettled_responses_reported() {
     let half = factored(5.0, &[], &[c(-10.0, 0.0)]);
     let check = check_lower(&half, &LOWER).unwrap();
     assert!(
@@ -287,15 +289,15 @@ fn what_has_no_answer_is_refused_and_what_never_settles_says_so() {
     assert_eq!(check_lower(&integrator, &LOWER), Err(TimeDomainError::NotStable { real_part: 0.0 }));
     let improper = factored(1.0, &[c(-1.0, 0.0)], &[]);
     assert!(matches!(check_lower(&improper, &LOWER), Err(TimeDomainError::Response(_))));
-    for wish in [
+    for required in [
         UpperWish { overshoot_percent: 100.0, ..UPPER },
         UpperWish { overshoot_percent: -1.0, ..UPPER },
         UpperWish { overshoot_percent: f64::NAN, ..UPPER },
         UpperWish { settling_time_s: 0.0, ..UPPER },
         UpperWish { settling_band_percent: 100.0, ..UPPER },
     ] {
-        let refused = tracking_upper(&wish, ExtraRoot::None, Translation::Exact);
-        assert!(matches!(refused, Err(TimeDomainError::OutOfRange { .. })), "{wish:?}");
+        let refused = tracking_upper(&required, ExtraRoot::None, Translation::Exact);
+        assert!(matches!(refused, Err(TimeDomainError::OutOfRange { .. })), "{required:?}");
     }
     for zero in [ExtraRoot::At { rad_per_s: 0.0 }, ExtraRoot::Times { natural_frequencies: f64::INFINITY }] {
         let refused = tracking_upper(&UPPER, zero, Translation::Exact);

@@ -118,11 +118,11 @@ fn dead_time_around_a_gain_at_infinity() {
 fn a_sensor_is_part_of_the_loop() {
     let sensor = function(&[3.0], &[1.0, 5.0]);
     let series = found(&[30.0], &[1.0, 7.0, 10.0], 0.2);
-    let beside = found_in(&loop_of(function(&[1.0], &[1.0]), sensor.clone()), &[10.0], &[1.0, 2.0], 0.2);
+    let with_sensor = found_in(&loop_of(function(&[1.0], &[1.0]), sensor.clone()), &[10.0], &[1.0, 2.0], 0.2);
     let late = loop_of(function(&[1.0], &[1.0]), sensor.with_dead_time(0.2).unwrap());
     let late = found_in(&late, &[10.0], &[1.0, 2.0], 0.0);
     let expected = series.critical_delay.unwrap().delay_s;
-    for found in [beside, late] {
+    for found in [with_sensor, late] {
         assert!((found.critical_delay.unwrap().delay_s / expected - 1.0).abs() < 1e-12);
     }
 }
@@ -167,7 +167,7 @@ fn a_loop_that_has_no_solution_is_not_resolved() {
 
 /// Closed-loop poles over nine decades, of which the slowest one decides.
 #[test]
-fn slow_poles_beside_fast_ones() {
+fn slow_poles_next_to_fast_ones() {
     let slow = [1e-3, 0.1, 1.0, 1e2, 1e4, 1e6];
     let expanded = slow.iter().fold(Polynomial::new(vec![1.0]), |product, root| {
         product.product(&Polynomial::new(vec![1.0, *root]))
@@ -210,7 +210,7 @@ fn critical_delays_are_those_of_the_margins() {
     };
     let mut compared = 0;
     while compared < 60 {
-        let decade = |share: f64| pow(10.0, 4.0 * share - 2.0);
+        let decade = |fraction: f64| pow(10.0, 4.0 * fraction - 2.0);
         let (w, zeta) = (decade(random()), 0.02 + random());
         let resonance = Polynomial::new(vec![1.0, 2.0 * zeta * w, w * w]);
         let lag = Polynomial::new(vec![1.0, decade(random()), 0.0]);

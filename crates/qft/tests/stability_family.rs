@@ -136,17 +136,17 @@ fn an_uncertain_dead_time_counts() {
 /// Plant k/s, which tolerates pi/(2 k). The gain k has a peak of 1 at p = 0.35 and one of 1.05 just
 /// beyond a jump at 0.47, narrower than the steps of a search from anywhere else.
 #[test]
-fn the_worst_behind_a_jump_is_found() {
+fn the_worst_value_beyond_a_jump_is_found() {
     let parameter = UncertainParameter { name: "p".into(), nominal: 0.35, minimum: 0.0, maximum: 0.6 };
     let plant = UncertainPlant::record(vec![parameter], |p| {
         let [off, away] = [p[0] - 0.35.into(), p[0] - 0.4775.into()];
         let before = (off * off).times(-4.0) + 1.0.into();
-        let behind = (away * away).times(1270.0) + 1.0.into();
+        let slower = (away * away).times(1270.0) + 1.0.into();
         let chosen = |one, other| Scalar::select(p[0].less_than(0.47.into()), one, other);
         PlantCoefficients {
             command: RationalCoefficients {
                 numerator: vec![chosen(before, 1.05.into())],
-                denominator: vec![chosen(1.0.into(), behind), 0.0.into()],
+                denominator: vec![chosen(1.0.into(), slower), 0.0.into()],
             },
             disturbance: None,
             dead_time_s: 0.0.into(),

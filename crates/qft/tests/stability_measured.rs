@@ -95,7 +95,7 @@ fn the_critical_delay_of_an_integrator() {
 }
 
 #[test]
-fn what_the_points_do_not_show_is_not_resolved() {
+fn behaviour_between_sparse_points_is_not_resolved() {
     let reason = |plant: &MeasuredPlant| match found(plant, &loop_of(vec![], Timing::default())).status {
         StabilityStatus::NotResolved(reason) => reason,
         status => panic!("{status:?}"),

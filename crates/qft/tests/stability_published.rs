@@ -134,7 +134,7 @@ fn the_published_controller_is_stable_for_the_whole_of_its_table() {
 /// The loop tolerates each of these delays, and the tolerance beyond them is the remainder of the
 /// margin without delay.
 #[test]
-fn the_published_controller_bears_delays_up_to_its_margin() {
+fn the_published_controller_tolerates_delays_up_to_its_margin() {
     let family = thesis_family([2, 2, 2, 3, 2, 2]);
     let with_delay = |delay_s| audited(&family, &controller(&[0.001, 0.008], &[1.0, 0.0], delay_s));
     let margin = with_delay(0.0).delay_margin.unwrap().delay_s;

@@ -32,11 +32,11 @@ fn found(elements: Vec<Element>, plant: (&[f64], &[f64]), delay_s: f64) -> Membe
 /// Plant k/s, held and sampled, is k T/(z - 1): one pole at 1 - k T.
 #[test]
 fn an_integrator_has_one_pole() {
-    for share in [1e-9, 1e-3, 0.3, 1.7, 2.1] {
-        let found = found(vec![Element::Gain(share / SAMPLE)], (&[1.0], &[1.0, 0.0]), 0.0);
-        let expected = log1p(-share.min(2.0 - share)) / SAMPLE;
-        assert!((found.largest_real_part.unwrap() / expected - 1.0).abs() < 1e-9, "{share}");
-        assert_eq!(found.status == StabilityStatus::Stable, share < 2.0);
+    for gain_ratio in [1e-9, 1e-3, 0.3, 1.7, 2.1] {
+        let found = found(vec![Element::Gain(gain_ratio / SAMPLE)], (&[1.0], &[1.0, 0.0]), 0.0);
+        let expected = log1p(-gain_ratio.min(2.0 - gain_ratio)) / SAMPLE;
+        assert!((found.largest_real_part.unwrap() / expected - 1.0).abs() < 1e-9, "{gain_ratio}");
+        assert_eq!(found.status == StabilityStatus::Stable, gain_ratio < 2.0);
     }
 }
 
@@ -46,8 +46,8 @@ fn an_integrator_has_one_pole() {
 fn an_integrator_with_samples_of_delay() {
     for samples in [0_u32, 1, 3, 20, 40, 300] {
         let limit = 2.0 * sin(PI / f64::from(4 * samples + 2));
-        for (share, stable) in [(1.0 - 1e-6, true), (1.0 + 1e-6, false)] {
-            let gain = vec![Element::Gain(share * limit / SAMPLE)];
+        for (gain_ratio, stable) in [(1.0 - 1e-6, true), (1.0 + 1e-6, false)] {
+            let gain = vec![Element::Gain(gain_ratio * limit / SAMPLE)];
             let found = found(gain, (&[1.0], &[1.0, 0.0]), f64::from(samples) * SAMPLE);
             assert_eq!(found.status == StabilityStatus::Stable, stable, "{samples}: {found:?}");
             assert_eq!(found.largest_real_part.is_some(), samples < 24);
@@ -61,7 +61,7 @@ fn an_integrator_with_samples_of_delay() {
 /// Loop 1/(z - 1), which has a sixth of a turn of phase margin at w T = pi/3: one sample of delay,
 /// which also brings k T = 1 to its limit.
 #[test]
-fn a_whole_sample_is_borne_exactly() {
+fn a_whole_sample_is_tolerated_exactly() {
     for samples in [0.0, 4.0, 40.0] {
         let limit = 2.0 * sin(PI / (4.0 * samples + 6.0));
         let found = found(vec![Element::Gain(limit / SAMPLE)], (&[1.0], &[1.0, 0.0]), samples * SAMPLE);
@@ -75,7 +75,7 @@ fn a_whole_sample_is_borne_exactly() {
 /// until m = 1/(k T), for 1 < k T < 4/3. The family's margin is that of its largest gain, to the
 /// last digits, although phase over frequency gives 0.66.
 #[test]
-fn a_fraction_of_a_sample_is_borne_exactly() {
+fn a_fraction_of_a_sample_is_tolerated_exactly() {
     let gain = UncertainParameter { name: "k".into(), nominal: 0.6, minimum: 0.5, maximum: 1.25 };
     let plant = UncertainPlant::record(vec![gain], |p| PlantCoefficients {
         command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] },
@@ -165,7 +165,7 @@ fn nothing_is_cancelled() {
 /// The slow poles of a sampled loop are those of the continuous one to the order of the sample
 /// time, at any speed.
 #[test]
-fn slow_poles_keep_their_digits() {
+fn slow_poles_lose_no_digit() {
     let integral = Element::ProportionalIntegral { proportional_gain: 1e-3, integral_gain: 1e-9 };
     let found = found(vec![integral], (&[1.0], &[1.0, 1.0]), 0.0);
     // s^2 + 1.001 s + 1e-9: the slow root, and half a sample of the hold times its square is

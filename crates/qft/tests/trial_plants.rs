@@ -40,9 +40,9 @@ fn modes_respond_as_the_whole_member() {
         let timing = Timing { sample_time_s: Some(sample_time_s), delay_s, ..Timing::default() };
         for dead_time_s in [0.0, 0.4e-3] {
             let (around, plant) = placed(timing, dead_time_s);
-            let tried = around.trial(PlantMember::Rational(plant), None).unwrap();
-            let TrialPlant::Held(held) = &tried else { panic!("its modes are apart") };
-            let whole = tried.whole(&around).unwrap();
+            let trial = around.trial(PlantMember::Rational(plant), None).unwrap();
+            let TrialPlant::Held(held) = &trial else { panic!("its modes are apart") };
+            let whole = trial.whole(&around).unwrap();
             for step in 0..=60 {
                 let highest = std::f64::consts::PI / sample_time_s;
                 let frequency = highest * portable::pow(10.0, f64::from(step) / 15.0 - 4.0);
@@ -70,14 +70,15 @@ fn modes_respond_as_the_whole_member_with_an_inner_signal_fed_back() {
         let signal = Polynomial::new(vec![1.0 / (150.0 * 150.0), 0.08 / 150.0, 1.0, 0.0]).scaled(1.3e4);
         let inner = [signal.coefficients().to_vec(), vec![2e3, 0.0]];
         let rate = RateNumerators { command: vec![0.0], disturbance: vec![0.0], inner: Some(inner) };
-        let alone = around.without_inner_paths().trial(PlantMember::Rational(plant.clone()), None).unwrap();
-        let tried = around
+        let without_feedback =
+            around.without_inner_paths().trial(PlantMember::Rational(plant.clone()), None).unwrap();
+        let trial = around
             .trial(PlantMember::Rational(PlantCoefficients { rate: Some(rate), ..plant }), None)
             .unwrap();
-        let (TrialPlant::Held(held), TrialPlant::Held(alone)) = (&tried, &alone) else {
+        let (TrialPlant::Held(held), TrialPlant::Held(without_feedback)) = (&trial, &without_feedback) else {
             panic!("its modes are apart")
         };
-        let whole = tried.whole(&around).unwrap();
+        let whole = trial.whole(&around).unwrap();
         let mut change = 0.0_f64;
         for step in 0..=60 {
             let highest = std::f64::consts::PI / sample_time_s;
@@ -88,7 +89,8 @@ fn modes_respond_as_the_whole_member_with_an_inner_signal_fed_back() {
                 let error = (found - expected).norm_sqr() / expected.norm_sqr();
                 assert!(error < 1e-18, "{frequency}: {found}, {expected}");
             }
-            change = change.max((found.plant / alone.at(frequency).unwrap().plant - 1.0).norm_sqr());
+            change =
+                change.max((found.plant / without_feedback.at(frequency).unwrap().plant - 1.0).norm_sqr());
         }
         assert!(change > 0.1, "what is fed back changes the response: {change}");
     }
@@ -101,15 +103,15 @@ fn equal_poles_and_continuous_loops_are_whole() {
     let plant = PlantCoefficients { command: equal, disturbance: None, dead_time_s: 0.0, rate: None };
     for sample_time_s in [Some(1e-3), None] {
         let (around, _) = placed(Timing { sample_time_s, ..Timing::default() }, 0.0);
-        let tried = around.trial(PlantMember::Rational(plant.clone()), None).unwrap();
-        assert!(matches!(tried, TrialPlant::Whole(_)), "{tried:?}");
+        let trial = around.trial(PlantMember::Rational(plant.clone()), None).unwrap();
+        assert!(matches!(trial, TrialPlant::Whole(_)), "{trial:?}");
     }
 }
 
 /// The searches of an audit sample only the plants at their ends as a whole: the others are
 /// evaluated by their modes.
 #[test]
-fn a_search_tries_plants_without_sampling_them_as_a_whole() {
+fn a_search_tests_plants_without_sampling_them_as_a_whole() {
     let parameter =
         |name: &str| UncertainParameter { name: name.into(), nominal: 1.0, minimum: 0.5, maximum: 2.0 };
     let plant = UncertainPlant::record(vec![parameter("k"), parameter("m")], |p| PlantCoefficients {

@@ -76,7 +76,7 @@ fn refuse(text: &str, dimension: &Dimension, message: &str, help: Option<&str>) 
 }
 
 #[test]
-fn refusals_say_what_is_right() {
+fn refusals_state_the_correct_form() {
     refuse("70 mm", &PRESSURE, "expected a pressure, found a length", None);
     refuse("70 kg.m", &PRESSURE, "expected a pressure, found something in kg.m", None);
     refuse("70 baar", &PRESSURE, "unknown unit `baar`", Some("did you mean `bar`?"));

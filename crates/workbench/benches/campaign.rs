@@ -57,8 +57,8 @@ const NAMES: [(&str, &[&str]); 18] = [
 ];
 
 fn main() -> ExitCode {
-    let asked = std::env::args().skip(1).find_map(|argument| argument.parse().ok());
-    match bench(asked.unwrap_or(RUNS)) {
+    let runs = std::env::args().skip(1).find_map(|argument| argument.parse().ok());
+    match bench(runs.unwrap_or(RUNS)) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::FAILURE,
         Err(problem) => {
@@ -88,7 +88,7 @@ fn bench(runs: u64) -> Result<bool, Box<dyn Error>> {
     let mut well = median <= MEDIAN_ERROR && rare <= RARE_ERROR;
     match peer()? {
         None => println!("CVODE: not compiled here"),
-        Some(program) => well &= beside(&program, &plan, (lanes, &reference))?,
+        Some(program) => well &= compare_with_peer(&program, &plan, (lanes, &reference))?,
     }
     Ok(well)
 }
@@ -96,7 +96,7 @@ fn bench(runs: u64) -> Result<bool, Box<dyn Error>> {
 const ONE_BY_ONE: Effort = Effort { threads: 1, lanes: false };
 
 /// Times of CVODE next to those of phea, and the agreement of the two at their highest accuracy.
-fn beside(
+fn compare_with_peer(
     program: &Path,
     plan: &Plan,
     (lanes, reference): (f64, &[Vec<f64>]),
@@ -204,7 +204,7 @@ fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
     values
 }
 
-fn quantile(sorted: &[f64], share: f64) -> f64 {
-    let place = (share * (sorted.len().saturating_sub(1)) as f64).ceil() as usize;
+fn quantile(sorted: &[f64], fraction: f64) -> f64 {
+    let place = (fraction * (sorted.len().saturating_sub(1)) as f64).ceil() as usize;
     sorted.get(place).copied().unwrap_or(f64::NAN)
 }

@@ -67,12 +67,12 @@ fn of_format(folder: &Path, format: TableFormat) -> Result<String, Fault> {
     written(&file, format)?;
     let (mut times, mut most, mut sums) = (Vec::new(), 0.0_f64, String::new());
     for _ in 0..PROCESSES {
-        let told = Command::new(std::env::current_exe()?).arg("read").arg(&file).output()?;
-        let text = String::from_utf8(told.stdout)?;
+        let output = Command::new(std::env::current_exe()?).arg("read").arg(&file).output()?;
+        let text = String::from_utf8(output.stdout)?;
         let mut words = text.split_whitespace();
         let mut number = || words.next().and_then(|word| word.parse::<f64>().ok());
         let (Some(seconds), Some(megabytes)) = (number(), number()) else {
-            return Err(String::from_utf8_lossy(&told.stderr).into());
+            return Err(String::from_utf8_lossy(&output.stderr).into());
         };
         times.push(seconds);
         most = most.max(megabytes);
@@ -101,15 +101,15 @@ fn written(file: &PathBuf, format: TableFormat) -> Result<(), Fault> {
     let mut noise = |size: f64| size * phea_dynamics::random::normal(&mut state);
     for row in 0..ROWS {
         let turn = 2.0 * std::f64::consts::PI * f64::from(row) / f64::from(ROWS);
-        let share = phea_dynamics::portable::sin(turn);
-        let pressure = |share: f64| 35e5 + 30e5 * share;
+        let fraction = phea_dynamics::portable::sin(turn);
+        let pressure = |fraction: f64| 35e5 + 30e5 * fraction;
         table.row(&[
             f64::from(row) * 2.4e-4,
-            3.0 * share,
+            3.0 * fraction,
             bar.of(70e5 + noise(5e3)),
-            bar.of(pressure(share) + noise(5e3)),
-            bar.of(pressure(-share) + noise(5e3)),
-            litres.of(2e-5 * (1.2 - share * share) + noise(1e-7)),
+            bar.of(pressure(fraction) + noise(5e3)),
+            bar.of(pressure(-fraction) + noise(5e3)),
+            litres.of(2e-5 * (1.2 - fraction * fraction) + noise(1e-7)),
         ])?;
     }
     table.finish()?.flush()?;

@@ -50,7 +50,7 @@ type Fault = Box<dyn std::error::Error>;
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
-    match asked(&words) {
+    match run_arguments(&words) {
         Ok(()) => ExitCode::SUCCESS,
         Err(problem) => {
             eprintln!("{problem}");
@@ -59,7 +59,7 @@ fn main() -> ExitCode {
     }
 }
 
-fn asked(words: &[String]) -> Result<(), Fault> {
+fn run_arguments(words: &[String]) -> Result<(), Fault> {
     if let [name, tolerance, options @ ..] = words {
         let case = CASES.iter().find(|case| case.0 == name).ok_or("no such case")?;
         let option = |name: &str| options.iter().find_map(|word| word.strip_prefix(name)?.strip_prefix('='));
@@ -126,16 +126,16 @@ struct Bench {
     control: Control,
     settings: SimulationSettings,
     start: Vec<f64>,
-    course: InputSchedule,
+    schedule: InputSchedule,
     stiffness: f64,
 }
 
 impl Bench {
     fn new(project: &Project) -> Result<Bench, Fault> {
-        let shared = simulate::ControlledMachine::new(&Setup::new(project)?)?;
+        let common = simulate::ControlledMachine::new(&Setup::new(project)?)?;
         let scenario = project.scenarios.first().ok_or("no scenario")?;
         let stated = scenario.start.as_ref().ok_or("no start")?;
-        let beginning = shared.machine.start(&StartValues {
+        let beginning = common.machine.start(&StartValues {
             position: stated.position.unwrap_or(0.0),
             pressure_a: stated.pressure_a.unwrap_or(0.0),
             pressure_b: stated.pressure_b.unwrap_or(0.0),
@@ -150,16 +150,16 @@ impl Bench {
         let motion = Profile::smooth_step(declared.start, duration, distance)?;
         let ground = motion.shifted(beginning.inputs[0]);
         let mut inputs = vec![reference, Input::Value(ground.clone()), Input::Rate(ground)];
-        if matches!(shared.control, Control::Sampled(_)) {
+        if matches!(common.control, Control::Sampled(_)) {
             inputs.insert(0, Input::Command);
         }
-        let [states, _] = shared.control.size();
+        let [states, _] = common.control.size();
         let mut start = beginning.state;
         start.resize(states, 0.0);
-        let course =
+        let schedule =
             InputSchedule { duration_s: scenario.duration, output_step_s: scenario.output_step, inputs };
-        let stiffness = shared.rig.actuator.components().force_sensor.stiffness;
-        Ok(Bench { control: shared.control, settings: shared.settings, start, course, stiffness })
+        let stiffness = common.rig.actuator.components().force_sensor.stiffness;
+        Ok(Bench { control: common.control, settings: common.settings, start, schedule, stiffness })
     }
 
     fn run(&self, tolerance: f64) -> Result<(Outcome, Vec<[f64; 2]>), Fault> {
@@ -173,7 +173,7 @@ impl Bench {
         };
         let mut force = Force { stiffness: self.stiffness, rows: Vec::new() };
         let observer: Watcher<'_> = Box::new(&mut force);
-        let task = Task { start: self.start.clone(), course: &self.course, sampler, observer };
+        let task = Task { start: self.start.clone(), course: &self.schedule, sampler, observer };
         let outcome = self.control.drive(task, &settings, &mut |_| true)?;
         Ok((outcome, force.rows))
     }

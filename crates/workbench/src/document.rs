@@ -51,7 +51,7 @@ enum Block {
     /// Details that the page shows on request.
     Folded(String, Table),
     /// Requests and their outcomes: the first column has the words.
-    Asked(Table),
+    Requests(Table),
     /// Facts by name, each on a card; those of results are small on paper.
     Cards { facts: Vec<(String, String)>, are_results: bool },
     /// A sentence that must not be overlooked.
@@ -59,7 +59,7 @@ enum Block {
     /// Steps to take, in this order, below their title.
     Steps { title: String, steps: Vec<String> },
     /// Blocks that the page shows side by side.
-    Beside(Document),
+    SideBySide(Document),
     /// Lines that are printed unchanged.
     Preformatted(String),
 }
@@ -147,9 +147,9 @@ impl Document {
     }
 
     /// A table of requests and their outcomes; omitted if it has no rows.
-    pub(crate) fn asked(&mut self, table: Table) {
+    pub(crate) fn requests(&mut self, table: Table) {
         if !table.is_empty() {
-            self.blocks.push(Block::Asked(table));
+            self.blocks.push(Block::Requests(table));
         }
     }
 
@@ -173,8 +173,8 @@ impl Document {
     }
 
     /// The blocks of another document, side by side on a page.
-    pub(crate) fn beside(&mut self, blocks: Document) {
-        self.blocks.push(Block::Beside(blocks));
+    pub(crate) fn side_by_side(&mut self, blocks: Document) {
+        self.blocks.push(Block::SideBySide(blocks));
     }
 
     /// Figures, which a terminal leaves out.
@@ -204,7 +204,7 @@ impl Document {
     pub(crate) fn into_figures(self) -> Vec<Figure> {
         let figures = self.blocks.into_iter().flat_map(|block| match block {
             Block::Figure(figure) => vec![*figure],
-            Block::Beside(document) => document.into_figures(),
+            Block::SideBySide(document) => document.into_figures(),
             _ => vec![],
         });
         figures.collect()

@@ -11,8 +11,8 @@ pub use answer::files;
 pub(crate) use answer::{body, body_swept, passivity as passivity_body};
 pub(crate) use document::output;
 pub(crate) use document::{
-    asked_sentence, asked_table, document, impedance_at_joint, linkage_table, model_words, models,
-    passivity_sentence, root_list,
+    document, impedance_at_joint, linkage_table, model_words, models, passivity_sentence,
+    required_impedance_sentence, required_impedance_table, root_list,
 };
 pub(crate) use sweep_answer::sweep_document;
 pub(crate) use sweep_answer::{sweep_figure, sweep_files};

@@ -29,7 +29,7 @@ pub(crate) fn named<'n>(panel: CurvePanel, names: impl IntoIterator<Item = &'n s
 }
 
 /// The panel with further lines, drawn beneath those that it has.
-pub(crate) fn behind(
+pub(crate) fn with_lines_beneath(
     mut panel: CurvePanel,
     unit: DisplayUnit,
     style: CurveStyle,
@@ -105,7 +105,7 @@ impl ForceStep<'_> {
         let level = |band: SettlingBand| SettlingBand { level: unit.of(band.level), ..band };
         let forces = CurvePanel {
             settling_band: self.settling_band.map(level),
-            ..behind(forces, unit, CurveStyle::Reference, [of(self.reference)])
+            ..with_lines_beneath(forces, unit, CurveStyle::Reference, [of(self.reference)])
         };
         let command = CurvePanel {
             range: CurveRange::WithZero,

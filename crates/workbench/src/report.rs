@@ -317,13 +317,13 @@ fn rig_part(
 /// that follow from a requirement in time count as met only if its steps satisfy it too.
 fn audit_words(view: &ProjectAudit) -> String {
     let findings = &view.audit.specifications;
-    let keeps = |(index, finding): &(usize, &SpecificationFinding)| {
+    let is_met = |(index, finding): &(usize, &SpecificationFinding)| {
         finding.verdict == Verdict::Met && !view.in_time_of(*index).is_some_and(TimeFinding::violates)
     };
     let mut steps: Vec<&TimeFinding> = view.in_time.iter().collect();
     steps.retain(|finding| finding.requirement.limits.is_none());
     let satisfied = steps.iter().filter(|finding| finding.verdict() == Some(Verdict::Met)).count();
-    let met = findings.iter().enumerate().filter(keeps).count() + satisfied;
+    let met = findings.iter().enumerate().filter(is_met).count() + satisfied;
     let all = findings.len() + steps.len();
     let stable = match view.audit.stability.verdict {
         Verdict::Met => "stable",

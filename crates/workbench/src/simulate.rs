@@ -12,16 +12,16 @@ mod metrics;
 mod reasons;
 mod repetition;
 mod required;
+mod requirement;
 mod span;
 mod together;
-mod wish;
 
 pub use phea_engineering::simulate::*;
 
 pub(crate) use answer::{body, comparison_body, frequency_body};
 pub(crate) use document::{
     adjustment_sentence, cause_words, coarse_sentence, comparison, document, gas_sentence, headline,
-    measured, metrics_row, occurrence_sentences, published, published_row, windows, wish_of,
+    measured, metrics_row, occurrence_sentences, published, published_row, requirement_of, windows,
 };
 pub(crate) use exceeded::exceeded_words;
 pub(crate) use figures::{comparison_files, figure_files, laid_over, pictures, turns};
@@ -33,6 +33,8 @@ pub(crate) use frequency::{
 pub(crate) use metrics::{cells_of, label_within, settling_within, shown_in};
 pub(crate) use reasons::{status_words, unmeasured_words};
 pub(crate) use required::{not_judged_words, requirement_sentence, satisfied_word};
+pub(crate) use requirement::{
+    reached_words, required_overshoot, required_rise, required_settling, required_words,
+};
 pub(crate) use span::around;
 pub(crate) use together::{NamedRun, at_a_glance, close_ups, measured_together, together};
-pub(crate) use wish::{reached_words, required_overshoot, required_rise, required_settling, required_words};

@@ -3,11 +3,11 @@
 mod answer;
 mod late;
 mod names;
-mod wish;
+mod requirement;
 
 pub use phea_engineering::specification::*;
 
 pub(crate) use answer::{document, wish_row};
 pub(crate) use late::late;
 pub(crate) use names::{name_words, numbered, stated, subject_words};
-pub use wish::wish_sentence;
+pub use requirement::wish_sentence;

@@ -9,7 +9,7 @@ use phea_workbench::linearize::stiffness_over_force;
 use phea_workbench::project::Severity;
 use phea_workbench::setup::Setup;
 
-use crate::ask::{
+use crate::run_command::{
     HOSE, answer, check, derived, json, near, number, project_of, size_request, try_answer, within,
 };
 
@@ -26,36 +26,36 @@ fn gas_compliance(gas_volume: f64, precharge: f64, index: f64, pressure: f64) ->
 
 /// The gas of each side at the pressure of its own chamber, with the two sides different.
 #[test]
-fn check_derives_what_the_gas_yields_and_the_stiffness_with_and_without() {
-    let told = check(BOTH, &["operating_point.load_force=1 kN"]);
-    let pressures = ["a", "b"].map(|side| derived(&told, &format!("operating_point.pressure_{side}")));
+fn check_derives_the_compliance_of_gas_and_the_stiffness_with_and_without_it() {
+    let output = check(BOTH, &["operating_point.load_force=1 kN"]);
+    let pressures = ["a", "b"].map(|side| derived(&output, &format!("operating_point.pressure_{side}")));
     let expected =
         [gas_compliance(14e-6, 15e5, 1.3, pressures[0]), gas_compliance(6e-6, 10e5, 1.1, pressures[1])];
     for (side, expected) in ["a", "b"].into_iter().zip(expected) {
-        near(derived(&told, &format!("line.{side}.accumulator.compliance")), expected, 1e-12);
+        near(derived(&output, &format!("line.{side}.accumulator.compliance")), expected, 1e-12);
     }
-    let area = derived(&told, "cylinder.area_a");
-    let oil = (area * 0.25 + derived(&told, "line.volume")) / 1.45e9;
+    let area = derived(&output, "cylinder.area_a");
+    let oil = (area * 0.25 + derived(&output, "line.volume")) / 1.45e9;
     let stiffness = |gas: [f64; 2]| gas.map(|gas| area * area / (oil + gas)).iter().sum::<f64>();
-    near(derived(&told, "stiffness.with_accumulators"), stiffness(expected), 1e-10);
-    near(derived(&told, "stiffness.without_accumulators"), stiffness([0.0; 2]), 1e-10);
-    near(derived(&told, "linear.hydraulic_stiffness"), stiffness(expected), 1e-10);
+    near(derived(&output, "stiffness.with_accumulators"), stiffness(expected), 1e-10);
+    near(derived(&output, "stiffness.without_accumulators"), stiffness([0.0; 2]), 1e-10);
+    near(derived(&output, "linear.hydraulic_stiffness"), stiffness(expected), 1e-10);
 }
 
 /// The force at which `check` reports that the gas is shut off brings a chamber down to its
 /// precharge.
 #[test]
-fn at_the_limits_of_force_a_chamber_stands_just_above_its_precharge() {
-    let told = check(GAS, &[]);
+fn at_the_limits_of_force_a_chamber_is_just_above_its_precharge() {
+    let output = check(GAS, &[]);
     for (end, chamber) in [("least", "a"), ("greatest", "b")] {
-        let force = derived(&told, &format!("line.{chamber}.accumulator.{end}_force"));
+        let force = derived(&output, &format!("line.{chamber}.accumulator.{end}_force"));
         let there = check(GAS, &[&format!("operating_point.load_force={} N", force * (1.0 - 1e-9))]);
         within(
             derived(&there, &format!("operating_point.pressure_{chamber}")),
             1.01 * (15e5 + ATMOSPHERE) - ATMOSPHERE,
             10.0,
         );
-        let stiffness = derived(&told, &format!("stiffness.at_{end}_force"));
+        let stiffness = derived(&output, &format!("stiffness.at_{end}_force"));
         near(derived(&there, "linear.hydraulic_stiffness"), stiffness, 1e-6);
     }
 }
@@ -76,11 +76,15 @@ fn stiffness_over_the_force_is_that_of_the_rig_under_this_force() {
             let there = check(text, &[&format!("operating_point.load_force={:e} N", found.forces[index])]);
             near(found.at_rest[index], derived(&there, "linear.hydraulic_stiffness"), 1e-6);
         }
-        let told = check(text, &[]);
+        let output = check(text, &[]);
         let last = found.forces.len() - 1;
         for (index, side, end) in [(0, "a", "least"), (last, "b", "greatest")] {
-            near(found.forces[index], derived(&told, &format!("line.{side}.accumulator.{end}_force")), 1e-9);
-            near(found.at_rest[index], derived(&told, &format!("stiffness.at_{end}_force")), 1e-9);
+            near(
+                found.forces[index],
+                derived(&output, &format!("line.{side}.accumulator.{end}_force")),
+                1e-9,
+            );
+            near(found.at_rest[index], derived(&output, &format!("stiffness.at_{end}_force")), 1e-9);
         }
     }
     let of = |text: &str, settings: &[&str]| {
@@ -112,10 +116,10 @@ fn the_report_draws_the_stiffness_over_the_force() {
 /// gas is shut off.
 #[test]
 fn a_verdict_names_the_forces_beyond_which_the_gas_is_shut_off() {
-    let told = json(GAS, &[], &[], &Request::Verify { proof: false, on_machine: false });
-    let said = told.to_string();
-    assert!(said.contains("line.accumulator is counted for small motions"), "{said}");
-    assert!(said.contains("below -5.26 kN and above 4.95 kN"), "{said}");
+    let output = json(GAS, &[], &[], &Request::Verify { proof: false, on_machine: false });
+    let message = output.to_string();
+    assert!(message.contains("line.accumulator is counted for small motions"), "{message}");
+    assert!(message.contains("below -5.26 kN and above 4.95 kN"), "{message}");
     // ORIGIN: thesis 6.4.1
     within(derived(&check(GAS, &[]), "linear.hydraulic_stiffness"), 2.24e6, 0.005e6);
 }
@@ -140,11 +144,11 @@ fn families_have_the_stiffness_of_their_gas() {
 #[test]
 fn a_run_reports_where_the_gas_is_shut_off() {
     let scenario = "scenario=[{ name = \"push\", duration = \"2 s\", reference = [{ at = \"0.2 s\", force = \"7 kN\" }, { at = \"1 s\", force = \"0 N\" }] }]";
-    let ask = |settings: &[&str]| answer(GAS, settings, &[], &Request::Simulate(Default::default())).text;
-    let told = ask(&[scenario]);
-    assert!(told.contains("the gas at chamber B is shut off"), "{told}");
-    assert!(told.contains("the gas at chamber B is in use again"), "{told}");
-    let low = ask(&[
+    let run = |settings: &[&str]| answer(GAS, settings, &[], &Request::Simulate(Default::default())).text;
+    let output = run(&[scenario]);
+    assert!(output.contains("the gas at chamber B is shut off"), "{output}");
+    assert!(output.contains("the gas at chamber B is in use again"), "{output}");
+    let low = run(&[
         scenario,
         "line.accumulator.precharge_pressure=4 bar",
         "line.accumulator.maximum_pressure_ratio=20",
@@ -155,15 +159,15 @@ fn a_run_reports_where_the_gas_is_shut_off() {
 #[test]
 fn gas_that_is_shut_off_at_the_operating_point_is_refused() {
     let refused = try_answer(GAS, &["line.accumulator.precharge_pressure=40 bar"], &[], &Request::Check);
-    let said = refused.unwrap_err().to_string();
+    let message = refused.unwrap_err().to_string();
     for part in ["line.accumulator.precharge_pressure", "40.00 bar", "chamber A", "lower the precharge"] {
-        assert!(said.contains(part), "{part}: {said}");
+        assert!(message.contains(part), "{part}: {message}");
     }
 }
 
 /// Gas that is shut off is rejected at the key, in the file or in the alternative that sets it.
 #[test]
-fn what_shuts_off_the_gas_is_refused_at_its_place() {
+fn a_precharge_above_the_chamber_pressure_is_refused_at_its_place() {
     let line_of = |text: &str, key: &str| 1 + text.lines().position(|line| line.contains(key)).unwrap();
     let place = |text: &str, request: &Request| {
         let refused = try_answer(text, &[], &[], request).unwrap_err();
@@ -187,7 +191,7 @@ fn what_shuts_off_the_gas_is_refused_at_its_place() {
 /// A family whose precharge exceeds the pressure of a chamber states at how many of its plants;
 /// otherwise it states nothing.
 #[test]
-fn a_verdict_tells_at_how_many_plants_the_gas_is_shut_off() {
+fn a_verdict_counts_the_plants_whose_gas_is_shut_off() {
     let caveat = |most: f64| {
         let range = format!(
             "uncertainty.\"line.accumulator.precharge_pressure\"={{ nominal = 15e5, minimum = 15e5, maximum = {most:e}, points = 3 }}"
@@ -195,11 +199,11 @@ fn a_verdict_tells_at_how_many_plants_the_gas_is_shut_off() {
         json(GAS, &[&range], &[], &Request::Verify { proof: false, on_machine: false }).to_string()
     };
     // chamber B of the example is below the 30 bar of one of the three points of the range
-    let told = check(GAS, &[]);
-    assert!(derived(&told, "operating_point.pressure_b") < 30e5);
-    let said = caveat(30e5);
-    assert!(said.contains("it is shut off") && said.contains("chamber B"), "{said}");
-    assert!(said.contains("line.accumulator.precharge_pressure = 30"), "{said}");
+    let output = check(GAS, &[]);
+    assert!(derived(&output, "operating_point.pressure_b") < 30e5);
+    let message = caveat(30e5);
+    assert!(message.contains("it is shut off") && message.contains("chamber B"), "{message}");
+    assert!(message.contains("line.accumulator.precharge_pressure = 30"), "{message}");
     assert!(!caveat(20e5).contains("it is shut off"));
 }
 
@@ -207,8 +211,8 @@ fn a_verdict_tells_at_how_many_plants_the_gas_is_shut_off() {
 #[test]
 fn sizing_refuses_gas() {
     let gas = "line.accumulator={ gas_volume = \"1 mL\", precharge_pressure = \"10 bar\" }";
-    let said = try_answer(HOSE, &[gas], &[], &size_request(None, None)).unwrap_err().to_string();
-    assert!(said.contains("counts no gas"), "{said}");
+    let message = try_answer(HOSE, &[gas], &[], &size_request(None, None)).unwrap_err().to_string();
+    assert!(message.contains("counts no gas"), "{message}");
     assert!(number(&json(HOSE, &[], &[], &size_request(None, None)), "candidates.0.length_m") > 0.0);
     // a report has a sentence instead of the chapter
     let found = answer(

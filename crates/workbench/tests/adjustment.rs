@@ -5,8 +5,8 @@
 
 use phea_workbench::command::Request;
 
-use super::ask::{answer, check, derived, json, near, project_of, try_answer};
 use super::plant_of_verdicts::{assert_nominal_is_the_rig, responses, without_uncertainty};
+use super::run_command::{answer, check, derived, json, near, project_of, try_answer};
 
 const GAS: &str = include_str!("../../../examples/ybitu/accumulator.toml");
 const LIMIT: &str =
@@ -60,7 +60,7 @@ fn a_setting_is_the_declared_accumulator() {
 
 /// A shut valve leaves the rig without an accumulator; an opening one does not.
 #[test]
-fn a_shut_valve_is_no_accumulator() {
+fn a_shut_valve_disconnects_the_accumulator() {
     let text = without_uncertainty(GAS);
     let (before, after) = text.split_once("[line.accumulator]").unwrap();
     let (_, after) = after.split_once("\n[").unwrap();
@@ -92,12 +92,12 @@ fn the_family_is_the_rig_at_its_nominal() {
 #[test]
 fn check_derives_the_stiffness_of_each_setting() {
     let text = without_uncertainty(GAS);
-    let told = check(&text, &[&at(MOVED, 0.25)]);
+    let output = check(&text, &[&at(MOVED, 0.25)]);
     for (name, volume, precharge) in
         [("0", "6 mL", "15 bar"), ("half", "10 mL", "13 bar"), ("1", "14 mL", "11 bar")]
     {
         let declared = check(&text, &[&accumulator(volume, precharge, "")]);
-        let found = derived(&told, &format!("stiffness.at_setting_{name}"));
+        let found = derived(&output, &format!("stiffness.at_setting_{name}"));
         near(found, derived(&declared, "stiffness.with_accumulators"), 1e-9);
     }
     let valve = check(&text, &[&at(VALVE, 0.5)]);
@@ -107,24 +107,24 @@ fn check_derives_the_stiffness_of_each_setting() {
 
 /// Settings that a verdict does not cover are reported.
 #[test]
-fn a_verdict_says_that_settings_stand() {
+fn a_verdict_reports_that_settings_are_frozen() {
     let text = without_uncertainty(GAS);
-    let said = |more: &[&str]| {
+    let warned = |more: &[&str]| {
         json(&text, &[&[LIMIT], more].concat(), &[], &Request::Verify { proof: false, on_machine: false })
             .to_string()
     };
-    let moved = said(&[&at(MOVED, 0.25)]);
+    let moved = warned(&[&at(MOVED, 0.25)]);
     assert!(moved.contains("line.accumulator.adjustment is counted at its setting of rest, 0.25"), "{moved}");
-    let valve = said(&[&at(VALVE, 0.5)]);
+    let valve = warned(&[&at(VALVE, 0.5)]);
     assert!(valve.contains("has no drop at rest"), "{valve}");
-    assert!(!said(&[&accumulator("6 mL", "15 bar", "")]).contains("adjustment"));
+    assert!(!warned(&[&accumulator("6 mL", "15 bar", "")]).contains("adjustment"));
     let models = answer(&text, &[&at(VALVE, 0.5)], &[], &Request::Linearize { sweep: None }).text;
     assert!(models.contains("the valve of line.accumulator.adjustment is counted in the plant"), "{models}");
 }
 
 /// A simulation of a moving setting states its work; one of a setting beyond its range is rejected.
 #[test]
-fn a_simulation_tells_the_work_of_a_setting() {
+fn a_simulation_reports_the_work_of_a_setting() {
     let text = without_uncertainty(GAS);
     let scenario = |change: &str| {
         format!(
@@ -146,10 +146,15 @@ fn a_simulation_tells_the_work_of_a_setting() {
     assert_eq!(switched["scenarios"][0]["status"], "completed", "{switched}");
     assert_eq!(switched["scenarios"][0]["adjustment_brought_j"], 0.0);
     let beyond = scenario("{ kind = \"sine\", amplitude = 0.8, frequency = \"5 Hz\" }");
-    let asked = [at(MOVED, 0.25), beyond];
-    let refused = try_answer(&text, &[&asked[0], &asked[1]], &[], &Request::Simulate(Default::default()))
-        .unwrap_err()
-        .to_string();
+    let settings_beyond = [at(MOVED, 0.25), beyond];
+    let refused = try_answer(
+        &text,
+        &[&settings_beyond[0], &settings_beyond[1]],
+        &[],
+        &Request::Simulate(Default::default()),
+    )
+    .unwrap_err()
+    .to_string();
     assert!(refused.contains("a setting stays from 0 to 1"), "{refused}");
 }
 
@@ -170,11 +175,11 @@ fn rows_of(settings: &[&str]) -> (serde_json::Value, Vec<std::collections::BTree
 /// The loss in the valves is the integral of their drops times their flows, which the rows contain
 /// too.
 #[test]
-fn the_loss_of_switching_is_told() {
+fn the_loss_of_switching_is_reported() {
     let scenario = "scenario=[{ name = \"moves\", duration = \"0.3 s\", output_step = \"0.02 ms\", reference = [{ at = 0, force = \"1 kN\" }, \
          { at = \"0.05 s\", force = \"3 kN\" }], setting_change = [{ at = \"0.15 s\", change = 0.5 }] }]";
     let (found, rows) = rows_of(&[&at(VALVE, 0.0), scenario]);
-    let told = found["scenarios"][0]["gas_valve_throttled_j"].as_f64().unwrap();
+    let output = found["scenarios"][0]["gas_valve_throttled_j"].as_f64().unwrap();
     // ORIGIN: analytic, q = s K dp/(dp^2 + dp_t^2)^(1/4) with the flow of 20 L/min at 5 bar wide
     // open
     let coefficient = 20e-3 / 60.0 / 5e5_f64.sqrt();
@@ -192,7 +197,7 @@ fn the_loss_of_switching_is_told() {
             expected += 0.5 * length * (power(&two[0]) + power(&two[1]));
         }
     }
-    assert!(told > 0.05 && (told / expected - 1.0).abs() < 1e-3, "{told} {expected}");
+    assert!(output > 0.05 && (output / expected - 1.0).abs() < 1e-3, "{output} {expected}");
     let text = answer(
         &without_uncertainty(GAS),
         &[&at(VALVE, 0.0), scenario],
@@ -206,14 +211,14 @@ fn the_loss_of_switching_is_told() {
 /// Peaks of gas are those of the solution; the temperature of gas too fast for heat exchange
 /// follows the adiabate.
 #[test]
-fn peaks_of_gas_are_told() {
+fn peaks_of_gas_are_reported() {
     let scenario = "scenario=[{ name = \"moves\", duration = \"0.5 s\", output_step = \"0.1 ms\", reference = [{ at = 0, force = \"1 kN\" }, \
          { at = \"0.1 s\", force = \"3 kN\" }] }]";
     let gas = "line.accumulator={ gas_volume = \"14 mL\", precharge_pressure = \"15 bar\", thermal_time_constant = \"1e7 s\" }";
     let (found, rows) = rows_of(&[gas, scenario]);
-    let told = found["scenarios"][0]["gas"].as_array().unwrap();
-    assert_eq!(told.len(), 2);
-    for (of_gas, side) in told.iter().zip(["a", "b"]) {
+    let output = found["scenarios"][0]["gas"].as_array().unwrap();
+    assert_eq!(output.len(), 2);
+    for (of_gas, side) in output.iter().zip(["a", "b"]) {
         assert_eq!(of_gas["chamber"], side);
         let number = |name: &str| of_gas[name].as_f64().unwrap();
         let pressures: Vec<f64> = rows.iter().map(|row| row[&format!("pressure_{side}_pa")]).collect();

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{
+use crate::run_command::{
     HOSE, answer, check, derived, linearize, load, near, number, size_for_gain, size_for_length,
 };
 use num_complex::Complex64;
@@ -76,19 +76,19 @@ fn response(factors: &Value, frequency: f64) -> Complex64 {
 fn rate_gain_and_stiffness_are_those_of_the_plant() {
     for stiffness in ["5 kN/mm", "15 kN/mm", "30 kN/mm", "400 kN/mm"] {
         let load = specimen(stiffness);
-        let [told, linear] = [check(RIG, &[&load]), linearize(RIG, &[&load])];
+        let [output, linear] = [check(RIG, &[&load]), linearize(RIG, &[&load])];
         let frequency = 10.0;
         let rate = response(&linear["plant"]["command"], frequency).norm_sqr().sqrt() * frequency;
-        near(derived(&told, "dynamics.force_rate_gain"), rate, 0.015);
+        near(derived(&output, "dynamics.force_rate_gain"), rate, 0.015);
         let held = response(&linear["plant"]["load_position"], frequency).norm_sqr().sqrt();
-        near(derived(&told, "dynamics.equivalent_stiffness"), held, 0.015);
+        near(derived(&output, "dynamics.equivalent_stiffness"), held, 0.015);
         assert_eq!(linear["load_step_moves"], "ground");
     }
     // nothing has changed without a load: both springs in series
-    let alone = check(RIG, &[]);
-    let [k_h, k_s] =
-        ["linear.hydraulic_stiffness", "linear.sensor_stiffness"].map(|name| derived(&alone, name));
-    near(derived(&alone, "dynamics.equivalent_stiffness"), k_h * k_s / (k_h + k_s), 1e-12);
+    let without_specimen = check(RIG, &[]);
+    let [k_h, k_s] = ["linear.hydraulic_stiffness", "linear.sensor_stiffness"]
+        .map(|name| derived(&without_specimen, name));
+    near(derived(&without_specimen, "dynamics.equivalent_stiffness"), k_h * k_s / (k_h + k_s), 1e-12);
 }
 
 /// Modes of the plant are listed with their damping, and the participations are those of its poles.
@@ -97,20 +97,20 @@ fn modes_and_dominance_are_those_of_the_plant() {
     let settings: [&[&str]; 3] =
         [&[], &[&specimen("15 kN/mm")], &[&specimen("1 kN/mm"), "cylinder.internal_leakage=1e-12"]];
     for settings in settings {
-        let [told, linear] = [check(RIG, settings), linearize(RIG, settings)];
+        let [output, linear] = [check(RIG, settings), linearize(RIG, settings)];
         let pair = |root: &Value| [root[0].as_f64().unwrap(), root[1].as_f64().unwrap()];
         let poles: Vec<[f64; 2]> = linear["poles"]["plant"].as_array().unwrap().iter().map(pair).collect();
         let mut modes: Vec<[f64; 2]> = poles.iter().copied().filter(|[_, im]| *im > 0.0).collect();
         modes.sort_by(|[a, b], [c, d]| a.hypot(*b).total_cmp(&c.hypot(*d)));
         for (index, [re, im]) in modes.iter().enumerate() {
-            let of = |key: &str| derived(&told, &format!("dynamics.mode_{}.{key}", index + 1));
+            let of = |key: &str| derived(&output, &format!("dynamics.mode_{}.{key}", index + 1));
             near(of("frequency"), re.hypot(*im), 1e-12);
             near(of("damping_ratio"), -re / re.hypot(*im), 1e-12);
         }
         assert!(modes.len() >= 2);
-        let shares = linear["dominance"].as_array().unwrap();
-        assert_eq!(shares.len(), poles.iter().filter(|[_, im]| *im >= 0.0).count());
-        assert!(shares.iter().all(|share| poles.contains(&pair(&share["pole"]))));
+        let fractions = linear["dominance"].as_array().unwrap();
+        assert_eq!(fractions.len(), poles.iter().filter(|[_, im]| *im >= 0.0).count());
+        assert!(fractions.iter().all(|fraction| poles.contains(&pair(&fraction["pole"]))));
     }
 }
 
@@ -131,7 +131,7 @@ fn the_two_pressure_model_leaks() {
 
 /// Models that hold the load still are named as such, in text, JSON and table.
 #[test]
-fn what_holds_the_load_still_is_named() {
+fn the_component_that_holds_the_load_is_named() {
     let load = specimen("15 kN/mm");
     let request = Request::Linearize { sweep: None };
     let [with, without] = [&[&load[..]][..], &[]].map(|settings| answer(RIG, settings, &[], &request));
@@ -237,9 +237,9 @@ fn a_free_mass_is_held_still_and_named() {
     let load =
         "load={ model = \"spring_mass_damper\", mass = \"250 kg\", damping = \"3 kN.s/m\", stiffness = 0 }";
     let settings = [load, "operating_point={ position = \"150 mm\" }"];
-    let request = crate::ask::size_request(None, Some("1.5 m"));
+    let request = crate::run_command::size_request(None, Some("1.5 m"));
     let sized = answer(HOSE, &[load], &[], &request);
     assert!(sized.text.contains("the load held still, as no stiffness holds it"), "{}", sized.text);
-    let told = answer(RIG, &settings, &[], &Request::Check);
-    assert!(told.text.contains("Dynamics with the load held still, as no stiffness holds it"));
+    let output = answer(RIG, &settings, &[], &Request::Check);
+    assert!(output.text.contains("Dynamics with the load held still, as no stiffness holds it"));
 }

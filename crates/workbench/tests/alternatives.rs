@@ -5,9 +5,9 @@
 
 use std::sync::OnceLock;
 
-use crate::ask::{HOSE, answer, load, retracted_length, source};
 use crate::json_contract::unexplained;
-use phea_workbench::alternatives::{ColumnKey, LengthUnknown, asked as asked_of};
+use crate::run_command::{HOSE, answer, load, retracted_length, source};
+use phea_workbench::alternatives::{ColumnKey, LengthUnknown, asked as requested_alternatives};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{AlternativesRequest, Request, answer_into};
 use phea_workbench::quantity::MotionKind;
@@ -172,7 +172,7 @@ fn a_spring_on_the_rod_has_a_length() {
 /// Under a load case each alternative is designed with the settings of the case; the alternative's
 /// own settings come last.
 #[test]
-fn a_load_case_is_what_set_makes_of_every_alternative() {
+fn a_load_case_equals_every_alternative_with_set() {
     let text =
         format!("{LOOP}\n[[load_case]]\nname = \"slow\"\nset = {{ \"plant.denominator\" = \"s + 0.5\" }}\n");
     let found = answer(&text, &[], &[], &asked(true));
@@ -187,9 +187,9 @@ fn a_load_case_is_what_set_makes_of_every_alternative() {
     let (slow, faster) = ("plant.denominator=\"s + 0.5\"", "plant.denominator=\"s + 3\"");
     let settings: [&[&str]; 3] = [&[slow], &[faster], &[slow, "plant.delay=\"10 ms\""]];
     for (index, settings) in settings.into_iter().enumerate() {
-        let alone = parsed(&answer(LOOP, settings, &[], &designed));
+        let separate = parsed(&answer(LOOP, settings, &[], &designed));
         for key in ["controller", "verification", "status"] {
-            assert_eq!(case["alternatives"][index]["design"][key], alone[key], "{settings:?} {key}");
+            assert_eq!(case["alternatives"][index]["design"][key], separate[key], "{settings:?} {key}");
         }
     }
     let file = |name: &str| {
@@ -217,9 +217,9 @@ fn impedances_are_those_of_the_written_project() {
         let rig = setup.rig().unwrap();
         let models =
             phea_workbench::linearize::linearize(rig, setup.controller.as_ref(), &setup.sensor).unwrap();
-        let told = json["alternatives"][index]["columns"]["impedance"].as_array().unwrap();
-        assert_eq!(told.len(), 3);
-        for at in told {
+        let columns = json["alternatives"][index]["columns"]["impedance"].as_array().unwrap();
+        assert_eq!(columns.len(), 3);
+        for at in columns {
             let frequency = at["frequency_rad_per_s"].as_f64().unwrap();
             let views = [
                 ("impedance_open_n_s_per_m", &models.open_loop),
@@ -275,12 +275,12 @@ fn every_column_has_a_name() {
 /// The ranges of the rig that an alternative changes, and only these; without the option the check
 /// reports this.
 #[test]
-fn ranges_follow_the_rig_where_that_is_asked() {
+fn ranges_follow_the_rig_if_requested() {
     let pipe = "\n[[alternative]]\nname = \"pipe\"\nRECENTRE\n[alternative.set]\n\
                 \"line\" = { pipe = { bore = \"10.5 mm\" }, length = \"0.35 m\", compliance = \"uniform\" }\n";
     let text = |recentre: &str| format!("{HOSE}{}", pipe.replace("RECENTRE", recentre));
     let declared = load(&text("recentre = true"), &[], &[]);
-    let following = asked_of(&source(&text("recentre = true")), &declared, &[]).unwrap().0;
+    let following = requested_alternatives(&source(&text("recentre = true")), &declared, &[]).unwrap().0;
     let moved: Vec<&str> = following[1].moved.iter().map(|range| range.name.as_str()).collect();
     assert_eq!(moved, ["hydraulic_stiffness"]);
     let [nominal, least, greatest] = following[1].moved[0].moved;
@@ -301,7 +301,7 @@ fn a_sized_alternative_has_the_hose_of_size() {
     let text = format!(
         "{HOSE}\n[[alternative]]\nname = \"sized\"\nsize = true\nset = {{ \"line.length\" = \"1 m\" }}\n"
     );
-    let all = asked_of(&source(&text), &load(&text, &[], &[]), &[]).unwrap().0;
+    let all = requested_alternatives(&source(&text), &load(&text, &[], &[]), &[]).unwrap().0;
     let size = Request::Size { gain: None, length: None };
     let sized = parsed(&answer(&text, &["line.length=1 m"], &[], &size));
     let best = &sized["candidates"][0];
@@ -312,9 +312,10 @@ fn a_sized_alternative_has_the_hose_of_size() {
     assert!(line.a.length() != Some(1.0) && line.a == line.b);
     let pipe = format!(
         "{}\n[[alternative]]\nname = \"p\"\nsize = true\nset = {{ \"title\" = \"x\" }}\n",
-        crate::ask::PIPE
+        crate::run_command::PIPE
     );
-    let refused = asked_of(&source(&pipe), &load(&pipe, &[], &[]), &[]).unwrap_err().to_string();
+    let refused =
+        requested_alternatives(&source(&pipe), &load(&pipe, &[], &[]), &[]).unwrap_err().to_string();
     assert_eq!(refused, "alternative `p`: `size` finds the hoses of both sides: its [line] must have them");
 }
 
@@ -325,14 +326,14 @@ fn each_design_is_that_of_design_with_set() {
     let designed = Request::Design { seed: None, stages: false, repair: false };
     let settings: [&[&str]; 3] = [&[], &["plant.denominator=\"s + 3\""], &["plant.delay=\"10 ms\""]];
     for (index, settings) in settings.into_iter().enumerate() {
-        let alone = parsed(&answer(LOOP, settings, &[], &designed));
+        let separate = parsed(&answer(LOOP, settings, &[], &designed));
         let one = &json["alternatives"][index];
         for key in ["controller", "prefilter", "verification", "status", "figures"] {
-            assert_eq!(one["design"][key], alone[key], "{settings:?} {key}");
+            assert_eq!(one["design"][key], separate[key], "{settings:?} {key}");
         }
-        assert_eq!(one["columns"]["order"], alone["figures"]["order"]);
-        assert_eq!(one["columns"]["delay_margin_s"], alone["verification"]["delay_margin_s"]);
-        assert_eq!(one["verdict"], alone["verification"]["verdict"]);
+        assert_eq!(one["columns"]["order"], separate["figures"]["order"]);
+        assert_eq!(one["columns"]["delay_margin_s"], separate["verification"]["delay_margin_s"]);
+        assert_eq!(one["verdict"], separate["verification"]["verdict"]);
     }
 }
 
@@ -343,9 +344,9 @@ fn each_written_project_is_the_one_that_was_driven() {
     for (index, name) in ["as declared", "pipe"].into_iter().enumerate() {
         let file = found.files.iter().find(|file| file.name == format!("{name}.toml")).unwrap();
         let text = std::str::from_utf8(&file.bytes).unwrap();
-        let alone = parsed(&answer(text, &[], &[], &Request::Simulate(Default::default())));
+        let separate = parsed(&answer(text, &[], &[], &Request::Simulate(Default::default())));
         let columns = &json["alternatives"][index]["columns"]["scenarios"][0];
-        let events = &alone["scenarios"][0]["events"];
+        let events = &separate["scenarios"][0]["events"];
         let peak = |event: usize, key: &str| events[event]["metrics"][key].as_f64().unwrap();
         let close = |one: f64, other: f64| (one - other).abs() <= 1e-9 * one.abs();
         assert!(close(columns["disturbance_peak_n"].as_f64().unwrap(), peak(1, "disturbance_peak_n")));
@@ -370,7 +371,7 @@ fn each_written_project_is_the_one_that_was_driven() {
 
 /// Results that are finished when the watch stops are returned; the rest is named.
 #[test]
-fn a_stop_keeps_what_is_finished() {
+fn a_stop_returns_the_finished_alternatives() {
     let mut watch = |progress: phea_workbench::command::Progress| progress.share < 0.34;
     let stopped =
         answer_into(&source(LOOP), &load(LOOP, &[], &[]), &[], &asked(false), None, &mut watch).unwrap();
@@ -406,7 +407,7 @@ pub(super) fn rows_of_the_book(columns: usize) -> Vec<String> {
 }
 
 /// True if a row of the book is in a line of an output, its numbers and words in order.
-pub(super) fn stands_in(row: &str, output: &str) -> bool {
+pub(super) fn is_in_line(row: &str, output: &str) -> bool {
     let lines = output.lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "));
     lines.map(|line| format!("{line} ")).any(|line| line.contains(&format!("{row} ")))
 }
@@ -414,25 +415,25 @@ pub(super) fn stands_in(row: &str, output: &str) -> bool {
 /// The commands that story and book have in common are in both, and the story's output is compared
 /// with the command's.
 #[test]
-fn the_book_says_what_the_story_shows() {
+fn the_book_agrees_with_the_story() {
     let story = include_str!("../../../examples/13_alternatives.md");
     let shared = ["as declared", "pipe", "hose by volume", "accumulators"];
     let rows = rows_of_the_book(10);
     assert_eq!(rows.len(), 13);
     for name in shared {
         let row = rows.iter().find(|row| row.starts_with(&format!("{name} met"))).unwrap();
-        assert!(stands_in(row, story), "{row}");
+        assert!(is_in_line(row, story), "{row}");
     }
 }
 
 /// Every row of the book, under every load.
 #[test]
 #[ignore = "thirty-nine designs, nineteen of them infeasible"]
-fn soak_the_book_says_what_the_comparison_shows() {
+fn soak_the_book_agrees_with_the_comparison() {
     let project = include_str!("../../../examples/ybitu/compliance.toml");
     let found = answer(project, &[], &[], &asked(false));
     let rows = [rows_of_the_book(10), rows_of_the_book(8)].concat();
     assert_eq!(rows.len(), 39);
-    let missing: Vec<&String> = rows.iter().filter(|row| !stands_in(row, &found.text)).collect();
+    let missing: Vec<&String> = rows.iter().filter(|row| !is_in_line(row, &found.text)).collect();
     assert!(missing.is_empty(), "{missing:#?}\n{}", found.text);
 }

@@ -6,8 +6,8 @@ use phea_workbench::command::{AlternativesRequest, Request};
 
 use serde_json::Value;
 
-use super::alternatives::{BOOK, LOOP, parsed, rows_of_the_book, stands_in};
-use super::ask::{HOSE, answer};
+use super::alternatives::{BOOK, LOOP, is_in_line, parsed, rows_of_the_book};
+use super::run_command::{HOSE, answer};
 
 const FIGURE: &str = include_str!("../../../book/src/images/hose_length_front.svg");
 /// Settings that the book passes to the command.
@@ -19,7 +19,7 @@ const SWEEP: &str = "line.length=0.5 m..4 m";
 /// Table, figure and findings of the book are those of the command that it states.
 #[test]
 #[ignore = "eighteen designs"]
-fn soak_the_book_says_what_the_front_shows() {
+fn soak_the_book_agrees_with_the_front() {
     for stated in [BY_VOLUME, COLUMNS, SWEEP] {
         assert!(BOOK.contains(stated), "{stated}");
     }
@@ -34,7 +34,7 @@ fn soak_the_book_says_what_the_front_shows() {
     let rows: Vec<String> =
         rows_of_the_book(7).into_iter().filter(|row| !row.starts_with("alternative")).collect();
     assert_eq!(rows.len(), 16);
-    let missing: Vec<&String> = rows.iter().filter(|row| !stands_in(row, &found.text)).collect();
+    let missing: Vec<&String> = rows.iter().filter(|row| !is_in_line(row, &found.text)).collect();
     assert!(missing.is_empty(), "{missing:#?}\n{}", found.text);
     let drawn = found.files.iter().find(|file| file.name == "front.svg").unwrap();
     assert!(drawn.bytes == FIGURE.as_bytes(), "the figure of the book is not the one that is drawn");
@@ -65,11 +65,11 @@ fn front(columns: &str, sweep: &str) -> Request {
 
 /// Dominance of the points, compared with its definition; identical bytes from two threads at once.
 #[test]
-fn a_front_is_what_nothing_dominates() {
+fn a_front_consists_of_the_undominated_rows() {
     let request = front("high_frequency_gain_db,swept:more", "plant.delay=1 ms..20 ms");
-    let ask = || answer(LOOP, &[], &[], &request);
+    let run = || answer(LOOP, &[], &[], &request);
     let [found, again] = std::thread::scope(|scope| {
-        let both = [scope.spawn(ask), scope.spawn(ask)];
+        let both = [scope.spawn(run), scope.spawn(run)];
         both.map(|one| one.join().unwrap())
     });
     assert_eq!(found.json, again.json);
@@ -90,9 +90,9 @@ fn a_front_is_what_nothing_dominates() {
             }
             _ => false,
         };
-        let behind = points.iter().filter(dominated).count();
-        assert_eq!(point["dominated_by"].as_array().unwrap().len(), behind);
-        assert_eq!(point["on_front"] == true, numbers(point).is_some() && behind == 0);
+        let dominating = points.iter().filter(dominated).count();
+        assert_eq!(point["dominated_by"].as_array().unwrap().len(), dominating);
+        assert_eq!(point["on_front"] == true, numbers(point).is_some() && dominating == 0);
         on_front += usize::from(point["on_front"] == true);
     }
     assert!((1..points.len()).contains(&on_front), "{on_front}");
@@ -132,9 +132,9 @@ fn a_front_may_go_over_feasibility() {
 
 /// A request that is rejected before anything is designed.
 #[test]
-fn a_front_that_cannot_be_says_why() {
+fn an_impossible_front_has_its_reason() {
     let refused = |columns: &str, sweep: &str| {
-        crate::ask::try_answer(LOOP, &[], &[], &front(columns, sweep)).unwrap_err().to_string()
+        crate::run_command::try_answer(LOOP, &[], &[], &front(columns, sweep)).unwrap_err().to_string()
     };
     let delay = "plant.delay=1 ms..20 ms";
     let spelled = refused("ordr,swept", delay);

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-mod kept;
+mod stored;
 
 use phea_hydraulics::signal::Signal;
 use std::fs;
@@ -122,7 +122,7 @@ fn an_open_loop_is_drawn_as_a_closed_one_is() {
         .collect();
     assert_eq!(spreads, [3, 3]);
     for run in 0..2 {
-        let request = CampaignRequest { seed: 1, asked: CampaignRuns::One(run), files: false };
+        let request = CampaignRequest { seed: 1, runs: CampaignRuns::One(run), files: false };
         let answer = command::answer(&source, &loaded, &[], &Request::Campaign(request)).unwrap();
         assert!(answer.text.contains("open loop"), "{}", answer.text);
         let project = plan.settings(&plan.draw(run));
@@ -161,7 +161,7 @@ fn batches_come_in_their_order_on_any_number_of_threads() {
 /// A run, written as settings, is an identical machine for `simulate`: if both have equal output
 /// steps, the bits of the force are identical.
 #[test]
-fn a_run_is_what_simulate_makes_of_its_settings() {
+fn a_run_equals_simulate_with_its_settings() {
     let often = "scenario.0.output_step=0.25 ms";
     for more in [&[often] as &[&str], &[often, "controller.sample_time=1 ms", "force_sensor.noise=2 N"]] {
         let settings = [&SHORT, more].concat();
@@ -217,17 +217,17 @@ impl RowStore for Page {
 
 fn request(runs: u64, shard: Shard) -> CampaignRequest {
     let wanted = RequestedRuns { runs, shard, effort: lanes(2) };
-    CampaignRequest { seed: 1, asked: CampaignRuns::All(wanted), files: false }
+    CampaignRequest { seed: 1, runs: CampaignRuns::All(wanted), files: false }
 }
 
-fn kept(loaded: &Loaded, request: &CampaignRequest, page: &mut Page) -> Result<String, CommandError> {
+fn resumed(loaded: &Loaded, request: &CampaignRequest, page: &mut Page) -> Result<String, CommandError> {
     command::campaign_watched(&source(), loaded, &[], request, (Some(page), None), &mut |_| true)
         .map(|answer| answer.json)
 }
 /// Errors of 200 runs: half of all stay within 0.02 N of the runs at a tolerance of 1e-10, and all
 /// but two within 0.2 N.
 #[test]
-fn the_force_is_as_exact_as_the_campaign_says() {
+fn the_error_of_the_force_is_within_the_stated_one() {
     let of = |settings: &[&str]| {
         let plan = Plan::new(&source(), &load(settings), 1).unwrap();
         plan.forces(0..200, lanes(2)).unwrap()
@@ -247,7 +247,7 @@ fn the_force_is_as_exact_as_the_campaign_says() {
 
 /// A mass drawn below zero, and static friction drawn below Coulomb's, give rows with the reason.
 #[test]
-fn impossible_draws_are_told_by_their_index() {
+fn impossible_draws_are_reported_with_their_index() {
     let mass = "campaign.parameters.\"cylinder.moving_mass\"={ minimum = 1, maximum = 9, distribution = \"normal\" }";
     let static_friction = "campaign.parameters.\"cylinder.friction.static\"={ minimum = 70, maximum = 150 }";
     let plan = plan(&[mass, static_friction]);
@@ -293,7 +293,7 @@ fn lumps_are_those_of_the_drawn_linear_model() {
 }
 
 #[test]
-fn the_start_varies_too_and_what_cannot_vary_is_refused() {
+fn the_start_can_vary_and_fixed_keys_are_refused() {
     let plan = plan(&["campaign.parameters.\"start.position\"={ spread = \"50 %\" }"]);
     let place = plan.ranges().iter().position(|range| range.path == "start.position").unwrap();
     assert_eq!((plan.ranges()[place].minimum, plan.ranges()[place].maximum), (0.125, 0.375));
@@ -318,7 +318,7 @@ fn the_start_varies_too_and_what_cannot_vary_is_refused() {
 }
 
 #[test]
-fn the_answer_keeps_its_keys() {
+fn the_keys_of_the_answer_are_stable() {
     let loaded = load(&SHORT);
     let request = Request::Campaign(CampaignRequest { files: true, ..request(12, Shard::default()) });
     let answer = command::answer(&source(), &loaded, &[], &request).unwrap();
@@ -347,14 +347,14 @@ fn the_answer_keeps_its_keys() {
 
 /// The tables agree cell by cell, rejected draws included.
 #[test]
-fn the_parquet_table_says_what_the_text_says() {
+fn the_parquet_table_agrees_with_the_text() {
     let mass = "campaign.parameters.\"cylinder.moving_mass\"={ minimum = 0.001, maximum = 3, distribution = \"normal\" }";
     let loaded = load(&[&SHORT as &[&str], &[mass]].concat());
-    let asked = CampaignRequest { files: true, ..request(300, Shard::default()) };
+    let requested = CampaignRequest { files: true, ..request(300, Shard::default()) };
     let mut page = Page::default();
     let mut go_on = |_| true;
     let answer =
-        command::campaign_watched(&source(), &loaded, &[], &asked, (Some(&mut page), None), &mut go_on)
+        command::campaign_watched(&source(), &loaded, &[], &requested, (Some(&mut page), None), &mut go_on)
             .unwrap();
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("campaign.parquet");
     fs::write(&path, &answer.files.iter().find(|file| file.name == "runs.parquet").unwrap().bytes).unwrap();
@@ -388,10 +388,10 @@ fn the_parquet_table_says_what_the_text_says() {
 /// Quantiles are of the runs that have a number; those that do not settle within their window are
 /// counted next to the quantiles.
 #[test]
-fn runs_that_do_not_settle_are_told_beside_the_quantiles() {
+fn runs_that_do_not_settle_are_counted_next_to_the_quantiles() {
     let loaded = load(&SHORT);
-    let asked = Request::Campaign(request(20, Shard::default()));
-    let answer = command::answer(&source(), &loaded, &[], &asked).unwrap();
+    let requested = Request::Campaign(request(20, Shard::default()));
+    let answer = command::answer(&source(), &loaded, &[], &requested).unwrap();
     let json: Value = serde_json::from_str(&answer.json).unwrap();
     let events = json["metrics"].as_array().unwrap();
     let settling = |event: &Value| {
@@ -429,8 +429,8 @@ fn the_worst_of_runs_that_do_not_settle_overshoots_most() {
     let loaded =
         project::read(&source, "required.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"));
     let plan = Plan::new(&source, &loaded, 1).unwrap();
-    let asked = RequestedRuns { runs: 20, shard: Shard::default(), effort: lanes(1) };
-    let rows = phea_workbench::campaign::campaign(&plan, asked, None, &mut |_| true).unwrap();
+    let requested = RequestedRuns { runs: 20, shard: Shard::default(), effort: lanes(1) };
+    let rows = phea_workbench::campaign::campaign(&plan, requested, None, &mut |_| true).unwrap();
     let summary = Summary::of(&plan, &rows);
     let (run, reached) = summary.requirements[0].judged.unwrap().worst.unwrap();
     assert_eq!(reached.settling_time_s, f64::INFINITY);
@@ -443,7 +443,7 @@ fn the_worst_of_runs_that_do_not_settle_overshoots_most() {
 
 /// Errors in `[campaign]` are reported once, at their place in the text.
 #[test]
-fn what_is_refused_of_a_campaign_has_its_place_and_a_hint() {
+fn refusals_of_a_campaign_have_their_place_and_a_hint() {
     let refused = |settings: &[&str]| {
         let settings: Vec<String> = settings.iter().map(|text| (*text).to_string()).collect();
         let report = project::read(&source(), "campaign.toml", &settings, &[]).map(|_| ()).unwrap_err();

@@ -36,7 +36,7 @@ fn agree_of(text: &str, more: &[&str]) {
     let rows = plan.rows(0..4, Effort { threads: 1, lanes: true }).unwrap();
     for row in &rows[..3] {
         let ran = row.ran().unwrap_or_else(|| panic!("{row:?}"));
-        let request = CampaignRequest { seed: 5, asked: CampaignRuns::One(row.run), files: false };
+        let request = CampaignRequest { seed: 5, runs: CampaignRuns::One(row.run), files: false };
         let answer = command::answer(&source, &loaded, &[], &Request::Campaign(request)).unwrap();
         let json: Value = serde_json::from_str(&answer.json).unwrap();
         let run = &json["scenarios"][0];

@@ -18,7 +18,7 @@ use phea_qft::closed_loop::Compensation;
 use phea_workbench::command::Request;
 use phea_workbench::setup::Setup;
 
-use crate::ask::{HOSE, json, load, number, source, within};
+use crate::run_command::{HOSE, json, load, number, source, within};
 
 const GAIN: f64 = 3.0;
 const PLANT: f64 = 20.0;
@@ -70,7 +70,7 @@ fn a_gain_around_a_lag_in_closed_form() {
 
 /// The first command is K F(inf), for the continuous prefilter and for the sampled one.
 #[test]
-fn the_first_command_is_what_passes_at_once() {
+fn the_first_command_is_the_direct_feedthrough() {
     within(command(&around(None, true))[0].1, GAIN * 40.0 / 10.0, 1e-9);
     let sampled = around(Some(SAMPLE_TIME_S), true);
     let passes = sampled.prefilter_of_step().unwrap().gain();
@@ -169,7 +169,7 @@ fn a_small_step_of_the_nonlinear_rig_takes_the_linear_command() {
 /// The sensor's capacity is reached before the valve's.
 // ORIGIN: analytic, fractions of the command of the unlimited design
 #[test]
-fn a_design_keeps_the_command_of_its_step() {
+fn a_design_limits_the_command_of_its_step() {
     let text = simple_rig();
     let (rig, _) = text.split_once("[controller]").unwrap();
     let rig = rig.replace("[force_sensor]\n", "[force_sensor]\ncapacity = \"2.5 kN\"\n");
@@ -177,8 +177,8 @@ fn a_design_keeps_the_command_of_its_step() {
         "{rig}[design]\nstructure = \"pi\"\nhighest_bandwidth = \"inf\"\n[[scenario]]\nname = \"step\"\nduration = \"2 s\"\n\
          reference = [{{ at = \"0.5 s\", force = \"2 kN\" }}]\n"
     );
-    let designed = |share: f64| {
-        let setting = format!("design.command_of_steps={share}");
+    let designed = |fraction: f64| {
+        let setting = format!("design.command_of_steps={fraction}");
         json(&text, &[&setting], &[], &Request::Design { seed: None, stages: false, repair: false })
     };
     let own = |design: &serde_json::Value| {
@@ -191,10 +191,10 @@ fn a_design_keeps_the_command_of_its_step() {
     let largest_v = command(&free, "largest_v");
     within(command(&free, "largest_step_n"), 2500.0, 1e-9);
     assert_eq!(own(&free)["command"]["step_limit"], "sensor");
-    let share = 0.085 * largest_v;
-    let kept = designed(share);
-    assert_eq!(kept["status"], "met", "{}", kept["limits"]);
-    assert!(command(&kept, "largest_v") <= 10.0 * share * 1.001);
+    let fraction = 0.085 * largest_v;
+    let limited = designed(fraction);
+    assert_eq!(limited["status"], "met", "{}", limited["limits"]);
+    assert!(command(&limited, "largest_v") <= 10.0 * fraction * 1.001);
     let at_rest_v = command(&free, "at_rest_v");
     let beyond = designed(0.05 * at_rest_v);
     assert_eq!(beyond["status"], "command_beyond_valve");

@@ -21,7 +21,7 @@ use phea_workbench::source::Memory;
 use phea_workbench::specification::SpecificationName;
 use serde_json::Value;
 
-use super::ask::{answer, project_of};
+use super::run_command::{answer, project_of};
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 /// 100 kg between the load cell and a spring of 200 kN/m.
@@ -29,7 +29,7 @@ const SPRUNG: [&str; 4] =
     ["load.model=spring_mass_damper", "load.mass=100", "load.stiffness=2e5", "load.damping=500"];
 
 /// A capacity of the sensor that leaves no room for steps larger than a tenth of the force.
-const TENTH_ALONE: &str = "force_sensor.capacity=3.4 kN";
+const TENTH_ONLY: &str = "force_sensor.capacity=3.4 kN";
 
 fn linearized(project: &Project) -> Linearization {
     linearize(&Setup::rig_of(project).unwrap(), None, &Setup::new(project).unwrap().sensor).unwrap()
@@ -105,7 +105,7 @@ fn audited(project: &Project) -> ProjectAudit {
 /// Declared effects that are not in the linear loop are reported above everything else, and no
 /// verdict is met.
 #[test]
-fn what_is_not_counted_is_told_first() {
+fn uncounted_effects_are_reported_first() {
     let met = audited(&satisfied(&[]));
     assert_eq!(met.audit.verdict, Verdict::Met);
     for (settings, key) in [
@@ -188,16 +188,19 @@ fn a_load_velocity_that_is_fed_forward_is_in_the_loop() {
     let creeping = ["line.model=creeping", "line.relaxation_time=0.01"];
     let sampled = ["controller.sample_time=1 ms"];
     for line in [&[][..], &creeping, &sampled, &[&creeping[..], &sampled].concat()] {
-        for (share, stable) in [(0.0, true), (0.7, true), (1.3, false)] {
-            let gain = format!("controller.load_velocity_feed_forward.gain={}", share * area_over_gain);
+        for (fraction, stable) in [(0.0, true), (0.7, true), (1.3, false)] {
+            let gain = format!("controller.load_velocity_feed_forward.gain={}", fraction * area_over_gain);
             let settings = [&SPRUNG[..], line, &[&gain]].concat();
             let problem =
                 robust_problem(&Memory::default(), &Setup::new(&project_of(&certain, &settings)).unwrap())
                     .unwrap();
             let member = problem.nominal().unwrap().unwrap();
             let found = member_stability(&member, &problem.compensation).status;
-            assert_eq!(found == StabilityStatus::Stable, stable, "{line:?} {share}: {found:?}");
-            assert!(stable || matches!(found, StabilityStatus::Unstable(_)), "{line:?} {share}: {found:?}");
+            assert_eq!(found == StabilityStatus::Stable, stable, "{line:?} {fraction}: {found:?}");
+            assert!(
+                stable || matches!(found, StabilityStatus::Unstable(_)),
+                "{line:?} {fraction}: {found:?}"
+            );
             assert!(problem.caveats.is_empty(), "{:?}", problem.caveats);
         }
     }
@@ -215,14 +218,14 @@ fn a_late_feed_forward_is_in_the_loop() {
         let delay = format!("controller.delay={delay_ms} ms");
         let fed = format!("controller.load_velocity_feed_forward.gain={gain}");
         let viscous = "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }";
-        let said = answer(
+        let output = answer(
             &text,
-            &[&SPRUNG[..], &[viscous, &delay, &fed, TENTH_ALONE]].concat(),
+            &[&SPRUNG[..], &[viscous, &delay, &fed, TENTH_ONLY]].concat(),
             &[],
             &Request::Verify { proof: false, on_machine: true },
         );
-        let object: Value = serde_json::from_str(&said.json).unwrap();
-        assert_eq!(object["stable"], Value::from(stable), "{gain} {delay_ms}: {}", said.text);
+        let object: Value = serde_json::from_str(&output.json).unwrap();
+        assert_eq!(object["stable"], Value::from(stable), "{gain} {delay_ms}: {}", output.text);
         let run = &object["machine"]["runs"][0];
         let overshoot = |of: &str| run[of]["overshoot_percent"].as_f64();
         let machine = overshoot("machine").unwrap();
@@ -232,7 +235,7 @@ fn a_late_feed_forward_is_in_the_loop() {
             assert_eq!(run["agrees"], Value::from(true), "{gain} {delay_ms}: {run}");
         }
         let words = "every plant by its response with the load's velocity fed forward late";
-        assert_eq!(said.text.contains(words), gain != 0, "{}", said.text);
+        assert_eq!(output.text.contains(words), gain != 0, "{}", output.text);
     }
 }
 
@@ -248,10 +251,10 @@ fn a_sampled_feed_forward_is_in_the_loop() {
             [format!("controller.sample_time={sample_ms} ms"), format!("controller.delay={delay_ms} ms")];
         let fed = format!("controller.load_velocity_feed_forward.gain={gain}");
         let viscous = "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }";
-        let settings = [&SPRUNG[..], &[viscous, &timing[0], &timing[1], &fed, TENTH_ALONE]].concat();
-        let said = answer(&text, &settings, &[], &Request::Verify { proof: false, on_machine: true });
-        let object: Value = serde_json::from_str(&said.json).unwrap();
-        assert_eq!(object["stable"], Value::from(stable), "{gain} {sample_ms} {delay_ms}: {}", said.text);
+        let settings = [&SPRUNG[..], &[viscous, &timing[0], &timing[1], &fed, TENTH_ONLY]].concat();
+        let output = answer(&text, &settings, &[], &Request::Verify { proof: false, on_machine: true });
+        let object: Value = serde_json::from_str(&output.json).unwrap();
+        assert_eq!(object["stable"], Value::from(stable), "{gain} {sample_ms} {delay_ms}: {}", output.text);
         let run = &object["machine"]["runs"][0];
         let overshoot = |of: &str| run[of]["overshoot_percent"].as_f64();
         let machine = overshoot("machine").unwrap();
@@ -260,7 +263,7 @@ fn a_sampled_feed_forward_is_in_the_loop() {
             assert!((machine - overshoot("linear").unwrap()).abs() < 5.0, "{gain} {delay_ms}: {run}");
             assert_eq!(run["agrees"], Value::from(true), "{gain} {delay_ms}: {run}");
         }
-        assert!(object["warnings"].as_array().unwrap().is_empty(), "{}", said.text);
+        assert!(object["warnings"].as_array().unwrap().is_empty(), "{}", output.text);
     }
 }
 
@@ -282,11 +285,12 @@ fn a_late_feed_forward_of_a_prescribed_load_is_a_path_of_its_motion() {
         assert!(fed.caveats.is_empty(), "{:?}", fed.caveats);
         let [own, member] = [&own, &fed].map(|problem| problem.nominal().unwrap().unwrap());
         for frequency in [0.1, 10.0, 300.0, 2000.0] {
-            let [alone, seen] = [&own, &member].map(|member| member.response(frequency).unwrap());
+            let [own_response, seen] = [&own, &member].map(|member| member.response(frequency).unwrap());
             // delay and hold of the loop are within P
-            let expected = alone.load_motion + 25.0 * Complex64::new(0.0, frequency) * alone.plant;
+            let expected =
+                own_response.load_motion + 25.0 * Complex64::new(0.0, frequency) * own_response.plant;
             assert!((seen.load_motion / expected - 1.0).norm_sqr() < 1e-18, "{frequency}");
-            assert!((seen.plant / alone.plant - 1.0).norm_sqr() < 1e-18, "{frequency}");
+            assert!((seen.plant / own_response.plant - 1.0).norm_sqr() < 1e-18, "{frequency}");
         }
         assert_eq!(member_stability(&member, &fed.compensation).status, StabilityStatus::Stable);
     }
@@ -295,12 +299,12 @@ fn a_late_feed_forward_of_a_prescribed_load_is_a_path_of_its_motion() {
 /// A path that no specification limits is reported, but the verdict is unchanged.
 #[test]
 fn a_path_that_no_specification_limits_decides_nothing() {
-    for (settings, told) in
+    for (settings, warnings) in
         [(vec![], 1), (vec!["controller.delay=0.1 ms"], 1), (vec!["controller.sample_time=0.1 ms"], 1)]
     {
         let fed = [&["controller.load_velocity_feed_forward={}"], &settings[..]].concat();
         let view = audited(&satisfied(&fed));
-        assert_eq!((view.audit.verdict, view.caveats.len()), (Verdict::Met, told), "{settings:?}");
+        assert_eq!((view.audit.verdict, view.caveats.len()), (Verdict::Met, warnings), "{settings:?}");
     }
 }
 
@@ -308,7 +312,7 @@ fn a_path_that_no_specification_limits_decides_nothing() {
 /// with that rig is reported.
 // ORIGIN: thesis, Table 6.3, and K_c of the edges of Table 5.1
 #[test]
-fn a_family_that_does_not_contain_the_rig_says_so_first() {
+fn a_family_that_does_not_contain_the_rig_is_reported_first() {
     let view = audited(&satisfied(&[]));
     let [outside] = &view.caveats[..] else { panic!("{:?}", view.caveats) };
     let UncountedEffect::OutsideFamily(OutsideFamily { parameters, with_rig }) = &outside.effect else {

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{HOSE, answer, check, derived, near, number};
+use crate::run_command::{HOSE, answer, check, derived, near, number};
 use phea_workbench::command::Request;
 use serde_json::Value;
 
@@ -38,7 +38,7 @@ fn edges_are_declared_or_follow_from_the_data_sheet() {
 }
 
 #[test]
-fn declared_edges_are_held_against_a_known_rating() {
+fn declared_edges_are_compared_with_a_known_rating() {
     // ORIGIN: analytic, mean of 3.2, 2.5, 2.0 and 3.85e-7 is 2.8875e-7; a rating of 5.6e-4 m3/s at
     // 70 bar gives 2.993e-7
     let rating = |flow: &str| {
@@ -64,7 +64,7 @@ fn a_stated_value_outside_its_own_bounds_contradicts() {
 }
 
 #[test]
-fn what_sizing_states_is_held_against_the_derived_value() {
+fn stated_sizes_are_compared_with_the_derived_values() {
     let gain = row(&[], "sizing.flow_gain");
     assert_eq!(
         (number(&gain, "declared.value"), gain["declared"]["place"].as_str()),
@@ -74,7 +74,7 @@ fn what_sizing_states_is_held_against_the_derived_value() {
 }
 
 #[test]
-fn contradictions_come_first_and_what_agrees_last() {
+fn contradictions_come_first_and_agreements_last() {
     let text = answer(HOSE, &[], &[], &Request::Check).text;
     let stated: Vec<&str> = text.lines().filter(|line| line.contains("; derived ")).collect();
     let rank = |line: &&str| match () {
@@ -87,7 +87,7 @@ fn contradictions_come_first_and_what_agrees_last() {
 }
 
 #[test]
-fn a_command_alone_moves_the_piston_without_load_pressure() {
+fn a_command_moves_the_piston_without_load_pressure() {
     let equation = |settings: &[&str]| {
         row(settings, "operating_point.pressure_a")["equation"].as_str().unwrap().to_string()
     };

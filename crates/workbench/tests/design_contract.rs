@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::{CONTRADICTORY, HOSE, answer, json, load, try_answer};
+use crate::run_command::{CONTRADICTORY, HOSE, answer, json, load, try_answer};
 use phea_qft::design::{
     ControllerChoice, DesignOptions, DesignProblem, Objective, PrefilterChoice, diagnose,
 };
@@ -28,7 +28,7 @@ fn begun(project: &str, settings: &[&str], seed: Option<u32>) -> (DesignProblem,
 }
 
 #[test]
-fn the_section_becomes_what_a_design_begins_with() {
+fn the_design_section_is_the_start_of_a_design() {
     let (problem, options) = begun(TIMED, &[], None);
     assert_eq!((problem.timing.sample_time_s, problem.timing.delay_s), (Some(0.001), 0.0005));
     assert_eq!(problem.minimum_delay_margin_s, 0.002);
@@ -47,8 +47,8 @@ fn the_section_becomes_what_a_design_begins_with() {
     let StructureFactor::RealZero { frequency: [low, high] } = parts[1] else { panic!("{parts:?}") };
     assert!(low < 0.1 && high > 1.0, "{low} {high}");
     // a prefilter with a controller without a law is retained
-    let PrefilterChoice::Given(kept) = &options.prefilter else { panic!("{options:?}") };
-    assert_eq!((kept.gain(), kept.poles()[0].re), (0.1, 0.9));
+    let PrefilterChoice::Given(prefilter) = &options.prefilter else { panic!("{options:?}") };
+    assert_eq!((prefilter.gain(), prefilter.poles()[0].re), (0.1, 0.9));
     assert_eq!(begun(TIMED, &[], Some(3)).1.seed, 3);
 }
 
@@ -106,7 +106,7 @@ fn the_gain_of_a_structure_is_wide_and_of_the_right_sign() {
 }
 
 #[test]
-fn a_controller_may_give_its_timing_alone() {
+fn a_controller_may_state_its_timing_only() {
     let object = json(TIMED, &[], &[], &Request::Check);
     assert_eq!(object["command"], "check");
     let refused =
@@ -146,12 +146,13 @@ fn allowed_errors_of_the_converters_are_specifications() {
     let command = "controller.quantization.allowed_command_error=0.25";
     let both = verified(&[force, command]);
     let rows = both["specifications"].as_array().unwrap();
-    let told = |row: &serde_json::Value| (row["kind"].clone(), row["name"].clone(), row["verdict"].clone());
+    let summary =
+        |row: &serde_json::Value| (row["kind"].clone(), row["name"].clone(), row["verdict"].clone());
     assert!(rows[0]["name"].is_null());
     // |P/(1+L)| of up to 1/14 turns half a step of 1/64 into 0.56 mN at most
     let names = ["force error of the rounded command", "command error of the rounded measurement"];
-    assert_eq!(told(&rows[2]), ("plant_input_disturbance".into(), names[0].into(), "met".into()));
-    assert_eq!(told(&rows[3]), ("control_effort".into(), names[1].into(), "met".into()));
+    assert_eq!(summary(&rows[2]), ("plant_input_disturbance".into(), names[0].into(), "met".into()));
+    assert_eq!(summary(&rows[3]), ("control_effort".into(), names[1].into(), "met".into()));
     // ORIGIN: analytic, the limits are the allowed errors divided by half of 8/512; towards
     // infinite frequency, pi/T, |G S| is a little above 12
     assert_eq!(rows[2]["reached"]["limit"], 0.128);
@@ -183,7 +184,7 @@ fn allowed_errors_of_the_converters_are_specifications() {
 /// The law in an answer is the one with the coefficients stored in the computer, and its
 /// verification is that law's.
 #[test]
-fn the_answer_is_what_is_deployed() {
+fn the_answer_is_the_deployed_controller() {
     let single = json(CONVERTED, &["controller.quantization.coefficients=\"f32\""], &[], &DESIGN);
     assert_eq!(single["status"], "met");
     assert_eq!(single["controller"]["domain"], "z");
@@ -196,7 +197,7 @@ fn the_answer_is_what_is_deployed() {
 }
 
 #[test]
-fn two_limits_that_no_loop_keeps_together_are_explained() {
+fn two_limits_that_no_loop_satisfies_together_are_explained() {
     let source = Memory::default().with("mistake.toml", CONTRADICTORY);
     let project = project::read(&source, "mistake.toml", &[], &[]).unwrap().project;
     let given = robust_problem(&source, &Setup::new(&project).unwrap()).unwrap();

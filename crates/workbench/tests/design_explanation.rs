@@ -2,7 +2,7 @@
 #![cfg(test)]
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use crate::ask::answer;
+use crate::run_command::answer;
 use num_complex::Complex64;
 use phea_qft::design::{Constraint, ConstraintPlace, Finding, SharedLimit};
 use phea_qft::specification::ClosedLoop;
@@ -83,9 +83,9 @@ frequencies = [0.1, 1, 10]
 fn a_controller_that_is_not_stable_is_not_to_be_used() {
     let design = Request::Design { seed: None, stages: false, repair: false };
     let of = |text: &str| {
-        let told = answer(text, &[], &[], &design);
-        let file = told.files.iter().find(|file| file.name == "designed.toml").unwrap();
-        (told.text.clone(), String::from_utf8(file.bytes.clone()).unwrap())
+        let output = answer(text, &[], &[], &design);
+        let file = output.files.iter().find(|file| file.name == "designed.toml").unwrap();
+        (output.text.clone(), String::from_utf8(file.bytes.clone()).unwrap())
     };
     let (words, file) = of(UNSTABLE);
     let why = "it does not make every plant of the family stable";

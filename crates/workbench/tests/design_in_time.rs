@@ -19,7 +19,7 @@ fn with_step(timing: &str) -> ProjectDesign {
 /// that does not is missed, whatever its steps.
 // ORIGIN: written by hand, within and beyond 5 % and 1.5 s
 #[test]
-fn a_structure_whose_steps_alone_miss_is_missed_in_time() {
+fn a_structure_that_fails_by_its_steps_only_fails_in_time() {
     let mut view = with_step("");
     let structure =
         |ending: StructureEnding, [overshoot_percent, settling_time_s]: [f64; 2]| ReachedStructure {
@@ -58,11 +58,11 @@ fn a_structure_whose_steps_alone_miss_is_missed_in_time() {
 
 /// A run of the nonlinear rig with one requirement for each of these verdicts.
 fn run(view: &ProjectDesign, satisfied: &[bool]) -> TrialRun {
-    let wish = view.designed.view.in_time[0].requirement.wish;
+    let required = view.designed.view.in_time[0].requirement.wish;
     let reached = ReachedStep { overshoot_percent: 1.0, settling_time_s: 1.0, rise_time_s: 1.0 };
     let held = |is_satisfied: &bool| HeldRequirement {
         number: 3,
-        wish,
+        wish: required,
         reached,
         reached_with_room: reached,
         is_satisfied: *is_satisfied,
@@ -94,13 +94,13 @@ fn run(view: &ProjectDesign, satisfied: &[bool]) -> TrialRun {
 #[test]
 fn a_design_misses_on_the_rig_where_a_run_does() {
     let view = with_step("");
-    let misses = |runs: &[&[bool]]| {
+    let is_missed = |runs: &[&[bool]]| {
         let runs = runs.iter().map(|satisfied| run(&view, satisfied)).collect();
         let trial = Trial { runs, corners: vec![], not_driven: vec![] };
         ProjectDesign { trial: Some(trial), ..view.clone() }.misses_on_rig()
     };
     assert!(!view.misses_on_rig());
-    assert!(!misses(&[&[], &[]]));
-    assert!(!misses(&[&[true], &[true, true], &[]]));
-    assert!(misses(&[&[true], &[true, false], &[]]));
+    assert!(!is_missed(&[&[], &[]]));
+    assert!(!is_missed(&[&[true], &[true, true], &[]]));
+    assert!(is_missed(&[&[true], &[true, false], &[]]));
 }

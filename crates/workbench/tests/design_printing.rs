@@ -68,7 +68,7 @@ fn design(problem: &DesignProblem, coefficients: CoefficientFormat, status: Desi
         format => rounded(&law, format).unwrap().controller,
     };
     let compensation = Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap();
-    let asked = AuditProblem {
+    let problem = AuditProblem {
         family: &problem.family,
         compensation: &compensation,
         specifications: &problem.specifications,
@@ -95,7 +95,7 @@ fn design(problem: &DesignProblem, coefficients: CoefficientFormat, status: Desi
         starts: None,
         objective_db: 34.0,
         beside: vec![],
-        audit: audit(&asked, &mut unwatched).unwrap(),
+        audit: audit(&problem, &mut unwatched).unwrap(),
         binding: vec![margin(1, 1.0, 0.0, plant)],
         rounds: vec![DesignRound {
             structure,
@@ -140,7 +140,7 @@ fn margin(
 }
 
 #[test]
-fn people_read_the_status_first_and_the_law_as_it_is_pasted() {
+fn the_text_begins_with_the_status_and_contains_the_law_to_paste() {
     let (_, loaded, view) = view(&PROJECT.replace("TIMING\n", ""), infeasible());
     let text = text(&loaded, &view);
     assert!(
@@ -163,7 +163,7 @@ fn people_read_the_status_first_and_the_law_as_it_is_pasted() {
 }
 
 #[test]
-fn programs_read_the_keys_that_stay() {
+fn the_json_keys_are_stable() {
     let (_, loaded, view) = view(&PROJECT.replace("TIMING\n", ""), infeasible());
     let object = object(&view);
     assert_eq!(object["status"], "infeasible");
@@ -192,7 +192,7 @@ fn programs_read_the_keys_that_stay() {
 
 /// The written project contains the designed controller, and everything else unchanged.
 #[test]
-fn a_sampled_design_is_written_as_it_was_found_and_told_as_it_is_deployed() {
+fn a_sampled_design_is_written_as_found_and_printed_as_deployed() {
     let timing = "sample_time = \"2 ms\"\ndelay = \"1 ms\"\ndiscretization = \"matched\"\n";
     let (_, loaded, view) = view(&PROJECT.replace("TIMING\n", timing), DesignStatus::Met);
     let object = object(&view);
@@ -227,14 +227,14 @@ fn a_sampled_design_is_written_as_it_was_found_and_told_as_it_is_deployed() {
 /// Keys of the prefilter in addition to its law apply to the designed one too, in the file and in
 /// the printed tables.
 #[test]
-fn a_prefilter_that_acts_between_samples_goes_on_doing_so() {
+fn a_prefilter_that_acts_between_samples_remains_continuous() {
     let sampled = PROJECT.replace("TIMING\n", "sample_time = \"2 ms\"\n");
-    for (beside, says) in [("continuous = true\n", true), ("", false)] {
+    for (beside, is_continuous) in [("continuous = true\n", true), ("", false)] {
         let (_, loaded, view) = view(&format!("{sampled}{beside}"), DesignStatus::Met);
         let law = format!("[prefilter]\ngain = 6\npoles = [-6]\n{beside}");
         let written = String::from_utf8(files(&loaded, &view).remove(0).bytes).unwrap();
         assert!(written.ends_with(&law) && text(&loaded, &view).contains(&law), "{written}");
-        assert_eq!(self::loaded(&written).1.project.prefilter.unwrap().continuous, says);
+        assert_eq!(self::loaded(&written).1.project.prefilter.unwrap().continuous, is_continuous);
     }
 }
 
@@ -306,7 +306,7 @@ fn elements_are_a_published_law() {
 
 /// Rounded controllers are audited, here and by `verify`.
 #[test]
-fn what_the_computer_rounds_is_part_of_the_design() {
+fn rounding_of_the_computer_is_part_of_the_design() {
     let timing = "sample_time = \"2 ms\"\nquantization = { command_bits = 12, command_range = [-10, 10], coefficients = \"f32\" }\n";
     let (_, loaded, view) = view(&PROJECT.replace("TIMING\n", timing), DesignStatus::Met);
     let object = object(&view);
@@ -328,7 +328,7 @@ fn what_the_computer_rounds_is_part_of_the_design() {
 }
 
 #[test]
-fn what_a_setting_says_beside_the_law_is_written_with_it() {
+fn a_setting_in_addition_to_the_law_is_written_with_it() {
     let (_, mut loaded, mut view) = view(&PROJECT.replace("TIMING\n", ""), DesignStatus::Met);
     let text = "[controller]\ngain = 1\n[controller.quantization]\ncommand_bits = 8\n[prefilter]\ngain = 1\n";
     let transfer = Transfer {
@@ -385,7 +385,7 @@ fn the_high_frequency_gain_of_a_sampled_loop_is_that_of_the_continuous_law() {
 
 /// A loop that touches no limit over frequency had another objective, which is named.
 #[test]
-fn what_led_a_design_is_named_where_it_touches_no_limit() {
+fn the_leading_objective_is_named_if_no_limit_is_touched() {
     let (_, loaded, mut view) = view(&PROJECT.replace("TIMING\n", ""), DesignStatus::Met);
     view.design.binding.clear();
     let touches = |led_by: LedBy| text(&loaded, &ProjectDesign { led_by, ..view.clone() });

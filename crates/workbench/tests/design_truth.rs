@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{PIPE, UNLIMITED, answer, built_hose, designed_hose, json, number, within};
+use crate::run_command::{PIPE, UNLIMITED, answer, built_hose, designed_hose, json, number, within};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::Request;
 use phea_workbench::design::DESIGNED_PROJECT;
@@ -80,7 +80,7 @@ fn the_rig_with_pipes_is_met() {
 /// the hoses and the tolerated delay are those of the written controller when it is verified
 /// against these limits only; and the nonlinear rig agrees with it, with waves in its hoses too.
 #[test]
-fn the_rig_with_hoses_is_met_within_what_may_be_built() {
+fn the_rig_with_hoses_is_met_within_the_permitted_frequency() {
     let (design, verified) = with_verified(built_hose());
     assert_met(&design, &verified, [4.0, 3.0]);
     assert_eq!(design["machine"]["verdict"], "agrees_but_for_settling");
@@ -97,23 +97,23 @@ fn the_rig_with_hoses_is_met_within_what_may_be_built() {
     assert_eq!(value("minimum_delay_margin", "value_s"), (0.5e-3, "default".to_string()));
     let file = built_hose().files.iter().find(|file| file.name == DESIGNED_PROJECT).unwrap();
     let written = String::from_utf8(file.bytes.clone()).unwrap();
-    let alone = format!(
+    let separate = format!(
         "{written}\n[[specification]]\nkind = \"sensitivity\"\nlimit = 2\nfrequencies = [1, 100]\n\
          band = [0, inf]\n[[specification]]\nkind = \"robust_stability\"\nlimit = {}\n\
          frequencies = [{bandwidth}]\nband = [{bandwidth}, inf]\n",
         0.5_f64.sqrt()
     );
-    let again = json(&alone, &[], &[], &Request::Verify { proof: false, on_machine: false });
+    let again = json(&separate, &[], &[], &Request::Verify { proof: false, on_machine: false });
     assert_eq!(again["verdict"], "met", "{again:#}");
     assert!(number(&again, "delay_margin_s") >= 0.5e-3);
 }
 
 #[test]
 fn the_same_seed_gives_the_same_bytes() {
-    let answered = |seed| {
+    let output = |seed| {
         answer(EDGE_PLANTS, &[], &[], &Request::Design { seed: Some(seed), stages: true, repair: false })
     };
-    let (first, second) = (answered(3), answered(3));
+    let (first, second) = (output(3), output(3));
     assert_eq!(first.json, second.json);
     let bytes = |files: &[phea_workbench::answer::OutputFile]| {
         files.iter().map(|file| (file.name.clone(), file.bytes.clone())).collect::<Vec<_>>()

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
 use crate::against_the_load::RIG;
-use crate::ask::{json, number};
+use crate::run_command::{json, number};
 use phea_workbench::command::Request;
 
 const LOOP: &str = r#"
@@ -53,7 +53,7 @@ const MOVING: &str = "operating_point.velocity=\"20 mm/s\"";
 /// The enclosures of the pressures are too wide while the piston moves: a search decides, and names
 /// the parameters that move the leading coefficient.
 #[test]
-fn where_a_search_decides_the_parameters_are_named() {
+fn if_a_search_decides_the_parameters_are_named() {
     let verify = Request::Verify { proof: false, on_machine: false };
     let settings = ["fluid.entrained_air=0.005", MOVING];
     let found = json(&format!("{RIG}{LOOP}"), &settings, &[], &verify);
@@ -61,8 +61,8 @@ fn where_a_search_decides_the_parameters_are_named() {
     assert_eq!(searched["parameters"][0], "supply.pressure", "{searched}");
     // the stiffer the oil, the smaller: at the highest pressure, by one percent for so little air
     assert_eq!(searched["plant"]["supply.pressure"], 220e5, "{searched}");
-    let share = number(searched, "least_share_of_nominal");
-    assert!((0.95..1.0).contains(&share), "{searched}");
+    let fraction = number(searched, "least_share_of_nominal");
+    assert!((0.95..1.0).contains(&fraction), "{searched}");
     // if the enclosures decide, nothing is searched for
     let still = json(&format!("{RIG}{LOOP}"), &settings[..1], &[], &verify);
     assert!(still["stability"]["leading_coefficient"].is_null());

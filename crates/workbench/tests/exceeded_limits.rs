@@ -5,15 +5,15 @@
 use phea_workbench::command::Request;
 use serde_json::Value;
 
-use super::ask::answer;
+use super::run_command::answer;
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 
 /// Limits exceeded in the first scenario, a step to 4 kN at 2 s; and the text.
 fn exceeded(text: &str, settings: &[&str]) -> (Vec<Value>, String) {
-    let said = answer(text, settings, &[], &Request::Simulate(Default::default()));
-    let object: Value = serde_json::from_str(&said.json).unwrap();
-    (object["scenarios"][0]["exceeded"].as_array().unwrap().clone(), said.text)
+    let output = answer(text, settings, &[], &Request::Simulate(Default::default()));
+    let object: Value = serde_json::from_str(&output.json).unwrap();
+    (object["scenarios"][0]["exceeded"].as_array().unwrap().clone(), output.text)
 }
 
 #[test]
@@ -22,7 +22,7 @@ fn a_rig_within_its_limits_exceeds_none() {
 }
 
 #[test]
-fn an_overloaded_sensor_is_told_from_when_on() {
+fn an_overloaded_sensor_is_reported_with_its_time() {
     let (found, text) = exceeded(HOSE, &["force_sensor.capacity=3 kN"]);
     assert_eq!(found[0]["what"], "force_sensor_capacity");
     assert_eq!(found[0]["limit"], Value::from(3000.0));
@@ -35,7 +35,7 @@ fn an_overloaded_sensor_is_told_from_when_on() {
 /// Stall force of rods of 22 mm in a cylinder of 50 mm, with 70 bar relative to the tank: A p_S =
 /// 11.08 kN, in either direction.
 #[test]
-fn a_reference_that_no_supply_reaches_is_told() {
+fn a_reference_beyond_the_supply_is_reported() {
     let area = std::f64::consts::FRAC_PI_4 * (0.05 * 0.05 - 0.022 * 0.022);
     for (reference, sign) in [("15 kN", 1.0), ("-15 kN", -1.0)] {
         let (found, text) = exceeded(HOSE, &[&format!("scenario.0.reference.0.force={reference}")]);
@@ -47,7 +47,7 @@ fn a_reference_that_no_supply_reaches_is_told() {
 }
 
 #[test]
-fn a_command_that_nothing_limits_is_told() {
+fn an_unlimited_command_is_reported() {
     let unlimited = HOSE.replace("saturation = \"10 V\"\n", "");
     // 0.01 V/N on 4 kN, which no prefilter reduces, are 40 V at once
     let settings = ["controller.numerator=0.01*s + 0.08", "prefilter.numerator=1", "prefilter.denominator=1"];
@@ -61,7 +61,7 @@ fn a_command_that_nothing_limits_is_told() {
 /// A pump with less flow than the valve takes: its relief valve is shut at 205 bar, and the supply
 /// falls below that while the rig moves; with enough flow nothing is reported.
 #[test]
-fn a_pump_that_cannot_follow_is_told() {
+fn a_pump_that_cannot_follow_is_reported() {
     let rig = include_str!("../../../examples/structural/rig.toml");
     let rig = &rig[..rig.find("[[scenario]]").unwrap()];
     let open = "[[scenario]]\nname = \"open\"\nduration = \"1 s\"\ncommand = [{ at = \"0.1 s\", voltage = \"8 V\" }]\n";

@@ -64,7 +64,7 @@ fn a_formula_is_the_plant_it_states() {
 }
 
 #[test]
-fn the_family_is_the_grid_where_nothing_else_is_chosen() {
+fn the_family_is_the_grid_by_default() {
     let grid = uncertain(SERVO);
     assert_eq!((grid.members().len(), grid.extent(), grid.coordinates().len()), (81 + 1, Extent::Box, 4));
     assert_eq!(grid.members()[0], [2.0, 3.0, 5.0, 0.0]);
@@ -82,7 +82,7 @@ fn the_family_is_the_grid_where_nothing_else_is_chosen() {
 /// A family of explicit cases has only these; the first is the nominal plant if nothing else states
 /// one.
 #[test]
-fn cases_alone_are_the_family() {
+fn explicit_cases_without_a_grid_are_the_family() {
     let cases = "[family]\ncases = [{ k = 10, a = 1 }, { k = 1, a = 5 }, { k = 3, a = 2 }]\n";
     let plant = "schema = 1\n[plant]\nnumerator = \"k\"\ndenominator = \"s + a\"\n";
     let family = uncertain(&format!("{plant}{cases}"));
@@ -105,10 +105,10 @@ fn correlated_parameters_move_together() {
     assert_eq!(family.coordinates().len(), 2);
     assert_eq!(family.members().len(), 1 + 9 + 50);
     for values in &family.members()[1..] {
-        let share = portable::ln(values[0]) / portable::ln(4.0);
-        assert!(((values[1] - 2.0) / 4.0 - share).abs() < 1e-14, "{values:?}");
-        assert!(((6.0 - values[2]) / 2.0 - share).abs() < 1e-14, "{values:?}");
-        assert!((family.shares(values)[0] - share).abs() < 1e-14);
+        let fraction = portable::ln(values[0]) / portable::ln(4.0);
+        assert!(((values[1] - 2.0) / 4.0 - fraction).abs() < 1e-14, "{values:?}");
+        assert!(((6.0 - values[2]) / 2.0 - fraction).abs() < 1e-14, "{values:?}");
+        assert!((family.shares(values)[0] - fraction).abs() < 1e-14);
     }
 }
 
@@ -147,7 +147,7 @@ fn the_sensor_is_carried_into_the_loop() {
 }
 
 #[test]
-fn a_sensor_that_shows_something_else_is_told() {
+fn a_sensor_with_a_dc_gain_other_than_one_is_reported() {
     let source = Memory::default()
         .with("p.toml", format!("{SERVO}[sensor]\nnumerator = \"9\"\ndenominator = \"s + 10\"\n"));
     let warnings = project::read(&source, "p.toml", &[], &[]).unwrap().warnings;

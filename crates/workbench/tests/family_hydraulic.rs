@@ -32,10 +32,10 @@ fn recorded(project: &Project) -> Result<UncertainPlant, ProjectFamilyError> {
 
 /// Values within the ranges: multiples of the golden ratio fill the unit interval evenly.
 fn points(plant: &UncertainPlant) -> Vec<Vec<f64>> {
-    let mut share = 0.0_f64;
+    let mut fraction = 0.0_f64;
     let mut value = |parameter: &UncertainParameter| {
-        share = (share + 0.618_033_988_75).fract();
-        parameter.minimum + share * (parameter.maximum - parameter.minimum)
+        fraction = (fraction + 0.618_033_988_75).fract();
+        parameter.minimum + fraction * (parameter.maximum - parameter.minimum)
     };
     (0..50).map(|_| plant.parameters().iter().map(&mut value).collect()).collect()
 }

@@ -67,7 +67,7 @@ fn same(csv: impl Into<Vec<u8>>, with_load_motion: bool) {
 /// A response is recovered to 1e-12 from every way to write it: units, wrapped and unwrapped
 /// phases, comments, line ends, byte order mark, quotes and spaces.
 #[test]
-fn what_is_written_is_read() {
+fn written_families_read_back() {
     let rows = |header: &str, row: &dyn Fn(f64, [Complex64; 2], f64) -> String| {
         let mut turns = 0.0;
         let lines: Vec<String> = frequencies()
@@ -178,7 +178,7 @@ fn decimal_commas_are_read_between_semicolons() {
 }
 
 #[test]
-fn columns_must_say_what_they_hold() {
+fn columns_must_state_their_quantity() {
     refuses(
         "frequency_hz,magnitud_dB,phase_deg\n1,0,0\n",
         &["1:14 unknown column `magnitud_dB`; did you mean `magnitude_db`?"],
@@ -205,7 +205,7 @@ fn columns_must_say_what_they_hold() {
 }
 
 #[test]
-fn files_that_are_none_are_told() {
+fn files_without_a_response_are_reported() {
     refuses("", &["0:0 the file is empty; a row with the names of the columns"]);
     refuses(
         "frequency_hz,real,imaginary\n# nothing\n",
@@ -220,8 +220,9 @@ fn files_that_are_none_are_told() {
 
 #[test]
 fn a_limit_on_load_motion_needs_its_columns() {
-    let wish = "[[specification]]\nkind = \"load_motion\"\nlimit = 1\nfrequencies = [1]\n";
-    let error = read(&format!("{PROJECT}{wish}"), "frequency_hz,real,imaginary\n1,1,0\n").unwrap_err();
+    let specification = "[[specification]]\nkind = \"load_motion\"\nlimit = 1\nfrequencies = [1]\n";
+    let error =
+        read(&format!("{PROJECT}{specification}"), "frequency_hz,real,imaginary\n1,1,0\n").unwrap_err();
     assert_eq!(error, ProjectFamilyError::LoadMotion("a.csv".to_string()));
 }
 
@@ -304,6 +305,6 @@ fn discs_and_tolerance_decide_the_verdict() {
     let tolerance = format!("[verification]\ntolerance = \"{} dB\"\n", -worst + 0.01);
     let tolerated = verified("", &csv(0.5), &tolerance);
     assert_eq!(json(&tolerated)["verdict"], "met", "{}", tolerated.text);
-    let told = json(&tolerated)["tolerance_db"].as_f64().unwrap();
-    assert!((told - (0.01 - worst)).abs() < 1e-9, "{told}");
+    let tolerance_db = json(&tolerated)["tolerance_db"].as_f64().unwrap();
+    assert!((tolerance_db - (0.01 - worst)).abs() < 1e-9, "{tolerance_db}");
 }

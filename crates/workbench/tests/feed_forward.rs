@@ -50,7 +50,7 @@ fn lag(parameters: &LinearParameters) -> f64 {
 }
 
 #[test]
-fn the_exact_gain_is_what_cancels_the_load_in_the_linear_model() {
+fn the_exact_gain_cancels_the_load_in_the_linear_model() {
     for line in ["pipe", "hose"] {
         let parameters = Setup::rig_of(&load(line, &[])).unwrap().linear;
         let model = linear_model(&parameters).unwrap();
@@ -66,7 +66,7 @@ fn the_exact_gain_is_what_cancels_the_load_in_the_linear_model() {
 
 /// The remaining fraction of the force of a slow motion is 1 - a + a tau s.
 #[test]
-fn what_is_left_grows_with_the_lag() {
+fn the_remainder_grows_with_the_lag() {
     // ORIGIN: recomputed by book/recompute_theory.py
     for (line, quoted) in [("hose", 1.69e-3), ("pipe", 1.65e-3)] {
         let tau = lag(&Setup::rig_of(&load(line, &[])).unwrap().linear);
@@ -74,13 +74,16 @@ fn what_is_left_grows_with_the_lag() {
     }
     let parameters = Setup::rig_of(&load("pipe", &[])).unwrap().linear;
     let tau = lag(&parameters);
-    for (share, frequency) in [(1.0, 10.0), (0.7, 1.0), (1.3, 5.0)] {
+    for (fraction, frequency) in [(1.0, 10.0), (0.7, 1.0), (1.3, 5.0)] {
         let s = Complex64::new(0.0, frequency);
-        let left = 1.0 - share * static_gain(&parameters) / exact_gain(&parameters, s);
-        let first_order = 1.0 - share + share * tau * s;
+        let left = 1.0 - fraction * static_gain(&parameters) / exact_gain(&parameters, s);
+        let first_order = 1.0 - fraction + fraction * tau * s;
         // the next term is (tau s)^2, and the leakage of a piston with friction gives 3e-5
         let next = 2.0 * tau * tau * frequency * frequency + 4e-5;
-        assert!((left - first_order).norm_sqr() < next * next, "{share}, {frequency}: {left} {first_order}");
+        assert!(
+            (left - first_order).norm_sqr() < next * next,
+            "{fraction}, {frequency}: {left} {first_order}"
+        );
     }
 }
 
@@ -97,10 +100,10 @@ fn a_little_less_than_the_gain_is_passive() {
         let controller =
             TransferFunction::from_factors(proportional, vec![zero], vec![Complex64::new(0.0, 0.0)]).unwrap();
         let frequency = 0.02;
-        let resistance = |share: f64| {
+        let resistance = |fraction: f64| {
             let plant = model.command.at_frequency(frequency);
             let remainder =
-                exact_gain(&parameters, Complex64::new(0.0, frequency)) - share * static_gain(&parameters);
+                exact_gain(&parameters, Complex64::new(0.0, frequency)) - fraction * static_gain(&parameters);
             (plant * remainder / (1.0 + plant * controller.at_frequency(frequency))).re
         };
         let leak = parameters.flow_pressure_coefficient / (parameters.useful_area * parameters.flow_gain);
@@ -111,9 +114,9 @@ fn a_little_less_than_the_gain_is_passive() {
         assert!(resistance(1.0) < 0.0 && resistance(0.0) > 0.0, "{line}");
         // the lag T of a filter requires more: (1 - a)(K_p + K_c/(A K_qU)) = (tau + a T) K_i
         let filter = RateFilter::FirstOrder { frequency_rad_per_s: 100.0 };
-        let through = |share: f64| {
+        let through = |fraction: f64| {
             let s = Complex64::new(0.0, frequency);
-            let fed = share * static_gain(&parameters) * filter.response(s);
+            let fed = fraction * static_gain(&parameters) * filter.response(s);
             let plant = model.command.at_frequency(frequency);
             let closed = plant / (1.0 + plant * controller.at_frequency(frequency));
             (closed * (exact_gain(&parameters, s) - fed)).re
@@ -152,9 +155,9 @@ fn table(head: &str) -> (Vec<String>, Vec<(String, Vec<f64>)>) {
     (columns, rows.collect())
 }
 
-fn gain(share: f64) -> String {
+fn gain(fraction: f64) -> String {
     let parameters = Setup::rig_of(&load("pipe", &[])).unwrap().linear;
-    format!("controller.load_velocity_feed_forward.gain={:e}", share * static_gain(&parameters))
+    format!("controller.load_velocity_feed_forward.gain={:e}", fraction * static_gain(&parameters))
 }
 
 /// Settings for a part of a row's label.
@@ -175,7 +178,7 @@ fn settings_of(part: &str) -> Vec<String> {
 }
 
 #[test]
-fn the_tables_are_what_the_machine_does() {
+fn the_tables_agree_with_the_machine() {
     let (columns, peaks) = table("peak, N");
     let (same_columns, commands) = table("rms, V");
     assert!(columns == same_columns && peaks.len() == 18 && commands.len() == 18);
@@ -201,18 +204,18 @@ fn the_tables_are_what_the_machine_does() {
 }
 
 #[test]
-fn a_load_that_reacts_is_what_the_page_says() {
+fn a_load_that_reacts_agrees_with_the_page() {
     let mass = "load={ model = \"spring_mass_damper\", mass = 100, stiffness = 2e5, damping = 500 }";
-    let (shares, rows) = table("rms with a reacting load, V");
-    assert!(shares.len() == 6 && rows.len() == 2);
+    let (fractions, rows) = table("rms with a reacting load, V");
+    assert!(fractions.len() == 6 && rows.len() == 2);
     for (line, commands) in rows {
-        let found: Vec<Metrics> = shares
+        let found: Vec<Metrics> = fractions
             .iter()
-            .map(|share| of_the_motion(&line, &[mass.to_string(), gain(share.parse().unwrap())]))
+            .map(|fraction| of_the_motion(&line, &[mass.to_string(), gain(fraction.parse().unwrap())]))
             .collect();
-        for ((share, found), command) in shares.iter().zip(&found).zip(commands) {
+        for ((fraction, found), command) in fractions.iter().zip(&found).zip(commands) {
             let found = found.control_rms_v.unwrap();
-            assert!((found - command).abs() < 0.006 * command.max(1.0), "{line}, {share}: {found} V");
+            assert!((found - command).abs() < 0.006 * command.max(1.0), "{line}, {fraction}: {found} V");
         }
         let peak = |index: usize| found[index].disturbance_peak_n.unwrap();
         assert!(peak(2) < 0.51 * peak(0), "{line}");

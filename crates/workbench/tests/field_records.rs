@@ -10,7 +10,7 @@ use phea_workbench::project::{self, Diagnostic, RecordedResponse};
 use phea_workbench::response::{SampledPair, sampled_pairs};
 use phea_workbench::source::Memory;
 
-use crate::ask;
+use crate::run_command;
 
 /// Command and force of a record, at this time.
 fn sample(time: f64) -> [f64; 2] {
@@ -84,7 +84,7 @@ fn a_measurement_file_of_labview_is_the_same_record() {
 }
 
 #[test]
-fn a_chart_is_named_as_what_it_is() {
+fn a_chart_is_refused_as_a_chart() {
     let head = "Current (mA) - Plot 0\tFlow (GPM) - Plot 0\tCurrent (mA) - Plot 1\tFlow (GPM) - Plot 1\n";
     let chart = table(head, 1.0, |row, _| format!("{row}00u\t25.{row}m\t\t"));
     let found = refused(chart);
@@ -100,7 +100,7 @@ fn headings_of_another_language_are_chosen_in_the_project() {
     });
     let latin: Vec<u8> = text.chars().map(|sign| sign as u8).collect();
     let keys = "[[identify.response]]\nfile = \"m.csv\"\ntime = { column = \"Zeit\" }\ncommand = { column = \"Stellgr\u{f6}\u{df}e\" }\nforce = { column = \"Kraft\" }\n";
-    let project = ask::project_of(&format!("{}\n{keys}", ask::HOSE), &[]);
+    let project = run_command::project_of(&format!("{}\n{keys}", run_command::HOSE), &[]);
     let declared = project.identify.unwrap().responses.remove(0);
     for bytes in [text.clone().into_bytes(), latin] {
         let found = read("m.csv", bytes, declared.clone()).unwrap_or_else(|found| panic!("{found:?}"));
@@ -225,8 +225,9 @@ fn a_run_of_the_cylinder_may_have_late_rows() {
 /// A file of a scenario that is read in another unit than that in which it was written.
 #[test]
 fn numbers_that_no_rig_of_this_size_has_are_refused_with_their_unit() {
-    let scenario =
-        |keys: &str| format!("{}\n[[scenario]]\nname = \"file\"\nduration = \"0.1 s\"\n{keys}\n", ask::HOSE);
+    let scenario = |keys: &str| {
+        format!("{}\n[[scenario]]\nname = \"file\"\nduration = \"0.1 s\"\n{keys}\n", run_command::HOSE)
+    };
     let cases = [
         (
             "reference = { kind = \"file\", start = \"0 s\", file = \"f.csv\" }",
@@ -255,8 +256,8 @@ fn numbers_that_no_rig_of_this_size_has_are_refused_with_their_unit() {
     ];
     for (keys, heading, value, cure) in cases {
         let text = scenario(keys);
-        let source =
-            ask::source(&text).with("f.csv", format!("time_s;{heading}\n0;0\n0.05;{value}\n0.1;{value}\n"));
+        let source = run_command::source(&text)
+            .with("f.csv", format!("time_s;{heading}\n0;0\n0.05;{value}\n0.1;{value}\n"));
         let loaded = project::read(&source, "rig.toml", &[], &[]);
         let Ok(loaded) = loaded else { panic!("{keys}: {}", loaded.unwrap_err()) };
         let request = Request::Simulate(SimulateRequest::default());
@@ -304,7 +305,7 @@ fn a_response_is_read_by_its_usual_headings() {
 }
 
 fn places(text: &str, settings: &[&str], request: &Request) -> Vec<Diagnostic> {
-    let error = ask::try_answer(text, settings, &[], request).map(|answer| answer.text).unwrap_err();
+    let error = run_command::try_answer(text, settings, &[], request).map(|answer| answer.text).unwrap_err();
     error.refusal().unwrap_or_else(|| panic!("without a place: {error}")).diagnostics.clone()
 }
 
@@ -314,24 +315,26 @@ fn errors_of_the_computed_rig_have_a_place() {
     let line_of = |text: &str, key: &str| text.lines().position(|line| line.starts_with(key)).unwrap() + 1;
     let tracking = format!(
         "{}\n[[specification]]\nkind = \"tracking\"\nfrequencies = [1, 50]\nlower = {{ numerator = \"10\", denominator = \"s + 10\" }}\nupper = {{ numerator = \"2\", denominator = \"s + 2\" }}\n",
-        ask::HOSE
+        run_command::HOSE
     );
-    let told = ask::answer(&tracking, &[], &[], &Request::Check).text;
+    let output = run_command::answer(&tracking, &[], &[], &Request::Check).text;
     let line = format!("(line {})", line_of(&tracking, "lower = { numerator = \"10\""));
-    assert!(told.contains("limits cross") && told.contains(&line), "{told}");
+    assert!(output.contains("limits cross") && output.contains(&line), "{output}");
     let design = Request::Design { seed: None, stages: false, repair: true };
     let found = places(&tracking, &[], &design);
     assert_eq!(found[0].line, line_of(&tracking, "lower = { numerator = \"10\""), "{found:?}");
     // ORIGIN: analytic, 10/|50i + 10| = 0.196 and 2/|50i + 2| = 0.04, most apart at the highest
     // frequency
     assert!(found[0].message.contains("50.00 rad/s") && found[0].message.contains("0.196"), "{found:?}");
-    let point =
-        format!("{}\n[operating_point]\nload_force = \"400 kN\"\n", without(ask::HOSE, "operating_point"));
+    let point = format!(
+        "{}\n[operating_point]\nload_force = \"400 kN\"\n",
+        without(run_command::HOSE, "operating_point")
+    );
     let found = places(&point, &[], &Request::Check);
     assert!(found[0].line >= line_of(&point, "[operating_point]"), "{found:?}");
     let start = format!(
         "{}\n[[scenario]]\nname = \"far\"\nduration = \"0.1 s\"\nreference = {{ at = \"0 s\", force = \"900 kN\" }}\n",
-        ask::HOSE
+        run_command::HOSE
     );
     let found = places(&start, &[], &Request::Simulate(SimulateRequest::default()));
     assert!(found[0].line > line_of(&start, "duration = \"0.1 s\"") - 3, "{found:?}");
@@ -345,14 +348,14 @@ fn errors_about_absent_tables_have_a_place() {
     let verify = Request::Verify { proof: false, on_machine: false };
     let design = Request::Design { seed: None, stages: false, repair: true };
     let cases = [
-        ("sizing", ask::size_request(None, None)),
+        ("sizing", run_command::size_request(None, None)),
         ("scenario", simulate),
         ("specification", verify.clone()),
         ("specification", design),
         ("controller", verify),
     ];
     for (table, request) in cases {
-        let text = without(ask::HOSE, table);
+        let text = without(run_command::HOSE, table);
         let found = places(&text, &[], &request);
         let end = text.lines().count() + usize::from(text.ends_with('\n'));
         assert_eq!(found[0].line, end, "{table}: {found:?}");
@@ -367,21 +370,21 @@ fn errors_about_absent_tables_have_a_place() {
 /// A project without one of its tables.
 fn without(text: &str, table: &str) -> String {
     let mut is_in = false;
-    let kept = text.lines().filter(|line| {
+    let others = text.lines().filter(|line| {
         if line.starts_with('[') {
             is_in = line.trim_start_matches('[').starts_with(table);
         }
         !is_in
     });
-    kept.collect::<Vec<_>>().join("\n")
+    others.collect::<Vec<_>>().join("\n")
 }
 
 /// K_c of the leakiest valve in a data sheet's range is that of a valve with this leakage.
 #[test]
 fn check_prints_the_slope_of_the_leakiest_valve() {
     let of = |settings: &[&str], name: &str| {
-        let check = ask::json(project::STARTER, settings, &[], &Request::Check);
-        ask::derived(&check, &format!("valve.flow_pressure_coefficient_{name}"))
+        let check = run_command::json(project::STARTER, settings, &[], &Request::Check);
+        run_command::derived(&check, &format!("valve.flow_pressure_coefficient_{name}"))
     };
     for way in ["extending", "retracting"] {
         let most = of(&[], &format!("{way}_maximum"));

@@ -6,7 +6,7 @@ use phea_workbench::command::{self, CommandError, Request};
 use phea_workbench::project;
 use phea_workbench::source::Memory;
 
-use crate::ask::HOSE;
+use crate::run_command::HOSE;
 
 /// The example with this scenario instead of its own.
 fn with_scenario(lines: &str) -> String {
@@ -24,7 +24,7 @@ fn check(text: &str, settings: &[&str], files: &[(&str, &str)]) -> Result<String
 }
 
 /// The warnings on the scenario.
-fn told(text: &str, settings: &[&str]) -> Vec<String> {
+fn warnings(text: &str, settings: &[&str]) -> Vec<String> {
     let answer = check(text, settings, &[]).unwrap();
     assert!(answer.contains("The project is valid"));
     let lines = answer.lines().filter_map(|line| line.strip_prefix("warning: scenario \"only\": "));
@@ -35,43 +35,43 @@ fn told(text: &str, settings: &[&str]) -> Vec<String> {
 fn a_reference_beyond_the_stall_force_is_warned_of() {
     // ORIGIN: analytic, A = pi/4 (50^2 - 22^2) mm2 = 1583.4 mm2: 11.084 kN at 70 bar
     let at = |force: &str| with_scenario(&format!("reference = {{ at = \"1 s\", force = \"{force}\" }}"));
-    assert_eq!(told(&at("11 kN"), &[]), Vec::<String>::new());
+    assert_eq!(warnings(&at("11 kN"), &[]), Vec::<String>::new());
     let beyond = "the reference goes to 11.2 kN at 1 s, and at a supply of 70 bar the piston stalls at 11.08 kN: no controller reaches it";
-    assert_eq!(told(&at("11.2 kN"), &[]), [beyond]);
-    assert!(told(&at("-11.2 kN"), &[])[0].starts_with("the reference goes to -11.2 kN at 1 s"));
+    assert_eq!(warnings(&at("11.2 kN"), &[]), [beyond]);
+    assert!(warnings(&at("-11.2 kN"), &[])[0].starts_with("the reference goes to -11.2 kN at 1 s"));
     // a sine on a ramp reaches the sum of both
     let sum = with_scenario(
         "reference = [{ kind = \"ramp\", force = \"8 kN\", duration = \"0.5 s\" }, \
          { kind = \"sine\", start = \"1 s\", amplitude = \"3.5 kN\", frequency = \"1 Hz\" }]",
     );
     assert!(
-        told(&sum, &[])[0].starts_with("the reference goes to 11.5 kN at 1.25 s"),
+        warnings(&sum, &[])[0].starts_with("the reference goes to 11.5 kN at 1.25 s"),
         "{:?}",
-        told(&sum, &[])
+        warnings(&sum, &[])
     );
     // the lowest supply of the family
     let family = at("9 kN").split("[uncertainty]").next().unwrap().to_string()
         + "[uncertainty]\n\"supply.pressure\" = { nominal = \"70 bar\", minimum = \"50 bar\", maximum = \"70 bar\" }\n[[scenario]]"
         + at("9 kN").split("[[scenario]]").nth(1).unwrap();
-    assert!(told(&family, &[])[0].contains("at a supply of 50 bar the piston stalls at 7.917 kN"));
+    assert!(warnings(&family, &[])[0].contains("at a supply of 50 bar the piston stalls at 7.917 kN"));
 }
 
 #[test]
 fn the_capacity_of_the_sensor_and_the_stroke_are_warned_of() {
     let reference = with_scenario("reference = { at = \"1 s\", force = \"4 kN\" }");
     let beyond = "the reference goes to 4 kN at 1 s, beyond the sensor's `capacity` of 3 kN";
-    assert_eq!(told(&reference, &["force_sensor.capacity=\"3 kN\""]), [beyond]);
+    assert_eq!(warnings(&reference, &["force_sensor.capacity=\"3 kN\""]), [beyond]);
     let motion = |distance: &str| {
         with_scenario(&format!(
             "start = {{ position = \"250 mm\", pressure_a = \"35 bar\", pressure_b = \"35 bar\" }}\n\
              load_motion = {{ kind = \"smooth_step\", start = \"1 s\", duration = \"0.5 s\", distance = \"{distance}\" }}"
         ))
     };
-    assert_eq!(told(&motion("240 mm"), &[]), Vec::<String>::new());
-    let told = told(&motion("-300 mm"), &[]);
+    assert_eq!(warnings(&motion("240 mm"), &[]), Vec::<String>::new());
+    let warnings = warnings(&motion("-300 mm"), &[]);
     assert!(
-        told[0].ends_with("takes the piston from 250 mm to -50 mm, beyond its stroke of 500 mm"),
-        "{told:?}"
+        warnings[0].ends_with("takes the piston from 250 mm to -50 mm, beyond its stroke of 500 mm"),
+        "{warnings:?}"
     );
 }
 

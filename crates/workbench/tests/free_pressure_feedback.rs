@@ -82,14 +82,14 @@ fn the_design_is_that_of_the_damped_rig() {
 /// with the feedback that was found: up to the predicted gains they satisfy the limits of a design,
 /// except for plants between those used in the design; a tenth beyond they do not.
 #[test]
-fn proportional_loops_have_the_gains_that_were_foretold() {
+fn proportional_loops_have_the_predicted_gains() {
     let text = few_plants();
     // a resonance between two plants may pass the highest bandwidth
     let free = loaded(&text, &[FREE, "design.highest_bandwidth=inf"]);
     let setup = Setup::new(&free.project).unwrap();
     let limits = design_limits(&setup, &robust_problem(&Memory::default(), &setup).unwrap());
     let value = |kind| limits.iter().find(|limit| limit.kind == kind).unwrap().value;
-    let keeps_with = |line: &str, gain: f64, project: &Project| {
+    let satisfies_with = |line: &str, gain: f64, project: &Project| {
         let law = format!("controller.elements=[{{ kind = \"gain\", value = {gain:e} }}]");
         let mut loaded = loaded(&text, &[&law, line]);
         loaded.project.controller.as_mut().unwrap().pressure_feedback =
@@ -101,32 +101,32 @@ fn proportional_loops_have_the_gains_that_were_foretold() {
         distance > value(DesignLimitKind::ModulusMargin)
             && delay_s > value(DesignLimitKind::MinimumDelayMargin)
     };
-    let keeps = |gain: f64, project: &Project| {
+    let satisfies = |gain: f64, project: &Project| {
         let lines = ["line.model=lumped", "line.model=transmission_line"];
-        lines.into_iter().all(|line| keeps_with(line, gain, project))
+        lines.into_iter().all(|line| satisfies_with(line, gain, project))
     };
     let (damped, found) =
         with_free_pressure_feedback(&Memory::default(), &setup, &mut |_| true).unwrap().unwrap();
     let [without, with] = found.proportional_gain;
     assert!(found.is_used && with > 1.1 * without, "{found:?}");
     for (project, gain) in [(&free.project, without), (&damped, with)] {
-        assert!(keeps(0.92 * gain, project), "{found:?}");
-        assert!(!keeps(1.1 * gain, project), "{found:?}");
+        assert!(satisfies(0.92 * gain, project), "{found:?}");
+        assert!(!satisfies(1.1 * gain, project), "{found:?}");
     }
 }
 
 /// A table without a gain feeds nothing back until a design has found one, which every command
 /// reports; a stated gain is fed back unchanged.
 #[test]
-fn a_feedback_that_is_still_to_be_found_is_told() {
+fn a_pending_feedback_is_reported() {
     let feedback = "controller.pressure_feedback={ signal = \"load_pressure\" }";
-    let is_told = |settings: &[&str]| {
+    let is_reported = |settings: &[&str]| {
         let warnings = loaded(RIG, settings).warnings;
         warnings.iter().any(|warning| warning.message.contains("no `gain` yet"))
     };
-    assert!(is_told(&[feedback, FREE]));
-    assert!(!is_told(&[feedback, "controller.pressure_feedback.gain=1e-7", FREE]));
-    assert!(!is_told(&[FREE]));
+    assert!(is_reported(&[feedback, FREE]));
+    assert!(!is_reported(&[feedback, "controller.pressure_feedback.gain=1e-7", FREE]));
+    assert!(!is_reported(&[FREE]));
 }
 
 /// A bore of 1 mm over 3 m has a dissipation number nu L/(c R^2) of 46e-6 3/(c 0.25e-6) = 552/c

@@ -96,7 +96,7 @@ fn the_amplitude_goes_to_zero_and_with_it_the_difference() {
 /// Waves in the lines, a delayed command and a sensor that lags: the linearised machine has delays,
 /// and agrees with small sines.
 #[test]
-fn delays_are_part_of_what_is_linearised() {
+fn delays_are_included_in_the_linearisation() {
     let line = "line={ hose = \"eaton_synflex_3130_08\", length = \"1.5 m\", model = \"transmission_line\" }";
     let late = "controller.delay=2 ms";
     let sensor = "sensor={ numerator = \"2000\", denominator = \"s + 2000\", delay = \"0.5 ms\" }";
@@ -182,7 +182,7 @@ fn a_supply_that_yields_is_in_the_linear_plant() {
 
 /// The fundamental between the samples of a sampled loop is that of the held command.
 #[test]
-fn a_sampled_loop_is_that_of_the_linear_plant_behind_its_hold() {
+fn a_sampled_loop_is_that_of_the_linear_plant_after_its_hold() {
     for settings in [
         vec!["controller.sample_time=1 ms"],
         vec![
@@ -240,7 +240,7 @@ fn a_preloaded_progressive_spring_is_linearised_under_its_load() {
 /// A sensor with a DC gain of 2: the loop rests where the sensor reads twice the force of the
 /// operating point, and is linearised there.
 #[test]
-fn a_loop_rests_at_what_its_sensor_shows() {
+fn a_loop_rests_at_its_sensor_reading() {
     let sensor = "sensor={ numerator = \"4000\", denominator = \"s + 2000\" }";
     let leaky = "controller.denominator=s + 1";
     for more in [&[][..], &[leaky], &[leaky, "controller.sample_time=1 ms"]] {
@@ -265,9 +265,10 @@ fn sines_below_break_away_see_the_bristles() {
     assert!((held - 2.0 / 3.0).abs() < 0.05, "{held}");
 }
 
-fn answered(settings: &[&str], options: FrequencyOptions, figures: bool) -> Result<Answer, String> {
-    let asked = SimulateRequest { frequency_response: Some(options), figures, ..SimulateRequest::default() };
-    let request = Request::Simulate(asked);
+fn output(settings: &[&str], options: FrequencyOptions, figures: bool) -> Result<Answer, String> {
+    let requested =
+        SimulateRequest { frequency_response: Some(options), figures, ..SimulateRequest::default() };
+    let request = Request::Simulate(requested);
     command::answer(&Memory::default(), &load(settings), &[], &request).map_err(|error| error.to_string())
 }
 
@@ -275,7 +276,7 @@ fn answered(settings: &[&str], options: FrequencyOptions, figures: bool) -> Resu
 fn the_answer_has_its_keys_files_and_figures() {
     let options =
         FrequencyOptions { frequencies: Some("20, 50 rad/s".to_string()), ..FrequencyOptions::default() };
-    let answer = answered(&SMOOTH, options, true).unwrap();
+    let answer = output(&SMOOTH, options, true).unwrap();
     assert!(answer.affirmative);
     let json: Value = serde_json::from_str(&answer.json).unwrap();
     assert_eq!((&json["command"], &json["scenarios"]), (&"simulate".into(), &serde_json::json!([])));
@@ -302,7 +303,7 @@ fn the_answer_has_its_keys_files_and_figures() {
 }
 
 #[test]
-fn options_that_are_none_are_refused() {
+fn invalid_options_are_refused() {
     let cases = [
         (
             FrequencyOptions { amplitude: Some("0 V".into()), ..Default::default() },
@@ -319,7 +320,7 @@ fn options_that_are_none_are_refused() {
         ),
     ];
     for (options, words) in cases {
-        let error = answered(&[], options, false).unwrap_err();
+        let error = output(&[], options, false).unwrap_err();
         assert!(error.starts_with(words), "{error}");
     }
 }
@@ -363,14 +364,14 @@ fn a_unit_holds_for_the_numbers_before_it() {
 
 #[test]
 fn the_amplitude_of_a_motor_s_reference_is_a_torque() {
-    let asked = |text: &str, motion: MotionKind| {
+    let requested = |text: &str, motion: MotionKind| {
         FrequencyOptions { reference_amplitude: Some(text.to_string()), ..FrequencyOptions::default() }
             .request(motion)
             .map(|request| request.reference_amplitude_n)
             .map_err(|error| error.to_string())
     };
-    assert_eq!(asked("400 N.m", MotionKind::Rotary), Ok(Some(400.0)));
-    assert_eq!(asked("4 kN", MotionKind::Linear), Ok(Some(4000.0)));
-    let refused = asked("400 N", MotionKind::Rotary).unwrap_err();
+    assert_eq!(requested("400 N.m", MotionKind::Rotary), Ok(Some(400.0)));
+    assert_eq!(requested("4 kN", MotionKind::Linear), Ok(Some(4000.0)));
+    let refused = requested("400 N", MotionKind::Rotary).unwrap_err();
     assert!(refused.contains("expected a torque, found a force"), "{refused}");
 }

@@ -78,7 +78,7 @@ fn fast_runs_and_breakaways_leave_the_shape_of_the_fall_open() {
 /// Three speeds are three numbers, and the curve has five: coefficients that they do not determine
 /// have no value, but an interval that contains the truth.
 #[test]
-fn three_speeds_determine_what_three_speeds_can() {
+fn three_speeds_determine_three_parameters() {
     for slowest in ["2 mm/s", "5 mm/s", "20 mm/s"] {
         let bench =
             format!("bench.friction={{ velocities = 3, slowest = \"{slowest}\", fastest = \"200 mm/s\" }}");

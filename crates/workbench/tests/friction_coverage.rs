@@ -65,20 +65,20 @@ fn check(
     });
     let mut wrong = Vec::new();
     for (index, (key, truth)) in TRUTH.iter().enumerate().take(coefficients.end).skip(coefficients.start) {
-        let told: Vec<[f64; 2]> = found.iter().filter_map(|one| one[index]).collect();
-        let covered = told.iter().filter(|[low, high]| low <= truth && truth <= high).count();
-        let below = told.iter().filter(|[_, high]| high < truth).count();
-        let mut halves: Vec<f64> = told.iter().map(|[low, high]| (high - low) / 2.0).collect();
+        let intervals: Vec<[f64; 2]> = found.iter().filter_map(|one| one[index]).collect();
+        let covered = intervals.iter().filter(|[low, high]| low <= truth && truth <= high).count();
+        let below = intervals.iter().filter(|[_, high]| high < truth).count();
+        let mut halves: Vec<f64> = intervals.iter().map(|[low, high]| (high - low) / 2.0).collect();
         halves.sort_by(f64::total_cmp);
         let half = halves.get(halves.len() / 2).copied().unwrap_or(f64::NAN);
         println!(
             "{key:28} determined {} of {repetitions}, covered {covered}, below {below}, half width {:.3} %",
-            told.len(),
+            intervals.len(),
             100.0 * half / truth
         );
         // noise may resemble a force that is too quick, which leaves the stiffness open: an open
         // one counts as covered as often as an interval should
-        let open = repetitions as usize - told.len();
+        let open = repetitions as usize - intervals.len();
         if open > repetitions as usize / 10 || !allowed.contains(&(covered + (19 * open + 10) / 20)) {
             wrong.push(*key);
         }

@@ -8,8 +8,8 @@ use phea_workbench::project;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
-use crate::ask;
 use crate::friction_identification::{SLIDING, TRUTH, identified, recorded};
+use crate::run_command;
 
 const BACK: &str =
     "cylinder.friction.retracting={ coulomb = \"95 N\", static = \"150 N\", viscous = \"140 N.s/m\" }";
@@ -36,23 +36,23 @@ fn levels_of_both_directions_come_back_from_the_bench() {
     }
     let fragment = answer.files.iter().find(|file| file.name == "friction.toml").unwrap();
     let text = String::from_utf8(fragment.bytes.clone()).unwrap();
-    let start = ask::HOSE.find("[cylinder.friction]").unwrap();
-    let end = ask::HOSE.find("[line]").unwrap();
-    let whole = format!("{}{text}{}", &ask::HOSE[..start], &ask::HOSE[end..]);
+    let start = run_command::HOSE.find("[cylinder.friction]").unwrap();
+    let end = run_command::HOSE.find("[line]").unwrap();
+    let whole = format!("{}{text}{}", &run_command::HOSE[..start], &run_command::HOSE[end..]);
     // coefficients that the runs may leave open are comments there
     let bristles = ["cylinder.friction.bristle_stiffness=1e7", "cylinder.friction.bristle_damping=2000"];
-    let read = ask::load(&whole, &bristles, &[]).project;
+    let read = run_command::load(&whole, &bristles, &[]).project;
     let declared = read.actuator.unwrap().cylinder.friction.unwrap().retracting.unwrap();
     assert!((declared.static_friction.unwrap() / 150.0 - 1.0).abs() < 1e-3, "{text}");
 }
 
 /// A family must contain the viscous friction of both directions.
 #[test]
-fn a_family_without_the_viscous_friction_of_one_direction_is_told() {
+fn a_family_without_the_viscous_friction_of_one_direction_is_reported() {
     let anything =
         "specification=[{ kind = \"robust_stability\", limit = 1000, frequencies = [1], band = [1, 2] }]";
     let verify = |settings: &[&str]| {
-        let loaded = ask::load(ask::HOSE, &[&[anything], settings].concat(), &[]);
+        let loaded = run_command::load(run_command::HOSE, &[&[anything], settings].concat(), &[]);
         let request = Request::Verify { proof: false, on_machine: false };
         let answer = command::answer(&Memory::default(), &loaded, &[], &request).unwrap();
         (serde_json::from_str::<Value>(&answer.json).unwrap()["verdict"].clone(), answer.text)
@@ -62,12 +62,12 @@ fn a_family_without_the_viscous_friction_of_one_direction_is_told() {
             "uncertainty.viscous_friction={{ nominal = {minimum}, minimum = {minimum}, maximum = {maximum} }}"
         )
     };
-    let said = "(cylinder.friction.retracting.viscous)";
+    let missing = "(cylinder.friction.retracting.viscous)";
     let (verdict, text) = verify(&[BACK, &range(100.0, 140.0)]);
-    assert!(verdict == "met" && !text.contains(said), "{text}");
+    assert!(verdict == "met" && !text.contains(missing), "{text}");
     for without in [range(100.0, 139.0), range(120.0, 140.0)] {
         let (verdict, text) = verify(&[BACK, &without]);
-        assert!(verdict == "not_proven" && text.contains(said), "{text}");
+        assert!(verdict == "not_proven" && text.contains(missing), "{text}");
     }
     // different levels only are in no linear plant
     let levels = "cylinder.friction.retracting={ coulomb = \"95 N\", static = \"150 N\" }";
@@ -80,7 +80,8 @@ fn a_family_without_the_viscous_friction_of_one_direction_is_told() {
 fn impossible_levels_of_a_direction_are_refused() {
     let refused = |setting: &str| {
         let settings = [setting.to_string()];
-        let report = project::read(&ask::source(ask::HOSE), "rig.toml", &settings, &[]).unwrap_err();
+        let report =
+            project::read(&run_command::source(run_command::HOSE), "rig.toml", &settings, &[]).unwrap_err();
         report.to_string()
     };
     let message = refused("cylinder.friction.retracting={ coulomb = \"130 N\" }");

@@ -4,7 +4,7 @@
 
 use std::sync::LazyLock;
 
-use crate::ask::{HOSE, answer, load};
+use crate::run_command::{HOSE, answer, load};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{FrictionRequest, IdentifyError, Request, friction_watched};
 use phea_workbench::project;
@@ -59,9 +59,9 @@ pub(crate) fn recorded(settings: &[&str]) -> Memory {
 }
 
 pub(crate) fn identified(source: &Memory, files: &[&str]) -> Result<Answer, IdentifyError> {
-    let asked =
+    let request =
         FrictionRequest { files: files.iter().map(|file| file.to_string()).collect(), figures: false };
-    friction_watched(source, Some(&load(HOSE, &[], &[])), &asked, &mut |_| true)
+    friction_watched(source, Some(&load(HOSE, &[], &[])), &request, &mut |_| true)
 }
 
 #[track_caller]
@@ -79,7 +79,7 @@ pub(crate) fn interval(found: &Value, key: &str) -> [f64; 2] {
 pub(crate) fn is_open(found: &Value, key: &str, reason: &str) {
     let one = &found["friction"][key];
     assert!(one["value"].is_null(), "{key}: {one}");
-    assert!(one["reason"].as_str().is_some_and(|said| said.contains(reason)), "{key}: {one}");
+    assert!(one["reason"].as_str().is_some_and(|message| message.contains(reason)), "{key}: {one}");
 }
 
 /// The steady curve is recovered without noise, to the rounding of the files.
@@ -97,7 +97,7 @@ fn the_steady_curve_comes_back_without_noise() {
 /// is determined, and the intervals contain the truth: three standard deviations here, because six
 /// numbers are checked.
 #[test]
-fn a_noisy_bench_tells_all_but_the_damper() {
+fn a_noisy_bench_identifies_all_but_the_damper() {
     let found: Value = serde_json::from_str(&without_the_shaken().json).unwrap();
     is_open(&found, "bristle_damping_n_s_per_m", "slow runs do not show it");
     holds_the_truth(&found, &TRUTH[..6]);
@@ -105,7 +105,7 @@ fn a_noisy_bench_tells_all_but_the_damper() {
 
 /// Every coefficient is determined with all four recordings.
 #[test]
-fn a_noisy_bench_tells_all_of_the_friction() {
+fn a_noisy_bench_identifies_all_of_the_friction() {
     let answer = from_all();
     assert!(answer.affirmative, "{}", answer.text);
     holds_the_truth(&serde_json::from_str(&answer.json).unwrap(), &TRUTH);
@@ -125,7 +125,7 @@ fn holds_the_truth(found: &Value, truths: &[(&str, f64)]) {
 
 /// A coefficient on which nothing in the recordings depends is open, with the reason.
 #[test]
-fn what_the_recordings_do_not_tell_is_open() {
+fn parameters_that_are_not_identifiable_are_left_open() {
     let settings = ["bench.friction={ velocities = 6, releases = 0 }"];
     let sliding = found(&settings, &[SLIDING]);
     is_open(&sliding, "bristle_damping_n_s_per_m", "slow runs do not show it");
@@ -172,8 +172,8 @@ fn an_error_of_the_zero_is_no_friction() {
 #[test]
 fn the_fragment_is_a_table_of_a_project() {
     let open = "# bristle_damping: not determined, slow runs do not show it";
-    let said = String::from_utf8(without_the_shaken().files[0].bytes.clone()).unwrap();
-    assert!(said.contains(open), "{said}");
+    let message = String::from_utf8(without_the_shaken().files[0].bytes.clone()).unwrap();
+    assert!(message.contains(open), "{message}");
     let answer = from_all();
     let fragment = answer.files.iter().find(|file| file.name == "friction.toml").unwrap();
     let fragment = String::from_utf8(fragment.bytes.clone()).unwrap();
@@ -192,17 +192,17 @@ fn the_fragment_is_a_table_of_a_project() {
 fn refused(table: &str, expected: &[&str]) {
     let source = Memory::default().with("run.csv", table);
     let error = identified(&source, &["run.csv"]).map(|answer| answer.text).unwrap_err();
-    let said = match &error {
+    let message = match &error {
         IdentifyError::Files(report) => report.to_string(),
         other => other.to_string(),
     };
     for text in expected {
-        assert!(said.contains(text), "{said}\nlacks: {text}");
+        assert!(message.contains(text), "{message}\nlacks: {text}");
     }
 }
 
 #[test]
-fn files_that_are_no_runs_are_refused_with_their_places() {
+fn other_files_are_refused_with_their_places() {
     refused(
         "time_s,positon_mm,pressure_a_bar,pressure_b_bar\n0,1,2,3\n",
         &["run.csv:1", "position", "positon_mm"],

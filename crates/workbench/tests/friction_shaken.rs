@@ -3,10 +3,10 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::{HOSE, answer, load};
 use crate::friction_identification::{
     SHAKEN, SLIDING, TRUTH, found, identified, interval, is_open, recorded,
 };
+use crate::run_command::{HOSE, answer, load};
 use phea_dynamics::portable;
 use phea_dynamics::random::{normal, stream};
 use phea_workbench::command::{FrictionRequest, Request, friction_watched};
@@ -19,13 +19,13 @@ const DAMPING: &str = "bristle_damping_n_s_per_m";
 /// Checks that stiffness and damping are within 1.5 half widths of their true values, and
 /// determined to this relative accuracy.
 #[track_caller]
-fn tells(found: &Value, share: f64) {
+fn identifies_damping(found: &Value, tolerance: f64) {
     for (key, truth) in &TRUTH[5..] {
         let one = &found["friction"][key];
         let value = one["value"].as_f64().unwrap_or_else(|| panic!("{key}: {one}"));
         let [low, high] = interval(found, key);
         assert!((value - truth).abs() < 1.5 * (high - low) / 2.0, "{key}: {one}");
-        assert!((high - low) / 2.0 < share * truth, "{key}: {one}");
+        assert!((high - low) / 2.0 < tolerance * truth, "{key}: {one}");
     }
 }
 
@@ -37,17 +37,17 @@ fn parsed(source: &Memory, files: &[&str]) -> Value {
 /// The information in the default run (1 um and 5 kPa of noise, 5000 rows in a second, a force of
 /// 40 N) leaves a standard deviation of 3.7 % of the damping, and of 0.7 % of the stiffness.
 #[test]
-fn a_shaken_piston_tells_the_damping_of_its_bristles() {
+fn a_shaken_piston_identifies_the_damping_of_its_bristles() {
     // ORIGIN: analytic, by differences of the integrated equations: 1.96 times 3.7 %, and a margin
     // of a third
-    tells(&found(&["bench.friction={ velocities = 8 }"], &[SLIDING, SHAKEN]), 0.1);
+    identifies_damping(&found(&["bench.friction={ velocities = 8 }"], &[SLIDING, SHAKEN]), 0.1);
 }
 
 /// A scale with a resolution of 1 um gives readings no worse than its noise.
 #[test]
-fn a_position_that_is_read_in_steps_tells_it_too() {
+fn a_quantised_position_identifies_it_too() {
     let settings = ["bench.friction={ velocities = 8, position_resolution = \"1 um\" }"];
-    tells(&found(&settings, &[SLIDING, SHAKEN]), 0.1);
+    identifies_damping(&found(&settings, &[SLIDING, SHAKEN]), 0.1);
 }
 
 /// The damping is recovered with very little noise, except for the effect of the integration's
@@ -130,17 +130,17 @@ fn table(rows: &[[f64; 2]], noise: [f64; 2], seed: u64) -> String {
 /// A sum of sines needs no common period, and may begin in motion: the first 100 rows are not
 /// recorded.
 #[test]
-fn equations_of_another_hand_come_back() {
+fn independently_written_equations_are_recovered() {
     let rows = integrated(4137);
     let source = recorded(&["bench.friction={ velocities = 8 }"]);
     let source = source.with("own.csv", table(&rows[100..], [0.5, 5.0], 1));
-    tells(&parsed(&source, &[SLIDING, "own.csv"]), 0.08);
+    identifies_damping(&parsed(&source, &[SLIDING, "own.csv"]), 0.08);
 }
 
 /// The rod of the complete machine is held by a load cell and its environment, and its valve is
 /// shaken: chambers, hoses, spool and load cell take part.
 #[test]
-fn the_whole_machine_tells_the_damping_of_its_bristles() {
+fn the_whole_machine_identifies_the_damping_of_its_bristles() {
     let (before, _) = HOSE.split_once("[[scenario]]").unwrap();
     let scenario = r#"
 [[scenario]]
@@ -171,15 +171,15 @@ command = [
     let found = parsed(&source, &[SLIDING, "machine.csv"]);
     // a valve excites more than the sines of its command, partly hidden by the noise: over six
     // seeds of the noise the stiffness was 4 % too low at most, and the damping 20 % too high
-    for ((key, truth), share) in TRUTH[5..].iter().zip([0.06, 0.3]) {
+    for ((key, truth), tolerance) in TRUTH[5..].iter().zip([0.06, 0.3]) {
         let value = found["friction"][key]["value"].as_f64().unwrap_or_else(|| panic!("{key}: {found}"));
-        assert!((value / truth - 1.0).abs() < share, "{key}: {value}");
+        assert!((value / truth - 1.0).abs() < tolerance, "{key}: {value}");
     }
 }
 
 /// A recording that does not determine them is reported with the change that would.
 #[test]
-fn a_shaken_piston_that_tells_too_little_says_what_would() {
+fn insufficient_shaking_is_reported_with_a_sufficient_one() {
     let files = [SLIDING, SHAKEN];
     let with =
         |shaken: &str| found(&[&format!("bench.friction={{ velocities = 6, shaken = {shaken} }}")], &files);
@@ -195,7 +195,7 @@ fn a_shaken_piston_that_tells_too_little_says_what_would() {
 
 /// A force that is not a sum of sines is not known between its rows.
 #[test]
-fn a_blow_is_no_sum_of_sines() {
+fn a_blow_is_not_taken_for_a_sum_of_sines() {
     let mut rows = integrated(1000);
     let mut state = [0.0, 0.0, 0.0];
     for (index, row) in rows.iter_mut().enumerate() {
@@ -219,10 +219,10 @@ fn the_project_may_name_the_recordings() {
     let source = recorded(&["bench.friction={ velocities = 6 }"]);
     let named = identified(&source, &[SLIDING]).unwrap();
     let declares = load(HOSE, &["identify.friction=[\"sliding.csv\"]"], &[]);
-    let asked = FrictionRequest::default();
-    let declared = friction_watched(&source, Some(&declares), &asked, &mut |_| true).unwrap();
+    let request = FrictionRequest::default();
+    let declared = friction_watched(&source, Some(&declares), &request, &mut |_| true).unwrap();
     assert_eq!(declared.text, named.text);
     assert!(source.read(SHAKEN).is_ok());
-    let error = friction_watched(&source, Some(&load(HOSE, &[], &[])), &asked, &mut |_| true).unwrap_err();
+    let error = friction_watched(&source, Some(&load(HOSE, &[], &[])), &request, &mut |_| true).unwrap_err();
     assert!(error.to_string().contains("declare `friction` in `[identify]`"), "{error}");
 }

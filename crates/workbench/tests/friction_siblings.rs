@@ -15,7 +15,7 @@ use crate::friction_identification::identified;
 const SLOW: [f64; 7] = [2e-3, 4e-3, 9e-3, 2e-2, 4.5e-2, 0.1, 0.2];
 const FAST: [f64; 5] = [0.02, 0.035, 0.06, 0.11, 0.2];
 
-fn answered(files: &[(&str, String)]) -> (Answer, Value) {
+fn output(files: &[(&str, String)]) -> (Answer, Value) {
     let source = files.iter().fold(Memory::default(), |all, (name, text)| all.with(name, text.clone()));
     let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
     let answer = identified(&source, &names).unwrap_or_else(|error| panic!("{error}"));
@@ -24,7 +24,7 @@ fn answered(files: &[(&str, String)]) -> (Answer, Value) {
 }
 
 fn found(files: &[(&str, String)]) -> Value {
-    answered(files).1
+    output(files).1
 }
 
 /// Sliding and both breakaways of a friction.
@@ -158,7 +158,7 @@ fn clean_fast_runs_of_a_hard_seal() {
 }
 
 #[test]
-fn clean_fast_runs_of_a_seal_that_hardly_falls() {
+fn clean_fast_runs_of_a_seal_with_hardly_falling_friction() {
     clean_fast_runs_hold(&of_levels(100.0, 110.0, 60.0));
 }
 
@@ -193,7 +193,7 @@ fn three_speeds_of_a_soft_seal() {
 fn directions_hold(friction: &TrueFriction, with_breakaways: bool, seed: u64) {
     let errors = Errors { seed, ..Errors::default() };
     let all = all_of(friction, &SLOW, errors);
-    let (answer, found) = answered(&all[..if with_breakaways { 3 } else { 1 }]);
+    let (answer, found) = output(&all[..if with_breakaways { 3 } else { 1 }]);
     hold(&found["friction"], &curve_of(friction));
     let [_, Levels { coulomb, breaking, viscous }] = friction.levels;
     let back = [("coulomb_n", coulomb), ("static_n", breaking), ("viscous_n_s_per_m", viscous)];

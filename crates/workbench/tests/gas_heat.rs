@@ -10,8 +10,8 @@ use phea_workbench::report::report;
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{ScenarioRun, simulate_project};
 
-use super::ask::{answer, check, derived, json, load, near, project_of, source, try_answer};
 use super::plant_of_verdicts::{assert_nominal_is_the_rig, responses, without_uncertainty};
+use super::run_command::{answer, check, derived, json, load, near, project_of, source, try_answer};
 
 const GAS: &str = include_str!("../../../examples/ybitu/accumulator.toml");
 const HEAT: &str = include_str!("../../project/tests/valid/accumulator_heat.toml");
@@ -76,15 +76,15 @@ fn the_family_is_the_rig_at_its_nominal() {
 /// precharge at both temperatures.
 #[test]
 fn check_derives_both_compliances_and_both_precharges() {
-    let told = check(HEAT, &["line.b.accumulator.thermal_time_constant=0.6"]);
+    let output = check(HEAT, &["line.b.accumulator.thermal_time_constant=0.6"]);
     // ORIGIN: analytic, 10 bar at 20 degC become this at 45 degC in the same volume, absolute
     let warm = (10e5 + ATMOSPHERE) * 318.15 / 293.15;
-    near(derived(&told, "line.b.accumulator.working_precharge"), warm - ATMOSPHERE, 1e-12);
-    let absolute = derived(&told, "operating_point.pressure_b") + ATMOSPHERE;
-    near(derived(&told, "line.b.accumulator.compliance"), warm * 6e-6 / (absolute * absolute), 1e-12);
-    let fast = derived(&told, "line.b.accumulator.compliance") / 1.4;
-    near(derived(&told, "line.b.accumulator.fast_compliance"), fast, 1e-12);
-    near(derived(&told, "line.b.accumulator.isothermal_below"), 1.0 / (1.4 * 0.6), 1e-12);
+    near(derived(&output, "line.b.accumulator.working_precharge"), warm - ATMOSPHERE, 1e-12);
+    let absolute = derived(&output, "operating_point.pressure_b") + ATMOSPHERE;
+    near(derived(&output, "line.b.accumulator.compliance"), warm * 6e-6 / (absolute * absolute), 1e-12);
+    let fast = derived(&output, "line.b.accumulator.compliance") / 1.4;
+    near(derived(&output, "line.b.accumulator.fast_compliance"), fast, 1e-12);
+    near(derived(&output, "line.b.accumulator.isothermal_below"), 1.0 / (1.4 * 0.6), 1e-12);
     let text = answer(HEAT, &[], &[], &Request::Check).text;
     for part in ["line.b.accumulator.working_precharge", "precharge_temperature"] {
         assert!(text.contains(part), "{part}: {text}");
@@ -111,19 +111,19 @@ fn a_precharge_may_be_stated_at_either_temperature() {
 fn a_precharge_that_is_too_high_when_warm_is_refused() {
     let gas = "line.b.accumulator={ gas_volume = \"6 mL\", precharge_pressure = \"30 bar\", precharge_temperature = \"0 degC\", working_temperature = \"80 degC\" }";
     let cold = "line.b.accumulator={ gas_volume = \"6 mL\", precharge_pressure = \"30 bar\" }";
-    let told = check(HEAT, &["line.b.accumulator.precharge_pressure=10 bar"]);
-    let pressure = derived(&told, "operating_point.pressure_b");
+    let output = check(HEAT, &["line.b.accumulator.precharge_pressure=10 bar"]);
+    let pressure = derived(&output, "operating_point.pressure_b");
     assert!(pressure > 30e5 && pressure < 39e5, "{pressure}");
     check(HEAT, &[cold]);
-    let said = try_answer(HEAT, &[gas], &[], &Request::Check).unwrap_err().to_string();
+    let message = try_answer(HEAT, &[gas], &[], &Request::Check).unwrap_err().to_string();
     for part in ["39.08 bar", "at `working_temperature`, from 30.00 bar"] {
-        assert!(said.contains(part), "{part}: {said}");
+        assert!(message.contains(part), "{part}: {message}");
     }
 }
 
 /// Effects that the reduced models leave out are reported.
 #[test]
-fn what_does_not_count_it_is_told() {
+fn models_without_it_are_reported() {
     let text = with_gas("thermal_time_constant = \"2 s\"");
     let models = answer(&text, &[], &[], &Request::Linearize { sweep: None }).text;
     assert!(models.contains("line.accumulator.thermal_time_constant is counted in the plant"), "{models}");
@@ -136,11 +136,11 @@ fn what_does_not_count_it_is_told() {
 
 /// Every frequency of every plant of the box is proven or refuted with heat as without.
 #[test]
-fn verify_answers_with_heat() {
+fn verify_includes_heat() {
     let opened = "uncertainty={ \"line.accumulator.thermal_time_constant\" = { nominal = \"2 s\", minimum = \"1 s\", maximum = \"6 s\", points = 2 } }";
     let text = with_gas("thermal_time_constant = \"2 s\"");
-    let told = json(&text, &[LIMIT, opened], &[], &Request::Verify { proof: false, on_machine: false });
-    assert_eq!(told["stable"].as_bool(), Some(true), "{told}");
+    let output = json(&text, &[LIMIT, opened], &[], &Request::Verify { proof: false, on_machine: false });
+    assert_eq!(output["stable"].as_bool(), Some(true), "{output}");
 }
 
 /// No precharge below the declared one, for which the maker's limit would not apply.
@@ -149,16 +149,16 @@ const CERTAIN: &str = "uncertainty.\"line.accumulator.precharge_pressure\".minim
 /// A run reports the time at which the gas exceeds the maker's limit, which the supply pressure
 /// does not do.
 #[test]
-fn a_run_tells_where_the_limit_of_the_maker_is_passed() {
+fn a_run_reports_where_the_limit_of_the_manufacturer_is_exceeded() {
     let scenario = "scenario=[{ name = \"pressed\", duration = \"0.6 s\", load_motion = { kind = \"smooth_step\", start = \"0.1 s\", duration = \"20 ms\", distance = \"-20 mm\" } }]";
-    let ask = |ratio: &str| {
+    let run = |ratio: &str| {
         let limit = format!("line.accumulator.maximum_pressure_ratio={ratio}");
         answer(GAS, &[scenario, &limit, CERTAIN], &[], &Request::Simulate(Default::default())).text
     };
-    let told = ask("4.44");
-    assert!(told.contains("is above its maximum_pressure_ratio"), "{told}");
-    assert!(told.contains("is within its maximum_pressure_ratio again"), "{told}");
-    assert!(!ask("20").contains("maximum_pressure_ratio"));
+    let output = run("4.44");
+    assert!(output.contains("is above its maximum_pressure_ratio"), "{output}");
+    assert!(output.contains("is within its maximum_pressure_ratio again"), "{output}");
+    assert!(!run("20").contains("maximum_pressure_ratio"));
     let loaded = load(HEAT, &[scenario, "line.accumulator.maximum_pressure_ratio=4.44"], &[]);
     let setup = Setup::new(&loaded.project).unwrap();
     let page = report(&source(HEAT), &loaded, &setup, None, &mut |_| true).unwrap().html;
@@ -181,7 +181,7 @@ const PRESSED: &str = "scenario=[{ name = \"pressed\", duration = \"0.4 s\", loa
 fn the_gas_of_a_run_is_adiabatic_where_it_has_no_time_for_heat() {
     let slow = ["line.accumulator.thermal_time_constant=1e9", "line.b.accumulator.thermal_time_constant=1e9"];
     let record = run_of(&[&slow[..], &[PRESSED]].concat()).record;
-    let [behind_a, chamber_a, chamber_b, ratio_a, ratio_b, celsius_b] = [
+    let [end_of_line_a, chamber_a, chamber_b, ratio_a, ratio_b, celsius_b] = [
         Signal::GasPressureA,
         Signal::PressureA,
         Signal::PressureB,
@@ -190,10 +190,10 @@ fn the_gas_of_a_run_is_adiabatic_where_it_has_no_time_for_heat() {
         Signal::GasTemperatureB,
     ]
     .map(|signal| record.signal(signal));
-    assert!((behind_a[0] - chamber_a[0]).abs() < 1.0, "{} {}", behind_a[0], chamber_a[0]);
+    assert!((end_of_line_a[0] - chamber_a[0]).abs() < 1.0, "{} {}", end_of_line_a[0], chamber_a[0]);
     assert!(ratio_a[0] == 1.0 && ratio_b[0] == 1.0 && celsius_b[0] == 45.0);
     let mut widest = [0.0_f64; 2];
-    for (side, pressures, ratios) in [(0, &behind_a, &ratio_a), (1, &chamber_b, &ratio_b)] {
+    for (side, pressures, ratios) in [(0, &end_of_line_a, &ratio_a), (1, &chamber_b, &ratio_b)] {
         for (pressure, ratio) in pressures.iter().zip(ratios) {
             // ORIGIN: analytic, T_2/T_1 = (P_2/P_1)^((gamma - 1)/gamma), absolute, with gamma = 1.4
             let expected = pow((pressure + ATMOSPHERE) / (pressures[0] + ATMOSPHERE), 0.4 / 1.4);
@@ -213,7 +213,7 @@ fn the_gas_of_a_run_is_adiabatic_where_it_has_no_time_for_heat() {
 
 /// Figures show the gas of a rig that has such gas, side by side, and of no other.
 #[test]
-fn figures_have_the_gas_that_is_there() {
+fn figures_show_the_declared_gas() {
     let request = Request::Simulate(SimulateRequest { figures: true, ..SimulateRequest::default() });
     let drawn = |text: &str| {
         let files = answer(text, &[PRESSED], &[], &request).files;

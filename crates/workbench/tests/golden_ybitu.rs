@@ -7,7 +7,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{
+use crate::run_command::{
     self, HOSE, PIPE, candidate, check, derived, linearize, near, number, size, size_for_gain, within,
 };
 use serde_json::Value;
@@ -140,7 +140,7 @@ fn table_6_2_as_printed() {
 #[test]
 fn the_gain_for_the_hose_that_was_bought() {
     let gain = |settings: &[&str], compliance: &str| {
-        let size = ask::size_for_length(HOSE, settings, "1.5 m");
+        let size = run_command::size_for_length(HOSE, settings, "1.5 m");
         number(candidate(&size, EATON, compliance), "proportional_gain_v_per_n")
     };
     // ORIGIN: recomputed by comparisons/recompute_rig.py
@@ -152,11 +152,11 @@ fn the_gain_for_the_hose_that_was_bought() {
 }
 
 #[test]
-fn the_pole_of_the_gain_and_what_a_proportional_loop_reaches() {
+fn the_pole_of_the_gain_and_the_reach_of_a_proportional_loop() {
     let size = size(HOSE, &[]);
     // ORIGIN: recomputed by comparisons/recompute_rig.py
     within(number(&size, "pole_gain_v_per_n"), 2.0959013e-5, 5e-13);
-    let bought = ask::size_for_length(HOSE, &[], "1.5 m");
+    let bought = run_command::size_for_length(HOSE, &[], "1.5 m");
     let bought = candidate(&bought, EATON, "uniform");
     // The gain is 2.733e-4 here and 2.73e-4 in the thesis.
     within(number(bought, "steady_state_gain.0"), 0.974, 5e-4);
@@ -174,14 +174,14 @@ fn a_negative_length_means_that_no_hose_is_needed() {
     near(number(uniform, "stiffness_n_per_m"), 3.3048496e6, 5e-8);
     assert_eq!(number(uniform, "length_m"), 0.0);
     assert_eq!(uniform["accepted"], false);
-    assert!(ask::reasons(uniform).contains("no hose is needed"), "{uniform}");
+    assert!(run_command::reasons(uniform).contains("no hose is needed"), "{uniform}");
     assert!(number(candidate(&size, EATON, "by_volume"), "length_m") > 0.0);
 
     let size = size_for_gain(HOSE, &[], "3e-5");
     let by_volume = candidate(&size, EATON, "by_volume");
     near(number(by_volume, "stiffness_n_per_m"), 1.8367007e7, 5e-8);
     assert_eq!(number(by_volume, "length_m"), 0.0);
-    assert!(ask::reasons(by_volume).contains("no hose is needed"), "{by_volume}");
+    assert!(run_command::reasons(by_volume).contains("no hose is needed"), "{by_volume}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::{self, HOSE, derived};
+use crate::run_command::{self, HOSE, derived};
 use phea_workbench::project;
 use phea_workbench::rig::Rig;
 use phea_workbench::setup::Setup;
@@ -73,7 +73,7 @@ fn ideal_project() -> String {
 /// Printed values for an ideal valve are the limits: zero if the leakage is a factor, infinite if
 /// something is divided by it, and no number of its stand-in.
 #[test]
-fn no_command_prints_the_stand_in_of_an_ideal_valve() {
+fn no_command_prints_the_substitute_of_an_ideal_valve() {
     let text = ideal_project();
     let range = "uncertainty={ \"supply.pressure\" = { nominal = \"70 bar\", minimum = \"60 bar\", maximum = \"80 bar\" } }";
     let differential = text.replace("rod_diameter = \"22 mm\"", "rod_diameters = [\"22 mm\", \"36 mm\"]");
@@ -85,16 +85,17 @@ fn no_command_prints_the_stand_in_of_an_ideal_valve() {
     ];
     for (text, more) in cases {
         let settings = [vec![EDGES, "valve.leakage_coefficients=[0, 0, 0, 0]"], more].concat();
-        let check = ask::check(text, &settings);
+        let check = run_command::check(text, &settings);
         for name in ["linear.flow_pressure_coefficient", "valve.flow_pressure_a", "dynamics.hydraulic_pole"] {
             assert_eq!(derived(&check, name), 0.0, "{name} {settings:?}");
         }
         let rows = check["derived"].as_array().unwrap();
         let gain = rows.iter().find(|row| row["name"] == "valve.pressure_gain").unwrap();
         assert!(gain["value"].is_null() && gain["reason"].as_str().unwrap().starts_with("infinite"));
-        let linear = ask::linearize(text, &settings);
+        let linear = run_command::linearize(text, &settings);
         assert_eq!(linear["plant"]["command"]["poles"][0].to_string(), "[0.0,0.0]");
-        for number in [check, linear, ask::size_for_length(text, &settings, "1.5 m")].iter().flat_map(numbers)
+        for number in
+            [check, linear, run_command::size_for_length(text, &settings, "1.5 m")].iter().flat_map(numbers)
         {
             assert!(number == 0.0 || number.abs() > 1e-17, "{number:e} {settings:?}");
         }

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::{answer, try_answer};
+use crate::run_command::{answer, try_answer};
 use num_complex::Complex64;
 use phea_dynamics::controller::VirtualImpedance;
 use phea_dynamics::frequency::passivity;
@@ -53,7 +53,7 @@ fn driven(project: &Project) -> ScenarioRun {
 }
 
 #[test]
-fn an_impedance_of_zero_is_none() {
+fn an_impedance_of_zero_is_absent() {
     let zero = "controller.impedance={ stiffness = 0, damping = 0, mass = 0, filter_time = \"2 ms\" }";
     for load in [&[][..], &[SPRUNG, GENTLE]] {
         let [with, without] = [benchmark(&[load, &[zero]].concat()), benchmark(load)];
@@ -70,21 +70,21 @@ fn moved() -> LinearPlant {
 
 /// Z = (Z_o + G P Z_v/s)/(1 + G P), which tends to Z_v/s as G grows.
 #[test]
-fn the_port_tends_to_what_is_asked() {
+fn the_port_tends_to_the_required_impedance() {
     let impedance = VirtualImpedance { stiffness: 2e5, damping: 4e3, mass: 30.0, filter_time_s: 1e-3 };
     let plant = moved();
-    let alone = transfer_functions(&plant.coefficients()).unwrap();
+    let own = transfer_functions(&plant.coefficients()).unwrap();
     let s = Complex64::new(0.0, 30.0);
-    let asked = impedance.response(s) / s;
+    let required = impedance.response(s) / s;
     let mut last = f64::INFINITY;
     for gain in [1e-4, 1e-2, 1.0, 1e2] {
         let controller = TransferFunction::gain_only(gain);
         let with = LinearPlant { virtual_impedance: Some(impedance), ..plant };
         let shown = closed_loop_port(&with, &controller).unwrap().evaluate(s);
-        let [command, motion] = [alone.command.evaluate(s), alone.load_position.evaluate(s)];
-        let expected = (gain * command * asked - motion / s) / (1.0 + gain * command);
+        let [command, motion] = [own.command.evaluate(s), own.load_position.evaluate(s)];
+        let expected = (gain * command * required - motion / s) / (1.0 + gain * command);
         assert!((shown / expected - 1.0).norm_sqr() < 1e-16, "{gain}: {shown}, not {expected}");
-        let off = (shown / asked - 1.0).norm_sqr().sqrt();
+        let off = (shown / required - 1.0).norm_sqr().sqrt();
         assert!(off < 0.1 * last, "{gain}: {off} after {last}");
         last = off;
     }
@@ -105,13 +105,13 @@ fn a_damper_makes_a_late_spring_passive() {
         TransferFunction::from_factors(1e-3, vec![Complex64::new(-8.0, 0.0)], vec![Complex64::ZERO]).unwrap();
     let (stiffness, filter_time_s) = (1e5, 2e-3);
     let needed = stiffness * (1.0 / (8e-3 * steady) + filter_time_s);
-    for (share, passive) in [(0.98, false), (1.02, true)] {
-        let impedance = VirtualImpedance { stiffness, damping: share * needed, mass: 0.0, filter_time_s };
+    for (fraction, passive) in [(0.98, false), (1.02, true)] {
+        let impedance = VirtualImpedance { stiffness, damping: fraction * needed, mass: 0.0, filter_time_s };
         let with = LinearPlant { virtual_impedance: Some(impedance), ..plant };
         let port = closed_loop_port(&with, &controller).unwrap();
         let resistance = port.at_frequency(0.01).re;
-        assert_eq!(resistance > 0.0, passive, "{share}: {resistance}");
-        assert!((resistance / ((share - 1.0) * needed) - 1.0).abs() < 0.05, "{share}: {resistance}");
+        assert_eq!(resistance > 0.0, passive, "{fraction}: {resistance}");
+        assert!((resistance / ((fraction - 1.0) * needed) - 1.0).abs() < 0.05, "{fraction}: {resistance}");
         let found = passivity(&port).unwrap();
         assert_eq!(found.bands.iter().all(|band| band.from_rad_per_s > 0.01), passive, "{found:?}");
         let spring = found.imaginary_poles.iter().find(|pole| pole.frequency_rad_per_s == 0.0).unwrap();
@@ -121,7 +121,7 @@ fn a_damper_makes_a_late_spring_passive() {
 
 /// The values printed by `linearize` are those of the port to which its band and its points refer.
 #[test]
-fn what_is_shown_is_the_port() {
+fn the_printed_impedance_is_that_of_the_port() {
     let project = read(
         HOSE,
         &[
@@ -130,12 +130,12 @@ fn what_is_shown_is_the_port() {
     );
     let setup = Setup::new(&project).unwrap();
     let found = linearize(setup.rig().unwrap(), setup.controller.as_ref(), &setup.sensor).unwrap();
-    let (port, asked) = (found.closed_loop.unwrap(), found.asked.unwrap());
-    for point in &asked.points {
+    let (port, required) = (found.closed_loop.unwrap(), found.asked.unwrap());
+    for point in &required.points {
         let expected = port.impedance.at_frequency(point.frequency_rad_per_s);
         assert!((point.shown / expected - 1.0).norm_sqr().sqrt() < 1e-6, "{point:?}, not {expected}");
     }
-    let [from, to] = asked.follows_rad_per_s.unwrap();
+    let [from, to] = required.follows_rad_per_s.unwrap();
     assert!(from < 0.1 && to > 1.0 && to < 1e3, "{from} to {to}");
     // a spring remains: -K_v times a millimetre
     assert!((port.final_force_n.unwrap() / -100.0 - 1.0).abs() < 1e-6);
@@ -194,9 +194,9 @@ fn an_admittance_is_an_impedance() {
         let feedback = setup.controller.as_ref().unwrap().feedback.transfer_function().unwrap();
         for frequency in [0.5, 5.0, 50.0, 500.0] {
             let s = Complex64::new(0.0, frequency);
-            let alone = PlantInMotion::lumped(&rig.plant);
-            let [by_force, _] = alone.response(s);
-            let by_motion = alone.load_velocity(s)[0] / s;
+            let own = PlantInMotion::lumped(&rig.plant);
+            let [by_force, _] = own.response(s);
+            let by_motion = own.load_velocity(s)[0] / s;
             let inner = 60.0 + 300.0 / s;
             let soft = damper * s + spring;
             let expected =
@@ -214,7 +214,7 @@ fn an_admittance_is_an_impedance() {
 /// Prescribed motion of the load changes only the verdict on load_motion; a load that yields
 /// changes all verdicts.
 #[test]
-fn the_verdict_speaks_of_the_loop_that_exists() {
+fn the_verdict_is_about_the_declared_loop() {
     let margins = |settings: &[&str]| {
         let text = HOSE.to_string();
         let project = read(&text, settings);
@@ -233,7 +233,7 @@ fn the_verdict_speaks_of_the_loop_that_exists() {
 /// Active and passive compliance in one table: a pipe whose loop has a virtual spring and damper,
 /// next to hose and pipe.
 #[test]
-fn alternatives_state_what_is_asked_beside_what_is_shown() {
+fn alternatives_state_the_required_and_the_reached_impedance() {
     let (head, _) = HOSE.split_once("[uncertainty]").unwrap();
     let text = format!(
         "{head}{}",
@@ -268,26 +268,26 @@ name = "pipe with an inner position loop"
 "#
     );
     let request = Request::Alternatives(AlternativesRequest::default());
-    let told = answer(&text, &[], &[], &request);
-    let found: Value = serde_json::from_str(&told.json).unwrap();
+    let output = answer(&text, &[], &[], &request);
+    let found: Value = serde_json::from_str(&output.json).unwrap();
     // both forms are one loop, and the design is that of the force
     let both = [2, 3].map(|index| found["alternatives"][index]["columns"].clone());
     assert_eq!(both[0], both[1]);
     assert!(
-        told.text.contains(
+        output.text.contains(
             "pipe with an inner position loop: designed as the same loop with form = \"impedance\""
         )
     );
     let columns = |index: usize| found["alternatives"][index]["columns"].clone();
     let at = |index: usize, key: &str| columns(index)["impedance"][0][key].as_f64();
     // at 1 rad/s: |B_v + K_v/(jw)|
-    let asked = (2e6_f64 * 2e6 + 4e5 * 4e5).sqrt();
-    assert!((at(2, "impedance_asked_n_s_per_m").unwrap() / asked - 1.0).abs() < 1e-12);
+    let required = (2e6_f64 * 2e6 + 4e5 * 4e5).sqrt();
+    assert!((at(2, "impedance_asked_n_s_per_m").unwrap() / required - 1.0).abs() < 1e-12);
     assert_eq!((at(0, "impedance_asked_n_s_per_m"), at(1, "impedance_asked_n_s_per_m")), (None, None));
     let shown = [1, 2].map(|index| at(index, "impedance_closed_n_s_per_m").unwrap());
     // to within 1/(1 + L), at most 1/|1 - 5j| there, and the impedance of the pipe
-    assert!((shown[1] / asked - 1.0).abs() < 0.2 + shown[0] / asked, "{shown:?}, {asked}");
-    assert!(shown[0] < 0.5 * asked, "{shown:?}, {asked}");
+    assert!((shown[1] / required - 1.0).abs() < 0.2 + shown[0] / required, "{shown:?}, {required}");
+    assert!(shown[0] < 0.5 * required, "{shown:?}, {required}");
     // the load does not yield: the loop to be designed is unchanged
     for key in ["order", "modulus_margin", "delay_margin_s"] {
         let [pipe, spring] = [1, 2].map(|index| columns(index)[key].as_f64().unwrap());
@@ -338,7 +338,7 @@ filter_time = "5 ms"
 /// A load that yields: the proof is of the loop with its impedance, and the machine steps as this
 /// loop predicts.
 #[test]
-fn a_proof_and_a_trial_are_of_the_loop_with_it() {
+fn a_proof_and_a_trial_include_the_impedance() {
     let text = yielding();
     let found = answer(&text, &[], &[], &Request::Verify { proof: true, on_machine: true });
     let found: Value = serde_json::from_str(&found.json).unwrap();
@@ -363,7 +363,7 @@ fn a_proof_and_a_trial_are_of_the_loop_with_it() {
 /// Report, linear models and derived quantities state the impedance; a controller that is stated
 /// for the position is not designed.
 #[test]
-fn every_answer_speaks_of_it() {
+fn every_answer_mentions_the_impedance() {
     let position = "controller.impedance.form=admittance";
     let law = "controller.numerator=60*s + 300";
     let page =

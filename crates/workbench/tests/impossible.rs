@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{json, load};
+use crate::run_command::{json, load};
 use phea_workbench::command::Request;
 use phea_workbench::design::{DesignError, design_project};
 use phea_workbench::report::report;
@@ -26,7 +26,7 @@ fn limit(kind: &str, limit: &str, band: &str) -> String {
 }
 
 /// Statements of `check` and `verify`, which are identical.
-fn said(project: &str) -> Vec<Value> {
+fn contradictions(project: &str) -> Vec<Value> {
     let [one, other] = [Request::Check, Request::Verify { proof: false, on_machine: false }]
         .map(|request| json(project, &[], &[], &request)["impossible"].as_array().unwrap().clone());
     assert_eq!(one, other);
@@ -35,8 +35,8 @@ fn said(project: &str) -> Vec<Value> {
 
 #[track_caller]
 fn assert_begins(of: impl Fn(f64) -> String, possible: f64, impossible: f64, key: &str, parts: &[&str]) {
-    assert_eq!(said(&of(possible)), Vec::<Value>::new());
-    let found = said(&of(impossible));
+    assert_eq!(contradictions(&of(possible)), Vec::<Value>::new());
+    let found = contradictions(&of(impossible));
     let own =
         found.iter().find(|one| one["key"] == key).unwrap_or_else(|| panic!("{key} is missing in {found:?}"));
     let words = format!("{} {}", own["sentence"], own["cure"]);
@@ -49,7 +49,7 @@ fn assert_begins(of: impl Fn(f64) -> String, possible: f64, impossible: f64, key
 fn specifications_in_conflict_are_named_by_their_tables() {
     let step = "[[specification]]\nkind = \"step\"\nsettling_time = \"10 s\"\n".to_string();
     let both = [step, limit("sensitivity", "0.4", "[1, 2]"), limit("robust_stability", "0.5", "[1, 2]")];
-    let found = said(&project("s + 1", "0 s", &both.concat()));
+    let found = contradictions(&project("s + 1", "0 s", &both.concat()));
     let words = format!("{found:?}");
     let named = "[[specification]] 2 (sensitivity) and [[specification]] 3 (robust stability) together";
     assert!(words.contains(named) && words.contains("raise the limit of [[specification]] 2"), "{words}");
@@ -57,15 +57,15 @@ fn specifications_in_conflict_are_named_by_their_tables() {
 
 /// A step beyond the rig is reported once by `check`, with its line.
 #[test]
-fn a_step_beyond_the_stall_force_is_told_once() {
+fn a_step_beyond_the_stall_force_is_reported_once() {
     let text = rig("settling_time = \"5 s\"\namplitude = \"60 kN\"\n");
-    let words = crate::ask::answer(&text, &[], &[], &Request::Check).text;
+    let words = crate::run_command::answer(&text, &[], &[], &Request::Check).text;
     assert_eq!(words.matches("the piston stalls at").count(), 1, "{words}");
 }
 
 /// Limits of 0.5 on |T| and of less than 0.5 on |S| leave no loop, because S + T = 1.
 #[test]
-fn limits_of_s_and_t_that_add_up_to_less_than_one() {
+fn limits_of_s_and_t_whose_sum_is_less_than_one() {
     let of = |sensitivity: f64| {
         let both = [
             limit("sensitivity", &sensitivity.to_string(), "[1, 2]"),
@@ -198,7 +198,7 @@ fn a_step_beyond_the_stall_force_or_the_sensor() {
         key,
         &["at a supply of 160 bar", "stalls at 50.27 kN", "stay within 47.12 kN"],
     );
-    let sensor = said(&to(48.1));
+    let sensor = contradictions(&to(48.1));
     let beyond = |one: &Value| one["sentence"].as_str().unwrap().contains("`capacity` of 48 kN");
     assert!(sensor.iter().any(beyond), "{sensor:?}");
     let verdict = |most: f64| {
@@ -247,7 +247,7 @@ fn a_step_that_the_whole_voltage_does_not_bring_in_time() {
     assert_begins(|time| in_time(-time), -1.0, -0.002, key, &parts);
     assert_begins(|time| in_time(-time), -1.0, -0.01, key, &["times the flow"]);
     // no valve compensates for the travel time of a wave through the lines
-    let before_the_wave = said(&in_time(0.0003));
+    let before_the_wave = contradictions(&in_time(0.0003));
     let words = format!("{before_the_wave:?}");
     assert!(words.contains("no step settles") && !words.contains("times the flow"), "{words}");
     assert!(words.contains("or shorten the line"), "{words}");
@@ -259,5 +259,5 @@ fn a_step_that_the_whole_voltage_does_not_bring_in_time() {
     };
     let parts = [slowest, "of the 20 kN of a step of a scenario", "smaller steps in the scenarios"];
     assert_begins(|time| scenario(-time, 28.0), -1.0, -0.002, key, &parts);
-    assert!(said(&scenario(0.05, 8.001)).is_empty());
+    assert!(contradictions(&scenario(0.05, 8.001)).is_empty());
 }

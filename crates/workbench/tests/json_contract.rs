@@ -6,7 +6,7 @@
 
 use std::sync::OnceLock;
 
-use crate::ask::{self, FICTITIOUS, HOSE, PIPE, json, load, number, size_request};
+use crate::run_command::{self, FICTITIOUS, HOSE, PIPE, json, load, number, size_request};
 use phea_workbench::command::{Request, refusal_json};
 use phea_workbench::project;
 use phea_workbench::source::Memory;
@@ -31,11 +31,11 @@ fn requests() -> [Request; 8] {
 
 /// Requests for a rig with these settings: machines are driven only if the settings concern them.
 fn requests_of(settings: &[&str]) -> Vec<Request> {
-    let linear_alone = ["line.compliance", "linear.", "uncertainty."];
+    let linear_only = ["line.compliance", "linear.", "uncertainty."];
     let is_linear =
-        settings.first().is_some_and(|first| linear_alone.iter().any(|key| first.starts_with(key)));
-    let asked = requests().into_iter().take(if is_linear { 6 } else { 7 });
-    asked.collect()
+        settings.first().is_some_and(|first| linear_only.iter().any(|key| first.starts_with(key)));
+    let requested = requests().into_iter().take(if is_linear { 6 } else { 7 });
+    requested.collect()
 }
 
 /// Every answer about both rigs, odd ones included.
@@ -87,7 +87,7 @@ fn answered() -> Vec<(String, Value)> {
 }
 
 #[test]
-fn every_object_says_what_it_is_and_of_which_file() {
+fn every_object_states_its_kind_and_file() {
     // the report need not design a controller or simulate for this
     let (project, _) = HOSE.split_once("[design]").unwrap();
     for request in requests() {
@@ -104,7 +104,7 @@ fn every_object_says_what_it_is_and_of_which_file() {
 }
 
 #[test]
-fn the_hash_is_of_the_bytes_and_settings_stand_beside_it() {
+fn the_hash_is_of_the_bytes_and_settings_are_listed_next_to_it() {
     let (plain, set) = (json(HOSE, &[], &[], &Request::Check), {
         json(HOSE, &["line.length=\"2 m\""], &[FICTITIOUS], &Request::Check)
     });
@@ -200,7 +200,7 @@ fn check_lists_derived_quantities() {
 }
 
 #[test]
-fn check_says_where_a_stated_value_contradicts_the_derived_one() {
+fn check_reports_a_stated_value_that_contradicts_the_derived_one() {
     let object = json(HOSE, &["linear.hydraulic_stiffness=4.4e6"], &[], &Request::Check);
     let rows = object["derived"].as_array().unwrap();
     let row = rows.iter().find(|row| row["name"] == "linear.hydraulic_stiffness").unwrap();
@@ -208,15 +208,15 @@ fn check_says_where_a_stated_value_contradicts_the_derived_one() {
     assert_eq!(row["declared"]["place"], "[linear]");
     // ORIGIN: recomputed by comparisons/recompute_rig.py: 2232961.6 N/m at mid stroke
     let expected = 100.0 * (4.4e6 / 2_232_961.6 - 1.0);
-    ask::within(number(row, "declared.difference_percent"), expected, 1e-5);
+    run_command::within(number(row, "declared.difference_percent"), expected, 1e-5);
 }
 
 /// Limit (6.28) overshoots by 2.2 % while 1 % is required; nine tenths of it never settle within 1
 /// % of the reference.
 #[test]
-fn check_holds_tracking_limits_against_their_wishes() {
-    let wishes = |settings: &[&str]| json(HOSE, settings, &[], &Request::Check)["wishes"].clone();
-    let stated = wishes(&[]);
+fn check_compares_tracking_limits_with_their_requirements() {
+    let requirements = |settings: &[&str]| json(HOSE, settings, &[], &Request::Check)["wishes"].clone();
+    let stated = requirements(&[]);
     let [upper, lower] = [&stated[0], &stated[1]];
     for (row, key, overshoot, time, reached) in
         [(upper, "upper", 1.0, 0.1, [2.19, 0.126]), (lower, "lower", 0.0, 0.3, [0.0, 0.356])]
@@ -232,8 +232,8 @@ fn check_holds_tracking_limits_against_their_wishes() {
         assert!((number(row, "reached.settling_time_s") - reached[1]).abs() < 5e-4);
     }
     let met = ["specification.2.lower.settling_time=\"0.36 s\""];
-    assert_eq!(wishes(&met)[1]["met"], true);
-    let low = &wishes(&["specification.2.upper.numerator=\"0.9*2116*(s + 75)/75\""])[0]["reached"];
+    assert_eq!(requirements(&met)[1]["met"], true);
+    let low = &requirements(&["specification.2.upper.numerator=\"0.9*2116*(s + 75)/75\""])[0]["reached"];
     assert!(low["settling_time_s"].is_null());
     assert_eq!(low["reason"], "does not settle: it stays 10.0 % off");
     assert_eq!(json(PLANT, &[], &[], &Request::Check)["wishes"], serde_json::json!([]));
@@ -298,7 +298,7 @@ fn without_a_rational_loop_there_is_a_reason_instead_of_a_view() {
 #[test]
 fn the_same_project_gives_the_same_bytes() {
     for request in &requests()[..7] {
-        let answer = || ask::answer(HOSE, &[], &[FICTITIOUS], request);
+        let answer = || run_command::answer(HOSE, &[], &[FICTITIOUS], request);
         assert_eq!(answer(), answer());
     }
 }
@@ -327,11 +327,15 @@ fn a_refusal_is_an_object_too() {
 fn warnings_of_the_reading_are_repeated() {
     let loaded = load(HOSE, &[], &[]);
     let object = json(HOSE, &[], &[], &Request::Check);
-    let told: Vec<&str> =
+    let warnings: Vec<&str> =
         object["warnings"].as_array().unwrap().iter().map(|one| one.as_str().unwrap()).collect();
-    assert!(loaded.warnings.iter().all(|warning| told.contains(&warning.message.as_str())), "{told:?}");
+    assert!(
+        loaded.warnings.iter().all(|warning| warnings.contains(&warning.message.as_str())),
+        "{warnings:?}"
+    );
     // and before them the effects that no verdict includes
     assert!(
-        told.len() == loaded.warnings.len() + 1 && told[0].starts_with("the family does not contain the rig")
+        warnings.len() == loaded.warnings.len() + 1
+            && warnings[0].starts_with("the family does not contain the rig")
     );
 }

@@ -5,7 +5,7 @@
 
 use phea_workbench::command::{Request, SimulateRequest};
 
-use super::ask::{HOSE, answer, json};
+use super::run_command::{HOSE, answer, json};
 
 const CONTINUOUS: &str = include_str!("../../../examples/benchmark/closed_loop.toml");
 const SHORT: [&str; 4] = [
@@ -14,10 +14,10 @@ const SHORT: [&str; 4] = [
     "scenario.0.load_motion.start=0.2 s",
     "scenario.0.load_motion.duration=50 ms",
 ];
-const SAID: &str = "the growth of a deviation from one to the next is not followed";
+const SENTENCE: &str = "the growth of a deviation from one to the next is not followed";
 
 #[test]
-fn a_run_without_a_carried_deviation_says_so() {
+fn a_run_without_a_carried_deviation_reports_it() {
     let simulate = |settings: &[&str], check: bool| {
         let settings = [&SHORT, settings].concat();
         let request = Request::Simulate(SimulateRequest { check, ..SimulateRequest::default() });
@@ -33,14 +33,14 @@ fn a_run_without_a_carried_deviation_says_so() {
         let (run, text) = simulate(settings, false);
         assert_eq!(run["kinks_unfollowed"]["cause"], cause, "{settings:?}");
         assert!(run["kinks_unfollowed"]["steps"].as_u64().unwrap() > 1, "{run}");
-        assert!(text.contains(SAID), "{settings:?}: {text}");
+        assert!(text.contains(SENTENCE), "{settings:?}: {text}");
         let (run, text) = simulate(settings, true);
         assert!(run["kinks_unfollowed"].is_object() && run["check"].is_object(), "{run}");
-        assert!(!text.contains(SAID), "{text}");
+        assert!(!text.contains(SENTENCE), "{text}");
     }
     let (run, text) = simulate(&[], false);
     assert!(run["kinks_unfollowed"].is_null() && run["kinks_unfollowed_reason"].is_string(), "{run}");
-    assert!(!text.contains(SAID), "{text}");
+    assert!(!text.contains(SENTENCE), "{text}");
 }
 
 /// A line with waves contains a part of a deviation; a rig with a lumped line does not.

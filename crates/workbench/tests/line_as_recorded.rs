@@ -152,7 +152,7 @@ fn inertia(s: Complex64, rate: f64) -> Complex64 {
 /// ```text
 /// Z = p/q = 1/(1/Z_in + s f C)        Z_in = Z_c (Z_end + Z_c tanh(Gamma))/(Z_c + Z_end tanh(Gamma)),  Z_end = 1/(s f C)
 /// ```
-pub(crate) fn response(known: &KnownLine, [speed, end_share]: [f64; 2], seed: u64) -> LineRecord {
+pub(crate) fn response(known: &KnownLine, [speed, end_fraction]: [f64; 2], seed: u64) -> LineRecord {
     let [length, bore] = known.dimensions().unwrap();
     let area = std::f64::consts::FRAC_PI_4 * bore * bore;
     let [density, viscosity] = [known.fluid.density, known.fluid.kinematic_viscosity];
@@ -169,11 +169,11 @@ pub(crate) fn response(known: &KnownLine, [speed, end_share]: [f64; 2], seed: u6
             let s = Complex64::new(0.0, *omega);
             let root = sqrt_complex(inertia(s, viscosity / (bore * bore / 4.0)));
             // the line without its end volumes is stiffer, and its wave faster
-            let within = speed / (1.0 - 2.0 * end_share).sqrt();
+            let within = speed / (1.0 - 2.0 * end_fraction).sqrt();
             let passed = exp_complex(-2.0 * s * length / within * root);
             let tanh = (1.0 - passed) / (1.0 + passed);
             let own = density * within / area * root;
-            let end = s * end_share * area * length / (density * speed * speed);
+            let end = s * end_fraction * area * length / (density * speed * speed);
             let admittance = (end * own + tanh) / (own * (1.0 + end * own * tanh));
             1.0 / (admittance + end)
         })

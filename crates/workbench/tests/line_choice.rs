@@ -7,7 +7,7 @@ use phea_workbench::command::{CampaignRequest, CampaignRuns, Request, SimulateRe
 use phea_workbench::shaping::Shaped;
 use serde_json::Value;
 
-use super::ask::{answer, json};
+use super::run_command::{answer, json};
 
 const RIG: &str = include_str!("../../../examples/structural/rig.toml");
 const VERIFY: Request = Request::Verify { proof: false, on_machine: false };
@@ -113,7 +113,7 @@ fn a_stated_model_is_never_changed() {
 fn every_command_names_the_chosen_model() {
     let rig = open_rig() + "\n[campaign.parameters]\n\"supply.pressure\" = { spread = \"5 %\" }\n";
     let settings = ["controller.elements.0.proportional_gain=2e-4", "scenario.0.duration=0.6 s"];
-    let runs = |asked| Request::Campaign(CampaignRequest { seed: 1, asked, files: false });
+    let of_runs = |runs| Request::Campaign(CampaignRequest { seed: 1, runs, files: false });
     let requests = [
         Request::Check,
         Request::Linearize { sweep: None },
@@ -121,19 +121,24 @@ fn every_command_names_the_chosen_model() {
         Request::Shape { shaped: Shaped::Controller, changes: vec![] },
         Request::Simulate(SimulateRequest::default()),
         Request::Compare,
-        runs(CampaignRuns::All(RequestedRuns {
+        of_runs(CampaignRuns::All(RequestedRuns {
             runs: 2,
             shard: Shard::default(),
             effort: Effort::default(),
         })),
-        runs(CampaignRuns::One(1)),
+        of_runs(CampaignRuns::One(1)),
     ];
     let found: Vec<Value> = requests
         .iter()
         .map(|request| {
-            let told = answer(&rig, &settings, &[], request);
-            assert!(told.text.starts_with("Lines: with waves, since"), "{}: {}", request.name(), told.text);
-            let object: Value = serde_json::from_str(&told.json).unwrap();
+            let output = answer(&rig, &settings, &[], request);
+            assert!(
+                output.text.starts_with("Lines: with waves, since"),
+                "{}: {}",
+                request.name(),
+                output.text
+            );
+            let object: Value = serde_json::from_str(&output.json).unwrap();
             object["line_model"].clone()
         })
         .collect();
@@ -147,9 +152,9 @@ fn every_command_names_the_chosen_model() {
 fn a_designed_project_states_the_chosen_model() {
     let design = Request::Design { seed: None, stages: false, repair: false };
     for bandwidth in ["design.highest_bandwidth=300", "design.highest_bandwidth=20"] {
-        let told = answer(&rig_to_be_designed(), &["design.structure=pi", bandwidth], &[], &design);
-        let object: Value = serde_json::from_str(&told.json).unwrap();
-        let file = told.files.iter().find(|file| file.name == "designed.toml").unwrap();
+        let output = answer(&rig_to_be_designed(), &["design.structure=pi", bandwidth], &[], &design);
+        let object: Value = serde_json::from_str(&output.json).unwrap();
+        let file = output.files.iter().find(|file| file.name == "designed.toml").unwrap();
         let designed = String::from_utf8(file.bytes.clone()).unwrap();
         let model = object["line_model"]["model"].as_str().unwrap();
         assert!(designed.contains(&format!("[line]\nmodel = \"{model}\"\n")), "{designed}");
@@ -170,7 +175,7 @@ fn a_designed_project_states_the_chosen_model() {
 
 /// A free mass cannot be computed with waves: its lines remain lumped, with the reason.
 #[test]
-fn what_is_not_computed_with_waves_stays_lumped() {
+fn answers_without_waves_use_lumped_lines() {
     let settings = ["load.stiffness=0", "operating_point.load_force=0", "design.highest_bandwidth=300"];
     let found = chosen(&rig_to_be_designed(), &settings);
     assert_eq!(found["model"], "lumped");
@@ -183,8 +188,8 @@ fn what_is_not_computed_with_waves_stays_lumped() {
 fn a_quarter_wave_that_limits_the_bandwidth_is_not_compared_with_itself() {
     let rig = rig_to_be_designed();
     let sentence = |settings: &[&str]| {
-        let said = answer(&rig, settings, &[], &Request::Check).text;
-        said.lines().next().unwrap_or_default().to_string()
+        let text_of_check = answer(&rig, settings, &[], &Request::Check).text;
+        text_of_check.lines().next().unwrap_or_default().to_string()
     };
     let own = sentence(&[]);
     assert!(own.contains("up to their quarter wave") && !own.contains("within 10 times"), "{own}");
@@ -195,7 +200,7 @@ fn a_quarter_wave_that_limits_the_bandwidth_is_not_compared_with_itself() {
 /// A design without a limit on its bandwidth may use the default bandwidth, although nothing
 /// requires it.
 #[test]
-fn a_design_without_a_limit_on_its_bandwidth_has_waves_where_the_rig_leaves_it_as_much() {
+fn a_design_without_a_bandwidth_limit_has_waves_if_the_rig_permits_the_bandwidth() {
     let rig = rig_to_be_designed();
     let [default, unlimited] = [&[][..], &["design.highest_bandwidth=inf"]].map(|own| chosen(&rig, own));
     assert_eq!(unlimited["reached_rad_per_s"], default["reached_rad_per_s"]);

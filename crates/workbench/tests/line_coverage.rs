@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::print_stdout, reason = "how often and how wide is worth reading")]
 
-use crate::ask::{HOSE, load};
+use crate::run_command::{HOSE, load};
 use phea_hydraulics::line::{Conduit, Line, Stiffening, StiffeningMember};
 use phea_workbench::estimate::Estimate;
 use phea_workbench::line_test::{
@@ -148,11 +148,11 @@ fn study<T: Send>(repetitions: u32, of: impl Fn(u32) -> T + Sync) -> Vec<T> {
     let threads = std::thread::available_parallelism().map_or(1, |count| count.get() as u32);
     std::thread::scope(|scope| {
         let of = &of;
-        let share = |first: u32| {
+        let fraction = |first: u32| {
             let own = (1..=repetitions).filter(move |seed| seed % threads == first);
             scope.spawn(move || own.map(of).collect::<Vec<T>>())
         };
-        let running: Vec<_> = (0..threads).map(share).collect();
+        let running: Vec<_> = (0..threads).map(fraction).collect();
         running.into_iter().flat_map(|one| one.join().unwrap()).collect()
     })
 }

@@ -3,8 +3,8 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::{self, HOSE, PIPE, load, near, within};
 use crate::line_coverage::{CREEPING, WAVES, compliance, known, project};
+use crate::run_command::{self, HOSE, PIPE, load, near, within};
 use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, bulk_modulus_with_air};
 use phea_hydraulics::line::{Conduit, Line, StiffeningMember};
 use phea_workbench::answer::Answer;
@@ -41,12 +41,12 @@ fn identified_side(
 ) -> Result<Answer, IdentifyError> {
     let source =
         files.iter().fold(Memory::default(), |source, (name, text)| source.with(name, text.as_str()));
-    let asked = LineRequest {
+    let request = LineRequest {
         files: files.iter().map(|(name, _)| name.clone()).collect(),
         side: Some(side),
         ..LineRequest::default()
     };
-    line_watched(&source, Some(&load(project, settings, &[])), &asked, &mut |_| true)
+    line_watched(&source, Some(&load(project, settings, &[])), &request, &mut |_| true)
 }
 
 fn line(answer: &Answer) -> Value {
@@ -153,18 +153,18 @@ fn one_of_two_unequal_lines_is_identified_and_written_for_its_side() {
 /// An accumulator remains at its chamber: test and result are those of the line only, and this is
 /// reported.
 #[test]
-fn an_accumulator_is_said_to_be_left_out() {
+fn an_accumulator_is_reported_as_neglected() {
     let gas = "line.accumulator={ gas_volume = \"10 mL\", precharge_pressure = \"15 bar\" }";
     let quick =
         ["bench.line.pressures=[\"25 bar\", \"45 bar\"]", "bench.line.frequencies=[\"1 Hz\", \"40 Hz\"]"];
     let with_gas = [&quick[..], &[gas]].concat();
-    let [plain, kept] = [&quick[..], &with_gas].map(|settings| benched(PIPE, settings));
-    assert!(plain == kept);
-    let [plain, kept] = [(&quick[..], plain), (&with_gas, kept)]
+    let [plain, gassed] = [&quick[..], &with_gas].map(|settings| benched(PIPE, settings));
+    assert!(plain == gassed);
+    let [plain, gassed] = [(&quick[..], plain), (&with_gas, gassed)]
         .map(|(settings, files)| line(&identified(PIPE, settings, &files).unwrap()));
-    assert_eq!(plain["effective_bulk_modulus_pa"], kept["effective_bulk_modulus_pa"]);
+    assert_eq!(plain["effective_bulk_modulus_pa"], gassed["effective_bulk_modulus_pa"]);
     assert!(plain.get("remark").is_none());
-    assert!(kept["remark"].as_str().unwrap().contains("is not part of the blocked line"), "{kept}");
+    assert!(gassed["remark"].as_str().unwrap().contains("is not part of the blocked line"), "{gassed}");
 }
 
 /// Air makes the modulus depend on the pressure, by a law in closed form.
@@ -207,7 +207,7 @@ fn air_shows_with_a_modulus_that_grows_with_the_pressure() {
 }
 
 #[test]
-fn what_a_recording_does_not_tell_is_not_determined_with_the_reason() {
+fn unidentifiable_parameters_are_not_determined_with_the_reason() {
     let files = benched(HOSE, &CREEPING);
     let of = |word: &str| {
         let own: Vec<_> = files.iter().filter(|(name, _)| name.contains(word)).cloned().collect();
@@ -257,11 +257,11 @@ fn a_position_counts_by_the_area_of_the_piston() {
 
 #[track_caller]
 fn refused(text: &str, expected: &[&str]) {
-    ask::refused(identified(HOSE, &[], &[("stand.csv".to_string(), text.to_string())]), expected);
+    run_command::refused(identified(HOSE, &[], &[("stand.csv".to_string(), text.to_string())]), expected);
 }
 
 #[test]
-fn recordings_that_are_none_of_a_line_are_refused_with_the_place() {
+fn recordings_not_of_a_line_are_refused_with_the_place() {
     let rows = |heading: &str, row: &dyn Fn(u32) -> String| {
         (0..30).fold(format!("{heading}\n"), |text, index| format!("{text}{}\n", row(index)))
     };
@@ -289,16 +289,16 @@ fn recordings_that_are_none_of_a_line_are_refused_with_the_place() {
 
 #[test]
 fn a_line_needs_its_project_and_a_recording() {
-    let asked = LineRequest::default();
+    let request = LineRequest::default();
     let source = Memory::default();
-    let none = line_watched(&source, None, &asked, &mut |_| true).unwrap_err().to_string();
+    let none = line_watched(&source, None, &request, &mut |_| true).unwrap_err().to_string();
     assert!(none.contains("needs the project of the line"), "{none}");
     let loaded = load(HOSE, &[], &[]);
-    let empty = line_watched(&source, Some(&loaded), &asked, &mut |_| true).unwrap_err().to_string();
+    let empty = line_watched(&source, Some(&loaded), &request, &mut |_| true).unwrap_err().to_string();
     assert!(empty.contains("declare `line` in `[identify]`"), "{empty}");
     let named = format!("{HOSE}\n[identify]\nline = [\"nowhere.csv\"]\n");
     let source = Memory::default().with("rig.toml", named);
     let loaded = language::read(&source, "rig.toml", &[], &[]).unwrap_or_else(|report| panic!("{report}"));
-    let lost = line_watched(&source, Some(&loaded), &asked, &mut |_| true).unwrap_err().to_string();
+    let lost = line_watched(&source, Some(&loaded), &request, &mut |_| true).unwrap_err().to_string();
     assert!(lost.contains("nowhere.csv"), "{lost}");
 }

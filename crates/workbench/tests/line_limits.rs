@@ -7,7 +7,7 @@ use phea_workbench::campaign::{Effort, RequestedRuns, Shard};
 use phea_workbench::command::{CampaignRequest, CampaignRuns, Request, SimulateRequest};
 use serde_json::Value;
 
-use super::ask::{HOSE, json};
+use super::run_command::{HOSE, json};
 
 /// A valve that shuts within a millisecond at the end of a pipe of 10 m: the column of oil in the
 /// pipe is torn off.
@@ -77,7 +77,7 @@ fn flow_beyond_laminar_is_reported_where_laminar_friction_is_computed() {
 /// Permissible pressures of a pipe, at every node: they are reported if they are below the peak of
 /// a run without them.
 #[test]
-fn pressures_that_a_pipe_bears_are_watched() {
+fn pressures_beyond_the_limit_of_a_pipe_are_reported() {
     let free = run(&[SEGMENTS]);
     assert!(exceeded(&free, "working_pressure", "line_a").is_none());
     let with = |working: &str, burst: &str| {
@@ -97,8 +97,8 @@ fn pressures_that_a_pipe_bears_are_watched() {
             .fold(0.0, f64::max)
     };
     // the supply has 100 bar, and the surge exceeds it
-    let bears = with("1000 bar", "2000 bar");
-    assert_eq!((any(&bears, "working_pressure"), any(&bears, "burst_pressure")), (0.0, 0.0));
+    let strong = with("1000 bar", "2000 bar");
+    assert_eq!((any(&strong, "working_pressure"), any(&strong, "burst_pressure")), (0.0, 0.0));
     let yields = with("40 bar", "45 bar");
     let peak = any(&yields, "working_pressure");
     assert!(peak > 45e5 && any(&yields, "burst_pressure") == peak, "{yields}");
@@ -138,7 +138,7 @@ fn a_line_cavitates_where_its_waves_meet() {
 /// Re = 4 q/(pi d nu) in the neck of an accumulator and in the line of a transmission: turbulent
 /// with thin oil, laminar with thick.
 #[test]
-fn flow_in_necks_and_transmissions_is_watched() {
+fn flow_in_necks_and_transmissions_is_reported_if_not_laminar() {
     let neck = ["line.accumulator.neck_diameter=6 mm", "line.accumulator.neck_length=40 mm"];
     let accumulator = include_str!("../../../examples/ybitu/accumulator.toml");
     let transmission = include_str!("../../../examples/ybitu/transmission.toml");
@@ -163,7 +163,7 @@ fn a_campaign_lists_limits_of_lines() {
     let text = format!(
         "{HAMMER}[campaign]\nparameters = {{ \"supply.pressure\" = {{ minimum = \"99 bar\", maximum = \"101 bar\" }} }}\n"
     );
-    let request = |asked| Request::Campaign(CampaignRequest { seed: 1, asked, files: false });
+    let request = |runs| Request::Campaign(CampaignRequest { seed: 1, runs, files: false });
     let runs = RequestedRuns { runs: 2, shard: Shard::default(), effort: Effort::default() };
     let all = json(&text, &[SEGMENTS], &[], &request(CampaignRuns::All(runs)));
     let kinds: Vec<&str> =

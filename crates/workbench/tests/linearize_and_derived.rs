@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{HOSE, PIPE, check, derived, linearize, near, number, within};
+use crate::run_command::{HOSE, PIPE, check, derived, linearize, near, number, within};
 use num_complex::Complex64;
 use serde_json::Value;
 
@@ -112,7 +112,7 @@ fn check_and_linearize_agree_on_stiffness() {
 }
 
 #[test]
-fn what_is_set_comes_before_what_is_uncertain_before_what_is_derived() {
+fn set_values_precede_uncertain_ones_and_those_precede_derived_ones() {
     let place = |settings: &[&str], name: &str| {
         let check = check(HOSE, settings);
         let rows = check["derived"].as_array().unwrap().clone();
@@ -141,7 +141,7 @@ fn impedance(view: &Value, s: Complex64) -> Complex64 {
 }
 
 #[test]
-fn far_from_every_corner_the_impedance_lies_on_its_asymptotes() {
+fn far_from_every_corner_the_impedance_is_on_its_asymptotes() {
     for (project, settings) in [
         (HOSE, &[][..]),
         (PIPE, &[]),
@@ -262,7 +262,7 @@ fn errors_of_the_decomposition_over_the_published_family() {
 }
 
 #[test]
-fn the_shares_of_the_modes_add_up() {
+fn the_fractions_of_the_modes_add_up_to_one() {
     for project in [HOSE, PIPE] {
         let modes = linearize(project, &[])["dominance"].clone();
         let modes = modes.as_array().unwrap();

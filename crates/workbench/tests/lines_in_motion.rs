@@ -125,7 +125,7 @@ fn absent_keys_are_the_defaults() {
 /// A wall that creeps at once is as soft as in the catalogue, one that never creeps as stiff as
 /// measured in motion; and so in segments.
 #[test]
-fn a_wall_that_creeps_lies_between_its_moduli() {
+fn a_wall_that_creeps_is_between_its_moduli() {
     for model in ["creeping", "segments"] {
         let elastic = if model == "creeping" { "lumped" } else { "segments" };
         let of = |model: &str, last: &[&str]| {
@@ -178,7 +178,7 @@ fn the_wall_of_two_waves_is_assumed_or_stated() {
 }
 
 #[test]
-fn sides_move_in_their_own_ways() {
+fn each_side_has_its_own_line_model() {
     let a = ["line.a.model=segments", "line.a.segments=12", "line.b.model=two_wave"];
     let project = load(&a).project;
     let lines = &project.actuator.as_ref().unwrap().line;
@@ -198,7 +198,7 @@ fn sides_move_in_their_own_ways() {
 }
 
 #[test]
-fn what_does_not_fit_is_refused_at_its_key() {
+fn incompatible_keys_are_refused_at_their_place() {
     let refused = |settings: &[&str], expected: [&str; 3]| {
         let report = read(settings).expect_err(settings[0]);
         let first = &report.diagnostics[0];
@@ -235,7 +235,7 @@ fn what_does_not_fit_is_refused_at_its_key() {
 /// Relaxation times, walls and fractions vary in a campaign like any number; the number of states
 /// does not.
 #[test]
-fn a_campaign_varies_what_is_no_count() {
+fn a_campaign_varies_numbers_that_are_not_counts() {
     let vary = |path: &str, low: &str, high: &str| {
         format!("campaign.parameters.\"{path}\"={{ minimum = \"{low}\", maximum = \"{high}\" }}")
     };
@@ -248,13 +248,13 @@ fn a_campaign_varies_what_is_no_count() {
         let settings =
             [settings, &["scenario.0.duration=0.1 s", "scenario.0.load_motion.start=0.05 s"]].concat();
         let plan = Plan::new(&Memory::default(), &load(&settings), 1).unwrap();
-        let alone = plan.rows(0..6, Effort { threads: 1, lanes: false }).unwrap();
+        let one_by_one = plan.rows(0..6, Effort { threads: 1, lanes: false }).unwrap();
         assert!(
-            alone.iter().all(|row| row.ran().is_some_and(|ran| ran.status == RunStatus::Completed)),
+            one_by_one.iter().all(|row| row.ran().is_some_and(|ran| ran.status == RunStatus::Completed)),
             "{settings:?}"
         );
-        assert_eq!(alone, plan.rows(0..6, Effort { threads: 1, lanes: true }).unwrap(), "{settings:?}");
-        let peaks: Vec<_> = alone.iter().map(|row| row.ran().unwrap().metrics.clone()).collect();
+        assert_eq!(one_by_one, plan.rows(0..6, Effort { threads: 1, lanes: true }).unwrap(), "{settings:?}");
+        let peaks: Vec<_> = one_by_one.iter().map(|row| row.ran().unwrap().metrics.clone()).collect();
         assert!(peaks.windows(2).all(|pair| pair[0] != pair[1]));
     }
     for path in ["line.segments", "line.b.segments"] {
@@ -270,7 +270,7 @@ fn a_campaign_varies_what_is_no_count() {
 /// The motion of a line does not affect the linear model: it is not counted twice with its
 /// stiffness, and is not a coordinate of a family.
 #[test]
-fn the_linear_model_knows_no_motion() {
+fn the_linear_model_ignores_waves() {
     let linear = |settings: &[&str]| {
         let answer =
             command::answer(&Memory::default(), &load(settings), &[], &Request::Linearize { sweep: None })

@@ -16,7 +16,7 @@ use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{ControlledMachine, Metric, ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
 
-use super::ask::{HOSE, load, project_of, try_answer};
+use super::run_command::{HOSE, load, project_of, try_answer};
 
 const KNEE: &str = include_str!("../../../examples/leg/knee.toml");
 const FREQUENCIES: [f64; 6] = [0.1, 3.0, 30.0, 300.0, 2000.0, 9000.0];
@@ -54,7 +54,7 @@ fn the_family_follows_a_payload() {
 /// The family with a progressive spring or a transmission on the rod, whose deflection follows from
 /// the position of the joint.
 #[test]
-fn the_family_follows_what_lies_in_series() {
+fn the_family_follows_the_spring_in_series() {
     for series in SERIES {
         follows_the_position(&KNEE.replacen("[linkage]", &format!("[series]\n{series}\n[linkage]"), 1));
     }
@@ -157,7 +157,7 @@ fn a_weight_is_held_at_rest() {
 /// Output of `linearize` and the report on the impedance about the joint, for a spring K instead of
 /// Z s: the torque F g' of a force F_0 - K (x - x_0) falls with the angle by r^2 (K + k_g).
 #[test]
-fn the_impedance_about_the_joint_is_told() {
+fn the_impedance_about_the_joint_is_reported() {
     let project = project_of(KNEE, &[]);
     let setup = Setup::new(&project).unwrap();
     let rig = setup.rig().unwrap();
@@ -171,14 +171,15 @@ fn the_impedance_about_the_joint_is_told() {
         (force - stiffness * (end.position - here.position_m)) * end.lever_arm
     };
     let falls = (torque(here.angle_rad - step) - torque(here.angle_rad + step)) / (2.0 * step);
-    let told = here.lever_arm_m * here.lever_arm_m * (stiffness + geometric);
-    assert!((falls / told - 1.0).abs() < 1e-6, "{falls} {told}");
+    let expected_rate = here.lever_arm_m * here.lever_arm_m * (stiffness + geometric);
+    assert!((falls / expected_rate - 1.0).abs() < 1e-6, "{falls} {expected_rate}");
     // the geometric stiffness is not lost in rounding
     assert!((geometric / stiffness).abs() > 1e-3, "{geometric}");
     let sentence = "about the joint it is r² (Z + k_g/s), in N·m·s/rad, with the lever arm r = 49.84 mm";
-    let answered = |text: &str| try_answer(text, &[], &[], &Request::Linearize { sweep: None }).unwrap().text;
-    assert!(answered(KNEE).contains(sentence));
-    assert!(!answered(HOSE).contains("joint"));
+    let found_answer =
+        |text: &str| try_answer(text, &[], &[], &Request::Linearize { sweep: None }).unwrap().text;
+    assert!(found_answer(KNEE).contains(sentence));
+    assert!(!found_answer(HOSE).contains("joint"));
 }
 
 fn run(project: &Project) -> ScenarioRun {
@@ -237,7 +238,7 @@ fn a_straight_table_is_a_load_in_other_units() {
 
 /// The load turns, and its weight is a mass at a length.
 #[test]
-fn a_report_says_what_the_load_is() {
+fn a_report_describes_the_load() {
     let weight = include_str!("../../project/tests/valid/linkage_weight.toml");
     let loaded = load(weight, &[], &[]);
     let setup = Setup::new(&loaded.project).unwrap();

@@ -9,8 +9,8 @@ use phea_workbench::project::RecordedTest;
 use phea_workbench::source::{Memory, Source};
 use serde_json::Value;
 
-use crate::ask;
 use crate::friction_identification::{SLIDING, identified as friction_of, recorded};
+use crate::run_command;
 
 const RECORDED: [(&str, &str); 4] = [
     ("leakage.csv", include_str!("../../../examples/ybitu/recorded/leakage.csv")),
@@ -55,9 +55,9 @@ fn recordings_of_the_model_have_no_misfit() {
 /// a meter that loses a constant flow, which the pressures do not show: in each case the flow is
 /// named, and its residual has the size of the change that no coefficients produce.
 #[test]
-fn a_flow_that_no_valve_of_the_model_has_is_told() {
+fn a_flow_that_no_valve_of_the_model_has_is_reported() {
     let limited = identified(|_, _, flow| flow.min(9.0));
-    let drifting = identified(|share, _, flow| flow * (1.0 + 0.1 * share));
+    let drifting = identified(|fraction, _, flow| flow * (1.0 + 0.1 * fraction));
     let losing = identified(|_, command, flow| flow * (1.0 - (0.3 / command.abs().max(0.3))));
     for (found, what) in [(&limited, "limited"), (&drifting, "drift"), (&losing, "loss")] {
         let misfits = found.misfits();
@@ -85,7 +85,8 @@ fn no_verdict_on_a_valve_of_a_large_misfit_is_met() {
     let anything =
         "specification=[{ kind = \"robust_stability\", limit = 1000, frequencies = [1], band = [1, 2] }]";
     let verify = |misfit: &str| {
-        let loaded = ask::load(ask::HOSE, &[anything, &format!("valve.misfit={misfit}")], &[]);
+        let loaded =
+            run_command::load(run_command::HOSE, &[anything, &format!("valve.misfit={misfit}")], &[]);
         let request = Request::Verify { proof: false, on_machine: false };
         let answer = command::answer(&Memory::default(), &loaded, &[], &request).unwrap();
         (serde_json::from_str::<Value>(&answer.json).unwrap(), answer.text)
@@ -102,7 +103,7 @@ fn no_verdict_on_a_valve_of_a_large_misfit_is_met() {
 fn judged(settings: &[&str]) -> (Value, String) {
     let anything =
         "specification=[{ kind = \"robust_stability\", limit = 1000, frequencies = [1], band = [1, 2] }]";
-    let loaded = ask::load(ask::HOSE, &[&[anything], settings].concat(), &[]);
+    let loaded = run_command::load(run_command::HOSE, &[&[anything], settings].concat(), &[]);
     let request = Request::Verify { proof: false, on_machine: false };
     let answer = command::answer(&Memory::default(), &loaded, &[], &request).unwrap();
     (serde_json::from_str::<Value>(&answer.json).unwrap()["verdict"].clone(), answer.text)
@@ -136,7 +137,7 @@ fn runs_of_the_machine_warn_of_a_misfit() {
         "cylinder.friction.misfit={ share = \"0.1 %\" }",
         "scenario=[{ name = \"rest\", duration = \"1 ms\" }]",
     ];
-    let loaded = ask::load(ask::HOSE, &settings, &[]);
+    let loaded = run_command::load(run_command::HOSE, &settings, &[]);
     let request = Request::Simulate(SimulateRequest::default());
     let answer = command::answer(&Memory::default(), &loaded, &[], &request).unwrap();
     let json: Value = serde_json::from_str(&answer.json).unwrap();
@@ -163,14 +164,14 @@ fn a_misfit_of_friction_is_in_its_fragment() {
     let source = Memory::default().with(SLIDING, format!("{heading}\n{harder}"));
     let answer = friction_of(&source, &[SLIDING]).unwrap();
     let json: Value = serde_json::from_str(&answer.json).unwrap();
-    let share = json["misfits"][0]["share"].as_f64().unwrap_or_else(|| panic!("{json}"));
+    let fraction = json["misfits"][0]["share"].as_f64().unwrap_or_else(|| panic!("{json}"));
     let fragment = answer.files.iter().find(|file| file.name == "friction.toml").unwrap();
     let text = String::from_utf8(fragment.bytes.clone()).unwrap();
     let misfit =
         text.lines().find_map(|line| line.strip_prefix("misfit = ")).unwrap_or_else(|| panic!("{text}"));
-    let loaded = ask::load(ask::HOSE, &[&format!("cylinder.friction.misfit={misfit}")], &[]);
+    let loaded = run_command::load(run_command::HOSE, &[&format!("cylinder.friction.misfit={misfit}")], &[]);
     let friction = loaded.project.actuator.as_ref().unwrap().cylinder.friction.clone().unwrap();
     let declared = friction.misfit.unwrap();
-    assert!((declared.share / share - 1.0).abs() < 0.01, "{declared:?} {share}");
+    assert!((declared.share / fraction - 1.0).abs() < 0.01, "{declared:?} {fraction}");
     assert!(declared.at.is_some_and(|at| at.starts_with("force of sliding.csv, most at")), "{text}");
 }

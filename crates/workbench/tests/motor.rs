@@ -14,12 +14,12 @@ use phea_workbench::setup::Setup;
 use phea_workbench::shaping::Shaped;
 use serde_json::Value;
 
-use super::ask::{load, project_of, try_answer};
+use super::run_command::{load, project_of, try_answer};
 
 const VANE: &str = include_str!("../../../examples/rotary/vane.toml");
 const TURNING: &str = include_str!("../../project/tests/valid/motor_turning.toml");
 
-fn answered(project: &str, request: &Request) -> Answer {
+fn returned(project: &str, request: &Request) -> Answer {
     try_answer(project, &[], &[], request).unwrap()
 }
 
@@ -81,7 +81,7 @@ load_motion = {{ kind = "smooth_step", start = "0.3 s", duration = "0.1 s", dist
 
 fn campaign(files: bool) -> CampaignRequest {
     let wanted = RequestedRuns { runs: 6, shard: Shard::default(), effort: Effort::default() };
-    CampaignRequest { seed: 1, asked: CampaignRuns::All(wanted), files }
+    CampaignRequest { seed: 1, runs: CampaignRuns::All(wanted), files }
 }
 
 fn close(one: f64, other: f64, what: &str) {
@@ -93,7 +93,7 @@ fn close(one: f64, other: f64, what: &str) {
 fn the_verdict_is_that_of_the_cylinder_on_its_lever() {
     let arm = 0.04;
     let json = |project: &str, request: &Request| -> Value {
-        serde_json::from_str(&answered(project, request).json).unwrap()
+        serde_json::from_str(&returned(project, request).json).unwrap()
     };
     let [linear, rotary] = [rig(None), rig(Some(arm))];
     let [one, other] =
@@ -130,7 +130,7 @@ fn the_verdict_is_that_of_the_cylinder_on_its_lever() {
 /// T_e = D (K_qA/(K_cA + G_e (1 + K_cA R)) + K_qB/(K_cB + G_e (1 + K_cB R))) U_C,     R = 128 rho nu L/(pi d^4)
 /// ```
 #[test]
-fn it_leaks_behind_its_lines() {
+fn it_leaks_after_its_lines() {
     let tight = rig(Some(0.04)).replace("internal_leakage", "case_leakage").replace("10 mm", "2 mm");
     let leakage = 2e-13;
     let resistance = 128.0 * 870.0 * 46e-6 / (std::f64::consts::PI * 16e-12);
@@ -163,7 +163,7 @@ fn campaigns_and_alternatives_are_those_of_the_cylinder_on_its_lever() {
                 [design]\nmaximum_order = 2\n";
     let [linear, rotary] = [None, Some(arm)].map(|arm| rig(arm) + more);
     let json = |project: &str, request: &Request| -> Value {
-        serde_json::from_str(&answered(project, request).json).unwrap()
+        serde_json::from_str(&returned(project, request).json).unwrap()
     };
     let drawn = Request::Campaign(campaign(false));
     let (one, other) = (json(&linear, &drawn), json(&rotary, &drawn));
@@ -173,8 +173,8 @@ fn campaigns_and_alternatives_are_those_of_the_cylinder_on_its_lever() {
     };
     let [peak, turned] = [median(&one, 1, "disturbance_peak_n"), median(&other, 1, "disturbance_peak_n_m")];
     assert!((peak * arm / turned - 1.0).abs() < 1e-4, "{peak} {turned}");
-    let asked = Request::Alternatives(AlternativesRequest::default());
-    let (one, other) = (json(&linear, &asked), json(&rotary, &asked));
+    let request = Request::Alternatives(AlternativesRequest::default());
+    let (one, other) = (json(&linear, &request), json(&rotary, &request));
     let of = |found: &Value, name: &str| found["alternatives"][1]["columns"][name].as_f64().unwrap();
     let pairs = [
         ("stiffness_minimum_n_per_m", "stiffness_minimum_n_m_per_rad", arm * arm),
@@ -234,16 +234,16 @@ fn symbols_of_a_cylinder(text: &str) -> Vec<String> {
 
 /// Texts of the user are unchanged, whatever words are in them.
 #[test]
-fn texts_of_the_user_stay() {
+fn texts_of_the_user_are_unchanged() {
     let text = rig(Some(0.04)).replace(
         "force = 40 }",
         "force = 40, published = { source = \"force of the piston\", overshoot_percent = 3 } }",
     );
     let direction = "\n[[uncertainty_direction]]\nname = \"wear of the piston\"\nchanges = { \"motor.inertia\" = 1e-3 }\n";
     let of_audit =
-        answered(&format!("{text}{direction}"), &Request::Verify { proof: false, on_machine: false });
+        returned(&format!("{text}{direction}"), &Request::Verify { proof: false, on_machine: false });
     assert!(of_audit.text.contains("wear of the piston"), "{}", of_audit.text);
-    let of_run = answered(&text, &Request::Report { files: false, alternatives: false });
+    let of_run = returned(&text, &Request::Report { files: false, alternatives: false });
     let page = String::from_utf8(of_run.files[0].bytes.clone()).unwrap();
     assert!(page.contains("force of the piston"), "{page}");
 }
@@ -254,7 +254,7 @@ fn texts_of_the_user_stay() {
 fn leakage_through_the_case_is_not_the_valves() {
     for case in [1e-13, 1e-12, 1e-11] {
         let text = VANE.replace("case_leakage = \"1e-13 m3/(s.Pa)\"", &format!("case_leakage = {case:e}"));
-        let json: Value = serde_json::from_str(&answered(&text, &Request::Check).json).unwrap();
+        let json: Value = serde_json::from_str(&returned(&text, &Request::Check).json).unwrap();
         let rows = json["derived"].as_array().unwrap();
         let value = |name: &str| {
             let row = rows.iter().find(|row| row["name"] == name).unwrap_or_else(|| panic!("{name}"));
@@ -264,8 +264,8 @@ fn leakage_through_the_case_is_not_the_valves() {
         let together = 1.0 / (1.0 / (own_a + case) + 1.0 / (own_b + case));
         let whole = value("linear.flow_pressure_coefficient");
         assert!((whole / together - 1.0).abs() < 1e-12, "{case}: {whole} {together}");
-        let alone = 1.0 / (1.0 / own_a + 1.0 / own_b);
-        let gain = value("linear.flow_gain") / alone;
+        let in_series = 1.0 / (1.0 / own_a + 1.0 / own_b);
+        let gain = value("linear.flow_gain") / in_series;
         assert!((value("valve.pressure_gain") / gain - 1.0).abs() < 1e-12, "{case}");
     }
 }
@@ -275,7 +275,7 @@ fn leakage_through_the_case_is_not_the_valves() {
 #[test]
 fn equations_and_symbols_are_those_of_a_motor() {
     let equation = |name: &str| {
-        let json: Value = serde_json::from_str(&answered(VANE, &Request::Check).json).unwrap();
+        let json: Value = serde_json::from_str(&returned(VANE, &Request::Check).json).unwrap();
         let rows = json["derived"].as_array().unwrap();
         let row = rows.iter().find(|row| row["name"] == name).unwrap_or_else(|| panic!("{name}"));
         [&row["symbol"], &row["equation"]].map(|text| text.as_str().unwrap().to_string())
@@ -292,7 +292,7 @@ fn equations_and_symbols_are_those_of_a_motor() {
         Request::Linearize { sweep: None },
         Request::Report { files: true, alternatives: false },
     ] {
-        let answer = answered(TURNING, &request);
+        let answer = returned(TURNING, &request);
         assert_eq!(symbols_of_a_cylinder(&answer.text), [""; 0], "{}", request.name());
         for file in
             answer.files.iter().filter(|file| file.name.ends_with("svg") || file.name.ends_with("html"))
@@ -301,7 +301,7 @@ fn equations_and_symbols_are_those_of_a_motor() {
             assert_eq!(symbols_of_a_cylinder(text), [""; 0], "{}: {}", request.name(), file.name);
         }
     }
-    let linear = answered(&rig(None), &Request::Report { files: true, alternatives: false });
+    let linear = returned(&rig(None), &Request::Report { files: true, alternatives: false });
     let found = |name: &str| {
         let file = linear.files.iter().find(|file| file.name == name).unwrap();
         symbols_of_a_cylinder(std::str::from_utf8(&file.bytes).unwrap())
@@ -315,7 +315,7 @@ fn equations_and_symbols_are_those_of_a_motor() {
 /// A motor has no length from mount to mount, and none is requested.
 #[test]
 fn a_motor_has_no_retracted_length() {
-    let answer = answered(VANE, &Request::Alternatives(AlternativesRequest::default()));
+    let answer = returned(VANE, &Request::Alternatives(AlternativesRequest::default()));
     let json: Value = serde_json::from_str(&answer.json).unwrap();
     let reason = &json["alternatives"][0]["columns"]["actuator_length_m_reason"];
     assert_eq!(reason, "a motor has no retracted length");
@@ -369,7 +369,7 @@ fn keys_of_linear_motion(value: &Value) -> Vec<String> {
 }
 
 fn check(project: &str, request: &Request) {
-    let answer = answered(project, request);
+    let answer = returned(project, request);
     let name = request.name();
     assert_eq!(of_linear_motion(&answer.text), [""; 0], "{name}: {}", answer.text);
     let json: Value = serde_json::from_str(&answer.json).unwrap();
@@ -394,7 +394,7 @@ fn check(project: &str, request: &Request) {
 }
 
 #[test]
-fn nothing_is_said_in_newtons_or_millimetres() {
+fn newtons_and_millimetres_are_absent() {
     let with_figures = SimulateRequest { figures: true, ..SimulateRequest::default() };
     for request in [
         Request::Check,
@@ -429,7 +429,7 @@ fn nothing_is_said_in_newtons_or_millimetres() {
 }
 
 #[test]
-fn what_does_not_treat_a_motor_refuses_it() {
+fn commands_without_support_for_a_motor_refuse_it() {
     let requests = [
         Request::Size { gain: None, length: None },
         Request::Bench,

@@ -4,8 +4,8 @@
 
 use phea_workbench::command::Request;
 
-use super::ask::{answer, check, derived, json, near, project_of};
 use super::plant_of_verdicts::{assert_nominal_is_the_rig, responses, without_uncertainty};
+use super::run_command::{answer, check, derived, json, near, project_of};
 
 const GAS: &str = include_str!("../../../examples/ybitu/accumulator.toml");
 const NECK: &str = include_str!("../../project/tests/valid/accumulator_neck.toml");
@@ -31,7 +31,7 @@ const RIGS: [&[&str]; 6] = [
 /// A neck whose length tends to zero has no effect, in every form of the plant; the one of an
 /// example is not short.
 #[test]
-fn a_short_neck_is_none() {
+fn a_short_neck_has_no_effect() {
     let text = without_uncertainty(GAS);
     for settings in RIGS {
         let [none, short, own] =
@@ -64,28 +64,28 @@ fn the_family_is_the_rig_at_its_nominal() {
 #[test]
 fn check_derives_the_resonance_of_a_neck() {
     let own = ["line.b.accumulator.neck_diameter=\"4 mm\"", "line.b.accumulator.neck_length=\"20 mm\""];
-    let told = check(NECK, &own);
+    let is_warned = check(NECK, &own);
     for (side, diameter, length) in [("a", 6e-3, 0.04), ("b", 4e-3, 0.02)] {
         let area = std::f64::consts::FRAC_PI_4 * diameter * diameter;
-        let of_gas = derived(&told, &format!("line.{side}.accumulator.compliance"));
+        let of_gas = derived(&is_warned, &format!("line.{side}.accumulator.compliance"));
         // ORIGIN: analytic, sqrt(A/(rho L C)) and 16 nu/(w d^2), with the oil of the neck in
         // addition to the gas
         let resonance = (area / (870.0 * length * (of_gas + area * length / 1.45e9))).sqrt();
-        near(derived(&told, &format!("line.{side}.accumulator.neck_resonance")), resonance, 1e-9);
+        near(derived(&is_warned, &format!("line.{side}.accumulator.neck_resonance")), resonance, 1e-9);
         let damping = 16.0 * 46e-6 / (resonance * diameter * diameter);
-        near(derived(&told, &format!("line.{side}.accumulator.neck_damping_ratio")), damping, 1e-9);
+        near(derived(&is_warned, &format!("line.{side}.accumulator.neck_damping_ratio")), damping, 1e-9);
     }
     let plain = check(BOTH, &[]);
     for key in ["linear.hydraulic_stiffness", "operating_point.pressure_a", "stiffness.with_accumulators"] {
-        near(derived(&told, key), derived(&plain, key), 1e-12);
+        near(derived(&is_warned, key), derived(&plain, key), 1e-12);
     }
 }
 
 /// Effects that a verdict and the reduced models leave out are reported, and nothing otherwise.
 #[test]
-fn what_does_not_count_it_is_told() {
+fn models_without_it_are_reported() {
     let lossless = "line.accumulator.neck_loss_coefficient=0";
-    for (text, necks, told) in [(NECK, &[][..], true), (NECK, &[lossless], false), (BOTH, &[], false)] {
+    for (text, necks, is_warned) in [(NECK, &[][..], true), (NECK, &[lossless], false), (BOTH, &[], false)] {
         let verdict = json(
             text,
             &[&[LIMIT][..], necks].concat(),
@@ -95,19 +95,19 @@ fn what_does_not_count_it_is_told() {
         .to_string();
         assert_eq!(
             verdict.contains("neck_loss_coefficient is not counted for small motions"),
-            told,
+            is_warned,
             "{verdict}"
         );
         let models = answer(text, necks, &[], &Request::Linearize { sweep: None }).text;
-        let said = "the neck of line.accumulator is counted in the plant and the impedance";
-        assert_eq!(models.contains(said), text == NECK, "{models}");
+        let sentence = "the neck of line.accumulator is counted in the plant and the impedance";
+        assert_eq!(models.contains(sentence), text == NECK, "{models}");
     }
 }
 
 /// The controller of the example stabilises every plant of its family with the gas at the chamber,
 /// but not with a neck between them.
 #[test]
-fn a_verdict_sees_the_resonance() {
+fn a_verdict_includes_the_resonance() {
     let stable = |necks: &[&str]| {
         json(GAS, necks, &[], &Request::Verify { proof: false, on_machine: false })["stable"]
             .as_bool()

@@ -115,25 +115,25 @@ fn the_command_is_rounded_to_its_levels() {
 
 /// A filter 1/(1 + tau s) by Tustin's rule leaves sqrt(T/(2 tau + T)) of white noise.
 #[test]
-fn a_filter_leaves_its_share_of_the_noise() {
+fn a_filter_passes_its_fraction_of_the_noise() {
     for frequency in [100.0, 400.0] {
         let filter = format!(", {{ kind = \"pole\", frequency = {frequency} }}]");
         let (filtered, _) = seen(&filter, "force_sensor.noise=20 N");
         let lag = 1.0 / frequency;
-        let share = (SAMPLE_TIME_S / (2.0 * lag + SAMPLE_TIME_S)).sqrt();
+        let fraction = (SAMPLE_TIME_S / (2.0 * lag + SAMPLE_TIME_S)).sqrt();
         // neighbours with a correlation of a = (2 tau - T)/(2 tau + T) carry less information on
         // the rms, by (1 + a^2)/(1 - a^2)
         let alike = (2.0 * lag - SAMPLE_TIME_S) / (2.0 * lag + SAMPLE_TIME_S);
         let fewer = (1.0 + alike * alike) / (1.0 - alike * alike);
         let allowed = 5.0 * (fewer / (2.0 * filtered.len() as f64)).sqrt();
-        let found = rms(&filtered) / (20.0 * share);
+        let found = rms(&filtered) / (20.0 * fraction);
         assert!((found - 1.0).abs() < allowed, "{frequency}: {found}");
     }
 }
 
 /// The force contains sqrt(w_c T/2) of the noise, for a loop that is nearly of first order.
 #[test]
-fn the_force_takes_what_the_bandwidth_lets_through() {
+fn the_force_contains_the_noise_within_the_bandwidth() {
     let gain = 2e-4;
     let setting = sampled(gain, "]");
     let settings = [

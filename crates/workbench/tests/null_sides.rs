@@ -3,7 +3,7 @@
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::HOSE;
+use crate::run_command::HOSE;
 use phea_dynamics::uncertain_plant::{PlantMember, UncertainPlant};
 use phea_dynamics::watch::unwatched;
 use phea_qft::family::{Extent, Family, UncertainFamily};
@@ -68,11 +68,15 @@ fn ends_are_both_limits(project: &Project) {
     let null = rig(project, &[]).point;
     assert_eq!(null.command, 0.0);
     for side in [-1.0, 1.0] {
-        let beside = rig(project, &[("operating_point.load_pressure", null.load_pressure() + side)]);
-        assert!(beside.point.command * side > 0.0 && beside.point.command.abs() < 1e-6, "{:?}", beside.point);
+        let next_to_null = rig(project, &[("operating_point.load_pressure", null.load_pressure() + side)]);
+        assert!(
+            next_to_null.point.command * side > 0.0 && next_to_null.point.command.abs() < 1e-6,
+            "{:?}",
+            next_to_null.point
+        );
         for frequency in FREQUENCIES {
             let [re, im] = response(family.plant(), &[side], frequency);
-            let limit = beside.response(frequency);
+            let limit = next_to_null.response(frequency);
             let apart = ((re - limit.re).powi(2) + (im - limit.im).powi(2)).sqrt() / limit.norm_sqr().sqrt();
             assert!(apart < 1e-4, "{side} {frequency}: {apart}");
         }

@@ -236,7 +236,7 @@ fn unequal_areas_and_a_wall_follow() {
 /// A family that contains a point without equilibrium is rejected with the place and the reason,
 /// and never silently wrong.
 #[test]
-fn points_without_balance_are_refused_by_name() {
+fn points_without_balance_are_refused_with_their_name() {
     let refused = |lines: &[(&str, [f64; 3])]| {
         family(&Setup::new(&loaded(&text(&ranges(lines), "", ""))).unwrap(), &Memory::default())
             .unwrap_err()
@@ -264,12 +264,12 @@ fn points_without_balance_are_refused_by_name() {
 
 /// The refusal points to the key that names the point without equilibrium, with a remedy.
 #[test]
-fn a_point_without_balance_has_its_place_and_a_cure() {
+fn a_point_without_balance_has_its_place_and_a_remedy() {
     let refused = |text: &str| {
         let source = Memory::default().with("p.toml", text);
         let loaded = project::read(&source, "p.toml", &[], &[]).unwrap_or_else(|report| panic!("{report}"));
-        let asked = Request::Verify { proof: false, on_machine: false };
-        let error = command::answer(&source, &loaded, &[], &asked).unwrap_err();
+        let request = Request::Verify { proof: false, on_machine: false };
+        let error = command::answer(&source, &loaded, &[], &request).unwrap_err();
         let place = error.refusal().unwrap_or_else(|| panic!("{error}")).diagnostics[0].clone();
         let line = text.lines().nth(place.line - 1).unwrap().to_string();
         assert!(place.message.starts_with("no operating point at ") && place.help.is_some(), "{place:?}");

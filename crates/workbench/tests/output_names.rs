@@ -11,7 +11,7 @@ use phea_workbench::command::{
 use phea_workbench::linearize::SweepRequest;
 use phea_workbench::shaping::Shaped;
 
-use super::ask::{HOSE, load, source};
+use super::run_command::{HOSE, load, source};
 
 const LOOP: &str = "schema = 1\n[plant]\nnumerator = \"1\"\ndenominator = \"s + 1\"\n[controller]\nnumerator = \"1\"\n\
      denominator = \"s\"\n[[specification]]\nkind = \"robust_stability\"\nlimit = 1.2\nfrequencies = [1]\n\
@@ -59,18 +59,18 @@ fn files_of_the_linear_commands_have_known_names() {
 #[test]
 fn files_of_runs_have_known_names() {
     for table in [TableFormat::Csv, TableFormat::Parquet] {
-        let asked = SimulateRequest { table, figures: true, ..SimulateRequest::default() };
-        all_are_known(CAMPAIGN, &SHORT, &Request::Simulate(asked.clone()));
+        let requested = SimulateRequest { table, figures: true, ..SimulateRequest::default() };
+        all_are_known(CAMPAIGN, &SHORT, &Request::Simulate(requested.clone()));
         let options = FrequencyOptions { frequencies: Some("10 rad/s".to_string()), ..Default::default() };
-        let asked = SimulateRequest { frequency_response: Some(options), ..asked };
-        all_are_known(CAMPAIGN, &SHORT, &Request::Simulate(asked));
+        let requested = SimulateRequest { frequency_response: Some(options), ..requested };
+        all_are_known(CAMPAIGN, &SHORT, &Request::Simulate(requested));
     }
     for shard in ["1/1", "2/2"] {
         let shard = Shard::read(shard).unwrap();
-        let asked = CampaignRuns::All(RequestedRuns { runs: 4, shard, effort: Effort::default() });
-        let request = CampaignRequest { seed: 1, asked, files: true };
+        let runs = CampaignRuns::All(RequestedRuns { runs: 4, shard, effort: Effort::default() });
+        let request = CampaignRequest { seed: 1, runs, files: true };
         all_are_known(CAMPAIGN, &SHORT, &Request::Campaign(request));
     }
-    let request = CampaignRequest { seed: 1, asked: CampaignRuns::One(0), files: true };
+    let request = CampaignRequest { seed: 1, runs: CampaignRuns::One(0), files: true };
     all_are_known(CAMPAIGN, &SHORT, &Request::Campaign(request));
 }

@@ -4,7 +4,7 @@
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
 use crate::alternatives::{judged, rig};
-use crate::ask::{HOSE, answer, try_answer};
+use crate::run_command::{HOSE, answer, try_answer};
 use phea_workbench::command::Request;
 use serde_json::Value;
 
@@ -76,7 +76,7 @@ fn prices_in_two_currencies_are_refused() {
 
 /// Both lines with their ends and metres, the oil in them, and the remarks on it.
 #[test]
-fn parts_cost_and_weigh_what_they_state() {
+fn parts_have_their_stated_cost_and_mass() {
     let columns = |index: usize| &judged().1["alternatives"][index]["columns"];
     let number = |index: usize, key: &str| columns(index)[key].as_f64().unwrap();
     let oil = |index: usize| number(index, "lines_volume_m3") * 870.0;

@@ -23,12 +23,12 @@ pub(crate) fn assert_nominal_is_the_rig(project: &Project, what: &[&str]) {
     let setup = Setup::new(project).unwrap();
     let Family::Uncertain(family) = family(&setup, &Memory::default()).unwrap() else { panic!("a box") };
     let nominal: Vec<f64> = family.plant().parameters().iter().map(|one| one.nominal).collect();
-    let told = family.plant().coefficients(&nominal).unwrap();
+    let paths = family.plant().coefficients(&nominal).unwrap();
     for frequency in [0.1, 10.0, 400.0, 640.0, 1300.0] {
-        let of_family = [Some(&told.command), told.disturbance.as_ref()]
+        let of_family = [Some(&paths.command), paths.disturbance.as_ref()]
             .map(|path| path.unwrap().at_frequency(frequency));
-        for (own, told) in responses(project, frequency).into_iter().zip(of_family) {
-            assert!((own / told - 1.0).norm_sqr() < 1e-20, "{what:?}: {own} {told}");
+        for (own, paths) in responses(project, frequency).into_iter().zip(of_family) {
+            assert!((own / paths - 1.0).norm_sqr() < 1e-20, "{what:?}: {own} {paths}");
         }
     }
 }

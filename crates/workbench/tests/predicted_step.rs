@@ -24,7 +24,7 @@ fn loop_settles(k: f64, b: f64, sample_time_s: Option<f64>, band_percent: f64) -
 /// Closed loop T = k (s + 1)/(s^2 + (b + k) s + k) has the slow pole p2 close to its zero; its step
 /// is 1 - c1 exp(-p1 t) - c2 exp(-p2 t) with c2 = k (1 - p2)/((p1 - p2) p2).
 #[test]
-fn a_small_tail_that_leads_out_of_the_band_is_shown() {
+fn a_small_tail_out_of_the_band_is_predicted() {
     let (k, b) = (40.0_f64, 2.6_f64);
     let sum = b + k;
     let p1 = (sum + (sum * sum - 4.0 * k).sqrt()) / 2.0;
@@ -45,7 +45,7 @@ fn a_small_tail_that_leads_out_of_the_band_is_shown() {
 /// The slow pole and the zero of a sampled loop are, in z, within 1 in a thousand whatever their
 /// rates: the decay rate decides.
 #[test]
-fn a_sampled_loop_is_shown_as_long_as_the_continuous_one() {
+fn a_sampled_loop_is_predicted_for_the_same_duration() {
     for (k, b) in [(10.0, 1.5), (100.0, 10.0), (200.0, 30.0)] {
         let [continuous, sampled] = [None, Some(SAMPLE_TIME_S)]
             .map(|sample_time_s| loop_settles(k, b, sample_time_s, 2.0).0.time_s().expect("settles"));

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{json, number};
+use crate::run_command::{json, number};
 use phea_workbench::command::Request;
 use serde_json::Value;
 
@@ -64,7 +64,7 @@ fn largest_gain(design: &Value) -> f64 {
 /// The loop without a limit has a crossover far below that of the response; with a limit the
 /// prefilter satisfies it, and the loop is fast enough.
 #[test]
-fn a_prefilter_keeps_its_gain_and_the_loop_does_the_work() {
+fn a_prefilter_has_its_gain_and_the_loop_tracks() {
     let free = designed(&[], "");
     let limited = designed(&["design.prefilter_gain=1.5"], "");
     let crossover = |design: &Value| number(design, "figures.crossover_rad_per_s");
@@ -79,15 +79,15 @@ fn a_prefilter_keeps_its_gain_and_the_loop_does_the_work() {
 /// A prefilter without a loop could satisfy the requirements on a single plant: this is reported
 /// until something limits the effect of a disturbance.
 #[test]
-fn that_nothing_asks_for_feedback_is_told() {
-    let tells = |design: &Value| design["explanations"].to_string().contains("nothing asks for feedback");
-    assert!(tells(&designed(&[], "")));
+fn superfluous_feedback_is_reported() {
+    let explains = |design: &Value| design["explanations"].to_string().contains("nothing asks for feedback");
+    assert!(explains(&designed(&[], "")));
     let limit = "[[specification]]\nkind = \"sensitivity\"\nlimit = 0.5\nfrequencies = [1]\nband = [0, 1]\n";
-    assert!(!tells(&designed(&[], limit)));
+    assert!(!explains(&designed(&[], limit)));
     // plants that differ by more than the limits allow need feedback
     let uncertain = "[uncertainty]\nk = { nominal = 1, minimum = 0.5, maximum = 2, points = 3 }\n";
     let settings = ["plant.numerator=\"50*k\""];
-    assert!(!tells(&designed(&settings, uncertain)));
+    assert!(!explains(&designed(&settings, uncertain)));
 }
 
 /// Torque control of a motor of 80 cm3 against a torsional specimen, with a friction of a tenth of
@@ -166,7 +166,7 @@ fn a_motor_that_friction_delays_satisfies_what_is_required() {
 /// requirements: for k/(s + 1) with k from 1 to 1.1 a gain of 10 gives |T(0)| from 0.909 to 0.917,
 /// well within 5 %.
 #[test]
-fn a_gain_alone_is_taken_where_it_satisfies() {
+fn a_pure_gain_is_chosen_if_it_satisfies() {
     let text = "schema = 1\ntitle = \"lag\"\n[plant]\nnumerator = \"k\"\ndenominator = \"s + 1\"\n\
         [uncertainty]\nk = { nominal = 1, minimum = 1, maximum = 1.1, points = 3 }\n\
         [[specification]]\nkind = \"step\"\novershoot_percent = 10\nsettling_time = \"0.5 s\"\n\

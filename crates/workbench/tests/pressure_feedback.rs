@@ -13,7 +13,7 @@ use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{FrequencyRequest, MachineResponses, frequency_response, simulate_project};
 use phea_workbench::source::Memory;
 
-use super::ask::project_of;
+use super::run_command::project_of;
 use super::shaken_load;
 
 const BENCHMARK: &str = include_str!("../../../examples/benchmark/closed_loop.toml");
@@ -114,7 +114,7 @@ fn of_loop(settings: &[&str], hertz: u32) -> Complex64 {
 /// The loop that acts on a moving load is that of the linear model, without delay, with delay,
 /// sampled, and with waves.
 #[test]
-fn a_load_that_moves_finds_the_loop() {
+fn a_moving_load_is_in_the_loop() {
     let mut moved = 0.0_f64;
     for settings in [
         &[][..],
@@ -138,7 +138,7 @@ fn a_load_that_moves_finds_the_loop() {
 /// A machine that rests under a controller without integral action: the feedback at rest is part of
 /// its command.
 #[test]
-fn it_rests_with_what_is_fed_back() {
+fn the_rig_rests_with_its_fed_back_pressure() {
     let proportional = ["controller.numerator=0.0005", "controller.denominator=1"];
     for (feedback, sampled) in FEEDBACKS.into_iter().flat_map(|one| [(one, ""), (one, "1 ms")]) {
         let sampled = format!("controller.sample_time={sampled}");
@@ -229,7 +229,7 @@ fn the_delay_margin_is_that_of_all_loops() {
         };
         let margin_s = audited(delay_s).delay_margin.expect("a stable family").delay_s;
         assert!(margin_s > 1e-4 && margin_s < 5e-3, "{margin_s}");
-        let verdict = |share: f64| audited(delay_s + share * margin_s).stability.verdict;
+        let verdict = |fraction: f64| audited(delay_s + fraction * margin_s).stability.verdict;
         assert_eq!(verdict(0.97), Verdict::Met, "{settings:?} {margin_s}");
         assert_eq!(verdict(1.03), Verdict::Violated, "{settings:?} {margin_s}");
     }

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::{HOSE, answer, designed_hose, json};
+use crate::run_command::{HOSE, answer, designed_hose, json};
 use phea_workbench::answer::Answer;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -44,7 +44,7 @@ macro_rules! example {
 /// sixth is unstable.
 // ORIGIN: recomputed by comparisons/recompute_audit.py
 #[test]
-fn published_examples_lie_in_their_enclosures() {
+fn published_examples_are_in_their_enclosures() {
     let (edge_plants, _) = proven(example!("edge_plants"), &[]);
     for (row, truth) in edge_plants["specifications"].as_array().unwrap().iter().zip([-0.335, -0.014, -11.62])
     {
@@ -140,16 +140,16 @@ fn the_design_of_the_rig_is_proven() {
 }
 
 #[test]
-fn a_certificate_is_read_as_it_was_written_and_refused_where_it_is_none() {
+fn certificates_round_trip_and_other_files_are_refused() {
     let (_, text) = proven(example!("servo"), &[]);
     let answer = check_certificate(&text).unwrap();
     assert!(answer.affirmative && answer.text.contains("Every claim holds"));
     let object: Value = serde_json::from_str(&answer.json).unwrap();
     assert_eq!(object["claims"].as_array().map(Vec::len), Some(7));
     // a claim that is not true: the ratio that is not exceeded is reduced
-    let lowered = text.replacen("\"ratio\":0.99", "\"ratio\":0.89", 2);
-    assert_ne!(lowered, text);
-    let rejected = check_certificate(&lowered).unwrap();
+    let tampered = text.replacen("\"ratio\":0.99", "\"ratio\":0.89", 2);
+    assert_ne!(tampered, text);
+    let rejected = check_certificate(&tampered).unwrap();
     let object: Value = serde_json::from_str(&rejected.json).unwrap();
     assert_eq!((rejected.affirmative, object["valid"].as_bool()), (false, Some(false)));
     assert!(object["rejected_claim"].is_number() && object["reason"].is_string());
@@ -264,7 +264,7 @@ fn a_certificate_is_compared_with_a_project() {
 /// A certificate holds without its claim of stability, and then both its text and its JSON state
 /// that stability is not claimed.
 #[test]
-fn a_certificate_without_stability_says_so() {
+fn a_certificate_without_stability_reports_it() {
     let (_, text) = proven(COMPARED, &[]);
     let mut file: Value = serde_json::from_str(&text).unwrap();
     let claims = file["claims"].as_array_mut().unwrap();
@@ -283,7 +283,7 @@ fn a_certificate_without_stability_says_so() {
 /// half of the tolerance.
 // ORIGIN: analytic, 20 log10(1/0.9994) = 0.0052 dB
 #[test]
-fn what_is_proven_within_the_tolerance_says_so() {
+fn a_proof_within_the_tolerance_reports_it() {
     let text = |limit: f64| {
         format!(
             "schema = 1\ntitle = \"lag\"\n[plant]\nnumerator = \"k\"\ndenominator = \"s\"\n\
@@ -293,9 +293,9 @@ fn what_is_proven_within_the_tolerance_says_so() {
         )
     };
     for (limit, is_allowed) in [(0.9994, true), (1.01, false)] {
-        let said = answer(&text(limit), &[], &[], &PROVEN);
-        let object: Value = serde_json::from_str(&said.json).unwrap();
-        assert_eq!(object["specifications"][0]["verdict"], "met", "{}", said.text);
-        assert_eq!(said.text.contains(", within the 0.01 dB allowed"), is_allowed, "{}", said.text);
+        let output = answer(&text(limit), &[], &[], &PROVEN);
+        let object: Value = serde_json::from_str(&output.json).unwrap();
+        assert_eq!(object["specifications"][0]["verdict"], "met", "{}", output.text);
+        assert_eq!(output.text.contains(", within the 0.01 dB allowed"), is_allowed, "{}", output.text);
     }
 }

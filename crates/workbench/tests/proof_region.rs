@@ -4,7 +4,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::HOSE;
+use crate::run_command::HOSE;
 use phea_dynamics::portable::{log10, magnitude, pow};
 use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
@@ -70,8 +70,8 @@ fn proven(uncertainty: &str) -> Certificate {
     let count: usize = if axes > 2 { 7 } else { 41 };
     let mut worst_db = f64::NEG_INFINITY;
     for number in 0..count.pow(axes as u32) {
-        let share = |axis: usize| (number / count.pow(axis as u32) % count) as f64 / (count - 1) as f64;
-        let values = family.values(&(0..axes).map(share).collect::<Vec<f64>>());
+        let fraction = |axis: usize| (number / count.pow(axis as u32) % count) as f64 / (count - 1) as f64;
+        let values = family.values(&(0..axes).map(fraction).collect::<Vec<f64>>());
         for step in 0..40 {
             let frequency = 0.1 * pow(1e5, f64::from(step) / 39.0);
             let open = family.plant().response(&values, frequency).unwrap()

@@ -7,7 +7,7 @@
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
-use crate::ask::{HOSE, load};
+use crate::run_command::{HOSE, load};
 use phea_workbench::command::{ResponseRequest, response_watched};
 use phea_workbench::friction::{KnownCylinder, friction_recordings};
 use phea_workbench::identify::{Known, RecordedFiles, recordings};
@@ -89,13 +89,14 @@ fn one_wrong_sign_is_named_and_the_proposed_setting_turns_it() {
 /// The drop of the meter is not known without both port pressures: a warning is given, and none if
 /// both are recorded.
 #[test]
-fn a_drop_that_was_not_recorded_is_warned_of() {
-    let told = |text: &str| -> Vec<String> {
+fn an_unrecorded_pressure_drop_has_a_warning() {
+    let messages = |text: &str| -> Vec<String> {
         let read = read(text, "").unwrap_or_else(|refusal| panic!("{refusal}"));
         read.warnings.into_iter().map(|one| one.message).collect()
     };
     let text = metering(RIGHT, true);
-    let of_drop = |text: &str| told(text).into_iter().filter(|message| message.contains("counts as zero"));
+    let of_drop =
+        |text: &str| messages(text).into_iter().filter(|message| message.contains("counts as zero"));
     assert_eq!(of_drop(&text).count(), 0);
     let [one] = of_drop(&text.replace("pressure_b_bar", "beside")).collect::<Vec<_>>().try_into().unwrap();
     assert!(one.starts_with("without `pressure_b` the drop"), "{one}");
@@ -231,15 +232,15 @@ fn a_force_against_its_command_is_warned_of_with_the_key() {
         let project = format!("{HOSE}\n[[identify.response]]\nfile = \"shaken.csv\"\n{keys}");
         let source = Memory::default().with("rig.toml", project).with("shaken.csv", shaken(sign));
         let loaded = project::read(&source, "rig.toml", &[], &[]).unwrap();
-        let asked = ResponseRequest::default();
-        let answer = response_watched(&source, Some(&loaded), &asked, &mut |_| true).unwrap();
+        let request = ResponseRequest::default();
+        let answer = response_watched(&source, Some(&loaded), &request, &mut |_| true).unwrap();
         let json: Value = serde_json::from_str(&answer.json).unwrap();
         let warnings = json["response"]["members"][0]["warnings"].as_array().cloned().unwrap_or_default();
         warnings.iter().map(|warning| warning.as_str().unwrap().to_string()).collect()
     };
     assert_eq!(warnings(1.0, ""), [""; 0]);
-    let told = warnings(-1.0, "");
-    assert!(told.len() == 1 && told[0].contains("`force = { reversed = true }`"), "{told:?}");
+    let messages = warnings(-1.0, "");
+    assert!(messages.len() == 1 && messages[0].contains("`force = { reversed = true }`"), "{messages:?}");
     assert_eq!(warnings(-1.0, "force = { reversed = true }"), [""; 0]);
     assert_eq!(warnings(-1.0, "command = { reversed = true }"), [""; 0]);
 }

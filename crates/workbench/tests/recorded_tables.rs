@@ -11,7 +11,7 @@ use phea_hydraulics::servovalve::TestInput;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use crate::ask::HOSE;
+use crate::run_command::HOSE;
 use phea_workbench::identify::{Known, RecordedFiles, Recording, SignalKind, recordings};
 use phea_workbench::project::{self, Diagnostic, RecordedTest, Refusal, Severity};
 use phea_workbench::source::Memory;
@@ -47,12 +47,12 @@ fn read(file: &Path) -> Result<RecordedFiles, Box<Refusal>> {
 
 /// The reference with the changes in the first line of an expectation: `without rows 2 3`,
 /// `pressure_a not in rows 4`.
-fn changed(reference: &Recording, said: &str) -> Recording {
+fn changed(reference: &Recording, description: &str) -> Recording {
     let mut changed = reference.clone();
     let rows = |text: &str| -> Vec<usize> {
         text.split(' ').filter_map(|word| word.parse::<usize>().ok()).map(|row| row - 1).collect()
     };
-    for part in said.split(", ").skip(1) {
+    for part in description.split(", ").skip(1) {
         let rows = rows(part);
         if let Some((signal, _)) = part.split_once(" not in ") {
             let kind = [SignalKind::PressureA, SignalKind::LeakFlow];
@@ -60,11 +60,11 @@ fn changed(reference: &Recording, said: &str) -> Recording {
             let signal = changed.signals.iter_mut().find(|signal| signal.kind == kind).unwrap();
             rows.iter().for_each(|row| signal.values[*row] = None);
         } else {
-            let keep = |row: usize| !rows.contains(&row);
-            let inputs = changed.inputs.iter().enumerate().filter(|(row, _)| keep(*row));
+            let remains = |row: usize| !rows.contains(&row);
+            let inputs = changed.inputs.iter().enumerate().filter(|(row, _)| remains(*row));
             changed.inputs = inputs.map(|(_, input)| *input).collect();
             for signal in &mut changed.signals {
-                let values = signal.values.iter().enumerate().filter(|(row, _)| keep(*row));
+                let values = signal.values.iter().enumerate().filter(|(row, _)| remains(*row));
                 signal.values = values.map(|(_, value)| *value).collect();
             }
         }
@@ -77,7 +77,7 @@ fn read_rows(recording: &Recording) -> Vec<TestInput> {
     recording.inputs.iter().map(|input| TestInput { turn: None, ..*input }).collect()
 }
 
-fn told(text: &mut String, diagnostics: &[Diagnostic]) {
+fn write_findings(text: &mut String, diagnostics: &[Diagnostic]) {
     for found in diagnostics {
         let severity = if found.severity == Severity::Error { "error" } else { "warning" };
         writeln!(text, "{severity} {}:{} {}", found.line, found.column, found.message).unwrap();
@@ -88,7 +88,7 @@ fn told(text: &mut String, diagnostics: &[Diagnostic]) {
 }
 
 #[test]
-fn every_kind_of_file_is_read_right_or_refused_with_the_reason() {
+fn every_kind_of_file_is_read_correctly_or_refused_with_the_reason() {
     let files = corpus();
     assert!(files.len() >= 60, "{} files", files.len());
     let reference = files.iter().find(|file| name(file) == "reference.csv").unwrap();
@@ -96,23 +96,23 @@ fn every_kind_of_file_is_read_right_or_refused_with_the_reason() {
     let mut wrong = String::new();
     for file in files {
         let expected = std::fs::read_to_string(file.with_extension("expect")).unwrap_or_default();
-        let said = expected.lines().next().unwrap_or_default();
+        let description = expected.lines().next().unwrap_or_default();
         let mut found = String::new();
         match read(&file) {
             Ok(recorded) => {
                 let recording = &recorded.recordings[0];
-                let wanted = changed(&reference, said);
+                let wanted = changed(&reference, description);
                 let same = read_rows(recording) == read_rows(&wanted) && recording.signals == wanted.signals;
-                writeln!(found, "{}", if same { said } else { "reads other numbers" }).unwrap();
+                writeln!(found, "{}", if same { description } else { "reads other numbers" }).unwrap();
                 let unused = recorded.contents[0].unused.join(", ");
                 if !unused.is_empty() {
                     writeln!(found, "unused {unused}").unwrap();
                 }
-                told(&mut found, &recorded.warnings);
+                write_findings(&mut found, &recorded.warnings);
             }
             Err(refusal) => {
                 writeln!(found, "refused").unwrap();
-                told(&mut found, &refusal.diagnostics);
+                write_findings(&mut found, &refusal.diagnostics);
             }
         }
         if found != expected {

@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::print_stdout, reason = "how many regions were judged is worth reading")]
 
-use crate::ask::HOSE;
+use crate::run_command::HOSE;
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
@@ -23,7 +23,7 @@ use phea_workbench::source::Memory;
 const EVENLY: usize = 150;
 const NEAR_NULL: usize = 25;
 /// Distances from null at which plants are sampled, fractions of the range of velocity or force.
-const BESIDE: [f64; 7] = [-3e-2, -5e-3, -1e-9, 1e-9, 1e-3, 5e-3, 3e-2];
+const NEXT_TO_NULL: [f64; 7] = [-3e-2, -5e-3, -1e-9, 1e-9, 1e-3, 5e-3, 3e-2];
 /// Number of plants whose loops are judged.
 const JUDGED: usize = 160;
 /// Largest error of a margin on the unsafe side, dB.
@@ -84,7 +84,7 @@ fn regions_across_a_jump_are_those_of_dense_samples() {
 /// Random regions: three hundred, by `cargo xtask ci soak`.
 #[test]
 #[ignore = "takes minutes"]
-fn soak_three_hundred_regions_against_dense_samples() {
+fn soak_three_hundred_regions_agree_with_dense_samples() {
     let judged = covered(0..380, Choosing::Nothing);
     println!("{judged} regions");
     assert!(judged >= 300);
@@ -231,7 +231,7 @@ impl Region {
                 low = middle;
             }
         }
-        BESIDE.iter().map(|part| at(low + part * (one.maximum - one.minimum))).collect()
+        NEXT_TO_NULL.iter().map(|part| at(low + part * (one.maximum - one.minimum))).collect()
     }
 
     /// The rig that declares these numbers; without gas, which changes no pressure at rest and is

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{json, number, within};
+use crate::run_command::{json, number, within};
 use phea_workbench::command::Request;
 use serde_json::Value;
 
@@ -71,7 +71,7 @@ fn a_gain_falls_as_its_sensitivity_limit_allows() {
 
 /// Two limits that bind, each compared with a design for the relaxed one.
 #[test]
-fn a_relaxed_limit_buys_what_a_design_for_it_reaches() {
+fn a_relaxed_limit_permits_the_margin_of_its_design() {
     let design = designed(LAG, &[]);
     assert_eq!(design["status"], "met", "{design:#}");
     let reached = |design: &Value| number(design, "objective.value_db");
@@ -91,7 +91,7 @@ fn a_relaxed_limit_buys_what_a_design_for_it_reaches() {
 
 /// Two limits that no loop satisfies: |S| and |T| of an integrator under a gain at 1 rad/s.
 #[test]
-fn a_relaxed_limit_returns_a_part_of_what_is_missing() {
+fn a_relaxed_limit_recovers_a_part_of_the_deficit() {
     let both = |sensitivity: &str| {
         let further = "[[specification]]\nkind = \"robust_stability\"\nlimit = 0.7\nfrequencies = [0.1, 1]\nband = [0.5, 1]\n[design]";
         GAIN.replace("LIMIT", sensitivity)

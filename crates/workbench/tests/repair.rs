@@ -7,7 +7,7 @@ use phea_workbench::command::{self, CommandError, Progress, Request};
 use phea_workbench::design::{DESIGNED_PROJECT, NEAREST_PROJECT};
 use serde_json::Value;
 
-use super::ask::{HOSE, UNLIMITED, answer, designed_hose, json, load, number, source};
+use super::run_command::{HOSE, UNLIMITED, answer, designed_hose, json, load, number, source};
 
 const REPAIRED: Request = Request::Design { seed: None, stages: false, repair: true };
 const LEFT: Request = Request::Design { seed: None, stages: false, repair: false };
@@ -19,12 +19,12 @@ fn one_rig() -> String {
     format!("{before}[[specification]]{after}")
 }
 
-fn object(said: &Answer) -> Value {
-    serde_json::from_str(&said.json).unwrap()
+fn object(output: &Answer) -> Value {
+    serde_json::from_str(&output.json).unwrap()
 }
 
-fn file<'a>(said: &'a Answer, name: &str) -> Option<&'a str> {
-    let found = said.files.iter().find(|file| file.name == name)?;
+fn file<'a>(output: &'a Answer, name: &str) -> Option<&'a str> {
+    let found = output.files.iter().find(|file| file.name == name)?;
     Some(std::str::from_utf8(&found.bytes).unwrap())
 }
 
@@ -36,12 +36,12 @@ fn worst_margin(audit: &Value) -> f64 {
 /// Order 4 is not sufficient over the box of Table 6.3 and with waves in the rig itself: the limits
 /// must be relaxed, and with the controller for wider limits the machine with waves comes to rest.
 #[test]
-fn what_cannot_be_had_with_waves_is_told() {
-    let said = designed_hose();
-    let object = object(said);
+fn infeasibility_with_waves_is_reported() {
+    let output = designed_hose();
+    let object = object(output);
     let repair = &object["repair"];
     // the design is the original one, for the declared family
-    assert!(!said.affirmative);
+    assert!(!output.affirmative);
     assert_eq!((&object["status"], &object["machine"]["verdict"]), (&"met".into(), &"contradicts".into()));
     assert_eq!((&repair["status"], &repair["plant_before"]["stable"]), (&"infeasible".into(), &false.into()));
     assert_eq!(repair["taken_in"], "the rig with waves in its lines");
@@ -57,7 +57,7 @@ fn what_cannot_be_had_with_waves_is_told() {
     assert_eq!(waves["agreement"], "agrees");
     // the project written with it gives equal results
     let written = json(
-        file(said, NEAREST_PROJECT).unwrap(),
+        file(output, NEAREST_PROJECT).unwrap(),
         &[],
         &[],
         &Request::Verify { proof: false, on_machine: false },
@@ -69,7 +69,7 @@ fn what_cannot_be_had_with_waves_is_told() {
     for words in
         ["Repair: infeasible", "beyond the quarter wave", "what would help: a line shorter than 0.63 m"]
     {
-        assert!(said.text.contains(words), "{words}: {}", said.text);
+        assert!(output.text.contains(words), "{words}: {}", output.text);
     }
 }
 
@@ -94,26 +94,26 @@ const EXACT: [&str; 3] = [UNLIMITED[0], UNLIMITED[1], "verification.tolerance=0.
 
 /// A controller that the machine with waves contradicts is replaced by one suitable for both.
 #[test]
-fn a_design_is_repaired_where_it_can_be() {
+fn a_design_is_repaired_if_possible() {
     let first = object(&answer(&wider(), &EXACT, &[], &LEFT));
     assert_eq!((&first["status"], &first["machine"]["verdict"]), (&"met".into(), &"contradicts".into()));
     assert_eq!((&first["repair"], &first["repair_reason"]), (&Value::Null, &"it was not asked for".into()));
 
-    let said = answer(&wider(), &EXACT, &[], &REPAIRED);
-    let object = object(&said);
+    let output = answer(&wider(), &EXACT, &[], &REPAIRED);
+    let object = object(&output);
     let repair = &object["repair"];
     assert_eq!((&object["status"], &repair["status"]), (&"met".into(), &"met".into()), "{repair}");
     // steps of a tenth end outside the band for longer than a run, and overshoot by more than the
     // linear ones
     assert_ne!(object["machine"]["verdict"], "contradicts", "{:#}", object["machine"]);
-    assert!(said.affirmative);
+    assert!(output.affirmative);
     assert_eq!(repair["plant_after"]["verdict"], "met");
     // the first design is printed in addition
     assert_eq!(repair["before"]["controller"], first["controller"]);
-    assert!(said.text.contains("before the repair"), "{}", said.text);
+    assert!(output.text.contains("before the repair"), "{}", output.text);
     // the verdicts with waves in every plant are those of the audit of the project that declares
     // them
-    let written = file(&said, DESIGNED_PROJECT).unwrap();
+    let written = file(&output, DESIGNED_PROJECT).unwrap();
     let declared = json(
         written,
         &["line.model=transmission_line"],
@@ -123,21 +123,21 @@ fn a_design_is_repaired_where_it_can_be() {
     let whole = &repair["family_with_waves"];
     assert_eq!((&declared["verdict"], &declared["stable"]), (&whole["verdict"], &whole["stable"]));
     assert!((worst_margin(&declared) - worst_margin(whole)).abs() < 1e-6);
-    assert_eq!(file(&said, NEAREST_PROJECT), None);
+    assert_eq!(file(&output, NEAREST_PROJECT), None);
 }
 
 /// A command that reaches its limit at once is in no linear plant: no plant is added, and the
 /// answer states the change to make.
 #[test]
-fn what_no_plant_explains_is_told() {
+fn an_unexplained_contradiction_is_reported() {
     let settings = [
         "line.model=segments",
         "line.segments=4",
         "line.relaxation_time=0.3 ms",
         "controller.saturation=0.02 V",
     ];
-    let said = answer(&one_rig(), &settings, &[], &REPAIRED);
-    let object = object(&said);
+    let output = answer(&one_rig(), &settings, &[], &REPAIRED);
+    let object = object(&output);
     assert_eq!((&object["status"], &object["machine"]["verdict"]), (&"met".into(), &"contradicts".into()));
     let repair = &object["repair"];
     assert_eq!((&repair["status"], &repair["taken_in"]), (&"nothing_to_take_in".into(), &Value::Null));
@@ -157,10 +157,10 @@ fn a_repair_may_be_stopped() {
         stages.push(progress.stage);
         !progress.stage.starts_with("designing again")
     };
-    let said: Result<Answer, CommandError> =
+    let output: Result<Answer, CommandError> =
         command::answer_into(&source(&wider()), &loaded, &[], &REPAIRED, None, &mut watch);
-    let said = said.unwrap();
-    let object = object(&said);
+    let output = output.unwrap();
+    let object = object(&output);
     assert_eq!((&object["status"], &object["repair"]["status"]), (&"met".into(), &"stopped".into()));
-    assert!(!said.affirmative && stages.iter().any(|stage| stage.starts_with("designing again")));
+    assert!(!output.affirmative && stages.iter().any(|stage| stage.starts_with("designing again")));
 }

@@ -30,7 +30,7 @@ fn number(value: &Value) -> f64 {
 /// Friction feeds the ringing of the load cell in a slow motion: at the default tolerance the peak
 /// is wrong by a tenth.
 #[test]
-fn a_peak_that_errors_move_is_made_right() {
+fn a_peak_disturbed_by_errors_is_computed_again() {
     let (run, answer) = simulated(
         CONTINUOUS,
         &["scenario.0.load_motion.duration=1", "scenario.0.load_motion.distance=0.005"],
@@ -58,7 +58,7 @@ fn a_peak_that_errors_move_is_made_right() {
 
 /// A run without growth of errors is made once.
 #[test]
-fn a_calm_run_is_made_once() {
+fn a_run_without_growth_is_computed_once() {
     for text in [CONTINUOUS, SAMPLED] {
         let (run, answer) = simulated(text, &["scenario.0.duration=2.5 s"]);
         assert!(run["repetition"].is_null() && run["errors_amplified"].is_null(), "{run}");
@@ -126,14 +126,14 @@ fn the_growth_of_a_sampled_loop_is_that_of_its_force() {
             .collect();
         let (first, last) = (peaks[0], peaks[peaks.len() - 1]);
         let measured = portable::ln(last[1] / first[1]) / (last[0] - first[0]);
-        let told = logarithm / (until - from);
-        assert!((told / measured - 1.0).abs() < 0.1, "{more:?}: {told} {measured} {grown}");
+        let rate = logarithm / (until - from);
+        assert!((rate / measured - 1.0).abs() < 0.1, "{more:?}: {rate} {measured} {grown}");
     }
 }
 
 /// Loops that leave the valve's range for good, swing from end to end, or push without end.
 #[test]
-fn a_run_that_diverges_says_so() {
+fn a_diverging_run_is_reported() {
     let (run, answer) = simulated(CONTINUOUS, &["controller.numerator=-0.001*s - 0.008"]);
     assert_eq!((&run["status"], answer.affirmative), (&"diverged".into(), false), "{run}");
     assert_eq!(run["divergence"]["kind"], "command_beyond_range");
@@ -151,7 +151,7 @@ fn a_run_that_diverges_says_so() {
 /// A command that is at its limit on the way to the reference and then leaves it is no divergence,
 /// and neither is a load that shakes a small reference.
 #[test]
-fn saturation_on_the_way_is_no_divergence() {
+fn transient_saturation_is_not_reported_as_divergence() {
     let (run, answer) = simulated(CONTINUOUS, &["controller.saturation=0.2 V"]);
     let limited = |kind: &Value| kind["kind"] == "command_limit" && kind["begins"] == true;
     assert!(run["occurrences"].as_array().unwrap().iter().any(limited), "{run}");

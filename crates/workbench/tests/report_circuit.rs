@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::try_answer;
+use crate::run_command::try_answer;
 use phea_workbench::command::Request;
 
 const LINKAGE: &str = include_str!("../../project/tests/valid/linkage.toml");
@@ -45,7 +45,7 @@ fn texts(project: &str, settings: &[&str]) -> Vec<String> {
 
 /// The chapter on the impedance states its location.
 #[test]
-fn the_impedance_of_a_linkage_is_told_at_the_rod_and_about_the_joint() {
+fn the_impedance_of_a_linkage_is_stated_at_the_rod_and_about_the_joint() {
     let page = |project: &str| {
         let answer =
             try_answer(drawn(project), &[], &[], &Request::Report { files: true, alternatives: false })
@@ -58,7 +58,7 @@ fn the_impedance_of_a_linkage_is_told_at_the_rod_and_about_the_joint() {
 }
 
 #[track_caller]
-fn says(texts: &[String], expected: &[&str]) {
+fn contains_all(texts: &[String], expected: &[&str]) {
     for words in expected {
         assert!(texts.iter().any(|text| text == words), "{words}: {texts:?}");
     }
@@ -75,31 +75,31 @@ fn a_lever_has_its_kind_and_its_arm() {
     let cosine = (a * a + b * b - l * l) / (2.0 * a * b);
     let arm = 1e3 * a * b * (1.0 - cosine * cosine).sqrt() / l;
     let arm = format!("{arm:.1} mm");
-    says(
+    contains_all(
         &texts(LINKAGE, &[]),
         &["triangle", "arm r", &arm, "θ", "J", "900 N.m/rad", "50/22 mm, stroke 80 mm"],
     );
-    says(&texts(FOUR_BAR, &[]), &["four-bar", "arm r"]);
-    says(&texts(TABLE, &[]), &["table", "arm r", "θ0"]);
+    contains_all(&texts(FOUR_BAR, &[]), &["four-bar", "arm r"]);
+    contains_all(&texts(TABLE, &[]), &["table", "arm r", "θ0"]);
 }
 
 /// The gas at the setting of rest: between both ends in proportion to the setting.
 #[test]
-fn adjusted_gas_is_told_where_it_rests() {
+fn adjusted_gas_is_stated_at_rest() {
     for (setting, volume) in [("0", "3.5 mL"), ("0.5", "8.85 mL"), ("1", "14.2 mL")] {
         let set = format!("line.accumulator.adjustment.setting={setting}");
         let gas = format!("{volume}, 15 bar");
         let at = format!("at setting {setting} of");
         let found = texts(ADJUSTED, &[&set]);
-        says(&found, &[&gas, &at, "3.5 mL to 14.2 mL"]);
+        contains_all(&found, &[&gas, &at, "3.5 mL to 14.2 mL"]);
     }
-    says(&texts(SWITCHED, &[]), &["14.2 mL, 15 bar", "valve, setting 1"]);
+    contains_all(&texts(SWITCHED, &[]), &["14.2 mL, 15 bar", "valve, setting 1"]);
 }
 
 #[test]
-fn a_telescopic_piston_tells_its_stages_and_a_motor_its_symbols() {
-    says(&texts(TELESCOPIC, &[]), &["50/22 mm, 500 mm in 3 stages"]);
+fn a_telescopic_piston_lists_its_stages_and_a_motor_its_symbols() {
+    contains_all(&texts(TELESCOPIC, &[]), &["50/22 mm, 500 mm in 3 stages"]);
     let found = texts(TURNING, &[]);
-    says(&found, &["θ", "J", "Te", "Tref", "0.005 kg.m2"]);
+    contains_all(&found, &["θ", "J", "Te", "Tref", "0.005 kg.m2"]);
     assert!(!found.iter().any(|text| ["xp", "xL", "M", "Fe", "Fref"].contains(&text.as_str())), "{found:?}");
 }

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::{HOSE, contradictory_report, load};
+use crate::run_command::{HOSE, contradictory_report, load};
 use phea_workbench::command::{CommandError, Progress};
 use phea_workbench::report::{Report, report};
 use phea_workbench::setup::Setup;
@@ -79,7 +79,7 @@ fn row(chapter: &str, name: &str) -> Vec<String> {
 
 /// A project that gives a law and requests no design is audited only.
 #[test]
-fn a_design_is_part_of_the_report_where_it_is_asked_for_or_no_law_is_given() {
+fn a_design_is_part_of_the_report_if_requested_or_no_law_is_stated() {
     let (bare, _) = LAG.split_once("[design]").unwrap();
     let given = report_of(bare, &[]);
     assert!(chapter(&given).is_none() && fact(&given).is_none() && figures(&given).is_empty());
@@ -92,7 +92,7 @@ fn a_design_is_part_of_the_report_where_it_is_asked_for_or_no_law_is_given() {
 }
 
 #[test]
-fn both_controllers_stand_side_by_side_as_their_audits_found_them() {
+fn both_controllers_are_side_by_side_with_their_audits() {
     let report = report_of(LAG, &[]);
     let chapter = chapter(&report).unwrap();
     assert!(chapter.contains(">given<"));
@@ -135,7 +135,7 @@ fn both_controllers_stand_side_by_side_as_their_audits_found_them() {
 /// A sampled loop shows its law as it runs, and next to it the design that was made without
 /// samples: that of the project when it is continuous.
 #[test]
-fn a_sampled_loop_is_shown_with_what_sampling_changes() {
+fn a_sampled_loop_is_reported_with_the_effect_of_sampling() {
     let settings = ["controller.sample_time=\"5 ms\"", "controller.delay=\"2 ms\""];
     let report = report_of(LAG, &settings);
     let chapter = chapter(&report).unwrap();
@@ -144,16 +144,16 @@ fn a_sampled_loop_is_shown_with_what_sampling_changes() {
     }
     assert_eq!(row(chapter, "verdict").len(), 4);
     let continuous = report_of(LAG, &["controller.delay=\"0 s\""]);
-    let alone = self::chapter(&continuous).unwrap();
+    let only_controller = self::chapter(&continuous).unwrap();
     for name in ["high-frequency gain", "order of controller and prefilter"] {
         let without_samples = row(chapter, name)[3].replace(", of the continuous law", "");
-        assert_eq!(without_samples, row(alone, name)[2], "{name}");
+        assert_eq!(without_samples, row(only_controller, name)[2], "{name}");
     }
     assert!(chapter.contains("The last column is the design for the continuous loop without delay"));
 }
 
 #[test]
-fn what_cannot_be_met_is_told_with_what_stands_against_it() {
+fn unreachable_limits_are_reported_with_their_obstacles() {
     let report = contradictory_report();
     let chapter = chapter(report).unwrap();
     assert!(fact(report).unwrap().starts_with("infeasible by "), "{:?}", fact(report));
@@ -182,7 +182,7 @@ fn without_tracking_there_is_neither_prefilter_nor_step() {
 }
 
 #[test]
-fn whoever_watches_the_search_may_stop_it() {
+fn the_search_can_be_stopped() {
     let mut searched = false;
     let mut watch = |progress: Progress| {
         searched = searched || progress.stage.starts_with("trying ");

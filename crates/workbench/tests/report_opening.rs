@@ -6,7 +6,7 @@
 use phea_hydraulics::signal::Signal;
 use std::fmt::Write as _;
 
-use crate::ask::{built_hose, contradictory_report};
+use crate::run_command::{built_hose, contradictory_report};
 use phea_workbench::command::{self, Request};
 use phea_workbench::project::{self, Loaded};
 use phea_workbench::report::{Report, report};
@@ -100,11 +100,12 @@ fn agreement_words(answer: &Value) -> &str {
 /// One report of the hose compared with the commands that it repeats: verdicts of `verify` and
 /// `design`, numbers of `simulate`.
 #[test]
-fn both_controllers_stand_there_as_the_commands_tell_them() {
+fn both_controllers_agree_with_their_commands() {
     let (source, nrmse) = measured_hose();
     let loaded = load(&source, &[]);
-    let told = report(&source, &loaded, &Setup::new(&loaded.project).unwrap(), None, &mut |_| true).unwrap();
-    let page = opening(&told);
+    let report_found =
+        report(&source, &loaded, &Setup::new(&loaded.project).unwrap(), None, &mut |_| true).unwrap();
+    let page = opening(&report_found);
 
     let verified = json(&source, &loaded, &Request::Verify { proof: false, on_machine: true });
     // the measurement has no part in a design
@@ -114,12 +115,12 @@ fn both_controllers_stand_there_as_the_commands_tell_them() {
     let proven = if is_all_proven(&designed["verification"]) { ", proven" } else { "" };
     let cells = [verified["verdict"].as_str().unwrap().to_string(), format!("{verdict}{proven}")];
     assert_eq!(rows(&page, "every specification")[0][1..], cells);
-    let decided = [&told.decision.given, &told.decision.designed];
+    let decided = [&report_found.decision.given, &report_found.decision.designed];
     let decided_proven = decided.map(|one| one.as_ref().and_then(|one| one.proven));
     assert_eq!(decided_proven, [Some(false), Some(!proven.is_empty())]);
     let machines = [&verified, &designed].map(agreement_words);
-    let tried = &rows(&page, "tried on the rig")[0];
-    assert!(tried[1].starts_with(machines[0]) && tried[2].starts_with(machines[1]), "{tried:?}");
+    let trials = &rows(&page, "tried on the rig")[0];
+    assert!(trials[1].starts_with(machines[0]) && trials[2].starts_with(machines[1]), "{trials:?}");
     for (index, name) in ["1 robust stability", "2 sensitivity", "3 tracking"].iter().enumerate() {
         let row = &rows(&page, name)[0];
         for (cell, answer) in row[1..].iter().zip(both) {
@@ -127,16 +128,16 @@ fn both_controllers_stand_there_as_the_commands_tell_them() {
             assert!(cell.starts_with(verdict), "{row:?}");
         }
     }
-    let decided = told.decision.given.as_ref().unwrap();
+    let decided = report_found.decision.given.as_ref().unwrap();
     assert_eq!((decided.verdict, decided.machine), (verified["verdict"].as_str(), Some(machines[0])));
-    let decided = told.decision.designed.as_ref().unwrap();
+    let decided = report_found.decision.designed.as_ref().unwrap();
     assert_eq!(
         (decided.verdict, decided.machine),
         (designed["verification"]["verdict"].as_str(), designed["machine"]["verdict"].as_str())
     );
 
     // the designed project, simulated separately, agrees with the report on the designed controller
-    let file = told.tables.iter().find(|file| file.name == "designed.toml").unwrap();
+    let file = report_found.tables.iter().find(|file| file.name == "designed.toml").unwrap();
     let of_design = source.clone().with("rig.toml", std::str::from_utf8(&file.bytes).unwrap());
     let driven = [runs(&source, &loaded), runs(&of_design, &load(&of_design, &[]))];
     for (runs, name) in driven.iter().zip(["given", "designed"]) {
@@ -151,14 +152,14 @@ fn both_controllers_stand_there_as_the_commands_tell_them() {
     // measured curve and NRMSE
     let measured: Vec<f64> = driven.iter().map(|runs| runs[0].measured[0].nrmse.unwrap()).collect();
     assert!((measured[0] / nrmse - 1.0).abs() < 1e-2, "{measured:?} {nrmse}");
-    let (_, simulation) = told.html.split_once("<section id=\"simulation\">").unwrap();
+    let (_, simulation) = report_found.html.split_once("<section id=\"simulation\">").unwrap();
     let overlays = rows(simulation, "force_n");
     assert_eq!(overlays.len(), 2, "{overlays:?}");
     for ((row, nrmse), name) in overlays.iter().zip(&measured).zip(["given", "designed"]) {
         let shown: f64 = row[3].trim_end_matches(" %").parse().unwrap();
         assert!(row[2] == name && (shown / (100.0 * nrmse) - 1.0).abs() < 5e-3, "{row:?} {nrmse}");
     }
-    curves(&told);
+    curves(&report_found);
 }
 
 /// Both controllers and the measurement are in the figures that compare, and each controller in
@@ -194,7 +195,7 @@ fn curves(report: &Report) {
 }
 
 #[test]
-fn what_to_do_next_follows_from_the_results() {
+fn the_next_steps_follow_from_the_results() {
     let next = |text: &str, settings: &[&str]| report_of(text, settings).decision.next;
     let undesigned = without(HOSE, "[design] ", "[[scenario]]");
     let given = next(&undesigned, &[]);
@@ -226,7 +227,7 @@ fn what_to_do_next_follows_from_the_results() {
 
 /// A page for a rig without a controller has no columns and states this.
 #[test]
-fn cards_tell_load_lines_and_hose() {
+fn cards_state_load_lines_and_hose() {
     let (rig, _) = HOSE.split_once("[uncertainty]").unwrap();
     let page = plain(&opening(&report_of(rig, &[])));
     for words in [

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{self, HOSE, PIPE, answer, load, try_answer};
+use crate::run_command::{self, HOSE, PIPE, answer, load, try_answer};
 use std::sync::OnceLock;
 
 use phea_workbench::answer::{Answer, picture_of};
@@ -15,7 +15,7 @@ use resvg::usvg::roxmltree::{Document, Node};
 
 const PLANT: &str = include_str!("truth/plant.toml");
 
-fn ask_for_report(project: &str) -> Answer {
+fn report_answer(project: &str) -> Answer {
     answer(&without_design(project), &[], &[], &Request::Report { files: true, alternatives: false })
 }
 
@@ -39,12 +39,12 @@ pub(crate) fn nominal() -> String {
 /// The reports of both rigs as their command writes them, drawn once.
 fn hose() -> &'static Answer {
     static ANSWER: OnceLock<Answer> = OnceLock::new();
-    ANSWER.get_or_init(|| ask_for_report(HOSE))
+    ANSWER.get_or_init(|| report_answer(HOSE))
 }
 
 fn pipe() -> &'static Answer {
     static ANSWER: OnceLock<Answer> = OnceLock::new();
-    ANSWER.get_or_init(|| ask_for_report(PIPE))
+    ANSWER.get_or_init(|| report_answer(PIPE))
 }
 
 fn page(answer: &Answer) -> &str {
@@ -92,7 +92,7 @@ fn attributes<'a>(page: &'a str, name: &str) -> Vec<&'a str> {
 }
 
 #[test]
-fn a_page_needs_nothing_else() {
+fn a_page_is_self_contained() {
     for answer in [hose(), pipe()] {
         let page = page(answer);
         for attribute in ["src", "href", "xlink:href", "data", "action", "srcset", "poster"] {
@@ -177,7 +177,7 @@ fn the_page_and_every_figure_are_well_formed() {
 }
 
 #[test]
-fn every_chapter_is_there() {
+fn every_chapter_is_present() {
     let page = page(hose());
     let headings = elements(page, "h2").join("\n");
     for words in [
@@ -220,7 +220,7 @@ fn demands(page: &str) -> String {
 /// Limit |T| <= 1.3 tolerates 1 + 1/1.3 and 1 - 1/1.3 of the gain, 2 asin(1/2.6) of phase, and
 /// guarantees a distance of 1/2.3 from -1.
 #[test]
-fn what_is_demanded_is_said_with_what_it_means() {
+fn every_limit_is_stated_with_its_meaning() {
     let chapter = demands(page(hose()));
     for words in [
         "|L/(1+L)| ≤ 1.3",
@@ -239,7 +239,7 @@ fn what_is_demanded_is_said_with_what_it_means() {
 /// The lags 1/(s + 1) below and 0.1 above intersect at sqrt(99) rad/s; towards zero they are 20 dB
 /// in the wrong order.
 #[test]
-fn limits_that_cross_are_told() {
+fn limits_that_cross_are_reported() {
     let project = format!(
         "{PLANT}\n[[specification]]\nkind = \"tracking\"\nupper = 0.1\nlower = \"1/(s + 1)\"\nfrequencies = [1]\nband = [0, 100]\n\
          [[specification]]\nkind = \"sensitivity\"\nlimit = 1\nfrequencies = [1]\nband = [0, inf]\n\
@@ -294,7 +294,7 @@ fn figures_come_as_svg_and_png_under_names_of_their_own() {
 
 #[test]
 fn the_same_project_gives_the_same_bytes() {
-    let (one, other) = (hose(), ask_for_report(HOSE));
+    let (one, other) = (hose(), report_answer(HOSE));
     assert_eq!(one.json, other.json);
     for (one, other) in one.files.iter().zip(&other.files) {
         assert_eq!(one.name, other.name);
@@ -313,7 +313,7 @@ fn it_is_made_for_light_and_dark_and_paper() {
 }
 
 #[test]
-fn a_hostile_title_stays_a_title() {
+fn a_hostile_title_is_escaped() {
     let title = "<script>alert(1)</script> & \\\"quotes\\\" ]]> </svg>";
     let project =
         nominal().replace("title = \"Ybitu rig, 1.5 m of HVE hose\"", &format!("title = \"{title}\""));
@@ -338,7 +338,7 @@ fn another_plant_is_checked_and_refused_elsewhere_with_the_reason() {
     for request in [
         Request::Report { files: true, alternatives: false },
         Request::Linearize { sweep: None },
-        ask::size_request(None, None),
+        run_command::size_request(None, None),
     ] {
         let error = try_answer(PLANT, &[], &[], &request).unwrap_err().to_string();
         assert!(error.contains("[plant]") && error.contains("[cylinder]"), "{error}");
@@ -420,7 +420,7 @@ fn a_project_without_sizing_or_controller_has_the_other_chapters() {
 }
 
 #[test]
-fn the_summary_is_what_the_commands_say() {
+fn the_summary_agrees_with_the_commands() {
     let answer = hose();
     // ORIGIN: recomputed by comparisons/recompute_rig.py: 2232961.6 and 4108630.5 N/m, 2.7330293e-4
     // V/N at 1.5 m
@@ -467,7 +467,7 @@ pub(crate) fn report_of(project: &str, settings: &[&str]) -> Report {
 }
 
 #[test]
-fn an_unstable_loop_is_called_unstable_and_not_measured() {
+fn an_unstable_loop_is_reported_as_unstable_without_metrics() {
     let unstable = report_of(&nominal(), &["controller.numerator=\"s + 8\""]);
     assert!(
         unstable.summary.contains(&("Nominal linear loop", "unstable".to_string())),
@@ -483,6 +483,7 @@ fn an_unstable_loop_is_called_unstable_and_not_measured() {
     let (_, step) = plain_hose().summary.iter().find(|(name, _)| *name == "Nominal linear loop").unwrap();
     assert!(step.contains("% overshoot, settles in "), "{step}");
     // A proportional loop ends away from its reference: it does not settle in the band.
-    let beside = report_of(&nominal(), &["controller.numerator=\"0.0001\"", "controller.denominator=\"1\""]);
-    assert!(!beside.html.contains("settles in not"));
+    let other_loop =
+        report_of(&nominal(), &["controller.numerator=\"0.0001\"", "controller.denominator=\"1\""]);
+    assert!(!other_loop.html.contains("settles in not"));
 }

@@ -46,7 +46,7 @@ fn row(chapter: &str, first: &str) -> Vec<String> {
 /// Every step of a reference has its own row, with published numbers below; unpublished numbers are
 /// mentioned once.
 #[test]
-fn every_event_has_its_row_and_what_was_published() {
+fn every_event_has_its_row_and_the_published_value() {
     let text = without(HOSE, "[[specification]]", "[controller] ");
     let text = without(&text, "[design] ", "[[scenario]]");
     let report = reported(&text, &[]);
@@ -177,16 +177,20 @@ fn assumptions_are_those_of_the_rig() {
 /// A hose with compliance by volume holds its oil at the mean pressure, and a stated settling time
 /// gives the time constant by its band.
 #[test]
-fn assumptions_follow_from_what_is_stated() {
+fn assumptions_follow_from_stated_values() {
     let text = without(HOSE, "[[specification]]", "[controller] ");
     let text = without(&text, "[design] ", "[[scenario]]")
         .replace("time_constant = \"50 ms\"", "settling_time = \"200 ms\"\nsettling_band_percent = 1");
     let (rig, _) = text.split_once("[[scenario]]").unwrap();
     let report = reported(rig, &["line.compliance=by_volume"]);
-    let told = chapter(&report, "provenance");
-    assert!(told.contains("follows from the stated settling time, and it settles to 1 % in 4.61"), "{told}");
+    let assumptions = chapter(&report, "provenance");
     assert!(
-        told.contains("at the mean of supply and tank pressure") && !told.contains("at the supply pressure")
+        assumptions.contains("follows from the stated settling time, and it settles to 1 % in 4.61"),
+        "{assumptions}"
+    );
+    assert!(
+        assumptions.contains("at the mean of supply and tank pressure")
+            && !assumptions.contains("at the supply pressure")
     );
 }
 
@@ -250,7 +254,7 @@ fn runs_are_counted_and_the_advice_is_for_a_required_step() {
 /// A report has as many runs as its budget of integration steps permits, estimated from the first
 /// of them, and at least these.
 #[test]
-fn a_campaign_keeps_its_budget_of_steps() {
+fn a_campaign_satisfies_its_budget_of_steps() {
     // ORIGIN: analytic, ten million steps over those of a run
     for (steps_of_a_run, runs) in [(3_000, 500), (20_000, 500), (40_000, 250), (1_000_000, 10)] {
         assert_eq!(runs_within_budget(500, [8, 8 * steps_of_a_run]), runs, "{steps_of_a_run}");

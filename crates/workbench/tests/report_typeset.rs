@@ -3,7 +3,7 @@
 use phea_workbench::document::typeset;
 
 #[test]
-fn text_is_escaped_and_scripts_end_where_they_should() {
+fn text_is_escaped_and_scripts_end_correctly() {
     let check = |equation: &str, expected: &str| {
         assert_eq!(typeset(equation).into_string(), format!("<span class=\"equation\">{expected}</span>"));
     };

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{self, number};
+use crate::run_command::{self, near, number};
 use num_complex::Complex64;
 use phea_workbench::campaign::{Effort, RequestedRuns, SatisfiedRuns, Shard};
 use phea_workbench::command::{CampaignRequest, CampaignRuns, Request};
@@ -52,8 +52,8 @@ fn a_lag_rises_and_settles_in_closed_form() {
         let found = &object["specifications"][0];
         assert_eq!((found["kind"].as_str(), found["verdict"].as_str()), (Some("step"), Some(verdict)));
         assert_eq!(object["specifications"][1]["kind"], "robust_stability");
-        ask::near(number(found, "worst_rise_time_s"), 9.0_f64.ln(), 1e-3);
-        ask::near(number(found, "worst_settling_time_s"), 20.0_f64.ln(), 3e-3);
+        near(number(found, "worst_rise_time_s"), 9.0_f64.ln(), 1e-3);
+        near(number(found, "worst_settling_time_s"), 20.0_f64.ln(), 3e-3);
         assert!(number(found, "worst_overshoot_percent") < 0.01);
         assert_eq!(found["plant"]["k"], 1.0);
         let required = "no overshoot, settled within 5 % in 3.1 s, risen from 10 to 90 % in";
@@ -73,7 +73,7 @@ fn settling_is_judged_in_the_band_itself_and_to_its_end() {
         );
         let found = verify(&project(&step, "")).0;
         assert_eq!(found["verdict"], verdict, "{found:#}");
-        ask::near(settled(&found), 5000_f64.ln(), 5e-3);
+        near(settled(&found), 5000_f64.ln(), 5e-3);
     }
     // closed, k/(s (s + 0.2)) swings at 1.4 rad/s within e^(-0.1 t)
     let swing = |time: &str| {
@@ -88,7 +88,7 @@ fn settling_is_judged_in_the_band_itself_and_to_its_end() {
     let late = swing("20 s");
     for time in ["3.5 s", "3.8 s", "4.1 s"] {
         // the last swing leaves the band by so little that the grid of points decides
-        ask::near(swing(time), late, 6e-2);
+        near(swing(time), late, 6e-2);
     }
 }
 
@@ -118,14 +118,14 @@ fn a_slow_loop_around_lines_with_waves_has_its_settling_time() {
         let text = format!("{}settling_time = \"{time}\"\n", crate::impossible::RIG);
         let setting = format!("line.model=\"{model}\"");
         let verify = Request::Verify { proof: false, on_machine: false };
-        let found = ask::json(&text, &[&setting], &[], &verify);
+        let found = run_command::json(&text, &[&setting], &[], &verify);
         number(&found, "specifications.0.worst_settling_time_s")
     };
     let waves = ["5 ms", "0.3 s"].map(|time| settled(time, "transmission_line"));
     // far beyond ten times the requirement
     assert!(waves[0] > 0.1, "{waves:?}");
-    ask::near(waves[0], waves[1], 1e-2);
-    ask::near(waves[0], settled("0.3 s", "lumped"), 5e-2);
+    near(waves[0], waves[1], 1e-2);
+    near(waves[0], settled("0.3 s", "lumped"), 5e-2);
 }
 
 /// Specifications are numbered as in the file, whatever is declared before them.
@@ -145,9 +145,9 @@ fn specifications_have_their_numbers_in_the_file() {
 }
 
 fn report(text: &str) -> phea_workbench::report::Report {
-    let loaded = ask::load(text, &[], &[]);
+    let loaded = run_command::load(text, &[], &[]);
     let setup = phea_workbench::setup::Setup::new(&loaded.project).unwrap();
-    phea_workbench::report::report(&ask::source(text), &loaded, &setup, None, &mut |_| true).unwrap()
+    phea_workbench::report::report(&run_command::source(text), &loaded, &setup, None, &mut |_| true).unwrap()
 }
 
 /// A required step counts among the specifications that are met.
@@ -158,15 +158,16 @@ fn a_required_step_is_counted() {
         ("1 s", "violated: stable, 1 of 2 specifications met"),
     ] {
         let step = format!("[[specification]]\nkind = \"step\"\nsettling_time = \"{time}\"\n");
-        let told = report(&project(&format!("{step}{STABILITY}"), ""));
-        let (_, words) = told.summary.iter().find(|(name, _)| *name == "Audit of the controller").unwrap();
+        let reported = report(&project(&format!("{step}{STABILITY}"), ""));
+        let (_, words) =
+            reported.summary.iter().find(|(name, _)| *name == "Audit of the controller").unwrap();
         assert_eq!(words, expected);
     }
 }
 
 /// A step that is the only requirement is judged like one next to limits, sampled or not.
 #[test]
-fn a_step_needs_no_limit_beside_it() {
+fn a_step_needs_no_further_limit() {
     let step = "[[specification]]\nkind = \"step\"\nsettling_time = \"4 s\"\n";
     for controller in ["", "sample_time = \"1 ms\""] {
         let (object, words) = verify(&project(step, controller));
@@ -181,7 +182,7 @@ fn a_step_needs_no_limit_beside_it() {
 }
 
 #[test]
-fn what_belongs_to_a_step_and_what_does_not_is_told() {
+fn misplaced_keys_of_a_step_are_reported() {
     let of = |specification: &str| refusal(&project(specification, ""));
     let nothing = of("[[specification]]\nkind = \"step\"\namplitude = \"1 kN\"\n");
     assert!(nothing.contains("nothing is required of the step"), "{nothing}");
@@ -195,12 +196,12 @@ fn what_belongs_to_a_step_and_what_does_not_is_told() {
 
 /// The ends of Wilson's interval are the solutions of |k/n - p| = z sqrt(p (1 - p)/n).
 #[test]
-fn the_interval_of_a_share_satisfies_its_equation() {
+fn the_interval_of_a_fraction_satisfies_its_equation() {
     let z = 1.959_963_984_540_054_f64;
     for (satisfied, runs) in [(1, 7), (56, 60), (9_700, 10_000)] {
-        let share = satisfied as f64 / runs as f64;
+        let fraction = satisfied as f64 / runs as f64;
         for p in (SatisfiedRuns { satisfied, runs, worst: None }).confidence_95() {
-            ask::near((share - p).abs(), z * (p * (1.0 - p) / runs as f64).sqrt(), 1e-9);
+            near((fraction - p).abs(), z * (p * (1.0 - p) / runs as f64).sqrt(), 1e-9);
         }
     }
     assert_eq!(SatisfiedRuns { satisfied: 0, runs: 0, worst: None }.confidence_95(), [0.0, 1.0]);
@@ -220,8 +221,8 @@ fn rig(step: &str) -> String {
 fn a_campaign_counts_the_runs_that_satisfy() {
     let of = |step: &str| {
         let runs = RequestedRuns { runs: 20, shard: Shard::default(), effort: Effort::default() };
-        let asked = CampaignRequest { seed: 1, asked: CampaignRuns::All(runs), files: false };
-        let request = Request::Campaign(asked);
+        let requested = CampaignRequest { seed: 1, runs: CampaignRuns::All(runs), files: false };
+        let request = Request::Campaign(requested);
         answer(&rig(step), &request).0
     };
     let loose = of("overshoot_percent = 90\n");
@@ -240,7 +241,7 @@ fn a_campaign_counts_the_runs_that_satisfy() {
 /// The nonlinear rig is driven by the required step, and every run is compared with the
 /// requirement.
 #[test]
-fn every_run_is_held_against_the_required_step() {
+fn every_run_is_compared_with_the_required_step() {
     let request = Request::Verify { proof: false, on_machine: true };
     let of = |step: &str| answer(&rig(step), &request).0;
     for (most_s, verdict) in [(30.0, "satisfies"), (1e-4, "misses")] {
@@ -255,7 +256,7 @@ fn every_run_is_held_against_the_required_step() {
             assert_eq!(run["reference_n"], serde_json::json!([100.0, 400.0]));
             assert_eq!(run["requirements"][0]["verdict"], verdict);
             let worst = number(run, "machine.settling_time_s");
-            ask::near(number(&run["requirements"][0], "settling_time_s"), worst, 1e-12);
+            near(number(&run["requirements"][0], "settling_time_s"), worst, 1e-12);
         }
         // a step of another size is not the required one
         let largest = runs.iter().filter(|run| run["step"] == "largest_unsaturated");
@@ -266,7 +267,7 @@ fn every_run_is_held_against_the_required_step() {
 /// Requirements on every step are tested in both directions, and in the three largest steps of the
 /// scenarios, each pair of references once; a step with its own size is tested only with that.
 #[test]
-fn a_requirement_of_every_step_is_tried_both_ways_and_in_scenarios() {
+fn a_requirement_of_every_step_is_tested_both_ways_and_in_scenarios() {
     let request = Request::Verify { proof: false, on_machine: true };
     let scenario = "[[scenario]]\nname = \"pull\"\nduration = \"2 s\"\nreference = [\
         { at = \"0 s\", force = \"0 N\" }, { at = \"0.5 s\", force = \"-600 N\" }, \
@@ -293,7 +294,7 @@ fn a_requirement_of_every_step_is_tried_both_ways_and_in_scenarios() {
     let sizes: Vec<&str> = runs.iter().map(|(size, _)| size.as_str()).collect();
     assert_eq!(sizes[..2], ["tenth_of_supply_force", "tenth_of_supply_force_reversed"]);
     let [[from, up], [same, down]] = [runs[0].1, runs[1].1];
-    ask::near(up - from, from - down, 1e-12);
+    near(up - from, from - down, 1e-12);
     let scenarios = runs.iter().filter(|(size, _)| size == "scenario").map(|(_, ends)| *ends);
     let largest = vec![[0.0, 4000.0], [0.0, -600.0], [0.0, 150.0]];
     assert_eq!((from, scenarios.collect::<Vec<[f64; 2]>>()), (same, largest));
@@ -306,7 +307,7 @@ fn a_requirement_of_every_step_is_tried_both_ways_and_in_scenarios() {
     let required: Vec<[f64; 2]> =
         from.iter().filter(|(size, _)| size == "required").map(|(_, ends)| *ends).collect();
     let [one, other] = required[..] else { panic!("{from:?}") };
-    ask::near(one[1] - 100.0, 100.0 - other[1], 1e-12);
+    near(one[1] - 100.0, 100.0 - other[1], 1e-12);
 }
 
 /// Corners of the box are driven if all other runs satisfy the requirement, and the worst of them
@@ -329,8 +330,8 @@ fn the_worst_corner_is_that_of_rigs_declared_as_corners() {
          \"cylinder.friction.viscous\" = {{ nominal = 100, minimum = 90, maximum = 200, points = 2 }}\n",
         rig(&step(30.0))
     );
-    let told = of_corners(&runs(&boxed));
-    assert_eq!(told.len(), 1, "{told:?}");
+    let corners = of_corners(&runs(&boxed));
+    assert_eq!(corners.len(), 1, "{corners:?}");
     let declared = |pressure_bar: f64, viscous: f64| {
         let text = rig(&step(30.0))
             .replace("pressure = \"70 bar\"", &format!("pressure = \"{pressure_bar} bar\""))
@@ -338,7 +339,7 @@ fn the_worst_corner_is_that_of_rigs_declared_as_corners() {
         number(&runs(&text)[0]["requirements"][0], "settling_time_s")
     };
     let all = ends[0].into_iter().flat_map(|bar| ends[1].map(|viscous| declared(bar, viscous)));
-    ask::near(number(&told[0]["requirements"][0], "settling_time_s"), all.fold(0.0, f64::max), 1e-4);
+    near(number(&corners[0]["requirements"][0], "settling_time_s"), all.fold(0.0, f64::max), 1e-4);
     // one run that misses is sufficient evidence
     let missed = boxed.replace("settling_time = 30\n", "settling_time = 0.0001\n");
     assert!(of_corners(&runs(&missed)).is_empty());
@@ -346,7 +347,7 @@ fn the_worst_corner_is_that_of_rigs_declared_as_corners() {
 
 /// A scenario is compared with the requirement too: the worst of its steps is that of its events.
 #[test]
-fn a_simulated_scenario_is_held_against_what_is_required() {
+fn a_simulated_scenario_is_compared_with_its_requirement() {
     let of = |step: &str| {
         let (found, text) = answer(&rig(step), &Request::Simulate(Default::default()));
         let run = &found["scenarios"][0];
@@ -357,7 +358,7 @@ fn a_simulated_scenario_is_held_against_what_is_required() {
     assert!(text.contains("The run satisfies what specification "), "{text}");
     let steps = events.as_array().unwrap().iter().filter(|event| event["kind"] == "reference_step");
     let worst = steps.map(|event| number(event, "metrics.overshoot_percent")).fold(0.0, f64::max);
-    ask::near(number(&loose, "overshoot_percent"), worst, 1e-12);
+    near(number(&loose, "overshoot_percent"), worst, 1e-12);
     let (tight, _, text) = of("rise_time = \"1 us\"\n");
     assert_eq!(tight["verdict"], "misses");
     assert!(text.contains("The run misses what specification "), "{text}");
@@ -391,7 +392,7 @@ fn the_peak_of_a_fast_swing_is_not_missed() {
                 settling_band_percent = 2\n";
     let (object, words) = verify(&format!("{plant}{step}"));
     let peak = (-std::f64::consts::PI * 0.1 / 0.99_f64.sqrt()).exp();
-    ask::near(number(&object["specifications"][0], "worst_overshoot_percent"), 100.0 * peak, 1e-3);
+    near(number(&object["specifications"][0], "worst_overshoot_percent"), 100.0 * peak, 1e-3);
     assert_eq!(object["verdict"], "met", "{words}");
 }
 
@@ -399,7 +400,7 @@ fn the_peak_of_a_fast_swing_is_not_missed() {
 /// 1 % of overshoot lead to 1.8 %, and to a step that settles sooner than required. The design that
 /// is written satisfies its step when it is verified separately.
 #[test]
-fn steps_lead_where_limits_of_tracking_do_not() {
+fn steps_lead_the_design_without_limits_of_tracking() {
     let text = "schema = 1\ntitle = \"steps\"\n[plant]\nnumerator = \"k*a\"\ndenominator = \"(s + 0.5)*(s + a)\"\n\
                 [uncertainty]\nk = { nominal = 1, minimum = 1, maximum = 6, spacing = \"log\" }\n\
                 a = { nominal = 8, minimum = 5, maximum = 10 }\n\
@@ -446,8 +447,8 @@ fn of_its_own(object: &Value) {
         (feedback / (1.0 + feedback * 8.0 / ((s + 0.5) * (s + 8.0)))).norm_sqr().sqrt()
     };
     let largest = (-100..200).map(noise_gain).fold(0.0, f64::max);
-    let told = number(taken, "compared_db");
-    assert!((told - 20.0 * largest.log10()).abs() < 0.05, "{told} {largest}");
+    let compared = number(taken, "compared_db");
+    assert!((compared - 20.0 * largest.log10()).abs() < 0.05, "{compared} {largest}");
 }
 
 /// The sum of the poles of the closed loop is that of the plant, -20 rad/s, for every gain, so that
@@ -457,7 +458,7 @@ fn of_its_own(object: &Value) {
 ///
 /// ORIGIN: analytic.
 #[test]
-fn a_step_that_no_gain_satisfies_is_answered() {
+fn a_step_that_no_gain_satisfies_is_reported() {
     for band_percent in [2.0, 1e-5] {
         let text = format!(
             "schema = 1\ntitle = \"slow\"\n[plant]\nnumerator = \"4000\"\ndenominator = \"s^3 + 20*s^2 + 400*s\"\n\

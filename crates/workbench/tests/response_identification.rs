@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
 
-use crate::ask;
+use crate::run_command;
 use num_complex::Complex64;
 use phea_dynamics::portable::{exp_complex, magnitude};
 use phea_dynamics::random::{normal, stream};
@@ -83,8 +83,8 @@ fn identified(
 ) -> Result<Answer, IdentifyError> {
     let source = Memory::default().with("bench/shaken.csv", table);
     let files = vec!["bench/shaken.csv".to_string()];
-    let asked = ResponseRequest { files, settings: *settings, figures: false };
-    response_watched(&source, loaded, &asked, &mut |_| true)
+    let request = ResponseRequest { files, settings: *settings, figures: false };
+    response_watched(&source, loaded, &request, &mut |_| true)
 }
 
 fn member(answer: &Answer) -> Value {
@@ -181,7 +181,7 @@ fn remainder(frequency: f64, pole: f64) -> f64 {
 
 /// The complete path: the identification gives a family that `verify` audits.
 #[test]
-fn what_is_identified_is_a_family_that_verify_audits() {
+fn an_identified_response_is_a_family_that_verify_audits() {
     // ten periods of 0.2 s of lines 1, 2, 4, 9 through 5/(0.05 s + 1), and some more
     let times: Vec<f64> = (0..2000).map(|n| f64::from(n) * 1e-3).collect();
     let plant = |w: f64, gain: f64| gain / Complex64::new(1.0, 0.05 * w);
@@ -199,9 +199,9 @@ fn what_is_identified_is_a_family_that_verify_audits() {
         table("time_s,input,output", [&times, &inputs, &outputs])
     };
     let files = vec!["a/run.csv".to_string(), "b/run.csv".to_string()];
-    let asked = ResponseRequest { files, settings: ResponseSettings::default(), figures: true };
+    let request = ResponseRequest { files, settings: ResponseSettings::default(), figures: true };
     let source = Memory::default().with("a/run.csv", shaken(5.0)).with("b/run.csv", shaken(8.0));
-    let answer = response_watched(&source, None, &asked, &mut |_| true).unwrap();
+    let answer = response_watched(&source, None, &request, &mut |_| true).unwrap();
     let names: Vec<&str> = answer.files.iter().map(|file| file.name.as_str()).collect();
     assert_eq!(names[..3], ["run.response.csv", "run-2.response.csv", "measured.toml"]);
     assert_eq!(names.len(), 5, "a picture of each: {names:?}");
@@ -237,7 +237,7 @@ fn what_is_identified_is_a_family_that_verify_audits() {
 
 /// Frequencies at which noise hides the output are incoherent, and are listed with the reason.
 #[test]
-fn what_noise_hides_is_left_out_with_the_reason() {
+fn frequencies_hidden_by_noise_are_left_out_with_the_reason() {
     let mut state = stream(3, 0);
     let times: Vec<f64> = (0..4096).map(|n| f64::from(n) * 2e-3).collect();
     let inputs: Vec<f64> = times.iter().map(|_| normal(&mut state)).collect();
@@ -259,7 +259,7 @@ fn what_noise_hides_is_left_out_with_the_reason() {
 
 #[track_caller]
 fn refused(text: &str, settings: &ResponseSettings, expected: &[&str]) {
-    ask::refused(identified(text, None, settings), expected);
+    run_command::refused(identified(text, None, settings), expected);
 }
 
 #[test]
@@ -325,7 +325,7 @@ fn with_reference([times, references, inputs, outputs]: &[Vec<f64>; 4]) -> Strin
 
 /// A closed loop is rejected without its reference, and with it gives the plant instead of -1/C.
 #[test]
-fn a_closed_loop_shows_its_plant_by_the_reference_alone() {
+fn a_closed_loop_identifies_its_plant_from_the_reference() {
     let usual = ResponseSettings::default();
     let signals = closed_loop(20_000, 60.0);
     let [times, _, inputs, outputs] = &signals;
@@ -363,10 +363,10 @@ fn the_project_may_state_the_loop() {
             format!("{BENCHMARK}\n[[identify.response]]\nfile = \"shaken.csv\"\nloop = \"{word}\"\n");
         let source = Memory::default().with("rig.toml", project).with("shaken.csv", text.as_str());
         let loaded = project::read(&source, "rig.toml", &[], &[]).unwrap_or_else(|report| panic!("{report}"));
-        let asked = ResponseRequest::default();
-        response_watched(&source, Some(&loaded), &asked, &mut |_| true)
+        let request = ResponseRequest::default();
+        response_watched(&source, Some(&loaded), &request, &mut |_| true)
     };
-    ask::refused(stated("closed"), &["no column says what moved it"]);
+    run_command::refused(stated("closed"), &["no column says what moved it"]);
     assert_eq!(member(&stated("open").unwrap())["method"], "local_polynomials");
 }
 
@@ -384,7 +384,7 @@ fn by_controller(signals: &[Vec<f64>; 4], controller: &str) -> Result<Answer, Id
 
 /// A controller that is a gain reconstructs the reference that was not recorded.
 #[test]
-fn a_declared_controller_takes_the_place_of_the_reference() {
+fn a_declared_controller_replaces_the_reference() {
     let law =
         |gain: f64| format!("elements = [{{ kind = \"gain\", value = {gain} }}]\nsample_time = \"1 ms\"");
     let signals = closed_loop(20_000, 300.0);
@@ -400,12 +400,13 @@ fn a_declared_controller_takes_the_place_of_the_reference() {
     }
     for moves in [0.0, 20.0] {
         let half = by_controller(&closed_loop(20_000, moves), &law(0.002));
-        ask::refused(half, &["[controller] was not that of the test", "y + u/C"]);
+        run_command::refused(half, &["[controller] was not that of the test", "y + u/C"]);
     }
     let still = closed_loop(20_000, 0.0);
-    ask::refused(by_controller(&still, &law(0.004)), &["nothing moved the loop from outside"]);
+    run_command::refused(by_controller(&still, &law(0.004)), &["nothing moved the loop from outside"]);
     let limited = format!("{}\nsaturation = \"1 V\"", law(0.004));
-    ask::refused(by_controller(&signals, &limited), &["`command` is at the limit of [controller] in"]);
+    let at_limit = ["`command` is at the limit of [controller] in"];
+    run_command::refused(by_controller(&signals, &limited), &at_limit);
 }
 
 /// A controller that integrates, acts in every fourth row and two rows late: the discs contain the
@@ -448,7 +449,7 @@ fn a_declared_controller_has_its_samples_and_its_delay() {
 
 /// Rows that are early and late throughout are resampled to even ones, and this is reported.
 #[test]
-fn uneven_rows_are_moved_and_said_to_be() {
+fn uneven_rows_are_resampled_and_reported() {
     let mut state = stream(8, 0);
     let plant = |w: f64| 5.0 / Complex64::new(1.0, 0.05 * w);
     let lines: Vec<f64> =
@@ -481,7 +482,7 @@ fn uneven_rows_are_moved_and_said_to_be() {
 
 /// A square that is added to the output falls on even lines of an odd multisine.
 #[test]
-fn what_is_not_linear_is_warned_of() {
+fn nonlinear_responses_have_a_warning() {
     let angle = |row: i32, line: f64| 2.0 * std::f64::consts::PI * f64::from(row % 500) / 500.0 * line;
     let times: Vec<f64> = (0..3000).map(|row| f64::from(row) * 1e-3).collect();
     let inputs: Vec<f64> =

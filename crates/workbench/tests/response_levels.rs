@@ -161,7 +161,7 @@ fn the_answer_has_the_describing_function_of_a_saturation() {
         let both = [of("large"), of("small")].concat();
         format!("schema = 1\n[plant]\nnumerator = \"1\"\ndenominator = \"s + 1\"\n{both}")
     };
-    let answered = |amplitudes: [f64; 2]| {
+    let output = |amplitudes: [f64; 2]| {
         let [large, small] = amplitudes;
         let source = Memory::default()
             .with("rig.toml", project("middle"))
@@ -173,7 +173,7 @@ fn the_answer_has_the_describing_function_of_a_saturation() {
         let json: Value = serde_json::from_str(&answer.json).unwrap();
         (answer.text, json["response"]["comparisons"][0].clone())
     };
-    let (text, found) = answered([2.0, 0.5]);
+    let (text, found) = output([2.0, 0.5]);
     assert_eq!(found["files"], serde_json::json!(["small.csv", "large.csv"]));
     assert_eq!(found["differences"], 1);
     let one = &found["frequencies"][0];
@@ -183,7 +183,7 @@ fn the_answer_has_the_describing_function_of_a_saturation() {
     for part in ["not linear between these amplitudes", "-4.3", "at 5.00 Hz", "members of the family"] {
         assert!(text.contains(part), "{part}: {text}");
     }
-    let (text, found) = answered([0.8, 0.5]);
+    let (text, found) = output([0.8, 0.5]);
     assert_eq!(found["differences"], 0);
     assert!(text.contains("a linear plant explains both"), "{text}");
 }

@@ -24,9 +24,9 @@ fn still(text: &str, reference: &str) -> String {
     let before = text.split("[[scenario]]").next().unwrap();
     let settings = text.find("[simulation]").map_or("", |place| &text[place..]);
     let own = settings.split("[[").next().unwrap();
-    let kept = if before.contains("[simulation]") { "" } else { own };
+    let table = if before.contains("[simulation]") { "" } else { own };
     format!(
-        "{before}\n{kept}\n[[scenario]]\nname = \"still\"\nduration = \"1 s\"\noutput_step = \"10 ms\"\n{reference}\n"
+        "{before}\n{table}\n[[scenario]]\nname = \"still\"\nduration = \"1 s\"\noutput_step = \"10 ms\"\n{reference}\n"
     )
 }
 
@@ -203,7 +203,7 @@ fn a_proportional_controller_rests_with_its_error() {
 }
 
 #[test]
-fn where_there_is_no_rest_it_is_said_why() {
+fn an_absent_rest_has_its_reason() {
     // more than the supply can provide
     let text = still(BENCHMARK, "reference = [{ at = 0, force = \"50 kN\" }]");
     let error = run(&text, &[]).unwrap_err();

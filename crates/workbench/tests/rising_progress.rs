@@ -4,26 +4,26 @@
 
 use phea_workbench::command::{self, Progress, Request};
 
-use crate::ask::{self, HOSE};
+use crate::run_command::{self, HOSE};
 
 #[track_caller]
-fn told(text: &str, settings: &[&str], request: &Request) -> Vec<Progress> {
-    let loaded = ask::load(text, settings, &[]);
-    let mut told = Vec::new();
+fn reports(text: &str, settings: &[&str], request: &Request) -> Vec<Progress> {
+    let loaded = run_command::load(text, settings, &[]);
+    let mut reports = Vec::new();
     let mut watch = |progress: Progress| {
-        told.push(progress);
+        reports.push(progress);
         true
     };
-    command::answer_into(&ask::source(text), &loaded, &[], request, None, &mut watch).unwrap();
-    assert!(told.is_sorted_by(|one, other| one.share <= other.share), "{request:?}");
-    assert!(told.iter().all(|one| !one.stage.is_empty() && (0.0..=1.0).contains(&one.share)));
-    told
+    command::answer_into(&run_command::source(text), &loaded, &[], request, None, &mut watch).unwrap();
+    assert!(reports.is_sorted_by(|one, other| one.share <= other.share), "{request:?}");
+    assert!(reports.iter().all(|one| !one.stage.is_empty() && (0.0..=1.0).contains(&one.share)));
+    reports
 }
 
 #[test]
 fn the_audit_leaves_room_for_the_machine() {
-    let told = told(HOSE, &[], &Request::Verify { proof: false, on_machine: true });
-    let first = told.iter().find(|one| one.stage == "nonlinear simulation").unwrap();
+    let reports = reports(HOSE, &[], &Request::Verify { proof: false, on_machine: true });
+    let first = reports.iter().find(|one| one.stage == "nonlinear simulation").unwrap();
     assert!((0.4..0.6).contains(&first.share), "{first:?}");
-    assert_eq!(told.first().unwrap().stage, "auditing");
+    assert_eq!(reports.first().unwrap().stage, "auditing");
 }

@@ -9,7 +9,7 @@ use phea_workbench::simulate::{Metrics, ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
-use super::ask::{HOSE, answer, json, load, project_of};
+use super::run_command::{HOSE, answer, json, load, project_of};
 
 const CONTINUOUS: &str = include_str!("../../../examples/benchmark/closed_loop.toml");
 const VANE: &str = include_str!("../../../examples/rotary/vane.toml");
@@ -52,11 +52,11 @@ fn a_repeated_run_is_that_of_the_smallest_tolerance_in_every_command() {
         "{CONTINUOUS}\n[campaign.parameters]\n\"supply.tank_pressure\" = {{ minimum = 0, maximum = 1e-3 }}\n"
     );
     let runs = RequestedRuns { runs: 1, shard: Shard::default(), effort: Effort::default() };
-    let request = CampaignRequest { seed: 1, asked: CampaignRuns::All(runs), files: false };
+    let request = CampaignRequest { seed: 1, runs: CampaignRuns::All(runs), files: false };
     let table = json(&campaign, &SLOW, &[], &Request::Campaign(request));
     let occurrences = table["occurrences"].as_array().unwrap();
-    let told = |kind: &str| occurrences.iter().any(|one| one["kind"] == kind);
-    assert!(told("repeated") || told("errors_amplified"), "{table}");
+    let occurs = |kind: &str| occurrences.iter().any(|one| one["kind"] == kind);
+    assert!(occurs("repeated") || occurs("errors_amplified"), "{table}");
 }
 
 /// Numbers of a window that neither the rows nor the end of the run decide.
@@ -147,9 +147,9 @@ fn a_run_that_begins_some_samples_later_is_the_same() {
 
 /// The text of a comparison contains the statement of a single run on its repetition.
 #[test]
-fn a_comparison_says_what_a_run_says() {
-    let said = answer(CONTINUOUS, &SLOW, &[], &Request::Simulate(SimulateRequest::default())).text;
-    let sentence = said.lines().find(|line| line.contains("of the last two passes")).unwrap().trim();
+fn a_comparison_agrees_with_its_runs() {
+    let output = answer(CONTINUOUS, &SLOW, &[], &Request::Simulate(SimulateRequest::default())).text;
+    let sentence = output.lines().find(|line| line.contains("of the last two passes")).unwrap().trim();
     let projects = [(); 2].map(|()| load(CONTINUOUS, &SLOW, &[]));
     let compared = command::compare_watched(&Memory::default(), &projects, false, &mut |_| true).unwrap();
     assert!(compared.text.contains(sentence), "{sentence}\n{}", compared.text);

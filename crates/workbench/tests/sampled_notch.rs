@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::{answer, json, load, near};
+use crate::run_command::{answer, json, load, near};
 use phea_dynamics::linear::Discretization;
 use phea_workbench::command::Request;
 use phea_workbench::setup::Setup;
@@ -25,13 +25,13 @@ elements = [
   { kind = "notch", frequency = "1000 rad/s", damping_ratio = 0.6, numerator_damping_ratio = 0.01 },
 ]
 "#;
-const KEPT: &str = "controller.discretization_frequency=\"1000 rad/s\"";
+const PRESERVED: &str = "controller.discretization_frequency=\"1000 rad/s\"";
 const VERIFY: Request = Request::Verify { proof: false, on_machine: false };
 
 /// Tustin's rule moves w to 2/T atan(w T/2), which makes the loop unstable and is reported; with
 /// the frequency stated, or matched roots, it is stable and nothing is reported.
 #[test]
-fn a_moved_notch_is_reported_and_can_be_kept() {
+fn a_moved_notch_is_reported_and_can_be_preserved() {
     let moved = answer(LOOP, &[], &[], &VERIFY);
     // ORIGIN: analytic, 1000 atan(1)
     assert!(
@@ -41,9 +41,9 @@ fn a_moved_notch_is_reported_and_can_be_kept() {
     );
     assert!(moved.text.contains("discretization_frequency = \"1000 rad/s\""));
     assert_eq!(json(LOOP, &[], &[], &VERIFY)["stable"], false);
-    for kept in [KEPT, "controller.discretization=\"matched\""] {
-        assert!(!answer(LOOP, &[kept], &[], &VERIFY).text.contains("moves the zero"), "{kept}");
-        assert_eq!(json(LOOP, &[kept], &[], &VERIFY)["stable"], true, "{kept}");
+    for preserved in [PRESERVED, "controller.discretization=\"matched\""] {
+        assert!(!answer(LOOP, &[preserved], &[], &VERIFY).text.contains("moves the zero"), "{preserved}");
+        assert_eq!(json(LOOP, &[preserved], &[], &VERIFY)["stable"], true, "{preserved}");
     }
     // nothing moves by more than two percent if the sample time is short compared with the notch:
     // (w T/2)^2/3
@@ -57,7 +57,7 @@ fn a_moved_notch_is_reported_and_can_be_kept() {
 /// Commands use the sampled controller, whose response is that of the continuous one at the stated
 /// frequency.
 #[test]
-fn the_response_is_kept_at_the_stated_frequency() {
+fn the_response_is_preserved_at_the_stated_frequency() {
     for frequency in [200.0, 777.0, 1500.0] {
         let key = format!("controller.discretization_frequency={frequency}");
         let loaded = load(LOOP, &[&key], &[]);
@@ -75,13 +75,13 @@ fn the_response_is_kept_at_the_stated_frequency() {
 
 /// A stated frequency that cannot be preserved is rejected, or reported to have no effect.
 #[test]
-fn a_frequency_that_cannot_be_kept() {
+fn a_frequency_that_cannot_be_preserved() {
     let read = |settings: &[&str]| {
         let settings: Vec<String> = settings.iter().map(|one| one.to_string()).collect();
-        phea_workbench::project::read(&crate::ask::source(LOOP), "rig.toml", &settings, &[])
+        phea_workbench::project::read(&crate::run_command::source(LOOP), "rig.toml", &settings, &[])
     };
     let beyond = read(&["controller.discretization_frequency=1600"]).unwrap_err().to_string();
     assert!(beyond.contains("half the sampling frequency"), "{beyond}");
-    let other = read(&[KEPT, "controller.discretization=\"matched\""]).unwrap_err().to_string();
+    let other = read(&[PRESERVED, "controller.discretization=\"matched\""]).unwrap_err().to_string();
     assert!(other.contains("discretization = \"tustin\""), "{other}");
 }

@@ -124,7 +124,7 @@ fn forms_of_one_reference_give_one_run() {
 
 /// Points on a straight line are a ramp that holds its end.
 #[test]
-fn a_recorded_reference_is_followed_like_what_was_recorded() {
+fn a_recorded_reference_gives_its_recorded_run() {
     let source = Memory::default()
         .with("ramp.csv", "time_ms,force_kn\n1000,0\n1040,0.2\n1190,0.95\n1200,1\n1300,1\n1400,1\n");
     let of = |reference: &str| {
@@ -185,7 +185,7 @@ fn a_command_played_back_gives_the_force_it_was_recorded_with() {
 /// Neither the limit of a controller nor its samples act on a stated command, and the answer
 /// reports this.
 #[test]
-fn an_open_loop_does_not_know_its_controller() {
+fn an_open_loop_ignores_its_controller() {
     let scenario =
         format!("duration = \"0.2 s\"\n{START}\ncommand = {{ at = \"0.05 s\", voltage = \"3 V\" }}");
     let text = rig(&scenario);
@@ -218,32 +218,32 @@ const SPRUNG: &str = "[load]\nmodel = \"spring_mass_damper\"\nmass = \"20 kg\"\n
 
 /// Equilibrium of a load on a spring is where F_e + F_x holds it, and the loop maintains F_e.
 #[test]
-fn a_force_from_outside_moves_the_load_by_its_spring() {
+fn an_external_force_moves_the_load_by_its_spring() {
     let of = |outside: &str| {
         let text = rig(&format!(
             "duration = \"4 s\"\n{START}\nreference = {{ at = \"0.1 s\", force = \"1 kN\" }}\n{outside}"
         ));
         run_with(&text.replace("[controller]", &format!("{SPRUNG}[controller]")), &Memory::default())
     };
-    let alone = of("");
+    let unpushed = of("");
     let pushed =
         of("external_force = { kind = \"ramp\", start = \"1 s\", duration = \"0.2 s\", force = \"800 N\" }");
     let end = |run: &ScenarioRun, signal: Signal| last(run.record.signal(signal));
     // ORIGIN: analytic, F_x/k = 800/2e6
-    let moved = end(&pushed, Signal::LoadPosition) - end(&alone, Signal::LoadPosition);
+    let moved = end(&pushed, Signal::LoadPosition) - end(&unpushed, Signal::LoadPosition);
     assert!((moved - 4e-4).abs() < 2e-6, "{moved}");
     assert!(
-        (end(&pushed, Signal::Force) - 1e3).abs() < 2.0 && (end(&alone, Signal::Force) - 1e3).abs() < 2.0
+        (end(&pushed, Signal::Force) - 1e3).abs() < 2.0 && (end(&unpushed, Signal::Force) - 1e3).abs() < 2.0
     );
     assert_eq!(last(pushed.record.signal(Signal::ExternalForce)), 800.0);
-    assert!(alone.record.signal(Signal::ExternalForce).is_empty());
+    assert!(unpushed.record.signal(Signal::ExternalForce).is_empty());
     let (window, metrics) = pushed.windows.last().unwrap();
     assert_eq!((window.cause, window.start_s), (Cause::ExternalForce { about_joint: false }, 1.0));
     assert!(metrics.disturbance_peak_n.unwrap() > 1.0);
     // no effect before it begins
-    let before = row(&alone, 0.9);
+    let before = row(&unpushed, 0.9);
     let known = |run: &ScenarioRun| run.record.signal(Signal::Force)[before];
-    assert!((known(&alone) - known(&pushed)).abs() < 0.1, "{} {}", known(&alone), known(&pushed));
+    assert!((known(&unpushed) - known(&pushed)).abs() < 0.1, "{} {}", known(&unpushed), known(&pushed));
 }
 
 #[test]
@@ -286,9 +286,10 @@ fn halves_are_the_whole(change: impl Fn(String) -> String + Copy, tolerance_n: f
     let [one, other] = continued(&first, second, change);
     let forces = whole.record.signal(Signal::Force);
     let half = row(&whole, 0.5);
-    let looks = |run: &ScenarioRun| run.record.signal(Signal::Force);
+    let forces_of = |run: &ScenarioRun| run.record.signal(Signal::Force);
     // steps that end at other breaks than those of the whole run
-    let first = forces.iter().zip(looks(&one)).map(|(whole, half)| (whole - half).abs()).fold(0.0, f64::max);
+    let first =
+        forces.iter().zip(forces_of(&one)).map(|(whole, half)| (whole - half).abs()).fold(0.0, f64::max);
     assert!(first < tolerance_n, "{first}");
     let apart = |signal: Signal| {
         let (whole, other) = (whole.record.signal(signal), other.record.signal(signal));
@@ -307,7 +308,7 @@ fn halves_are_the_whole(change: impl Fn(String) -> String + Copy, tolerance_n: f
 }
 
 #[test]
-fn a_saved_state_goes_on_as_if_nothing_had_been() {
+fn a_saved_state_continues_to_the_same_bytes() {
     // a tolerance of 1e-8 of 1.1 kN and more, a hundred steps
     let tight = |text: String| text.replace("tolerance = 1e-6", "tolerance = 1e-8");
     halves_are_the_whole(tight, 0.02);
@@ -316,7 +317,7 @@ fn a_saved_state_goes_on_as_if_nothing_had_been() {
 /// A setting that moves across the end of a run continues from its value, and is rejected
 /// elsewhere.
 #[test]
-fn a_setting_goes_on_from_where_it_was() {
+fn a_setting_continues_from_its_saved_value() {
     for part in [
         "kind = \"gas\", gas_volume = \"6 mL\"",
         "kind = \"valve\", flow = \"20 L/min\", pressure_drop = \"5 bar\", transition_pressure = \"0.5 bar\"",
@@ -373,7 +374,7 @@ fn a_setting_goes_on_from_where_it_was() {
 }
 
 #[test]
-fn a_sampled_controller_goes_on_with_what_it_knows() {
+fn a_sampled_controller_continues_with_its_state() {
     let sampled = |text: String| {
         text.replace("tolerance = 1e-6", "tolerance = 1e-8").replace(
             "saturation = \"10 V\"",
@@ -387,7 +388,7 @@ fn a_sampled_controller_goes_on_with_what_it_knows() {
 }
 
 #[test]
-fn a_state_is_refused_where_it_does_not_fit_and_not_written_where_it_would_not_be_whole() {
+fn mismatched_states_are_refused_and_incomplete_ones_not_written() {
     let first = format!("duration = \"0.01 s\"\n{START}\nreference = []");
     let loaded = load(&rig(&first), &Memory::default());
     let answer =
@@ -446,8 +447,8 @@ fn an_expansion_is_carried_on_beyond_its_pressure_with_a_warning() {
         project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"))
     };
     let warned = |loaded: &Loaded| {
-        let told = loaded.warnings.iter().filter(|found| found.message.contains("expansion"));
-        told.map(|found| found.message.clone()).collect::<Vec<_>>()
+        let expansion_warnings = loaded.warnings.iter().filter(|found| found.message.contains("expansion"));
+        expansion_warnings.map(|found| found.message.clone()).collect::<Vec<_>>()
     };
     let loaded = read(&settings);
     let words = "the expansion of the hose is stated at 70 bar, and the supply has 100 bar: in between it is carried on along its slope";

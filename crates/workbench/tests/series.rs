@@ -18,7 +18,7 @@ use phea_workbench::sizing::sizing_problem;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
-use super::ask::{answer, project_of};
+use super::run_command::{answer, project_of};
 
 const SERIES: &str = include_str!("../../../examples/ybitu/series.toml");
 const STIFFENING: &str = include_str!("../../project/tests/valid/series.toml");
@@ -50,14 +50,17 @@ fn the_family_is_the_rig_at_its_nominal() {
             let nominal: Vec<f64> = family.plant().parameters().iter().map(|one| one.nominal).collect();
             let names: Vec<&str> = family.plant().parameters().iter().map(|one| one.name.as_str()).collect();
             assert!(names.contains(&"series.stiffness"), "{names:?}");
-            let [own, told] = [rig.plant.coefficients(), family.plant().coefficients(&nominal).unwrap()];
+            let [own, of_family] = [rig.plant.coefficients(), family.plant().coefficients(&nominal).unwrap()];
             for frequency in [0.1, 10.0, 400.0, 1300.0, 6000.0] {
-                let paths = [&own, &told].map(|paths| {
+                let paths = [&own, &of_family].map(|paths| {
                     let ground = paths.disturbance.as_ref().unwrap().at_frequency(frequency);
                     [paths.command.at_frequency(frequency), ground]
                 });
-                for (own, told) in paths[0].into_iter().zip(paths[1]) {
-                    assert!((own / told - 1.0).norm_sqr() < 1e-20, "{settings:?} {load:?}: {own} {told}");
+                for (own, of_family) in paths[0].into_iter().zip(paths[1]) {
+                    assert!(
+                        (own / of_family - 1.0).norm_sqr() < 1e-20,
+                        "{settings:?} {load:?}: {own} {of_family}"
+                    );
                 }
             }
         }
@@ -86,7 +89,7 @@ fn its_numbers_may_be_uncertain() {
 /// Infinite stiffness: verdict's plant, impedance and the reduced models are those of the rig
 /// without a spring.
 #[test]
-fn a_rigid_spring_is_none() {
+fn a_rigid_spring_has_no_effect() {
     let text = without_series();
     let plain = linearized(&project_of(&text, &[]));
     let rigid = linearized(&project_of(&text, &["series={ stiffness = 1e22 }"]));
@@ -108,8 +111,8 @@ fn a_rigid_spring_is_none() {
 fn without_series() -> String {
     let (before, rest) = SERIES.split_once("[series]").unwrap();
     let (_, after) = rest.split_once("[uncertainty]").unwrap();
-    let kept: Vec<&str> = after.lines().filter(|line| !line.starts_with("\"series.")).collect();
-    format!("{before}[uncertainty]{}", kept.join("\n"))
+    let others: Vec<&str> = after.lines().filter(|line| !line.starts_with("\"series.")).collect();
+    format!("{before}[uncertainty]{}", others.join("\n"))
 }
 
 /// K_eq of oil, sensor and spring in series, where it is printed and where it is used.
@@ -182,9 +185,9 @@ fn the_machine_follows_its_linear_loop() {
     let small = "scenario=[{ name = \"small\", duration = \"1.5 s\", reference = [{ at = \"0.2 s\", force = \"50 N\" }] }]";
     for settings in [&[][..], &["series.force_from=deflection"]] {
         let settings = [settings, &[viscous, small]].concat();
-        let said = answer(SERIES, &settings, &[], &Request::Verify { proof: false, on_machine: true });
-        let object: Value = serde_json::from_str(&said.json).unwrap();
-        assert_eq!(object["stable"], Value::from(true), "{}", said.text);
+        let output = answer(SERIES, &settings, &[], &Request::Verify { proof: false, on_machine: true });
+        let object: Value = serde_json::from_str(&output.json).unwrap();
+        assert_eq!(object["stable"], Value::from(true), "{}", output.text);
         let run = &object["machine"]["runs"][0];
         assert_eq!(run["agrees"], Value::from(true), "{run}");
     }
@@ -200,28 +203,32 @@ fn lines_in_motion_and_the_spring_go_together() {
     let [own, lumped] = [rig.response(2.0), rig.plant.coefficients().command.at_frequency(2.0)];
     assert!((own / lumped - 1.0).norm_sqr() < 1e-5, "{own} {lumped}");
     let Family::Uncertain(family) = family(&setup, &Memory::default()).unwrap() else { panic!("a box") };
-    let told = family.plant().response(&family.plant().nominal(), 800.0).unwrap();
+    let of_family = family.plant().response(&family.plant().nominal(), 800.0).unwrap();
     let own = rig.response(800.0);
-    assert!((told / own - 1.0).norm_sqr() < 1e-18, "{told} {own}");
+    assert!((of_family / own - 1.0).norm_sqr() < 1e-18, "{of_family} {own}");
 }
 
 /// A progressive spring is reported before the verdict; effects that the reduced models leave out
 /// are reported with them.
 #[test]
-fn what_is_not_counted_is_told() {
+fn uncounted_effects_are_reported() {
     let spring =
         "series={ stiffness = \"2.24 MN/m\", damping = 500, travel = \"5.5 mm\", progression = 0.2 }";
-    let said = answer(SERIES, &[spring], &[], &Request::Verify { proof: false, on_machine: false });
-    assert!(said.text.contains("series.progression is counted for small motions"), "{}", said.text);
-    let said = answer(SERIES, &[], &[], &Request::Linearize { sweep: None });
-    assert!(said.text.contains("series.damping and series.mass are counted in the plant"), "{}", said.text);
+    let output = answer(SERIES, &[spring], &[], &Request::Verify { proof: false, on_machine: false });
+    assert!(output.text.contains("series.progression is counted for small motions"), "{}", output.text);
+    let output = answer(SERIES, &[], &[], &Request::Linearize { sweep: None });
+    assert!(
+        output.text.contains("series.damping and series.mass are counted in the plant"),
+        "{}",
+        output.text
+    );
 }
 
 /// The force of a spring that stiffens, or that reaches its end, is not a multiple of a state: the
 /// metrics of a run are those of its rows nevertheless.
 #[test]
 fn metrics_are_those_of_the_rows() {
-    let alone = |text: &str| {
+    let without_spring = |text: &str| {
         text.replace("damping = \"300 N.s/m\"\nmass = \"1.5 kg\"\n", "").replace("stop_damping = 0.3\n", "")
     };
     let sensed = |text: &str| text.replace("force_from = \"deflection\"\n", "");
@@ -232,9 +239,9 @@ fn metrics_are_those_of_the_rows() {
     for (text, settings) in [
         (plain.clone(), vec![]),
         (even(&plain), vec!["series.travel=5.6 mm"]),
-        (alone(&plain), vec!["series.progression=1"]),
-        (even(&sensed(&alone(&plain))), vec!["series.travel=5.6 mm"]),
-        (sensed(&alone(&plain)), vec!["series.progression=1"]),
+        (without_spring(&plain), vec!["series.progression=1"]),
+        (even(&sensed(&without_spring(&plain))), vec!["series.travel=5.6 mm"]),
+        (sensed(&without_spring(&plain)), vec!["series.progression=1"]),
         (sensed(&plain), vec!["series.progression=1"]),
     ] {
         let project = project_of(&text, &settings);

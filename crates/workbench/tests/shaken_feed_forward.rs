@@ -52,7 +52,7 @@ fn check(settings: &[&str], hertz: &[u32]) {
 }
 
 #[test]
-fn beside_a_prescribed_load_it_is_a_path_of_its_motion() {
+fn with_a_prescribed_load_it_is_a_path_of_its_motion() {
     let sampled = "controller.sample_time=1 ms";
     check(&[sampled], &[1, 7, 40, 150]);
     check(&[sampled, "controller.delay=1.4 ms", SENSOR, GENTLE], &[7, 40]);
@@ -62,14 +62,14 @@ fn beside_a_prescribed_load_it_is_a_path_of_its_motion() {
 }
 
 #[test]
-fn what_is_shown_of_a_prescribed_velocity_is_fed_forward() {
+fn the_reading_of_a_prescribed_velocity_is_fed_forward() {
     check_shown(&[GENTLE], 20);
     check_shown(&["controller.delay=2 ms", WAVES, GENTLE], 20);
     check_shown(&["controller.sample_time=2 ms", "controller.delay=1.4 ms", SENSOR, GENTLE], 20);
 }
 
 #[test]
-fn what_is_shown_of_a_yielding_velocity_is_fed_back() {
+fn the_reading_of_a_yielding_velocity_is_fed_back() {
     check_shown(&[SPRUNG, GENTLE], 20);
     check_shown(&[SPRUNG, "controller.delay=2 ms", GENTLE], 20);
     check_shown(&[SPRUNG, "controller.sample_time=2 ms", "controller.delay=1.4 ms", SENSOR, GENTLE], 20);
@@ -77,7 +77,7 @@ fn what_is_shown_of_a_yielding_velocity_is_fed_back() {
 }
 
 #[test]
-fn of_a_load_that_yields_it_is_fed_back() {
+fn with_a_yielding_load_it_is_fed_back() {
     check(&[SPRUNG, "controller.sample_time=1 ms"], &[1, 7, 20]);
     check(&[SPRUNG, "controller.sample_time=2 ms", "controller.delay=1.4 ms", SENSOR, GENTLE], &[7, 20]);
     check(&[SPRUNG, "controller.sample_time=1 ms", "controller.delay=2 ms", WAVES, GENTLE], &[7, 20]);

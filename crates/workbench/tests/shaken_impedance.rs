@@ -52,21 +52,21 @@ fn check(settings: &[&str], hertz: &[u32]) {
 }
 
 #[test]
-fn beside_a_prescribed_load() {
+fn with_a_prescribed_load() {
     check(&[], &[1, 7, 20]);
     check(&["controller.sample_time=1 ms", "controller.delay=1.4 ms", SENSOR, GENTLE], &[7]);
     check(&["controller.delay=2 ms", WAVES, GENTLE], &[7]);
 }
 
 #[test]
-fn of_a_load_that_yields() {
+fn with_a_yielding_load() {
     check(&[SPRUNG], &[1, 7]);
     check(&[SPRUNG, "controller.sample_time=2 ms", "controller.delay=1.4 ms", SENSOR, GENTLE], &[5]);
     check(&[SPRUNG, "controller.sample_time=1 ms", "controller.delay=2 ms", WAVES, GENTLE], &[7]);
 }
 
 #[test]
-fn beside_a_velocity_that_is_fed_forward() {
+fn with_a_velocity_that_is_fed_forward() {
     let fed = "controller.load_velocity_feed_forward.gain=20";
     check(&[fed], &[7]);
     check(

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{answer, json, try_answer};
+use crate::run_command::{answer, json, try_answer};
 use num_complex::Complex64;
 use phea_dynamics::controller::Timing;
 use phea_dynamics::linear::Discretization;
@@ -60,7 +60,7 @@ const POLYNOMIALS: &str = "[controller]                # given\nnumerator = \"0.
 
 // ORIGIN: analytic
 #[test]
-fn changes_are_made_in_the_order_in_which_they_stand() {
+fn changes_are_made_in_their_order() {
     let changes = [
         (Change::Add, "{ kind = \"pole\", frequency = 200 }"),
         (Change::Add, "{ kind = \"gain\", value = 3 }"),
@@ -83,7 +83,7 @@ fn changes_are_made_in_the_order_in_which_they_stand() {
 /// A file without a change remains as it is, whatever the form of its controller; with a change,
 /// only the lines of the controller differ, and the controller reads back as printed.
 #[test]
-fn everything_else_stays_byte_for_byte() {
+fn everything_else_is_unchanged_byte_for_byte() {
     let lead = (Change::Add, "{ kind = \"lead\", zero_frequency = 5, pole_frequency = 50 }");
     let inline = "controller = { numerator = \"2\", delay = \"1 ms\", denominator = \"s + 9\" }\n";
     let (head, tail) = SERVO.split_once("[plant]").unwrap();
@@ -95,21 +95,21 @@ fn everything_else_stays_byte_for_byte() {
                   # a corner\n[[controller.elements]]\nkind = \"zero\"\nfrequency = \"1 Hz\"\n\n# next\n[prefilter]\n\
                   numerator = \"1\"\ndenominator = \"1\"\n";
     let timed = "[controller]\nsample_time = \"1 ms\" # computer\n\n[controller.quantization]\ncoefficients = \"f32\"\n";
-    let behind = |controller: &str| format!("{SERVO}{controller}");
+    let after_servo = |controller: &str| format!("{SERVO}{controller}");
     let texts = [
-        behind(POLYNOMIALS),
+        after_servo(POLYNOMIALS),
         format!("{head}{inline}[plant]{tail}"),
         format!("{head}{dotted}[plant]{tail}"),
-        behind(factors),
-        behind(timed),
+        after_servo(factors),
+        after_servo(timed),
         format!("{head}controller.sample_time = \"1 ms\"\ncontroller.delay = \"1 ms\"\n[plant]{tail}"),
-        behind(listed),
-        behind(tables),
+        after_servo(listed),
+        after_servo(tables),
         SERVO.to_string(),
         SERVO.trim_end().to_string(),
-        format!("\u{feff}{}", behind(listed).replace('\n', "\r\n")),
-        behind(tables).replace('\n', "\r\n"),
-        behind(POLYNOMIALS).replace('\n', "\r\n"),
+        format!("\u{feff}{}", after_servo(listed).replace('\n', "\r\n")),
+        after_servo(tables).replace('\n', "\r\n"),
+        after_servo(POLYNOMIALS).replace('\n', "\r\n"),
     ];
     for text in texts {
         assert_eq!(shaped(&text, &[]).1, text);
@@ -132,10 +132,10 @@ fn everything_else_stays_byte_for_byte() {
         let bare = saved.replace("\r\n", "");
         assert!(!text.contains('\r') || !bare.contains(['\r', '\n']), "{saved:?}");
         // comments on the law are removed with it
-        let is_kept = |line: &&str| {
+        let is_unchanged = |line: &&str| {
             !line.contains("controller") && !is_controller(line) && !line.trim_start().starts_with('#')
         };
-        for line in text.lines().filter(is_kept) {
+        for line in text.lines().filter(is_unchanged) {
             assert!(saved.contains(line), "{line} is lost in\n{saved}");
         }
     }
@@ -147,7 +147,7 @@ fn is_controller(line: &str) -> bool {
 }
 
 #[test]
-fn comments_stay_with_their_elements() {
+fn comments_remain_with_their_elements() {
     let listed = "[controller]\nelements = [\n    # first\n    { kind = \"gain\", value = 2.50 },   # loud, too\n    \
                   { kind = \"zero\", frequency = \"1 Hz\" }, # corner\n    # the end\n]\ndelay = \"1 ms\" # slow\n";
     let changes =
@@ -178,7 +178,7 @@ fn comments_stay_with_their_elements() {
 }
 
 #[test]
-fn polynomials_become_a_general_element_and_lose_nothing() {
+fn polynomials_become_an_exact_general_element() {
     let saved =
         shaped(&format!("{SERVO}{POLYNOMIALS}"), &[(Change::Pass, "gain through 0 dB at 10 rad/s")]).1;
     let [gain, general] = &elements(&saved)[..] else { panic!("{saved}") };
@@ -217,7 +217,7 @@ fn the_loop_passes_the_wanted_point() {
     for controller in ["", POLYNOMIALS, sampled.as_str()] {
         let project = format!("{SERVO}{controller}");
         let (magnitude, phase) = loop_at(&shaped(&project, &[]).0, 10.0);
-        for (wish, decibels, degrees) in [
+        for (element, decibels, degrees) in [
             ("gain", Some(-6.0), None),
             ("lead", Some(7.0), Some(40.0)),
             ("lag", Some(-7.0), Some(-40.0)),
@@ -232,10 +232,10 @@ fn the_loop_passes_the_wanted_point() {
             ("notch", Some(-12.0), None),
             ("notch with frequency = 4 Hz", Some(-4.0), Some(-30.0)),
         ] {
-            if controller == sampled && wish.starts_with("complex_zeros") {
+            if controller == sampled && element.starts_with("complex_zeros") {
                 continue; // two zeros cannot be sampled with one pole
             }
-            if wish == "zero" && controller == sampled {
+            if element == "zero" && controller == sampled {
                 continue;
             }
             let wanted: Vec<String> = decibels
@@ -243,7 +243,7 @@ fn the_loop_passes_the_wanted_point() {
                 .into_iter()
                 .chain(degrees.map(|change| format!("{} deg", phase + change)))
                 .collect();
-            let text = format!("{wish} through {} at 10 rad/s", wanted.join(", "));
+            let text = format!("{element} through {} at 10 rad/s", wanted.join(", "));
             let (found, _) = shaped(&project, &[(Change::Pass, &text)]);
             let (reached, turned) = loop_at(&found, 10.0);
             if let Some(change) = decibels {
@@ -292,7 +292,7 @@ fn margins_are_those_of_the_worst_plant_the_worst_first() {
 }
 
 #[test]
-fn the_prefilter_is_shaped_by_itself() {
+fn the_prefilter_is_shaped_independently() {
     let project =
         format!("{SERVO}{POLYNOMIALS}\n[prefilter] # soft\nnumerator = \"1\"\ndenominator = \"s + 1\"\n");
     let changes = [(Change::Pass, "pole through -90 deg at 2 rad/s"), (Change::Disable, "1")];
@@ -324,7 +324,7 @@ fn refusal(change: Change, text: &str) -> (String, usize, String) {
 }
 
 #[test]
-fn what_cannot_be_changed_is_refused_with_its_place() {
+fn impossible_changes_are_refused_with_their_place() {
     let check = |change, text, message: &str, column, help: &str| {
         assert_eq!(refusal(change, text), (message.to_string(), column, help.to_string()), "{text}");
     };
@@ -369,7 +369,7 @@ fn what_cannot_be_changed_is_refused_with_its_place() {
 
 // ORIGIN: written by hand
 #[test]
-fn what_an_element_cannot_do_is_said_in_words() {
+fn unreachable_points_of_an_element_are_described_in_words() {
     let message = |pattern, magnitude_db, phase_deg, timing: Timing| {
         let wanted = WantedPoint { frequency_rad_per_s: 20.0, magnitude_db, phase_deg };
         let (size, phase) = (10_f64.powf(-0.5), -150_f64.to_radians());
@@ -377,37 +377,37 @@ fn what_an_element_cannot_do_is_said_in_words() {
         pass_words(&pass_through(pattern, &wanted, present, &timing).unwrap_err())
     };
     let continuous = Timing::default();
-    let said = |pattern, magnitude_db, phase_deg, words: &str| {
+    let contains_words = |pattern, magnitude_db, phase_deg, words: &str| {
         assert_eq!(message(pattern, magnitude_db, phase_deg, continuous), words);
     };
-    said(
+    contains_words(
         ElementPattern::Lead,
         Some(0.0),
         Some(-30.0),
         "a lead turns the loop by more than 0 and less than 90 degrees; the point needs +120 degrees",
     );
-    said(
+    contains_words(
         ElementPattern::Lead,
         Some(-9.0),
         Some(-110.0),
         "a lead, turning it by +40 degrees, raises the loop by more than +2.315 dB; the point needs +1 dB",
     );
-    said(
+    contains_words(
         ElementPattern::RealPole,
         Some(-16.0),
         Some(-195.0),
         "a real pole, turning it by -45 degrees, raises the loop by -3.01 dB; the point needs -6 dB",
     );
     let phase = "a gain leaves the phase as it is; the point needs +10 degrees";
-    said(ElementPattern::Gain, Some(0.0), Some(-140.0), phase);
+    contains_words(ElementPattern::Gain, Some(0.0), Some(-140.0), phase);
     let magnitude = "a real zero raises the loop by more than 0 dB; the point needs -2 dB";
-    said(ElementPattern::RealZero, Some(-12.0), None, magnitude);
-    said(ElementPattern::Lag, Some(-12.0), None, "a lag needs magnitude and phase of the point");
+    contains_words(ElementPattern::RealZero, Some(-12.0), None, magnitude);
+    contains_words(ElementPattern::Lag, Some(-12.0), None, "a lag needs magnitude and phase of the point");
     let notch = |pole_damping_ratio| ElementPattern::NotchHere { pole_damping_ratio };
     let needs = "a notch at this frequency needs the magnitude of the point";
-    said(notch(0.5), None, Some(-170.0), needs);
+    contains_words(notch(0.5), None, Some(-170.0), needs);
     let number = "a notch at this frequency cannot have a damping ratio of -1";
-    said(notch(-1.0), Some(-12.0), None, number);
+    contains_words(notch(-1.0), Some(-12.0), None, number);
     let held =
         Timing { sample_time_s: Some(0.01), discretization: Discretization::Matched, ..Timing::default() };
     assert_eq!(

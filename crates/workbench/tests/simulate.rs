@@ -109,7 +109,7 @@ fn metrics_do_not_depend_on_the_rows() {
 
 /// A scenario of a day has the peaks of one of five seconds.
 #[test]
-fn metrics_do_not_depend_on_how_long_it_goes_on() {
+fn metrics_do_not_depend_on_the_duration() {
     let of = |duration: &str| {
         let (duration, rows) = (format!("scenario.0.duration={duration}"), "scenario.0.output_step=1 s");
         run_of(BENCHMARK, &[&duration, rows]).windows
@@ -160,7 +160,7 @@ fn a_step_at_a_sample_is_not_a_sample_late() {
 
 /// A machine at rest stays at rest, sampled or not, with all its imperfections.
 #[test]
-fn an_equilibrium_is_kept() {
+fn an_equilibrium_is_maintained() {
     let everything = include_str!("../../project/tests/valid/simulation.toml");
     let still = "[[scenario]]\nname = \"still\"\nduration = \"0.2 s\"\n";
     let of = |text: &str| {
@@ -179,7 +179,7 @@ fn an_equilibrium_is_kept() {
 }
 
 #[test]
-fn the_feed_forward_lets_the_force_feel_less_of_the_load() {
+fn the_feed_forward_reduces_the_effect_of_the_load_on_the_force() {
     let peak = |settings: &[&str]| {
         let run = run_of(BENCHMARK, settings);
         let (window, metrics) = run.windows[1];
@@ -192,7 +192,7 @@ fn the_feed_forward_lets_the_force_feel_less_of_the_load() {
 }
 
 #[test]
-fn noise_is_of_its_seed_alone() {
+fn noise_depends_on_its_seed_only() {
     let noisy = |seed: &str, noise: &str| {
         let settings = ["controller.sample_time=1 ms", "scenario.0.duration=0.3 s", seed, noise];
         run_of(BENCHMARK, &settings).record.signal(Signal::Force)
@@ -219,7 +219,7 @@ fn converters_round_the_command() {
 }
 
 #[test]
-fn a_limit_that_is_reached_is_told_with_its_time() {
+fn a_limit_that_is_reached_is_reported_with_its_time() {
     for extra in [vec![], vec!["controller.sample_time=1 ms"]] {
         let mut settings = vec!["controller.saturation=0.3 V", "controller.anti_windup=clamping"];
         settings.extend(extra);
@@ -232,7 +232,7 @@ fn a_limit_that_is_reached_is_told_with_its_time() {
 
 /// A load pulled away by 100 mm in 10 ms empties a chamber: reported, not clamped.
 #[test]
-fn cavitation_is_told() {
+fn cavitation_is_reported() {
     let run = run_of(
         BENCHMARK,
         &["scenario.0.load_motion.duration=10 ms", "scenario.0.load_motion.distance=100 mm"],
@@ -251,7 +251,7 @@ fn with_motion(content: &str) -> (Memory, Project) {
 
 /// The quintic step of the benchmark as a table of 101 points moves the load in an equal way.
 #[test]
-fn a_measured_motion_is_that_motion() {
+fn a_measured_motion_is_reproduced() {
     let mut text = "# a quintic step\ntime_ms, position_mm\n".to_string();
     for row in 0..=100 {
         let u = f64::from(row) / 100.0;
@@ -296,15 +296,15 @@ fn answer(text: &str, settings: &[&str], request: &Request) -> command::CommandE
 }
 
 #[test]
-fn what_cannot_be_simulated_is_refused_in_words() {
-    let says = |settings: &[&str], words: &str| {
+fn impossible_simulations_are_refused_in_words() {
+    let refused_with = |settings: &[&str], words: &str| {
         let error = answer(BENCHMARK, settings, &Request::Simulate(Default::default())).to_string();
         assert!(error.contains(words), "{error}");
     };
-    says(&["cylinder.friction.model=stribeck"], "regular velocity");
+    refused_with(&["cylinder.friction.model=stribeck"], "regular velocity");
     let wall = ["load={ model = \"wall\", mass = 10, stiffness = 1e6 }", "scenario.0.start.force=-5 N"];
-    says(&["load={ model = \"wall\", stiffness = 1e6 }"], "`mass`");
-    says(&wall, "a start with force of -5 is impossible");
+    refused_with(&["load={ model = \"wall\", stiffness = 1e6 }"], "`mass`");
+    refused_with(&wall, "a start with force of -5 is impossible");
     let thick = answer(
         HOSE,
         &["line.model=transmission_line", "fluid.kinematic_viscosity=1 m2/s"],
@@ -314,7 +314,7 @@ fn what_cannot_be_simulated_is_refused_in_words() {
 }
 
 #[test]
-fn the_answer_has_the_keys_that_stay() {
+fn the_answer_has_the_stable_keys() {
     let loaded = load(BENCHMARK, &["scenario.0.duration=2.6 s"]);
     let answer =
         command::answer(&Memory::default(), &loaded, &[], &Request::Simulate(Default::default())).unwrap();
@@ -347,7 +347,7 @@ fn the_answer_has_the_keys_that_stay() {
 
 /// The rows of a stopped run are printed and the answer is no.
 #[test]
-fn a_run_that_is_stopped_keeps_what_it_has() {
+fn a_stopped_run_returns_its_rows_so_far() {
     let loaded = load(BENCHMARK, &[]);
     let held = HeldFiles::default();
     let answer = command::answer_into(
@@ -363,8 +363,8 @@ fn a_run_that_is_stopped_keeps_what_it_has() {
     let json: Value = serde_json::from_str(&answer.json).unwrap();
     let scenario = &json["scenarios"][0];
     assert_eq!(scenario["status"], "cancelled");
-    let ended = scenario["ended_s"].as_f64().unwrap();
-    assert!((2.5..5.0).contains(&ended), "{ended}");
+    let end_s = scenario["ended_s"].as_f64().unwrap();
+    assert!((2.5..5.0).contains(&end_s), "{end_s}");
     assert_eq!(scenario["events"][1]["metrics"]["settling_time_s_reason"], "the run ended before");
     assert!(!held.into_files()[0].bytes.is_empty());
 }
@@ -372,8 +372,8 @@ fn a_run_that_is_stopped_keeps_what_it_has() {
 /// Scenarios of hours are not stored for drawing at every quarter of a millisecond, and this is
 /// reported.
 #[test]
-fn a_long_scenario_says_how_often_it_was_looked_at() {
-    for (duration, look_s, told) in [("5 s", 0.25e-3, false), ("2000 s", 5e-3, true)] {
+fn a_long_scenario_reports_its_sample_interval() {
+    for (duration, interval_s, long) in [("5 s", 0.25e-3, false), ("2000 s", 5e-3, true)] {
         let (duration, rows) = (format!("scenario.0.duration={duration}"), "scenario.0.output_step=5 s");
         let loaded = load(BENCHMARK, &[&duration, rows]);
         let answer =
@@ -381,13 +381,13 @@ fn a_long_scenario_says_how_often_it_was_looked_at() {
                 .unwrap();
         let json: Value = serde_json::from_str(&answer.json).unwrap();
         let found = json["scenarios"][0]["look_s"].as_f64().unwrap();
-        assert!((found / look_s - 1.0).abs() < 1e-9, "{found}");
-        assert_eq!(answer.text.contains("is drawn from samples every 5.00 ms only"), told, "{}", answer.text);
+        assert!((found / interval_s - 1.0).abs() < 1e-9, "{found}");
+        assert_eq!(answer.text.contains("is drawn from samples every 5.00 ms only"), long, "{}", answer.text);
     }
 }
 
 #[test]
-fn projects_stand_side_by_side() {
+fn projects_are_compared_side_by_side() {
     let [one, other] = [("1.9e-4", "10 kN", 1), ("3.03e-5", "3 kN", 2)].map(|(volume, capacity, band)| {
         let band = format!("scenario.0.settling_band_percent={band}");
         let settings = [format!("line.volume={volume}"), format!("force_sensor.capacity={capacity}"), band];
@@ -414,7 +414,7 @@ fn projects_stand_side_by_side() {
 /// Peaks of the force deviation for a load that moves by 5 mm as a first-order lag, for hose and
 /// pipe, each with its own controller.
 #[test]
-fn the_hose_lets_less_force_through_than_the_pipe() {
+fn the_hose_transmits_less_force_than_the_pipe() {
     let hose = ["line.volume=1.9e-4", "line.effective_bulk_modulus=2.609e8"];
     let pipe = [
         "line.volume=3.03e-5",

@@ -74,25 +74,25 @@ fn a_check_is_the_difference_of_two_runs() {
 fn the_estimate_covers_the_error() {
     let exact = run(&[SHORT, "simulation.tolerance=1e-10"]);
     for tolerance in ["1e-4", "1e-5", "1e-6", "1e-7"] {
-        let told = checked(&[SHORT, &format!("simulation.tolerance={tolerance}")]);
-        let (error, force) = (apart(&told, &exact), told.check.unwrap().force.unwrap());
+        let estimate = checked(&[SHORT, &format!("simulation.tolerance={tolerance}")]);
+        let (error, force) = (apart(&estimate, &exact), estimate.check.unwrap().force.unwrap());
         assert!(error < 2.0 * force.difference, "{tolerance}: {error} N, estimated {}", force.difference);
         assert!(error > 0.2 * force.difference, "{tolerance}: {error} N, estimated {}", force.difference);
     }
 }
 
 #[test]
-fn an_answer_tells_the_check_where_it_was_asked_for() {
-    let ask = |settings: &[&str], request: &Request| {
+fn an_answer_contains_the_check_if_requested() {
+    let run = |settings: &[&str], request: &Request| {
         let answer = command::answer(&Memory::default(), &load(settings), &[], request).unwrap();
         assert!(answer.affirmative);
         let json: Value = serde_json::from_str(&answer.json).unwrap();
         (json["scenarios"][0].clone(), answer.text)
     };
     let doubt = "more than a thousandth";
-    let (plain, text) = ask(&[SHORT], &Request::Simulate(Default::default()));
+    let (plain, text) = run(&[SHORT], &Request::Simulate(Default::default()));
     assert!(plain["check"].is_null() && plain["check_reason"].is_string() && !text.contains("checked at"));
-    let (sure, text) = ask(&[SHORT], &with_check());
+    let (sure, text) = run(&[SHORT], &with_check());
     let check = &sure["check"];
     assert!(check["part_of_peak"].as_f64().unwrap() < 1e-3 && !text.contains(doubt), "{check} {text}");
     assert!(text.contains("checked at the tolerance 1.00e-7: the force differs by"), "{text}");
@@ -108,7 +108,7 @@ fn an_answer_tells_the_check_where_it_was_asked_for() {
     assert_eq!(named("force_n")["difference"], check["force_difference_n"]);
     assert!(named("control_v")["part_of_peak"].is_f64());
     // repeated until its metrics agree, the run passes the check too
-    let (right, text) = ask(&SLOW, &with_check());
+    let (right, text) = run(&SLOW, &with_check());
     assert!(right["check"]["part_of_peak"].as_f64().unwrap() < 1e-3 && !text.contains(doubt), "{text}");
     // too few steps for a second pass
     let passes: Vec<u64> = right["repetition"]["passes"].as_array().unwrap()[..2]
@@ -116,7 +116,7 @@ fn an_answer_tells_the_check_where_it_was_asked_for() {
         .map(|pass| pass["steps"].as_u64().unwrap() + pass["rejected"].as_u64().unwrap())
         .collect();
     let few = format!("simulation.maximum_steps={}", (passes[0] + passes[1]) / 2);
-    let (unsure, text) = ask(&[&SLOW[..], &[few.as_str()]].concat(), &with_check());
+    let (unsure, text) = run(&[&SLOW[..], &[few.as_str()]].concat(), &with_check());
     assert_eq!(unsure["repetition"]["status"], "stopped");
     assert!(unsure["check"]["part_of_peak"].as_f64().unwrap() > 1e-3 && text.contains(doubt), "{text}");
     assert!(text.contains("could not be confirmed"), "{text}");
@@ -127,7 +127,7 @@ fn an_answer_tells_the_check_where_it_was_asked_for() {
 /// where nothing grows.
 #[test]
 fn a_run_reports_where_errors_may_be_visible() {
-    let ask = |settings: &[&str]| {
+    let run = |settings: &[&str]| {
         let answer =
             command::answer(&Memory::default(), &load(settings), &[], &Request::Simulate(Default::default()))
                 .unwrap();
@@ -135,10 +135,10 @@ fn a_run_reports_where_errors_may_be_visible() {
         (json["scenarios"][0].clone(), answer.text)
     };
     let words = "errors within the tolerance may become visible";
-    let (calm, text) = ask(&[SHORT]);
+    let (calm, text) = run(&[SHORT]);
     assert!(calm["errors_amplified"].is_null() && calm["errors_amplified_reason"].is_string());
     assert!(!text.contains(words), "{text}");
-    let (ringing, text) = ask(&SLOW);
+    let (ringing, text) = run(&SLOW);
     assert!(text.contains(words), "{text}");
     let [from, until, frequency] = ["from_s", "until_s", "frequency_rad_per_s"]
         .map(|key| ringing["errors_amplified"][key].as_f64().unwrap());
@@ -152,7 +152,7 @@ fn a_run_reports_where_errors_may_be_visible() {
 
 /// A run that is stopped during its check is returned, with the time that the check reached.
 #[test]
-fn a_check_that_is_stopped_compares_what_there_is() {
+fn a_stopped_check_compares_the_rows_so_far() {
     let project = load(&[SHORT]).project;
     let mut watch = |progress: command::Progress| progress.share < 0.75;
     let stopped = simulate_checked(&Memory::default(), &Setup::new(&project).unwrap(), None, &mut watch)

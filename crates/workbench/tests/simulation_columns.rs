@@ -48,18 +48,19 @@ fn spool_and_opening_differ_by_bias_and_hysteresis() {
 
 /// The command at the valve is the controller's output one delay earlier.
 #[test]
-fn the_command_behind_the_delay_is_that_before_it_later() {
-    let looks = 8;
+fn the_command_after_the_delay_is_the_earlier_one_before_it() {
+    let delay_samples = 8;
     // a sample every quarter of a millisecond
     let continuous = record_of(&["controller.delay=2 ms", "simulation.tolerance=1e-9"]);
     let sampled = record_of(&["controller.delay=2 ms", "controller.sample_time=1 ms"]);
     for (record, tolerance) in [(continuous, 1e-5), (sampled, 0.0)] {
         // between two samples, where rounding of times has no effect
         let between = |values: &[f64]| values.iter().skip(2).step_by(4).copied().collect::<Vec<_>>();
-        let (before, behind) = (&record.signal(Signal::Control), record.signal(Signal::Command));
-        let (difference, most) = apart(&between(&behind[looks..]), &between(&before[..before.len() - looks]));
+        let (before, after) = (&record.signal(Signal::Control), record.signal(Signal::Command));
+        let (difference, most) =
+            apart(&between(&after[delay_samples..]), &between(&before[..before.len() - delay_samples]));
         assert!(difference <= tolerance && most > 0.1, "{difference} V of {most} V");
-        assert!(apart(&behind, before).0 > 0.01);
+        assert!(apart(&after, before).0 > 0.01);
     }
     let without = record_of(&[]);
     assert_eq!(without.signal(Signal::Control), without.signal(Signal::Command));
@@ -88,7 +89,7 @@ fn proportional_and_integral_part_are_the_command() {
 }
 
 #[test]
-fn the_limit_is_all_between_the_unlimited_command_and_that_given_out() {
+fn the_limit_is_the_only_difference_between_unlimited_and_issued_command() {
     for extra in [None, Some("controller.sample_time=1 ms")] {
         let mut settings = vec!["controller.saturation=0.3 V"];
         settings.extend(extra);
@@ -104,7 +105,7 @@ fn the_limit_is_all_between_the_unlimited_command_and_that_given_out() {
 /// A sensor H = 1 measures the force itself; with 1/(tau s + 1) the measurement satisfies its
 /// equation, here by the trapezoid rule.
 #[test]
-fn the_measurement_is_the_force_behind_the_sensor() {
+fn the_measurement_is_the_force_after_the_sensor() {
     let plain = record_of(&[]);
     assert_eq!(plain.signal(Signal::Measurement), plain.signal(Signal::Force));
     let late = record_of(&["sensor={ numerator = \"100\", denominator = \"s + 100\" }"]);

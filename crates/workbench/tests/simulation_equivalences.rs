@@ -80,7 +80,7 @@ fn small_signal(rig: &Rig, shaken: &Shaken, amplitude: f64, frequency: f64) -> C
     let period = TAU / frequency;
     // the slowest pole is near 0.5 rad/s
     let settled = (25.0 / period).ceil();
-    let course = InputSchedule {
+    let schedule = InputSchedule {
         duration_s: (settled + 2.5) * period,
         output_step_s: period / ROWS_PER_PERIOD,
         inputs,
@@ -89,7 +89,7 @@ fn small_signal(rig: &Rig, shaken: &Shaken, amplitude: f64, frequency: f64) -> C
     let mut forces = Forces::default();
     let task = Task {
         start: rest.state,
-        course: &course,
+        course: &schedule,
         sampler: None,
         observer: Box::new(&mut forces) as Watcher,
     };
@@ -139,7 +139,7 @@ fn small_motions_are_those_of_the_linearised_rig() {
 /// static friction. The viscous friction is so large that the curve never falls; otherwise the
 /// piston would vibrate on its sensor, and nothing would be slow.
 #[test]
-fn at_slow_velocity_bristles_give_the_static_curve() {
+fn at_low_velocity_bristles_have_the_static_curve() {
     let slow = [
         "scenario.0.load_motion={ kind = \"sine\", amplitude = \"5 mm\", frequency = \"1 rad/s\" }",
         "scenario.0.reference=[]",
@@ -166,7 +166,7 @@ fn at_slow_velocity_bristles_give_the_static_curve() {
 /// motion of the load their impulse is the change of the piston's momentum, and at rest only the
 /// friction remains, which the bristles still hold.
 #[test]
-fn friction_lies_between_hydraulic_and_measured_force() {
+fn friction_is_the_difference_of_hydraulic_and_measured_force() {
     const MOVING_MASS_KG: f64 = 13.1;
     let run = run(&["simulation.tolerance=1e-8"]);
     let [hydraulic, friction, force, velocity] =
@@ -180,13 +180,13 @@ fn friction_lies_between_hydraulic_and_measured_force() {
         .collect();
     let [from, until] = [3.0, 3.5].map(|time: f64| (time / run.look_s).round() as usize);
     let (mut impulse, mut of_friction, mut fastest) = (0.0, 0.0, 0.0_f64);
-    for look in from..until {
-        let over = |values: &[f64]| 0.5 * (values[look] + values[look + 1]) * run.look_s;
+    for sample in from..until {
+        let over = |values: &[f64]| 0.5 * (values[sample] + values[sample + 1]) * run.look_s;
         impulse += over(&left);
         of_friction += over(&friction).abs();
-        let momentum = MOVING_MASS_KG * (velocity[look + 1] - velocity[from]);
+        let momentum = MOVING_MASS_KG * (velocity[sample + 1] - velocity[from]);
         fastest = fastest.max(momentum.abs());
-        assert!((impulse - momentum).abs() < 1e-3, "{look}: {impulse} N s, not {momentum} N s");
+        assert!((impulse - momentum).abs() < 1e-3, "{sample}: {impulse} N s, not {momentum} N s");
     }
     assert!(of_friction > 5.0 && fastest > 1.0, "{of_friction} N s, {fastest} N s");
     let last = left.len() - 1;
@@ -227,7 +227,7 @@ fn swings(run: &ScenarioRun) -> usize {
 }
 
 #[test]
-fn a_hose_feels_load_steps_less_than_a_pipe() {
+fn a_hose_responds_less_to_load_steps_than_a_pipe() {
     // ORIGIN: other tool, Runge-Kutta in fixed steps on equal equations, written independently:
     // peaks in N
     let expected = [(0.02, 5813.0, 8901.0), (0.05, 2803.0, 4527.0), (0.1, 1604.0, 2546.0)];

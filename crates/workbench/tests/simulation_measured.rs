@@ -38,7 +38,7 @@ const MAPPED: &str = "[[scenario.measured]]\nfile = \"bench.csv\"\ntime_column =
 /// Force 25 N too large, pressure unchanged; in other units, from a second before the scenario's
 /// start to after its end, every 0.7 ms.
 #[test]
-fn what_is_off_by_a_constant_has_its_nrmse() {
+fn a_constant_offset_has_its_nrmse() {
     let plain = run("", "");
     let (force, pressure) = (plain.record.signal(Signal::Force), plain.record.signal(Signal::PressureA));
     let at = |values: &[f64], time_s: f64| {
@@ -69,7 +69,7 @@ fn what_is_off_by_a_constant_has_its_nrmse() {
 }
 
 #[test]
-fn what_does_not_change_has_no_range() {
+fn a_constant_signal_has_no_range() {
     let declared = "[[scenario.measured]]\nfile = \"bench.csv\"\nsignals = [{ signal = \"position_m\" }]\n";
     let overlay = run(declared, "time_s,position_m\n0,0.25\n1,0.25\n2,0.25\n").measured.remove(0);
     assert!(overlay.rmse.unwrap() < 1e-3);
@@ -77,7 +77,7 @@ fn what_does_not_change_has_no_range() {
 }
 
 #[test]
-fn it_is_told_in_text_json_and_a_figure() {
+fn the_comparison_is_in_text_json_and_a_figure() {
     let content = "t,F,pressure_a_pa\n-1000,0,35\n0,0.01,35\n1200,1.1,40\n1400,3.3,50\n";
     let (source, loaded) = rig(MAPPED, content);
     let request = Request::Simulate(SimulateRequest { figures: true, ..SimulateRequest::default() });
@@ -98,7 +98,7 @@ fn it_is_told_in_text_json_and_a_figure() {
 }
 
 #[test]
-fn a_measurement_that_cannot_be_taken_is_refused_with_its_place() {
+fn an_unusable_measurement_is_refused_with_its_place() {
     let cases = [
         ("t,F,pressure_a_pa\n0,1,2\n0,1,2\n", "3:1 the time of the row before, with other values"),
         ("t,F,pressure_a_pa\n0,1,2\n1,,2\n", "3:3 there is no value"),

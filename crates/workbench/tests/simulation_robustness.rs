@@ -249,14 +249,14 @@ fn rows_that_do_not_divide_the_scenario() {
 /// A scenario whose table no disk could hold is rejected at its key, with the requested and the
 /// allowed size.
 #[test]
-fn more_rows_than_are_held() {
-    for (setting, asked) in [
+fn more_rows_than_are_stored() {
+    for (setting, rows_requested) in [
         ("scenario.0.duration=1e6 s", "1.00e9"),
         ("scenario.0.output_step=1e-12 s", "5.00e12"),
         ("scenario.0.output_step=1e-320 s", "inf"),
     ] {
         let refusal = refused(BENCHMARK, &[setting]);
-        assert!(refusal.contains(&format!("asks for {asked} rows")), "{refusal}");
+        assert!(refusal.contains(&format!("asks for {rows_requested} rows")), "{refusal}");
         assert!(
             refusal.contains("all scenarios together may have 10000000") && refusal.contains("--set"),
             "{refusal}"

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{
+use crate::run_command::{
     FICTITIOUS, HOSE, OVERRIDE, candidate, candidates, json, near, number, reasons, size_request,
 };
 use serde_json::Value;
@@ -105,7 +105,7 @@ fn accepted(size: &Value) -> Vec<(String, String)> {
 }
 
 #[test]
-fn what_is_accepted_has_nothing_against_it() {
+fn accepted_hoses_have_no_rejection() {
     let size = size(HOSE, None, None);
     assert_eq!(size["candidates"].as_array().unwrap().len(), NAMES.len() * MODELS.len() * 2);
     let mut expected = Vec::new();
@@ -139,7 +139,7 @@ fn accepted_ones_come_first_and_shorter_ones_before_longer_ones() {
 
 /// Checks that every candidate of a hose has this acceptance, and a reason with these words.
 #[track_caller]
-fn says(size: &Value, hose: &str, accepted: bool, words: &[&str]) {
+fn has_words(size: &Value, hose: &str, accepted: bool, words: &[&str]) {
     for model in MODELS {
         let found = candidates(size, hose, model);
         assert!(!found.is_empty());
@@ -157,12 +157,12 @@ fn every_rejection_and_warning_names_its_numbers() {
     let size = size(HOSE, None, None);
     // ORIGIN: recomputed by comparisons/recompute_rig.py: velocities 5.0772085 and 0.82260377 m/s,
     // surge 1110705.4 Pa, and the gains at 1.5 m above; a quarter turn is pi/2 times the radius
-    says(&size, "fictitious_too_fast", false, &["5.08 m/s", "4.6 m/s"]);
-    says(&size, "fictitious_slow", true, &["0.823 m/s", "2.1 m/s"]);
-    says(&size, "fictitious_weak", false, &["60.0 bar", "70.0 bar", "supply"]);
-    says(&size, "fictitious_surging", false, &["80.0 bar", "81.1 bar", "surge"]);
-    says(&size, "fictitious_stubborn", true, &["1200 mm", "1.88 m"]);
-    says(&size, "eaton_synflex_3130_08", false, &["no working pressure", "76.0 bar"]);
+    has_words(&size, "fictitious_too_fast", false, &["5.08 m/s", "4.6 m/s"]);
+    has_words(&size, "fictitious_slow", true, &["0.823 m/s", "2.1 m/s"]);
+    has_words(&size, "fictitious_weak", false, &["60.0 bar", "70.0 bar", "supply"]);
+    has_words(&size, "fictitious_surging", false, &["80.0 bar", "81.1 bar", "surge"]);
+    has_words(&size, "fictitious_stubborn", true, &["1200 mm", "1.88 m"]);
+    has_words(&size, "eaton_synflex_3130_08", false, &["no working pressure", "76.0 bar"]);
     for model in MODELS {
         for row in candidates(&size, "fictitious_right", model) {
             let text = reasons(row);
@@ -182,10 +182,15 @@ fn every_rejection_and_warning_names_its_numbers() {
 #[test]
 fn no_hose_is_accepted_without_its_working_pressure() {
     let of = |settings: &[&str]| {
-        let said = super::ask::answer(HOSE, settings, &[], &super::ask::size_request(None, Some("1.5 m")));
-        let size: Value = serde_json::from_str(&said.json).unwrap();
+        let output = super::run_command::answer(
+            HOSE,
+            settings,
+            &[],
+            &super::run_command::size_request(None, Some("1.5 m")),
+        );
+        let size: Value = serde_json::from_str(&output.json).unwrap();
         let row = candidates(&size, "eaton_synflex_3130_08", "uniform")[0].clone();
-        (said.affirmative, row, said.text)
+        (output.affirmative, row, output.text)
     };
     let (affirmative, row, text) = of(&[]);
     assert!(!affirmative && row["accepted"] == false && row["rejections"] == Value::Array(vec![]), "{row}");
@@ -229,11 +234,11 @@ fn a_length_out_of_range_is_rejected_with_its_bounds() {
         ("0.2 m", ["shorter than the acceptable 0.3 m", "0.200 m a line"]),
         ("2 m", ["the stock is 3 m", "both lines take 4.00 m"]),
     ] {
-        says(&size(HOSE, None, Some(length)), "fictitious_right", false, &words);
+        has_words(&size(HOSE, None, Some(length)), "fictitious_right", false, &words);
     }
     let short =
         json(HOSE, &["sizing.stock_length=\"1 m\""], &[FICTITIOUS], &size_request(None, Some("1.5 m")));
-    says(&short, "fictitious_right", false, &["both lines take 3.00 m", "the stock is 1 m"]);
+    has_words(&short, "fictitious_right", false, &["both lines take 3.00 m", "the stock is 1 m"]);
     let enough =
         json(HOSE, &["sizing.stock_length=\"1 m\""], &[FICTITIOUS], &size_request(None, Some("0.5 m")));
     for row in candidates(&enough, "fictitious_right", "uniform") {
@@ -246,7 +251,7 @@ fn a_gain_too_small_for_any_transmission_is_rejected_with_the_pole() {
     let size = size(HOSE, Some("2e-5"), None);
     // ORIGIN: recomputed by comparisons/recompute_rig.py: the pole is at 2.0959013e-05 V/N
     for name in NAMES {
-        says(&size, name, false, &["2.00e-5 V/N", "2.10e-5 V/N"]);
+        has_words(&size, name, false, &["2.00e-5 V/N", "2.10e-5 V/N"]);
     }
 }
 

@@ -5,7 +5,7 @@
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
-use crate::ask::{self, HOSE, candidate, derived, near, number, size_for_length};
+use crate::run_command::{self, HOSE, candidate, derived, near, number, size_for_length};
 use serde_json::Value;
 
 const LITRE_PER_MINUTE: f64 = 1e-3 / 60.0;
@@ -47,7 +47,7 @@ fn the_valve_passes_more_than_its_rating_at_a_higher_supply() {
             velocity,
             1e-9,
         );
-        let check = ask::check(&rated(), &[&settings[0], &settings[1]]);
+        let check = run_command::check(&rated(), &[&settings[0], &settings[1]]);
         near(derived(&check, "line.oil_velocity"), velocity, 1e-9);
     }
 }

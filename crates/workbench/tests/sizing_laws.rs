@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{
+use crate::run_command::{
     self, FICTITIOUS, HOSE, candidate, json, near, number, size_for_gain, size_for_length, size_request,
     within,
 };
@@ -15,8 +15,8 @@ const EATON: &str = "eaton_synflex_3130_08";
 const MODELS: [&str; 2] = ["uniform", "by_volume"];
 
 /// Values of the candidates of one hose under a growing setting.
-fn sweep(model: &str, settings: &[String], key: &str, ask: impl Fn(&[&str]) -> Value) -> Vec<f64> {
-    settings.iter().map(|setting| number(candidate(&ask(&[setting]), EATON, model), key)).collect()
+fn sweep(model: &str, settings: &[String], key: &str, sized: impl Fn(&[&str]) -> Value) -> Vec<f64> {
+    settings.iter().map(|setting| number(candidate(&sized(&[setting]), EATON, model), key)).collect()
 }
 
 fn strictly_increasing(values: &[f64]) -> bool {
@@ -92,10 +92,13 @@ fn a_sized_alternative_keeps_its_unequal_hoses() {
     let text =
         format!("{HOSE}\n[[alternative]]\nname = \"sized\"\nsize = true\nset = {{ \"title\" = \"x\" }}\n");
     let settings = [other, "sizing.length_increment=\"1 mm\""];
-    let asked =
-        phea_workbench::alternatives::asked(&ask::source(&text), &ask::load(&text, &settings, &[]), &[]);
-    let line = asked.unwrap().0.remove(1).loaded.project.actuator.unwrap().line;
-    let size = ask::size(&text, &settings);
+    let requested = phea_workbench::alternatives::asked(
+        &run_command::source(&text),
+        &run_command::load(&text, &settings, &[]),
+        &[],
+    );
+    let line = requested.unwrap().0.remove(1).loaded.project.actuator.unwrap().line;
+    let size = run_command::size(&text, &settings);
     let name = format!("{EATON} in line A, {EATON} in line B");
     let rows = size["candidates"].as_array().unwrap();
     let best =
@@ -108,7 +111,7 @@ fn a_sized_alternative_keeps_its_unequal_hoses() {
 }
 
 #[test]
-fn the_search_ends_at_the_length_there_is() {
+fn the_search_ends_at_the_available_length() {
     // The largest gain requires the longest available hose: half the stock, or the longest
     // acceptable line.
     for (settings, length) in [
@@ -116,8 +119,8 @@ fn the_search_ends_at_the_length_there_is() {
         (&["sizing.stock_length=\"1 m\""], 0.5),
         (&["sizing.hose_length=[\"0.3 m\", \"0.9 m\"]"], 0.9),
     ] {
-        let size = ask::size(HOSE, settings);
-        let rows = ask::candidates(&size, EATON, "uniform");
+        let size = run_command::size(HOSE, settings);
+        let rows = run_command::candidates(&size, EATON, "uniform");
         assert_eq!(rows.len(), 2);
         for row in &rows {
             near(number(row, "length_m"), length, 1e-9);
@@ -133,16 +136,16 @@ fn the_search_ends_at_the_length_there_is() {
 fn the_floor_of_the_gain_does_not_hide_an_answer_above_it() {
     for floor in ["1e-4", "1.2e-4", "1.3e-4", "1.4e-4"] {
         let setting = format!("sizing.minimum_gain={floor}");
-        let size = ask::size(HOSE, &[&setting]);
-        for row in ask::candidates(&size, EATON, "by_volume") {
+        let size = run_command::size(HOSE, &[&setting]);
+        for row in run_command::candidates(&size, EATON, "by_volume") {
             near(number(row, "length_m"), 1.5, 1e-9);
             assert_eq!(row["rejections"], Value::Array(vec![]), "{floor}: {row}");
         }
     }
     // ORIGIN: recomputed by comparisons/recompute_rig.py, 1.5 m by volume needs 1.427e-4 V/N: below
     // this floor.
-    let size = ask::size(HOSE, &["sizing.minimum_gain=1.5e-4"]);
-    let rows = ask::candidates(&size, EATON, "by_volume");
+    let size = run_command::size(HOSE, &["sizing.minimum_gain=1.5e-4"]);
+    let rows = run_command::candidates(&size, EATON, "by_volume");
     assert!(rows.iter().all(|row| row["rejections"] != Value::Array(vec![])), "{rows:?}");
 }
 
@@ -152,8 +155,8 @@ fn the_floor_of_the_gain_does_not_hide_an_answer_above_it() {
 fn commercial_lengths_are_whole_increments() {
     for (increment, length) in [("0.4 m", 1.2), ("0.5 m", 1.5), ("0.7 m", 1.4)] {
         let setting = format!("sizing.length_increment=\"{increment}\"");
-        let size = ask::size(HOSE, &[&setting]);
-        let rows = ask::candidates(&size, EATON, "uniform");
+        let size = run_command::size(HOSE, &[&setting]);
+        let rows = run_command::candidates(&size, EATON, "uniform");
         let cut = rows.iter().find(|row| row["branch"] == "by_gain").unwrap();
         near(number(cut, "length_m"), length, 1e-9);
         near(number(cut, "time_constant_s.0"), 0.05, 1e-9);
@@ -162,7 +165,7 @@ fn commercial_lengths_are_whole_increments() {
 
 #[test]
 fn the_loop_has_the_desired_time_constant() {
-    let size = ask::size(HOSE, &[]);
+    let size = run_command::size(HOSE, &[]);
     for row in size["candidates"].as_array().unwrap() {
         near(number(row, "time_constant_s.0"), 0.05, 1e-9);
         // The rig is stiffer towards the ends of the stroke, and faster.
@@ -216,7 +219,7 @@ fn more_hose_is_softer_and_takes_more_gain() {
 
 #[test]
 fn at_the_pole_of_the_gain_the_stiffness_is_infinite() {
-    let pole = number(&ask::size(HOSE, &[]), "pole_gain_v_per_n");
+    let pole = number(&run_command::size(HOSE, &[]), "pole_gain_v_per_n");
     let stiffness = |gain: f64| {
         let size = size_for_gain(HOSE, &[], &format!("{gain:e}"));
         number(candidate(&size, EATON, "uniform"), "iterations.0.stiffness_n_per_m")
@@ -231,7 +234,7 @@ fn at_the_pole_of_the_gain_the_stiffness_is_infinite() {
 }
 
 #[test]
-fn a_wall_that_does_not_give_leaves_the_oil_alone() {
+fn a_rigid_wall_leaves_the_compliance_of_the_oil_only() {
     let rigid = |model: &str| {
         let setting = "line.volumetric_expansion_slope=\"1e-22 m3/(m.Pa)\"";
         let size = size_for_length(HOSE, &[setting], "1.5 m");
@@ -249,7 +252,7 @@ fn a_wall_that_does_not_give_leaves_the_oil_alone() {
 
 #[test]
 fn the_influences_are_those_of_the_settings_themselves() {
-    let influences = ask::size(HOSE, &[])["influences"].clone();
+    let influences = run_command::size(HOSE, &[])["influences"].clone();
     let row = |name: &str| {
         let rows = influences.as_array().unwrap();
         rows.iter().find(|row| row["quantity"].as_str().unwrap().contains(name)).unwrap().clone()
@@ -279,8 +282,8 @@ fn the_influences_are_those_of_the_settings_themselves() {
 
 #[test]
 fn a_settling_time_and_its_band_give_the_time_constant() {
-    let with = |wish: &str| {
-        let project = HOSE.replace("time_constant = \"50 ms\"", wish);
+    let with = |speed: &str| {
+        let project = HOSE.replace("time_constant = \"50 ms\"", speed);
         assert_ne!(project, HOSE);
         let size = size_for_length(&project, &[], "1.5 m");
         number(candidate(&size, EATON, "uniform"), "time_constant_s.0")

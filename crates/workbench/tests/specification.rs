@@ -112,18 +112,19 @@ fn margins_become_limits() {
 /// The thesis' limits (6.28, 6.29) with their requirements in time behave as stated in the errata;
 /// required directly, they are met.
 #[test]
-fn wishes_in_time_are_checked() {
+fn requirements_in_time_are_checked() {
     let given = "[[specification]]\nkind = \"tracking\"\nfrequencies = [1]\n\
         [specification.upper]\nnumerator = \"2116*(s + 75)/75\"\ndenominator = \"s^2 + 73.6*s + 2116\"\n\
         overshoot_percent = 1\nsettling_time = \"0.1 s\"\nsettling_band_percent = 1\n\
         [specification.lower]\nnumerator = \"400*50\"\ndenominator = \"(s^2 + 40*s + 400)*(s + 50)\"\n\
         settling_time = \"0.3 s\"\nsettling_band_percent = 1\n";
-    let wished = "[[specification]]\nkind = \"tracking\"\nfrequencies = [1]\n\
+    let required = "[[specification]]\nkind = \"tracking\"\nfrequencies = [1]\n\
         upper = { overshoot_percent = 1, settling_time = \"0.1 s\", settling_band_percent = 1, zero = \"75 rad/s\" }\n\
         lower = { settling_time = \"0.3 s\", settling_band_percent = 1, pole = \"50 rad/s\" }\n";
-    let project = loaded(&format!("{given}{wished}"));
+    let project = loaded(&format!("{given}{required}"));
     let checked = wishes(&project).unwrap();
-    let names: Vec<(usize, &str)> = checked.iter().map(|wish| (wish.number, wish.key)).collect();
+    let names: Vec<(usize, &str)> =
+        checked.iter().map(|checked_one| (checked_one.number, checked_one.key)).collect();
     assert_eq!(names, [(1, "upper"), (1, "lower"), (2, "upper"), (2, "lower")]);
     // ORIGIN: recomputed from thesis (6.28) and (6.29): upper 2.2 % and 0.126 s, lower 0.356 s
     assert!((checked[0].check.reached.overshoot_percent - 2.2).abs() < 0.05);
@@ -142,7 +143,7 @@ fn wishes_in_time_are_checked() {
 }
 
 #[test]
-fn a_wish_without_a_limit_is_told_with_its_place() {
+fn a_requirement_without_a_limit_is_reported_with_its_place() {
     let lower = "upper = 2\nlower = { settling_time = \"0.3 s\", settling_band_percent = 1, pole = 1 }";
     let error = one("tracking", lower).unwrap_err();
     assert_eq!((error.number, error.key), (1, "lower"));
@@ -152,7 +153,7 @@ fn a_wish_without_a_limit_is_told_with_its_place() {
 /// Printed digits suffice to show the difference.
 // ORIGIN: written by hand
 #[test]
-fn checks_of_wishes_read_as_sentences() {
+fn checks_of_requirements_read_as_sentences() {
     let upper = "upper = { overshoot_percent = 1, settling_time = \"0.1 s\", settling_band_percent = 1 }";
     let sentence = |side: usize, gain: f64, settling_time: &str| {
         let text = format!(
@@ -162,13 +163,13 @@ fn checks_of_wishes_read_as_sentences() {
         );
         wish_sentence(&wishes(&loaded(&text)).unwrap()[side])
     };
-    let wished = "Specification 1, lower limit, not met; wished: no overshoot, settled within 1 % in";
+    let required = "Specification 1, lower limit, not met; wished: no overshoot, settled within 1 % in";
     let of_itself = "the limit itself has no overshoot and";
-    assert_eq!(sentence(1, 10.0, "0.3 s"), format!("{wished} 0.3 s; {of_itself} settles in 0.461 s."));
-    assert_eq!(sentence(1, 5.0, "0.3 s"), format!("{wished} 0.3 s; {of_itself} stays 50 % off."));
+    assert_eq!(sentence(1, 10.0, "0.3 s"), format!("{required} 0.3 s; {of_itself} settles in 0.461 s."));
+    assert_eq!(sentence(1, 5.0, "0.3 s"), format!("{required} 0.3 s; {of_itself} stays 50 % off."));
     assert_eq!(
         sentence(1, 10.0, "0.4605 s"),
-        format!("{wished} 0.4605 s; {of_itself} settles in 0.46052 s.")
+        format!("{required} 0.4605 s; {of_itself} settles in 0.46052 s.")
     );
     assert_eq!(
         sentence(0, 10.0, "0.3 s"),

@@ -6,8 +6,8 @@ use phea_workbench::answer::Answer;
 use phea_workbench::command::{CommandError, Progress, Request, answer_into, stopped_text};
 use serde_json::{Value, json};
 
-use crate::ask::{load, source};
 use crate::command_of_steps::simple_rig;
+use crate::run_command::{load, source};
 
 const REQUEST: Request = Request::Design { seed: None, stages: true, repair: true };
 
@@ -36,7 +36,7 @@ fn names(answer: &Answer) -> Vec<&str> {
 /// controller and lists every missing part, and none is affirmative.
 // ORIGIN: written by hand, the stages in their order
 #[test]
-fn a_stopped_design_lists_what_it_lacks() {
+fn a_stopped_design_lists_its_missing_stages() {
     let cases = [
         ("nonlinear simulation", json!(["machine", "relaxations", "templates_and_bounds"])),
         ("relaxing each limit", json!(["relaxations", "templates_and_bounds"])),
@@ -51,9 +51,13 @@ fn a_stopped_design_lists_what_it_lacks() {
         let is_whole = expected == json!([]);
         assert!(is_whole || !answer.affirmative, "{stage}");
         assert_eq!(design["status"] == "stopped", !is_whole, "{stage}");
-        let is_tried = !expected.as_array().unwrap().contains(&json!("machine"));
-        assert_eq!(design["machine"].is_object(), is_tried, "{stage}");
-        assert_eq!(answer.text.contains("no trial on the nonlinear rig was finished"), !is_tried, "{stage}");
+        let is_simulated = !expected.as_array().unwrap().contains(&json!("machine"));
+        assert_eq!(design["machine"].is_object(), is_simulated, "{stage}");
+        assert_eq!(
+            answer.text.contains("no trial on the nonlinear rig was finished"),
+            !is_simulated,
+            "{stage}"
+        );
         assert_eq!(answer.text.contains("templates and bounds are not among the files"), !is_whole);
         let files = names(&answer);
         assert!(files.contains(&"designed.toml") && files.contains(&"loop.csv"), "{files:?}");
@@ -64,7 +68,7 @@ fn a_stopped_design_lists_what_it_lacks() {
 /// A design stopped in the first stage has no answer, unless the search already had a controller,
 /// which is the best so far; the reason names the stage and the parts that were not begun.
 #[test]
-fn a_design_that_is_stopped_at_once_says_what_was_not_begun() {
+fn a_design_stopped_at_once_lists_the_stages_not_begun() {
     let (_, stages) = stopped_in("no stage at all");
     let first = stages[0];
     let (found, seen) = stopped_in(first);

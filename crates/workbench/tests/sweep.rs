@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::{HOSE, answer, try_answer};
+use crate::run_command::{HOSE, answer, try_answer};
 use phea_workbench::command::Request;
 use phea_workbench::linearize::SweepRequest;
 use serde_json::Value;
@@ -39,14 +39,14 @@ fn each_value_is_that_of_linearize() {
     for (row, length) in rows.iter().zip([0.5, 1.0, 1.5, 2.0, 2.5, 3.0]) {
         assert_eq!(row["value"].as_f64(), Some(length));
         let setting = format!("line.length={length}");
-        let alone: Value =
+        let single: Value =
             serde_json::from_str(&answer(&hose, &[&setting], &[], &Request::Linearize { sweep: None }).json)
                 .unwrap();
         for end in ["minimum_n_per_m", "maximum_n_per_m"] {
-            assert_eq!(row["stiffness"][end], alone["stiffness"][end], "{length} {end}");
+            assert_eq!(row["stiffness"][end], single["stiffness"][end], "{length} {end}");
         }
-        assert_eq!(row["poles"]["plant"], alone["poles"]["plant"], "{length}");
-        assert_eq!(row["passive"]["closed_loop"], alone["passivity"]["closed_loop"]["passive"], "{length}");
+        assert_eq!(row["poles"]["plant"], single["poles"]["plant"], "{length}");
+        assert_eq!(row["passive"]["closed_loop"], single["passivity"]["closed_loop"]["passive"], "{length}");
         // more hose, more compliance
         let stiffness = row["stiffness"]["minimum_n_per_m"].as_f64().unwrap();
         assert!(stiffness < before, "{length}");
@@ -57,7 +57,7 @@ fn each_value_is_that_of_linearize() {
 
 /// The stated parameters fix the plant, and this is reported.
 #[test]
-fn a_key_that_the_plant_does_not_follow_is_told() {
+fn a_key_without_effect_on_the_plant_is_reported() {
     let swept = swept(HOSE, "line.length=0.5..3", 3);
     let rows = swept["sweep"].as_array().unwrap();
     assert_eq!(swept["swept"]["plant_follows"], false);
@@ -92,7 +92,7 @@ fn ends_take_units_as_in_the_file() {
 }
 
 #[test]
-fn what_is_no_sweep_is_refused_with_what_would_be_one() {
+fn an_invalid_sweep_is_refused_with_a_valid_one() {
     for (range, words) in [
         ("line.lenght=0.5..3", "did you mean `line.length`?"),
         ("valve.model=1..2", "only a number can be swept"),

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{check, derived, json, linearize, near, number, source};
+use crate::run_command::{check, derived, json, linearize, near, number, source};
 use phea_workbench::command::Request;
 use phea_workbench::project;
 use serde_json::Value;
@@ -62,12 +62,12 @@ fn the_hydraulic_natural_frequency() {
             "load.damping=0".to_string(),
         ];
         let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
-        let told = check(MASS, &settings);
+        let output = check(MASS, &settings);
         let volume = area() * stroke + 2.0 * dead;
         let expected = (4.0 * 1.4e9 * area() * area() / (volume * (mass + 1.0))).sqrt();
-        near(derived(&told, "dynamics.mode_1.frequency"), expected, 1e-3);
-        assert!(derived(&told, "dynamics.mode_1.damping_ratio") < 1e-4);
-        assert_eq!(derived(&told, "line.compliance"), 0.0);
+        near(derived(&output, "dynamics.mode_1.frequency"), expected, 1e-3);
+        assert!(derived(&output, "dynamics.mode_1.damping_ratio") < 1e-4);
+        assert_eq!(derived(&output, "line.compliance"), 0.0);
     }
 }
 
@@ -85,9 +85,9 @@ fn a_free_mass_has_no_position() {
             "cylinder.friction={ model = \"viscous\", viscous = 300 }".to_string(),
         ];
         let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
-        let (told, linear) = (check(MASS, &settings), linearize(MASS, &settings));
+        let (output, linear) = (check(MASS, &settings), linearize(MASS, &settings));
         let [gain, leak] =
-            ["linear.flow_gain", "linear.flow_pressure_coefficient"].map(|name| derived(&told, name));
+            ["linear.flow_gain", "linear.flow_pressure_coefficient"].map(|name| derived(&output, name));
         let velocity = gain / (area() + leak * (300.0 + damping) / area());
         let command = &linear["plant"]["command"];
         let product = |name: &str| -> f64 {
@@ -107,7 +107,7 @@ fn refused(text: &str, settings: &[&str]) -> String {
 
 /// A limit that leaves no rig is rejected at its place, with a remedy.
 #[test]
-fn limits_without_a_rig_have_a_place_and_a_cure() {
+fn limits_without_a_rig_have_a_place_and_a_remedy() {
     let empty = refused(&MASS.replace("dead_volume = \"20 mL\"\n", ""), &[]);
     assert!(empty.contains("rig.toml:22") && empty.contains("cylinder.dead_volume"), "{empty}");
     let shut = refused(&MASS.replacen("1e-12", "0", 1), &[]);
@@ -153,8 +153,8 @@ fn a_plant_by_its_zeros_poles_and_gain() {
 fn an_incomplete_plant_is_refused_once() {
     let without = refused(&FACTORS.replace("gain = 2\n", ""), &[]);
     assert!(without.contains("missing `gain`") && !without.contains("zero at the nominal"), "{without}");
-    let alone = refused(&FACTORS.replace(", [-1, -5]]", "]"), &[]);
-    assert!(alone.contains("has no conjugate"), "{alone}");
+    let unpaired = refused(&FACTORS.replace(", [-1, -5]]", "]"), &[]);
+    assert!(unpaired.contains("has no conjugate"), "{unpaired}");
     let both = refused(&FACTORS.replace("gain = 2", "gain = 2\nnumerator = \"1\"\ndenominator = \"s\""), &[]);
     assert!(both.contains("numerator") && both.contains("gain"), "{both}");
     let half = refused(

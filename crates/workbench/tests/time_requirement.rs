@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{self, number};
+use crate::run_command::{self, number};
 use phea_workbench::command::Request;
 use serde_json::Value;
 
@@ -65,14 +65,14 @@ fn a_step_far_beyond_the_requirement_is_computed_until_it_settles() {
     let slow = "k = { nominal = 0.2, minimum = 0.1, maximum = 0.4, points = 3 }";
     let (object, words) = verify(&project("numerator = \"k\"\ndenominator = \"s\"", slow, "", &lower(1.0)));
     let found = &object["specifications"][0]["in_time"];
-    ask::near(number(found, "worst_settling_time_s"), 10.0 * 50.0_f64.ln(), 0.01);
+    run_command::near(number(found, "worst_settling_time_s"), 10.0 * 50.0_f64.ln(), 0.01);
     assert_eq!(found["settling_plant"]["k"], 0.1);
     assert!(words.contains("settled in 39"), "{words}");
 }
 
 /// Limits that are stated are only compared with the requirement.
 #[test]
-fn a_stated_limit_is_not_replaced_by_what_was_required_of_it() {
+fn a_stated_limit_is_not_replaced_by_its_requirement() {
     let stated = "{ numerator = \"1\", denominator = \"10*s + 1\", settling_time = \"3 s\", settling_band_percent = 2 }";
     let text = project("numerator = \"k\"\ndenominator = \"s\"", GAINS, "", stated);
     let (object, _) = verify(&text);
@@ -90,7 +90,7 @@ fn the_overshoot_of_the_worst_plant_is_found() {
     let (object, _) = verify(&project(plant, damping, "", &lower(3.0)));
     let found = &object["specifications"][0]["in_time"];
     let expected = 100.0 * (-std::f64::consts::PI * 0.3 / (1.0_f64 - 0.09).sqrt()).exp();
-    ask::near(number(found, "worst_overshoot_percent"), expected, 1e-4);
+    run_command::near(number(found, "worst_overshoot_percent"), expected, 1e-4);
     assert_eq!(found["overshoot_plant"]["z"], 0.3);
     assert_eq!(object["verdict"], "violated");
 }
@@ -111,14 +111,14 @@ fn steps_of_delayed_and_of_sampled_loops_agree() {
     // a zero-order hold delays by half a sample
     assert!((delayed - sampled).abs() < 5e-3, "{delayed} {sampled}");
     let at_once = settled("");
-    ask::near(at_once, 50.0_f64.ln(), 2e-3);
+    run_command::near(at_once, 50.0_f64.ln(), 2e-3);
     assert!((delayed - at_once).abs() > 0.1, "{delayed} {at_once}");
 }
 
 /// Prefilter F = (10 s + 1)/(0.1 s + 1) rises by a factor of a hundred, 40 dB; a lag amplifies
 /// nothing.
 #[test]
-fn a_prefilter_that_amplifies_is_told() {
+fn a_prefilter_that_amplifies_is_reported() {
     let plain = project("numerator = \"k\"\ndenominator = \"s\"", GAINS, "", &lower(5.0));
     let of = |prefilter: &str| {
         verify(&plain.replace("[prefilter]\nnumerator = \"1\"\ndenominator = \"1\"", prefilter))
@@ -128,7 +128,7 @@ fn a_prefilter_that_amplifies_is_told() {
     assert!((rise - 40.0).abs() < 0.01, "{rise}");
     assert!(words.contains("the prefilter amplifies"), "{words}");
     let (object, _) = of("[prefilter]\nnumerator = \"3\"\ndenominator = \"0.1*s + 1\"");
-    ask::near(number(&object, "amplifying_prefilter.gain_at_zero"), 3.0, 1e-12);
+    run_command::near(number(&object, "amplifying_prefilter.gain_at_zero"), 3.0, 1e-12);
     for quiet in
         ["numerator = \"1\"\ndenominator = \"0.1*s + 1\"", "numerator = \"s + 1\"\ndenominator = \"s + 1\""]
     {

@@ -9,7 +9,7 @@ use phea_workbench::project;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
-use crate::ask::{answer, check, derived, load, near, retracted_length};
+use crate::run_command::{answer, check, derived, load, near, retracted_length};
 
 const TRANSMISSION: &str = include_str!("../../../examples/ybitu/transmission.toml");
 /// A transmission with a pipe as long as the hose of the other, whose numbers are known by hand.
@@ -30,37 +30,37 @@ fn certain() -> String {
 /// 20 cm2 and the oil of the example
 #[test]
 fn check_derives_its_oil() {
-    let told = check(&certain(), &[PIPE]);
+    let output = check(&certain(), &[PIPE]);
     let bore = std::f64::consts::FRAC_PI_4 * 1e-4;
-    near(derived(&told, "series.oil_volume"), bore * 2.0 + 4e-5, 1e-12);
-    near(derived(&told, "series.stiffness_of_oil"), 4e-6 * 1.45e9 / (bore * 2.0 + 4e-5), 1e-12);
+    near(derived(&output, "series.oil_volume"), bore * 2.0 + 4e-5, 1e-12);
+    near(derived(&output, "series.stiffness_of_oil"), 4e-6 * 1.45e9 / (bore * 2.0 + 4e-5), 1e-12);
     let mass = 870.0 * 2.0 * bore * (2e-3 / bore).powi(2);
-    near(derived(&told, "series.reflected_mass"), mass, 1e-12);
-    near(derived(&told, "series.reflected_damping"), 32.0 * 46e-6 * mass / 1e-4, 1e-12);
-    near(derived(&told, "series.wave_travel_time"), 2.0 * (870.0 / 1.45e9_f64).sqrt(), 1e-12);
-    let stall = derived(&told, "cylinder.stall_force");
-    near(derived(&told, "series.pressure_at_stall"), 60e5 + stall / 2e-3, 1e-12);
-    near(derived(&told, "series.pull_limit"), 2e-3 * (60e5 + 101_325.0), 1e-12);
-    let softened = 1.0 / (1.0 / derived(&told, "linear.hydraulic_stiffness") + 1.0 / 20e6);
-    let softened = 1.0 / (1.0 / softened + 1.0 / derived(&told, "series.stiffness_of_oil"));
-    near(derived(&told, "dynamics.equivalent_stiffness"), softened, 1e-12);
+    near(derived(&output, "series.reflected_mass"), mass, 1e-12);
+    near(derived(&output, "series.reflected_damping"), 32.0 * 46e-6 * mass / 1e-4, 1e-12);
+    near(derived(&output, "series.wave_travel_time"), 2.0 * (870.0 / 1.45e9_f64).sqrt(), 1e-12);
+    let stall = derived(&output, "cylinder.stall_force");
+    near(derived(&output, "series.pressure_at_stall"), 60e5 + stall / 2e-3, 1e-12);
+    near(derived(&output, "series.pull_limit"), 2e-3 * (60e5 + 101_325.0), 1e-12);
+    let softened = 1.0 / (1.0 / derived(&output, "linear.hydraulic_stiffness") + 1.0 / 20e6);
+    let softened = 1.0 / (1.0 / softened + 1.0 / derived(&output, "series.stiffness_of_oil"));
+    near(derived(&output, "dynamics.equivalent_stiffness"), softened, 1e-12);
 }
 
 /// The controller of the example satisfies every specification, stability is proven, and the
 /// machine agrees with the linear loop.
 #[test]
 fn the_example_is_met_and_the_machine_agrees() {
-    let said =
+    let verified =
         parsed(&answer(TRANSMISSION, &[], &[], &Request::Verify { proof: false, on_machine: true }).json);
-    assert_eq!(said["verdict"], "met", "{}", said["specifications"]);
-    for run in said["machine"]["runs"].as_array().unwrap() {
+    assert_eq!(verified["verdict"], "met", "{}", verified["specifications"]);
+    for run in verified["machine"]["runs"].as_array().unwrap() {
         assert_eq!(run["agrees"], Value::from(true), "{run}");
     }
     // two uncertain numbers and two segments: polynomials of a higher degree are not enclosed
     // tightly enough
     let few = "uncertainty={ flow_gain = { nominal = 5.4e-5, minimum = 3.23e-5, maximum = 5.61e-5 }, \
                \"series.line.length\" = { nominal = 2, minimum = 1.9, maximum = 2.1 } }";
-    let said = parsed(
+    let verified = parsed(
         &answer(
             TRANSMISSION,
             &[few, "series.segments=2"],
@@ -69,7 +69,7 @@ fn the_example_is_met_and_the_machine_agrees() {
         )
         .json,
     );
-    assert_eq!(said["proof"]["stable"]["proven"], true, "{}", said["proof"]);
+    assert_eq!(verified["proof"]["stable"]["proven"], true, "{}", verified["proof"]);
 }
 
 /// Small steps with every load, and with waves in the lines of the rig as well. The capacity of the
@@ -87,10 +87,10 @@ fn small_steps_on_the_machine_are_those_of_the_linear_loop() {
     let waves = ["line.model=transmission_line"];
     for other in [&[][..], &sprung, &waves] {
         let settings = [&[viscous, "series.segments=2"][..], &loop_of_force, other].concat();
-        let said = parsed(
+        let verified = parsed(
             &answer(&certain(), &settings, &[], &Request::Verify { proof: false, on_machine: true }).json,
         );
-        let run = &said["machine"]["runs"][0];
+        let run = &verified["machine"]["runs"][0];
         assert_eq!(run["agrees"], Value::from(true), "{other:?}: {run}");
     }
 }
@@ -98,16 +98,16 @@ fn small_steps_on_the_machine_are_those_of_the_linear_loop() {
 /// A pull of 2 kN on oil with a filling pressure of 2 bar tears it off, which is an event of the
 /// run and a warning before it.
 #[test]
-fn a_run_says_where_the_oil_tears_off() {
+fn a_run_reports_where_the_oil_column_separates() {
     let scenario = "scenario=[{ name = \"pull\", duration = \"1 s\", reference = [{ at = \"0.1 s\", force = \"-2 kN\" }] }]";
-    let said = answer(
+    let verified = answer(
         TRANSMISSION,
         &[scenario, "series.filling_pressure=2 bar"],
         &[],
         &Request::Simulate(Default::default()),
     );
-    assert!(said.text.contains("the oil of the transmission cavitates"), "{}", said.text);
-    assert!(said.json.contains("\"cavitation_transmission\""), "{}", said.json);
+    assert!(verified.text.contains("the oil of the transmission cavitates"), "{}", verified.text);
+    assert!(verified.json.contains("\"cavitation_transmission\""), "{}", verified.json);
     let filled = answer(TRANSMISSION, &[scenario], &[], &Request::Simulate(Default::default()));
     assert!(!filled.text.contains("cavitates"), "{}", filled.text);
     let warned = load(TRANSMISSION, &["series.filling_pressure=2 bar"], &[]).warnings;
@@ -116,7 +116,7 @@ fn a_run_says_where_the_oil_tears_off() {
 
 /// Length, price and mass of an alternative include both cylinders, the hose and its oil.
 #[test]
-fn what_it_costs_and_weighs() {
+fn cost_and_mass_are_reported() {
     let length = |settings: &[&str]| retracted_length(&load(TRANSMISSION, settings, &[]).project);
     // ORIGIN: analytic, 0.5 m of stroke, 0.3 m and two cylinders of 0.2 m
     near(length(&["cylinder.dead_length=0.3 m"]).unwrap(), 1.2, 1e-12);
@@ -128,23 +128,23 @@ fn what_it_costs_and_weighs() {
         "series.line.price_per_length=15 EUR/m",
         "series.line.mass_per_length=0.3 kg/m",
     ];
-    let told = check(TRANSMISSION, &costs);
+    let output = check(TRANSMISSION, &costs);
     // ORIGIN: analytic
-    near(derived(&told, "parts.series.price"), 180.0, 1e-12);
-    near(derived(&told, "parts.series.line.price"), 30.0, 1e-12);
-    near(derived(&told, "parts.series.mass"), 3.0, 1e-12);
-    near(derived(&told, "parts.series.line.mass"), 0.6, 1e-12);
-    let lines = 2.0 * 870.0 * derived(&told, "line.volume");
+    near(derived(&output, "parts.series.price"), 180.0, 1e-12);
+    near(derived(&output, "parts.series.line.price"), 30.0, 1e-12);
+    near(derived(&output, "parts.series.mass"), 3.0, 1e-12);
+    near(derived(&output, "parts.series.line.mass"), 0.6, 1e-12);
+    let lines = 2.0 * 870.0 * derived(&output, "line.volume");
     near(
-        derived(&told, "parts.oil_in_lines.mass"),
-        lines + 870.0 * derived(&told, "series.oil_volume"),
+        derived(&output, "parts.oil_in_lines.mass"),
+        lines + 870.0 * derived(&output, "series.oil_volume"),
         1e-12,
     );
 }
 
 /// Models with one load pressure treat its oil as a spring, and report this.
 #[test]
-fn the_reduced_models_say_what_they_leave_out() {
+fn the_reduced_models_report_their_neglected_effects() {
     let page = answer(TRANSMISSION, &["series.segments=1"], &[], &Request::Linearize { sweep: None });
     assert!(
         page.text.contains(
@@ -157,7 +157,7 @@ fn the_reduced_models_say_what_they_leave_out() {
 
 /// A motor cannot have a transmission; a linkage can.
 #[test]
-fn a_motor_has_no_place_for_it() {
+fn a_motor_refuses_a_transmission() {
     let read = |rig: &str| {
         let source = Memory::default().with("rig.toml", rig);
         project::read(&source, "rig.toml", &[PIPE.to_string()], &[]).map(|_| ())

@@ -8,7 +8,7 @@ use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{ScenarioRun, simulate_project};
 use serde_json::Value;
 
-use super::ask::{answer, project_of, source, try_answer};
+use super::run_command::{answer, project_of, source, try_answer};
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 const PLANT: &str = include_str!("../../../examples/qft/servo.toml");
@@ -21,8 +21,8 @@ const DESIGNED: [&str; 4] = [
 ];
 
 fn on_machine(settings: &[&str]) -> (bool, Value, String) {
-    let said = answer(HOSE, settings, &[], &Request::Verify { proof: false, on_machine: true });
-    (said.affirmative, serde_json::from_str(&said.json).unwrap(), said.text)
+    let output = answer(HOSE, settings, &[], &Request::Verify { proof: false, on_machine: true });
+    (output.affirmative, serde_json::from_str(&output.json).unwrap(), output.text)
 }
 
 /// The run of this machine.
@@ -139,9 +139,9 @@ fn slow_rig() -> String {
     )
 }
 
-fn tried(settings: &[&str]) -> Value {
-    let said = answer(&slow_rig(), settings, &[], &Request::Verify { proof: false, on_machine: true });
-    serde_json::from_str(&said.json).unwrap()
+fn tested(settings: &[&str]) -> Value {
+    let output = answer(&slow_rig(), settings, &[], &Request::Verify { proof: false, on_machine: true });
+    serde_json::from_str(&output.json).unwrap()
 }
 
 /// A separate run with these steps of the reference.
@@ -172,12 +172,12 @@ fn references(run: &Value) -> [f64; 2] {
 /// A lost motion of the spool is visible on the way back, but not in a step from rest; and the
 /// greatest overshoot and the remaining oscillation are those of a separate run.
 #[test]
-fn lost_motion_shows_on_the_way_back() {
+fn lost_motion_appears_on_the_way_back() {
     for (threshold, agreement) in
         [("valve.threshold=0.02", "differs"), ("valve.threshold=0.1", "contradicts")]
     {
         let lost = ["valve.hysteresis=0.4", threshold];
-        let object = tried(&lost);
+        let object = tested(&lost);
         let declared = run(&object, "the rig as declared");
         assert_eq!((&object["verdict"], &declared["agreement"]), (&"met".into(), &agreement.into()));
         let [from, to] = references(declared);
@@ -187,8 +187,8 @@ fn lost_motion_shows_on_the_way_back() {
         let own = simulated(&lost, &steps, at_s(3.0));
         let late = [0.0, 1.0, 2.0].map(|leg| range(&own, at_s(leg + 0.8), at_s(leg + 1.0)));
         let amplitude = late.map(|[low, high]| 0.5 * (high - low)).into_iter().fold(0.0, f64::max);
-        let told = declared["remaining_amplitude_n"].as_f64().unwrap();
-        assert!(amplitude > 5.0 && (told / amplitude - 1.0).abs() < 0.02, "{told} {amplitude}");
+        let remaining_n = declared["remaining_amplitude_n"].as_f64().unwrap();
+        assert!(amplitude > 5.0 && (remaining_n / amplitude - 1.0).abs() < 0.02, "{remaining_n} {amplitude}");
         if agreement == "differs" {
             assert_eq!(declared["worst_step"], "back");
             let beyond = from - range(&own, at_s(1.0), at_s(2.0))[0];
@@ -199,7 +199,7 @@ fn lost_motion_shows_on_the_way_back() {
             );
         }
     }
-    let exact = tried(&[]);
+    let exact = tested(&[]);
     assert_eq!(exact["machine"]["verdict"], "agrees");
     for run in exact["machine"]["runs"].as_array().unwrap() {
         let [from, to] = references(run);
@@ -210,8 +210,8 @@ fn lost_motion_shows_on_the_way_back() {
 /// A worst plant that differs from the declared rig only by the side of null has another linear
 /// loop, but the machine of the declared rig.
 #[test]
-fn a_side_of_null_is_no_other_machine() {
-    let object = tried(&["valve.hysteresis=0.4", "valve.threshold=0.02"]);
+fn a_side_of_null_does_not_change_the_machine() {
+    let object = tested(&["valve.hysteresis=0.4", "valve.threshold=0.02"]);
     let [declared, worst] =
         ["the rig as declared", "the worst plant of 1 robust stability"].map(|what| run(&object, what));
     assert!(worst["plant"]["operating_point.spool_side"].is_number(), "{worst}");
@@ -224,28 +224,28 @@ fn a_side_of_null_is_no_other_machine() {
 /// A spool of limited speed: a tenth of the force is reached as the linear loop predicts, but not
 /// the largest step at which nothing saturates.
 #[test]
-fn a_slow_spool_shows_in_the_largest_step() {
-    let object = tried(&["valve.rate_limit=40 V/s"]);
+fn a_slow_spool_appears_in_the_largest_step() {
+    let object = tested(&["valve.rate_limit=40 V/s"]);
     let tenth = run(&object, "the rig as declared");
     assert_eq!((&tenth["step"], &tenth["agreement"]), (&"tenth_of_supply_force".into(), &"agrees".into()));
     let largest = run(&object, "the rig as declared, largest step");
     assert_eq!((&largest["step"], &largest["agreement"]), (&"largest_unsaturated".into(), &"differs".into()));
-    let unlimited = tried(&[]);
+    let unlimited = tested(&[]);
     assert_eq!(run(&unlimited, "the rig as declared, largest step")["agreement"], "agrees");
 }
 
 /// The largest step is within command and sensor, and one that is a quarter larger would not be.
 #[test]
-fn the_largest_step_stays_within_command_and_sensor() {
-    let object = tried(&["force_sensor.capacity=5 kN"]);
+fn the_largest_step_is_within_command_and_sensor() {
+    let object = tested(&["force_sensor.capacity=5 kN"]);
     // ORIGIN: analytic, the stated capacity, less the overshoot of the force
     let [_, to] = references(run(&object, "the rig as declared, largest step"));
     assert!((3500.0..5000.0).contains(&to), "{to}");
     let narrow = ["controller.saturation=3 V", "prefilter.denominator=s/200 + 1"];
-    let object = tried(&narrow);
+    let object = tested(&narrow);
     let [from, to] = references(run(&object, "the rig as declared, largest step"));
-    let limited = |share: f64| {
-        let steps = [(0.0, from), (0.05, from + share * (to - from)), (1.0, from)];
+    let limited = |fraction: f64| {
+        let steps = [(0.0, from), (0.05, from + fraction * (to - from)), (1.0, from)];
         simulated(&narrow, &steps, 2.0).occurrences.iter().any(|one| one.kind == "command_limit")
     };
     assert!(!limited(1.0) && limited(1.25), "{from} {to}");
@@ -255,7 +255,7 @@ fn the_largest_step_stays_within_command_and_sensor() {
 /// it does not make it either: with a valve that leaks a lot in the middle, a large step is faster
 /// than the linear loop about null, with waves or without.
 #[test]
-fn waves_are_blamed_only_where_lumped_lines_agree_better() {
+fn waves_are_named_as_the_cause_only_if_lumped_lines_agree_better() {
     let edges = ["supply_to_a", "a_to_tank", "supply_to_b", "b_to_tank"];
     let mut settings: Vec<String> =
         edges.iter().map(|edge| format!("valve.leakage_coefficients.{edge}=1.5e-7")).collect();

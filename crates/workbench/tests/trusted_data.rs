@@ -10,12 +10,14 @@ use phea_workbench::setup::Setup;
 use phea_workbench::simulate::simulate_project;
 use phea_workbench::source::Memory;
 
-use crate::ask::{HOSE, candidate, check, derived, linearize, load, near, number, size_for_length, within};
+use crate::run_command::{
+    HOSE, candidate, check, derived, linearize, load, near, number, size_for_length, within,
+};
 
 /// The example without some lines of its text.
 fn without(names: &[&str]) -> String {
-    let kept = |line: &&str| names.iter().all(|name| !line.starts_with(name));
-    HOSE.lines().filter(kept).collect::<Vec<_>>().join("\n")
+    let others = |line: &&str| names.iter().all(|name| !line.starts_with(name));
+    HOSE.lines().filter(others).collect::<Vec<_>>().join("\n")
 }
 
 #[test]
@@ -42,8 +44,8 @@ fn the_tare_flow_counts_at_the_pressure_it_was_stated_at() {
 fn leakage_across_the_piston_counts_in_sizing_and_reductions() {
     let leaking = "cylinder.internal_leakage=1e-12";
     let stated = |coefficient: &str| format!("linear.flow_pressure_coefficient={coefficient}");
-    let (counted, beside) = (linearize(HOSE, &[&stated("6.42e-13"), leaking]), stated("1.642e-12"));
-    let added = linearize(HOSE, &[&beside]);
+    let (counted, with_leakage) = (linearize(HOSE, &[&stated("6.42e-13"), leaking]), stated("1.642e-12"));
+    let added = linearize(HOSE, &[&with_leakage]);
     for model in ["full", "decomposed", "first_order"] {
         let name = format!("poles.{model}");
         let poles = |answer: &serde_json::Value| {
@@ -87,7 +89,8 @@ fn a_damping_ratio_may_be_called_z_where_nothing_samples() {
     // an identical plant under another name has an equal verdict
     let verdict = |text: &str| {
         let json =
-            crate::ask::answer(text, &[], &[], &Request::Verify { proof: false, on_machine: false }).json;
+            crate::run_command::answer(text, &[], &[], &Request::Verify { proof: false, on_machine: false })
+                .json;
         let object: serde_json::Value = serde_json::from_str(&json).unwrap();
         let worst = object["specifications"][0]["worst_margin_db"].as_f64();
         worst.unwrap_or_else(|| panic!("{object}"))
@@ -114,7 +117,7 @@ fn an_area_needs_no_rod() {
 
 /// A name with dots, written without quotes, is answered with the way to quote it.
 #[test]
-fn a_name_that_was_not_quoted_is_told_how() {
+fn an_unquoted_name_is_reported_with_the_quoted_form() {
     let setting =
         "uncertainty.cylinder.moving_mass={ nominal = 13.1, minimum = 12, maximum = 14 }".to_string();
     let source = Memory::default().with("rig.toml", HOSE);
@@ -145,13 +148,14 @@ fn the_gap_counts_from_the_equilibrium() {
 /// Return and suction lines have their own velocities.
 #[test]
 fn return_and_suction_lines_get_their_bores() {
-    let said =
-        |text: &str| crate::ask::answer(text, &[], &[], &Request::Size { gain: None, length: None }).text;
+    let sized = |text: &str| {
+        crate::run_command::answer(text, &[], &[], &Request::Size { gain: None, length: None }).text
+    };
     // ORIGIN: analytic, D = sqrt(4 q/(pi v)) with 9.8 L/min at 1.2 and 0.6 m/s
-    assert!(said(HOSE).contains(
+    assert!(sized(HOSE).contains(
         "bores of 13.2 to 18.6 mm for the return line of 9.800 L/min, of 13.2 to 18.6 mm for suction"
     ));
     // ORIGIN: analytic, these bores with 50^2/(50^2 - 22^2) of the flow
     let one_rod = HOSE.replace("rod_diameter = \"22 mm\"", "rod_diameters = [\"22 mm\", \"0 mm\"]");
-    assert!(said(&one_rod).contains("bores of 14.7 to 20.7 mm for the return line of 12.15 L/min"));
+    assert!(sized(&one_rod).contains("bores of 14.7 to 20.7 mm for the return line of 12.15 L/min"));
 }

@@ -6,7 +6,7 @@
 
 use std::sync::OnceLock;
 
-use crate::ask::HOSE;
+use crate::run_command::HOSE;
 use crate::valve_identification::recorded;
 use nalgebra::{DMatrix, DVector};
 use phea_dynamics::random::{normal, stream};
@@ -113,8 +113,8 @@ fn the_family_has_ninety_five_of_a_hundred_valves_that_the_recordings_allow() {
     // Hadamard's inequality: the box along the directions is smaller than the one along the
     // coefficients
     let independent: f64 = found.deviations[..COUNT].iter().product();
-    let share = changes.determinant().abs() / independent;
-    assert!(share < 0.1, "{share}");
+    let fraction = changes.determinant().abs() / independent;
+    assert!(fraction < 0.1, "{fraction}");
     // drawn with the Cholesky factor, which is independent of the directions
     let scaled = DMatrix::from_fn(COUNT, COUNT, |i, j| {
         covariance[(i, j)] / (found.deviations[i] * found.deviations[j])
@@ -136,7 +136,7 @@ fn the_family_has_ninety_five_of_a_hundred_valves_that_the_recordings_allow() {
 /// K_qU and K_c of valves within the region are within the box that the family visits, even if most
 /// directions are left out, up to the omitted part.
 #[test]
-fn directions_that_are_left_out_matter_little() {
+fn neglected_directions_have_little_effect() {
     let found = identification();
     let every = joint_region(found, &rig(), 0.0).unwrap();
     let region = joint_region(found, &rig(), 0.02).unwrap();
@@ -170,7 +170,7 @@ fn directions_that_are_left_out_matter_little() {
 
 /// A valve that is known exactly is one valve: the family is only that of its operating region.
 #[test]
-fn what_is_known_exactly_has_no_directions() {
+fn exact_parameters_have_no_directions() {
     let mut found = identification().clone();
     found.deviations = [0.0; STATIC_COEFFICIENTS];
     let region = joint_region(&found, &rig(), 0.0).unwrap();
@@ -178,14 +178,14 @@ fn what_is_known_exactly_has_no_directions() {
     let names: Vec<String> =
         members(&with_directions(&region)).plant().parameters().iter().map(|one| one.name.clone()).collect();
     assert_eq!(names, ["operating_point.load_force", "operating_point.velocity"]);
-    let mut alone = with_directions(&region);
-    alone.family = None;
-    alone.operating_point.spool_side = Some(0.0);
-    assert_eq!(members(&alone).members().len(), 1);
+    let mut nominal_only = with_directions(&region);
+    nominal_only.family = None;
+    nominal_only.operating_point.spool_side = Some(0.0);
+    assert_eq!(members(&nominal_only).members().len(), 1);
 }
 
 #[test]
-fn no_family_is_written_of_what_the_recordings_do_not_determine() {
+fn no_family_is_written_of_undetermined_parameters() {
     let mut found = identification().clone();
     found.estimates[4] = None;
     assert_eq!(
@@ -196,8 +196,8 @@ fn no_family_is_written_of_what_the_recordings_do_not_determine() {
     found.deviations[4] = found.coefficients.to_array()[4];
     let below = JointRegionError::BelowZero("valve.leakage_coefficients.supply_to_a".to_string());
     assert_eq!(joint_region(&found, &rig(), 0.0), Err(below));
-    let alone = Project { actuator: None, ..rig() };
-    assert_eq!(joint_region(identification(), &alone, 0.0), Err(JointRegionError::NoRig));
+    let nominal_only = Project { actuator: None, ..rig() };
+    assert_eq!(joint_region(identification(), &nominal_only, 0.0), Err(JointRegionError::NoRig));
 }
 
 /// Members are the plants of the project with these numbers declared, to rounding.
@@ -290,8 +290,8 @@ fn ranges_that_are_replaced_are_compared_and_nothing_else() {
     // gain than Table 6.3
     assert!(leakage.visited[1] < 0.3 * 7e-11 && gain.visited[1] > 1.3 * 5.61e-5, "{ranges:?}");
     let logarithm = |value: f64| value.ln();
-    let share = logarithm(leakage.visited[1] / 6.42e-13) / logarithm(7e-11 / 6.42e-13);
-    assert!((leakage.share - share).abs() < 1e-12);
+    let fraction = logarithm(leakage.visited[1] / 6.42e-13) / logarithm(7e-11 / 6.42e-13);
+    assert!((leakage.share - fraction).abs() < 1e-12);
     assert_eq!((leakage.beyond(), gain.beyond()), ([true, false], [false, true]));
     let problem = robust_problem(&Memory::default(), &setup).unwrap();
     let own = template(&problem.family, &problem.compensation, 1.0, &TemplateOptions::default()).unwrap();
@@ -299,6 +299,6 @@ fn ranges_that_are_replaced_are_compared_and_nothing_else() {
     assert_eq!(areas.len(), 1);
     assert_eq!(areas[0].visited, own.template.area_deg_db());
     assert!(areas[0].replaced > 0.0 && areas[0].replaced != areas[0].visited, "{areas:?}");
-    let alone = format!("{start}{replaces}[[specification]]{end}");
-    assert!(read(&alone).unwrap_err().contains("nothing to compare with"));
+    let nominal_only = format!("{start}{replaces}[[specification]]{end}");
+    assert!(read(&nominal_only).unwrap_err().contains("nothing to compare with"));
 }

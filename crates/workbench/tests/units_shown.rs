@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::answer;
+use crate::run_command::answer;
 use phea_workbench::command::{Request, SimulateRequest};
 
 const RIG: &str = include_str!("../../../examples/simulation/benchmark.toml");
@@ -49,10 +49,10 @@ fn is_printed_in(project: &str, unit: &str, other: &str) {
     ];
     for request in requests {
         let name = request.name();
-        let told = answer(project, &[], &[], &request);
-        let pages = told.files.iter().filter(|file| file.name.ends_with(".html"));
+        let output = answer(project, &[], &[], &request);
+        let pages = output.files.iter().filter(|file| file.name.ends_with(".html"));
         let page: String = pages.map(|file| texts(&String::from_utf8_lossy(&file.bytes))).collect();
-        let all = format!("{}\n{page}", told.text);
+        let all = format!("{}\n{page}", output.text);
         assert_eq!(places(&all, other), Vec::<String>::new(), "{name} prints {other} next to {unit}");
         let has_forces = !matches!(request, Request::Linearize { .. });
         assert_eq!(!places(&all, unit).is_empty(), has_forces, "{name} and {unit}");

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::print_stdout, reason = "how often and how wide is worth reading")]
 
-use crate::ask::{HOSE, answer, load};
+use crate::run_command::{HOSE, answer, load};
 use crate::valve_identification::{TRUTH, VALVE, interval};
 use nalgebra::{DMatrix, DVector};
 use phea_hydraulics::servovalve::{
@@ -132,9 +132,9 @@ fn intervals_from(recorded: Vec<(String, String)>) -> [[f64; 2]; COUNT] {
     let files: Vec<String> = recorded.iter().map(|(name, _)| name.clone()).collect();
     let source =
         recorded.into_iter().fold(Memory::default(), |source, (name, text)| source.with(&name, text));
-    let asked = IdentifyRequest { files, starts: Some(1), ..IdentifyRequest::default() };
+    let request = IdentifyRequest { files, starts: Some(1), ..IdentifyRequest::default() };
     let loaded = load(HOSE, &[], &[]);
-    let found = identify_watched(&source, Some(&loaded), &asked, &mut |_| true).unwrap();
+    let found = identify_watched(&source, Some(&loaded), &request, &mut |_| true).unwrap();
     let found = serde_json::from_str(&found.json).unwrap();
     TRUTH.map(|(path, _)| interval(&found, path).expect("an interval"))
 }
@@ -257,8 +257,8 @@ fn true_inputs(
         for _ in 0..20 {
             let outputs = tested.outputs(truth, test.circuit(), &inputs);
             for (input, output) in inputs.iter_mut().zip(outputs) {
-                let share = output.port_flow / meter.range;
-                input.load_pressure = meter.pressure_drop * share * share.abs();
+                let fraction = output.port_flow / meter.range;
+                input.load_pressure = meter.pressure_drop * fraction * fraction.abs();
             }
         }
     }

@@ -3,8 +3,8 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::{HOSE, check, load};
-use crate::valve_identification::{TRUTH, files_of, identified, interval, recorded, try_asked, value};
+use crate::run_command::{HOSE, check, load};
+use crate::valve_identification::{TRUTH, files_of, identified, interval, recorded, try_request, value};
 use phea_workbench::command::{IdentifyError, IdentifyRequest, LeakageModel, identify_watched};
 use phea_workbench::source::Memory;
 use serde_json::Value;
@@ -16,7 +16,7 @@ const FEW_ROWS: &str = "bench.sample_time=2";
 /// Recordings made with either model support it, and its coefficients are the true ones of the
 /// table.
 #[test]
-fn recordings_speak_for_the_model_that_made_them() {
+fn recordings_favour_the_model_that_generated_them() {
     for (settings, model) in [(vec![FEW_ROWS], "each_edge"), (vec![FEW_ROWS, ONE_CURVE], "one_curve")] {
         let found = identified(&recorded(&settings));
         assert_eq!(found["leakage_model"], model);
@@ -38,10 +38,10 @@ fn recordings_speak_for_the_model_that_made_them() {
 /// each have equal leakage far from null only if K_vin differs by sqrt(2); fitted with the wrong
 /// model, the recordings give other numbers.
 #[test]
-fn the_wrong_model_says_so_first() {
+fn the_wrong_model_is_reported_first() {
     let files = recorded(&[FEW_ROWS, ONE_CURVE]);
-    let asked = IdentifyRequest { leakage_model: Some(LeakageModel::EachEdge), ..files_of(&files) };
-    let answer = try_asked(&files, &asked).unwrap();
+    let request = IdentifyRequest { leakage_model: Some(LeakageModel::EachEdge), ..files_of(&files) };
+    let answer = try_request(&files, &request).unwrap();
     let first = answer.text.lines().take(4).collect::<Vec<_>>().join(" ");
     assert!(first.contains("one curve for the whole valve (`one_curve`) rather than"), "{first}");
     assert!(first.contains("leakage_model = \"each_edge\"`, against the recordings"), "{first}");
@@ -55,7 +55,7 @@ fn the_wrong_model_says_so_first() {
 #[test]
 fn the_fragment_is_for_the_model_it_names() {
     let files = recorded(&[FEW_ROWS, ONE_CURVE]);
-    let answer = try_asked(&files, &files_of(&files)).unwrap();
+    let answer = try_request(&files, &files_of(&files)).unwrap();
     let fragment = String::from_utf8(answer.files[0].bytes.clone()).unwrap();
     assert!(fragment.contains("leakage_model = \"one_curve\""), "{fragment}");
     let gain = |settings: &[&str]| {
@@ -72,10 +72,10 @@ fn the_fragment_is_for_the_model_it_names() {
 
 /// Metering only, with a coarse meter: the models differ where it reads zero.
 #[test]
-fn recordings_that_do_not_decide_say_so() {
+fn undecided_recordings_are_reported() {
     let coarse = ["bench.flow_meter.minimum=\"3 L/min\"", "bench.pressure_noise=\"2 bar\"", FEW_ROWS];
     let files: Vec<_> = recorded(&coarse).into_iter().filter(|(name, _)| name == "metering.csv").collect();
-    let answer = try_asked(&files, &files_of(&files)).unwrap();
+    let answer = try_request(&files, &files_of(&files)).unwrap();
     assert!(answer.text.contains("The recordings do not decide"), "{}", answer.text);
     let found: Value = serde_json::from_str(&answer.json).unwrap();
     assert_eq!(found["leakage_model_preferred"], Value::Null);
@@ -84,7 +84,7 @@ fn recordings_that_do_not_decide_say_so() {
 
 /// A quantity that may be absent has an interval from zero, not a confident one away from it.
 #[test]
-fn what_may_be_zero_has_a_bound_from_above() {
+fn possibly_zero_parameters_have_an_upper_bound() {
     // a meter that does not indicate the direction shows the magnitude of its noise
     let cases = [
         ("valve.hysteresis=\"1e-9 V\"", "/hysteresis_v", 0.0, 2e-3),
@@ -108,7 +108,7 @@ fn what_may_be_zero_has_a_bound_from_above() {
 /// that do not move there: most rows of the leakage then carry no information, or only noise. The
 /// tare flow has an upper bound, and the leakage is still found.
 #[test]
-fn a_valve_without_tare_flow_has_a_bound_from_above_by_every_meter() {
+fn a_valve_without_tare_flow_has_an_upper_bound_from_every_meter() {
     let cases = [
         (vec!["bench.leak_meter.signed=true"], 3e-8),
         // ORIGIN: analytic, the mean magnitude of noise of 0.005 L/min is 6.6e-8 m3/s
@@ -119,7 +119,7 @@ fn a_valve_without_tare_flow_has_a_bound_from_above_by_every_meter() {
     for (meter, most) in cases {
         let settings = [&meter[..], &["valve.tare_flow=\"0 m3/s\"", FEW_ROWS]].concat();
         let files = recorded(&settings);
-        let answer = try_asked(&files, &files_of(&files)).unwrap();
+        let answer = try_request(&files, &files_of(&files)).unwrap();
         let found: Value = serde_json::from_str(&answer.json).unwrap();
         let [low, high] = interval(&found, "/tare_flow_m3_per_s").unwrap_or_else(|| panic!("{meter:?}"));
         assert!(low == 0.0 && high < most, "{meter:?}: {low} {high}");
@@ -154,9 +154,9 @@ fn coarse_converters_do_not_make_the_noise_vanish() {
 
 /// The fragment does not state a hysteresis that may be absent.
 #[test]
-fn a_hysteresis_that_may_be_none_is_a_comment() {
+fn a_possibly_absent_hysteresis_is_a_comment() {
     let files = recorded(&["valve.hysteresis=\"1e-9 V\"", FEW_ROWS]);
-    let answer = try_asked(&files, &files_of(&files)).unwrap();
+    let answer = try_request(&files, &files_of(&files)).unwrap();
     let fragment = String::from_utf8(answer.files[0].bytes.clone()).unwrap();
     assert!(fragment.contains("# hysteresis: at most"), "{fragment}");
     assert!(answer.text.contains("These may be zero: hysteresis"), "{}", answer.text);
@@ -166,8 +166,8 @@ fn a_hysteresis_that_may_be_none_is_a_comment() {
 #[test]
 fn the_bootstrap_agrees_with_the_linearised_intervals() {
     let files = recorded(&[FEW_ROWS]);
-    let asked = IdentifyRequest { bootstrap: 100, ..files_of(&files) };
-    let answer = try_asked(&files, &asked).unwrap();
+    let request = IdentifyRequest { bootstrap: 100, ..files_of(&files) };
+    let answer = try_request(&files, &request).unwrap();
     assert!(answer.text.contains("Bootstrap: 100 repetitions"), "{}", answer.text);
     let found: Value = serde_json::from_str(&answer.json).unwrap();
     assert_eq!((&found["bootstrap"]["repetitions"], &found["bootstrap"]["failed"]), (&100.into(), &0.into()));
@@ -178,17 +178,17 @@ fn the_bootstrap_agrees_with_the_linearised_intervals() {
         // ORIGIN: analytic, percentiles of 100 repetitions scatter by a tenth of the width
         assert!((0.65..1.35).contains(&ratio), "{path}: {ratio}");
     }
-    let again = try_asked(&files, &asked).unwrap();
+    let again = try_request(&files, &request).unwrap();
     assert_eq!(answer, again);
 }
 
 /// A valve with a threshold, which the model lacks: the correlation of neighbouring residuals
 /// widens the intervals.
 #[test]
-fn the_bootstrap_sees_what_the_model_leaves_unexplained() {
+fn the_bootstrap_includes_the_unexplained_residual() {
     let files = recorded(&["valve.threshold=\"80 mV\"", FEW_ROWS]);
-    let asked = IdentifyRequest { bootstrap: 50, ..files_of(&files) };
-    let found: Value = serde_json::from_str(&try_asked(&files, &asked).unwrap().json).unwrap();
+    let request = IdentifyRequest { bootstrap: 50, ..files_of(&files) };
+    let found: Value = serde_json::from_str(&try_request(&files, &request).unwrap().json).unwrap();
     assert!(found["bootstrap"]["block_rows"].as_u64().unwrap() > 2, "{}", found["bootstrap"]);
     let [low, high] = interval(&found, "/hysteresis_v").unwrap();
     let ends = &found["hysteresis_v"]["bootstrap_95"];
@@ -196,18 +196,18 @@ fn the_bootstrap_sees_what_the_model_leaves_unexplained() {
 }
 
 #[test]
-fn a_bootstrap_tells_its_progress_and_stops_when_asked() {
+fn a_bootstrap_reports_its_progress_and_can_be_stopped() {
     let files = recorded(&[FEW_ROWS]);
     let source =
         files.iter().fold(Memory::default(), |source, (name, text)| source.with(name, text.as_str()));
-    let asked = IdentifyRequest { bootstrap: 1000, ..files_of(&files) };
-    let mut shares = Vec::new();
-    let stopped = identify_watched(&source, Some(&load(HOSE, &[], &[])), &asked, &mut |progress| {
+    let request = IdentifyRequest { bootstrap: 1000, ..files_of(&files) };
+    let mut fractions = Vec::new();
+    let stopped = identify_watched(&source, Some(&load(HOSE, &[], &[])), &request, &mut |progress| {
         if progress.stage == "bootstrap" {
-            shares.push(progress.share);
+            fractions.push(progress.share);
         }
-        shares.len() < 5
+        fractions.len() < 5
     });
     assert!(matches!(stopped, Err(IdentifyError::Stopped)));
-    assert_eq!(shares, [0.0, 0.001, 0.002, 0.003, 0.004]);
+    assert_eq!(fractions, [0.0, 0.001, 0.002, 0.003, 0.004]);
 }

@@ -6,7 +6,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::ask::{HOSE, answer, json, load};
+use crate::run_command::{HOSE, answer, json, load};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{IdentifyError, IdentifyRequest, Request, identify_watched};
 use phea_workbench::source::Memory;
@@ -44,18 +44,18 @@ pub(crate) fn files_of(files: &[(String, String)]) -> IdentifyRequest {
     IdentifyRequest { files, starts: Some(1), seed: 1, ..IdentifyRequest::default() }
 }
 
-pub(crate) fn try_asked(
+pub(crate) fn try_request(
     files: &[(String, String)],
-    asked: &IdentifyRequest,
+    request: &IdentifyRequest,
 ) -> Result<Answer, IdentifyError> {
     let source =
         files.iter().fold(Memory::default(), |source, (name, text)| source.with(name, text.as_str()));
     // the tare flow of the project is stated at 70 bar
-    identify_watched(&source, Some(&load(HOSE, &[], &[])), asked, &mut |_| true)
+    identify_watched(&source, Some(&load(HOSE, &[], &[])), request, &mut |_| true)
 }
 
 fn try_identify(files: &[(String, String)], starts: usize) -> Result<Answer, IdentifyError> {
-    try_asked(files, &IdentifyRequest { starts: Some(starts), ..files_of(files) })
+    try_request(files, &IdentifyRequest { starts: Some(starts), ..files_of(files) })
 }
 
 pub(crate) fn identified(files: &[(String, String)]) -> Value {
@@ -73,7 +73,7 @@ pub(crate) fn interval(found: &Value, path: &str) -> Option<[f64; 2]> {
 }
 
 #[test]
-fn without_noise_the_valve_is_found_to_what_the_converters_leave() {
+fn without_noise_the_valve_is_identified_within_converter_resolution() {
     let quiet = [
         "bench.pressure_noise=0",
         "bench.leak_meter.noise=0",
@@ -92,16 +92,16 @@ fn without_noise_the_valve_is_found_to_what_the_converters_leave() {
 /// of the project the lag is taken into account; with another one it counts as hysteresis, by twice
 /// the lag.
 #[test]
-fn the_lag_of_the_spool_is_no_hysteresis() {
+fn the_lag_of_the_spool_is_not_identified_as_hysteresis() {
     let slow = ["valve.natural_frequency=\"30 Hz\"", "valve.damping_ratio=0.9"];
     let files = recorded(&slow);
     let source =
         files.iter().fold(Memory::default(), |source, (name, text)| source.with(name, text.as_str()));
     let of = |settings: &[&str]| -> (f64, f64) {
-        let asked =
+        let request =
             identify_watched(&source, Some(&load(HOSE, settings, &[])), &files_of(&files), &mut |_| true);
         let found: Value =
-            serde_json::from_str(&asked.unwrap_or_else(|error| panic!("{error}")).json).unwrap();
+            serde_json::from_str(&request.unwrap_or_else(|error| panic!("{error}")).json).unwrap();
         let [low, high] = interval(&found, "/hysteresis_v").unwrap();
         (f64::midpoint(low, high) - 0.128, 0.5 * (high - low))
     };
@@ -117,7 +117,7 @@ fn the_lag_of_the_spool_is_no_hysteresis() {
 }
 
 #[test]
-fn outliers_are_not_believed() {
+fn outliers_are_rejected() {
     let mut files = recorded(&[]);
     for (_, text) in &mut files {
         let rows = text.lines().enumerate().map(|(index, line)| {
@@ -139,7 +139,7 @@ fn outliers_are_not_believed() {
 /// valve: such rows are left out, and reported. The numbers without them agree with those of the
 /// complete files, within their intervals.
 #[test]
-fn commands_that_stand_out_are_left_out() {
+fn outlying_commands_are_left_out() {
     let files = recorded(&[]);
     let spoilt: Vec<(String, String)> = files
         .iter()
@@ -166,8 +166,8 @@ fn commands_that_stand_out_are_left_out() {
         assert!(away < 0.5 * (high - low), "{path}: {away} beside {low} to {high}");
     }
     let warnings = found["warnings"].as_array().unwrap();
-    let told = |one: &&Value| one["message"].as_str().unwrap().contains("stands out of the rows");
-    assert_eq!(warnings.iter().filter(told).count(), files.len(), "{warnings:?}");
+    let is_outlier = |one: &&Value| one["message"].as_str().unwrap().contains("stands out of the rows");
+    assert_eq!(warnings.iter().filter(is_outlier).count(), files.len(), "{warnings:?}");
     let left_out = |found: &Value| found["tests"][0]["rows_left_out"].as_u64().unwrap();
     assert!(left_out(&clean) == 0 && left_out(&found) >= 4, "{}", found["tests"][0]);
 }
@@ -175,7 +175,7 @@ fn commands_that_stand_out_are_left_out() {
 /// A metering test without others: none of the tare flow passes through the meter, nor leakage
 /// below its resolution.
 #[test]
-fn metering_alone_does_not_tell_the_leakage() {
+fn metering_does_not_identify_the_leakage() {
     let files: Vec<_> = recorded(&[]).into_iter().filter(|(name, _)| name == "metering.csv").collect();
     let answer = try_identify(&files, 6).unwrap();
     assert!(!answer.affirmative);
@@ -206,7 +206,7 @@ fn metering_alone_does_not_tell_the_leakage() {
 /// Edges in series cannot be distinguished from the flow only, without pressures: only K_3
 /// K_6/sqrt(K_3^2 + K_6^2) passes the meter.
 #[test]
-fn a_flow_alone_does_not_tell_edges_in_series_apart() {
+fn a_flow_does_not_distinguish_edges_in_series() {
     let files = recorded(&["bench.flow_meter.pressure_drop=0"]);
     let (_, text) = files.iter().find(|(name, _)| name == "metering.csv").unwrap();
     let columns = |line: &str| {
@@ -230,7 +230,7 @@ fn a_flow_alone_does_not_tell_edges_in_series_apart() {
 
 /// Semicolons, decimal commas, a preamble, units in a separate row: all give identical numbers.
 #[test]
-fn files_of_every_kind_say_the_same() {
+fn files_of_every_kind_give_equal_answers() {
     let files = recorded(&[]);
     let spreadsheet = |(name, text): &(String, String)| {
         let mut lines = text.lines();
@@ -276,7 +276,7 @@ fn cell(row: usize, column: usize, with: &'static str) -> impl Fn(usize, &str) -
 }
 
 #[test]
-fn files_that_are_no_tests_are_refused_with_their_place() {
+fn other_files_are_refused_with_their_place() {
     let cases = [
         (cell(3, 3, "over"), "`over` is not a number", "leakage.csv:4:"),
         (cell(4, 0, "1"), "the time of the row before", "leakage.csv:5:1"),

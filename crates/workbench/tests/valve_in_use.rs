@@ -38,26 +38,26 @@ fn refusal(source: &Memory, settings: &[&str]) -> String {
 
 /// The bench records the declared valve, and reports this: its recordings may not exist yet.
 #[test]
-fn the_bench_says_that_its_valve_is_the_declared_one() {
+fn the_bench_reports_the_declared_valve() {
     let quick = "bench={ sample_time = \"10 s\" }";
-    let told = |settings: &[&str]| {
+    let check_of = |settings: &[&str]| {
         let source = source(IDENTIFIED, 0);
         command::answer(&source, &read(&source, settings), &[], &Request::Bench).unwrap()
     };
-    let answer = told(&[quick]);
+    let answer = check_of(&[quick]);
     assert!(
         answer.text.trim_start().starts_with("The valve under test is the declared one"),
         "{}",
         answer.text
     );
     assert!(answer.json.contains("\"remarks\""), "{}", answer.json);
-    assert!(!told(&[quick, "identify.use=nothing"]).json.contains("\"remarks\""));
+    assert!(!check_of(&[quick, "identify.use=nothing"]).json.contains("\"remarks\""));
 }
 
 /// Values used by `check` are the truth of the bench that made the files; the hash is that of the
 /// project followed by them.
 #[test]
-fn every_number_that_is_used_is_the_truth_of_the_bench() {
+fn every_identified_number_is_the_true_one_of_the_bench() {
     let source = source(IDENTIFIED, 4);
     let loaded = read(&source, &[]);
     let answer = command::answer(&source, &loaded, &[], &Request::Check).unwrap();
@@ -118,7 +118,7 @@ fn a_valve_that_the_recordings_do_not_determine_is_refused() {
 /// A setting that contradicts the recordings, or the family that they leave, is rejected; so is a
 /// missing file.
 #[test]
-fn what_contradicts_the_recordings_is_refused() {
+fn declarations_that_contradict_the_recordings_are_refused() {
     let all = source(IDENTIFIED, 4);
     let message = refusal(&all, &["valve.leakage_shape=50"]);
     assert!(message.contains("a setting states `valve.leakage_shape`"), "{message}");
@@ -128,7 +128,7 @@ fn what_contradicts_the_recordings_is_refused() {
 /// The declared valve is used if nothing is taken from recordings: the answer is that of the
 /// project without them.
 #[test]
-fn nothing_is_taken_where_nothing_is_wanted() {
+fn nothing_is_identified_unless_requested() {
     let source = source(IDENTIFIED, 0);
     let loaded = read(&source, &["identify.use=nothing"]);
     let answer = command::answer(&source, &loaded, &[], &Request::Check).unwrap();

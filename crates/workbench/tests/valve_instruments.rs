@@ -80,7 +80,7 @@ fn the_recorded_temperature_is_in_the_model() {
 /// root of the density.
 #[test]
 fn coefficients_are_stated_at_a_temperature() {
-    use crate::ask::{HOSE, load};
+    use crate::run_command::{HOSE, load};
     use crate::valve_identification::files_of;
     use phea_workbench::command::identify_watched;
     use phea_workbench::source::Memory;
@@ -88,12 +88,12 @@ fn coefficients_are_stated_at_a_temperature() {
     let files = recorded(&warm);
     let source =
         files.iter().fold(Memory::default(), |source, (name, text)| source.with(name, text.as_str()));
-    let asked = |settings: &[&str]| -> Value {
+    let identified_with = |settings: &[&str]| -> Value {
         let loaded = load(HOSE, settings, &[]);
         let found = identify_watched(&source, Some(&loaded), &files_of(&files), &mut |_| true);
         serde_json::from_str(&found.unwrap_or_else(|error| panic!("{error}")).json).unwrap()
     };
-    let [mean, hot] = [&[][..], &["identify.oil_temperature.reference=\"47 degC\""]].map(asked);
+    let [mean, hot] = [&[][..], &["identify.oil_temperature.reference=\"47 degC\""]].map(identified_with);
     let ratio = |path: &str| value(&hot, path) / value(&mean, path);
     assert!((ratio("/leakage_coefficients/supply_to_a") / 0.45_f64.exp() - 1.0).abs() < 1e-4);
     assert!((ratio("/flow_coefficients/supply_to_a") * (1.0 - 7e-3_f64).sqrt() - 1.0).abs() < 5e-5);
@@ -112,7 +112,7 @@ fn intervals_hold_with_coarse_converters() {
 /// truth, but those from noise only do not.
 #[test]
 fn a_stated_accuracy_is_in_the_intervals() {
-    use crate::ask::{HOSE, load};
+    use crate::run_command::{HOSE, load};
     use phea_workbench::command::{IdentifyRequest, identify_watched};
     use phea_workbench::source::Memory;
     let files = recorded(&[]);
@@ -125,7 +125,7 @@ fn a_stated_accuracy_is_in_the_intervals() {
         });
         source.with(name, lines.collect::<Vec<_>>().join("\n"))
     });
-    let asked = |accuracy: &str| -> Value {
+    let identified_with = |accuracy: &str| -> Value {
         let recording = format!(
             "identify.recording=[{{ file = \"leakage.csv\" }}, {{ file = \"pressure_gain.csv\" }}, {{ file = \"metering.csv\"{accuracy} }}]"
         );
@@ -137,24 +137,24 @@ fn a_stated_accuracy_is_in_the_intervals() {
     let path = "/flow_coefficients/supply_to_a";
     let holds =
         |found: &Value| interval(found, path).is_some_and(|[low, high]| low <= 3.2e-7 && 3.2e-7 <= high);
-    assert!(!holds(&asked("")));
-    let found = asked(", flow = { accuracy = \"1 %\" }");
+    assert!(!holds(&identified_with("")));
+    let found = identified_with(", flow = { accuracy = \"1 %\" }");
     assert!(holds(&found));
     let [low, high] = interval(&found, path).unwrap();
     // GUM: 1.96 times 1 % over the root of three
     let half = (high - low) / 2.0 / value(&found, path);
     assert!((half / (0.0196 / 3.0_f64.sqrt()) - 1.0).abs() < 0.1, "{half}");
     // the zero and the span of a transducer with 0.3 bar
-    let pressures = asked(", pressure_a = { accuracy = \"0.3 bar\" }");
+    let pressures = identified_with(", pressure_a = { accuracy = \"0.3 bar\" }");
     let width = |found: &Value| interval(found, "/null_bias_v").map_or(0.0, |[low, high]| high - low);
-    assert!(width(&pressures) > width(&asked("")));
+    assert!(width(&pressures) > width(&identified_with("")));
 }
 
 /// A transducer that reads 0.3 bar too much leaves a misfit if no accuracy is stated, and none if
 /// its stated accuracy covers the error; 3 bar are beyond that.
 #[test]
-fn what_a_stated_accuracy_explains_is_no_misfit() {
-    use crate::ask::{HOSE, load};
+fn deviations_within_the_stated_accuracy_are_no_misfit() {
+    use crate::run_command::{HOSE, load};
     use phea_workbench::command::{IdentifyRequest, identify_watched};
     use phea_workbench::source::Memory;
     let files = recorded(&["bench.pressure_noise=\"0.05 bar\""]);

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::{HOSE, answer, json, load};
+use crate::run_command::{HOSE, answer, json, load};
 use phea_workbench::command::{IdentifyRequest, Request, identify_watched};
 use phea_workbench::source::Memory;
 use serde_json::Value;
@@ -47,8 +47,8 @@ fn identified(settings: &[&str]) -> phea_workbench::answer::Answer {
     let source = recorded.into_iter().fold(Memory::default(), |source, file| {
         source.with(&file.name, String::from_utf8(file.bytes).unwrap())
     });
-    let asked = IdentifyRequest { files, starts: Some(1), ..IdentifyRequest::default() };
-    identify_watched(&source, Some(&load(HOSE, settings, &[])), &asked, &mut |_| true).unwrap()
+    let request = IdentifyRequest { files, starts: Some(1), ..IdentifyRequest::default() };
+    identify_watched(&source, Some(&load(HOSE, settings, &[])), &request, &mut |_| true).unwrap()
 }
 
 fn numbers(settings: &[&str]) -> Value {
@@ -57,15 +57,15 @@ fn numbers(settings: &[&str]) -> Value {
 }
 
 #[track_caller]
-fn near(numbers: &Value, name: &str, expected: f64, share: f64) {
+fn near(numbers: &Value, name: &str, expected: f64, fraction: f64) {
     let found = numbers[name].as_f64().unwrap_or_else(|| panic!("no {name} in {numbers}"));
-    assert!((found / expected - 1.0).abs() < share, "{name}: {found:e} is not {expected:e}");
+    assert!((found / expected - 1.0).abs() < fraction, "{name}: {found:e} is not {expected:e}");
 }
 
 /// The first column of Table 5.1 with one curve for the whole leakage, as in equations 4.12 to
 /// 4.14: the calculations return every number printed in section 5.2.
 #[test]
-fn the_published_numbers_come_back_from_the_valve_they_describe() {
+fn the_published_numbers_are_identified_from_their_valve() {
     let edges = equal_edges();
     let edges: Vec<&str> = edges.iter().map(String::as_str).collect();
     let settings = [&IDEAL[..], &MEASURED, &edges, &["valve.leakage_model=one_curve"]].concat();
@@ -88,7 +88,7 @@ fn the_published_numbers_come_back_from_the_valve_they_describe() {
 /// edges are unequal, and two of them in series pass less than a mean of the four; and its leakage
 /// coefficients are all below the 2.488e-9 of the peak.
 #[test]
-fn the_optimised_valve_agrees_where_it_can() {
+fn the_optimised_valve_agrees_where_comparable() {
     let found = numbers(&MEASURED);
     // ORIGIN: thesis section 5.2.1
     near(&found, "tare_flow_m3_per_s", 7.55e-6, 5e-3);
@@ -120,7 +120,7 @@ fn the_optimised_valve_agrees_where_it_can() {
 /// the flow give a null 8 mV too high, because the spool still remembers the reversal where they
 /// begin.
 #[test]
-fn nulls_and_what_follows_from_them_have_intervals() {
+fn nulls_and_derived_quantities_have_intervals() {
     // ORIGIN: thesis section 5.2.1, and the null between its two directions
     const TRUTH: [(&str, f64); 4] = [
         ("null_rising_v", 0.078),
@@ -148,8 +148,8 @@ fn nulls_and_what_follows_from_them_have_intervals() {
         assert!(all.iter().all(|[low, high]| high - low < 0.02), "{name}: {all:?}");
     }
     let [low, high] = of(&read[0], "tare_share");
-    let share = read[0]["tare_share"].as_f64().unwrap();
-    assert!(low < share && share < high && high - low < 0.02 * share, "{low} {share} {high}");
+    let fraction = read[0]["tare_share"].as_f64().unwrap();
+    assert!(low < fraction && fraction < high && high - low < 0.02 * fraction, "{low} {fraction} {high}");
     assert_eq!(read[0]["null_methods"], serde_json::json!(["leakage_centre", "leakage_centre"]));
     for (file, method) in [("metering.csv", "flow_lines"), ("pressure_gain.csv", "equal_pressures")] {
         let found = read_from(&[file], &[&settings[..], &["bench.sample_time=\"2 s\""]].concat(), 1);
@@ -171,8 +171,9 @@ fn read_from(files: &[&str], settings: &[&str], seed: u32) -> Value {
         source.with(&file.name, String::from_utf8(file.bytes).unwrap())
     });
     let files: Vec<String> = files.iter().map(|file| (*file).to_string()).collect();
-    let asked = IdentifyRequest { files, starts: Some(1), ..IdentifyRequest::default() };
-    let found = identify_watched(&source, Some(&load(HOSE, &settings, &[])), &asked, &mut |_| true).unwrap();
+    let request = IdentifyRequest { files, starts: Some(1), ..IdentifyRequest::default() };
+    let found =
+        identify_watched(&source, Some(&load(HOSE, &settings, &[])), &request, &mut |_| true).unwrap();
     let found: Value = serde_json::from_str(&found.json).unwrap();
     found["simple_calculations"].clone()
 }
@@ -204,13 +205,13 @@ fn slopes_at_null_are_those_of_the_linear_model() {
 #[test]
 fn the_pressure_sensitivity_is_that_of_the_dividers() {
     let [flow, leak] = [[3.2e-7, 2.5e-7, 2.0e-7, 3.85e-7], [2.35e-9, 2.2e-9, 1.7e-9, 2.35e-9]];
-    for share in [1.0, 0.4, 0.2] {
+    for fraction in [1.0, 0.4, 0.2] {
         let load = |command: f64| {
             let u = command / 10.0;
             let secant = 1.0 / phea_dynamics::portable::cosh(100.0 * u);
             let [forward, backward] = [u.max(0.0), (-u).max(0.0)];
             let openings = [forward, backward, backward, forward];
-            let edge = |index: usize| flow[index] * openings[index] + share * leak[index] * secant;
+            let edge = |index: usize| flow[index] * openings[index] + fraction * leak[index] * secant;
             let between = |supply: f64, tank: f64| supply * supply / (supply * supply + tank * tank);
             70e5 * (between(edge(0), edge(1)) - between(edge(2), edge(3)))
         };
@@ -220,7 +221,7 @@ fn the_pressure_sensitivity_is_that_of_the_dividers() {
             if load(middle) < 0.0 { low = middle } else { high = middle }
         }
         let truth = (load(high + 1e-5) - load(low - 1e-5)) / (high - low + 2e-5);
-        let edges = leak.map(|one| format!("{:e}", share * one)).join(", ");
+        let edges = leak.map(|one| format!("{:e}", fraction * one)).join(", ");
         let setting = format!("valve.leakage_coefficients=[{edges}]");
         let settings = [&setting, "valve.leakage_shape=100", "bench.duration=\"480 s\""];
         let found = numbers(&settings);
@@ -228,7 +229,7 @@ fn the_pressure_sensitivity_is_that_of_the_dividers() {
         let interval = &found["confidence_95"]["pressure_sensitivity_pa_per_v"];
         let [low, high] = [0, 1].map(|end| interval[end].as_f64().unwrap());
         // the curve is not quite a cubic with a kink: 1 % remains
-        assert!((value / truth - 1.0).abs() < 0.02, "{share}: {truth}, {value}");
+        assert!((value / truth - 1.0).abs() < 0.02, "{fraction}: {truth}, {value}");
         assert!((0.98 * low..1.02 * high).contains(&truth) && high - low < 0.2 * truth, "{low} {high}");
     }
 }
@@ -236,7 +237,7 @@ fn the_pressure_sensitivity_is_that_of_the_dividers() {
 /// The flow gain of a valve with an overlap is that beyond the overlap, and is not called the gain
 /// at null: K_c at null does not follow from it.
 #[test]
-fn the_numbers_of_a_valve_with_lap_say_where_they_are_read() {
+fn the_numbers_of_a_valve_with_lap_state_their_command() {
     let overlap = "valve.lap={ positive = 0.003, negative = 0.003 }";
     let [with, without] = [vec![overlap], vec![]].map(|lap| identified(&[&MEASURED[..], &lap].concat()));
     let [of_lap, proportional] = [&with, &without].map(|answer| -> Value {
@@ -265,7 +266,7 @@ fn the_numbers_of_a_valve_with_lap_say_where_they_are_read() {
 
 /// The numbers are printed with their equations and the published values.
 #[test]
-fn the_table_stands_beside_the_published_numbers() {
+fn the_table_is_next_to_the_published_numbers() {
     let text = identified(&MEASURED).text;
     for words in ["Numbers of section 5.2", "tare flow in the leakage at null", "2.488e-9", "42.6 to 65.0 %"]
     {
@@ -293,8 +294,8 @@ fn the_recordings_of_the_example_are_made_by_its_bench() {
     let source = RECORDED
         .into_iter()
         .fold(Memory::default(), |source, (name, text)| source.with(&format!("recorded/{name}"), text));
-    let asked = IdentifyRequest { starts: Some(1), figures: true, ..IdentifyRequest::default() };
-    let found = identify_watched(&source, Some(&load(BENCH, &[], &[])), &asked, &mut |_| true).unwrap();
+    let request = IdentifyRequest { starts: Some(1), figures: true, ..IdentifyRequest::default() };
+    let found = identify_watched(&source, Some(&load(BENCH, &[], &[])), &request, &mut |_| true).unwrap();
     let drawn: Vec<&str> = found.files.iter().filter_map(|file| file.name.strip_suffix(".svg")).collect();
     // ORIGIN: thesis Figures 5.3, 5.6, 5.4, 5.7, 5.8, the pressure gain, 5.5, 5.9, 5.10, the
     // sensitivity, 5.11, 5.12

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::{HOSE, answer};
+use crate::run_command::{HOSE, answer};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::Request;
 use serde_json::Value;
@@ -65,7 +65,7 @@ fn ideal_reversals_show_the_declared_threshold_and_hysteresis() {
 /// Intervals with the noise of the instruments contain the truth and are narrow enough to be
 /// useful.
 #[test]
-fn noisy_reversals_tell_the_threshold() {
+fn noisy_reversals_identify_the_threshold() {
     let valve = ["valve.threshold=\"40 mV\"", "valve.hysteresis=\"128 mV\"", "bench.reversals.size=0.02"];
     let [threshold, hysteresis] = shown(&[&valve[..], &["bench.low_flow_meter.range=\"5 L/min\""]].concat());
     for ((value, [low, high]), truth) in [(threshold, 0.04), (hysteresis, 0.128)] {
@@ -123,7 +123,7 @@ fn warm_oil_flows_by_its_density_and_leaks_by_its_viscosity() {
 
 /// The small meter takes more of the pressure, and reads flows where the large one reads zero.
 #[test]
-fn two_meters_see_two_ranges() {
+fn two_meters_have_two_ranges() {
     let found = bench(&[
         "bench.flow_meter.minimum=\"3 L/min\"",
         "bench.low_flow_meter.minimum=\"0.1 L/min\"",

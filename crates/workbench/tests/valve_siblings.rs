@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::{HOSE, load};
+use crate::run_command::{HOSE, load};
 use crate::valve_identification::{TRUTH, interval, recorded};
 use crate::valve_instruments::covered;
 use phea_workbench::command::{IdentifyRequest, identify_watched};

@@ -3,8 +3,8 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask;
-use crate::valve_identification::{TRUTH, files_of, identified, recorded, try_asked, value};
+use crate::run_command;
+use crate::valve_identification::{TRUTH, files_of, identified, recorded, try_request, value};
 use phea_workbench::command::{self, Request};
 use phea_workbench::project;
 use phea_workbench::source::Memory;
@@ -78,7 +78,7 @@ fn leakage_by_edge_is_identified() {
 /// edges, so that the pressure at A is that of a valve with an overlap and the one at B that of a
 /// valve without. No lap of the model explains both, which is reported with the reason.
 #[test]
-fn laps_that_differ_within_a_pair_are_told() {
+fn laps_that_differ_within_a_pair_are_reported() {
     let lapped = recorded(&["valve.lap={ positive = 0.004, negative = 0.004 }"]);
     let file = |(name, text): &(String, String)| {
         let of_lap = &lapped.iter().find(|(other, _)| other == name).unwrap().1;
@@ -98,19 +98,19 @@ fn laps_that_differ_within_a_pair_are_told() {
     };
     let blocked = recorded(&[]).into_iter().filter(|(name, _)| !name.starts_with("metering"));
     let files: Vec<(String, String)> = blocked.collect::<Vec<_>>().iter().map(file).collect();
-    let answer = try_asked(&files, &files_of(&files)).unwrap_or_else(|error| panic!("{error}"));
+    let answer = try_request(&files, &files_of(&files)).unwrap_or_else(|error| panic!("{error}"));
     let found: Value = serde_json::from_str(&answer.json).unwrap();
     assert!(!found["misfits"].as_array().unwrap().is_empty(), "{}", found["signals"]);
     assert!(taken(&found).contains(&"lap"), "{}", found["terms"]);
     assert!(answer.text.contains("the laps of the two differ"), "{}", answer.text);
     // equal laps are explained, and no others are mentioned
-    let alike = try_asked(&lapped, &files_of(&lapped)).unwrap_or_else(|error| panic!("{error}"));
+    let alike = try_request(&lapped, &files_of(&lapped)).unwrap_or_else(|error| panic!("{error}"));
     assert!(!alike.text.contains("the laps of the two differ"), "{}", alike.text);
 }
 
 /// Lap and saturation together are both found, whichever is taken first.
 #[test]
-fn lap_and_saturation_are_told_apart() {
+fn lap_and_saturation_are_distinguished() {
     let settings = ["valve.lap={ positive = 0.004, negative = 0.002 }", "valve.saturation=0.5"];
     let found = identified(&recorded(&settings));
     let mut terms = taken(&found);
@@ -122,7 +122,7 @@ fn lap_and_saturation_are_told_apart() {
 /// A term that no recording requires is not taken: the valve of the thesis with other seeds and
 /// noise.
 #[test]
-fn nothing_is_taken_of_a_valve_without_terms() {
+fn a_valve_without_terms_has_none_identified() {
     for settings in [
         ["bench.seed=2", "bench.pressure_noise=\"0.05 bar\""],
         ["bench.seed=3", "bench.pressure_noise=\"0.5 bar\""],
@@ -146,8 +146,11 @@ fn a_project_takes_the_lap_of_its_recordings() {
     let used = |files: &[(String, String)], setting: &str| {
         let names: Vec<String> =
             files.iter().map(|(name, _)| format!("[[identify.recording]]\nfile = \"{name}\"\n")).collect();
-        let text =
-            ask::HOSE.replacen("[[specification]]", &format!("{}\n[[specification]]", names.concat()), 1);
+        let text = run_command::HOSE.replacen(
+            "[[specification]]",
+            &format!("{}\n[[specification]]", names.concat()),
+            1,
+        );
         let text = text.replacen("[fluid]", "[identify]\nuse = \"valve_and_uncertainty\"\n\n[fluid]", 1);
         let source = files.iter().fold(Memory::default().with("rig.toml", text), |all, (name, text)| {
             all.with(name, text.as_str())

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::{HOSE, load};
+use crate::run_command::{HOSE, load};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{Request, answer};
 use phea_workbench::source::Memory;
@@ -59,7 +59,7 @@ fn ideal_instruments_show_the_closed_forms() {
 }
 
 #[test]
-fn a_small_pump_lets_the_pressure_fall_and_a_meter_stands_still() {
+fn with_a_small_pump_the_pressure_falls_and_a_meter_stalls() {
     let found = tested(&["bench.pump_flow=\"9.8 L/min\"", "bench.flow_meter.minimum=\"3 L/min\""]);
     assert!(found.text.contains("The pump does not keep 70 bar"));
     let flow = column(&found, "metering.csv", "flow_l_per_min");
@@ -70,7 +70,7 @@ fn a_small_pump_lets_the_pressure_fall_and_a_meter_stands_still() {
 
 /// The leakage is greatest at null: null is passed late by half the width, in either direction.
 #[test]
-fn null_is_passed_late_both_ways() {
+fn null_is_passed_with_hysteresis_in_both_directions() {
     let mut settings = IDEAL.to_vec();
     settings.extend([
         "valve.null_bias=\"14 mV\"",

@@ -48,7 +48,7 @@ fn worst(project: &Project) -> f64 {
 
 /// A sensor without error changes no bit of a run and of a verdict; one with an error changes both.
 #[test]
-fn a_sensor_without_error_is_none() {
+fn a_sensor_without_error_has_no_effect() {
     for settings in [vec![FED], vec![FED, SPRUNG], [&[FED], &SAMPLED[..]].concat()] {
         let with = |sensor: &[&str]| rig(&[&settings[..], sensor].concat());
         let (none, exact) = (with(&[]), with(&["velocity_sensor={ gain_error = 0, delay = 0, noise = 0 }"]));
@@ -135,7 +135,7 @@ fn with_family(settings: &[&str]) -> Loaded {
 /// Filters leave the plants quotients of polynomials: the result of the search is proven over every
 /// error of the gain. A delay does not, and the verdict with proof reports this and is not met.
 #[test]
-fn it_is_proven_where_the_plants_are_quotients() {
+fn stability_is_proven_for_rational_plants() {
     let filter = "velocity_sensor={ filter_frequency = \"200 Hz\" }";
     let delay = "velocity_sensor={ delay = \"0.5 ms\" }";
     let damped = SPRUNG.replace("500 N.s/m", "2000 N.s/m");
@@ -159,7 +159,7 @@ fn it_is_proven_where_the_plants_are_quotients() {
 
 /// The machine of the worst plant has that plant's error, and behaves like its linear loop.
 #[test]
-fn the_worst_error_is_tried_on_the_machine() {
+fn the_worst_error_is_tested_on_the_machine() {
     let sensor = "velocity_sensor={ filter_frequency = \"200 Hz\", delay = \"0.5 ms\" }";
     let loaded = with_family(&["controller.load_velocity_feed_forward={}", sensor]);
     let answer = command::answer(
@@ -210,7 +210,7 @@ fn samples(project: &Project) -> [Vec<f64>; 2] {
 /// standard errors of 19,000 samples that are nearly independent, the force, whose samples are
 /// correlated over some 20 ms, of a twentieth as many.
 #[test]
-fn noise_reaches_command_and_force_as_the_verdict_says() {
+fn noise_in_command_and_force_agrees_with_the_verdict() {
     let control = "controller={ numerator = \"0.0002*s + 0.002\", denominator = \"s\", sample_time = \"1 ms\", delay = \"0.5 ms\", load_velocity_feed_forward = { gain = 20 } }";
     let friction = "cylinder.friction={ model = \"viscous\", viscous = \"300 N.s/m\" }";
     let noise =
@@ -218,21 +218,21 @@ fn noise_reaches_command_and_force_as_the_verdict_says() {
     for load in ["load={}", SPRUNG] {
         let project = still(&[control, friction, noise, load]);
         let view = audited(&project);
-        let told = view.velocity_noise.as_ref().unwrap();
-        assert!((told.rms - 1e-3 * (13.0_f64 / 12.0).sqrt()).abs() < 1e-12);
-        let effect = told.effect.as_ref().unwrap();
+        let noise = view.velocity_noise.as_ref().unwrap();
+        assert!((noise.rms - 1e-3 * (13.0_f64 / 12.0).sqrt()).abs() < 1e-12);
+        let effect = noise.effect.as_ref().unwrap();
         // K times the noise passes with a prescribed load at rest, and the controller reacts little
         if load != SPRUNG {
-            assert!((effect.command_rms_v / (20.0 * told.rms) - 1.0).abs() < 0.02, "{effect:?}");
+            assert!((effect.command_rms_v / (20.0 * noise.rms) - 1.0).abs() < 0.02, "{effect:?}");
         }
         let [commands, forces] = samples(&project);
         let [command, force] = [rms(&commands) / effect.command_rms_v, rms(&forces) / effect.force_rms_n];
         assert!((command - 1.0).abs() < 0.03, "{load}: {command}");
         assert!((force - 1.0).abs() < 0.12, "{load}: {force}");
         assert!(
-            noise_sentence(told, &view.names).contains("mV rms"),
+            noise_sentence(noise, &view.names).contains("mV rms"),
             "{}",
-            noise_sentence(told, &view.names)
+            noise_sentence(noise, &view.names)
         );
     }
 }
@@ -240,7 +240,7 @@ fn noise_reaches_command_and_force_as_the_verdict_says() {
 /// Noise of pressures that are fed back, which reaches the command through its filters, has the
 /// stated rms too.
 #[test]
-fn noise_of_pressures_reaches_command_and_force_as_the_verdict_says() {
+fn pressure_noise_in_command_and_force_agrees_with_the_verdict() {
     let control = "controller={ numerator = \"0.0002*s + 0.002\", denominator = \"s\", sample_time = \"1 ms\", delay = \"0.5 ms\" }";
     let friction = "cylinder.friction={ model = \"viscous\", viscous = \"300 N.s/m\" }";
     for (filters, load) in [("", "load={}"), (", high_pass = \"2 Hz\", low_pass = \"150 Hz\"", SPRUNG)] {
@@ -248,9 +248,9 @@ fn noise_of_pressures_reaches_command_and_force_as_the_verdict_says() {
             format!("controller.pressure_feedback={{ gain = \"0.1 V/bar\", noise = \"0.2 bar\"{filters} }}");
         let project = still(&[control, &feedback, friction, load]);
         let view = audited(&project);
-        let told = view.pressure_noise.as_ref().unwrap();
-        assert_eq!((told.rms, view.velocity_noise.is_none()), (0.2e5, true));
-        let effect = told.effect.as_ref().unwrap();
+        let noise = view.pressure_noise.as_ref().unwrap();
+        assert_eq!((noise.rms, view.velocity_noise.is_none()), (0.2e5, true));
+        let effect = noise.effect.as_ref().unwrap();
         if filters.is_empty() {
             // little returns within a sample: k n
             assert!((effect.command_rms_v / 0.02 - 1.0).abs() < 0.1, "{effect:?}");
@@ -260,9 +260,9 @@ fn noise_of_pressures_reaches_command_and_force_as_the_verdict_says() {
         assert!((command - 1.0).abs() < 0.03, "{load}: {command}");
         assert!((force - 1.0).abs() < 0.15, "{load}: {force}");
         assert!(
-            noise_sentence(told, &view.names).contains("mV rms"),
+            noise_sentence(noise, &view.names).contains("mV rms"),
             "{}",
-            noise_sentence(told, &view.names)
+            noise_sentence(noise, &view.names)
         );
     }
 }
@@ -270,7 +270,7 @@ fn noise_of_pressures_reaches_command_and_force_as_the_verdict_says() {
 /// Samples are rounded to whole steps after the noise is added; equal seeds give equal bits, and
 /// other seeds others.
 #[test]
-fn what_it_shows_is_rounded_and_reproducible() {
+fn the_sensor_reading_is_rounded_and_reproducible() {
     let control = "controller={ elements = [{ kind = \"gain\", value = 1e-15 }], sample_time = \"1 ms\", load_velocity_feed_forward = { gain = 20 } }";
     let of = |seed: u32, sensor: &str| {
         let seed = format!("simulation.seed={seed}");
@@ -304,10 +304,10 @@ fn a_campaign_draws_the_gain_error() {
         let loaded = loaded(CAMPAIGN, &settings);
         let source = Memory::default().with("rig.toml", CAMPAIGN);
         let plan = Plan::new(&source, &loaded, 1).unwrap();
-        let alone = plan.rows(0..12, Effort { threads: 1, lanes: false }).unwrap();
+        let one_by_one = plan.rows(0..12, Effort { threads: 1, lanes: false }).unwrap();
         assert_eq!(
             plan.table(&plan.rows(0..12, Effort { threads: 2, lanes: true }).unwrap()),
-            plan.table(&alone)
+            plan.table(&one_by_one)
         );
         for run in 0..2 {
             let force_n = plan.forces(run..run + 1, Effort { threads: 1, lanes: true }).unwrap().remove(0);

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{self, HOSE, answer, json, try_answer};
+use crate::run_command::{self, HOSE, answer, json, try_answer};
 use phea_workbench::command::{CommandError, Progress, Request, answer_into};
 use phea_workbench::plant_names::{PlantNames, plant_text};
 use phea_workbench::shaping::Shaped;
@@ -25,7 +25,7 @@ const INTEGRATOR: &str = "schema = 1\ntitle = \"integrator\"\n[plant]\nnumerator
     denominator = \"1\"\n[[specification]]\nkind = \"robust_stability\"\nlimit = 1.1\nfrequencies = [1, 5]\nband = [0, inf]\n";
 
 #[test]
-fn the_keys_that_stay_are_there() {
+fn the_stable_keys_are_present() {
     let object = verify(INTEGRATOR, &[]);
     assert_eq!(object["verdict"], "met");
     assert_eq!(object["evidence"], "search");
@@ -49,7 +49,7 @@ fn the_keys_that_stay_are_there() {
 }
 
 #[test]
-fn the_audit_of_the_thesis_finds_what_its_grid_hid() {
+fn the_audit_of_the_thesis_finds_violations_between_its_grid_points() {
     let object = verify(HOSE, &[]);
     assert_eq!((object["verdict"].as_str(), object["stable"].as_bool()), (Some("violated"), Some(true)));
     let robust = &object["specifications"][0];
@@ -68,7 +68,7 @@ fn the_audit_of_the_thesis_finds_what_its_grid_hid() {
 }
 
 #[test]
-fn what_cannot_be_met_is_not_called_met() {
+fn unreachable_limits_are_not_reported_as_met() {
     // unstable: it meets no specification
     let unstable = verify(INTEGRATOR, &["controller.numerator=\"-1\"", "specification.0.limit=1000"]);
     assert_eq!((unstable["verdict"].as_str(), unstable["stable"].as_bool()), (Some("violated"), Some(false)));
@@ -84,7 +84,7 @@ fn what_cannot_be_met_is_not_called_met() {
 }
 
 #[test]
-fn the_text_says_the_verdict_first_and_what_it_rests_on() {
+fn the_text_begins_with_the_verdict_and_its_basis() {
     let text = answer(HOSE, &[], &[], &Request::Verify { proof: false, on_machine: false }).text;
     assert!(text.starts_with("Verdict: violated\n"));
     for words in ["11.89", "at the design frequencies alone it would have passed", "a search is not a proof"]
@@ -96,7 +96,7 @@ fn the_text_says_the_verdict_first_and_what_it_rests_on() {
 /// An effect that a simulation adds to the command and that a model does not include is reported by
 /// every command on that model.
 #[test]
-fn a_feed_forward_is_told_to_be_left_out() {
+fn a_neglected_feed_forward_is_reported() {
     let words = "that [controller] feeds forward";
     let shape = Request::Shape { shaped: Shaped::Controller, changes: vec![] };
     for (text, request) in [
@@ -104,18 +104,18 @@ fn a_feed_forward_is_told_to_be_left_out() {
         (INTEGRATOR, Request::Verify { proof: false, on_machine: false }),
         (INTEGRATOR, shape),
     ] {
-        for (settings, told) in [
+        for (settings, is_reported) in [
             (vec![], false),
             (vec!["controller.load_velocity_feed_forward={ gain = 0 }"], false),
             (vec!["controller.load_velocity_feed_forward={ gain = 20 }"], true),
         ] {
-            let said = answer(text, &settings, &[], &request);
-            let object: Value = serde_json::from_str(&said.json).unwrap();
+            let output = answer(text, &settings, &[], &request);
+            let object: Value = serde_json::from_str(&output.json).unwrap();
             let warnings = object["warnings"].as_array().unwrap();
             let of_it = warnings.iter().filter(|warning| warning.as_str().unwrap().contains(words));
             assert_eq!(
-                (said.text.contains(words), of_it.count()),
-                (told, usize::from(told)),
+                (output.text.contains(words), of_it.count()),
+                (is_reported, usize::from(is_reported)),
                 "{}",
                 request.name()
             );
@@ -132,9 +132,9 @@ fn without_a_controller_there_is_nothing_to_verify() {
 }
 
 #[test]
-fn a_watcher_sees_progress_rise_and_can_stop_it() {
-    let loaded = ask::load(HOSE, &[], &[]);
-    let source = ask::source(HOSE);
+fn progress_increases_and_the_command_can_be_stopped() {
+    let loaded = run_command::load(HOSE, &[], &[]);
+    let source = run_command::source(HOSE);
     let mut shares = Vec::new();
     let mut watch = |progress: Progress| {
         shares.push(progress.share);
@@ -150,11 +150,11 @@ fn a_watcher_sees_progress_rise_and_can_stop_it() {
     );
     assert!(matches!(stopped, Err(CommandError::Stopped(_))));
     assert_eq!(shares.len(), 50);
-    assert!(shares.is_sorted() && shares.iter().all(|share| (0.0..=1.0).contains(share)));
+    assert!(shares.is_sorted() && shares.iter().all(|fraction| (0.0..=1.0).contains(fraction)));
 }
 
 #[test]
-fn a_number_set_outside_of_its_own_range_is_refused_with_the_cure() {
+fn a_number_set_outside_of_its_range_is_refused_with_the_remedy() {
     let refused = try_answer(
         HOSE,
         &["linear.flow_pressure_coefficient=0"],
@@ -192,12 +192,12 @@ fn a_loop_around_an_unstable_plant_states_how_far_its_gain_may_fall() {
         .replace("k = { nominal = 1, minimum = 1, maximum = 2", "k = { nominal = 4, minimum = 4, maximum = 8")
         .replace("numerator = \"1\"", "numerator = \"2\"");
     let request = Request::Verify { proof: false, on_machine: false };
-    let said = answer(&unstable, &[], &[], &request);
-    let object: Value = serde_json::from_str(&said.json).unwrap();
+    let output = answer(&unstable, &[], &[], &request);
+    let object: Value = serde_json::from_str(&output.json).unwrap();
     // ORIGIN: analytic, 20 log10(1/8)
     close(&object["gain_reduction_db"], -18.0618, 1e-5);
-    assert!(said.text.contains("becomes unstable where that falls by 18.1 dB"), "{}", said.text);
-    let said = answer(INTEGRATOR, &[], &[], &request);
-    assert!(!said.text.contains("needs its gain"), "{}", said.text);
+    assert!(output.text.contains("becomes unstable where that falls by 18.1 dB"), "{}", output.text);
+    let output = answer(INTEGRATOR, &[], &[], &request);
+    assert!(!output.text.contains("needs its gain"), "{}", output.text);
     assert_eq!(verify(INTEGRATOR, &[])["gain_reduction_db"], "-inf");
 }

@@ -5,7 +5,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::ask::{HOSE, answer, json};
+use crate::run_command::{HOSE, answer, json};
 use phea_workbench::audit::{Crossovers, above_one_again_words, crossover_words};
 use phea_workbench::command::Request;
 use serde_json::{Value, json as object_of};
@@ -42,8 +42,8 @@ fn assert_delayed(set: &Value, k: f64, dead_time_s: f64) {
 
 #[test]
 fn the_worst_of_a_family_of_gains_is_at_the_largest() {
-    let said = answer(DELAYED, &[], &[], &VERIFY);
-    let object: Value = serde_json::from_str(&said.json).unwrap();
+    let output = answer(DELAYED, &[], &[], &VERIFY);
+    let object: Value = serde_json::from_str(&output.json).unwrap();
     let margins = &object["margins"];
     assert_delayed(&margins["nominal"], 2.0, 0.1);
     assert_delayed(&margins["family"], 4.0, 0.1);
@@ -60,7 +60,7 @@ fn the_worst_of_a_family_of_gains_is_at_the_largest() {
     assert_eq!(margins["evidence"], "search");
     // ORIGIN: analytic, 20 log10(5 pi/4) dB and 90 deg - 0.4 rad
     for part in ["gain may grow by", "11.9 dB", "67.1 deg", "worst of the family"] {
-        assert!(said.text.contains(part), "{part} is missing in: {}", said.text);
+        assert!(output.text.contains(part), "{part} is missing in: {}", output.text);
     }
 }
 
@@ -88,7 +88,7 @@ fn around_an_unstable_plant_the_gain_may_not_fall() {
 /// The loop k e^(-s T)/s is stable up to k = pi/(2 T): a family beyond that has no margins, a
 /// nominal loop below it has some.
 #[test]
-fn an_unstable_family_has_no_margins_and_says_why() {
+fn an_unstable_family_has_no_margins_with_the_reason() {
     let beyond = DELAYED.replace("maximum = 4", "maximum = 16");
     let margins = &json(&beyond, &[], &[], &VERIFY)["margins"];
     assert!(margins["family"].is_null() && margins["phase_deg"].is_null());
@@ -129,21 +129,22 @@ fn of_key<'a>(below: &'a [Value], key: &str) -> Option<&'a Value> {
 /// The modulus margin of the audit compared with the limit of a design, by default or as stated; a
 /// plant of polynomials has no default.
 #[test]
-fn a_loop_says_which_limits_of_a_design_it_does_not_keep() {
-    let said = answer(HOSE, &[], &[], &VERIFY);
-    let object: Value = serde_json::from_str(&said.json).unwrap();
+fn a_loop_lists_the_design_limits_that_it_violates() {
+    let output = answer(HOSE, &[], &[], &VERIFY);
+    let object: Value = serde_json::from_str(&output.json).unwrap();
     let found = object["below_design"].as_array().unwrap();
     let modulus = of_key(found, "modulus_margin").unwrap();
     assert_eq!(modulus["value"], object["margins"]["modulus"]);
     assert_eq!((&modulus["limit"], &modulus["origin"]), (&0.5.into(), &"default".into()));
     // the loop tolerates 2 ms and half a millisecond is enough
     assert!(of_key(found, "minimum_delay_margin").is_none());
-    assert!(said.text.contains("`phea design` would refuse this loop"), "{}", said.text);
-    let explained = said.text.contains("The bandwidth is the frequency above which |L/(1+L)| of every plant");
-    assert_eq!(explained, of_key(found, "highest_bandwidth").is_some(), "{}", said.text);
+    assert!(output.text.contains("`phea design` would refuse this loop"), "{}", output.text);
+    let explained =
+        output.text.contains("The bandwidth is the frequency above which |L/(1+L)| of every plant");
+    assert_eq!(explained, of_key(found, "highest_bandwidth").is_some(), "{}", output.text);
     let reached = modulus["value"].as_f64().unwrap();
-    for (share, is_below) in [(0.98, false), (1.02, true)] {
-        let stated = format!("design.modulus_margin={}", share * reached);
+    for (fraction, is_below) in [(0.98, false), (1.02, true)] {
+        let stated = format!("design.modulus_margin={}", fraction * reached);
         let found = below(HOSE, &[&stated]);
         let own = of_key(&found, "modulus_margin");
         assert_eq!(own.map(|own| own["origin"].clone()), is_below.then(|| "stated".into()), "{stated}");
@@ -156,17 +157,17 @@ fn a_loop_says_which_limits_of_a_design_it_does_not_keep() {
 
 /// Plant k/s under a gain of 1: |1 + L| is 1 at least, and the phase may lag by a right angle.
 #[test]
-fn a_loop_that_keeps_the_limits_of_a_design_says_which() {
+fn a_loop_lists_the_design_limits_that_it_satisfies() {
     let plant = DELAYED.replace("delay = \"0.1 s\"\n", "");
-    let said = answer(&plant, &["design.modulus_margin=0.9"], &[], &VERIFY);
-    let object: Value = serde_json::from_str(&said.json).unwrap();
+    let output = answer(&plant, &["design.modulus_margin=0.9"], &[], &VERIFY);
+    let object: Value = serde_json::from_str(&output.json).unwrap();
     assert_eq!(
         (&object["below_design"], &object["kept_of_design"]),
         (&object_of!([]), &object_of!(["modulus_margin"]))
     );
-    let kept = "the loop keeps every limit of `[design]` that a given loop is held against, stated or by default: modulus margin";
-    assert!(said.text.contains(kept), "{}", said.text);
-    assert!(said.text.contains("90.0 deg of lag"), "{}", said.text);
+    let sentence = "the loop keeps every limit of `[design]` that a given loop is held against, stated or by default: modulus margin";
+    assert!(output.text.contains(sentence), "{}", output.text);
+    assert!(output.text.contains("90.0 deg of lag"), "{}", output.text);
     let nothing = answer(&plant, &[], &[], &VERIFY);
     assert!(!nothing.text.contains("`[design]`"), "{}", nothing.text);
 }

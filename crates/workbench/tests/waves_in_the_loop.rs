@@ -7,7 +7,7 @@ use phea_dynamics::random::share;
 use phea_workbench::command::Request;
 use serde_json::Value;
 
-use super::ask::answer;
+use super::run_command::answer;
 
 /// The hose, with its chambers by volume, without its family: one rig.
 fn one_rig() -> String {
@@ -17,7 +17,7 @@ fn one_rig() -> String {
     format!("{before}[[specification]]{after}")
 }
 
-fn asked(request: &Request, settings: &[&str]) -> Value {
+fn answer_of(request: &Request, settings: &[&str]) -> Value {
     let common = [
         "line.compliance=by_volume",
         "linear.flow_gain=5.4e-5",
@@ -41,8 +41,9 @@ fn unstable(object: &Value) -> usize {
 /// if the wall moves along too, and none with a wall that creeps fast enough.
 #[test]
 fn the_published_loop_is_unstable_with_waves() {
-    let count =
-        |settings: &[&str]| unstable(&asked(&Request::Verify { proof: false, on_machine: false }, settings));
+    let count = |settings: &[&str]| {
+        unstable(&answer_of(&Request::Verify { proof: false, on_machine: false }, settings))
+    };
     assert_eq!(count(&[]), 0);
     // ORIGIN: recomputed by comparisons/recompute_waves.py
     assert_eq!(count(&["line.model=transmission_line"]), 4);
@@ -59,8 +60,8 @@ fn the_published_loop_is_unstable_with_waves() {
 
 /// The predicted step is the machine's, if the loop is stable.
 #[test]
-fn the_step_that_is_predicted_is_the_machines() {
-    let object = asked(
+fn the_predicted_step_is_that_of_the_machine() {
+    let object = answer_of(
         &Request::Verify { proof: false, on_machine: true },
         &["line.model=segments", "line.segments=8", "line.relaxation_time=1 ms"],
     );
@@ -89,7 +90,7 @@ fn a_tail_slower_than_the_plant_is_predicted() {
             settings[0],
             settings[1],
         ];
-        let object = asked(&Request::Verify { proof: false, on_machine: true }, &slow);
+        let object = answer_of(&Request::Verify { proof: false, on_machine: true }, &slow);
         let linear = &object["machine"]["runs"][0]["linear"];
         ["overshoot_percent", "settling_time_s"].map(|key| linear[key].as_f64().unwrap())
     };
@@ -108,7 +109,7 @@ fn a_tail_slower_than_the_plant_is_predicted() {
 /// agrees.
 #[test]
 fn one_rig_with_waves_is_designed_for() {
-    let object = asked(
+    let object = answer_of(
         &Request::Design { seed: None, stages: false, repair: false },
         &["line.model=transmission_line"],
     );
@@ -124,12 +125,12 @@ fn one_rig_with_waves_is_designed_for() {
 fn worst_plants_have_their_parameters() {
     let text = include_str!("../../../examples/ybitu/hose.toml");
     let settings = ["line.model=segments", "line.segments=4", "line.relaxation_time=0.3 ms"];
-    let said = answer(text, &settings, &[], &Request::Verify { proof: false, on_machine: false });
-    let object: Value = serde_json::from_str(&said.json).unwrap();
+    let output = answer(text, &settings, &[], &Request::Verify { proof: false, on_machine: false });
+    let object: Value = serde_json::from_str(&output.json).unwrap();
     let worst = &object["specifications"][1]["plant"];
     let flow_gain = worst["flow_gain"].as_f64().unwrap();
     assert!((3.23e-5..=5.61e-5).contains(&flow_gain), "{worst}");
-    assert!(said.text.contains("every plant by its response with lines in motion"), "{}", said.text);
+    assert!(output.text.contains("every plant by its response with lines in motion"), "{}", output.text);
 }
 
 /// A box with lines in motion is searched between its members too: no rig that is declared anywhere
@@ -146,9 +147,9 @@ fn a_box_is_searched_between_its_members() {
     let text = format!("{start}{range}[[specification]]{specifications}");
     let moving = ["line.model=segments", "line.segments=6", "line.relaxation_time=0.5 ms"];
     let margin = |text: &str, settings: &[&str]| {
-        let said = answer(text, settings, &[], &Request::Verify { proof: false, on_machine: false });
-        let object: Value = serde_json::from_str(&said.json).unwrap();
-        assert_eq!(object["stability"]["verdict"], Value::from("met"), "{}", said.text);
+        let output = answer(text, settings, &[], &Request::Verify { proof: false, on_machine: false });
+        let object: Value = serde_json::from_str(&output.json).unwrap();
+        assert_eq!(object["stability"]["verdict"], Value::from("met"), "{}", output.text);
         object["specifications"][0]["worst_margin_db"].as_f64().unwrap()
     };
     let found = margin(&text, &moving);

@@ -21,7 +21,7 @@ use phea_workbench::source::Memory;
 
 use linear::linear_parameters_follow_from_what_is_listed;
 use rigs::{absent_tables, is_within, others, rigs};
-use unused::what_moves_nothing_is_used;
+use unused::unmoved_keys_are_used;
 
 const GUIDE: &str = include_str!("../../../book/src/guide/what_moves_what.md");
 /// Tables that declare the rig and its loop; the others state its requirements.
@@ -55,7 +55,7 @@ fn loaded(text: &str, settings: &[String]) -> Option<Loaded> {
 /// that is not requested; and the parameters of its linear model.
 fn computed(
     project: &Project,
-    asked: [bool; PARTS.len()],
+    requested: [bool; PARTS.len()],
 ) -> ([Option<String>; PARTS.len()], Vec<ResolvedParameter>) {
     let setup = Setup::new(project).unwrap();
     let sizing = || sizing_problem(&setup, &Catalogue::default()).ok();
@@ -84,7 +84,7 @@ fn computed(
         &|| Some(format!("{:?}", setup.sensor)),
         &machine,
     ];
-    let found = std::array::from_fn(|index| asked[index].then(parts[index]).flatten());
+    let found = std::array::from_fn(|index| requested[index].then(parts[index]).flatten());
     (found, setup.rig().map(|rig| rig.parameters.clone()).unwrap_or_default())
 }
 
@@ -98,8 +98,8 @@ struct Changes {
 
 impl Changes {
     /// True if no further effect of a key can be found.
-    fn are_known(&self, path: &str, asked: [bool; PARTS.len()]) -> bool {
-        asked == [false; PARTS.len()] && sources(path).all(|name| self.linear.contains_key(name))
+    fn are_known(&self, path: &str, requested: [bool; PARTS.len()]) -> bool {
+        requested == [false; PARTS.len()] && sources(path).all(|name| self.linear.contains_key(name))
     }
 }
 
@@ -143,17 +143,17 @@ fn try_keys(text: &str, settings: &[String], keys: &[KeyEntry], moved: &Mutex<Mo
     let absent = absent_tables(keys, &own.project);
     for entry in keys.iter().filter(|entry| !is_within(entry, &absent)) {
         // parts that are known to move are not tested again
-        let asked = {
+        let requested = {
             let moved = moved.lock().unwrap();
             let known = moved.get(&entry.path);
             let open = |index: usize| {
                 before[index].is_some() && known.is_none_or(|row| !row.parts.contains(PARTS[index]))
             };
-            let asked = std::array::from_fn(open);
-            if known.is_some_and(|known| known.are_known(&entry.path, asked)) {
+            let requested = std::array::from_fn(open);
+            if known.is_some_and(|known| known.are_known(&entry.path, requested)) {
                 continue;
             }
-            asked
+            requested
         };
         let (others, one_is_enough) = others(entry, &own.project);
         for other in others {
@@ -161,7 +161,7 @@ fn try_keys(text: &str, settings: &[String], keys: &[KeyEntry], moved: &Mutex<Mo
             let Some(other) = loaded(text, &changed).filter(|other| other.project != own.project) else {
                 continue;
             };
-            let (after, now) = computed(&other.project, asked);
+            let (after, now) = computed(&other.project, requested);
             let mut moved = moved.lock().unwrap();
             let row = moved.entry(entry.path.clone()).or_default();
             for ((part, before), after) in PARTS.iter().zip(&before).zip(after) {
@@ -189,7 +189,7 @@ fn row(key: &str, moves: &BTreeSet<&str>) -> String {
 /// The guide's table agrees with the computed effects, key by key; for a key that moves nothing it
 /// states the reason, and a command must answer differently because of it.
 #[test]
-fn the_table_of_the_guide_is_what_happens() {
+fn the_table_of_the_guide_is_correct() {
     let keys = keys();
     let moved = Mutex::new(Moved::new());
     on_every_rig(|text, settings| try_keys(text, settings, &keys, &moved));
@@ -201,7 +201,7 @@ fn the_table_of_the_guide_is_what_happens() {
     let apart: BTreeSet<&str> =
         items.flat_map(|keys| keys.split('`').step_by(2)).filter(|key| !key.is_empty()).collect();
     assert_eq!(untried, apart, "keys that are not changed one by one");
-    let told: BTreeMap<&str, &str> = GUIDE
+    let guide_rows: BTreeMap<&str, &str> = GUIDE
         .lines()
         .filter(|line| line.starts_with("| `"))
         .map(|line| (line.split('`').nth(1).unwrap(), line))
@@ -210,7 +210,7 @@ fn the_table_of_the_guide_is_what_happens() {
     let mut still: BTreeSet<&str> = BTreeSet::new();
     for (key, Changes { parts, .. }) in &moved {
         let expected = row(key, parts);
-        let reason = told.get(key.as_str()).and_then(|line| line.strip_prefix(&expected));
+        let reason = guide_rows.get(key.as_str()).and_then(|line| line.strip_prefix(&expected));
         let reason = reason.map(|reason| reason.trim_matches([' ', '|']));
         match reason {
             None if parts.is_empty() => wrong.push(format!("{expected} why?")),
@@ -220,8 +220,8 @@ fn the_table_of_the_guide_is_what_happens() {
             Some(_) => {}
         }
     }
-    let gone: Vec<&&str> = told.keys().filter(|key| !moved.contains_key(**key)).collect();
+    let gone: Vec<&&str> = guide_rows.keys().filter(|key| !moved.contains_key(**key)).collect();
     assert!(wrong.is_empty() && gone.is_empty(), "{}\nnot tried: {gone:?}", wrong.join("\n"));
     linear_parameters_follow_from_what_is_listed(&moved, &keys);
-    what_moves_nothing_is_used(&still, &keys);
+    unmoved_keys_are_used(&still, &keys);
 }

@@ -12,7 +12,7 @@ use phea_workbench::setup::Setup;
 use phea_workbench::simulate::simulate_project;
 use phea_workbench::source::Memory;
 
-use super::ask::{json, project_of};
+use super::run_command::{json, project_of};
 
 /// Two pulses that meet within a line of 10 m with a bore of 10 mm, full of oil with 850 kg/m3 and
 /// 1.4 GPa.

@@ -96,8 +96,8 @@ fn resolved(from: &str, target: &str) -> String {
 /// The anchor of a heading: lower case, spaces replaced by hyphens, other signs dropped.
 fn slug(heading: &str) -> String {
     let words = heading.trim_start_matches('#').trim().to_lowercase();
-    let kept = words.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
-    kept.map(|c| if c == ' ' { '-' } else { c }).collect()
+    let characters = words.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
+    characters.map(|c| if c == ' ' { '-' } else { c }).collect()
 }
 
 /// Checks a code span that has the form of a path of the repository: it must exist; `*` and

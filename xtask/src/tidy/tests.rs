@@ -185,7 +185,7 @@ fn no_two_types_have_one_name() {
 }
 
 #[test]
-fn notation_names_words_of_the_code_and_every_parameter() {
+fn notation_lists_identifiers_and_every_parameter() {
     let code = "pub struct Fluid<S = f64> {\n    pub bulk_modulus: S,\n    pub kind: Option<Air>,\n}\n\
                 impl<S: Scalar> Fluid<S> {\n    pub fn problems(&self) {}\n}\n\
                 pub enum Air {\n    Free { fraction: f64 },\n}\n\

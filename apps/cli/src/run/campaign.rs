@@ -10,17 +10,17 @@ use phea_workbench::campaign::{Effort, RequestedRuns, RowStore, Shard};
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, Request};
 use phea_workbench::source::Destination;
 
-use super::{FileSystem, expect_kept, failed, load, refused};
+use super::{FileSystem, failed, load, refused, reject_replaced_inputs};
 use crate::arguments::Common;
 use crate::failure::Failure;
 use crate::file_system::reason;
 use crate::inputs::Inputs;
 use crate::interruption::Interruption;
+use crate::messages::ProgressLine;
 use crate::output::{Folder, unwritten, write};
-use crate::voice::ProgressLine;
 
 /// Longest time after which the rows are flushed to the disk.
-const KEEPING: Duration = Duration::from_secs(2);
+const FLUSH_INTERVAL: Duration = Duration::from_secs(2);
 
 /// Request of the command line.
 pub(super) fn request(
@@ -33,23 +33,26 @@ pub(super) fn request(
     let shard = shard.map(Shard::read).transpose().map_err(|error| error.to_string())?.unwrap_or_default();
     let all = Effort::on_all_cores();
     let effort = threads.map_or(all, |threads| Effort { threads: threads.into(), ..all });
-    let asked = match (run, runs) {
+    let chosen = match (run, runs) {
         (Some(run), _) => CampaignRuns::One(run),
         (None, runs) => CampaignRuns::All(RequestedRuns { runs: runs.unwrap_or_default(), shard, effort }),
     };
-    Ok(CampaignRequest { seed, asked, files })
+    Ok(CampaignRequest { seed, runs: chosen, files })
 }
 
 /// The answer, and the files that were written.
-pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answer, Vec<PathBuf>), Failure> {
-    let request = Request::Campaign(*asked);
+pub(super) fn answer_with_files(
+    common: &Common,
+    campaign: &CampaignRequest,
+) -> Result<(Answer, Vec<PathBuf>), Failure> {
+    let request = Request::Campaign(*campaign);
     let path = common.project.to_string_lossy();
     let loaded = load(&path, &common.settings, &common.catalogues, request.name())?;
     let inputs = Inputs::of_projects([&loaded]);
-    expect_kept(&inputs, (&request, &loaded), [common.out.as_deref(), None])?;
+    reject_replaced_inputs(&inputs, (&request, &loaded), [common.out.as_deref(), None])?;
     let mut line = ProgressLine::default();
     let interruption = Interruption::listen();
-    let mut table = match (&common.out, asked.asked) {
+    let mut table = match (&common.out, campaign.runs) {
         (Some(folder), CampaignRuns::All(wanted)) => {
             let path = folder.join(format!("{}.csv", wanted.shard.name()));
             Some(LockedTable::open(&path).map_err(|message| failed(&request, &loaded, &message))?)
@@ -61,11 +64,11 @@ pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answ
     let ledger = table.as_mut().map(|table| table as &mut dyn RowStore);
     let mut watch = |progress| {
         line.show_evenly(progress);
-        !interruption.is_asked()
+        !interruption.is_requested()
     };
     let catalogues = &common.catalogues;
     let into = (ledger, destination);
-    let answer = command::campaign_watched(&FileSystem, &loaded, catalogues, asked, into, &mut watch);
+    let answer = command::campaign_watched(&FileSystem, &loaded, catalogues, campaign, into, &mut watch);
     line.clear();
     let answer = answer.map_err(|error| {
         table.iter().for_each(LockedTable::leave_no_trace);
@@ -89,7 +92,7 @@ struct LockedTable {
     /// True if there was no such file before.
     is_new: bool,
     /// Time of the last flush of all rows to the disk.
-    kept: Instant,
+    flushed: Instant,
 }
 
 impl LockedTable {
@@ -110,7 +113,7 @@ impl LockedTable {
                 format!("cannot lock {}: {error}; choose a folder on another disk", path.display())
             }
         })?;
-        Ok(LockedTable { path: path.to_path_buf(), file, is_new, kept: Instant::now() })
+        Ok(LockedTable { path: path.to_path_buf(), file, is_new, flushed: Instant::now() })
     }
 
     fn explain(&self, error: &std::io::Error) -> String {
@@ -125,15 +128,15 @@ impl LockedTable {
     }
 
     /// The file, next to the table, with rows of runs that were completed before an earlier one.
-    fn beside(&self) -> PathBuf {
+    fn ahead_path(&self) -> PathBuf {
         let mut name = self.path.clone().into_os_string();
         name.push(".ahead");
         name.into()
     }
 
     /// Flushes all rows to the disk.
-    fn keep(&mut self) -> Result<(), String> {
-        self.kept = Instant::now();
+    fn flush(&mut self) -> Result<(), String> {
+        self.flushed = Instant::now();
         self.file.sync_data().map_err(|error| self.explain(&error))
     }
 }
@@ -158,19 +161,19 @@ impl RowStore for LockedTable {
             let _ = self.file.set_len(before);
             self.explain(&error)
         })?;
-        if self.kept.elapsed() >= KEEPING { self.keep() } else { Ok(()) }
+        if self.flushed.elapsed() >= FLUSH_INTERVAL { self.flush() } else { Ok(()) }
     }
 
     fn ahead(&mut self) -> Result<String, String> {
-        match fs::read(self.beside()) {
+        match fs::read(self.ahead_path()) {
             Ok(bytes) => Ok(String::from_utf8_lossy(&bytes).into_owned()),
             Err(error) if error.kind() == ErrorKind::NotFound => Ok(String::new()),
-            Err(error) => Err(format!("cannot read {}: {}", self.beside().display(), reason(&error))),
+            Err(error) => Err(format!("cannot read {}: {}", self.ahead_path().display(), reason(&error))),
         }
     }
 
     fn keep_ahead(&mut self, text: &str) -> Result<(), String> {
-        let path = self.beside();
+        let path = self.ahead_path();
         let file = OpenOptions::new().create(true).append(true).open(&path);
         // an earlier incomplete row ends in its own line
         let written = file.and_then(|mut file| file.write_all(format!("\n{text}").as_bytes()));
@@ -178,9 +181,9 @@ impl RowStore for LockedTable {
     }
 
     fn forget_ahead(&mut self) -> Result<(), String> {
-        match fs::remove_file(self.beside()) {
-            Err(error) if error.kind() != ErrorKind::NotFound => Err(unwritten(&self.beside(), &error)),
-            _ => self.keep(),
+        match fs::remove_file(self.ahead_path()) {
+            Err(error) if error.kind() != ErrorKind::NotFound => Err(unwritten(&self.ahead_path(), &error)),
+            _ => self.flush(),
         }
     }
 }

@@ -16,19 +16,19 @@ use crate::failure::Failure;
 use crate::file_system::FileSystem;
 use crate::inputs::Inputs;
 use crate::interruption::Interruption;
+use crate::messages::ProgressLine;
 use crate::output::write;
-use crate::voice::ProgressLine;
 
 /// Name of the command.
 const NAME: &str = "identify";
 
 /// The answer, and the files that were written.
-pub(super) fn answered(recorded: &IdentifyArguments) -> Result<(Answer, Vec<PathBuf>), Failure> {
+pub(super) fn answer_with_files(recorded: &IdentifyArguments) -> Result<(Answer, Vec<PathBuf>), Failure> {
     check_subject(recorded)?;
     let (project, files) = named(recorded)?;
     let loaded = project.map(|path| load(&path, &recorded.settings, &[], NAME)).transpose()?;
-    let inputs = kept_inputs(recorded, loaded.as_ref(), &files)?;
-    let asked = IdentifyRequest {
+    let inputs = protected_inputs(recorded, loaded.as_ref(), &files)?;
+    let request = IdentifyRequest {
         files,
         starts: recorded.starts.map(usize::from),
         seed: recorded.seed.unwrap_or(1),
@@ -44,24 +44,24 @@ pub(super) fn answered(recorded: &IdentifyArguments) -> Result<(Answer, Vec<Path
     let interruption = Interruption::listen();
     let watch = &mut |progress| {
         line.show(progress);
-        !interruption.is_asked()
+        !interruption.is_requested()
     };
     let answer = match recorded.of {
-        SubjectWord::Valve => command::identify_watched(&FileSystem, loaded.as_ref(), &asked, watch),
+        SubjectWord::Valve => command::identify_watched(&FileSystem, loaded.as_ref(), &request, watch),
         SubjectWord::Response => {
-            let asked = ResponseRequest { files: asked.files, settings, figures: recorded.out.is_some() };
-            command::response_watched(&FileSystem, loaded.as_ref(), &asked, watch)
+            let request = ResponseRequest { files: request.files, settings, figures: recorded.out.is_some() };
+            command::response_watched(&FileSystem, loaded.as_ref(), &request, watch)
         }
         SubjectWord::Line => {
             let settings = ResponseSettings { coherence: recorded.coherence.unwrap_or(0.0), ..settings };
             let figures = recorded.out.is_some();
             let side = recorded.side.map(side_of);
-            let asked = LineRequest { files: asked.files, side, settings, figures };
-            command::line_watched(&FileSystem, loaded.as_ref(), &asked, watch)
+            let request = LineRequest { files: request.files, side, settings, figures };
+            command::line_watched(&FileSystem, loaded.as_ref(), &request, watch)
         }
         SubjectWord::Friction => {
-            let asked = FrictionRequest { files: asked.files, figures: recorded.out.is_some() };
-            command::friction_watched(&FileSystem, loaded.as_ref(), &asked, watch)
+            let request = FrictionRequest { files: request.files, figures: recorded.out.is_some() };
+            command::friction_watched(&FileSystem, loaded.as_ref(), &request, watch)
         }
     };
     line.clear();
@@ -94,7 +94,7 @@ fn unanswered(error: &IdentifyError, stage: Option<&str>, hash: Option<&str>) ->
 }
 
 /// The files that must remain; an error if a written file would replace one.
-fn kept_inputs(
+fn protected_inputs(
     recorded: &IdentifyArguments,
     loaded: Option<&Loaded>,
     files: &[String],
@@ -102,7 +102,9 @@ fn kept_inputs(
     let inputs = Inputs::of_projects(loaded).and(files.iter().cloned());
     if let Some(folder) = &recorded.out {
         let names = OutputNames::of_identification(files);
-        inputs.expect_kept_in(folder, |name| names.contains(name)).map_err(|message| refused(&message))?;
+        inputs
+            .reject_replacement_in(folder, |name| names.contains(name))
+            .map_err(|message| refused(&message))?;
     }
     Ok(inputs)
 }

@@ -53,7 +53,7 @@ fn main() {
     let reference = Profile::steps(0.0, &[(REFERENCE_S, REFERENCE_N)]).expect("one step");
     let ground = Profile::smooth_step(MOTION_S, 2.0, 0.02).expect("a motion").shifted(beginning.inputs[0]);
     let inputs = vec![Input::Value(reference), Input::Value(ground.clone()), Input::Rate(ground)];
-    let course = InputSchedule { duration_s: 5.0, output_step_s: OUTPUT_STEP_S, inputs };
+    let schedule = InputSchedule { duration_s: 5.0, output_step_s: OUTPUT_STEP_S, inputs };
     let mut state = beginning.state.clone();
     state.resize(System::<f64>::states(&closed), 0.0);
     let states = Plant::<f64>::states(&machine);
@@ -64,10 +64,10 @@ fn main() {
         let tolerance: f64 = word.parse().expect("a tolerance");
         let begun = Instant::now();
         let settings = SimulationSettings { tolerance, ..SimulationSettings::default() };
-        if let Ok(run) = simulate(&closed, &state, &course, None, &settings, &mut |_| true) {
+        if let Ok(run) = simulate(&closed, &state, &schedule, None, &settings, &mut |_| true) {
             let rows: Vec<f64> = run.trajectory.states.iter().map(force).collect();
             let work = run.outcome.work;
-            told(&format!("phea {word}, {} steps", work.steps + work.rejected), &rows, begun);
+            print_peak(&format!("phea {word}, {} steps", work.steps + work.rejected), &rows, begun);
         }
         let kicks = Some(Kicks { period_s: 1e-2, size: tolerance, seed: 1 });
         let plain = |method| Following::new(tolerance, method);
@@ -78,9 +78,9 @@ fn main() {
             ("Adams, kicked by its tolerance every 10 ms", Following { kicks, ..plain(Method::Adams) }),
         ] {
             let begun = Instant::now();
-            match follow(&closed, &state, &course, None, &following) {
+            match follow(&closed, &state, &schedule, None, &following) {
                 Ok(rows) => {
-                    told(&format!("{name} {word}"), &rows.iter().map(force).collect::<Vec<_>>(), begun)
+                    print_peak(&format!("{name} {word}"), &rows.iter().map(force).collect::<Vec<_>>(), begun)
                 }
                 Err(problem) => println!("{name} {word}: {problem}"),
             }
@@ -90,7 +90,7 @@ fn main() {
 
 /// Prints the peak after the load has begun to move, its time, and the ringing just before it
 /// grows.
-fn told(name: &str, force: &[f64], begun: Instant) {
+fn print_peak(name: &str, force: &[f64], begun: Instant) {
     let from = (MOTION_S / OUTPUT_STEP_S).round() as usize;
     let errors = force.iter().enumerate().skip(from).map(|(row, force)| (row, (force - REFERENCE_N).abs()));
     let (row, peak) = errors.fold((0, 0.0), |most, next| if next.1 > most.1 { next } else { most });

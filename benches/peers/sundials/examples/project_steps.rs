@@ -34,7 +34,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let outcome = problem.control.drive(task, &settings, &mut |_| true)?;
         println!("{tolerance:e}: phea {:?}, {:?}", outcome.status, outcome.work);
         for method in [Method::BackwardDifferentiation, Method::StabilityLimit, Method::Adams] {
-            let counted = Counted { problem: &problem, asked_at: Cell::new(f64::NAN), steps: Cell::new(0) };
+            let counted =
+                Counted { problem: &problem, evaluated_at: Cell::new(f64::NAN), steps: Cell::new(0) };
             let following = Following::new(tolerance, method);
             let rows = follow(&counted, &problem.start, &problem.course, None, &following);
             println!(
@@ -59,7 +60,7 @@ impl Observer for Nobody {
 /// Counts the times at which rates are computed: one for each attempted step.
 struct Counted<'a> {
     problem: &'a ScenarioProblem,
-    asked_at: Cell<f64>,
+    evaluated_at: Cell<f64>,
     steps: Cell<u64>,
 }
 
@@ -82,8 +83,8 @@ impl Equations for Counted<'_> {
     fn outgoing(&self, state: &[f64], inputs: &[f64], waves: &mut [f64]) {
         self.problem.control.outgoing(state, inputs, waves);
     }
-    fn is_asked_at(&self, time: f64) {
-        if self.asked_at.replace(time) != time {
+    fn is_evaluated_at(&self, time: f64) {
+        if self.evaluated_at.replace(time) != time {
             self.steps.set(self.steps.get() + 1);
         }
     }

@@ -4,12 +4,12 @@
 //! delayed waves included. Built against SUNDIALS 6 as packaged by Debian 12; another major version
 //! is rejected at run time, because its C interface differs.
 
-mod course;
+mod following;
 mod interface;
 mod session;
 mod waves;
 
-pub use course::{Equations, Following, Kicks, follow};
+pub use following::{Equations, Following, Kicks, follow};
 use session::Session;
 
 /// Method of CVODE's steps; all solve their implicit equations by Newton's method with a dense

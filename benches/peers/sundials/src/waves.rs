@@ -36,7 +36,7 @@ impl Waves {
     }
 
     /// True if nothing is delayed.
-    pub(crate) fn are_none(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.delays.is_empty()
     }
 
@@ -124,7 +124,7 @@ pub(crate) fn integrate_delayed(
     let mut of_rates = inputs.clone();
     let mut rates = |time: f64, state: &[f64], rates: &mut [f64]| {
         inputs_at(time, &waves.borrow(), &mut of_rates);
-        system.is_asked_at(time);
+        system.is_evaluated_at(time);
         system.rates(state, &of_rates, rates);
     };
     let shortest = waves.borrow().shortest();
@@ -168,7 +168,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_polynomial_is_met_everywhere() {
+    fn a_polynomial_is_interpolated_exactly() {
         let wave = |t: f64| 1.0 - 2.0 * t + t.powi(5) - 0.5 * t.powi(11);
         let values = std::array::from_fn(|index| wave(point(index)));
         for part in [0.0, 0.01, 0.37, 0.5, 0.99, 1.0] {

@@ -24,7 +24,7 @@ fn a_stiff_linear_system_follows_its_eigenvectors() {
 }
 
 #[test]
-fn a_rotation_keeps_its_radius() {
+fn a_rotation_preserves_its_radius() {
     let mut rates = |_: f64, y: &[f64], dy: &mut [f64]| dy.copy_from_slice(&[y[1], -y[0]]);
     for method in METHODS {
         let states =

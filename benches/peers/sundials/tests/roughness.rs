@@ -60,7 +60,7 @@ fn a_calmed_ringing_is_refused_and_another_phase_is_not() {
 
 /// The ringing may end within a tenth of a second, and begin a little later than CVODE's.
 #[test]
-fn a_burst_is_looked_for_in_the_windows_around() {
+fn a_burst_is_searched_in_neighbouring_windows() {
     let (reference, kicked) = (burst(10.0, 0.61, 0.69), burst(10.0, 0.62, 0.7));
     let references = [reference.as_slice(), kicked.as_slice()];
     let late = compared(&burst(10.0, 0.7, 0.78), references);
@@ -74,7 +74,7 @@ fn a_burst_is_looked_for_in_the_windows_around() {
 /// Ringing whose strength differs between CVODE's own runs is not judged by its strength, but there
 /// must be ringing.
 #[test]
-fn ringing_that_hangs_on_rounding_is_asked_for_at_all() {
+fn ringing_that_depends_on_rounding_is_detected() {
     let (reference, kicked) = (force(10.0, 0.0, 0.5), force(28.0, 0.0, 0.5));
     let references = [reference.as_slice(), kicked.as_slice()];
     let weak = compared(&force(4.0, 0.0, 0.5), references);
@@ -86,7 +86,7 @@ fn ringing_that_hangs_on_rounding_is_asked_for_at_all() {
 /// Ringing before trajectories separate is judged row by row, and ringing below a thousandth of the
 /// peak does not count.
 #[test]
-fn what_is_too_small_or_too_early_is_not_judged() {
+fn small_and_early_deviations_are_not_judged() {
     let small = force(0.5, 0.0, 0.0);
     let found = compared(&force(0.0, 0.0, 0.0), [&small, &small]);
     assert_eq!((found.windows, found.fault()), (0, None));

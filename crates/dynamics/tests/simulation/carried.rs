@@ -49,9 +49,9 @@ fn growth(depth: f64, kinks: usize) -> Option<(f64, GrowthCause)> {
     let steps: Vec<(f64, f64)> = steps.skip(1).collect();
     let stiffness = Profile::steps(1.0 + depth, &steps).unwrap();
     let duration_s = HALF_S * 2.0 * PERIODS as f64;
-    let course = InputSchedule { duration_s, output_step_s: 1.0, inputs: vec![Input::Value(stiffness)] };
+    let schedule = InputSchedule { duration_s, output_step_s: 1.0, inputs: vec![Input::Value(stiffness)] };
     let settings = SimulationSettings { tolerance: 1e-8, ..SimulationSettings::default() };
-    let run = simulate(&system, &[1.0, 0.0], &course, None, &settings, &mut |_| true).unwrap();
+    let run = simulate(&system, &[1.0, 0.0], &schedule, None, &settings, &mut |_| true).unwrap();
     assert_eq!(run.outcome.status, Status::Completed);
     run.outcome.amplification.map(|grown| (grown.logarithm, grown.cause))
 }

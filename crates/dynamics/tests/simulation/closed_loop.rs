@@ -10,7 +10,7 @@ use phea_dynamics::simulation::{
 };
 use phea_dynamics::time_response::{Interpolation, SampledSignal, forced_response};
 
-use super::laws::{course, distance, run, simulate};
+use super::laws::{distance, run, schedule, simulate};
 
 /// gain/((s - p_1)(s - p_2) ...): y_n' = p_n y_n + gain (u + d), y_k' = p_k y_k + y_(k+1); the
 /// measurement is y_1. The load d is an input, which is fed forward.
@@ -113,7 +113,7 @@ fn answer(function: &TransferFunction, height: f64, after_s: f64, times: &[f64])
 }
 
 #[test]
-fn a_linear_loop_answers_as_its_transfer_function() {
+fn a_linear_loop_responds_as_its_transfer_function() {
     let (plant, controller) = (Chain::new(vec![-1.0, -3.0, -50.0], 100.0), dynamic());
     let feedback = controller.feedback.transfer_function().unwrap();
     let path = plant.transfer_function().series(&feedback).unwrap();
@@ -121,7 +121,7 @@ fn a_linear_loop_answers_as_its_transfer_function() {
     let whole = controller.prefilter.transfer_function().unwrap().series(&closed).unwrap();
     let system = CommandedPlant::in_loop(plant, &controller, 0.0).unwrap();
     let states = 3 + system.controller_states();
-    let result = run(&system, &vec![0.0; states], &course(5.0, 0.02, vec![stepped(0.25, 3.0)]), 1e-11);
+    let result = run(&system, &vec![0.0; states], &schedule(5.0, 0.02, vec![stepped(0.25, 3.0)]), 1e-11);
     let exact = answer(&whole, 3.0, 0.25, &result.trajectory.times_s);
     for (row, exact) in result.trajectory.states.iter().zip(&exact) {
         assert!((row[0] - exact).abs() < 1e-8, "{} {exact}", row[0]);
@@ -131,7 +131,7 @@ fn a_linear_loop_answers_as_its_transfer_function() {
 
 /// A load at the plant's input: P/(1 + L), and zero when it is fed forward.
 #[test]
-fn a_load_is_answered_and_fed_forward() {
+fn a_load_is_rejected_and_fed_forward() {
     let (chain, mut controller) = (Chain::new(vec![-1.0, -3.0], 10.0), dynamic());
     controller.prefilter = Compensator::default();
     let feedback = controller.feedback.transfer_function().unwrap();
@@ -140,7 +140,7 @@ fn a_load_is_answered_and_fed_forward() {
         let system = CommandedPlant::in_loop(Loaded(chain.clone()), &controller, feed_forward).unwrap();
         let states = 2 + system.controller_states();
         let inputs = vec![Input::Value(Profile::constant(0.0)), stepped(0.25, 2.0)];
-        let result = run(&system, &vec![0.0; states], &course(3.0, 0.02, inputs), 1e-11);
+        let result = run(&system, &vec![0.0; states], &schedule(3.0, 0.02, inputs), 1e-11);
         let exact = answer(&disturbed, 2.0 * part, 0.25, &result.trajectory.times_s);
         for (row, exact) in result.trajectory.states.iter().zip(&exact) {
             assert!((row[0] - exact).abs() < 1e-8, "{} {exact}", row[0]);
@@ -168,7 +168,7 @@ fn saturating(anti_windup: AntiWindup, tolerance: f64) -> Simulated {
     let inputs = vec![Input::Value(Profile::steps(0.0, &[(0.1, 1.5), (4.0, -0.5)]).unwrap())];
     let settings = SimulationSettings { tolerance, maximum_steps: 200_000, ..SimulationSettings::default() };
     let result =
-        simulate(&system, &[0.0; 3], &course(8.0, 0.1, inputs), None, &settings, &mut |_| true).unwrap();
+        simulate(&system, &[0.0; 3], &schedule(8.0, 0.1, inputs), None, &settings, &mut |_| true).unwrap();
     assert_eq!(result.outcome.status, Status::Completed, "{anti_windup:?} {:?}", result.outcome.work);
     result
 }
@@ -217,7 +217,7 @@ fn by_short_steps(anti_windup: AntiWindup) -> Vec<f64> {
 }
 
 #[test]
-fn a_limited_loop_winds_up_and_does_not() {
+fn a_limited_loop_winds_up_only_without_anti_windup() {
     let mut greatest = Vec::new();
     for anti_windup in [AntiWindup::None, AntiWindup::BackCalculation, AntiWindup::Clamping] {
         let exact = by_short_steps(anti_windup);
@@ -236,7 +236,7 @@ fn a_limited_loop_winds_up_and_does_not() {
 /// The limited command is never above its limit, and the indicator of the limit shows when it is
 /// active.
 #[test]
-fn the_limit_is_kept_and_told() {
+fn the_limit_is_satisfied_and_reported() {
     let result = saturating(AntiWindup::BackCalculation, 1e-8);
     let events = &result.outcome.events;
     assert!(events.first().is_some_and(|event| event.rising && (event.time_s - 0.1).abs() < 1e-9));
@@ -254,7 +254,7 @@ fn the_limit_is_kept_and_told() {
 }
 
 #[test]
-fn what_cannot_act_continuously_is_refused() {
+fn a_controller_without_a_continuous_form_is_refused() {
     let plant = Chain::new(vec![-1.0], 1.0);
     let improper =
         Controller { feedback: Compensator::new(vec![Element::Differentiator]), ..Controller::default() };
@@ -276,6 +276,6 @@ fn a_loop_at_rest_stays_there() {
     let system = CommandedPlant::in_loop(Chain::new(vec![-1.0, -3.0], 1.0), &dynamic(), 0.0).unwrap();
     let states = 2 + system.controller_states();
     let inputs = vec![Input::Value(Profile::constant(0.0))];
-    let result = run(&system, &vec![0.0; states], &course(100.0, 10.0, inputs), 1e-9);
+    let result = run(&system, &vec![0.0; states], &schedule(100.0, 10.0, inputs), 1e-9);
     assert!(distance(&result, 0, |_| 0.0) == 0.0 && result.outcome.work.steps < 10);
 }

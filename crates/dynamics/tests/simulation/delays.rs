@@ -8,7 +8,7 @@ use phea_dynamics::simulation::{CommandedPlant, Input, Method, Profile, System};
 use phea_dynamics::time_response::delayed_loop_step;
 
 use super::closed_loop::Chain;
-use super::laws::{course, distance, run, run_by};
+use super::laws::{distance, run, run_by, schedule};
 
 /// Equation y'(t) = -k y(t - T).
 #[derive(Clone)]
@@ -54,9 +54,9 @@ fn by_steps(gain: f64, delay_s: f64, time_s: f64) -> f64 {
 fn a_late_integrator_is_a_polynomial_of_each_delay() {
     for (gain, delay_s) in [(1.0, 1.0), (0.7, 0.3), (3.0, 0.1)] {
         let late = Late { gain, delay_s };
-        let course = course(4.0 * delay_s, 0.07 * delay_s, vec![]);
+        let schedule = schedule(4.0 * delay_s, 0.07 * delay_s, vec![]);
         for method in [Method::Rosenbrock, Method::DormandPrince] {
-            let result = run_by(method, &late, &[1.0], &course, 1e-3);
+            let result = run_by(method, &late, &[1.0], &schedule, 1e-3);
             let error = distance(&result, 0, |time_s| by_steps(gain, delay_s, time_s));
             assert!(error < 1e-13, "{error}");
             assert_eq!(result.outcome.work.rejected, 0);
@@ -69,7 +69,7 @@ fn a_late_integrator_is_a_polynomial_of_each_delay() {
 #[test]
 fn a_late_integrator_over_many_delays() {
     for tolerance in [1e-6, 1e-9] {
-        let result = run(&Late { gain: 1.0, delay_s: 1.0 }, &[1.0], &course(12.0, 0.1, vec![]), tolerance);
+        let result = run(&Late { gain: 1.0, delay_s: 1.0 }, &[1.0], &schedule(12.0, 0.1, vec![]), tolerance);
         let error = distance(&result, 0, |time_s| by_steps(1.0, 1.0, time_s));
         assert!(error < 10.0 * tolerance, "{error} at {tolerance}");
     }
@@ -130,12 +130,12 @@ fn steps_arrive_as_steps() {
     let area = |t: f64| 2.0 * (t - 1.0).max(0.0) - 3.0 * (t - 1.25).max(0.0);
     for delays_s in [[0.5, 0.5], [0.3, 0.7], [0.2, 0.2]] {
         let once = Reflected { near: 0.0, far: -0.5, delays_s };
-        let course_once = course(3.0, 0.01, vec![Input::Value(source.clone())]);
-        let result = run(&once, &[0.0], &course_once, 1e-3);
+        let schedule_once = schedule(3.0, 0.01, vec![Input::Value(source.clone())]);
+        let result = run(&once, &[0.0], &schedule_once, 1e-3);
         let error = distance(&result, 0, |time_s| once.integral(area, time_s));
         assert!(error < 1e-12 && result.outcome.work.rejected == 0, "{error} {:?}", result.outcome.work);
         let often = Reflected { near: 0.8, ..once };
-        let result = run(&often, &[0.0], &course_once, 1e-8);
+        let result = run(&often, &[0.0], &schedule_once, 1e-8);
         let error = distance(&result, 0, |time_s| often.integral(area, time_s));
         assert!(error < 1e-7, "{delays_s:?}: {error} {:?}", result.outcome.work);
     }
@@ -148,7 +148,7 @@ fn motions_arrive_as_motions() {
     for tolerance in [1e-6, 1e-9] {
         let line = Reflected { near: 0.9, far: -0.9, delays_s: [0.25, 0.15] };
         let inputs = vec![Input::Rate(motion.clone())];
-        let result = run(&line, &[0.0], &course(4.0, 0.01, inputs), tolerance);
+        let result = run(&line, &[0.0], &schedule(4.0, 0.01, inputs), tolerance);
         let error = distance(&result, 0, |time_s| line.integral(|t| motion.value(t), time_s));
         assert!(error < 30.0 * tolerance, "{error} at {tolerance}");
     }
@@ -166,7 +166,7 @@ fn a_late_command_of_a_continuous_controller() {
     let delay_s = 0.3;
     let closed = CommandedPlant::in_loop(integrator.clone(), &controller(delay_s), 0.0).unwrap();
     let inputs = vec![Input::Value(Profile::steps(0.0, &[(0.5, 1.0)]).unwrap())];
-    let result = run(&closed, &[0.0], &course(1.8, 0.01, inputs.clone()), 1e-6);
+    let result = run(&closed, &[0.0], &schedule(1.8, 0.01, inputs.clone()), 1e-6);
     // the error obeys e' = -2 e(t - T), e = 1 at the step and zero before: y moves one delay later
     let exact = |time_s: f64| {
         let since = time_s - 0.5 - delay_s;
@@ -205,7 +205,7 @@ fn a_late_command_of_a_dynamic_controller() {
     let one = TransferFunction::gain_only(1.0);
     let closed = CommandedPlant::in_loop(plant, &controller, 0.0).unwrap();
     let inputs = vec![Input::Value(Profile::steps(0.0, &[(0.5, 1.0)]).unwrap())];
-    let result = run(&closed, &[0.0; 5], &course(4.5, 0.05, inputs), 1e-9);
+    let result = run(&closed, &[0.0; 5], &schedule(4.5, 0.05, inputs), 1e-9);
     // second order in the step: two step sizes, extrapolated
     let answer = |steps| delayed_loop_step(&path, &one, &prefilter, 4.0, steps).unwrap();
     let [coarse, fine] = [answer(8_000), answer(16_000)];

@@ -6,7 +6,7 @@ use phea_dynamics::portable;
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{Input, Method, Profile, System};
 
-use super::laws::{course, run, run_by};
+use super::laws::{run, run_by, schedule};
 
 /// Oscillator x'' = -omega^2 x with an input w; the indicators are x - a for levels a, and w - 1/2.
 #[derive(Clone)]
@@ -50,7 +50,7 @@ fn zeros_of_a_sine() {
     let system = Watched { omega: 2.0 * PI, levels: vec![0.0] };
     for method in [Method::Rosenbrock, Method::DormandPrince] {
         for tolerance in [1e-5, 1e-8, 1e-11] {
-            let result = run_by(method, &system, &[0.0, 1.0], &course(10.2, 0.1, still()), tolerance);
+            let result = run_by(method, &system, &[0.0, 1.0], &schedule(10.2, 0.1, still()), tolerance);
             let events = &result.outcome.events;
             assert_eq!(events.len(), 21, "{events:?}");
             for (index, event) in events.iter().enumerate() {
@@ -67,7 +67,7 @@ fn zeros_of_a_sine() {
 fn several_in_one_step() {
     let levels = vec![0.5, -0.3, 0.1, 0.501, 0.0];
     let system = Watched { omega: 1.0, levels: levels.clone() };
-    let result = run(&system, &[-1.0, 0.0], &course(3.0, 3.0, still()), 1e-9);
+    let result = run(&system, &[-1.0, 0.0], &schedule(3.0, 3.0, still()), 1e-9);
     let mut expected: Vec<(f64, usize)> = levels
         .iter()
         .enumerate()
@@ -94,10 +94,10 @@ fn at_and_between_breaks() {
     let system = Watched { omega: 1.0, levels: vec![] };
     let ramp = Profile::smooth_step(1.3, 0.4, 1.0).unwrap();
     let steps = Profile::steps(0.0, &[(0.7, 1.0), (1.1, 0.0), (2.0, 1.0)]).unwrap();
-    let result = run(&system, &[0.0, 1.0], &course(2.0, 0.5, vec![Input::Value(ramp)]), 1e-6);
+    let result = run(&system, &[0.0, 1.0], &schedule(2.0, 0.5, vec![Input::Value(ramp)]), 1e-6);
     let [event] = result.outcome.events[..] else { panic!("{:?}", result.outcome.events) };
     assert!(event.rising && (event.time_s - 1.5).abs() < 1e-11, "{event:?}");
-    let result = run(&system, &[0.0, 1.0], &course(2.0, 0.5, vec![Input::Value(steps)]), 1e-6);
+    let result = run(&system, &[0.0, 1.0], &schedule(2.0, 0.5, vec![Input::Value(steps)]), 1e-6);
     let times: Vec<(f64, bool)> = result.outcome.events.iter().map(|e| (e.time_s, e.rising)).collect();
     assert_eq!(times, [(0.7, true), (1.1, false)]);
 }
@@ -107,6 +107,6 @@ fn at_and_between_breaks() {
 #[test]
 fn nothing_happens() {
     let system = Watched { omega: 3.0, levels: vec![1.5, -1.5] };
-    let result = run(&system, &[1.0, 0.0], &course(10.0, 1.0, still()), 1e-6);
+    let result = run(&system, &[1.0, 0.0], &schedule(10.0, 1.0, still()), 1e-6);
     assert_eq!(result.outcome.events, []);
 }

@@ -3,7 +3,7 @@
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{Input, Method, Profile, SimulationSettings, Status};
 
-use super::laws::{Law, Lawful, course, run_by, settings, simulate};
+use super::laws::{Law, Lawful, run_by, schedule, settings, simulate};
 
 /// A pendulum whose support is shaken: theta'' = -(9.81 + w) sin(theta) - theta'/10, sin by its
 /// series.
@@ -27,10 +27,10 @@ impl Law for Pendulum {
 #[test]
 fn both_methods_agree_on_a_mild_system() {
     let shaken = Profile::table(&[0.0, 1.0, 2.5, 4.0, 5.0], &[0.0, 3.0, -4.0, 2.0, 0.0]).unwrap();
-    let course = course(10.0, 0.03, vec![Input::Value(shaken)]);
+    let schedule = schedule(10.0, 0.03, vec![Input::Value(shaken)]);
     for tolerance in [1e-5, 1e-7, 1e-9] {
         let [implicit, explicit] = [Method::Rosenbrock, Method::DormandPrince]
-            .map(|method| run_by(method, &Lawful(Pendulum, 1.0), &[1.5, 0.0], &course, tolerance));
+            .map(|method| run_by(method, &Lawful(Pendulum, 1.0), &[1.5, 0.0], &schedule, tolerance));
         assert_eq!(implicit.trajectory.times_s, explicit.trajectory.times_s);
         let rows = implicit.trajectory.states.iter().zip(&explicit.trajectory.states);
         for (one, other) in rows {
@@ -47,11 +47,11 @@ fn both_methods_agree_on_a_mild_system() {
 fn an_explicit_method_pays_for_a_fast_mode() {
     let stiff = Lawful(super::laws::Following(-1e7), 1.0);
     let inputs = || vec![Input::Value(Profile::constant(0.0)), Input::Value(Profile::constant(0.0))];
-    let course = course(1.0, 1.0, inputs());
+    let schedule = schedule(1.0, 1.0, inputs());
     let limited = SimulationSettings { maximum_steps: 1000, ..settings(1e-6, Method::DormandPrince) };
-    let explicit = simulate(&stiff, &[1.0], &course, None, &limited, &mut |_| true).unwrap();
+    let explicit = simulate(&stiff, &[1.0], &schedule, None, &limited, &mut |_| true).unwrap();
     assert!(matches!(explicit.outcome.status, Status::TooManySteps { time_s } if time_s < 1e-3));
     let limited = SimulationSettings { method: Method::Rosenbrock, ..limited };
-    let implicit = simulate(&stiff, &[1.0], &course, None, &limited, &mut |_| true).unwrap();
+    let implicit = simulate(&stiff, &[1.0], &schedule, None, &limited, &mut |_| true).unwrap();
     assert_eq!(implicit.outcome.status, Status::Completed);
 }

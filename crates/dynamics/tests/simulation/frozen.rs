@@ -4,7 +4,7 @@ use phea_dynamics::portable;
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{Amplification, Method, System};
 
-use super::laws::{Law, Lawful, course, settings, simulate};
+use super::laws::{Law, Lawful, schedule, settings, simulate};
 
 /// A damped oscillation of 1 krad/s, and a slow mode, real or oscillating.
 ///
@@ -31,8 +31,8 @@ impl Law for SlowAndFast {
 
 fn grown<E: System<f64>>(system: &E, start: &[f64], duration_s: f64) -> Option<Amplification> {
     let settings = settings(1e-6, Method::Rosenbrock);
-    let course = course(duration_s, duration_s, vec![]);
-    simulate(system, start, &course, None, &settings, &mut |_| true).unwrap().outcome.amplification
+    let schedule = schedule(duration_s, duration_s, vec![]);
+    simulate(system, start, &schedule, None, &settings, &mut |_| true).unwrap().outcome.amplification
 }
 
 #[test]

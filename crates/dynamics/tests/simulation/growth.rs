@@ -7,7 +7,7 @@ use phea_dynamics::simulation::{
     Input, Method, Profile, Sampler, SimulationSettings, Sliding, Status, System,
 };
 
-use super::laws::{Law, Lawful, course, settings, simulate};
+use super::laws::{Law, Lawful, schedule, settings, simulate};
 
 /// Two equal masses between three equal springs, each with negative damping; positions x_1, x_2 and
 /// velocities over omega.
@@ -63,8 +63,8 @@ fn two_masses_grow_at_their_rate() {
                 let begin = [start, -0.3 * start, 0.2 * start, 0.1 * start];
                 let system = Lawful(law.clone(), 1.0);
                 let settings = settings(tolerance, method);
-                let course = course(duration_s, duration_s, vec![]);
-                let run = simulate(&system, &begin, &course, None, &settings, &mut |_| true).unwrap();
+                let schedule = schedule(duration_s, duration_s, vec![]);
+                let run = simulate(&system, &begin, &schedule, None, &settings, &mut |_| true).unwrap();
                 assert_eq!(run.outcome.status, Status::Completed);
                 let grown = run.outcome.amplification.unwrap();
                 let expected = law.alpha * (grown.until_s - grown.from_s);
@@ -121,9 +121,9 @@ impl Drifting {
     fn after(&self, duration_s: f64, from: f64, sample_time_s: Option<f64>) -> [f64; 2] {
         let sampler = sample_time_s.map(|period| Box::new(Nothing(period)) as Box<dyn Sampler>);
         let input = if sampler.is_some() { Input::Command } else { Input::Value(Profile::constant(0.0)) };
-        let course = course(duration_s, duration_s, vec![input]);
+        let schedule = schedule(duration_s, duration_s, vec![input]);
         let settings = settings(1e-4, Method::Rosenbrock);
-        let run = simulate(self, &[1e-9, 0.0, from], &course, sampler, &settings, &mut |_| true).unwrap();
+        let run = simulate(self, &[1e-9, 0.0, from], &schedule, sampler, &settings, &mut |_| true).unwrap();
         assert_eq!(run.outcome.status, Status::Completed);
         let [x, y, reached] = run.outcome.end[..] else { panic!("three states") };
         [portable::ln(portable::hypot(x, y)), reached]
@@ -175,12 +175,12 @@ fn samples_do_not_hide_growth() {
 /// A simulation too long for the oscillation that would have to be resolved ends, and identifies
 /// the mode.
 #[test]
-fn what_cannot_be_resolved_is_told() {
+fn unresolvable_growth_is_reported() {
     let law = TwoMasses { omega: 1e4, alpha: 20.0 };
     let settings = SimulationSettings { maximum_steps: 2_000, ..settings(1e-3, Method::Rosenbrock) };
-    let course = course(1e3, 1e3, vec![]);
+    let schedule = schedule(1e3, 1e3, vec![]);
     let start = [1e-12, 0.0, 0.0, 0.0];
-    let run = simulate(&Lawful(law, 1e6), &start, &course, None, &settings, &mut |_| true).unwrap();
+    let run = simulate(&Lawful(law, 1e6), &start, &schedule, None, &settings, &mut |_| true).unwrap();
     let Status::UnresolvedOscillation { time_s, frequency_rad_per_s, growth_per_s } = run.outcome.status
     else {
         panic!("{:?}", run.outcome.status)
@@ -237,8 +237,8 @@ fn an_integrator_does_not_grow() {
     for number in 0..64 {
         let settings = SimulationSettings { maximum_steps: 6, ..settings(1e-9, Method::Rosenbrock) };
         let law = Lawful(Turned::drawn(number), 1.0);
-        let course = course(10.0, 10.0, vec![]);
-        let run = simulate(&law, &[1.0, -0.5, 0.3, 0.2], &course, None, &settings, &mut |_| true).unwrap();
+        let schedule = schedule(10.0, 10.0, vec![]);
+        let run = simulate(&law, &[1.0, -0.5, 0.3, 0.2], &schedule, None, &settings, &mut |_| true).unwrap();
         assert!(matches!(run.outcome.status, Status::TooManySteps { .. }), "{number}: {:?}", run.outcome);
     }
 }
@@ -275,13 +275,13 @@ impl System<f64> for Loosening {
 }
 
 #[test]
-fn an_oscillation_that_was_not_there_is_seen_when_it_comes_up() {
+fn an_oscillation_that_begins_late_is_detected() {
     let motion = Profile::sine(0.0, 1e-3, 7.0).unwrap();
-    let course = course(2.0, 2.0, vec![Input::Value(motion)]);
+    let schedule = schedule(2.0, 2.0, vec![Input::Value(motion)]);
     let begin = [0.0; 3];
     for tolerance in [1e-4, 1e-9] {
         let settings = settings(tolerance, Method::Rosenbrock);
-        let run = simulate(&Loosening, &begin, &course, None, &settings, &mut |_| true).unwrap();
+        let run = simulate(&Loosening, &begin, &schedule, None, &settings, &mut |_| true).unwrap();
         assert_eq!(run.outcome.status, Status::Completed);
         let [x, y, _] = run.outcome.end[..] else { panic!("three states") };
         // growth by e^100, from the little that friction and rounding leave; the motion without

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use phea_dynamics::portable;
 use phea_dynamics::scalar::Scalar;
 
-use super::laws::{Law, Lawful, course, last, run};
+use super::laws::{Law, Lawful, last, run, schedule};
 
 /// x' = 1,  y' = |x - p|
 #[derive(Clone)]
@@ -23,14 +23,14 @@ impl Law for Bent {
 /// Result y(1) = (p^2 + (1 - p)^2)/2 at a thousand p. Rejected and shortened steps do not end where
 /// their error estimate is blind; the remaining errors are first attempts that happen to begin so.
 #[test]
-fn a_kink_is_met_to_the_tolerance_wherever_it_lies() {
+fn a_kink_is_located_to_the_tolerance_anywhere() {
     for tolerance in [1e-4, 1e-6, 1e-8] {
         let mut refused = 0;
         let mut errors: Vec<f64> = (0..1000)
             .map(|index| {
                 let place = 0.2 + 7e-4 * f64::from(index);
                 let law = Lawful(Bent(place), 1.0);
-                let result = run(&law, &[0.0; 2], &course(1.0, 1.0, vec![]), tolerance);
+                let result = run(&law, &[0.0; 2], &schedule(1.0, 1.0, vec![]), tolerance);
                 refused += result.outcome.work.rejected;
                 let exact = 0.5 * (place * place + (1.0 - place) * (1.0 - place));
                 (last(&result, 1) - exact).abs() / tolerance
@@ -62,12 +62,12 @@ impl Law for Marked {
 /// No step with a listed kink errs by more than a few tolerances, for any position of the kink,
 /// including first attempts.
 #[test]
-fn a_known_kink_is_met_by_every_step() {
+fn every_step_ends_at_a_known_kink() {
     for tolerance in [1e-4, 1e-6, 1e-8] {
         for index in 0..1000 {
             let place = 1e-3 + 9.98e-4 * f64::from(index);
             let law = Lawful(Marked(place), 1.0);
-            let result = run(&law, &[0.0; 2], &course(1.0, 1.0, vec![]), tolerance);
+            let result = run(&law, &[0.0; 2], &schedule(1.0, 1.0, vec![]), tolerance);
             let exact = 0.5 * (place * place + (1.0 - place) * (1.0 - place));
             let error = (last(&result, 1) - exact).abs() / tolerance;
             assert!(error < 4.0, "{tolerance:e} at {place}: {error}");
@@ -105,7 +105,7 @@ fn a_ball_comes_back_to_its_height() {
             let touch = 2.0 * (PI - portable::atan2(speed * frequency, 1.0)) / frequency;
             let period = 2.0 * speed + touch;
             let law = Lawful(Ball(stiffness), 1.0);
-            let result = run(&law, &[height, 0.0], &course(period, period, vec![]), 1e-7);
+            let result = run(&law, &[height, 0.0], &schedule(period, period, vec![]), 1e-7);
             let error = [last(&result, 0) - height, last(&result, 1)].map(f64::abs);
             assert!(error[0] < 2e-6 && error[1] < 2e-5, "{stiffness} from {height}: {error:?}");
         }
@@ -138,7 +138,7 @@ fn bristles_follow_their_closed_form_through_reversals() {
         for index in 1..=100 {
             let until = 0.4 * f64::from(index);
             let result =
-                run(&Lawful(Bristles, 1.0), &[0.0, 1.0, 0.0], &course(until, until, vec![]), tolerance);
+                run(&Lawful(Bristles, 1.0), &[0.0, 1.0, 0.0], &schedule(until, until, vec![]), tolerance);
             // ORIGIN: analytic, z = s + (z_0 - s) exp(-way), s the sign of the velocity
             let (mut bristle, mut time, mut sign) = (0.0, 0.0_f64, 1.0);
             let mut reversal = 0.5 * PI;

@@ -72,7 +72,7 @@ impl<S: Lane> System<S> for Machine<S> {
 struct Case {
     parameters: [f64; 4],
     start: [f64; 3],
-    course: InputSchedule,
+    schedule: InputSchedule,
     sample_time_s: Option<f64>,
     /// Largest addition to each command.
     noise: f64,
@@ -99,13 +99,13 @@ impl Sampler for Holding {
 }
 
 /// Status, events, work and the bits of the last state.
-type Ended = (Status, Vec<Event>, [u64; 3], Vec<u64>);
+type DrivenOutcome = (Status, Vec<Event>, [u64; 3], Vec<u64>);
 
 /// Observations, to the bit.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Seen {
     bits: Vec<u64>,
-    outcome: Option<Ended>,
+    outcome: Option<DrivenOutcome>,
 }
 
 struct Notes(Seen, &'static [usize]);
@@ -142,8 +142,8 @@ impl<'a, S: Lane> Queue<'a, Machine<S>> for Line<'a> {
         let sampler = case.sample_time_s.map(|sample_time_s| {
             Box::new(Holding { sample_time_s, noise: case.noise, number: 0.4 }) as Box<dyn Sampler>
         });
-        let (start, course) = (case.start.to_vec(), &case.course);
-        Some(Task { start, course, sampler, observer: Notes(Seen::default(), &[0, 2, 1]) })
+        let (start, schedule) = (case.start.to_vec(), &case.schedule);
+        Some(Task { start, course: schedule, sampler, observer: Notes(Seen::default(), &[0, 2, 1]) })
     }
 
     fn done(&mut self, lane: usize, outcome: Outcome, observer: Notes) {
@@ -180,7 +180,7 @@ fn cases() -> Vec<Case> {
                     [0.0, 3.0][index / 2 % 2],
                 ],
                 start: [0.1 * (part - 5.0), 0.0, if index % 4 == 3 { 1e3 } else { 0.0 }],
-                course: InputSchedule {
+                schedule: InputSchedule {
                     duration_s: 1.0 + 0.1 * part,
                     output_step_s: 0.05,
                     inputs: vec![Input::Value(motions[index % 6].clone()), Input::Command],
@@ -217,8 +217,8 @@ fn neighbours_make_no_difference_from_sample_to_sample() {
     let mut cases = cases();
     for case in &mut cases {
         case.sample_time_s = Some(0.002);
-        case.course.output_step_s = 0.5;
-        case.course.duration_s += 1.0;
+        case.schedule.output_step_s = 0.5;
+        case.schedule.duration_s += 1.0;
     }
     neighbours(&cases, 0);
 }
@@ -231,8 +231,8 @@ fn neighbours_make_no_difference_where_commands_jump() {
     for (index, case) in cases.iter_mut().enumerate() {
         case.sample_time_s = Some([0.02, 0.015, 0.03][index % 3]);
         case.noise = [30.0, 3.0, 300.0, 0.3][index % 4];
-        case.course.output_step_s = 0.5;
-        case.course.duration_s += 1.0;
+        case.schedule.output_step_s = 0.5;
+        case.schedule.duration_s += 1.0;
     }
     neighbours(&cases, 0);
 }
@@ -242,22 +242,24 @@ fn neighbours(cases: &[Case], waves: usize) {
     let other: Vec<usize> = (0..cases.len()).map(|index| (4 * index + 3) % cases.len()).collect();
     for method in [Method::Rosenbrock, Method::DormandPrince] {
         let settings = settings(1e-6, method);
-        let mut alone = vec![Seen::default(); cases.len()];
-        for (index, place) in alone.iter_mut().enumerate() {
+        let mut separate = vec![Seen::default(); cases.len()];
+        for (index, place) in separate.iter_mut().enumerate() {
             *place = driven::<f64>(cases, waves, vec![index], &settings)[index].clone();
             let outcome = place.outcome.as_ref().unwrap();
             assert_eq!(outcome.0, Status::Completed);
             assert!(place.bits.len() >= 6 * 4 && !outcome.3.is_empty());
         }
-        assert!(alone.iter().any(|seen| seen.outcome.as_ref().is_some_and(|outcome| !outcome.1.is_empty())));
+        assert!(
+            separate.iter().any(|seen| seen.outcome.as_ref().is_some_and(|outcome| !outcome.1.is_empty()))
+        );
         for order in [order.clone(), other.clone()] {
             let together = [
                 driven::<f64>(cases, waves, order.clone(), &settings),
                 driven::<Lanes>(cases, waves, order, &settings),
             ];
             for (results, lanes) in together.iter().zip([1, LANES]) {
-                for (index, (seen, alone)) in results.iter().zip(&alone).enumerate() {
-                    assert!(seen == alone, "{method:?}, {lanes} lanes, case {index}");
+                for (index, (seen, separate)) in results.iter().zip(&separate).enumerate() {
+                    assert!(seen == separate, "{method:?}, {lanes} lanes, case {index}");
                 }
             }
         }
@@ -266,7 +268,7 @@ fn neighbours(cases: &[Case], waves: usize) {
 
 /// A neighbour that becomes infinite does not affect the others.
 #[test]
-fn a_neighbour_that_fails_fails_alone() {
+fn a_failing_neighbour_does_not_affect_the_others() {
     let mut cases = cases();
     let good = cases.clone();
     for index in [1, 4, 9] {
@@ -275,13 +277,13 @@ fn a_neighbour_that_fails_fails_alone() {
     let order: Vec<usize> = (0..cases.len()).collect();
     let settings = SimulationSettings { maximum_steps: 5_000, ..SimulationSettings::default() };
     let mixed = driven::<Lanes>(&cases, 1, order.clone(), &settings);
-    let alone = driven::<f64>(&good, 1, order, &settings);
-    for (index, (seen, alone)) in mixed.iter().zip(&alone).enumerate() {
+    let separate = driven::<f64>(&good, 1, order, &settings);
+    for (index, (seen, separate)) in mixed.iter().zip(&separate).enumerate() {
         let status = seen.outcome.as_ref().unwrap().0;
         if [1, 4, 9].contains(&index) {
             assert!(status != Status::Completed, "{index}: {status:?}");
         } else {
-            assert!(seen == alone, "{index}");
+            assert!(seen == separate, "{index}");
         }
     }
 }
@@ -313,8 +315,13 @@ impl<'a, E> Queue<'a, E> for Ends<'a> {
     type Observer = Notes;
 
     fn next(&mut self, _: &mut E, _: usize) -> Option<Task<'a, Notes>> {
-        let course = self.0.pop()?;
-        Some(Task { start: vec![0.0], course, sampler: None, observer: Notes(Seen::default(), self.2) })
+        let schedule = self.0.pop()?;
+        Some(Task {
+            start: vec![0.0],
+            course: schedule,
+            sampler: None,
+            observer: Notes(Seen::default(), self.2),
+        })
     }
     fn done(&mut self, _: usize, outcome: Outcome, _: Notes) {
         self.1.push(outcome.status);
@@ -325,24 +332,24 @@ impl<'a, E> Queue<'a, E> for Ends<'a> {
 }
 
 #[test]
-fn who_stands_still_is_not_moved_by_a_neighbour() {
-    let course =
+fn a_lane_at_rest_is_not_moved_by_a_neighbour() {
+    let schedule =
         |profile| InputSchedule { duration_s: 1.0, output_step_s: 1.0, inputs: vec![Input::Value(profile)] };
     let (still, moving) =
-        (course(Profile::constant(0.0)), course(Profile::table(&[0.0, 1.0], &[1.0, 4.0]).unwrap()));
+        (schedule(Profile::constant(0.0)), schedule(Profile::table(&[0.0, 1.0], &[1.0, 4.0]).unwrap()));
     let mut ends = Ends(vec![&still, &moving], Vec::new(), &[0]);
     drive::<Lanes, _, _>(&mut Root, &mut ends, &SimulationSettings::default()).unwrap();
     assert_eq!(ends.1, [Status::Completed; 2]);
 }
 
 #[test]
-fn a_state_that_is_not_there_is_not_looked_at() {
-    let course = InputSchedule {
+fn an_absent_state_is_not_evaluated() {
+    let schedule = InputSchedule {
         duration_s: 1.0,
         output_step_s: 1.0,
         inputs: vec![Input::Value(Profile::constant(1.0))],
     };
-    let mut ends = Ends(vec![&course], Vec::new(), &[0, 1]);
+    let mut ends = Ends(vec![&schedule], Vec::new(), &[0, 1]);
     let result = drive::<f64, _, _>(&mut Root, &mut ends, &SimulationSettings::default());
     assert!(matches!(result, Err(SimulationError::Count { found: 2, expected: 1, .. })), "{result:?}");
 }

@@ -136,12 +136,12 @@ impl System<f64> for Recording {
 pub(crate) fn simulate<E: System<f64>>(
     system: &E,
     start: &[f64],
-    course: &InputSchedule,
+    schedule: &InputSchedule,
     sampler: Option<Box<dyn Sampler + '_>>,
     settings: &SimulationSettings,
     watch: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Simulated, SimulationError> {
-    simulation::simulate(&Recording::of(system), start, course, sampler, settings, watch)
+    simulation::simulate(&Recording::of(system), start, schedule, sampler, settings, watch)
 }
 
 /// Equation y' = w.
@@ -197,7 +197,7 @@ impl Law for Oscillator {
     }
 }
 
-pub(crate) fn course(duration_s: f64, output_step_s: f64, inputs: Vec<Input>) -> InputSchedule {
+pub(crate) fn schedule(duration_s: f64, output_step_s: f64, inputs: Vec<Input>) -> InputSchedule {
     InputSchedule { duration_s, output_step_s, inputs }
 }
 
@@ -209,10 +209,10 @@ pub(crate) fn settings(tolerance: f64, method: Method) -> SimulationSettings {
 pub(crate) fn run<E: System<f64> + Clone>(
     system: &E,
     start: &[f64],
-    course: &InputSchedule,
+    schedule: &InputSchedule,
     tolerance: f64,
 ) -> Simulated {
-    run_by(Method::Rosenbrock, system, start, course, tolerance)
+    run_by(Method::Rosenbrock, system, start, schedule, tolerance)
 }
 
 /// Simulates to the end.
@@ -220,10 +220,11 @@ pub(crate) fn run_by<E: System<f64> + Clone>(
     method: Method,
     system: &E,
     start: &[f64],
-    course: &InputSchedule,
+    schedule: &InputSchedule,
     tolerance: f64,
 ) -> Simulated {
-    let result = simulate(system, start, course, None, &settings(tolerance, method), &mut |_| true).unwrap();
+    let result =
+        simulate(system, start, schedule, None, &settings(tolerance, method), &mut |_| true).unwrap();
     assert_eq!(result.outcome.status, Status::Completed, "{:?}", result.outcome.work);
     result
 }

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use phea_dynamics::portable;
 use phea_dynamics::simulation::{Input, Method, Profile, Simulated};
 
-use super::laws::{Lawful, Oscillator, Reciprocal, course, distance, run_by};
+use super::laws::{Lawful, Oscillator, Reciprocal, distance, run_by, schedule};
 
 const METHODS: [Method; 2] = [Method::Rosenbrock, Method::DormandPrince];
 
@@ -16,7 +16,7 @@ fn by_equal_steps(method: Method, steps: u32, rows: f64) -> Simulated {
         (1..steps).map(|step| (3.0 * f64::from(step) / f64::from(steps), f64::from(step % 2))).collect();
     let sine = Profile::sine(0.0, 1.0, 2.0).unwrap();
     let inputs = vec![Input::Rate(sine), Input::Value(Profile::steps(0.0, &breaks).unwrap())];
-    let result = run_by(method, &Lawful(Reciprocal, 1e12), &[0.5], &course(3.0, rows, inputs), 0.5);
+    let result = run_by(method, &Lawful(Reciprocal, 1e12), &[0.5], &schedule(3.0, rows, inputs), 0.5);
     assert_eq!((result.outcome.work.steps, result.outcome.work.rejected), (u64::from(steps), 0));
     result
 }
@@ -55,7 +55,7 @@ fn the_error_follows_the_tolerance_and_the_work_its_fifth_root() {
     let oscillator = Lawful(Oscillator(2.0 * PI), 1.0);
     for method in METHODS {
         let measured = [1e-4, 1e-6, 1e-8, 1e-10].map(|tolerance| {
-            let result = run_by(method, &oscillator, &[1.0, 0.0], &course(10.0, 0.1, vec![]), tolerance);
+            let result = run_by(method, &oscillator, &[1.0, 0.0], &schedule(10.0, 0.1, vec![]), tolerance);
             let error = distance(&result, 0, |time_s| portable::cos(2.0 * PI * time_s));
             assert!(error < 1e3 * tolerance, "{method:?}: {error} at {tolerance}");
             (error, result.outcome.work.steps as f64)
@@ -68,10 +68,10 @@ fn the_error_follows_the_tolerance_and_the_work_its_fifth_root() {
 
 /// The invariant of x'' = -x drifts no faster than the tolerance allows.
 #[test]
-fn the_energy_of_an_oscillator_is_kept() {
+fn the_energy_of_an_oscillator_is_conserved() {
     for method in METHODS {
         let result =
-            run_by(method, &Lawful(Oscillator(1.0), 1.0), &[0.6, 0.8], &course(200.0, 1.0, vec![]), 1e-10);
+            run_by(method, &Lawful(Oscillator(1.0), 1.0), &[0.6, 0.8], &schedule(200.0, 1.0, vec![]), 1e-10);
         for row in &result.trajectory.states {
             assert!((row[0] * row[0] + row[1] * row[1] - 1.0).abs() < 1e-7);
         }

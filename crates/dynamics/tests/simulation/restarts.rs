@@ -4,7 +4,7 @@ use phea_dynamics::portable;
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{Input, Profile};
 
-use super::laws::{Following, Integral, Law, Lawful, course, distance, last, run};
+use super::laws::{Following, Integral, Law, Lawful, distance, last, run, schedule};
 
 /// Equation y' = w - y.
 #[derive(Clone)]
@@ -31,17 +31,17 @@ fn steps_of_an_input_are_integrated_exactly() {
         pieces.map(|(step, end)| step.1 * (time_s.min(end) - step.0).max(0.0)).sum::<f64>()
     };
     let inputs = vec![Input::Value(Profile::steps(0.0, &steps).unwrap())];
-    let result = run(&Lawful(Integral, 1.0), &[0.0], &course(4.0, 0.01, inputs), 0.5);
+    let result = run(&Lawful(Integral, 1.0), &[0.0], &schedule(4.0, 0.01, inputs), 0.5);
     assert!(distance(&result, 0, area) < 1e-13);
     assert_eq!((result.outcome.work.steps, result.outcome.work.rejected), (100, 0));
 }
 
 /// Rows at a break show the inputs after it, and the state is continuous.
 #[test]
-fn the_answer_to_a_step_begins_at_the_step() {
+fn the_response_to_a_step_begins_at_the_step() {
     for tolerance in [1e-4, 1e-7, 1e-10] {
         let inputs = vec![Input::Value(Profile::steps(0.0, &[(0.25, 1000.0), (0.5, -1000.0)]).unwrap())];
-        let result = run(&Lawful(Lag, 1000.0), &[0.0], &course(1.0, 0.125, inputs), tolerance);
+        let result = run(&Lawful(Lag, 1000.0), &[0.0], &schedule(1.0, 0.125, inputs), tolerance);
         let rise = |since: f64| 1000.0 * -portable::expm1(-since.max(0.0));
         let exact = |time_s: f64| rise(time_s - 0.25) - 2.0 * rise(time_s - 0.5);
         assert!(distance(&result, 0, exact) < 1000.0 * tolerance);
@@ -58,7 +58,8 @@ fn a_short_bump_is_not_stepped_over() {
     {
         let end_s: f64 = start_s + length_s;
         let bump = Profile::steps(0.0, &[(start_s, 1.0 / length_s), (end_s, 0.0)]).unwrap();
-        let result = run(&Lawful(Integral, 1.0), &[0.0], &course(10.0, 5.0, vec![Input::Value(bump)]), 1e-3);
+        let result =
+            run(&Lawful(Integral, 1.0), &[0.0], &schedule(10.0, 5.0, vec![Input::Value(bump)]), 1e-3);
         let area = (end_s - start_s) / length_s;
         assert!((last(&result, 0) - area).abs() < 1e-12, "{start_s} {}", last(&result, 0));
     }
@@ -76,18 +77,18 @@ fn motions_are_followed_from_their_start() {
         Profile::table(&[7.0, 7.0 + 1e-5, 7.0 + 3e-5, 8.0], &[0.0, 5e-3, 1e-3, 2e-3]).unwrap(),
     ];
     for motion in motions {
-        let course = course(10.0, 0.1, vec![Input::Rate(motion.clone())]);
-        let result = run(&Lawful(Integral, 5e-3), &[0.0], &course, 1e-9);
+        let schedule = schedule(10.0, 0.1, vec![Input::Rate(motion.clone())]);
+        let result = run(&Lawful(Integral, 5e-3), &[0.0], &schedule, 1e-9);
         let error = distance(&result, 0, |time_s| motion.value(time_s));
         assert!(error < 1e-9, "{error} {motion:?}");
-        let bound = course_of_following(&motion);
+        let bound = following_schedule(&motion);
         assert!(bound < 1e-9, "{bound} {motion:?}");
     }
 }
 
-fn course_of_following(motion: &Profile) -> f64 {
+fn following_schedule(motion: &Profile) -> f64 {
     let inputs = vec![Input::Value(motion.clone()), Input::Rate(motion.clone())];
-    let result = run(&Lawful(Following(-20.0), 5e-3), &[0.0], &course(10.0, 0.1, inputs), 1e-9);
+    let result = run(&Lawful(Following(-20.0), 5e-3), &[0.0], &schedule(10.0, 0.1, inputs), 1e-9);
     distance(&result, 0, |time_s| motion.value(time_s))
 }
 
@@ -110,7 +111,7 @@ fn breaks_may_coincide() {
             rates[0] = w[0] + w[1];
         }
     }
-    let result = run(&Lawful(Both, 1.0), &[0.0], &course(1.0, 0.05, inputs), 1e-6);
+    let result = run(&Lawful(Both, 1.0), &[0.0], &schedule(1.0, 0.05, inputs), 1e-6);
     let exact = |t: f64| t + (t - 0.3).max(0.0) + 4.0 * ((t - 0.3).max(0.0) - (t - 0.6).max(0.0));
     assert!(distance(&result, 0, exact) < 1e-13);
     assert_eq!(result.trajectory.times_s.len(), 21);

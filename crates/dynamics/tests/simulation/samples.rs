@@ -5,7 +5,7 @@ use phea_dynamics::linear::{Discretization, StateSpace, TimeDomain, TransferFunc
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{CommandedPlant, Input, Method, Plant, Profile, Sampler, Status};
 
-use super::laws::{Integral, Lawful, course, settings, simulate};
+use super::laws::{Integral, Lawful, schedule, settings, simulate};
 
 /// A mass on a spring, driven through a lag, in units of `rate` rad/s: F = 3 x, times 1/rate.
 #[derive(Clone)]
@@ -115,9 +115,9 @@ fn check(sample_time_s: f64, delay_s: f64, samples: usize) {
     let sampler = Box::new(Integrating { sample_time_s, delay_s, sum: 0.0, seen: &mut seen });
     let duration_s = (samples as f64 - 0.5) * sample_time_s;
     let inputs = vec![Input::Command, Input::Value(Profile::constant(1.0))];
-    let course = course(duration_s, 0.3 * sample_time_s, inputs);
+    let schedule = schedule(duration_s, 0.3 * sample_time_s, inputs);
     let settings = settings(1e-11, Method::Rosenbrock);
-    let result = simulate(&plant, &[0.0; 3], &course, Some(sampler), &settings, &mut |_| true).unwrap();
+    let result = simulate(&plant, &[0.0; 3], &schedule, Some(sampler), &settings, &mut |_| true).unwrap();
     assert_eq!(result.outcome.status, Status::Completed);
     let exact = exactly(&spring, sample_time_s, delay_s, samples);
     assert_eq!(seen.len(), exact.len());
@@ -160,7 +160,7 @@ fn a_million_samples_a_second() {
 
 /// A delay too short for any step to end within it.
 #[test]
-fn a_delay_below_rounding_is_none() {
+fn a_delay_below_rounding_is_ignored() {
     check(0.1, 1e-19, 40);
 }
 
@@ -170,12 +170,16 @@ fn rows_show_the_command_that_is_held() {
     let plant = CommandedPlant::on_hold(Spring { rate: 1.0 }, &TransferFunction::gain_only(1.0)).unwrap();
     let mut seen = Vec::new();
     let sampler = Box::new(Integrating { sample_time_s: 0.1, delay_s: 0.0, sum: 0.0, seen: &mut seen });
-    let course = course(2.0, 0.1, vec![Input::Command, Input::Value(Profile::constant(1.0))]);
-    let result =
-        simulate(&plant, &[0.0; 3], &course, Some(sampler), &settings(1e-6, Method::Rosenbrock), &mut |_| {
-            true
-        })
-        .unwrap();
+    let schedule = schedule(2.0, 0.1, vec![Input::Command, Input::Value(Profile::constant(1.0))]);
+    let result = simulate(
+        &plant,
+        &[0.0; 3],
+        &schedule,
+        Some(sampler),
+        &settings(1e-6, Method::Rosenbrock),
+        &mut |_| true,
+    )
+    .unwrap();
     assert_eq!((seen.len(), result.trajectory.times_s.len()), (20, 21));
     for (row, seen) in result.trajectory.inputs.iter().zip(&seen) {
         assert_eq!(row[0], seen[2]);
@@ -194,9 +198,9 @@ fn a_step_at_a_sample_acts_there() {
         // the decimal fraction, rounded once
         let step_s = f64::from(tenths * samples) / 1e4;
         let reference = Profile::steps(0.0, &[(step_s, 1.0)]).unwrap();
-        let course = course(0.3, 0.3, vec![Input::Command, Input::Value(reference)]);
+        let schedule = schedule(0.3, 0.3, vec![Input::Command, Input::Value(reference)]);
         let settings = settings(1e-10, Method::Rosenbrock);
-        simulate(&plant, &[0.0; 3], &course, Some(sampler), &settings, &mut |_| true).unwrap();
+        simulate(&plant, &[0.0; 3], &schedule, Some(sampler), &settings, &mut |_| true).unwrap();
         let (still, moving) = seen.split_at(samples as usize);
         assert!(still.iter().all(|row| row[2] == 0.0), "{samples}");
         moving.iter().take(50).map(|row| row[2]).collect::<Vec<f64>>()
@@ -221,10 +225,10 @@ fn a_row_at_a_break_shows_what_follows() {
     for rows in 1..300_u32 {
         let step_s = f64::from(7 * rows) / 1e4;
         let reference = Profile::steps(0.0, &[(step_s, 1.0)]).unwrap();
-        let course = course(0.25, 0.7e-3, vec![Input::Value(reference)]);
+        let schedule = schedule(0.25, 0.7e-3, vec![Input::Value(reference)]);
         let settings = settings(1e-6, Method::Rosenbrock);
         let law = Lawful(Integral, 1.0);
-        let result = simulate(&law, &[0.0], &course, None, &settings, &mut |_| true).unwrap();
+        let result = simulate(&law, &[0.0], &schedule, None, &settings, &mut |_| true).unwrap();
         let before = result.trajectory.inputs.iter().take_while(|inputs| inputs[0] == 0.0).count();
         assert_eq!(before, rows as usize);
     }
@@ -267,23 +271,23 @@ impl Plant<f64> for Bent {
 /// Precomputed matrices from sample to sample, or a method without them: one result, within the
 /// tolerance.
 #[test]
-fn a_bent_plant_gets_from_sample_to_sample() {
+fn a_curved_plant_is_integrated_from_sample_to_sample() {
     let plant = CommandedPlant::on_hold(Bent, &TransferFunction::gain_only(1.0)).unwrap();
     for (sample_time_s, delay_s) in [(1e-3, 0.0), (1e-3, 0.4e-3), (0.02, 0.0), (0.02, 0.03)] {
         let reference = Profile::steps(1.0, &[(2.0, -2.0), (4.0, 5.0), (4.5013, 0.0)]).unwrap();
-        let course = course(6.0, 0.5, vec![Input::Command, Input::Value(reference)]);
-        let ended = |method, tolerance| {
+        let schedule = schedule(6.0, 0.5, vec![Input::Command, Input::Value(reference)]);
+        let end_state = |method, tolerance| {
             let mut seen = Vec::new();
             let sampler = Box::new(Integrating { sample_time_s, delay_s, sum: 0.0, seen: &mut seen });
             let settings = settings(tolerance, method);
             let result =
-                simulate(&plant, &[0.0; 3], &course, Some(sampler), &settings, &mut |_| true).unwrap();
+                simulate(&plant, &[0.0; 3], &schedule, Some(sampler), &settings, &mut |_| true).unwrap();
             assert_eq!(result.outcome.status, Status::Completed);
             seen
         };
-        let exact = ended(Method::DormandPrince, 1e-11);
+        let exact = end_state(Method::DormandPrince, 1e-11);
         for tolerance in [1e-4, 1e-6, 1e-8] {
-            let seen = ended(Method::Rosenbrock, tolerance);
+            let seen = end_state(Method::Rosenbrock, tolerance);
             let pairs = seen.iter().zip(&exact);
             let error = pairs.map(|(one, other)| (one[1] - other[1]).abs()).fold(0.0, f64::max);
             assert!(error < 30.0 * tolerance, "{sample_time_s}, {delay_s}: {error} at {tolerance}");

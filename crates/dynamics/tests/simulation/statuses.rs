@@ -6,7 +6,7 @@ use phea_dynamics::simulation::{
     Status, System,
 };
 
-use super::laws::{Integral, Law, Lawful, Oscillator, course, simulate};
+use super::laws::{Integral, Law, Lawful, Oscillator, schedule, simulate};
 
 /// Equation y' = y^2, with solution y = 1/(1 - t).
 #[derive(Clone)]
@@ -60,13 +60,13 @@ impl Law for Chattering {
 fn driven<E: System<f64> + Clone>(
     system: &E,
     start: &[f64],
-    course: &InputSchedule,
+    schedule: &InputSchedule,
     steps: u64,
 ) -> Simulated {
     let settings = SimulationSettings { maximum_steps: steps, ..SimulationSettings::default() };
-    let result = simulate(system, start, course, None, &settings, &mut |_| true).unwrap();
+    let result = simulate(system, start, schedule, None, &settings, &mut |_| true).unwrap();
     let end = match result.outcome.status {
-        Status::Completed => course.duration_s,
+        Status::Completed => schedule.duration_s,
         Status::Cancelled { time_s }
         | Status::StepTooSmall { time_s }
         | Status::NotFinite { time_s }
@@ -82,8 +82,8 @@ fn driven<E: System<f64> + Clone>(
 }
 
 #[test]
-fn a_solution_that_ends_is_told_with_its_time() {
-    let result = driven(&Lawful(Blow, 1.0), &[1.0], &course(2.0, 1e-3, vec![]), 100_000);
+fn the_time_at_which_a_solution_ends_is_reported() {
+    let result = driven(&Lawful(Blow, 1.0), &[1.0], &schedule(2.0, 1e-3, vec![]), 100_000);
     let (Status::StepTooSmall { time_s } | Status::NotFinite { time_s }) = result.outcome.status else {
         panic!("{:?}", result.outcome);
     };
@@ -92,8 +92,8 @@ fn a_solution_that_ends_is_told_with_its_time() {
 }
 
 #[test]
-fn the_root_of_a_negative_number_is_told_with_its_time() {
-    let result = driven(&Lawful(Draining, 1.0), &[1.0], &course(5.0, 1e-2, vec![]), 100_000);
+fn the_time_of_a_root_of_a_negative_number_is_reported() {
+    let result = driven(&Lawful(Draining, 1.0), &[1.0], &schedule(5.0, 1e-2, vec![]), 100_000);
     let Status::NotFinite { time_s } = result.outcome.status else { panic!("{:?}", result.outcome) };
     // dt = -dy/(sqrt(y) + 0.1): 2 - 0.2 ln(11)
     let exact = 2.0 - 0.2 * phea_dynamics::portable::ln(11.0);
@@ -101,8 +101,8 @@ fn the_root_of_a_negative_number_is_told_with_its_time() {
 }
 
 #[test]
-fn what_grows_beyond_all_numbers_is_no_row() {
-    let result = driven(&Lawful(Growing, 1.0), &[1.0], &course(2.0, 1e-4, vec![]), 1_000_000);
+fn an_overflowing_state_yields_no_row() {
+    let result = driven(&Lawful(Growing, 1.0), &[1.0], &schedule(2.0, 1e-4, vec![]), 1_000_000);
     let (Status::StepTooSmall { time_s } | Status::NotFinite { time_s }) = result.outcome.status else {
         panic!("{:?}", result.outcome);
     };
@@ -113,9 +113,9 @@ fn what_grows_beyond_all_numbers_is_no_row() {
 #[test]
 fn work_is_bounded() {
     for steps in [1, 7, 1000] {
-        let result = driven(&Lawful(Chattering, 1.0), &[0.5], &course(1e6, 1.0, vec![]), steps);
+        let result = driven(&Lawful(Chattering, 1.0), &[0.5], &schedule(1e6, 1.0, vec![]), steps);
         assert!(matches!(result.outcome.status, Status::TooManySteps { .. } | Status::StepTooSmall { .. }));
-        let smooth = driven(&Lawful(Oscillator(1.0), 1.0), &[1.0, 0.0], &course(1e6, 1.0, vec![]), steps);
+        let smooth = driven(&Lawful(Oscillator(1.0), 1.0), &[1.0, 0.0], &schedule(1e6, 1.0, vec![]), steps);
         assert!(matches!(smooth.outcome.status, Status::TooManySteps { time_s } if time_s < 1e4));
         assert_eq!(smooth.outcome.work.steps + smooth.outcome.work.rejected, steps);
     }
@@ -124,25 +124,25 @@ fn work_is_bounded() {
 /// The watch receives the time of each step and stops at the first that is late enough; the rows
 /// before are retained.
 #[test]
-fn stopping_it() {
+fn a_simulation_can_be_stopped() {
     let system = Lawful(Oscillator(1.0), 1.0);
-    let course = course(100.0, 0.5, vec![]);
-    let mut asked = Vec::new();
+    let schedule = schedule(100.0, 0.5, vec![]);
+    let mut times_s = Vec::new();
     let mut watch = |time_s: f64| {
-        asked.push(time_s);
+        times_s.push(time_s);
         time_s < 30.0
     };
     let result =
-        simulate(&system, &[1.0, 0.0], &course, None, &SimulationSettings::default(), &mut watch).unwrap();
+        simulate(&system, &[1.0, 0.0], &schedule, None, &SimulationSettings::default(), &mut watch).unwrap();
     let Status::Cancelled { time_s } = result.outcome.status else { panic!("{:?}", result.outcome) };
-    assert!((30.0..33.0).contains(&time_s) && asked.last() == Some(&time_s));
-    assert!(asked.windows(2).all(|pair| pair[0] <= pair[1]));
+    assert!((30.0..33.0).contains(&time_s) && times_s.last() == Some(&time_s));
+    assert!(times_s.windows(2).all(|pair| pair[0] <= pair[1]));
     assert_eq!(result.trajectory.times_s.len(), (time_s / 0.5).ceil() as usize);
 }
 
-struct Saying(f64, f64, f64);
+struct FixedSampler(f64, f64, f64);
 
-impl Sampler for Saying {
+impl Sampler for FixedSampler {
     fn sample_time_s(&self) -> f64 {
         self.0
     }
@@ -158,11 +158,12 @@ impl Sampler for Saying {
 fn a_command_that_is_no_number_ends_it() {
     for delay_s in [0.0, 0.05, 0.3] {
         for command in [f64::NAN, f64::INFINITY] {
-            let sampler = Box::new(Saying(0.1, delay_s, command));
-            let course = course(1.0, 0.01, vec![Input::Command]);
+            let sampler = Box::new(FixedSampler(0.1, delay_s, command));
+            let schedule = schedule(1.0, 0.01, vec![Input::Command]);
             let system = Lawful(Integral, 1.0);
             let settings = SimulationSettings::default();
-            let result = simulate(&system, &[0.0], &course, Some(sampler), &settings, &mut |_| true).unwrap();
+            let result =
+                simulate(&system, &[0.0], &schedule, Some(sampler), &settings, &mut |_| true).unwrap();
             assert_eq!(result.outcome.status, Status::NotFinite { time_s: 0.5 });
             assert!(result.trajectory.states.iter().all(|row| row[0].is_finite()));
             assert!((result.outcome.end[0] - (0.5 - delay_s)).abs() < 1e-12);
@@ -173,18 +174,18 @@ fn a_command_that_is_no_number_ends_it() {
 #[track_caller]
 fn refused(
     start: &[f64],
-    course: &InputSchedule,
-    sampler: Option<Saying>,
+    schedule: &InputSchedule,
+    sampler: Option<FixedSampler>,
     tolerance: f64,
 ) -> SimulationError {
     let settings = SimulationSettings { tolerance, ..SimulationSettings::default() };
     let sampler = sampler.map(|sampler| Box::new(sampler) as Box<dyn Sampler>);
-    simulate(&Lawful(Integral, 1.0), start, course, sampler, &settings, &mut |_| true).unwrap_err()
+    simulate(&Lawful(Integral, 1.0), start, schedule, sampler, &settings, &mut |_| true).unwrap_err()
 }
 
 #[test]
-fn what_does_not_fit_is_refused() {
-    let good = course(1.0, 0.1, vec![Input::Value(Profile::constant(1.0))]);
+fn mismatched_arguments_are_refused() {
+    let good = schedule(1.0, 0.1, vec![Input::Value(Profile::constant(1.0))]);
     let setting = |error| match error {
         SimulationError::Setting { what, .. } => what,
         other => panic!("{other:?}"),
@@ -197,12 +198,12 @@ fn what_does_not_fit_is_refused() {
         assert_eq!(setting(refused(&[0.0], &with(bad, 0.1), None, 1e-6)), SimulationNumber::Duration);
         assert_eq!(setting(refused(&[0.0], &with(1.0, bad), None, 1e-6)), SimulationNumber::OutputStep);
         assert_eq!(
-            setting(refused(&[0.0], &good, Some(Saying(bad, 0.0, 1.0)), 1e-6)),
+            setting(refused(&[0.0], &good, Some(FixedSampler(bad, 0.0, 1.0)), 1e-6)),
             SimulationNumber::SampleTime
         );
     }
     for bad in [-1e-9, f64::NAN, f64::INFINITY] {
-        let sampler = Some(Saying(0.1, bad, 1.0));
+        let sampler = Some(FixedSampler(0.1, bad, 1.0));
         assert_eq!(setting(refused(&[0.0], &good, sampler, 1e-6)), SimulationNumber::CommandDelay);
     }
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
@@ -222,7 +223,7 @@ fn a_scale_that_is_no_magnitude_is_refused() {
         let system = Lawful(Oscillator(1.0), scale);
         let settings = SimulationSettings::default();
         let result =
-            simulate(&system, &[1.0, 0.0], &course(1.0, 1.0, vec![]), None, &settings, &mut |_| true);
+            simulate(&system, &[1.0, 0.0], &schedule(1.0, 1.0, vec![]), None, &settings, &mut |_| true);
         assert!(matches!(result, Err(SimulationError::Setting { .. })), "{scale}: {result:?}");
     }
 }
@@ -236,6 +237,6 @@ fn a_system_without_states_arrives() {
         const STATES: usize = 0;
         fn rates<T: Scalar>(&self, _: &[T], _: &[T], _: &mut [T]) {}
     }
-    let result = driven(&Lawful(Nothing, 1.0), &[], &course(1.0, 0.25, vec![]), 100);
+    let result = driven(&Lawful(Nothing, 1.0), &[], &schedule(1.0, 0.25, vec![]), 100);
     assert_eq!((result.outcome.status, result.trajectory.times_s.len()), (Status::Completed, 5));
 }

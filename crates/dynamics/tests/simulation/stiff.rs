@@ -7,7 +7,7 @@ use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{Input, Profile, System};
 use phea_dynamics::time_response::{SampledSignal, forced_response_of_states};
 
-use super::laws::{Following, Law, Lawful, course, distance, last, run};
+use super::laws::{Following, Law, Lawful, distance, last, run, schedule};
 
 /// Equation y' = lambda y.
 #[derive(Clone)]
@@ -25,7 +25,7 @@ impl Law for Decay {
 #[test]
 fn a_fast_mode_is_gone_after_one_step() {
     for (rate, left) in [(-1e6, 1e-4), (-1e9, 1e-7), (-1e12, 1e-10)] {
-        let result = run(&Lawful(Decay(rate), 1e15), &[1.0], &course(1.0, 1.0, vec![]), 0.5);
+        let result = run(&Lawful(Decay(rate), 1e15), &[1.0], &schedule(1.0, 1.0, vec![]), 0.5);
         assert_eq!(result.outcome.work.steps, 1);
         assert!(last(&result, 0).abs() < left, "{rate}: {}", last(&result, 0));
     }
@@ -34,7 +34,7 @@ fn a_fast_mode_is_gone_after_one_step() {
 #[test]
 fn a_fast_mode_restricts_no_step() {
     for rate in [-1e3, -1e6, -1e9, -1e12] {
-        let result = run(&Lawful(Decay(rate), 1.0), &[1.0], &course(1.0, 0.5, vec![]), 1e-6);
+        let result = run(&Lawful(Decay(rate), 1.0), &[1.0], &schedule(1.0, 0.5, vec![]), 1e-6);
         assert!(result.outcome.work.steps < 60, "{rate}: {:?}", result.outcome.work);
         assert!(last(&result, 0).abs() < 1e-6, "{rate}: {}", last(&result, 0));
     }
@@ -42,13 +42,13 @@ fn a_fast_mode_restricts_no_step() {
 
 /// y follows w = sin(3 t) exactly, however stiffly it is coupled to it.
 #[test]
-fn what_is_bound_stiffly_follows() {
+fn a_stiffly_coupled_state_follows() {
     let sine = Profile::sine(0.0, 1.0, 3.0).unwrap();
-    let course = course(4.0, 0.013, vec![Input::Value(sine.clone()), Input::Rate(sine)]);
+    let schedule = schedule(4.0, 0.013, vec![Input::Value(sine.clone()), Input::Rate(sine)]);
     for tolerance in [1e-5, 1e-8] {
-        let mild = run(&Lawful(Following(-1.0), 1.0), &[0.0], &course, tolerance).outcome.work;
+        let mild = run(&Lawful(Following(-1.0), 1.0), &[0.0], &schedule, tolerance).outcome.work;
         for rate in [-1.0, -1e2, -1e4, -1e6, -1e9] {
-            let result = run(&Lawful(Following(rate), 1.0), &[0.0], &course, tolerance);
+            let result = run(&Lawful(Following(rate), 1.0), &[0.0], &schedule, tolerance);
             let at_end = (last(&result, 0) - portable::sin(12.0)).abs();
             assert!(at_end < tolerance, "{rate}: {at_end} at {tolerance}");
             let between = distance(&result, 0, |time_s| portable::sin(3.0 * time_s));
@@ -79,7 +79,7 @@ fn van_der_pols_relaxation() {
     // VDPOL
     let published = [1.706167732170483, -0.8928097010247975];
     for (tolerance, allowed) in [(1e-4, 2e-3), (1e-6, 2e-5), (1e-9, 2e-8)] {
-        let result = run(&Lawful(VanDerPol, 1.0), &[2.0, 0.0], &course(2.0, 0.01, vec![]), tolerance);
+        let result = run(&Lawful(VanDerPol, 1.0), &[2.0, 0.0], &schedule(2.0, 0.01, vec![]), tolerance);
         for (index, value) in published.into_iter().enumerate() {
             assert!((last(&result, index) - value).abs() < allowed, "{:?}", result.outcome);
         }
@@ -113,7 +113,7 @@ fn robertsons_reactions() {
     // ORIGIN: Mazzia and Magherini, Test Set for Initial Value Problem Solvers (2008), problem
     // ROBER
     let published = [0.2083340149701255e-7, 0.8333360770334713e-13, 0.999999979166505];
-    let result = run(&Robertson, &[1.0, 0.0, 0.0], &course(1e11, 1e10, vec![]), 1e-8);
+    let result = run(&Robertson, &[1.0, 0.0, 0.0], &schedule(1e11, 1e10, vec![]), 1e-8);
     for (index, value) in published.into_iter().enumerate() {
         assert!((last(&result, index) / value - 1.0).abs() < 1e-5, "{:?}", result.outcome);
     }
@@ -151,7 +151,7 @@ impl System<f64> for Linear {
 
 /// Seven states need more colours than one evaluation has directions; modes at 1, 30 and 1e5 rad/s.
 #[test]
-fn a_linear_system_answers_as_its_matrix_exponential() {
+fn a_linear_system_responds_as_its_matrix_exponential() {
     let size = 7;
     let a = DMatrix::from_fn(size, size, |row, column| {
         let mixed = portable::sin((3 * row + 5 * column + 1) as f64);
@@ -163,7 +163,7 @@ fn a_linear_system_answers_as_its_matrix_exponential() {
     let states = StateSpace::new(a.clone(), b.clone(), c, d, TimeDomain::Continuous).unwrap();
     let start: Vec<f64> = (0..size).map(|row| portable::cos(2.0 * row as f64)).collect();
     let inputs = vec![Input::Value(Profile::steps(0.5, &[(1.03, -2.0)]).unwrap())];
-    let result = run(&Linear { a, b }, &start, &course(3.0, 0.05, inputs), 1e-10);
+    let result = run(&Linear { a, b }, &start, &schedule(3.0, 0.05, inputs), 1e-10);
     let hold = phea_dynamics::time_response::Interpolation::Hold;
     let signal = SampledSignal::new(vec![0.0, 1.03], vec![0.5, -2.0], hold).unwrap();
     let times = &result.trajectory.times_s;

@@ -62,7 +62,7 @@ fn a_line_with_friction_is_near_the_exact_one() {
 /// Air in a lumped pipe: the volume pressed in between two pressures is the change of the logarithm
 /// of the mixture's volume, plus that taken by the wall.
 #[test]
-fn a_pipe_with_air_takes_up_what_its_mixture_gives_way() {
+fn a_pipe_with_air_has_the_compliance_of_its_mixture() {
     let clean = components(pipe_line(), StiffnessModel::ByVolume).fluid;
     let air = EntrainedAir { volume_fraction: 0.01, polytropic_exponent: 1.4 };
     let fluid = Fluid { entrained_air: Some(air), ..clean };

@@ -88,7 +88,7 @@ fn a_valve_that_shuts_leaves_a_square_wave() {
 /// Models of one hose filled slowly agree; none supplies energy; each ends with the volume that
 /// entered.
 #[test]
-fn all_models_of_a_hose_take_up_a_slow_flow_alike() {
+fn all_models_of_a_hose_agree_on_a_slow_flow() {
     let models = [
         LineModel::Lumped,
         LineModel::Segments {

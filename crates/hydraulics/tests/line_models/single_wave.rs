@@ -123,7 +123,7 @@ fn every_model_has_the_compliance_and_the_resistance_of_the_lumped_line() {
 /// Volume of a hose at rest: for any dynamic model, it is the one stated by its sheet at the
 /// operating pressure: creeping walls with the modulus at rest, all others with the dynamic one.
 #[test]
-fn every_model_of_a_hose_keeps_to_its_sheet() {
+fn every_model_of_a_hose_agrees_with_its_data_sheet() {
     // ORIGIN: analytic, dV/dp = epsilon L/r_beta + (A_ho + E(35 bar)) L/beta_0
     let oil = (std::f64::consts::FRAC_PI_4 * 12.7e-3 * 12.7e-3 + 7.774e-6) * 1.5 / 1.45e9;
     let (end_share, friction) = (END_SHARE, LaminarFriction::FrequencyDependent);
@@ -212,7 +212,7 @@ fn the_transmission_line_is_passive_at_every_frequency() {
 }
 
 #[test]
-fn what_carries_no_wave_is_refused() {
+fn a_line_without_waves_is_refused() {
     let of = |line: &Line| Conduit::of_line(line, &fluid(), 35e5, StiffeningMember::Nominal);
     assert_eq!(of(&Line::Hose { hose: hose(), length: 0.0 }), Err(LineError::NoLength));
     let volume = Line::Volume { volume: 1e-4, effective_bulk_modulus: 1e9 };
@@ -221,8 +221,11 @@ fn what_carries_no_wave_is_refused() {
     let thin = Conduit { bore: 1e-3, ..conduit() };
     let refused = TransmissionLine::of_conduit(&thin, END_SHARE);
     assert!(matches!(refused, Err(LineError::Overdamped { dissipation, .. }) if dissipation > 0.1));
-    for share in [0.0, 0.5, f64::NAN] {
-        assert!(matches!(TransmissionLine::of_conduit(&conduit(), share), Err(LineError::Impossible { .. })));
+    for end_fraction in [0.0, 0.5, f64::NAN] {
+        assert!(matches!(
+            TransmissionLine::of_conduit(&conduit(), end_fraction),
+            Err(LineError::Impossible { .. })
+        ));
     }
     let no_line = Segments::lumped(0.0);
     assert_eq!((no_line.states(), no_line.chamber_compliance()), (0, 0.0));

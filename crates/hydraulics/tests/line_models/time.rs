@@ -108,17 +108,17 @@ fn models() -> Vec<DynamicLine> {
 /// Joukowsky: the onset of a flow raises the pressure by Z_c q; after T it arrives at the shut end,
 /// doubled.
 #[test]
-fn a_step_of_flow_rises_and_arrives_as_joukowsky_says() {
+fn a_step_of_flow_follows_joukowsky() {
     let smooth = Conduit { kinematic_viscosity: 1e-12, ..conduit() };
-    let share = 2e-3;
-    let line = DynamicLine::TransmissionLine(TransmissionLine::of_conduit(&smooth, share).unwrap());
+    let end_fraction = 2e-3;
+    let line = DynamicLine::TransmissionLine(TransmissionLine::of_conduit(&smooth, end_fraction).unwrap());
     let rise = smooth.characteristic_impedance() * 1e-4;
     let delay = smooth.delay();
     let mut run = Run::new(line, 1e-18, 2e-6, 0.0);
     while run.time < 2.5 * delay {
         let time = run.time;
         run.advance(1e-4, 0.0);
-        let (early, late) = (1.0 - 6.0 * share, 1.0 + 6.0 * share);
+        let (early, late) = (1.0 - 6.0 * end_fraction, 1.0 + 6.0 * end_fraction);
         if time > 0.05 * delay && time < 2.0 * early * delay {
             assert!((run.port() / rise - 1.0).abs() < 0.01, "{} at {time} s", run.port() / rise);
         }

@@ -168,7 +168,7 @@ fn without_coupling_one_wave_is_left() {
 /// The hose between fixed ends is at low frequency the lumped line `by_volume`, since its braid is
 /// at the neutral angle.
 #[test]
-fn the_assumed_hose_is_at_rest_as_soft_as_its_catalogue_says() {
+fn the_assumed_hose_has_its_catalogue_compliance_at_rest() {
     let lumped = hose_line().compliance(1.45e9, StiffeningMember::Nominal);
     let hose = assumed_hose();
     assert!((hose.fixed_end_conduit().compliance() / lumped - 1.0).abs() < 1e-12);

@@ -78,10 +78,14 @@ fn any_grid_of_phases_ends() {
 fn interpolated_db(bound: &Bound, phase: f64) -> Option<Vec<f64>> {
     let right = bound.phases_rad.iter().position(|place| *place > phase)?;
     let (from, to) = (bound.phases_rad[right - 1], bound.phases_rad[right]);
-    let share = (phase - from) / (to - from);
+    let fraction = (phase - from) / (to - from);
     let [left, right] = [right - 1, right].map(|place| bound.forbidden[place].intervals());
     let between = |(left, right): (&f64, &f64)| {
-        if left == right { decibel(*left) } else { decibel(*left) * (1.0 - share) + decibel(*right) * share }
+        if left == right {
+            decibel(*left)
+        } else {
+            decibel(*left) * (1.0 - fraction) + decibel(*right) * fraction
+        }
     };
     let ends = left.iter().flatten().zip(right.iter().flatten());
     (left.len() == right.len()).then(|| ends.map(between).collect())
@@ -92,7 +96,7 @@ fn decibel(gain: f64) -> f64 {
 }
 
 #[test]
-fn between_its_phases_a_bound_is_as_straight_as_promised() {
+fn a_bound_is_straight_between_its_phases_within_the_tolerance() {
     let mut numbers = Numbers(0x0DDB_1A5E_5BAD_5EED);
     let (mut worst, mut compared): (f64, _) = (0.0, 0);
     for _ in 0..12 {
@@ -152,7 +156,7 @@ fn no_small_island_is_overlooked() {
 /// Limits at -180 degrees with the plant 1: g/|1 - g| <= W between W/(W + 1) and W/(W - 1), 1/|1 -
 /// g| <= W between 1 - 1/W and 1 + 1/W.
 #[test]
-fn limits_at_and_beside_one_lose_no_digit() {
+fn limits_at_and_near_one_lose_no_digit() {
     let at = |requirement| function(&unit(), requirement).forbidden(-PI).intervals().to_vec();
     let close = |found: f64, expected: f64| {
         assert!(found == expected || (found / expected - 1.0).abs() < 4e-15, "{found}, {expected}");
@@ -201,7 +205,7 @@ fn a_control_effort_at_the_gain_of_a_plant_is_a_half_plane() {
 /// Extreme limits: an infinite one forbids nothing, a limit of zero forbids everything, and an
 /// identical pair of plants has no spread.
 #[test]
-fn limits_at_the_ends_of_what_they_can_be() {
+fn limits_at_the_ends_of_their_range() {
     let constant = Limit::Constant;
     let forbidden = |requirement| function(&unit(), requirement).forbidden(-2.0);
     assert!(forbidden(Requirement::at_most(ClosedLoop::RobustStability, constant(f64::INFINITY))).is_empty());
@@ -271,7 +275,7 @@ fn specifications_that_collide_are_named_with_their_phases() {
 
 /// A specification that forbids every gain is named as the only one.
 #[test]
-fn a_specification_that_forbids_everything_stands_alone() {
+fn a_specification_that_forbids_everything_is_named_as_the_only_cause() {
     let impossible = specification(Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(0.0)));
     let margin = specification(Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.2)));
     let bounds = FrequencyBounds::new(&unit(), &[margin, impossible], TemplateFill::Points).unwrap();

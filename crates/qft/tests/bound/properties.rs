@@ -142,9 +142,9 @@ fn a_filled_bound_serves_the_whole_region_and_forbids_only_what_a_plant_of_it_fo
                 // less than 0.02 dB unless -L0 is on it.
                 let agrees = if forbidden { worst < 0.05 } else { worst > -TOLERANCE_DB };
                 assert!(agrees, "trial {trial}, {requirement:?} at {nominal_loop}: {forbidden}, {worst} dB");
-                let alone = points.forbidden(phase).contains(gain);
-                assert!(forbidden || !alone, "a filled template forbids what its plants do");
-                counts[usize::from(forbidden) + usize::from(alone)] += 1;
+                let by_points = points.forbidden(phase).contains(gain);
+                assert!(forbidden || !by_points, "a filled template forbids what its plants do");
+                counts[usize::from(forbidden) + usize::from(by_points)] += 1;
             }
         }
     }

@@ -38,9 +38,9 @@ fn regulation(gain_in_path: f64, rate_feed_forward: f64) -> DesignProblem {
 }
 
 #[test]
-fn what_is_fed_forward_is_worth_as_much_as_in_the_path() {
+fn a_feed_forward_is_equivalent_to_its_path() {
     let options = || least_gain(structure("I Z P", [0.01, 1e4], [0.01, 1e3], [0.1, 2.0]), 1);
-    let [alone, path, fed] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|[path, fed]| {
+    let [feedback_only, path, fed] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|[path, fed]| {
         let problem = regulation(path, fed);
         let design = designed(&problem, options());
         assert_met(&problem, &design, TrackingJudgement::Spread);
@@ -48,5 +48,5 @@ fn what_is_fed_forward_is_worth_as_much_as_in_the_path() {
         high_frequency_gain(&design)
     });
     assert!((fed.0 - path.0).abs() < 0.02 && fed.1 == path.1, "{fed:?} {path:?}");
-    assert!(fed.0 < alone.0 - 1.0, "{fed:?} {alone:?}");
+    assert!(fed.0 < feedback_only.0 - 1.0, "{fed:?} {feedback_only:?}");
 }

@@ -90,7 +90,7 @@ fn names(outcome: &DesignOutcome) -> Vec<NamedStructure> {
 /// Limits on the error that vanish with w require an integrator, so that a pure gain fails at low
 /// frequency; it is searched first if this is requested.
 #[test]
-fn a_gain_alone_is_tried_before_those_with_an_integrator() {
+fn a_pure_gain_is_tested_before_structures_with_an_integrator() {
     let choice = |with_gain_alone| {
         let ControllerChoice::Any { maximum_order, from, earned_per_pole_db, .. } = any(6.0).controller
         else {
@@ -122,8 +122,8 @@ fn a_longer_structure_must_earn_its_poles() {
     let options = |earned_db| DesignOptions { objective: Objective::BestWorstMargin, ..any(earned_db) };
     let free_of_charge = outcome(&problem, &options(0.0));
     let reached = |name| {
-        let tried = free_of_charge.tried().iter().find(|one| one.name == Some(name));
-        -tried.unwrap().reached_db.unwrap()
+        let structure_tested = free_of_charge.tried().iter().find(|one| one.name == Some(name));
+        -structure_tested.unwrap().reached_db.unwrap()
     };
     let [of_i, of_pi_low_pass] = [NamedStructure::Integral, NamedStructure::PiLowPass].map(reached);
     assert!((of_i - 0.995).abs() < 0.02, "{of_i} dB");
@@ -139,7 +139,7 @@ fn a_longer_structure_must_earn_its_poles() {
 /// An integrator and a resonance have |L| = K/(2 D w) at the resonance, so that |T| <= 1.5 lets K
 /// reach 0.6 * 2 D w = 0.24 without a notch. A notch at the resonance lets it reach half of w.
 #[test]
-fn a_notch_lies_upon_the_resonance() {
+fn a_notch_is_at_the_resonance() {
     let problem = resonance(4.0);
     let of = |name| {
         let controller = ControllerChoice::Named { name, earned_per_pole_db: f64::INFINITY };
@@ -186,13 +186,13 @@ fn a_notch_is_its_closed_form() {
     };
     const STEP: f64 = 1e-6;
     for number in 0..x.len() {
-        let [ahead, behind] = [STEP, -STEP].map(|step| {
+        let [above, below] = [STEP, -STEP].map(|step| {
             let mut moved = x;
             moved[number] += step;
             margins(&mut shaping, &moved)
         });
-        for ((row, ahead), behind) in rows.iter().zip(ahead).zip(behind) {
-            let slope = (ahead - behind) / (2.0 * STEP);
+        for ((row, above), below) in rows.iter().zip(above).zip(below) {
+            let slope = (above - below) / (2.0 * STEP);
             assert!(
                 (row.slopes[number] - slope).abs() < 1e-4 * (1.0 + slope.abs()),
                 "{number}: {row:?} {slope}"
@@ -205,7 +205,7 @@ fn a_notch_is_its_closed_form() {
 /// bound: a pair has two real poles if its damping ratio is more than 1, one of them above its
 /// natural frequency.
 #[test]
-fn no_pole_is_faster_than_may_be_built() {
+fn no_pole_exceeds_the_permitted_frequency() {
     let fastest_rad_per_s = 40.0;
     // no controller of these orders satisfies it, so that all of them are searched
     let hard = problem(resonant(), vec![stability(1.001, &[0.3, 1.0, 3.0, 10.0, 30.0]), slow_errors(60.0)]);
@@ -216,10 +216,10 @@ fn no_pole_is_faster_than_may_be_built() {
         one.structure.parts.iter().any(|part| matches!(part, StructureFactor::PolePair { .. }))
     };
     assert!(found.tried().iter().any(has_pair), "{:?}", found.tried());
-    for tried in found.tried() {
-        let highest: Vec<f64> = tried.structure.bounds().iter().map(|range| range[1]).collect();
-        let law = tried.structure.compensator(&highest).transfer_function().unwrap();
+    for structure_tested in found.tried() {
+        let highest: Vec<f64> = structure_tested.structure.bounds().iter().map(|range| range[1]).collect();
+        let law = structure_tested.structure.compensator(&highest).transfer_function().unwrap();
         let sizes = law.poles().iter().map(|pole| magnitude(*pole));
-        assert!(sizes.fold(0.0, f64::max) <= fastest_rad_per_s * (1.0 + 1e-9), "{tried:?}");
+        assert!(sizes.fold(0.0, f64::max) <= fastest_rad_per_s * (1.0 + 1e-9), "{structure_tested:?}");
     }
 }

@@ -18,9 +18,9 @@ fn edge_plants() -> Family {
     let plant = uncertain(&[("k", 1.0, 1.0, 10.0), ("a", 5.0, 1.0, 5.0), ("b", 30.0, 20.0, 30.0)], |p| {
         (vec![p[0]], vec![1.0.into(), p[1] + p[2], p[1] * p[2]])
     });
-    let share = |index: usize| index as f64 / 9.0;
+    let fraction = |index: usize| index as f64 / 9.0;
     let edges = (0..10).flat_map(|index| {
-        let (a, k) = (1.0 + 4.0 * share(index), 1.0 + 9.0 * share(index));
+        let (a, k) = (1.0 + 4.0 * fraction(index), 1.0 + 9.0 * fraction(index));
         [vec![10.0, a, 20.0], vec![1.0, a, 30.0], vec![k, 5.0, 30.0], vec![k, 1.0, 20.0]]
     });
     let mut members: Vec<Vec<f64>> = vec![];
@@ -91,7 +91,7 @@ fn a_wheel_with_less_gain_than_published() {
 /// s^2 + C k s + C k a - 2.5:       stable for C k a > 2.5;      |T| = C k a/(C k a - 2.5) at rest
 /// ```
 #[test]
-fn a_gain_alone_for_an_unstable_plant() {
+fn a_pure_gain_for_an_unstable_plant() {
     let plant = uncertain(&[("k", 1.0, 1.0, 10.0), ("a", 0.1, 0.1, 1.0)], |p| {
         (vec![p[0], p[0] * p[1]], vec![1.0.into(), 0.0.into(), (-2.5).into()])
     });

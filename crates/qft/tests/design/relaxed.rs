@@ -64,7 +64,7 @@ fn integrator_problem(greatest: f64, [sensitivity, complementary]: [f64; 2]) -> 
 /// both reached:  (c - 1) a^2 b^2 R^2 - c (a^2 + b^2) R + c = 0
 /// ```
 #[test]
-fn the_relaxation_of_a_gain_alone_is_that_of_its_closed_form() {
+fn the_relaxation_of_a_pure_gain_has_its_closed_form() {
     for (greatest, [a, b]) in [(1.0, [0.3, 0.6]), (2.0, [0.3, 0.6]), (2.0, [0.7, 0.7])] {
         let problem = integrator_problem(greatest, [a, b]);
         let c = f64::powi(greatest, 2);
@@ -72,8 +72,8 @@ fn the_relaxation_of_a_gain_alone_is_that_of_its_closed_form() {
         let ratio = 2.0 * c / (linear + (linear * linear - 4.0 * square * c).sqrt());
         let expected_db = 10.0 * ratio.log10();
         for seed in 1..=3 {
-            let alone = structure("", [1e-3, 1e3], [1.0, 1.0], [1.0, 1.0]);
-            let design = designed(&problem, least_gain(alone, seed));
+            let pure_gain = structure("", [1e-3, 1e3], [1.0, 1.0], [1.0, 1.0]);
+            let design = designed(&problem, least_gain(pure_gain, seed));
             let found = relaxation(&design);
             assert!((found.relaxation_db - expected_db).abs() < 1e-3, "{found:?}, not {expected_db} dB");
             let gain = design.controller.feedback.transfer_function().unwrap().gain();
@@ -107,8 +107,8 @@ fn a_required_delay_is_relaxed_with_the_limits() {
         DesignProblem { minimum_delay_margin_s: delay_s, ..problem(integrator(1.0), specifications) };
     let square = (std::f64::consts::FRAC_PI_2 / delay_s).powi(2);
     let ratio = ((1.0 + 4.0 * square / (a * a)).sqrt() - 1.0) / (2.0 * square);
-    let alone = structure("", [1e-3, 1e3], [1.0, 1.0], [1.0, 1.0]);
-    let design = designed(&problem, least_gain(alone, 1));
+    let pure_gain = structure("", [1e-3, 1e3], [1.0, 1.0], [1.0, 1.0]);
+    let design = designed(&problem, least_gain(pure_gain, 1));
     let found = relaxation(&design);
     assert!((found.relaxation_db - 10.0 * ratio.log10()).abs() < 1e-3, "{found:?}");
     let reached = design.audit.delay_margin.as_ref().unwrap().delay_s;

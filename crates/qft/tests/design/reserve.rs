@@ -17,7 +17,7 @@ const FREQUENCIES: usize = 600;
 const WITHIN_DB: f64 = 1e-3;
 
 #[test]
-fn every_plant_keeps_the_reserve() {
+fn every_plant_satisfies_the_reserve() {
     let problem = example_d();
     for reserve_db in [0.5, 0.2] {
         let structure = structure("Z PP", [1e-2, 1e4], [0.1, 1e5], [0.1, 5.0]);
@@ -28,9 +28,9 @@ fn every_plant_keeps_the_reserve() {
         let count = family.coordinates().len();
         let plants: Vec<Vec<f64>> = (0..ALONG.pow(count as u32))
             .map(|number| {
-                let share =
+                let fraction =
                     |axis: usize| (number / ALONG.pow(axis as u32) % ALONG) as f64 / (ALONG - 1) as f64;
-                family.values(&(0..count).map(share).collect::<Vec<f64>>())
+                family.values(&(0..count).map(fraction).collect::<Vec<f64>>())
             })
             .collect();
         let mut least_db = [f64::INFINITY; 2];
@@ -49,8 +49,8 @@ fn every_plant_keeps_the_reserve() {
                 let lower = lower.unwrap().magnitude(frequency).unwrap();
                 let room_db = 20.0 * log10(upper.magnitude(frequency).unwrap() / lower);
                 let spread_db = room_db - 20.0 * log10(high / low);
-                let kept = (room_db / (4.0 * reserve_db).max(1.0)).clamp(0.0, 1.0);
-                least_db[1] = least_db[1].min(spread_db - 2.0 * reserve_db * kept);
+                let reserved = (room_db / (4.0 * reserve_db).max(1.0)).clamp(0.0, 1.0);
+                least_db[1] = least_db[1].min(spread_db - 2.0 * reserve_db * reserved);
             }
         }
         assert!(least_db.iter().all(|least| *least > -WITHIN_DB), "{reserve_db} dB: {least_db:?}");

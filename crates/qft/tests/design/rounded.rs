@@ -122,7 +122,7 @@ fn fine_coefficients_cost_nothing() {
 
 /// A controller that needs a proportional gain above one cannot be stored in numbers below one.
 #[test]
-fn a_format_that_holds_no_controller_is_told() {
+fn a_format_without_a_representable_controller_is_reported() {
     let options = least_gain(proportional_integral(), 1);
     let options = DesignOptions { coefficients: fixed(0, 12), ..options };
     let error = design(&regulation(), &options, &mut unwatched).unwrap_err();

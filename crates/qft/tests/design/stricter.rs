@@ -9,7 +9,7 @@ use phea_qft::verification::TrackingJudgement;
 use super::problems::{assert_met, example_d, least_gain, stability, structure};
 
 #[test]
-fn what_is_too_short_for_weaker_limits_is_not_tried_for_stricter_ones() {
+fn structures_that_fail_weaker_limits_are_not_tested_for_stricter_ones() {
     let weaker = example_d();
     let controller = ControllerChoice::Grow { maximum_order: 3 };
     let given = structure("Z PP", [1e-2, 1e4], [0.1, 1e5], [0.1, 5.0]);
@@ -23,7 +23,7 @@ fn what_is_too_short_for_weaker_limits_is_not_tried_for_stricter_ones() {
     let after = design_stricter(&stricter, &options, &before, &mut unwatched).unwrap();
     let anew = design_after(&stricter, &options, &before, &mut unwatched).unwrap();
     let shortest = |outcome: &DesignOutcome| {
-        outcome.tried().iter().map(|tried| tried.structure.order().unwrap()).min().unwrap()
+        outcome.tried().iter().map(|structure| structure.structure.order().unwrap()).min().unwrap()
     };
     assert!(shortest(&anew) < order, "{} {order}", shortest(&anew));
     assert_eq!(shortest(&after), order);

@@ -204,7 +204,7 @@ fn a_pendulum_with_delay_is_met() {
 }
 
 #[test]
-fn an_unstable_resonance_with_delay_is_met_by_the_order_of_what_is_known() {
+fn an_unstable_resonance_with_delay_is_met_with_the_known_order() {
     assert_met_from(&[1], &unstable_resonance(), of_second_order, TrackingJudgement::Spread);
 }
 
@@ -229,7 +229,7 @@ fn a_missile_is_met() {
 /// 3/2 wherever it is real: no pure gain does so for a plant that falls from 1 to 0.2 between two
 /// frequencies, and no controller with fewer zeros than poles has a nonzero L at infinity.
 #[test]
-fn a_pair_of_zeros_over_a_pair_of_poles_is_tried() {
+fn a_pair_of_zeros_over_a_pair_of_poles_is_tested() {
     let plant = uncertain(&[("k", 1.0, 0.98, 1.02)], |p| {
         (vec![p[0], p[0] * Recorded::from(0.4), p[0]], vec![1.0.into(), 2.0.into(), 1.0.into()])
     });
@@ -246,7 +246,7 @@ fn a_pair_of_zeros_over_a_pair_of_poles_is_tried() {
 /// their limits. A lag cannot: with k/s^2 or k/(s^2 - a) one coefficient of its closed loop is zero
 /// or negative for any gain.
 #[test]
-fn a_lead_of_first_order_is_tried() {
+fn a_lead_of_first_order_is_tested() {
     let frequencies = [0.3, 1.0, 3.0, 10.0, 30.0, 100.0];
     // |T| <= 1.09 with (s/0.35 + 1)/(s/30 + 1)
     let free = uncertain(&[("k", 1.0, 1.0, 2.0)], |p| (vec![p[0]], vec![1.0.into(), 0.0.into(), 0.0.into()]));

@@ -81,7 +81,7 @@ fn a_zero_costs_disturbance_rejection() {
 /// A rational limit without roots in the right half plane acts by its value at the pole: M w_b/(s +
 /// w_b) allows poles up to (M - 1) w_b.
 #[test]
-fn a_pole_above_the_bandwidth_allowed_is_told() {
+fn a_pole_above_the_permitted_bandwidth_is_reported() {
     let of = |p: f64| {
         let limit = Requirement::at_most(ClosedLoop::RobustStability, rational(&[4.0], &[1.0, 2.0])); // 2 * 2/(s + 2)
         problem(single(&[1.0], &[1.0, -p], 0.0), vec![everywhere(limit)])
@@ -97,7 +97,7 @@ fn a_pole_above_the_bandwidth_allowed_is_told() {
 
 /// Required bandwidth w_b < z (1 - 1/M) for |S| <= M s/(s + M w_b).
 #[test]
-fn a_zero_below_the_bandwidth_demanded_is_told() {
+fn a_zero_below_the_required_bandwidth_is_reported() {
     let of = |bandwidth: f64| {
         let limit =
             Requirement::at_most(ClosedLoop::Sensitivity, rational(&[2.0, 0.0], &[1.0, 2.0 * bandwidth]));
@@ -112,7 +112,7 @@ fn a_zero_below_the_bandwidth_demanded_is_told() {
 /// Forced peak beyond the end of a limit: at least (1/limit) to the power of the ratio of harmonic
 /// measures of both parts at the pole.
 #[test]
-fn what_is_not_limited_must_rise() {
+fn sensitivity_rises_outside_the_limited_band() {
     let limited = demand(limit_of_t(0.01), &[], [6.0, f64::INFINITY]);
     let found = forced_peak_db(&problem(single(&[1.0], &[1.0, -2.0], 0.0), vec![limited])).unwrap();
     let free = 2.0 / PI * (6.0_f64 / 2.0).atan();
@@ -204,7 +204,7 @@ fn the_sensor_is_part_of_the_loop() {
 /// Tracking wider than possible: plants with gains of 1 to 10 and dead time cannot respond alike
 /// far beyond 1/T_d.
 #[test]
-fn tracking_beyond_what_dead_time_leaves_is_told() {
+fn tracking_beyond_the_limit_of_dead_time_is_reported() {
     let of = |to: f64| {
         let family =
             boxed(&[("k", 1.0, 1.0, 10.0)], 3, |p| plain(vec![p[0]], vec![1.0.into(), 0.0.into()], 0.1));

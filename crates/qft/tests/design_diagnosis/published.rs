@@ -33,8 +33,8 @@ fn forty_edge_plants() {
     })
     .unwrap();
     let members = (0..10).flat_map(|index| {
-        let share = f64::from(index) / 9.0;
-        let (a, k) = (1.0 + 4.0 * share, 1.0 + 9.0 * share);
+        let fraction = f64::from(index) / 9.0;
+        let (a, k) = (1.0 + 4.0 * fraction, 1.0 + 9.0 * fraction);
         [vec![10.0, a, 20.0], vec![1.0, a, 30.0], vec![k, 5.0, 30.0], vec![k, 1.0, 20.0]]
     });
     let family = UncertainFamily::new(plant, vec![], members.collect(), Extent::Members).unwrap();

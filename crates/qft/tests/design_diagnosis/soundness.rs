@@ -83,7 +83,7 @@ fn specifications(
     let last = responses.last().unwrap().0;
     let mut band = |whole: bool| {
         let ends = [draw.between(0.0, 1.0), draw.between(0.0, 1.0)];
-        let place = |share: f64| first * (last / first).powf(share);
+        let place = |fraction: f64| first * (last / first).powf(fraction);
         if whole { [0.0, f64::INFINITY] } else { [place(ends[0].min(ends[1])), place(ends[0].max(ends[1]))] }
     };
     let sizes = |requirement: &Requirement, members: &[LoopResponse]| -> Vec<f64> {
@@ -125,7 +125,7 @@ fn specifications(
 }
 
 #[test]
-fn what_is_reached_is_possible_and_half_of_it_is_not() {
+fn reached_limits_are_possible_and_half_of_them_are_not() {
     let mut draw = Draw(7);
     let (mut judged, mut impossible) = (0, 0);
     while judged < 12 {

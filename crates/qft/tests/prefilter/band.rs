@@ -11,12 +11,12 @@ const DECIBELS_PER_NEPER: f64 = 20.0 / std::f64::consts::LN_10;
 
 /// The margin of every member with any F equals the margin of |F| to the band.
 #[test]
-fn the_band_says_what_every_member_says() {
+fn the_band_agrees_with_every_member() {
     let (compensation, members, specification) = servo();
     let frequencies = spaced(0.05, 10.0, 17);
     let band = PrefilterBand::of_family(&compensation, &members, &frequencies, &specification).unwrap();
-    let asked = band.points().iter().filter(|point| point.frequency_rad_per_s >= 0.05);
-    for (point, &frequency) in asked.zip(&frequencies) {
+    let requested = band.points().iter().filter(|point| point.frequency_rad_per_s >= 0.05);
+    for (point, &frequency) in requested.zip(&frequencies) {
         assert_eq!(point.frequency_rad_per_s, frequency);
         for prefilter in [Complex64::new(0.3, 0.1), Complex64::new(-1.1, 0.2), Complex64::new(0.0, 0.8)] {
             let margin = |member: &phea_qft::closed_loop::Member| {
@@ -129,7 +129,7 @@ fn the_limits_at_infinity_bound_the_relative_degree() {
 
 /// A prefilter is listed at zero frequency if it is wrong there, and not for having no room.
 #[test]
-fn a_prefilter_with_a_wrong_gain_is_told_so_at_rest() {
+fn a_prefilter_with_a_wrong_gain_is_reported_at_rest() {
     let (compensation, members) = integrators(&[2.0]);
     let lag = |corner: f64| Limit::Rational(rational(&[corner], &[1.0, corner]));
     let specification = tracking(lag(0.5), lag(5.0), [0.0, 10.0]);
@@ -143,7 +143,7 @@ fn a_prefilter_with_a_wrong_gain_is_told_so_at_rest() {
 }
 
 #[test]
-fn what_leaves_no_band_says_why() {
+fn an_empty_band_has_its_reason() {
     let (compensation, members) = integrators(&[1.0]);
     let constant = || tracking(Limit::Constant(0.5), Limit::Constant(2.0), [1.0, 10.0]);
     let of = |members, frequencies: &[f64], specification: &Specification| {

@@ -99,7 +99,7 @@ fn a_servo_gets_a_prefilter_that_its_audit_meets() {
         PrefilterBand::of_family(&around, &members, frequencies, &specification).unwrap()
     };
     let searched = band(&spaced(0.01, 10.0, 40));
-    let shares = [1, 2, 3].map(|seed| {
+    let fractions = [1, 2, 3].map(|seed| {
         let outcome = run(searched.clone(), &Timing::default(), PrefilterOptions::new(3, seed));
         let again = run(searched.clone(), &Timing::default(), PrefilterOptions::new(3, seed));
         assert_eq!(format!("{outcome:?}"), format!("{again:?}"));
@@ -112,7 +112,7 @@ fn a_servo_gets_a_prefilter_that_its_audit_meets() {
         assert!(dense[0].share() > 0.6 && dense[0].share() <= fitted.worst.share(), "{:?}", dense[0]);
         fitted.worst.share()
     });
-    assert!(shares.iter().all(|share| (share - shares[0]).abs() < 0.0101), "{shares:?}");
+    assert!(fractions.iter().all(|fraction| (fraction - fractions[0]).abs() < 0.0101), "{fractions:?}");
     let prefilter = found(run(searched, &Timing::default(), PrefilterOptions::new(3, 1))).compensator;
     let feedback = Compensator::new(vec![Element::General(servo_controller())]);
     let controller = Controller { feedback, prefilter, ..Controller::default() };

@@ -81,6 +81,6 @@ pub(crate) fn servo_family() -> Family {
 
 /// Logarithmically spaced frequencies.
 pub(crate) fn spaced(from: f64, to: f64, count: u32) -> Vec<f64> {
-    let share = |index: u32| f64::from(index) / f64::from(count - 1);
-    (0..count).map(|index| from * (to / from).powf(share(index))).collect()
+    let fraction = |index: u32| f64::from(index) / f64::from(count - 1);
+    (0..count).map(|index| from * (to / from).powf(fraction(index))).collect()
 }

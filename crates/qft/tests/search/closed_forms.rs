@@ -59,36 +59,39 @@ fn contradiction_is_named() {
     let descent = descended(&mut problem, &[4.0, 2.0], Aim::Objective);
     let DescentStatus::Infeasible { worst_margin_db } = descent.status else { panic!("{descent:?}") };
     assert!((worst_margin_db + 2.0).abs() < 1e-4, "{worst_margin_db}");
-    let shares: Vec<f64> = descent.binding.iter().map(|binding| binding.multiplier).collect();
-    assert!(shares.len() == 2 && shares.iter().all(|share| (share - 0.5).abs() < 1e-3), "{shares:?}");
+    let multipliers: Vec<f64> = descent.binding.iter().map(|binding| binding.multiplier).collect();
+    assert!(
+        multipliers.len() == 2 && multipliers.iter().all(|multiplier| (multiplier - 0.5).abs() < 1e-3),
+        "{multipliers:?}"
+    );
 }
 
 /// A margin that hardly changes has a large multiplier, up to which the penalty must grow; if the
 /// tolerance exceeds its change, it has no effect.
 #[test]
-fn nearly_flat_margin_is_kept_or_tolerated() {
+fn nearly_flat_margin_is_satisfied_or_tolerated() {
     let mut problem = Formula::new(1, |x| (x[0] - 3.0).powi(2), |x| vec![1e-4 * (1.0 - x[0])]);
-    let mut ended = |reserve_db: f64, tolerance_db: f64| {
+    let mut descent_of = |reserve_db: f64, tolerance_db: f64| {
         let options = DescentOptions { reserve_db, tolerance_db, ..DescentOptions::new(Aim::Objective) };
         let descent = descend(&mut problem, &[-2.0], options, &mut unwatched).unwrap();
         assert_eq!(descent.status, DescentStatus::Converged);
         descent
     };
-    let kept = ended(0.0, 1e-6);
-    assert!((kept.x[0] - 1.0).abs() < 0.011, "{:?}", kept.x);
-    assert!((kept.binding[0].multiplier / 4e4 - 1.0).abs() < 0.02, "{:?}", kept.binding);
-    let tolerated = ended(-5e-4, 1e-4);
+    let satisfied = descent_of(0.0, 1e-6);
+    assert!((satisfied.x[0] - 1.0).abs() < 0.011, "{:?}", satisfied.x);
+    assert!((satisfied.binding[0].multiplier / 4e4 - 1.0).abs() < 0.02, "{:?}", satisfied.binding);
+    let tolerated = descent_of(-5e-4, 1e-4);
     assert!((tolerated.x[0] - 3.0).abs() < 0.01, "{:?}", tolerated.x);
 }
 
 #[test]
 fn hopeless_starts_are_refused() {
     let mut problem = Formula::new(1, |x| x[0], |x| vec![x[0]]);
-    let ended = |problem: &mut Formula, start: &[f64]| descended(problem, start, Aim::Objective).status;
-    assert_eq!(ended(&mut problem, &[21.0]), DescentStatus::StartOutside);
-    assert_eq!(ended(&mut problem, &[1.0, 1.0]), DescentStatus::StartOutside);
+    let descent_of = |problem: &mut Formula, start: &[f64]| descended(problem, start, Aim::Objective).status;
+    assert_eq!(descent_of(&mut problem, &[21.0]), DescentStatus::StartOutside);
+    assert_eq!(descent_of(&mut problem, &[1.0, 1.0]), DescentStatus::StartOutside);
     problem.instability = |x| x[0];
-    assert_eq!(ended(&mut problem, &[1.0]), DescentStatus::StartUnusable);
+    assert_eq!(descent_of(&mut problem, &[1.0]), DescentStatus::StartUnusable);
     let options = DescentOptions { steps_maximum: 2, ..DescentOptions::new(Aim::Objective) };
     let descent = descend(&mut problem, &[-10.0], options, &mut unwatched).unwrap();
     assert_eq!(descent.status, DescentStatus::BudgetSpent { steps: 2 });

@@ -32,8 +32,8 @@ struct Servo {
 
 /// Logarithmic grid of `count` points from 10^low to 10^high.
 fn decades(low: f64, high: f64, count: usize) -> Vec<f64> {
-    let share = |i: usize| i as f64 / (count - 1) as f64;
-    (0..count).map(|i| 10_f64.powf(low + share(i) * (high - low))).collect()
+    let fraction = |i: usize| i as f64 / (count - 1) as f64;
+    (0..count).map(|i| 10_f64.powf(low + fraction(i) * (high - low))).collect()
 }
 
 fn db(z: Complex64) -> f64 {

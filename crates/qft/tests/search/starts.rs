@@ -105,10 +105,10 @@ fn the_result_does_not_depend_on_the_workers() {
             let options = SearchOptions { workers, ..options };
             search(&mut problem.clone(), vec![vec![0.5; 2]], &options, &mut |_| true).unwrap().unwrap()
         };
-        let alone = search(&mut problem.clone(), vec![vec![0.5; 2]], &options, &mut |_| true);
-        let alone = format!("{:?}", alone.unwrap().unwrap());
+        let sequential = search(&mut problem.clone(), vec![vec![0.5; 2]], &options, &mut |_| true);
+        let sequential = format!("{:?}", sequential.unwrap().unwrap());
         for at_once in [1, 2, 3, 16] {
-            assert_eq!(format!("{:?}", found(at_once)), alone, "{at_once}");
+            assert_eq!(format!("{:?}", found(at_once)), sequential, "{at_once}");
         }
     }
 }

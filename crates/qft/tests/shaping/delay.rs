@@ -73,7 +73,7 @@ fn borne(samples: &Samples, structure: &Structure, x: &[f64]) -> Option<f64> {
 }
 
 #[test]
-fn the_margin_is_that_of_the_delay_which_the_worst_plant_bears() {
+fn the_margin_is_the_delay_that_the_worst_plant_tolerates() {
     let demanded = 0.05;
     let frequencies = logarithmic_grid(0.01, 1000.0, 1200).unwrap();
     let samples = Samples::new(&problem(demanded), &points(), &frequencies).unwrap();

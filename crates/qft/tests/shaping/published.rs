@@ -102,9 +102,9 @@ fn near(found: f64, truth: f64) {
 fn forty_edge_plants() {
     let parameters = vec![parameter("k", 1.0, 10.0), parameter("a", 1.0, 5.0), parameter("b", 20.0, 30.0)];
     let plant = recorded(parameters, |p| (vec![p[0]], vec![1.0.into(), p[1] + p[2], p[1] * p[2]]));
-    let share = |index: usize| index as f64 / 9.0;
+    let fraction = |index: usize| index as f64 / 9.0;
     let members = (0..10).flat_map(|index| {
-        let (a, k) = (1.0 + 4.0 * share(index), 1.0 + 9.0 * share(index));
+        let (a, k) = (1.0 + 4.0 * fraction(index), 1.0 + 9.0 * fraction(index));
         [vec![10.0, a, 20.0], vec![1.0, a, 30.0], vec![k, 5.0, 30.0], vec![k, 1.0, 20.0]]
     });
     let family = family(plant, vec![], members.collect());

@@ -18,19 +18,19 @@ pub(crate) struct Draw(pub(crate) u64);
 
 impl Draw {
     /// A number uniform in [0, 1).
-    pub(crate) fn share(&mut self) -> f64 {
+    pub(crate) fn uniform(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
     /// A number between these two, uniform in its logarithm.
     pub(crate) fn factor(&mut self, low: f64, high: f64) -> f64 {
-        low * (high / low).powf(self.share())
+        low * (high / low).powf(self.uniform())
     }
 
     /// A point within bounds.
     pub(crate) fn point(&mut self, bounds: &[[f64; 2]]) -> Vec<f64> {
-        bounds.iter().map(|[low, high]| low + (high - low) * self.share()).collect()
+        bounds.iter().map(|[low, high]| low + (high - low) * self.uniform()).collect()
     }
 }
 
@@ -48,7 +48,7 @@ pub(crate) fn structure(draw: &mut Draw) -> Structure {
         StructureFactor::RealPole { frequency: range(50.0, 500.0) },
         StructureFactor::Fixed(Element::LeadLag { zero_frequency: 30.0, pole_frequency: 7.0 }),
     ];
-    let sign = if draw.share() < 0.5 { -1.0 } else { 1.0 };
+    let sign = if draw.uniform() < 0.5 { -1.0 } else { 1.0 };
     Structure { sign, gain: [0.2, 5.0], parts }
 }
 

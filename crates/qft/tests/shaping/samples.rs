@@ -52,7 +52,7 @@ fn undamped() -> DesignProblem {
 
 /// Pole of an undamped plant, at which |T| is 1 for any gain.
 #[test]
-fn an_undamped_pole_is_looked_at_from_beside() {
+fn an_undamped_pole_is_sampled_next_to_its_frequency() {
     let problem = undamped();
     let samples = Samples::new(&problem, &plants(&problem), &[1.0]).unwrap();
     assert_eq!(samples.pairs(), 2);
@@ -97,7 +97,7 @@ fn a_point_of_another_family_is_refused() {
 
 /// A measured plant is evaluated where it was measured.
 #[test]
-fn beyond_a_measurement_nothing_is_looked_at() {
+fn nothing_is_sampled_beyond_a_measurement() {
     let frequencies: Vec<f64> = (1..=50).map(f64::from).collect();
     let command = frequencies.iter().map(|&w| 1.0 / Complex64::new(1.0, w)).collect();
     let plant = MeasuredPlant {
@@ -119,7 +119,7 @@ fn beyond_a_measurement_nothing_is_looked_at() {
 }
 
 #[test]
-fn the_grid_covers_the_bands_and_what_lies_above_their_ends() {
+fn the_grid_covers_the_bands_and_frequencies_above_their_ends() {
     let mut problem = problem(Timing::default());
     let all = plants(&problem);
     let grid = search_frequencies(&problem, &all, 20.0).unwrap();
@@ -151,7 +151,7 @@ fn the_grid_covers_the_bands_and_what_lies_above_their_ends() {
 /// The resonances of lightly damped plants are among the frequencies, but not all of them if
 /// crowded.
 #[test]
-fn peaks_are_looked_at() {
+fn peaks_are_sampled() {
     let problem = undamped();
     let grid = search_frequencies(&problem, &plants(&problem), 7.0).unwrap();
     assert!(grid.contains(&1.0));

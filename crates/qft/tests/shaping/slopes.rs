@@ -51,7 +51,7 @@ fn margins_of_each_kind_move_with_their_slopes() {
 /// The least of the linear rows near a point is the worst margin of all plants and frequencies, to
 /// second order.
 #[test]
-fn the_rows_together_foretell_the_worst_margin() {
+fn the_rows_together_predict_the_worst_margin() {
     let mut draw = Draw(22);
     let problem = problem(Timing { sample_time_s: Some(0.005), ..Timing::default() });
     let frequencies: Vec<f64> = (0..40).map(|index| 0.3 * 1.18f64.powi(index)).collect();
@@ -86,7 +86,7 @@ fn the_rows_together_foretell_the_worst_margin() {
 /// Slopes depend only on the present samples: with an additional plant and frequency, and with
 /// other limits, they equal those of a new shaping.
 #[test]
-fn slopes_do_not_depend_on_what_was_judged_before() {
+fn slopes_do_not_depend_on_earlier_evaluations() {
     let mut draw = Draw(24);
     let problem = problem(Timing::default());
     let frequencies: Vec<f64> = (0..20).map(|index| 0.3 * 1.4f64.powi(index)).collect();

@@ -101,7 +101,7 @@ fn the_high_frequency_gain_is_a_limit() {
 
 /// Value of G at pi/T without its zeros there, which by Tustin's rule equals this limit.
 #[test]
-fn the_high_frequency_gain_of_a_sampled_controller_is_what_its_zeros_at_the_end_leave() {
+fn the_high_frequency_gain_of_a_sampled_controller_follows_from_its_zeros() {
     let mut draw = Draw(6);
     let structure = structure(&mut draw);
     let x = draw.point(&structure.bounds());
@@ -143,7 +143,7 @@ fn a_controller_and_its_point_belong_together() {
 }
 
 #[test]
-fn what_does_not_fit_has_no_point() {
+fn unrepresentable_controllers_have_no_point() {
     let corner = [1.0, 10.0];
     let parts =
         vec![StructureFactor::Fixed(Element::Integrator), StructureFactor::RealZero { frequency: corner }];

@@ -116,19 +116,19 @@ fn a_parameter_that_hardly_moves_the_plant_leaves_a_segment() {
 
 /// The watch is consulted at each plant; if it returns false there is no template.
 #[test]
-fn a_template_asks_its_watch_at_each_plant() {
+fn a_template_calls_its_progress_callback_at_each_plant() {
     let (family, options) = (Family::Uncertain(motor()), TemplateOptions::default());
     let around = plain_loop();
     let at = |watch: Watch<'_>| {
         Templates::new(&family, &around, &[1.0], options).next_watched(watch).expect("one frequency")
     };
-    let mut asked = 0;
+    let mut calls = 0;
     let whole = at(&mut |_| {
-        asked += 1;
+        calls += 1;
         true
     });
-    assert_eq!(whole.map(|built| built.evaluations), Ok(asked));
-    for last in [1, asked / 2, asked] {
+    assert_eq!(whole.map(|built| built.evaluations), Ok(calls));
+    for last in [1, calls / 2, calls] {
         let mut left = last;
         let stopped = at(&mut |_| {
             left -= 1;
@@ -182,7 +182,7 @@ fn gain_and_dead_time() -> UncertainFamily {
 /// Plant k e^(-sT) over 4.5 rad of phase: a curved strip around the origin, of area ln 2 times 4.5
 /// in the logarithmic plane.
 #[test]
-fn a_bent_strip_keeps_its_hollow() {
+fn a_bent_strip_has_its_hollow() {
     let template = built(&gain_and_dead_time(), 5.0).template;
     assert_resolved(&template);
     let [outline] = &template.outlines[..] else { panic!("one strip") };

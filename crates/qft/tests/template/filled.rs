@@ -4,13 +4,13 @@ use phea_qft::family::UncertainFamily;
 use phea_qft::template::{Resolution, TemplateOptions};
 
 use super::support::{
-    Shares, apart, beyond, built, coefficients, family, from_rim, quadratic_family, random_values, winding,
+    Random, apart, beyond, built, coefficients, family, from_rim, quadratic_family, random_values, winding,
 };
 
 /// Real and imaginary part are quadratic in the parameters: images are folded, and their rim is
 /// partly the image of interior points of the box.
 #[test]
-fn no_random_plant_lies_outside() {
+fn no_random_plant_is_outside() {
     let options = TemplateOptions::default();
     for dimension in 2..=4 {
         for seed in 101..113 {
@@ -61,17 +61,17 @@ fn nearest(family: &UncertainFamily, target: Complex64) -> Complex64 {
 /// Holes narrower than a tolerance count as filled, so that a plant may be half a tolerance away,
 /// but no farther.
 #[test]
-fn what_an_outline_winds_around_is_a_plant() {
+fn every_point_inside_an_outline_is_a_plant() {
     let options = TemplateOptions::default();
     let mut inside = 0;
     for seed in 201..209 {
         let family = quadratic_family(2, seed);
         let outlines = built(&family, 1.0).template.outlines;
-        let mut shares = Shares(seed);
+        let mut random = Random(seed);
         for _ in 0..60 {
-            let pick = |share: f64| outlines[0][(share * outlines[0].len() as f64) as usize];
-            let (first, second) = (pick(shares.draw()), pick(shares.draw()));
-            let response = first + (second - first) * shares.draw();
+            let pick = |fraction: f64| outlines[0][(fraction * outlines[0].len() as f64) as usize];
+            let (first, second) = (pick(random.draw()), pick(random.draw()));
+            let response = first + (second - first) * random.draw();
             let filled = outlines.iter().any(|outline| winding(outline, response) != 0);
             if filled && from_rim(&outlines, response, &options) > 0.05 {
                 inside += 1;

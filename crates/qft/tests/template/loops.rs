@@ -73,10 +73,10 @@ fn a_box_without_uncertainty_is_its_nominal_plant() {
 }
 
 #[test]
-fn between_members_nothing_is_claimed() {
+fn no_enclosure_is_claimed_between_members() {
     let motor = motor();
     let members = motor.members().to_vec();
-    let alone =
+    let nominal_only =
         UncertainFamily::new(motor.plant().clone(), motor.coordinates().to_vec(), members, Extent::Members)
             .unwrap();
     let measured = |name: &str, gain: f64| MeasuredPlant {
@@ -91,7 +91,7 @@ fn between_members_nothing_is_claimed() {
     };
     let measured = MeasuredFamily::new(vec![measured("first", 1.0), measured("second", 2.0)]).unwrap();
     let options = TemplateOptions::default();
-    for (family, count) in [(Family::Uncertain(alone), 4), (Family::Measured(measured), 2)] {
+    for (family, count) in [(Family::Uncertain(nominal_only), 4), (Family::Measured(measured), 2)] {
         let built = template(&family, &plain_loop(), 0.5, &options).unwrap();
         assert_eq!((built.template.points.len(), built.evaluations), (count, count));
         assert!(built.template.outlines.is_empty());
@@ -127,7 +127,7 @@ fn correlated_parameters_draw_a_line() {
 }
 
 #[test]
-fn what_cannot_be_is_refused() {
+fn impossible_requests_are_refused() {
     let family = Family::Uncertain(motor());
     for (phase_deg, magnitude_db) in [(0.0, 0.5), (90.0, 0.5), (2.0, -1.0), (2.0, f64::NAN)] {
         let options = TemplateOptions { phase_deg, magnitude_db, ..TemplateOptions::default() };

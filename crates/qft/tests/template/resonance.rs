@@ -90,7 +90,7 @@ fn a_pole_inside_the_box_is_noticed() {
 }
 
 #[test]
-fn a_spent_budget_is_said() {
+fn a_spent_budget_is_reported() {
     for evaluations_maximum in [0, 10, 100, 300] {
         let options = TemplateOptions { evaluations_maximum, ..TemplateOptions::default() };
         let family = resonant(0.3);
@@ -103,7 +103,7 @@ fn a_spent_budget_is_said() {
 /// Folds inside a box are reached in several rounds; with fewer the template reports that it is not
 /// resolved.
 #[test]
-fn rounds_that_do_not_settle_are_said() {
+fn rounds_that_do_not_settle_are_reported() {
     let unsettled = |rounds_maximum: usize| {
         let options = TemplateOptions { rounds_maximum, ..TemplateOptions::default() };
         let resolutions = (101..107).map(|seed| {

@@ -116,17 +116,17 @@ pub(crate) fn logarithmic_area(outline: &[Complex64]) -> f64 {
 
 /// Parameter values at random points of the box, many of them on its faces.
 pub(crate) fn random_values(family: &UncertainFamily, count: usize, seed: u64) -> Vec<Vec<f64>> {
-    let mut shares = Shares(seed);
+    let mut random = Random(seed);
     let mut point = || {
-        let shares: Vec<f64> = family
+        let fractions: Vec<f64> = family
             .coordinates()
             .iter()
             .map(|_| {
-                let share = shares.draw();
-                if shares.draw() < 0.4 { share.round() } else { share }
+                let fraction = random.draw();
+                if random.draw() < 0.4 { fraction.round() } else { fraction }
             })
             .collect();
-        family.values(&shares)
+        family.values(&fractions)
     };
     (0..count).map(|_| point()).collect()
 }
@@ -137,14 +137,14 @@ pub(crate) fn quadratic_family(dimension: usize, seed: u64) -> UncertainFamily {
     let names = ["a", "b", "c", "d"];
     let ranges: Vec<Range> =
         names.iter().take(dimension).map(|&name| (name, -1.0, 1.0, Spacing::Linear)).collect();
-    let mut shares = Shares(seed);
+    let mut random = Random(seed);
     family(&ranges, 2, |p| {
         let mut quadratic = || {
             let mut sum = Recorded::from(8.0);
             for (index, &first) in p.iter().enumerate() {
-                sum = sum + first * (shares.draw() * 2.0 - 1.0).into();
+                sum = sum + first * (random.draw() * 2.0 - 1.0).into();
                 for &second in &p[index..] {
-                    sum = sum + first * second * (shares.draw() * 2.0 - 1.0).into();
+                    sum = sum + first * second * (random.draw() * 2.0 - 1.0).into();
                 }
             }
             sum
@@ -156,9 +156,9 @@ pub(crate) fn quadratic_family(dimension: usize, seed: u64) -> UncertainFamily {
 
 /// Reproducible numbers in [0, 1) (multiplicative congruence modulo 2^31 - 1; Park and Miller
 /// 1988).
-pub(crate) struct Shares(pub(crate) u64);
+pub(crate) struct Random(pub(crate) u64);
 
-impl Shares {
+impl Random {
     pub(crate) fn draw(&mut self) -> f64 {
         self.0 = self.0 * 48271 % 2147483647;
         self.0 as f64 / 2147483647.0

@@ -53,7 +53,7 @@ fn check(finding: &SpecificationFinding, margin_db: f64, frequency: f64) {
 }
 
 #[test]
-fn an_integrator_tracks_at_zero_frequency_and_sees_nothing_at_infinity() {
+fn an_integrator_tracks_at_zero_frequency_and_vanishes_at_infinity() {
     let integrator = gain_times(&[1.0], &[1.0, 0.0], 0.0);
     let constant = Limit::Constant;
     // |T| = k/|jw + k|: 1 at zero
@@ -95,7 +95,7 @@ fn an_integrator_tracks_at_zero_frequency_and_sees_nothing_at_infinity() {
 }
 
 #[test]
-fn a_lower_limit_above_a_vanishing_magnitude_is_violated_without_end() {
+fn a_lower_limit_above_a_vanishing_magnitude_is_violated_without_bound() {
     let integrator = gain_times(&[1.0], &[1.0, 0.0], 0.0);
     let constant = Limit::Constant;
     let tracking = Requirement::tracking(constant(0.5), constant(1.1));
@@ -160,7 +160,7 @@ fn a_peak_a_millionth_wide_is_found() {
 
 /// The worst case at an end of the band does not hide the worst inside it.
 #[test]
-fn the_worst_interior_minimum_is_stated_beside_an_end() {
+fn the_worst_interior_minimum_is_stated_in_addition_to_an_end() {
     let family = gain_times(&[1.0], &[1.0, 0.4, 1.0], 0.0);
     // |P/(1+L)| = k/|1 + k g - w^2 + 0.4 jw|, against 1/s: worst at infinity for a limit that falls even faster
     let limit = Limit::Rational(rational(&[1.0], &[0.01, 0.1, 1.0, 1.0]));
@@ -193,7 +193,7 @@ fn a_spread_has_limits_at_both_ends() {
 
 /// Meaningless bands, limits and plants give a result other than `Met`, without a panic.
 #[test]
-fn senseless_demands_are_not_met() {
+fn unsatisfiable_limits_are_not_met() {
     let integrator = gain_times(&[1.0], &[1.0, 0.0], 0.0);
     let requirement = |limit: f64| Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(limit));
     for band in [[f64::NAN, 1.0], [0.0, f64::NAN], [2.0, 1.0], [-2.0, -1.0], [f64::INFINITY, 0.0]] {
@@ -213,7 +213,7 @@ fn senseless_demands_are_not_met() {
 /// feed-forward: Pd + K s P tends to (K k - 0.2) s at zero, where 1 + L is 1 + k, sampled or not,
 /// and at infinity to -2 + K k e^(-0.1 s), which the delay makes 2 + K k.
 #[test]
-fn a_rate_that_is_fed_forward_has_its_share_in_both_ends() {
+fn a_rate_that_is_fed_forward_contributes_at_both_ends() {
     let plant = UncertainPlant::record(vec![parameter("k", 1.0, 1.0, 2.0)], |p| PlantCoefficients {
         command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 1.0.into()] },
         disturbance: Some(RationalCoefficients {

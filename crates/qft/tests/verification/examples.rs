@@ -67,9 +67,9 @@ fn edge_plants() -> Family {
     let parameters =
         vec![parameter("k", 1.0, 1.0, 10.0), parameter("a", 5.0, 1.0, 5.0), parameter("b", 30.0, 20.0, 30.0)];
     let plant = recorded(parameters, |p| (vec![p[0]], vec![1.0.into(), p[1] + p[2], p[1] * p[2]]));
-    let share = |index: usize| index as f64 / 9.0;
+    let fraction = |index: usize| index as f64 / 9.0;
     let members = (0..10).flat_map(|index| {
-        let (a, k) = (1.0 + 4.0 * share(index), 1.0 + 9.0 * share(index));
+        let (a, k) = (1.0 + 4.0 * fraction(index), 1.0 + 9.0 * fraction(index));
         [vec![10.0, a, 20.0], vec![1.0, a, 30.0], vec![k, 5.0, 30.0], vec![k, 1.0, 20.0]]
     });
     let members = members.collect();

@@ -65,7 +65,7 @@ fn margin_db(
 }
 
 /// Fractions of plants, closely spaced in the last coordinate.
-fn close_look() -> impl Iterator<Item = [f64; 4]> {
+fn dense_fractions() -> impl Iterator<Item = [f64; 4]> {
     (0..3 * 3 * 2 * 400).map(|index| {
         let (near, far) = (index % 400, index / 400);
         [f64::from(far % 3) / 2.0, f64::from(far / 3 % 3) / 2.0, f64::from(far / 9), f64::from(near) / 399.0]
@@ -76,9 +76,9 @@ fn close_look() -> impl Iterator<Item = [f64; 4]> {
 fn least(case: &Case, frequency: f64) -> Vec<f64> {
     let Family::Uncertain(family) = &case.family else { panic!("a box") };
     let mut least = vec![f64::INFINITY; case.specifications.len()];
-    for shares in close_look() {
+    for fractions in dense_fractions() {
         for (least, specification) in least.iter_mut().zip(&case.specifications) {
-            let plant = family.plant().coefficients(&family.values(&shares)).unwrap();
+            let plant = family.plant().coefficients(&family.values(&fractions)).unwrap();
             *least = least.min(margin_db(&case.around, specification, plant, frequency));
         }
     }
@@ -89,9 +89,9 @@ fn least(case: &Case, frequency: f64) -> Vec<f64> {
 fn spread_left(case: &Case, frequency: f64, allowed: f64) -> f64 {
     let Family::Uncertain(family) = &case.family else { panic!("a box") };
     let (mut least, mut greatest) = (f64::INFINITY, 0.0_f64);
-    for shares in close_look() {
+    for fractions in dense_fractions() {
         let member =
-            case.around.member(family.plant().coefficients(&family.values(&shares)).unwrap()).unwrap();
+            case.around.member(family.plant().coefficients(&family.values(&fractions)).unwrap()).unwrap();
         let open = member.response(frequency).unwrap().plant * case.around.response(frequency).feedback;
         let closed = (open.norm_sqr() / (1.0 + open).norm_sqr()).sqrt();
         (least, greatest) = (least.min(closed), greatest.max(closed));
@@ -102,14 +102,14 @@ fn spread_left(case: &Case, frequency: f64, allowed: f64) -> f64 {
 /// Lightly damped boxes whose resonances pass the given frequencies, 24 of them: none of 7,200
 /// plants is worse than the result.
 #[test]
-fn no_plant_of_a_close_look_is_worse_at_a_given_frequency() {
+fn no_plant_of_a_dense_grid_is_worse_at_a_given_frequency() {
     let mut missed = Vec::new();
     for seed in 0..24 {
         let mut case = damped_case(100 + seed, [0.002, 0.02], 1.0, 1.0, COARSE);
         case.specifications.truncate(4);
         let Family::Uncertain(family) = &case.family else { panic!("a box") };
         let mut draw = Draw(2000 + seed);
-        let given: Vec<f64> = (0..3).map(|_| family.values(&[0.0, 0.0, 0.0, draw.share()])[3]).collect();
+        let given: Vec<f64> = (0..3).map(|_| family.values(&[0.0, 0.0, 0.0, draw.uniform()])[3]).collect();
         for specification in &mut case.specifications {
             specification.frequencies_rad_per_s.clone_from(&given);
         }
@@ -131,13 +131,13 @@ fn no_plant_of_a_close_look_is_worse_at_a_given_frequency() {
 
 /// Spread of both plants over twelve boxes of this kind: none is worse than the result.
 #[test]
-fn no_two_plants_of_a_close_look_spread_further_at_a_given_frequency() {
+fn no_two_plants_of_a_dense_grid_spread_further_at_a_given_frequency() {
     let mut missed = Vec::new();
     for seed in 0..12 {
         let mut case = damped_case(200 + seed, [0.002, 0.02], 1.0, 1.0, COARSE);
         let mut tracking = case.specifications.remove(4);
         let Family::Uncertain(family) = &case.family else { panic!("a box") };
-        let frequency = family.values(&[0.0, 0.0, 0.0, Draw(3000 + seed).share()])[3];
+        let frequency = family.values(&[0.0, 0.0, 0.0, Draw(3000 + seed).uniform()])[3];
         tracking.frequencies_rad_per_s = vec![frequency];
         tracking.band_rad_per_s = [0.0, f64::INFINITY];
         let (findings, _) = audited(&case.family, &case.around, &[tracking], TrackingJudgement::Spread);

@@ -17,14 +17,14 @@ pub(crate) struct Draw(pub(crate) u64);
 
 impl Draw {
     /// A number uniform in [0, 1).
-    pub(crate) fn share(&mut self) -> f64 {
+    pub(crate) fn uniform(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
     /// A number between these two, uniform in its logarithm.
     pub(crate) fn factor(&mut self, low: f64, high: f64) -> f64 {
-        low * (high / low).powf(self.share())
+        low * (high / low).powf(self.uniform())
     }
 }
 
@@ -128,12 +128,12 @@ fn no_plant_and_frequency_drawn_at_random_is_worse_than_the_worst_case_found() {
         let Family::Uncertain(family) = &case.family else { panic!("a box") };
         let mut draw = Draw(1000 + seed);
         for _ in 0..10_000 {
-            let shares: Vec<f64> = (0..4).map(|_| draw.share()).collect();
-            let values = family.values(&shares);
+            let fractions: Vec<f64> = (0..4).map(|_| draw.uniform()).collect();
+            let values = family.values(&fractions);
             let member = case.around.member(family.plant().coefficients(&values).unwrap()).unwrap();
             // half of the draws near the resonance
-            let near = values[3] * (1.0 + 0.2 * (draw.share() - 0.5));
-            let frequency = if draw.share() < 0.5 { near } else { draw.factor(1e-3, 1e3) };
+            let near = values[3] * (1.0 + 0.2 * (draw.uniform() - 0.5));
+            let frequency = if draw.uniform() < 0.5 { near } else { draw.factor(1e-3, 1e3) };
             let (plant, controller) = (member.response(frequency).unwrap(), case.around.response(frequency));
             let response = LoopResponse {
                 plant: plant.plant,

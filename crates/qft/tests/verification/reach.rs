@@ -199,7 +199,7 @@ fn a_plant_that_cannot_be_sampled_is_not_proven() {
 /// -1: at pi/T the reference has no effect, so that no lower limit is met there, and this is
 /// reported; with a band that ends below pi/T, or without a zero, it is not reported.
 #[test]
-fn no_lower_limit_is_met_where_the_prefilter_ends_at_zero() {
+fn no_lower_limit_is_met_if_the_prefilter_tends_to_zero() {
     let plant = UncertainPlant::record(vec![], |_| PlantCoefficients {
         command: RationalCoefficients {
             numerator: vec![1.0.into()],

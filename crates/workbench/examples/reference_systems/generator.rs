@@ -52,11 +52,11 @@ impl Seeded {
 
     /// Roots with magnitudes from 0.1 rad/s up, about half of them in complex pairs with damping
     /// above 2 %.
-    fn roots(&mut self, count: usize, decades: f64, unstable_share: f64) -> Vec<Complex64> {
+    fn roots(&mut self, count: usize, decades: f64, unstable_fraction: f64) -> Vec<Complex64> {
         let mut roots = Vec::with_capacity(count);
         while roots.len() < count {
             let size = pow(10.0, -1.0 + decades * self.next());
-            let side = if self.next() < unstable_share { 1.0 } else { -1.0 };
+            let side = if self.next() < unstable_fraction { 1.0 } else { -1.0 };
             if self.next() < 0.4 || roots.len() + 2 > count {
                 roots.push(Complex64::new(side * size, 0.0));
             } else {

@@ -46,15 +46,15 @@ const PART: usize = 6;
 /// The rigs that their families do not contain, and the remedy.
 pub(crate) fn told_first(found: &Alternatives) -> Vec<String> {
     let all = summary::groups(found).into_iter().flat_map(|(_, judged)| judged);
-    let mut told: Vec<String> = Vec::new();
+    let mut warnings: Vec<String> = Vec::new();
     for sentence in
         all.filter_map(|one| Some(outside_words(&one.name, one.outside.as_ref()?, !one.moved.is_empty())))
     {
-        if !told.contains(&sentence) {
-            told.push(sentence);
+        if !warnings.contains(&sentence) {
+            warnings.push(sentence);
         }
     }
-    told
+    warnings
 }
 
 /// A sentence on ranges that do not contain the rig of an alternative, whether or not they were

@@ -38,7 +38,7 @@ pub(super) fn of_case(case: &JudgedCase) -> Vec<String> {
 fn of_judged(judged: &[JudgedAlternative], not_reached: usize) -> Vec<String> {
     let mut sentences = specifications(judged, not_reached);
     sentences.extend(judged.iter().flat_map(missing));
-    sentences.extend(shared(judged, judged.iter().flat_map(lacking)));
+    sentences.extend(grouped_by_sentence(judged, judged.iter().flat_map(lacking)));
     let comparable = MeasuredAlternatives::of(judged.iter().filter(|one| one.is_comparable()));
     sentences.extend(best(&comparable));
     sentences.extend(dominance(&comparable));
@@ -117,7 +117,7 @@ fn specifications(judged: &[JudgedAlternative], not_reached: usize) -> Vec<Strin
     if !missed.is_empty() {
         sentences.push(format!(
             "no controller tried{} does, unless every limit is wider by the amount given in brackets: {}",
-            tried(judged),
+            order_words(judged),
             missed.join(", ")
         ));
     }
@@ -134,7 +134,7 @@ fn specifications(judged: &[JudgedAlternative], not_reached: usize) -> Vec<Strin
 }
 
 /// The greatest order, if the orders were free and equal for all.
-fn tried(judged: &[JudgedAlternative]) -> String {
+fn order_words(judged: &[JudgedAlternative]) -> String {
     let orders = judged.iter().filter_map(|one| match one.design.as_ref().ok()?.options.controller {
         ControllerChoice::Grow { maximum_order } | ControllerChoice::Any { maximum_order, .. } => {
             Some(maximum_order)
@@ -150,7 +150,10 @@ fn tried(judged: &[JudgedAlternative]) -> String {
 
 /// Each sentence once, after the names of all alternatives to which it applies; if it applies to
 /// most of them, after the names of the exceptions.
-fn shared<'a>(judged: &'a [JudgedAlternative], told: impl Iterator<Item = (&'a str, String)>) -> Vec<String> {
+fn grouped_by_sentence<'a>(
+    judged: &'a [JudgedAlternative],
+    sentences: impl Iterator<Item = (&'a str, String)>,
+) -> Vec<String> {
     let others = |names: &[&str]| {
         let others = judged.iter().map(|one| one.name.as_str()).filter(|name| !names.contains(name));
         others.collect::<Vec<_>>()
@@ -162,7 +165,7 @@ fn shared<'a>(judged: &'a [JudgedAlternative], told: impl Iterator<Item = (&'a s
         }
         _ => format!("{}: {sentence}", names.join(", ")),
     };
-    grouped(told.map(|(name, sentence)| (sentence, name))).into_iter().map(words).collect()
+    grouped(sentences.map(|(name, sentence)| (sentence, name))).into_iter().map(words).collect()
 }
 
 /// Contradictions by the machine, effects that the verdict leaves out, and the reason why nothing
@@ -204,11 +207,11 @@ fn impedance(one: &JudgedAlternative) -> Option<Vec<String>> {
             "designed as the same loop with form = \"impedance\": of the {position} it is C_x = G (M_v s^2 + B_v s + K_v)"
         )
     });
-    let asked = format!(
+    let disturbance_words = format!(
         "the disturbance is the whole change of the {force}, and counts what the virtual impedance asks for: the impedances at the \
          load show how near it comes"
     );
-    Some(form.into_iter().chain([asked]).collect())
+    Some(form.into_iter().chain([disturbance_words]).collect())
 }
 
 /// The ranges that follow a rig, in one sentence.

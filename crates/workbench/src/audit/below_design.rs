@@ -17,11 +17,11 @@ pub(super) fn document(view: &ProjectAudit) -> Document {
     let mut out = Document::default();
     let Some(JudgedLimits { exceeded, kept }) = &view.below_design else { return out };
     if exceeded.is_empty() {
-        let names: Vec<&str> = kept.iter().map(|kind| limit_words(*kind)).collect();
-        out.sentences((!names.is_empty()).then(|| {
+        let words: Vec<&str> = kept.iter().map(|kind| limit_words(*kind)).collect();
+        out.sentences((!words.is_empty()).then(|| {
             format!(
                 "the loop keeps every limit of `[design]` that a given loop is held against, stated or by default: {}",
-                names.join(", ")
+                words.join(", ")
             )
         }));
         return out;

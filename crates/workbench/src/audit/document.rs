@@ -22,10 +22,10 @@ use crate::trial::{self, Trial};
 use crate::verdict_words::verdict_words;
 
 /// The tables and sentences of `verify` for people, with the trial on the machine if there is one.
-pub fn output(view: &ProjectAudit, tried: Option<&Trial>) -> Document {
+pub fn output(view: &ProjectAudit, trial: Option<&Trial>) -> Document {
     let mut out = document(view, vec![]);
     out.append(proven(view, "What is proven"));
-    if let Some(trial) = tried {
+    if let Some(trial) = trial {
         out.append(trial::document(trial, None));
     }
     out
@@ -186,8 +186,8 @@ fn not_proven(view: &ProjectAudit, proof: &Proof) -> Vec<String> {
         .enumerate()
         .map(|(index, own)| (numbered(view.named(index)), &own.standing));
     let all = std::iter::once(("stability".to_string(), &proof.stability)).chain(named);
-    let told = all.filter_map(|(name, standing)| Some((why_not_proven(view, proof, standing)?, name)));
-    grouped(told).into_iter().map(|(reason, names)| format!("{}: {reason}", names.join(", "))).collect()
+    let reasons = all.filter_map(|(name, standing)| Some((why_not_proven(view, proof, standing)?, name)));
+    grouped(reasons).into_iter().map(|(reason, names)| format!("{}: {reason}", names.join(", "))).collect()
 }
 
 /// The worst plant of each specification, a column each.

@@ -24,9 +24,9 @@ pub(super) fn family_sentence(view: &ProjectAudit) -> String {
         PlantNames::Parameters(names) if names.is_empty() => format!("Family: one plant{moving}."),
         PlantNames::Parameters(names) if view.whole_box => {
             // the members of a family with lines in motion are without the corners
-            let beside = if view.has_lines_in_motion() { " beside the corners" } else { "" };
+            let without_corners = if view.has_lines_in_motion() { " beside the corners" } else { "" };
             format!(
-                "Family: {}{beside} of a box over {}, and everything between them{moving}.",
+                "Family: {}{without_corners} of a box over {}, and everything between them{moving}.",
                 counted(view.members, "plant"),
                 counted(names.len(), "uncertain parameter")
             )

@@ -72,11 +72,11 @@ fn rise_words(worst: &WorstStep) -> String {
 /// Requirements that are missed: `settled in 1.08 s at worst where 0.8 s is required`.
 pub(crate) fn missed(finding: &TimeFinding) -> Vec<String> {
     let TimeOutcome::Searched { overshoot, settling, rise, .. } = &finding.outcome else { return vec![] };
-    let wish = &finding.requirement.wish;
+    let required = &finding.requirement.wish;
     let open = |worst: &&WorstStep| !worst.is_satisfied;
-    let of_overshoot = overshoot.as_ref().filter(open).zip(wish.overshoot_percent);
-    let of_settling = settling.as_ref().filter(open).zip(wish.settling_time_s);
-    let of_rise = rise.as_ref().filter(open).zip(wish.rise_time_s);
+    let of_overshoot = overshoot.as_ref().filter(open).zip(required.overshoot_percent);
+    let of_settling = settling.as_ref().filter(open).zip(required.settling_time_s);
+    let of_rise = rise.as_ref().filter(open).zip(required.rise_time_s);
     let mut missed = Vec::new();
     missed.extend(
         of_overshoot

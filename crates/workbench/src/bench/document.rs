@@ -20,17 +20,17 @@ pub(crate) fn document(
     let mut out = Document::default();
     out.sentences(remarks.iter().map(|remark| remark.to_string()));
     for run in runs {
-        recorded(run).tell(4, &mut out);
+        recorded(run).write_ranges(4, &mut out);
         out.sentences(sag(loaded, run));
         if run.series == BenchSeries::Reversals {
             out.sentences(reversals(run.reversals.as_ref()));
         }
     }
     for run in of_friction {
-        friction::recorded(run).tell(6, &mut out);
+        friction::recorded(run).write_ranges(6, &mut out);
     }
     for run in lines {
-        line::recorded(run).tell(4, &mut out);
+        line::recorded(run).write_ranges(4, &mut out);
     }
     out
 }
@@ -52,14 +52,14 @@ fn reversals(found: Option<&ReversalReading>) -> Vec<String> {
                 .to_string(),
         ];
     };
-    let share = |value: f64| significant(100.0 * value / found.nominal_voltage, 3);
+    let percent_of_nominal = |value: f64| significant(100.0 * value / found.nominal_voltage, 3);
     let sentence = |name: &str, Estimate { value, interval: [low, high] }: Estimate| {
         format!(
             "{name}: {} V, {} % of the nominal voltage (95 %: {} to {} %).",
             significant(value, 3),
-            share(value),
-            share(low),
-            share(high)
+            percent_of_nominal(value),
+            percent_of_nominal(low),
+            percent_of_nominal(high)
         )
     };
     vec![

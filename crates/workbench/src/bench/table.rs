@@ -78,7 +78,7 @@ impl BenchTable {
     }
 
     /// A section that shows the range of each column.
-    pub(super) fn tell(&self, digits: usize, out: &mut Document) {
+    pub(super) fn write_ranges(&self, digits: usize, out: &mut Document) {
         let rows = self.columns.iter().map(|column| {
             let [least, most] = ends(column.shown.iter().copied()).map(|value| Cell::number(value, digits));
             [Cell::from(column.quantity), least, most, Cell::from(column.unit)]

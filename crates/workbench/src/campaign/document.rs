@@ -13,7 +13,7 @@ use crate::simulate::{self, Metric, RunStatus, ScenarioRun, cause_words, shown_i
 use crate::simulate::{not_judged_words, reached_words, required_words};
 
 /// Largest number of listed runs that were rejected or stopped early.
-const TOLD: usize = 6;
+const LISTED: usize = 6;
 
 /// A metric in words, with its unit.
 fn metric_words(metric: Metric, plan: &Plan) -> String {
@@ -64,26 +64,26 @@ pub(crate) fn left_out(plan: &Plan) -> Option<String> {
 /// Tables and sentences of a campaign, with a note if its rows are stored.
 pub(crate) fn document(
     plan: &Plan,
-    (wanted, kept): (RequestedRuns, bool),
+    (wanted, is_stored): (RequestedRuns, bool),
     rows: usize,
     summary: &Summary,
 ) -> Document {
     let runs = wanted.shard.runs_of(wanted.runs);
-    let asked = runs.end - runs.start;
+    let requested = runs.end - runs.start;
     let mut out = Document::default();
     out.line(format!("{}: {}, seed {}", plan.scenario(), counted(rows), plan.seed()));
     left_out(plan).into_iter().for_each(|sentence| out.line(sentence));
-    if (rows as u64) < asked {
-        let next = match kept {
+    if (rows as u64) < requested {
+        let next = match is_stored {
             true => "the same command continues from there",
             false => "with --out they would be kept, and the same command would continue from there",
         };
-        out.line(format!("Stopped after {rows} of {asked} runs; {next}."));
+        out.line(format!("Stopped after {rows} of {requested} runs; {next}."));
     }
     let statuses = RunStatus::OF_ROWS.into_iter().zip(summary.statuses).filter(|(_, count)| *count > 0);
     out.sentences(statuses.map(|(status, count)| format!("{count} {}", status_words(status))));
-    out.sentences(summary.refused.iter().take(TOLD).map(|(run, reason)| format!("run {run}: {reason}")));
-    let ended = summary.ended.iter().take(TOLD).map(|(run, status, time_s)| {
+    out.sentences(summary.refused.iter().take(LISTED).map(|(run, reason)| format!("run {run}: {reason}")));
+    let ended = summary.ended.iter().take(LISTED).map(|(run, status, time_s)| {
         format!("run {run}: {} at {} s", status_words(*status), significant(*time_s, 4))
     });
     out.sentences(ended);
@@ -181,7 +181,7 @@ pub(crate) fn lumps(plan: &Plan, summary: &Summary) -> Table {
 /// Drawn numbers for which the controller is not judged, and the reason why parameters of the
 /// linear model have no box.
 pub(crate) fn beyond_box(plan: &Plan) -> Vec<String> {
-    let mut told = Vec::new();
+    let mut sentences = Vec::new();
     let without: Vec<&str> = LUMP_NAMES.iter().copied().filter(|name| plan.bounds(name).is_none()).collect();
     if !without.is_empty() {
         let follow = match plan.box_of_family() {
@@ -191,9 +191,9 @@ pub(crate) fn beyond_box(plan: &Plan) -> Vec<String> {
                 "it ranges over numbers of the rig, from which they follow; `check` prints what they range over"
             }
         };
-        told.push(format!("[uncertainty] has no box of {}: {follow}", without.join(", ")));
+        sentences.push(format!("[uncertainty] has no box of {}: {follow}", without.join(", ")));
     }
-    told.extend(plan.beyond_box().into_iter().map(|one| {
+    sentences.extend(plan.beyond_box().into_iter().map(|one| {
         let unit = one.range.unit();
         let between = |[low, high]: [f64; 2]| format!("{} to {}", unit.number(low, 4), unit.text(high, 4));
         let drawn = between([one.range.minimum, one.range.maximum]);
@@ -208,7 +208,7 @@ pub(crate) fn beyond_box(plan: &Plan) -> Vec<String> {
             }
         }
     }));
-    told
+    sentences
 }
 
 /// A single run: its numbers as settings, and the output of `simulate`.

@@ -4,8 +4,8 @@ use super::simulate::frequencies;
 use super::unprinted::Unprinted;
 use super::{CommandError, Watch};
 use crate::alternatives::{
-    self, AlternativesError, AlternativesOptions as Asked, AskedAlternative, FrontRequest, IMPEDANCE_AT,
-    asked, asked_cases, judge, outside_words,
+    self, AlternativesError, AlternativesOptions, AskedAlternative, FrontRequest, IMPEDANCE_AT, asked,
+    asked_cases, judge, outside_words,
 };
 use crate::linearize::SweepRequest;
 use crate::project::{AS_DECLARED, Loaded};
@@ -27,13 +27,13 @@ pub struct AlternativesRequest {
 }
 
 impl AlternativesRequest {
-    fn read(&self) -> Result<Asked, CommandError> {
+    fn read(&self) -> Result<AlternativesOptions, CommandError> {
         let front = self.front.as_ref().zip(self.sweep.as_ref()).map(|(columns, range)| FrontRequest {
             columns: columns.split(',').map(|column| column.trim().to_string()).collect(),
             sweep: SweepRequest { range: range.clone(), points: self.points },
         });
         let at = self.frequencies.as_deref().map_or(Ok(IMPEDANCE_AT.to_vec()), frequencies)?;
-        Ok(Asked { front, impedance_at: at })
+        Ok(AlternativesOptions { front, impedance_at: at })
     }
 }
 
@@ -63,12 +63,13 @@ pub(super) fn read_alternatives(
     if loaded.project.alternatives.is_empty() {
         return Ok(vec![]);
     }
-    let mut told = rigs(&asked(source, loaded, catalogues)?.0, "")?;
+    let mut warnings = rigs(&asked(source, loaded, catalogues)?.0, "")?;
     for case in asked_cases(source, loaded, catalogues)? {
         let further = rigs(&case.all, &format!(", {}", case.name))?;
-        told.extend(further.into_iter().filter(|sentence| !told.contains(sentence)).collect::<Vec<_>>());
+        warnings
+            .extend(further.into_iter().filter(|sentence| !warnings.contains(sentence)).collect::<Vec<_>>());
     }
-    Ok(told)
+    Ok(warnings)
 }
 
 /// Assembles the rig of each alternative; returns the sentences on those that their families do not

@@ -17,7 +17,7 @@ pub struct CampaignRequest {
     /// Seed of all random numbers.
     pub seed: u32,
     /// Requested runs: all or one.
-    pub asked: CampaignRuns,
+    pub runs: CampaignRuns,
     /// True if the table for other programs and the figures are requested as files.
     pub files: bool,
 }
@@ -51,7 +51,7 @@ pub fn campaign_watched(
     let loaded = chosen.as_ref().unwrap_or(loaded);
     let plan = Plan::new(source, loaded, request.seed)
         .map_err(|error| CommandError::from(error).into_refusal(source, loaded))?;
-    let wanted = match request.asked {
+    let wanted = match request.runs {
         CampaignRuns::All(wanted) => wanted,
         CampaignRuns::One(run) => {
             let answer = one(source, loaded, catalogues, (&plan, run), destination, watch)?;

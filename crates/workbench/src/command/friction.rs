@@ -25,19 +25,19 @@ pub struct FrictionRequest {
 pub fn friction_watched(
     source: &dyn Source,
     loaded: Option<&Loaded>,
-    asked: &FrictionRequest,
+    request: &FrictionRequest,
     watch: Watch<'_>,
 ) -> Result<Answer, IdentifyError> {
     let loaded = loaded.ok_or(NothingToIdentify::NoProjectOfCylinder)?;
     let project = &loaded.project;
-    let files = if asked.files.is_empty() { recorded_runs(project) } else { asked.files.clone() };
+    let files = if request.files.is_empty() { recorded_runs(project) } else { request.files.clone() };
     if files.is_empty() {
         return Err(NothingToIdentify::NoRun.into());
     }
     let known = KnownCylinder::of(project)?;
     let found = identify_friction(friction_recordings(source, &files, &known)?, &known, watch)?;
     let mut files = friction::files(&found);
-    if asked.figures {
+    if request.figures {
         files.extend(picture_files(&friction::pictures(&found)));
     }
     Ok(Answer {

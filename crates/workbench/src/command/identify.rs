@@ -37,20 +37,20 @@ pub struct IdentifyRequest {
 pub fn identify_watched(
     source: &dyn Source,
     loaded: Option<&Loaded>,
-    asked: &IdentifyRequest,
+    request: &IdentifyRequest,
     watch: Watch<'_>,
 ) -> Result<Answer, IdentifyError> {
     let known = loaded.map_or(Known::default(), |loaded| Known::of(&loaded.project));
-    let files = files(loaded, asked)?;
+    let files = files(loaded, request)?;
     let RecordedFiles { recordings, contents, warnings } =
         recordings(source, &files, &known).map_err(IdentifyError::Files)?;
     let read = Read { contents, warnings };
     let usual = Search::default();
     let search = Search {
-        starts: asked.starts.unwrap_or(usual.starts),
-        seed: asked.seed,
-        leakage_model: asked.leakage_model,
-        bootstrap: asked.bootstrap,
+        starts: request.starts.unwrap_or(usual.starts),
+        seed: request.seed,
+        leakage_model: request.leakage_model,
+        bootstrap: request.bootstrap,
     };
     let found = identify(recordings, &known, search, watch)?;
     let actuator = loaded.and_then(|loaded| loaded.project.actuator.as_ref());
@@ -59,7 +59,7 @@ pub fn identify_watched(
     let region = rig.map(|rig| joint_region(&found, &rig.project, SMALLEST_EFFECT));
     let mut written = identify::files(&found);
     written.extend(region.iter().flatten().map(|region| identify::file(&found, region)));
-    if asked.figures {
+    if request.figures {
         written.extend(picture_files(&ValveFigures::of(&found).all()));
     }
     Ok(Answer {
@@ -71,9 +71,9 @@ pub fn identify_watched(
 }
 
 /// The requested files, or those of the project, with paths relative to it.
-fn files(loaded: Option<&Loaded>, asked: &IdentifyRequest) -> Result<Vec<RecordedTest>, IdentifyError> {
-    if !asked.files.is_empty() {
-        return Ok(asked.files.iter().map(|file| RecordedTest::of(file)).collect());
+fn files(loaded: Option<&Loaded>, request: &IdentifyRequest) -> Result<Vec<RecordedTest>, IdentifyError> {
+    if !request.files.is_empty() {
+        return Ok(request.files.iter().map(|file| RecordedTest::of(file)).collect());
     }
     let project = loaded.map(|loaded| &loaded.project);
     let files = project.map(recorded_files).unwrap_or_default();

@@ -31,25 +31,25 @@ pub struct LineRequest {
 pub fn line_watched(
     source: &dyn Source,
     loaded: Option<&Loaded>,
-    asked: &LineRequest,
+    request: &LineRequest,
     watch: Watch<'_>,
 ) -> Result<Answer, IdentifyError> {
     let loaded = loaded.ok_or(NothingToIdentify::NoProjectOfLine)?;
     let project = &loaded.project;
     let setup = Setup::new(project)?;
-    let side = asked.side.or(project.bench.line.map(|bench| bench.side)).unwrap_or_default();
+    let side = request.side.or(project.bench.line.map(|bench| bench.side)).unwrap_or_default();
     let known = KnownLine::of(&setup, side).map_err(LineFitError::from)?;
     let declared = project.identify.iter().flat_map(|identify| &identify.line);
-    let files: Vec<String> = match asked.files.is_empty() {
+    let files: Vec<String> = match request.files.is_empty() {
         true => declared.map(|file| project.path_of(file)).collect(),
-        false => asked.files.clone(),
+        false => request.files.clone(),
     };
     if files.is_empty() {
         return Err(NothingToIdentify::NoLineRecording.into());
     }
     let records = line_records(source, &files, known.piston_area)?;
-    let found = identify_line(records, known, &asked.settings, watch)?;
-    let drawn = if asked.figures { line_test::pictures(&found) } else { Vec::new() };
+    let found = identify_line(records, known, &request.settings, watch)?;
+    let drawn = if request.figures { line_test::pictures(&found) } else { Vec::new() };
     let pictures = picture_files(&drawn);
     let affirmative = found.effective_bulk_modulus.is_ok() || found.dynamic_bulk_modulus.is_ok();
     Ok(Answer {

@@ -66,10 +66,10 @@ impl OutputNames {
             Request::Verify { .. } => OutputNames::exact(&["margins.csv", CERTIFICATE_FILE]),
             Request::Shape { .. } => OutputNames::exact(&["margins.csv", SHAPED_PROJECT]),
             Request::Design { .. } => OutputNames::exact(&OF_DESIGN),
-            Request::Simulate(asked) => OutputNames::of_scenarios(project, asked.table),
+            Request::Simulate(request) => OutputNames::of_scenarios(project, request.table),
             Request::Compare => OutputNames::default(),
             Request::Alternatives(_) => OutputNames::of_alternatives(project),
-            Request::Campaign(asked) => match asked.asked {
+            Request::Campaign(campaign) => match campaign.runs {
                 CampaignRuns::One(_) => OutputNames::of_scenarios(project, TableFormat::Csv),
                 CampaignRuns::All(wanted) => {
                     let runs = wanted.shard.name();

@@ -43,7 +43,7 @@ fn declared(loaded: Option<&Loaded>) -> Vec<RecordedResponse> {
 pub fn response_watched(
     source: &dyn Source,
     loaded: Option<&Loaded>,
-    asked: &ResponseRequest,
+    request: &ResponseRequest,
     watch: Watch<'_>,
 ) -> Result<Answer, IdentifyError> {
     let declared = declared(loaded);
@@ -52,7 +52,7 @@ pub fn response_watched(
         known.unwrap_or_else(|| RecordedResponse::of(file))
     };
     let files =
-        if asked.files.is_empty() { declared.clone() } else { asked.files.iter().map(of_file).collect() };
+        if request.files.is_empty() { declared.clone() } else { request.files.iter().map(of_file).collect() };
     if files.is_empty() {
         return Err(NothingToIdentify::NoRecord.into());
     }
@@ -65,14 +65,14 @@ pub fn response_watched(
             record.controller.clone_from(&controller);
         }
     }
-    let found = members(&records, &asked.settings, watch)?;
+    let found = members(&records, &request.settings, watch)?;
     let comparisons = compare_levels(&found);
     let rig = loaded
         .filter(|loaded| loaded.project.actuator.is_some())
         .map(|loaded| Setup::rig_of(&loaded.project))
         .transpose()?;
     let found: Vec<Compared> = found.into_iter().map(|member| Compared::with(member, rig.as_ref())).collect();
-    let drawn = if asked.figures { response::pictures(&found) } else { Vec::new() };
+    let drawn = if request.figures { response::pictures(&found) } else { Vec::new() };
     let pictures = picture_files(&drawn);
     let files = response::files(&found).into_iter().chain(pictures).collect();
     Ok(Answer {

@@ -75,27 +75,27 @@ impl FrequencyOptions {
 pub(super) fn simulate_answer(
     source: &dyn Source,
     loaded: &Loaded,
-    asked: &SimulateRequest,
+    request: &SimulateRequest,
     destination: Option<&dyn Destination>,
     watch: Watch<'_>,
 ) -> Result<Unprinted, CommandError> {
-    if let Some(options) = &asked.frequency_response {
-        return frequency_answer(loaded, asked, &options.request(loaded.project.motion())?, watch);
+    if let Some(options) = &request.frequency_response {
+        return frequency_answer(loaded, request, &options.request(loaded.project.motion())?, watch);
     }
-    let table = destination.map(|destination| (destination, asked.table));
+    let table = destination.map(|destination| (destination, request.table));
     let setup = Setup::new(&loaded.project)?;
-    let runs = if asked.check {
+    let runs = if request.check {
         simulate_checked(source, &setup, table, watch)?
     } else {
         simulate_into(
             source,
             &setup,
-            RunOutput { ledger: asked.ledgers, ..RunOutput::new(asked.figures, table) },
+            RunOutput { ledger: request.ledgers, ..RunOutput::new(request.figures, table) },
             watch,
         )?
     };
     let mut written = files(loaded, &runs);
-    if asked.figures {
+    if request.figures {
         written.extend(figure_files(&runs));
     }
     let all = runs.len() == loaded.project.scenarios.len();
@@ -110,15 +110,15 @@ pub(super) fn simulate_answer(
 
 fn frequency_answer(
     loaded: &Loaded,
-    asked: &SimulateRequest,
-    request: &FrequencyRequest,
+    request: &SimulateRequest,
+    sines: &FrequencyRequest,
     watch: Watch<'_>,
 ) -> Result<Unprinted, CommandError> {
-    let found = frequency_response(&Setup::new(&loaded.project)?, request, watch)?;
+    let found = frequency_response(&Setup::new(&loaded.project)?, sines, watch)?;
     // writing to memory cannot fail
     let mut written: Vec<OutputFile> =
-        frequency_files(&found, asked.table, loaded.project.motion()).unwrap_or_default();
-    if asked.figures {
+        frequency_files(&found, request.table, loaded.project.motion()).unwrap_or_default();
+    if request.figures {
         written.extend(picture_files(&frequency_pictures(&found)));
     }
     Ok(Unprinted {

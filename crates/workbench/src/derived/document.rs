@@ -86,8 +86,8 @@ pub(crate) fn replaced_table(ranges: &[ReplacedRange]) -> Table {
     let row = |range: &ReplacedRange| {
         let ends = [range.stated[0], range.stated[1], range.visited[0], range.visited[1]];
         let [least, most, low, high] = ends.map(|end| Cell::number(end, 3));
-        let share = Cell::from(format!("{} %", significant(100.0 * range.share, 2)));
-        [range.symbol.into(), least, most, low, high, Cell::unit(range.unit), share]
+        let percent = Cell::from(format!("{} %", significant(100.0 * range.share, 2)));
+        [range.symbol.into(), least, most, low, high, Cell::unit(range.unit), percent]
     };
     let headings = ["quantity", "replaced from", "to", "visited from", "to", "unit", "share visited"];
     Table::new(headings).with(ranges.iter().map(row))

@@ -93,12 +93,12 @@ fn null_leakage(rig: &Rig, list: &mut List) {
 
 /// K_pU of the valve without any other leakage.
 fn pressure_gain(valve: &TwoPressureLinearParameters, list: &mut List) {
-    let alone = reduced(valve);
+    let without_leakage = reduced(valve);
     let (name, equation) = ("valve.pressure_gain", "K_{pU} = K_{qU}/K_c");
-    if alone.flow_pressure_coefficient == 0.0 {
+    if without_leakage.flow_pressure_coefficient == 0.0 {
         list.absent(name, "K_pU", "Pa/V", equation, "infinite, since the valve does not leak");
     } else {
-        let pressure_gain = alone.flow_gain / alone.flow_pressure_coefficient;
+        let pressure_gain = without_leakage.flow_gain / without_leakage.flow_pressure_coefficient;
         list.add(name, "K_pU", pressure_gain, "Pa/V", equation);
     }
 }

@@ -25,16 +25,17 @@ use crate::trial;
 use crate::verdict_words::margin_words;
 
 /// Accuracy to which a design satisfies a reserve, dB.
-const RESERVE_KEPT_DB: f64 = 2e-3;
+const RESERVE_ACCURACY_DB: f64 = 2e-3;
 
 /// Least margin of the audit minus the required reserve where that margin occurs, dB.
 fn least_beyond_reserve_db(view: &ProjectDesign) -> f64 {
     let left = view.designed.view.audit.specifications.iter().filter_map(|finding| {
         let worst = finding.worst.as_ref()?;
-        let kept_db = finding.requirement.reserve_at_db(view.options.reserve_db, worst.frequency_rad_per_s);
+        let reserve_db =
+            finding.requirement.reserve_at_db(view.options.reserve_db, worst.frequency_rad_per_s);
         // a spread has two limits
         let limits = if worst.other.is_some() { 2.0 } else { 1.0 };
-        Some(worst.margin_db - limits * kept_db)
+        Some(worst.margin_db - limits * reserve_db)
     });
     left.fold(f64::INFINITY, f64::min)
 }
@@ -48,8 +49,8 @@ pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearE
     let mut out = status(view);
     if view.minimum_delay_margin_s > 0.0 {
         let does = if view.tolerates_its_delay { "tolerates" } else { "does not tolerate" };
-        let asked = DisplayUnit::MILLISECOND.text(view.minimum_delay_margin_s, 3);
-        out.sentences([format!("the loop {does} the further delay of {asked} that is required")]);
+        let delay = DisplayUnit::MILLISECOND.text(view.minimum_delay_margin_s, 3);
+        out.sentences([format!("the loop {does} the further delay of {delay} that is required")]);
     }
     if view.options.reserve_db > 0.0 {
         let reserve = significant(view.options.reserve_db, 2);
@@ -59,7 +60,7 @@ pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearE
             false => "",
         };
         out.sentences([match least_beyond_reserve_db(view) {
-            least_db if least_db >= -RESERVE_KEPT_DB => {
+            least_db if least_db >= -RESERVE_ACCURACY_DB => {
                 format!("every margin keeps a reserve of {reserve} dB to its limit{why}")
             }
             least_db => format!(

@@ -175,7 +175,7 @@ pub(crate) fn rows(view: &ProjectDesign) -> Vec<Object> {
             .with("key", limit_key(limit.kind))
             .with(format!("value{}", limit_unit_key(limit.kind)), limit.value)
             .with("origin", origin_key(limit.origin))
-            .with("kept", is_kept(view, limit))
+            .with("kept", is_satisfied(view, limit))
             .maybe("worst_margin_db", margin_db(view, limit))
             .maybe("binds", view.binds(limit))
             .maybe("command", command(view, limit.kind).map(|found| command_object(view, found)))
@@ -185,7 +185,7 @@ pub(crate) fn rows(view: &ProjectDesign) -> Vec<Object> {
 }
 
 /// True if the design satisfies a limit; the search itself enforces the ranges of poles.
-fn is_kept(view: &ProjectDesign, limit: &DesignLimit) -> bool {
+fn is_satisfied(view: &ProjectDesign, limit: &DesignLimit) -> bool {
     match limit.kind {
         DesignLimitKind::MinimumDelayMargin => view.tolerates_its_delay,
         DesignLimitKind::PrefilterGain => view.exceeded_prefilter_gain().is_none(),

@@ -52,15 +52,15 @@ fn added(view: &ProjectDesign, repair: &Repair) -> Vec<String> {
     if plant.audit.verdict == Verdict::Met {
         return view.contradicting_waves().map(stable_with_waves).into_iter().collect();
     }
-    let Some(other) = repair.other.as_deref() else { return vec![nothing_found()] };
-    let [told, found] = match repair.status {
+    let Some(other) = repair.other.as_deref() else { return vec![none_found()] };
+    let [first, found] = match repair.status {
         RepairStatus::Met => [other, view],
         _ => [view, other],
     };
     let mut sentences = vec![before(plant), outcome(repair, found)];
     sentences.extend(repair.after.iter().map(|after| with_waves(repair.status, after)));
     if repair.status != RepairStatus::Met {
-        sentences.extend(crossing(repair, told));
+        sentences.extend(crossing(repair, first));
         sentences.push(help(repair));
         sentences.extend(nearest(found));
         sentences.extend(not_led(found));
@@ -82,7 +82,7 @@ fn not_led(found: &ProjectDesign) -> Option<String> {
 /// Knowledge about the plants that were not added.
 fn whole(view: Option<&ProjectAudit>) -> String {
     let every = "with `line.model = \"transmission_line\"` waves are in every plant of the family";
-    let told = match view {
+    let words = match view {
         None => return format!("the plant of the rig itself was added: {every}"),
         Some(view) if view.verdict() == Verdict::Met => {
             "the controller satisfies every specification with those too".to_string()
@@ -92,7 +92,9 @@ fn whole(view: Option<&ProjectAudit>) -> String {
         }
         Some(view) => format!("every plant is stable, with {}", margins(view)),
     };
-    format!("the plant of the rig itself was added, and nothing is claimed about the others; {every}: {told}")
+    format!(
+        "the plant of the rig itself was added, and nothing is claimed about the others; {every}: {words}"
+    )
 }
 
 /// The loop of the first design with the plant.
@@ -139,7 +141,7 @@ fn with_waves(status: RepairStatus, view: &ProjectAudit) -> String {
 /// `1 robust stability +0.1 dB at 330 rad/s, ...`
 fn margins(view: &ProjectAudit) -> String {
     let findings = view.audit.specifications.iter().enumerate();
-    let told = findings.filter_map(|(index, finding)| {
+    let margins = findings.filter_map(|(index, finding)| {
         let worst = finding.worst.as_ref()?;
         Some(format!(
             "{} {} {}",
@@ -148,13 +150,13 @@ fn margins(view: &ProjectAudit) -> String {
             frequency_words(worst.frequency_rad_per_s)
         ))
     });
-    told.collect::<Vec<_>>().join(", ")
+    margins.collect::<Vec<_>>().join(", ")
 }
 
 /// The crossover up to which the loop has |L| = 1, and the frequency at which the line is a quarter
 /// wave long.
-fn crossing(repair: &Repair, told: &ProjectDesign) -> Option<String> {
-    let (own, quarter) = (told.designed.figures.last_crossing_rad_per_s()?, repair.quarter_wave_rad_per_s?);
+fn crossing(repair: &Repair, first: &ProjectDesign) -> Option<String> {
+    let (own, quarter) = (first.designed.figures.last_crossing_rad_per_s()?, repair.quarter_wave_rad_per_s?);
     let beyond = if own > quarter { "beyond" } else { "below" };
     Some(format!(
         "in the loop that satisfies the family |L| is 1 up to {}, {beyond} the quarter wave of its slower line at {}",
@@ -216,7 +218,7 @@ fn stable_with_waves(run: &TrialRun) -> String {
 }
 
 /// Sentence for a repair without any controller.
-fn nothing_found() -> String {
+fn none_found() -> String {
     "that plant was added, and the search ended without a controller that makes every plant stable"
         .to_string()
 }

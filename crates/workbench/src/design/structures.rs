@@ -65,7 +65,7 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
             "steps missed: those of the controller that the search over frequency found; the structure alone{named} is led by its steps and may satisfy them"
         )]);
     }
-    let missed_on_rig = view.structures.iter().any(|one| misses_on_rig_alone(view, one));
+    let missed_on_rig = view.structures.iter().any(|one| misses_on_rig_only(view, one));
     out.sentences(missed_on_rig.then(|| {
         "nonlinear runs missed: its linear steps satisfy what is required in time, a run of it on the nonlinear rig missed it or left no room, and the search went on from there".to_string()
     }));
@@ -227,10 +227,10 @@ fn steps(view: &ProjectDesign, one: &ReachedStructure) -> [Option<String>; 2] {
 
 /// Overshoot, percent, and settling time, s, if they are required.
 fn reached_steps(view: &ProjectDesign, one: &ReachedStructure) -> Option<[Option<f64>; 2]> {
-    let (reached, wish) = (one.steps?, view.designed.view.in_time.first()?.requirement.wish);
+    let (reached, required) = (one.steps?, view.designed.view.in_time.first()?.requirement.wish);
     Some([
-        wish.overshoot_percent.map(|_| reached.overshoot_percent),
-        wish.settling_time_s.map(|_| reached.settling_time_s),
+        required.overshoot_percent.map(|_| reached.overshoot_percent),
+        required.settling_time_s.map(|_| reached.settling_time_s),
     ])
 }
 
@@ -246,14 +246,14 @@ fn misses_in_time(view: &ProjectDesign, one: &ReachedStructure) -> bool {
 }
 
 /// True if a run on the nonlinear rig misses the requirement, and the linear steps do not.
-fn misses_on_rig_alone(view: &ProjectDesign, one: &ReachedStructure) -> bool {
+fn misses_on_rig_only(view: &ProjectDesign, one: &ReachedStructure) -> bool {
     let misses = one.misses_on_rig || one.is_chosen && view.misses_on_rig();
     misses && !has_late_steps(view, one)
 }
 
 /// A structure compared with the one that is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum BesideTaken {
+enum ComparedWithTaken {
     /// The structure is shorter, or one of the two values is unknown.
     Open,
     /// No gain.
@@ -265,15 +265,19 @@ enum BesideTaken {
 }
 
 /// The gain of a structure over the one that is taken, in the quantity by which they are compared.
-fn beside_taken(view: &ProjectDesign, one: &ReachedStructure) -> BesideTaken {
+fn compare_with_taken(view: &ProjectDesign, one: &ReachedStructure) -> ComparedWithTaken {
     let taken = view.structures.iter().find(|other| other.is_chosen && other.order <= one.order);
-    let Some((taken, earned_db)) = taken.zip(earned_per_pole_db(view)) else { return BesideTaken::Open };
-    let Some((own_db, taken_db)) = one.compared_db.zip(taken.compared_db) else { return BesideTaken::Open };
+    let Some((taken, earned_db)) = taken.zip(earned_per_pole_db(view)) else {
+        return ComparedWithTaken::Open;
+    };
+    let Some((own_db, taken_db)) = one.compared_db.zip(taken.compared_db) else {
+        return ComparedWithTaken::Open;
+    };
     let further = (one.order - taken.order).max(1) as f64;
     match taken_db - own_db {
-        gained_db if gained_db >= earned_db * further => BesideTaken::WorthItsPoles,
-        gained_db if gained_db > 0.0 && one.order > taken.order => BesideTaken::NotWorthItsPoles,
-        _ => BesideTaken::NotBetter,
+        gained_db if gained_db >= earned_db * further => ComparedWithTaken::WorthItsPoles,
+        gained_db if gained_db > 0.0 && one.order > taken.order => ComparedWithTaken::NotWorthItsPoles,
+        _ => ComparedWithTaken::NotBetter,
     }
 }
 
@@ -289,13 +293,13 @@ fn ending_words(view: &ProjectDesign, one: &ReachedStructure) -> &'static str {
         StructureEnding::Missed if one.is_chosen => "missed, nearest",
         StructureEnding::Missed => "missed",
         ending @ (StructureEnding::Met | StructureEnding::NotEarned) => {
-            match (ending, beside_taken(view, one)) {
-                (StructureEnding::Met, BesideTaken::Open | BesideTaken::WorthItsPoles) => "met",
-                (StructureEnding::Met, BesideTaken::NotBetter) => "met, not better",
-                (StructureEnding::Met, BesideTaken::NotWorthItsPoles) => "met, not worth its poles",
-                (_, BesideTaken::NotBetter) => "not better",
-                (_, BesideTaken::NotWorthItsPoles) => "not worth its poles",
-                (_, BesideTaken::Open | BesideTaken::WorthItsPoles) => GIVEN_UP,
+            match (ending, compare_with_taken(view, one)) {
+                (StructureEnding::Met, ComparedWithTaken::Open | ComparedWithTaken::WorthItsPoles) => "met",
+                (StructureEnding::Met, ComparedWithTaken::NotBetter) => "met, not better",
+                (StructureEnding::Met, ComparedWithTaken::NotWorthItsPoles) => "met, not worth its poles",
+                (_, ComparedWithTaken::NotBetter) => "not better",
+                (_, ComparedWithTaken::NotWorthItsPoles) => "not worth its poles",
+                (_, ComparedWithTaken::Open | ComparedWithTaken::WorthItsPoles) => GIVEN_UP,
             }
         }
         StructureEnding::NotConverged => "not converged",

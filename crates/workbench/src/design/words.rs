@@ -70,11 +70,11 @@ pub(crate) fn verdict_sentence(verdict: &DesignVerdict, motion: MotionKind) -> S
         }
         DesignVerdict::StepsNotReached(controllers) => format!(
             "infeasible: none of the controllers tried{} makes its steps as they are required; the nearest one keeps all that is required over frequency",
-            tried(*controllers)
+            tested_words(*controllers)
         ),
         DesignVerdict::Infeasible { tried: controllers, relaxation_db } => format!(
             "infeasible: none of the controllers tried{} satisfies every specification; with every limit {} dB wider one does",
-            tried(*controllers),
+            tested_words(*controllers),
             significant(*relaxation_db, 3)
         ),
         DesignVerdict::Undecided => {
@@ -87,7 +87,7 @@ pub(crate) fn verdict_sentence(verdict: &DesignVerdict, motion: MotionKind) -> S
         ),
         DesignVerdict::NotStabilised(controllers) => format!(
             "not stabilised: none of the controllers tried{} makes every plant stable",
-            tried(*controllers)
+            tested_words(*controllers)
         ),
     }
 }
@@ -145,7 +145,7 @@ fn command_sentence(
     )
 }
 
-fn tried(controllers: TriedControllers) -> String {
+fn tested_words(controllers: TriedControllers) -> String {
     match controllers {
         TriedControllers::GivenStructure => ", all of the given structure,".to_string(),
         TriedControllers::Named(name) => format!(", all of the structure {},", structure_name(name)),

@@ -47,7 +47,7 @@ impl Block {
             }
             Block::Table(table) => table.markup(),
             Block::Figure(figure) => place(figure),
-            Block::Asked(table) => html! { div.verdicts { (table.markup()) } },
+            Block::Requests(table) => html! { div.verdicts { (table.markup()) } },
             Block::Cards { facts, are_results } => html! {
                 dl.facts.results[*are_results] {
                     @for (name, words) in facts { div.fact { dt { (name) } dd { (carded(words)) } } }
@@ -59,7 +59,7 @@ impl Block {
             Block::Steps { title, steps } => html! {
                 div { h3 { (title) } ol.next { @for step in steps { li { (coded(step)) } } } }
             },
-            Block::Beside(document) => html! { div.pair { (document.markup()) } },
+            Block::SideBySide(document) => html! { div.pair { (document.markup()) } },
             Block::Folded(summary, table) => html! { details { summary { (summary) } (table.markup()) } },
             Block::Preformatted(text) => html! { pre { (text) } },
         }

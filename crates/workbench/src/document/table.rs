@@ -88,8 +88,8 @@ impl Table {
     /// True if most cells of a column are numbers.
     pub(super) fn is_numeric(&self, column: usize) -> bool {
         let cells = self.rows().filter_map(|row| row.get(column));
-        let told = cells.filter(|cell| **cell != Cell::Missing && **cell != Cell::empty());
-        let [numbers, words] = told.fold([0, 0], |[numbers, words], cell| match cell.is_numeric() {
+        let filled = cells.filter(|cell| **cell != Cell::Missing && **cell != Cell::empty());
+        let [numbers, words] = filled.fold([0, 0], |[numbers, words], cell| match cell.is_numeric() {
             true => [numbers + 1, words],
             false => [numbers, words + 1],
         });

@@ -29,14 +29,14 @@ impl Document {
                 Block::Equations(equations) => {
                     equations.iter().for_each(|equation| indented(&mut out, equation));
                 }
-                Block::Table(table) | Block::Folded(_, table) | Block::Asked(table) => {
+                Block::Table(table) | Block::Folded(_, table) | Block::Requests(table) => {
                     out.push_str(&format!("{}\n", table.text()))
                 }
                 Block::Cards { facts, .. } => facts.iter().for_each(|(name, fact)| {
                     indented(&mut out, &format!("{name}: {fact}"));
                 }),
                 Block::Callout(_, sentence) => indented(&mut out, sentence),
-                Block::Beside(document) => out.push_str(&document.text()),
+                Block::SideBySide(document) => out.push_str(&document.text()),
                 Block::Preformatted(text) => out.push_str(text),
                 Block::HeadingOfFigures(_) | Block::Explanation(_) | Block::Figure(_) => {}
             }

@@ -46,9 +46,9 @@ pub(crate) fn output(setup: &Setup<'_>, linearization: &Linearization) -> Docume
         ),
     ]);
     out.sentences(impedance_at_joint(linearization));
-    if let Some(asked) = &linearization.asked {
-        out.section("Impedance requested and achieved", asked_table(asked, motion));
-        out.sentences([asked_sentence(asked)]);
+    if let Some(required) = &linearization.asked {
+        out.section("Impedance requested and achieved", required_impedance_table(required, motion));
+        out.sentences([required_impedance_sentence(required)]);
     }
     out
 }
@@ -115,7 +115,7 @@ pub(crate) fn impedance_at_joint(linearization: &Linearization) -> Option<String
 }
 
 /// A virtual impedance and the impedance at the port, at a few frequencies.
-pub(crate) fn asked_table(asked: &AskedImpedance, motion: MotionKind) -> Table {
+pub(crate) fn required_impedance_table(required: &AskedImpedance, motion: MotionKind) -> Table {
     let row = |point: &AskedAt| {
         let size = |value: Complex64| Cell::number(portable::magnitude(value), 3);
         let turned = portable::argument(point.shown / point.asked).to_degrees();
@@ -129,13 +129,13 @@ pub(crate) fn asked_table(asked: &AskedImpedance, motion: MotionKind) -> Table {
     let unit = motion.dimension(&DAMPING).si;
     let [requested, achieved] = ["requested", "achieved"].map(|word| format!("{word}, {unit}"));
     let headings = ["frequency, rad/s", &requested, &achieved, "phase difference, deg"];
-    Table::new(headings).with(asked.points.iter().map(row))
+    Table::new(headings).with(required.points.iter().map(row))
 }
 
 /// Sentence on the band in which the port has the required impedance.
-pub(crate) fn asked_sentence(asked: &AskedImpedance) -> String {
+pub(crate) fn required_impedance_sentence(required: &AskedImpedance) -> String {
     let within = significant(WITHIN_PERCENT, 3);
-    match asked.follows_rad_per_s {
+    match required.follows_rad_per_s {
         Some([from, to]) => format!(
             "the port shows the virtual impedance within {within} % from {} to {} rad/s",
             significant(from, 3),

@@ -33,11 +33,11 @@ pub(crate) fn stiffness_sentence(linearization: &Linearization) -> String {
     let symbol = motion.symbols().stiffness;
     let range = |stiffness: &StrokeStiffness| stiffness_words(*motion, stiffness)[0].clone();
     let [_, place] = stiffness_words(*motion, &difference.by_volume);
-    let percent = |share: f64| significant(100.0 * share, 2);
+    let percent = |fraction: f64| significant(100.0 * fraction, 2);
     let ratios = [difference.minimum_ratio, difference.maximum_ratio];
     let gas = match difference.gas_compliance_share {
         0.0 => String::new(),
-        share => format!(" The gas of accumulators provides {} % of the compliance.", percent(share)),
+        fraction => format!(" The gas of accumulators provides {} % of the compliance.", percent(fraction)),
     };
     if ratios.iter().all(|ratio| (ratio - 1.0).abs() < AGREEMENT) {
         return format!(

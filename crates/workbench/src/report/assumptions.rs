@@ -17,24 +17,24 @@ pub(super) fn assumptions(project: &Project) -> Vec<String> {
                 .to_string(),
         ];
     };
-    let mut told: Vec<&str> = vec![supply(actuator)];
-    told.extend(lines(actuator));
+    let mut sentences: Vec<&str> = vec![supply(actuator)];
+    sentences.extend(lines(actuator));
     let sizing = project.sizing.as_ref().map(|sizing| first_order(sizing.speed));
-    told.extend(friction(actuator));
+    sentences.extend(friction(actuator));
     let moves = match actuator.load {
         Load::Prescribed => "The load moves as prescribed",
         _ => "The load is the declared one",
     };
     let sensor = actuator.motion().words().force_sensor;
     let load = format!("{moves}; the {sensor}'s stiffness includes what it is mounted on.");
-    told.push(&load);
-    told.extend(sizing.as_deref());
+    sentences.push(&load);
+    sentences.extend(sizing.as_deref());
     if actuator.fluid.entrained_air.is_none_or(|fraction| fraction == 0.0) {
-        told.push("The oil carries no free air.");
+        sentences.push("The oil carries no free air.");
     }
-    told.extend(velocity(project));
-    told.extend(pressures(project));
-    told.into_iter().map(str::to_string).collect()
+    sentences.extend(velocity(project));
+    sentences.extend(pressures(project));
+    sentences.into_iter().map(str::to_string).collect()
 }
 
 /// The response that the sizing assumes; its deviation from the final value is e^(-t/T).
@@ -81,31 +81,31 @@ fn lines(actuator: &DeclaredActuator) -> Vec<&'static str> {
     let stiffens = |line: &DeclaredLine| {
         line.hose().is_some() && line.dynamic_stiffening.as_ref().is_some_and(|ratio| ratio.nominal != 1.0)
     };
-    let mut told = Vec::new();
+    let mut sentences = Vec::new();
     if any(&|line| line.hose().is_some()) {
-        told.push(match actuator.line.compliance {
+        sentences.push(match actuator.line.compliance {
             StiffnessModel::Uniform => "Volumetric expansion and wall modulus of a hose are taken at the supply pressure (`uniform`); between the stated point and another pressure the expansion follows the slope of the catalogue, and a supply beyond the point causes a warning.",
             StiffnessModel::ByVolume => "Volumetric expansion of a hose is taken at the mean of supply and tank pressure (`by_volume`), and its compliance is the slope of the catalogue; a supply beyond the stated point causes a warning.",
         });
     }
     if any(&|line| stiffens(line) && creeps(line)) {
-        told.push("The wall of a hose creeps: it has its dynamic modulus for fast motions, its static one at rest, and passes from one to the other with the declared relaxation time.");
+        sentences.push("The wall of a hose creeps: it has its dynamic modulus for fast motions, its static one at rest, and passes from one to the other with the declared relaxation time.");
     }
     if any(&|line| stiffens(line) && !creeps(line)) {
-        told.push("The wall of a hose has its dynamic modulus at every frequency; at rest it is softer by the stiffening ratio.");
+        sentences.push("The wall of a hose has its dynamic modulus at every frequency; at rest it is softer by the stiffening ratio.");
     }
     if any(&|line| line.length().is_some() && !line.motion.has_waves()) {
-        told.push("A line has one pressure over its length: no waves travel in it.");
+        sentences.push("A line has one pressure over its length: no waves travel in it.");
     }
     if sides().any(|line| line.length().is_some()) {
-        told.push(match actuator.line.compliance {
+        sentences.push(match actuator.line.compliance {
             StiffnessModel::Uniform => {
                 "The effective bulk modulus of a line applies to its chamber too (`uniform`)."
             }
             StiffnessModel::ByVolume => "Chamber and line each have the modulus of their own (`by_volume`).",
         });
     }
-    told
+    sentences
 }
 
 fn friction(actuator: &DeclaredActuator) -> Option<&'static str> {

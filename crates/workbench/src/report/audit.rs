@@ -11,16 +11,16 @@ use crate::trial::{self, Trial};
 pub(super) fn chapter(
     problem: &RobustProblem,
     view: &ProjectAudit,
-    tried: Option<&Trial>,
+    trial: Option<&Trial>,
 ) -> Result<Chapter, CommandError> {
     let mut figures = closed_loops::figures(problem, view)?;
     let steps = family_steps::figure(problem, view, ["family_steps", "Step responses of the family"]);
     let refused = steps.and_then(|steps| steps.map(|figure| figures.push(figure)).err());
     let mut out = document(view, figures);
     out.explanations(refused.map(|reason| format!("No step responses of the family: {reason}.")));
-    if let Some(tried) = tried {
+    if let Some(trial) = trial {
         out.append(trial::document(
-            tried,
+            trial,
             Some(["machine_steps", "The controller in the nonlinear simulation"]),
         ));
     }

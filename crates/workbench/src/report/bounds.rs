@@ -96,7 +96,7 @@ const SHOWN_BOUNDS: usize = 5;
 
 /// Phases next to a loop at which a bound is searched for, degrees, and the number of degrees that
 /// count as much as a decibel.
-const BESIDE_DEGREES: [f64; 9] = [0.0, -10.0, 10.0, -20.0, 20.0, -30.0, 30.0, -40.0, 40.0];
+const PHASE_OFFSETS_DEG: [f64; 9] = [0.0, -10.0, 10.0, -20.0, 20.0, -30.0, 30.0, -40.0, 40.0];
 const DEGREES_PER_DECIBEL: f64 = 4.0;
 
 /// The bounds of all specifications at the frequencies at which one of these loops comes nearest to
@@ -107,16 +107,16 @@ pub(super) fn nearest_bounds(found: &[DesignFrequency], loops: &[&RobustProblem]
             let feedback = problem.compensation.response(one.frequency_rad_per_s).feedback;
             let open_loop = one.template.template.nominal * feedback;
             // a bound may be to the left or right of the loop, and not above or below it
-            let beside = |degrees: f64| {
+            let distance_db = |degrees: f64| {
                 let turned = exp_complex(Complex64::new(0.0, degrees.to_radians()));
                 let above_db = match one.exact_bounds.placement(open_loop * turned) {
                     Placement::Allowed { slack_db } => slack_db,
                     Placement::Forbidden { .. } => 0.0,
                 };
-                let beside_db = degrees / DEGREES_PER_DECIBEL;
-                (above_db * above_db + beside_db * beside_db).sqrt()
+                let phase_db = degrees / DEGREES_PER_DECIBEL;
+                (above_db * above_db + phase_db * phase_db).sqrt()
             };
-            BESIDE_DEGREES.into_iter().map(beside).fold(f64::INFINITY, f64::min)
+            PHASE_OFFSETS_DEG.into_iter().map(distance_db).fold(f64::INFINITY, f64::min)
         };
         loops.iter().map(of).fold(f64::INFINITY, f64::min)
     };

@@ -72,12 +72,13 @@ pub(super) fn driven(
         true => "Campaign: simulations with drawn numbers, designed controller",
         false => "Campaign: simulations with drawn numbers",
     };
-    let asked = loaded.project.campaign.as_ref().and_then(|campaign| campaign.runs).map_or(RUNS, u64::from);
-    let mut told = || -> Result<_, CampaignError> {
+    let requested =
+        loaded.project.campaign.as_ref().and_then(|campaign| campaign.runs).map_or(RUNS, u64::from);
+    let mut simulated = || -> Result<_, CampaignError> {
         let plan = Plan::new(source, loaded, SEED)?;
         let of = |runs: u64| RequestedRuns { runs, shard: Shard::default(), effort: Effort::on_all_cores() };
-        let pilot = campaign(&plan, of(asked.min(PILOT_RUNS)), None, watch)?;
-        let runs = within_budget(asked, &pilot);
+        let pilot = campaign(&plan, of(requested.min(PILOT_RUNS)), None, watch)?;
+        let runs = within_budget(requested, &pilot);
         let rows = campaign(&plan, of(runs), None, watch)?;
         let summary = Summary::of(&plan, &rows);
         let figures = pictures(&plan, &summary)?;
@@ -85,7 +86,7 @@ pub(super) fn driven(
         let missing = (rows.len() as u64) < runs;
         Ok((plan, (runs, missing), (summary, steps), figures))
     };
-    let (document, fact, steps) = match told() {
+    let (document, fact, steps) = match simulated() {
         Err(error) => {
             let mut out = Document::default();
             out.verdict(StatusMark::Bad, format!("Not simulated: {error}"), vec![]);
@@ -94,23 +95,23 @@ pub(super) fn driven(
         Ok((_, (_, true), _, _)) => return Err(Stopped.into()),
         Ok((plan, (runs, _), (summary, steps), figures)) => {
             let words = words(runs, &plan, &summary);
-            (document([runs, asked], &plan, &summary, figures), Some(("Campaign", words)), steps)
+            (document([runs, requested], &plan, &summary, figures), Some(("Campaign", words)), steps)
         }
     };
     Ok(Some(CampaignChapter { chapter: Chapter::of(anchor, title, document), fact, steps }))
 }
 
-fn within_budget(asked: u64, pilot: &[Row]) -> u64 {
+fn within_budget(requested: u64, pilot: &[Row]) -> u64 {
     let steps: u64 = pilot.iter().filter_map(Row::ran).map(|ran| ran.steps).sum();
-    runs_within_budget(asked, [pilot.len() as u64, steps])
+    runs_within_budget(requested, [pilot.len() as u64, steps])
 }
 
 /// Number of the requested runs that fits the report's budget of integration steps, estimated from
 /// the first runs and their steps.
-pub fn runs_within_budget(asked: u64, [made, steps]: [u64; 2]) -> u64 {
+pub fn runs_within_budget(requested: u64, [made, steps]: [u64; 2]) -> u64 {
     match made.saturating_mul(BUDGET_STEPS).checked_div(steps) {
-        Some(most) => asked.min(most.max(made)),
-        None => asked,
+        Some(most) => requested.min(most.max(made)),
+        None => requested,
     }
 }
 
@@ -135,18 +136,18 @@ fn steps(loaded: &Loaded, plan: &Plan, rows: &[Row]) -> Vec<CampaignStep> {
 }
 
 /// Metrics of an event that a reader wants first; the first of these that the event has are shown.
-const TOLD_FIRST: [Metric; 4] =
+const SUMMARY_METRICS: [Metric; 4] =
     [Metric::DisturbancePeak, Metric::SettlingTime, Metric::TrackingErrorPeak, Metric::ForcePeak];
 /// Number of events in the summary.
-const TOLD_EVENTS: usize = 2;
+const SUMMARY_EVENTS: usize = 2;
 
 /// The number of completed runs, and the range of most of them in the first events.
 fn words(runs: u64, plan: &Plan, summary: &Summary) -> String {
-    let mut told = vec![format!("{} of {runs} runs completed", summary.statuses[0])];
+    let mut parts = vec![format!("{} of {runs} runs completed", summary.statuses[0])];
     let units = plan.units();
     let windows = plan.windows().iter().zip(&summary.metrics);
     let of_window = |(window, spreads): (&Window, &PerMetric<Option<Spread>>)| {
-        let metric = TOLD_FIRST.into_iter().find(|metric| spreads[*metric].is_some())?;
+        let metric = SUMMARY_METRICS.into_iter().find(|metric| spreads[*metric].is_some())?;
         let unit = shown_in(metric, units);
         let [low, .., high] = spreads[metric]?.quantiles.map(|value| unit.number(value, DIGITS));
         Some(format!(
@@ -156,18 +157,18 @@ fn words(runs: u64, plan: &Plan, summary: &Summary) -> String {
             unit.symbol
         ))
     };
-    told.extend(windows.filter_map(of_window).take(TOLD_EVENTS));
+    parts.extend(windows.filter_map(of_window).take(SUMMARY_EVENTS));
     let [least, .., most] = QUANTILES;
-    format!("{} ({least}th to {most}th percentile)", told.join("; "))
+    format!("{} ({least}th to {most}th percentile)", parts.join("; "))
 }
 
-fn document([runs, asked]: [u64; 2], plan: &Plan, summary: &Summary, figures: Vec<Figure>) -> Document {
+fn document([runs, requested]: [u64; 2], plan: &Plan, summary: &Summary, figures: Vec<Figure>) -> Document {
     let completed = summary.statuses[0];
     let (scenario, seed) = (plan.scenario(), plan.seed());
     let mut out = Document::default();
     out.explanation(format!("{runs} runs of the scenario `{scenario}`, seed {seed}, with the numbers below drawn anew for each, independently of each other: {completed} were completed."));
     out.explanations(left_out(plan));
-    out.explanations((runs < asked).then(|| format!("{asked} runs were asked for: these are as many as a report makes within its budget of {BUDGET_STEPS} steps of the integration. `phea campaign PROJECT.toml --seed {seed} --runs {asked}` makes all of them.")));
+    out.explanations((runs < requested).then(|| format!("{requested} runs were asked for: these are as many as a report makes within its budget of {BUDGET_STEPS} steps of the integration. `phea campaign PROJECT.toml --seed {seed} --runs {requested}` makes all of them.")));
     let refused = summary.refused.first().map(|(run, reason)| {
         format!("{} draws do not give a machine, the first is run {run}: {reason}.", summary.refused.len())
     });
@@ -193,21 +194,21 @@ fn document([runs, asked]: [u64; 2], plan: &Plan, summary: &Summary, figures: Ve
 }
 
 /// The runs that are worst in most.
-fn told(summary: &Summary) -> Vec<&WorstRun> {
-    let mut told: Vec<&WorstRun> = summary.worst.iter().collect();
-    told.sort_by_key(|worst| std::cmp::Reverse(worst.of.len()));
-    told.truncate(WORST);
-    told
+fn worst_runs(summary: &Summary) -> Vec<&WorstRun> {
+    let mut runs: Vec<&WorstRun> = summary.worst.iter().collect();
+    runs.sort_by_key(|worst| std::cmp::Reverse(worst.of.len()));
+    runs.truncate(WORST);
+    runs
 }
 
 fn worst(out: &mut Document, plan: &Plan, summary: &Summary) {
-    let told = told(summary);
+    let runs = worst_runs(summary);
     out.heading("Worst runs");
-    out.explanations(told.first().map(|first| {
+    out.explanations(runs.first().map(|first| {
         format!("A run follows from seed and index: `phea campaign PROJECT.toml --seed {} --run {}` simulates it again and prints all that happens in it, with its numbers to their last digit.", plan.seed(), first.run)
     }));
     let row = |worst: &&WorstRun| [worst.run.to_string(), worst_in(plan, worst)];
-    out.table(Table::new(["run", "worst in"]).with(told.iter().map(row)));
+    out.table(Table::new(["run", "worst in"]).with(runs.iter().map(row)));
 }
 
 /// Event by event, the metrics in which a run is worst, without their units.
@@ -226,7 +227,7 @@ fn worst_in(plan: &Plan, worst: &WorstRun) -> String {
 
 /// Every drawn number: its distribution, and the values of the worst runs.
 fn drawn(out: &mut Document, plan: &Plan, summary: &Summary) {
-    let draws: Vec<_> = told(summary).iter().map(|worst| plan.draw(worst.run)).collect();
+    let draws: Vec<_> = worst_runs(summary).iter().map(|worst| plan.draw(worst.run)).collect();
     let runs = draws.iter().map(|draw| format!("run {}", draw.run));
     let heads = ["number", "unit", "from", "to"].map(String::from).into_iter().chain(runs);
     let row = |(place, range): (usize, &VariedRange)| {

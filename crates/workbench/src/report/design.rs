@@ -31,7 +31,7 @@ use crate::trial::{self, Trial};
 
 /// True if the report of a project designs a controller: the project has `[design]`, or gives no
 /// controller.
-pub(super) fn is_asked_for(project: &Project) -> bool {
+pub(super) fn is_requested(project: &Project) -> bool {
     let has_law = project.controller.as_ref().is_some_and(|controller| controller.has_law());
     !project.specifications.is_empty() && (project.design.is_some() || !has_law)
 }

@@ -65,7 +65,7 @@ pub(super) fn driven(
 impl MachineChapter {
     /// Requirement in time for the steps of a scenario; `None` if the scenario has no step to which
     /// it applies.
-    pub(super) fn wish_of(&self, index: usize) -> Option<&TrackingWish> {
+    pub(super) fn requirement_of(&self, index: usize) -> Option<&TrackingWish> {
         self.required_of(index).map(|required| &required.wish)
     }
 
@@ -106,7 +106,7 @@ impl MachineChapter {
     /// words each, of the controller that a reader would take first.
     pub(super) fn facts(&self) -> Vec<(&'static str, String)> {
         let names = [(GIVEN, "Simulated, given controller"), (DESIGNED, "Simulated, designed controller")];
-        let fact = |(side, name): (&str, &'static str)| Some((name, told(self.runs_of(side)?)?));
+        let fact = |(side, name): (&str, &'static str)| Some((name, fact_words(self.runs_of(side)?)?));
         names.into_iter().filter_map(fact).collect()
     }
 }
@@ -116,7 +116,7 @@ fn run_of(side: &DrivenSide, index: usize) -> Option<&ScenarioRun> {
 }
 
 /// The first step and the greatest disturbance of these runs.
-fn told(runs: &[ScenarioRun]) -> Option<String> {
+fn fact_words(runs: &[ScenarioRun]) -> Option<String> {
     if let Some((run, stopped)) = runs.iter().find_map(|run| Some((run, run.stopped()?))) {
         let (word, time) = (status_words(stopped.status), significant(stopped.time_s, 3));
         return Some(match stopped.status {
@@ -146,8 +146,8 @@ fn told(runs: &[ScenarioRun]) -> Option<String> {
         let scenario = if is_first { String::new() } else { format!("{}, ", run.name) };
         format!("{scenario}{}: {peak} of disturbance", cause_words(&window, units))
     });
-    let told: Vec<String> = step.into_iter().chain(disturbed).collect();
-    (!told.is_empty()).then(|| told.join("; "))
+    let parts: Vec<String> = step.into_iter().chain(disturbed).collect();
+    (!parts.is_empty()).then(|| parts.join("; "))
 }
 
 /// The disturbances of a run, in N, with their windows.

@@ -6,25 +6,25 @@ use crate::quantity::{DisplayUnit, TIME, Units, display};
 /// Digits of a number in a sentence.
 const DIGITS: usize = 4;
 /// Number of frequencies that are listed; if there are more, only the first and the last.
-const TOLD: usize = 4;
+const LISTED: usize = 4;
 
 /// The initial state and the inputs of a scenario, if these are more than steps of the reference;
 /// `turns` is true if the load is driven through a linkage, otherwise it moves with the rod.
 pub(super) fn sentences(scenario: &Scenario, units: Units, turns: bool) -> Vec<String> {
-    let mut told = Vec::new();
+    let mut sentences = Vec::new();
     if let Some(file) = scenario.start.as_ref().and_then(|start| start.file.as_ref()) {
-        told.push(format!("It goes on from the state in {file}."));
+        sentences.push(format!("It goes on from the state in {file}."));
     }
     if scenario.reference.iter().any(|signal| signal.steps().is_empty()) {
-        told.push(format!("The reference is {}.", parts(&scenario.reference, units.force)));
+        sentences.push(format!("The reference is {}.", parts(&scenario.reference, units.force)));
     }
     if scenario.is_open_loop() {
         let command = parts(&scenario.command, DisplayUnit::VOLT);
-        told.push(format!("It runs open loop: no controller acts, and the command is {command}."));
+        sentences.push(format!("It runs open loop: no controller acts, and the command is {command}."));
     }
     if !scenario.external_force.is_empty() {
         let external = &scenario.external_force;
-        told.push(match turns {
+        sentences.push(match turns {
             false => {
                 let force = units.motion.words().force;
                 format!("An external {force} acts on the load: {}.", parts(external, units.force))
@@ -37,9 +37,9 @@ pub(super) fn sentences(scenario: &Scenario, units: Units, turns: bool) -> Vec<S
     }
     if !scenario.setting_change.is_empty() {
         let change = parts(&scenario.setting_change, DisplayUnit::ONE);
-        told.push(format!("The setting of the accumulators moves from where it rests: {change}."));
+        sentences.push(format!("The setting of the accumulators moves from where it rests: {change}."));
     }
-    told
+    sentences
 }
 
 /// The parts of an input, joined.
@@ -87,7 +87,7 @@ fn hertz(value: &f64) -> String {
 
 fn multisine(sines: &Multisine, unit: DisplayUnit) -> String {
     let frequencies = match sines.frequencies.as_slice() {
-        [first, .., last] if sines.frequencies.len() > TOLD => [first, last].map(hertz).join(" to "),
+        [first, .., last] if sines.frequencies.len() > LISTED => [first, last].map(hertz).join(" to "),
         few => few.iter().map(hertz).collect::<Vec<_>>().join(", "),
     };
     let amplitudes = match &sines.amplitudes {

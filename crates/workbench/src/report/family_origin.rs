@@ -68,15 +68,15 @@ fn origin(project: &Project) -> String {
 
 fn area(areas: &TemplateAreas) -> [Cell; 4] {
     let TemplateAreas { frequency_rad_per_s, replaced, visited } = *areas;
-    let share = match visited / replaced {
-        share if share.is_finite() => Cell::number(100.0 * share, 2),
+    let fraction = match visited / replaced {
+        fraction if fraction.is_finite() => Cell::number(100.0 * fraction, 2),
         _ => Cell::Missing,
     };
     [
         Cell::from(frequency_number(frequency_rad_per_s)),
         Cell::number(replaced, 3),
         Cell::number(visited, 3),
-        share,
+        fraction,
     ]
 }
 

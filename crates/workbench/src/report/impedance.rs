@@ -11,8 +11,8 @@ use crate::answer::significant;
 use crate::document::{Document, Table};
 use crate::figure::{AsymptoteLine, Figure, FrequencyMark, FrequencySeries, ImpedanceDiagram, Words};
 use crate::linearize::{
-    HidingMass, Linearization, PortView, asked_sentence, asked_table, frequency_grid, hiding_mass_words,
-    impedance_at_joint, no_closed_impedance_words, passivity_sentence,
+    HidingMass, Linearization, PortView, frequency_grid, hiding_mass_words, impedance_at_joint,
+    no_closed_impedance_words, passivity_sentence, required_impedance_sentence, required_impedance_table,
 };
 use crate::project::DeclaredSeries;
 use crate::quantity::{DAMPING, DisplayUnit, MASS, MotionKind, STIFFNESS};
@@ -77,7 +77,7 @@ pub(super) fn chapter(
 /// The virtual impedance; empty if the project states none.
 fn required(linearization: &Linearization) -> Document {
     let mut out = Document::default();
-    let Some(asked) = &linearization.asked else { return out };
+    let Some(required) = &linearization.asked else { return out };
     let motion = linearization.motion;
     out.heading("The virtual impedance");
     let equations = motion.either(
@@ -89,8 +89,8 @@ fn required(linearization: &Linearization) -> Document {
         "The impedance that the loop is required to show to a load that moves its port, and the one that it shows: Z = M_v s + B_v + K_v/s against {} of the nominal plant, waves, samples and delay included.",
         motion.symbols().impedance
     ));
-    out.table(asked_table(asked, motion));
-    out.sentences([format!("closed loop: {}", asked_sentence(asked))]);
+    out.table(required_impedance_table(required, motion));
+    out.sentences([format!("closed loop: {}", required_impedance_sentence(required))]);
     out
 }
 

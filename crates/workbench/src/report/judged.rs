@@ -55,7 +55,7 @@ pub(super) fn judged(
         Some(view) => tried(source, setup, (&problem, view), DrivenCorners::WhereElseSatisfies, watch)?,
         None => None,
     };
-    let designed = match design::is_asked_for(project) {
+    let designed = match design::is_requested(project) {
         true => Some(design::designed(source, setup, watch)?),
         false => None,
     };

@@ -46,9 +46,9 @@ fn motion(project: &Project) -> (f64, f64) {
 /// x = h (10 u^3 - 15 u^4 + 6 u^5),    v = h/T 30 u^2 (1 - u)^2,    u = t/T
 /// ```
 fn velocity(distance: f64, duration: f64) -> Result<SampledSignal, TimeResponseError> {
-    let shares = (0..=MOTION_SAMPLES).map(|sample| f64::from(sample) / f64::from(MOTION_SAMPLES));
+    let fractions = (0..=MOTION_SAMPLES).map(|sample| f64::from(sample) / f64::from(MOTION_SAMPLES));
     let (times, velocities) =
-        shares.map(|u| (u * duration, distance / duration * 30.0 * u * u * (1.0 - u) * (1.0 - u))).unzip();
+        fractions.map(|u| (u * duration, distance / duration * 30.0 * u * u * (1.0 - u) * (1.0 - u))).unzip();
     SampledSignal::new(times, velocities, Interpolation::Linear)
 }
 

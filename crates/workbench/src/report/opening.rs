@@ -61,7 +61,7 @@ pub struct Decided {
     /// The trial of the verdict on the machine: `agrees`, `differs`, `contradicts`.
     pub machine: Option<&'static str>,
     /// True if every step on the machine satisfied the requirement in time.
-    pub wishes_kept: Option<bool>,
+    pub requirements_met: Option<bool>,
 }
 
 impl Decision {
@@ -82,7 +82,7 @@ impl Decided {
             .maybe("specifications", Some(specifications).filter(|all| !all.is_empty()))
             .maybe("proven", self.proven)
             .maybe("machine", self.machine)
-            .maybe("wishes_kept", self.wishes_kept)
+            .maybe("wishes_kept", self.requirements_met)
     }
 }
 
@@ -95,7 +95,7 @@ pub(super) fn opening(contents: &Contents<'_>, nichols: Option<Figure>) -> (Chap
     let mut out = Document::default();
     out.cards(carded(contents.facts), false);
     out.cards(carded(contents.results), true);
-    out.asked(verdicts::table(contents, &sides));
+    out.requests(verdicts::table(contents, &sides));
     out.callouts(StatusMark::Bad, hindrances(contents));
     let mut steps = Document::default();
     steps.steps("What to do next", next.clone());
@@ -107,10 +107,10 @@ pub(super) fn opening(contents: &Contents<'_>, nichols: Option<Figure>) -> (Chap
         // placed next to a figure that has no partner
         1 => {
             pair.append(steps);
-            out.beside(pair);
+            out.side_by_side(pair);
         }
         _ => {
-            out.beside(pair);
+            out.side_by_side(pair);
             out.append(steps);
         }
     }
@@ -123,7 +123,7 @@ pub(super) fn opening(contents: &Contents<'_>, nichols: Option<Figure>) -> (Chap
 /// The first scenario that is drawn, of both controllers.
 fn over_time(driven: &MachineChapter) -> Option<Figure> {
     let first = driven.drawn(0);
-    at_a_glance("opening_force", &first, driven.wish_of(0))
+    at_a_glance("opening_force", &first, driven.requirement_of(0))
 }
 
 fn decided(contents: &Contents<'_>, side: &Side<'_>) -> Decided {
@@ -134,7 +134,7 @@ fn decided(contents: &Contents<'_>, side: &Side<'_>) -> Decided {
         specifications: findings.iter().map(|finding| verdict_key(finding.verdict)).collect(),
         proven: side.is_proven(),
         machine: side.trial.map(|trial| agreement_key(trial.agreement())),
-        wishes_kept: required.and_then(|required| side.keeps(required)),
+        requirements_met: required.and_then(|required| side.satisfies(required)),
     }
 }
 

@@ -46,8 +46,8 @@ pub(super) fn chapter(loaded: &Loaded, is_judged: bool) -> Chapter {
     Chapter::of("provenance", "Provenance and assumptions", out)
 }
 
-fn paths(loaded: &Loaded, keep: impl Fn(&Origin) -> bool) -> Vec<&str> {
-    loaded.provenance.iter().filter(|entry| keep(&entry.origin)).map(|entry| entry.path.as_str()).collect()
+fn paths(loaded: &Loaded, selects: impl Fn(&Origin) -> bool) -> Vec<&str> {
+    loaded.provenance.iter().filter(|entry| selects(&entry.origin)).map(|entry| entry.path.as_str()).collect()
 }
 
 /// Statement on the scope that this report does not cover.

@@ -33,7 +33,7 @@ fn shown(value: f64, dimension: &Dimension) -> String {
 
 /// Text or drawing next to which the cylinder is described.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Beside {
+enum DescriptionContext {
     /// A drawing, which shows the end at which a rod comes out.
     Drawing,
     /// Words only.
@@ -41,8 +41,8 @@ enum Beside {
 }
 
 /// The cylinder or the motor in a few words.
-fn moving_words(actuator: &project::DeclaredActuator, beside: Beside) -> String {
-    let Some(motor) = &actuator.motor else { return cylinder_words(&actuator.cylinder, beside) };
+fn moving_words(actuator: &project::DeclaredActuator, context: DescriptionContext) -> String {
+    let Some(motor) = &actuator.motor else { return cylinder_words(&actuator.cylinder, context) };
     let displacement = shown(motor.displacement, &quantity::DISPLACEMENT);
     match motor.stroke {
         Some(stroke) => format!("{displacement}, stroke {}", shown(stroke, &quantity::ANGLE)),
@@ -60,14 +60,16 @@ fn shown_in_millimetres(length: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
 }
 
-fn cylinder_words(cylinder: &project::DeclaredCylinder, beside: Beside) -> String {
+fn cylinder_words(cylinder: &project::DeclaredCylinder, context: DescriptionContext) -> String {
     let millimetres = shown_in_millimetres;
     let piston = cylinder.piston_diameter_m();
     let [rod_a, rod_b] = cylinder.rod_diameters_m();
     let rods = match [rod_a, rod_b] {
         [0.0, 0.0] => " mm without rod".to_string(),
         [a, b] if a == b => format!("/{} mm", millimetres(a)),
-        [rod, 0.0] | [0.0, rod] if beside == Beside::Drawing => format!("/{} mm", millimetres(rod)),
+        [rod, 0.0] | [0.0, rod] if context == DescriptionContext::Drawing => {
+            format!("/{} mm", millimetres(rod))
+        }
         [0.0, b] => format!("/{} mm, rod through B", millimetres(b)),
         [a, 0.0] => format!("/{} mm, rod through A", millimetres(a)),
         [a, b] => format!("/{} (A)/{} (B) mm", millimetres(a), millimetres(b)),
@@ -80,7 +82,7 @@ fn cylinder_words(cylinder: &project::DeclaredCylinder, beside: Beside) -> Strin
     format!("{}{rods}, {stroke}", millimetres(piston))
 }
 
-fn line_alone(declared: &project::DeclaredLine) -> LineSymbol {
+fn single_line(declared: &project::DeclaredLine) -> LineSymbol {
     match &declared.component {
         Component::Pipe { pipe, length } => LineSymbol {
             kind: LineKind::Pipe,
@@ -187,7 +189,7 @@ fn transmission_words(transmission: &project::DeclaredTransmission) -> String {
         1 => "1 segment".to_string(),
         count => format!("{count} segments"),
     };
-    let line = name.into_iter().chain(line_alone(&transmission.line).rows).chain([segments]);
+    let line = name.into_iter().chain(single_line(&transmission.line).rows).chain([segments]);
     [pistons, filled].into_iter().chain(own).chain(line).collect::<Vec<String>>().join(", ")
 }
 
@@ -211,7 +213,7 @@ pub(super) fn lines_words(actuator: &project::DeclaredActuator) -> String {
         let name = line.hose_name().or_else(|| line.pipe()?.model.as_deref());
         let name = name.map(|name| format!("{name}, "));
         let gas = if line.accumulator.is_some() { ", accumulator" } else { "" };
-        format!("{}{}{gas}", name.unwrap_or_default(), line_alone(line).rows.join(", "))
+        format!("{}{}{gas}", name.unwrap_or_default(), single_line(line).rows.join(", "))
     };
     let (a, b) = (words(&actuator.line.a), words(&actuator.line.b));
     if a == b { format!("{a} each") } else { format!("A {a}; B {b}") }
@@ -239,7 +241,7 @@ fn facts(actuator: &project::DeclaredActuator, rig: &Rig) -> Table {
             ),
         ),
         ("servovalve", valve_words(actuator)),
-        (words.cylinder, moving_words(actuator, Beside::Words)),
+        (words.cylinder, moving_words(actuator, DescriptionContext::Words)),
         (motion.either("moving mass", "inertia"), moving(moving_mass(actuator), &MASS)),
         (words.force_sensor, moving(actuator.force_sensor.stiffness, &STIFFNESS)),
     ];

@@ -5,7 +5,7 @@ use phea_dynamics::watch::{Stopped, Watch};
 
 use super::chapter::Chapter;
 use super::driven::MachineChapter;
-use super::simulation::told;
+use super::simulation::shown_metrics;
 use crate::document::{Document, Table};
 use crate::error::CommandError;
 use crate::figure::DisplayUnit;
@@ -39,8 +39,8 @@ pub(super) fn chapter(
     let prescribed =
         project.actuator.as_ref().is_some_and(|actuator| actuator.load == crate::project::Load::Prescribed);
     let sensor = project.motion().words().force_sensor;
-    let stands = if prescribed { format!("of {sensor} and environment") } else { format!("of the {sensor}") };
-    out.explanation(format!("The first scenario again with one quantity changed: the stiffness K_S {stands}, and all friction. Neither is known accurately for a real rig, and the overshoot depends on both. The controller is the {} one.", side.name));
+    let suffix = if prescribed { format!("of {sensor} and environment") } else { format!("of the {sensor}") };
+    out.explanation(format!("The first scenario again with one quantity changed: the stiffness K_S {suffix}, and all friction. Neither is known accurately for a real rig, and the overshoot depends on both. The controller is the {} one.", side.name));
     let refused = varied.iter().filter_map(|varied| Some((varied, varied.run.as_ref().err()?)));
     out.explanations(
         refused.map(|(varied, reason)| format!("{}, {}: {reason}.", varied.quantity, varied.value)),
@@ -117,7 +117,7 @@ fn event_table(varied: &[VariedQuantity], event: usize) -> Option<Table> {
     let seen = |varied: &VariedQuantity| Some(*varied.run.as_ref().ok()?.windows.get(event)?);
     let windows: Vec<(Window, Metrics)> = varied.iter().filter_map(seen).collect();
     let units = varied.iter().find_map(|varied| Some(varied.run.as_ref().ok()?.record.units))?;
-    let shown = told(windows.iter());
+    let shown = shown_metrics(windows.iter());
     let event = cause_words(&windows.first()?.0, units);
     let bands = || windows.iter().map(|(_, metrics)| metrics.settling_band_percent);
     let heads =

@@ -12,7 +12,7 @@ use crate::simulate::{
     Metric, Metrics, NamedRun, TimeRequirement, TrackingWish, Window, adjustment_sentence, cause_words,
     cells_of, close_ups, coarse_sentence, gas_sentence, headline, label_within, measured, measured_together,
     metrics_row, occurrence_sentences, pictures, published, published_row, required_overshoot,
-    required_settling, together, turns, windows, wish_of,
+    required_settling, requirement_of, together, turns, windows,
 };
 
 /// The chapter.
@@ -35,7 +35,7 @@ pub(super) fn chapter(project: &Project, driven: &MachineChapter) -> Chapter {
         let runs = driven.of_scenario(index);
         let required = driven.required_of(index);
         if !runs.is_empty() {
-            let drawn = drawn(&driven.drawn(index), index + 1, driven.wish_of(index));
+            let drawn = drawn(&driven.drawn(index), index + 1, driven.requirement_of(index));
             out.append(scenario(&runs, declared, required, drawn));
         }
     }
@@ -61,11 +61,11 @@ pub(super) fn inside(project: &Project, driven: &MachineChapter) -> Option<Chapt
 }
 
 /// Figures of all controllers together; for a single controller, figures of all signals.
-fn drawn(runs: &[NamedRun<'_>], number: usize, wish: Option<&TrackingWish>) -> Vec<Figure> {
+fn drawn(runs: &[NamedRun<'_>], number: usize, requirement: Option<&TrackingWish>) -> Vec<Figure> {
     match runs {
-        [alone] => pictures(alone.run, number),
+        [only] => pictures(only.run, number),
         several => {
-            let mut figures = together(several, number, wish);
+            let mut figures = together(several, number, requirement);
             figures.extend(measured_together(several, number));
             figures
         }
@@ -94,7 +94,7 @@ fn scenario(
         );
     }
     let remarks = declared.reference.iter().filter_map(|step| step.published()?.remark.clone());
-    let told = runs.iter().flat_map(|named| {
+    let notes = runs.iter().flat_map(|named| {
         let adjusted = adjustment_sentence(named.run).into_iter().chain(gas_sentence(named.run));
         let sentences = coarse_sentence(named.run).into_iter().chain(adjusted);
         let sentences = sentences.chain(occurrence_sentences(named.run));
@@ -103,7 +103,7 @@ fn scenario(
             _ => format!("{}{sentence}.", of(named, runs)),
         })
     });
-    out.explanations(remarks.chain(told));
+    out.explanations(remarks.chain(notes));
     out
 }
 
@@ -119,9 +119,9 @@ fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, required: Option<&TimeReq
         return out;
     };
     match runs {
-        [alone] => out.table(windows(alone.run, required, Some(declared))),
+        [only] => out.table(windows(only.run, required, Some(declared))),
         several => {
-            let shown = told(several.iter().flat_map(|named| &named.run.windows));
+            let shown = shown_metrics(several.iter().flat_map(|named| &named.run.windows));
             let (band, motion) = (first.settling_band_percent, first.record.units.motion);
             let words = shown.iter().map(|metric| label_within(*metric, [band], motion));
             let heads = std::iter::once(String::new()).chain(words);
@@ -134,7 +134,7 @@ fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, required: Option<&TimeReq
                             named.name.to_string(),
                             &shown,
                             (metrics, named.run.record.units),
-                            wish_of(required, window),
+                            requirement_of(required, window),
                         ));
                     }
                 }
@@ -145,15 +145,15 @@ fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, required: Option<&TimeReq
             out.table(rows);
         }
     }
-    let wished = required.and_then(|required| Some((required, wished(&required.wish)?)));
-    let wished = wished.map_or(String::new(), |(required, words)| {
+    let requirement = required.and_then(|required| Some((required, requirement_words(&required.wish)?)));
+    let requirement = requirement.map_or(String::new(), |(required, words)| {
         let steps = if required.steps.are_stated() { "the required step" } else { "every step" };
         format!(
             " Wished of {steps}: {words}; a disc with a tick satisfies it, a square with a cross does not."
         )
     });
     out.explanation(format!(
-        "Settling is to {} % of the step, or of the reference that a load motion disturbs; the steady-state error is reference less {}, averaged over the last tenth of the window; the rise is from 10 to 90 % of the step.{wished}",
+        "Settling is to {} % of the step, or of the reference that a load motion disturbs; the steady-state error is reference less {}, averaged over the last tenth of the window; the rise is from 10 to 90 % of the step.{requirement}",
         first.settling_band_percent,
         first.record.units.motion.words().force
     ));
@@ -161,14 +161,14 @@ fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, required: Option<&TimeReq
 }
 
 /// The requirement in time, in words.
-fn wished(wish: &TrackingWish) -> Option<String> {
+fn requirement_words(requirement: &TrackingWish) -> Option<String> {
     let words: Vec<String> =
-        [required_overshoot(wish), required_settling(wish)].into_iter().flatten().collect();
+        [required_overshoot(requirement), required_settling(requirement)].into_iter().flatten().collect();
     (!words.is_empty()).then(|| words.join(", "))
 }
 
 /// The metrics that some of these windows can have.
-pub(super) fn told<'a>(windows: impl Iterator<Item = &'a (Window, Metrics)>) -> Vec<Metric> {
+pub(super) fn shown_metrics<'a>(windows: impl Iterator<Item = &'a (Window, Metrics)>) -> Vec<Metric> {
     let cells: Vec<_> = windows.map(|(_, metrics)| cells_of(metrics, Units::default())).collect();
     Metric::ALL
         .into_iter()

@@ -72,7 +72,9 @@ fn lengths(problem: &SizingProblem, sizing: &Sizing) -> Figure {
                 .iter()
                 .map(|length| {
                     let proportion = option.proportion(model, problem.fluid_modulus);
-                    problem.stroke_stiffness(option, proportion.map(|share| share * length), model).minimum
+                    problem
+                        .stroke_stiffness(option, proportion.map(|fraction| fraction * length), model)
+                        .minimum
                 })
                 .collect();
             curves.push(SizingCurve {

@@ -37,14 +37,14 @@ pub(super) fn chapter(
 /// Difference of the two models, for the lines of the rig.
 fn models_sentence(actuator: &DeclaredActuator) -> String {
     let has_hose = [&actuator.line.a, &actuator.line.b].iter().any(|line| line.hose().is_some());
-    let mut told = "`uniform` takes the effective bulk modulus of a line for the oil of its chamber too, `by_volume` takes each by itself".to_string();
+    let mut words = "`uniform` takes the effective bulk modulus of a line for the oil of its chamber too, `by_volume` takes each by itself".to_string();
     if has_hose {
-        told.push_str(": a steel chamber does not become softer because a hose is screwed to it, and a hose swells as its data sheet states, so a rig behaves as in `by_volume`");
+        words.push_str(": a steel chamber does not become softer because a hose is screwed to it, and a hose swells as its data sheet states, so a rig behaves as in `by_volume`");
     }
     if is_valve_of_thesis(actuator) {
-        told.push_str(". The tables of Ledezma (2019) are made with `uniform`");
+        words.push_str(". The tables of Ledezma (2019) are made with `uniform`");
     }
-    format!("{told}.")
+    format!("{words}.")
 }
 
 fn figure(rig: &Rig, stroke: f64, units: Units) -> Figure {
@@ -63,14 +63,14 @@ fn figure(rig: &Rig, stroke: f64, units: Units) -> Figure {
         ..StiffnessDiagram::default()
     };
     let MotionWords { piston, position, .. } = units.motion.words();
-    let told = format!(
+    let words = format!(
         "Hydraulic stiffness against {piston} {position}: the declared model with its band of dynamic stiffening, and the other model"
     );
     let gas = rig.actuator.components().gas;
     let caption = match gas.iter().flatten().all(|gas| gas.setting().is_none()) {
-        true => format!("{told}."),
+        true => format!("{words}."),
         false => format!(
-            "{told}, both at the setting of rest, and the declared model at other settings of the accumulators, for slow motions."
+            "{words}, both at the setting of rest, and the declared model at other settings of the accumulators, for slow motions."
         ),
     };
     chart.draw(&Words::new("stiffness", "Hydraulic stiffness over the stroke", caption))

@@ -56,11 +56,11 @@ fn document(found: &Identification, project: &Project, read: &Read) -> Document 
 /// Table 5.1 has both columns, and states in words that one does not reproduce the tests.
 fn simple_against_identified(found: &Identification, of_thesis: bool) -> String {
     let squares = |coefficients| -> f64 {
-        let shares = found.signals.iter().map(|one| found.residual_rms_of(one, coefficients) / one.range);
+        let fractions = found.signals.iter().map(|one| found.residual_rms_of(one, coefficients) / one.range);
         let count = found.signals.len().max(1) as f64;
-        (shares.map(|share| share * share).sum::<f64>() / count).sqrt()
+        (fractions.map(|fraction| fraction * fraction).sum::<f64>() / count).sqrt()
     };
-    let percent = |share: f64| crate::answer::significant(100.0 * share, 3);
+    let percent = |fraction: f64| crate::answer::significant(100.0 * fraction, 3);
     format!(
         "With the coefficients by hand, the model differs from the recordings by {} % of the range of each signal (root mean square); with the identified ones by {} %.{}",
         percent(squares(&found.first_guess)),

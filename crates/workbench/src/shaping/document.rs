@@ -32,8 +32,8 @@ pub(crate) fn document(view: &ProjectShaping) -> Document {
     out.sentences(elements.map(|(index, element)| format!("{}  {}", index + 1, element.print())));
     out.heading("Stability");
     out.sentences([stability_sentence(&view.stability, &view.names)]);
-    let asked = !view.problem.specifications.is_empty();
-    if asked {
+    let has_specifications = !view.problem.specifications.is_empty();
+    if has_specifications {
         out.heading("Margins at the design frequencies, the worst first");
         out.table(margins(view));
         let unstable = view.stability.verdict == Verdict::Violated;
@@ -56,7 +56,7 @@ pub(crate) fn document(view: &ProjectShaping) -> Document {
         out.sentences([format!("Not measured at {} rad/s.", missing.join(", "))]);
     }
     let between = "Nothing is stated about the frequencies between these: `verify` examines them.";
-    out.sentences(asked.then(|| between.to_string()));
+    out.sentences(has_specifications.then(|| between.to_string()));
     out
 }
 

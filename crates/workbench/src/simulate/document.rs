@@ -16,7 +16,7 @@ use crate::project::{InputSignal, Loaded, Scenario};
 use crate::quantity::{DisplayUnit, MotionKind, TIME, Units, VOLTAGE, ZERO_CELSIUS, display};
 
 /// Number of occurrences that are listed one by one; more are counted.
-const TOLD: usize = 8;
+const LISTED: usize = 8;
 
 /// The tables and sentences of `simulate`.
 pub(crate) fn document(loaded: &Loaded, runs: &[ScenarioRun]) -> Document {
@@ -26,10 +26,11 @@ pub(crate) fn document(loaded: &Loaded, runs: &[ScenarioRun]) -> Document {
         out.tables([windows(run, None, None), measured(&[(None, run)])]);
         let checked = run.check.iter().flat_map(|found| check::sentences(found, run.record.units));
         let adjusted = adjustment_sentence(run);
-        let told =
+        let sentences =
             requirement_sentences(&loaded.project, run).into_iter().map(|held| format!("The run {held}."));
-        let told = told.chain(coarse_sentence(run)).chain(checked).chain(adjusted).chain(gas_sentence(run));
-        out.sentences(told.chain(occurrence_sentences(run)));
+        let sentences =
+            sentences.chain(coarse_sentence(run)).chain(checked).chain(adjusted).chain(gas_sentence(run));
+        out.sentences(sentences.chain(occurrence_sentences(run)));
     }
     if !runs.is_empty() {
         out.gap();
@@ -64,7 +65,7 @@ pub(crate) fn headline(run: &ScenarioRun) -> String {
 }
 
 fn why(stopped: &StoppedRun) -> String {
-    let told = match (stopped.status, stopped.mode) {
+    let reason = match (stopped.status, stopped.mode) {
         (_, Some(mode)) => {
             return format!(
                 "an oscillation at {} rad/s that grows by {} 1/s would take more steps than `simulation.maximum_steps` allows",
@@ -77,7 +78,7 @@ fn why(stopped: &StoppedRun) -> String {
         (RunStatus::NotFinite, _) => "a rate is no longer a number",
         _ => "the steps it may take are used up",
     };
-    told.to_string()
+    reason.to_string()
 }
 
 /// Metrics that have a column only if some window has them.
@@ -101,8 +102,8 @@ pub(crate) fn windows(
     let units = run.record.units;
     let mut rows = Table::new(std::iter::once("event".to_string()).chain(shown.iter().map(head)));
     for (window, metrics) in &run.windows {
-        let wish = wish_of(required, window);
-        rows.row(metrics_row(cause_words(window, units), &shown, (metrics, units), wish));
+        let requirement = requirement_of(required, window);
+        rows.row(metrics_row(cause_words(window, units), &shown, (metrics, units), requirement));
         if let Some((source, cells)) = declared.and_then(|declared| published(declared, window, units)) {
             rows.row(published_row(source, &shown, cells));
         }
@@ -111,7 +112,7 @@ pub(crate) fn windows(
 }
 
 /// Requirement in time for a window; `None` if the requirement does not apply to it.
-pub(crate) fn wish_of<'r>(
+pub(crate) fn requirement_of<'r>(
     required: Option<&'r TimeRequirement>,
     window: &Window,
 ) -> Option<&'r TrackingWish> {
@@ -123,12 +124,12 @@ pub(crate) fn metrics_row(
     name: String,
     shown: &[Metric],
     (metrics, units): (&Metrics, Units),
-    wish: Option<&TrackingWish>,
+    requirement: Option<&TrackingWish>,
 ) -> Vec<Cell> {
     let mut cells = cells_of(metrics, units);
     for (metric, held) in [
-        (Metric::Overshoot, wish.and_then(|wish| wish.overshoot_satisfied(metrics))),
-        (Metric::SettlingTime, wish.and_then(|wish| wish.settling_satisfied(metrics))),
+        (Metric::Overshoot, requirement.and_then(|requirement| requirement.overshoot_satisfied(metrics))),
+        (Metric::SettlingTime, requirement.and_then(|requirement| requirement.settling_satisfied(metrics))),
     ] {
         if let Some(is_satisfied) = held {
             cells[metric] = std::mem::take(&mut cells[metric]).marked(is_satisfied);
@@ -220,8 +221,8 @@ pub(crate) fn cause_words(window: &Window, units: Units) -> String {
 /// The resolution of the figures of a long scenario.
 pub(crate) fn coarse_sentence(run: &ScenarioRun) -> Option<String> {
     run.is_coarse().then(|| {
-        let look = DisplayUnit::MILLISECOND.number(run.look_s, 3);
-        format!("a scenario this long is drawn from samples every {look} ms only; its metrics are those of the solution in between too")
+        let interval_ms = DisplayUnit::MILLISECOND.number(run.look_s, 3);
+        format!("a scenario this long is drawn from samples every {interval_ms} ms only; its metrics are those of the solution in between too")
     })
 }
 
@@ -267,17 +268,17 @@ pub(crate) fn gas_sentence(run: &ScenarioRun) -> Option<String> {
         };
         format!("the gas at chamber {} reaches {pressure}{heat}", gas.chamber.to_ascii_uppercase())
     };
-    let told: Vec<String> = run.gas.iter().map(of).collect();
-    (!told.is_empty()).then(|| told.join("; "))
+    let sentences: Vec<String> = run.gas.iter().map(of).collect();
+    (!sentences.is_empty()).then(|| sentences.join("; "))
 }
 
 /// The events of a run, a sentence each.
 pub(crate) fn occurrence_sentences(run: &ScenarioRun) -> Vec<String> {
     let (found, units) = (&run.occurrences, run.record.units);
     let mut sentences: Vec<String> =
-        found.iter().take(TOLD).map(|one| occurrence_words(one, units.motion)).collect();
-    if found.len() > TOLD {
-        sentences.push(format!("and {} more changes of this kind, listed in the JSON", found.len() - TOLD));
+        found.iter().take(LISTED).map(|one| occurrence_words(one, units.motion)).collect();
+    if found.len() > LISTED {
+        sentences.push(format!("and {} more changes of this kind, listed in the JSON", found.len() - LISTED));
     }
     sentences.extend(run.divergence.as_ref().map(|found| divergence_words(found, units)));
     sentences.extend(doubts(run));
@@ -365,7 +366,7 @@ fn occurrence_words(occurrence: &Occurrence, motion: MotionKind) -> String {
 
 /// The tables of `compare`: a row for each metric, a column for each project; projects that were
 /// not begun are named.
-pub(crate) fn comparison(comparison: &ScenarioComparison<'_>, asked: &[Loaded]) -> Document {
+pub(crate) fn comparison(comparison: &ScenarioComparison<'_>, requested: &[Loaded]) -> Document {
     let units = units_of(comparison);
     let mut out = Document::default();
     for (number, (loaded, runs)) in comparison.projects.iter().enumerate() {
@@ -374,7 +375,7 @@ pub(crate) fn comparison(comparison: &ScenarioComparison<'_>, asked: &[Loaded]) 
             out.line(format!("   {}", headline(run)));
         }
     }
-    for (number, loaded) in asked.iter().enumerate().skip(comparison.projects.len()) {
+    for (number, loaded) in requested.iter().enumerate().skip(comparison.projects.len()) {
         let (letter, title) = (letter(number), &loaded.project.title);
         out.line(format!("{letter}  {title} ({})", loaded.path));
         out.line("   not begun");

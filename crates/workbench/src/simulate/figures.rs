@@ -6,7 +6,7 @@ use crate::answer::{OutputFile, picture_files, significant};
 use crate::document::capital;
 use crate::figure::axis::extent;
 use crate::figure::{CurveChart, CurvePanel, CurveStyle, DisplayUnit, Figure, SettlingBand, Words};
-use crate::over_time::{ForceStep, Trace, behind, chart, measured_force, named, panel, trace};
+use crate::over_time::{ForceStep, Trace, chart, measured_force, named, panel, trace, with_lines_beneath};
 use crate::quantity::{MotionKind, MotionWords, Units};
 use phea_hydraulics::signal::Signal;
 
@@ -26,10 +26,10 @@ pub(crate) fn pictures(run: &ScenarioRun, number: usize) -> Vec<Figure> {
     let mut figures = vec![overview(&whole, run, span_of_events(run, end))];
     for (index, window) in enlarged(&run.windows, end) {
         let moved = if moves_load(window) { format!(", {positions}") } else { String::new() };
-        let asked_for = if run.open_loop { "" } else { " with its reference" };
+        let with_reference = if run.open_loop { "" } else { " with its reference" };
         let caption = format!(
             "Voltages, pressures of both chambers, hydraulic and measured {force}, measured {force}\
-             {asked_for}{moved}. Between hydraulic and measured {force} lie the friction and the acceleration of the {piston}."
+             {with_reference}{moved}. Between hydraulic and measured {force} lie the friction and the acceleration of the {piston}."
         );
         let words = Words::new(
             format!("simulation-{number}-event-{}", index + 1),
@@ -134,10 +134,10 @@ fn measured(record: &Record, height: f64) -> CurvePanel {
         names.push("prefiltered reference");
     }
     let force = named(panel(&measured_force(motion), unit, height, series), names);
-    let asked = asked_for(record);
-    let is_asked = asked.is_some();
-    let mut force = behind(force, unit, CurveStyle::Reference, asked);
-    force.named.extend(is_asked.then(|| ("reference".to_string(), CurveStyle::Reference)));
+    let reference = reference_trace(record);
+    let has_reference = reference.is_some();
+    let mut force = with_lines_beneath(force, unit, CurveStyle::Reference, reference);
+    force.named.extend(has_reference.then(|| ("reference".to_string(), CurveStyle::Reference)));
     force
 }
 
@@ -179,7 +179,7 @@ fn error_panel(record: &Record) -> Option<CurvePanel> {
 }
 
 /// The reference; none in an open loop.
-pub(super) fn asked_for(record: &Record) -> Option<Trace> {
+pub(super) fn reference_trace(record: &Record) -> Option<Trace> {
     (!record.reference_n.is_empty()).then(|| over_time(record, record.reference_n.clone()))
 }
 
@@ -438,14 +438,14 @@ fn side_by_side(words: &Words, titles: &[String], runs: &[&ScenarioRun], span_s:
     let each = |values: fn(&Record) -> Vec<f64>| -> Vec<Trace> {
         runs.iter().map(|run| over_time(&run.record, values(&run.record))).collect()
     };
-    let reference = runs.iter().find_map(|run| asked_for(&run.record));
+    let reference = runs.iter().find_map(|run| reference_trace(&run.record));
     let windows = runs.first().map(|run| run.windows.as_slice()).unwrap_or_default();
     let units = units_of(runs);
     let unit = units.force;
     let forces =
         panel(&measured_force(units.motion), unit, 230.0, each(|record| record.signal(Signal::Force)));
     let panels = vec![
-        behind(forces, unit, CurveStyle::Reference, reference),
+        with_lines_beneath(forces, unit, CurveStyle::Reference, reference),
         panel("Command U_C", DisplayUnit::VOLT, 130.0, each(|record| record.signal(Signal::Control))),
         panel("p_A - p_B", units.pressure, 130.0, each(load_pressure)),
     ];

@@ -39,12 +39,12 @@ pub(crate) fn requirement_sentence(one: &ScenarioRequirement) -> String {
 
 /// A requirement in a run, for programs.
 pub(super) fn row(one: &ScenarioRequirement) -> Object {
-    let wish = &one.wish;
+    let required = &one.wish;
     let required = Object::new()
-        .maybe("overshoot_percent", wish.overshoot_percent)
-        .maybe("settling_time_s", wish.settling_time_s)
-        .maybe("rise_time_s", wish.rise_time_s)
-        .with("settling_band_percent", wish.band_percent);
+        .maybe("overshoot_percent", required.overshoot_percent)
+        .maybe("settling_time_s", required.settling_time_s)
+        .maybe("rise_time_s", required.rise_time_s)
+        .with("settling_band_percent", required.band_percent);
     let object = Object::new().with("specification", one.number).with("required", required);
     match one.reached {
         Ok(reached) => object

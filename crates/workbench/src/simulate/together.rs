@@ -2,8 +2,8 @@
 //! each controller.
 
 use super::figures::{
-    asked_for, close_up, enlarged, error_title, instants, load_pressure, moves_load, over_time, shown_words,
-    tracking_error,
+    close_up, enlarged, error_title, instants, load_pressure, moves_load, over_time, reference_trace,
+    shown_words, tracking_error,
 };
 use super::span::{are_alike, span_of, span_of_events};
 use super::{
@@ -11,7 +11,7 @@ use super::{
 };
 use crate::document::capital;
 use crate::figure::{CurveChart, CurvePanel, CurveRange, CurveStyle, DisplayUnit, Figure, Words};
-use crate::over_time::{Trace, behind, chart, has, measured_force, panel, trace};
+use crate::over_time::{Trace, chart, has, measured_force, panel, trace, with_lines_beneath};
 use crate::quantity::{MotionWords, Units};
 use phea_hydraulics::signal::Signal;
 
@@ -25,7 +25,11 @@ pub(crate) struct NamedRun<'a> {
 }
 
 /// The whole run, and each event enlarged, every controller in each figure.
-pub(crate) fn together(runs: &[NamedRun<'_>], number: usize, wish: Option<&TrackingWish>) -> Vec<Figure> {
+pub(crate) fn together(
+    runs: &[NamedRun<'_>],
+    number: usize,
+    requirement: Option<&TrackingWish>,
+) -> Vec<Figure> {
     let Some(first) = runs.first() else { return vec![] };
     let MotionWords { force, piston, .. } = units(runs).motion.words();
     let end = end_of(runs);
@@ -39,7 +43,8 @@ pub(crate) fn together(runs: &[NamedRun<'_>], number: usize, wish: Option<&Track
             whose(runs)
         ),
     );
-    let mut figures = vec![drawn(&words, runs, span_of_events(first.run, end), ([190.0, 110.0], true), wish)];
+    let mut figures =
+        vec![drawn(&words, runs, span_of_events(first.run, end), ([190.0, 110.0], true), requirement)];
     for (index, window) in enlarged(&first.run.windows, end) {
         if are_alike(longest(runs, window, end), span_of_events(first.run, end)) {
             continue;
@@ -50,14 +55,18 @@ pub(crate) fn together(runs: &[NamedRun<'_>], number: usize, wish: Option<&Track
             format!("What the event does to {force}, command and load pressure, {}.", whose(runs)),
         );
         let shown = ([190.0, 110.0], moves_load(window));
-        figures.push(drawn(&words, runs, longest(runs, window, end), shown, wish));
+        figures.push(drawn(&words, runs, longest(runs, window, end), shown, requirement));
     }
     figures
 }
 
 /// Force and command from the first event to a little after the last, or over the whole run if
 /// nothing begins.
-pub(crate) fn at_a_glance(name: &str, runs: &[NamedRun<'_>], wish: Option<&TrackingWish>) -> Option<Figure> {
+pub(crate) fn at_a_glance(
+    name: &str,
+    runs: &[NamedRun<'_>],
+    requirement: Option<&TrackingWish>,
+) -> Option<Figure> {
     let first = runs.first()?;
     let end = end_of(runs);
     let spans = || first.run.windows.iter().map(|(window, _)| longest(runs, window, end));
@@ -66,8 +75,8 @@ pub(crate) fn at_a_glance(name: &str, runs: &[NamedRun<'_>], wish: Option<&Track
     let span = if from < until { [from, until] } else { [0.0, end] };
     let force = capital(units(runs).motion.words().force);
     let title = format!("{force} over time: {}", first.run.name);
-    let caption = format!("The nonlinear simulation, {}{}.", whose(runs), of_wish(wish));
-    let mut panels = forces_enlarged(runs, [220.0, 110.0], span, wish);
+    let caption = format!("The nonlinear simulation, {}{}.", whose(runs), required_words(requirement));
+    let mut panels = forces_enlarged(runs, [220.0, 110.0], span, requirement);
     panels.extend(errors(runs, span));
     panels.push(commands(runs, 90.0));
     Some(with_events(runs, panels, span).draw(&Words::new(name, title, caption)))
@@ -109,10 +118,10 @@ pub(crate) fn measured_together(runs: &[NamedRun<'_>], number: usize) -> Option<
         });
         let measured = trace(&overlay.times_s, &overlay.measured);
         let series = simulated.chain([measured]).collect();
-        let reference = asked_for(&first.run.record).filter(|_| overlay.signal == Signal::Force);
+        let reference = reference_trace(&first.run.record).filter(|_| overlay.signal == Signal::Force);
         let units = first.run.record.units;
         let (title, unit) = (overlay.signal.words(units.motion), overlay.display_unit(units));
-        behind(panel(&title, unit, height, series), unit, CurveStyle::Reference, reference)
+        with_lines_beneath(panel(&title, unit, height, series), unit, CurveStyle::Reference, reference)
     });
     let panels: Vec<CurvePanel> = panels.collect();
     let words = Words::new(
@@ -146,9 +155,10 @@ fn whose(runs: &[NamedRun<'_>]) -> String {
     format!("under {} controller", names.join(" and "))
 }
 
-fn of_wish(wish: Option<&TrackingWish>) -> String {
-    let wished = wish.map(|wish| [required_overshoot(wish), required_settling(wish)]);
-    let words: Vec<String> = wished.into_iter().flatten().flatten().collect();
+fn required_words(requirement: Option<&TrackingWish>) -> String {
+    let words =
+        requirement.map(|requirement| [required_overshoot(requirement), required_settling(requirement)]);
+    let words: Vec<String> = words.into_iter().flatten().flatten().collect();
     if words.is_empty() { String::new() } else { format!("; required: {}", words.join(", ")) }
 }
 
@@ -157,13 +167,13 @@ fn drawn(
     runs: &[NamedRun<'_>],
     span_s: [f64; 2],
     ([tall, low], positions): ([f64; 2], bool),
-    wish: Option<&TrackingWish>,
+    requirement: Option<&TrackingWish>,
 ) -> Figure {
     // a step is compared with its requirement; motions of the load, and the whole run, show the
     // piston
     let mut panels = match positions {
-        true => vec![forces(runs, tall, span_s, wish)],
-        false => forces_enlarged(runs, [tall, low], span_s, wish),
+        true => vec![forces(runs, tall, span_s, requirement)],
+        false => forces_enlarged(runs, [tall, low], span_s, requirement),
     };
     panels.extend(errors(runs, span_s));
     panels.push(commands(runs, low));
@@ -213,17 +223,28 @@ fn force_measured(runs: &[NamedRun<'_>]) -> Option<Trace> {
     Some(trace(&overlay.times_s, &overlay.measured))
 }
 
-fn forces(runs: &[NamedRun<'_>], height: f64, span_s: [f64; 2], wish: Option<&TrackingWish>) -> CurvePanel {
+fn forces(
+    runs: &[NamedRun<'_>],
+    height: f64,
+    span_s: [f64; 2],
+    requirement: Option<&TrackingWish>,
+) -> CurvePanel {
     let mut curves = each(runs, |record| record.signal(Signal::Force));
     curves.extend(force_measured(runs));
     let first = runs.first().map(|named| named.run);
     let windows = first.map(|run| run.windows.as_slice()).unwrap_or_default();
-    let wished = wish.map(|wish| wish.lines(windows.iter().map(|(window, _)| window), span_s));
-    let wished = wished.into_iter().flatten();
-    let wished = wished.map(|line| line.iter().map(|[time_s, value]| (*time_s, *value)).collect());
+    let limits =
+        requirement.map(|requirement| requirement.lines(windows.iter().map(|(window, _)| window), span_s));
+    let limits = limits.into_iter().flatten();
+    let limits = limits.map(|line| line.iter().map(|[time_s, value]| (*time_s, *value)).collect());
     let Units { motion, force: unit, .. } = units(runs);
-    let panel = behind(panel(&measured_force(motion), unit, height, curves), unit, CurveStyle::Limit, wished);
-    behind(panel, unit, CurveStyle::Reference, first.and_then(|run| asked_for(&run.record)))
+    let panel = with_lines_beneath(
+        panel(&measured_force(motion), unit, height, curves),
+        unit,
+        CurveStyle::Limit,
+        limits,
+    );
+    with_lines_beneath(panel, unit, CurveStyle::Reference, first.and_then(|run| reference_trace(&run.record)))
 }
 
 /// The force and, below it, an enlargement around the reference of the only step in the frame, if
@@ -232,10 +253,10 @@ fn forces_enlarged(
     runs: &[NamedRun<'_>],
     [tall, low]: [f64; 2],
     span_s: [f64; 2],
-    wish: Option<&TrackingWish>,
+    requirement: Option<&TrackingWish>,
 ) -> Vec<CurvePanel> {
-    let whole = forces(runs, tall, span_s, wish);
-    let near = near_reference(runs, span_s, wish).filter(|_| has(&whole, CurveStyle::Limit));
+    let whole = forces(runs, tall, span_s, requirement);
+    let near = near_reference(runs, span_s, requirement).filter(|_| has(&whole, CurveStyle::Limit));
     let Units { motion, force: unit, .. } = units(runs);
     let enlarged = near.map(|ends| CurvePanel {
         title: unit.title(motion.either("F_e enlarged", "T_e enlarged")),
@@ -253,9 +274,13 @@ const OVERSHOOTS: f64 = 1.2;
 
 /// The range around the reference after the only step that begins in a span; `None` if none or
 /// several do.
-fn near_reference(runs: &[NamedRun<'_>], span_s: [f64; 2], wish: Option<&TrackingWish>) -> Option<[f64; 2]> {
-    let wish = wish?;
-    let required = BANDS * 0.01 * wish.band_percent.max(wish.overshoot_percent.unwrap_or(0.0));
+fn near_reference(
+    runs: &[NamedRun<'_>],
+    span_s: [f64; 2],
+    requirement: Option<&TrackingWish>,
+) -> Option<[f64; 2]> {
+    let requirement = requirement?;
+    let required = BANDS * 0.01 * requirement.band_percent.max(requirement.overshoot_percent.unwrap_or(0.0));
     let [start_s, end_s] = span_s;
     let seen = |window: &Window| (start_s..end_s).contains(&window.start_s);
     let first = runs.first()?.run;

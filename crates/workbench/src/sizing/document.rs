@@ -109,17 +109,17 @@ fn other_means(out: &mut Document, found: &OtherMeans) {
 /// Damping by a valve, and its cost.
 fn valve_words(valve: &SizedValve) -> String {
     let [most, at] = valve.most.map(|value| significant(value, 3));
-    let alone = significant(valve.alone, 3);
+    let own_damping = significant(valve.alone, 3);
     let Some(conductance) = valve.conductance else {
         return format!(
-            "- (no conductance damps the load cell so much: from {alone} without it to {most} at most, with {at} m3/(s.Pa))"
+            "- (no conductance damps the load cell so much: from {own_damping} without it to {most} at most, with {at} m3/(s.Pa))"
         );
     };
     let loss = valve
         .loss
         .map(|watt| format!("; it loses {} at the greatest force", DisplayUnit::WATT.text(watt, 3)));
     format!(
-        "{} m3/(s.Pa), from a damping ratio of {alone} without it{}; {most} at most, with {at}",
+        "{} m3/(s.Pa), from a damping ratio of {own_damping} without it{}; {most} at most, with {at}",
         significant(conductance, 3),
         loss.unwrap_or_default()
     )

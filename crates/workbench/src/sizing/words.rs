@@ -145,11 +145,11 @@ fn bend_words(radius: f64, quarter_turn: f64) -> String {
     )
 }
 
-fn dead_band_words(share: f64) -> String {
+fn dead_band_words(fraction: f64) -> String {
     format!(
         "the edges of the valve overlap, and K_qU at null, which is sized with, is {} % of that beyond the lap: a loop of this gain is unstable \
          there. State the gain beyond the lap, `sizing.flow_gain`, and its `flow_pressure_coefficient`",
-        significant(100.0 * share, 2)
+        significant(100.0 * fraction, 2)
     )
 }
 

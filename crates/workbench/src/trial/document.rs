@@ -129,12 +129,12 @@ fn repeated<'a>(trial: &'a Trial, run: &TrialRun) -> Option<&'a TrialRun> {
 fn meanings(trial: &Trial) -> Vec<String> {
     let motion = units_of(trial).motion;
     let force = motion.words().force;
-    let mut told = vec![format!(
+    let mut sentences = vec![format!(
         "\"agrees\": the overshoot lies within {OVERSHOOT_ROOM_PERCENT} % of the step and the settling time within {} % of those of the linear loop, and the {force} comes to rest without a limit on the way",
         100.0 * SETTLING_ROOM
     )];
     if trial.runs.iter().any(|run| run.agreement == Agreement::AgreesButForSettling) {
-        told.push(format!(
+        sentences.push(format!(
             "\"agrees but for the settling\": all of this except for the settling time, which is within a factor of {SETTLING_RATIO}"
         ));
     }
@@ -149,20 +149,20 @@ fn meanings(trial: &Trial) -> Vec<String> {
         ),
     ];
     let driven = others.into_iter().filter(|(one, _)| trial.runs.iter().any(|run| run.agreement == *one));
-    told.extend(driven.map(|(_, words)| words.to_string()));
+    sentences.extend(driven.map(|(_, words)| words.to_string()));
     if trial.runs.iter().any(|run| run.size == StepSize::Largest) {
         let but = match trial.keeps_largest_from_corners() {
             true => "; corners of the box and plants inside it are driven through the other steps alone",
             false => "",
         };
-        told.push(format!("\"largest step\": {}{but}", largest_step_words(motion)));
+        sentences.push(format!("\"largest step\": {}{but}", largest_step_words(motion)));
     }
     if trial.runs.iter().any(|run| run.remaining_amplitude_n.is_some()) {
-        told.push(format!(
+        sentences.push(format!(
             "\"remains\": half the range of the {force} over the last fifth of a step; a run steps there, back and there again, and the largest counts"
         ));
     }
-    told
+    sentences
 }
 
 /// Requirements in time, run by run; empty if there are none.
@@ -201,13 +201,13 @@ fn corners(trial: &Trial) -> Vec<String> {
             None => format!("{}: {}", run_name(run), plant_words(run.plant.as_ref()?)),
         })
     };
-    let mut told: Vec<String> = trial.runs.iter().filter(is_corner).filter_map(words).collect();
-    if !told.is_empty() {
-        told.push(
+    let mut sentences: Vec<String> = trial.runs.iter().filter(is_corner).filter_map(words).collect();
+    if !sentences.is_empty() {
+        sentences.push(
             "the worst of them is the one that takes the largest share of what is required".to_string(),
         );
     }
-    told
+    sentences
 }
 
 /// Words for a step from one reference to the other.
@@ -234,8 +234,8 @@ fn remaining_words(run: &TrialRun, amplitude_n: f64) -> String {
 /// Reason why a machine does not behave like the linear loop, and which plants were not driven.
 fn reasons(trial: &Trial) -> Vec<String> {
     let others = trial.runs.iter().filter(|run| run.agreement != Agreement::Agrees);
-    let told = others.map(|run| format!("{}: {}", run_name(run), reason_words(&run.reason, run.units)));
-    told.chain(not_driven(trial).into_iter().map(|missing| format!("not driven: {missing}"))).collect()
+    let sentences = others.map(|run| format!("{}: {}", run_name(run), reason_words(&run.reason, run.units)));
+    sentences.chain(not_driven(trial).into_iter().map(|missing| format!("not driven: {missing}"))).collect()
 }
 
 /// Number of settling times of the linear loop that are drawn, and of required ones at least.
@@ -261,8 +261,8 @@ fn figure(trial: &Trial, [name, title]: [&str; 2]) -> Option<Figure> {
     };
     let nominal = series("linear loop, nominal plant", &first.linear_response);
     let is_first = |size| matches!(size, StepSize::Tenth | StepSize::Required);
-    let stands_out = |run: &TrialRun| run.agreement != Agreement::Agrees || !run.satisfies();
-    let drawn = runs.iter().filter(|run| is_first(run.size) || stands_out(run));
+    let is_notable = |run: &TrialRun| run.agreement != Agreement::Agrees || !run.satisfies();
+    let drawn = runs.iter().filter(|run| is_first(run.size) || is_notable(run));
     let named = drawn.filter_map(|run| series(&run_name(run), &run.machine_response)).collect();
     let force = units_of(trial).motion.words().force;
     let quantity = format!("{}, part of the step", capital(force));

@@ -18,7 +18,7 @@ const UNUSED: [&str; 2] = ["series.line.minimum_bend_radius", "valve.response_ti
 
 /// Checks that on some rig another value of each of these keys is rejected or answered differently,
 /// unless the key is in [`UNUSED`].
-pub(super) fn what_moves_nothing_is_used(still: &BTreeSet<&str>, keys: &[KeyEntry]) {
+pub(super) fn unmoved_keys_are_used(still: &BTreeSet<&str>, keys: &[KeyEntry]) {
     let open = Mutex::new(still.clone());
     on_every_rig(|text, settings| {
         let own = loaded(text, settings).unwrap();
@@ -33,8 +33,8 @@ pub(super) fn what_moves_nothing_is_used(still: &BTreeSet<&str>, keys: &[KeyEntr
                 loaded(text, &changed)
             };
             let is_used = |other: &Loaded| {
-                let before = || before.get_or_init(|| answers(&own));
-                other.project != own.project && *before() != answers(other)
+                let before = || before.get_or_init(|| outputs(&own));
+                other.project != own.project && *before() != outputs(other)
             };
             let near: Vec<Option<Loaded>> = others(entry, &own.project).0.iter().map(with).collect();
             let Some(accepted) = near.iter().flatten().next() else { continue };
@@ -59,7 +59,7 @@ fn far(entry: &KeyEntry, own: &Loaded) -> Vec<String> {
 
 /// Output of the quick commands on a project, the warnings when it is read, and its length, which
 /// `alternatives` compares.
-fn answers(loaded: &Loaded) -> String {
+fn outputs(loaded: &Loaded) -> String {
     let source = Memory::default();
     let text = |request: &Request| match answer(&source, loaded, &[], request) {
         Ok(answer) => answer.text,

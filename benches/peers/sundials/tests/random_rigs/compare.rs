@@ -15,7 +15,7 @@ use phea_hydraulics::machine::INDICATORS;
 use phea_machine::{Commanded, Control as Loop};
 use sundials::{CvodeError, Following, Kicks, Method, follow};
 
-use crate::patient::Patient;
+use crate::limited::Limited;
 use crate::repeated::{Judged, Made, made};
 use crate::rig::{Control, OUTPUT_STEP_S, Rig};
 use crate::roughness::{Roughness, is_rough, roughest};
@@ -43,7 +43,7 @@ const WELL_POSED: f64 = 1e-5;
 const NEAR_S: f64 = 1e-3;
 
 /// Evaluations after which CVODE receives a rate that is not a number.
-const PATIENCE: u64 = 20_000_000;
+const EVALUATION_LIMIT: u64 = 20_000_000;
 
 /// Comparison of a rig.
 #[derive(Default)]
@@ -181,8 +181,8 @@ impl Observer for Rows<'_> {
 
 impl Compared {
     /// Computes the growth of kicks, and the peak of force and reference.
-    fn look_at(&mut self, asked: f64, reference: &[f64], kicked: &[f64]) {
-        self.peak = reference.iter().fold(asked.abs(), |most: f64, force| most.max(force.abs()));
+    fn measure_growth(&mut self, final_reference: f64, reference: &[f64], kicked: &[f64]) {
+        self.peak = reference.iter().fold(final_reference.abs(), |most: f64, force| most.max(force.abs()));
         let mut most = 0.0_f64;
         for (one, other) in reference.iter().zip(kicked) {
             most = most.max((one - other).abs() / self.peak / KICKS.size);
@@ -195,12 +195,12 @@ impl Compared {
 
     /// True if phea stopped at an emptied chamber, whose infinite pressure CVODE steps over.
     pub(crate) fn leaves_the_model(&self) -> bool {
-        let ended_s = self.ours.and_then(|ours| match ours.status {
+        let end_s = self.ours.and_then(|ours| match ours.status {
             Status::StepTooSmall { time_s } | Status::NotFinite { time_s } => Some(time_s),
             _ => None,
         });
-        let emptied = self.emptied_s.zip(ended_s);
-        emptied.is_some_and(|(emptied_s, ended_s)| (ended_s - emptied_s).abs() <= NEAR_S)
+        let emptied = self.emptied_s.zip(end_s);
+        emptied.is_some_and(|(emptied_s, end_s)| (end_s - emptied_s).abs() <= NEAR_S)
     }
 
     /// True if kicks grow so much that not all rows can be compared.
@@ -275,7 +275,8 @@ pub(crate) fn compare(rig: &Rig, number: u64, program: &Path, manner: Manner) ->
     let controller = controller(&rig.control);
     let [value, rate] = [Input::Value, Input::Rate].map(|input| input(rig.ground.clone()));
     let reference = Input::Value(rig.reference.clone());
-    let course = |inputs| InputSchedule { duration_s: rig.duration_s, output_step_s: OUTPUT_STEP_S, inputs };
+    let schedule =
+        |inputs| InputSchedule { duration_s: rig.duration_s, output_step_s: OUTPUT_STEP_S, inputs };
     let sensed =
         Sensed::new(rig.machine, &TransferFunction::gain_only(1.0)).expect("a sensor without memory");
     let mut compared = match rig.control.sample_time_s {
@@ -283,7 +284,7 @@ pub(crate) fn compare(rig: &Rig, number: u64, program: &Path, manner: Manner) ->
             let closed = CommandedPlant::in_loop(sensed, &controller, 0.0).expect("a proper controller");
             let closed = Loop::Continuous(Box::new(closed));
             let sampler = || None::<Box<dyn Sampler>>;
-            judge(rig, &closed, &course(vec![reference, value, rate]), &sampler, manner)
+            judge(rig, &closed, &schedule(vec![reference, value, rate]), &sampler, manner)
         }
         Some(sample_time_s) => {
             let prefilter = controller.prefilter.transfer_function().expect("a prefilter");
@@ -301,7 +302,7 @@ pub(crate) fn compare(rig: &Rig, number: u64, program: &Path, manner: Manner) ->
             judge(
                 rig,
                 &held,
-                &course(vec![Input::Command, reference, value, rate]),
+                &schedule(vec![Input::Command, reference, value, rate]),
                 &sampler,
                 Manner { timed: false, ..manner },
             )
@@ -345,21 +346,21 @@ pub(crate) type NewSampler<'a> = dyn Fn() -> Option<Box<dyn Sampler + 'a>> + 'a;
 fn judge<'a>(
     rig: &Rig,
     system: &'a Loop,
-    course: &InputSchedule,
+    schedule: &InputSchedule,
     sampler: &NewSampler<'a>,
     manner: Manner,
 ) -> (Compared, Vec<f64>) {
     let start = rig.beginning(system.size()[0]);
     let force = |states: &[Vec<f64>]| force_of(rig, states);
     let counted = |following: &Following| {
-        let patient = Patient::new(system, PATIENCE);
+        let limited = Limited::new(system, EVALUATION_LIMIT);
         let mut sampler = sampler();
         let sampler = sampler.as_deref_mut().map(|sampler| -> &mut dyn Sampler { sampler });
-        let states = follow(&patient, &start, course, sampler, following)?;
-        Ok::<_, CvodeError>((states, patient.cost()))
+        let states = follow(&limited, &start, schedule, sampler, following)?;
+        Ok::<_, CvodeError>((states, limited.cost()))
     };
     let by_cvode = |following: &Following| counted(following).map(|(states, _)| states);
-    let made_by_phea = |plan: PassPlan| made(rig, system, course, sampler, plan);
+    let made_by_phea = |plan: PassPlan| made(rig, system, schedule, sampler, plan);
     let by_phea = |tolerance: f64| {
         let Made { ours, force } = made_by_phea(PassPlan { tolerance, moved: false });
         (ours, force)
@@ -371,7 +372,7 @@ fn judge<'a>(
     let [reference, kicked] = match (by_cvode(&at(EXACT)), by_cvode(&kicked)) {
         (Ok(states), Ok(kicked)) => {
             let (reference, kicked) = (force(&states), force(&kicked));
-            compared.look_at(rig.reference.value(rig.duration_s), &reference, &kicked);
+            compared.measure_growth(rig.reference.value(rig.duration_s), &reference, &kicked);
             compared.emptied_s = emptied(rig, &states);
             [reference, kicked]
         }

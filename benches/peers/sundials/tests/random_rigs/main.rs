@@ -45,8 +45,8 @@
 mod compare;
 mod falling;
 mod kinked;
+mod limited;
 mod necks;
-mod patient;
 mod repeated;
 mod rich;
 mod rig;
@@ -98,7 +98,7 @@ impl Family {
 }
 
 /// Arguments of the command line.
-struct Asked {
+struct Arguments {
     first: u64,
     count: u64,
     /// Number of the only rig to run.
@@ -107,25 +107,25 @@ struct Asked {
     named: bool,
     manner: Manner,
     /// True if all data of each rig are printed.
-    told: bool,
+    print_each: bool,
 }
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let said = |wanted: &str| words.iter().any(|word| word == wanted);
+    let has_word = |wanted: &str| words.iter().any(|word| word == wanted);
     let number = |prefix: &str| words.iter().find_map(|word| word.strip_prefix(prefix)?.parse::<u64>().ok());
     let count: u64 = words.iter().find_map(|word| word.parse().ok()).unwrap_or(100);
     let judged = words.iter().find_map(|word| word.strip_prefix("judged=")?.parse().ok()).unwrap_or(JUDGED);
     let only = number("only=");
     let first = number("from=").unwrap_or(0);
-    let named = Family::ALL.iter().any(|family| said(family.word()));
-    let asked = Asked {
+    let named = Family::ALL.iter().any(|family| has_word(family.word()));
+    let arguments = Arguments {
         first,
         count,
         only,
         named,
-        manner: Manner { judged, timed: said("timed"), repeated: false },
-        told: only.is_some(),
+        manner: Manner { judged, timed: has_word("timed"), repeated: false },
+        print_each: only.is_some(),
     };
     let program = match compiled() {
         Ok(program) => program,
@@ -134,15 +134,15 @@ fn main() -> ExitCode {
             return ExitCode::FAILURE;
         }
     };
-    let wanted = Family::ALL.into_iter().filter(|family| !named || said(family.word()));
-    let failed: Vec<Family> = wanted.filter(|family| !passes(*family, &asked, &program)).collect();
+    let wanted = Family::ALL.into_iter().filter(|family| !named || has_word(family.word()));
+    let failed: Vec<Family> = wanted.filter(|family| !passes(*family, &arguments, &program)).collect();
     if failed.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
 /// Runs a family and reports the outcome.
-fn passes(family: Family, asked: &Asked, program: &Path) -> bool {
+fn passes(family: Family, arguments: &Arguments, program: &Path) -> bool {
     println!("family `{}`", family.word());
-    let Asked { first, count, only, named, manner, told } = *asked;
+    let Arguments { first, count, only, named, manner, print_each } = *arguments;
     let count = if named { count } else { family.part_of(count) };
     let numbers = only.map_or(first..first + count, |only| only..only + 1);
     // Runs are timed one after the other.
@@ -159,7 +159,7 @@ fn passes(family: Family, asked: &Asked, program: &Path) -> bool {
     let outcomes = of_all(numbers, at_once, |number| outcome(family, number, program, manner));
     let mut tally = Tally::default();
     for (number, outcome) in &outcomes {
-        tally.take(*number, outcome, told);
+        tally.take(*number, outcome, print_each);
     }
     tally.print();
     tally.passes()
@@ -173,14 +173,14 @@ fn of_all<T: Send>(
 ) -> Vec<(u64, T)> {
     let next = AtomicU64::new(numbers.start);
     let mut found: Vec<(u64, T)> = std::thread::scope(|scope| {
-        let share = |_| {
+        let worker = |_| {
             scope.spawn(|| {
                 let taken = std::iter::repeat_with(|| next.fetch_add(1, Ordering::Relaxed));
                 let mine = taken.take_while(|number| numbers.contains(number));
                 mine.map(|number| (number, of(number))).collect::<Vec<_>>()
             })
         };
-        let workers: Vec<_> = (0..at_once).map(share).collect();
+        let workers: Vec<_> = (0..at_once).map(worker).collect();
         workers.into_iter().flat_map(|worker| worker.join().expect("no panic")).collect()
     });
     found.sort_by_key(|(number, _)| *number);

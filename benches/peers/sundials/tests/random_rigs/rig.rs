@@ -95,8 +95,8 @@ impl Chance {
         self.between(least.ln(), most.ln()).exp()
     }
 
-    pub(crate) fn happens(&mut self, share: f64) -> bool {
-        random::share(&mut self.0) < share
+    pub(crate) fn happens(&mut self, fraction: f64) -> bool {
+        random::share(&mut self.0) < fraction
     }
 
     pub(crate) fn edges(&mut self, typical: f64) -> Edges {
@@ -130,13 +130,13 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     let size = most * chance.decades(0.02, 0.7);
     let pulls = chance.happens(0.5) && !matches!(components.load::Wall { .. });
     let sign = if pulls { -1.0 } else { 1.0 };
-    let mut share = inside;
+    let mut fraction = inside;
     if rich && components.cylinder.end_stops.is_some() && chance.happens(0.5) {
         // Near the end into which it is moved.
         let left = chance.decades(1e-4, 1e-2);
-        share = if pulls { left } else { 1.0 - left };
+        fraction = if pulls { left } else { 1.0 - left };
     }
-    let position = 2.0 * components.cylinder.stroke.middle() * share;
+    let position = 2.0 * components.cylinder.stroke.middle() * fraction;
     let start =
         StartValues { position, pressure_a: pressure, pressure_b: pressure, ..StartValues::default() };
     let beginning = machine.start(&start).map_err(Refusal::Machine)?;

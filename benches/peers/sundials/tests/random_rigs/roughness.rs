@@ -68,8 +68,8 @@ impl Roughness {
             if least >= floor {
                 found.windows += 1;
                 found.known += usize::from(known);
-                let asked = if known { least } else { floor };
-                found.least = found.least.min(most_near(&ours, window) / asked);
+                let required = if known { least } else { floor };
+                found.least = found.least.min(most_near(&ours, window) / required);
             }
             if known {
                 found.most = found.most.max(rough / highest);

@@ -10,7 +10,7 @@ use phea_machine::{Control as Loop, Watcher};
 use sundials::{Following, Method, follow};
 
 use crate::compare::{Rows, TOLERANCE, controller, force_of};
-use crate::patient::Patient;
+use crate::limited::Limited;
 use crate::rig::{OUTPUT_STEP_S, Rig};
 
 /// Tolerance of CVODE.
@@ -63,7 +63,7 @@ pub(crate) fn costs(rig: &Rig) -> Costs {
         Input::Value(rig.ground.clone()),
         Input::Rate(rig.ground.clone()),
     ];
-    let course = InputSchedule { duration_s: rig.duration_s, output_step_s: OUTPUT_STEP_S, inputs };
+    let schedule = InputSchedule { duration_s: rig.duration_s, output_step_s: OUTPUT_STEP_S, inputs };
     let count = closed.size()[0];
     let start = rig.beginning(count);
 
@@ -74,19 +74,19 @@ pub(crate) fn costs(rig: &Rig) -> Costs {
     };
     let mut states = Vec::new();
     let observer: Watcher<'_> = Box::new(Rows { wanted: (0..count).collect(), states: &mut states });
-    let task = Task { start: start.clone(), course: &course, sampler: None, observer };
+    let task = Task { start: start.clone(), course: &schedule, sampler: None, observer };
     let outcome = closed.drive(task, &settings, &mut |_| true).expect("a course that fits");
     let ours = force_of(rig, &states);
 
-    let patient = Patient::new(&closed, EVALUATIONS);
+    let limited = Limited::new(&closed, EVALUATIONS);
     let following = Following::new(LOOSER, Method::BackwardDifferentiation);
-    let theirs = follow(&patient, &start, &course, None, &following).ok().map(|rows| force_of(rig, &rows));
+    let theirs = follow(&limited, &start, &schedule, None, &following).ok().map(|rows| force_of(rig, &rows));
     let error = theirs.map(|theirs| {
         let peak = theirs.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
         let apart = ours.iter().zip(&theirs).map(|(one, other)| (one - other).abs());
         if ours.len() == theirs.len() { apart.fold(0.0, f64::max) / peak } else { f64::INFINITY }
     });
-    let [_, by_cvode] = patient.cost();
+    let [_, by_cvode] = limited.cost();
     let reports = |grown: Amplification| grown.may_show_errors(TOLERANCE);
     Costs {
         status: outcome.status,
@@ -100,8 +100,8 @@ pub(crate) fn costs(rig: &Rig) -> Costs {
 pub(crate) fn passes(found: &[(u64, Result<Costs, String>)]) -> bool {
     let run: Vec<(u64, &Costs)> =
         found.iter().filter_map(|(number, costs)| Some((*number, costs.as_ref().ok()?))).collect();
-    let ended = run.iter().filter(|(_, costs)| costs.error.is_some()).count();
-    println!("{} rigs, {} refused; CVODE came to an end in {ended}", found.len(), found.len() - run.len());
+    let failed = run.iter().filter(|(_, costs)| costs.error.is_some()).count();
+    println!("{} rigs, {} refused; CVODE came to an end in {failed}", found.len(), found.len() - run.len());
     let mut ratios: Vec<f64> = run.iter().map(|(_, costs)| costs.ratio()).collect();
     crate::tally::spread("steps at the default tolerance over those of CVODE at 1e-9", &mut ratios);
     let mut errors: Vec<f64> = run.iter().filter_map(|(_, costs)| costs.error).collect();

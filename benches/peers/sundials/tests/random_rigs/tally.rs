@@ -105,12 +105,12 @@ struct Checks {
 }
 
 impl Tally {
-    pub(crate) fn take(&mut self, number: u64, outcome: &Outcome, told: bool) {
+    pub(crate) fn take(&mut self, number: u64, outcome: &Outcome, print_each: bool) {
         self.run += 1;
         match outcome {
             Ok((described, compared)) => {
-                if told {
-                    tell(described, compared);
+                if print_each {
+                    print_comparison(described, compared);
                 }
                 for feature in &described.features {
                     *self.features.entry(feature).or_default() += 1;
@@ -203,10 +203,10 @@ impl Tally {
         self.default_errors.push(run.error);
         self.default_steps += run.work.steps + run.work.rejected;
         if let Some(fault) = run.fault() {
-            let told = format!("rig {number}, at {TOLERANCE:e}: {fault}");
+            let finding = format!("rig {number}, at {TOLERANCE:e}: {fault}");
             let list =
                 if run.status == Status::Completed { &mut self.default_faults } else { &mut self.failures };
-            list.push(told);
+            list.push(finding);
         }
         if let Some(judged) = &compared.repeated {
             self.projects.take(judged);
@@ -307,7 +307,7 @@ impl Checks {
 
 pub(crate) fn spread(name: &str, values: &mut [f64]) {
     values.sort_by(f64::total_cmp);
-    let at = |share: f64| values.get((share * values.len().saturating_sub(1) as f64) as usize);
+    let at = |fraction: f64| values.get((fraction * values.len().saturating_sub(1) as f64) as usize);
     let (Some(least), Some(tenth), Some(middle), Some(ninetieth), Some(most)) =
         (at(0.0), at(0.1), at(0.5), at(0.9), at(1.0))
     else {
@@ -319,7 +319,7 @@ pub(crate) fn spread(name: &str, values: &mut [f64]) {
     );
 }
 
-fn tell(described: &Described, compared: &Compared) {
+fn print_comparison(described: &Described, compared: &Compared) {
     println!("{:?}\n{:?}\npeak {} N", described.features, described.control, compared.peak);
     if let Some(ours) = compared.ours {
         println!("{ours:?}\n{:?}", compared.by_default);

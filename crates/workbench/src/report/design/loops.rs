@@ -11,14 +11,16 @@ use crate::verdict_words::frequency_number;
 
 /// The chart; `None` without a nominal plant.
 pub(super) fn figure(view: &ProjectDesign, found: &[DesignFrequency]) -> Result<Option<Figure>, LinearError> {
-    let alone = view.published.is_none();
+    let is_only_controller = view.published.is_none();
     let mut loops = Vec::new();
     let mut violations = Vec::new();
     for (name, side) in [("designed", Some(&view.designed)), ("given", view.published.as_deref())] {
         let Some(side) = side else { continue };
         let Some(series) = nominal_loop(&side.problem)? else { continue };
         loops.push(FrequencySeries { name: format!("{name}, nominal plant"), ..series });
-        violations.extend(found.iter().filter_map(|one| forbidden(side, if alone { "" } else { name }, one)));
+        violations.extend(
+            found.iter().filter_map(|one| forbidden(side, if is_only_controller { "" } else { name }, one)),
+        );
     }
     if loops.is_empty() {
         return Ok(None);
@@ -33,7 +35,7 @@ pub(super) fn figure(view: &ProjectDesign, found: &[DesignFrequency]) -> Result<
         violations,
         ..NicholsChart::default()
     };
-    let (title, whose) = match alone {
+    let (title, whose) = match is_only_controller {
         true => ("Nichols chart of the designed loop", "loop"),
         false => ("Nichols chart of both loops", "loops"),
     };
@@ -54,8 +56,8 @@ fn forbidden(side: &AuditedController, name: &str, one: &DesignFrequency) -> Opt
     let open_loop = one.template.template.nominal * feedback;
     // within the tolerance of the audit a loop counts as on its bound
     let specifications = &side.view.audit.specifications;
-    let kept = specifications.iter().flat_map(|finding| &finding.at_design_frequencies);
-    let own = kept.filter(|case| case.frequency_rad_per_s == frequency_rad_per_s);
+    let cases = specifications.iter().flat_map(|finding| &finding.at_design_frequencies);
+    let own = cases.filter(|case| case.frequency_rad_per_s == frequency_rad_per_s);
     let worst_db = own.map(|case| case.margin_db).fold(f64::INFINITY, f64::min);
     if worst_db.is_finite() && worst_db >= -side.view.audit.tolerance_db {
         return None;

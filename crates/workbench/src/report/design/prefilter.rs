@@ -112,8 +112,8 @@ fn sentence(name: &str, band: &PrefilterBand, shown: &[PrefilterBandPoint]) -> S
             frequency_words(closed.frequency_rad_per_s)
         );
     }
-    let share = |point: &PrefilterBandPoint| point.width_db() / point.allowed_db;
-    let tightest = shown.iter().min_by(|one, other| share(one).total_cmp(&share(other)));
+    let fraction = |point: &PrefilterBandPoint| point.width_db() / point.allowed_db;
+    let tightest = shown.iter().min_by(|one, other| fraction(one).total_cmp(&fraction(other)));
     let Some(tightest) = tightest else { return String::new() };
     format!(
         "The {name} loop uses most of its share {}: {} of {} dB are left.",

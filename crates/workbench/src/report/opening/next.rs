@@ -41,7 +41,7 @@ pub(super) fn next_steps(contents: &Contents<'_>, sides: &[Side<'_>]) -> Vec<Str
     let mut steps = Vec::new();
     steps.extend(controller(contents, sides));
     steps.extend(taken.iter().flat_map(|side| machine(side)));
-    steps.extend(taken.and_then(|side| wishes(contents, side)));
+    steps.extend(taken.and_then(|side| missed_requirements(contents, side)));
     steps.extend(uncounted(contents.setup));
     steps.extend(taken.and_then(|side| delay(contents.setup.project, side)));
     steps.extend(undeclared(contents, taken));
@@ -218,9 +218,9 @@ fn machine(side: &Side<'_>) -> Vec<String> {
     let with_waves = others.iter().find(|run| run.quarter_wave_rad_per_s.is_some());
     let of_plant = others.iter().find(|run| run.plant.is_some());
     let declared = others.iter().find(|run| run.plant.is_none() && run.quarter_wave_rad_per_s.is_none());
-    let mut told: Vec<&TrialRun> = [declared, with_waves, of_plant].into_iter().flatten().copied().collect();
-    told.sort_by_key(|run| std::cmp::Reverse(run.agreement));
-    told.into_iter().map(|run| machine_words(side, run)).collect()
+    let mut runs: Vec<&TrialRun> = [declared, with_waves, of_plant].into_iter().flatten().copied().collect();
+    runs.sort_by_key(|run| std::cmp::Reverse(run.agreement));
+    runs.into_iter().map(|run| machine_words(side, run)).collect()
 }
 
 fn machine_words(side: &Side<'_>, run: &TrialRun) -> String {
@@ -268,10 +268,10 @@ fn is_tracking(specification: &DeclaredSpecification) -> bool {
 
 /// A step of the machine that misses the requirement in time, and the response of the tracking
 /// limits themselves.
-fn wishes(contents: &Contents<'_>, side: &Side<'_>) -> Option<String> {
+fn missed_requirements(contents: &Contents<'_>, side: &Side<'_>) -> Option<String> {
     let required: &TimeRequirement = contents.driven?.required.as_ref()?;
     let missed = |property| {
-        let all = steps(side, required, property).filter(|all| !all.are_kept())?;
+        let all = steps(side, required, property).filter(|all| !all.all_satisfied())?;
         Some(all.worst_words())
     };
     let overshoot = missed(StepProperty::Overshoot).map(|words| format!("overshoots by {words}"));
@@ -283,9 +283,9 @@ fn wishes(contents: &Contents<'_>, side: &Side<'_>) -> Option<String> {
         Some(within) => format!("does not rise to 90 %{within}"),
         None => format!("takes {words} to rise"),
     });
-    let told: Vec<String> = [overshoot, settling, rise].into_iter().flatten().collect();
-    (!told.is_empty()).then(|| {
-        let worst = format!("at worst a step under the {} controller {}.", side.name, told.join(" and "));
+    let misses: Vec<String> = [overshoot, settling, rise].into_iter().flatten().collect();
+    (!misses.is_empty()).then(|| {
+        let worst = format!("at worst a step under the {} controller {}.", side.name, misses.join(" and "));
         let has_tracking = contents.setup.project.specifications.iter().any(is_tracking);
         match side.view {
             Some(view) if violates_tracking(view) => {

@@ -81,9 +81,9 @@ impl Side<'_> {
     }
 
     /// True if all steps to which a requirement applies satisfy it; `None` if none can be judged.
-    pub(super) fn keeps(&self, required: &TimeRequirement) -> Option<bool> {
+    pub(super) fn satisfies(&self, required: &TimeRequirement) -> Option<bool> {
         let all = StepProperty::ALL.into_iter().filter_map(|property| steps(self, required, property));
-        all.map(|steps| steps.are_kept()).reduce(|one, other| one && other)
+        all.map(|steps| steps.all_satisfied()).reduce(|one, other| one && other)
     }
 
     /// Additional delay that the family tolerates, s.

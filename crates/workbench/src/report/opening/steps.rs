@@ -69,16 +69,16 @@ const ACCURACY_PERCENT: f64 = 0.01;
 /// Every step of a controller that a requirement is about; `None` if the property is not required
 /// or no step has it.
 pub(super) fn steps(side: &Side<'_>, required: &TimeRequirement, property: StepProperty) -> Option<AllSteps> {
-    let wish = &required.wish;
+    let requirement = &required.wish;
     let most = match property {
-        StepProperty::Overshoot => wish.overshoot_percent?,
-        StepProperty::Settling => wish.settling_time_s?,
-        StepProperty::Rise => wish.rise_time_s?,
+        StepProperty::Overshoot => requirement.overshoot_percent?,
+        StepProperty::Settling => requirement.settling_time_s?,
+        StepProperty::Rise => requirement.rise_time_s?,
     };
     let mut steps: Vec<OneStep> = Vec::new();
     for run in side.runs.into_iter().flatten() {
         let of = |(window, metrics)| {
-            let value = of_window(metrics, wish, property)?;
+            let value = of_window(metrics, requirement, property)?;
             let place = format!("{}, {}", run.name, cause_words(window, run.record.units));
             Some(OneStep { origin: StepOrigin::Scenario, value, place })
         };
@@ -103,7 +103,7 @@ pub(super) fn steps(side: &Side<'_>, required: &TimeRequirement, property: StepP
             StepProperty::Settling => reached.settling_time_s,
             StepProperty::Rise => reached.rise_time_s,
         });
-        let value = reached.or_else(|| of_machine(run, wish, property))?;
+        let value = reached.or_else(|| of_machine(run, requirement, property))?;
         Some(OneStep { origin: StepOrigin::Machine, value, place })
     }));
     let (linear, plants) = of_family(side, required.number, property);
@@ -112,7 +112,7 @@ pub(super) fn steps(side: &Side<'_>, required: &TimeRequirement, property: StepP
     steps.extend(campaign.filter_map(|step| {
         let value = match property {
             StepProperty::Overshoot => step.overshoot_percent?,
-            StepProperty::Settling if step.band_percent == wish.band_percent => step.settling_time_s,
+            StepProperty::Settling if step.band_percent == requirement.band_percent => step.settling_time_s,
             StepProperty::Settling => return None,
             StepProperty::Rise => step.rise_time_s,
         };
@@ -136,12 +136,12 @@ fn held<'r>(run: &'r TrialRun, required: &TimeRequirement) -> Option<&'r Reached
     Some(&held.reached).filter(|reached| reached.overshoot_percent.is_finite())
 }
 
-fn of_window(metrics: &Metrics, wish: &TrackingWish, property: StepProperty) -> Option<f64> {
+fn of_window(metrics: &Metrics, requirement: &TrackingWish, property: StepProperty) -> Option<f64> {
     let overshoot = metrics.overshoot_percent.ok()?;
     match property {
         StepProperty::Overshoot => Some(overshoot),
         StepProperty::Rise => Some(metrics.rise_time_s.unwrap_or(f64::INFINITY)),
-        StepProperty::Settling if metrics.settling_band_percent != wish.band_percent => None,
+        StepProperty::Settling if metrics.settling_band_percent != requirement.band_percent => None,
         StepProperty::Settling => match metrics.settling_time_s {
             Ok(time_s) => Some(time_s),
             Err(Unmeasured::NotSettled) => Some(f64::INFINITY),
@@ -150,10 +150,11 @@ fn of_window(metrics: &Metrics, wish: &TrackingWish, property: StepProperty) -> 
     }
 }
 
-fn of_machine(run: &TrialRun, wish: &TrackingWish, property: StepProperty) -> Option<f64> {
+fn of_machine(run: &TrialRun, requirement: &TrackingWish, property: StepProperty) -> Option<f64> {
     let response = &run.machine_response;
     let metrics =
-        step_metrics(&response.times_s, &response.values, StepBaseline::unit(), wish.band_percent).ok()?;
+        step_metrics(&response.times_s, &response.values, StepBaseline::unit(), requirement.band_percent)
+            .ok()?;
     Some(match property {
         // overshoot of the solution itself, where it is known
         StepProperty::Overshoot => {
@@ -200,7 +201,7 @@ impl AllSteps {
     }
 
     /// True if all steps satisfy the requirement.
-    pub(super) fn are_kept(&self) -> bool {
+    pub(super) fn all_satisfied(&self) -> bool {
         !self.steps.iter().any(|step| self.is_above(step))
     }
 
@@ -231,7 +232,7 @@ impl AllSteps {
     pub(super) fn words(&self) -> String {
         let Some(worst) = self.worst() else { return String::new() };
         let value = self.value_words(worst);
-        let mut told = vec![format!("{value} at worst ({})", worst.place)];
+        let mut words = vec![format!("{value} at worst ({})", worst.place)];
         let counts = [
             (StepOrigin::Scenario, "scenario steps"),
             (StepOrigin::Machine, "nonlinear trials"),
@@ -251,7 +252,7 @@ impl AllSteps {
             };
             if above > 0 && count > 1 {
                 let percent = significant(100.0 * above as f64 / count as f64, 2);
-                told.push(match origin {
+                words.push(match origin {
                     StepOrigin::Campaign => format!("missed by {percent} % of {count} {what}"),
                     _ => format!("missed by {above} of {count} {what}"),
                 });
@@ -259,9 +260,9 @@ impl AllSteps {
         }
         let family = |step: &&OneStep| step.origin == StepOrigin::Family && !std::ptr::eq(*step, worst);
         if self.steps.iter().filter(family).any(|step| self.is_above(step)) {
-            told.push("missed by linear steps of the family".to_string());
+            words.push("missed by linear steps of the family".to_string());
         }
-        told.join("; ")
+        words.join("; ")
     }
 
     /// The number of steps that are counted, and their kinds.

@@ -93,7 +93,7 @@ fn finding(finding: &SpecificationFinding, is_proven: bool) -> Cell {
     let Some(worst) = &finding.worst else { return verdict };
     let place = frequency_words(worst.frequency_rad_per_s);
     let size = significant(worst.margin_db.abs(), 3);
-    let told = match finding.verdict {
+    let margin_words = match finding.verdict {
         Verdict::Met if worst.margin_db < 5e-4 => format!(", only just, {place}"),
         Verdict::Met if worst.margin_db == f64::INFINITY => String::new(),
         Verdict::Met => format!(", {size} dB to spare {place}"),
@@ -102,7 +102,7 @@ fn finding(finding: &SpecificationFinding, is_proven: bool) -> Cell {
             format!("; {size} dB {} {place}", if worst.margin_db < 0.0 { "off" } else { "to spare" })
         }
     };
-    verdict.then(proven(is_proven)).then(Cell::from(told))
+    verdict.then(proven(is_proven)).then(Cell::from(margin_words))
 }
 
 fn of_machine(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
@@ -110,11 +110,11 @@ fn of_machine(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
     let has_waves = |side: &Side<'_>| {
         side.trial.is_some_and(|trial| trial.runs.iter().any(|run| run.quarter_wave_rad_per_s.is_some()))
     };
-    let tried = match sides.iter().any(has_waves) {
+    let trial_words = match sides.iter().any(has_waves) {
         true => "tried on the rig, its worst plants, waves in its lines",
         false => "tried on the rig and its worst plants",
     };
-    rows.extend(row(tried, sides, |side| {
+    rows.extend(row(trial_words, sides, |side| {
         let trial = side.trial?;
         let which = trial::agreement_detail(trial).map_or(String::new(), |detail| format!(": {detail}"));
         Some(Cell::agreement(trial.agreement()).then(Cell::from(which)))
@@ -123,11 +123,11 @@ fn of_machine(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
     let Some(all_required) = contents.driven.and_then(|driven| driven.required.as_ref()) else {
         return rows;
     };
-    let wish = &all_required.wish;
+    let requirement = &all_required.wish;
     let required = [
-        (StepProperty::Overshoot, required_overshoot(wish)),
-        (StepProperty::Settling, required_settling(wish)),
-        (StepProperty::Rise, required_rise(wish)),
+        (StepProperty::Overshoot, required_overshoot(requirement)),
+        (StepProperty::Settling, required_settling(requirement)),
+        (StepProperty::Rise, required_rise(requirement)),
     ];
     for (property, words) in required {
         let Some(words) = words else { continue };
@@ -144,16 +144,16 @@ fn of_machine(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
 }
 
 fn held(all: &AllSteps) -> Cell {
-    let kept = all.are_kept();
-    let word = if kept { "satisfied" } else { "missed" };
-    Cell::from(word).marked(kept).then(Cell::from(format!(": {}", all.words())))
+    let satisfied = all.all_satisfied();
+    let word = if satisfied { "satisfied" } else { "missed" };
+    Cell::from(word).marked(satisfied).then(Cell::from(format!(": {}", all.words())))
 }
 
 fn driven(runs: &[ScenarioRun]) -> Cell {
-    let ended = runs.iter().filter(|run| run.stopped().is_none()).count();
+    let completed = runs.iter().filter(|run| run.stopped().is_none()).count();
     let outside = runs.iter().filter(|run| run.outside_model_s.is_some()).count();
-    if ended < runs.len() {
-        return Cell::from("no").marked(false).then(format!(": {ended} of {}", runs.len()));
+    if completed < runs.len() {
+        return Cell::from("no").marked(false).then(format!(": {completed} of {}", runs.len()));
     }
     let undetermined = runs.iter().filter(|run| run.run_status() == RunStatus::Undetermined).count();
     match (undetermined, outside) {
@@ -192,6 +192,6 @@ fn measured(side: &Side<'_>) -> Option<Cell> {
         Some(format!("{signal} {} %", significant(100.0 * overlay.nrmse.ok()?, 3)))
     };
     let overlays = side.runs?.iter().flat_map(|run| run.measured.iter().map(move |overlay| (run, overlay)));
-    let told: Vec<String> = overlays.filter_map(|(run, overlay)| words(run, overlay)).collect();
-    (!told.is_empty()).then(|| told.join(", ").into())
+    let deviations: Vec<String> = overlays.filter_map(|(run, overlay)| words(run, overlay)).collect();
+    (!deviations.is_empty()).then(|| deviations.join(", ").into())
 }

@@ -1,6 +1,6 @@
 //! The circuit of a project, in symbols and a few words each.
 
-use super::{Beside, line_alone, moving_mass, moving_words, shown, shown_in_millimetres};
+use super::{DescriptionContext, moving_mass, moving_words, shown, shown_in_millimetres, single_line};
 use crate::figure::{
     AccumulatorSymbol, ControllerSymbol, CrossPortSymbol, Environment, Figure, LineSymbol, LinkageSymbol,
     Rods, Schematic, SeriesKind, SeriesSymbol, SupplyKind, Words,
@@ -38,7 +38,7 @@ pub(super) fn circuit(project: &Project, actuator: &DeclaredActuator, rig: &Rig)
         cross_port: actuator.cross_port.as_ref().map(cross_port_symbol),
         motion: actuator.motion(),
         further_stages: actuator.cylinder.stages.len(),
-        cylinder: moving_words(actuator, Beside::Drawing),
+        cylinder: moving_words(actuator, DescriptionContext::Drawing),
         mass: moving(moving_mass(actuator), &MASS),
         load_cell: Some(vec![moving(actuator.force_sensor.stiffness, &STIFFNESS)]),
         series: actuator.series.as_ref().map(series_symbol),
@@ -105,7 +105,7 @@ fn cross_port_symbol(declared: &DeclaredCrossPort) -> CrossPortSymbol {
 /// A line with the stated data of its gas next to the drawing; the effect of heat is stated in the
 /// table.
 fn line_symbol(declared: &DeclaredLine) -> LineSymbol {
-    let mut symbol = line_alone(declared);
+    let mut symbol = single_line(declared);
     let Some(gas) = &declared.accumulator else { return symbol };
     symbol.accumulator = Some(match gas.adjustment.map(|adjustment| adjustment.kind) {
         None => AccumulatorSymbol::Fixed,
@@ -155,7 +155,7 @@ fn neck_words(gas: &DeclaredAccumulator) -> Option<String> {
 
 /// A line with its gas, in a few words.
 pub(super) fn line_words(declared: &DeclaredLine) -> String {
-    let mut rows = line_alone(declared).rows;
+    let mut rows = single_line(declared).rows;
     if let Some(gas) = &declared.accumulator {
         rows.push(gas_at_rest(gas));
         rows.extend(gas.temperatures.map(|temperatures| {

@@ -76,13 +76,13 @@ impl System<f64> for Integrator {
     }
 }
 
-fn course(motion: &Profile, output_step_s: f64) -> InputSchedule {
+fn schedule(motion: &Profile, output_step_s: f64) -> InputSchedule {
     let inputs = vec![Input::Value(motion.clone()), Input::Rate(motion.clone()), Input::Command];
     InputSchedule { duration_s: 10.0, output_step_s, inputs }
 }
 
 #[test]
-fn a_stiff_oscillator_moves_alike_under_both_methods() {
+fn both_methods_agree_on_a_stiff_oscillator() {
     let motions = [
         Profile::smooth_step(1.0, 0.01, 2.0).unwrap(),
         Profile::first_order(1.0, 0.02, 2.0).unwrap(),
@@ -90,14 +90,14 @@ fn a_stiff_oscillator_moves_alike_under_both_methods() {
     ];
     for motion in &motions {
         for mu in [0.1, 5.0, 100.0] {
-            let (system, course) = (Oscillator { mu }, course(motion, 0.05));
+            let (system, schedule) = (Oscillator { mu }, schedule(motion, 0.05));
             let settings = SimulationSettings { tolerance: 1e-10, ..SimulationSettings::default() };
-            let ours = simulate(&system, &[1.5, 0.0], &course, None, &settings, &mut |_| true).unwrap();
+            let ours = simulate(&system, &[1.5, 0.0], &schedule, None, &settings, &mut |_| true).unwrap();
             assert_eq!(ours.outcome.status, Status::Completed);
             let rows = follow(
                 &system,
                 &[1.5, 0.0],
-                &course,
+                &schedule,
                 None,
                 &Following::new(1e-10, Method::BackwardDifferentiation),
             )
@@ -111,18 +111,24 @@ fn a_stiff_oscillator_moves_alike_under_both_methods() {
 }
 
 #[test]
-fn samples_and_late_commands_act_alike() {
+fn samples_and_delayed_commands_have_equal_effects() {
     let motion = Profile::smooth_step(1.0, 0.1, 2.0).unwrap();
     // Rows that fall on samples, and rows that do not.
     for (output_step_s, delay_s) in [(0.05, 0.0), (0.05, 0.013), (0.07, 0.031)] {
-        let (system, course) = (Oscillator { mu: 2.0 }, course(&motion, output_step_s));
+        let (system, schedule) = (Oscillator { mu: 2.0 }, schedule(&motion, output_step_s));
         let mut feedback = Feedback { gain: 3.0, sample_time_s: 0.025, delay_s };
         let settings = SimulationSettings { tolerance: 1e-10, ..SimulationSettings::default() };
         let sampler = Box::new(Feedback { ..feedback });
-        let ours = simulate(&system, &[1.5, 0.0], &course, Some(sampler), &settings, &mut |_| true).unwrap();
-        let rows =
-            follow(&system, &[1.5, 0.0], &course, Some(&mut feedback), &Following::new(1e-10, Method::Adams))
-                .unwrap();
+        let ours =
+            simulate(&system, &[1.5, 0.0], &schedule, Some(sampler), &settings, &mut |_| true).unwrap();
+        let rows = follow(
+            &system,
+            &[1.5, 0.0],
+            &schedule,
+            Some(&mut feedback),
+            &Following::new(1e-10, Method::Adams),
+        )
+        .unwrap();
         assert_eq!(rows.len(), ours.trajectory.states.len(), "{output_step_s}");
         for (theirs, ours) in rows.iter().zip(&ours.trajectory.states) {
             assert!((theirs[0] - ours[0]).abs() < 1e-6, "{delay_s}: {theirs:?} {ours:?}");
@@ -132,10 +138,10 @@ fn samples_and_late_commands_act_alike() {
 
 #[test]
 fn a_sampled_integrator_shrinks_by_the_same_factor_each_sample() {
-    let course = InputSchedule { duration_s: 2.0, output_step_s: 0.1, inputs: vec![Input::Command] };
+    let schedule = InputSchedule { duration_s: 2.0, output_step_s: 0.1, inputs: vec![Input::Command] };
     let mut feedback = Feedback { gain: 2.0, sample_time_s: 0.1, delay_s: 0.0 };
     let rows =
-        follow(&Integrator, &[1.0], &course, Some(&mut feedback), &Following::new(1e-9, Method::Adams))
+        follow(&Integrator, &[1.0], &schedule, Some(&mut feedback), &Following::new(1e-9, Method::Adams))
             .unwrap();
     assert_eq!(rows.len(), 21);
     let mut expected = 1.0;
@@ -177,8 +183,8 @@ impl System<f64> for Late {
 
 #[test]
 fn a_delayed_wave_arrives_as_it_was_sent() {
-    let course = InputSchedule { duration_s: 4.0, output_step_s: 0.3, inputs: vec![] };
-    let rows = follow(&Late, &[1.0, 1.0], &course, None, &Following::new(1e-11, Method::Adams)).unwrap();
+    let schedule = InputSchedule { duration_s: 4.0, output_step_s: 0.3, inputs: vec![] };
+    let rows = follow(&Late, &[1.0, 1.0], &schedule, None, &Following::new(1e-11, Method::Adams)).unwrap();
     // y = sum over k of (-1)^k (t - k + 1)^k/k! from t = k - 1 on
     let exact = |t: f64| {
         let (mut sum, mut factorial) = (1.0, 1.0);
@@ -196,8 +202,8 @@ fn a_delayed_wave_arrives_as_it_was_sent() {
 }
 
 #[test]
-fn waves_that_the_start_does_not_tell_are_refused() {
-    let course = InputSchedule { duration_s: 1.0, output_step_s: 0.1, inputs: vec![] };
-    let answer = follow(&Late, &[1.0], &course, None, &Following::new(1e-6, Method::Adams));
+fn waves_without_a_known_history_are_refused() {
+    let schedule = InputSchedule { duration_s: 1.0, output_step_s: 0.1, inputs: vec![] };
+    let answer = follow(&Late, &[1.0], &schedule, None, &Following::new(1e-6, Method::Adams));
     assert!(matches!(answer, Err(CvodeError::Argument(_))));
 }

@@ -18,7 +18,7 @@ const LOOP: &str = "schema = 1\n[plant]\nnumerator = \"1\"\ndenominator = \"s + 
      band = [0, inf]\n";
 
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("inputs_kept").join(name);
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("inputs_protected").join(name);
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).expect("a folder");
     let driven = fs::read_to_string(format!("{EXAMPLES}/benchmark/closed_loop.toml")).expect("the example");
@@ -176,7 +176,7 @@ fn no_option_writes_over_an_input() {
 
 /// Files of other commands, of earlier runs and of other names are written as before.
 #[test]
-fn what_was_not_read_is_written() {
+fn a_file_that_is_not_an_input_is_replaced() {
     let folder = folder("written");
     for _ in 0..2 {
         let output = phea(&folder, &["verify", "loop.toml", "--certificate", "proof.json", "--out", "."]);

@@ -4,29 +4,29 @@ use super::{NO_OVERSHOOT_PERCENT, ReachedStep, TrackingWish};
 use crate::quantity::significant;
 
 /// The required overshoot.
-pub(crate) fn required_overshoot(wish: &TrackingWish) -> Option<String> {
-    let most = wish.overshoot_percent?;
+pub(crate) fn required_overshoot(required: &TrackingWish) -> Option<String> {
+    let most = required.overshoot_percent?;
     Some(if most == 0.0 { "no overshoot".to_string() } else { format!("at most {most} % overshoot") })
 }
 
 /// The required settling time.
-pub(crate) fn required_settling(wish: &TrackingWish) -> Option<String> {
-    wish.settling_time_s.map(|time_s| format!("settled within {} % in {time_s} s", wish.band_percent))
+pub(crate) fn required_settling(required: &TrackingWish) -> Option<String> {
+    required.settling_time_s.map(|time_s| format!("settled within {} % in {time_s} s", required.band_percent))
 }
 
 /// The required rise time.
-pub(crate) fn required_rise(wish: &TrackingWish) -> Option<String> {
-    wish.rise_time_s.map(|time_s| format!("risen from 10 to 90 % in {time_s} s"))
+pub(crate) fn required_rise(required: &TrackingWish) -> Option<String> {
+    required.rise_time_s.map(|time_s| format!("risen from 10 to 90 % in {time_s} s"))
 }
 
 /// The requirements on a step.
-pub(crate) fn required_words(wish: &TrackingWish) -> String {
-    let all = [required_overshoot(wish), required_settling(wish), required_rise(wish)];
+pub(crate) fn required_words(required: &TrackingWish) -> String {
+    let all = [required_overshoot(required), required_settling(required), required_rise(required)];
     all.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
 /// Values that a step reaches, for the required quantities.
-pub(crate) fn reached_words(wish: &TrackingWish, reached: &ReachedStep) -> String {
+pub(crate) fn reached_words(required: &TrackingWish, reached: &ReachedStep) -> String {
     if reached.overshoot_percent == f64::INFINITY {
         return "stopped before the end of the run".to_string();
     }
@@ -39,9 +39,9 @@ pub(crate) fn reached_words(wish: &TrackingWish, reached: &ReachedStep) -> Strin
         percent => format!("{} % overshoot", significant(percent, 3)),
     };
     let each = [
-        wish.overshoot_percent.map(|_| overshoot),
-        wish.settling_time_s.map(|_| in_time(reached.settling_time_s, "settled", "not settled")),
-        wish.rise_time_s.map(|_| in_time(reached.rise_time_s, "risen", "not risen to 90 %")),
+        required.overshoot_percent.map(|_| overshoot),
+        required.settling_time_s.map(|_| in_time(reached.settling_time_s, "settled", "not settled")),
+        required.rise_time_s.map(|_| in_time(reached.rise_time_s, "risen", "not risen to 90 %")),
     ];
     each.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }

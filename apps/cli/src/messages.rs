@@ -10,7 +10,7 @@ use crate::file_system::reason;
 
 /// Prints to standard output. A closed pipe (`phea check rig.toml | head`) is not an error: its
 /// reader has read enough.
-pub(crate) fn say(text: &str) -> Result<(), Failure> {
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut stream = io::stdout().lock();
     match stream.write_all(text.as_bytes()).and_then(|()| stream.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
@@ -21,18 +21,18 @@ pub(crate) fn say(text: &str) -> Result<(), Failure> {
 }
 
 /// Prints to standard error; a failure to do so cannot be reported.
-pub(crate) fn complain(text: &str) {
+pub(crate) fn print_error(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", text.trim_end());
 }
 
 /// Time after which progress is shown, and between two updates.
-const PATIENCE: Duration = Duration::from_millis(500);
+const UPDATE_INTERVAL: Duration = Duration::from_millis(500);
 
 /// Time between lines of progress without a terminal, where they remain in a log.
-const PATIENCE_OF_LOGS: Duration = Duration::from_secs(5);
+const UPDATE_INTERVAL_OF_LOGS: Duration = Duration::from_secs(5);
 
 /// The environment variable that suppresses progress in logs, and its value.
-const KEEP_OUT: (&str, &str) = ("PHEA_PROGRESS", "never");
+const PROGRESS_OFF: (&str, &str) = ("PHEA_PROGRESS", "never");
 
 /// Longest remaining time that is shown, s.
 const LONGEST_S: f64 = 1e9;
@@ -53,13 +53,13 @@ pub(crate) struct ProgressLine {
 
 impl Default for ProgressLine {
     fn default() -> Self {
-        let (variable, never) = KEEP_OUT;
+        let (variable, never) = PROGRESS_OFF;
         let wanted = std::env::var_os(variable).is_none_or(|value| value != never);
         let terminal = io::stderr().is_terminal();
         let begun = Instant::now();
         let mut line =
             ProgressLine { begun, next: None, terminal, shown: String::new(), stage: None, even: None };
-        line.next = wanted.then(|| Instant::now() + line.patience());
+        line.next = wanted.then(|| Instant::now() + line.update_interval());
         line
     }
 }
@@ -71,7 +71,7 @@ impl ProgressLine {
         let (start, share) = *self.even.get_or_insert((now, progress.share));
         let gained = progress.share - share;
         let took = now.duration_since(start);
-        if gained <= 0.0 || took < PATIENCE {
+        if gained <= 0.0 || took < UPDATE_INTERVAL {
             return self.show(progress);
         }
         let left = took.as_secs_f64() * (1.0 - progress.share) / gained;
@@ -85,8 +85,8 @@ impl ProgressLine {
         self.stage
     }
 
-    fn patience(&self) -> Duration {
-        if self.terminal { PATIENCE } else { PATIENCE_OF_LOGS }
+    fn update_interval(&self) -> Duration {
+        if self.terminal { UPDATE_INTERVAL } else { UPDATE_INTERVAL_OF_LOGS }
     }
 
     /// Shows the progress, but not too often.
@@ -98,7 +98,7 @@ impl ProgressLine {
         self.stage = Some(progress.stage).filter(|stage| !stage.is_empty()).or(self.stage);
         let now = Instant::now();
         if self.next.is_some_and(|next| now >= next) {
-            self.next = Some(now + self.patience());
+            self.next = Some(now + self.update_interval());
             let percent = (100.0 * progress.share).clamp(0.0, 100.0);
             let line = format!("{}: {percent:.0} %{more}", progress.stage);
             if line == self.shown {
@@ -108,7 +108,7 @@ impl ProgressLine {
                 true => {
                     let _ = write!(io::stderr().lock(), "\r{line}\x1b[K");
                 }
-                false => complain(&line),
+                false => print_error(&line),
             }
             self.shown = line;
         }
@@ -121,7 +121,7 @@ impl ProgressLine {
             true => {
                 let _ = write!(io::stderr().lock(), "\r\x1b[K");
             }
-            false => complain(&format!("ended after {} s", self.begun.elapsed().as_secs())),
+            false => print_error(&format!("ended after {} s", self.begun.elapsed().as_secs())),
         }
     }
 }

@@ -7,29 +7,29 @@ use sundials::Equations;
 
 /// Loop of phea, as compiled for its users, whose rates cease to be numbers after this number of
 /// evaluations, which ends a run of CVODE.
-pub(crate) struct Patient<'a> {
+pub(crate) struct Limited<'a> {
     control: &'a Loop,
-    patience: u64,
+    evaluation_limit: u64,
     left: Cell<u64>,
     /// Number of attempted steps, and the time of the last.
     steps: Cell<u64>,
-    asked_at: Cell<f64>,
+    evaluated_at: Cell<f64>,
 }
 
-impl<'a> Patient<'a> {
+impl<'a> Limited<'a> {
     /// Wraps a loop for this number of evaluations.
-    pub(crate) fn new(control: &'a Loop, patience: u64) -> Patient<'a> {
-        let (left, steps, asked_at) = (Cell::new(patience), Cell::new(0), Cell::new(f64::NAN));
-        Patient { control, patience, left, steps, asked_at }
+    pub(crate) fn new(control: &'a Loop, evaluation_limit: u64) -> Limited<'a> {
+        let (left, steps, evaluated_at) = (Cell::new(evaluation_limit), Cell::new(0), Cell::new(f64::NAN));
+        Limited { control, evaluation_limit, left, steps, evaluated_at }
     }
 
     /// Number of evaluations of the rates, and of attempted steps.
     pub(crate) fn cost(&self) -> [u64; 2] {
-        [self.patience - self.left.get(), self.steps.get()]
+        [self.evaluation_limit - self.left.get(), self.steps.get()]
     }
 }
 
-impl Equations for Patient<'_> {
+impl Equations for Limited<'_> {
     fn states(&self) -> usize {
         self.control.size()[0]
     }
@@ -58,8 +58,8 @@ impl Equations for Patient<'_> {
         }
     }
 
-    fn is_asked_at(&self, time: f64) {
-        if self.asked_at.replace(time) != time {
+    fn is_evaluated_at(&self, time: f64) {
+        if self.evaluated_at.replace(time) != time {
             self.steps.set(self.steps.get() + 1);
         }
     }

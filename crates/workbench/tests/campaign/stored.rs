@@ -6,9 +6,9 @@ use phea_workbench::campaign::RowFault;
 use super::*;
 
 /// The table of a campaign without interruption.
-fn uninterrupted(loaded: &Loaded, asked: &CampaignRequest) -> Page {
+fn uninterrupted(loaded: &Loaded, requested: &CampaignRequest) -> Page {
     let mut page = Page::default();
-    kept(loaded, asked, &mut page).unwrap();
+    resumed(loaded, requested, &mut page).unwrap();
     page
 }
 
@@ -19,29 +19,29 @@ fn parts_in_a_row_are_the_whole() {
     assert_eq!(whole.text.lines().count(), 31);
     let parts = ["1/3", "2/3", "3/3"].map(|text| {
         let mut page = Page::default();
-        kept(&loaded, &request(30, Shard::read(text).unwrap()), &mut page).unwrap();
+        resumed(&loaded, &request(30, Shard::read(text).unwrap()), &mut page).unwrap();
         page.text
     });
     assert_eq!(parts.concat(), whole.text);
 }
 
 #[test]
-fn an_interrupted_campaign_goes_on_to_the_same_bytes() {
+fn an_interrupted_campaign_continues_to_the_same_bytes() {
     let loaded = load(&SHORT);
-    let asked = request(30, Shard::default());
+    let requested = request(30, Shard::default());
     let mut whole = Page::default();
-    let answer = kept(&loaded, &asked, &mut whole).unwrap();
+    let answer = resumed(&loaded, &requested, &mut whole).unwrap();
     // torn anywhere: within the header, between two rows, within a row
     let bytes = whole.text.len();
     for torn in [0, 100, whole.text.find('\n').unwrap() + 1, bytes / 2, bytes - 1, bytes] {
         let mut page = Page { text: whole.text[..torn].to_string() };
-        let again = kept(&loaded, &asked, &mut page).unwrap();
+        let again = resumed(&loaded, &requested, &mut page).unwrap();
         assert!(page.text == whole.text, "torn at {torn} of {bytes}");
         assert_eq!(again, answer);
     }
     // appended to itself
     let mut page = Page { text: whole.text.clone() };
-    kept(&loaded, &request(33, Shard::default()), &mut page).unwrap();
+    resumed(&loaded, &request(33, Shard::default()), &mut page).unwrap();
     assert!(page.text.starts_with(&whole.text) && page.text.lines().count() == 34);
 }
 
@@ -82,25 +82,26 @@ impl RowStore for Pages {
 /// Rows ahead of a slower run are not simulated again; torn ones, those of other campaigns and
 /// those already in the table are skipped.
 #[test]
-fn rows_that_waited_are_not_driven_again() {
+fn rows_stored_ahead_are_not_simulated_again() {
     let loaded = load(&SHORT);
-    let asked = request(30, Shard::default());
-    let whole = uninterrupted(&loaded, &asked);
+    let requested = request(30, Shard::default());
+    let whole = uninterrupted(&loaded, &requested);
     let lines: Vec<&str> = whole.text.split_inclusive('\n').collect();
     // runs 0 to 3 in the table; 2 again, 6 to 8, half of 9, and 20 of another campaign ahead of it
-    let other = CampaignRequest { seed: 2, ..asked };
+    let other = CampaignRequest { seed: 2, ..requested };
     let strange = uninterrupted(&loaded, &other);
     let foreign = strange.text.split_inclusive('\n').nth(21).unwrap();
     let half = &lines[10][..lines[10].len() / 2];
     let ahead = [lines[3], lines[8], lines[7], lines[9], foreign, half].concat();
     let mut pages = Pages { table: Page { text: lines[..5].concat() }, ahead };
-    let mut shares = Vec::new();
+    let mut fractions = Vec::new();
     let mut watch = |progress: command::Progress| {
-        shares.push(progress.share);
+        fractions.push(progress.share);
         true
     };
-    command::campaign_watched(&source(), &loaded, &[], &asked, (Some(&mut pages), None), &mut watch).unwrap();
-    assert_eq!(shares.first().copied(), Some(7.0 / 30.0));
+    command::campaign_watched(&source(), &loaded, &[], &requested, (Some(&mut pages), None), &mut watch)
+        .unwrap();
+    assert_eq!(fractions.first().copied(), Some(7.0 / 30.0));
     assert!(pages.table.text == whole.text && pages.ahead.is_empty());
 }
 
@@ -109,43 +110,43 @@ fn rows_that_waited_are_not_driven_again() {
 #[test]
 fn stopping_leaves_whole_rows() {
     let loaded = load(&SHORT);
-    let asked = request(600, Shard::default());
-    let (mut page, mut asks) = (Page::default(), 0);
+    let requested = request(600, Shard::default());
+    let (mut page, mut calls) = (Page::default(), 0);
     let answer =
-        command::campaign_watched(&source(), &loaded, &[], &asked, (Some(&mut page), None), &mut |_| {
-            asks += 1;
-            asks < 3
+        command::campaign_watched(&source(), &loaded, &[], &requested, (Some(&mut page), None), &mut |_| {
+            calls += 1;
+            calls < 3
         })
         .unwrap();
     let rows = page.text.lines().count() - 1;
     assert!(!answer.affirmative && rows < 600 && page.text.ends_with('\n'));
-    let told: Value = serde_json::from_str(&answer.json).unwrap();
-    assert_eq!((&told["complete"], &told["runs"]["rows"]), (&Value::from(false), &Value::from(rows)));
-    kept(&loaded, &asked, &mut page).unwrap();
-    let whole = uninterrupted(&loaded, &asked);
+    let object: Value = serde_json::from_str(&answer.json).unwrap();
+    assert_eq!((&object["complete"], &object["runs"]["rows"]), (&Value::from(false), &Value::from(rows)));
+    resumed(&loaded, &requested, &mut page).unwrap();
+    let whole = uninterrupted(&loaded, &requested);
     assert!(page.text == whole.text && whole.text.lines().count() == 601);
 }
 
 #[test]
-fn a_table_of_another_campaign_is_left_alone() {
+fn a_table_of_another_campaign_is_left_unchanged() {
     let loaded = load(&SHORT);
-    let asked = request(4, Shard::default());
+    let requested = request(4, Shard::default());
     let mut page = Page::default();
-    kept(&loaded, &asked, &mut page).unwrap();
+    resumed(&loaded, &requested, &mut page).unwrap();
     let before = page.text.clone();
-    let other = CampaignRequest { seed: 2, ..asked };
+    let other = CampaignRequest { seed: 2, ..requested };
     let refused = |result: Result<String, CommandError>| match result {
         Err(CommandError::Campaign(error)) => error,
         other => panic!("{other:?}"),
     };
-    assert_eq!(refused(kept(&loaded, &other, &mut page)), CampaignError::OtherCampaign { line: 2 });
+    assert_eq!(refused(resumed(&loaded, &other, &mut page)), CampaignError::OtherCampaign { line: 2 });
     let fewer = request(3, Shard::default());
-    assert_eq!(refused(kept(&loaded, &fewer, &mut page)), CampaignError::MoreKept { kept: 4, asked: 3 });
+    assert_eq!(refused(resumed(&loaded, &fewer, &mut page)), CampaignError::MoreKept { kept: 4, asked: 3 });
     let changed = load(&[&SHORT as &[&str], &["controller.saturation=9 V"]].concat());
-    assert_eq!(refused(kept(&changed, &asked, &mut page)), CampaignError::OtherCampaign { line: 2 });
+    assert_eq!(refused(resumed(&changed, &requested, &mut page)), CampaignError::OtherCampaign { line: 2 });
     assert_eq!(page.text, before);
     let mut letter = Page { text: "Dear reader".to_string() };
-    assert_eq!(refused(kept(&loaded, &asked, &mut letter)), CampaignError::OtherCampaign { line: 1 });
+    assert_eq!(refused(resumed(&loaded, &requested, &mut letter)), CampaignError::OtherCampaign { line: 1 });
     assert_eq!(letter.text, "Dear reader");
 }
 
@@ -161,8 +162,8 @@ fn refusal(result: Result<String, CommandError>) -> CampaignError {
 #[test]
 fn damaged_rows_are_refused_with_their_line() {
     let loaded = load(&SHORT);
-    let asked = request(6, Shard::default());
-    let whole = uninterrupted(&loaded, &asked);
+    let requested = request(6, Shard::default());
+    let whole = uninterrupted(&loaded, &requested);
     let lines: Vec<&str> = whole.text.split_inclusive('\n').collect();
     let with_third = |third: &str| [&lines[..3].concat(), third, &lines[4..].concat()].concat();
     let cells: Vec<&str> = lines[3].split(',').collect();
@@ -173,34 +174,34 @@ fn damaged_rows_are_refused_with_their_line() {
         changed[cell] = &other;
         let mut page = Page { text: with_third(&changed.join(",")) };
         let before = page.text.clone();
-        let error = refusal(kept(&loaded, &asked, &mut page));
+        let error = refusal(resumed(&loaded, &requested, &mut page));
         assert!(matches!(error, CampaignError::Damaged { line: 4, .. }), "cell {cell}: {error}");
         assert!(error.to_string().contains("head -n 3 keeps those before"), "{error}");
         assert_eq!(page.text, before);
     }
-    let kept_lines = whole.text.replace('\n', "\r\n");
-    let mut page = Page { text: kept_lines };
-    assert_eq!(refusal(kept(&loaded, &asked, &mut page)), CampaignError::LineEnds { line: 1 });
+    let stored_lines = whole.text.replace('\n', "\r\n");
+    let mut page = Page { text: stored_lines };
+    assert_eq!(refusal(resumed(&loaded, &requested, &mut page)), CampaignError::LineEnds { line: 1 });
     let mut page = Page { text: with_third(&lines[3].replace('\n', "\r\n")) };
-    assert_eq!(refusal(kept(&loaded, &asked, &mut page)), CampaignError::LineEnds { line: 4 });
+    assert_eq!(refusal(resumed(&loaded, &requested, &mut page)), CampaignError::LineEnds { line: 4 });
     // one run twice, as two writers would leave it
     let mut page = Page { text: [&whole.text, lines[1]].concat() };
-    let error = refusal(kept(&loaded, &request(9, Shard::default()), &mut page));
+    let error = refusal(resumed(&loaded, &request(9, Shard::default()), &mut page));
     assert!(matches!(error, CampaignError::Damaged { line: 8, fault: RowFault::OfAnotherRun }), "{error}");
     let mut page = Page { text: lines[..3].concat() };
-    kept(&loaded, &asked, &mut page).unwrap();
+    resumed(&loaded, &requested, &mut page).unwrap();
     assert_eq!(page.text, whole.text);
 }
 
 /// A row with a valid checksum whose numbers are not those of its draw.
 #[test]
-fn kept_numbers_are_those_that_are_drawn() {
+fn stored_numbers_are_the_drawn_ones() {
     let loaded = load(&SHORT);
     let plan = plan(&[]);
     let mut rows = plan.rows(0..3, lanes(1)).unwrap();
-    let asked = request(3, Shard::default());
-    kept(&loaded, &asked, &mut Page { text: plan.table(&rows) }).unwrap();
+    let requested = request(3, Shard::default());
+    resumed(&loaded, &requested, &mut Page { text: plan.table(&rows) }).unwrap();
     rows[1].values[0] = rows[1].values[0].next_up();
-    let error = refusal(kept(&loaded, &asked, &mut Page { text: plan.table(&rows) }));
+    let error = refusal(resumed(&loaded, &requested, &mut Page { text: plan.table(&rows) }));
     assert!(matches!(error, CampaignError::Damaged { line: 3, fault: RowFault::OtherNumbers }), "{error}");
 }

@@ -42,18 +42,18 @@ fn assert_same(one: &Design, other: &Design) {
 }
 
 #[test]
-fn a_plant_beside_the_family_counts_as_a_member_does() {
+fn an_additional_plant_counts_as_a_member() {
     let both = regulation(&[LATE]);
     let truth = designed(&both, options());
     assert_met(&both, &truth, TrackingJudgement::Spread);
 
-    let alone = regulation(&[]);
-    let without = designed(&alone, options());
-    assert_met(&alone, &without, TrackingJudgement::Spread);
+    let family_only = regulation(&[]);
+    let without = designed(&family_only, options());
+    assert_met(&family_only, &without, TrackingJudgement::Spread);
     // the additional plant matters: the design without it violates a limit for it
     assert_eq!(audited(&both, &without, TrackingJudgement::Spread).verdict, Verdict::Violated);
 
-    let beside = DesignProblem { beside: vec![lagging(LATE)], ..alone };
+    let beside = DesignProblem { beside: vec![lagging(LATE)], ..family_only };
     let found = designed(&beside, options());
     assert_met(&beside, &found, TrackingJudgement::Spread);
     assert_eq!(found.beside.len(), 1);
@@ -63,13 +63,13 @@ fn a_plant_beside_the_family_counts_as_a_member_does() {
 }
 
 #[test]
-fn a_design_goes_on_with_a_plant_that_it_takes_in() {
+fn a_design_continues_with_an_added_plant() {
     let both = regulation(&[LATE]);
     let mut problem = regulation(&[]);
-    let alone = design(&problem, &options(), &mut unwatched).unwrap();
-    let rounds = alone.design.as_ref().unwrap().rounds.clone();
+    let family_only = design(&problem, &options(), &mut unwatched).unwrap();
+    let rounds = family_only.design.as_ref().unwrap().rounds.clone();
     problem.beside.push(lagging(LATE));
-    let outcome = design_again(&problem, &options(), alone, &mut unwatched).unwrap();
+    let outcome = design_again(&problem, &options(), family_only, &mut unwatched).unwrap();
     let found = &outcome.design.unwrap();
     assert_eq!(found.status, DesignStatus::Met);
     assert!(found.rounds.starts_with(&rounds) && found.rounds.len() > rounds.len());
@@ -80,7 +80,7 @@ fn a_design_goes_on_with_a_plant_that_it_takes_in() {
 /// Limits that a plant and a second one cannot both satisfy have the relaxation of a family of
 /// both.
 #[test]
-fn what_cannot_be_had_with_it_is_told_with_the_least_relaxation() {
+fn infeasibility_with_it_is_reported_with_the_least_relaxation() {
     let too_late = [4.0, 0.4];
     let relaxation = |design: &Design| match &design.status {
         DesignStatus::Infeasible(relaxation) => relaxation.relaxation_db,

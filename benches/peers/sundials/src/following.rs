@@ -26,7 +26,7 @@ pub trait Equations {
     fn outgoing(&self, state: &[f64], inputs: &[f64], waves: &mut [f64]);
     /// Called with the time before the rates there are computed. CVODE attempts one step for each
     /// such time.
-    fn is_asked_at(&self, _time: f64) {}
+    fn is_evaluated_at(&self, _time: f64) {}
 }
 
 impl<E: System<f64>> Equations for E {
@@ -124,15 +124,15 @@ impl Following {
 ///     }
 /// }
 /// let inputs = vec![Input::Value(Profile::steps(0.0, &[(1.0, 5.0)]).unwrap())];
-/// let course = InputSchedule { duration_s: 3.0, output_step_s: 1.0, inputs };
-/// let rows = sundials::follow(&Lag, &[0.0], &course, None, &Following::new(1e-10, Method::Adams))?;
+/// let schedule = InputSchedule { duration_s: 3.0, output_step_s: 1.0, inputs };
+/// let rows = sundials::follow(&Lag, &[0.0], &schedule, None, &Following::new(1e-10, Method::Adams))?;
 /// assert!((rows[3][0] - 5.0 * (1.0 - (-2.0f64).exp())).abs() < 1e-8);
 /// # Ok::<(), sundials::CvodeError>(())
 /// ```
 pub fn follow(
     system: &dyn Equations,
     start: &[f64],
-    course: &InputSchedule,
+    schedule: &InputSchedule,
     mut sampler: Option<&mut dyn Sampler>,
     following: &Following,
 ) -> Result<Vec<Vec<f64>>, CvodeError> {
@@ -142,38 +142,38 @@ pub fn follow(
     }
     let (start, sent) = start.split_at(system.states());
     let waves = RefCell::new(Waves::new(delays, sent.to_vec()));
-    let mut breaks = breaks(course);
-    if !waves.borrow().are_none() {
-        breaks = waves.borrow().echoes(&breaks, course.duration_s);
+    let mut breaks = breaks(schedule);
+    if !waves.borrow().is_empty() {
+        breaks = waves.borrow().echoes(&breaks, schedule.duration_s);
     }
     let (mut rows, mut state, mut time) = (vec![start.to_vec()], start.to_vec(), 0.0);
     let mut held = Held { sample: 0, command: 0.0, pending: Vec::new() };
     let mut kicked = following.kicks.map(|kicks| Kicked { kicks, count: 0, chance: kicks.seed });
     let mut inputs = vec![0.0; system.inputs()];
-    while time < course.duration_s {
-        let mut until = course.duration_s;
+    while time < schedule.duration_s {
+        let mut until = schedule.duration_s;
         if let Some(kicked) = &mut kicked {
             until = until.min(kicked.act(time, &mut state, &scales));
         }
         if let Some(sampler) = &mut sampler {
-            inputs_at(course, time, held.command, &waves.borrow(), &mut inputs);
+            inputs_at(schedule, time, held.command, &waves.borrow(), &mut inputs);
             until = until.min(held.act(*sampler, time, &state, &inputs));
         }
         let command = held.command;
         let inputs_at =
-            |time: f64, waves: &Waves, inputs: &mut [f64]| inputs_at(course, time, command, waves, inputs);
-        let delayed = !waves.borrow().are_none();
+            |time: f64, waves: &Waves, inputs: &mut [f64]| inputs_at(schedule, time, command, waves, inputs);
+        let delayed = !waves.borrow().is_empty();
         if delayed {
             until = breaks.iter().copied().find(|stop| *stop > time).map_or(until, |stop| until.min(stop));
         }
-        let times = times(course, time, until, rows.len());
+        let times = times(schedule, time, until, rows.len());
         let states = if delayed {
             integrate_delayed(system, &inputs_at, &waves, &state, &times, following)?
         } else {
             continued(system, &inputs_at, &state, &times, following, &breaks)?
         };
         for (reached, row) in times.iter().zip(&states).skip(1) {
-            if *reached >= rows.len() as f64 * course.output_step_s {
+            if *reached >= rows.len() as f64 * schedule.output_step_s {
                 rows.push(row.clone());
             }
         }
@@ -196,7 +196,7 @@ fn continued(
     let (none, mut inputs) = (Waves::new(Vec::new(), Vec::new()), vec![0.0; system.inputs()]);
     let mut rates = |time: f64, state: &[f64], rates: &mut [f64]| {
         inputs_at(time, &none, &mut inputs);
-        system.is_asked_at(time);
+        system.is_evaluated_at(time);
         system.rates(state, &inputs, rates);
     };
     integrate(&mut rates, state, times, tolerance, &absolute, method, breaks)
@@ -249,10 +249,10 @@ impl Kicked {
     }
 }
 
-fn inputs_at(course: &InputSchedule, time: f64, command: f64, waves: &Waves, inputs: &mut [f64]) {
-    let (told, arriving) = inputs.split_at_mut(course.inputs.len().min(inputs.len()));
+fn inputs_at(schedule: &InputSchedule, time: f64, command: f64, waves: &Waves, inputs: &mut [f64]) {
+    let (prescribed, arriving) = inputs.split_at_mut(schedule.inputs.len().min(inputs.len()));
     waves.arriving(time, arriving);
-    for (place, input) in told.iter_mut().zip(&course.inputs) {
+    for (place, input) in prescribed.iter_mut().zip(&schedule.inputs) {
         *place = match input {
             Input::Value(profile) => profile.value(time),
             Input::Rate(profile) => profile.rate(time),
@@ -261,8 +261,8 @@ fn inputs_at(course: &InputSchedule, time: f64, command: f64, waves: &Waves, inp
     }
 }
 
-fn breaks(course: &InputSchedule) -> Vec<f64> {
-    let profiles = course.inputs.iter().filter_map(|input| match input {
+fn breaks(schedule: &InputSchedule) -> Vec<f64> {
+    let profiles = schedule.inputs.iter().filter_map(|input| match input {
         Input::Value(profile) | Input::Rate(profile) => Some(profile),
         Input::Command => None,
     });
@@ -271,8 +271,8 @@ fn breaks(course: &InputSchedule) -> Vec<f64> {
 
 /// Times from one time to another, with the rows between them; the time of a row is its index times
 /// the output step.
-fn times(course: &InputSchedule, from: f64, until: f64, row: usize) -> Vec<f64> {
-    let rows = (row..).map(|row| row as f64 * course.output_step_s);
+fn times(schedule: &InputSchedule, from: f64, until: f64, row: usize) -> Vec<f64> {
+    let rows = (row..).map(|row| row as f64 * schedule.output_step_s);
     let between = rows.take_while(|time| *time < until).filter(|time| *time > from);
     std::iter::once(from).chain(between).chain([until]).collect()
 }
