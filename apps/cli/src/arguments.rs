@@ -27,7 +27,11 @@ pub(crate) enum Command {
     /// Print the JSON Schema of the project file, with which editors of TOML check it and complete
     /// its keys
     Schema {
-        /// Write it into this folder, as phea.schema.json, instead of printing it
+        /// The JSON Schema of what every command answers with --json, with a description of each key
+        #[arg(long)]
+        answers: bool,
+        /// Write it into this folder, as phea.schema.json or phea.answers.schema.json, instead of
+        /// printing it
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use crate::answer_schema::parsed;
 use std::sync::OnceLock;
 
 use crate::ask::{HOSE, answer, load, retracted_length, source};
@@ -82,8 +83,8 @@ name = "pipe"
     )
 }
 
-pub(super) fn parsed(answer: &Answer) -> Value {
-    serde_json::from_str(&answer.json).unwrap()
+pub(super) fn json_of(answer: &Answer) -> Value {
+    parsed(&answer.json)
 }
 
 /// The rig with its files, once for all tests.
@@ -91,7 +92,7 @@ pub(super) fn judged() -> &'static (Answer, Value) {
     static JUDGED: OnceLock<(Answer, Value)> = OnceLock::new();
     JUDGED.get_or_init(|| {
         let found = answer(&rig(), &[], &[], &asked(true));
-        let json = parsed(&found);
+        let json = json_of(&found);
         (found, json)
     })
 }
@@ -99,7 +100,7 @@ pub(super) fn judged() -> &'static (Answer, Value) {
 /// Sizing, rig and scenario of each, and nothing without a reason.
 #[test]
 fn every_alternative_has_its_columns_and_reasons() {
-    for json in [&judged().1, &parsed(&answer(LOOP, &[], &[], &asked(false)))] {
+    for json in [&judged().1, &json_of(&answer(LOOP, &[], &[], &asked(false)))] {
         let mut found = Vec::new();
         unexplained("", json, &mut found);
         // the ends of a proof's interval have their reason next to the interval
@@ -149,7 +150,7 @@ fn a_spring_on_the_rod_has_a_length() {
         let settings = ["cylinder.dead_length=0.3 m", spring.as_str()];
         (
             retracted_length(&load(HOSE, &settings, &[]).project),
-            parsed(&answer(HOSE, &settings, &[], &Request::Check)),
+            json_of(&answer(HOSE, &settings, &[], &Request::Check)),
         )
     };
     let (found, check) = length(", coil = { index = 4, allowed_shear_stress = \"600 MPa\" }");
@@ -174,8 +175,8 @@ fn a_load_case_is_what_set_makes_of_every_alternative() {
     let text =
         format!("{LOOP}\n[[load_case]]\nname = \"slow\"\nset = {{ \"plant.denominator\" = \"s + 0.5\" }}\n");
     let found = answer(&text, &[], &[], &asked(true));
-    let json = parsed(&found);
-    assert_eq!(json["alternatives"], parsed(&answer(LOOP, &[], &[], &asked(false)))["alternatives"]);
+    let json = json_of(&found);
+    assert_eq!(json["alternatives"], json_of(&answer(LOOP, &[], &[], &asked(false)))["alternatives"]);
     let case = &json["load_cases"][0];
     assert_eq!(
         (&case["name"], &case["settings"][0]),
@@ -185,7 +186,7 @@ fn a_load_case_is_what_set_makes_of_every_alternative() {
     let (slow, faster) = ("plant.denominator=\"s + 0.5\"", "plant.denominator=\"s + 3\"");
     let settings: [&[&str]; 3] = [&[slow], &[faster], &[slow, "plant.delay=\"10 ms\""]];
     for (index, settings) in settings.into_iter().enumerate() {
-        let alone = parsed(&answer(LOOP, settings, &[], &designed));
+        let alone = json_of(&answer(LOOP, settings, &[], &designed));
         for key in ["controller", "verification", "status"] {
             assert_eq!(case["alternatives"][index]["design"][key], alone[key], "{settings:?} {key}");
         }
@@ -300,7 +301,7 @@ fn a_sized_alternative_has_the_hose_of_size() {
     );
     let all = asked_of(&source(&text), &load(&text, &[], &[]), &[]).unwrap().0;
     let size = Request::Size { gain: None, length: None };
-    let sized = parsed(&answer(&text, &["line.length=1 m"], &[], &size));
+    let sized = json_of(&answer(&text, &["line.length=1 m"], &[], &size));
     let best = &sized["candidates"][0];
     assert_eq!(best["rejections"], Value::Array(vec![]));
     let line = &all[1].loaded.project.actuator.as_ref().unwrap().line;
@@ -318,11 +319,11 @@ fn a_sized_alternative_has_the_hose_of_size() {
 /// The design of an alternative is that of the project with the same settings.
 #[test]
 fn each_design_is_that_of_design_with_set() {
-    let json = parsed(&answer(LOOP, &[], &[], &asked(false)));
+    let json = json_of(&answer(LOOP, &[], &[], &asked(false)));
     let designed = Request::Design { seed: None, stages: false, repair: false };
     let settings: [&[&str]; 3] = [&[], &["plant.denominator=\"s + 3\""], &["plant.delay=\"10 ms\""]];
     for (index, settings) in settings.into_iter().enumerate() {
-        let alone = parsed(&answer(LOOP, settings, &[], &designed));
+        let alone = json_of(&answer(LOOP, settings, &[], &designed));
         let one = &json["alternatives"][index];
         for key in ["controller", "prefilter", "verification", "status", "figures"] {
             assert_eq!(one["design"][key], alone[key], "{settings:?} {key}");
@@ -340,7 +341,7 @@ fn each_written_project_is_the_one_that_was_driven() {
     for (index, name) in ["as declared", "pipe"].into_iter().enumerate() {
         let file = found.files.iter().find(|file| file.name == format!("{name}.toml")).unwrap();
         let text = std::str::from_utf8(&file.bytes).unwrap();
-        let alone = parsed(&answer(text, &[], &[], &Request::Simulate(Default::default())));
+        let alone = json_of(&answer(text, &[], &[], &Request::Simulate(Default::default())));
         let columns = &json["alternatives"][index]["columns"]["scenarios"][0];
         let events = &alone["scenarios"][0]["events"];
         let peak = |event: usize, key: &str| events[event]["metrics"][key].as_f64().unwrap();
@@ -371,7 +372,7 @@ fn a_stop_keeps_what_is_finished() {
     let mut watch = |progress: phea_workbench::command::Progress| progress.share < 0.34;
     let stopped =
         answer_into(&source(LOOP), &load(LOOP, &[], &[]), &[], &asked(false), None, &mut watch).unwrap();
-    let json = parsed(&stopped);
+    let json = json_of(&stopped);
     assert_eq!(json["alternatives"].as_array().unwrap().len(), 1);
     assert_eq!(json["not_reached"], serde_json::json!(["faster", "late"]));
     assert!(!stopped.affirmative && stopped.text.contains("late: not reached"));

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use num_complex::Complex64;
 use phea_dynamics::portable::exp;
 use phea_qft::specification::ClosedLoop;
@@ -222,7 +223,7 @@ fn a_late_feed_forward_is_in_the_loop() {
             &[],
             &Request::Verify { proof: false, on_machine: true },
         );
-        let object: Value = serde_json::from_str(&said.json).unwrap();
+        let object: Value = parsed(&said.json);
         assert_eq!(object["stable"], Value::from(stable), "{gain} {delay_ms}: {}", said.text);
         let run = &object["machine"]["runs"][0];
         let overshoot = |of: &str| run[of]["overshoot_percent"].as_f64();
@@ -251,7 +252,7 @@ fn a_sampled_feed_forward_is_in_the_loop() {
         let viscous = "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }";
         let settings = [&SPRUNG[..], &[viscous, &timing[0], &timing[1], &fed, TENTH_ALONE]].concat();
         let said = answer(&text, &settings, &[], &Request::Verify { proof: false, on_machine: true });
-        let object: Value = serde_json::from_str(&said.json).unwrap();
+        let object: Value = parsed(&said.json);
         assert_eq!(object["stable"], Value::from(stable), "{gain} {sample_ms} {delay_ms}: {}", said.text);
         let run = &object["machine"]["runs"][0];
         let overshoot = |of: &str| run[of]["overshoot_percent"].as_f64();

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_workbench::command::Request;
 use serde_json::Value;
 
@@ -12,7 +13,7 @@ const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 /// What the first scenario, a step to 4 kN at 2 s, exceeds; and the text.
 fn exceeded(text: &str, settings: &[&str]) -> (Vec<Value>, String) {
     let said = answer(text, settings, &[], &Request::Simulate(Default::default()));
-    let object: Value = serde_json::from_str(&said.json).unwrap();
+    let object: Value = parsed(&said.json);
     (object["scenarios"][0]["exceeded"].as_array().unwrap().clone(), said.text)
 }
 

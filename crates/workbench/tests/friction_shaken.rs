@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use crate::ask::{HOSE, answer, load};
 use crate::friction_identification::{
     SHAKEN, SLIDING, TRUTH, found, identified, interval, is_open, recorded,
@@ -28,9 +29,9 @@ fn tells(found: &Value, share: f64) {
     }
 }
 
-fn parsed(source: &Memory, files: &[&str]) -> Value {
+fn found_in(source: &Memory, files: &[&str]) -> Value {
     let answer = identified(source, files).unwrap_or_else(|error| panic!("{error}"));
-    serde_json::from_str(&answer.json).unwrap()
+    parsed(&answer.json)
 }
 
 /// The information in the default run (1 um and 5 kPa of noise, 5000 rows in a second, a force of
@@ -132,7 +133,7 @@ fn equations_of_another_hand_come_back() {
     let rows = integrated(4137);
     let source = recorded(&["bench.friction={ velocities = 8 }"]);
     let source = source.with("own.csv", table(&rows[100..], [0.5, 5.0], 1));
-    tells(&parsed(&source, &[SLIDING, "own.csv"]), 0.08);
+    tells(&found_in(&source, &[SLIDING, "own.csv"]), 0.08);
 }
 
 /// A load cell and its environment hold the rod of the whole machine, whose valve is shaken:
@@ -166,7 +167,7 @@ command = [
         table += &format!("{},{position},{a},{b},{}\n", index as f64 * 2e-4, with(force, 2.0));
     }
     let source = recorded(&["bench.friction={ velocities = 8 }"]).with("machine.csv", table);
-    let found = parsed(&source, &[SLIDING, "machine.csv"]);
+    let found = found_in(&source, &[SLIDING, "machine.csv"]);
     // a valve excites more than the sines of its command, of which the noise hides a part: over six
     // seeds of the noise the stiffness came out 4 % too low at most, and the damping 20 % too high
     for ((key, truth), share) in TRUTH[5..].iter().zip([0.06, 0.3]) {
@@ -206,7 +207,7 @@ fn a_blow_is_no_sum_of_sines() {
     }
     let source = recorded(&["bench.friction={ velocities = 8 }"]);
     let source = source.with("blow.csv", table(&rows, [0.2, 1.0], 1));
-    let found = parsed(&source, &[SLIDING, "blow.csv"]);
+    let found = found_in(&source, &[SLIDING, "blow.csv"]);
     is_open(&found, DAMPING, "slow runs do not show it");
     is_open(&found, STIFFNESS, "record one that rises slowly");
 }

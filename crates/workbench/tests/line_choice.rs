@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_workbench::campaign::{Effort, RequestedRuns, Shard};
 use phea_workbench::command::{CampaignRequest, CampaignRuns, Request, SimulateRequest};
 use phea_workbench::shaping::Shaped;
@@ -97,9 +98,8 @@ fn a_stated_model_is_never_changed() {
     }
     let one_side = answer(&open_rig(), &[fast, "line.a.model=lumped"], &[], &VERIFY);
     let both = ["line.a.model=lumped", "line.b.model=transmission_line"];
-    let stated: Value =
-        serde_json::from_str(&answer(&open_rig(), &[fast, both[0], both[1]], &[], &VERIFY).json).unwrap();
-    let object: Value = serde_json::from_str(&one_side.json).unwrap();
+    let stated: Value = parsed(&answer(&open_rig(), &[fast, both[0], both[1]], &[], &VERIFY).json);
+    let object: Value = parsed(&one_side.json);
     assert_eq!(object["line_model"]["model"], "transmission_line");
     assert_eq!(object["margins"], stated["margins"]);
     // stated as the choice would be, all but the choice is the same
@@ -133,7 +133,7 @@ fn every_command_names_the_chosen_model() {
         .map(|request| {
             let told = answer(&rig, &settings, &[], request);
             assert!(told.text.starts_with("Lines: with waves, since"), "{}: {}", request.name(), told.text);
-            let object: Value = serde_json::from_str(&told.json).unwrap();
+            let object: Value = parsed(&told.json);
             object["line_model"].clone()
         })
         .collect();
@@ -148,7 +148,7 @@ fn a_designed_project_states_the_chosen_model() {
     let design = Request::Design { seed: None, stages: false, repair: false };
     for bandwidth in ["design.highest_bandwidth=300", "design.highest_bandwidth=20"] {
         let told = answer(&rig_to_be_designed(), &["design.structure=pi", bandwidth], &[], &design);
-        let object: Value = serde_json::from_str(&told.json).unwrap();
+        let object: Value = parsed(&told.json);
         let file = told.files.iter().find(|file| file.name == "designed.toml").unwrap();
         let designed = String::from_utf8(file.bytes.clone()).unwrap();
         let model = object["line_model"]["model"].as_str().unwrap();

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use crate::ask::{self, HOSE, PIPE, load, near, within};
 use crate::line_coverage::{CREEPING, WAVES, compliance, known, project};
 use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, bulk_modulus_with_air};
@@ -49,7 +50,7 @@ fn identified_side(
 }
 
 fn line(answer: &Answer) -> Value {
-    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let json: Value = parsed(&answer.json);
     assert_eq!(json["command"], "identify");
     json["line"].clone()
 }

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use crate::answer_schema::parsed;
 use crate::ask::{
     FICTITIOUS, HOSE, OVERRIDE, candidate, candidates, json, near, number, reasons, size_request,
 };
@@ -184,7 +185,7 @@ fn every_rejection_and_warning_names_its_numbers() {
 fn no_hose_is_accepted_without_its_working_pressure() {
     let of = |settings: &[&str]| {
         let said = super::ask::answer(HOSE, settings, &[], &super::ask::size_request(None, Some("1.5 m")));
-        let size: Value = serde_json::from_str(&said.json).unwrap();
+        let size: Value = parsed(&said.json);
         let row = candidates(&size, "eaton_synflex_3130_08", "uniform")[0].clone();
         (said.affirmative, row, said.text)
     };

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use crate::ask::{HOSE, answer, try_answer};
 use phea_workbench::command::Request;
 use phea_workbench::linearize::SweepRequest;
@@ -12,7 +13,7 @@ fn request(range: &str, points: Option<usize>) -> Request {
 }
 
 fn swept(project: &str, range: &str, points: usize) -> Value {
-    serde_json::from_str(&answer(project, &[], &[], &request(range, Some(points))).json).unwrap()
+    parsed(&answer(project, &[], &[], &request(range, Some(points))).json)
 }
 
 fn refused(range: &str, points: Option<usize>) -> String {
@@ -39,9 +40,7 @@ fn each_value_is_that_of_linearize() {
     for (row, length) in rows.iter().zip([0.5, 1.0, 1.5, 2.0, 2.5, 3.0]) {
         assert_eq!(row["value"].as_f64(), Some(length));
         let setting = format!("line.length={length}");
-        let alone: Value =
-            serde_json::from_str(&answer(&hose, &[&setting], &[], &Request::Linearize { sweep: None }).json)
-                .unwrap();
+        let alone: Value = parsed(&answer(&hose, &[&setting], &[], &Request::Linearize { sweep: None }).json);
         for end in ["minimum_n_per_m", "maximum_n_per_m"] {
             assert_eq!(row["stiffness"][end], alone["stiffness"][end], "{length} {end}");
         }

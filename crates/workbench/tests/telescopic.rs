@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use crate::answer_schema::parsed;
 use phea_workbench::audit::{CERTIFICATE_FILE, check_certificate};
 use phea_workbench::command::{FrictionRequest, Request, friction_watched};
 use phea_workbench::source::Memory;
@@ -45,7 +46,7 @@ fn check_derives_its_stages() {
 #[test]
 fn every_position_is_proven_to_be_stable() {
     let said = answer(TELESCOPIC, &[MIDDLE], &[], &Request::Verify { proof: true, on_machine: false });
-    let object: serde_json::Value = serde_json::from_str(&said.json).unwrap();
+    let object: serde_json::Value = parsed(&said.json);
     assert_eq!(object["proof"]["stable"]["proven"], true, "{}", object["proof"]);
     for index in [0, 1] {
         assert_eq!(object["specifications"][index]["proven"], true, "{}", object["specifications"]);
@@ -71,7 +72,7 @@ fn the_machine_agrees_with_the_linear_loop() {
             &[],
             &Request::Verify { proof: false, on_machine: true },
         );
-        let object: serde_json::Value = serde_json::from_str(&said.json).unwrap();
+        let object: serde_json::Value = parsed(&said.json);
         let run = &object["machine"]["runs"][0];
         assert_eq!(run["agrees"], serde_json::Value::from(true), "{position}: {run}");
     }
@@ -87,7 +88,7 @@ fn behind_a_linkage_the_machine_agrees_too() {
         let limit = "specification=[{ kind = \"robust_stability\", limit = 3, frequencies = [1, 10, 100] }]";
         let said =
             answer(rig, &[stage, &place, limit], &[], &Request::Verify { proof: false, on_machine: true });
-        let object: serde_json::Value = serde_json::from_str(&said.json).unwrap();
+        let object: serde_json::Value = parsed(&said.json);
         for run in object["machine"]["runs"].as_array().unwrap() {
             assert_eq!(run["agrees"], serde_json::Value::from(true), "{position}: {run}");
         }
@@ -99,7 +100,7 @@ fn behind_a_linkage_the_machine_agrees_too() {
 fn a_steady_motion_through_a_transition_is_not_proven() {
     let verdict = |settings: &[&str]| {
         let said = answer(TELESCOPIC, settings, &[], &Request::Verify { proof: false, on_machine: false });
-        let object: serde_json::Value = serde_json::from_str(&said.json).unwrap();
+        let object: serde_json::Value = parsed(&said.json);
         (object["verdict"].clone(), said.text)
     };
     assert_eq!(verdict(&[MIDDLE]).0, "met");

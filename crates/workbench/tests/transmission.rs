@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use crate::answer_schema::parsed;
 use phea_workbench::command::Request;
 use phea_workbench::project;
 use phea_workbench::source::Memory;
@@ -15,10 +16,6 @@ const TRANSMISSION: &str = include_str!("../../../examples/ybitu/transmission.to
 /// As long as one with a hose, whose numbers are known by hand.
 const PIPE: &str = "series={ kind = \"transmission\", piston_area = \"20 cm2\", filling_pressure = \"60 bar\", \
                     end_volume = \"20 cm3\", line = { pipe = { bore = \"10 mm\" }, length = \"2 m\" } }";
-
-fn parsed(text: &str) -> Value {
-    serde_json::from_str(text).unwrap()
-}
 
 /// The example without what is uncertain of its hose.
 fn certain() -> String {

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_hydraulics::signal::Signal;
 use phea_workbench::command::{CommandError, Request};
 use phea_workbench::setup::Setup;
@@ -22,7 +23,7 @@ const DESIGNED: [&str; 4] = [
 
 fn on_machine(settings: &[&str]) -> (bool, Value, String) {
     let said = answer(HOSE, settings, &[], &Request::Verify { proof: false, on_machine: true });
-    (said.affirmative, serde_json::from_str(&said.json).unwrap(), said.text)
+    (said.affirmative, parsed(&said.json), said.text)
 }
 
 /// The run that this machine made.
@@ -141,7 +142,7 @@ fn slow_rig() -> String {
 
 fn tried(settings: &[&str]) -> Value {
     let said = answer(&slow_rig(), settings, &[], &Request::Verify { proof: false, on_machine: true });
-    serde_json::from_str(&said.json).unwrap()
+    parsed(&said.json)
 }
 
 /// A run of its own with these steps of the reference.

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use crate::ask::{HOSE, check, load};
 use crate::valve_identification::{TRUTH, files_of, identified, interval, recorded, try_asked, value};
 use phea_workbench::command::{IdentifyError, IdentifyRequest, LeakageModel, identify_watched};
@@ -44,7 +45,7 @@ fn the_wrong_model_says_so_first() {
     let first = answer.text.lines().take(4).collect::<Vec<_>>().join(" ");
     assert!(first.contains("one curve for the whole valve (`one_curve`) rather than"), "{first}");
     assert!(first.contains("leakage_model = \"each_edge\"`, against the recordings"), "{first}");
-    let found: Value = serde_json::from_str(&answer.json).unwrap();
+    let found: Value = parsed(&answer.json);
     assert_eq!(found["leakage_model"], "each_edge");
     let [low, high] = interval(&found, "/leakage_shape").unwrap();
     assert!(!(low..=high).contains(&100.0), "{low} {high}");
@@ -76,7 +77,7 @@ fn recordings_that_do_not_decide_say_so() {
     let files: Vec<_> = recorded(&coarse).into_iter().filter(|(name, _)| name == "metering.csv").collect();
     let answer = try_asked(&files, &files_of(&files)).unwrap();
     assert!(answer.text.contains("The recordings do not decide"), "{}", answer.text);
-    let found: Value = serde_json::from_str(&answer.json).unwrap();
+    let found: Value = parsed(&answer.json);
     assert_eq!(found["leakage_model_preferred"], Value::Null);
     assert_eq!(found["leakage_model"], "each_edge");
 }
@@ -119,7 +120,7 @@ fn a_valve_without_tare_flow_has_a_bound_from_above_by_every_meter() {
         let settings = [&meter[..], &["valve.tare_flow=\"0 m3/s\"", FEW_ROWS]].concat();
         let files = recorded(&settings);
         let answer = try_asked(&files, &files_of(&files)).unwrap();
-        let found: Value = serde_json::from_str(&answer.json).unwrap();
+        let found: Value = parsed(&answer.json);
         let [low, high] = interval(&found, "/tare_flow_m3_per_s").unwrap_or_else(|| panic!("{meter:?}"));
         assert!(low == 0.0 && high < most, "{meter:?}: {low} {high}");
         assert!(answer.text.contains("These may be zero: tare_flow, at most"), "{}", answer.text);
@@ -168,7 +169,7 @@ fn the_bootstrap_agrees_with_the_linearised_intervals() {
     let asked = IdentifyRequest { bootstrap: 100, ..files_of(&files) };
     let answer = try_asked(&files, &asked).unwrap();
     assert!(answer.text.contains("Bootstrap: 100 repetitions"), "{}", answer.text);
-    let found: Value = serde_json::from_str(&answer.json).unwrap();
+    let found: Value = parsed(&answer.json);
     assert_eq!((&found["bootstrap"]["repetitions"], &found["bootstrap"]["failed"]), (&100.into(), &0.into()));
     for (path, _) in TRUTH {
         let [low, high] = interval(&found, path).unwrap();
@@ -187,7 +188,7 @@ fn the_bootstrap_agrees_with_the_linearised_intervals() {
 fn the_bootstrap_sees_what_the_model_leaves_unexplained() {
     let files = recorded(&["valve.threshold=\"80 mV\"", FEW_ROWS]);
     let asked = IdentifyRequest { bootstrap: 50, ..files_of(&files) };
-    let found: Value = serde_json::from_str(&try_asked(&files, &asked).unwrap().json).unwrap();
+    let found: Value = parsed(&try_asked(&files, &asked).unwrap().json);
     assert!(found["bootstrap"]["block_rows"].as_u64().unwrap() > 2, "{}", found["bootstrap"]);
     let [low, high] = interval(&found, "/hysteresis_v").unwrap();
     let ends = &found["hysteresis_v"]["bootstrap_95"];

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use crate::answer_schema::parsed;
 use std::f64::consts::TAU;
 
 use crate::ask::{HOSE, answer, json, load};
@@ -60,7 +61,7 @@ fn try_identify(files: &[(String, String)], starts: usize) -> Result<Answer, Ide
 
 pub(crate) fn identified(files: &[(String, String)]) -> Value {
     let found = try_identify(files, 1).unwrap_or_else(|error| panic!("{error}"));
-    serde_json::from_str(&found.json).unwrap()
+    parsed(&found.json)
 }
 
 pub(crate) fn value(found: &Value, path: &str) -> f64 {
@@ -100,8 +101,7 @@ fn the_lag_of_the_spool_is_no_hysteresis() {
     let of = |settings: &[&str]| -> (f64, f64) {
         let asked =
             identify_watched(&source, Some(&load(HOSE, settings, &[])), &files_of(&files), &mut |_| true);
-        let found: Value =
-            serde_json::from_str(&asked.unwrap_or_else(|error| panic!("{error}")).json).unwrap();
+        let found: Value = parsed(&asked.unwrap_or_else(|error| panic!("{error}")).json);
         let [low, high] = interval(&found, "/hysteresis_v").unwrap();
         (f64::midpoint(low, high) - 0.128, 0.5 * (high - low))
     };
@@ -179,7 +179,7 @@ fn metering_alone_does_not_tell_the_leakage() {
     let files: Vec<_> = recorded(&[]).into_iter().filter(|(name, _)| name == "metering.csv").collect();
     let answer = try_identify(&files, 6).unwrap();
     assert!(!answer.affirmative);
-    let found: Value = serde_json::from_str(&answer.json).unwrap();
+    let found: Value = parsed(&answer.json);
     assert!(interval(&found, "/tare_flow_m3_per_s").is_none());
     let not_identifiable = found["not_identifiable"].as_array().unwrap();
     let names: Vec<&str> = not_identifiable

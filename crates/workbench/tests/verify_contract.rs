@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use crate::answer_schema::parsed;
 use crate::ask::{self, HOSE, answer, json, try_answer};
 use phea_workbench::command::{CommandError, Progress, Request, answer_into};
 use phea_workbench::plant_names::{PlantNames, plant_text};
@@ -110,7 +111,7 @@ fn a_feed_forward_is_told_to_be_left_out() {
             (vec!["controller.load_velocity_feed_forward={ gain = 20 }"], true),
         ] {
             let said = answer(text, &settings, &[], &request);
-            let object: Value = serde_json::from_str(&said.json).unwrap();
+            let object: Value = parsed(&said.json);
             let warnings = object["warnings"].as_array().unwrap();
             let of_it = warnings.iter().filter(|warning| warning.as_str().unwrap().contains(words));
             assert_eq!(
@@ -194,7 +195,7 @@ fn a_loop_around_an_unstable_plant_states_how_far_its_gain_may_fall() {
         .replace("numerator = \"1\"", "numerator = \"2\"");
     let request = Request::Verify { proof: false, on_machine: false };
     let said = answer(&unstable, &[], &[], &request);
-    let object: Value = serde_json::from_str(&said.json).unwrap();
+    let object: Value = parsed(&said.json);
     // ORIGIN: analytic, 20 log10(1/8)
     close(&object["gain_reduction_db"], -18.0618, 1e-5);
     assert!(said.text.contains("becomes unstable where that falls by 18.1 dB"), "{}", said.text);

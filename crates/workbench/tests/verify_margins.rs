@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use crate::answer_schema::parsed;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::ask::{HOSE, answer, json};
@@ -43,7 +44,7 @@ fn assert_delayed(set: &Value, k: f64, dead_time_s: f64) {
 #[test]
 fn the_worst_of_a_family_of_gains_is_at_the_largest() {
     let said = answer(DELAYED, &[], &[], &VERIFY);
-    let object: Value = serde_json::from_str(&said.json).unwrap();
+    let object: Value = parsed(&said.json);
     let margins = &object["margins"];
     assert_delayed(&margins["nominal"], 2.0, 0.1);
     assert_delayed(&margins["family"], 4.0, 0.1);
@@ -130,7 +131,7 @@ fn of_key<'a>(below: &'a [Value], key: &str) -> Option<&'a Value> {
 #[test]
 fn a_loop_says_which_limits_of_a_design_it_does_not_keep() {
     let said = answer(HOSE, &[], &[], &VERIFY);
-    let object: Value = serde_json::from_str(&said.json).unwrap();
+    let object: Value = parsed(&said.json);
     let found = object["below_design"].as_array().unwrap();
     let modulus = of_key(found, "modulus_margin").unwrap();
     assert_eq!(modulus["value"], object["margins"]["modulus"]);
@@ -158,7 +159,7 @@ fn a_loop_says_which_limits_of_a_design_it_does_not_keep() {
 fn a_loop_that_keeps_the_limits_of_a_design_says_which() {
     let plant = DELAYED.replace("delay = \"0.1 s\"\n", "");
     let said = answer(&plant, &["design.modulus_margin=0.9"], &[], &VERIFY);
-    let object: Value = serde_json::from_str(&said.json).unwrap();
+    let object: Value = parsed(&said.json);
     assert_eq!(
         (&object["below_design"], &object["kept_of_design"]),
         (&object_of!([]), &object_of!(["modulus_margin"]))

@@ -1,5 +1,6 @@
 //! Tables of campaigns that were interrupted, cut, damaged, or are another campaign's.
 
+use crate::answer_schema::parsed;
 use phea_workbench::campaign::RowFault;
 
 use super::*;
@@ -117,7 +118,7 @@ fn stopping_leaves_whole_rows() {
         .unwrap();
     let rows = page.text.lines().count() - 1;
     assert!(!answer.affirmative && rows < 600 && page.text.ends_with('\n'));
-    let told: Value = serde_json::from_str(&answer.json).unwrap();
+    let told: Value = parsed(&answer.json);
     assert_eq!((&told["complete"], &told["runs"]["rows"]), (&Value::from(false), &Value::from(rows)));
     kept(&loaded, &asked, &mut page).unwrap();
     let whole = uninterrupted(&loaded, &asked);
