@@ -27,7 +27,8 @@ pub(crate) enum Command {
     /// Print the JSON Schema of the project file, with which editors of TOML check it and complete
     /// its keys
     Schema {
-        /// The JSON Schema of what every command answers with --json, with a description of each key
+        /// Print the JSON Schema of the answers of all commands with --json instead, with a
+        /// description of each key
         #[arg(long)]
         answers: bool,
         /// Write it into this folder, as phea.schema.json or phea.answers.schema.json, instead of

@@ -25,8 +25,8 @@ use field::DeclaredField;
 /// - `#[answer(optional)]` on an `Option`: no key without a value, where otherwise `null` is
 ///   printed.
 /// - `#[answer(flatten)]`: the keys of the value in place of one key.
-/// - `#[answer(key = EXPRESSION)]`: a key other than the name of the field, as a text or as the name
-///   of a quantity of the motion of the rig.
+/// - `#[answer(key = EXPRESSION)]`: a key other than the name of the field, as a text or as the
+///   name of a quantity of the motion of the rig.
 #[proc_macro_derive(Answer, attributes(answer))]
 pub fn answer(input: TokenStream) -> TokenStream {
     let input = syn::parse_macro_input!(input as DeriveInput);
@@ -95,8 +95,8 @@ fn describe_object(input: &DeriveInput, documentation: &str) -> Tokens {
     let text = name.to_string();
     quote! {
         impl #generics crate::answer::Describe for #name #arguments #bounds {
-            fn shape() -> crate::answer::Shape {
-                crate::answer::Shape::Object(crate::answer::ObjectShape {
+            fn shape() -> crate::answer::ValueShape {
+                crate::answer::ValueShape::Object(crate::answer::ObjectShape {
                     name: #text,
                     documentation: #documentation,
                     members: <Self as crate::answer::Body>::members,

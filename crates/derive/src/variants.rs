@@ -54,8 +54,8 @@ fn derive_values(input: &DeriveInput, documentation: &str, data: &DataEnum) -> R
     let (generics, arguments, bounds) = input.generics.split_for_impl();
     Ok(quote! {
         impl #generics crate::answer::Describe for #name #arguments #bounds {
-            fn shape() -> crate::answer::Shape {
-                crate::answer::Shape::Either(crate::answer::EitherShape {
+            fn shape() -> crate::answer::ValueShape {
+                crate::answer::ValueShape::Either(crate::answer::EitherShape {
                     name: #text,
                     documentation: #documentation,
                     values: vec![#(#shapes),*],

@@ -28,14 +28,14 @@ pub use crate::source::OutputFile;
 pub(crate) use chosen_lines::hindrance_words;
 pub(crate) use describe::{Body, Describe, Field, Perhaps};
 pub(crate) use envelope::{SCHEMA, VERSION, envelope};
-pub(crate) use known::{Entries, KeyList, Keyed, Known};
+pub(crate) use known::{Entries, KeyList, Keyed, OrReason};
 pub(crate) use object::{Json, ObjectKey};
 pub(crate) use phea_derive::Answer;
 pub use pictures::picture_of;
 pub(crate) use pictures::{part_files, picture_files};
 pub(crate) use recorded::{body_in_use, kept_because};
 pub(crate) use schema::{CommandAnswer, schema_of};
-pub(crate) use shape::{EitherShape, Members, ObjectShape, Shape, WordList};
+pub(crate) use shape::{EitherShape, Members, ObjectShape, ValueShape, WordList};
 pub(crate) use words::{Word, describe_words, words};
 
 /// The answer of a command, ready to be printed and written by a shell.

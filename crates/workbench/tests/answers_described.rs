@@ -85,7 +85,7 @@ fn every_description_is_a_sentence() {
 }
 
 #[test]
-fn every_property_and_definition_is_described() {
+fn every_key_is_described() {
     for (name, definition) in schema()["definitions"].as_object().unwrap() {
         assert!(definition["description"].is_string(), "{name}");
         let properties = definition.get("properties").and_then(Value::as_object);

@@ -4,8 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
 
-use crate::answer_schema::parsed;
-use crate::ask;
+use crate::{answer_schema, ask};
 use num_complex::Complex64;
 use phea_dynamics::portable::{exp_complex, magnitude};
 use phea_dynamics::random::{normal, stream};
@@ -89,7 +88,7 @@ fn identified(
 }
 
 fn member(answer: &Answer) -> Value {
-    let json: Value = parsed(&answer.json);
+    let json: Value = answer_schema::parsed(&answer.json);
     json["response"]["members"][0].clone()
 }
 
@@ -226,7 +225,7 @@ fn what_is_identified_is_a_family_that_verify_audits() {
     let verdict =
         command::answer(&source, &loaded, &[], &Request::Verify { proof: false, on_machine: false })
             .unwrap_or_else(|error| panic!("{error}"));
-    let json: Value = parsed(&verdict.json);
+    let json = answer_schema::parsed(&verdict.json);
     assert_eq!(json["command"], "verify");
     assert!(!json["specifications"].as_array().unwrap().is_empty(), "{json}");
     // the discs of the records are in the family, each widened for all rows to hold at once

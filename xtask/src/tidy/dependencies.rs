@@ -4,6 +4,7 @@
 //! dynamics <- quantity <- hydraulics <- machine, project <-+
 //! dynamics <- qft <----------------------------------------+- engineering <-+
 //! quantity, qft <- figure <-------------------------------------------------+- workbench <- cli
+//! derive <------------------------------------------------------------------+
 //! ```
 
 use super::Violation;
@@ -12,6 +13,7 @@ use crate::repository::Repository;
 /// The packages by their folder, those outside the workspace too, and those of ours that each may
 /// use.
 const ALLOWED: &[(&str, &str)] = &[
+    ("crates/derive", ""),
     ("crates/dynamics", ""),
     ("crates/hydraulics", "dynamics quantity"),
     ("crates/qft", "dynamics"),
@@ -20,7 +22,7 @@ const ALLOWED: &[(&str, &str)] = &[
     ("crates/figure", "dynamics qft quantity"),
     ("crates/project", "dynamics hydraulics quantity"),
     ("crates/engineering", "dynamics hydraulics machine project qft quantity"),
-    ("crates/workbench", "dynamics engineering figure hydraulics machine project qft quantity"),
+    ("crates/workbench", "derive dynamics engineering figure hydraulics machine project qft quantity"),
     ("apps/cli", "workbench"),
     ("fuzz", "workbench"),
     ("benches/peers/sundials", "dynamics engineering hydraulics machine project"),

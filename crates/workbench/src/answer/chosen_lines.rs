@@ -3,7 +3,7 @@
 use phea_engineering::line_choice::LUMPED_FROM;
 
 use super::words::words;
-use super::{Answer, Known};
+use super::{Answer, OrReason};
 use crate::project::{ChosenLines, ReachedBy, WavesHindrance};
 use crate::quantity::MotionKind;
 
@@ -15,7 +15,7 @@ pub(crate) struct ChosenLinesAnswer {
     /// Lowest frequency at which a line is a quarter of a wave long.
     quarter_wave_rad_per_s: f64,
     /// Highest frequency that the loop or a requirement reaches.
-    reached_rad_per_s: Known<f64>,
+    reached_rad_per_s: OrReason<f64>,
     /// Origin of `reached_rad_per_s`.
     #[answer(optional)]
     reached_by: Option<ReachedBy>,
@@ -60,7 +60,7 @@ pub(crate) fn body_of_lines(lines: &ChosenLines, motion: MotionKind) -> ChosenLi
     ChosenLinesAnswer {
         model: if lines.with_waves { ChosenLineModel::Waves } else { ChosenLineModel::Lumped },
         quarter_wave_rad_per_s: lines.quarter_wave_rad_per_s,
-        reached_rad_per_s: Known::or(reached, "neither loop nor requirement reaches a frequency"),
+        reached_rad_per_s: OrReason::new(reached, "neither loop nor requirement reaches a frequency"),
         reached_by: by,
         specification,
         lumped_from: LUMPED_FROM,

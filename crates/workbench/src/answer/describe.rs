@@ -4,12 +4,12 @@
 //! documentation of its fields. [`words!`](super::words) implements [`Describe`] for an enumeration.
 
 use super::object::{Json, Object, ObjectKey};
-use super::shape::{Members, Shape};
+use super::shape::{Members, ValueShape};
 
 /// A value that is printed and described.
 pub(crate) trait Describe: Sized {
     /// Description of every value.
-    fn shape() -> Shape;
+    fn shape() -> ValueShape;
 
     /// The value in JSON.
     fn into_json(self) -> Json;

@@ -4,22 +4,22 @@ use std::marker::PhantomData;
 
 use super::describe::{Body, Describe, Field};
 use super::object::{Json, Object, ObjectKey};
-use super::shape::{Members, Shape};
+use super::shape::{Members, ValueShape};
 
 /// A value, or the reason why there is none: `null`, and then a second key with the reason.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Known<Value>(pub(crate) Result<Value, String>);
+pub(crate) struct OrReason<Value>(pub(crate) Result<Value, String>);
 
-impl<Value> Known<Value> {
+impl<Value> OrReason<Value> {
     /// The value, or this reason.
-    pub(crate) fn or(value: Option<Value>, reason: impl Into<String>) -> Known<Value> {
-        Known(value.ok_or_else(|| reason.into()))
+    pub(crate) fn new(value: Option<Value>, reason: impl Into<String>) -> OrReason<Value> {
+        OrReason(value.ok_or_else(|| reason.into()))
     }
 }
 
-impl<Value: Describe> Field for Known<Value> {
+impl<Value: Describe> Field for OrReason<Value> {
     fn members(key: ObjectKey, description: &str) -> Members {
-        value_members::<Value>(&key, description).and(reason_members(&key, Shape::Text).optional())
+        value_members::<Value>(&key, description).and(reason_members(&key, ValueShape::Text).optional())
     }
 
     fn put(self, key: ObjectKey, object: &mut Object) {
@@ -40,7 +40,7 @@ pub(crate) struct Reasoned<Value>(pub(crate) Result<Value, String>);
 
 impl<Value: Describe> Field for Reasoned<Value> {
     fn members(key: ObjectKey, description: &str) -> Members {
-        let reason = Shape::Nullable(Box::new(Shape::Text));
+        let reason = ValueShape::Nullable(Box::new(ValueShape::Text));
         value_members::<Value>(&key, description).and(reason_members(&key, reason))
     }
 
@@ -56,10 +56,10 @@ impl<Value: Describe> Field for Reasoned<Value> {
 }
 
 fn value_members<Value: Describe>(key: &ObjectKey, description: &str) -> Members {
-    Members::one(key.clone(), description, Shape::Nullable(Box::new(Value::shape())))
+    Members::one(key.clone(), description, ValueShape::Nullable(Box::new(Value::shape())))
 }
 
-fn reason_members(key: &ObjectKey, shape: Shape) -> Members {
+fn reason_members(key: &ObjectKey, shape: ValueShape) -> Members {
     Members::one(key.reason(), "Reason for which the value is absent.", shape)
 }
 
@@ -68,8 +68,8 @@ fn reason_members(key: &ObjectKey, shape: Shape) -> Members {
 pub(crate) struct Entries<Value>(pub(crate) Vec<(String, Value)>);
 
 impl<Value: Describe> Describe for Entries<Value> {
-    fn shape() -> Shape {
-        Shape::Map(Box::new(Value::shape()))
+    fn shape() -> ValueShape {
+        ValueShape::Map(Box::new(Value::shape()))
     }
 
     fn into_json(self) -> Json {

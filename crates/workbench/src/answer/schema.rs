@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::envelope::Envelope;
 use super::object::{Object, ObjectKey};
-use super::shape::{EitherShape, Member, Members, ObjectShape, Shape, WordList};
+use super::shape::{EitherShape, KeyShape, Members, ObjectShape, ValueShape, WordList};
 use super::{Body, Describe};
 use crate::quantity::MotionKind;
 
@@ -26,7 +26,7 @@ impl CommandAnswer {
     /// Of this type, which has all keys.
     pub(crate) fn whole<Answer: Describe + Body>(command: Option<&'static str>) -> CommandAnswer {
         let (name, documentation) = match Answer::shape() {
-            Shape::Object(own) => (own.name, own.documentation),
+            ValueShape::Object(own) => (own.name, own.documentation),
             _ => ("", ""),
         };
         let shape = ObjectShape { name, documentation, members: Answer::members };
@@ -118,7 +118,7 @@ impl Definitions {
             .with("additionalProperties", false)
     }
 
-    fn property(&mut self, member: &Member, command: Option<&str>) -> Object {
+    fn property(&mut self, member: &KeyShape, command: Option<&str>) -> Object {
         let described = Object::new().with("description", member.description.trim());
         match command {
             Some(word) => described.with("const", word),
@@ -126,28 +126,28 @@ impl Definitions {
         }
     }
 
-    fn schema(&mut self, shape: &Shape) -> Object {
+    fn schema(&mut self, shape: &ValueShape) -> Object {
         let kind = |kind: &str| Object::new().with("type", kind);
         match shape {
-            Shape::Flag => kind("boolean"),
-            Shape::Count => kind("integer").with("minimum", 0_u32),
-            Shape::Integer => kind("integer"),
-            Shape::Text => kind("string"),
-            Shape::Open => kind("object"),
-            Shape::Number => self.known("Number", number),
-            Shape::Complex => self.known("Complex", complex),
-            Shape::Plant => self.known("Plant", plant),
-            Shape::Words(list) => self.words(list),
-            Shape::List(item) => kind("array").with("items", self.schema(item)),
-            Shape::Array(item, count) => sized(kind("array").with("items", self.schema(item)), *count),
-            Shape::Tuple(items) => {
+            ValueShape::Flag => kind("boolean"),
+            ValueShape::Count => kind("integer").with("minimum", 0_u32),
+            ValueShape::Integer => kind("integer"),
+            ValueShape::Text => kind("string"),
+            ValueShape::Open => kind("object"),
+            ValueShape::Number => self.known("Number", number),
+            ValueShape::Complex => self.known("Complex", complex),
+            ValueShape::Plant => self.known("Plant", plant),
+            ValueShape::Words(list) => self.words(list),
+            ValueShape::List(item) => kind("array").with("items", self.schema(item)),
+            ValueShape::Array(item, count) => sized(kind("array").with("items", self.schema(item)), *count),
+            ValueShape::Tuple(items) => {
                 let each: Vec<Object> = items.iter().map(|item| self.schema(item)).collect();
                 sized(kind("array").with("items", each), items.len())
             }
-            Shape::Map(value) => kind("object").with("additionalProperties", self.schema(value)),
-            Shape::Nullable(value) => Object::new().with("anyOf", [self.schema(value), kind("null")]),
-            Shape::Either(either) => self.either(either),
-            Shape::Object(own) => {
+            ValueShape::Map(value) => kind("object").with("additionalProperties", self.schema(value)),
+            ValueShape::Nullable(value) => Object::new().with("anyOf", [self.schema(value), kind("null")]),
+            ValueShape::Either(either) => self.either(either),
+            ValueShape::Object(own) => {
                 if self.begins(own.name) {
                     let definition = self.object(own.documentation, (own.members)(), None);
                     self.by_name.insert(own.name, definition);
@@ -207,13 +207,14 @@ fn complex(all: &mut Definitions) -> Object {
     let parts = Object::new()
         .with("description", "Real and imaginary part.")
         .with("type", "array")
-        .with("items", all.schema(&Shape::Number));
+        .with("items", all.schema(&ValueShape::Number));
     sized(parts, 2)
 }
 
 fn plant(all: &mut Definitions) -> Object {
     let text = "Plant of a family: SI values by the names of the parameters; of a measured plant its name.";
-    let values = Object::new().with("anyOf", [all.schema(&Shape::Number), all.schema(&Shape::Text)]);
+    let values =
+        Object::new().with("anyOf", [all.schema(&ValueShape::Number), all.schema(&ValueShape::Text)]);
     Object::new().with("description", text).with("type", "object").with("additionalProperties", values)
 }
 

@@ -4,7 +4,7 @@ use super::object::ObjectKey;
 
 /// A value of JSON, described.
 #[derive(Clone, Debug)]
-pub(crate) enum Shape {
+pub(crate) enum ValueShape {
     Flag,
     /// Integer that is not negative.
     Count,
@@ -17,14 +17,14 @@ pub(crate) enum Shape {
     /// Plant of a family: its values by the names of the parameters.
     Plant,
     Words(WordList),
-    List(Box<Shape>),
+    List(Box<ValueShape>),
     /// List of a known number of values.
-    Array(Box<Shape>, usize),
+    Array(Box<ValueShape>, usize),
     /// List of values that differ in kind.
-    Tuple(Vec<Shape>),
+    Tuple(Vec<ValueShape>),
     /// Object whose keys are names, each with such a value.
-    Map(Box<Shape>),
-    Nullable(Box<Shape>),
+    Map(Box<ValueShape>),
+    Nullable(Box<ValueShape>),
     Either(EitherShape),
     Object(ObjectShape),
     /// Object that is not described.
@@ -44,7 +44,7 @@ pub(crate) struct WordList {
 pub(crate) struct EitherShape {
     pub(crate) name: &'static str,
     pub(crate) documentation: &'static str,
-    pub(crate) values: Vec<Shape>,
+    pub(crate) values: Vec<ValueShape>,
 }
 
 /// An object with a name. Its keys are a function because objects may contain each other.
@@ -57,10 +57,10 @@ pub(crate) struct ObjectShape {
 
 /// A key of an object, with its description.
 #[derive(Clone, Debug)]
-pub(crate) struct Member {
+pub(crate) struct KeyShape {
     pub(crate) key: ObjectKey,
     pub(crate) description: String,
-    pub(crate) shape: Shape,
+    pub(crate) shape: ValueShape,
     /// True if every such object has the key.
     pub(crate) required: bool,
 }
@@ -68,15 +68,15 @@ pub(crate) struct Member {
 /// The keys of an object.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Members {
-    pub(crate) list: Vec<Member>,
+    pub(crate) list: Vec<KeyShape>,
     /// Sets of keys, every key of at least one of which the object has.
     pub(crate) choices: Vec<Vec<Vec<ObjectKey>>>,
 }
 
 impl Members {
     /// One key that every object has.
-    pub(crate) fn one(key: ObjectKey, description: impl Into<String>, shape: Shape) -> Members {
-        let member = Member { key, description: description.into(), shape, required: true };
+    pub(crate) fn one(key: ObjectKey, description: impl Into<String>, shape: ValueShape) -> Members {
+        let member = KeyShape { key, description: description.into(), shape, required: true };
         Members { list: vec![member], choices: vec![] }
     }
 
@@ -104,7 +104,7 @@ impl Members {
         let mut all = Members { list: vec![], choices: vec![choice] };
         for member in sets.into_iter().flat_map(|set| set.list) {
             if all.list.iter().all(|known| known.key != member.key) {
-                all.list.push(Member { required: false, ..member });
+                all.list.push(KeyShape { required: false, ..member });
             }
         }
         all

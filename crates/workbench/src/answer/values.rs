@@ -4,15 +4,15 @@ use num_complex::Complex64;
 
 use super::describe::Describe;
 use super::object::{Json, Object};
-use super::shape::Shape;
+use super::shape::ValueShape;
 use crate::plant_names::NamedPlant;
 use crate::quantity::QuantityName;
 
 macro_rules! describe {
     ($($kind:ty => $shape:ident),* $(,)?) => {
         $(impl Describe for $kind {
-            fn shape() -> Shape {
-                Shape::$shape
+            fn shape() -> ValueShape {
+                ValueShape::$shape
             }
 
             fn into_json(self) -> Json {
@@ -40,7 +40,7 @@ describe! {
 }
 
 impl<Value: Describe> Describe for Box<Value> {
-    fn shape() -> Shape {
+    fn shape() -> ValueShape {
         Value::shape()
     }
 
@@ -50,8 +50,8 @@ impl<Value: Describe> Describe for Box<Value> {
 }
 
 impl<Value: Describe> Describe for Option<Value> {
-    fn shape() -> Shape {
-        Shape::Nullable(Box::new(Value::shape()))
+    fn shape() -> ValueShape {
+        ValueShape::Nullable(Box::new(Value::shape()))
     }
 
     fn into_json(self) -> Json {
@@ -60,8 +60,8 @@ impl<Value: Describe> Describe for Option<Value> {
 }
 
 impl<Value: Describe> Describe for Vec<Value> {
-    fn shape() -> Shape {
-        Shape::List(Box::new(Value::shape()))
+    fn shape() -> ValueShape {
+        ValueShape::List(Box::new(Value::shape()))
     }
 
     fn into_json(self) -> Json {
@@ -70,7 +70,7 @@ impl<Value: Describe> Describe for Vec<Value> {
 }
 
 impl<Value: Describe + Clone> Describe for &[Value] {
-    fn shape() -> Shape {
+    fn shape() -> ValueShape {
         <Vec<Value>>::shape()
     }
 
@@ -80,8 +80,8 @@ impl<Value: Describe + Clone> Describe for &[Value] {
 }
 
 impl<Value: Describe, const COUNT: usize> Describe for [Value; COUNT] {
-    fn shape() -> Shape {
-        Shape::Array(Box::new(Value::shape()), COUNT)
+    fn shape() -> ValueShape {
+        ValueShape::Array(Box::new(Value::shape()), COUNT)
     }
 
     fn into_json(self) -> Json {
@@ -90,8 +90,8 @@ impl<Value: Describe, const COUNT: usize> Describe for [Value; COUNT] {
 }
 
 impl<One: Describe, Other: Describe> Describe for (One, Other) {
-    fn shape() -> Shape {
-        Shape::Tuple(vec![One::shape(), Other::shape()])
+    fn shape() -> ValueShape {
+        ValueShape::Tuple(vec![One::shape(), Other::shape()])
     }
 
     fn into_json(self) -> Json {
@@ -101,8 +101,8 @@ impl<One: Describe, Other: Describe> Describe for (One, Other) {
 
 /// The values of a plant by the names of the parameters; a measured plant is a text.
 impl Describe for NamedPlant {
-    fn shape() -> Shape {
-        Shape::Plant
+    fn shape() -> ValueShape {
+        ValueShape::Plant
     }
 
     fn into_json(self) -> Json {

@@ -51,8 +51,8 @@ macro_rules! describe_words {
     };
     ([$($doc:literal),+] $kind:ident all $words:expr) => {
         impl $crate::answer::Describe for $kind {
-            fn shape() -> $crate::answer::Shape {
-                $crate::answer::Shape::Words($crate::answer::WordList {
+            fn shape() -> $crate::answer::ValueShape {
+                $crate::answer::ValueShape::Words($crate::answer::WordList {
                     name: stringify!($kind),
                     documentation: concat!($($doc),+),
                     words: $words,

@@ -10,7 +10,7 @@ use phea_qft::verification::{Evidence, Verdict};
 use super::below_design::{self, ExceededLimitAnswer};
 use super::margins::{self, AuditMarginsAnswer};
 use super::{PrefilterGain, ProjectAudit};
-use crate::answer::{Answer, Body, Csv, Known, OutputFile, envelope};
+use crate::answer::{Answer, Body, Csv, OrReason, OutputFile, envelope};
 use crate::caveat;
 use crate::plant_names::NamedPlant;
 use crate::project::Loaded;
@@ -40,13 +40,12 @@ pub(crate) struct AuditAnswer {
     #[answer(optional)]
     proof: Option<AuditProofAnswer>,
     /// Least additional delay that makes a plant of the family unstable.
-    delay_margin_s: Known<f64>,
+    delay_margin_s: OrReason<f64>,
     /// Place of the delay margin.
     #[answer(optional)]
     delay_margin: Option<DelayMarginAnswer>,
-    /// Factor to which the gain of the nominal loop may fall, in dB, thus negative; `-inf` if it may
-    /// vanish.
-    gain_reduction_db: Known<f64>,
+    /// Factor to which the gain of the nominal loop may fall, negative; `-inf` if it may vanish.
+    gain_reduction_db: OrReason<f64>,
     /// Margins of the nominal loop and the worst of the family.
     margins: AuditMarginsAnswer,
     /// Number of plants of the family.
@@ -93,7 +92,7 @@ struct DelayMarginAnswer {
 #[derive(Answer)]
 struct TimingAnswer {
     /// Sample time of the controller.
-    sample_time_s: Known<f64>,
+    sample_time_s: OrReason<f64>,
     /// Delay of the loop in addition to sampling.
     delay_s: f64,
 }
@@ -151,12 +150,12 @@ pub(crate) fn body(view: &ProjectAudit) -> AuditAnswer {
         stable: stable(&audit.stability),
         stability: stability(&audit.stability, names),
         proof: view.proof.as_ref().map(|own| proof(view, own)),
-        delay_margin_s: Known::or(margin.map(|margin| margin.delay_s), no_margin),
+        delay_margin_s: OrReason::new(margin.map(|margin| margin.delay_s), no_margin),
         delay_margin: margin.map(|margin| DelayMarginAnswer {
             frequency_rad_per_s: margin.frequency_rad_per_s,
             plant: names.named(&margin.plant),
         }),
-        gain_reduction_db: Known::or(
+        gain_reduction_db: OrReason::new(
             view.nominal.map(|margins| margins.gain_reduction_db),
             margins::NO_NOMINAL,
         ),
@@ -168,7 +167,7 @@ pub(crate) fn body(view: &ProjectAudit) -> AuditAnswer {
             .map(|common| CommonPositionAnswer { position: common.position, stroke: common.stroke }),
         parameters: names.headings().into_iter().map(str::to_string).collect(),
         timing: TimingAnswer {
-            sample_time_s: Known::or(view.sample_time_s, "the controller is continuous"),
+            sample_time_s: OrReason::new(view.sample_time_s, "the controller is continuous"),
             delay_s: view.delay_s,
         },
         velocity_noise: view.velocity_noise.as_ref().map(|noise| velocity_noise(noise, names)),

@@ -3,7 +3,7 @@
 use phea_qft::verification::{Evidence, Remark};
 
 use super::{Crossovers, LoopMargin, MarginSet, NominalMargins, ProjectAudit};
-use crate::answer::{Answer, Known};
+use crate::answer::{Answer, OrReason};
 use crate::document::{Cell, Table};
 use crate::plant_names::{NamedPlant, PlantNames};
 use crate::quantity::{DisplayUnit, significant};
@@ -19,24 +19,24 @@ const UNLIMITED: &str = "nothing limits it";
 #[derive(Answer)]
 pub(super) struct AuditMarginsAnswer {
     /// Worst factor by which the gain may grow; `inf` if nothing limits it.
-    gain_db: Known<f64>,
+    gain_db: OrReason<f64>,
     /// Worst factor to which the gain may fall, negative; `-inf` if it may vanish.
-    gain_reduction_db: Known<f64>,
+    gain_reduction_db: OrReason<f64>,
     /// Worst angle between L and -1 where |L| = 1: positive if a lag makes the loop unstable,
     /// negative if a lead does.
-    phase_deg: Known<f64>,
+    phase_deg: OrReason<f64>,
     /// Least |1 + L|.
-    modulus: Known<f64>,
+    modulus: OrReason<f64>,
     /// Least additional dead time that brings L to -1.
-    delay_s: Known<f64>,
+    delay_s: OrReason<f64>,
     /// Evidence for the worst of the family.
     evidence: Evidence,
     /// Number of examined plants.
     plants: usize,
     /// Margins of the nominal loop.
-    nominal: Known<MarginSetAnswer>,
+    nominal: OrReason<MarginSetAnswer>,
     /// Worst margins of the family, each with its place.
-    family: Known<MarginSetAnswer>,
+    family: OrReason<MarginSetAnswer>,
 }
 
 /// Margins of a loop, or the worst of each in a family.
@@ -76,7 +76,7 @@ struct MarginPlacesAnswer {
 #[derive(Answer)]
 struct MarginPlaceAnswer {
     /// Frequency of the margin.
-    frequency_rad_per_s: Known<f64>,
+    frequency_rad_per_s: OrReason<f64>,
     /// Plant with the margin.
     plant: NamedPlant,
 }
@@ -85,7 +85,7 @@ struct MarginPlaceAnswer {
 pub(super) fn answer(view: &ProjectAudit) -> AuditMarginsAnswer {
     let margins = &view.margins;
     let worst = |of: fn(&MarginSet) -> &LoopMargin| {
-        Known::or(margins.family.as_ref().map(|set| of(set).value), NO_FAMILY)
+        OrReason::new(margins.family.as_ref().map(|set| of(set).value), NO_FAMILY)
     };
     let set = |set: Option<&MarginSet>| set.map(|set| set_answer(&view.names, set));
     AuditMarginsAnswer {
@@ -96,14 +96,14 @@ pub(super) fn answer(view: &ProjectAudit) -> AuditMarginsAnswer {
         delay_s: worst(|set| &set.delay_s),
         evidence: if is_measured(view) { Evidence::Grid } else { Evidence::Search },
         plants: margins.plants,
-        nominal: Known::or(set(margins.nominal.as_ref()), NO_NOMINAL),
-        family: Known::or(set(margins.family.as_ref()), NO_FAMILY),
+        nominal: OrReason::new(set(margins.nominal.as_ref()), NO_NOMINAL),
+        family: OrReason::new(set(margins.family.as_ref()), NO_FAMILY),
     }
 }
 
 fn set_answer(names: &PlantNames, set: &MarginSet) -> MarginSetAnswer {
     let place = |margin: &LoopMargin| MarginPlaceAnswer {
-        frequency_rad_per_s: Known::or(margin.frequency_rad_per_s, UNLIMITED),
+        frequency_rad_per_s: OrReason::new(margin.frequency_rad_per_s, UNLIMITED),
         plant: names.named(&margin.plant),
     };
     MarginSetAnswer {

@@ -2,7 +2,7 @@
 
 use super::words::{agreement_key, not_driven, reason_words, run_name};
 use super::{Agreement, HeldRequirement, Leg, StepSize, Trial, TrialRun, TrialStep};
-use crate::answer::{Answer, Known, words};
+use crate::answer::{Answer, OrReason, words};
 use crate::plant_names::NamedPlant;
 use crate::quantity::{FORCE, QuantityName};
 use crate::simulate::{RunStatus, Satisfaction};
@@ -45,14 +45,14 @@ struct TrialRunAnswer {
     step: StepSize,
     /// Worst of the steps.
     worst_step: Leg,
-    /// Amplitude of an oscillation that remains: half the range of the force or torque over the last
-    /// fifth of a step, the largest of all steps.
+    /// Amplitude of an oscillation that remains: half the range of the force or torque over the
+    /// last fifth of a step, the largest of all steps.
     #[answer(key = QuantityName::moving("remaining_amplitude", &FORCE))]
-    remaining_amplitude: Known<f64>,
+    remaining_amplitude: OrReason<f64>,
     /// Prediction of the linear loop.
-    linear: Known<TrialStepAnswer>,
+    linear: OrReason<TrialStepAnswer>,
     /// Greatest overshoot and longest settling time of the steps of the machine.
-    machine: Known<TrialStepAnswer>,
+    machine: OrReason<TrialStepAnswer>,
     /// Steps of the machine, the first alone if that is decisive.
     steps: Vec<TrialLegAnswer>,
     /// Requirements in time of these steps.
@@ -63,9 +63,9 @@ struct TrialRunAnswer {
 #[derive(Answer)]
 struct TrialStepAnswer {
     /// Overshoot, of the step.
-    overshoot_percent: Known<f64>,
+    overshoot_percent: OrReason<f64>,
     /// Settling time.
-    settling_time_s: Known<f64>,
+    settling_time_s: OrReason<f64>,
 }
 
 /// Step of a machine.
@@ -139,9 +139,9 @@ fn row(run: &TrialRun) -> TrialRunAnswer {
         reference: run.reference_n,
         step: run.size,
         worst_step: run.worst,
-        remaining_amplitude: Known::or(run.remaining_amplitude_n, "the run ended before"),
-        linear: Known::or(run.linear.as_ref().map(step), no_step),
-        machine: Known::or(run.machine.as_ref().map(step), "it does not start"),
+        remaining_amplitude: OrReason::new(run.remaining_amplitude_n, "the run ended before"),
+        linear: OrReason::new(run.linear.as_ref().map(step), no_step),
+        machine: OrReason::new(run.machine.as_ref().map(step), "it does not start"),
         steps: legs.map(|(leg, own)| TrialLegAnswer { step: *leg, response: step(own) }).collect(),
         requirements: run.requirements.iter().map(held).collect(),
     }
@@ -161,7 +161,7 @@ fn held(held: &HeldRequirement) -> HeldRequirementAnswer {
 
 fn step(step: &TrialStep) -> TrialStepAnswer {
     TrialStepAnswer {
-        overshoot_percent: Known::or(step.overshoot_percent, "the run ended before"),
-        settling_time_s: Known::or(step.settling_time_s, "it does not settle within the run"),
+        overshoot_percent: OrReason::new(step.overshoot_percent, "the run ended before"),
+        settling_time_s: OrReason::new(step.settling_time_s, "it does not settle within the run"),
     }
 }

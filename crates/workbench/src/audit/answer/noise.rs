@@ -1,6 +1,6 @@
 //! The noise of signals that are fed forward or back, in the answer of an audit.
 
-use crate::answer::{Answer, Known};
+use crate::answer::{Answer, OrReason};
 use crate::audit::signal_noise::unknown_words;
 use crate::audit::{SignalNoise, SignalNoiseEffect};
 use crate::plant_names::{NamedPlant, PlantNames};
@@ -29,13 +29,13 @@ pub(super) struct PressureNoiseAnswer {
 #[derive(Answer)]
 struct NoiseEffectAnswer {
     /// Effect on the command at the valve.
-    command_rms_v: Known<f64>,
+    command_rms_v: OrReason<f64>,
     /// Plant with this effect.
     #[answer(optional)]
     command_plant: Option<NamedPlant>,
     /// Effect on the force or torque.
     #[answer(key = QuantityName::OfMotion(["force_rms", "torque_rms"], &FORCE))]
-    force_rms: Known<f64>,
+    force_rms: OrReason<f64>,
     /// Plant with this effect.
     #[answer(optional)]
     force_plant: Option<NamedPlant>,
@@ -53,7 +53,7 @@ pub(super) fn pressure_noise(noise: &SignalNoise, names: &PlantNames) -> Pressur
 
 fn effect(noise: &SignalNoise, names: &PlantNames) -> NoiseEffectAnswer {
     let effect = noise.effect.as_ref();
-    let known = |of: fn(&SignalNoiseEffect) -> f64| Known(effect.map(of).map_err(unknown_words));
+    let known = |of: fn(&SignalNoiseEffect) -> f64| OrReason(effect.map(of).map_err(unknown_words));
     NoiseEffectAnswer {
         command_rms_v: known(|effect| effect.command_rms_v),
         command_plant: effect.ok().map(|effect| names.named(&effect.command_plant)),

@@ -3,7 +3,7 @@
 use phea_qft::verification::{Evidence, SpecificationFinding, SpecificationMargin, Verdict};
 
 use super::stability::{ProvenAnswer, proven};
-use crate::answer::{Answer, Known};
+use crate::answer::{Answer, OrReason};
 use crate::audit::in_time::unexamined_words;
 use crate::audit::remark::remark_sentences;
 use crate::audit::{ProjectAudit, ReachedLimit, TimeFinding, TimeOutcome, WorstStep};
@@ -121,7 +121,7 @@ pub(crate) struct SpecificationMarginAnswer {
 #[derive(Answer)]
 struct TimeFindingAnswer {
     /// Verdict on the steps.
-    verdict: Known<Verdict>,
+    verdict: OrReason<Verdict>,
     /// True if the verdict of the audit includes this one.
     part_of_verdict: bool,
     /// Required step response.
@@ -239,7 +239,7 @@ fn in_time(names: &PlantNames, finding: &TimeFinding) -> TimeFindingAnswer {
         TimeOutcome::NotExamined(why) => (None, unexamined_words(why)),
     };
     TimeFindingAnswer {
-        verdict: Known::or(finding.verdict(), reason),
+        verdict: OrReason::new(finding.verdict(), reason),
         part_of_verdict: finding.requirement.follows,
         required: (&finding.requirement.wish).into(),
         worst,

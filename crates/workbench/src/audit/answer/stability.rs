@@ -3,7 +3,7 @@
 use phea_qft::proof::{Certificate, Proof, Standing};
 use phea_qft::verification::{Evidence, SearchedInfinity, StabilityFinding, Verdict};
 
-use crate::answer::{Answer, Known};
+use crate::answer::{Answer, OrReason};
 use crate::audit::proven::why_not_proven;
 use crate::audit::{ProjectAudit, stability_reason};
 use crate::plant_names::{NamedPlant, PlantNames};
@@ -12,7 +12,7 @@ use crate::plant_names::{NamedPlant, PlantNames};
 #[derive(Answer)]
 pub(crate) struct StableAnswer {
     /// True if every plant of the family is stable in the loop.
-    stable: Known<bool>,
+    stable: OrReason<bool>,
 }
 
 /// Stability of the family in the loop.
@@ -22,8 +22,8 @@ pub(super) struct StabilityAnswer {
     verdict: Verdict,
     /// Evidence for the verdict.
     evidence: Evidence,
-    /// Largest real part of a closed-loop pole, ln|z|/T in a sampled loop; null if the poles are not
-    /// available.
+    /// Largest real part of a closed-loop pole, ln|z|/T in a sampled loop; null if the poles are
+    /// not available.
     largest_real_part_per_s: Option<f64>,
     /// Plant with this pole, or that is unstable, or that could not be resolved.
     plant: NamedPlant,
@@ -59,7 +59,7 @@ pub(super) struct AuditProofAnswer {
 #[derive(Answer)]
 pub(super) struct ProvenAnswer {
     /// True if the claim is proven, false if it is refuted.
-    proven: Known<bool>,
+    proven: OrReason<bool>,
 }
 
 /// Stability of every plant, as far as it is known.
@@ -69,7 +69,7 @@ pub(crate) fn stable(stability: &StabilityFinding) -> StableAnswer {
         Verdict::Violated => Some(false),
         Verdict::NotProven => None,
     };
-    StableAnswer { stable: Known::or(stable, stability_reason(stability)) }
+    StableAnswer { stable: OrReason::new(stable, stability_reason(stability)) }
 }
 
 /// The stability of a family.
@@ -109,5 +109,5 @@ pub(super) fn proven(view: &ProjectAudit, proof: &Proof, standing: &Standing) ->
         Standing::Refuted => Some(false),
         Standing::NotProven(_) => None,
     };
-    ProvenAnswer { proven: Known::or(proven, why_not_proven(view, proof, standing).unwrap_or_default()) }
+    ProvenAnswer { proven: OrReason::new(proven, why_not_proven(view, proof, standing).unwrap_or_default()) }
 }
