@@ -27,7 +27,12 @@ pub(crate) enum Command {
     /// Print the JSON Schema of the project file, with which editors of TOML check it and complete
     /// its keys
     Schema {
-        /// Write it into this folder, as phea.schema.json, instead of printing it
+        /// Print the JSON Schema of the answers of all commands with --json instead, with a
+        /// description of each key
+        #[arg(long)]
+        answers: bool,
+        /// Write it into this folder, as phea.schema.json or phea.answers.schema.json, instead of
+        /// printing it
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },

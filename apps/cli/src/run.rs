@@ -28,7 +28,8 @@ use crate::output::{Folder, expect_folder, write, write_as};
 pub(crate) fn run(arguments: Arguments) -> ExitCode {
     let outcome = match arguments.command {
         Command::New { folder } => new(&folder),
-        Command::Schema { out } => schema(out.as_deref()),
+        Command::Schema { answers: false, out } => schema(command::schema(), out.as_deref()),
+        Command::Schema { answers: true, out } => schema(command::answers_schema(), out.as_deref()),
         Command::Check(common) => on_project(&common, &Request::Check, None),
         Command::Size { common, gain, length } => on_project(&common, &Request::Size { gain, length }, None),
         Command::Linearize { common, sweep, points } => {
@@ -157,10 +158,8 @@ fn new(folder: &Path) -> Result<u8, Failure> {
 /// The key that identifies a JSON Schema.
 const SCHEMA_KEY: &str = "\"$schema\"";
 
-/// Prints the schema of the project file, or writes it into a folder, where it replaces nothing but
-/// a schema.
-fn schema(out: Option<&Path>) -> Result<u8, Failure> {
-    let file = command::schema();
+/// A schema, printed or written into a folder, where it replaces nothing but a schema.
+fn schema(file: OutputFile, out: Option<&Path>) -> Result<u8, Failure> {
     match out {
         Some(folder) => {
             let path = folder.join(&file.name);

@@ -17,9 +17,9 @@ pub use phea_engineering::audit::*;
 
 pub use answer::files;
 pub(crate) use answer::json;
-pub(crate) use answer::{body, margin, stable};
-pub(crate) use certificate::certificate_of;
+pub(crate) use answer::{AuditAnswer, body, margin, stable};
 pub use certificate::{CERTIFICATE_FILE, CertificateError, check_certificate, check_certificate_of};
+pub(crate) use certificate::{CheckCertificateAnswer, certificate_of};
 pub use document::output;
 pub(crate) use document::{basis, document, proven, summary};
 pub(crate) use family_and_loop::position_words;

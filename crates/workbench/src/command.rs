@@ -1,6 +1,7 @@
 //! The commands on a project: requests, and the answers that a shell prints and writes.
 
 mod alternatives;
+mod answers;
 mod campaign;
 mod check;
 mod friction;
@@ -29,7 +30,7 @@ pub use phea_engineering::response::ResponseSettings;
 pub use phea_hydraulics::servovalve::LeakageModel;
 pub use refusal::{error_json, failure_json, files_json, refusal_json, stopped_text};
 pub use response::{ResponseRequest, response_watched};
-pub use schema::{SCHEMA_FILE, schema};
+pub use schema::{ANSWERS_SCHEMA_FILE, SCHEMA_FILE, answers_schema, schema};
 pub use simulate::{FrequencyOptions, SimulateRequest};
 
 use std::borrow::Cow;

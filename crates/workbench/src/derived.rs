@@ -18,6 +18,6 @@ mod valve;
 pub use quantity::{Derived, Stated};
 pub use rig::derive;
 
-pub(crate) use answer::body;
 pub use answer::files;
+pub(crate) use answer::{DerivedAnswer, body};
 pub(crate) use document::{document, replaced_sentences, replaced_table, visited};

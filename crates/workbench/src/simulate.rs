@@ -12,7 +12,7 @@ mod metrics;
 mod reasons;
 mod repetition;
 mod required;
-mod requirement;
+mod run_status;
 mod span;
 mod together;
 
@@ -32,9 +32,6 @@ pub(crate) use frequency::{
 };
 pub(crate) use metrics::{cells_of, label_within, settling_within, shown_in};
 pub(crate) use reasons::{status_words, unmeasured_words};
-pub(crate) use required::{not_judged_words, requirement_sentence, satisfied_word};
-pub(crate) use requirement::{
-    reached_words, required_overshoot, required_rise, required_settling, required_words,
-};
+pub(crate) use required::{Satisfaction, not_judged_words, requirement_sentence, satisfied_word};
 pub(crate) use span::around;
 pub(crate) use together::{NamedRun, at_a_glance, close_ups, measured_together, together};

@@ -3,7 +3,13 @@
 use phea_engineering::trial::Agreement;
 use phea_qft::verification::Verdict;
 
+use crate::answer::words;
 use crate::quantity::{RATIO, display};
+
+words! {
+    /// Verdict on a requirement: satisfied by every plant, violated by one, or not resolved.
+    Verdict by verdict_key [Met, Violated, NotProven]
+}
 
 /// The word of a verdict in JSON.
 pub(crate) fn verdict_key(verdict: Verdict) -> &'static str {

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_workbench::command::Request;
 
 use super::plant_of_verdicts::{assert_nominal_is_the_rig, responses, without_uncertainty};
@@ -169,7 +170,7 @@ fn rows_of(settings: &[&str]) -> (serde_json::Value, Vec<std::collections::BTree
         let cells = line.split(',').zip(&heads);
         cells.map(|(cell, head)| ((*head).to_string(), cell.parse().unwrap_or(f64::NAN))).collect()
     };
-    (serde_json::from_str(&found.json).unwrap(), lines.map(row).collect())
+    (parsed(&found.json), lines.map(row).collect())
 }
 
 /// The loss in the valves is the integral of their drops times their flows, which the rows contain

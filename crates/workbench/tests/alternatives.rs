@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use crate::answer_schema::parsed;
 use std::sync::OnceLock;
 
 use crate::json_contract::unexplained;
@@ -82,8 +83,8 @@ name = "pipe"
     )
 }
 
-pub(super) fn parsed(answer: &Answer) -> Value {
-    serde_json::from_str(&answer.json).unwrap()
+pub(super) fn json_of(answer: &Answer) -> Value {
+    parsed(&answer.json)
 }
 
 /// The answer for the rig, computed once for all tests.
@@ -91,7 +92,7 @@ pub(super) fn judged() -> &'static (Answer, Value) {
     static JUDGED: OnceLock<(Answer, Value)> = OnceLock::new();
     JUDGED.get_or_init(|| {
         let found = answer(&rig(), &[], &[], &asked(true));
-        let json = parsed(&found);
+        let json = json_of(&found);
         (found, json)
     })
 }
@@ -99,7 +100,7 @@ pub(super) fn judged() -> &'static (Answer, Value) {
 /// Sizing, rig and scenario of each alternative, and no absence without a reason.
 #[test]
 fn every_alternative_has_its_columns_and_reasons() {
-    for json in [&judged().1, &parsed(&answer(LOOP, &[], &[], &asked(false)))] {
+    for json in [&judged().1, &json_of(&answer(LOOP, &[], &[], &asked(false)))] {
         let mut found = Vec::new();
         unexplained("", json, &mut found);
         // the ends of a proof's interval have their reason next to the interval
@@ -150,7 +151,7 @@ fn a_spring_on_the_rod_has_a_length() {
         let settings = ["cylinder.dead_length=0.3 m", spring.as_str()];
         (
             retracted_length(&load(HOSE, &settings, &[]).project),
-            parsed(&answer(HOSE, &settings, &[], &Request::Check)),
+            json_of(&answer(HOSE, &settings, &[], &Request::Check)),
         )
     };
     let (found, check) = length(", coil = { index = 4, allowed_shear_stress = \"600 MPa\" }");
@@ -176,8 +177,8 @@ fn a_load_case_equals_every_alternative_with_set() {
     let text =
         format!("{LOOP}\n[[load_case]]\nname = \"slow\"\nset = {{ \"plant.denominator\" = \"s + 0.5\" }}\n");
     let found = answer(&text, &[], &[], &asked(true));
-    let json = parsed(&found);
-    assert_eq!(json["alternatives"], parsed(&answer(LOOP, &[], &[], &asked(false)))["alternatives"]);
+    let json = json_of(&found);
+    assert_eq!(json["alternatives"], json_of(&answer(LOOP, &[], &[], &asked(false)))["alternatives"]);
     let case = &json["load_cases"][0];
     assert_eq!(
         (&case["name"], &case["settings"][0]),
@@ -303,7 +304,7 @@ fn a_sized_alternative_has_the_hose_of_size() {
     );
     let all = requested_alternatives(&source(&text), &load(&text, &[], &[]), &[]).unwrap().0;
     let size = Request::Size { gain: None, length: None };
-    let sized = parsed(&answer(&text, &["line.length=1 m"], &[], &size));
+    let sized = json_of(&answer(&text, &["line.length=1 m"], &[], &size));
     let best = &sized["candidates"][0];
     assert_eq!(best["rejections"], Value::Array(vec![]));
     let line = &all[1].loaded.project.actuator.as_ref().unwrap().line;
@@ -322,7 +323,7 @@ fn a_sized_alternative_has_the_hose_of_size() {
 /// The design of an alternative is that of the project with identical settings.
 #[test]
 fn each_design_is_that_of_design_with_set() {
-    let json = parsed(&answer(LOOP, &[], &[], &asked(false)));
+    let json = json_of(&answer(LOOP, &[], &[], &asked(false)));
     let designed = Request::Design { seed: None, stages: false, repair: false };
     let settings: [&[&str]; 3] = [&[], &["plant.denominator=\"s + 3\""], &["plant.delay=\"10 ms\""]];
     for (index, settings) in settings.into_iter().enumerate() {
@@ -375,7 +376,7 @@ fn a_stop_returns_the_finished_alternatives() {
     let mut watch = |progress: phea_workbench::command::Progress| progress.share < 0.34;
     let stopped =
         answer_into(&source(LOOP), &load(LOOP, &[], &[]), &[], &asked(false), None, &mut watch).unwrap();
-    let json = parsed(&stopped);
+    let json = json_of(&stopped);
     assert_eq!(json["alternatives"].as_array().unwrap().len(), 1);
     assert_eq!(json["not_reached"], serde_json::json!(["faster", "late"]));
     assert!(!stopped.affirmative && stopped.text.contains("late: not reached"));

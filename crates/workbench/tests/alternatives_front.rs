@@ -38,7 +38,7 @@ fn soak_the_book_agrees_with_the_front() {
     assert!(missing.is_empty(), "{missing:#?}\n{}", found.text);
     let drawn = found.files.iter().find(|file| file.name == "front.svg").unwrap();
     assert!(drawn.bytes == FIGURE.as_bytes(), "the figure of the book is not the one that is drawn");
-    let json = parsed(&found);
+    let json = json_of(&found);
     let points = json["front"]["points"].as_array().unwrap();
     let of = |name: &str, length: f64| {
         let here = points.iter().find(|point| point["alternative"] == name && point["value"] == length);
@@ -74,7 +74,7 @@ fn a_front_consists_of_the_undominated_rows() {
     });
     assert_eq!(found.json, again.json);
     assert_eq!(found.text, again.text);
-    let json = parsed(&found);
+    let json = json_of(&found);
     let points = json["front"]["points"].as_array().unwrap();
     assert_eq!(points.len(), 6);
     let numbers = |point: &Value| {
@@ -107,7 +107,7 @@ fn a_front_consists_of_the_undominated_rows() {
 fn a_front_may_go_over_feasibility() {
     let text = LOOP.replace("limit = 2", "limit = 1.5")
         + "[[specification]]\nkind = \"sensitivity\"\nlimit = 0.2\nfrequencies = [1]\n";
-    let found = parsed(&answer(
+    let found = json_of(&answer(
         &text,
         &[
             "design.maximum_order=1",

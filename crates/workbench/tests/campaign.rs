@@ -5,6 +5,7 @@
 
 mod stored;
 
+use crate::answer_schema::parsed;
 use phea_hydraulics::signal::Signal;
 use std::fs;
 use std::path::Path;
@@ -322,7 +323,7 @@ fn the_keys_of_the_answer_are_stable() {
     let loaded = load(&SHORT);
     let request = Request::Campaign(CampaignRequest { files: true, ..request(12, Shard::default()) });
     let answer = command::answer(&source(), &loaded, &[], &request).unwrap();
-    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let json: Value = parsed(&answer.json);
     assert_eq!((&json["command"], &json["seed"]), (&Value::from("campaign"), &Value::from(1)));
     assert_eq!(json["statuses"]["completed"], 12);
     let metrics = json["metrics"].as_array().unwrap();
@@ -392,7 +393,7 @@ fn runs_that_do_not_settle_are_counted_next_to_the_quantiles() {
     let loaded = load(&SHORT);
     let requested = Request::Campaign(request(20, Shard::default()));
     let answer = command::answer(&source(), &loaded, &[], &requested).unwrap();
-    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let json: Value = parsed(&answer.json);
     let events = json["metrics"].as_array().unwrap();
     let settling = |event: &Value| {
         let metrics = event["metrics"].as_array().unwrap();

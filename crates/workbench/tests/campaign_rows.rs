@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_workbench::campaign::{Effort, Plan};
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, Request};
 use phea_workbench::project;
@@ -38,7 +39,7 @@ fn agree_of(text: &str, more: &[&str]) {
         let ran = row.ran().unwrap_or_else(|| panic!("{row:?}"));
         let request = CampaignRequest { seed: 5, runs: CampaignRuns::One(row.run), files: false };
         let answer = command::answer(&source, &loaded, &[], &Request::Campaign(request)).unwrap();
-        let json: Value = serde_json::from_str(&answer.json).unwrap();
+        let json: Value = parsed(&answer.json);
         let run = &json["scenarios"][0];
         assert_eq!(
             (&run["status"], &run["work"]["steps"]),

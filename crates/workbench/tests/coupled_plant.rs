@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use num_complex::Complex64;
 use phea_dynamics::portable::exp;
 use phea_qft::specification::ClosedLoop;
@@ -224,7 +225,7 @@ fn a_late_feed_forward_is_in_the_loop() {
             &[],
             &Request::Verify { proof: false, on_machine: true },
         );
-        let object: Value = serde_json::from_str(&output.json).unwrap();
+        let object: Value = parsed(&output.json);
         assert_eq!(object["stable"], Value::from(stable), "{gain} {delay_ms}: {}", output.text);
         let run = &object["machine"]["runs"][0];
         let overshoot = |of: &str| run[of]["overshoot_percent"].as_f64();
@@ -253,7 +254,7 @@ fn a_sampled_feed_forward_is_in_the_loop() {
         let viscous = "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }";
         let settings = [&SPRUNG[..], &[viscous, &timing[0], &timing[1], &fed, TENTH_ONLY]].concat();
         let output = answer(&text, &settings, &[], &Request::Verify { proof: false, on_machine: true });
-        let object: Value = serde_json::from_str(&output.json).unwrap();
+        let object: Value = parsed(&output.json);
         assert_eq!(object["stable"], Value::from(stable), "{gain} {sample_ms} {delay_ms}: {}", output.text);
         let run = &object["machine"]["runs"][0];
         let overshoot = |of: &str| run[of]["overshoot_percent"].as_f64();

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use crate::answer_schema::parsed;
 use phea_hydraulics::cross_port::Restrictor;
 use phea_workbench::command::Request;
 
@@ -140,7 +141,7 @@ fn the_machine_agrees_with_the_linear_loop() {
         let request = Request::Verify { proof: false, on_machine: true };
         // the loop settles in 0.3 s with integral action that exceeds the leak
         let message = answer(&pipe, &[port, VISCOUS, "controller.numerator=0.001*s + 0.1"], &[], &request);
-        let object: serde_json::Value = serde_json::from_str(&message.json).unwrap();
+        let object: serde_json::Value = parsed(&message.json);
         let run = &object["machine"]["runs"][0];
         assert_eq!(run["agrees"], serde_json::Value::from(true), "{port}: {run}");
     }

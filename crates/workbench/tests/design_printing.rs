@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Controller, Element};
 use phea_dynamics::frequency::decibels;
@@ -183,7 +184,7 @@ fn the_json_keys_are_stable() {
     let (source, loaded) = self::loaded(&designed);
     let verified =
         answer(&source, &loaded, &[], &Request::Verify { proof: false, on_machine: false }).unwrap().json;
-    let verified: serde_json::Value = serde_json::from_str(&verified).unwrap();
+    let verified: serde_json::Value = parsed(&verified);
     for (key, value) in object["verification"].as_object().unwrap() {
         assert_eq!(*value, verified[key], "{key}");
     }
@@ -323,7 +324,7 @@ fn rounding_of_the_computer_is_part_of_the_design() {
     let (source, loaded) = self::loaded(&designed);
     let verified =
         answer(&source, &loaded, &[], &Request::Verify { proof: false, on_machine: false }).unwrap().json;
-    let verified: serde_json::Value = serde_json::from_str(&verified).unwrap();
+    let verified: serde_json::Value = parsed(&verified);
     assert_eq!(object["verification"]["specifications"], verified["specifications"]);
 }
 

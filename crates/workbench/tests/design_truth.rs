@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use crate::answer_schema::parsed;
 use crate::run_command::{PIPE, UNLIMITED, answer, built_hose, designed_hose, json, number, within};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::Request;
@@ -24,10 +25,7 @@ fn designed_and_verified(project: &str, settings: &[&str]) -> (Value, Value) {
 fn with_verified(answer: &Answer) -> (Value, Value) {
     let file = answer.files.iter().find(|file| file.name == DESIGNED_PROJECT).unwrap();
     let written = String::from_utf8(file.bytes.clone()).unwrap();
-    (
-        serde_json::from_str(&answer.json).unwrap(),
-        json(&written, &[], &[], &Request::Verify { proof: false, on_machine: false }),
-    )
+    (parsed(&answer.json), json(&written, &[], &[], &Request::Verify { proof: false, on_machine: false }))
 }
 
 /// Checks that every specification is met over the band and the family that the project declares,
@@ -119,7 +117,7 @@ fn the_same_seed_gives_the_same_bytes() {
         files.iter().map(|file| (file.name.clone(), file.bytes.clone())).collect::<Vec<_>>()
     };
     assert_eq!(bytes(&first.files), bytes(&second.files));
-    assert_eq!(serde_json::from_str::<Value>(&first.json).unwrap()["seed"], 3);
+    assert_eq!(parsed(&first.json)["seed"], 3);
 }
 
 /// The plant (s + a)/(s^2 - 2.5) has a negative gain at rest and is stabilised by a positive one.

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_workbench::command::Request;
 use serde_json::Value;
 
@@ -12,7 +13,7 @@ const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 /// Limits exceeded in the first scenario, a step to 4 kN at 2 s; and the text.
 fn exceeded(text: &str, settings: &[&str]) -> (Vec<Value>, String) {
     let output = answer(text, settings, &[], &Request::Simulate(Default::default()));
-    let object: Value = serde_json::from_str(&output.json).unwrap();
+    let object: Value = parsed(&output.json);
     (object["scenarios"][0]["exceeded"].as_array().unwrap().clone(), output.text)
 }
 

@@ -9,6 +9,7 @@
     reason = "helpers of tests may fail the test"
 )]
 
+use crate::answer_schema::parsed;
 use num_complex::Complex64;
 use phea_dynamics::portable;
 use phea_qft::family::{Family, MeasuredFamily};
@@ -293,9 +294,7 @@ fn discs_and_tolerance_decide_the_verdict() {
             .collect();
         format!("frequency_rad_per_s,real,imaginary,confidence_95\n{}\n", rows.join("\n"))
     };
-    let json = |answer: &phea_workbench::answer::Answer| -> serde_json::Value {
-        serde_json::from_str(&answer.json).unwrap()
-    };
+    let json = |answer: &phea_workbench::answer::Answer| -> serde_json::Value { parsed(&answer.json) };
     let met = verified("", &csv(0.05), "");
     assert_eq!(json(&met)["verdict"], "met", "{}", met.text);
     let open = verified("", &csv(0.5), "");

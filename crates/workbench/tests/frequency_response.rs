@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
 
+use crate::answer_schema::parsed;
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_workbench::answer::Answer;
@@ -278,7 +279,7 @@ fn the_answer_has_its_keys_files_and_figures() {
         FrequencyOptions { frequencies: Some("20, 50 rad/s".to_string()), ..FrequencyOptions::default() };
     let answer = output(&SMOOTH, options, true).unwrap();
     assert!(answer.affirmative);
-    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let json: Value = parsed(&answer.json);
     assert_eq!((&json["command"], &json["scenarios"]), (&"simulate".into(), &serde_json::json!([])));
     let response = &json["frequency_response"];
     for (name, amplitude) in [("open_loop", "amplitude_v"), ("closed_loop", "amplitude_n")] {

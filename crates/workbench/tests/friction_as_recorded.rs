@@ -4,6 +4,7 @@
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use std::fmt::Write as _;
 
 use crate::friction_identification::{PRESSED, SLIDING, TRUTH, identified, interval, is_open, recorded};
@@ -27,7 +28,7 @@ fn changed(source: &Memory, file: &str, change: impl Fn(&mut [f64])) -> String {
 #[track_caller]
 fn found(source: &Memory, files: &[&str]) -> Value {
     let answer = identified(source, files).unwrap_or_else(|error| panic!("{error}"));
-    serde_json::from_str(&answer.json).unwrap()
+    parsed(&answer.json)
 }
 
 /// Checks that each interval of these coefficients contains the truth, with three standard
@@ -135,7 +136,7 @@ fn a_run_that_sticks_and_slips_is_no_constant_velocity() {
     let bench = "bench.friction={ velocities = 8, slowest = \"2 mm/s\", fastest = \"200 mm/s\" }";
     let source = recorded(&[bench]).with("slips.csv", stick_slip());
     let answer = identified(&source, &[SLIDING, "slips.csv"]).unwrap();
-    let found: Value = serde_json::from_str(&answer.json).unwrap();
+    let found: Value = parsed(&answer.json);
     holds(&found, 0..5);
     let slips = &found["recordings"][1];
     assert_eq!(slips["constant_velocities"].as_array().unwrap().len(), 0, "{slips}");

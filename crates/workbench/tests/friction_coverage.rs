@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::print_stdout, reason = "how often and how wide is worth reading")]
 
+use crate::answer_schema::parsed;
 use crate::friction_identification::{PRESSED, SHAKEN, SLIDING, TRUTH, identified, interval, recorded};
 use serde_json::Value;
 
@@ -90,6 +91,6 @@ fn check(
 fn intervals(seed: u32, settings: &[&str], files: &[&str]) -> [Option<[f64; 2]>; COUNT] {
     let seed = format!("bench.seed={seed}");
     let answer = identified(&recorded(&[settings, &[&seed]].concat()), files).unwrap();
-    let found: Value = serde_json::from_str(&answer.json).unwrap();
+    let found: Value = parsed(&answer.json);
     TRUTH.map(|(key, _)| found["friction"][key]["value"].is_f64().then(|| interval(&found, key)))
 }

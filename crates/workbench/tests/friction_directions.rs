@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_workbench::command::{self, Request};
 use phea_workbench::project;
 use phea_workbench::source::Memory;
@@ -26,7 +27,7 @@ fn levels_of_both_directions_come_back_from_the_bench() {
     ];
     let source = recorded(&settings);
     let answer = identified(&source, &[SLIDING]).unwrap();
-    let found: Value = serde_json::from_str(&answer.json).unwrap();
+    let found: Value = parsed(&answer.json);
     let back = [("coulomb_n", 95.0), ("static_n", 150.0), ("viscous_n_s_per_m", 140.0)];
     let own = TRUTH[..5].iter().map(|truth| (&found["friction"], *truth));
     let other = back.iter().map(|truth| (&found["friction"]["retracting"], *truth));
@@ -55,7 +56,7 @@ fn a_family_without_the_viscous_friction_of_one_direction_is_reported() {
         let loaded = run_command::load(run_command::HOSE, &[&[anything], settings].concat(), &[]);
         let request = Request::Verify { proof: false, on_machine: false };
         let answer = command::answer(&Memory::default(), &loaded, &[], &request).unwrap();
-        (serde_json::from_str::<Value>(&answer.json).unwrap()["verdict"].clone(), answer.text)
+        (parsed(&answer.json)["verdict"].clone(), answer.text)
     };
     let range = |minimum: f64, maximum: f64| {
         format!(

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use std::sync::LazyLock;
 
 use crate::run_command::{HOSE, answer, load};
@@ -67,7 +68,7 @@ pub(crate) fn identified(source: &Memory, files: &[&str]) -> Result<Answer, Iden
 #[track_caller]
 pub(crate) fn found(settings: &[&str], files: &[&str]) -> Value {
     let answer = identified(&recorded(settings), files).unwrap_or_else(|error| panic!("{error}"));
-    serde_json::from_str(&answer.json).unwrap()
+    parsed(&answer.json)
 }
 
 pub(crate) fn interval(found: &Value, key: &str) -> [f64; 2] {
@@ -98,7 +99,7 @@ fn the_steady_curve_comes_back_without_noise() {
 /// numbers are checked.
 #[test]
 fn a_noisy_bench_identifies_all_but_the_damper() {
-    let found: Value = serde_json::from_str(&without_the_shaken().json).unwrap();
+    let found: Value = parsed(&without_the_shaken().json);
     is_open(&found, "bristle_damping_n_s_per_m", "slow runs do not show it");
     holds_the_truth(&found, &TRUTH[..6]);
 }
@@ -108,7 +109,7 @@ fn a_noisy_bench_identifies_all_but_the_damper() {
 fn a_noisy_bench_identifies_all_of_the_friction() {
     let answer = from_all();
     assert!(answer.affirmative, "{}", answer.text);
-    holds_the_truth(&serde_json::from_str(&answer.json).unwrap(), &TRUTH);
+    holds_the_truth(&parsed(&answer.json), &TRUTH);
 }
 
 #[track_caller]
@@ -160,7 +161,7 @@ fn an_error_of_the_zero_is_no_friction() {
         shifted += &format!("{},{},{},{}\n", cells[0], cells[1], cells[2] + 0.1, cells[3]);
     }
     let answer = identified(&source.with("shifted.csv", shifted), &["shifted.csv"]).unwrap();
-    let found: Value = serde_json::from_str(&answer.json).unwrap();
+    let found: Value = parsed(&answer.json);
     let zero = found["force_zero_n"]["value"].as_f64().unwrap();
     let area = std::f64::consts::FRAC_PI_4 * (0.05 * 0.05 - 0.022 * 0.022);
     assert!((zero - 1e4 * area).abs() < 1.0, "{zero}");
@@ -183,7 +184,7 @@ fn the_fragment_is_a_table_of_a_project() {
     let source = Memory::default().with("rig.toml", rig);
     let loaded = project::read(&source, "rig.toml", &[], &[]).unwrap_or_else(|report| panic!("{report}"));
     let friction = loaded.project.actuator.unwrap().cylinder.friction.unwrap();
-    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let json: Value = parsed(&answer.json);
     let viscous = json["friction"]["viscous_n_s_per_m"]["value"].as_f64().unwrap();
     assert!((friction.viscous / viscous - 1.0).abs() < 1e-4, "{fragment}");
 }

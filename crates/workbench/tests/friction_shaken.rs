@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use crate::friction_identification::{
     SHAKEN, SLIDING, TRUTH, found, identified, interval, is_open, recorded,
 };
@@ -29,9 +30,9 @@ fn identifies_damping(found: &Value, tolerance: f64) {
     }
 }
 
-fn parsed(source: &Memory, files: &[&str]) -> Value {
+fn found_in(source: &Memory, files: &[&str]) -> Value {
     let answer = identified(source, files).unwrap_or_else(|error| panic!("{error}"));
-    serde_json::from_str(&answer.json).unwrap()
+    parsed(&answer.json)
 }
 
 /// The information in the default run (1 um and 5 kPa of noise, 5000 rows in a second, a force of
@@ -208,7 +209,7 @@ fn a_blow_is_not_taken_for_a_sum_of_sines() {
     }
     let source = recorded(&["bench.friction={ velocities = 8 }"]);
     let source = source.with("blow.csv", table(&rows, [0.2, 1.0], 1));
-    let found = parsed(&source, &[SLIDING, "blow.csv"]);
+    let found = found_in(&source, &[SLIDING, "blow.csv"]);
     is_open(&found, DAMPING, "slow runs do not show it");
     is_open(&found, STIFFNESS, "record one that rises slowly");
 }

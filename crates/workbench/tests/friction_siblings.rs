@@ -4,6 +4,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_workbench::answer::Answer;
 use phea_workbench::source::Memory;
 use serde_json::Value;
@@ -19,7 +20,7 @@ fn output(files: &[(&str, String)]) -> (Answer, Value) {
     let source = files.iter().fold(Memory::default(), |all, (name, text)| all.with(name, text.clone()));
     let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
     let answer = identified(&source, &names).unwrap_or_else(|error| panic!("{error}"));
-    let json = serde_json::from_str(&answer.json).unwrap();
+    let json = parsed(&answer.json);
     (answer, json)
 }
 

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use crate::run_command::{answer, try_answer};
 use num_complex::Complex64;
 use phea_dynamics::controller::VirtualImpedance;
@@ -269,7 +270,7 @@ name = "pipe with an inner position loop"
     );
     let request = Request::Alternatives(AlternativesRequest::default());
     let output = answer(&text, &[], &[], &request);
-    let found: Value = serde_json::from_str(&output.json).unwrap();
+    let found: Value = parsed(&output.json);
     // both forms are one loop, and the design is that of the force
     let both = [2, 3].map(|index| found["alternatives"][index]["columns"].clone());
     assert_eq!(both[0], both[1]);
@@ -341,7 +342,7 @@ filter_time = "5 ms"
 fn a_proof_and_a_trial_include_the_impedance() {
     let text = yielding();
     let found = answer(&text, &[], &[], &Request::Verify { proof: true, on_machine: true });
-    let found: Value = serde_json::from_str(&found.json).unwrap();
+    let found: Value = parsed(&found.json);
     assert_eq!(
         (found["verdict"].as_str(), found["evidence"].as_str()),
         (Some("met"), Some("proof")),
@@ -355,7 +356,7 @@ fn a_proof_and_a_trial_include_the_impedance() {
         &[],
         &Request::Verify { proof: false, on_machine: false },
     );
-    let without: Value = serde_json::from_str(&without.json).unwrap();
+    let without: Value = parsed(&without.json);
     let margin = |found: &Value| found["specifications"][0]["worst_margin_db"].as_f64().unwrap();
     assert!((margin(&found) - margin(&without)).abs() > 0.1, "{} {}", margin(&found), margin(&without));
 }
@@ -376,7 +377,7 @@ fn every_answer_mentions_the_impedance() {
         assert!(html.contains(words), "{words}");
     }
     let of = |request: &Request| answer(&yielding(), &[], &[], request);
-    let models: Value = serde_json::from_str(&of(&Request::Linearize { sweep: None }).json).unwrap();
+    let models: Value = parsed(&of(&Request::Linearize { sweep: None }).json);
     assert_eq!(models["virtual_impedance"]["stiffness_n_per_m"], 1e5);
     assert_eq!(models["virtual_impedance"]["points"].as_array().unwrap().len(), 5);
     assert!(of(&Request::Linearize { sweep: None }).text.contains("Impedance requested and achieved"));

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use crate::answer_schema::parsed;
 use std::sync::OnceLock;
 
 use crate::run_command::{self, FICTITIOUS, HOSE, PIPE, json, load, number, size_request};
@@ -309,8 +310,7 @@ fn a_refusal_is_an_object_too() {
     let source = Memory::default().with("rig.toml", broken.as_str());
     let report = project::read(&source, "rig.toml", &[], &[]).unwrap_err();
     for request in requests() {
-        let object: Value =
-            serde_json::from_str(&refusal_json(&source, "rig.toml", request.name(), &report)).unwrap();
+        let object: Value = parsed(&refusal_json(&source, "rig.toml", request.name(), &report));
         assert_eq!(object["schema"], 1);
         assert_eq!(object["command"], request.name());
         let rows = object["errors"].as_array().unwrap();

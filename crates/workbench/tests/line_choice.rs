@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_workbench::campaign::{Effort, RequestedRuns, Shard};
 use phea_workbench::command::{CampaignRequest, CampaignRuns, Request, SimulateRequest};
 use phea_workbench::shaping::Shaped;
@@ -97,9 +98,8 @@ fn a_stated_model_is_never_changed() {
     }
     let one_side = answer(&open_rig(), &[fast, "line.a.model=lumped"], &[], &VERIFY);
     let both = ["line.a.model=lumped", "line.b.model=transmission_line"];
-    let stated: Value =
-        serde_json::from_str(&answer(&open_rig(), &[fast, both[0], both[1]], &[], &VERIFY).json).unwrap();
-    let object: Value = serde_json::from_str(&one_side.json).unwrap();
+    let stated: Value = parsed(&answer(&open_rig(), &[fast, both[0], both[1]], &[], &VERIFY).json);
+    let object: Value = parsed(&one_side.json);
     assert_eq!(object["line_model"]["model"], "transmission_line");
     assert_eq!(object["margins"], stated["margins"]);
     // if the project states the model that would be chosen, only the choice differs
@@ -138,7 +138,7 @@ fn every_command_names_the_chosen_model() {
                 request.name(),
                 output.text
             );
-            let object: Value = serde_json::from_str(&output.json).unwrap();
+            let object: Value = parsed(&output.json);
             object["line_model"].clone()
         })
         .collect();
@@ -153,7 +153,7 @@ fn a_designed_project_states_the_chosen_model() {
     let design = Request::Design { seed: None, stages: false, repair: false };
     for bandwidth in ["design.highest_bandwidth=300", "design.highest_bandwidth=20"] {
         let output = answer(&rig_to_be_designed(), &["design.structure=pi", bandwidth], &[], &design);
-        let object: Value = serde_json::from_str(&output.json).unwrap();
+        let object: Value = parsed(&output.json);
         let file = output.files.iter().find(|file| file.name == "designed.toml").unwrap();
         let designed = String::from_utf8(file.bytes.clone()).unwrap();
         let model = object["line_model"]["model"].as_str().unwrap();

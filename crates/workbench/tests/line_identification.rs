@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use crate::line_coverage::{CREEPING, WAVES, compliance, known, project};
 use crate::run_command::{self, HOSE, PIPE, load, near, within};
 use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, bulk_modulus_with_air};
@@ -50,7 +51,7 @@ fn identified_side(
 }
 
 fn line(answer: &Answer) -> Value {
-    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let json: Value = parsed(&answer.json);
     assert_eq!(json["command"], "identify");
     json["line"].clone()
 }

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_hydraulics::signal::Signal;
 use phea_workbench::campaign::{Effort, Plan};
 use phea_workbench::command::{self, Request};
@@ -10,7 +11,6 @@ use phea_workbench::project::{self, LineMotion, LineSegments, Loaded, Refusal};
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{RunStatus, ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
-use serde_json::Value;
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 
@@ -275,7 +275,7 @@ fn the_linear_model_ignores_waves() {
         let answer =
             command::answer(&Memory::default(), &load(settings), &[], &Request::Linearize { sweep: None })
                 .unwrap();
-        serde_json::from_str::<Value>(&answer.json).unwrap()["poles"].clone()
+        parsed(&answer.json)["poles"].clone()
     };
     assert_eq!(linear(&[]), linear(&["line.model=segments", "line.relaxation_time=0.1 s"]));
     let range = "{ nominal = \"0.1 s\", minimum = \"0.1 s\", maximum = \"1 s\" }";

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use crate::answer_schema::parsed;
 use phea_workbench::command::{self, Request, SimulateRequest};
 use phea_workbench::identify::{Identification, Known, Search, SignalKind, identify, recordings};
 use phea_workbench::project::RecordedTest;
@@ -89,7 +90,7 @@ fn no_verdict_on_a_valve_of_a_large_misfit_is_met() {
             run_command::load(run_command::HOSE, &[anything, &format!("valve.misfit={misfit}")], &[]);
         let request = Request::Verify { proof: false, on_machine: false };
         let answer = command::answer(&Memory::default(), &loaded, &[], &request).unwrap();
-        (serde_json::from_str::<Value>(&answer.json).unwrap(), answer.text)
+        (parsed(&answer.json), answer.text)
     };
     let [small, large] =
         ["{ share = 0.004 }", "{ share = \"1.2 %\", at = \"flow of metering.csv\" }"].map(verify);
@@ -106,7 +107,7 @@ fn judged(settings: &[&str]) -> (Value, String) {
     let loaded = run_command::load(run_command::HOSE, &[&[anything], settings].concat(), &[]);
     let request = Request::Verify { proof: false, on_machine: false };
     let answer = command::answer(&Memory::default(), &loaded, &[], &request).unwrap();
-    (serde_json::from_str::<Value>(&answer.json).unwrap()["verdict"].clone(), answer.text)
+    (parsed(&answer.json)["verdict"].clone(), answer.text)
 }
 
 /// The moduli of the lines are in every plant; of a friction the plant contains `viscous`, unless
@@ -140,7 +141,7 @@ fn runs_of_the_machine_warn_of_a_misfit() {
     let loaded = run_command::load(run_command::HOSE, &settings, &[]);
     let request = Request::Simulate(SimulateRequest::default());
     let answer = command::answer(&Memory::default(), &loaded, &[], &request).unwrap();
-    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let json: Value = parsed(&answer.json);
     let warning = json["warnings"][0].as_str().unwrap_or_else(|| panic!("{json}"));
     assert!(warning.contains("cylinder.friction.misfit") && answer.text.contains(warning), "{}", answer.text);
 }
@@ -163,7 +164,7 @@ fn a_misfit_of_friction_is_in_its_fragment() {
     let harder: String = rows.lines().enumerate().map(changed).collect();
     let source = Memory::default().with(SLIDING, format!("{heading}\n{harder}"));
     let answer = friction_of(&source, &[SLIDING]).unwrap();
-    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let json: Value = parsed(&answer.json);
     let fraction = json["misfits"][0]["share"].as_f64().unwrap_or_else(|| panic!("{json}"));
     let fragment = answer.files.iter().find(|file| file.name == "friction.toml").unwrap();
     let text = String::from_utf8(fragment.bytes.clone()).unwrap();

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_workbench::answer::Answer;
 use phea_workbench::campaign::{Effort, RequestedRuns, Shard};
 use phea_workbench::command::{
@@ -316,7 +317,7 @@ fn equations_and_symbols_are_those_of_a_motor() {
 #[test]
 fn a_motor_has_no_retracted_length() {
     let answer = returned(VANE, &Request::Alternatives(AlternativesRequest::default()));
-    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let json: Value = parsed(&answer.json);
     let reason = &json["alternatives"][0]["columns"]["actuator_length_m_reason"];
     assert_eq!(reason, "a motor has no retracted length");
     assert!(!answer.text.contains("dead_length") && !answer.json.contains("dead_length"));
@@ -372,7 +373,7 @@ fn check(project: &str, request: &Request) {
     let answer = returned(project, request);
     let name = request.name();
     assert_eq!(of_linear_motion(&answer.text), [""; 0], "{name}: {}", answer.text);
-    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let json: Value = parsed(&answer.json);
     assert_eq!(json["motion"], "rotary", "{name}");
     assert_eq!(keys_of_linear_motion(&json), [""; 0], "{name}");
     for file in &answer.files {

@@ -4,6 +4,7 @@
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
 use crate::alternatives::{judged, rig};
+use crate::answer_schema::parsed;
 use crate::run_command::{HOSE, answer, try_answer};
 use phea_workbench::command::Request;
 use serde_json::Value;
@@ -11,7 +12,7 @@ use serde_json::Value;
 const COSTS: &str = include_str!("../../project/tests/valid/costs.toml");
 
 fn derived(text: &str, settings: &[&str]) -> Vec<Value> {
-    let json: Value = serde_json::from_str(&answer(text, settings, &[], &Request::Check).json).unwrap();
+    let json: Value = parsed(&answer(text, settings, &[], &Request::Check).json);
     json["derived"].as_array().unwrap().clone()
 }
 

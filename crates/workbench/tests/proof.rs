@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use crate::run_command::{HOSE, answer, designed_hose, json};
 use phea_workbench::answer::Answer;
 use std::fs;
@@ -18,7 +19,7 @@ fn proven(project: &str, settings: &[&str]) -> (Value, String) {
     let answer: Answer = answer(project, settings, &[], &PROVEN);
     let certificate = answer.files.iter().find(|file| file.name == CERTIFICATE_FILE);
     let text = certificate.map(|file| String::from_utf8(file.bytes.clone()).unwrap());
-    (serde_json::from_str(&answer.json).unwrap(), text.unwrap_or_default())
+    (parsed(&answer.json), text.unwrap_or_default())
 }
 
 /// Checks the verdict on a specification, and that the enclosure of its worst excess over the limit
@@ -128,7 +129,7 @@ fn loads_and_leakage_are_in_the_proof() {
 #[test]
 fn the_design_of_the_rig_is_proven() {
     let designed = designed_hose();
-    let object: Value = serde_json::from_str(&designed.json).unwrap();
+    let object: Value = parsed(&designed.json);
     let audit = &object["verification"];
     assert_eq!((audit["verdict"].as_str(), audit["evidence"].as_str()), (Some("met"), Some("proof")));
     assert_eq!(audit["proof"]["stable"]["proven"], true);
@@ -144,13 +145,13 @@ fn certificates_round_trip_and_other_files_are_refused() {
     let (_, text) = proven(example!("servo"), &[]);
     let answer = check_certificate(&text).unwrap();
     assert!(answer.affirmative && answer.text.contains("Every claim holds"));
-    let object: Value = serde_json::from_str(&answer.json).unwrap();
+    let object: Value = parsed(&answer.json);
     assert_eq!(object["claims"].as_array().map(Vec::len), Some(7));
     // a claim that is not true: the ratio that is not exceeded is reduced
     let tampered = text.replacen("\"ratio\":0.99", "\"ratio\":0.89", 2);
     assert_ne!(tampered, text);
     let rejected = check_certificate(&tampered).unwrap();
-    let object: Value = serde_json::from_str(&rejected.json).unwrap();
+    let object: Value = parsed(&rejected.json);
     assert_eq!((rejected.affirmative, object["valid"].as_bool()), (false, Some(false)));
     assert!(object["rejected_claim"].is_number() && object["reason"].is_string());
     assert!(matches!(check_certificate("{}"), Err(CertificateError::Layout(_))));
@@ -227,7 +228,7 @@ fn a_certificate_is_compared_with_a_project() {
     assert_eq!((verdict["verdict"].as_str(), verdict["evidence"].as_str()), (Some("met"), Some("proof")));
     let compared = |project: &str, settings: &[&str]| {
         let answer = check_certificate_of(&text, &problem(project, settings)).unwrap();
-        let object: Value = serde_json::from_str(&answer.json).unwrap();
+        let object: Value = parsed(&answer.json);
         assert_eq!(
             (object["valid"].as_bool(), object["stability_claimed"].as_bool()),
             (Some(true), Some(true))
@@ -272,7 +273,7 @@ fn a_certificate_without_stability_reports_it() {
     let without = serde_json::to_string(&file).unwrap();
     let answer = check_certificate(&without).unwrap();
     assert!(answer.text.contains("Nothing is claimed of stability"), "{}", answer.text);
-    let object: Value = serde_json::from_str(&answer.json).unwrap();
+    let object: Value = parsed(&answer.json);
     assert_eq!(object["stability_claimed"], false);
     let compared = check_certificate_of(&without, &problem(COMPARED, &[])).unwrap();
     assert!(!compared.affirmative);
@@ -294,7 +295,7 @@ fn a_proof_within_the_tolerance_reports_it() {
     };
     for (limit, is_allowed) in [(0.9994, true), (1.01, false)] {
         let output = answer(&text(limit), &[], &[], &PROVEN);
-        let object: Value = serde_json::from_str(&output.json).unwrap();
+        let object: Value = parsed(&output.json);
         assert_eq!(object["specifications"][0]["verdict"], "met", "{}", output.text);
         assert_eq!(output.text.contains(", within the 0.01 dB allowed"), is_allowed, "{}", output.text);
     }

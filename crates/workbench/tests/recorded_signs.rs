@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use crate::answer_schema::parsed;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
@@ -234,7 +235,7 @@ fn a_force_against_its_command_is_warned_of_with_the_key() {
         let loaded = project::read(&source, "rig.toml", &[], &[]).unwrap();
         let request = ResponseRequest::default();
         let answer = response_watched(&source, Some(&loaded), &request, &mut |_| true).unwrap();
-        let json: Value = serde_json::from_str(&answer.json).unwrap();
+        let json: Value = parsed(&answer.json);
         let warnings = json["response"]["members"][0]["warnings"].as_array().cloned().unwrap_or_default();
         warnings.iter().map(|warning| warning.as_str().unwrap().to_string()).collect()
     };

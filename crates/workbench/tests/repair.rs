@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, CommandError, Progress, Request};
 use phea_workbench::design::{DESIGNED_PROJECT, NEAREST_PROJECT};
@@ -20,7 +21,7 @@ fn one_rig() -> String {
 }
 
 fn object(output: &Answer) -> Value {
-    serde_json::from_str(&output.json).unwrap()
+    parsed(&output.json)
 }
 
 fn file<'a>(output: &'a Answer, name: &str) -> Option<&'a str> {

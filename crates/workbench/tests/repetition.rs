@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_dynamics::portable;
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, Request};
@@ -19,7 +20,7 @@ fn simulated(text: &str, settings: &[&str]) -> (Value, Answer) {
     let loaded =
         project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"));
     let answer = command::answer(&source, &loaded, &[], &Request::Simulate(Default::default())).unwrap();
-    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let json: Value = parsed(&answer.json);
     (json["scenarios"][0].clone(), answer)
 }
 
@@ -107,7 +108,7 @@ fn the_growth_of_a_sampled_loop_is_that_of_its_force() {
         let settings: Vec<String> = settings.iter().map(|text| (*text).to_string()).collect();
         let loaded = project::read(&source, "rig.toml", &settings, &[]).unwrap();
         let answer = command::answer(&source, &loaded, &[], &Request::Simulate(Default::default())).unwrap();
-        let json: Value = serde_json::from_str(&answer.json).unwrap();
+        let json: Value = parsed(&answer.json);
         let grown = &json["scenarios"][0]["errors_amplified"];
         let [from, until, logarithm] =
             ["from_s", "until_s", "growth_logarithm"].map(|key| number(&grown[key]));

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_hydraulics::signal::Signal;
 use std::fmt::Write as _;
 
@@ -29,7 +30,7 @@ fn report_of(text: &str, settings: &[&str]) -> Report {
 }
 
 fn json(source: &Memory, loaded: &Loaded, request: &Request) -> Value {
-    serde_json::from_str(&command::answer(source, loaded, &[], request).unwrap().json).unwrap()
+    parsed(&command::answer(source, loaded, &[], request).unwrap().json)
 }
 
 /// The first page without its pictures.
@@ -109,7 +110,7 @@ fn both_controllers_agree_with_their_commands() {
 
     let verified = json(&source, &loaded, &Request::Verify { proof: false, on_machine: true });
     // the measurement has no part in a design
-    let designed: Value = serde_json::from_str(&built_hose().json).unwrap();
+    let designed: Value = parsed(&built_hose().json);
     let both = [&verified, &designed["verification"]];
     let verdict = designed["verification"]["verdict"].as_str().unwrap();
     let proven = if is_all_proven(&designed["verification"]) { ", proven" } else { "" };

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use crate::answer_schema::parsed;
 use crate::run_command::{self, near, number};
 use num_complex::Complex64;
 use phea_workbench::campaign::{Effort, RequestedRuns, SatisfiedRuns, Shard};
@@ -25,7 +26,7 @@ fn answer(text: &str, request: &Request) -> (Value, String) {
     let loaded = phea_workbench::project::read(&source, "rig.toml", &[], &[])
         .unwrap_or_else(|report| panic!("{report}"));
     let answer = phea_workbench::command::answer(&source, &loaded, &[], request).unwrap();
-    (serde_json::from_str(&answer.json).unwrap(), answer.text)
+    (parsed(&answer.json), answer.text)
 }
 
 fn verify(text: &str) -> (Value, String) {
@@ -413,7 +414,7 @@ fn steps_lead_the_design_without_limits_of_tracking() {
         .unwrap_or_else(|report| panic!("{report}"));
     let request = Request::Design { seed: None, stages: false, repair: false };
     let designed = phea_workbench::command::answer(&source, &loaded, &[], &request).unwrap();
-    let object: Value = serde_json::from_str(&designed.json).unwrap();
+    let object: Value = parsed(&designed.json);
     assert_eq!(object["status"], "met", "{}", designed.text);
     of_its_own(&object);
     let file = designed.files.iter().find(|file| file.name == phea_workbench::design::DESIGNED_PROJECT);

@@ -88,7 +88,7 @@ fn identified(
 }
 
 fn member(answer: &Answer) -> Value {
-    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let json: Value = answer_schema::parsed(&answer.json);
     json["response"]["members"][0].clone()
 }
 
@@ -225,7 +225,7 @@ fn an_identified_response_is_a_family_that_verify_audits() {
     let verdict =
         command::answer(&source, &loaded, &[], &Request::Verify { proof: false, on_machine: false })
             .unwrap_or_else(|error| panic!("{error}"));
-    let json: Value = serde_json::from_str(&verdict.json).unwrap();
+    let json = answer_schema::parsed(&verdict.json);
     assert_eq!(json["command"], "verify");
     assert!(!json["specifications"].as_array().unwrap().is_empty(), "{json}");
     // the discs of the records are in the family, each enlarged so that all rows hold at once

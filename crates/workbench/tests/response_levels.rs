@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
 
+use crate::answer_schema::parsed;
 use std::f64::consts::PI;
 
 use phea_dynamics::random::{normal, stream};
@@ -170,7 +171,7 @@ fn the_answer_has_the_describing_function_of_a_saturation() {
         let loaded = project::read(&source, "rig.toml", &[], &[]).unwrap();
         let answer = response_watched(&source, Some(&loaded), &ResponseRequest::default(), &mut |_| true);
         let answer = answer.unwrap();
-        let json: Value = serde_json::from_str(&answer.json).unwrap();
+        let json: Value = parsed(&answer.json);
         (answer.text, json["response"]["comparisons"][0].clone())
     };
     let (text, found) = output([2.0, 0.5]);

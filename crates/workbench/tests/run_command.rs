@@ -3,6 +3,7 @@
 
 use std::sync::OnceLock;
 
+use crate::answer_schema::parsed;
 use phea_workbench::alternatives::{self, LengthUnknown};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, CommandError, IdentifyError, Request};
@@ -78,8 +79,7 @@ pub(crate) fn answer(project: &str, settings: &[&str], catalogues: &[&str], requ
 
 #[track_caller]
 pub(crate) fn json(project: &str, settings: &[&str], catalogues: &[&str], request: &Request) -> Value {
-    let text = answer(project, settings, catalogues, request).json;
-    serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text}"))
+    parsed(&answer(project, settings, catalogues, request).json)
 }
 
 /// Answer of a design of the hose, with its repair: computed once for all tests that need it.

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_workbench::campaign::{Effort, RequestedRuns, Shard};
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, Request, SimulateRequest};
 use phea_workbench::setup::Setup;
@@ -44,7 +45,7 @@ fn a_repeated_run_is_that_of_the_smallest_tolerance_in_every_command() {
     let projects = [SLOW[1], "scenario.0.load_motion.duration=0.3"]
         .map(|duration| load(CONTINUOUS, &[SLOW[0], duration, SLOW[2]], &[]));
     let compared = command::compare_watched(&Memory::default(), &projects, false, &mut |_| true).unwrap();
-    let compared: Value = serde_json::from_str(&compared.json).unwrap();
+    let compared: Value = parsed(&compared.json);
     let side_by_side = &compared["projects"][0]["scenarios"][0];
     assert_eq!((peak(side_by_side), &side_by_side["repetition"]), (peak(&repeated), &repeated["repetition"]));
     // and as the run of a campaign whose variation is negligible

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_hydraulics::signal::Signal;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -203,7 +204,7 @@ fn an_open_loop_ignores_its_controller() {
         "{}",
         answer.text
     );
-    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let json: Value = parsed(&answer.json);
     let run = &json["scenarios"][0];
     assert_eq!((&run["open_loop"], &run["events"][0]["kind"]), (&true.into(), &"command_step".into()));
     assert_eq!(run["events"][0]["metrics"]["overshoot_percent"], Value::Null);
@@ -393,7 +394,7 @@ fn mismatched_states_are_refused_and_incomplete_ones_not_written() {
     let loaded = load(&rig(&first), &Memory::default());
     let answer =
         command::answer(&Memory::default(), &loaded, &[], &Request::Simulate(Default::default())).unwrap();
-    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let json: Value = parsed(&answer.json);
     assert_eq!(json["scenarios"][0]["state_file"], "one.state.toml");
     let state = String::from_utf8(answer.files[1].bytes.clone()).unwrap();
     assert!(state.contains(&format!("project_sha256 = \"{}\"", loaded.sha256)), "{state}");

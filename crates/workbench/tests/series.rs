@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use num_complex::Complex64;
 use phea_hydraulics::signal::Signal;
 use phea_qft::family::Family;
@@ -186,7 +187,7 @@ fn the_machine_follows_its_linear_loop() {
     for settings in [&[][..], &["series.force_from=deflection"]] {
         let settings = [settings, &[viscous, small]].concat();
         let output = answer(SERIES, &settings, &[], &Request::Verify { proof: false, on_machine: true });
-        let object: Value = serde_json::from_str(&output.json).unwrap();
+        let object: Value = parsed(&output.json);
         assert_eq!(object["stable"], Value::from(true), "{}", output.text);
         let run = &object["machine"]["runs"][0];
         assert_eq!(run["agrees"], Value::from(true), "{run}");

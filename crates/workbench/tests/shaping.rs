@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use crate::answer_schema::parsed;
 use crate::run_command::{answer, json, try_answer};
 use num_complex::Complex64;
 use phea_dynamics::controller::Timing;
@@ -31,7 +32,7 @@ fn shaped(project: &str, changes: &[(Change, &str)]) -> (Value, String) {
     let request = request(Shaped::Controller, changes);
     let answer = answer(project, &[], &[], &request);
     let saved = String::from_utf8(answer.files[0].bytes.clone()).unwrap();
-    (serde_json::from_str(&answer.json).unwrap(), saved)
+    (parsed(&answer.json), saved)
 }
 
 fn kinds(answer: &Value) -> Vec<String> {

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_hydraulics::signal::Signal;
 use std::fmt::Write as _;
 
@@ -319,7 +320,7 @@ fn the_answer_has_the_stable_keys() {
     let answer =
         command::answer(&Memory::default(), &loaded, &[], &Request::Simulate(Default::default())).unwrap();
     assert!(answer.affirmative);
-    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let json: Value = parsed(&answer.json);
     let scenario = &json["scenarios"][0];
     assert_eq!(
         (&scenario["name"], &scenario["status"]),
@@ -360,7 +361,7 @@ fn a_stopped_run_returns_its_rows_so_far() {
     );
     let answer = answer.unwrap();
     assert!(!answer.affirmative);
-    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let json: Value = parsed(&answer.json);
     let scenario = &json["scenarios"][0];
     assert_eq!(scenario["status"], "cancelled");
     let end_s = scenario["ended_s"].as_f64().unwrap();
@@ -379,7 +380,7 @@ fn a_long_scenario_reports_its_sample_interval() {
         let answer =
             command::answer(&Memory::default(), &loaded, &[], &Request::Simulate(Default::default()))
                 .unwrap();
-        let json: Value = serde_json::from_str(&answer.json).unwrap();
+        let json: Value = parsed(&answer.json);
         let found = json["scenarios"][0]["look_s"].as_f64().unwrap();
         assert!((found / interval_s - 1.0).abs() < 1e-9, "{found}");
         assert_eq!(answer.text.contains("is drawn from samples every 5.00 ms only"), long, "{}", answer.text);
@@ -394,7 +395,7 @@ fn projects_are_compared_side_by_side() {
         load(BENCHMARK, &[&settings[0], &settings[1], &settings[2], "scenario.0.duration=3.4 s"])
     });
     let answer = command::compare_watched(&Memory::default(), &[one, other], true, &mut |_| true).unwrap();
-    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let json: Value = parsed(&answer.json);
     let peak = |project: usize| {
         let events = &json["projects"][project]["scenarios"][0]["events"];
         events[1]["metrics"]["disturbance_peak_n"].as_f64().unwrap()

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_hydraulics::signal::Signal;
 use phea_workbench::command::{self, Request, SimulateRequest};
 use phea_workbench::project::{self, Loaded};
@@ -86,7 +87,7 @@ fn an_answer_contains_the_check_if_requested() {
     let run = |settings: &[&str], request: &Request| {
         let answer = command::answer(&Memory::default(), &load(settings), &[], request).unwrap();
         assert!(answer.affirmative);
-        let json: Value = serde_json::from_str(&answer.json).unwrap();
+        let json: Value = parsed(&answer.json);
         (json["scenarios"][0].clone(), answer.text)
     };
     let doubt = "more than a thousandth";
@@ -131,7 +132,7 @@ fn a_run_reports_where_errors_may_be_visible() {
         let answer =
             command::answer(&Memory::default(), &load(settings), &[], &Request::Simulate(Default::default()))
                 .unwrap();
-        let json: Value = serde_json::from_str(&answer.json).unwrap();
+        let json: Value = parsed(&answer.json);
         (json["scenarios"][0].clone(), answer.text)
     };
     let words = "errors within the tolerance may become visible";

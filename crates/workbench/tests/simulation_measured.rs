@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_hydraulics::signal::Signal;
 use std::fmt::Write as _;
 
@@ -83,7 +84,7 @@ fn the_comparison_is_in_text_json_and_a_figure() {
     let request = Request::Simulate(SimulateRequest { figures: true, ..SimulateRequest::default() });
     let answer = command::answer(&source, &loaded, &[], &request).unwrap();
     assert!(answer.text.contains("NRMSE") && answer.text.contains("bench.csv `F`"), "{}", answer.text);
-    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let json: Value = parsed(&answer.json);
     let row = &json["scenarios"][0]["measured"][0];
     assert_eq!(
         (&row["signal"], &row["rows"], &row["rows_outside"]),

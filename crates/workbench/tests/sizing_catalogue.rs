@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use crate::answer_schema::parsed;
 use crate::run_command::{
     FICTITIOUS, HOSE, OVERRIDE, candidate, candidates, json, near, number, reasons, size_request,
 };
@@ -188,7 +189,7 @@ fn no_hose_is_accepted_without_its_working_pressure() {
             &[],
             &super::run_command::size_request(None, Some("1.5 m")),
         );
-        let size: Value = serde_json::from_str(&output.json).unwrap();
+        let size: Value = parsed(&output.json);
         let row = candidates(&size, "eaton_synflex_3130_08", "uniform")[0].clone();
         (output.affirmative, row, output.text)
     };

@@ -2,6 +2,7 @@
 //! answer lists the missing parts.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
+use crate::answer_schema::parsed;
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{CommandError, Progress, Request, answer_into, stopped_text};
 use serde_json::{Value, json};
@@ -46,7 +47,7 @@ fn a_stopped_design_lists_its_missing_stages() {
     for (stage, expected) in cases {
         let (found, _) = stopped_in(stage);
         let answer = found.unwrap();
-        let design: Value = serde_json::from_str(&answer.json).unwrap();
+        let design: Value = parsed(&answer.json);
         assert_eq!(design["unfinished"], expected, "{stage}");
         let is_whole = expected == json!([]);
         assert!(is_whole || !answer.affirmative, "{stage}");
@@ -76,7 +77,7 @@ fn a_design_stopped_at_once_lists_the_stages_not_begun() {
     match found {
         Err(error) => assert!(matches!(error, CommandError::Stopped(_)), "{error}"),
         Ok(answer) => {
-            let design: Value = serde_json::from_str(&answer.json).unwrap();
+            let design: Value = parsed(&answer.json);
             assert_eq!((&design["status"], &design["unfinished"][0]), (&json!("stopped"), &json!("search")));
         }
     }

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use crate::run_command::{HOSE, answer, try_answer};
 use phea_workbench::command::Request;
 use phea_workbench::linearize::SweepRequest;
@@ -12,7 +13,7 @@ fn request(range: &str, points: Option<usize>) -> Request {
 }
 
 fn swept(project: &str, range: &str, points: usize) -> Value {
-    serde_json::from_str(&answer(project, &[], &[], &request(range, Some(points))).json).unwrap()
+    parsed(&answer(project, &[], &[], &request(range, Some(points))).json)
 }
 
 fn refused(range: &str, points: Option<usize>) -> String {

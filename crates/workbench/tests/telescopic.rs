@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use crate::answer_schema::parsed;
 use phea_workbench::audit::{CERTIFICATE_FILE, check_certificate};
 use phea_workbench::command::{FrictionRequest, Request, friction_watched};
 use phea_workbench::source::Memory;
@@ -47,7 +48,7 @@ fn check_derives_its_stages() {
 #[test]
 fn every_position_is_proven_to_be_stable() {
     let answered = answer(TELESCOPIC, &[MIDDLE], &[], &Request::Verify { proof: true, on_machine: false });
-    let object: serde_json::Value = serde_json::from_str(&answered.json).unwrap();
+    let object: serde_json::Value = parsed(&answered.json);
     assert_eq!(object["proof"]["stable"]["proven"], true, "{}", object["proof"]);
     for index in [0, 1] {
         assert_eq!(object["specifications"][index]["proven"], true, "{}", object["specifications"]);
@@ -73,7 +74,7 @@ fn the_machine_agrees_with_the_linear_loop() {
             &[],
             &Request::Verify { proof: false, on_machine: true },
         );
-        let object: serde_json::Value = serde_json::from_str(&answered.json).unwrap();
+        let object: serde_json::Value = parsed(&answered.json);
         let run = &object["machine"]["runs"][0];
         assert_eq!(run["agrees"], serde_json::Value::from(true), "{position}: {run}");
     }
@@ -89,7 +90,7 @@ fn with_a_linkage_the_machine_agrees_too() {
         let limit = "specification=[{ kind = \"robust_stability\", limit = 3, frequencies = [1, 10, 100] }]";
         let answered =
             answer(rig, &[stage, &place, limit], &[], &Request::Verify { proof: false, on_machine: true });
-        let object: serde_json::Value = serde_json::from_str(&answered.json).unwrap();
+        let object: serde_json::Value = parsed(&answered.json);
         for run in object["machine"]["runs"].as_array().unwrap() {
             assert_eq!(run["agrees"], serde_json::Value::from(true), "{position}: {run}");
         }
@@ -102,7 +103,7 @@ fn a_steady_motion_through_a_transition_is_not_proven() {
     let verdict = |settings: &[&str]| {
         let answered =
             answer(TELESCOPIC, settings, &[], &Request::Verify { proof: false, on_machine: false });
-        let object: serde_json::Value = serde_json::from_str(&answered.json).unwrap();
+        let object: serde_json::Value = parsed(&answered.json);
         (object["verdict"].clone(), answered.text)
     };
     assert_eq!(verdict(&[MIDDLE]).0, "met");

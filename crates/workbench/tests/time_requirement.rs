@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use crate::answer_schema::parsed;
 use crate::run_command::{self, number};
 use phea_workbench::command::Request;
 use serde_json::Value;
@@ -27,7 +28,7 @@ fn verify(text: &str) -> (Value, String) {
         .unwrap_or_else(|report| panic!("{report}"));
     let request = Request::Verify { proof: false, on_machine: false };
     let answer = phea_workbench::command::answer(&source, &loaded, &[], &request).unwrap();
-    (serde_json::from_str(&answer.json).unwrap(), answer.text)
+    (parsed(&answer.json), answer.text)
 }
 
 fn lower(settling_s: f64) -> String {

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_hydraulics::signal::Signal;
 use phea_workbench::command::{CommandError, Request};
 use phea_workbench::setup::Setup;
@@ -22,7 +23,7 @@ const DESIGNED: [&str; 4] = [
 
 fn on_machine(settings: &[&str]) -> (bool, Value, String) {
     let output = answer(HOSE, settings, &[], &Request::Verify { proof: false, on_machine: true });
-    (output.affirmative, serde_json::from_str(&output.json).unwrap(), output.text)
+    (output.affirmative, parsed(&output.json), output.text)
 }
 
 /// The run of this machine.
@@ -141,7 +142,7 @@ fn slow_rig() -> String {
 
 fn tested(settings: &[&str]) -> Value {
     let output = answer(&slow_rig(), settings, &[], &Request::Verify { proof: false, on_machine: true });
-    serde_json::from_str(&output.json).unwrap()
+    parsed(&output.json)
 }
 
 /// A separate run with these steps of the reference.

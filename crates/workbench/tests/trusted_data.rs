@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_hydraulics::signal::Signal;
 use phea_workbench::command::Request;
 use phea_workbench::project;
@@ -91,7 +92,7 @@ fn a_damping_ratio_may_be_called_z_where_nothing_samples() {
         let json =
             crate::run_command::answer(text, &[], &[], &Request::Verify { proof: false, on_machine: false })
                 .json;
-        let object: serde_json::Value = serde_json::from_str(&json).unwrap();
+        let object: serde_json::Value = parsed(&json);
         let worst = object["specifications"][0]["worst_margin_db"].as_f64();
         worst.unwrap_or_else(|| panic!("{object}"))
     };

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::print_stdout, reason = "how often and how wide is worth reading")]
 
+use crate::answer_schema::parsed;
 use crate::run_command::{HOSE, answer, load};
 use crate::valve_identification::{TRUTH, VALVE, interval};
 use nalgebra::{DMatrix, DVector};
@@ -135,7 +136,7 @@ fn intervals_from(recorded: Vec<(String, String)>) -> [[f64; 2]; COUNT] {
     let request = IdentifyRequest { files, starts: Some(1), ..IdentifyRequest::default() };
     let loaded = load(HOSE, &[], &[]);
     let found = identify_watched(&source, Some(&loaded), &request, &mut |_| true).unwrap();
-    let found = serde_json::from_str(&found.json).unwrap();
+    let found = parsed(&found.json);
     TRUTH.map(|(path, _)| interval(&found, path).expect("an interval"))
 }
 

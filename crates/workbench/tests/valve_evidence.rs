@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use crate::run_command::{HOSE, check, load};
 use crate::valve_identification::{TRUTH, files_of, identified, interval, recorded, try_request, value};
 use phea_workbench::command::{IdentifyError, IdentifyRequest, LeakageModel, identify_watched};
@@ -45,7 +46,7 @@ fn the_wrong_model_is_reported_first() {
     let first = answer.text.lines().take(4).collect::<Vec<_>>().join(" ");
     assert!(first.contains("one curve for the whole valve (`one_curve`) rather than"), "{first}");
     assert!(first.contains("leakage_model = \"each_edge\"`, against the recordings"), "{first}");
-    let found: Value = serde_json::from_str(&answer.json).unwrap();
+    let found: Value = parsed(&answer.json);
     assert_eq!(found["leakage_model"], "each_edge");
     let [low, high] = interval(&found, "/leakage_shape").unwrap();
     assert!(!(low..=high).contains(&100.0), "{low} {high}");
@@ -77,7 +78,7 @@ fn undecided_recordings_are_reported() {
     let files: Vec<_> = recorded(&coarse).into_iter().filter(|(name, _)| name == "metering.csv").collect();
     let answer = try_request(&files, &files_of(&files)).unwrap();
     assert!(answer.text.contains("The recordings do not decide"), "{}", answer.text);
-    let found: Value = serde_json::from_str(&answer.json).unwrap();
+    let found: Value = parsed(&answer.json);
     assert_eq!(found["leakage_model_preferred"], Value::Null);
     assert_eq!(found["leakage_model"], "each_edge");
 }
@@ -120,7 +121,7 @@ fn a_valve_without_tare_flow_has_an_upper_bound_from_every_meter() {
         let settings = [&meter[..], &["valve.tare_flow=\"0 m3/s\"", FEW_ROWS]].concat();
         let files = recorded(&settings);
         let answer = try_request(&files, &files_of(&files)).unwrap();
-        let found: Value = serde_json::from_str(&answer.json).unwrap();
+        let found: Value = parsed(&answer.json);
         let [low, high] = interval(&found, "/tare_flow_m3_per_s").unwrap_or_else(|| panic!("{meter:?}"));
         assert!(low == 0.0 && high < most, "{meter:?}: {low} {high}");
         assert!(answer.text.contains("These may be zero: tare_flow, at most"), "{}", answer.text);
@@ -169,7 +170,7 @@ fn the_bootstrap_agrees_with_the_linearised_intervals() {
     let request = IdentifyRequest { bootstrap: 100, ..files_of(&files) };
     let answer = try_request(&files, &request).unwrap();
     assert!(answer.text.contains("Bootstrap: 100 repetitions"), "{}", answer.text);
-    let found: Value = serde_json::from_str(&answer.json).unwrap();
+    let found: Value = parsed(&answer.json);
     assert_eq!((&found["bootstrap"]["repetitions"], &found["bootstrap"]["failed"]), (&100.into(), &0.into()));
     for (path, _) in TRUTH {
         let [low, high] = interval(&found, path).unwrap();

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use crate::answer_schema::parsed;
 use std::f64::consts::TAU;
 
 use crate::run_command::{HOSE, answer, json, load};
@@ -60,7 +61,7 @@ fn try_identify(files: &[(String, String)], starts: usize) -> Result<Answer, Ide
 
 pub(crate) fn identified(files: &[(String, String)]) -> Value {
     let found = try_identify(files, 1).unwrap_or_else(|error| panic!("{error}"));
-    serde_json::from_str(&found.json).unwrap()
+    parsed(&found.json)
 }
 
 pub(crate) fn value(found: &Value, path: &str) -> f64 {
@@ -179,7 +180,7 @@ fn metering_does_not_identify_the_leakage() {
     let files: Vec<_> = recorded(&[]).into_iter().filter(|(name, _)| name == "metering.csv").collect();
     let answer = try_identify(&files, 6).unwrap();
     assert!(!answer.affirmative);
-    let found: Value = serde_json::from_str(&answer.json).unwrap();
+    let found: Value = parsed(&answer.json);
     assert!(interval(&found, "/tare_flow_m3_per_s").is_none());
     let not_identifiable = found["not_identifiable"].as_array().unwrap();
     let names: Vec<&str> = not_identifiable

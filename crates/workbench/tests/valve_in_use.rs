@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_workbench::command::{self, Request};
 use phea_workbench::project::{self, Loaded, sha256};
 use phea_workbench::source::{Memory, Source as _};
@@ -61,7 +62,7 @@ fn every_identified_number_is_the_true_one_of_the_bench() {
     let source = source(IDENTIFIED, 4);
     let loaded = read(&source, &[]);
     let answer = command::answer(&source, &loaded, &[], &Request::Check).unwrap();
-    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let json: Value = parsed(&answer.json);
     // ORIGIN: thesis, Table 5.1, used in examples/ybitu/bench.toml: the valve whose tests were
     // recorded
     let truth = [3.2e-7, 2.5e-7, 2.0e-7, 3.85e-7, 2.35e-9, 2.2e-9, 1.7e-9, 2.35e-9];
@@ -90,7 +91,7 @@ fn every_identified_number_is_the_true_one_of_the_bench() {
 fn the_tare_flow_has_its_pressure() {
     let source = source(IDENTIFIED, 4);
     let answer = command::answer(&source, &read(&source, &[]), &[], &Request::Check).unwrap();
-    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let json: Value = parsed(&answer.json);
     let values = json["identified"]["values"].as_array().unwrap();
     let tare = values.iter().find(|one| one["path"] == "valve.tare_flow").unwrap();
     let pressure = json["identified"]["tare_pressure_pa"].as_f64().unwrap();
@@ -132,7 +133,7 @@ fn nothing_is_identified_unless_requested() {
     let source = source(IDENTIFIED, 0);
     let loaded = read(&source, &["identify.use=nothing"]);
     let answer = command::answer(&source, &loaded, &[], &Request::Check).unwrap();
-    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let json: Value = parsed(&answer.json);
     assert!(json["identified"].is_null(), "{json}");
     assert_eq!(json["project_sha256"], loaded.sha256.as_str());
 }

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use crate::answer_schema::parsed;
 use serde_json::Value;
 
 use crate::valve_identification::{TRUTH, identified, interval, recorded, value};
@@ -91,7 +92,7 @@ fn coefficients_are_stated_at_a_temperature() {
     let identified_with = |settings: &[&str]| -> Value {
         let loaded = load(HOSE, settings, &[]);
         let found = identify_watched(&source, Some(&loaded), &files_of(&files), &mut |_| true);
-        serde_json::from_str(&found.unwrap_or_else(|error| panic!("{error}")).json).unwrap()
+        parsed(&found.unwrap_or_else(|error| panic!("{error}")).json)
     };
     let [mean, hot] = [&[][..], &["identify.oil_temperature.reference=\"47 degC\""]].map(identified_with);
     let ratio = |path: &str| value(&hot, path) / value(&mean, path);
@@ -132,7 +133,7 @@ fn a_stated_accuracy_is_in_the_intervals() {
         let loaded = load(HOSE, &[&recording], &[]);
         let request = IdentifyRequest { starts: Some(1), seed: 1, ..IdentifyRequest::default() };
         let found = identify_watched(&source, Some(&loaded), &request, &mut |_| true);
-        serde_json::from_str(&found.unwrap_or_else(|error| panic!("{error}")).json).unwrap()
+        parsed(&found.unwrap_or_else(|error| panic!("{error}")).json)
     };
     let path = "/flow_coefficients/supply_to_a";
     let holds =
@@ -175,8 +176,7 @@ fn deviations_within_the_stated_accuracy_are_no_misfit() {
         let loaded = load(HOSE, &[&format!("identify.recording=[{recordings}]")], &[]);
         let request = IdentifyRequest { starts: Some(1), seed: 1, ..IdentifyRequest::default() };
         let found = identify_watched(&source, Some(&loaded), &request, &mut |_| true);
-        let found: Value =
-            serde_json::from_str(&found.unwrap_or_else(|error| panic!("{error}")).json).unwrap();
+        let found: Value = parsed(&found.unwrap_or_else(|error| panic!("{error}")).json);
         found["misfits"].as_array().unwrap().len()
     };
     let stated = ", pressure_a = { accuracy = \"0.3 bar\" }";

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use crate::run_command::{HOSE, answer, json, load};
 use phea_workbench::command::{IdentifyRequest, Request, identify_watched};
 use phea_workbench::source::Memory;
@@ -52,7 +53,7 @@ fn identified(settings: &[&str]) -> phea_workbench::answer::Answer {
 }
 
 fn numbers(settings: &[&str]) -> Value {
-    let found: Value = serde_json::from_str(&identified(settings).json).unwrap();
+    let found: Value = parsed(&identified(settings).json);
     found["simple_calculations"].clone()
 }
 
@@ -174,7 +175,7 @@ fn read_from(files: &[&str], settings: &[&str], seed: u32) -> Value {
     let request = IdentifyRequest { files, starts: Some(1), ..IdentifyRequest::default() };
     let found =
         identify_watched(&source, Some(&load(HOSE, &settings, &[])), &request, &mut |_| true).unwrap();
-    let found: Value = serde_json::from_str(&found.json).unwrap();
+    let found: Value = parsed(&found.json);
     found["simple_calculations"].clone()
 }
 
@@ -241,7 +242,7 @@ fn the_numbers_of_a_valve_with_lap_state_their_command() {
     let overlap = "valve.lap={ positive = 0.003, negative = 0.003 }";
     let [with, without] = [vec![overlap], vec![]].map(|lap| identified(&[&MEASURED[..], &lap].concat()));
     let [of_lap, proportional] = [&with, &without].map(|answer| -> Value {
-        let found: Value = serde_json::from_str(&answer.json).unwrap();
+        let found: Value = parsed(&answer.json);
         found["simple_calculations"].clone()
     });
     for found in [&of_lap, &proportional] {
@@ -315,7 +316,7 @@ fn the_recordings_of_the_example_are_made_by_its_bench() {
         "residuals",
     ];
     assert_eq!(drawn, expected);
-    let numbers: Value = serde_json::from_str(&found.json).unwrap();
+    let numbers: Value = parsed(&found.json);
     let edges = &numbers["flow_coefficients"];
     // ORIGIN: thesis Table 5.1
     for (edge, truth) in

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use crate::run_command::{HOSE, answer};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::Request;
@@ -34,7 +35,7 @@ fn column(text: &str, name: &str) -> Vec<f64> {
 
 /// Results of the reversals: threshold and hysteresis in V, each with its interval.
 fn shown(settings: &[&str]) -> [(f64, [f64; 2]); 2] {
-    let found: Value = serde_json::from_str(&bench(settings).json).unwrap();
+    let found: Value = parsed(&bench(settings).json);
     let tests = found["tests"].as_array().unwrap();
     let reversals = &tests.iter().find(|one| one["name"] == "reversals").unwrap()["reversals"];
     ["threshold_v", "hysteresis_v"].map(|name| {

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use crate::run_command::{HOSE, load};
 use crate::valve_identification::{TRUTH, interval, recorded};
 use crate::valve_instruments::covered;
@@ -57,7 +58,7 @@ fn with_error(file: &str, heading: &str, error: impl Fn(f64) -> f64, accuracy: &
     let loaded = load(HOSE, &[&format!("identify.recording=[{recordings}]")], &[]);
     let request = IdentifyRequest { starts: Some(1), seed: 1, ..IdentifyRequest::default() };
     let found = identify_watched(&source, Some(&loaded), &request, &mut |_| true);
-    let found: Value = serde_json::from_str(&found.unwrap_or_else(|error| panic!("{error}")).json).unwrap();
+    let found: Value = parsed(&found.unwrap_or_else(|error| panic!("{error}")).json);
     let holds = |(path, truth): &&(&str, f64)| {
         interval(&found, path).is_some_and(|[low, high]| low <= *truth && *truth <= high)
     };

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use crate::run_command;
 use crate::valve_identification::{TRUTH, files_of, identified, recorded, try_request, value};
 use phea_workbench::command::{self, Request};
@@ -99,7 +100,7 @@ fn laps_that_differ_within_a_pair_are_reported() {
     let blocked = recorded(&[]).into_iter().filter(|(name, _)| !name.starts_with("metering"));
     let files: Vec<(String, String)> = blocked.collect::<Vec<_>>().iter().map(file).collect();
     let answer = try_request(&files, &files_of(&files)).unwrap_or_else(|error| panic!("{error}"));
-    let found: Value = serde_json::from_str(&answer.json).unwrap();
+    let found: Value = parsed(&answer.json);
     assert!(!found["misfits"].as_array().unwrap().is_empty(), "{}", found["signals"]);
     assert!(taken(&found).contains(&"lap"), "{}", found["terms"]);
     assert!(answer.text.contains("the laps of the two differ"), "{}", answer.text);
@@ -161,7 +162,7 @@ fn a_project_takes_the_lap_of_its_recordings() {
             project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"));
         let answer =
             command::answer(&source, &loaded, &[], &Request::Check).unwrap_or_else(|error| panic!("{error}"));
-        serde_json::from_str::<Value>(&answer.json).unwrap()
+        parsed(&answer.json)
     };
     let paths = |json: &Value| -> Vec<String> {
         let values = json["identified"]["values"].as_array().unwrap();

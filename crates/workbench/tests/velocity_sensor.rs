@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_hydraulics::signal::Signal;
 use phea_workbench::audit::{ProjectAudit, audit_project, noise_sentence};
 use phea_workbench::campaign::{Effort, Plan};
@@ -143,7 +144,7 @@ fn stability_is_proven_for_rational_plants() {
         let loaded = with_family(&[settings, &["controller.load_velocity_feed_forward.gain=15"]].concat());
         let request = Request::Verify { proof: true, on_machine: false };
         let answer = command::answer(&Memory::default(), &loaded, &[], &request).unwrap();
-        serde_json::from_str(&answer.json).unwrap()
+        parsed(&answer.json)
     };
     for load in ["load={}", &damped] {
         let answer = proven(&[load, filter]);
@@ -169,7 +170,7 @@ fn the_worst_error_is_tested_on_the_machine() {
         &Request::Verify { proof: false, on_machine: true },
     )
     .unwrap();
-    let answer: Value = serde_json::from_str(&answer.json).unwrap();
+    let answer: Value = parsed(&answer.json);
     let runs = answer["machine"]["runs"].as_array().unwrap();
     let worst = runs.iter().find(|run| run["what"].as_str().unwrap().contains("worst plant")).unwrap();
     assert_eq!(worst["agrees"].as_bool(), Some(true), "{worst}");

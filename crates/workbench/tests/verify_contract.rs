@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use crate::answer_schema::parsed;
 use crate::run_command::{self, HOSE, answer, json, try_answer};
 use phea_workbench::command::{CommandError, Progress, Request, answer_into};
 use phea_workbench::plant_names::{PlantNames, plant_text};
@@ -110,7 +111,7 @@ fn a_neglected_feed_forward_is_reported() {
             (vec!["controller.load_velocity_feed_forward={ gain = 20 }"], true),
         ] {
             let output = answer(text, &settings, &[], &request);
-            let object: Value = serde_json::from_str(&output.json).unwrap();
+            let object: Value = parsed(&output.json);
             let warnings = object["warnings"].as_array().unwrap();
             let of_it = warnings.iter().filter(|warning| warning.as_str().unwrap().contains(words));
             assert_eq!(
@@ -193,7 +194,7 @@ fn a_loop_around_an_unstable_plant_states_how_far_its_gain_may_fall() {
         .replace("numerator = \"1\"", "numerator = \"2\"");
     let request = Request::Verify { proof: false, on_machine: false };
     let output = answer(&unstable, &[], &[], &request);
-    let object: Value = serde_json::from_str(&output.json).unwrap();
+    let object: Value = parsed(&output.json);
     // ORIGIN: analytic, 20 log10(1/8)
     close(&object["gain_reduction_db"], -18.0618, 1e-5);
     assert!(output.text.contains("becomes unstable where that falls by 18.1 dB"), "{}", output.text);

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use crate::answer_schema::parsed;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::run_command::{HOSE, answer, json};
@@ -43,7 +44,7 @@ fn assert_delayed(set: &Value, k: f64, dead_time_s: f64) {
 #[test]
 fn the_worst_of_a_family_of_gains_is_at_the_largest() {
     let output = answer(DELAYED, &[], &[], &VERIFY);
-    let object: Value = serde_json::from_str(&output.json).unwrap();
+    let object: Value = parsed(&output.json);
     let margins = &object["margins"];
     assert_delayed(&margins["nominal"], 2.0, 0.1);
     assert_delayed(&margins["family"], 4.0, 0.1);
@@ -131,7 +132,7 @@ fn of_key<'a>(below: &'a [Value], key: &str) -> Option<&'a Value> {
 #[test]
 fn a_loop_lists_the_design_limits_that_it_violates() {
     let output = answer(HOSE, &[], &[], &VERIFY);
-    let object: Value = serde_json::from_str(&output.json).unwrap();
+    let object: Value = parsed(&output.json);
     let found = object["below_design"].as_array().unwrap();
     let modulus = of_key(found, "modulus_margin").unwrap();
     assert_eq!(modulus["value"], object["margins"]["modulus"]);
@@ -160,7 +161,7 @@ fn a_loop_lists_the_design_limits_that_it_violates() {
 fn a_loop_lists_the_design_limits_that_it_satisfies() {
     let plant = DELAYED.replace("delay = \"0.1 s\"\n", "");
     let output = answer(&plant, &["design.modulus_margin=0.9"], &[], &VERIFY);
-    let object: Value = serde_json::from_str(&output.json).unwrap();
+    let object: Value = parsed(&output.json);
     assert_eq!(
         (&object["below_design"], &object["kept_of_design"]),
         (&object_of!([]), &object_of!(["modulus_margin"]))

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+use crate::answer_schema::parsed;
 use phea_dynamics::random::share;
 use phea_workbench::command::Request;
 use serde_json::Value;
@@ -27,7 +28,7 @@ fn answer_of(request: &Request, settings: &[&str]) -> Value {
         "linear.valve_damping_ratio=0.9",
     ];
     let settings: Vec<&str> = common.into_iter().chain(settings.iter().copied()).collect();
-    serde_json::from_str(&answer(&one_rig(), &settings, &[], request).json).unwrap()
+    parsed(&answer(&one_rig(), &settings, &[], request).json)
 }
 
 /// Unstable poles that an answer reports.
@@ -126,7 +127,7 @@ fn worst_plants_have_their_parameters() {
     let text = include_str!("../../../examples/ybitu/hose.toml");
     let settings = ["line.model=segments", "line.segments=4", "line.relaxation_time=0.3 ms"];
     let output = answer(text, &settings, &[], &Request::Verify { proof: false, on_machine: false });
-    let object: Value = serde_json::from_str(&output.json).unwrap();
+    let object: Value = parsed(&output.json);
     let worst = &object["specifications"][1]["plant"];
     let flow_gain = worst["flow_gain"].as_f64().unwrap();
     assert!((3.23e-5..=5.61e-5).contains(&flow_gain), "{worst}");
@@ -148,7 +149,7 @@ fn a_box_is_searched_between_its_members() {
     let moving = ["line.model=segments", "line.segments=6", "line.relaxation_time=0.5 ms"];
     let margin = |text: &str, settings: &[&str]| {
         let output = answer(text, settings, &[], &Request::Verify { proof: false, on_machine: false });
-        let object: Value = serde_json::from_str(&output.json).unwrap();
+        let object: Value = parsed(&output.json);
         assert_eq!(object["stability"]["verdict"], Value::from("met"), "{}", output.text);
         object["specifications"][0]["worst_margin_db"].as_f64().unwrap()
     };

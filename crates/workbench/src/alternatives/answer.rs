@@ -5,7 +5,7 @@ use super::findings::{findings, of_case};
 use super::front;
 use super::words::{judge_error_words, no_number_words, undecided_words};
 use super::{AlternativeColumn, Alternatives, ColumnPart, JudgedAlternative, JudgedCase, MovedRange};
-use crate::answer::{Json, Object};
+use crate::answer::{Describe, Json, Object};
 use crate::design;
 use crate::linearize::{no_closed_impedance_words, passivity_body};
 use crate::specification::subject_words;
@@ -39,7 +39,7 @@ fn row(one: &JudgedAlternative) -> Object {
     let verdict = view.map(|view| verdict_key(view.designed.view.verdict()));
     // the laws of a design that was audited are transfer functions
     let design = view.and_then(|view| design::body(view).ok());
-    let machine = view.and_then(|view| view.trial.as_ref()).map(trial::body);
+    let machine = view.and_then(|view| view.trial.as_ref()).map(|trial| trial::body(trial).into_json());
     let no_machine = if view.is_some() { "the project describes a plant and no machine" } else { &failed };
     Object::new()
         .with("name", one.name.as_str())

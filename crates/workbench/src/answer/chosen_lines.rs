@@ -2,32 +2,70 @@
 
 use phea_engineering::line_choice::LUMPED_FROM;
 
-use super::Object;
+use super::words::words;
+use super::{Answer, OrReason};
 use crate::project::{ChosenLines, ReachedBy, WavesHindrance};
 use crate::quantity::MotionKind;
 
+/// Model chosen for the lines, and the frequencies that it follows from.
+#[derive(Answer)]
+pub(crate) struct ChosenLinesAnswer {
+    /// Chosen model.
+    model: ChosenLineModel,
+    /// Lowest frequency at which a line is a quarter of a wave long.
+    quarter_wave_rad_per_s: f64,
+    /// Highest frequency that the loop or a requirement reaches.
+    reached_rad_per_s: OrReason<f64>,
+    /// Origin of `reached_rad_per_s`.
+    #[answer(optional)]
+    reached_by: Option<ReachedBy>,
+    /// Number of the specification that reaches it, from 1 in the order of the file.
+    #[answer(optional)]
+    specification: Option<usize>,
+    /// Least ratio of `quarter_wave_rad_per_s` to `reached_rad_per_s` for a lumped model.
+    lumped_from: f64,
+    /// Reason why no model with waves is computed, where one would be needed.
+    #[answer(optional)]
+    hindrance: Option<String>,
+}
+
+enum ChosenLineModel {
+    Waves,
+    Lumped,
+}
+
+words! {
+    /// Model of the lines.
+    ChosenLineModel { Waves => "transmission_line", Lumped => "lumped" }
+}
+
+words! {
+    /// Origin of the highest frequency that a model of the lines must contain.
+    ReachedBy {
+        Crossover => "crossover",
+        RequiredTime(_) => "required_time",
+        DesignFrequency(_) => "design_frequency",
+        HighestBandwidth => "highest_bandwidth",
+        UnlimitedBandwidth => "unlimited_bandwidth",
+    }
+}
+
 /// The model, and what it follows from.
-pub(crate) fn body_of_lines(lines: &ChosenLines, motion: MotionKind) -> Object {
-    let by = |(_, by): &(f64, ReachedBy)| match by {
-        ReachedBy::Crossover => "crossover",
-        ReachedBy::RequiredTime(_) => "required_time",
-        ReachedBy::DesignFrequency(_) => "design_frequency",
-        ReachedBy::HighestBandwidth => "highest_bandwidth",
-        ReachedBy::UnlimitedBandwidth => "unlimited_bandwidth",
+pub(crate) fn body_of_lines(lines: &ChosenLines, motion: MotionKind) -> ChosenLinesAnswer {
+    let (reached, by) = lines.reach.clone().unzip();
+    let specification = match by {
+        Some(ReachedBy::RequiredTime(number) | ReachedBy::DesignFrequency(number)) => Some(number),
+        _ => None,
     };
-    let specification = |(_, by): &(f64, ReachedBy)| match by {
-        ReachedBy::RequiredTime(number) | ReachedBy::DesignFrequency(number) => Some(*number),
-        ReachedBy::Crossover | ReachedBy::HighestBandwidth | ReachedBy::UnlimitedBandwidth => None,
-    };
-    let nothing = "neither loop nor requirement reaches a frequency";
-    Object::new()
-        .with("model", if lines.with_waves { "transmission_line" } else { "lumped" })
-        .with("quarter_wave_rad_per_s", lines.quarter_wave_rad_per_s)
-        .known("reached_rad_per_s", lines.reach.as_ref().map(|(reached, _)| *reached), nothing)
-        .maybe("reached_by", lines.reach.as_ref().map(by))
-        .maybe("specification", lines.reach.as_ref().and_then(specification))
-        .with("lumped_from", LUMPED_FROM)
-        .maybe("hindrance", lines.hindrance.as_ref().map(|one| hindrance_words(one, motion)))
+    ChosenLinesAnswer {
+        model: if lines.with_waves { ChosenLineModel::Waves } else { ChosenLineModel::Lumped },
+        quarter_wave_rad_per_s: lines.quarter_wave_rad_per_s,
+        reached_rad_per_s: OrReason::new(reached, "neither loop nor requirement reaches a frequency"),
+        reached_by: by,
+        specification,
+        lumped_from: LUMPED_FROM,
+        hindrance: lines.hindrance.as_ref().map(|one| hindrance_words(one, motion).to_string()),
+    }
 }
 
 /// Reason why no model with waves is computed.

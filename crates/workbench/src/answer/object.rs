@@ -37,7 +37,7 @@ pub(crate) enum ObjectKey {
 
 impl ObjectKey {
     /// Key of the reason for which this one has no value.
-    fn reason(&self) -> ObjectKey {
+    pub(crate) fn reason(&self) -> ObjectKey {
         match self {
             ObjectKey::Text(text) => ObjectKey::Text(reason_key(text)),
             ObjectKey::Name(name) | ObjectKey::Reason(name) => ObjectKey::Reason(*name),
@@ -45,7 +45,7 @@ impl ObjectKey {
     }
 
     /// Its text for a rig of this motion.
-    fn text(&self, motion: MotionKind) -> Cow<'_, str> {
+    pub(crate) fn text(&self, motion: MotionKind) -> Cow<'_, str> {
         match self {
             ObjectKey::Text(text) => text.into(),
             ObjectKey::Name(name) => name.text(motion),
@@ -66,6 +66,11 @@ impl Object {
     /// Without a key.
     pub(crate) fn new() -> Object {
         Object::default()
+    }
+
+    /// Adds a key.
+    pub(crate) fn push(&mut self, key: impl Into<ObjectKey>, value: impl Into<Json>) {
+        self.0.push((key.into(), value.into()));
     }
 
     /// With one more key.

@@ -1,14 +1,12 @@
 //! Limits of a design that a given loop satisfies or exceeds, in words and in JSON.
 
-use phea_engineering::limit_kind::{
-    DesignLimitKind, ExceededLimit, JudgedLimits, limit_key, limit_unit_key, origin_key,
-};
+use phea_engineering::limit_kind::{DesignLimitKind, ExceededLimit, JudgedLimits, LimitOrigin, limit_key};
 use phea_qft::verification::Verdict;
 
 use super::ProjectAudit;
-use crate::answer::Object;
+use crate::answer::{Answer, Keyed};
 use crate::document::{Cell, Document, Table};
-use crate::limit_kind::{limit_words, origin_words};
+use crate::limit_kind::{LimitKeys, LimitValueKeys, in_limit_unit, limit_words, origin_words};
 use crate::quantity::{DisplayUnit, significant};
 
 /// A table of the limits that the loop exceeds, with their meaning, or a statement that it
@@ -72,12 +70,25 @@ fn words(kind: DesignLimitKind, value: f64) -> String {
     }
 }
 
+/// Limit of a design that an audited loop exceeds.
+#[derive(Answer)]
+pub(super) struct ExceededLimitAnswer {
+    /// Limit in `[design]`.
+    key: DesignLimitKind,
+    #[answer(flatten)]
+    value: Keyed<LimitValueKeys, f64>,
+    #[answer(flatten)]
+    limit: Keyed<LimitKeys, f64>,
+    /// Origin of the limit.
+    origin: LimitOrigin,
+}
+
 /// A limit in JSON, its numbers in SI.
-pub(super) fn object(one: &ExceededLimit) -> Object {
-    let unit = limit_unit_key(one.kind);
-    Object::new()
-        .with("key", limit_key(one.kind))
-        .with(format!("value{unit}"), one.reached)
-        .with(format!("limit{unit}"), one.limit)
-        .with("origin", origin_key(one.origin))
+pub(super) fn answer(one: &ExceededLimit) -> ExceededLimitAnswer {
+    ExceededLimitAnswer {
+        key: one.kind,
+        value: in_limit_unit(one.kind, one.reached),
+        limit: in_limit_unit(one.kind, one.limit),
+        origin: one.origin,
+    }
 }

@@ -8,7 +8,7 @@ use phea_dynamics::portable;
 use phea_qft::proof::{Certificate, CertificateSide, Claim, LimitedLoop, Rejection, check};
 
 use super::ProjectAudit;
-use crate::answer::{Answer, Object, OutputFile, SCHEMA};
+use crate::answer::{Answer, Body, OutputFile, SCHEMA, VERSION};
 use crate::document::Document;
 use crate::project::Loaded;
 use crate::quantity::MotionKind;
@@ -17,7 +17,39 @@ use crate::specification::closed_loop_key;
 pub use layout::CertificateError;
 use layout::File;
 
-/// Name of the file in a folder.
+/// Answer of `check-certificate`.
+#[derive(Answer)]
+pub(crate) struct CheckCertificateAnswer {
+    /// Version of the layout of answers.
+    schema: u32,
+    /// Version of phea.
+    version: &'static str,
+    /// Name of the command.
+    command: &'static str,
+    /// Title of the project that was proven.
+    title: String,
+    /// SHA-256 of the project file that was proven.
+    project_sha256: String,
+    /// True if every claim holds.
+    valid: bool,
+    /// Claims of the certificate, in words.
+    claims: Vec<String>,
+    /// True if the certificate claims that every plant is stable.
+    stability_claimed: bool,
+    /// Differences between the certificate and the given project, if there is one.
+    #[answer(optional)]
+    differences: Option<Vec<String>>,
+    /// Numbers of the specifications with a requirement in time, about which nothing is claimed.
+    not_claimed_in_time: Vec<usize>,
+    /// Number of the claim that is rejected, from 1.
+    #[answer(optional)]
+    rejected_claim: Option<usize>,
+    /// Reason for which it is rejected.
+    #[answer(optional)]
+    reason: Option<String>,
+}
+
+/// Its name in a folder.
 pub const CERTIFICATE_FILE: &str = "certificate.json";
 
 /// The file with the proof of an audit, with this name; `None` if nothing was proven.
@@ -107,22 +139,23 @@ fn answer(
         format!("Not claimed: what specification {number} requires in time, which `verify` searches for.")
     }));
     let is_of_project = differences.as_ref().is_none_or(Vec::is_empty);
-    let body = Object::new()
-        .with("schema", SCHEMA)
-        .with("version", env!("CARGO_PKG_VERSION"))
-        .with("command", "check-certificate")
-        .with("title", title)
-        .with("project_sha256", project_sha256)
-        .with("valid", rejected.is_none())
-        .with("claims", claims)
-        .with("stability_claimed", certificate.claims_stability())
-        .maybe("differences", differences)
-        .with("not_claimed_in_time", in_time)
-        .maybe("rejected_claim", rejected.map(|(number, _)| *number))
-        .maybe("reason", rejected.map(|(_, reason)| reason.to_string()));
+    let body = CheckCertificateAnswer {
+        schema: SCHEMA,
+        version: VERSION,
+        command: "check-certificate",
+        title: title.to_string(),
+        project_sha256: project_sha256.to_string(),
+        valid: rejected.is_none(),
+        claims,
+        stability_claimed: certificate.claims_stability(),
+        differences,
+        not_claimed_in_time: in_time.to_vec(),
+        rejected_claim: rejected.map(|(number, _)| *number),
+        reason: rejected.map(|(_, reason)| reason.to_string()),
+    };
     Answer {
         text: out.text(),
-        json: body.print(MotionKind::default()),
+        json: body.into_object().print(MotionKind::default()),
         files: vec![],
         affirmative: rejected.is_none() && is_of_project,
     }

@@ -1,11 +1,11 @@
 //! Margins of the nominal loop, and the worst of the family, in words and in JSON.
 
-use phea_qft::verification::Remark;
+use phea_qft::verification::{Evidence, Remark};
 
 use super::{Crossovers, LoopMargin, MarginSet, NominalMargins, ProjectAudit};
-use crate::answer::Object;
+use crate::answer::{Answer, OrReason};
 use crate::document::{Cell, Table};
-use crate::plant_names::PlantNames;
+use crate::plant_names::{NamedPlant, PlantNames};
 use crate::quantity::{DisplayUnit, significant};
 
 /// Reason why the nominal loop has none.
@@ -15,45 +15,111 @@ const NO_FAMILY: &str = "no margin: not every plant is known to be stable";
 /// Reason why there is no frequency.
 const UNLIMITED: &str = "nothing limits it";
 
-/// The worst margins of the family, and objects with the margins of the nominal loop and of the
-/// family.
-pub(super) fn object(view: &ProjectAudit) -> Object {
+/// Margins of the nominal loop and the worst of the family, which is also in front.
+#[derive(Answer)]
+pub(super) struct AuditMarginsAnswer {
+    /// Worst factor by which the gain may grow; `inf` if nothing limits it.
+    gain_db: OrReason<f64>,
+    /// Worst factor to which the gain may fall, negative; `-inf` if it may vanish.
+    gain_reduction_db: OrReason<f64>,
+    /// Worst angle between L and -1 where |L| = 1: positive if a lag makes the loop unstable,
+    /// negative if a lead does.
+    phase_deg: OrReason<f64>,
+    /// Least |1 + L|.
+    modulus: OrReason<f64>,
+    /// Least additional dead time that brings L to -1.
+    delay_s: OrReason<f64>,
+    /// Evidence for the worst of the family.
+    evidence: Evidence,
+    /// Number of examined plants.
+    plants: usize,
+    /// Margins of the nominal loop.
+    nominal: OrReason<MarginSetAnswer>,
+    /// Worst margins of the family, each with its place.
+    family: OrReason<MarginSetAnswer>,
+}
+
+/// Margins of a loop, or the worst of each in a family.
+#[derive(Answer)]
+struct MarginSetAnswer {
+    /// Factor by which the gain may grow; `inf` if nothing limits it.
+    gain_db: f64,
+    /// Factor to which the gain may fall, negative; `-inf` if it may vanish.
+    gain_reduction_db: f64,
+    /// Least angle between L and -1 where |L| = 1: positive if a lag makes the loop unstable,
+    /// negative if a lead does.
+    phase_deg: f64,
+    /// Least |1 + L|.
+    modulus: f64,
+    /// Least additional dead time that brings L to -1.
+    delay_s: f64,
+    /// Place of each margin.
+    at: MarginPlacesAnswer,
+}
+
+/// Places of margins.
+#[derive(Answer)]
+struct MarginPlacesAnswer {
+    /// Place of the gain margin.
+    gain_db: MarginPlaceAnswer,
+    /// Place of the margin to a fall of the gain.
+    gain_reduction_db: MarginPlaceAnswer,
+    /// Place of the phase margin.
+    phase_deg: MarginPlaceAnswer,
+    /// Place of the modulus margin.
+    modulus: MarginPlaceAnswer,
+    /// Place of the delay margin.
+    delay_s: MarginPlaceAnswer,
+}
+
+/// Frequency and plant of a margin.
+#[derive(Answer)]
+struct MarginPlaceAnswer {
+    /// Frequency of the margin.
+    frequency_rad_per_s: OrReason<f64>,
+    /// Plant with the margin.
+    plant: NamedPlant,
+}
+
+/// The worst of the family, and the same keys of both.
+pub(super) fn answer(view: &ProjectAudit) -> AuditMarginsAnswer {
     let margins = &view.margins;
-    let own = values(margins.family.as_ref(), NO_FAMILY);
-    let set = |set: Option<&MarginSet>| set.map(|set| values(Some(set), "").with("at", places(view, set)));
-    own.with("evidence", if is_measured(view) { "grid" } else { "search" })
-        .with("plants", margins.plants)
-        .known("nominal", set(margins.nominal.as_ref()), NO_NOMINAL)
-        .known("family", set(margins.family.as_ref()), NO_FAMILY)
-}
-
-/// The numbers by their keys.
-fn named(set: &MarginSet) -> [(&'static str, &LoopMargin); 5] {
-    [
-        ("gain_db", &set.gain_db),
-        ("gain_reduction_db", &set.gain_reduction_db),
-        ("phase_deg", &set.phase_deg),
-        ("modulus", &set.modulus),
-        ("delay_s", &set.delay_s),
-    ]
-}
-
-const KEYS: [&str; 5] = ["gain_db", "gain_reduction_db", "phase_deg", "modulus", "delay_s"];
-
-fn values(set: Option<&MarginSet>, reason: &str) -> Object {
-    match set {
-        Some(set) => named(set).iter().fold(Object::new(), |object, (key, one)| object.with(*key, one.value)),
-        None => KEYS.iter().fold(Object::new(), |object, key| object.known(*key, None::<f64>, reason)),
+    let worst = |of: fn(&MarginSet) -> &LoopMargin| {
+        OrReason::new(margins.family.as_ref().map(|set| of(set).value), NO_FAMILY)
+    };
+    let set = |set: Option<&MarginSet>| set.map(|set| set_answer(&view.names, set));
+    AuditMarginsAnswer {
+        gain_db: worst(|set| &set.gain_db),
+        gain_reduction_db: worst(|set| &set.gain_reduction_db),
+        phase_deg: worst(|set| &set.phase_deg),
+        modulus: worst(|set| &set.modulus),
+        delay_s: worst(|set| &set.delay_s),
+        evidence: if is_measured(view) { Evidence::Grid } else { Evidence::Search },
+        plants: margins.plants,
+        nominal: OrReason::new(set(margins.nominal.as_ref()), NO_NOMINAL),
+        family: OrReason::new(set(margins.family.as_ref()), NO_FAMILY),
     }
 }
 
-fn places(view: &ProjectAudit, set: &MarginSet) -> Object {
-    named(set).iter().fold(Object::new(), |object, (key, one)| {
-        let place = Object::new()
-            .known("frequency_rad_per_s", one.frequency_rad_per_s, UNLIMITED)
-            .with("plant", view.names.named(&one.plant));
-        object.with(*key, place)
-    })
+fn set_answer(names: &PlantNames, set: &MarginSet) -> MarginSetAnswer {
+    let place = |margin: &LoopMargin| MarginPlaceAnswer {
+        frequency_rad_per_s: OrReason::new(margin.frequency_rad_per_s, UNLIMITED),
+        plant: names.named(&margin.plant),
+    };
+    MarginSetAnswer {
+        gain_db: set.gain_db.value,
+        gain_reduction_db: set.gain_reduction_db.value,
+        phase_deg: set.phase_deg.value,
+        modulus: set.modulus.value,
+        delay_s: set.delay_s.value,
+        at: MarginPlacesAnswer {
+            gain_db: place(&set.gain_db),
+            gain_reduction_db: place(&set.gain_reduction_db),
+            phase_deg: place(&set.phase_deg),
+            modulus: place(&set.modulus),
+            delay_s: place(&set.delay_s),
+        },
+    }
 }
 
 /// A row for each margin; empty if there are none.

@@ -5,8 +5,15 @@ use phea_qft::specification::{ClosedLoop, Requirement};
 use phea_qft::verification::{Evidence, SpecificationFinding, SpecificationMargin, Verdict};
 
 use super::{LimitSide, ProjectAudit, ReachedLimit};
+use crate::answer::words;
 use crate::quantity::{RATIO, display, significant};
 use crate::verdict_words::{frequency_words, margin_words};
+
+words! {
+    /// Evidence for a verdict: plants and frequencies one by one, a search for the worst case over
+    /// the box and the band, or a proof for every plant and frequency.
+    Evidence by evidence_key [Grid, Search, Proof]
+}
 
 /// The word of the evidence in JSON.
 pub(super) fn evidence_key(evidence: Evidence) -> &'static str {

@@ -4,10 +4,11 @@ use phea_qft::family::Family;
 
 use super::CommandError;
 use super::alternatives::read_alternatives;
-use super::impossible::Impossible;
+use super::impossible::{Impossible, ImpossibleAnswer};
 use super::unprinted::Unprinted;
+use crate::answer::{Answer, Body};
 use crate::caveat::{self, Caveat, caveats};
-use crate::derived::{self, derive};
+use crate::derived::{self, DerivedAnswer, derive};
 use crate::document::Document;
 use crate::family::{family, visited_box};
 use crate::project::{LateError, Loaded, Severity, WrittenUnits, refused};
@@ -16,6 +17,15 @@ use crate::setup::Setup;
 use crate::simulate::{foreseen, foreseen_late, unreadable};
 use crate::source::Source;
 use crate::specification::{self, wishes};
+
+/// Answer of `check`.
+#[derive(Answer)]
+pub(super) struct CheckAnswer {
+    #[answer(flatten)]
+    derived: DerivedAnswer,
+    /// Requirements that no loop can satisfy.
+    impossible: Vec<ImpossibleAnswer>,
+}
 
 /// Every derived quantity, the box of the family and the requirements in time.
 ///
@@ -63,9 +73,11 @@ pub(super) fn check(
         None => valid.to_string(),
     });
     let files = derived::files(&derived);
-    let body = derived::body(loaded, &derived, visited.as_deref(), &wishes, told);
-    let body = body.each("impossible", &impossible, Impossible::object);
-    Ok(Unprinted { document, body, files, affirmative: true })
+    let body = CheckAnswer {
+        derived: derived::body(loaded, &derived, visited.as_deref(), &wishes, told),
+        impossible: impossible.iter().map(Impossible::answer).collect(),
+    };
+    Ok(Unprinted { document, body: body.into_object(), files, affirmative: true })
 }
 
 /// Requests of the scenarios that the rig cannot satisfy, each with its line.

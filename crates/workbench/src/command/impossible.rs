@@ -2,13 +2,26 @@
 
 use phea_engineering::impossible::{Impossibilities, Impossibility, ImpossibleStep, impossibilities};
 
-use crate::answer::Object;
+use crate::answer::Answer;
 use crate::caveat::{Caveat, UncountedEffect};
 use crate::impossible::late_of;
 use crate::project::{LateError, Loaded, refused};
 use crate::setup::Setup;
 use crate::source::Source;
 use crate::specification::SpecificationError;
+
+/// Requirement that no loop can satisfy, in JSON.
+#[derive(Answer)]
+pub(super) struct ImpossibleAnswer {
+    /// Key of the project file.
+    key: String,
+    /// Line of the key in the file, from 1.
+    line: usize,
+    /// Sentence with the plant and the frequency that forbid it.
+    sentence: String,
+    /// Change that would satisfy it.
+    cure: String,
+}
 
 /// A requirement that no loop can satisfy.
 pub(super) struct Impossible {
@@ -51,12 +64,13 @@ impl Impossible {
         }
     }
 
-    /// The key, the impossible requirement, and the change that would satisfy it.
-    pub(super) fn object(&self) -> Object {
-        Object::new()
-            .with("key", self.at.path.as_str())
-            .with("line", self.line)
-            .with("sentence", self.at.message.as_str())
-            .with("cure", self.at.help.as_str())
+    /// The key, what is impossible, and what would satisfy it.
+    pub(super) fn answer(&self) -> ImpossibleAnswer {
+        ImpossibleAnswer {
+            key: self.at.path.clone(),
+            line: self.line,
+            sentence: self.at.message.clone(),
+            cure: self.at.help.clone(),
+        }
     }
 }

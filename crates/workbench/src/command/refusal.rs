@@ -1,12 +1,51 @@
 //! The JSON if a command has no answer.
 
 use super::{CommandError, Request};
-use crate::answer::{Object, SCHEMA};
+use crate::answer::{Answer, Body, SCHEMA, VERSION, words};
 use crate::project::{Diagnostic, Loaded, Refusal, Severity, sha256};
 use crate::quantity::MotionKind;
 use crate::source::Source;
 
-/// Returns the JSON object of a command whose project, at `path`, was rejected.
+/// Errors of a command that has no answer.
+#[derive(Answer)]
+pub(super) struct RefusedAnswer {
+    /// Version of the layout of answers.
+    schema: u32,
+    /// Version of phea.
+    version: &'static str,
+    /// Name of the command; null if the command line is invalid.
+    command: Option<String>,
+    /// SHA-256 of the bytes of the project file; null if it was not read.
+    project_sha256: Option<String>,
+    /// Errors, and warnings found with them.
+    errors: Vec<DiagnosticAnswer>,
+}
+
+/// Error or warning in a file, or of the command line.
+#[derive(Answer)]
+struct DiagnosticAnswer {
+    /// Severity of the finding.
+    severity: Severity,
+    /// Sentence on the finding.
+    message: String,
+    /// Path of the file; null if no file is concerned.
+    file: Option<String>,
+    /// Line in the file, from 1; null if none is concerned.
+    line: Option<usize>,
+    /// Column in the line, from 1; null if none is concerned.
+    column: Option<usize>,
+    /// Expected value, if it can be named.
+    expected: Option<String>,
+    /// Change that would help, if one is known.
+    help: Option<String>,
+}
+
+words! {
+    /// Severity of a finding.
+    Severity { Error => "error", Warning => "warning" }
+}
+
+/// The JSON object of a command whose project, at `path`, was rejected.
 pub fn refusal_json(source: &dyn Source, path: &str, command: &str, refusal: &Refusal) -> String {
     let hash = source.read(path).ok().map(|bytes| sha256(&bytes));
     refusal_body(Some(command), hash.as_deref(), refusal_rows(refusal))
@@ -48,19 +87,21 @@ pub fn files_json(command: &str, project_sha256: Option<&str>, refusal: &Refusal
     refusal_body(Some(command), project_sha256, refusal_rows(refusal))
 }
 
-fn refusal_rows(refusal: &Refusal) -> Vec<Object> {
+fn refusal_rows(refusal: &Refusal) -> Vec<DiagnosticAnswer> {
     refusal.diagnostics.iter().map(refusal_row).collect()
 }
 
-fn refusal_row(found: &Diagnostic) -> Object {
+fn refusal_row(found: &Diagnostic) -> DiagnosticAnswer {
     let place = |number: usize| Some(number).filter(|number| *number > 0);
-    let severity = if found.severity == Severity::Error { "error" } else { "warning" };
-    let row = Object::new().with("severity", severity).with("message", found.message.as_str());
-    row.with("file", found.file.as_str())
-        .with("line", place(found.line))
-        .with("column", place(found.column))
-        .with("expected", found.expected.as_deref())
-        .with("help", found.help.as_deref())
+    DiagnosticAnswer {
+        severity: found.severity,
+        message: found.message.clone(),
+        file: Some(found.file.clone()),
+        line: place(found.line),
+        column: place(found.column),
+        expected: found.expected.clone(),
+        help: found.help.clone(),
+    }
 }
 
 /// The JSON object of a command that failed for another reason than its project file; `command` is
@@ -72,18 +113,29 @@ fn refusal_row(found: &Diagnostic) -> Object {
 /// assert!(json.contains("\"command\": \"size\"") && json.contains("permission denied"));
 /// ```
 pub fn failure_json(command: Option<&str>, project_sha256: Option<&str>, message: &str) -> String {
-    let row = Object::new().with("severity", "error").with("message", message);
-    let nowhere = ["file", "line", "column", "expected", "help"];
-    let row = nowhere.into_iter().fold(row, |row, key| row.with(key, None::<&str>));
+    let row = DiagnosticAnswer {
+        severity: Severity::Error,
+        message: message.to_string(),
+        file: None,
+        line: None,
+        column: None,
+        expected: None,
+        help: None,
+    };
     refusal_body(command, project_sha256, vec![row])
 }
 
-fn refusal_body(command: Option<&str>, project_sha256: Option<&str>, errors: Vec<Object>) -> String {
-    let body = Object::new()
-        .with("schema", SCHEMA)
-        .with("version", env!("CARGO_PKG_VERSION"))
-        .with("command", command)
-        .with("project_sha256", project_sha256)
-        .with("errors", errors);
-    body.print(MotionKind::default())
+fn refusal_body(
+    command: Option<&str>,
+    project_sha256: Option<&str>,
+    errors: Vec<DiagnosticAnswer>,
+) -> String {
+    let body = RefusedAnswer {
+        schema: SCHEMA,
+        version: VERSION,
+        command: command.map(str::to_string),
+        project_sha256: project_sha256.map(str::to_string),
+        errors,
+    };
+    body.into_object().print(MotionKind::default())
 }

@@ -5,10 +5,12 @@ use phea_dynamics::watch::{Watch, within};
 use phea_qft::verification::Verdict;
 
 use super::CommandError;
-use super::impossible::Impossible;
+use super::impossible::{Impossible, ImpossibleAnswer};
 use super::unprinted::Unprinted;
+use crate::answer::{Answer, Body};
 use crate::audit::{
-    self, CERTIFICATE_FILE, ProjectAudit, audit_problem, certificate_of, problem_to_audit, prove_audit,
+    self, AuditAnswer, CERTIFICATE_FILE, ProjectAudit, audit_problem, certificate_of, problem_to_audit,
+    prove_audit,
 };
 use crate::design::below_design;
 use crate::document::Document;
@@ -17,7 +19,19 @@ use crate::rig::RigError;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::source::Source;
-use crate::trial::{Agreement, DrivenCorners, tried};
+use crate::trial::{self, Agreement, DrivenCorners, TrialAnswer, tried};
+
+/// Answer of `verify`.
+#[derive(Answer)]
+pub(super) struct VerifyAnswer {
+    #[answer(flatten)]
+    audit: AuditAnswer,
+    /// Requirements that no loop can satisfy.
+    impossible: Vec<ImpossibleAnswer>,
+    /// Verdict tested on the nonlinear machine, if requested.
+    #[answer(optional)]
+    machine: Option<TrialAnswer>,
+}
 
 /// Fraction of an audit's progress for the specifications; the rest is for the limits of a design.
 const SPECIFICATIONS: f64 = 0.9;
@@ -57,9 +71,14 @@ pub(super) fn verify_answer(
     let impossible = Impossible::all(source, loaded, &setup)?;
     let mut document = Document::default();
     document.warnings(impossible.iter().map(Impossible::sentence));
-    let body = audit::body(&view).each("impossible", &impossible, Impossible::object);
+    let mut body = VerifyAnswer {
+        audit: audit::body(&view),
+        impossible: impossible.iter().map(Impossible::answer).collect(),
+        machine: None,
+    };
     if !on_machine {
         document.append(audit::output(&view, None));
+        let body = body.into_object();
         return Ok(Unprinted { document, body, files, affirmative: is_met });
     }
     let watch = &mut within(watch, [proven, 1.0]);
@@ -68,9 +87,10 @@ pub(super) fn verify_answer(
         return Err(RigError::NoActuator.into());
     };
     document.append(audit::output(&view, Some(&trial)));
+    body.machine = Some(trial::body(&trial));
     Ok(Unprinted {
         document,
-        body: body.with("machine", crate::trial::body(&trial)),
+        body: body.into_object(),
         files,
         affirmative: is_met
             && trial.agreement() != Agreement::Contradicts

@@ -1,9 +1,122 @@
+//! The answer of `check`.
+
 use super::Derived;
-use crate::answer::{Csv, Object, OutputFile, quoted};
+use crate::answer::{Answer, Csv, Entries, OutputFile, quoted, words};
 use crate::family::{Extreme, VisitedRange};
 use crate::project::Loaded;
 use crate::replaced::{ReplacedRange, replaced_ranges};
-use crate::specification::{CheckedWish, wish_row};
+use crate::specification::{CheckedWish, WishAnswer, wish_answer};
+
+/// Quantities that follow from a project, and the warnings about it.
+#[derive(Answer)]
+pub(crate) struct DerivedAnswer {
+    /// Quantities that follow from the project.
+    derived: Vec<DerivedQuantityAnswer>,
+    /// Ranges of the coefficients of the plant over the family.
+    #[answer(optional)]
+    visited_box: Option<Vec<VisitedRangeAnswer>>,
+    /// Evidence for the visited ranges.
+    #[answer(optional)]
+    visited_box_evidence: Option<VisitedEvidence>,
+    /// Ranges that the project states as replaced by its family.
+    replaced: Vec<ReplacedRangeAnswer>,
+    /// Requirements in time of tracking limits.
+    wishes: Vec<WishAnswer>,
+    /// Warnings about the project.
+    warnings: Vec<String>,
+}
+
+/// Evidence for the visited ranges.
+enum VisitedEvidence {
+    Search,
+}
+
+words! {
+    /// Evidence for the visited ranges.
+    VisitedEvidence { Search => "search" }
+}
+
+/// Quantity that follows from a project.
+#[derive(Answer)]
+struct DerivedQuantityAnswer {
+    /// Unique name, with dots between its parts.
+    name: String,
+    /// Chapter of the list.
+    group: &'static str,
+    /// Symbol as in the notation, such as `K_H`.
+    symbol: &'static str,
+    /// Value in `unit`; null if it does not exist.
+    value: Option<f64>,
+    /// SI unit of the value.
+    unit: &'static str,
+    /// Equation of the value.
+    equation: &'static str,
+    /// Value that the project states instead.
+    #[answer(optional)]
+    declared: Option<StatedAnswer>,
+    /// Reason for which there is no value.
+    #[answer(optional)]
+    reason: Option<&'static str>,
+}
+
+/// Value that the project states for a quantity that also follows from the rest.
+#[derive(Answer)]
+struct StatedAnswer {
+    /// Stated value.
+    value: f64,
+    /// Table of the file that states it, such as `[linear]`.
+    place: &'static str,
+    /// Least and greatest stated value.
+    #[answer(optional)]
+    bounds: Option<[f64; 2]>,
+    /// Difference of the stated value from the derived one, of the latter; null if that does not
+    /// exist.
+    difference_percent: Option<f64>,
+    /// True if the stated value contradicts itself or the derived value.
+    contradicts: bool,
+}
+
+/// Range of a coefficient of the plant over the family.
+#[derive(Answer)]
+struct VisitedRangeAnswer {
+    /// Name of the coefficient.
+    name: &'static str,
+    /// Symbol of the coefficient.
+    symbol: &'static str,
+    /// SI unit of its values.
+    unit: &'static str,
+    /// Least value.
+    minimum: ExtremeAnswer,
+    /// Greatest value.
+    maximum: ExtremeAnswer,
+}
+
+/// Extreme value of a coefficient.
+#[derive(Answer)]
+struct ExtremeAnswer {
+    /// Extreme value.
+    value: f64,
+    /// Place of the extreme: SI values by the names of the uncertain numbers.
+    at: Entries<f64>,
+}
+
+/// Range that the project states as replaced by its family, and the range that the family visits.
+#[derive(Answer)]
+struct ReplacedRangeAnswer {
+    /// Symbol of the coefficient.
+    symbol: &'static str,
+    /// SI unit of its values.
+    unit: &'static str,
+    /// Replaced range, from low to high.
+    replaced: [f64; 2],
+    /// Visited range, from low to high.
+    visited: [f64; 2],
+    /// Fraction of the replaced range that is visited, of its logarithm where it is spaced by equal
+    /// factors.
+    share: f64,
+    /// True if the family goes below the replaced range, and above it.
+    beyond: [bool; 2],
+}
 
 /// What `check` says to programs; `told` are warnings in addition to those of the reader.
 pub(crate) fn body(
@@ -12,61 +125,64 @@ pub(crate) fn body(
     visited: Option<&[VisitedRange]>,
     wishes: &[CheckedWish],
     told: Vec<String>,
-) -> Object {
+) -> DerivedAnswer {
     let warnings = loaded.warnings.iter().map(|warning| warning.message.clone());
-    Object::new()
-        .each("derived", derived, row)
-        .maybe("visited_box", visited.map(|ranges| ranges.iter().map(range).collect::<Vec<_>>()))
-        .maybe("visited_box_evidence", visited.map(|_| "search"))
-        .each("replaced", &replaced_ranges(&loaded.project, visited.unwrap_or_default()), replaced)
-        .each("wishes", wishes, wish_row)
-        .with("warnings", told.into_iter().chain(warnings).collect::<Vec<_>>())
+    let all_replaced = replaced_ranges(&loaded.project, visited.unwrap_or_default());
+    DerivedAnswer {
+        derived: derived.iter().map(row).collect(),
+        visited_box: visited.map(|ranges| ranges.iter().map(range).collect()),
+        visited_box_evidence: visited.map(|_| VisitedEvidence::Search),
+        replaced: all_replaced.iter().map(replaced).collect(),
+        wishes: wishes.iter().map(wish_answer).collect(),
+        warnings: told.into_iter().chain(warnings).collect(),
+    }
 }
 
-fn replaced(range: &ReplacedRange) -> Object {
-    Object::new()
-        .with("symbol", range.symbol)
-        .with("unit", range.unit)
-        .with("replaced", range.stated)
-        .with("visited", range.visited)
-        .with("share", range.share)
-        .with("beyond", range.beyond().to_vec())
+fn replaced(range: &ReplacedRange) -> ReplacedRangeAnswer {
+    ReplacedRangeAnswer {
+        symbol: range.symbol,
+        unit: range.unit,
+        replaced: range.stated,
+        visited: range.visited,
+        share: range.share,
+        beyond: range.beyond(),
+    }
 }
 
-fn row(quantity: &Derived) -> Object {
-    let declared = quantity.stated.as_ref().map(|stated| {
-        Object::new()
-            .with("value", stated.value)
-            .with("place", stated.place)
-            .maybe("bounds", stated.bounds)
-            .with("difference_percent", quantity.difference_percent())
-            .with("contradicts", quantity.contradicts())
+fn row(quantity: &Derived) -> DerivedQuantityAnswer {
+    let declared = quantity.stated.as_ref().map(|stated| StatedAnswer {
+        value: stated.value,
+        place: stated.place,
+        bounds: stated.bounds,
+        difference_percent: quantity.difference_percent(),
+        contradicts: quantity.contradicts(),
     });
-    Object::new()
-        .with("name", quantity.name.as_str())
-        .with("group", quantity.group)
-        .with("symbol", quantity.symbol)
-        .with("value", quantity.value.ok())
-        .with("unit", quantity.unit)
-        .with("equation", quantity.equation)
-        .maybe("declared", declared)
-        .maybe("reason", quantity.value.err())
+    DerivedQuantityAnswer {
+        name: quantity.name.clone(),
+        group: quantity.group,
+        symbol: quantity.symbol,
+        value: quantity.value.ok(),
+        unit: quantity.unit,
+        equation: quantity.equation,
+        declared,
+        reason: quantity.value.err(),
+    }
 }
 
-fn range(range: &VisitedRange) -> Object {
-    Object::new()
-        .with("name", range.name)
-        .with("symbol", range.symbol)
-        .with("unit", range.unit)
-        .with("minimum", extreme(&range.minimum))
-        .with("maximum", extreme(&range.maximum))
+fn range(range: &VisitedRange) -> VisitedRangeAnswer {
+    VisitedRangeAnswer {
+        name: range.name,
+        symbol: range.symbol,
+        unit: range.unit,
+        minimum: extreme(&range.minimum),
+        maximum: extreme(&range.maximum),
+    }
 }
 
-fn extreme(extreme: &Extreme) -> Object {
-    let mut at: Vec<_> = extreme.at.iter().collect();
+fn extreme(extreme: &Extreme) -> ExtremeAnswer {
+    let mut at = extreme.at.clone();
     at.sort_by(|one, other| one.0.cmp(&other.0));
-    let at = at.into_iter().fold(Object::new(), |all, (name, value)| all.with(name.as_str(), *value));
-    Object::new().with("value", extreme.value).with("at", at)
+    ExtremeAnswer { value: extreme.value, at: Entries(at) }
 }
 
 /// The list as a table for other programs.

@@ -12,7 +12,7 @@ use super::structure_key;
 use super::words::{objective_key, part_key, searched_limit_name, unusable_words, verdict_key};
 use super::{DesignPart, Explanation, ProjectDesign};
 use super::{limits, manual, pressure_feedback_object, relaxed, structures};
-use crate::answer::{Json, Object};
+use crate::answer::{Describe, Json, Object};
 use crate::audit;
 use crate::explanation::explanation_sentence;
 use crate::trial::{self, Agreement};
@@ -54,7 +54,7 @@ pub fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
         .maybe("continuous_law", continuous_law(side)?)
         .with("figures", figures(side))
         .and(of_structures(view))
-        .with("verification", audit::body(&side.view))
+        .with("verification", audit::body(&side.view).into_json())
         .with("published", view.published.as_deref().map(audited))
         .maybe("continuous_as_sampled", view.continuous.as_deref().map(audited))
         .with("minimum_delay_margin_s", view.minimum_delay_margin_s)
@@ -73,7 +73,11 @@ pub fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
         .with("conflicts", conflicts(view))
         .each("explanations", &view.explanations, |one| explanation(view, one))
         .maybe("rounding", view.rounding.as_ref().map(|rounding| rounding::row(rounding, &side.view.names)))
-        .known("machine", view.trial.as_ref().map(trial::body), why_not_tried(view))
+        .known(
+            "machine",
+            view.trial.as_ref().map(|trial| trial::body(trial).into_json()),
+            why_not_tried(view),
+        )
         .known("repair", view.repair.as_ref().map(|repair| repair::row(view, repair)), no_repair))
 }
 
@@ -186,7 +190,7 @@ fn audited(side: &AuditedController) -> Object {
         .with("controller", factors(side.problem.compensation.feedback()))
         .with("prefilter", factors(side.problem.compensation.prefilter()))
         .with("figures", figures(side))
-        .with("verification", audit::body(&side.view))
+        .with("verification", audit::body(&side.view).into_json())
 }
 
 fn round(round: &DesignRound) -> Object {

@@ -3,7 +3,7 @@ use phea_qft::manual_shaping::DesignMargin;
 
 use super::ProjectShaping;
 use super::document::polar;
-use crate::answer::{Csv, Object, OutputFile};
+use crate::answer::{Body, Csv, Object, OutputFile};
 use crate::audit::{self, stability_reason, stable};
 use crate::caveat;
 use crate::specification::kind_key;
@@ -26,14 +26,14 @@ pub(crate) fn body(view: &ProjectShaping) -> Object {
                 .with("enabled", element.enabled)
                 .with("element", element.print())
         })
-        .and(stable(stability))
+        .and(stable(stability).into_object())
         .with("stability", of_stability)
         .each("margins", &view.margins, |margin| {
             let DesignMargin { worst, placement } = margin;
             Object::new()
                 .with("specification", worst.specification + 1)
                 .with("kind", kind(view, worst.specification))
-                .and(audit::margin(&view.names, worst))
+                .and(audit::margin(&view.names, worst).into_object())
                 .and(self::placement(placement))
         })
         .each("loop", &view.points, |point| {

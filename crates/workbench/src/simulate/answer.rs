@@ -11,7 +11,7 @@ use super::{
     Window,
 };
 use super::{repetition, required, required_of_run};
-use crate::answer::{Object, body_in_use};
+use crate::answer::{Describe, Object, body_in_use};
 use crate::project::Loaded;
 use crate::quantity::{FORCE, MotionKind, QuantityName};
 use phea_dynamics::simulation::{Amplification, GrowthCause};
@@ -30,7 +30,7 @@ pub(crate) fn comparison_body(comparison: &ScenarioComparison<'_>) -> Object {
             .with("project_sha256", loaded.sha256.as_str())
             .with("settings", loaded.settings.as_slice())
             .with("catalogue_files", loaded.catalogue_files.as_slice())
-            .maybe("identified", loaded.recorded.as_ref().map(body_in_use))
+            .maybe("identified", loaded.recorded.as_ref().map(|recorded| body_in_use(recorded).into_json()))
             .and(body(loaded, runs))
     })
 }

@@ -1,7 +1,7 @@
 //! Requirements in time, compared with the runs of scenarios, in words and for programs.
 
 use super::{NotJudged, ScenarioRequirement, ScenarioRun, reached_words, required_of_run, required_words};
-use crate::answer::Object;
+use crate::answer::{Object, Word, words};
 use crate::project::Project;
 
 /// Reason why runs give no verdict on a requirement.
@@ -14,9 +14,29 @@ pub(crate) fn not_judged_words(why: NotJudged) -> &'static str {
     }
 }
 
-/// The word for steps that satisfy or miss a requirement in time.
+/// Outcome of steps for a requirement in time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Satisfaction {
+    /// Every step satisfies it.
+    Satisfies,
+    /// A step does not.
+    Misses,
+}
+
+words! {
+    /// Outcome of steps for a requirement in time.
+    Satisfaction { Satisfies => "satisfies", Misses => "misses" }
+}
+
+impl From<bool> for Satisfaction {
+    fn from(is_satisfied: bool) -> Satisfaction {
+        if is_satisfied { Satisfaction::Satisfies } else { Satisfaction::Misses }
+    }
+}
+
+/// The word for steps that satisfy what is required in time, or not.
 pub(crate) fn satisfied_word(is_satisfied: bool) -> &'static str {
-    if is_satisfied { "satisfies" } else { "misses" }
+    Satisfaction::from(is_satisfied).word()
 }
 
 /// The requirements of the project in a run, each satisfied, missed or not judged, with the worst

@@ -1,6 +1,7 @@
 //! Tables of campaigns that were interrupted, truncated or damaged, or that belong to another
 //! campaign.
 
+use crate::answer_schema::parsed;
 use phea_workbench::campaign::RowFault;
 
 use super::*;
@@ -120,7 +121,7 @@ fn stopping_leaves_whole_rows() {
         .unwrap();
     let rows = page.text.lines().count() - 1;
     assert!(!answer.affirmative && rows < 600 && page.text.ends_with('\n'));
-    let object: Value = serde_json::from_str(&answer.json).unwrap();
+    let object: Value = parsed(&answer.json);
     assert_eq!((&object["complete"], &object["runs"]["rows"]), (&Value::from(false), &Value::from(rows)));
     resumed(&loaded, &requested, &mut page).unwrap();
     let whole = uninterrupted(&loaded, &requested);

@@ -1,7 +1,7 @@
 //! The key `repair` of the answer.
 
 use super::{audited, conflicts, round};
-use crate::answer::Object;
+use crate::answer::{Describe, Object};
 use crate::audit;
 use crate::design::repair::{repair_key, repair_sentences};
 use crate::design::{ProjectDesign, Repair, RepairStatus};
@@ -32,12 +32,15 @@ pub(super) fn row(view: &ProjectDesign, repair: &Repair) -> Object {
         .known("quarter_wave_rad_per_s", repair.quarter_wave_rad_per_s, "no waves were looked at")
         .known("relaxation_db", relaxation_db, "the repair was not found infeasible")
         .with("conflicts", nearest.map_or_else(Vec::new, conflicts))
-        .maybe("plant_before", repair.before.as_ref().map(audit::body))
-        .maybe("plant_after", repair.after.as_ref().map(audit::body))
+        .maybe("plant_before", repair.before.as_ref().map(|view| audit::body(view).into_json()))
+        .maybe("plant_after", repair.after.as_ref().map(|view| audit::body(view).into_json()))
         .maybe("before", before.map(|design| audited(&design.designed)))
         .maybe("nearest", nearest.map(|design| audited(&design.designed)))
-        .maybe("nearest_machine", nearest.and_then(|design| design.trial.as_ref()).map(trial::body))
+        .maybe(
+            "nearest_machine",
+            nearest.and_then(|design| design.trial.as_ref()).map(|trial| trial::body(trial).into_json()),
+        )
         .maybe("nearest_rounds", rounds)
-        .maybe("family_with_waves", repair.whole.as_ref().map(audit::body))
+        .maybe("family_with_waves", repair.whole.as_ref().map(|view| audit::body(view).into_json()))
         .with("sentences", repair_sentences(view, repair).as_slice())
 }

@@ -1,0 +1,17 @@
+//! The answers of all commands, described for programs.
+
+use super::check::CheckAnswer;
+use super::refusal::RefusedAnswer;
+use super::verify::VerifyAnswer;
+use crate::answer::CommandAnswer;
+use crate::audit::CheckCertificateAnswer;
+
+/// The answer of each command.
+pub(super) fn answers() -> Vec<CommandAnswer> {
+    vec![
+        CommandAnswer::of::<CheckAnswer>("check"),
+        CommandAnswer::of::<VerifyAnswer>("verify"),
+        CommandAnswer::whole::<RefusedAnswer>(None),
+        CommandAnswer::whole::<CheckCertificateAnswer>(Some("check-certificate")),
+    ]
+}
