@@ -17,7 +17,7 @@ pub use phea_engineering::audit::*;
 
 pub use answer::files;
 pub(crate) use answer::json;
-pub(crate) use answer::{AuditAnswer, body, margin, stable};
+pub(crate) use answer::{AuditAnswer, SpecificationMarginAnswer, StableAnswer, body, margin, stable};
 pub use certificate::{CERTIFICATE_FILE, CertificateError, check_certificate, check_certificate_of};
 pub(crate) use certificate::{CheckCertificateAnswer, certificate_of};
 pub use document::output;

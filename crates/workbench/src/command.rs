@@ -39,7 +39,7 @@ use phea_dynamics::watch::{Stopped, rising, within};
 use phea_engineering::line_choice::{LoopInQuestion, with_chosen_lines};
 
 use crate::alternatives::{AlternativesOptions as AskedOfAlternatives, judge};
-use crate::answer::{Answer, Object};
+use crate::answer::{Answer, Body, Object};
 use crate::bench;
 use crate::design::{self, design_and_repair, design_project};
 use crate::document::Document;
@@ -261,7 +261,7 @@ fn answer_as_read(
         Request::Verify { proof, on_machine } => verify_answer(source, loaded, *proof, *on_machine, watch),
         Request::Shape { shaped, changes } => {
             let shaping = shape(source, loaded, *shaped, changes, watch).map_err(shaping::with_text)?;
-            let (document, body) = (shaping::document(&shaping), shaping::body(&shaping));
+            let (document, body) = (shaping::document(&shaping), shaping::body(&shaping).into_object());
             Ok(Unprinted { document, body, files: shaping::files(&shaping), affirmative: true })
         }
         Request::Design { seed, stages, repair } => {
@@ -361,7 +361,7 @@ fn design_answer(
     };
     Ok(Unprinted {
         document: design::output(loaded, &view)?,
-        body: design::body(&view)?,
+        body: design::body(&view)?.into_object(),
         files,
         affirmative: view.is_met()
             && !view.is_stopped()

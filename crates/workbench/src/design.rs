@@ -18,14 +18,15 @@ mod words;
 pub use crate::explanation::explanation_sentence;
 pub use phea_engineering::design::*;
 
-pub use answer::body;
+pub use answer::pressure_feedback_object;
+pub(crate) use answer::{DesignAnswer, body};
 pub use document::output;
 pub(crate) use document::{costs, explanation_words, laws, side_by_side, status};
 pub use factors::factored;
 pub(crate) use limits::document as limits;
 pub(crate) use manual::document as manual;
 pub(crate) use pressure_feedback::document as pressure_feedback;
-pub use pressure_feedback::{pressure_feedback_document, pressure_feedback_object};
+pub use pressure_feedback::pressure_feedback_document;
 pub(crate) use stages::{bound_files, drawn};
 pub use stages::{files, stage_files};
 pub(crate) use structures::document as structures;

@@ -7,8 +7,8 @@ mod words;
 
 pub use phea_engineering::shaping::*;
 
-pub(crate) use answer::body;
 pub use answer::{SHAPED_PROJECT, files};
+pub(crate) use answer::{ShapeAnswer, body};
 pub(crate) use document::document;
 pub(crate) use refused::with_text;
 pub use words::pass_words;

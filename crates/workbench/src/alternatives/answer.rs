@@ -38,7 +38,7 @@ fn row(one: &JudgedAlternative) -> Object {
     let view = one.design.as_ref().ok();
     let verdict = view.map(|view| verdict_key(view.designed.view.verdict()));
     // the laws of a design that was audited are transfer functions
-    let design = view.and_then(|view| design::body(view).ok());
+    let design = view.and_then(|view| design::body(view).ok()).map(Describe::into_json);
     let machine = view.and_then(|view| view.trial.as_ref()).map(|trial| trial::body(trial).into_json());
     let no_machine = if view.is_some() { "the project describes a plant and no machine" } else { &failed };
     Object::new()

@@ -20,7 +20,7 @@ use noise::{PressureNoiseAnswer, VelocityNoiseAnswer, pressure_noise, velocity_n
 use specification::{AuditedSpecification, in_file_order};
 use stability::{AuditProofAnswer, StabilityAnswer, proof, stability};
 
-pub(crate) use specification::margin;
+pub(crate) use specification::{SpecificationMarginAnswer, margin};
 pub(crate) use stability::{StableAnswer, stable};
 
 /// Audit of a controller and prefilter over the family and the frequency band.

@@ -5,12 +5,16 @@ use super::refusal::RefusedAnswer;
 use super::verify::VerifyAnswer;
 use crate::answer::CommandAnswer;
 use crate::audit::CheckCertificateAnswer;
+use crate::design::DesignAnswer;
+use crate::shaping::ShapeAnswer;
 
 /// The answer of each command.
 pub(super) fn answers() -> Vec<CommandAnswer> {
     vec![
         CommandAnswer::of::<CheckAnswer>("check"),
         CommandAnswer::of::<VerifyAnswer>("verify"),
+        CommandAnswer::of::<ShapeAnswer>("shape"),
+        CommandAnswer::of::<DesignAnswer>("design"),
         CommandAnswer::whole::<RefusedAnswer>(None),
         CommandAnswer::whole::<CheckCertificateAnswer>(Some("check-certificate")),
     ]

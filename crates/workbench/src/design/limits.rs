@@ -1,20 +1,16 @@
-//! Limits on what may be built: the limits of a design in addition to its specifications, with the
-//! values that it reaches.
+//! Limits of a design in addition to its specifications, with what it reaches.
 
-use phea_engineering::design::{
-    CommandOfSteps, DesignLimit, DesignLimitKind, StepLimit, limit_key, limit_unit_key, origin_key,
-};
+use phea_engineering::design::{CommandOfSteps, DesignLimit, DesignLimitKind, StepLimit, limit_key};
 use phea_engineering::plant_names::NamedPlant;
 use phea_engineering::simulate::ForceLimit;
-use phea_qft::verification::Verdict;
 
-use super::{ProjectDesign, relaxed};
-use crate::answer::{Object, significant};
+use super::ProjectDesign;
+use crate::answer::significant;
 use crate::audit::PrefilterGain;
 use crate::document::{Cell, Document, Table};
 use crate::limit_kind::{limit_words, origin_words};
 use crate::plant_names::plant_words;
-use crate::quantity::{DisplayUnit, FORCE, MotionWords, QuantityName};
+use crate::quantity::{DisplayUnit, MotionWords};
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::portable::magnitude;
 
@@ -130,34 +126,8 @@ fn set_by(view: &ProjectDesign, command: &CommandOfSteps) -> String {
     }
 }
 
-/// The command and the parameters that set it, in JSON.
-fn command_object(view: &ProjectDesign, command: &CommandOfSteps) -> Object {
-    let names = view.designed.view.names.headings();
-    let moved_by = command.moved_by.iter().filter_map(|index| names.get(*index).copied());
-    let step_limit = match command.step_limit {
-        StepLimit::Command => "command",
-        StepLimit::Force(ForceLimit::Supply) => "supply",
-        StepLimit::Force(ForceLimit::Sensor) => "sensor",
-    };
-    Object::new()
-        .with("scenario", command.scenario.as_str())
-        .with(QuantityName::moving("from", &FORCE), command.step.from_n)
-        .with(QuantityName::moving("to", &FORCE), command.step.to_n)
-        .with("at_s", command.at_s)
-        .with("peak", if command.is_at_rest() { "at_rest" } else { "transient" })
-        .with("largest_v", command.largest_v)
-        .with("at_rest_v", command.at_rest_v)
-        .with("limit_v", command.limit_v)
-        .with(QuantityName::moving("largest_step", &FORCE), command.largest_step_n)
-        .with("step_limit", step_limit)
-        .with("evidence", "search")
-        .with("plants", command.plants)
-        .with("plant", view.designed.view.names.named(&command.plant))
-        .with("moved_by", moved_by.collect::<Vec<&str>>())
-}
-
 /// The least margin of a limit over the family, dB.
-fn margin_db(view: &ProjectDesign, limit: &DesignLimit) -> Option<f64> {
+pub(super) fn margin_db(view: &ProjectDesign, limit: &DesignLimit) -> Option<f64> {
     match limit.kind {
         // the search uses a limit on |S| in its place
         DesignLimitKind::PrefilterGain => {
@@ -166,46 +136,6 @@ fn margin_db(view: &ProjectDesign, limit: &DesignLimit) -> Option<f64> {
         }
         _ => view.limit_finding(limit.kind)?.worst.as_ref().map(|worst| worst.margin_db),
     }
-}
-
-/// The limits in JSON.
-pub(crate) fn rows(view: &ProjectDesign) -> Vec<Object> {
-    let row = |limit: &DesignLimit| {
-        Object::new()
-            .with("key", limit_key(limit.kind))
-            .with(format!("value{}", limit_unit_key(limit.kind)), limit.value)
-            .with("origin", origin_key(limit.origin))
-            .with("kept", is_satisfied(view, limit))
-            .maybe("worst_margin_db", margin_db(view, limit))
-            .maybe("binds", view.binds(limit))
-            .maybe("command", command(view, limit.kind).map(|found| command_object(view, found)))
-            .maybe("relaxed", relaxed::of_limit(view, limit.kind, limit.value))
-    };
-    view.limits.iter().map(row).collect()
-}
-
-/// True if the design satisfies a limit; the search itself enforces the ranges of poles.
-fn is_satisfied(view: &ProjectDesign, limit: &DesignLimit) -> bool {
-    match limit.kind {
-        DesignLimitKind::MinimumDelayMargin => view.tolerates_its_delay,
-        DesignLimitKind::PrefilterGain => view.exceeded_prefilter_gain().is_none(),
-        DesignLimitKind::CommandOfSteps => {
-            view.command_of_steps.as_ref().is_some_and(CommandOfSteps::is_kept)
-        }
-        DesignLimitKind::PoleDampingRatio | DesignLimitKind::FastestPole | DesignLimitKind::RequiredStep => {
-            true
-        }
-        DesignLimitKind::NoiseToCommand
-        | DesignLimitKind::ModulusMargin
-        | DesignLimitKind::HighestBandwidth => {
-            view.limit_finding(limit.kind).is_some_and(|found| found.verdict == Verdict::Met)
-        }
-    }
-}
-
-/// The command of the scenarios' steps, if the limit is on the command.
-fn command(view: &ProjectDesign, kind: DesignLimitKind) -> Option<&CommandOfSteps> {
-    view.command_of_steps.as_ref().filter(|_| kind == DesignLimitKind::CommandOfSteps)
 }
 
 fn value_words(view: &ProjectDesign, limit: &DesignLimit) -> String {

@@ -8,7 +8,7 @@ use phea_dynamics::linear::Discretization;
 use phea_engineering::design::{ManualLaw, ManualPart};
 
 use super::ProjectDesign;
-use crate::answer::{Object, significant};
+use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
 
@@ -103,58 +103,6 @@ fn remarks(view: &ProjectDesign, words: &ManualLaw) -> Vec<String> {
     all
 }
 
-/// The terms in JSON.
-pub(super) fn object(words: &ManualLaw) -> Object {
-    Object::new()
-        .with(
-            "form",
-            "parts in series; PI: K_p (1 + 1/(T_i s)); PID: K_p (1 + 1/(T_i s) + T_d s/(T_f s + 1))",
-        )
-        .each("parts", &words.parts, part)
-}
-
-fn part(part: &ManualPart) -> Object {
-    let own = Object::new().with("kind", key(part));
-    match *part {
-        ManualPart::Proportional { gain } => own.with("proportional_gain", gain),
-        ManualPart::Integral { gain } => own.with("integral_gain", gain),
-        ManualPart::ProportionalIntegral { gain, integral_time_s } => {
-            own.with("proportional_gain", gain).with("integral_time_s", integral_time_s)
-        }
-        ManualPart::ProportionalIntegralDerivative {
-            gain,
-            integral_time_s,
-            derivative_time_s,
-            filter_time_s,
-        } => own
-            .with("proportional_gain", gain)
-            .with("integral_time_s", integral_time_s)
-            .with("derivative_time_s", derivative_time_s)
-            .with("filter_time_s", filter_time_s),
-        ManualPart::LowPass { time_s } => own.with("filter_time_s", time_s),
-        ManualPart::SecondOrderLowPass { frequency_rad_per_s, damping_ratio } => {
-            own.with("frequency_rad_per_s", frequency_rad_per_s).with("damping_ratio", damping_ratio)
-        }
-        ManualPart::Lead { zero_rad_per_s, pole_rad_per_s }
-        | ManualPart::Lag { zero_rad_per_s, pole_rad_per_s } => {
-            own.with("zero_rad_per_s", zero_rad_per_s).with("pole_rad_per_s", pole_rad_per_s)
-        }
-        ManualPart::Notch {
-            frequency_rad_per_s,
-            pole_frequency_rad_per_s,
-            zero_damping_ratio,
-            pole_damping_ratio,
-        } => own
-            .with("frequency_hz", frequency_rad_per_s / TAU)
-            .with("depth_db", depth_db(part))
-            .with("width_hz", width_hz(part))
-            .with("frequency_rad_per_s", frequency_rad_per_s)
-            .with("pole_frequency_rad_per_s", pole_frequency_rad_per_s)
-            .with("zero_damping_ratio", zero_damping_ratio)
-            .with("pole_damping_ratio", pole_damping_ratio),
-    }
-}
-
 /// The unit of a gain.
 #[derive(Clone, Copy)]
 struct Gain {
@@ -188,20 +136,6 @@ pub(super) fn part_name(part: &ManualPart) -> &'static str {
         ManualPart::ProportionalIntegralDerivative { .. } => "PID with filter",
         ManualPart::LowPass { .. } => "low pass",
         ManualPart::SecondOrderLowPass { .. } => "low pass of second order",
-        ManualPart::Lead { .. } => "lead",
-        ManualPart::Lag { .. } => "lag",
-        ManualPart::Notch { .. } => "notch",
-    }
-}
-
-fn key(part: &ManualPart) -> &'static str {
-    match part {
-        ManualPart::Proportional { .. } => "p",
-        ManualPart::Integral { .. } => "i",
-        ManualPart::ProportionalIntegral { .. } => "pi",
-        ManualPart::ProportionalIntegralDerivative { .. } => "pid",
-        ManualPart::LowPass { .. } => "low_pass",
-        ManualPart::SecondOrderLowPass { .. } => "second_order_low_pass",
         ManualPart::Lead { .. } => "lead",
         ManualPart::Lag { .. } => "lag",
         ManualPart::Notch { .. } => "notch",
@@ -262,7 +196,7 @@ fn settings(part: &ManualPart, of_gain: Gain) -> String {
     }
 }
 
-fn depth_db(part: &ManualPart) -> f64 {
+pub(super) fn depth_db(part: &ManualPart) -> f64 {
     match part {
         ManualPart::Notch { zero_damping_ratio, pole_damping_ratio, .. } => {
             decibels(zero_damping_ratio / pole_damping_ratio)
@@ -271,7 +205,7 @@ fn depth_db(part: &ManualPart) -> f64 {
     }
 }
 
-fn width_hz(part: &ManualPart) -> f64 {
+pub(super) fn width_hz(part: &ManualPart) -> f64 {
     match part {
         ManualPart::Notch { pole_frequency_rad_per_s, pole_damping_ratio, .. } => {
             2.0 * pole_damping_ratio * pole_frequency_rad_per_s / TAU

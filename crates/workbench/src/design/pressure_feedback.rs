@@ -3,10 +3,10 @@
 use phea_engineering::design::{MissingPlants, PressureFeedbackDesign};
 
 use super::ProjectDesign;
-use crate::answer::{Object, significant};
+use crate::answer::significant;
 use crate::document::Document;
 use crate::error::design_error_words;
-use crate::quantity::{ANGULAR_FREQUENCY, QuantityName, VOLTAGE_PER_FORCE, VOLTAGE_PER_PRESSURE, display};
+use crate::quantity::{ANGULAR_FREQUENCY, VOLTAGE_PER_PRESSURE, display};
 
 /// The feedback with its gain in performance; empty if it was not free.
 pub(crate) fn document(view: &ProjectDesign) -> Document {
@@ -61,33 +61,4 @@ fn missing(plants: &MissingPlants) -> String {
     let MissingPlants { count, of, reason } = plants;
     let reason = design_error_words(reason);
     format!("it was found without {count} of {of} plants with waves in their lines: {reason}")
-}
-
-/// The feedback in JSON.
-pub fn pressure_feedback_object(found: &PressureFeedbackDesign) -> Object {
-    let [limited_without, limited] = found.limited_at_rad_per_s;
-    let damping = found.least_damping_ratio;
-    let missing = |plants: &MissingPlants| {
-        Object::new()
-            .with("count", plants.count)
-            .with("of", plants.of)
-            .with("reason", design_error_words(&plants.reason))
-    };
-    Object::new()
-        .with("used", found.is_used)
-        .with("gain_v_per_pa", found.declared.gain)
-        .with("high_pass_rad_per_s", found.declared.high_pass)
-        .maybe("low_pass_rad_per_s", found.declared.low_pass)
-        .with("loop_gain_factor", found.loop_gain_factor)
-        .with(QuantityName::moving("proportional_gain", &VOLTAGE_PER_FORCE), found.proportional_gain[1])
-        .with(
-            QuantityName::moving("proportional_gain_without", &VOLTAGE_PER_FORCE),
-            found.proportional_gain[0],
-        )
-        .with("limited_at_rad_per_s", limited)
-        .with("limited_without_at_rad_per_s", limited_without)
-        .maybe("least_damping_ratio", damping.map(|[_, with]| with))
-        .maybe("least_damping_ratio_without", damping.map(|[without, _]| without))
-        .with("plants", found.plants)
-        .maybe("missing_with_waves", found.missing_with_waves.as_ref().map(missing))
 }

@@ -1,13 +1,11 @@
 //! The gain from relaxing each limit that binds.
 
-use phea_engineering::design::{
-    DesignLimitKind, Gained, RELAXED_BY, RelaxedGain, RelaxedLimit, limit_key, limit_unit_key,
-};
+use phea_engineering::design::{DesignLimitKind, Gained, RELAXED_BY, RelaxedGain, RelaxedLimit};
 use phea_qft::design::{DesignStatus, Objective};
 use phea_qft::specification::Limit;
 
 use super::ProjectDesign;
-use crate::answer::{Object, significant};
+use crate::answer::significant;
 use crate::document::Document;
 use crate::limit_kind::limit_words;
 use crate::quantity::DisplayUnit;
@@ -31,41 +29,8 @@ pub(super) fn document(view: &ProjectDesign) -> Document {
     out
 }
 
-/// The limits in JSON.
-pub(super) fn rows(view: &ProjectDesign) -> Vec<Object> {
-    let row = |one: &RelaxedGain| {
-        let object = match one.limit {
-            RelaxedLimit::Specification(index) => Object::new().with("specification", index),
-            RelaxedLimit::Steps(index) => {
-                let finding = view.designed.view.in_time.get(index);
-                Object::new().maybe("number", finding.map(|finding| finding.requirement.number))
-            }
-            RelaxedLimit::Design(kind) => Object::new().with("key", limit_key(kind)),
-        };
-        object.with("name", name(view, one.limit)).with("relaxed_by", RELAXED_BY).and(gained(view, one))
-    };
-    view.relaxations.limits.iter().map(row).collect()
-}
-
-/// A limit on what may be built: its relaxed value, and the gain from it.
-pub(super) fn of_limit(view: &ProjectDesign, kind: DesignLimitKind, value: f64) -> Option<Object> {
-    let found = view.relaxations.limits.iter().find(|one| one.limit == RelaxedLimit::Design(kind))?;
-    Some(
-        Object::new()
-            .with(format!("value{}", limit_unit_key(kind)), kind.relaxed(value))
-            .and(gained(view, found)),
-    )
-}
-
-fn gained(view: &ProjectDesign, one: &RelaxedGain) -> Object {
-    let key = match view.relaxations.of {
-        Gained::Objective => "objective_gained_db",
-        Gained::WorstMargin => "worst_margin_gained_db",
-    };
-    Object::new().with(key, one.gained_db).maybe("noise_gained_db", one.noise_gained_db)
-}
-
-fn name(view: &ProjectDesign, limit: RelaxedLimit) -> String {
+/// The name of a limit.
+pub(super) fn name(view: &ProjectDesign, limit: RelaxedLimit) -> String {
     match limit {
         RelaxedLimit::Specification(index) => numbered(view.designed.view.named(index)),
         RelaxedLimit::Steps(_) => "required step".to_string(),

@@ -9,18 +9,6 @@ use crate::specification::numbered;
 use crate::trial::{Agreement, TrialRun, reason_words, run_name};
 use crate::verdict_words::{agreement_word, frequency_words, margin_words};
 
-/// The word of the outcome of a repair, in JSON.
-pub(super) fn repair_key(status: RepairStatus) -> &'static str {
-    match status {
-        RepairStatus::Met => "met",
-        RepairStatus::Infeasible { .. } => "infeasible",
-        RepairStatus::NotConverged => "not_converged",
-        RepairStatus::NotStabilised => "not_stabilised",
-        RepairStatus::Stopped => "stopped",
-        RepairStatus::NothingToTakeIn => "nothing_to_take_in",
-    }
-}
-
 /// The outcome for people.
 pub(super) fn repair_words(status: RepairStatus) -> &'static str {
     match status {

@@ -12,7 +12,7 @@ use super::answer::factors;
 use super::words::{structure_parts, unusable_words};
 use super::{AuditedController, ProjectDesign, Repair};
 use super::{DESIGNED_CERTIFICATE, DESIGNED_PROJECT, NEAREST_PROJECT};
-use crate::answer::{Csv, OutputFile};
+use crate::answer::{Body, Csv, OutputFile};
 use crate::audit::{self, certificate_of};
 use crate::error::CommandError;
 use crate::project::{Loaded, with_laws, with_line_model, with_pressure_feedback};
@@ -110,7 +110,7 @@ fn has_rows(file: &OutputFile) -> bool {
 }
 
 fn transfer_file(name: &str, function: &TransferFunction) -> OutputFile {
-    OutputFile::new(name, factors(function).print(MotionKind::default()))
+    OutputFile::new(name, factors(function).into_object().print(MotionKind::default()))
 }
 
 /// The frequencies at which a loop is drawn: around the design frequencies, or, if only a step is

@@ -6,8 +6,8 @@ use phea_qft::design::{ControllerChoice, Objective, StructureEnding};
 use super::ProjectDesign;
 use super::comparison::gain_at_high_frequency;
 use super::words::{reached_words, searched_limit_name, structure_name};
-use crate::answer::{Object, significant};
-use crate::audit::{NominalMargins, above_one_again_words, crossover_words};
+use crate::answer::significant;
+use crate::audit::{above_one_again_words, crossover_words};
 use crate::document::{Cell, Document, Table};
 use crate::limit_kind::limit_words;
 use crate::quantity::DisplayUnit;
@@ -105,7 +105,7 @@ fn laws_that_differ(view: &ProjectDesign) -> Vec<String> {
 }
 
 /// The limit that leaves a structure no room.
-fn binding(view: &ProjectDesign, one: &ReachedStructure) -> Option<String> {
+pub(super) fn binding(view: &ProjectDesign, one: &ReachedStructure) -> Option<String> {
     one.binding.map(|limit| searched_limit_name(view, limit))
 }
 
@@ -120,16 +120,7 @@ fn led_words(view: &ProjectDesign, one: &ReachedStructure) -> Option<String> {
     one.is_chosen.then(|| words.to_string())
 }
 
-/// The word for the objective of a design, in JSON.
-pub(super) fn led_key(led_by: LedBy) -> &'static str {
-    match led_by {
-        LedBy::Frequency => "frequency",
-        LedBy::LinearSteps => "linear_steps",
-        LedBy::NonlinearRuns => "nonlinear_runs",
-    }
-}
-
-/// Definition of the high-frequency gain in a sampled loop.
+/// What the high-frequency gain is that of, in a sampled loop.
 fn sampled_gain(view: &ProjectDesign) -> Option<String> {
     let is_sampled = view.designed.problem.compensation.sample_time_s().is_some();
     is_sampled.then(|| {
@@ -225,9 +216,9 @@ fn steps(view: &ProjectDesign, one: &ReachedStructure) -> [Option<String>; 2] {
     ]
 }
 
-/// Overshoot, percent, and settling time, s, if they are required.
-fn reached_steps(view: &ProjectDesign, one: &ReachedStructure) -> Option<[Option<f64>; 2]> {
-    let (reached, required) = (one.steps?, view.designed.view.in_time.first()?.requirement.wish);
+/// Percent and s, as far as they are required.
+pub(super) fn reached_steps(view: &ProjectDesign, one: &ReachedStructure) -> Option<[Option<f64>; 2]> {
+    let (reached, wish) = (one.steps?, view.designed.view.in_time.first()?.requirement.wish);
     Some([
         required.overshoot_percent.map(|_| reached.overshoot_percent),
         required.settling_time_s.map(|_| reached.settling_time_s),
@@ -240,8 +231,8 @@ fn has_late_steps(view: &ProjectDesign, one: &ReachedStructure) -> bool {
     finding.requirement.follows && finding.requirement.wish.excess(&reached) > 1.0
 }
 
-/// True if a structure satisfies every limit but misses a requirement in time.
-fn misses_in_time(view: &ProjectDesign, one: &ReachedStructure) -> bool {
+/// The same of a structure that keeps every limit.
+pub(super) fn misses_in_time(view: &ProjectDesign, one: &ReachedStructure) -> bool {
     one.ending == StructureEnding::Met && has_late_steps(view, one)
 }
 
@@ -305,55 +296,4 @@ fn ending_words(view: &ProjectDesign, one: &ReachedStructure) -> &'static str {
         StructureEnding::NotConverged => "not converged",
         StructureEnding::NotStabilised => "not stabilised",
     }
-}
-
-fn ending_key(view: &ProjectDesign, one: &ReachedStructure) -> &'static str {
-    match one.ending {
-        _ if misses_in_time(view, one) || one.misses_on_rig => "missed_in_time",
-        StructureEnding::Met if one.is_chosen && view.misses_on_rig() => "missed_in_time",
-        StructureEnding::Met => "met",
-        StructureEnding::Missed => "missed",
-        StructureEnding::NotEarned => "not_earned",
-        StructureEnding::NotConverged => "not_converged",
-        StructureEnding::NotStabilised => "not_stabilised",
-    }
-}
-
-/// The frequencies at which |L| of the nominal loop is 1, in JSON.
-pub(super) fn crossovers(nominal: Option<&NominalMargins>) -> Object {
-    let crossovers = nominal.map(|margins| margins.crossovers).unwrap_or_default();
-    let none = match nominal {
-        Some(_) => "|L| does not fall through 1",
-        None => "the loop is not known to be stable",
-    };
-    Object::new()
-        .with("crossover_rad_per_s", nominal.map(|margins| margins.crossover_rad_per_s))
-        .known("first_crossover_rad_per_s", crossovers.first_rad_per_s, none)
-        .maybe("above_again_rad_per_s", crossovers.again_rad_per_s)
-}
-
-/// The structures in JSON.
-pub(super) fn rows(view: &ProjectDesign) -> Vec<Object> {
-    let row = |one: &ReachedStructure| {
-        let [overshoot, settling] = reached_steps(view, one).unwrap_or_default();
-        let name = structure_key(one.name);
-        Object::new()
-            .maybe("name", (!name.is_empty()).then_some(name))
-            .with("words", reached_words(one))
-            .with("order", one.order)
-            .with("status", ending_key(view, one))
-            .with("taken", one.is_chosen)
-            .maybe("slowest_zero_rad_per_s", one.slowest_zero_rad_per_s)
-            .maybe("worst_margin_db", one.least.as_ref().map(|least| least.margin_db))
-            .maybe("binding", binding(view, one))
-            .maybe("binding_rad_per_s", one.least.as_ref().map(|least| least.frequency_rad_per_s))
-            .and(one.nominal.as_ref().map(|own| crossovers(Some(own))).unwrap_or_default())
-            .maybe("delay_margin_s", one.nominal.map(|margins| margins.delay_margin_s))
-            .maybe("high_frequency_gain_db", one.high_frequency_gain_db)
-            .with("relative_degree", i64::from(one.relative_degree))
-            .maybe("compared_db", one.compared_db)
-            .maybe("worst_overshoot_percent", overshoot)
-            .maybe("worst_settling_time_s", settling)
-    };
-    view.structures.iter().map(row).collect()
 }

@@ -1,39 +1,20 @@
 //! Verdict, objective and structure of a design in words.
 
-use phea_dynamics::controller::{Element, NamedStructure};
+use phea_dynamics::controller::NamedStructure;
 use phea_engineering::design::{
     DesignVerdict, ProjectDesign, ReachedStructure, RigMiss, SearchedLimit, TriedControllers,
     UnusableController,
 };
-use phea_qft::design::Objective;
 use phea_qft::loop_shaping::{Structure, StructureFactor};
 
 use super::manual::part_name;
+use crate::answer::Word;
 use crate::audit::DelayedPaths;
 use crate::limit_kind::limit_words;
-use crate::project::{DESIGN_OBJECTIVES, word_of};
 use crate::quantity::{MotionKind, significant};
 use crate::specification::numbered;
 
-/// The word of a verdict in JSON.
-pub(super) fn verdict_key(verdict: &DesignVerdict) -> &'static str {
-    match verdict {
-        DesignVerdict::Stopped { .. } => "stopped",
-        DesignVerdict::NotProven => "not_proven",
-        DesignVerdict::StepsMissed | DesignVerdict::MissedOnRig(_) => "missed_in_time",
-        DesignVerdict::PrefilterAmplifies => "prefilter_amplifies",
-        DesignVerdict::CommandBeyondValve { .. } => "command_beyond_valve",
-        DesignVerdict::DelayNotTolerated(_) => "delay_not_tolerated",
-        DesignVerdict::Met { .. } => "met",
-        DesignVerdict::StepsNotReached(_) | DesignVerdict::Infeasible { .. } => "infeasible",
-        DesignVerdict::Refuted | DesignVerdict::Undecided | DesignVerdict::NotConverged { .. } => {
-            "not_converged"
-        }
-        DesignVerdict::NotStabilised(_) => "not_stabilised",
-    }
-}
-
-/// The verdict for people, with its meaning.
+/// The verdict for people, with what it means.
 pub(crate) fn verdict_sentence(verdict: &DesignVerdict, motion: MotionKind) -> String {
     match verdict {
         DesignVerdict::Stopped { is_met, is_driven, miss } => stopped_sentence(*is_met, *is_driven, *miss),
@@ -173,12 +154,7 @@ pub(super) fn searched_limit_name(view: &ProjectDesign, limit: SearchedLimit) ->
     }
 }
 
-/// The word of an objective, as the project file spells it.
-pub(super) fn objective_key(objective: Objective) -> &'static str {
-    word_of(&DESIGN_OBJECTIVES, &objective)
-}
-
-/// The factors of a structure: integrator, zero, pole pair; a gain if there are none.
+/// The factors of a structure: integrator, zero, pole pair; a gain where there are none.
 pub(super) fn structure_parts(structure: &Structure) -> Vec<&'static str> {
     match structure.parts.as_slice() {
         [] => vec!["gain"],
@@ -218,19 +194,6 @@ fn part_words(part: &StructureFactor) -> &'static str {
     match part {
         StructureFactor::ZeroPair { .. } => "zero pair",
         StructureFactor::PolePair { .. } => "pole pair",
-        part => part_key(part),
-    }
-}
-
-/// The word of a factor, as the project file spells it.
-pub(super) fn part_key(part: &StructureFactor) -> &'static str {
-    match part {
-        StructureFactor::Fixed(Element::Integrator) => "integrator",
-        StructureFactor::Fixed(_) => "fixed",
-        StructureFactor::RealZero { .. } => "zero",
-        StructureFactor::RealPole { .. } => "pole",
-        StructureFactor::ZeroPair { .. } => "zero_pair",
-        StructureFactor::PolePair { .. } => "pole_pair",
-        StructureFactor::Notch { .. } => "notch",
+        part => part.word(),
     }
 }
