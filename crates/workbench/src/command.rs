@@ -39,7 +39,7 @@ use phea_dynamics::watch::{Stopped, rising, within};
 use phea_engineering::line_choice::{LoopInQuestion, with_chosen_lines};
 
 use crate::alternatives::{AlternativesOptions as AskedOfAlternatives, judge};
-use crate::answer::{Answer, Object};
+use crate::answer::{Answer, Body, Object};
 use crate::bench;
 use crate::design::{self, design_and_repair, design_project};
 use crate::document::Document;
@@ -396,7 +396,7 @@ pub fn compare_watched(
     })?;
     let answer = Unprinted {
         document: crate::simulate::comparison(&comparison, projects),
-        body: crate::simulate::comparison_body(&comparison),
+        body: crate::simulate::comparison_body(&comparison).into_object(),
         files: if figures { crate::simulate::comparison_files(&comparison) } else { vec![] },
         affirmative: comparison.projects.len() == projects.len() && comparison.is_complete(),
     };

@@ -48,20 +48,6 @@ pub enum LimitPlace {
 }
 
 impl LimitPlace {
-    /// As an answer names it; `None` for the rig as a whole.
-    pub fn word(self) -> Option<&'static str> {
-        match self {
-            LimitPlace::Rig => None,
-            LimitPlace::Chamber('a') => Some("chamber_a"),
-            LimitPlace::Chamber(_) => Some("chamber_b"),
-            LimitPlace::Line { side: 'a', .. } => Some("line_a"),
-            LimitPlace::Line { .. } => Some("line_b"),
-            LimitPlace::Neck('a') => Some("neck_a"),
-            LimitPlace::Neck(_) => Some("neck_b"),
-            LimitPlace::Transmission { .. } => Some("transmission"),
-        }
-    }
-
     /// m from the valve in a line, from the rod's piston in that of a transmission.
     pub fn distance_m(self) -> Option<f64> {
         match self {
@@ -92,22 +78,6 @@ pub enum RigLimit {
     /// The pressure at which the relief valve of a limited pump is shut: below it the rig takes
     /// more than the pump delivers.
     PumpFlow,
-}
-
-impl RigLimit {
-    /// As an answer names it.
-    pub fn word(self) -> &'static str {
-        match self {
-            RigLimit::SensorCapacity => "force_sensor_capacity",
-            RigLimit::StallForce => "stall_force",
-            RigLimit::NominalVoltage => "nominal_voltage",
-            RigLimit::VapourPressure => "vapour_pressure",
-            RigLimit::WorkingPressure => "working_pressure",
-            RigLimit::BurstPressure => "burst_pressure",
-            RigLimit::LaminarFlow => "laminar_flow",
-            RigLimit::PumpFlow => "pump_flow",
-        }
-    }
 }
 
 /// Names of the occurrences of lines: for each limit that of line A, then that of line B; then
@@ -141,7 +111,10 @@ impl Exceeded {
             (RigLimit::LaminarFlow, _) => 6,
             _ => return None,
         };
-        let is_b = self.place.word().is_some_and(|word| word.ends_with('b'));
+        let is_b = matches!(
+            self.place,
+            LimitPlace::Chamber('b') | LimitPlace::Line { side: 'b', .. } | LimitPlace::Neck('b')
+        );
         LINE_OCCURRENCES.get(first + usize::from(is_b)).copied()
     }
 }

@@ -54,19 +54,6 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// Its word in answers.
-    pub fn word(&self) -> &'static str {
-        match self {
-            Cause::ReferenceStep { .. } => "reference_step",
-            Cause::ReferenceMotion { .. } => "reference_motion",
-            Cause::CommandStep { .. } => "command_step",
-            Cause::CommandMotion { .. } => "command_motion",
-            Cause::LoadMotion => "load_motion",
-            Cause::ExternalForce { .. } => "external_force",
-            Cause::SettingChange => "setting_change",
-        }
-    }
-
     /// The label of the moment in a figure, of a rig that moves so.
     pub fn label(&self, motion: MotionKind) -> &'static str {
         match self {
