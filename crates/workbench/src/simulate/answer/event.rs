@@ -26,8 +26,8 @@ pub(super) struct ScenarioEventAnswer {
 
 words! {
     /// Kind of an event: a step of the reference or of the open-loop command, the beginning of a
-    /// part of either that moves otherwise, or the beginning of a motion of the load, of an external
-    /// force or of a change of the setting of accumulators.
+    /// part of either that moves otherwise, or the beginning of a motion of the load, of an
+    /// external force or of a change of the setting of accumulators.
     Cause {
         ReferenceStep { .. } => "reference_step",
         ReferenceMotion { .. } => "reference_motion",

@@ -34,8 +34,8 @@ words! {
 }
 
 words! {
-    /// Reason why a deviation is not carried along a run: a sampled controller, a delay of a command
-    /// or of a wave, or a method of integration without a matrix for it.
+    /// Reason why a deviation is not carried along a run: a sampled controller, a delay of a
+    /// command or of a wave, or a method of integration without a matrix for it.
     UnfollowedCause { Samples => "samples", Delays => "delays", Method => "method" }
 }
 

@@ -52,7 +52,8 @@ enum LimitedPart {
 }
 
 words! {
-    /// Part of the rig in which a limit is exceeded; a neck is that of the accumulator at a chamber.
+    /// Part of the rig in which a limit is exceeded; a neck is that of the accumulator at a
+    /// chamber.
     LimitedPart {
         ChamberA => "chamber_a",
         ChamberB => "chamber_b",

@@ -41,14 +41,14 @@ struct PassSpreadAnswer {
     before: Reasoned<f64>,
     /// Value of the later pass, in the unit of the metric.
     after: Reasoned<f64>,
-    /// Ratio of the difference to the metric, of an overshoot to the step, of a steady-state error to
-    /// the largest deviation of the event; `inf` if one pass has no such number.
+    /// Ratio of the difference to the metric, of an overshoot to the step, of a steady-state error
+    /// to the largest deviation of the event; `inf` if one pass has no such number.
     part: f64,
 }
 
 words! {
-    /// Agreement of the passes of a repeated run: within a thousandth, none at the smallest
-    /// tolerance, none because roundings at the start change the result, or a pass that ended early.
+    /// Agreement of the passes of a repeated run: the last two agree to a thousandth, they do not
+    /// at the smallest tolerance, roundings at the start change the result, or a pass ended early.
     PassAgreement {
         Agreed => "agreed",
         Apart => "apart",

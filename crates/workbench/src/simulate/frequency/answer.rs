@@ -63,7 +63,8 @@ struct MachineResponsePointAnswer {
     linearised_machine_reason: Option<&'static str>,
     /// Magnitude of the machine over that of the linear plant; null with a `reason`.
     difference_db: Option<f64>,
-    /// Phase of the machine less that of the linear plant, within half a turn; null with a `reason`.
+    /// Phase of the machine less that of the linear plant, within half a turn; null with a
+    /// `reason`.
     difference_deg: Option<f64>,
     /// Magnitude of the machine over that of the linearised machine; null with a `reason`.
     linearised_difference_db: Option<f64>,
