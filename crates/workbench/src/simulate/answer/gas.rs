@@ -6,9 +6,10 @@ use crate::simulate::{BeyondExpansion, GasRange, ScenarioRun};
 /// Work of the adjustment of accumulators over a run, and the loss in the valves to their gas.
 #[derive(Answer)]
 pub(super) struct GasAdjustmentAnswer {
-    /// Work of the adjustment while its power is positive.
+    /// Work of the adjustment into the oil: integral of its power while that is positive.
     adjustment_brought_j: Reasoned<f64>,
-    /// Work of the adjustment while its power is negative, and thus negative.
+    /// Work of the adjustment out of the oil, as a magnitude: integral of its power while that is
+    /// negative.
     adjustment_taken_j: Reasoned<f64>,
     /// Energy lost in the valves between chambers and gas.
     gas_valve_throttled_j: Reasoned<f64>,
