@@ -396,7 +396,7 @@ pub fn compare_watched(
     })?;
     let answer = Unprinted {
         document: crate::simulate::comparison(&comparison, projects),
-        body: crate::simulate::comparison_body(&comparison),
+        body: crate::simulate::comparison_body(&comparison).into_object(),
         files: if figures { crate::simulate::comparison_files(&comparison) } else { vec![] },
         affirmative: comparison.projects.len() == projects.len() && comparison.is_complete(),
     };

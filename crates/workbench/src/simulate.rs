@@ -9,6 +9,7 @@ mod force_limits;
 mod foreseen;
 mod frequency;
 mod metrics;
+mod occurrence_kind;
 mod reasons;
 mod repetition;
 mod required;
@@ -18,7 +19,9 @@ mod together;
 
 pub use phea_engineering::simulate::*;
 
-pub(crate) use answer::{body, comparison_body, frequency_body};
+pub(crate) use answer::{
+    CompareAnswer, ScenariosAnswer, SimulateAnswer, body, comparison_body, frequency_body, scenarios,
+};
 pub(crate) use document::{
     adjustment_sentence, cause_words, coarse_sentence, comparison, document, gas_sentence, headline,
     measured, metrics_row, occurrence_sentences, published, published_row, requirement_of, windows,
@@ -31,7 +34,10 @@ pub(crate) use frequency::{
     document as frequency_document, files as frequency_files, pictures as frequency_pictures,
 };
 pub(crate) use metrics::{cells_of, label_within, settling_within, shown_in};
+pub(crate) use occurrence_kind::CampaignOccurrenceKind;
 pub(crate) use reasons::{status_words, unmeasured_words};
-pub(crate) use required::{Satisfaction, not_judged_words, requirement_sentence, satisfied_word};
+pub(crate) use required::{
+    Satisfaction, WorstStepAnswer, not_judged_words, requirement_sentence, satisfied_word,
+};
 pub(crate) use span::around;
 pub(crate) use together::{NamedRun, at_a_glance, close_ups, measured_together, together};

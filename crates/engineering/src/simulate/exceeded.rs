@@ -49,21 +49,7 @@ pub enum LimitPlace {
 }
 
 impl LimitPlace {
-    /// Word of the place in JSON output; `None` for the rig as a whole.
-    pub fn word(self) -> Option<&'static str> {
-        match self {
-            LimitPlace::Rig => None,
-            LimitPlace::Chamber('a') => Some("chamber_a"),
-            LimitPlace::Chamber(_) => Some("chamber_b"),
-            LimitPlace::Line { side: 'a', .. } => Some("line_a"),
-            LimitPlace::Line { .. } => Some("line_b"),
-            LimitPlace::Neck('a') => Some("neck_a"),
-            LimitPlace::Neck(_) => Some("neck_b"),
-            LimitPlace::Transmission { .. } => Some("transmission"),
-        }
-    }
-
-    /// Distance, m: from the valve in a line, from the rod's piston in the line of a transmission.
+    /// m from the valve in a line, from the rod's piston in that of a transmission.
     pub fn distance_m(self) -> Option<f64> {
         match self {
             LimitPlace::Line { distance_m, .. } | LimitPlace::Transmission { distance_m } => Some(distance_m),
@@ -93,22 +79,6 @@ pub enum RigLimit {
     /// Pressure at which the relief valve of a limited pump is shut: below it the rig takes more
     /// than the pump delivers.
     PumpFlow,
-}
-
-impl RigLimit {
-    /// Word of the limit in JSON output.
-    pub fn word(self) -> &'static str {
-        match self {
-            RigLimit::SensorCapacity => "force_sensor_capacity",
-            RigLimit::StallForce => "stall_force",
-            RigLimit::NominalVoltage => "nominal_voltage",
-            RigLimit::VapourPressure => "vapour_pressure",
-            RigLimit::WorkingPressure => "working_pressure",
-            RigLimit::BurstPressure => "burst_pressure",
-            RigLimit::LaminarFlow => "laminar_flow",
-            RigLimit::PumpFlow => "pump_flow",
-        }
-    }
 }
 
 /// Names of the occurrences of lines: for each limit that of line A, then that of line B; then
@@ -142,7 +112,10 @@ impl Exceeded {
             (RigLimit::LaminarFlow, _) => 6,
             _ => return None,
         };
-        let is_b = self.place.word().is_some_and(|word| word.ends_with('b'));
+        let is_b = matches!(
+            self.place,
+            LimitPlace::Chamber('b') | LimitPlace::Line { side: 'b', .. } | LimitPlace::Neck('b')
+        );
         LINE_OCCURRENCES.get(first + usize::from(is_b)).copied()
     }
 }

@@ -54,20 +54,7 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// Word of the cause in JSON output.
-    pub fn word(&self) -> &'static str {
-        match self {
-            Cause::ReferenceStep { .. } => "reference_step",
-            Cause::ReferenceMotion { .. } => "reference_motion",
-            Cause::CommandStep { .. } => "command_step",
-            Cause::CommandMotion { .. } => "command_motion",
-            Cause::LoadMotion => "load_motion",
-            Cause::ExternalForce { .. } => "external_force",
-            Cause::SettingChange => "setting_change",
-        }
-    }
-
-    /// Label of the moment in a figure, for a rig with this motion.
+    /// The label of the moment in a figure, of a rig that moves so.
     pub fn label(&self, motion: MotionKind) -> &'static str {
         match self {
             Cause::ReferenceStep { .. } | Cause::CommandStep { .. } => "step",

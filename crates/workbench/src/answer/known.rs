@@ -38,6 +38,18 @@ impl<Value: Describe> Field for OrReason<Value> {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Reasoned<Value>(pub(crate) Result<Value, String>);
 
+impl<Value> Reasoned<Value> {
+    /// The value, or this reason.
+    pub(crate) fn new(value: Option<Value>, reason: impl Into<String>) -> Reasoned<Value> {
+        Reasoned(value.ok_or_else(|| reason.into()))
+    }
+
+    /// The value, or the reason that is known.
+    pub(crate) fn of(value: Result<Value, impl Into<String>>) -> Reasoned<Value> {
+        Reasoned(value.map_err(Into::into))
+    }
+}
+
 impl<Value: Describe> Field for Reasoned<Value> {
     fn members(key: ObjectKey, description: &str) -> Members {
         let reason = ValueShape::Nullable(Box::new(ValueShape::Text));

@@ -109,21 +109,6 @@ impl Object {
         self.with(key, value).maybe(reason_key, missing)
     }
 
-    /// The same, the second key being `null` where there is a value.
-    pub(crate) fn told<Value: Into<Json>>(
-        self,
-        key: impl Into<ObjectKey>,
-        value: Result<Value, &str>,
-    ) -> Object {
-        let (value, reason) = match value {
-            Ok(value) => (Some(value), None),
-            Err(reason) => (None, Some(reason)),
-        };
-        let key = key.into();
-        let reason_key = key.reason();
-        self.with(key, value).with(reason_key, reason)
-    }
-
     /// With all keys of another object behind its own.
     pub(crate) fn and(mut self, other: Object) -> Object {
         self.0.extend(other.0);

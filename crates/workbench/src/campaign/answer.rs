@@ -1,166 +1,309 @@
-//! The JSON object of `campaign`.
+//! The answers of `campaign`.
 
-use super::{CampaignRequirement, RequestedRuns};
-use super::{Draw, Plan};
-use super::{LUMP_NAMES, meaningful};
-use super::{QUANTILES, Spread};
-use super::{Summary, WorstRun};
-use crate::answer::Object;
-use crate::project::Loaded;
-use crate::simulate::{self, RunStatus, ScenarioRun};
-use crate::simulate::{not_judged_words, required_words};
+mod requirement;
+mod spread;
+
+use super::{Draw, Plan, QUANTILES, RequestedRuns, Summary, VariedRange, WorstRun};
+use crate::answer::{Answer, Reasoned, words};
+use crate::project::{DISTRIBUTIONS, Distribution, Loaded};
+use crate::quantity::QuantityName;
+use crate::simulate::{self, CampaignOccurrenceKind, RunStatus, ScenarioRun, ScenariosAnswer};
 use phea_hydraulics::signal::Signal;
+use requirement::{CampaignRequirementAnswer, requirement};
+use spread::{CampaignEventAnswer, CampaignLumpAnswer, events, lumps};
 
-/// What a campaign says to programs. Runs are counted from 0; `until` is beyond the last.
-pub(crate) fn body(plan: &Plan, wanted: RequestedRuns, rows: usize, summary: &Summary) -> Object {
+/// Answer of `campaign`, about all runs or a part of them.
+#[derive(Answer)]
+pub(crate) struct CampaignAnswer {
+    /// Name of the scenario that is run.
+    scenario: String,
+    /// Seed of all random numbers.
+    seed: u32,
+    /// Runs of the campaign, counted from 0.
+    runs: CampaignRunsAnswer,
+    /// True if every run of this part has its row.
+    complete: bool,
+    /// Varied numbers.
+    parameters: Vec<VariedRangeAnswer>,
+    /// Number of runs of each status.
+    statuses: CampaignStatusesAnswer,
+    /// Runs whose drawn numbers give no machine, or whose machine cannot start.
+    refused: Vec<RefusedRunAnswer>,
+    /// Runs that ended early, or diverged.
+    ended: Vec<EndedRunAnswer>,
+    /// Conditions that the machines met, in the order of their first run.
+    occurrences: Vec<CampaignOccurrenceAnswer>,
+    /// Percentages of the runs below each of the quantiles.
+    quantiles_percent: [u8; QUANTILES.len()],
+    /// Metrics of the events of the scenario.
+    metrics: Vec<CampaignEventAnswer>,
+    /// Parameters of the linear models of the drawn machines.
+    lumps: Vec<CampaignLumpAnswer>,
+    /// Numbers that are drawn beyond the box for which the controller is judged.
+    beyond_box: Vec<BeyondBoxAnswer>,
+    /// Quantiles of the force over time.
+    bands: ForceBandsAnswer,
+    /// Requirements in time, each with the number of runs that satisfy it.
+    requirements: Vec<CampaignRequirementAnswer>,
+    /// Runs that are worst in a metric.
+    worst_runs: Vec<WorstRunAnswer>,
+    /// Misfits of identified parts, which the runs do not contain, if any.
+    #[answer(optional)]
+    warnings: Option<Vec<String>>,
+}
+
+/// Answer of `campaign` about one run.
+#[derive(Answer)]
+pub(crate) struct CampaignRunAnswer {
+    /// Name of the scenario that is run.
+    scenario: String,
+    /// Seed of all random numbers.
+    seed: u32,
+    /// Index of the run, from 0.
+    run: u64,
+    /// Drawn numbers of the run, as settings `path=value` of the project.
+    run_settings: Vec<String>,
+    #[answer(flatten)]
+    scenarios: ScenariosAnswer,
+    /// Misfits of identified parts, which the run does not contain, if any.
+    #[answer(optional)]
+    warnings: Option<Vec<String>>,
+}
+
+/// Runs of a campaign.
+#[derive(Answer)]
+struct CampaignRunsAnswer {
+    /// Number of runs of the whole campaign.
+    asked: u64,
+    /// First run of this part.
+    from: u64,
+    /// Run after the last of this part.
+    until: u64,
+    /// Number of rows, one of each run that is done.
+    rows: usize,
+}
+
+/// Varied number.
+#[derive(Answer)]
+struct VariedRangeAnswer {
+    /// Key of the project file, or `start.` and a state.
+    path: String,
+    /// Distribution of the number.
+    distribution: Distribution,
+    /// Lower end in SI, of a normal distribution two standard deviations below the middle.
+    minimum: f64,
+    /// Upper end in SI, of a normal distribution two standard deviations above the middle.
+    maximum: f64,
+}
+
+words! {
+    /// Distribution of a varied number.
+    Distribution in DISTRIBUTIONS
+}
+
+/// Numbers of runs by their status.
+#[derive(Answer, Default)]
+struct CampaignStatusesAnswer {
+    /// Runs to the end, with numbers that describe the machine.
+    completed: usize,
+    /// Runs to the end that diverge.
+    diverged: usize,
+    /// Runs that ended because a rate is no longer a number.
+    not_finite: usize,
+    /// Runs to the end that left the validity of their equations.
+    outside_model: usize,
+    /// Runs that were not begun because there is no such machine or it cannot start.
+    refused: usize,
+    /// Runs that ended because no step is short enough for the tolerance.
+    step_too_small: usize,
+    /// Runs that ended because the permitted steps are used up.
+    too_many_steps: usize,
+    /// Runs to the end whose repetitions do not agree.
+    undetermined: usize,
+    /// Runs that ended because an oscillation grows that needs more steps than are permitted.
+    unresolved_oscillation: usize,
+}
+
+/// Run without a machine.
+#[derive(Answer)]
+struct RefusedRunAnswer {
+    /// Index of the run, from 0.
+    run: u64,
+    /// Reason for which there is no machine, or it cannot start.
+    reason: String,
+}
+
+/// Run that ended early, or diverged.
+#[derive(Answer)]
+struct EndedRunAnswer {
+    /// Index of the run, from 0.
+    run: u64,
+    /// Status of the run.
+    status: RunStatus,
+    /// Simulated time at which it ended or diverged.
+    time_s: f64,
+}
+
+/// Condition that machines met.
+#[derive(Answer)]
+struct CampaignOccurrenceAnswer {
+    /// Condition.
+    kind: CampaignOccurrenceKind,
+    /// Number of runs with the condition.
+    runs: usize,
+    /// First run with the condition, from 0.
+    first_run: u64,
+}
+
+/// Number that is drawn beyond the box for which the controller is judged.
+#[derive(Answer)]
+struct BeyondBoxAnswer {
+    /// Key of the project file.
+    path: String,
+    /// Lower end of the draws in SI, of a normal distribution two standard deviations below the
+    /// middle.
+    minimum: f64,
+    /// Upper end of the draws in SI, of a normal distribution two standard deviations above the
+    /// middle.
+    maximum: f64,
+    /// Range in the box, from low to high.
+    #[answer(key = "box")]
+    designed_for: Reasoned<[f64; 2]>,
+}
+
+/// Quantiles of the force over time, of all runs that lasted until then.
+#[derive(Answer)]
+struct ForceBandsAnswer {
+    /// Times of the values.
+    time_s: Vec<f64>,
+    /// Force at these times, a list for each of `quantiles_percent`.
+    #[answer(key = Signal::Force.quantity())]
+    force: Vec<Vec<f64>>,
+}
+
+/// Run that is worst in a metric.
+#[derive(Answer)]
+struct WorstRunAnswer {
+    /// Index of the run, from 0.
+    run: u64,
+    /// Events and metrics in which it is worst, such as `event 1 overshoot_percent`.
+    of: Vec<String>,
+    /// Drawn numbers of the run, as settings `path=value` of the project.
+    settings: Vec<String>,
+}
+
+/// All runs or a part of them, with these warnings.
+pub(crate) fn body(
+    plan: &Plan,
+    wanted: RequestedRuns,
+    (rows, summary): (usize, &Summary),
+    warnings: Vec<String>,
+) -> CampaignAnswer {
     let runs = wanted.shard.runs_of(wanted.runs);
-    let counted = Object::new()
-        .with("asked", wanted.runs)
-        .with("from", runs.start)
-        .with("until", runs.end)
-        .with("rows", rows);
-    let mut statuses: Vec<_> =
-        RunStatus::OF_ROWS.map(RunStatus::key).into_iter().zip(summary.statuses).collect();
-    statuses.sort_unstable();
-    let statuses = statuses.into_iter().fold(Object::new(), |all, (word, count)| all.with(word, count));
-    let bands = Object::new().with("time_s", summary.bands.times_s.as_slice()).each(
-        Signal::Force.quantity(),
-        0..QUANTILES.len(),
-        |quantile| summary.bands.force_n.iter().map(|forces| forces[quantile]).collect::<Vec<f64>>(),
-    );
-    Object::new()
-        .with("scenario", plan.scenario())
-        .with("seed", plan.seed())
-        .with("runs", counted)
-        .with("complete", rows as u64 == runs.end - runs.start)
-        .each("parameters", plan.ranges(), |range| {
-            Object::new()
-                .with("path", range.path.as_str())
-                .with("distribution", range.distribution_word())
-                .with("minimum", range.minimum)
-                .with("maximum", range.maximum)
-        })
-        .with("statuses", statuses)
-        .each("refused", &summary.refused, |(run, reason)| {
-            Object::new().with("run", *run).with("reason", reason.as_str())
-        })
-        .each("ended", &summary.ended, |(run, status, time_s)| {
-            Object::new().with("run", *run).with("status", status.key()).with("time_s", *time_s)
-        })
-        .each("occurrences", &summary.occurrences, |(kind, runs, first_run)| {
-            Object::new().with("kind", *kind).with("runs", *runs).with("first_run", *first_run)
-        })
-        .with("quantiles_percent", QUANTILES)
-        .with("metrics", events(plan, summary))
-        .with("lumps", lumps(plan, summary))
-        .each("beyond_box", plan.beyond_box(), |one| {
-            Object::new()
-                .with("path", one.range.path.as_str())
-                .with("minimum", one.range.minimum)
-                .with("maximum", one.range.maximum)
-                .told("box", one.designed_for.ok_or("[uncertainty] does not name it"))
-        })
-        .with("bands", bands)
-        .each("requirements", &summary.requirements, requirement)
-        .each("worst_runs", &summary.worst, |worst| worst_run(plan, worst))
-}
-
-/// What one run says to programs.
-pub(crate) fn run_body(
-    (plan, draw): (&Plan, &Draw),
-    settings: &[String],
-    (drawn, runs): (&Loaded, &[ScenarioRun]),
-) -> Object {
-    Object::new()
-        .with("scenario", plan.scenario())
-        .with("seed", plan.seed())
-        .with("run", draw.run)
-        .with("run_settings", settings)
-        .and(simulate::body(drawn, runs))
-}
-
-fn events(plan: &Plan, summary: &Summary) -> Vec<Object> {
-    let windows = plan.windows().iter().zip(&summary.metrics);
-    let event = |(window, spreads): (&simulate::Window, &simulate::PerMetric<Option<Spread>>)| {
-        Object::new()
-            .with("kind", window.cause.word())
-            .with("time_s", window.start_s)
-            .with("until_s", window.end_s)
-            .each("metrics", meaningful(window, plan.is_open_loop()), |metric| {
-                let name = Object::new().with("name", metric.quantity());
-                name.and(spread_row(spreads[metric], summary.driven()))
+    let refused = summary.refused.iter();
+    let ended = summary.ended.iter();
+    let occurrences = summary.occurrences.iter();
+    CampaignAnswer {
+        scenario: plan.scenario().to_string(),
+        seed: plan.seed(),
+        complete: rows as u64 == runs.end - runs.start,
+        runs: CampaignRunsAnswer { asked: wanted.runs, from: runs.start, until: runs.end, rows },
+        parameters: plan.ranges().iter().map(range).collect(),
+        statuses: statuses(summary),
+        refused: refused
+            .map(|(run, reason)| RefusedRunAnswer { run: *run, reason: reason.clone() })
+            .collect(),
+        ended: ended.map(|&(run, status, time_s)| EndedRunAnswer { run, status, time_s }).collect(),
+        occurrences: occurrences
+            .map(|&(kind, runs, first_run)| CampaignOccurrenceAnswer {
+                kind: CampaignOccurrenceKind(kind),
+                runs,
+                first_run,
             })
-    };
-    windows.map(event).collect()
-}
-
-/// Number of runs that could have such a number.
-fn spread_row(spread: Option<Spread>, runs: usize) -> Object {
-    let worst = spread.map(|spread| Object::new().with("value", spread.worst.0).with("run", spread.worst.1));
-    Object::new()
-        .with("count", spread.map_or(0, |spread| spread.count))
-        .with("missing", spread.map_or(runs, |spread| spread.missing))
-        .with("quantiles", spread.map(|spread| spread.quantiles))
-        .with("minimum", spread.map(|spread| spread.extremes[0]))
-        .with("maximum", spread.map(|spread| spread.extremes[1]))
-        .with("worst", worst)
-        .with("reason", spread.is_none().then_some("no run has one"))
-}
-
-/// How many runs satisfy a requirement in time, or why that is not known.
-fn requirement(one: &CampaignRequirement) -> Object {
-    let wish = &one.wish;
-    let object = Object::new()
-        .with("specification", one.number)
-        .with("requirement", required_words(wish))
-        .maybe("overshoot_percent", wish.overshoot_percent)
-        .maybe("settling_time_s", wish.settling_time_s)
-        .maybe("rise_time_s", wish.rise_time_s)
-        .with("settling_band_percent", wish.band_percent);
-    match one.judged {
-        Ok(judged) => {
-            let worst = judged.worst.map(|(run, reached)| {
-                Object::new()
-                    .with("run", run)
-                    .with("overshoot_percent", reached.overshoot_percent)
-                    .with("settling_time_s", reached.settling_time_s)
-                    .with("rise_time_s", reached.rise_time_s)
-            });
-            object
-                .with("satisfied", judged.satisfied)
-                .with("runs", judged.runs)
-                .with("confidence_95", judged.confidence_95())
-                .maybe("worst", worst)
-        }
-        Err(why) => {
-            let none: Option<usize> = None;
-            object
-                .known("satisfied", none, not_judged_words(why))
-                .known("runs", none, not_judged_words(why))
-                .known("confidence_95", none, not_judged_words(why))
-        }
+            .collect(),
+        quantiles_percent: QUANTILES,
+        metrics: events(plan, summary),
+        lumps: lumps(plan, summary),
+        beyond_box: beyond_box(plan),
+        bands: bands(summary),
+        requirements: summary.requirements.iter().map(requirement).collect(),
+        worst_runs: summary.worst.iter().map(|worst| worst_run(plan, worst)).collect(),
+        warnings: Some(warnings).filter(|all| !all.is_empty()),
     }
 }
 
-/// `bounds` are those of the uncertain parameter; `outside` counts the runs whose machine is
-/// outside them.
-fn lumps(plan: &Plan, summary: &Summary) -> Vec<Object> {
-    let rows = LUMP_NAMES.iter().zip(summary.lumps).zip(summary.outside);
-    rows.map(|((name, spread), outside)| {
-        Object::new()
-            .with("name", *name)
-            .told("bounds", plan.bounds(name).ok_or("[uncertainty] does not name it"))
-            .with("outside", outside)
-            .and(spread_row(spread, summary.statuses.iter().sum()))
+/// One run, with these warnings.
+pub(crate) fn run_body(
+    (plan, draw): (&Plan, &Draw),
+    settings: Vec<String>,
+    (drawn, runs): (&Loaded, &[ScenarioRun]),
+    warnings: Vec<String>,
+) -> CampaignRunAnswer {
+    CampaignRunAnswer {
+        scenario: plan.scenario().to_string(),
+        seed: plan.seed(),
+        run: draw.run,
+        run_settings: settings,
+        scenarios: simulate::scenarios(drawn, runs),
+        warnings: Some(warnings).filter(|all| !all.is_empty()),
+    }
+}
+
+fn range(range: &VariedRange) -> VariedRangeAnswer {
+    VariedRangeAnswer {
+        path: range.path.clone(),
+        distribution: range.distribution,
+        minimum: range.minimum,
+        maximum: range.maximum,
+    }
+}
+
+fn statuses(summary: &Summary) -> CampaignStatusesAnswer {
+    let mut all = CampaignStatusesAnswer::default();
+    for (status, count) in RunStatus::OF_ROWS.into_iter().zip(summary.statuses) {
+        let own = match status {
+            RunStatus::Completed => &mut all.completed,
+            RunStatus::Refused => &mut all.refused,
+            RunStatus::StepTooSmall => &mut all.step_too_small,
+            RunStatus::NotFinite => &mut all.not_finite,
+            RunStatus::TooManySteps => &mut all.too_many_steps,
+            RunStatus::UnresolvedOscillation => &mut all.unresolved_oscillation,
+            RunStatus::Diverged => &mut all.diverged,
+            RunStatus::OutsideModel => &mut all.outside_model,
+            RunStatus::Undetermined => &mut all.undetermined,
+            // no status of a row
+            RunStatus::Cancelled | RunStatus::NotStarted => continue,
+        };
+        *own = count;
+    }
+    all
+}
+
+fn beyond_box(plan: &Plan) -> Vec<BeyondBoxAnswer> {
+    let all = plan.beyond_box().into_iter();
+    all.map(|one| BeyondBoxAnswer {
+        path: one.range.path.clone(),
+        minimum: one.range.minimum,
+        maximum: one.range.maximum,
+        designed_for: Reasoned::new(one.designed_for, "[uncertainty] does not name it"),
     })
     .collect()
 }
 
-fn worst_run(plan: &Plan, worst: &WorstRun) -> Object {
-    Object::new()
-        .with("run", worst.run)
-        .each("of", &worst.of, |(window, metric)| {
-            format!("event {} {}", window + 1, metric.quantity().text(plan.motion()))
-        })
-        .with("settings", plan.settings(&plan.draw(worst.run)))
+fn bands(summary: &Summary) -> ForceBandsAnswer {
+    let force = |quantile: usize| summary.bands.force_n.iter().map(|forces| forces[quantile]).collect();
+    ForceBandsAnswer {
+        time_s: summary.bands.times_s.clone(),
+        force: (0..QUANTILES.len()).map(force).collect(),
+    }
+}
+
+fn worst_run(plan: &Plan, worst: &WorstRun) -> WorstRunAnswer {
+    let name = |name: QuantityName| name.text(plan.motion());
+    let of = worst.of.iter();
+    WorstRunAnswer {
+        run: worst.run,
+        of: of.map(|(window, metric)| format!("event {} {}", window + 1, name(metric.quantity()))).collect(),
+        settings: plan.settings(&plan.draw(worst.run)),
+    }
 }

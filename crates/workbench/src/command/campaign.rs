@@ -2,8 +2,9 @@
 
 use super::unprinted::Unprinted;
 use super::{CommandError, Watch, with_recordings};
-use crate::answer::{Answer, TableFormat};
+use crate::answer::{Answer, Body, TableFormat};
 use crate::campaign::{self, CampaignError, Plan, RequestedRuns, RowStore, Summary};
+use crate::caveat::misfits_in_runs;
 use crate::project::{self, Loaded};
 use crate::setup::Setup;
 use crate::simulate::{self, RunOutput, ScenarioRun, simulate_into};
@@ -66,13 +67,14 @@ pub fn campaign_watched(
         true => campaign::files(&plan, (&wanted.shard, &rows), &summary)?,
         false => vec![],
     };
+    let warnings = misfits_in_runs(&loaded.project);
     let answer = Unprinted {
         document: campaign::document(&plan, (wanted, request.files), rows.len(), &summary),
-        body: campaign::body(&plan, wanted, rows.len(), &summary),
+        body: campaign::body(&plan, wanted, (rows.len(), &summary), warnings.clone()).into_object(),
         files,
         affirmative: complete,
     };
-    Ok(answer.with_misfits(&loaded.project).print("campaign", std::slice::from_ref(loaded)))
+    Ok(answer.with_warnings(warnings).print("campaign", std::slice::from_ref(loaded)))
 }
 
 /// A single run: its numbers as settings of the project, and the complete output of `simulate` with
@@ -95,11 +97,12 @@ fn one(
     let table = destination.map(|destination| (destination, TableFormat::Csv));
     let output = RunOutput { ledger: true, attention: Attention::Steps, ..RunOutput::new(false, table) };
     let runs = simulate_into(source, &Setup::new(&drawn.project)?, output, watch)?;
+    let warnings = misfits_in_runs(&drawn.project);
     Ok(Unprinted {
         document: campaign::run_document(&draw, &settings, &drawn, &runs),
-        body: campaign::run_body((plan, &draw), &settings, (&drawn, &runs)),
+        body: campaign::run_body((plan, &draw), settings, (&drawn, &runs), warnings.clone()).into_object(),
         files: simulate::files(&drawn, &runs),
         affirmative: runs.iter().all(ScenarioRun::is_reliable),
     }
-    .with_misfits(&drawn.project))
+    .with_warnings(warnings))
 }

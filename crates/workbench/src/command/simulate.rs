@@ -2,7 +2,8 @@
 
 use super::unprinted::Unprinted;
 use super::{CommandError, Watch, positive};
-use crate::answer::{OutputFile, TableFormat, picture_files};
+use crate::answer::{Body, OutputFile, TableFormat, picture_files};
+use crate::caveat::misfits_in_runs;
 use crate::project::Loaded;
 use crate::quantity::MotionKind;
 use crate::quantity::{ANGULAR_FREQUENCY, Dimension, FORCE, VOLTAGE};
@@ -99,13 +100,14 @@ pub(super) fn simulate_answer(
         written.extend(figure_files(&runs));
     }
     let all = runs.len() == loaded.project.scenarios.len();
+    let warnings = misfits_in_runs(&loaded.project);
     Ok(Unprinted {
         document: document(loaded, &runs),
-        body: body(loaded, &runs),
+        body: body(loaded, &runs, warnings.clone()).into_object(),
         files: written,
         affirmative: all && runs.iter().all(ScenarioRun::is_reliable),
     }
-    .with_misfits(&loaded.project))
+    .with_warnings(warnings))
 }
 
 fn frequency_answer(
@@ -123,7 +125,7 @@ fn frequency_answer(
     }
     Ok(Unprinted {
         document: frequency_document(&found),
-        body: frequency_body(loaded, &found),
+        body: frequency_body(loaded, &found).into_object(),
         files: written,
         affirmative: found.is_settled(),
     })

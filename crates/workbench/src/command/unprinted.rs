@@ -1,11 +1,10 @@
 //! Output of a command on a project, before it is printed.
 
 use crate::answer::{Answer, Object, OutputFile, envelope};
-use crate::caveat::misfits_in_runs;
 use crate::document::Document;
 use crate::identify::in_use_above;
 use crate::line_choice::chosen_above;
-use crate::project::{Loaded, Project};
+use crate::project::Loaded;
 
 /// An [`Answer`] before its text and JSON are printed.
 pub(super) struct Unprinted {
@@ -16,14 +15,9 @@ pub(super) struct Unprinted {
 }
 
 impl Unprinted {
-    /// Adds the misfits of identified parts, which the runs of the machine do not contain: as
-    /// warnings, and as `warnings` of the JSON if there are any.
-    pub(super) fn with_misfits(mut self, project: &Project) -> Unprinted {
-        let misfits = misfits_in_runs(project);
-        if !misfits.is_empty() {
-            self.body = self.body.with("warnings", misfits.clone());
-            self.document.warnings(misfits);
-        }
+    /// With warnings above the text; the body has its own.
+    pub(super) fn with_warnings(mut self, warnings: Vec<String>) -> Unprinted {
+        self.document.warnings(warnings);
         self
     }
 

@@ -4,4 +4,4 @@ mod answer;
 
 use phea_engineering::simulate::*;
 
-pub(crate) use answer::{row, sentences};
+pub(crate) use answer::{ToleranceCheckAnswer, answer, sentences};

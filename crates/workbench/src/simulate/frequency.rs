@@ -6,6 +6,6 @@ mod figures;
 
 use phea_engineering::simulate::*;
 
-pub(crate) use answer::{body, files};
+pub(crate) use answer::{MachineResponsesAnswer, body, files};
 pub(crate) use document::document;
 pub(crate) use figures::pictures;

@@ -1,7 +1,7 @@
 //! The metrics of an event in tables and answers.
 
 use super::{Metric, Metrics, PerMetric, Unmeasured, unmeasured_words};
-use crate::answer::Object;
+use crate::answer::{Answer, Reasoned};
 use crate::document::Cell;
 use crate::quantity::{DisplayUnit, MotionKind, Units};
 
@@ -56,11 +56,51 @@ fn small_as_zero(error_n: f64) -> f64 {
     if error_n.abs() < 1e-3 { 0.0 } else { error_n }
 }
 
+/// Metrics of an event, of the solution itself and not of its samples.
+#[derive(Answer)]
+pub(crate) struct EventMetricsAnswer {
+    /// Excess of the force over the new reference, of the step.
+    overshoot_percent: Reasoned<f64>,
+    /// Time from 10 to 90 percent of the step, each where the force first reaches it.
+    rise_time_s: Reasoned<f64>,
+    /// Time from the event until the force remains within the band around the reference, for the
+    /// last tenth of the time to the next event at least.
+    settling_time_s: Reasoned<f64>,
+    /// Half width of the band of the settling time, of the step, or of the reference if the load
+    /// disturbs it.
+    settling_band_percent: f64,
+    /// Largest magnitude of the difference between force and reference while the load moves or an
+    /// external force acts, and afterwards.
+    #[answer(key = Metric::DisturbancePeak.quantity())]
+    disturbance_peak: Reasoned<f64>,
+    /// Largest magnitude of the difference between force and reference while the reference moves.
+    #[answer(key = Metric::TrackingErrorPeak.quantity())]
+    tracking_error_peak: Reasoned<f64>,
+    /// Largest magnitude of the force if there is no reference.
+    #[answer(key = Metric::ForcePeak.quantity())]
+    force_peak: Reasoned<f64>,
+    /// Reference less force at the end of the event.
+    #[answer(key = Metric::SteadyStateError.quantity())]
+    steady_state_error: Reasoned<f64>,
+    /// Largest magnitude of the command.
+    control_peak_v: Reasoned<f64>,
+    /// Root mean square of the command.
+    control_rms_v: Reasoned<f64>,
+}
+
 /// The metrics in an answer: the value of each, or the reason why there is none.
-pub(crate) fn metrics_row(metrics: &Metrics, motion: MotionKind) -> Object {
-    Metric::ALL.into_iter().fold(Object::new(), |row, metric| {
-        let band = (metric == Metric::SettlingTime).then_some(metrics.settling_band_percent);
-        row.told(metric.quantity(), metrics.get(metric).map_err(|why| unmeasured_words(why, motion)))
-            .maybe("settling_band_percent", band)
-    })
+pub(super) fn metrics_answer(metrics: &Metrics, motion: MotionKind) -> EventMetricsAnswer {
+    let metric = |metric| Reasoned::of(metrics.get(metric).map_err(|why| unmeasured_words(why, motion)));
+    EventMetricsAnswer {
+        overshoot_percent: metric(Metric::Overshoot),
+        rise_time_s: metric(Metric::RiseTime),
+        settling_time_s: metric(Metric::SettlingTime),
+        settling_band_percent: metrics.settling_band_percent,
+        disturbance_peak: metric(Metric::DisturbancePeak),
+        tracking_error_peak: metric(Metric::TrackingErrorPeak),
+        force_peak: metric(Metric::ForcePeak),
+        steady_state_error: metric(Metric::SteadyStateError),
+        control_peak_v: metric(Metric::ControlPeak),
+        control_rms_v: metric(Metric::ControlRms),
+    }
 }

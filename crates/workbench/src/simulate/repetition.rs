@@ -1,79 +1,11 @@
-//! Runs that were repeated, and runs that diverge, in an answer and for people.
+//! Runs that were repeated, and runs that diverge, for people.
 
 use super::{
-    Divergence, Measured, Pass, PassAgreement, PassSpread, Repetition, RunStatus, ScenarioRun, shown_in,
-    status_words, unmeasured_words,
+    Divergence, Measured, PassAgreement, PassSpread, Repetition, ScenarioRun, shown_in, status_words,
 };
-use crate::answer::{Object, significant};
-use crate::quantity::{DisplayUnit, MotionKind, Units, VOLTAGE, display};
+use crate::answer::significant;
+use crate::quantity::{DisplayUnit, Units, VOLTAGE, display};
 use phea_dynamics::simulation::{GrowthCause, UnfollowedCause, UnfollowedKinks};
-use phea_hydraulics::signal::Signal;
-
-/// The object `repetition` of a scenario.
-pub(super) fn row(repetition: &Repetition, motion: MotionKind) -> Object {
-    Object::new().with("status", word(repetition.agreement)).each("passes", &repetition.passes, pass).told(
-        "spread",
-        repetition
-            .spread
-            .as_ref()
-            .map(|one| spread(one, motion))
-            .ok_or("the passes have no number in common"),
-    )
-}
-
-fn word(agreement: PassAgreement) -> &'static str {
-    match agreement {
-        PassAgreement::Agreed => "agreed",
-        PassAgreement::Apart => "apart",
-        PassAgreement::Undetermined => "undetermined",
-        PassAgreement::Stopped => "stopped",
-    }
-}
-
-fn pass(pass: &Pass) -> Object {
-    Object::new()
-        .with("tolerance", pass.plan.tolerance)
-        .with("moved_start", pass.plan.moved)
-        .with("status", pass.stopped.map_or(RunStatus::Completed, |stopped| stopped.status).key())
-        .with("steps", pass.work.steps)
-        .with("rejected", pass.work.rejected)
-        .with("evaluations", pass.work.evaluations)
-}
-
-fn spread(spread: &PassSpread, motion: MotionKind) -> Object {
-    let [before, after] = spread.values.map(|value| value.map_err(|why| unmeasured_words(why, motion)));
-    Object::new()
-        .told("event", spread.of.map(|(window, _)| window + 1).ok_or("no event has a metric"))
-        .with("metric", spread.of.map_or(Signal::Force.quantity(), |(_, metric)| metric.quantity()))
-        .told("before", before)
-        .told("after", after)
-        .with("part", spread.part)
-}
-
-/// Name of the cause that amplifies errors, in an answer.
-pub(super) fn cause_word(cause: GrowthCause) -> &'static str {
-    match cause {
-        GrowthCause::Mode => "mode",
-        GrowthCause::Loop => "closed_loop",
-        GrowthCause::Motion => "motion",
-    }
-}
-
-/// The object `divergence` of a scenario.
-pub(super) fn divergence_row(divergence: &Divergence) -> Object {
-    let row = |kind: &'static str| Object::new().with("kind", kind).with("since_s", divergence.since_s());
-    match *divergence {
-        Divergence::CommandBeyondRange { range_v, .. } => {
-            row("command_beyond_range").with("range_v", range_v)
-        }
-        Divergence::CommandSwings { range_v, swings, .. } => {
-            row("command_swings").with("range_v", range_v).with("swings", swings)
-        }
-        Divergence::ForceBeyondReference { force_n, reference_n, .. } => row("force_beyond_reference")
-            .with(Signal::Force.quantity(), force_n)
-            .with(Signal::Reference.quantity(), reference_n),
-    }
-}
 
 /// Words for the way in which a run diverges.
 pub(super) fn divergence_words(divergence: &Divergence, units: Units) -> String {
@@ -118,15 +50,6 @@ pub(super) fn sentences(run: &ScenarioRun) -> Vec<String> {
     let unfollowed = run.unfollowed.filter(|_| !judged).map(unfollowed_words);
     let sentences = grown.into_iter().chain(repeated);
     sentences.chain(doubt.then(|| unknown.to_string())).chain(unfollowed).collect()
-}
-
-/// Name, in an answer, of the cause for which the growth of errors was not followed.
-pub(super) fn unfollowed_word(cause: UnfollowedCause) -> &'static str {
-    match cause {
-        UnfollowedCause::Samples => "samples",
-        UnfollowedCause::Delays => "delays",
-        UnfollowedCause::Method => "method",
-    }
 }
 
 fn unfollowed_words(kinks: UnfollowedKinks) -> String {

@@ -1,8 +1,11 @@
 //! Requirements in time, compared with the runs of scenarios, in words and for programs.
 
-use super::{NotJudged, ScenarioRequirement, ScenarioRun, reached_words, required_of_run, required_words};
-use crate::answer::{Object, Word, words};
+use super::{
+    NotJudged, ReachedStep, ScenarioRequirement, ScenarioRun, reached_words, required_of_run, required_words,
+};
+use crate::answer::{Answer, OrReason, Word, words};
 use crate::project::Project;
+use crate::specification::RequiredStepAnswer;
 
 /// Reason why runs give no verdict on a requirement.
 pub(crate) fn not_judged_words(why: NotJudged) -> &'static str {
@@ -57,21 +60,44 @@ pub(crate) fn requirement_sentence(one: &ScenarioRequirement) -> String {
     }
 }
 
-/// A requirement in a run, for programs.
-pub(super) fn row(one: &ScenarioRequirement) -> Object {
-    let required = &one.wish;
-    let required = Object::new()
-        .maybe("overshoot_percent", required.overshoot_percent)
-        .maybe("settling_time_s", required.settling_time_s)
-        .maybe("rise_time_s", required.rise_time_s)
-        .with("settling_band_percent", required.band_percent);
-    let object = Object::new().with("specification", one.number).with("required", required);
-    match one.reached {
-        Ok(reached) => object
-            .maybe("verdict", one.is_satisfied().map(satisfied_word))
-            .with("overshoot_percent", reached.overshoot_percent)
-            .with("settling_time_s", reached.settling_time_s)
-            .with("rise_time_s", reached.rise_time_s),
-        Err(why) => object.told("verdict", Err::<&str, _>(not_judged_words(why))),
+/// Requirement in time against the steps of a run.
+#[derive(Answer)]
+pub(super) struct ScenarioRequirementAnswer {
+    /// Number of the specification, from 1 in the order of the file.
+    specification: usize,
+    /// Required step response.
+    required: RequiredStepAnswer,
+    /// Outcome for the requirement.
+    verdict: OrReason<Satisfaction>,
+    #[answer(flatten)]
+    reached: Option<WorstStepAnswer>,
+}
+
+/// Worst of the steps against a requirement in time.
+#[derive(Answer)]
+pub(crate) struct WorstStepAnswer {
+    /// Overshoot, of the step.
+    overshoot_percent: f64,
+    /// Settling time; `inf` if the step does not settle.
+    settling_time_s: f64,
+    /// Rise from 10 to 90 percent; `inf` if the step does not rise so far.
+    rise_time_s: f64,
+}
+
+impl From<ReachedStep> for WorstStepAnswer {
+    fn from(reached: ReachedStep) -> WorstStepAnswer {
+        let ReachedStep { overshoot_percent, settling_time_s, rise_time_s } = reached;
+        WorstStepAnswer { overshoot_percent, settling_time_s, rise_time_s }
+    }
+}
+
+/// The same for programs.
+pub(super) fn requirement(one: &ScenarioRequirement) -> ScenarioRequirementAnswer {
+    let satisfied = one.reached.map(|reached| one.wish.is_satisfied(&reached).into());
+    ScenarioRequirementAnswer {
+        specification: one.number,
+        required: (&one.wish).into(),
+        verdict: OrReason(satisfied.map_err(|why| not_judged_words(why).to_string())),
+        reached: one.reached.ok().map(WorstStepAnswer::from),
     }
 }

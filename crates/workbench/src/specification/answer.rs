@@ -1,12 +1,12 @@
 //! Requirements in time for programs, and the section of `check` on them.
 
 use phea_dynamics::time_response::Settling;
+use phea_engineering::simulate::TrackingWish;
 
 use super::{CheckedWish, wish_sentence};
 use crate::answer::{Answer, significant, words};
 use crate::document::Document;
 use crate::project::{SPECIFICATION_KINDS, SpecificationKind};
-use crate::simulate::TrackingWish;
 
 words! {
     /// Kind of a specification, as in the project file.
