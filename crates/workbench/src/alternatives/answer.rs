@@ -5,7 +5,7 @@ use super::findings::{findings, of_case};
 use super::front;
 use super::words::{judge_error_words, no_number_words, undecided_words};
 use super::{AlternativeColumn, Alternatives, ColumnPart, JudgedAlternative, JudgedCase, MovedRange};
-use crate::answer::{Describe, Json, Object};
+use crate::answer::{Body, Describe, Json, Object};
 use crate::design;
 use crate::linearize::{no_closed_impedance_words, passivity_body};
 use crate::specification::subject_words;
@@ -150,14 +150,14 @@ fn told<'c>(object: Object, columns: impl Iterator<Item = &'c AlternativeColumn>
 fn passivity(one: &JudgedAlternative) -> Object {
     let linearization = one.linearization.as_ref();
     let failed = linearization.err().map_or(String::new(), |reason| reason.to_string());
-    let open = linearization.ok().map(|found| passivity_body(&found.open_loop.passivity));
+    let open = linearization.ok().map(|found| passivity_body(&found.open_loop.passivity).into_object());
     let closed = linearization.ok().and_then(|found| found.closed_loop.as_ref());
     let closed = closed.filter(|_| one.deployed.is_ok());
     let absent = linearization.ok().and_then(|found| found.closed_loop_absent).map(no_closed_impedance_words);
     let absent = one.deployed.as_ref().err().map(|reason| reason.to_string()).or(absent.map(str::to_string));
     Object::new().known("open_loop", open, &failed).known(
         "closed_loop",
-        closed.map(|view| passivity_body(&view.passivity)),
+        closed.map(|view| passivity_body(&view.passivity).into_object()),
         absent.as_deref().unwrap_or(&failed),
     )
 }
