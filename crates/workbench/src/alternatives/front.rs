@@ -115,38 +115,6 @@ fn text(found: &FrontValue) -> String {
     }
 }
 
-pub(super) fn json(front: &Front) -> Object {
-    let column = |column: &super::FrontColumn| {
-        let better = if column.sense == ColumnSense::More { "more" } else { "less" };
-        Object::new().with("key", column.key.quantity()).with("better", better)
-    };
-    Object::new()
-        .with("key", front.path.as_str())
-        .with("unit", front.si)
-        .each("columns", &front.columns, column)
-        .each("points", &front.points, |point| row(front, point))
-        .with("not_reached", front.not_reached)
-        .with("findings", findings(front))
-}
-
-fn row(front: &Front, point: &FrontPoint) -> Object {
-    let reason = point.feasible.as_ref().err().map_or(String::new(), |why| unknown_words(why, front.motion));
-    let mut object = Object::new()
-        .with("alternative", point.alternative.as_str())
-        .with("value", point.value)
-        .known("feasible", point.feasible.as_ref().ok().copied(), &reason)
-        .with("comparable", point.comparable);
-    for (column, value) in front.columns.iter().zip(&point.values) {
-        let reason = value.as_ref().err().map_or(String::new(), no_front_value_words);
-        let number = value.as_ref().ok().map(|found| match found.digits {
-            0 => Json::Integer(found.value as i64),
-            _ => Json::Number(found.value),
-        });
-        object = object.known(column.key.quantity(), number, &reason);
-    }
-    object.with("on_front", point.is_on_front()).each("dominated_by", &point.dominated_by, |place| *place)
-}
-
 /// A row for each point, in SI; a value that does not exist is empty.
 pub(super) fn csv(front: &Front) -> OutputFile {
     let keys: Vec<_> = front.columns.iter().map(|column| column.key.quantity().text(front.motion)).collect();
