@@ -1,10 +1,10 @@
-//! Fronts of alternatives over a swept number: table, findings, JSON, CSV and figure.
+//! Fronts of alternatives over a swept number: table, findings, CSV and figure.
 
 use std::borrow::Cow;
 
-use super::words::{column_name, no_front_value_words, unknown_words};
+use super::words::{column_name, no_front_value_words};
 use super::{ColumnKey, ColumnSense, Front, FrontPoint, FrontValue, NoFrontValue};
-use crate::answer::{Csv, Json, Object, OutputFile, quoted};
+use crate::answer::{Csv, OutputFile, quoted};
 use crate::document::{Cell, Table};
 use crate::figure::{Figure, FrontPlace, ParetoCurve, ParetoFront, ParetoPoint, Words};
 use crate::quantity::DisplayUnit;

@@ -77,7 +77,8 @@ struct BenchTestAnswer {
 /// Hysteresis and threshold of the valve, as the rows of the test show them.
 #[derive(Answer)]
 struct ReversalsAnswer {
-    /// Greatest difference of two commands with the same flow over the cycle, including the threshold.
+    /// Greatest difference of two commands with the same flow over the cycle, including the
+    /// threshold.
     hysteresis_v: BenchEstimateAnswer,
     /// Change of the command after a reversal before the spool moves.
     threshold_v: BenchEstimateAnswer,

@@ -45,8 +45,8 @@ pub(crate) struct LinearizeAnswer {
     decomposition_error: DecompositionErrorAnswer,
     /// Difference of the fifth-order model from the two-pressure one, both with derived parameters.
     reduction_error: ResponseDifferenceAnswer,
-    /// Difference of the first-order model (thesis 6.13) from the fifth-order one (6.7), both with the
-    /// load held still.
+    /// Difference of the first-order model (thesis 6.13) from the fifth-order one (6.7), both with
+    /// the load held still.
     first_order_error: ResponseDifferenceAnswer,
     /// Modes of the plant with their parts in its step response.
     dominance: Vec<DominantModeAnswer>,

@@ -22,8 +22,8 @@ pub(super) struct SweptKeyAnswer {
     points: usize,
     /// Spacing of the values.
     spacing: SweepSpacing,
-    /// True if the plant of every verdict depends on the key; otherwise poles, resonance and bandwidth
-    /// are those of the derived parameters.
+    /// True if the plant of every verdict depends on the key; otherwise poles, resonance and
+    /// bandwidth are those of the derived parameters.
     plant_follows: bool,
 }
 
@@ -48,8 +48,8 @@ pub(super) struct SweptPointAnswer {
     poles: Option<SweptPolesAnswer>,
     /// Resonance of the least damped pole; null if no pole has one.
     resonance: Option<SweptResonanceAnswer>,
-    /// Frequency up to which the force of the nominal loop stays within 3 dB of its value towards zero
-    /// frequency, with the given controller.
+    /// Frequency up to which the force of the nominal loop stays within 3 dB of its value towards
+    /// zero frequency, with the given controller.
     bandwidth_rad_per_s: Option<f64>,
     /// Reason for which there is no bandwidth, only if there are linear models.
     #[answer(optional)]

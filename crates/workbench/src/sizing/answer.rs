@@ -36,15 +36,15 @@ pub(crate) struct SizeAnswer {
     load_stiffness_n_per_m: Option<f64>,
     /// Bores on the market, ascending.
     bores: Vec<SizedBoreAnswer>,
-    /// Hoses with their lengths and gains: accepted ones first, then those that nothing rejects, among
-    /// these the stiffness model of the project first, then the shorter ones.
+    /// Hoses with their lengths and gains: accepted ones first, then those that nothing rejects,
+    /// among these the stiffness model of the project first, then the shorter ones.
     candidates: Vec<CandidateAnswer>,
     /// Decisions of the procedure in order.
     decisions: Vec<SizingDecisionAnswer>,
     /// Influence of uncertain numbers on the best candidate of the stiffness model of the project.
     influences: Vec<InfluenceAnswer>,
-    /// Other means with the stiffness of the best hose, if `[sizing.other_means]` requests them and a
-    /// hose is accepted.
+    /// Other means with the stiffness of the best hose, if `[sizing.other_means]` requests them and
+    /// a hose is accepted.
     #[answer(optional)]
     other_means: Option<OtherMeansAnswer>,
 }
@@ -55,8 +55,8 @@ words! {
 }
 
 words! {
-    /// Load in the first-order model: its motion is prescribed, it yields in series with the sensor, or
-    /// no stiffness holds it and the model holds it still.
+    /// Load in the first-order model: its motion is prescribed, it yields in series with the
+    /// sensor, or no stiffness holds it and the model holds it still.
     SizedLoad { Prescribed => "prescribed", Yielding { .. } => "in_series", HeldStill => "held_still" }
 }
 
@@ -74,8 +74,8 @@ struct SizedBoreAnswer {
 }
 
 words! {
-    /// Verdict on the oil velocity of a bore: within the recommended range, below it, or above it and
-    /// thus rejected.
+    /// Verdict on the oil velocity of a bore: within the recommended range, below it, or above it
+    /// and thus rejected.
     BoreVerdict { Recommended => "recommended", Slow => "slow", TooFast => "too_fast" }
 }
 
@@ -108,8 +108,8 @@ struct CandidateAnswer {
     surge_pressure_pa: f64,
     /// Time constant of the closed loop at the least and at the greatest stiffness over the stroke.
     time_constant_s: [f64; 2],
-    /// Steady-state gain of the closed loop at the null flow-pressure coefficient and at the largest
-    /// one.
+    /// Steady-state gain of the closed loop at the null flow-pressure coefficient and at the
+    /// largest one.
     steady_state_gain: [f64; 2],
     /// True if nothing rejects it and every number that is needed is known.
     accepted: bool,
@@ -171,8 +171,8 @@ struct InfluenceAnswer {
     values: [f64; 3],
     /// Least hydraulic stiffness over the stroke at the low, nominal and high value.
     stiffness_n_per_m: [f64; 3],
-    /// Length of line A that keeps the nominal stiffness at the low, nominal and high value; zero if no
-    /// hose is needed.
+    /// Length of line A that keeps the nominal stiffness at the low, nominal and high value; zero
+    /// if no hose is needed.
     length_m: [f64; 3],
 }
 

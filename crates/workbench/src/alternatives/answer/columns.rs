@@ -11,8 +11,8 @@ use crate::specification::subject_words;
 /// Numbers by which alternatives are compared.
 #[derive(Answer)]
 pub(super) struct AlternativeColumnsAnswer {
-    /// True if the designed loop satisfies every specification and the nonlinear rig every requirement
-    /// in time.
+    /// True if the designed loop satisfies every specification and the nonlinear rig every
+    /// requirement in time.
     feasible: OrReason<bool>,
     /// Verdict on the stability of the designed loop with the load of the alternative.
     stable_with_its_load: OrReason<Verdict>,
@@ -36,7 +36,8 @@ pub(super) struct AlternativeColumnsAnswer {
 /// Numbers of a designed loop.
 #[derive(Answer)]
 pub(super) struct LoopColumnsAnswer {
-    /// Relaxation of every limit with which the specifications can be satisfied; 0 if they are satisfied.
+    /// Relaxation of every limit with which the specifications can be satisfied; 0 if they are
+    /// satisfied.
     relaxation_db: OrReason<f64>,
     /// Order of the controller.
     order: OrReason<i64>,
@@ -167,7 +168,8 @@ pub(super) fn columns(one: &JudgedAlternative) -> AlternativeColumnsAnswer {
 
 /// Parts of an alternative, each once, in the order of their first columns.
 fn parts(all: &[(ColumnPart, AlternativeColumn)]) -> impl Iterator<Item = &ColumnPart> {
-    let is_first = |index: usize, part: &ColumnPart| all.iter().take(index).all(|(other, _)| other != part);
+    let is_first =
+        move |index: usize, part: &ColumnPart| all.iter().take(index).all(|(other, _)| other != part);
     all.iter().enumerate().filter(move |(index, (part, _))| is_first(*index, part)).map(|(_, (part, _))| part)
 }
 

@@ -46,9 +46,9 @@ struct AsymptoteAnswer {
 }
 
 words! {
-    /// Origin of an asymptote of an impedance: the loop or the leakage of the valve at low frequency,
-    /// the compliance of fluid and sensor in series, the sensor alone in front of a piston at rest, or
-    /// the last spring of a transmission whose oil is at rest.
+    /// Origin of an asymptote of an impedance: the loop or the leakage of the valve at low
+    /// frequency, the compliance of fluid and sensor in series, the sensor alone in front of a
+    /// piston at rest, or the last spring of a transmission whose oil is at rest.
     AsymptoteKind {
         LowFrequency => "low_frequency",
         CompliancePlateau => "compliance_plateau",
@@ -95,8 +95,8 @@ pub(super) struct VirtualImpedanceAnswer {
     filter_time_s: f64,
     /// Difference, of the required impedance, up to which the impedance of the loop follows it.
     within_percent: f64,
-    /// Widest band, from the lower to the upper frequency, in which the impedance of the loop follows
-    /// the required one.
+    /// Widest band, from the lower to the upper frequency, in which the impedance of the loop
+    /// follows the required one.
     follows_rad_per_s: OrReason<[f64; 2]>,
     /// Both impedances at selected frequencies.
     points: Vec<VirtualImpedancePointAnswer>,

@@ -50,8 +50,8 @@ enum SizedGasAnswer {
         precharge_pressure_pa: f64,
         /// Ratio of the supply pressure to the precharge, both absolute.
         pressure_ratio: f64,
-        /// Softest and stiffest of the least hydraulic stiffnesses over the stroke, within the range of
-        /// forces.
+        /// Softest and stiffest of the least hydraulic stiffnesses over the stroke, within the
+        /// range of forces.
         stiffness_n_per_m: [f64; 2],
     },
     Absent {
