@@ -10,6 +10,6 @@ mod words;
 
 pub use phea_engineering::alternatives::*;
 
-pub(crate) use answer::body;
+pub(crate) use answer::{AlternativesAnswer, body};
 pub(crate) use document::{document, output, outside_words, told_first};
 pub(crate) use files::{figures, files};

@@ -12,8 +12,8 @@ use crate::line_test::{KnownLine, remark};
 use crate::project::IdentifiedUse;
 use crate::setup::Setup;
 
-pub(crate) use answer::body;
 pub use answer::files;
+pub(crate) use answer::{BenchAnswer, body};
 pub(crate) use document::document;
 pub(crate) use line::line_files;
 

@@ -39,7 +39,7 @@ use phea_dynamics::watch::{Stopped, rising, within};
 use phea_engineering::line_choice::{LoopInQuestion, with_chosen_lines};
 
 use crate::alternatives::{AlternativesOptions as AskedOfAlternatives, judge};
-use crate::answer::{Answer, Body, Object};
+use crate::answer::{Answer, Body};
 use crate::bench;
 use crate::design::{self, design_and_repair, design_project};
 use crate::document::Document;
@@ -49,7 +49,7 @@ use crate::linearize::SweepRequest;
 use crate::option::OptionError;
 use crate::project::Loaded;
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
-use crate::report::report_beside;
+use crate::report::{self, report_beside};
 use crate::robust::{RobustProblem, robust_problem};
 use crate::setup::Setup;
 use crate::shaping::{self, RequestedChange, Shaped, shape};
@@ -319,7 +319,7 @@ fn size_answer(
     let sizing = size(&problem, question);
     Ok(Unprinted {
         document: sizing::document(&sizing, vec![]),
-        body: sizing::body(&sizing),
+        body: sizing::body(&sizing).into_object(),
         files: sizing::files(&sizing),
         affirmative: sizing.best().is_some_and(Candidate::accepted),
     })
@@ -333,7 +333,7 @@ fn bench_answer(loaded: &Loaded, watch: Watch<'_>) -> Result<Unprinted, CommandE
     let remarks = bench::remarks(&setup);
     let document = bench::document(loaded, &remarks, &runs, &of_friction, &lines);
     let files = bench::files(&runs, &of_friction).into_iter().chain(bench::line_files(&lines)).collect();
-    let body = bench::body(remarks, &runs, &lines, &of_friction);
+    let body = bench::body(remarks, &runs, &lines, &of_friction).into_object();
     Ok(Unprinted { document, body, files, affirmative: true })
 }
 
@@ -436,11 +436,6 @@ fn report_answer(
     let written = if files { report.files() } else { vec![report.page_file()] };
     let mut document = Document::default();
     report.summary.iter().for_each(|(name, value)| document.line(format!("{name}: {value}")));
-    let body = Object::new()
-        .each("summary", &report.summary, |(name, text)| {
-            Object::new().with("name", *name).with("text", text.as_str())
-        })
-        .each("figures", &report.figures, |figure| figure.name.as_str())
-        .with("decision", report.decision.json());
+    let body = report::body(report).into_object();
     Ok(Unprinted { document, body, files: written, affirmative: true })
 }

@@ -8,6 +8,7 @@ mod words;
 pub use phea_engineering::linearize::*;
 
 pub use answer::files;
+pub(crate) use answer::{LinearizeAnswer, PassivityAnswer};
 pub(crate) use answer::{body, body_swept, passivity as passivity_body};
 pub(crate) use document::output;
 pub(crate) use document::{

@@ -1,6 +1,7 @@
 //! The report: all results for a rig, as one self-contained page.
 
 mod alternatives;
+mod answer;
 mod assumptions;
 mod audit;
 mod bounds;
@@ -30,8 +31,9 @@ mod specifications;
 mod stiffness;
 mod test_bench;
 
+pub(crate) use answer::{ReportAnswer, body};
 pub use campaign::runs_within_budget;
-pub use opening::{Decided, Decision};
+pub use opening::{DecidedAnswer, DecisionAnswer};
 
 use phea_dynamics::watch::{Watch, within};
 use phea_qft::verification::{SpecificationFinding, Verdict};
@@ -70,8 +72,8 @@ pub struct Report {
     pub tables: Vec<OutputFile>,
     /// The content in a few numbers.
     pub summary: Vec<(&'static str, String)>,
-    /// The statements of the first page.
-    pub decision: Decision,
+    /// What its first page says.
+    pub decision: DecisionAnswer,
 }
 
 /// The fact on the linear step, which the first page states for the machine instead.

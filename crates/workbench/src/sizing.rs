@@ -6,7 +6,7 @@ mod words;
 
 pub use phea_engineering::sizing::*;
 
-pub(crate) use answer::body;
 pub use answer::files;
+pub(crate) use answer::{SizeAnswer, body};
 pub(crate) use document::document;
 pub(crate) use words::{coil_unknown_words, hose_name, length_words, model_name, uncertain_name};

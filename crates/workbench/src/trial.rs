@@ -9,5 +9,5 @@ pub use phea_engineering::trial::*;
 pub(crate) use answer::{TrialAnswer, body};
 pub(crate) use document::{agreement_detail, document, words};
 pub(crate) use words::{
-    agreement_key, brief_reason, finding_words, have_one_name, machine_words, name_of, reason_words, run_name,
+    brief_reason, finding_words, have_one_name, machine_words, name_of, reason_words, run_name,
 };

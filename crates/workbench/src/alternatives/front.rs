@@ -1,10 +1,10 @@
-//! Fronts of alternatives over a swept number: table, findings, JSON, CSV and figure.
+//! Fronts of alternatives over a swept number: table, findings, CSV and figure.
 
 use std::borrow::Cow;
 
-use super::words::{column_name, no_front_value_words, unknown_words};
+use super::words::{column_name, no_front_value_words};
 use super::{ColumnKey, ColumnSense, Front, FrontPoint, FrontValue, NoFrontValue};
-use crate::answer::{Csv, Json, Object, OutputFile, quoted};
+use crate::answer::{Csv, OutputFile, quoted};
 use crate::document::{Cell, Table};
 use crate::figure::{Figure, FrontPlace, ParetoCurve, ParetoFront, ParetoPoint, Words};
 use crate::quantity::DisplayUnit;
@@ -113,38 +113,6 @@ fn text(found: &FrontValue) -> String {
         0 => found.value.to_string(),
         digits => found.unit.text(found.value, digits),
     }
-}
-
-pub(super) fn json(front: &Front) -> Object {
-    let column = |column: &super::FrontColumn| {
-        let better = if column.sense == ColumnSense::More { "more" } else { "less" };
-        Object::new().with("key", column.key.quantity()).with("better", better)
-    };
-    Object::new()
-        .with("key", front.path.as_str())
-        .with("unit", front.si)
-        .each("columns", &front.columns, column)
-        .each("points", &front.points, |point| row(front, point))
-        .with("not_reached", front.not_reached)
-        .with("findings", findings(front))
-}
-
-fn row(front: &Front, point: &FrontPoint) -> Object {
-    let reason = point.feasible.as_ref().err().map_or(String::new(), |why| unknown_words(why, front.motion));
-    let mut object = Object::new()
-        .with("alternative", point.alternative.as_str())
-        .with("value", point.value)
-        .known("feasible", point.feasible.as_ref().ok().copied(), &reason)
-        .with("comparable", point.comparable);
-    for (column, value) in front.columns.iter().zip(&point.values) {
-        let reason = value.as_ref().err().map_or(String::new(), no_front_value_words);
-        let number = value.as_ref().ok().map(|found| match found.digits {
-            0 => Json::Integer(found.value as i64),
-            _ => Json::Number(found.value),
-        });
-        object = object.known(column.key.quantity(), number, &reason);
-    }
-    object.with("on_front", point.is_on_front()).each("dominated_by", &point.dominated_by, |place| *place)
 }
 
 /// A row for each point, in SI; a value that does not exist is empty.

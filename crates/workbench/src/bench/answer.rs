@@ -1,9 +1,9 @@
-//! The tests of the bench for programs, and their tables.
+//! The answer of `bench`, and the tables of its tests.
 
-use super::line::line_test;
-use super::table::{BenchColumn, BenchTable};
+use super::line::{LineTestTableAnswer, line_test};
+use super::table::{BenchColumn, BenchRecordAnswer, BenchTable};
 use super::{BenchRow, BenchRun, BenchSeries, FrictionRun, ReversalReading, friction};
-use crate::answer::{Json, Object, OutputFile};
+use crate::answer::{Answer, OutputFile};
 use crate::estimate::Estimate;
 use crate::line_test::LineRun;
 use crate::quantity::DisplayUnit;
@@ -46,35 +46,91 @@ fn title(series: BenchSeries) -> &'static str {
     }
 }
 
-fn reversals(found: &ReversalReading) -> Object {
-    let reading = |one: Estimate| Object::new().with("value", one.value).with("confidence_95", one.interval);
-    Object::new()
-        .with("hysteresis_v", reading(found.hysteresis))
-        .with("threshold_v", reading(found.threshold))
-        .with("hysteresis_share_of_nominal", found.hysteresis.value / found.nominal_voltage)
-        .with("threshold_share_of_nominal", found.threshold.value / found.nominal_voltage)
+/// Answer of `bench`.
+#[derive(Answer)]
+pub(crate) struct BenchAnswer {
+    /// Remarks on the parts of the project that the tests leave out, if any.
+    #[answer(optional)]
+    remarks: Option<Vec<&'static str>>,
+    /// Static tests of the servovalve.
+    tests: Vec<BenchTestAnswer>,
+    /// Tests of a blocked line, if `[bench.line]` requests them.
+    #[answer(optional)]
+    line_tests: Option<Vec<LineTestTableAnswer>>,
+    /// Runs of the cylinder for its friction, if `[bench.friction]` requests them.
+    #[answer(optional)]
+    friction_runs: Option<Vec<BenchRecordAnswer>>,
 }
 
-/// What `bench` says to programs.
+/// Static test of the servovalve.
+#[derive(Answer)]
+struct BenchTestAnswer {
+    #[answer(flatten)]
+    record: BenchRecordAnswer,
+    /// Lowest supply pressure during the test, without noise.
+    lowest_supply_pressure_pa: f64,
+    /// Hysteresis and threshold of the valve, only of the test of reversals.
+    #[answer(optional)]
+    reversals: Option<ReversalsAnswer>,
+}
+
+/// Hysteresis and threshold of the valve, as the rows of the test show them.
+#[derive(Answer)]
+struct ReversalsAnswer {
+    /// Greatest difference of two commands with the same flow over the cycle, including the
+    /// threshold.
+    hysteresis_v: BenchEstimateAnswer,
+    /// Change of the command after a reversal before the spool moves.
+    threshold_v: BenchEstimateAnswer,
+    /// Hysteresis over the command of full opening.
+    hysteresis_share_of_nominal: f64,
+    /// Threshold over the command of full opening.
+    threshold_share_of_nominal: f64,
+}
+
+/// Estimate of a number.
+#[derive(Answer)]
+struct BenchEstimateAnswer {
+    /// Most likely value.
+    value: f64,
+    /// Bounds of the 95 % confidence interval; infinite if nothing limits it.
+    confidence_95: [f64; 2],
+}
+
+fn reversals(found: &ReversalReading) -> ReversalsAnswer {
+    let reading = |one: Estimate| BenchEstimateAnswer { value: one.value, confidence_95: one.interval };
+    ReversalsAnswer {
+        hysteresis_v: reading(found.hysteresis),
+        threshold_v: reading(found.threshold),
+        hysteresis_share_of_nominal: found.hysteresis.value / found.nominal_voltage,
+        threshold_share_of_nominal: found.threshold.value / found.nominal_voltage,
+    }
+}
+
+/// Answer of `bench`.
 pub(crate) fn body(
     remarks: Vec<&'static str>,
     runs: &[BenchRun],
     lines: &[LineRun],
     of_friction: &[FrictionRun],
-) -> Object {
-    let test = |run: &BenchRun| {
-        recorded(run)
-            .json_of_signals()
-            .with("lowest_supply_pressure_pa", run.lowest_supply_pressure)
-            .maybe("reversals", run.reversals.as_ref().map(reversals))
+) -> BenchAnswer {
+    let test = |run: &BenchRun| BenchTestAnswer {
+        record: recorded(run).answer(),
+        lowest_supply_pressure_pa: run.lowest_supply_pressure,
+        reversals: run.reversals.as_ref().map(reversals),
     };
-    let some = |list: Vec<Json>| (!list.is_empty()).then_some(list);
-    let out = Object::new()
-        .maybe("remarks", some(remarks.into_iter().map(Json::from).collect()))
-        .each("tests", runs, test)
-        .maybe("line_tests", some(lines.iter().map(|run| line_test(run).into()).collect()));
-    let of_friction = of_friction.iter().map(|run| friction::recorded(run).json_of_signals().into());
-    out.maybe("friction_runs", some(of_friction.collect()))
+    let friction_runs = of_friction.iter().map(|run| friction::recorded(run).answer());
+    BenchAnswer {
+        remarks: some(remarks),
+        tests: runs.iter().map(test).collect(),
+        line_tests: some(lines.iter().map(line_test).collect()),
+        friction_runs: some(friction_runs.collect()),
+    }
+}
+
+/// A list that is not empty.
+fn some<Item>(list: Vec<Item>) -> Option<Vec<Item>> {
+    (!list.is_empty()).then_some(list)
 }
 
 /// The tables, a file for each test.

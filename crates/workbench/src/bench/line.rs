@@ -1,7 +1,9 @@
 //! The tests of a line: text, JSON and tables.
 
-use super::table::{BenchColumn, BenchTable};
-use crate::answer::{Object, OutputFile};
+use phea_dynamics::order::ends;
+
+use super::table::{BenchColumn, BenchFileAnswer, BenchTable};
+use crate::answer::{Answer, OutputFile};
 use crate::line_test::{LineRun, LineSeries};
 use crate::quantity::DisplayUnit;
 
@@ -33,15 +35,42 @@ fn title(series: LineSeries) -> &'static str {
     }
 }
 
-/// A test in JSON.
-pub(super) fn line_test(run: &LineRun) -> Object {
-    let table = recorded(run);
-    let input = match run.series {
-        LineSeries::PressureRise => "volume_m3",
-        LineSeries::FrequencyResponse => "flow_m3_per_s",
-    };
-    let columns = [input, "pressure_pa"].into_iter().zip(&table.columns);
-    columns.fold(table.json(), |out, (key, column)| out.with(key, column.range()))
+/// Test of a blocked line.
+#[derive(Answer)]
+pub(super) struct LineTestTableAnswer {
+    #[answer(flatten)]
+    file: BenchFileAnswer,
+    #[answer(flatten)]
+    input: LineInputAnswer,
+    /// Smallest and largest pressure at the open end.
+    pressure_pa: [f64; 2],
+}
+
+/// Oil that enters a blocked line.
+#[derive(Answer)]
+enum LineInputAnswer {
+    PressureRise {
+        /// Smallest and largest volume displaced into the line, only of a slow pressure rise.
+        volume_m3: [f64; 2],
+    },
+    FrequencyResponse {
+        /// Smallest and largest flow into the line, only of a frequency response.
+        flow_m3_per_s: [f64; 2],
+    },
+}
+
+/// A test for programs.
+pub(super) fn line_test(run: &LineRun) -> LineTestTableAnswer {
+    let range = |values: &[f64]| ends(values.iter().copied());
+    let input = range(&run.inputs);
+    LineTestTableAnswer {
+        file: recorded(run).file_answer(),
+        input: match run.series {
+            LineSeries::PressureRise => LineInputAnswer::PressureRise { volume_m3: input },
+            LineSeries::FrequencyResponse => LineInputAnswer::FrequencyResponse { flow_m3_per_s: input },
+        },
+        pressure_pa: range(&run.pressures),
+    }
 }
 
 /// The tables, a file for each test.

@@ -4,9 +4,42 @@ use std::io;
 
 use phea_dynamics::order::ends;
 
-use crate::answer::{NumberTable, Object, OutputFile, TableFormat};
+use crate::answer::{Answer, NumberTable, OutputFile, TableFormat};
 use crate::document::{Cell, Document, Table};
 use crate::quantity::{DisplayUnit, TIME, display};
+
+/// File of a virtual test.
+#[derive(Answer)]
+pub(super) struct BenchFileAnswer {
+    /// Name of the test.
+    name: &'static str,
+    /// Name of the file with its rows.
+    file: String,
+    /// Number of rows.
+    rows: usize,
+    /// Time of the last row from the start.
+    duration_s: f64,
+}
+
+/// Record of a virtual test.
+#[derive(Answer)]
+pub(super) struct BenchRecordAnswer {
+    #[answer(flatten)]
+    file: BenchFileAnswer,
+    /// Recorded signals.
+    signals: Vec<BenchSignalAnswer>,
+}
+
+/// Recorded signal of a virtual test.
+#[derive(Answer)]
+struct BenchSignalAnswer {
+    /// Name of the quantity.
+    name: &'static str,
+    /// SI unit of the range, not of the file; degrees Celsius of a temperature.
+    unit: &'static str,
+    /// Smallest and largest value.
+    range: [f64; 2],
+}
 
 /// The table of a test.
 pub(super) struct BenchTable {
@@ -88,19 +121,23 @@ impl BenchTable {
         out.sentences([format!("{} rows in {duration}.", self.times.len())]);
     }
 
-    /// Name and title in JSON.
-    pub(super) fn json(&self) -> Object {
-        Object::new()
-            .with("name", self.name)
-            .with("file", self.file_name())
-            .with("rows", self.times.len())
-            .with("duration_s", self.duration_s())
+    /// The table without its rows.
+    pub(super) fn file_answer(&self) -> BenchFileAnswer {
+        BenchFileAnswer {
+            name: self.name,
+            file: self.file_name(),
+            rows: self.times.len(),
+            duration_s: self.duration_s(),
+        }
     }
 
-    /// Name, title, and the smallest and the largest value of each column, in JSON.
-    pub(super) fn json_of_signals(&self) -> Object {
-        self.json().each("signals", &self.columns, |column| {
-            Object::new().with("name", column.quantity).with("unit", column.si).with("range", column.range())
-        })
+    /// The same with the smallest and the largest value of each column.
+    pub(super) fn answer(&self) -> BenchRecordAnswer {
+        let signal = |column: &BenchColumn| BenchSignalAnswer {
+            name: column.quantity,
+            unit: column.si,
+            range: column.range(),
+        };
+        BenchRecordAnswer { file: self.file_answer(), signals: self.columns.iter().map(signal).collect() }
     }
 }

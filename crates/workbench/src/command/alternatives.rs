@@ -7,6 +7,7 @@ use crate::alternatives::{
     self, AlternativesError, AlternativesOptions, AskedAlternative, FrontRequest, IMPEDANCE_AT, asked,
     asked_cases, judge, outside_words,
 };
+use crate::answer::Body;
 use crate::linearize::SweepRequest;
 use crate::project::{AS_DECLARED, Loaded};
 use crate::source::Source;
@@ -47,7 +48,7 @@ pub(super) fn alternatives_answer(
     let found = judge(source, loaded, catalogues, &request.read()?, watch)?;
     Ok(Unprinted {
         document: alternatives::output(&found),
-        body: alternatives::body(&found),
+        body: alternatives::body(&found).into_object(),
         files: if request.files { alternatives::files(&found) } else { vec![] },
         affirmative: found.is_complete(),
     })

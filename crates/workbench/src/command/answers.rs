@@ -3,20 +3,24 @@
 use super::check::CheckAnswer;
 use super::refusal::RefusedAnswer;
 use super::verify::VerifyAnswer;
+use crate::alternatives::AlternativesAnswer;
 use crate::answer::CommandAnswer;
 use crate::audit::CheckCertificateAnswer;
-use crate::campaign::{CampaignAnswer, CampaignRunAnswer};
-use crate::simulate::{CompareAnswer, SimulateAnswer};
+use crate::bench::BenchAnswer;
+use crate::linearize::LinearizeAnswer;
+use crate::report::ReportAnswer;
+use crate::sizing::SizeAnswer;
 
 /// The answer of each command.
 pub(super) fn answers() -> Vec<CommandAnswer> {
     vec![
         CommandAnswer::of::<CheckAnswer>("check"),
+        CommandAnswer::of::<SizeAnswer>("size"),
+        CommandAnswer::of::<LinearizeAnswer>("linearize"),
         CommandAnswer::of::<VerifyAnswer>("verify"),
-        CommandAnswer::of::<SimulateAnswer>("simulate"),
-        CommandAnswer::of::<CompareAnswer>("compare"),
-        CommandAnswer::of::<CampaignAnswer>("campaign"),
-        CommandAnswer::of::<CampaignRunAnswer>("campaign"),
+        CommandAnswer::of::<AlternativesAnswer>("alternatives"),
+        CommandAnswer::of::<BenchAnswer>("bench"),
+        CommandAnswer::of::<ReportAnswer>("report"),
         CommandAnswer::whole::<RefusedAnswer>(None),
         CommandAnswer::whole::<CheckCertificateAnswer>(Some("check-certificate")),
     ]

@@ -2,7 +2,7 @@
 
 use super::CommandError;
 use super::unprinted::Unprinted;
-use crate::answer::picture_files;
+use crate::answer::{Body, picture_files};
 use crate::linearize::{self, Linearization, SweepRequest, linearize, sweep};
 use crate::project::Loaded;
 use crate::setup::Setup;
@@ -17,7 +17,7 @@ pub(super) fn linearize_answer(loaded: &Loaded) -> Result<Unprinted, CommandErro
     let linearization = linearized(&setup)?;
     Ok(Unprinted {
         document: linearize::output(&setup, &linearization),
-        body: linearize::body(&setup, &linearization),
+        body: linearize::body(&setup, &linearization).into_object(),
         files: linearize::files(&linearization),
         affirmative: true,
     })
@@ -37,7 +37,7 @@ pub(super) fn swept_answer(
     files.extend(picture_files(&[linearize::sweep_figure(&swept)]));
     Ok(Unprinted {
         document: linearize::sweep_document(&swept),
-        body: linearize::body_swept(&setup, &linearization, &swept),
+        body: linearize::body_swept(&setup, &linearization, &swept).into_object(),
         files,
         affirmative: true,
     })

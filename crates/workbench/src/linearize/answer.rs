@@ -1,198 +1,279 @@
-use phea_dynamics::frequency::PassivityReport;
-use phea_dynamics::linear::TransferFunction;
-use phea_hydraulics::impedance::{Asymptote, AsymptoteKind};
+//! The answer of `linearize`, and the table of its poles.
 
-use super::sweep_answer::{head, rows};
-use super::{
-    AgreementBand, AskedImpedance, Linearization, LinkagePlace, PortView, ReductionDifference, Sweep,
-    WITHIN_PERCENT, models, no_closed_impedance_words, stiffness_sentence,
-};
-use crate::answer::{Csv, Json, Object, OutputFile, quoted};
+mod differences;
+mod port;
+mod stiffness;
+
+use num_complex::Complex64;
+use phea_dynamics::linear::TransferFunction;
+use phea_hydraulics::linear::ModeShare;
+
+use super::sweep_answer::{SweptKeyAnswer, SweptPointAnswer, head, rows};
+use super::{AgreementBand, Linearization, LinkagePlace, LinkagePosition, Sweep, models};
+use crate::answer::{Answer, Csv, OutputFile, quoted, words};
 use crate::caveat;
-use crate::quantity::{DAMPING, FORCE, LENGTH, MASS, QuantityName, STIFFNESS};
+use crate::quantity::{FORCE, QuantityName};
 use crate::setup::Setup;
+use differences::{DecompositionErrorAnswer, ResponseDifferenceAnswer, decomposition, difference};
+use port::{
+    FinalForcesAnswer, ImpedancesAnswer, PassivitiesAnswer, VirtualImpedanceAnswer, final_forces, impedances,
+    passivities, virtual_impedance,
+};
+use stiffness::{LinearStiffnessAnswer, stiffness};
+
+pub(crate) use port::{PassivityAnswer, passivity};
+
+/// Answer of `linearize`.
+#[derive(Answer)]
+pub(crate) struct LinearizeAnswer {
+    /// Hydraulic stiffness over the stroke.
+    stiffness: LinearStiffnessAnswer,
+    /// Poles of the linear models from the command to the force.
+    poles: ModelPolesAnswer,
+    /// Models in which the load is held still, only if the load yields to force.
+    #[answer(optional)]
+    load_held_still_in: Option<Vec<HeldModel>>,
+    /// Transfer functions of the plant of every verdict.
+    plant: LinearPlantAnswer,
+    /// Linkage at selected positions over the stroke, if the rig has one.
+    #[answer(optional)]
+    linkage: Option<Vec<LinkagePlaceAnswer>>,
+    /// Frequency bands in which each reduced model agrees with the plant to 1 dB and 5 degrees, the
+    /// fullest model first.
+    agreement: Vec<AgreementBandsAnswer>,
+    /// Difference of the corrected decomposed model (thesis 6.12) from the fifth-order one (6.7).
+    decomposition_error: DecompositionErrorAnswer,
+    /// Difference of the fifth-order model from the two-pressure one, both with derived parameters.
+    reduction_error: ResponseDifferenceAnswer,
+    /// Difference of the first-order model (thesis 6.13) from the fifth-order one (6.7), both with
+    /// the load held still.
+    first_order_error: ResponseDifferenceAnswer,
+    /// Modes of the plant with their parts in its step response.
+    dominance: Vec<DominantModeAnswer>,
+    /// Driving-point impedance at the load, -F_e/(s X_L).
+    impedance: ImpedancesAnswer,
+    /// Passivity of the driving-point impedance.
+    passivity: PassivitiesAnswer,
+    /// Virtual impedance and the impedance that the loop has instead, if one is required and the
+    /// project gives a controller.
+    #[answer(optional)]
+    virtual_impedance: Option<VirtualImpedanceAnswer>,
+    /// Frequency above which the mass of the piston, or the oil of a transmission, hides the
+    /// compliance from the load.
+    compliance_hidden_above_rad_per_s: f64,
+    /// Force or torque that remains after a step of the position by 0.001 (m or rad).
+    #[answer(key = QuantityName::OfMotion(["load_step_final_force", "load_step_final_torque"], &FORCE))]
+    load_step_final_force: FinalForcesAnswer,
+    /// Body that this step moves.
+    load_step_moves: MovedByStep,
+    /// Declared effects that the linear models do not include.
+    warnings: Vec<String>,
+    /// Swept key, if a sweep was requested.
+    #[answer(optional)]
+    swept: Option<SweptKeyAnswer>,
+    /// Results at each value of the swept key, if a sweep was requested.
+    #[answer(optional)]
+    sweep: Option<Vec<SweptPointAnswer>>,
+}
+
+/// Poles of the linear models from the command to the force, sorted by magnitude.
+#[derive(Answer)]
+struct ModelPolesAnswer {
+    /// Plant of every verdict, with its load and the parameters in use.
+    plant: Vec<Complex64>,
+    /// Fifth-order model (thesis 6.7) with the parameters in use.
+    full: Vec<Complex64>,
+    /// Decomposed model (thesis 6.12) with the damping corrected.
+    decomposed: Vec<Complex64>,
+    /// First-order model (thesis 6.13).
+    first_order: Vec<Complex64>,
+    /// Linearised two-pressure model with derived parameters.
+    two_pressure: Vec<Complex64>,
+}
+
+#[derive(Clone, Copy)]
+enum HeldModel {
+    TwoPressure,
+    Full,
+    Decomposed,
+    FirstOrder,
+}
+
+words! {
+    /// Model that holds the load still, by its key in `poles`.
+    HeldModel {
+        TwoPressure => "two_pressure",
+        Full => "full",
+        Decomposed => "decomposed",
+        FirstOrder => "first_order",
+    }
+}
+
+/// Transfer functions of the plant, to the measured force.
+#[derive(Answer)]
+struct LinearPlantAnswer {
+    /// From the command of the valve.
+    command: FactorsAnswer,
+    /// From the position of the load, or of the ground of a load that yields.
+    load_position: FactorsAnswer,
+}
+
+/// Transfer function gain (s - zeros).../((s - poles)...).
+#[derive(Answer)]
+struct FactorsAnswer {
+    /// Leading coefficient.
+    gain: f64,
+    /// Zeros, sorted by magnitude.
+    zeros: Vec<Complex64>,
+    /// Poles, sorted by magnitude.
+    poles: Vec<Complex64>,
+}
+
+/// Linkage at one position, which joins the rod of a cylinder.
+#[derive(Answer)]
+struct LinkagePlaceAnswer {
+    /// Name of the position.
+    at: LinkagePosition,
+    /// Position of the end of the rod from the start of the stroke.
+    position_m: f64,
+    /// Angle of the joint.
+    angle_rad: f64,
+    /// Lever arm: torque over force, and velocity over angular velocity.
+    lever_arm_m: f64,
+    /// Inertia of the load over the square of the lever arm, only of a load that yields.
+    #[answer(optional)]
+    reflected_mass_kg: Option<f64>,
+}
+
+words! {
+    /// Position of a linkage.
+    LinkagePosition by LinkagePosition::words [
+        Retracted, Extended, OperatingPoint, LeastArm, GreatestArm,
+    ]
+}
+
+/// Frequency bands in which a reduced model is within 1 dB and 5 degrees of the plant.
+#[derive(Answer)]
+struct AgreementBandsAnswer {
+    /// Name of the reduced model.
+    model: &'static str,
+    /// Equation of the reduced model in the thesis.
+    equation: String,
+    /// Bands from the lower to the upper frequency, ascending, as resolved by the grid.
+    bands_rad_per_s: Vec<[f64; 2]>,
+}
+
+/// Mode of the plant in its step response.
+#[derive(Answer)]
+struct DominantModeAnswer {
+    /// Pole, of a conjugate pair the one with positive imaginary part.
+    pole: Complex64,
+    /// Greatest amplitude of the mode in the step response, of the final value; null if it does not
+    /// exist.
+    step_share: Option<f64>,
+    /// Ratio of the decay rate to that of the slowest mode; null if it does not exist.
+    decay_ratio: Option<f64>,
+    /// Reason for a number that does not exist, only in that case.
+    #[answer(optional)]
+    reason: Option<String>,
+}
+
+enum MovedByStep {
+    Ground,
+    Load,
+}
+
+words! {
+    /// Body that a step of the position moves: the load, or the ground of a load that yields.
+    MovedByStep { Ground => "ground", Load => "load" }
+}
 
 /// The same with the results of a sweep.
-pub(crate) fn body_swept(setup: &Setup<'_>, linearization: &Linearization, sweep: &Sweep) -> Object {
-    body(setup, linearization).with("swept", head(sweep)).with("sweep", rows(sweep))
+pub(crate) fn body_swept(setup: &Setup<'_>, linearization: &Linearization, sweep: &Sweep) -> LinearizeAnswer {
+    LinearizeAnswer { swept: Some(head(sweep)), sweep: Some(rows(sweep)), ..body(setup, linearization) }
 }
 
-/// What `linearize` says to programs.
-pub(crate) fn body(setup: &Setup<'_>, linearization: &Linearization) -> Object {
+/// Answer of `linearize` without a sweep.
+pub(crate) fn body(setup: &Setup<'_>, linearization: &Linearization) -> LinearizeAnswer {
     let plant = &linearization.plant;
-    let poles = Object::new()
-        .with("plant", plant.command.poles())
-        .with("full", linearization.full.command.poles())
-        .with("decomposed", linearization.decomposed[1].poles())
-        .with("first_order", linearization.first_order.poles())
-        .with("two_pressure", linearization.two_pressure.command.poles());
-    let held_still = linearization.load_yields.then(|| {
-        let first_order = (!linearization.first_order_has_load).then_some("first_order");
-        ["two_pressure", "full", "decomposed"].into_iter().chain(first_order).collect::<Vec<_>>()
-    });
-    let decomposition = difference(&linearization.corrected_decomposition)
-        .with("as_printed", difference(&linearization.printed_decomposition));
-    Object::new()
-        .with("stiffness", stiffness(linearization))
-        .with("poles", poles)
-        .maybe("load_held_still_in", held_still)
-        .with(
-            "plant",
-            Object::new()
-                .with("command", factors(&plant.command))
-                .with("load_position", factors(&plant.load_position)),
-        )
-        .maybe("linkage", linkages(&linearization.linkage))
-        .each("agreement", &linearization.agreement, agreement)
-        .with("decomposition_error", decomposition)
-        .with("reduction_error", difference(&linearization.reduction))
-        .with("first_order_error", difference(&linearization.truncation))
-        .each("dominance", &linearization.modes, |mode| {
-            Object::new()
-                .with("pole", mode.pole)
-                .with("step_share", mode.step_share)
-                .with("decay_ratio", mode.decay_ratio)
-                .maybe("reason", mode.absence.map(|absence| absence.to_string()))
-        })
-        .with("impedance", ports(linearization, impedance))
-        .with("passivity", ports(linearization, |view| passivity(&view.passivity)))
-        .maybe("virtual_impedance", linearization.asked.as_ref().map(asked))
-        .with("compliance_hidden_above_rad_per_s", linearization.compliance_hidden_above_rad_per_s)
-        .with(
-            QuantityName::OfMotion(["load_step_final_force", "load_step_final_torque"], &FORCE),
-            final_force(linearization),
-        )
-        .with("load_step_moves", if linearization.open_loop.moves_ground { "ground" } else { "load" })
-        .with("warnings", caveat::of_models_in_words(setup))
+    let linkage = linearization.linkage.as_slice();
+    let moves_ground = linearization.open_loop.moves_ground;
+    LinearizeAnswer {
+        stiffness: stiffness(linearization),
+        poles: model_poles(linearization),
+        load_held_still_in: linearization.load_yields.then(|| held_models(linearization)),
+        plant: LinearPlantAnswer {
+            command: factors(&plant.command),
+            load_position: factors(&plant.load_position),
+        },
+        linkage: (!linkage.is_empty()).then(|| linkage.iter().map(linkage_place).collect()),
+        agreement: linearization.agreement.iter().map(agreement).collect(),
+        decomposition_error: decomposition(linearization),
+        reduction_error: difference(&linearization.reduction),
+        first_order_error: difference(&linearization.truncation),
+        dominance: linearization.modes.iter().map(mode).collect(),
+        impedance: impedances(linearization),
+        passivity: passivities(linearization),
+        virtual_impedance: linearization.asked.as_ref().map(virtual_impedance),
+        compliance_hidden_above_rad_per_s: linearization.compliance_hidden_above_rad_per_s,
+        load_step_final_force: final_forces(linearization),
+        load_step_moves: if moves_ground { MovedByStep::Ground } else { MovedByStep::Load },
+        warnings: caveat::of_models_in_words(setup),
+        swept: None,
+        sweep: None,
+    }
 }
 
-fn stiffness(linearization: &Linearization) -> Object {
-    let [nominal, softest, stiffest] = linearization.stiffness;
-    let models = &linearization.stiffness_models;
-    Object::new()
-        .with(QuantityName::moving("minimum", &STIFFNESS), nominal.minimum)
-        .with(QuantityName::moving("maximum", &STIFFNESS), nominal.maximum)
-        .with(
-            QuantityName::OfMotion(["minimum_position", "minimum_angle"], &LENGTH),
-            nominal.minimum_position,
-        )
-        .with(QuantityName::moving("minimum_softest_wall", &STIFFNESS), softest.minimum)
-        .with(QuantityName::moving("maximum_stiffest_wall", &STIFFNESS), stiffest.maximum)
-        .with("uniform", [models.uniform.minimum, models.uniform.maximum])
-        .with("by_volume", [models.by_volume.minimum, models.by_volume.maximum])
-        .with("sentence", stiffness_sentence(linearization))
+fn model_poles(linearization: &Linearization) -> ModelPolesAnswer {
+    ModelPolesAnswer {
+        plant: linearization.plant.command.poles().to_vec(),
+        full: linearization.full.command.poles().to_vec(),
+        decomposed: linearization.decomposed[1].poles().to_vec(),
+        first_order: linearization.first_order.poles().to_vec(),
+        two_pressure: linearization.two_pressure.command.poles().to_vec(),
+    }
 }
 
-fn linkages(places: &[LinkagePlace]) -> Option<Vec<Object>> {
-    (!places.is_empty()).then(|| places.iter().map(linkage).collect())
+fn held_models(linearization: &Linearization) -> Vec<HeldModel> {
+    let first_order = (!linearization.first_order_has_load).then_some(HeldModel::FirstOrder);
+    let always = [HeldModel::TwoPressure, HeldModel::Full, HeldModel::Decomposed];
+    always.into_iter().chain(first_order).collect()
 }
 
-/// A linkage at one position: it joins the rod of a cylinder.
-fn linkage(place: &LinkagePlace) -> Object {
-    Object::new()
-        .with("at", place.at.words())
-        .with("position_m", place.position_m)
-        .with("angle_rad", place.angle_rad)
-        .with("lever_arm_m", place.lever_arm_m)
-        .maybe("reflected_mass_kg", place.reflected_mass_kg)
+fn factors(function: &TransferFunction) -> FactorsAnswer {
+    FactorsAnswer {
+        gain: function.gain(),
+        zeros: function.zeros().to_vec(),
+        poles: function.poles().to_vec(),
+    }
 }
 
-/// gain (s - zero).../((s - pole)...)
-fn factors(function: &TransferFunction) -> Object {
-    Object::new()
-        .with("gain", function.gain())
-        .with("zeros", function.zeros())
-        .with("poles", function.poles())
+fn linkage_place(place: &LinkagePlace) -> LinkagePlaceAnswer {
+    LinkagePlaceAnswer {
+        at: place.at,
+        position_m: place.position_m,
+        angle_rad: place.angle_rad,
+        lever_arm_m: place.lever_arm_m,
+        reflected_mass_kg: place.reflected_mass_kg,
+    }
 }
 
-/// Bands where a reduction is within 1 dB and 5 degrees of the plant.
-fn agreement(agreement: &AgreementBand) -> Object {
-    Object::new()
-        .with("model", agreement.model)
-        .with("equation", format!("thesis {}", agreement.equation))
-        .with("bands_rad_per_s", agreement.bands_rad_per_s.as_slice())
+fn agreement(agreement: &AgreementBand) -> AgreementBandsAnswer {
+    AgreementBandsAnswer {
+        model: agreement.model,
+        equation: format!("thesis {}", agreement.equation),
+        bands_rad_per_s: agreement.bands_rad_per_s.clone(),
+    }
 }
 
-/// Largest differences over all frequencies, and below 1000 rad/s.
-fn difference(comparison: &ReductionDifference) -> Object {
-    let ReductionDifference { all, low } = comparison;
-    Object::new()
-        .with("magnitude_db", all.magnitude_db)
-        .with("magnitude_at_rad_per_s", all.magnitude_frequency)
-        .with("phase_deg", all.phase_deg)
-        .with("phase_at_rad_per_s", all.phase_frequency)
-        .with(
-            "below_1000_rad_per_s",
-            Object::new().with("magnitude_db", low.magnitude_db).with("phase_deg", low.phase_deg),
-        )
-}
-
-fn ports(linearization: &Linearization, of: impl Fn(&PortView) -> Object) -> Object {
-    Object::new()
-        .with("open_loop", of(&linearization.open_loop))
-        .with("closed_loop", linearization.closed_loop.as_ref().map(&of))
-        .maybe("closed_loop_reason", linearization.closed_loop_absent.map(no_closed_impedance_words))
-}
-
-/// A virtual impedance, and what the port shows of it.
-fn asked(asked: &AskedImpedance) -> Object {
-    let magnitude = phea_dynamics::portable::magnitude;
-    Object::new()
-        .with(QuantityName::moving("stiffness", &STIFFNESS), asked.impedance.stiffness)
-        .with(QuantityName::moving("damping", &DAMPING), asked.impedance.damping)
-        .with(QuantityName::OfMotion(["mass", "inertia"], &MASS), asked.impedance.mass)
-        .with("filter_time_s", asked.impedance.filter_time_s)
-        .with("within_percent", WITHIN_PERCENT)
-        .known("follows_rad_per_s", asked.follows_rad_per_s.map(|band| band.to_vec()), "nowhere within that")
-        .each("points", &asked.points, |point| {
-            Object::new()
-                .with("frequency_rad_per_s", point.frequency_rad_per_s)
-                .with(QuantityName::moving("asked", &DAMPING), magnitude(point.asked))
-                .with(QuantityName::moving("shown", &DAMPING), magnitude(point.shown))
-                .with("asked", point.asked)
-                .with("shown", point.shown)
-        })
-}
-
-fn final_force(linearization: &Linearization) -> Object {
-    let unstable = linearization
-        .motion
-        .either("unstable: the force has no final value", "unstable: the torque has no final value");
-    let closed_loop = linearization.closed_loop.as_ref().and_then(|view| view.final_force_n);
-    let reason = linearization.closed_loop_absent.map_or(unstable, no_closed_impedance_words);
-    Object::new().known("open_loop", linearization.open_loop.final_force_n, unstable).known(
-        "closed_loop",
-        closed_loop,
-        reason,
-    )
-}
-
-fn impedance(view: &PortView) -> Object {
-    factors(&view.impedance).each("asymptotes", &view.asymptotes, asymptote)
-}
-
-/// Z = coefficient s^power
-fn asymptote(asymptote: &Asymptote) -> Object {
-    let kind = match asymptote.kind {
-        AsymptoteKind::LowFrequency => "low_frequency",
-        AsymptoteKind::CompliancePlateau => "compliance_plateau",
-        AsymptoteKind::SensorLimit => "sensor_limit",
-        AsymptoteKind::OilLimit => "oil_limit",
-    };
-    Object::new()
-        .with("kind", kind)
-        .with("coefficient", asymptote.coefficient)
-        .with("power", asymptote.power)
-        .with("from_rad_per_s", asymptote.from)
-        .with("to_rad_per_s", asymptote.to)
-}
-
-pub(crate) fn passivity(report: &PassivityReport) -> Object {
-    Object::new()
-        .with("passive", report.passive)
-        .with("right_half_plane_poles", report.right_half_plane_poles.as_slice())
-        .each("imaginary_poles", &report.imaginary_poles, |pole| pole.frequency_rad_per_s)
-        .each("bands", &report.bands, |band| Json::from([band.from_rad_per_s, band.to_rad_per_s]))
+fn mode(mode: &ModeShare) -> DominantModeAnswer {
+    let known = |value: f64| Some(value).filter(|value| !value.is_nan());
+    DominantModeAnswer {
+        pole: mode.pole,
+        step_share: known(mode.step_share),
+        decay_ratio: known(mode.decay_ratio),
+        reason: mode.absence.map(|absence| absence.to_string()),
+    }
 }
 
 /// The poles of every model as a table for other programs.

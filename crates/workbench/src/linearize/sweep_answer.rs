@@ -1,63 +1,148 @@
 //! A sweep for people and for programs, and its figure.
 
+use num_complex::Complex64;
+
 use super::root_list;
 use super::words::no_bandwidth_words;
 use super::{Sweep, SweepPoint, Swept};
-use crate::answer::{Csv, Object, OutputFile, significant};
+use crate::answer::{Answer, Csv, OutputFile, significant, words};
 use crate::caveat;
 use crate::document::{Document, Table};
 use crate::figure::{Figure, PoleSweep, PoleSweepPoint, Words};
 use crate::quantity::{DisplayUnit, MotionKind, QuantityName, STIFFNESS};
 
-/// The swept number, in the JSON of `linearize`.
-pub(super) fn head(sweep: &Sweep) -> Object {
-    Object::new()
-        .with("key", sweep.path.as_str())
-        .with("unit", sweep.si)
-        .with("points", sweep.points.len())
-        .with("spacing", if sweep.by_ratio { "log" } else { "linear" })
-        .with("plant_follows", sweep.plant_follows)
+/// Swept key of the project.
+#[derive(Answer)]
+pub(super) struct SweptKeyAnswer {
+    /// Path of the key.
+    key: String,
+    /// Unit of the values.
+    unit: &'static str,
+    /// Number of values.
+    points: usize,
+    /// Spacing of the values.
+    spacing: SweepSpacing,
+    /// True if the plant of every verdict depends on the key; otherwise poles, resonance and
+    /// bandwidth are those of the derived parameters.
+    plant_follows: bool,
 }
 
-/// The result at each value.
-pub(super) fn rows(sweep: &Sweep) -> Vec<Object> {
+enum SweepSpacing {
+    Log,
+    Linear,
+}
+
+words! {
+    /// Spacing of the values of a sweep: by ratio or by difference.
+    SweepSpacing { Log => "log", Linear => "linear" }
+}
+
+/// Linear models at one value of the swept key; null where there are none.
+#[derive(Answer)]
+pub(super) struct SweptPointAnswer {
+    /// Value of the swept key.
+    value: f64,
+    /// Hydraulic stiffness over the stroke, with the nominal wall of the lines.
+    stiffness: Option<SweptStiffnessAnswer>,
+    /// Poles from the command to the force.
+    poles: Option<SweptPolesAnswer>,
+    /// Resonance of the least damped pole; null if no pole has one.
+    resonance: Option<SweptResonanceAnswer>,
+    /// Frequency up to which the force of the nominal loop stays within 3 dB of its value towards
+    /// zero frequency, with the given controller.
+    bandwidth_rad_per_s: Option<f64>,
+    /// Reason for which there is no bandwidth, only if there are linear models.
+    #[answer(optional)]
+    bandwidth_rad_per_s_reason: Option<&'static str>,
+    /// Passivity of the driving-point impedance at the load.
+    passive: Option<SweptPassivityAnswer>,
+    /// Reason for which there are no linear models, only in that case.
+    #[answer(optional)]
+    reason: Option<String>,
+}
+
+/// Hydraulic stiffness over the stroke.
+#[derive(Answer)]
+struct SweptStiffnessAnswer {
+    /// Least stiffness.
+    #[answer(key = QuantityName::moving("minimum", &STIFFNESS))]
+    minimum: f64,
+    /// Greatest stiffness.
+    #[answer(key = QuantityName::moving("maximum", &STIFFNESS))]
+    maximum: f64,
+}
+
+/// Poles from the command to the force.
+#[derive(Answer)]
+struct SweptPolesAnswer {
+    /// Plant of every verdict, with the parameters in use.
+    plant: Vec<Complex64>,
+    /// Plant with the derived parameters.
+    derived: Vec<Complex64>,
+}
+
+/// Resonance of a pole.
+#[derive(Answer)]
+struct SweptResonanceAnswer {
+    /// Magnitude of the pole.
+    frequency_rad_per_s: f64,
+    /// Damping ratio of the pole, negative if it is unstable.
+    damping_ratio: f64,
+}
+
+/// Passivity of the driving-point impedance at the load.
+#[derive(Answer)]
+struct SweptPassivityAnswer {
+    /// True if the impedance is passive with constant command.
+    open_loop: bool,
+    /// True if the impedance is passive with the given controller; null if it is not computed.
+    closed_loop: Option<bool>,
+}
+
+/// The swept key, in the JSON of `linearize`.
+pub(super) fn head(sweep: &Sweep) -> SweptKeyAnswer {
+    SweptKeyAnswer {
+        key: sweep.path.clone(),
+        unit: sweep.si,
+        points: sweep.points.len(),
+        spacing: if sweep.by_ratio { SweepSpacing::Log } else { SweepSpacing::Linear },
+        plant_follows: sweep.plant_follows,
+    }
+}
+
+/// The results at each value.
+pub(super) fn rows(sweep: &Sweep) -> Vec<SweptPointAnswer> {
     sweep.points.iter().map(|point| row(point, sweep.units.motion)).collect()
 }
 
-fn row(point: &SweepPoint, motion: MotionKind) -> Object {
+fn row(point: &SweepPoint, motion: MotionKind) -> SweptPointAnswer {
     let found = point.found.as_ref().ok();
     let models = found.map(|found| &found.linearization);
-    let stiffness = models.map(|models| {
-        Object::new()
-            .with(QuantityName::moving("minimum", &STIFFNESS), models.stiffness[0].minimum)
-            .with(QuantityName::moving("maximum", &STIFFNESS), models.stiffness[0].maximum)
-    });
-    let poles = models.map(|models| {
-        Object::new()
-            .with("plant", models.plant.command.poles())
-            .with("derived", models.derived_plant.poles())
-    });
-    let resonance = found.and_then(resonance).map(|[frequency, damping_ratio]| {
-        Object::new().with("frequency_rad_per_s", frequency).with("damping_ratio", damping_ratio)
-    });
-    let passive = models.map(|models| {
-        let closed_loop = models.closed_loop.as_ref().map(|view| view.passivity.passive);
-        Object::new().with("open_loop", models.open_loop.passivity.passive).with("closed_loop", closed_loop)
-    });
-    Object::new()
-        .with("value", point.value)
-        .with("stiffness", stiffness)
-        .with("poles", poles)
-        .with("resonance", resonance)
-        .with("bandwidth_rad_per_s", found.and_then(|found| found.bandwidth_rad_per_s.ok()))
-        .maybe(
-            "bandwidth_rad_per_s_reason",
-            found
-                .and_then(|found| found.bandwidth_rad_per_s.err())
-                .map(|why| no_bandwidth_words(why, motion)),
-        )
-        .with("passive", passive)
-        .maybe("reason", point.found.as_ref().err().map(ToString::to_string))
+    let resonance = found.and_then(resonance);
+    SweptPointAnswer {
+        value: point.value,
+        stiffness: models.map(|models| SweptStiffnessAnswer {
+            minimum: models.stiffness[0].minimum,
+            maximum: models.stiffness[0].maximum,
+        }),
+        poles: models.map(|models| SweptPolesAnswer {
+            plant: models.plant.command.poles().to_vec(),
+            derived: models.derived_plant.poles().to_vec(),
+        }),
+        resonance: resonance.map(|[frequency_rad_per_s, damping_ratio]| SweptResonanceAnswer {
+            frequency_rad_per_s,
+            damping_ratio,
+        }),
+        bandwidth_rad_per_s: found.and_then(|found| found.bandwidth_rad_per_s.ok()),
+        bandwidth_rad_per_s_reason: found
+            .and_then(|found| found.bandwidth_rad_per_s.err())
+            .map(|why| no_bandwidth_words(why, motion)),
+        passive: models.map(|models| SweptPassivityAnswer {
+            open_loop: models.open_loop.passivity.passive,
+            closed_loop: models.closed_loop.as_ref().map(|view| view.passivity.passive),
+        }),
+        reason: point.found.as_ref().err().map(ToString::to_string),
+    }
 }
 
 /// Frequency and damping ratio of the resonance.

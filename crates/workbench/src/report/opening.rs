@@ -6,19 +6,20 @@ mod side;
 mod steps;
 mod verdicts;
 
+use phea_qft::verification::Verdict;
+
 use super::campaign::CampaignStep;
 use super::chapter::Chapter;
 use super::driven::{DESIGNED, GIVEN, MachineChapter};
 use super::judged::Judged;
 use super::{Facts, NOMINAL_LOOP};
-use crate::answer::Object;
+use crate::answer::Answer;
 use crate::design::explanation_words;
 use crate::document::{Document, StatusMark};
 use crate::figure::Figure;
 use crate::setup::Setup;
 use crate::simulate::at_a_glance;
-use crate::trial::agreement_key;
-use crate::verdict_words::verdict_key;
+use crate::trial::Agreement;
 use next::next_steps;
 use side::{Side, sides};
 
@@ -37,57 +38,42 @@ pub(super) struct Contents<'a> {
     pub(super) no_hose_fits: bool,
 }
 
-/// The content of the page for programs.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Decision {
-    /// The controller that the project gives; absent if it gives none.
-    pub given: Option<Decided>,
-    /// The designed controller.
-    pub designed: Option<Decided>,
-    /// The next steps, a sentence each.
+/// Controllers compared with the requirements, and the next steps.
+#[derive(Answer, Clone, Debug, Default, PartialEq)]
+pub struct DecisionAnswer {
+    /// Controller that the project gives, if it gives one.
+    #[answer(optional)]
+    pub given: Option<DecidedAnswer>,
+    /// Designed controller, if a design was requested.
+    #[answer(optional)]
+    pub designed: Option<DecidedAnswer>,
+    /// Next steps, a sentence each.
     pub next: Vec<String>,
 }
 
-/// Findings on one controller; absent if they were not requested.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Decided {
-    /// Verdict on the family: `met`, `violated`, `not_proven`.
-    pub verdict: Option<&'static str>,
-    /// Verdict on each specification, in file order.
-    pub specifications: Vec<&'static str>,
-    /// True if all verdicts are proven for every plant and every frequency; absent if no proof was
+/// Results of one controller.
+#[derive(Answer, Clone, Debug, Default, PartialEq)]
+pub struct DecidedAnswer {
+    /// Verdict over the family, if an audit was requested.
+    #[answer(optional)]
+    pub verdict: Option<Verdict>,
+    /// Verdict on each specification in the order of the file, if there are any.
+    #[answer(optional)]
+    pub specifications: Option<Vec<Verdict>>,
+    /// True if the verdict is proven for every plant and every frequency; left out if no proof was
     /// attempted.
+    #[answer(optional)]
     pub proven: Option<bool>,
-    /// The trial of the verdict on the machine: `agrees`, `differs`, `contradicts`.
-    pub machine: Option<&'static str>,
-    /// True if every step on the machine satisfied the requirement in time.
-    pub requirements_met: Option<bool>,
-}
-
-impl Decision {
-    /// The content as JSON.
-    pub(crate) fn json(&self) -> Object {
-        Object::new()
-            .maybe("given", self.given.as_ref().map(Decided::json))
-            .maybe("designed", self.designed.as_ref().map(Decided::json))
-            .with("next", self.next.as_slice())
-    }
-}
-
-impl Decided {
-    fn json(&self) -> Object {
-        let specifications = self.specifications.as_slice();
-        Object::new()
-            .maybe("verdict", self.verdict)
-            .maybe("specifications", Some(specifications).filter(|all| !all.is_empty()))
-            .maybe("proven", self.proven)
-            .maybe("machine", self.machine)
-            .maybe("wishes_kept", self.requirements_met)
-    }
+    /// Agreement of the nonlinear machine with the verdict, if it was simulated.
+    #[answer(optional)]
+    pub machine: Option<Agreement>,
+    /// True if every step on the machine satisfies the requirements in time, if there are any.
+    #[answer(optional)]
+    pub wishes_kept: Option<bool>,
 }
 
 /// The page as the first chapter, and its content for programs.
-pub(super) fn opening(contents: &Contents<'_>, nichols: Option<Figure>) -> (Chapter, Decision) {
+pub(super) fn opening(contents: &Contents<'_>, nichols: Option<Figure>) -> (Chapter, DecisionAnswer) {
     let sides = sides(contents.judged, contents.driven, contents.campaign);
     let next = next_steps(contents, &sides);
     let mut figures: Vec<Figure> = contents.driven.and_then(over_time).into_iter().collect();
@@ -116,7 +102,7 @@ pub(super) fn opening(contents: &Contents<'_>, nichols: Option<Figure>) -> (Chap
     }
     let decided =
         |name: &str| sides.iter().find(|side| side.name == name).map(|side| decided(contents, side));
-    let decision = Decision { given: decided(GIVEN), designed: decided(DESIGNED), next };
+    let decision = DecisionAnswer { given: decided(GIVEN), designed: decided(DESIGNED), next };
     (Chapter::of("decision", "What was required, and the result", out), decision)
 }
 
@@ -126,15 +112,16 @@ fn over_time(driven: &MachineChapter) -> Option<Figure> {
     at_a_glance("opening_force", &first, driven.requirement_of(0))
 }
 
-fn decided(contents: &Contents<'_>, side: &Side<'_>) -> Decided {
+fn decided(contents: &Contents<'_>, side: &Side<'_>) -> DecidedAnswer {
     let findings = side.view.map(|view| view.audit.specifications.as_slice()).unwrap_or_default();
     let required = contents.driven.and_then(|driven| driven.required.as_ref());
-    Decided {
-        verdict: side.view.map(|view| verdict_key(view.verdict())),
-        specifications: findings.iter().map(|finding| verdict_key(finding.verdict)).collect(),
+    let verdicts: Vec<Verdict> = findings.iter().map(|finding| finding.verdict).collect();
+    DecidedAnswer {
+        verdict: side.view.map(|view| view.verdict()),
+        specifications: Some(verdicts).filter(|all| !all.is_empty()),
         proven: side.is_proven(),
-        machine: side.trial.map(|trial| agreement_key(trial.agreement())),
-        requirements_met: required.and_then(|required| side.satisfies(required)),
+        machine: side.trial.map(|trial| trial.agreement()),
+        wishes_kept: required.and_then(|required| side.keeps(required)),
     }
 }
 

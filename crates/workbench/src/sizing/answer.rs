@@ -1,142 +1,272 @@
+//! The answer of `size`, and its table.
+
+mod means;
+
+use phea_hydraulics::stiffness::StiffnessModel;
+
 use super::words::{decisions, hose_name, model_name, reason_words, uncertain_name};
-use super::{BoreVerdict, Candidate, Consequence, OtherMeans, OtherMeansError, SizedLoad, Sizing};
-use phea_engineering::rig::FlowLimit;
+use super::{
+    BoreVerdict, Candidate, CommercialBore, Consequence, GainStep, Influence, SizedLoad, Sizing,
+    UncertainHoseNumber,
+};
+use crate::answer::{Answer, Csv, OutputFile, Word, quoted, words};
+use crate::rig::FlowLimit;
+use means::{OtherMeansAnswer, other_means};
 
-use crate::answer::{Csv, Object, OutputFile, quoted};
-
-/// What `size` says to programs.
-pub(crate) fn body(sizing: &Sizing) -> Object {
-    let limit = match sizing.flow.limit {
-        FlowLimit::Valve => "valve",
-        FlowLimit::Pump => "pump",
-    };
-    let body = Object::new()
-        .with("maximum_flow_m3_per_s", sizing.flow.line())
-        .with("maximum_flow_limit", limit)
-        .with("valve_flow_m3_per_s", sizing.flow.valve)
-        .maybe("pump_flow_m3_per_s", sizing.flow.pump.map(|(flow, _)| flow))
-        .with("bore_range_m", sizing.bore_range_m)
-        .with("pole_gain_v_per_n", sizing.pole_gain_v_per_n)
-        .with("load", load_name(sizing.load))
-        .maybe("load_stiffness_n_per_m", sizing.load.stiffness())
-        .each("bores", &sizing.bores, |bore| {
-            Object::new()
-                .with("name", hose_name(&bore.name))
-                .with("bore_m", bore.bore_m)
-                .with("oil_velocity_m_per_s", bore.oil_velocity_m_per_s)
-                .with("verdict", verdict_name(bore.verdict))
-        })
-        .each("candidates", &sizing.candidates, candidate)
-        .each("decisions", &decisions(&sizing.decisions), |(step, text)| {
-            Object::new().with("step", *step).with("text", text.as_str())
-        })
-        .each("influences", &sizing.influences, |influence| {
-            Object::new()
-                .with("quantity", uncertain_name(influence.quantity))
-                .with("values", influence.values)
-                .with("stiffness_n_per_m", influence.stiffness_n_per_m)
-                .with("length_m", influence.length_m)
-        });
-    body.maybe("other_means", sizing.other_means.as_ref().map(other_means))
+/// Answer of `size`.
+#[derive(Answer)]
+pub(crate) struct SizeAnswer {
+    /// Largest flow of a line.
+    maximum_flow_m3_per_s: f64,
+    /// Component that limits the largest flow.
+    maximum_flow_limit: FlowLimit,
+    /// Largest flow of a line that the valve passes.
+    valve_flow_m3_per_s: f64,
+    /// Flow of the pump, if it is stated.
+    #[answer(optional)]
+    pump_flow_m3_per_s: Option<f64>,
+    /// Bores at the highest and at the lowest recommended oil velocity.
+    bore_range_m: [f64; 2],
+    /// Proportional gain at which the time constant requires an infinite hydraulic stiffness.
+    pole_gain_v_per_n: f64,
+    /// Load in the model that is sized with.
+    load: SizedLoad,
+    /// Stiffness of the load at the rod, only of a load in series.
+    #[answer(optional)]
+    load_stiffness_n_per_m: Option<f64>,
+    /// Bores on the market, ascending.
+    bores: Vec<SizedBoreAnswer>,
+    /// Hoses with their lengths and gains: accepted ones first, then those that nothing rejects,
+    /// among these the stiffness model of the project first, then the shorter ones.
+    candidates: Vec<CandidateAnswer>,
+    /// Decisions of the procedure in order.
+    decisions: Vec<SizingDecisionAnswer>,
+    /// Influence of uncertain numbers on the best candidate of the stiffness model of the project.
+    influences: Vec<InfluenceAnswer>,
+    /// Other means with the stiffness of the best hose, if `[sizing.other_means]` requests them and
+    /// a hose is accepted.
+    #[answer(optional)]
+    other_means: Option<OtherMeansAnswer>,
 }
 
-/// The load that time constant and gain are of.
-fn load_name(load: SizedLoad) -> &'static str {
-    match load {
-        SizedLoad::Prescribed => "prescribed",
-        SizedLoad::Yielding { .. } => "in_series",
-        SizedLoad::HeldStill => "held_still",
+words! {
+    /// Component that limits the largest flow.
+    FlowLimit { Valve => "valve", Pump => "pump" }
+}
+
+words! {
+    /// Load in the first-order model: its motion is prescribed, it yields in series with the
+    /// sensor, or no stiffness holds it and the model holds it still.
+    SizedLoad { Prescribed => "prescribed", Yielding { .. } => "in_series", HeldStill => "held_still" }
+}
+
+/// Bore on the market.
+#[derive(Answer)]
+struct SizedBoreAnswer {
+    /// Dash size or product.
+    name: String,
+    /// Bore of the hose.
+    bore_m: f64,
+    /// Mean oil velocity at the largest flow.
+    oil_velocity_m_per_s: f64,
+    /// Verdict on the oil velocity.
+    verdict: BoreVerdict,
+}
+
+words! {
+    /// Verdict on the oil velocity of a bore: within the recommended range, below it, or above it
+    /// and thus rejected.
+    BoreVerdict { Recommended => "recommended", Slow => "slow", TooFast => "too_fast" }
+}
+
+/// Hose with its length and the proportional gain.
+#[derive(Answer)]
+struct CandidateAnswer {
+    /// Name of the hose.
+    hose: String,
+    /// Stiffness model.
+    compliance: StiffnessModel,
+    /// Branch of the procedure.
+    branch: SizingBranch,
+    /// Bore of line A.
+    bore_m: f64,
+    /// Length of line A; zero if no hose is needed.
+    length_m: f64,
+    /// Bore of line B.
+    bore_b_m: f64,
+    /// Length of line B.
+    length_b_m: f64,
+    /// Least hydraulic stiffness over the stroke.
+    stiffness_n_per_m: f64,
+    /// Greatest hydraulic stiffness over the stroke.
+    stiffness_maximum_n_per_m: f64,
+    /// Proportional gain for the time constant at the least stiffness.
+    proportional_gain_v_per_n: f64,
+    /// Mean oil velocity at the largest flow.
+    oil_velocity_m_per_s: f64,
+    /// Pressure surge if the largest flow is stopped at once.
+    surge_pressure_pa: f64,
+    /// Time constant of the closed loop at the least and at the greatest stiffness over the stroke.
+    time_constant_s: [f64; 2],
+    /// Steady-state gain of the closed loop at the null flow-pressure coefficient and at the
+    /// largest one.
+    steady_state_gain: [f64; 2],
+    /// True if nothing rejects it and every number that is needed is known.
+    accepted: bool,
+    /// Reasons for and against it, those that reject it first.
+    reasons: Vec<String>,
+    /// Reasons that reject it.
+    rejections: Vec<String>,
+    /// Reasons that leave it open, as a number is not known.
+    not_known: Vec<String>,
+    /// Reasons that only warn of it.
+    warnings: Vec<String>,
+    /// Trials of the gain, only of the branch by gain.
+    iterations: Vec<GainTrialAnswer>,
+}
+
+words! {
+    /// Stiffness model: one bulk modulus for line and chamber, or one of each volume.
+    StiffnessModel by model_name [Uniform, ByVolume]
+}
+
+/// Branch of the procedure.
+#[derive(Clone, Copy)]
+enum SizingBranch {
+    ByGain,
+    ByLength,
+}
+
+words! {
+    /// Branch of the procedure: the gain is given or searched for, or the length is given.
+    SizingBranch { ByGain => "by_gain", ByLength => "by_length" }
+}
+
+/// Trial of a gain.
+#[derive(Answer)]
+struct GainTrialAnswer {
+    /// Proportional gain.
+    proportional_gain_v_per_n: f64,
+    /// Hydraulic stiffness that the time constant requires; `inf` if no stiffness suffices.
+    stiffness_n_per_m: f64,
+    /// Length of line A with this stiffness; zero if no hose is needed.
+    length_m: f64,
+}
+
+/// Decision of the procedure.
+#[derive(Answer)]
+struct SizingDecisionAnswer {
+    /// Letter of the step in the flowchart of the thesis.
+    step: &'static str,
+    /// Sentence on the decision.
+    text: String,
+}
+
+/// Influence of an uncertain number, all others being nominal.
+#[derive(Answer)]
+struct InfluenceAnswer {
+    /// Uncertain number.
+    quantity: UncertainHoseNumber,
+    /// Low, nominal and high value in SI.
+    values: [f64; 3],
+    /// Least hydraulic stiffness over the stroke at the low, nominal and high value.
+    stiffness_n_per_m: [f64; 3],
+    /// Length of line A that keeps the nominal stiffness at the low, nominal and high value; zero
+    /// if no hose is needed.
+    length_m: [f64; 3],
+}
+
+words! {
+    /// Uncertain number, with its symbol.
+    UncertainHoseNumber by uncertain_name [DynamicStiffening, FluidBulkModulus, VolumetricExpansion]
+}
+
+/// Answer of `size`.
+pub(crate) fn body(sizing: &Sizing) -> SizeAnswer {
+    SizeAnswer {
+        maximum_flow_m3_per_s: sizing.flow.line(),
+        maximum_flow_limit: sizing.flow.limit,
+        valve_flow_m3_per_s: sizing.flow.valve,
+        pump_flow_m3_per_s: sizing.flow.pump.map(|(flow, _)| flow),
+        bore_range_m: sizing.bore_range_m,
+        pole_gain_v_per_n: sizing.pole_gain_v_per_n,
+        load: sizing.load,
+        load_stiffness_n_per_m: sizing.load.stiffness(),
+        bores: sizing.bores.iter().map(bore).collect(),
+        candidates: sizing.candidates.iter().map(candidate).collect(),
+        decisions: decisions(&sizing.decisions)
+            .into_iter()
+            .map(|(step, text)| SizingDecisionAnswer { step, text })
+            .collect(),
+        influences: sizing.influences.iter().map(influence).collect(),
+        other_means: sizing.other_means.as_ref().map(other_means),
     }
 }
 
-/// What cannot be has its reason in place of its numbers.
-fn other_means(found: &OtherMeans) -> Object {
-    let absent = |reason: &OtherMeansError| Object::new().with("reason", reason.to_string());
-    let pipe = found.pipe.as_ref().map_or_else(absent, |pipe| {
-        Object::new().with("bore_m", pipe.bore).with("length_m", pipe.length).with("oil_m3", pipe.oil)
-    });
-    let gas = found.gas.as_ref().map_or_else(absent, |gas| {
-        Object::new()
-            .with("gas_volume_m3", gas.volume)
-            .with("precharge_pressure_pa", gas.precharge)
-            .with("pressure_ratio", gas.pressure_ratio)
-            .with("stiffness_n_per_m", gas.stiffness)
-    });
-    let spring = found.spring.as_ref().map_or_else(absent, |spring| {
-        let coil = spring.coil.as_ref().ok();
-        Object::new()
-            .with("stiffness_n_per_m", spring.stiffness)
-            .with("travel_m", spring.travel)
-            .with("installed_length_m", coil.map(|coil| coil.installed_length))
-            .with("mass_kg", coil.map(|coil| coil.mass))
-            .with("actuator_length_m", spring.actuator_length)
-    });
-    let out = Object::new()
-        .with("stiffness_n_per_m", found.stiffness)
-        .with("chambers_n_per_m", found.chambers)
-        .with("actuator_length_m", found.actuator_length)
-        .with("pipe", pipe)
-        .with("gas", gas)
-        .with("spring", spring);
-    match &found.valves {
-        Err(reason) => out.with("valves_reason", reason.to_string()),
-        Ok(valves) => out.each("valves", valves, |valve| {
-            Object::new()
-                .with("stiffness_n_per_m", valve.stiffness)
-                .with("damping_ratio_alone", valve.alone)
-                .with("conductance_m3_per_s_pa", valve.conductance)
-                .with("damping_ratio_at_most", valve.most[0])
-                .with("at_conductance_m3_per_s_pa", valve.most[1])
-                .with("loss_w", valve.loss)
-        }),
+fn bore(bore: &CommercialBore) -> SizedBoreAnswer {
+    SizedBoreAnswer {
+        name: hose_name(&bore.name),
+        bore_m: bore.bore_m,
+        oil_velocity_m_per_s: bore.oil_velocity_m_per_s,
+        verdict: bore.verdict,
     }
 }
 
-/// Of its reasons those that reject it come first.
-fn candidate(candidate: &Candidate) -> Object {
+fn candidate(candidate: &Candidate) -> CandidateAnswer {
     let branch = &candidate.branch;
     let of = |consequence| {
         let same = candidate.findings.iter().filter(move |finding| finding.consequence() == consequence);
-        same.map(reason_words).collect::<Vec<_>>()
+        same.map(reason_words).collect()
     };
-    Object::new()
-        .with("hose", hose_name(&candidate.option.name))
-        .with("compliance", model_name(branch.model))
-        .with("branch", branch_name(branch.by_gain))
-        .with("bore_m", candidate.option.hoses[0].bore)
-        .with("length_m", candidate.length_m())
-        .with("bore_b_m", candidate.option.hoses[1].bore)
-        .with("length_b_m", branch.lengths_m[1])
-        .with("stiffness_n_per_m", branch.stiffness.minimum)
-        .with("stiffness_maximum_n_per_m", branch.stiffness.maximum)
-        .with("proportional_gain_v_per_n", branch.gain_v_per_n)
-        .with("oil_velocity_m_per_s", candidate.oil_velocity_m_per_s)
-        .with("surge_pressure_pa", candidate.surge_pressure_pa)
-        .with("time_constant_s", candidate.time_constant_s)
-        .with("steady_state_gain", candidate.steady_state_gain)
-        .with("accepted", candidate.accepted())
-        .each("reasons", &candidate.findings, reason_words)
-        .with("rejections", of(Consequence::Rejects))
-        .with("not_known", of(Consequence::LeavesOpen))
-        .with("warnings", of(Consequence::Warns))
-        .each("iterations", &branch.steps, |step| {
-            Object::new()
-                .with("proportional_gain_v_per_n", step.gain_v_per_n)
-                .with("stiffness_n_per_m", step.stiffness_n_per_m)
-                .with("length_m", step.length_m)
-        })
-}
-
-fn verdict_name(verdict: BoreVerdict) -> &'static str {
-    match verdict {
-        BoreVerdict::Recommended => "recommended",
-        BoreVerdict::Slow => "slow",
-        BoreVerdict::TooFast => "too_fast",
+    CandidateAnswer {
+        hose: hose_name(&candidate.option.name),
+        compliance: branch.model,
+        branch: sizing_branch(branch.by_gain),
+        bore_m: candidate.option.hoses[0].bore,
+        length_m: candidate.length_m(),
+        bore_b_m: candidate.option.hoses[1].bore,
+        length_b_m: branch.lengths_m[1],
+        stiffness_n_per_m: branch.stiffness.minimum,
+        stiffness_maximum_n_per_m: branch.stiffness.maximum,
+        proportional_gain_v_per_n: branch.gain_v_per_n,
+        oil_velocity_m_per_s: candidate.oil_velocity_m_per_s,
+        surge_pressure_pa: candidate.surge_pressure_pa,
+        time_constant_s: candidate.time_constant_s,
+        steady_state_gain: candidate.steady_state_gain,
+        accepted: candidate.accepted(),
+        reasons: candidate.findings.iter().map(reason_words).collect(),
+        rejections: of(Consequence::Rejects),
+        not_known: of(Consequence::LeavesOpen),
+        warnings: of(Consequence::Warns),
+        iterations: branch.steps.iter().map(gain_trial).collect(),
     }
 }
 
-pub(crate) fn branch_name(by_gain: bool) -> &'static str {
-    if by_gain { "by_gain" } else { "by_length" }
+fn gain_trial(step: &GainStep) -> GainTrialAnswer {
+    GainTrialAnswer {
+        proportional_gain_v_per_n: step.gain_v_per_n,
+        stiffness_n_per_m: step.stiffness_n_per_m,
+        length_m: step.length_m,
+    }
+}
+
+fn influence(influence: &Influence) -> InfluenceAnswer {
+    InfluenceAnswer {
+        quantity: influence.quantity,
+        values: influence.values,
+        stiffness_n_per_m: influence.stiffness_n_per_m,
+        length_m: influence.length_m,
+    }
+}
+
+/// Branch of the procedure that found a candidate.
+fn sizing_branch(by_gain: bool) -> SizingBranch {
+    if by_gain { SizingBranch::ByGain } else { SizingBranch::ByLength }
+}
+
+/// The word of that branch.
+pub(super) fn branch_name(by_gain: bool) -> &'static str {
+    sizing_branch(by_gain).word()
 }
 
 /// The candidates as a table for other programs.
