@@ -5,6 +5,10 @@ use super::refusal::RefusedAnswer;
 use super::verify::VerifyAnswer;
 use crate::answer::CommandAnswer;
 use crate::audit::CheckCertificateAnswer;
+use crate::friction::IdentifiedFrictionAnswer;
+use crate::identify::IdentifiedValveAnswer;
+use crate::line_test::IdentifiedLineAnswer;
+use crate::response::IdentifiedResponsesAnswer;
 
 /// The answer of each command.
 pub(super) fn answers() -> Vec<CommandAnswer> {
@@ -13,5 +17,9 @@ pub(super) fn answers() -> Vec<CommandAnswer> {
         CommandAnswer::of::<VerifyAnswer>("verify"),
         CommandAnswer::whole::<RefusedAnswer>(None),
         CommandAnswer::whole::<CheckCertificateAnswer>(Some("check-certificate")),
+        CommandAnswer::whole::<IdentifiedValveAnswer>(Some("identify")),
+        CommandAnswer::whole::<IdentifiedResponsesAnswer>(Some("identify")),
+        CommandAnswer::of::<IdentifiedFrictionAnswer>("identify"),
+        CommandAnswer::whole::<IdentifiedLineAnswer>(Some("identify")),
     ]
 }
