@@ -7,6 +7,7 @@
 mod chosen_lines;
 mod describe;
 mod envelope;
+mod file_warning;
 mod known;
 mod number;
 mod object;
@@ -28,7 +29,8 @@ pub use crate::source::OutputFile;
 pub(crate) use chosen_lines::hindrance_words;
 pub(crate) use describe::{Body, Describe, Field, Perhaps};
 pub(crate) use envelope::{SCHEMA, VERSION, envelope};
-pub(crate) use known::{Entries, KeyList, Keyed, OrReason, Reasoned};
+pub(crate) use file_warning::FileWarningAnswer;
+pub(crate) use known::{Entries, KeyList, Keyed, OrReason};
 pub(crate) use object::{Json, ObjectKey};
 pub(crate) use phea_derive::Answer;
 pub use pictures::picture_of;

@@ -8,6 +8,7 @@ mod files;
 
 pub use phea_engineering::friction::*;
 
+pub(crate) use answer::IdentifiedFrictionAnswer;
 pub use answer::json;
 pub(crate) use document::document;
 pub(crate) use document::write;

@@ -4,6 +4,7 @@ mod answer;
 mod document;
 mod figures;
 mod files;
+mod fragment;
 mod from_recordings;
 mod in_use;
 mod misfit;
@@ -12,11 +13,13 @@ mod region;
 
 pub use phea_engineering::identify::*;
 
-pub use answer::{files, json};
+pub(crate) use answer::IdentifiedValveAnswer;
+pub use answer::json;
 pub(crate) use document::document;
 pub(crate) use document::{write_coefficients, write_signals};
 pub(crate) use figures::ValveFigures;
 pub use files::Read;
+pub use fragment::files;
 pub use from_recordings::{ValveInUseError, in_use, recorded_files};
 pub(crate) use in_use::{in_use_above, write_in_use};
 pub(crate) use numbers::{is_valve_of_thesis, write as write_numbers};

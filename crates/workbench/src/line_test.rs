@@ -7,6 +7,7 @@ mod files;
 
 pub use phea_engineering::line_test::*;
 
+pub(crate) use answer::IdentifiedLineAnswer;
 pub use answer::json;
 pub(crate) use document::document;
 pub(crate) use figures::pictures;

@@ -9,6 +9,7 @@ mod levels;
 
 pub use phea_engineering::response::*;
 
+pub(crate) use answer::IdentifiedResponsesAnswer;
 pub use answer::json;
 pub(crate) use document::document;
 pub(crate) use figures::pictures;

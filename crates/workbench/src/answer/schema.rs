@@ -181,11 +181,17 @@ impl Definitions {
             let definition = Object::new()
                 .with("description", list.documentation.trim())
                 .with("type", "string")
-                .with("enum", list.words.as_slice());
+                .with("enum", distinct(&list.words));
             self.by_name.insert(list.name, definition);
         }
         reference(list.name)
     }
+}
+
+/// The words without repetition: two values may have one word.
+fn distinct(words: &[&'static str]) -> Vec<&'static str> {
+    let first = |(index, word): (usize, &&'static str)| !words[..index].contains(word);
+    words.iter().enumerate().filter(|one| first(*one)).map(|(_, word)| *word).collect()
 }
 
 fn reference(name: &str) -> Object {

@@ -6,10 +6,10 @@ use super::verify::VerifyAnswer;
 use crate::alternatives::AlternativesAnswer;
 use crate::answer::CommandAnswer;
 use crate::audit::CheckCertificateAnswer;
-use crate::bench::BenchAnswer;
-use crate::linearize::LinearizeAnswer;
-use crate::report::ReportAnswer;
-use crate::sizing::SizeAnswer;
+use crate::friction::IdentifiedFrictionAnswer;
+use crate::identify::IdentifiedValveAnswer;
+use crate::line_test::IdentifiedLineAnswer;
+use crate::response::IdentifiedResponsesAnswer;
 
 /// The answer of each command.
 pub(super) fn answers() -> Vec<CommandAnswer> {
@@ -23,5 +23,9 @@ pub(super) fn answers() -> Vec<CommandAnswer> {
         CommandAnswer::of::<ReportAnswer>("report"),
         CommandAnswer::whole::<RefusedAnswer>(None),
         CommandAnswer::whole::<CheckCertificateAnswer>(Some("check-certificate")),
+        CommandAnswer::whole::<IdentifiedValveAnswer>(Some("identify")),
+        CommandAnswer::whole::<IdentifiedResponsesAnswer>(Some("identify")),
+        CommandAnswer::of::<IdentifiedFrictionAnswer>("identify"),
+        CommandAnswer::whole::<IdentifiedLineAnswer>(Some("identify")),
     ]
 }

@@ -1,167 +1,119 @@
-use std::collections::BTreeMap;
+//! The JSON of `identify` of a valve.
 
-use phea_dynamics::order::sort_by_number;
-use phea_hydraulics::servovalve::{LeakageModel, StaticCoefficients};
-use serde::Serialize;
+mod estimates;
+mod evidence;
+mod residuals;
 
-use super::files::{TestBody, WarningBody};
-use super::misfit::declared_misfit;
-use super::numbers;
-use super::region::{FoundRegion, RegionBody, body};
-use super::{
-    Bootstrap, COEFFICIENT_NAMES, ExplainedBy, Identification, Misfit, MisfitPlace,
-    NotIdentifiableCombination, Read, TermEvidence, TestOil,
+pub(super) use estimates::EITHER_SIGN;
+pub(super) use residuals::correlations;
+
+use phea_hydraulics::servovalve::LeakageModel;
+
+use self::estimates::{
+    BootstrapAnswer, ValveEdgesAnswer, ValveEstimateAnswer, ValveEstimates, ValveLapAnswer,
 };
-use crate::answer::{self, Number, OutputFile, in_toml};
-use crate::project::{LEAKAGE_MODELS, Loaded, word_of};
+use self::evidence::{CoefficientValuesAnswer, LeakageFitAnswer, ValveTermAnswer};
+use self::residuals::{CorrelationAnswer, NotIdentifiableAnswer, ValveMisfitAnswer, ValveSignalAnswer};
+use super::files::ValveTestAnswer;
+use super::numbers::{HandReadingsAnswer, hand_readings};
+use super::region::{FoundRegion, JointRegionAnswer, joint_region_answer};
+use super::{Identification, Read, TestOil};
+use crate::answer::{Answer, Body, FileWarningAnswer, SCHEMA, VERSION};
+use crate::project::Loaded;
+use crate::quantity::MotionKind;
 
-#[derive(Serialize)]
-struct IdentifyAnswer<'a> {
+/// Valve identified from recorded static tests.
+#[derive(Answer)]
+pub(crate) struct IdentifiedValveAnswer {
+    /// Version of the layout of answers.
     schema: u32,
+    /// Version of phea.
     version: &'static str,
+    /// Name of the command.
     command: &'static str,
-    project_sha256: Option<&'a str>,
-    tests: Vec<TestBody<'a>>,
-    warnings: Vec<WarningBody<'a>>,
-    flow_coefficients: EdgesBody,
-    leakage_coefficients: EdgesBody,
-    leakage_shape: EstimateBody,
-    tare_flow_m3_per_s: EstimateBody,
+    /// SHA-256 of the bytes of the project file; null without a project.
+    project_sha256: Option<String>,
+    /// Recorded tests in the order of the files.
+    tests: Vec<ValveTestAnswer>,
+    /// Findings in the files, and signals that the identified valve does not explain.
+    warnings: Vec<FileWarningAnswer>,
+    /// Flow coefficient K_v of each edge, m3/(s.Pa^0.5).
+    flow_coefficients: ValveEdgesAnswer,
+    /// Leakage coefficient K_vin of each edge at null, m3/(s.Pa^0.5).
+    leakage_coefficients: ValveEdgesAnswer,
+    /// Shape lambda of the leakage, which is in proportion to sech(lambda U/U_n); of the edge from
+    /// the supply to A if each edge has its own.
+    leakage_shape: ValveEstimateAnswer,
+    /// Flow of the pilot stage from supply to tank, at `tare_pressure_pa`.
+    tare_flow_m3_per_s: ValveEstimateAnswer,
+    /// Pressure drop from supply to tank at which the tare flow is stated.
     tare_pressure_pa: f64,
-    oil_temperature: Option<OilBody>,
-    null_bias_v: EstimateBody,
-    hysteresis_v: EstimateBody,
-    leakage_model: &'static str,
-    leakage_models: Vec<ModelBody>,
-    leakage_models_difference: Number,
-    leakage_model_preferred: Option<&'static str>,
-    lap: Option<LapBody>,
-    saturation: Option<EstimateBody>,
-    leakage_shapes: Option<EdgesBody>,
-    terms: Vec<TermBody>,
-    bootstrap: Option<BootstrapBody>,
-    first_guess: BTreeMap<&'static str, f64>,
-    cost: Number,
-    residual_rms: Number,
-    signals: Vec<SignalBody>,
-    misfits: Vec<MisfitBody>,
-    correlations: Vec<CorrelationBody>,
-    not_identifiable: Vec<NotIdentifiableBody>,
-    joint_region: Option<RegionBody>,
-    simple_calculations: numbers::SimpleBody,
+    /// Temperature of the oil in the tests; null if none recorded it.
+    oil_temperature: Option<TestOilAnswer>,
+    /// Spool position at which the valve is at null.
+    null_bias_v: ValveEstimateAnswer,
+    /// Width of the hysteresis over a slow full cycle of the command.
+    hysteresis_v: ValveEstimateAnswer,
+    /// Model of the leakage for which the values are stated.
+    leakage_model: LeakageModel,
+    /// Fits with both models of the leakage, the better one first.
+    leakage_models: [LeakageFitAnswer; 2],
+    /// Criterion of the worse model of the leakage less that of the better one.
+    leakage_models_difference: f64,
+    /// Better model of the leakage; null if the difference is not decisive.
+    leakage_model_preferred: Option<LeakageModel>,
+    /// Lap of the edges over full travel, negative for an underlap; null if the identified valve
+    /// has none.
+    lap: Option<ValveLapAnswer>,
+    /// Saturation c of the opening u/(1 + c u) beyond the lap; null if the opening of the
+    /// identified valve is in proportion to u.
+    saturation: Option<ValveEstimateAnswer>,
+    /// Shape lambda of the leakage of each edge; null if one shape applies to all.
+    leakage_shapes: Option<ValveEdgesAnswer>,
+    /// Evidence for each term that a valve may have in addition.
+    terms: Vec<ValveTermAnswer>,
+    /// Extent of the bootstrap; null if none was requested.
+    bootstrap: Option<BootstrapAnswer>,
+    /// Coefficients at which the search began.
+    first_guess: CoefficientValuesAnswer,
+    /// Sum of the losses of all residuals over their scales, which the search minimised.
+    cost: f64,
+    /// Root mean square of all residuals, each over the range of its signal.
+    residual_rms: f64,
+    /// Fit of each recorded signal.
+    signals: Vec<ValveSignalAnswer>,
+    /// Signals that the identified valve does not explain, the greatest misfit first.
+    misfits: Vec<ValveMisfitAnswer>,
+    /// Pairs of estimates that are correlated by more than 0.9, the closest first.
+    correlations: Vec<CorrelationAnswer>,
+    /// Combinations of coefficients that the recordings do not determine, the least known first.
+    not_identifiable: Vec<NotIdentifiableAnswer>,
+    /// Family of valves that the recordings allow; null without the project of a rig.
+    joint_region: Option<JointRegionAnswer>,
+    /// Values that are read from the curves by the equations of the thesis, section 5.2.
+    simple_calculations: HandReadingsAnswer,
+    /// Number of starting points of the search, the first guess included.
     starts: usize,
+    /// Number of starting points that lead to the best minimum.
     starts_that_agree: usize,
+    /// True if no further step of the search explains more.
     converged: bool,
-    at_bounds: &'a [&'static str],
+    /// Coefficients that ended at a bound of the search.
+    at_bounds: Vec<&'static str>,
 }
 
-/// The oil of the tests: degC, 1/degC.
-#[derive(Serialize)]
-struct OilBody {
-    stated_at_degc: Number,
-    recorded_degc: [Number; 2],
+/// Temperature of the oil during the tests, and its effect.
+#[derive(Answer)]
+struct TestOilAnswer {
+    /// Temperature for which the coefficients are stated.
+    stated_at_degc: f64,
+    /// Lowest and highest temperature of all recordings.
+    recorded_degc: [f64; 2],
+    /// Relative decrease of the dynamic viscosity per degree.
     viscosity_slope_per_degc: f64,
+    /// Relative decrease of the density per degree.
     density_slope_per_degc: f64,
 }
-
-/// Evidence for a term of the valve.
-#[derive(Serialize)]
-struct TermBody {
-    term: &'static str,
-    criterion_gain: Number,
-    taken: bool,
-}
-
-#[derive(Serialize)]
-struct LapBody {
-    positive: EstimateBody,
-    negative: EstimateBody,
-}
-
-#[derive(Serialize)]
-struct EdgesBody {
-    supply_to_a: EstimateBody,
-    a_to_tank: EstimateBody,
-    supply_to_b: EstimateBody,
-    b_to_tank: EstimateBody,
-}
-
-#[derive(Clone, Serialize)]
-struct EstimateBody {
-    value: f64,
-    confidence_95: Option<[f64; 2]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    bootstrap_95: Option<[Number; 2]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    reason: Option<&'static str>,
-}
-
-#[derive(Serialize)]
-struct ModelBody {
-    model: &'static str,
-    criterion: Number,
-    residual_rms: Number,
-    coefficients: BTreeMap<&'static str, f64>,
-}
-
-#[derive(Serialize)]
-struct BootstrapBody {
-    repetitions: usize,
-    failed: usize,
-    block_rows: usize,
-}
-
-#[derive(Serialize)]
-struct SignalBody {
-    file: String,
-    signal: &'static str,
-    unit: &'static str,
-    rows: usize,
-    rms: Number,
-    scale: Number,
-    range: Number,
-    neighbour_correlation: Number,
-}
-
-#[derive(Serialize)]
-struct MisfitBody {
-    file: String,
-    signal: &'static str,
-    share: Number,
-    neighbour_correlation: Number,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    greatest: Option<MisfitPlaceBody>,
-}
-
-#[derive(Serialize)]
-struct MisfitPlaceBody {
-    command_rises: bool,
-    command_v: [Number; 2],
-    mean_share: Number,
-}
-
-#[derive(Serialize)]
-struct CorrelationBody {
-    coefficients: [&'static str; 2],
-    correlation: Number,
-}
-
-#[derive(Serialize)]
-struct NotIdentifiableBody {
-    coefficients: Vec<&'static str>,
-    shares: Vec<f64>,
-    standard_deviation: Number,
-    identifiable_by: Vec<&'static str>,
-}
-
-/// The coefficient that a project leaves out where it may be zero.
-const HYSTERESIS: &str = "hysteresis";
-
-/// The coefficients of which zero is a value like any other.
-pub(super) const EITHER_SIGN: [&str; 3] = ["null_bias", "lap.positive", "lap.negative"];
-
-/// Correlations below this magnitude are not listed.
-const REMARKABLE: f64 = 0.9;
 
 /// The JSON object of `identify`, with or without a project.
 pub fn json(
@@ -170,243 +122,64 @@ pub fn json(
     read: &Read,
     region: Option<&FoundRegion>,
 ) -> String {
+    let motion = loaded.map_or(MotionKind::Linear, |loaded| loaded.project.motion());
+    answer(loaded, found, read, region).into_object().print(motion)
+}
+
+fn answer(
+    loaded: Option<&Loaded>,
+    found: &Identification,
+    read: &Read,
+    region: Option<&FoundRegion>,
+) -> IdentifiedValveAnswer {
     let has = found.tested.terms;
-    let EstimatesOfValve { flow, leakage, tare_flow, null_bias, hysteresis, lap, saturation, shapes } =
-        estimates(found);
-    let body = IdentifyAnswer {
-        schema: answer::SCHEMA,
-        version: env!("CARGO_PKG_VERSION"),
+    let ValveEstimates { flow, leakage, shape, tare_flow, null_bias, hysteresis, lap, saturation, shapes } =
+        ValveEstimates::of(found);
+    IdentifiedValveAnswer {
+        schema: SCHEMA,
+        version: VERSION,
         command: "identify",
-        project_sha256: loaded.map(|loaded| loaded.sha256.as_str()),
+        project_sha256: loaded.map(|loaded| loaded.sha256.clone()),
         tests: read.tests(found),
         warnings: read.warnings(found),
         flow_coefficients: flow,
         leakage_coefficients: leakage,
-        leakage_shape: shapes.supply_to_a.clone(),
+        leakage_shape: shape,
         tare_flow_m3_per_s: tare_flow,
         tare_pressure_pa: found.tested.tare_reference_drop,
-        oil_temperature: found.oil.as_ref().map(oil_body),
+        oil_temperature: found.oil.as_ref().map(oil),
         null_bias_v: null_bias,
         hysteresis_v: hysteresis,
-        leakage_model: word(found.tested.leakage_model),
-        leakage_models: found.evidence.models.iter().map(|one| model(found, one)).collect(),
-        leakage_models_difference: Number(found.evidence.difference()),
-        leakage_model_preferred: found.evidence.preferred().map(word),
+        leakage_model: found.tested.leakage_model,
+        leakage_models: evidence::leakage_models(found),
+        leakage_models_difference: found.evidence.difference(),
+        leakage_model_preferred: found.evidence.preferred(),
         lap: has.lap.then_some(lap),
         saturation: has.saturation.then_some(saturation),
         leakage_shapes: has.leakage_by_edge.then_some(shapes),
-        terms: found.terms.iter().map(term).collect(),
-        bootstrap: found.bootstrap.as_ref().map(bootstrap_body),
-        first_guess: by_name(found, &found.first_guess),
-        cost: Number(found.cost),
-        residual_rms: Number(found.residual_rms),
-        signals: signals(found),
-        misfits: found.misfits().iter().map(|misfit| misfit_body(found, misfit)).collect(),
-        correlations: correlations(found)
-            .into_iter()
-            .map(|(coefficients, correlation)| CorrelationBody {
-                coefficients,
-                correlation: Number(correlation),
-            })
-            .collect(),
-        not_identifiable: found.not_identifiable.iter().map(not_identifiable).collect(),
-        joint_region: region.map(body),
-        simple_calculations: numbers::simple_body(found),
+        terms: found.terms.iter().map(evidence::term).collect(),
+        bootstrap: found.bootstrap.as_ref().map(estimates::bootstrap),
+        first_guess: evidence::values_by_name(found, &found.first_guess),
+        cost: found.cost,
+        residual_rms: found.residual_rms,
+        signals: residuals::signals(found),
+        misfits: residuals::misfits(found),
+        correlations: residuals::correlation_answers(found),
+        not_identifiable: found.not_identifiable.iter().map(residuals::not_identifiable).collect(),
+        joint_region: region.map(joint_region_answer),
+        simple_calculations: hand_readings(found),
         starts: found.starts[0],
         starts_that_agree: found.starts[1],
         converged: found.has_converged(),
-        at_bounds: &found.at_bounds,
-    };
-    // every number that may not exist is one of `Number` or `Option`
-    serde_json::to_string_pretty(&body).unwrap_or_default()
-}
-
-/// The coefficients with their intervals, those too that the model of the numbers has not.
-struct EstimatesOfValve {
-    flow: EdgesBody,
-    leakage: EdgesBody,
-    tare_flow: EstimateBody,
-    null_bias: EstimateBody,
-    hysteresis: EstimateBody,
-    lap: LapBody,
-    saturation: EstimateBody,
-    shapes: EdgesBody,
-}
-
-fn estimates(found: &Identification) -> EstimatesOfValve {
-    let numbers = found.coefficients.to_array();
-    let bootstrap = |index: usize| found.bootstrap.as_ref()?.intervals.get(index).copied();
-    let all = numbers.into_iter().zip(found.estimates).enumerate();
-    let mut estimates = all.map(|(index, (value, estimate))| EstimateBody {
-        value,
-        confidence_95: estimate.map(|estimate| estimate.interval),
-        bootstrap_95: estimate.and(bootstrap(index)).map(|ends| ends.map(Number)),
-        reason: estimate.is_none().then_some("the data do not determine it"),
-    });
-    let mut next = || {
-        let none = EstimateBody { value: f64::NAN, confidence_95: None, bootstrap_95: None, reason: None };
-        estimates.next().unwrap_or(none)
-    };
-    let mut edges =
-        || EdgesBody { supply_to_a: next(), a_to_tank: next(), supply_to_b: next(), b_to_tank: next() };
-    let (flow, leakage) = (edges(), edges());
-    let [supply_to_a, tare_flow, null_bias, hysteresis] = [next(), next(), next(), next()];
-    let lap = LapBody { positive: next(), negative: next() };
-    let saturation = next();
-    let shapes = EdgesBody { supply_to_a, a_to_tank: next(), supply_to_b: next(), b_to_tank: next() };
-    EstimatesOfValve { flow, leakage, tare_flow, null_bias, hysteresis, lap, saturation, shapes }
-}
-
-/// The name of a model in the project file.
-pub(super) fn word(model: LeakageModel) -> &'static str {
-    word_of(&LEAKAGE_MODELS, &model)
-}
-
-fn term(evidence: &TermEvidence) -> TermBody {
-    let TermEvidence { term, gain, taken } = *evidence;
-    TermBody { term: term.name(), criterion_gain: Number(gain), taken }
-}
-
-fn model(found: &Identification, explained: &ExplainedBy) -> ModelBody {
-    ModelBody {
-        model: word(explained.model),
-        criterion: Number(explained.criterion),
-        residual_rms: Number(explained.residual_rms),
-        coefficients: by_name(found, &explained.coefficients),
+        at_bounds: found.at_bounds.clone(),
     }
 }
 
-/// The coefficients of the model of the numbers.
-fn by_name(found: &Identification, coefficients: &StaticCoefficients) -> BTreeMap<&'static str, f64> {
-    let all = coefficients.to_array();
-    let one = |index: usize| Some((COEFFICIENT_NAMES.get(index)?.0, *all.get(index)?));
-    found.in_model().filter_map(one).collect()
-}
-
-fn bootstrap_body(found: &Bootstrap) -> BootstrapBody {
-    BootstrapBody { repetitions: found.repetitions, failed: found.failed, block_rows: found.block_rows }
-}
-
-fn signals(found: &Identification) -> Vec<SignalBody> {
-    let one = |signal: &super::SignalFit| SignalBody {
-        file: found.recordings.get(signal.recording).map_or(String::new(), |one| one.file.clone()),
-        signal: signal.kind.name(),
-        unit: if signal.kind.is_pressure() { "Pa" } else { "m3/s" },
-        rows: signal.rows,
-        rms: Number(signal.rms),
-        scale: Number(signal.scale),
-        range: Number(signal.range),
-        neighbour_correlation: Number(signal.correlation),
-    };
-    found.signals.iter().map(one).collect()
-}
-
-fn oil_body(oil: &TestOil) -> OilBody {
-    OilBody {
-        stated_at_degc: Number(oil.reference),
-        recorded_degc: oil.range.map(Number),
+fn oil(oil: &TestOil) -> TestOilAnswer {
+    TestOilAnswer {
+        stated_at_degc: oil.reference,
+        recorded_degc: oil.range,
         viscosity_slope_per_degc: oil.law.viscosity_slope,
         density_slope_per_degc: oil.law.density_slope,
     }
-}
-
-fn misfit_body(found: &Identification, misfit: &Misfit) -> MisfitBody {
-    let place = |place: MisfitPlace| MisfitPlaceBody {
-        command_rises: place.is_rising,
-        command_v: place.command.map(Number),
-        mean_share: Number(place.fraction),
-    };
-    MisfitBody {
-        file: found.recordings.get(misfit.recording).map_or(String::new(), |one| one.file.clone()),
-        signal: misfit.kind.name(),
-        share: Number(misfit.fraction),
-        neighbour_correlation: Number(misfit.correlation),
-        greatest: misfit.place.map(place),
-    }
-}
-
-/// Pairs of coefficients that move together, the closest first.
-pub(super) fn correlations(found: &Identification) -> Vec<([&'static str; 2], f64)> {
-    let names = || COEFFICIENT_NAMES.iter().map(|(name, _)| *name).enumerate();
-    let pairs = names().flat_map(|(i, first)| {
-        names().filter(move |(j, _)| *j > i).map(move |(j, second)| (i, j, [first, second]))
-    });
-    let mut listed: Vec<([&'static str; 2], f64)> = pairs
-        .filter_map(|(i, j, both)| {
-            let correlation = *found.correlations.get(i * COEFFICIENT_NAMES.len() + j)?;
-            let are_identified = found.estimates.get(i)?.is_some() && found.estimates.get(j)?.is_some();
-            (are_identified && correlation.abs() > REMARKABLE).then_some((both, correlation))
-        })
-        .collect();
-    sort_by_number(&mut listed, |(_, correlation)| -correlation.abs());
-    listed
-}
-
-fn not_identifiable(found: &NotIdentifiableCombination) -> NotIdentifiableBody {
-    NotIdentifiableBody {
-        coefficients: found.components.iter().map(|(name, _)| *name).collect(),
-        shares: found.components.iter().map(|(_, component)| *component).collect(),
-        standard_deviation: Number(found.deviation),
-        identifiable_by: found.identifiable_by.iter().map(|test| test.name()).collect(),
-    }
-}
-
-/// The table `[valve]` of a project with what was identified: what the data do not determine is a
-/// comment.
-pub fn files(found: &Identification) -> Vec<OutputFile> {
-    let numbers = found.coefficients.to_array();
-    let line = |index: usize| {
-        let (name, unit) = COEFFICIENT_NAMES.get(index).copied().unwrap_or_default();
-        let value = numbers.get(index).copied().unwrap_or(f64::NAN);
-        let key = match name {
-            "leakage_shape" if found.tested.terms.leakage_by_edge => "supply_to_a",
-            name => name.rsplit('.').next().unwrap_or(name),
-        };
-        let text = match unit {
-            "1" | "m3/(s.Pa^0.5)" => in_toml(value, 5),
-            unit => format!("\"{} {unit}\"", in_toml(value, 5)),
-        };
-        match found.estimates.get(index).copied().flatten().map(|estimate| estimate.interval) {
-            Some([low, high]) if low == 0.0 && name == HYSTERESIS => {
-                format!("# {key}: at most {} V\n", in_toml(high, 4))
-            }
-            Some([low, high]) if low == 0.0 && !EITHER_SIGN.contains(&name) => {
-                format!("{key} = {text}    # 95 %: at most {}\n", in_toml(high, 4))
-            }
-            Some([low, high]) => {
-                let ends = [low, high].map(|end| in_toml(end, 4));
-                format!("{key} = {text}    # 95 %: {} to {}\n", ends[0], ends[1])
-            }
-            None => format!("# {key}: the data do not determine it\n"),
-        }
-    };
-    let lines = |range: std::ops::Range<usize>| range.map(line).collect::<String>();
-    let has = found.tested.terms;
-    let whole = [
-        if has.leakage_by_edge { lines(9..12) } else { lines(8..12) },
-        if has.saturation { line(14) } else { String::new() },
-    ];
-    let mut more = String::new();
-    if has.lap {
-        more.push_str(&format!("\n[valve.lap]    # over full travel\n{}", lines(12..14)));
-    }
-    if has.leakage_by_edge {
-        let shapes = line(8) + &lines(15..18);
-        more.push_str(&format!("\n[valve.leakage_shapes]\n{shapes}"));
-    }
-    let files: Vec<&str> = found.recordings.iter().map(|one| one.file.as_str()).collect();
-    let misfit = declared_misfit(found).map(|one| format!("misfit = {}\n", one.in_toml()));
-    let misfit = misfit.unwrap_or_default();
-    let text = format!(
-        "# Identified by phea from {}.\n[valve]\nnominal_voltage = \"{} V\"\ntransition_pressure = \"{} Pa\"\ntare_pressure = \"{} Pa\"\nleakage_model = \"{}\"\n{}{misfit}\n[valve.flow_coefficients]    # m3/(s.Pa^0.5)\n{}\n[valve.leakage_coefficients]\n{}{more}",
-        files.join(", "),
-        in_toml(found.tested.nominal_voltage, 6),
-        in_toml(found.tested.transition_pressure, 6),
-        in_toml(found.tested.tare_reference_drop, 6),
-        word(found.tested.leakage_model),
-        whole.concat(),
-        lines(0..4),
-        lines(4..8),
-    );
-    vec![OutputFile { name: "valve.toml".to_string(), bytes: text.into_bytes() }]
 }

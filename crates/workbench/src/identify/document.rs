@@ -2,7 +2,7 @@
 
 use phea_hydraulics::servovalve::{LeakageModel, STATIC_COEFFICIENTS};
 
-use super::answer::{EITHER_SIGN, correlations, word};
+use super::answer::{EITHER_SIGN, correlations};
 use super::misfit::misfit_in_words;
 use super::numbers;
 use super::region::{self, FoundRegion};
@@ -10,7 +10,7 @@ use super::{
     Bootstrap, COEFFICIENT_NAMES, DECISIVE, Identification, NotIdentifiableCombination, Read, SignalFit,
     TermEvidence, TestOil, ValveTerm,
 };
-use crate::answer::significant;
+use crate::answer::{Word, significant};
 use crate::document::{Cell, Document, Table};
 use crate::quantity::{DisplayUnit, PRESSURE, display};
 
@@ -104,7 +104,7 @@ fn leakage(found: &Identification) -> Vec<String> {
         Some(model) => format!(
             "The recordings favour {} (`{}`) rather than {}: the information criterion of Schwarz is lower by {by}, where {DECISIVE} is decisive.",
             described(model),
-            word(model),
+            model.word(),
             described(worse.model)
         ),
         None => format!(
@@ -117,7 +117,7 @@ fn leakage(found: &Identification) -> Vec<String> {
     let but = if agrees { "" } else { ", against the recordings" };
     vec![
         first,
-        format!("The numbers below, and the fragment, are for `leakage_model = \"{}\"`{but}.", word(used)),
+        format!("The numbers below, and the fragment, are for `leakage_model = \"{}\"`{but}.", used.word()),
     ]
 }
 

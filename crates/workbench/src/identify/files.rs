@@ -1,15 +1,12 @@
 //! Contents of the files, and findings in them.
 
-use std::borrow::Cow;
-
 use phea_hydraulics::servovalve::PortCircuit;
-use serde::Serialize;
 
 use super::misfit::misfit_in_words;
 use super::{ColumnContents, FileContents, Identification};
-use crate::answer::Number;
+use crate::answer::{Answer, FileWarningAnswer, words};
 use crate::document::{Cell, Document, Table};
-use crate::project::{Diagnostic, TestSignal};
+use crate::project::{Diagnostic, StaticTest, TestSignal};
 use crate::quantity::DisplayUnit;
 
 /// The files as they were read.
@@ -21,74 +18,88 @@ pub struct Read {
     pub warnings: Vec<Diagnostic>,
 }
 
-#[derive(Serialize)]
-pub(super) struct TestBody<'a> {
-    file: &'a str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    test: Option<&'static str>,
-    ports: &'static str,
+/// Recorded test as it was read.
+#[derive(Answer)]
+pub(super) struct ValveTestAnswer {
+    /// Path of the file.
+    file: String,
+    /// Test as the project declares it, if so.
+    #[answer(optional)]
+    test: Option<StaticTest>,
+    /// Piping of the ports.
+    ports: PortCircuit,
+    /// Number of rows that are used.
     rows: usize,
+    /// Number of rows that are omitted, each with a warning.
     rows_left_out: usize,
+    /// Lag of the spool at the first row from earlier cycles; zero if the rows do not show one.
     memory_at_start_v: f64,
-    columns: Vec<ColumnBody<'a>>,
-    unused_columns: &'a [String],
+    /// Columns that are used.
+    columns: Vec<ColumnAnswer>,
+    /// Headings of columns that are not used.
+    unused_columns: Vec<String>,
 }
 
-#[derive(Serialize)]
-struct ColumnBody<'a> {
-    heading: &'a str,
-    signal: &'static str,
-    read_in: &'a str,
-    #[serde(skip_serializing_if = "Option::is_none")]
+/// Column of a recorded test that is used.
+#[derive(Answer)]
+struct ColumnAnswer {
+    /// Heading of the column.
+    heading: String,
+    /// Signal of the column.
+    signal: TestSignal,
+    /// Unit in which the column was read.
+    read_in: String,
+    /// True if the sign of the column was reversed; only then present.
+    #[answer(optional)]
     reversed: Option<bool>,
+    /// Unit of `range`.
     unit: &'static str,
-    range: [Number; 2],
+    /// Least and greatest value of the rows that are used; inf and -inf if none has a value.
+    range: [f64; 2],
+    /// Number of rows without a value.
     gaps: usize,
 }
 
-#[derive(Serialize)]
-pub(super) struct WarningBody<'a> {
-    message: Cow<'a, str>,
-    file: &'a str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    line: Option<usize>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    column: Option<usize>,
+words! {
+    /// Piping of the ports of a valve: blocked, or connected through a meter.
+    PortCircuit { Blocked => "blocked", Connected => "connected" }
+}
+
+words! {
+    /// Signal of a recorded static test.
+    TestSignal by TestSignal::name [
+        Time, Command, SupplyPressure, TankPressure, PressureA, PressureB, LeakFlow, Flow, OilTemperature,
+    ]
 }
 
 impl Read {
-    pub(super) fn tests<'a>(&'a self, found: &'a Identification) -> Vec<TestBody<'a>> {
+    pub(super) fn tests(&self, found: &Identification) -> Vec<ValveTestAnswer> {
         let both = self.contents.iter().zip(&found.recordings);
-        both.map(|(contents, recording)| TestBody {
-            file: &contents.file,
-            test: contents.test.map(|test| test.name()),
-            ports: match recording.circuit {
-                PortCircuit::Blocked => "blocked",
-                PortCircuit::Connected => "connected",
-            },
+        both.map(|(contents, recording)| ValveTestAnswer {
+            file: contents.file.clone(),
+            test: contents.test,
+            ports: recording.circuit,
             rows: contents.rows,
             rows_left_out: contents.rows_left_out,
             memory_at_start_v: recording.memory_at_start(),
             columns: contents.columns.iter().map(column).collect(),
-            unused_columns: &contents.unused,
+            unused_columns: contents.unused.clone(),
         })
         .collect()
     }
 
     /// Findings in the files, and misfits of the model.
-    pub(super) fn warnings<'a>(&'a self, found: &'a Identification) -> Vec<WarningBody<'a>> {
+    pub(super) fn warnings(&self, found: &Identification) -> Vec<FileWarningAnswer> {
         let place = |number: usize| Some(number).filter(|number| *number > 0);
-        let all = self.warnings.iter().map(|warning| WarningBody {
-            message: Cow::from(&warning.message),
-            file: &warning.file,
+        let all = self.warnings.iter().map(|warning| FileWarningAnswer {
+            message: warning.message.clone(),
+            file: warning.file.clone(),
             line: place(warning.line),
             column: place(warning.column),
         });
-        let misfits = found.misfits().into_iter().map(|misfit| WarningBody {
-            message: Cow::from(misfit_in_words(found, &misfit)),
-            file: found.recordings.get(misfit.recording).map_or("", |one| one.file.as_str()),
-            line: None,
-            column: None,
+        let misfits = found.misfits().into_iter().map(|misfit| {
+            let file = found.recordings.get(misfit.recording).map_or("", |one| one.file.as_str());
+            FileWarningAnswer::of_file(misfit_in_words(found, &misfit), file)
         });
         all.chain(misfits).collect()
     }
@@ -114,14 +125,14 @@ impl Read {
     }
 }
 
-fn column(column: &ColumnContents) -> ColumnBody<'_> {
-    ColumnBody {
-        heading: &column.heading,
-        signal: column.signal.name(),
-        read_in: &column.unit,
+fn column(column: &ColumnContents) -> ColumnAnswer {
+    ColumnAnswer {
+        heading: column.heading.clone(),
+        signal: column.signal,
+        read_in: column.unit.clone(),
         reversed: column.is_reversed.then_some(true),
         unit: column.signal.dimension().si,
-        range: column.range.map(Number),
+        range: column.range,
         gaps: column.gaps,
     }
 }

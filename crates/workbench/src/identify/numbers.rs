@@ -2,57 +2,116 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
-
 use super::{COEFFICIENT_NAMES, Identification, NullMethod, NullReading};
-use crate::answer::significant;
+use crate::answer::{Answer, KeyList, Keyed, ObjectKey, significant, words};
 use crate::document::{Cell, Document, Table};
 use crate::estimate::Estimate;
 use crate::project::DeclaredActuator;
 use crate::quantity::{PRESSURE, VOLTAGE, display};
 
-#[derive(Serialize)]
-pub(super) struct SimpleBody {
+/// Values read from the recorded curves by the equations of the thesis, section 5.2; null without
+/// the test for it.
+#[derive(Answer)]
+pub(super) struct HandReadingsAnswer {
+    /// Flow coefficient K_vp for positive commands, which extend, m3/(s.Pa^0.5).
     flow_coefficient_extending: Option<f64>,
+    /// Flow coefficient K_vp for negative commands, which retract, m3/(s.Pa^0.5).
     flow_coefficient_retracting: Option<f64>,
+    /// Flow of the valve over the rated flow, at the rated pressure drop.
     share_of_nominal_flow: Option<f64>,
+    /// Leakage coefficient K_vinp, m3/(s.Pa^0.5).
     leakage_coefficient: Option<f64>,
+    /// Leakage at null, above the tare flow.
     null_leakage_m3_per_s: Option<f64>,
+    /// Shape lambda of the leakage, from the width of its curve at half height.
     leakage_shape: Option<f64>,
+    /// Flow of the pilot stage, from the base of the leakage curve.
     tare_flow_m3_per_s: Option<f64>,
-    /// Drop from supply to tank at which leakage and tare flow are read.
+    /// Pressure drop from supply to tank at which leakage and tare flow are read.
     leakage_pressure_pa: Option<f64>,
+    /// Tare flow over the whole leakage at null.
     tare_share: Option<f64>,
+    /// Mean of the nulls with a rising and a falling command.
     null_bias_v: Option<f64>,
+    /// Command at null while the command rises.
     null_rising_v: Option<f64>,
+    /// Command at null while the command falls.
     null_falling_v: Option<f64>,
-    /// Sources of the nulls, rising and falling.
-    null_methods: [Option<&'static str>; 2],
+    /// Features that show null while the command rises and while it falls.
+    null_methods: [Option<NullMethod>; 2],
+    /// Null with a rising command less that with a falling one.
     hysteresis_v: Option<f64>,
+    /// Flow gain K_qU near null for positive commands.
     flow_gain_extending_m3_per_s_v: Option<f64>,
+    /// Flow gain K_qU near null for negative commands.
     flow_gain_retracting_m3_per_s_v: Option<f64>,
-    /// Range of commands from null, on either side, over which the gains are read.
+    /// Commands from null, to either side, between which the flow gains are read.
     flow_gain_commands_v: Option<[f64; 2]>,
-    /// Drop from supply to tank at which the gains are stated.
+    /// Pressure drop from supply to tank at which the flow gains are stated.
     flow_gain_pressure_pa: Option<f64>,
+    /// Pressure sensitivity K_pU with blocked ports: slope of p_A - p_B over the command.
     pressure_sensitivity_pa_per_v: Option<f64>,
-    /// Absent for edges with a lap, whose flow gain at null is not the one that is read.
+    /// Flow-pressure coefficient K_c at null, m3/(s.Pa); null also for edges with a lap, whose flow
+    /// gain at null is not the one that is read.
     flow_pressure_coefficient: Option<f64>,
-    /// Confidence intervals of the numbers that have one.
-    confidence_95: BTreeMap<&'static str, [f64; 2]>,
+    /// Confidence intervals of 95 % of the values that have one.
+    confidence_95: HandIntervalsAnswer,
 }
 
-pub(super) fn simple_body(identified: &Identification) -> SimpleBody {
+/// Confidence intervals of 95 % of values read from curves, each from low to high, in the order of
+/// the alphabet.
+#[derive(Answer)]
+struct HandIntervalsAnswer {
+    #[answer(flatten)]
+    intervals: Keyed<HandReadingKeys, [f64; 2]>,
+}
+
+/// Values that may have an interval.
+struct HandReadingKeys;
+
+impl KeyList for HandReadingKeys {
+    fn keys() -> Vec<(ObjectKey, String)> {
+        let keys = [
+            "flow_coefficient_extending",
+            "flow_coefficient_retracting",
+            "flow_gain_extending_m3_per_s_v",
+            "flow_gain_retracting_m3_per_s_v",
+            "flow_pressure_coefficient",
+            "hysteresis_v",
+            "leakage_coefficient",
+            "null_bias_v",
+            "null_falling_v",
+            "null_leakage_m3_per_s",
+            "null_rising_v",
+            "pressure_sensitivity_pa_per_v",
+            "share_of_nominal_flow",
+            "tare_flow_m3_per_s",
+            "tare_share",
+        ];
+        keys.map(|key| (key.into(), format!("Confidence interval of `{key}`."))).to_vec()
+    }
+}
+
+words! {
+    /// Feature of the recorded curves that shows null.
+    NullMethod {
+        LeakageCentre => "leakage_centre",
+        FlowLines => "flow_lines",
+        EqualPressures => "equal_pressures",
+    }
+}
+
+pub(super) fn hand_readings(identified: &Identification) -> HandReadingsAnswer {
     let found = &identified.simple;
-    let mut confidence_95 = BTreeMap::new();
+    let mut intervals = BTreeMap::new();
     let mut read = |name: &'static str, reading: Option<Estimate>| {
-        confidence_95.extend(reading.and_then(|reading| Some((name, reading.bounds()?))));
+        intervals.extend(reading.and_then(|reading| Some((name, reading.bounds()?))));
         reading.map(|reading| reading.value)
     };
     let [extending, retracting] = found.flow_coefficients;
     let [gain_extending, gain_retracting] = found.flow_gains;
     let [rising, falling] = found.nulls;
-    SimpleBody {
+    HandReadingsAnswer {
         flow_coefficient_extending: read("flow_coefficient_extending", extending),
         flow_coefficient_retracting: read("flow_coefficient_retracting", retracting),
         share_of_nominal_flow: read("share_of_nominal_flow", found.fraction_of_nominal),
@@ -65,7 +124,7 @@ pub(super) fn simple_body(identified: &Identification) -> SimpleBody {
         null_bias_v: read("null_bias_v", found.null_bias()),
         null_rising_v: read("null_rising_v", rising.map(|null| null.command)),
         null_falling_v: read("null_falling_v", falling.map(|null| null.command)),
-        null_methods: found.nulls.map(|null| null.map(|null| null_method(null.method))),
+        null_methods: found.nulls.map(|null| null.map(|null| null.method)),
         hysteresis_v: read("hysteresis_v", found.hysteresis()),
         flow_gain_extending_m3_per_s_v: read("flow_gain_extending_m3_per_s_v", gain_extending),
         flow_gain_retracting_m3_per_s_v: read("flow_gain_retracting_m3_per_s_v", gain_retracting),
@@ -73,7 +132,9 @@ pub(super) fn simple_body(identified: &Identification) -> SimpleBody {
         flow_gain_pressure_pa: found.flow_gain_commands.map(|_| found.flow_gain_pressure),
         pressure_sensitivity_pa_per_v: read("pressure_sensitivity_pa_per_v", found.pressure_sensitivity),
         flow_pressure_coefficient: read("flow_pressure_coefficient", coefficient_at_null(identified)),
-        confidence_95,
+        confidence_95: HandIntervalsAnswer {
+            intervals: Keyed::new(intervals.into_iter().map(|(name, ends)| (name.into(), ends))),
+        },
     }
 }
 
@@ -149,16 +210,7 @@ fn read_at(found: &Identification) -> Vec<String> {
     leakage.into_iter().chain(gain).chain(lap).collect()
 }
 
-/// Source of a null, in JSON.
-fn null_method(method: NullMethod) -> &'static str {
-    match method {
-        NullMethod::LeakageCentre => "leakage_centre",
-        NullMethod::FlowLines => "flow_lines",
-        NullMethod::EqualPressures => "equal_pressures",
-    }
-}
-
-/// Equation of the method by which a null was found.
+/// By which a null was found.
 fn null_equation(null: Option<NullReading>) -> &'static str {
     match null.map(|null| null.method) {
         Some(NullMethod::FlowLines) => "between zeros of q(U)",

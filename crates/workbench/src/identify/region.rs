@@ -1,10 +1,10 @@
 //! Plant uncertainty that remains after identification: sentences, JSON, and a fragment of a
 //! project file.
 
-use serde::Serialize;
+use std::collections::BTreeMap;
 
 use super::{COVERAGE, Identification, JointRegion, JointRegionError};
-use crate::answer::{Number, OutputFile, significant};
+use crate::answer::{Answer, Entries, OutputFile, significant};
 use crate::document::{Cell, Document, Table};
 use crate::project::UncertaintyDirection;
 use crate::quantity::print_bare;
@@ -66,45 +66,55 @@ fn row(direction: &UncertaintyDirection, effect: f64) -> [Cell; 3] {
     [Cell::Code(direction.name.clone()), Cell::number(100.0 * effect, 2), Cell::unit("%")]
 }
 
-#[derive(Serialize)]
-pub(super) struct RegionBody {
+/// Family of valves that the recordings allow, as independent directions of the uncertainty.
+#[derive(Answer)]
+pub(super) struct JointRegionAnswer {
+    /// Probability that the family contains the valve, from 0 to 1.
     coverage: f64,
-    deviations: Option<Number>,
-    directions: Vec<DirectionBody>,
+    /// Standard deviations to either side of each direction; null without a region.
+    deviations: Option<f64>,
+    /// Directions of the family, the one with the greatest effect first.
+    directions: Vec<RegionDirectionAnswer>,
+    /// Number of directions that are omitted because their effect is small; null without a region.
     left_out: Option<usize>,
-    effect_left_out: Option<Number>,
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Largest relative change of K_qU or K_c from the omitted directions together; null without a
+    /// region.
+    effect_left_out: Option<f64>,
+    /// Reason for which there is no region.
+    #[answer(optional)]
     reason: Option<String>,
 }
 
-#[derive(Serialize)]
-struct DirectionBody {
+/// Direction of the uncertainty of an identified valve.
+#[derive(Answer)]
+struct RegionDirectionAnswer {
+    /// Name of the direction.
     name: String,
-    effect: Number,
-    changes: std::collections::BTreeMap<String, Number>,
+    /// Largest relative change of K_qU and K_c from the middle of the direction to an end.
+    effect: f64,
+    /// Change of each value of the project per standard deviation, in SI, by the path of its key.
+    changes: Entries<f64>,
 }
 
-pub(super) fn body(region: &FoundRegion) -> RegionBody {
+pub(super) fn joint_region_answer(region: &FoundRegion) -> JointRegionAnswer {
     let found = region.as_ref().ok();
     let directions = found.iter().flat_map(|region| region.directions.iter().zip(&region.effects));
-    RegionBody {
+    JointRegionAnswer {
         coverage: COVERAGE,
-        deviations: found.map(|region| Number(region.deviations)),
-        directions: directions
-            .map(|(direction, effect)| DirectionBody {
-                name: direction.name.clone(),
-                effect: Number(*effect),
-                changes: direction
-                    .changes
-                    .numbers
-                    .iter()
-                    .map(|(path, one)| (path.clone(), Number(*one)))
-                    .collect(),
-            })
-            .collect(),
+        deviations: found.map(|region| region.deviations),
+        directions: directions.map(|(direction, effect)| region_direction(direction, *effect)).collect(),
         left_out: found.map(|region| region.left_out),
-        effect_left_out: found.map(|region| Number(region.effect_left_out)),
+        effect_left_out: found.map(|region| region.effect_left_out),
         reason: region.as_ref().err().map(ToString::to_string),
+    }
+}
+
+fn region_direction(direction: &UncertaintyDirection, effect: f64) -> RegionDirectionAnswer {
+    let sorted: BTreeMap<String, f64> = direction.changes.numbers.iter().cloned().collect();
+    RegionDirectionAnswer {
+        name: direction.name.clone(),
+        effect,
+        changes: Entries(sorted.into_iter().collect()),
     }
 }
 

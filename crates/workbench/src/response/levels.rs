@@ -1,56 +1,67 @@
 use phea_dynamics::portable::{argument, log10, magnitude};
-use serde::Serialize;
 
 use super::{Compared, FALSE_ALARM, LevelComparison, LevelDifference};
-use crate::answer::{Number, significant};
+use crate::answer::{Answer, significant};
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
 
 /// Rows of a table for people; all of them are in the JSON.
 const SHOWN: usize = 16;
 
-/// Two records at one operating point, in JSON.
-#[derive(Serialize)]
-pub(super) struct ComparedLevels<'a> {
-    operating_point: &'a str,
-    files: [&'a str; 2],
-    input_rms: [Number; 2],
+/// Comparison of two records at one operating point.
+#[derive(Answer)]
+pub(super) struct LevelComparisonAnswer {
+    /// Name of the operating point.
+    operating_point: String,
+    /// Paths of both records, that of the smaller input first.
+    files: [String; 2],
+    /// Root mean squares of both inputs around their means, in SI.
+    input_rms: [f64; 2],
+    /// Probability that responses of one linear plant are reported as different, over all
+    /// comparisons of the operating point.
     false_alarm_probability: f64,
+    /// Number of frequencies at which the responses differ by more than noise explains.
     differences: usize,
-    frequencies: Vec<DifferenceAt>,
+    /// Comparison at each common frequency, the lowest first.
+    frequencies: Vec<LevelDifferenceAnswer>,
+    /// Result of the comparison in sentences.
     sentence: String,
 }
 
-#[derive(Serialize)]
-struct DifferenceAt {
+/// Comparison of two responses at one frequency.
+#[derive(Answer)]
+struct LevelDifferenceAnswer {
+    /// Frequency.
     frequency_rad_per_s: f64,
-    difference_db: Number,
-    difference_deg: Number,
-    distance: Number,
-    explained_by_noise: Number,
+    /// Magnitude of the response at the larger input over that at the smaller one.
+    difference_db: f64,
+    /// Phase of the response at the larger input less that at the smaller one, from -180 to 180.
+    difference_deg: f64,
+    /// Distance between the complex responses, in their unit.
+    distance: f64,
+    /// Distance that noise explains, in the unit of the responses.
+    explained_by_noise: f64,
+    /// True if the distance is larger than noise explains.
     exceeds_noise: bool,
 }
 
-/// The comparison in the form of the JSON.
-pub(super) fn compared_levels<'a>(
-    comparison: &'a LevelComparison,
-    found: &'a [Compared],
-) -> ComparedLevels<'a> {
+/// The comparison as JSON has it.
+pub(super) fn compared_levels(comparison: &LevelComparison, found: &[Compared]) -> LevelComparisonAnswer {
     let at = |one: &LevelDifference| {
-        let (decibels, degrees) = ratio(one);
-        DifferenceAt {
+        let (difference_db, difference_deg) = ratio(one);
+        LevelDifferenceAnswer {
             frequency_rad_per_s: one.pair.frequency,
-            difference_db: Number(decibels),
-            difference_deg: Number(degrees),
-            distance: Number(one.pair.distance()),
-            explained_by_noise: Number(one.by_noise),
+            difference_db,
+            difference_deg,
+            distance: one.pair.distance(),
+            explained_by_noise: one.by_noise,
             exceeds_noise: one.is_found(),
         }
     };
-    ComparedLevels {
-        operating_point: &comparison.operating_point,
-        files: files(comparison, found),
-        input_rms: comparison.input_rms.map(Number),
+    LevelComparisonAnswer {
+        operating_point: comparison.operating_point.clone(),
+        files: files(comparison, found).map(str::to_string),
+        input_rms: comparison.input_rms,
         false_alarm_probability: FALSE_ALARM,
         differences: comparison.frequencies.iter().filter(|one| one.is_found()).count(),
         frequencies: comparison.frequencies.iter().map(at).collect(),
