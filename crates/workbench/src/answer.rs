@@ -30,7 +30,7 @@ pub(crate) use chosen_lines::hindrance_words;
 pub(crate) use describe::{Body, Describe, Field, Perhaps};
 pub(crate) use envelope::{SCHEMA, VERSION, envelope};
 pub(crate) use file_warning::FileWarningAnswer;
-pub(crate) use known::{Entries, KeyList, Keyed, OrReason};
+pub(crate) use known::{Entries, KeyList, Keyed, OrReason, Reasoned};
 pub(crate) use object::{Json, ObjectKey};
 pub(crate) use phea_derive::Answer;
 pub use pictures::picture_of;

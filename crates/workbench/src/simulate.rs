@@ -13,6 +13,7 @@ mod occurrence_kind;
 mod reasons;
 mod repetition;
 mod required;
+mod requirement;
 mod run_status;
 mod span;
 mod together;
@@ -38,6 +39,9 @@ pub(crate) use occurrence_kind::CampaignOccurrenceKind;
 pub(crate) use reasons::{status_words, unmeasured_words};
 pub(crate) use required::{
     Satisfaction, WorstStepAnswer, not_judged_words, requirement_sentence, satisfied_word,
+};
+pub(crate) use requirement::{
+    reached_words, required_overshoot, required_rise, required_settling, required_words,
 };
 pub(crate) use span::around;
 pub(crate) use together::{NamedRun, at_a_glance, close_ups, measured_together, together};

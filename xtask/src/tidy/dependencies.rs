@@ -1,10 +1,10 @@
 //! Dependencies between packages: only those that the table below allows.
 //!
 //! ```text
-//! dynamics <- quantity <- hydraulics <- machine, project <-+
-//! dynamics <- qft <----------------------------------------+- engineering <-+
-//! quantity, qft <- figure <-------------------------------------------------+- workbench <- cli
-//! derive <------------------------------------------------------------------+
+//! dynamics <- quantity <- table <- hydraulics <- machine, project <-+
+//! dynamics <- qft <-------------------------------------------------+- engineering <-+
+//! quantity, qft <- figure <----------------------------------------------------------+- workbench <- cli
+//! derive <---------------------------------------------------------------------------+
 //! ```
 
 use super::Violation;
