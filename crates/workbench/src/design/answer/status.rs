@@ -20,8 +20,8 @@ pub(super) enum DesignOutcomeKind {
 
 words! {
     /// Outcome of a design: every specification is satisfied (`met`), or over a family that lacks a
-    /// declared effect, or all but steps in time, the gain of the prefilter, the command of steps or
-    /// the tolerated delay; no evaluated controller satisfies them, search and audit do not agree,
+    /// declared effect, or all but steps in time, the gain of the prefilter, the command of steps
+    /// or the tolerated delay; no evaluated controller satisfies them, search and audit disagree,
     /// no evaluated controller makes every plant stable, or the design was stopped.
     DesignOutcomeKind {
         Met => "met",
