@@ -136,7 +136,7 @@ words! {
 }
 
 words! {
-    /// Part of a design.
+    /// Part of a design that a stop may leave unfinished.
     DesignPart by DesignPart::key [
         Search, CommandOfSteps, Trial, Repair, Proof, Relaxations, WithoutSamples, GivenController,
         TemplatesAndBounds,
