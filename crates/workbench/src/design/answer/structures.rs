@@ -73,9 +73,9 @@ enum StructureOutcome {
 }
 
 words! {
-    /// Outcome of the search with a structure: limits satisfied, steps missed in time, limits missed,
-    /// given up since it is not worth its poles, no agreement of search and audit, or no controller
-    /// that makes every plant stable.
+    /// Outcome of the search with a structure: limits satisfied, steps missed in time, limits
+    /// missed, given up since it is not worth its poles, no agreement of search and audit, or no
+    /// controller that makes every plant stable.
     StructureOutcome {
         Met => "met",
         MissedInTime => "missed_in_time",
