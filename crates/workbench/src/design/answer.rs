@@ -48,7 +48,7 @@ pub(crate) struct DesignAnswer {
     /// Reason not to use the designed controller, only if there is one.
     #[answer(optional)]
     unusable: Option<String>,
-    /// Parts that a stopped design lacks; empty unless it was stopped.
+    /// Parts that were not finished because the design was stopped.
     unfinished: Vec<DesignPart>,
     /// Objective of the search.
     objective: ObjectiveAnswer,
@@ -93,7 +93,7 @@ pub(crate) struct DesignAnswer {
     minimum_delay_margin_s: f64,
     /// Limits in addition to the specifications.
     limits: Vec<DesignLimitAnswer>,
-    /// Margin that the search keeps in reserve for the audit.
+    /// Margin of the search to every limit, for what lies between its plants and frequencies.
     reserve_db: f64,
     /// Reason for the absence of `published`.
     #[answer(optional)]
@@ -136,7 +136,7 @@ words! {
 }
 
 words! {
-    /// Part of a design that it lacks if it is stopped.
+    /// Part of a design that a stop may leave unfinished.
     DesignPart by DesignPart::key [
         Search, CommandOfSteps, Trial, Repair, Proof, Relaxations, WithoutSamples, GivenController,
         TemplatesAndBounds,

@@ -216,3 +216,40 @@ pub fn files(view: &ProjectShaping) -> Vec<OutputFile> {
     }
     vec![OutputFile::new(SHAPED_PROJECT, view.saved.clone()), OutputFile::new("margins.csv", csv.text())]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::answer::Word;
+    use crate::project::RationalFunction;
+
+    /// The words of elements are those of the project file.
+    #[test]
+    fn elements_have_the_words_of_the_project_file() {
+        let (frequency, damping_ratio) = (1.0, 1.0);
+        let (zero_frequency, pole_frequency) = (1.0, 1.0);
+        let (proportional_gain, integral_gain) = (1.0, 1.0);
+        let all = [
+            ElementKind::Gain { value: 1.0 },
+            ElementKind::Integrator,
+            ElementKind::Differentiator,
+            ElementKind::Zero { frequency },
+            ElementKind::Pole { frequency },
+            ElementKind::ComplexZeros { frequency, damping_ratio },
+            ElementKind::ComplexPoles { frequency, damping_ratio },
+            ElementKind::Lead { zero_frequency, pole_frequency },
+            ElementKind::Lag { zero_frequency, pole_frequency },
+            ElementKind::Notch { frequency, damping_ratio, numerator_damping_ratio: 1.0 },
+            ElementKind::RollOff { frequency, damping_ratio: None },
+            ElementKind::ProportionalIntegral { proportional_gain, integral_gain },
+            ElementKind::ProportionalIntegralDerivative {
+                proportional_gain,
+                integral_gain,
+                derivative_gain: 1.0,
+                filter_time: 1.0,
+            },
+            ElementKind::General(RationalFunction::default()),
+        ];
+        all.iter().for_each(|kind| assert_eq!(kind.word(), kind.name()));
+    }
+}

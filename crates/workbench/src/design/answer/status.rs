@@ -19,10 +19,10 @@ pub(super) enum DesignOutcomeKind {
 }
 
 words! {
-    /// Outcome of a design: every specification is satisfied (`met`), or over a family that lacks a
-    /// declared effect, or all but steps in time, the gain of the prefilter, the command of steps or
-    /// the tolerated delay; no evaluated controller satisfies them, search and audit do not agree,
-    /// no evaluated controller makes every plant stable, or the design was stopped.
+    /// Outcome of a design: every specification satisfied; satisfied over a family that lacks a
+    /// declared effect; satisfied, but steps in time, gain of the prefilter, command of steps or
+    /// tolerated delay missed; violated by every evaluated controller; no agreement of search and
+    /// audit; no evaluated controller that makes every plant stable; or stopped.
     DesignOutcomeKind {
         Met => "met",
         NotProven => "not_proven",

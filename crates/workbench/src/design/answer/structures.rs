@@ -52,12 +52,12 @@ pub(super) struct ReachedStructureAnswer {
     /// noise to the command of the nominal loop, or the objective.
     #[answer(optional)]
     compared_db: Option<f64>,
-    /// Greatest overshoot of the linear steps, of the step, only if one is required and a prefilter
-    /// was fitted.
+    /// Greatest overshoot of the linear steps, of the step: of the structure that is taken over the
+    /// whole family, of others over some of its members; only if one is required.
     #[answer(optional)]
     worst_overshoot_percent: Option<f64>,
-    /// Longest settling time of the linear steps, `inf` if a step does not settle, only if one is
-    /// required and a prefilter was fitted.
+    /// Longest settling time of the linear steps of the same plants, `inf` if a step does not
+    /// settle; only if one is required.
     #[answer(optional)]
     worst_settling_time_s: Option<f64>,
 }
@@ -73,9 +73,9 @@ enum StructureOutcome {
 }
 
 words! {
-    /// Outcome of the search with a structure: its limits are satisfied, also in time or not, or
-    /// missed, or it was not worth its poles and given up, or search and audit did not agree, or no
-    /// controller makes every plant stable.
+    /// Outcome of the search with a structure: limits satisfied, steps missed in time, limits
+    /// missed, given up since it is not worth its poles, no agreement of search and audit, or no
+    /// controller that makes every plant stable.
     StructureOutcome {
         Met => "met",
         MissedInTime => "missed_in_time",
