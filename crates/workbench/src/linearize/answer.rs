@@ -54,8 +54,8 @@ pub(crate) struct LinearizeAnswer {
     impedance: ImpedancesAnswer,
     /// Passivity of the driving-point impedance.
     passivity: PassivitiesAnswer,
-    /// Virtual impedance and the impedance that the loop has instead, if one is required and the
-    /// project gives a controller.
+    /// Virtual impedance compared with the impedance of the loop, only with
+    /// `[controller.impedance]`.
     #[answer(optional)]
     virtual_impedance: Option<VirtualImpedanceAnswer>,
     /// Frequency above which the mass of the piston, or the oil of a transmission, hides the
