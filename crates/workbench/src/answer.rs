@@ -9,7 +9,6 @@ mod describe;
 mod envelope;
 mod file_warning;
 mod known;
-mod number;
 mod object;
 mod pictures;
 mod recorded;
@@ -20,7 +19,6 @@ mod words;
 
 use crate::quantity::print_bare;
 pub use crate::quantity::significant;
-pub use number::Number;
 pub use object::Object;
 pub(crate) use phea_engineering::csv::{Csv, quoted};
 pub use phea_engineering::number_table::{NumberTable, TableFormat};

@@ -95,6 +95,27 @@ fn every_key_is_described() {
     }
 }
 
+/// Two values may print one word, as the flows of two kinds of meters do.
+#[test]
+fn no_list_of_words_repeats_one() {
+    for (name, definition) in schema()["definitions"].as_object().unwrap() {
+        let words = definition.get("enum").and_then(Value::as_array);
+        let words: Vec<&str> = words.into_iter().flatten().map(|word| word.as_str().unwrap()).collect();
+        let distinct: std::collections::BTreeSet<&str> = words.iter().copied().collect();
+        assert_eq!(distinct.len(), words.len(), "{name}: {words:?}");
+    }
+}
+
+#[test]
+fn every_interval_of_a_reading_by_hand_is_that_of_a_reading() {
+    let keys = |name: &str| {
+        let definition = &schema()["definitions"][name]["properties"];
+        definition.as_object().unwrap().keys().cloned().collect::<std::collections::BTreeSet<String>>()
+    };
+    let (intervals, readings) = (keys("HandIntervalsAnswer"), keys("HandReadingsAnswer"));
+    assert!(!intervals.is_empty() && intervals.is_subset(&readings), "{intervals:?}");
+}
+
 /// Answers are parsed by `answer_schema::parsed` alone, so that none escapes the schema.
 #[test]
 fn every_test_validates_the_answers_that_it_reads() {

@@ -5,11 +5,10 @@ use std::borrow::Cow;
 use num_complex::Complex64;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-use super::Number;
 use crate::plant_names::{ADDED, NamedPlant, NamedValue};
 use crate::quantity::{MotionKind, QuantityName};
 
-/// A value of JSON. A number that is not finite is printed as [`Number`] does.
+/// A value of JSON. Infinity, which JSON lacks, is printed as the text `inf`, NaN as `null`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Json {
     Null,
@@ -117,7 +116,7 @@ impl Object {
 
     /// Printed by itself, for rigs of this motion.
     pub fn print(&self, motion: MotionKind) -> String {
-        // every key is a text and every number is finite, so that nothing can fail
+        // every key is a text and every printed number is finite, so that nothing can fail
         serde_json::to_string_pretty(&PrintedObject { object: self, motion }).unwrap_or_default()
     }
 }
@@ -153,7 +152,7 @@ impl Serialize for PrintedJson<'_> {
             Json::Flag(value) => serializer.serialize_bool(*value),
             Json::Count(value) => serializer.serialize_u64(*value),
             Json::Integer(value) => serializer.serialize_i64(*value),
-            Json::Number(value) => Number(*value).serialize(serializer),
+            Json::Number(value) => serialize_number(*value, serializer),
             Json::Text(text) => serializer.serialize_str(text),
             Json::Name(name) => serializer.serialize_str(&name.text(motion)),
             Json::List(items) => {
@@ -161,6 +160,15 @@ impl Serialize for PrintedJson<'_> {
             }
             Json::Object(object) => PrintedObject { object, motion }.serialize(serializer),
         }
+    }
+}
+
+fn serialize_number<S: Serializer>(value: f64, serializer: S) -> Result<S::Ok, S::Error> {
+    match value {
+        value if value.is_finite() => serializer.serialize_f64(value),
+        f64::INFINITY => serializer.serialize_str("inf"),
+        f64::NEG_INFINITY => serializer.serialize_str("-inf"),
+        _ => serializer.serialize_none(),
     }
 }
 

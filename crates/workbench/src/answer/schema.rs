@@ -190,8 +190,13 @@ impl Definitions {
 
 /// The words without repetition: two values may have one word.
 fn distinct(words: &[&'static str]) -> Vec<&'static str> {
-    let first = |(index, word): (usize, &&'static str)| !words[..index].contains(word);
-    words.iter().enumerate().filter(|one| first(*one)).map(|(_, word)| *word).collect()
+    let mut distinct = Vec::new();
+    for word in words {
+        if !distinct.contains(word) {
+            distinct.push(*word);
+        }
+    }
+    distinct
 }
 
 fn reference(name: &str) -> Object {

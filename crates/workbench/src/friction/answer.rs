@@ -15,16 +15,15 @@ pub(crate) struct IdentifiedFrictionAnswer {
     friction: FrictionCoefficientsAnswer,
     /// Force that the instruments indicate without friction.
     force_zero_n: OrReason<FrictionEstimateAnswer>,
-    /// Fits of one friction for both directions and of one for each; empty if the recordings slide
-    /// in one direction only.
+    /// Fits of one friction for both directions and of one for each; empty if they cannot be
+    /// compared, as where the recordings slide in one direction only.
     direction_models: Vec<DirectionFitAnswer>,
     /// Decrease of the information criterion by a friction for each direction; null without
     /// `direction_models`.
     direction_models_difference: Option<f64>,
     /// Recorded runs.
     recordings: Vec<FrictionRunAnswer>,
-    /// Root mean square of the residuals of the force, each block of rows as one; null if no run
-    /// has a force to explain.
+    /// Root mean square of the residuals of the force, each block of rows as one; null without any.
     force_residual_rms_n: Option<f64>,
     /// Root mean square of the residuals of the position of pressed or shaken pistons; null without
     /// any.
