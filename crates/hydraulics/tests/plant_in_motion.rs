@@ -95,7 +95,12 @@ fn parts(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> (Components, 
     let reference = components(hose_line(), stiffness_model);
     let air = EntrainedAir { volume_fraction: spread(1e-3, 1e-2), polytropic_exponent: 1.3 };
     let of_length = |length| Line::Hose { hose: hose(), length };
-    let models = [model(number, spread(1e-4, 0.1)), model(number / 6, spread(1e-4, 0.1))];
+    let mut models = [model(number, spread(1e-4, 0.1)), model(number / 6, spread(1e-4, 0.1))];
+    if models == [LineModel::Lumped; 2] {
+        // two lumped lines are no lines in motion
+        models[0] =
+            LineModel::Segments { count: 1, friction: LaminarFriction::Steady, relaxation_time: None };
+    }
     let line_b = match models[1] {
         LineModel::TransmissionLine { .. } | LineModel::Lumped => pipe_line(),
         _ => of_length(spread(0.3, 3.0)),

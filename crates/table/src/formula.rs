@@ -108,7 +108,7 @@ impl Formula {
     /// let formula = Formula::parse("2116*(s + 75)/75")?;
     /// assert_eq!(formula.polynomial(), Some(vec![2116.0 / 75.0, 2116.0]));
     /// assert_eq!(Formula::parse("2*s + k*").unwrap_err().message, "the formula ends where a number or name should follow");
-    /// # Ok::<(), phea_project::FormulaError>(())
+    /// # Ok::<(), phea_table::FormulaError>(())
     /// ```
     pub fn parse(text: &str) -> Result<Formula, FormulaError> {
         parse::formula(text, true)
@@ -124,7 +124,7 @@ impl Formula {
     /// use phea_table::Formula;
     /// let formula = Formula::parse_continuous("s^2 + 2*z*s + 1")?;
     /// assert_eq!(formula.parameters(), [("z", 8..9)]);
-    /// # Ok::<(), phea_project::FormulaError>(())
+    /// # Ok::<(), phea_table::FormulaError>(())
     /// ```
     pub fn parse_continuous(text: &str) -> Result<Formula, FormulaError> {
         parse::formula(text, false)

@@ -31,3 +31,15 @@ pub(crate) use stages::{bound_files, drawn};
 pub use stages::{files, stage_files};
 pub(crate) use structures::document as structures;
 pub(crate) use words::{rig_miss_words, verdict_sentence};
+
+use crate::answer::Body;
+use crate::quantity::MotionKind;
+use phea_dynamics::linear::LinearError;
+
+/// Prints a design as JSON, without the keys of every answer, for a rig of this motion.
+///
+/// # Errors
+/// [`LinearError`] if a law has no transfer function.
+pub fn printed(view: &ProjectDesign, motion: MotionKind) -> Result<String, LinearError> {
+    Ok(body(view)?.into_object().print(motion))
+}

@@ -6,6 +6,8 @@ mod adjustment;
 mod against_the_load;
 mod alternatives;
 mod alternatives_front;
+mod answer_schema;
+mod answers_described;
 mod benchmark;
 mod campaign;
 mod campaign_rows;

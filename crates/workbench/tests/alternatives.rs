@@ -188,7 +188,7 @@ fn a_load_case_equals_every_alternative_with_set() {
     let (slow, faster) = ("plant.denominator=\"s + 0.5\"", "plant.denominator=\"s + 3\"");
     let settings: [&[&str]; 3] = [&[slow], &[faster], &[slow, "plant.delay=\"10 ms\""]];
     for (index, settings) in settings.into_iter().enumerate() {
-        let separate = parsed(&answer(LOOP, settings, &[], &designed));
+        let separate = json_of(&answer(LOOP, settings, &[], &designed));
         for key in ["controller", "verification", "status"] {
             assert_eq!(case["alternatives"][index]["design"][key], separate[key], "{settings:?} {key}");
         }
@@ -327,7 +327,7 @@ fn each_design_is_that_of_design_with_set() {
     let designed = Request::Design { seed: None, stages: false, repair: false };
     let settings: [&[&str]; 3] = [&[], &["plant.denominator=\"s + 3\""], &["plant.delay=\"10 ms\""]];
     for (index, settings) in settings.into_iter().enumerate() {
-        let separate = parsed(&answer(LOOP, settings, &[], &designed));
+        let separate = json_of(&answer(LOOP, settings, &[], &designed));
         let one = &json["alternatives"][index];
         for key in ["controller", "prefilter", "verification", "status", "figures"] {
             assert_eq!(one["design"][key], separate[key], "{settings:?} {key}");
@@ -345,7 +345,7 @@ fn each_written_project_is_the_one_that_was_driven() {
     for (index, name) in ["as declared", "pipe"].into_iter().enumerate() {
         let file = found.files.iter().find(|file| file.name == format!("{name}.toml")).unwrap();
         let text = std::str::from_utf8(&file.bytes).unwrap();
-        let separate = parsed(&answer(text, &[], &[], &Request::Simulate(Default::default())));
+        let separate = json_of(&answer(text, &[], &[], &Request::Simulate(Default::default())));
         let columns = &json["alternatives"][index]["columns"]["scenarios"][0];
         let events = &separate["scenarios"][0]["events"];
         let peak = |event: usize, key: &str| events[event]["metrics"][key].as_f64().unwrap();

@@ -6,7 +6,7 @@ use phea_workbench::command::{AlternativesRequest, Request};
 
 use serde_json::Value;
 
-use super::alternatives::{BOOK, LOOP, is_in_line, parsed, rows_of_the_book};
+use super::alternatives::{BOOK, LOOP, is_in_line, json_of, rows_of_the_book};
 use super::run_command::{HOSE, answer};
 
 const FIGURE: &str = include_str!("../../../book/src/images/hose_length_front.svg");

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use crate::answer_schema::{schema, validated};
-use crate::ask::{HOSE, json};
+use crate::run_command::{HOSE, json};
 use phea_workbench::command::Request;
 use serde_json::{Value, json as value};
 

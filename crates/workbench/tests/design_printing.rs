@@ -19,8 +19,8 @@ use phea_qft::verification::{AuditProblem, PlantPoint, SpecificationMargin, Trac
 use phea_workbench::audit::audit_project;
 use phea_workbench::command::{Request, answer};
 use phea_workbench::design::{
-    AuditedController, DESIGNED_PROJECT, DesignPart, LedBy, ProjectDesign, body, design_options,
-    design_problem, files, output, stage_files,
+    AuditedController, DESIGNED_PROJECT, DesignPart, LedBy, ProjectDesign, design_options, design_problem,
+    files, output, printed, stage_files,
 };
 use phea_workbench::project::{
     self, DeclaredQuantization, FeedForward, Loaded, Prefilter, RationalFunction, Transfer,
@@ -45,7 +45,7 @@ fn text(loaded: &Loaded, view: &ProjectDesign) -> String {
 }
 
 pub(super) fn object(view: &ProjectDesign) -> serde_json::Value {
-    serde_json::from_str(&body(view).unwrap().print(MotionKind::Linear)).unwrap()
+    serde_json::from_str(&printed(view, MotionKind::Linear).unwrap()).unwrap()
 }
 
 fn loaded(text: &str) -> (Memory, Loaded) {
@@ -400,7 +400,7 @@ fn the_leading_objective_is_named_if_no_limit_is_touched() {
         assert!(found.contains(&sentence), "{found}");
     }
     for (led_by, key) in [(LedBy::Frequency, "frequency"), (LedBy::NonlinearRuns, "nonlinear_runs")] {
-        let body = body(&ProjectDesign { led_by, ..view.clone() }).unwrap().print(MotionKind::Linear);
+        let body = printed(&ProjectDesign { led_by, ..view.clone() }, MotionKind::Linear).unwrap();
         assert_eq!(serde_json::from_str::<serde_json::Value>(&body).unwrap()["led_by"], key);
     }
 }

@@ -135,7 +135,7 @@ fn independently_written_equations_are_recovered() {
     let rows = integrated(4137);
     let source = recorded(&["bench.friction={ velocities = 8 }"]);
     let source = source.with("own.csv", table(&rows[100..], [0.5, 5.0], 1));
-    identifies_damping(&parsed(&source, &[SLIDING, "own.csv"]), 0.08);
+    identifies_damping(&found_in(&source, &[SLIDING, "own.csv"]), 0.08);
 }
 
 /// The rod of the complete machine is held by a load cell and its environment, and its valve is
@@ -169,7 +169,7 @@ command = [
         table += &format!("{},{position},{a},{b},{}\n", index as f64 * 2e-4, with(force, 2.0));
     }
     let source = recorded(&["bench.friction={ velocities = 8 }"]).with("machine.csv", table);
-    let found = parsed(&source, &[SLIDING, "machine.csv"]);
+    let found = found_in(&source, &[SLIDING, "machine.csv"]);
     // a valve excites more than the sines of its command, partly hidden by the noise: over six
     // seeds of the noise the stiffness was 4 % too low at most, and the damping 20 % too high
     for ((key, truth), tolerance) in TRUTH[5..].iter().zip([0.06, 0.3]) {

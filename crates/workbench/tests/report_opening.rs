@@ -1,5 +1,5 @@
-//! The first page: it repeats the results of the commands for both controllers, and the next steps
-//! follow from them.
+//! The page that decides: what it says is what the commands say, of both controllers, and what to
+//! do next follows from it.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -41,7 +41,7 @@ fn opening(report: &Report) -> String {
     rest.split("</section>").next().unwrap().to_string()
 }
 
-/// The texts of the cells in the rows below a text that begin with another one.
+/// The texts of the cells in the rows below a text that begin with this one.
 fn rows(page: &str, first: &str) -> Vec<Vec<String>> {
     let cells = |row: &str| -> Vec<String> {
         let row = row.split("</tr>").next().unwrap();
@@ -61,8 +61,8 @@ fn without(text: &str, first: &str, until: &str) -> String {
     format!("{before}{until}{}", rest.split_once(until).unwrap().1)
 }
 
-/// The hose with a measurement of its first scenario: the simulation under the given controller,
-/// with 30 N added.
+/// The hose with what was measured of its first scenario: what the machine does under the given
+/// controller, 30 N too large.
 fn measured_hose() -> (Memory, f64) {
     let plain = Memory::default().with("rig.toml", HOSE);
     let run = runs(&plain, &load(&plain, &[])).remove(0);
@@ -86,13 +86,13 @@ fn runs(source: &Memory, loaded: &Loaded) -> Vec<ScenarioRun> {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// True if the proof of an audit holds in every part, in its JSON.
+/// Whether the proof of an audit holds in every part, in its JSON.
 fn is_all_proven(answer: &Value) -> bool {
     let each = answer["specifications"].as_array().unwrap().iter().map(|own| &own["proven"]);
     std::iter::once(&answer["proof"]["stable"]["proven"]).chain(each).all(|proven| proven == true)
 }
 
-/// The verdict of the nonlinear simulation in the words of the page.
+/// The verdict of the nonlinear simulation as the page has it.
 fn agreement_words(answer: &Value) -> &str {
     match answer["machine"]["verdict"].as_str().unwrap() {
         "agrees_but_for_settling" => "agrees but for the settling",
@@ -100,30 +100,46 @@ fn agreement_words(answer: &Value) -> &str {
     }
 }
 
-/// One report of the hose compared with the commands that it repeats: verdicts of `verify` and
-/// `design`, numbers of `simulate`.
+/// Compares the words of a controller with those of its audit and of its trial on the machine.
+#[track_caller]
+fn assert_decided(decided: &DecidedAnswer, audit: &Value, machine: &Value) {
+    let verdict = match decided.verdict.unwrap() {
+        Verdict::Met => "met",
+        Verdict::Violated => "violated",
+        Verdict::NotProven => "not_proven",
+    };
+    let agreement = match decided.machine.unwrap() {
+        Agreement::Agrees => "agrees",
+        Agreement::AgreesButForSettling => "agrees_but_for_settling",
+        Agreement::Differs => "differs",
+        Agreement::Contradicts => "contradicts",
+    };
+    assert_eq!((Some(verdict), Some(agreement)), (audit["verdict"].as_str(), machine["verdict"].as_str()));
+}
+
+/// One report of the hose against the commands that it repeats: verdicts of `verify` and `design`,
+/// numbers of `simulate`.
 #[test]
-fn both_controllers_agree_with_their_commands() {
+fn both_controllers_stand_there_as_the_commands_tell_them() {
     let (source, nrmse) = measured_hose();
     let loaded = load(&source, &[]);
-    let report_found =
-        report(&source, &loaded, &Setup::new(&loaded.project).unwrap(), None, &mut |_| true).unwrap();
-    let page = opening(&report_found);
+    let told = report(&source, &loaded, &Setup::new(&loaded.project).unwrap(), None, &mut |_| true).unwrap();
+    let page = opening(&told);
 
     let verified = json(&source, &loaded, &Request::Verify { proof: false, on_machine: true });
-    // the measurement has no part in a design
+    // what was measured does not take part in a design
     let designed: Value = parsed(&built_hose().json);
     let both = [&verified, &designed["verification"]];
     let verdict = designed["verification"]["verdict"].as_str().unwrap();
     let proven = if is_all_proven(&designed["verification"]) { ", proven" } else { "" };
     let cells = [verified["verdict"].as_str().unwrap().to_string(), format!("{verdict}{proven}")];
     assert_eq!(rows(&page, "every specification")[0][1..], cells);
-    let decided = [&report_found.decision.given, &report_found.decision.designed];
+    let decided = [&told.decision.given, &told.decision.designed];
     let decided_proven = decided.map(|one| one.as_ref().and_then(|one| one.proven));
     assert_eq!(decided_proven, [Some(false), Some(!proven.is_empty())]);
     let machines = [&verified, &designed].map(agreement_words);
-    let trials = &rows(&page, "tried on the rig")[0];
-    assert!(trials[1].starts_with(machines[0]) && trials[2].starts_with(machines[1]), "{trials:?}");
+    let tried = &rows(&page, "tried on the rig")[0];
+    assert!(tried[1].starts_with(machines[0]) && tried[2].starts_with(machines[1]), "{tried:?}");
     for (index, name) in ["1 robust stability", "2 sensitivity", "3 tracking"].iter().enumerate() {
         let row = &rows(&page, name)[0];
         for (cell, answer) in row[1..].iter().zip(both) {
@@ -131,16 +147,13 @@ fn both_controllers_agree_with_their_commands() {
             assert!(cell.starts_with(verdict), "{row:?}");
         }
     }
-    let decided = report_found.decision.given.as_ref().unwrap();
-    assert_eq!((decided.verdict, decided.machine), (verified["verdict"].as_str(), Some(machines[0])));
-    let decided = report_found.decision.designed.as_ref().unwrap();
-    assert_eq!(
-        (decided.verdict, decided.machine),
-        (designed["verification"]["verdict"].as_str(), designed["machine"]["verdict"].as_str())
-    );
+    let decided = told.decision.given.as_ref().unwrap();
+    assert_decided(decided, &verified, &verified["machine"]);
+    let decided = told.decision.designed.as_ref().unwrap();
+    assert_decided(decided, &designed["verification"], &designed["machine"]);
 
-    // the designed project, simulated separately, agrees with the report on the designed controller
-    let file = report_found.tables.iter().find(|file| file.name == "designed.toml").unwrap();
+    // the designed project, driven by itself, does what the report says of the designed controller
+    let file = told.tables.iter().find(|file| file.name == "designed.toml").unwrap();
     let of_design = source.clone().with("rig.toml", std::str::from_utf8(&file.bytes).unwrap());
     let driven = [runs(&source, &loaded), runs(&of_design, &load(&of_design, &[]))];
     for (runs, name) in driven.iter().zip(["given", "designed"]) {
@@ -155,18 +168,18 @@ fn both_controllers_agree_with_their_commands() {
     // measured curve and NRMSE
     let measured: Vec<f64> = driven.iter().map(|runs| runs[0].measured[0].nrmse.unwrap()).collect();
     assert!((measured[0] / nrmse - 1.0).abs() < 1e-2, "{measured:?} {nrmse}");
-    let (_, simulation) = report_found.html.split_once("<section id=\"simulation\">").unwrap();
+    let (_, simulation) = told.html.split_once("<section id=\"simulation\">").unwrap();
     let overlays = rows(simulation, "force_n");
     assert_eq!(overlays.len(), 2, "{overlays:?}");
     for ((row, nrmse), name) in overlays.iter().zip(&measured).zip(["given", "designed"]) {
         let shown: f64 = row[3].trim_end_matches(" %").parse().unwrap();
         assert!(row[2] == name && (shown / (100.0 * nrmse) - 1.0).abs() < 5e-3, "{row:?} {nrmse}");
     }
-    curves(&report_found);
+    curves(&told);
 }
 
-/// Both controllers and the measurement are in the figures that compare, and each controller in
-/// those of the machine's signals.
+/// Both controllers and what was measured are in the figures that compare, each controller in those
+/// of the inside.
 fn curves(report: &Report) {
     let drawing = |name: &str| {
         let found = report.figures.iter().find(|figure| figure.name == name);
@@ -198,7 +211,7 @@ fn curves(report: &Report) {
 }
 
 #[test]
-fn the_next_steps_follow_from_the_results() {
+fn what_to_do_next_follows_from_the_results() {
     let next = |text: &str, settings: &[&str]| report_of(text, settings).decision.next;
     let undesigned = without(HOSE, "[design] ", "[[scenario]]");
     let given = next(&undesigned, &[]);
@@ -208,7 +221,7 @@ fn the_next_steps_follow_from_the_results() {
     );
     assert!(given[0].contains("and 2 more") && given[0].contains("add `[design]`"), "{given:?}");
     assert!(given.iter().any(|step| step.contains("`[[scenario.measured]]`")), "{given:?}");
-    // the family does not contain the derived rig
+    // the family does not hold the rig as it is derived
     assert!(given.iter().any(|step| step.contains("flow_pressure_coefficient is 5.929e-13")), "{given:?}");
 
     let (still, _) = undesigned.split_once("[[scenario]]").unwrap();
@@ -228,9 +241,9 @@ fn the_next_steps_follow_from_the_results() {
     );
 }
 
-/// A page for a rig without a controller has no columns and states this.
+/// A page of a rig without a controller has no columns and says so.
 #[test]
-fn cards_state_load_lines_and_hose() {
+fn cards_tell_load_lines_and_hose() {
     let (rig, _) = HOSE.split_once("[uncertainty]").unwrap();
     let page = plain(&opening(&report_of(rig, &[])));
     for words in [

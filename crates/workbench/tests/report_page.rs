@@ -6,11 +6,13 @@
 use crate::run_command::{self, HOSE, PIPE, answer, load, try_answer};
 use std::sync::OnceLock;
 
+use phea_qft::verification::Verdict;
 use phea_workbench::answer::{Answer, picture_of};
 use phea_workbench::command::Request;
 use phea_workbench::report::{Report, report};
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
+use phea_workbench::trial::Agreement;
 use resvg::usvg::roxmltree::{Document, Node};
 
 const PLANT: &str = include_str!("truth/plant.toml");
@@ -374,7 +376,7 @@ fn controllers_are_shown_on_the_machine() {
         assert!(report.html.contains(shown), "{shown}");
     }
     let given = report.decision.given.as_ref().unwrap();
-    assert_eq!((given.verdict, given.machine), (Some("met"), Some("contradicts")));
+    assert_eq!((given.verdict, given.machine), (Some(Verdict::Met), Some(Agreement::Contradicts)));
     let next = report.decision.next.join("\n");
     assert!(
         report.decision.next[0].contains(

@@ -17,10 +17,6 @@ const TRANSMISSION: &str = include_str!("../../../examples/ybitu/transmission.to
 const PIPE: &str = "series={ kind = \"transmission\", piston_area = \"20 cm2\", filling_pressure = \"60 bar\", \
                     end_volume = \"20 cm3\", line = { pipe = { bore = \"10 mm\" }, length = \"2 m\" } }";
 
-fn parsed(text: &str) -> Value {
-    serde_json::from_str(text).unwrap()
-}
-
 /// The example without the uncertainty of its hose.
 fn certain() -> String {
     let lines: Vec<&str> = TRANSMISSION.lines().filter(|line| !line.starts_with("\"series.")).collect();

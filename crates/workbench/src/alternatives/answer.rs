@@ -9,8 +9,8 @@ use super::document::told_first;
 use super::findings::{findings, of_case};
 use super::words::judge_error_words;
 use super::{Alternatives, JudgedAlternative, JudgedCase, MovedRange};
-use crate::answer::{Answer, Object, OrReason};
-use crate::design;
+use crate::answer::{Answer, OrReason};
+use crate::design::{self, DesignAnswer};
 use crate::trial::{self, TrialAnswer};
 use columns::{AlternativeColumnsAnswer, columns};
 use front::{FrontAnswer, front};
@@ -60,7 +60,7 @@ struct AlternativeAnswer {
     /// Verdict on the designed controller over the family.
     verdict: OrReason<Verdict>,
     /// Design, as `design` returns it.
-    design: OrReason<Object>,
+    design: OrReason<DesignAnswer>,
     /// Designed controller on the nonlinear machine.
     machine: OrReason<TrialAnswer>,
     /// Numbers by which alternatives are compared.

@@ -78,34 +78,12 @@ impl Object {
         self
     }
 
-    /// With a list of what each item is.
-    pub(crate) fn each<Item, Value: Into<Json>>(
-        self,
-        key: impl Into<ObjectKey>,
-        items: impl IntoIterator<Item = Item>,
-        of: impl FnMut(Item) -> Value,
-    ) -> Object {
-        self.with(key, items.into_iter().map(of).collect::<Vec<Value>>())
-    }
-
     /// With a key that is left out where it has no value.
     pub(crate) fn maybe(self, key: impl Into<ObjectKey>, value: Option<impl Into<Json>>) -> Object {
         match value {
             Some(value) => self.with(key, value),
             None => self,
         }
-    }
-
-    /// With a key that is `null` where it has no value, and then a second one that says why.
-    pub(crate) fn known(
-        self,
-        key: impl Into<ObjectKey>,
-        value: Option<impl Into<Json>>,
-        reason: &str,
-    ) -> Object {
-        let key = key.into();
-        let (missing, reason_key) = (value.is_none().then_some(reason), key.reason());
-        self.with(key, value).maybe(reason_key, missing)
     }
 
     /// With all keys of another object behind its own.

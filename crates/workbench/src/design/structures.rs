@@ -218,7 +218,7 @@ fn steps(view: &ProjectDesign, one: &ReachedStructure) -> [Option<String>; 2] {
 
 /// Percent and s, as far as they are required.
 pub(super) fn reached_steps(view: &ProjectDesign, one: &ReachedStructure) -> Option<[Option<f64>; 2]> {
-    let (reached, wish) = (one.steps?, view.designed.view.in_time.first()?.requirement.wish);
+    let (reached, required) = (one.steps?, view.designed.view.in_time.first()?.requirement.wish);
     Some([
         required.overshoot_percent.map(|_| reached.overshoot_percent),
         required.settling_time_s.map(|_| reached.settling_time_s),

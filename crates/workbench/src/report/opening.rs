@@ -121,7 +121,7 @@ fn decided(contents: &Contents<'_>, side: &Side<'_>) -> DecidedAnswer {
         specifications: Some(verdicts).filter(|all| !all.is_empty()),
         proven: side.is_proven(),
         machine: side.trial.map(|trial| trial.agreement()),
-        wishes_kept: required.and_then(|required| side.keeps(required)),
+        wishes_kept: required.and_then(|required| side.satisfies(required)),
     }
 }
 
