@@ -31,7 +31,7 @@ pub use dynamic_line::DynamicLine;
 pub use hose::{Hose, Stiffening, static_hose_modulus};
 pub use keys::{
     Component, DeclaredLine, DeclaredLines, DeclaredPipe, ElasticWall, HoseExpansion, HoseProperties,
-    LineVolume,
+    LineVolume, StiffnessModel,
 };
 pub use laminar_friction::friction_factor;
 pub use line_model::LineModel;

@@ -15,6 +15,7 @@
 mod length;
 mod range;
 
+pub use crate::line::StiffnessModel;
 pub use length::{
     LineLength, hose_length_by_volume, hose_length_uniform, line_share_for_stiffness,
     stiffness_from_hose_length,
@@ -26,16 +27,6 @@ use phea_dynamics::scalar::Scalar;
 use crate::cylinder::Cylinder;
 use crate::line::{Line, StiffeningMember};
 use crate::stroke::ActuatorStroke;
-
-/// Modulus of the fluid in the cylinder's chambers.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum StiffnessModel {
-    /// Effective modulus of the line for both line and chamber (the thesis).
-    Uniform,
-    /// Modulus of the fluid for the chamber, and the line's compliance by its data sheet.
-    #[default]
-    ByVolume,
-}
 
 /// Compliance dV/dp of both chambers with their lines, linear in the piston position. Units: m2, m,
 /// m3/Pa, m2/Pa.

@@ -4,8 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
 
-use crate::answer_schema;
-use crate::run_command;
+use crate::{answer_schema, run_command};
 use num_complex::Complex64;
 use phea_dynamics::portable::{exp_complex, magnitude};
 use phea_dynamics::random::{normal, stream};

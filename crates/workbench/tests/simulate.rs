@@ -4,14 +4,13 @@
 
 use crate::answer_schema::parsed;
 use phea_hydraulics::signal::Signal;
-use std::fmt::Write as _;
-
 use phea_workbench::command::{self, Request};
 use phea_workbench::project::{self, Loaded, Project};
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{Cause, ScenarioRun, SimulateError, simulate_project};
 use phea_workbench::source::{HeldFiles, Memory};
 use serde_json::Value;
+use std::fmt::Write as _;
 
 /// Time in s and force in N.
 // ORIGIN: other tool, CVODE BDF at 1e-12 on the same equations in C

@@ -3,9 +3,18 @@
 use super::motion_keys::LineMotion;
 use crate::accumulator::DeclaredAccumulator;
 use crate::line::Stiffening;
-use crate::stiffness::StiffnessModel;
 use phea_quantity::{DENSITY, EXPANSION_SLOPE, LENGTH, PRESSURE, RATIO, VOLUME, VOLUME_PER_LENGTH};
 use phea_table::{CatalogueKind, DeclaredMisfit, Kinds, LineCost, TableNumber, Visitor, key, plain};
+
+/// Modulus of the fluid in the cylinder's chambers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StiffnessModel {
+    /// Effective modulus of the line for both line and chamber (the thesis).
+    Uniform,
+    /// Modulus of the fluid for the chamber, and the line's compliance by its data sheet.
+    #[default]
+    ByVolume,
+}
 
 /// Lines between the valve and the chambers.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -52,7 +52,7 @@ struct CommandOfStepsAnswer {
     /// Time of the largest command in the scenario.
     at_s: f64,
     /// Phase of the response in which the command is largest.
-    peak: CommandPeak,
+    peak: CommandPeakKind,
     /// Largest magnitude of the command.
     largest_v: f64,
     /// Largest command that remains between steps under any controller.
@@ -76,14 +76,14 @@ struct CommandOfStepsAnswer {
 }
 
 /// Phase of a response to a step.
-enum CommandPeak {
+enum CommandPeakKind {
     AtRest,
     Transient,
 }
 
 words! {
     /// Phase of a response to a step: at rest after it, or in the transient on the way there.
-    CommandPeak { AtRest => "at_rest", Transient => "transient" }
+    CommandPeakKind { AtRest => "at_rest", Transient => "transient" }
 }
 
 words! {
@@ -142,7 +142,7 @@ fn command_of_steps(view: &ProjectDesign, command: &CommandOfSteps) -> CommandOf
         from: command.step.from_n,
         to: command.step.to_n,
         at_s: command.at_s,
-        peak: if command.is_at_rest() { CommandPeak::AtRest } else { CommandPeak::Transient },
+        peak: if command.is_at_rest() { CommandPeakKind::AtRest } else { CommandPeakKind::Transient },
         largest_v: command.largest_v,
         at_rest_v: command.at_rest_v,
         limit_v: command.limit_v,
