@@ -1,11 +1,5 @@
-//! Dependencies between packages: only those that the table below allows.
-//!
-//! ```text
-//! dynamics <- quantity <- table <- hydraulics <- machine, project <-+
-//! dynamics <- qft <-------------------------------------------------+- engineering <-+
-//! quantity, qft <- figure <----------------------------------------------------------+- workbench <- cli
-//! derive <---------------------------------------------------------------------------+
-//! ```
+//! Dependencies between packages: only those that the table below allows. The code map of
+//! ARCHITECTURE.md draws them.
 
 use super::Violation;
 use crate::repository::Repository;

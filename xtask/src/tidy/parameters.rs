@@ -17,11 +17,9 @@ pub(super) struct Parameter<'a> {
 
 /// Parameters in the order of the files.
 pub(super) fn parameters(repository: &Repository) -> Vec<Parameter<'_>> {
-    // the meaning of a key is its description
-    let states_keys = |file: &RustFile| file.path.ends_with("keys.rs");
-    let is_physics = |file: &&RustFile| {
-        file.path.starts_with("crates/hydraulics/src/") && file.is_shipped() && !states_keys(file)
-    };
+    // a key is explained by its description
+    let is_physics = |path: &str| path.starts_with("crates/hydraulics/src/") && !path.ends_with("keys.rs");
+    let is_physics = |file: &&RustFile| is_physics(&file.path) && file.is_shipped();
     let files: Vec<&RustFile> = repository.rust_files.iter().filter(is_physics).collect();
     let mut definitions: Vec<Definition> = files.iter().flat_map(|file| definitions(file)).collect();
     let mut refusable: BTreeSet<&str> = files.iter().flat_map(|file| with_problems(file)).collect();

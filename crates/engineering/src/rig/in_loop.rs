@@ -12,8 +12,6 @@ use phea_hydraulics::plant::{LinearPlant, PlantInMotion, PressureFeedback, Veloc
 use super::Rig;
 use crate::project::{DeclaredActuator, DeclaredPressureFeedback, Load, PressureSignal, Project};
 
-/// The error of the velocity sensor's gain.
-
 impl Rig {
     /// The same rig with its virtual impedance, whose plant gives out y = F_e + Z_v X_L, with the
     /// velocity of its load fed forward, and with its pressures fed back. Without delay these are
