@@ -1,7 +1,7 @@
 //! The output for the engineer: commands on a project, with the text, JSON, files and figures of
 //! their answers, and the report.
 //!
-//! A shell passes text and bytes through [`source::Source`] and prints what an [`answer::Answer`]
+//! A shell passes text and bytes through [`source::Source`] and prints what an [`Answer`](struct@answer::Answer)
 //! holds. [`command::answer_into`] turns one into the other:
 //!
 //! ```text

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::answer_schema::{schema, validated};
 use crate::run_command::{HOSE, json};
-use phea_workbench::command::Request;
+use phea_workbench::command::{Request, answers_schema};
 use serde_json::{Value, json as value};
 
 fn verified() -> Value {
@@ -114,6 +114,14 @@ fn every_interval_of_a_reading_by_hand_is_that_of_a_reading() {
     };
     let (intervals, readings) = (keys("HandIntervalsAnswer"), keys("HandReadingsAnswer"));
     assert!(!intervals.is_empty() && intervals.is_subset(&readings), "{intervals:?}");
+}
+
+#[test]
+fn the_schema_in_the_book_is_printed_by_the_command() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../book/src/phea.answers.schema.json");
+    let committed = std::fs::read(path).unwrap();
+    let same = committed == answers_schema().bytes;
+    assert!(same, "write it anew: cargo run -p phea-cli -- schema --answers --out book/src");
 }
 
 /// Answers are parsed by `answer_schema::parsed` alone, so that none escapes the schema.
