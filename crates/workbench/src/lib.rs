@@ -1,8 +1,8 @@
 //! The output for the engineer: commands on a project, with the text, JSON, files and figures of
 //! their answers, and the report.
 //!
-//! A shell passes text and bytes through [`source::Source`] and prints what an [`Answer`](struct@answer::Answer)
-//! holds. [`command::answer_into`] turns one into the other:
+//! A shell passes text and bytes through [`source::Source`] and prints what an
+//! [`Answer`](struct@answer::Answer) holds. [`command::answer_into`] turns one into the other:
 //!
 //! ```text
 //! command::Request, project::Loaded     the request, and the project
