@@ -28,8 +28,7 @@ use crate::output::{Folder, expect_folder, write, write_as};
 pub(crate) fn run(arguments: Arguments) -> ExitCode {
     let outcome = match arguments.command {
         Command::New { folder } => new(&folder),
-        Command::Schema { answers: false, out } => schema(command::schema(), out.as_deref()),
-        Command::Schema { answers: true, out } => schema(command::answers_schema(), out.as_deref()),
+        Command::Schema { answers, out } => schema(answers, out.as_deref()),
         Command::Check(common) => on_project(&common, &Request::Check, None),
         Command::Size { common, gain, length } => on_project(&common, &Request::Size { gain, length }, None),
         Command::Linearize { common, sweep, points } => {
@@ -159,7 +158,8 @@ fn new(folder: &Path) -> Result<u8, Failure> {
 const SCHEMA_KEY: &str = "\"$schema\"";
 
 /// A schema, printed or written into a folder, where it replaces nothing but a schema.
-fn schema(file: OutputFile, out: Option<&Path>) -> Result<u8, Failure> {
+fn schema(answers: bool, out: Option<&Path>) -> Result<u8, Failure> {
+    let file = if answers { command::answers_schema() } else { command::schema() };
     match out {
         Some(folder) => {
             let path = folder.join(&file.name);

@@ -93,9 +93,7 @@ fn close(one: f64, other: f64, what: &str) {
 #[test]
 fn the_verdict_is_that_of_the_cylinder_on_its_lever() {
     let arm = 0.04;
-    let json = |project: &str, request: &Request| -> Value {
-        serde_json::from_str(&returned(project, request).json).unwrap()
-    };
+    let json = |project: &str, request: &Request| -> Value { parsed(&returned(project, request).json) };
     let [linear, rotary] = [rig(None), rig(Some(arm))];
     let [one, other] =
         [&linear, &rotary].map(|project| json(project, &Request::Verify { proof: false, on_machine: false }));
@@ -163,9 +161,7 @@ fn campaigns_and_alternatives_are_those_of_the_cylinder_on_its_lever() {
                 [[alternative]]\nname = \"hose\"\nset = { \"line.length\" = \"2 m\" }\nrecentre = true\n\
                 [design]\nmaximum_order = 2\n";
     let [linear, rotary] = [None, Some(arm)].map(|arm| rig(arm) + more);
-    let json = |project: &str, request: &Request| -> Value {
-        serde_json::from_str(&returned(project, request).json).unwrap()
-    };
+    let json = |project: &str, request: &Request| -> Value { parsed(&returned(project, request).json) };
     let drawn = Request::Campaign(campaign(false));
     let (one, other) = (json(&linear, &drawn), json(&rotary, &drawn));
     let median = |found: &Value, event: usize, name: &str| {
@@ -255,7 +251,7 @@ fn texts_of_the_user_are_unchanged() {
 fn leakage_through_the_case_is_not_the_valves() {
     for case in [1e-13, 1e-12, 1e-11] {
         let text = VANE.replace("case_leakage = \"1e-13 m3/(s.Pa)\"", &format!("case_leakage = {case:e}"));
-        let json: Value = serde_json::from_str(&returned(&text, &Request::Check).json).unwrap();
+        let json: Value = parsed(&returned(&text, &Request::Check).json);
         let rows = json["derived"].as_array().unwrap();
         let value = |name: &str| {
             let row = rows.iter().find(|row| row["name"] == name).unwrap_or_else(|| panic!("{name}"));
@@ -276,7 +272,7 @@ fn leakage_through_the_case_is_not_the_valves() {
 #[test]
 fn equations_and_symbols_are_those_of_a_motor() {
     let equation = |name: &str| {
-        let json: Value = serde_json::from_str(&returned(VANE, &Request::Check).json).unwrap();
+        let json: Value = parsed(&returned(VANE, &Request::Check).json);
         let rows = json["derived"].as_array().unwrap();
         let row = rows.iter().find(|row| row["name"] == name).unwrap_or_else(|| panic!("{name}"));
         [&row["symbol"], &row["equation"]].map(|text| text.as_str().unwrap().to_string())

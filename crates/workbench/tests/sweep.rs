@@ -41,8 +41,7 @@ fn each_value_is_that_of_linearize() {
         assert_eq!(row["value"].as_f64(), Some(length));
         let setting = format!("line.length={length}");
         let single: Value =
-            serde_json::from_str(&answer(&hose, &[&setting], &[], &Request::Linearize { sweep: None }).json)
-                .unwrap();
+            parsed(&answer(&hose, &[&setting], &[], &Request::Linearize { sweep: None }).json);
         for end in ["minimum_n_per_m", "maximum_n_per_m"] {
             assert_eq!(row["stiffness"][end], single["stiffness"][end], "{length} {end}");
         }

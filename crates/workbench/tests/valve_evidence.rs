@@ -189,7 +189,7 @@ fn the_bootstrap_agrees_with_the_linearised_intervals() {
 fn the_bootstrap_includes_the_unexplained_residual() {
     let files = recorded(&["valve.threshold=\"80 mV\"", FEW_ROWS]);
     let request = IdentifyRequest { bootstrap: 50, ..files_of(&files) };
-    let found: Value = serde_json::from_str(&try_request(&files, &request).unwrap().json).unwrap();
+    let found: Value = parsed(&try_request(&files, &request).unwrap().json);
     assert!(found["bootstrap"]["block_rows"].as_u64().unwrap() > 2, "{}", found["bootstrap"]);
     let [low, high] = interval(&found, "/hysteresis_v").unwrap();
     let ends = &found["hysteresis_v"]["bootstrap_95"];

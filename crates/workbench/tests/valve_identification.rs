@@ -101,8 +101,7 @@ fn the_lag_of_the_spool_is_not_identified_as_hysteresis() {
     let of = |settings: &[&str]| -> (f64, f64) {
         let request =
             identify_watched(&source, Some(&load(HOSE, settings, &[])), &files_of(&files), &mut |_| true);
-        let found: Value =
-            serde_json::from_str(&request.unwrap_or_else(|error| panic!("{error}")).json).unwrap();
+        let found: Value = parsed(&request.unwrap_or_else(|error| panic!("{error}")).json);
         let [low, high] = interval(&found, "/hysteresis_v").unwrap();
         (f64::midpoint(low, high) - 0.128, 0.5 * (high - low))
     };

@@ -38,18 +38,19 @@ impl Rig {
     /// ```
     #[must_use]
     pub fn in_loop(&self) -> Rig {
-        let plant = LinearPlant { virtual_impedance: self.virtual_impedance, ..self.plant };
         let moving = self.in_motion.map(|moving| moving.beside(self.virtual_impedance));
-        let plant = self.with_inner_paths(plant);
+        let plant = self.with_inner_paths(self.plant);
         Rig { in_motion: self.as_response(moving, &plant), plant, ..self.clone() }
     }
 
-    /// A plant with what is fed forward and back in it without delay.
+    /// A plant with what the loop adds to it, all of the declared rig: the virtual impedance, and
+    /// what is fed forward and back without delay.
     pub(crate) fn with_inner_paths<S: Scalar>(&self, plant: LinearPlant<S>) -> LinearPlant<S> {
         let plant = self.fed.map_or(plant, |fed| fed.at_once(plant));
         let pressure_feedback = self.fed_back.and_then(|back| back.at_once());
         let pressure_signal = self.fed_back.and_then(|back| back.sampled_ratio());
-        LinearPlant { pressure_feedback, pressure_signal, ..plant }
+        let virtual_impedance = self.virtual_impedance;
+        LinearPlant { virtual_impedance, pressure_feedback, pressure_signal, ..plant }
     }
 
     /// The plant without polynomials as it appears to the loop: with these lines in motion, or with

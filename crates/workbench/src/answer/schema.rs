@@ -33,6 +33,13 @@ impl CommandAnswer {
         CommandAnswer { shape, command, in_envelope: false }
     }
 
+    /// With this name of its definition, if the type without the keys of every answer is also a
+    /// part of another answer.
+    pub(crate) fn named(mut self, name: &'static str) -> CommandAnswer {
+        self.shape.name = name;
+        self
+    }
+
     /// All keys.
     fn members(&self) -> Members {
         match self.in_envelope {

@@ -27,7 +27,7 @@ pub(super) fn answers() -> Vec<CommandAnswer> {
         CommandAnswer::of::<LinearizeAnswer>("linearize"),
         CommandAnswer::of::<VerifyAnswer>("verify"),
         CommandAnswer::of::<ShapeAnswer>("shape"),
-        CommandAnswer::of::<DesignAnswer>("design"),
+        CommandAnswer::of::<DesignAnswer>("design").named("DesignCommandAnswer"),
         CommandAnswer::of::<SimulateAnswer>("simulate"),
         CommandAnswer::of::<CompareAnswer>("compare"),
         CommandAnswer::of::<CampaignAnswer>("campaign"),
