@@ -128,7 +128,7 @@ pub(crate) fn rig(number: u64) -> Result<Rig, Refusal> {
     let inside = chance.between(0.2, 0.8);
     let most = components.supply.pressure * components.cylinder.area_b;
     let size = most * chance.decades(0.02, 0.7);
-    let pulls = chance.happens(0.5) && !matches!(components.load::Wall { .. });
+    let pulls = chance.happens(0.5) && !matches!(components.load, Load::Wall { .. });
     let sign = if pulls { -1.0 } else { 1.0 };
     let mut fraction = inside;
     if rich && components.cylinder.end_stops.is_some() && chance.happens(0.5) {
@@ -176,8 +176,8 @@ fn features(components: &Components, control: &Control) -> Vec<&'static str> {
         ("pump", pump.is_some()),
         ("accumulator", pump.is_some_and(|pump| pump.accumulator.is_some())),
         ("end stops", components.cylinder.end_stops.is_some()),
-        ("spring load", matches!(components.load::SpringMassDamper { .. })),
-        ("wall", matches!(components.load::Wall { .. })),
+        ("spring load", matches!(components.load, Load::SpringMassDamper { .. })),
+        ("wall", matches!(components.load, Load::Wall { .. })),
         (
             "segments",
             matches!(components.line_models[0], LineModel::Segments { .. } | LineModel::Creeping { .. }),
