@@ -56,7 +56,7 @@ impl DeclaredField {
         Ok(DeclaredField { name, kind: field.ty.clone(), presence })
     }
 
-    /// Its name in Rust.
+    /// Name of the field in Rust.
     pub(crate) fn name(&self) -> &Ident {
         &self.name
     }

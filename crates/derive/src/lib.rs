@@ -1,7 +1,7 @@
 //! Derives, for the structs of which the answers of commands consist, the printed JSON and its
 //! description from one declaration.
 //!
-//! For `crates/workbench`, whose `answer` module defines the traits that the derived code names.
+//! The traits that the derived code names are defined by the module `answer` of `crates/workbench`.
 
 mod field;
 mod variants;
@@ -17,8 +17,8 @@ use field::DeclaredField;
 /// Derives `Body` and `Describe` for a struct: a key for each field, in the order of the fields,
 /// described by its documentation.
 ///
-/// For an enum, `Describe` of the value of each variant; of an enum whose variants have named
-/// fields also `Body`, with the keys of one variant.
+/// An enum gets `Describe` from the value of each variant; one whose variants have named fields
+/// also gets `Body`, with the keys of one variant.
 ///
 /// Attributes of a field:
 ///

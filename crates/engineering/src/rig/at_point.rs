@@ -48,7 +48,7 @@ pub(crate) struct RigAtPoint<S = f64> {
     pub(crate) point: OperatingPoint<S>,
     /// The two-pressure model with the settled supply, nominal stiffening.
     pub(crate) model: TwoPressureModel<S>,
-    /// Its linearisation at the point.
+    /// Linearisation of the model at the point.
     pub(crate) chambers: TwoPressureLinearParameters<S>,
     /// Coefficients of the valve as it leaks, also where `chambers` has the limit of an ideal one.
     pub(crate) leaking: ChamberCoefficients<S>,

@@ -16,7 +16,7 @@ use super::plant::without_branches;
 use crate::project::{LineMotion, LineSegments};
 
 impl RigAtPoint {
-    /// Its plant with lines in motion in place of the lumped ones; `None` where both are lumped.
+    /// Plant with lines in motion in place of the lumped ones; `None` if both are lumped.
     ///
     /// # Errors
     /// A line that its model cannot describe.

@@ -1,8 +1,8 @@
 use crate::line::{LineError, StiffeningMember};
 use crate::parameter::{ParameterError, Problems};
 
-/// What acts on a machine in a run, what a controller reads of it, and the member of its hoses'
-/// stiffening. The default adds nothing.
+/// Inputs of a machine in a run, the pressure signal that a controller reads, and the member of the
+/// stiffening of its hoses. The default adds nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MachineOptions {
     /// Factor phi of the pressure signal p_A - phi p_B that a controller may feed back.

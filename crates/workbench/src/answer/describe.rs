@@ -1,4 +1,4 @@
-//! What a type of an answer prints, and how that is described.
+//! Values of answers: their JSON, and its description.
 //!
 //! `#[derive(Answer)]` implements [`Body`] and [`Describe`] for a struct from the names, types and
 //! documentation of its fields. [`words!`](super::words) implements [`Describe`] for an enumeration.

@@ -34,7 +34,7 @@ impl<Value: Describe> Field for OrReason<Value> {
     }
 }
 
-/// The same with the second key always, which is `null` where there is a value.
+/// Value or the reason for which it is missing, always with both keys: one of them is `null`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Reasoned<Value>(pub(crate) Result<Value, String>);
 

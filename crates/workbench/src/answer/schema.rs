@@ -18,12 +18,12 @@ pub(crate) struct CommandAnswer {
 }
 
 impl CommandAnswer {
-    /// Of this type, after the keys of every answer.
+    /// Answer of this type, after the keys of every answer.
     pub(crate) fn of<Answer: Describe + Body>(command: &'static str) -> CommandAnswer {
         CommandAnswer { in_envelope: true, ..CommandAnswer::whole::<Answer>(Some(command)) }
     }
 
-    /// Of this type, which has all keys.
+    /// Answer of this type, which has all keys.
     pub(crate) fn whole<Answer: Describe + Body>(command: Option<&'static str>) -> CommandAnswer {
         let (name, documentation) = match Answer::shape() {
             ValueShape::Object(own) => (own.name, own.documentation),
@@ -33,7 +33,7 @@ impl CommandAnswer {
         CommandAnswer { shape, command, in_envelope: false }
     }
 
-    /// With this name of its definition, if the type without the keys of every answer is also a
+    /// Names its definition, if the type without the keys of every answer is also a
     /// part of another answer.
     pub(crate) fn named(mut self, name: &'static str) -> CommandAnswer {
         self.shape.name = name;

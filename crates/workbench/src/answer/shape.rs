@@ -87,7 +87,7 @@ impl Members {
         self
     }
 
-    /// The same keys, which an object may lack.
+    /// Makes all keys optional.
     pub(crate) fn optional(mut self) -> Members {
         self.list.iter_mut().for_each(|member| member.required = false);
         self.choices.clear();

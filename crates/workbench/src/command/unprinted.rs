@@ -15,7 +15,7 @@ pub(super) struct Unprinted {
 }
 
 impl Unprinted {
-    /// With warnings above the text; the body has its own.
+    /// Adds warnings above the text; the body has its own.
     pub(super) fn with_warnings(mut self, warnings: Vec<String>) -> Unprinted {
         self.document.warnings(warnings);
         self
