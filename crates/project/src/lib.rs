@@ -213,7 +213,7 @@ impl Project {
     }
 
     /// Visits the requirements on the system.
-    fn visit_wishes<V: Visitor>(&mut self, v: &mut V) {
+    fn visit_requirements<V: Visitor>(&mut self, v: &mut V) {
         let k = plain("operating_point", "Where the linear model is taken.");
         v.table_or_default(k, &mut self.operating_point, DeclaredOperatingPoint::visit);
         let k = plain("linear", "Parameters of the linear model, set outright.");

@@ -15,7 +15,7 @@ use crate::specification::stated;
 /// The sentence of an explanation.
 pub fn explanation_sentence(explanation: &Explanation) -> String {
     match &explanation.fact {
-        ExplainedFact::NothingAsksForFeedback => NO_FEEDBACK_REQUIRED.to_string(),
+        ExplainedFact::FeedbackNotRequired => NO_FEEDBACK_REQUIRED.to_string(),
         ExplainedFact::Finding(finding) => {
             let name_of = |index: usize| {
                 let named = explanation.limits.iter().find(|(known, _)| *known == index);

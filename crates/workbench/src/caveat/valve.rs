@@ -47,7 +47,7 @@ pub(super) fn cross_port_orifice(
         Some(drop) => format!("a drop of {} at rest", display(drop, &PRESSURE, 3)),
     };
     let path = "cross_port.transition_pressure";
-    let cure = match has_range {
+    let remedy = match has_range {
         true => format!("the range of {path} says up to which oscillation"),
         false => format!(
             "state a range of {path} in [uncertainty], up to 0.81 times the amplitude of the drop, or judge by a simulation"
@@ -55,6 +55,6 @@ pub(super) fn cross_port_orifice(
     };
     format!(
         "cross_port is counted for small motions: its orifice has {at}, and there the slope of its transition_pressure of {transition}, \
-         {conductance} m3/(s.Pa); an oscillation beyond that is damped less: {cure}"
+         {conductance} m3/(s.Pa); an oscillation beyond that is damped less: {remedy}"
     )
 }

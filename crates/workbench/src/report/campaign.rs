@@ -121,7 +121,7 @@ fn steps(loaded: &Loaded, plan: &Plan, rows: &[Row]) -> Vec<CampaignStep> {
     let band_percent = scenario.map_or(f64::NAN, |one| one.settling_band_percent);
     let completed = rows.iter().filter_map(|row| Some((row.run, row.ran()?)));
     completed
-        .filter(|(_, ran)| ran.ended_s.is_none())
+        .filter(|(_, ran)| ran.end_time_s.is_none())
         .flat_map(|(run, ran)| ran.metrics.iter().zip(plan.windows()).map(move |own| (run, own)))
         .filter(|(_, (_, window))| matches!(window.cause, Cause::ReferenceStep { .. }))
         .map(|(run, (numbers, window))| CampaignStep {
@@ -172,7 +172,7 @@ fn document([runs, requested]: [u64; 2], plan: &Plan, summary: &Summary, figures
     let refused = summary.refused.first().map(|(run, reason)| {
         format!("{} draws do not give a machine, the first is run {run}: {reason}.", summary.refused.len())
     });
-    let ended = summary.ended.iter().take(WORST).map(|(run, status, time_s)| {
+    let ended = summary.early_ends.iter().take(WORST).map(|(run, status, time_s)| {
         format!("Run {run} ended at {} s: {}.", significant(*time_s, 4), status_words(*status))
     });
     let occurred = summary.occurrences.iter().map(|(kind, count, first)| {
