@@ -138,7 +138,7 @@ pub enum CampaignError {
     },
     /// More rows are stored than requested.
     #[error(
-        "the kept table has {stored} rows, more than the {requested} that are asked for: choose another folder"
+        "the kept table has {stored} rows, more than the {requested} that are requested: choose another folder"
     )]
     MoreStored {
         /// Number of rows.

@@ -11,7 +11,7 @@ use phea_dynamics::watch::{Progress, Stopped, Watch, report_progress, unwatched,
 /// Interval between calls of `watch` while pieces of work are in progress.
 const ROUND: Duration = Duration::from_millis(20);
 /// Interval between calls of `watch` while another thread works and the calling thread is idle.
-const QUEUED: Duration = Duration::from_millis(2);
+const POLL_INTERVAL: Duration = Duration::from_millis(2);
 
 /// Results of `count` pieces of work in their order, computed by as many threads as there are
 /// cores; by the calling thread if there is one core. The pieces receive their index and a watch
@@ -164,7 +164,7 @@ pub(crate) fn left_behind<T: Send + 'static>(
 
 /// Results of two pieces of work: `first`, on a separate thread if there is more than one core, and
 /// `second`, whose progress is reported meanwhile; then the stage of `first` is reported until it
-/// ends. Without a separate thread, `first` runs before `second` and has this first_fraction of the
+/// ends. Without a separate thread, `first` runs before `second` and has this fraction of the
 /// progress.
 pub(crate) fn both<A: Send, B>(
     watch: Watch<'_>,
@@ -199,7 +199,7 @@ pub(crate) fn both<A: Send, B>(
             if let Some(stage) = stage {
                 continues.fetch_and(watch(Progress { stage, fraction }), Ordering::Relaxed);
             }
-            std::thread::sleep(QUEUED);
+            std::thread::sleep(POLL_INTERVAL);
         }
         match beside.join() {
             Ok(first) => (first, second),

@@ -324,7 +324,7 @@ impl<'a> RunOutput<'a> {
 struct PreparedRun<'p> {
     scenario: &'p Scenario,
     bench: ControlledMachine,
-    prepared_scenario: PreparedScenario,
+    prepared: PreparedScenario,
     measured: Vec<measured::Measurement>,
 }
 
@@ -336,9 +336,9 @@ fn prepared<'p>(source: &dyn Source, setup: &Setup<'p>) -> Result<Vec<PreparedRu
     }
     let prepare = |scenario: &'p Scenario| {
         let bench = ControlledMachine::of_scenario(setup, scenario)?;
-        let prepared_scenario = prepared_scenario::prepared_scenario(source, project, &bench, scenario)?;
+        let prepared = prepared_scenario::prepared(source, project, &bench, scenario)?;
         let measured = measured::measurements(source, project, scenario).map_err(SimulateError::Motion)?;
-        Ok(PreparedRun { scenario, bench, prepared_scenario, measured })
+        Ok(PreparedRun { scenario, bench, prepared, measured })
     };
     project.scenarios.iter().map(prepare).collect()
 }
@@ -352,7 +352,7 @@ pub fn scenario_problems(
     setup: &Setup<'_>,
 ) -> Result<Vec<ScenarioProblem>, SimulateError> {
     let prepared = prepared(source, setup)?;
-    let of = |one: &PreparedRun<'_>| ScenarioProblem::of(&one.bench, one.scenario, &one.prepared_scenario);
+    let of = |one: &PreparedRun<'_>| ScenarioProblem::of(&one.bench, one.scenario, &one.prepared);
     Ok(prepared.iter().map(of).collect())
 }
 
@@ -366,13 +366,7 @@ impl PreparedRun<'_> {
     ) -> Result<RunPass<'t>, SimulateError> {
         let begin = |(destination, format)| RunTable::begin((destination, name), format, &self.bench);
         let table = output.table.filter(|_| !plan.moved).map(begin).transpose()?;
-        run::run(
-            &self.bench,
-            self.scenario,
-            (&self.prepared_scenario, &self.measured),
-            (plan, table, output),
-            watch,
-        )
+        run::run(&self.bench, self.scenario, (&self.prepared, &self.measured), (plan, table, output), watch)
     }
 }
 

@@ -2,7 +2,7 @@
 //! with the prediction of the linear loop.
 //!
 //! ```text
-//! project, audit -> rigs::rigs -> TrialRig { project, plant } -> TriedMachine::driven, the first steps and the largest -> judge -> Run { linear, machine, agreement, reason } -> answer
+//! project, audit -> rigs::rigs -> TrialRig { project, plant } -> PredictedMachine::driven, the first steps and the largest -> judge -> Run { linear, machine, agreement, reason } -> answer
 //! all satisfy the requirements -> corners of the box and plants inside -> the worst of them
 //! ```
 

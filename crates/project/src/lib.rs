@@ -3,7 +3,7 @@
 //! ```text
 //! bytes -> tree -> setting (--set) -> reader <- catalogue: values of named parts
 //!                                     |
-//!                             Project::visit_system, visit_wishes: each key next to its field
+//!                             Project::visit_system, visit_requirements: each key next to its field
 //!                                     |
 //!                                     -> validate: the conditions between keys -> Loaded, or a Refusal
 //!

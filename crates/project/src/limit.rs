@@ -178,7 +178,7 @@ impl ResponseRequirement {
                 ("critically_damped_two_percent", Some(SettlingRule::CriticallyDampedTwoPercent)),
             ];
             v.choice(
-                plain("rule", "How the wish becomes a transfer function."),
+                plain("rule", "How the requirement becomes a transfer function."),
                 words,
                 &mut self.rule,
                 false,

@@ -80,7 +80,7 @@ fn a_prefilter_has_its_gain_and_the_loop_tracks() {
 /// until something limits the effect of a disturbance.
 #[test]
 fn superfluous_feedback_is_reported() {
-    let explains = |design: &Value| design["explanations"].to_string().contains("nothing asks for feedback");
+    let explains = |design: &Value| design["explanations"].to_string().contains("nothing requires feedback");
     assert!(explains(&designed(&[], "")));
     let limit = "[[specification]]\nkind = \"sensitivity\"\nlimit = 0.5\nfrequencies = [1]\nband = [0, 1]\n";
     assert!(!explains(&designed(&[], limit)));

@@ -98,7 +98,7 @@ const EXACT: [&str; 3] = [UNLIMITED[0], UNLIMITED[1], "verification.tolerance=0.
 fn a_design_is_repaired_if_possible() {
     let first = object(&answer(&wider(), &EXACT, &[], &LEFT));
     assert_eq!((&first["status"], &first["machine"]["verdict"]), (&"met".into(), &"contradicts".into()));
-    assert_eq!((&first["repair"], &first["repair_reason"]), (&Value::Null, &"it was not asked for".into()));
+    assert_eq!((&first["repair"], &first["repair_reason"]), (&Value::Null, &"it was not requested".into()));
 
     let output = answer(&wider(), &EXACT, &[], &REPAIRED);
     let object = object(&output);

@@ -165,7 +165,7 @@ fn checks_of_requirements_read_as_sentences() {
         );
         requirement_sentence(&requirements_in_time(&loaded(&text)).unwrap()[side])
     };
-    let required = "Specification 1, lower limit, not met; wished: no overshoot, settled within 1 % in";
+    let required = "Specification 1, lower limit, not met; required: no overshoot, settled within 1 % in";
     let of_itself = "the limit itself has no overshoot and";
     assert_eq!(sentence(1, 10.0, "0.3 s"), format!("{required} 0.3 s; {of_itself} settles in 0.461 s."));
     assert_eq!(sentence(1, 5.0, "0.3 s"), format!("{required} 0.3 s; {of_itself} stays 50 % off."));
@@ -175,7 +175,7 @@ fn checks_of_requirements_read_as_sentences() {
     );
     assert_eq!(
         sentence(0, 10.0, "0.3 s"),
-        "Specification 1, upper limit, met; wished: at most 1 % overshoot, settled within 1 % in 0.1 s; \
+        "Specification 1, upper limit, met; required: at most 1 % overshoot, settled within 1 % in 0.1 s; \
          the limit itself satisfies it."
     );
 }

@@ -74,7 +74,7 @@ impl PreparedScenario {
     }
 }
 
-pub(super) fn prepared_scenario(
+pub(super) fn prepared(
     source: &dyn Source,
     project: &Project,
     bench: &ControlledMachine,
@@ -134,7 +134,7 @@ pub(crate) fn prepared_scenario_of(
     if let Some(saved) = &driven.saved {
         let waking = saved.memory.clone().map_or(Waking::AtRest, Waking::Resumed);
         let states = saved.states.iter().map(|(_, value)| *value).collect();
-        return Ok(driven.prepared_scenario(bench, saved.ground_m, states, waking));
+        return Ok(driven.prepared(bench, saved.ground_m, states, waking));
     }
     if let Some(stated) = &scenario.start {
         let named = |error| SimulateError::Start {
@@ -143,7 +143,7 @@ pub(crate) fn prepared_scenario_of(
         };
         let beginning = bench.machine.start(&stated_start(stated)).map_err(named)?;
         let start = loop_start(bench, &beginning, None);
-        return Ok(driven.prepared_scenario(bench, beginning.inputs[0], start, Waking::AtRest));
+        return Ok(driven.prepared(bench, beginning.inputs[0], start, Waking::AtRest));
     }
     let at = driven.at_start();
     let near = near_rest(bench, scenario, at.reference_n)?;
@@ -157,7 +157,7 @@ pub(crate) fn prepared_scenario_of(
         ..ControllerInput::default()
     };
     let waking = Waking::Holding { read, command_v };
-    Ok(driven.prepared_scenario(bench, ground_m, start, waking))
+    Ok(driven.prepared(bench, ground_m, start, waking))
 }
 
 impl ScenarioDrive {
@@ -173,7 +173,7 @@ impl ScenarioDrive {
 
     /// Input schedule from a state, with the position of the load's ground, m. The load is at the
     /// rest position of a virtual impedance, unless another run is continued.
-    fn prepared_scenario(
+    fn prepared(
         &self,
         bench: &ControlledMachine,
         ground: f64,

@@ -50,8 +50,8 @@ pub struct ScenarioRun {
     pub repetition: Option<Repetition>,
     /// Divergence of a run that reached its end; `None` if it does not diverge.
     pub divergence: Option<Divergence>,
-    /// Samples at intervals of [`ScenarioRun::sample_interval_s`], or longer ones in a long run; empty if no
-    /// record was requested.
+    /// Samples at intervals of [`ScenarioRun::sample_interval_s`], or longer ones in a long run;
+    /// empty if no record was requested.
     pub record: Record,
     /// Number of samples between two rows of the result.
     pub samples_per_row: usize,
@@ -228,7 +228,7 @@ impl RunPass<'_> {
 pub(super) fn run<'t>(
     bench: &ControlledMachine,
     scenario: &Scenario,
-    (prepared_scenario, measurements): (&PreparedScenario, &[Measurement]),
+    (prepared, measurements): (&PreparedScenario, &[Measurement]),
     (plan, table, output): (PassPlan, Option<RunTable<'t>>, &RunOutput<'_>),
     watch: &mut dyn FnMut(f64) -> bool,
 ) -> Result<RunPass<'t>, SimulateError> {
@@ -241,28 +241,27 @@ pub(super) fn run<'t>(
         steps += 1;
         steps % STEPS_UNWATCHED != 0 || (!full.get() && watch(time_s))
     };
-    let inputs = inputs(&bench.control, prepared_scenario);
+    let inputs = inputs(&bench.control, prepared);
     let drive = InputSchedule { duration_s: scenario.duration, output_step_s: sample_interval_s, inputs };
-    let during = (prepared_scenario, scenario.settling_band_percent, scenario.duration);
+    let during = (prepared, scenario.settling_band_percent, scenario.duration);
     let looks = scenario.duration / sample_interval_s;
     let looking = RunObserver::new(bench, &samples, (table, samples_per_row), measurements, &full, during);
     let looking = looking.following(output.attention, looks);
     let looking = if output.samples { looking.keeping(looks + 2.0) } else { looking };
     let looking = if output.line_limits { looking } else { looking.without_line_limits() };
     let mut looking = if output.ledger { looking.accounting() } else { looking };
-    let sampler = sampler(&bench.control, &prepared_scenario.waking, &samples, &memory);
+    let sampler = sampler(&bench.control, &prepared.waking, &samples, &memory);
     let observer: Watcher<'_> = Box::new(&mut looking);
-    let task = Task { start: start(bench, prepared_scenario, plan), schedule: &drive, sampler, observer };
+    let task = Task { start: start(bench, prepared, plan), schedule: &drive, sampler, observer };
     let settings = SimulationSettings { tolerance: plan.tolerance, ..bench.settings };
     let named = |error| SimulateError::Simulation { name: scenario.name.clone(), error };
     let outcome = bench.control.drive(task, &settings, &mut watch).map_err(named)?;
     let seen = looking.finish()?;
-    let occurrences = found((bench, prepared_scenario), &outcome, &samples.borrow(), &seen.exceeded);
+    let occurrences = found((bench, prepared), &outcome, &samples.borrow(), &seen.exceeded);
     let outside_model_s = outside_model_s(&occurrences, bench.machine.has_end_stops());
     let memory = memory.into_inner();
     let memory = matches!(bench.control, Control::Sampled(_)).then_some(&memory);
-    let end =
-        saved::of_end(bench, prepared_scenario, (outcome.status, &outcome.end, scenario.duration), memory);
+    let end = saved::of_end(bench, prepared, (outcome.status, &outcome.end, scenario.duration), memory);
     let record = Record { units: bench.units, parts: SignalParts::of(bench), ..seen.record };
     let amplification = amplification(&outcome, &samples.borrow());
     let run = ScenarioRun {
@@ -276,7 +275,7 @@ pub(super) fn run<'t>(
         samples_per_row,
         sample_interval_s,
         attention: output.attention,
-        windows: prepared_scenario.windows.iter().copied().zip(seen.metrics).collect(),
+        windows: prepared.windows.iter().copied().zip(seen.metrics).collect(),
         occurrences,
         outside_model_s,
         settling_band_percent: scenario.settling_band_percent,
@@ -296,8 +295,8 @@ pub(super) fn run<'t>(
 }
 
 /// Initial state of a pass: that of the scenario, or a copy perturbed by rounding errors.
-fn start(bench: &ControlledMachine, prepared_scenario: &PreparedScenario, plan: PassPlan) -> Vec<f64> {
-    let mut start = prepared_scenario.start.clone();
+fn start(bench: &ControlledMachine, prepared: &PreparedScenario, plan: PassPlan) -> Vec<f64> {
+    let mut start = prepared.start.clone();
     if plan.moved {
         repetition::moved(&mut start, &bench.control.scales());
     }
@@ -331,45 +330,41 @@ pub struct ScenarioProblem {
 }
 
 impl ScenarioProblem {
-    pub(super) fn of(
-        bench: &ControlledMachine,
-        scenario: &Scenario,
-        prepared_scenario: &PreparedScenario,
-    ) -> Self {
-        let inputs = inputs(&bench.control, prepared_scenario);
+    pub(super) fn of(bench: &ControlledMachine, scenario: &Scenario, prepared: &PreparedScenario) -> Self {
+        let inputs = inputs(&bench.control, prepared);
         let (duration_s, output_step_s) = (scenario.duration, scenario.output_step);
-        let start = prepared_scenario.start.clone();
+        let start = prepared.start.clone();
         let schedule = InputSchedule { duration_s, output_step_s, inputs };
         ScenarioProblem { control: bench.control.clone(), schedule, start }
     }
 }
 
 /// Inputs of the loop, then those of its machine.
-fn inputs(control: &Control, prepared_scenario: &PreparedScenario) -> Vec<Input> {
-    let reference = Input::Value(prepared_scenario.reference.clone());
+fn inputs(control: &Control, prepared: &PreparedScenario) -> Vec<Input> {
+    let reference = Input::Value(prepared.reference.clone());
     let leading = match control {
         Control::Continuous(_) => vec![reference],
         Control::Sampled(_) => vec![Input::Command, reference],
-        Control::Open(_) => vec![Input::Value(prepared_scenario.command.clone()), reference],
+        Control::Open(_) => vec![Input::Value(prepared.command.clone()), reference],
     };
-    leading.into_iter().chain(prepared_scenario.machine_inputs()).collect()
+    leading.into_iter().chain(prepared.machine_inputs()).collect()
 }
 
 /// All events of the run, including the limits of lines that were exceeded.
 fn found(
-    (bench, prepared_scenario): (&ControlledMachine, &PreparedScenario),
+    (bench, prepared): (&ControlledMachine, &PreparedScenario),
     outcome: &Outcome,
     samples: &ControllerSamples,
     exceeded: &[Exceeded],
 ) -> Vec<Occurrence> {
-    let reference = prepared_scenario.reference.value(0.0);
+    let reference = prepared.reference.value(0.0);
     let leading = match &bench.control {
         Control::Continuous(_) => vec![reference],
         Control::Sampled(_) => vec![0.0, reference],
-        Control::Open(_) => vec![prepared_scenario.command.value(0.0), reference],
+        Control::Open(_) => vec![prepared.command.value(0.0), reference],
     };
-    let first = inputs_at_start(prepared_scenario, leading, &bench.control);
-    let mut found = occurrences(&bench.control, &prepared_scenario.start, &first, &outcome.events);
+    let first = inputs_at_start(prepared, leading, &bench.control);
+    let mut found = occurrences(&bench.control, &prepared.start, &first, &outcome.events);
     if matches!(bench.control, Control::Sampled(_)) {
         let limits = samples.limits.iter();
         found.extend(limits.map(|&(time_s, begins)| Occurrence { time_s, kind: COMMAND_LIMIT, begins }));
@@ -441,13 +436,13 @@ pub fn amplification(outcome: &Outcome, samples: &ControllerSamples) -> Option<A
 
 /// Inputs at time zero: those of the loop, the ground, the external force, the setting, and the
 /// waves in transit.
-fn inputs_at_start(prepared_scenario: &PreparedScenario, mut first: Vec<f64>, control: &Control) -> Vec<f64> {
-    first.extend([prepared_scenario.ground.value(0.0), prepared_scenario.ground.rate(0.0)]);
-    first.extend(prepared_scenario.external_force.as_ref().map(|force| force.value(0.0)));
-    let setting = prepared_scenario.setting_change.iter();
+fn inputs_at_start(prepared: &PreparedScenario, mut first: Vec<f64>, control: &Control) -> Vec<f64> {
+    first.extend([prepared.ground.value(0.0), prepared.ground.rate(0.0)]);
+    first.extend(prepared.external_force.as_ref().map(|force| force.value(0.0)));
+    let setting = prepared.setting_change.iter();
     first.extend(setting.flat_map(|setting| [setting.value(0.0), setting.rate(0.0)]));
     let [states, _] = control.size();
-    first.extend(prepared_scenario.start.iter().skip(states));
+    first.extend(prepared.start.iter().skip(states));
     first
 }
 

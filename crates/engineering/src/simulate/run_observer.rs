@@ -87,7 +87,7 @@ pub(super) struct RunObserver<'a, 't> {
     /// Number of samples between two recorded forces; in `force_n` those forces, N.
     apart: u64,
     force_n: Vec<f64>,
-    prepared_scenario: &'a PreparedScenario,
+    prepared: &'a PreparedScenario,
     /// The error of the table, if it accepts no more rows.
     full: &'a Cell<bool>,
     fault: Option<WriteError>,
@@ -100,12 +100,12 @@ impl<'a, 't> RunObserver<'a, 't> {
         (table, samples_per_row): (Option<RunTable<'t>>, usize),
         measurements: &'a [Measurement],
         full: &'a Cell<bool>,
-        (prepared_scenario, band, duration_s): (&'a PreparedScenario, f64, f64),
+        (prepared, band, duration_s): (&'a PreparedScenario, f64, f64),
     ) -> RunObserver<'a, 't> {
         let [states, _] = bench.control.size();
         let wanted: Vec<usize> = (0..states).collect();
-        let windows = (prepared_scenario.windows.as_slice(), band, duration_s);
-        let follower = Follower::of(bench, &wanted, samples, &prepared_scenario.reference, windows);
+        let windows = (prepared.windows.as_slice(), band, duration_s);
+        let follower = Follower::of(bench, &wanted, samples, &prepared.reference, windows);
         let pressures = sums::pressures(bench, &wanted);
         let gas = GasWatch::of(bench, &wanted);
         let limits = LimitWatch::of(bench);
@@ -131,7 +131,7 @@ impl<'a, 't> RunObserver<'a, 't> {
             attention: Attention::Everything,
             apart: 1,
             force_n: Vec::new(),
-            prepared_scenario,
+            prepared,
             full,
             fault: None,
         }
@@ -172,7 +172,7 @@ impl<'a, 't> RunObserver<'a, 't> {
         let measured = self.overlays.into_iter().map(Overlaying::finish).collect();
         let metrics = self.follower.metrics();
         Ok(Sighted {
-            divergence: self.follower.divergence(&self.prepared_scenario.other_inputs()),
+            divergence: self.follower.divergence(&self.prepared.other_inputs()),
             table: self.table,
             force_n: self.force_n,
             record: self.record.unwrap_or_default(),

@@ -99,7 +99,7 @@ fn remembered(number: usize) -> String {
 /// Final state of a run, or the reason why it is not saved.
 pub(super) fn of_end(
     bench: &ControlledMachine,
-    prepared_scenario: &PreparedScenario,
+    prepared: &PreparedScenario,
     (status, end, end_s): (Status, &[f64], f64),
     memory: Option<&DigitalMemory>,
 ) -> Result<SavedState, NotSaved> {
@@ -128,8 +128,8 @@ pub(super) fn of_end(
     Ok(SavedState {
         time_s: end_s,
         states: state_names(bench).into_iter().zip(end.iter().copied()).collect(),
-        ground_m: prepared_scenario.ground.value(end_s),
-        setting_change: prepared_scenario.setting_change.as_ref().map(|change| change.value(end_s)),
+        ground_m: prepared.ground.value(end_s),
+        setting_change: prepared.setting_change.as_ref().map(|change| change.value(end_s)),
         memory: memory.cloned(),
     })
 }

@@ -37,7 +37,7 @@ pub enum ContributionAbsence {
 ///
 /// ```text
 /// y(t)/y(inf) = 1 + sum_i (r_i/p_i)/G(0) e^(p_i t),      r_i = residue of G at its simple pole p_i
-/// step_share_i = |r_i/(p_i G(0))|  (twice for a pair),      decay_ratio_i = Re p_i / max_k Re p_k
+/// step_fraction_i = |r_i/(p_i G(0))|  (twice for a pair),      decay_ratio_i = Re p_i / max_k Re p_k
 /// ```
 ///
 /// A mode is dominant when its fraction is near one, those of the others are near zero and their

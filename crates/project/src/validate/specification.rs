@@ -120,7 +120,7 @@ fn one_limit(limit: &DeclaredLimit, kind: ClosedLoop, name: &str, path: &str, ch
             response(requirement, name, path, check)
         }
         DeclaredLimit::Response(_) => {
-            check.error(path, "a wish in time makes `upper` and `lower` of \"tracking\"")
+            check.error(path, "a requirement in time makes `upper` and `lower` of \"tracking\"")
         }
     }
 }
@@ -133,7 +133,8 @@ fn nothing(path: &str, check: &mut Check<'_, '_>) {
         Some(_) => "`denominator` needs `numerator`",
         None => "nothing is limited here",
     };
-    let forms = "`numerator` and `denominator`, `frequencies` and `values`, margins, or a wish in time";
+    let forms =
+        "`numerator` and `denominator`, `frequencies` and `values`, margins, or a requirement in time";
     check.error_with_help(path, message, format!("a limit takes a number, a text, {forms}"));
 }
 
@@ -187,7 +188,7 @@ fn response(requirement: &ResponseRequirement, name: &str, path: &str, check: &m
     ];
     for (name, absent) in needed {
         if absent {
-            check.missing(path, name, format!("a wish in time needs `{name}`"));
+            check.missing(path, name, format!("a requirement in time needs `{name}`"));
         }
     }
     let foreign: &[&str] = if upper { &["pole"] } else { &["zero", "overshoot_percent"] };

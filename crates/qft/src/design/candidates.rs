@@ -56,7 +56,7 @@ const SAME: f64 = 1e-6;
 /// # })?;
 /// # let problem = DesignProblem {
 /// #     family: Family::Uncertain(UncertainFamily::new(plant, vec![], vec![], Extent::Box)?),
-/// #     additional_audits: vec![],
+/// #     additional_plants: vec![],
 /// #     sensor: TransferFunction::gain_only(1.0),
 /// #     timing: Timing::default(),
 /// #     specifications: vec![Specification {

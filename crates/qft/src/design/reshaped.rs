@@ -42,7 +42,7 @@ use crate::plant_cache::PlantCache;
 /// # let requirement = Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(0.5));
 /// # let problem = DesignProblem {
 /// #     family, // 1/s, 4/s
-/// #     additional_audits: vec![],
+/// #     additional_plants: vec![],
 /// #     sensor: TransferFunction::gain_only(1.0),
 /// #     timing: Timing::default(),
 /// #     specifications: vec![Specification { requirement, frequencies_rad_per_s: vec![1.0], band_rad_per_s: [0.0, 1.0] }],

@@ -100,7 +100,7 @@ pub enum TimeDomainError {
         expected: RequiredRange,
     },
     /// The rule of thumb applies to a band other than that of the requirement.
-    #[error("the rule of thumb is for a band of {rule_percent} %, the wish for {required_percent} %")]
+    #[error("the rule of thumb is for a band of {rule_percent} %, the requirement for {required_percent} %")]
     RuleBand {
         /// Band of the rule, percent.
         rule_percent: f64,

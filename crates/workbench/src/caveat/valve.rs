@@ -8,7 +8,7 @@ pub(super) const DYNAMIC_PRESSURE_FEEDBACK: &str = "cross_port.kind = \"dynamic_
 pub(super) fn leakage_humps(command: f64, greatest: f64, least: f64) -> String {
     let [most, least] = [greatest, least].map(|flow| display(flow, &FLOW, 3));
     format!(
-        "the valve leaks most beside null, {most} at {}, and {least} at null, where measured valves leak most: valve.leakage_shape, which \
+        "the valve leaks most near null, {most} at {}, and {least} at null, where measured valves leak most: valve.leakage_shape, which \
          sets over what command the leakage falls, is too small for these flow coefficients",
         display(command, &VOLTAGE, 3)
     )

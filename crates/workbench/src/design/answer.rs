@@ -215,7 +215,7 @@ fn why_not_published(view: &ProjectDesign) -> Option<&'static str> {
 /// The reason for the absence of a repair.
 fn why_not_repaired(view: &ProjectDesign) -> &'static str {
     match view.agreement() == Agreement::Contradicts {
-        true => "it was not asked for",
+        true => "it was not requested",
         false => "no machine contradicts the design",
     }
 }

@@ -71,7 +71,7 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
     }));
     let is_given_up = |one: &ReachedStructure| ending_words(view, one) == GIVEN_UP;
     out.sentences(view.structures.iter().any(is_given_up).then(|| {
-        "given up: it was not worth its poles beside the structure that the search over frequency found first, and was not led by its steps; it may be worth them beside the one that is taken, and `design.structure` designs it".to_string()
+        "given up: it was not worth its poles compared with the structure that the search over frequency found first, and was not led by its steps; it may be worth them beside the one that is taken, and `design.structure` designs it".to_string()
     }));
     out.sentences(way_sentence(view));
     out

@@ -168,7 +168,7 @@ fn document([runs, requested]: [u64; 2], plan: &Plan, summary: &Summary, figures
     let mut out = Document::default();
     out.explanation(format!("{runs} runs of the scenario `{scenario}`, seed {seed}, with the numbers below drawn anew for each, independently of each other: {completed} were completed."));
     out.explanations(left_out(plan));
-    out.explanations((runs < requested).then(|| format!("{requested} runs were asked for: these are as many as a report makes within its budget of {BUDGET_STEPS} steps of the integration. `phea campaign PROJECT.toml --seed {seed} --runs {requested}` makes all of them.")));
+    out.explanations((runs < requested).then(|| format!("{requested} runs were requested: these are as many as a report makes within its budget of {BUDGET_STEPS} steps of the integration. `phea campaign PROJECT.toml --seed {seed} --runs {requested}` makes all of them.")));
     let refused = summary.refused.first().map(|(run, reason)| {
         format!("{} draws do not give a machine, the first is run {run}: {reason}.", summary.refused.len())
     });

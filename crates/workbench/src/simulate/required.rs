@@ -74,7 +74,7 @@ pub(super) struct ScenarioRequirementAnswer {
     required: RequiredStepAnswer,
     /// Outcome for the requirement.
     verdict: OrReason<Satisfaction>,
-    #[answer(flatten)]
+    /// Worst step of the run; null without a verdict.
     reached: Option<WorstStepAnswer>,
 }
 

@@ -13,7 +13,7 @@ pub fn requirement_sentence(requirement: &CheckedRequirement) -> String {
     format!("Specification {}, {} limit, {met}; {words}.", requirement.number, requirement.key)
 }
 
-/// Words such as `wished: at most 1 % overshoot, settled within 1 % in 0.1 s; the limit itself
+/// Words such as `required: at most 1 % overshoot, settled within 1 % in 0.1 s; the limit itself
 /// reaches 2.19 % overshoot and settles in 0.126 s`.
 fn words(check: &RequirementCheck) -> String {
     let RequiredResponse { overshoot_percent, settling_time_s, settling_band_percent } = check.required;
@@ -39,7 +39,7 @@ fn words(check: &RequirementCheck) -> String {
         format!("{overshoot} and {settling}")
     };
     format!(
-        "wished: {required}, settled within {settling_band_percent} % in {settling_time_s} s; the limit itself {reached}"
+        "required: {required}, settled within {settling_band_percent} % in {settling_time_s} s; the limit itself {reached}"
     )
 }
 
