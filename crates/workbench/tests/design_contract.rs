@@ -57,7 +57,7 @@ fn without_the_section_names_come_first_and_tracking_decides_on_a_prefilter() {
     let options = |settings: &[&str]| begun(HOSE, settings, None).1;
     let plain = options(&[]);
     assert_eq!(plain.objective, Objective::LeastHighFrequencyGain);
-    let ControllerChoice::Any { maximum_order: 4, from: None, with_gain_alone: false, earned_per_pole_db } =
+    let ControllerChoice::Any { maximum_order: 4, from: None, with_pure_gain: false, earned_per_pole_db } =
         plain.controller
     else {
         panic!("{:?}", plain.controller)
@@ -172,7 +172,7 @@ fn allowed_errors_of_the_converters_are_specifications() {
         last = gain;
         if allowed == "0.055" {
             let binds =
-                |row: &serde_json::Value| row["specification"] == 2 && row["kind"] == "control_effort";
+                |row: &serde_json::Value| row["specification"] == 3 && row["kind"] == "control_effort";
             assert!(design["binding"].as_array().unwrap().iter().any(binds), "{}", design["binding"]);
             assert!(design["rounding"]["effects"][2]["rms"].as_f64().unwrap() < 0.055);
         }
