@@ -1,5 +1,6 @@
 //! Hydraulic fluid and the air entrained in it.
 
+mod component;
 mod keys;
 
 pub use keys::DeclaredFluid;

@@ -1,5 +1,6 @@
 //! Source of the supply pressure: a constant pressure, or a pump with its relief valve.
 
+mod component;
 mod keys;
 
 pub use keys::{DeclaredSupply, Pump, SupplyModel};

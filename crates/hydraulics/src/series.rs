@@ -11,6 +11,7 @@
 //! the oil's acceleration and of line friction, which the line's fixings hold and not the load.
 
 mod coil;
+mod component;
 mod keys;
 mod oil_column;
 mod spring;

@@ -2,6 +2,7 @@
 //! sheets.
 
 mod coefficients;
+mod component;
 mod edge_keys;
 mod flow;
 mod identification;

@@ -286,16 +286,6 @@ impl<S: TableNumber> LineVolume<S> {
     }
 }
 
-impl HoseExpansion {
-    /// Declared slope, or the expansion over the pressure of its measurement, m³/(m·Pa).
-    pub fn slope(&self) -> f64 {
-        match *self {
-            HoseExpansion::Slope { slope, .. } => slope,
-            HoseExpansion::Measured { measured, pressure } => measured / pressure,
-        }
-    }
-}
-
 impl<S: TableNumber> HoseExpansion<S> {
     /// Measured value, if stated, m³/m.
     pub fn measured(&self) -> Option<S> {

@@ -7,7 +7,7 @@ use phea_hydraulics::stiffness::hydraulic_stiffness;
 use super::list::List;
 use crate::project::{DeclaredAccumulator, Project};
 use crate::quantity::{FORCE, STIFFNESS};
-use crate::rig::{ChargedRange, Rig, charged_range, components_at_setting};
+use crate::rig::{ChargedRange, Rig, charged_range};
 
 /// The precharge at operating temperature, and the stated one.
 fn precharge(declared: &DeclaredAccumulator, gas: &Accumulator, name: String, list: &mut List) {
@@ -59,7 +59,7 @@ fn at_settings(
     for (name, setting) in
         [("stiffness.at_setting_0", 0.0), ("stiffness.at_setting_half", 0.5), ("stiffness.at_setting_1", 1.0)]
     {
-        let there = components_at_setting(components, setting);
+        let there = components.at_setting(setting);
         let equation = list.motion.either(
             "K_H = A_A^2/C_A + A_B^2/C_B, slow, at this setting",
             "K_θ = D^2 (1/C_A + 1/C_B), slow, at this setting",
