@@ -5,6 +5,7 @@ mod adjustment_keys;
 mod bladder;
 mod branch;
 mod chamber_gas;
+mod checks;
 mod component;
 mod heat;
 mod keys;

@@ -12,6 +12,7 @@
 //! pressure difference p_cp is that of the chambers, and nothing flows. Source: Merritt, Hydraulic
 //! Control Systems (1967), which uses it to damp a lightly damped load.
 
+mod checks;
 mod component;
 mod keys;
 

@@ -1,6 +1,7 @@
 //! Cylinder, or the motor in its place: areas, stroke, moving mass and chamber volumes, symmetric
 //! or not.
 
+mod checks;
 mod component;
 mod keys;
 mod motor_keys;

@@ -1,6 +1,7 @@
 //! Friction of the piston and rods: viscous, Stribeck or LuGre, and the one slope that a linear
 //! model uses.
 
+mod checks;
 mod component;
 mod keys;
 mod lugre;

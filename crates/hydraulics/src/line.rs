@@ -7,6 +7,7 @@
 mod attenuation;
 mod blocked;
 mod braided_wall;
+mod checks;
 mod component;
 mod conduit;
 mod dynamic_line;

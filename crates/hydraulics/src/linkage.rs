@@ -10,6 +10,7 @@
 //! to one polynomial over the stroke, which both machine and plant evaluate.
 
 mod chebyshev;
+mod checks;
 mod component;
 mod geometry;
 mod keys;

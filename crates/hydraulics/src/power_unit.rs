@@ -1,5 +1,6 @@
 //! Source of the supply pressure: a constant pressure, or a pump with its relief valve.
 
+mod checks;
 mod component;
 mod keys;
 

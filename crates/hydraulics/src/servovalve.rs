@@ -1,6 +1,7 @@
 //! Servovalve: four edges with their leakage, a second-order spool, and the evaluation of data
 //! sheets.
 
+mod checks;
 mod coefficients;
 mod component;
 mod edge_keys;

@@ -10,6 +10,7 @@ mod formula;
 mod key;
 mod misfit;
 mod open_table;
+mod table_check;
 mod visitor;
 
 pub use catalogue_kind::CatalogueKind;
@@ -18,6 +19,7 @@ pub use formula::{Formula, FormulaError, Ratio, Variable};
 pub use key::{AcceptedRange, Key, Motions, key, plain};
 pub use misfit::DeclaredMisfit;
 pub use open_table::{OpenTable, OpenTableReader, OpenTableWriter};
+pub use table_check::{TableCheck, TableFinding};
 pub use visitor::{
     FormulaShape, Kinds, NamedNumber, TableNumber, ValueForm, Variants, Visitor, once_read, word_of,
 };

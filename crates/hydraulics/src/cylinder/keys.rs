@@ -56,14 +56,6 @@ pub struct DeclaredStage<S = f64> {
     pub piston_areas: Option<[S; 2]>,
 }
 
-impl DeclaredStage {
-    /// Effective areas in chambers A and B, m².
-    pub fn areas_m2(&self) -> [f64; 2] {
-        let area = self.piston_area.unwrap_or(0.0);
-        self.piston_areas.unwrap_or([area, area])
-    }
-}
-
 impl<S: TableNumber> DeclaredStage<S> {
     fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("from", &LENGTH, "Position of the piston from which this stage moves.").positive();
@@ -82,19 +74,6 @@ impl DeclaredCylinder {
         let faces = self.effective_areas_m2().into_iter().zip(self.rod_diameters_m());
         let by_area = faces.map(|(area, rod)| (area / FRAC_PI_4 + rod * rod).sqrt()).fold(0.0, f64::max);
         self.piston_diameter.unwrap_or(by_area)
-    }
-
-    /// Diameters of the rods in chambers A and B, m.
-    pub fn rod_diameters_m(&self) -> [f64; 2] {
-        let rod = self.rod_diameter.unwrap_or(0.0);
-        self.rod_diameters.unwrap_or([rod, rod])
-    }
-
-    /// Effective areas in chambers A and B, m²: declared, or those of the piston less the rod.
-    pub fn effective_areas_m2(&self) -> [f64; 2] {
-        let declared = self.piston_areas.or(self.piston_area.map(|area| [area, area]));
-        let piston = self.piston_diameter.unwrap_or(0.0);
-        declared.unwrap_or(self.rod_diameters_m().map(|rod| FRAC_PI_4 * (piston - rod) * (piston + rod)))
     }
 
     /// Length of the longest stage, which determines the retracted length, m.

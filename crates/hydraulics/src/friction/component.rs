@@ -2,7 +2,7 @@
 
 use phea_dynamics::scalar::Scalar;
 
-use super::keys::{DeclaredFriction, FrictionLaw, StribeckCurve};
+use super::keys::{DeclaredFriction, FrictionLaw, RetractingFriction, StribeckCurve};
 use super::{Friction, FrictionLevels, LuGre, Stribeck};
 
 impl<S: Scalar> DeclaredFriction<S> {
@@ -15,11 +15,7 @@ impl<S: Scalar> DeclaredFriction<S> {
             stribeck_velocity: curve.stribeck_velocity,
             stribeck_exponent: curve.stribeck_exponent,
             viscous,
-            retracting: self.retracting.map(|back| FrictionLevels {
-                coulomb: back.coulomb.unwrap_or(curve.coulomb),
-                static_friction: back.static_friction.unwrap_or(curve.static_friction),
-                viscous: back.viscous.unwrap_or(viscous),
-            }),
+            retracting: self.retracting.map(|back| back.levels(self.levels(curve))),
         };
         match &self.law {
             FrictionLaw::Viscous => Friction::Viscous { viscous },
@@ -31,6 +27,26 @@ impl<S: Scalar> DeclaredFriction<S> {
                 bristle_stiffness: *bristle_stiffness,
                 bristle_damping: *bristle_damping,
             }),
+        }
+    }
+
+    /// Levels in extension, with a curve over velocity.
+    pub(super) fn levels(&self, curve: &StribeckCurve<S>) -> FrictionLevels<S> {
+        FrictionLevels {
+            coulomb: curve.coulomb,
+            static_friction: curve.static_friction,
+            viscous: self.viscous,
+        }
+    }
+}
+
+impl<S: Scalar> RetractingFriction<S> {
+    /// Levels in retraction; those that are not stated are the levels in extension.
+    pub(super) fn levels(&self, extending: FrictionLevels<S>) -> FrictionLevels<S> {
+        FrictionLevels {
+            coulomb: self.coulomb.unwrap_or(extending.coulomb),
+            static_friction: self.static_friction.unwrap_or(extending.static_friction),
+            viscous: self.viscous.unwrap_or(extending.viscous),
         }
     }
 }

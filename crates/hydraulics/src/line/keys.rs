@@ -196,6 +196,15 @@ impl DeclaredLine {
         if let Component::Pipe { pipe, .. } = &self.component { Some(pipe) } else { None }
     }
 
+    /// Bore of a hose or pipe, m.
+    pub fn bore(&self) -> Option<f64> {
+        match &self.component {
+            Component::Hose { properties, .. } => Some(properties.bore),
+            Component::Pipe { pipe, .. } => Some(pipe.bore),
+            Component::Volume(_) => None,
+        }
+    }
+
     /// Length of a hose or pipe, m.
     pub fn length(&self) -> Option<f64> {
         match self.component {
