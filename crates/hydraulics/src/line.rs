@@ -128,8 +128,8 @@ impl Line {
                 problems.not_negative("length", length);
             }
             Line::Volume { volume, effective_bulk_modulus } => {
-                problems.not_negative("volume", volume);
-                problems.positive("effective_bulk_modulus", effective_bulk_modulus);
+                problems.key(keys::VOLUME_KEY, volume);
+                problems.key(keys::EFFECTIVE_BULK_MODULUS_KEY, effective_bulk_modulus);
             }
         }
         problems.into_vec()

@@ -4,8 +4,17 @@ use std::f64::consts::FRAC_PI_4;
 
 use crate::contact::Contact;
 use crate::friction::DeclaredFriction;
+use crate::stroke::{STAGE_TRANSITION_KEY, STROKE_KEY};
 use phea_quantity::{AREA, FLOW_PRESSURE_COEFFICIENT, LENGTH, MASS, VOLUME};
-use phea_table::{CatalogueKind, TableNumber, Visitor, key, plain};
+use phea_table::{CatalogueKind, Key, TableNumber, Visitor, key, plain};
+
+pub(super) const MOVING_MASS_KEY: Key =
+    key("moving_mass", &MASS, "Mass of piston, rod and what moves with them.").positive();
+pub(super) const DEAD_VOLUME_KEY: Key =
+    key("dead_volume", &VOLUME, "Volume of each chamber besides the swept volume and the line.")
+        .not_negative();
+pub(super) const INTERNAL_LEAKAGE_KEY: Key =
+    key("internal_leakage", &FLOW_PRESSURE_COEFFICIENT, "Laminar leakage across the piston.").positive();
 
 /// Cylinder; `a` is the end x = 0, and x grows from A to B.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -104,31 +113,22 @@ impl<S: TableNumber> DeclaredCylinder<S> {
         let k = key("rod_diameters", &LENGTH, "Diameters of the rods in chamber A and in chamber B.");
         v.pair(k.not_negative(), &mut self.rod_diameters);
         v.one_of(&["rod_diameter", "rod_diameters"], false);
-        let k = key("stroke", &LENGTH, "Stroke; x = 0 is the end of chamber A.").positive();
-        v.quantity(k, &mut self.stroke);
+        v.quantity(STROKE_KEY, &mut self.stroke);
         let k = plain("stage", "A stage of a telescopic piston that follows those before it; at most three.");
         v.tables(k, &mut self.stages, DeclaredStage::visit);
-        let k = key(
-            "stage_transition",
-            &LENGTH,
-            "Width over which the areas of a stage blend into those of the next, about `from`.",
-        );
-        v.quantity(k.positive().or(5e-3), &mut self.stage_transition);
-        let k = key("moving_mass", &MASS, "Mass of piston, rod and what moves with them.").positive();
-        v.quantity(k, &mut self.moving_mass);
+        v.quantity(STAGE_TRANSITION_KEY, &mut self.stage_transition);
+        v.quantity(MOVING_MASS_KEY, &mut self.moving_mass);
         let k = key(
             "dead_length",
             &LENGTH,
             "Length of the retracted actuator from mount to mount, less its stroke: covers, rod ends, force sensor.",
         );
         v.optional(k.not_negative(), &mut self.dead_length);
-        let k = key("dead_volume", &VOLUME, "Volume of each chamber besides the swept volume and the line.");
-        v.optional(k.not_negative(), &mut self.dead_volume);
+        v.optional(DEAD_VOLUME_KEY, &mut self.dead_volume);
         let k = key("dead_volumes", &VOLUME, "Dead volumes of chamber A and of chamber B.").not_negative();
         v.pair(k, &mut self.dead_volumes);
         v.one_of(&["dead_volume", "dead_volumes"], false);
-        let k = key("internal_leakage", &FLOW_PRESSURE_COEFFICIENT, "Laminar leakage across the piston.");
-        v.optional(k.positive(), &mut self.internal_leakage);
+        v.optional(INTERNAL_LEAKAGE_KEY, &mut self.internal_leakage);
         let k = plain("end_stops", "End stops of the piston at both ends; absent: none.");
         v.table(k, &mut self.end_stops, Contact::visit);
         let k = plain("friction", "Friction of seals and bearings; absent: none.");

@@ -1,11 +1,18 @@
 //! Table `[motor]`, in place of `[cylinder]`: a rotary actuator.
 
 use phea_quantity::{ANGLE, DISPLACEMENT, FLOW_PRESSURE_COEFFICIENT, INERTIA, MotionKind, VOLUME};
-use phea_table::{TableNumber, Visitor, key, plain};
+use phea_table::{Key, TableNumber, Visitor, key, plain};
 
 use crate::contact::Contact;
 
 use crate::friction::DeclaredFriction;
+
+pub(super) const CASE_LEAKAGE_KEY: Key = key(
+    "case_leakage",
+    &FLOW_PRESSURE_COEFFICIENT,
+    "Laminar leakage of each chamber through the case to the tank.",
+)
+.positive();
 
 /// Hydraulic motor or vane actuator; its angle grows while oil enters chamber A.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -54,12 +61,7 @@ impl<S: TableNumber> DeclaredMotor<S> {
         let k =
             key("internal_leakage", &FLOW_PRESSURE_COEFFICIENT, "Laminar leakage from chamber to chamber.");
         v.optional(k.positive(), &mut self.internal_leakage);
-        let k = key(
-            "case_leakage",
-            &FLOW_PRESSURE_COEFFICIENT,
-            "Laminar leakage of each chamber through the case to the tank.",
-        );
-        v.optional(k.positive(), &mut self.case_leakage);
+        v.optional(CASE_LEAKAGE_KEY, &mut self.case_leakage);
         let k = plain("end_stops", "End stops at both ends of the stroke; absent: none.");
         v.table(k, &mut self.end_stops, Contact::visit);
         let k = plain("friction", "Friction of seals and bearings; absent: none.");

@@ -4,7 +4,26 @@ use super::motion_keys::LineMotion;
 use crate::accumulator::DeclaredAccumulator;
 use crate::line::Stiffening;
 use phea_quantity::{DENSITY, EXPANSION_SLOPE, LENGTH, PRESSURE, RATIO, VOLUME, VOLUME_PER_LENGTH};
-use phea_table::{CatalogueKind, DeclaredMisfit, Kinds, LineCost, TableNumber, Visitor, key, plain};
+use phea_table::{CatalogueKind, DeclaredMisfit, Key, Kinds, LineCost, TableNumber, Visitor, key, plain};
+
+pub(super) const HOSE_BORE: Key = key("bore", &LENGTH, "Inner diameter of the hose.").positive();
+pub(super) const PIPE_BORE: Key = key("bore", &LENGTH, "Inner diameter of the pipe.").positive();
+pub(super) const EXPANSION_SLOPE_KEY: Key =
+    key("volumetric_expansion_slope", &EXPANSION_SLOPE, "Slope of the expansion over pressure.").positive();
+pub(super) const WALL_THICKNESS_KEY: Key =
+    key("wall_thickness", &LENGTH, "Thickness of the wall; absent: the wall is rigid.").positive();
+pub(super) const YOUNGS_MODULUS_KEY: Key =
+    key("youngs_modulus", &PRESSURE, "Young's modulus of the wall.").positive();
+pub(super) const POISSON_RATIO_KEY: Key =
+    key("poisson_ratio", &RATIO, "Poisson's ratio of the wall.").not_negative().below(0.5).or(0.3);
+pub(super) const VOLUME_KEY: Key = key(
+    "volume",
+    &VOLUME,
+    "Volume of the line, instead of a hose or pipe; zero: the valve is on the chamber.",
+)
+.not_negative();
+pub(super) const EFFECTIVE_BULK_MODULUS_KEY: Key =
+    key("effective_bulk_modulus", &PRESSURE, "Effective bulk modulus that goes with `volume`.").positive();
 
 /// Modulus of the fluid in the cylinder's chambers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -287,11 +306,8 @@ impl<S: TableNumber> Component<S> {
 
 impl<S: TableNumber> LineVolume<S> {
     fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
-        let doc = "Volume of the line, instead of a hose or pipe; zero: the valve is on the chamber.";
-        let k = key("volume", &VOLUME, doc).not_negative();
-        v.quantity(k, &mut self.volume);
-        let k = key("effective_bulk_modulus", &PRESSURE, "Effective bulk modulus that goes with `volume`.");
-        v.quantity(k.positive(), &mut self.effective_bulk_modulus);
+        v.quantity(VOLUME_KEY, &mut self.volume);
+        v.quantity(EFFECTIVE_BULK_MODULUS_KEY, &mut self.effective_bulk_modulus);
     }
 }
 
@@ -323,8 +339,7 @@ impl<S: TableNumber> HoseExpansion<S> {
         v.optional(k.positive(), &mut measured);
         let k = key("volumetric_expansion_pressure", &PRESSURE, "Pressure the expansion was measured at.");
         v.optional(k.positive(), &mut pressure);
-        let k = key("volumetric_expansion_slope", &EXPANSION_SLOPE, "Slope of the expansion over pressure.");
-        v.optional(k.positive(), &mut slope);
+        v.optional(EXPANSION_SLOPE_KEY, &mut slope);
         *self = match (slope, measured, pressure) {
             (Some(slope), ..) => HoseExpansion::Slope { slope, measured, pressure },
             (None, Some(measured), Some(pressure)) => HoseExpansion::Measured { measured, pressure },
@@ -341,8 +356,7 @@ impl<S: TableNumber> HoseExpansion<S> {
 impl<S: TableNumber> HoseProperties<S> {
     /// Visits the keys of a hose in the catalogue.
     pub fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
-        let k = key("bore", &LENGTH, "Inner diameter of the hose.").positive();
-        v.quantity(k, &mut self.bore);
+        v.quantity(HOSE_BORE, &mut self.bore);
         self.expansion.visit(v);
         let k = key("minimum_bend_radius", &LENGTH, "Smallest permitted bend radius.").positive();
         v.optional(k, &mut self.minimum_bend_radius);
@@ -359,11 +373,9 @@ impl<S: TableNumber> DeclaredPipe<S> {
     pub fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = plain("model", "Name of a pipe of the catalogue.");
         v.catalogue(k, CatalogueKind::Pipe, &mut self.model);
-        v.quantity(key("bore", &LENGTH, "Inner diameter of the pipe.").positive(), &mut self.bore);
+        v.quantity(PIPE_BORE, &mut self.bore);
         v.way(&["wall_thickness", "youngs_modulus"], &mut self.wall, ElasticWall::visit);
-        let k =
-            key("poisson_ratio", &RATIO, "Poisson's ratio of the wall.").not_negative().below(0.5).or(0.3);
-        v.quantity(k, &mut self.poisson_ratio);
+        v.quantity(POISSON_RATIO_KEY, &mut self.poisson_ratio);
         let k = key("outer_diameter", &LENGTH, "Outer diameter of the pipe.").positive();
         v.optional(k, &mut self.outer_diameter);
         let k = key("working_pressure", &PRESSURE, "Highest permitted working pressure.").positive();
@@ -376,10 +388,8 @@ impl<S: TableNumber> DeclaredPipe<S> {
 
 impl<S: TableNumber> ElasticWall<S> {
     fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
-        let k = key("wall_thickness", &LENGTH, "Thickness of the wall; absent: the wall is rigid.");
-        v.quantity(k.positive(), &mut self.thickness);
-        let k = key("youngs_modulus", &PRESSURE, "Young's modulus of the wall.").positive();
-        v.quantity(k, &mut self.youngs_modulus);
+        v.quantity(WALL_THICKNESS_KEY, &mut self.thickness);
+        v.quantity(YOUNGS_MODULUS_KEY, &mut self.youngs_modulus);
         let k = key("wall_density", &DENSITY, "Density of the wall, from which its mass follows.").positive();
         v.optional(k, &mut self.density);
     }

@@ -2,12 +2,13 @@
 
 use phea_table::TableCheck;
 
+use super::drives_nothing;
 use super::keys::{DeclaredSupply, Pump, SupplyModel};
 
 impl DeclaredSupply {
     /// Checks the pressures, and the accumulator of a pump.
     pub fn check(&self, check: &mut dyn TableCheck) {
-        if self.pressure > 0.0 && self.tank_pressure >= self.pressure {
+        if self.pressure > 0.0 && drives_nothing(self.pressure, self.tank_pressure) {
             let at = check.written_path("supply.tank_pressure".to_string(), "supply.pressure");
             check.error(&at, "`tank_pressure` must be below `pressure`");
         }

@@ -5,6 +5,7 @@ use phea_quantity::{self as quantity, AREA, FORCE, LENGTH, PRESSURE, STIFFNESS};
 use phea_table::TableCheck;
 
 use super::keys::{DeclaredSeries, DeclaredSpring, DeclaredTransmission};
+use super::spring::is_free;
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE as ATMOSPHERE;
 use crate::line::Stiffening;
 
@@ -45,7 +46,8 @@ impl DeclaredTransmission {
     fn check_pull(&self, pull: f64, check: &mut dyn TableCheck) {
         let area = self.piston_area;
         let holds = area * (self.filling_pressure + ATMOSPHERE);
-        if holds >= pull {
+        let separates = holds < pull;
+        if !separates {
             return;
         }
         let message = format!(
@@ -133,7 +135,7 @@ impl DeclaredSpring {
             let message = "`stop_damping` damps stops that are not there";
             return check.error_with_help("series.stop_damping", message, "state `stop_stiffness`");
         }
-        if self.damping.is_none() && self.mass.is_none() {
+        if is_free(self.damping, self.mass) {
             let message = "`stop_damping` needs `damping` or `mass`: a massless spring without a damper jumps from any speed to any other";
             let help = "state the `damping` of the spring, or the `mass` between sensor and spring";
             check.error_with_help("series.stop_damping", message, help);

@@ -2,8 +2,8 @@
 
 use phea_table::TableCheck;
 
-use super::LeakageModel;
 use super::keys::{NullLeakage, Valve};
+use super::{LeakageModel, OpeningShape, SpoolImperfection};
 use crate::power_unit::DeclaredSupply;
 
 impl Valve {
@@ -18,7 +18,7 @@ impl Valve {
             );
         }
         let laps = self.lap.iter().flat_map(|lap| [("positive", lap.positive), ("negative", lap.negative)]);
-        for (side, _) in laps.filter(|(_, lap)| lap.abs() >= 1.0) {
+        for (side, _) in laps.filter(|(_, lap)| OpeningShape::exceeds_travel(*lap)) {
             let message = "a lap is less than the full travel of the spool, 100 %";
             check.error(&format!("valve.lap.{side}"), message);
         }
@@ -39,7 +39,7 @@ impl Valve {
 
     fn check_imperfections(&self, check: &mut dyn TableCheck) {
         if let (Some(width), Some(threshold)) = (self.hysteresis, self.threshold)
-            && width <= threshold
+            && SpoolImperfection::lacks_threshold(width, threshold)
         {
             check.error("valve.hysteresis", "`hysteresis` includes `threshold`, so it must be above it");
         }

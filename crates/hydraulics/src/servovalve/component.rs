@@ -5,9 +5,17 @@ use phea_table::once_read;
 
 use super::keys::{NullLeakage, RatedFlow, Valve, ValveCoefficients};
 use super::{
-    Edges, LeakageShape, OpeningLaw, OpeningShape, Servovalve, SpoolImperfection,
+    Edges, LeakageShape, OpeningLaw, OpeningShape, Servovalve, SpoolImperfection, Supply,
     flow_coefficient_from_rating, leakage_coefficient_from_rating,
 };
+use crate::power_unit::DeclaredSupply;
+
+impl<S: Scalar> Supply<S> {
+    /// Stated pressures of supply and tank.
+    pub fn of(declared: &DeclaredSupply<S>) -> Supply<S> {
+        Supply { pressure: declared.pressure, tank_pressure: declared.tank_pressure }
+    }
+}
 
 impl<S: Scalar> Valve<S> {
     /// Valve with its declared coefficients; without them, with those of the data sheet, equal for

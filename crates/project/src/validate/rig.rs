@@ -33,9 +33,7 @@ pub(super) fn parts(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
 
 /// Greatest push and greatest pull that the supply gives the piston, N.
 pub(super) fn stall_forces(actuator: &DeclaredActuator) -> [f64; 2] {
-    let [pressure, tank_pressure] = [actuator.supply.pressure, actuator.supply.tank_pressure];
-    let [retracting, extending] =
-        actuator.cylinder.component().stall_forces(&Supply { pressure, tank_pressure });
+    let [retracting, extending] = actuator.cylinder.component().stall_forces(&Supply::of(&actuator.supply));
     [extending, -retracting]
 }
 
