@@ -22,13 +22,12 @@ pub fn components<S: Scalar>(plain: &DeclaredActuator, declared: &DeclaredActuat
     let pressure = declared.supply.pressure;
     let tank_pressure = declared.supply.tank_pressure;
     let pressures = ExpansionPressures::of(pressure, tank_pressure);
-    let none = Friction::Viscous { viscous: S::from(0.0) };
     let fluid = declared.fluid.component();
     Components {
         gas: [&declared.line.a, &declared.line.b]
             .map(|line| Some(line.accumulator.as_ref()?.chamber_gas(&fluid))),
         fluid,
-        supply: Supply { pressure, tank_pressure },
+        supply: Supply::of(&declared.supply),
         power_unit: declared.supply.component(declared.fluid.bulk_modulus),
         valve: declared.valve.component(pressure - tank_pressure),
         line_a: declared.line.a.component(pressures),
@@ -39,7 +38,7 @@ pub fn components<S: Scalar>(plain: &DeclaredActuator, declared: &DeclaredActuat
             None => declared.cylinder.component(),
             Some(motor) => motor.component(),
         },
-        friction: declared.friction().map_or(none, DeclaredFriction::component),
+        friction: declared.friction().map_or_else(Friction::default, DeclaredFriction::component),
         force_sensor: ForceSensor { stiffness: declared.force_sensor.stiffness },
         series: declared.series.as_ref().map(DeclaredSeries::component),
         linkage: plain.linkage.as_ref().map(|geometry| {

@@ -4,13 +4,13 @@ use phea_dynamics::portable;
 use phea_quantity::{self as quantity, DAMPING};
 use phea_table::TableCheck;
 
-use super::FrictionLevels;
-use super::keys::{DeclaredFriction, FrictionLaw};
+use super::keys::DeclaredFriction;
+use super::{Friction, FrictionLevels, LuGre};
 
 impl DeclaredFriction {
     /// Checks the levels of each direction, in the table at `path`.
     pub fn check(&self, path: &str, check: &mut dyn TableCheck) {
-        let (FrictionLaw::Stribeck { curve, .. } | FrictionLaw::LuGre { curve, .. }) = &self.law else {
+        let Some(curve) = self.law.curve() else {
             if self.retracting.is_some() {
                 let message = "viscous friction alone is the same both ways: choose `model = \"stribeck\"` or `\"lugre\"`, or remove `retracting`";
                 check.error(&format!("{path}.retracting"), message);
@@ -20,7 +20,7 @@ impl DeclaredFriction {
         if !check.declared(&format!("{path}.static")) || !check.declared(&format!("{path}.coulomb")) {
             return;
         }
-        let extending = self.levels(curve);
+        let extending = curve.extending();
         self.check_levels((path, path), extending, check);
         if let Some(back) = self.retracting {
             self.check_levels((&format!("{path}.retracting"), path), back.levels(extending), check);
@@ -34,11 +34,11 @@ impl DeclaredFriction {
         let at = |key: &str, check: &dyn TableCheck| {
             check.written_path(format!("{own}.{key}"), &format!("{other}.{key}"))
         };
-        if static_friction < coulomb {
+        if levels.is_reversed() {
             let [lower, upper] = ["coulomb", "static"].map(|key| at(key, check));
             return check.in_order([&lower, &upper], [coulomb, static_friction]);
         }
-        let FrictionLaw::LuGre { bristle_damping, .. } = self.law else { return };
+        let Friction::LuGre(LuGre { bristle_damping, .. }) = self.law else { return };
         let least = levels.passive_viscous(bristle_damping);
         if viscous < least {
             let unit = check.motion().dimension(&DAMPING).si;

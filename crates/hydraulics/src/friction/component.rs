@@ -2,41 +2,17 @@
 
 use phea_dynamics::scalar::Scalar;
 
-use super::keys::{DeclaredFriction, FrictionLaw, RetractingFriction, StribeckCurve};
-use super::{Friction, FrictionLevels, LuGre, Stribeck};
+use super::keys::{DeclaredFriction, RetractingFriction};
+use super::{Friction, FrictionLevels};
 
 impl<S: Scalar> DeclaredFriction<S> {
     /// Friction with the levels of retraction that it states, and otherwise those of extension.
     pub fn component(&self) -> Friction<S> {
-        let viscous = self.viscous;
-        let stribeck = |curve: &StribeckCurve<S>| Stribeck {
-            coulomb: curve.coulomb,
-            static_friction: curve.static_friction,
-            stribeck_velocity: curve.stribeck_velocity,
-            stribeck_exponent: curve.stribeck_exponent,
-            viscous,
-            retracting: self.retracting.map(|back| back.levels(self.levels(curve))),
-        };
-        match &self.law {
-            FrictionLaw::Viscous => Friction::Viscous { viscous },
-            FrictionLaw::Stribeck { curve, regular_velocity } => {
-                Friction::Stribeck { curve: stribeck(curve), regular_velocity: *regular_velocity }
-            }
-            FrictionLaw::LuGre { curve, bristle_stiffness, bristle_damping } => Friction::LuGre(LuGre {
-                curve: stribeck(curve),
-                bristle_stiffness: *bristle_stiffness,
-                bristle_damping: *bristle_damping,
-            }),
+        let mut law = self.law;
+        if let Some(curve) = law.curve_mut() {
+            curve.retracting = self.retracting.map(|back| back.levels(curve.extending()));
         }
-    }
-
-    /// Levels in extension, with a curve over velocity.
-    pub(super) fn levels(&self, curve: &StribeckCurve<S>) -> FrictionLevels<S> {
-        FrictionLevels {
-            coulomb: curve.coulomb,
-            static_friction: curve.static_friction,
-            viscous: self.viscous,
-        }
+        law
     }
 }
 
