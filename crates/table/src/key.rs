@@ -22,8 +22,21 @@ pub struct Key {
     /// True if they measure the motion of the load or its drive, which may turn although the rig
     /// does not: behind a linkage.
     pub of_load: bool,
+    /// Usual numbers, if a number far from them was hardly intended.
+    pub usual: Option<UsualRange>,
     /// Meaning, in one sentence.
     pub doc: &'static str,
+}
+
+/// Usual numbers of a kind of part, SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UsualRange {
+    /// Least.
+    pub minimum: f64,
+    /// Greatest.
+    pub maximum: f64,
+    /// Parts that have them, in the plural.
+    pub of: &'static str,
 }
 
 /// Motion of a rig and of its load.
@@ -112,7 +125,8 @@ fn short(value: f64) -> String {
 
 /// Key whose numbers have a dimension.
 pub const fn key(name: &'static str, dimension: &'static Dimension, doc: &'static str) -> Key {
-    Key { name, dimension, range: AcceptedRange::ANY, default: None, of_motion: false, of_load: false, doc }
+    let range = AcceptedRange::ANY;
+    Key { name, dimension, range, default: None, of_motion: false, of_load: false, usual: None, doc }
 }
 
 /// Key without a dimension: a table, a list, a text or a choice.
@@ -186,6 +200,13 @@ impl Key {
     /// Accepts `inf` too.
     pub const fn or_infinite(mut self) -> Key {
         self.range.infinity = true;
+        self
+    }
+
+    /// States the usual numbers, SI, of parts of this kind; of a rig that moves along a line where
+    /// they measure its motion.
+    pub const fn usual(mut self, minimum: f64, maximum: f64, of: &'static str) -> Key {
+        self.usual = Some(UsualRange { minimum, maximum, of });
         self
     }
 

@@ -16,7 +16,7 @@ mod visitor;
 pub use catalogue_kind::CatalogueKind;
 pub use cost::{LineCost, PartCost};
 pub use formula::{Formula, FormulaError, Ratio, Variable};
-pub use key::{AcceptedRange, Key, Motions, key, plain};
+pub use key::{AcceptedRange, Key, Motions, UsualRange, key, plain};
 pub use misfit::DeclaredMisfit;
 pub use open_table::{OpenTable, OpenTableReader, OpenTableWriter};
 pub use table_check::{TableCheck, TableFinding};

@@ -9,7 +9,11 @@ use phea_quantity::{AREA, FLOW_PRESSURE_COEFFICIENT, LENGTH, MASS, VOLUME};
 use phea_table::{CatalogueKind, Key, TableNumber, Visitor, key, plain};
 
 pub(super) const MOVING_MASS_KEY: Key =
-    key("moving_mass", &MASS, "Mass of piston, rod and what moves with them.").positive();
+    key("moving_mass", &MASS, "Mass of piston, rod and what moves with them.").positive().usual(
+        0.1,
+        1e4,
+        "pistons with what is fixed to them",
+    );
 pub(super) const DEAD_VOLUME_KEY: Key =
     key("dead_volume", &VOLUME, "Volume of each chamber besides the swept volume and the line.")
         .not_negative();
@@ -100,15 +104,19 @@ impl<S: TableNumber> DeclaredCylinder<S> {
         v.catalogue(k, CatalogueKind::Cylinder, &mut self.model);
         let k =
             key("piston_diameter", &LENGTH, "Diameter of the piston; or `piston_area` or `piston_areas`.")
-                .positive();
+                .positive()
+                .usual(0.01, 0.5, "pistons");
         v.optional(k, &mut self.piston_diameter);
         let k =
-            key("piston_area", &AREA, "Area the pressure acts on in each chamber, rods already subtracted.");
+            key("piston_area", &AREA, "Area the pressure acts on in each chamber, rods already subtracted.")
+                .usual(5e-5, 0.2, "pistons");
         v.optional(k.positive(), &mut self.piston_area);
         let k = key("piston_areas", &AREA, "Areas the pressure acts on in chamber A and in chamber B.");
         v.pair(k.positive(), &mut self.piston_areas);
         v.one_of(&["piston_areas", "piston_diameter", "piston_area"], true);
-        let k = key("rod_diameter", &LENGTH, "Diameter of the rod through both chambers.").not_negative();
+        let k = key("rod_diameter", &LENGTH, "Diameter of the rod through both chambers.")
+            .not_negative()
+            .usual(0.005, 0.4, "rods");
         v.optional(k, &mut self.rod_diameter);
         let k = key("rod_diameters", &LENGTH, "Diameters of the rods in chamber A and in chamber B.");
         v.pair(k.not_negative(), &mut self.rod_diameters);

@@ -43,15 +43,19 @@ impl<S: TableNumber> DeclaredMotor<S> {
     /// Visits the keys of the table.
     pub fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         v.moves(Some(MotionKind::Rotary));
-        let k = key("displacement", &DISPLACEMENT, "What a chamber takes for an angle; torque per pressure.");
+        let k = key("displacement", &DISPLACEMENT, "What a chamber takes for an angle; torque per pressure.")
+            .usual(1e-7, 1e-3, "motors");
         v.quantity(k.positive(), &mut self.displacement);
         let k = key(
             "stroke",
             &ANGLE,
             "From end to end, 0 at the end of chamber A; absent: it rotates without limit.",
-        );
+        )
+        .usual(0.5, 6.3, "vane actuators");
         v.optional(k.positive(), &mut self.stroke);
-        let k = key("inertia", &INERTIA, "Inertia of shaft, rotor and what turns with them.").positive();
+        let k = key("inertia", &INERTIA, "Inertia of shaft, rotor and what turns with them.")
+            .positive()
+            .usual(1e-4, 10.0, "shafts with what is fixed to them");
         v.quantity(k, &mut self.inertia);
         let k = key("dead_volume", &VOLUME, "Volume of each chamber besides the swept volume and the line.");
         v.optional(k.not_negative(), &mut self.dead_volume);

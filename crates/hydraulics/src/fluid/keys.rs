@@ -6,14 +6,27 @@ use phea_table::{Key, TableNumber, Visitor, key};
 use super::MONATOMIC_EXPONENT;
 
 pub(super) const BULK_MODULUS_KEY: Key =
-    key("bulk_modulus", &PRESSURE, "Bulk modulus of the liquid without air.").positive();
-pub(super) const DENSITY_KEY: Key = key("density", &DENSITY, "Density of the liquid.").positive();
+    key("bulk_modulus", &PRESSURE, "Bulk modulus of the liquid without air.").positive().usual(
+        1e9,
+        2.5e9,
+        "fluids of hydraulics",
+    );
+pub(super) const DENSITY_KEY: Key = key("density", &DENSITY, "Density of the liquid.").positive().usual(
+    700.0,
+    1300.0,
+    "fluids of hydraulics",
+);
 pub(super) const KINEMATIC_VISCOSITY_KEY: Key =
-    key("kinematic_viscosity", &KINEMATIC_VISCOSITY, "Kinematic viscosity.").positive();
+    key("kinematic_viscosity", &KINEMATIC_VISCOSITY, "Kinematic viscosity.").positive().usual(
+        5e-6,
+        5e-4,
+        "fluids of hydraulics",
+    );
 pub(super) const ENTRAINED_AIR_KEY: Key =
     key("entrained_air", &RATIO, "Share of free air in the volume at atmospheric pressure.")
         .not_negative()
-        .below(1.0);
+        .below(1.0)
+        .usual(0.0, 0.02, "fluids of hydraulics");
 pub(super) const POLYTROPIC_EXPONENT_KEY: Key =
     key("polytropic_exponent", &RATIO, "Of the entrained air: 1 is isothermal, 1.4 adiabatic.")
         .at_least(1.0)

@@ -6,7 +6,8 @@ use phea_table::{Key, TableNumber, Visitor, key};
 pub(super) const STIFFNESS_KEY: Key =
     key("stiffness", &STIFFNESS, "K_S: with a prescribed load motion, of cell and environment.")
         .of_motion()
-        .positive();
+        .positive()
+        .usual(1e6, 1e10, "load cells");
 
 /// Load cell.
 #[derive(Clone, Debug, Default, PartialEq)]

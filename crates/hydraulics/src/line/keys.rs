@@ -6,7 +6,8 @@ use crate::line::Stiffening;
 use phea_quantity::{DENSITY, EXPANSION_SLOPE, LENGTH, PRESSURE, RATIO, VOLUME, VOLUME_PER_LENGTH};
 use phea_table::{CatalogueKind, DeclaredMisfit, Key, Kinds, LineCost, TableNumber, Visitor, key, plain};
 
-pub(super) const HOSE_BORE: Key = key("bore", &LENGTH, "Inner diameter of the hose.").positive();
+pub(super) const HOSE_BORE: Key =
+    key("bore", &LENGTH, "Inner diameter of the hose.").positive().usual(0.003, 0.08, "hoses");
 pub(super) const PIPE_BORE: Key = key("bore", &LENGTH, "Inner diameter of the pipe.").positive();
 pub(super) const EXPANSION_SLOPE_KEY: Key =
     key("volumetric_expansion_slope", &EXPANSION_SLOPE, "Slope of the expansion over pressure.").positive();
@@ -21,7 +22,8 @@ pub(super) const VOLUME_KEY: Key = key(
     &VOLUME,
     "Volume of the line, instead of a hose or pipe; zero: the valve is on the chamber.",
 )
-.not_negative();
+.not_negative()
+.usual(1e-6, 0.05, "lines");
 pub(super) const EFFECTIVE_BULK_MODULUS_KEY: Key =
     key("effective_bulk_modulus", &PRESSURE, "Effective bulk modulus that goes with `volume`.").positive();
 
@@ -286,7 +288,7 @@ impl<S: TableNumber> Component<S> {
             v.way(&Component::VOLUME, &mut volume, LineVolume::visit);
         }
         let words = if or_volume { "Length of the line to one chamber." } else { "Length of the line." };
-        let k = key("length", &LENGTH, words).positive();
+        let k = key("length", &LENGTH, words).positive().usual(0.05, 30.0, "lines");
         match (hose, pipe, volume) {
             (Some(properties), _, _) => {
                 v.quantity(k, &mut length);

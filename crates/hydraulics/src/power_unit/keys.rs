@@ -75,7 +75,7 @@ impl<S: TableNumber> Variants<S> for SupplyModel<S> {
     }
 
     fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
-        let k = key("flow", &FLOW, "Flow the pump can give.").positive();
+        let k = key("flow", &FLOW, "Flow the pump can give.").positive().usual(5e-6, 2e-2, "pumps");
         match self {
             SupplyModel::Constant { flow } => v.optional(k, flow),
             SupplyModel::PumpLimited(pump) => {
@@ -111,7 +111,7 @@ impl<S: TableNumber> DeclaredSupply<S> {
     pub fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = plain("model", "How the pressure behaves under load; `pump_limited` uses `flow`.");
         v.variant(k, &mut self.model, false);
-        let k = key("pressure", &PRESSURE, "Supply pressure, gauge.").positive();
+        let k = key("pressure", &PRESSURE, "Supply pressure, gauge.").positive().usual(1e6, 5e7, "supplies");
         v.quantity(k, &mut self.pressure);
         v.quantity(TANK_PRESSURE_KEY, &mut self.tank_pressure);
     }

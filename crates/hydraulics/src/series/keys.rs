@@ -20,16 +20,25 @@ pub(super) const SEGMENTS_KEY: Key =
     key("segments", &RATIO, "Into how many segments its line is cut; absent: 4.")
         .at_least(1.0)
         .at_most(MOST_SEGMENTS as f64);
-pub(super) const PISTON_AREA_KEY: Key =
-    key("piston_area", &AREA, "Of either piston of the transmission.").positive();
+pub(super) const PISTON_AREA_KEY: Key = key("piston_area", &AREA, "Of either piston of the transmission.")
+    .positive()
+    .usual(5e-5, 0.02, "pistons of transmissions");
 pub(super) const END_VOLUME_KEY: Key =
     key("end_volume", &VOLUME, "Oil at either piston, in addition to that of the line.")
         .not_negative()
         .or(0.0);
 pub(super) const STIFFNESS_KEY: Key =
-    key("stiffness", &STIFFNESS, "Of the spring between force sensor and load, at rest.").positive();
+    key("stiffness", &STIFFNESS, "Of the spring between force sensor and load, at rest.").positive().usual(
+        1e4,
+        1e8,
+        "series springs",
+    );
 pub(super) const TRAVEL_KEY: Key =
-    key("travel", &LENGTH, "Travel of the spring to either side; absent: not limited.").positive();
+    key("travel", &LENGTH, "Travel of the spring to either side; absent: not limited.").positive().usual(
+        1e-3,
+        0.1,
+        "series springs",
+    );
 pub(super) const PROGRESSION_KEY: Key = key(
     "progression",
     &RATIO,
@@ -182,7 +191,9 @@ impl<S: TableNumber> Variants<S> for DeclaredSeries<S> {
 impl<S: TableNumber> DeclaredTransmission<S> {
     fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         v.quantity(PISTON_AREA_KEY, &mut self.piston_area);
-        let k = key("filling_pressure", &PRESSURE, "Of its oil, at rest and without force.").positive();
+        let k = key("filling_pressure", &PRESSURE, "Of its oil, at rest and without force.")
+            .positive()
+            .usual(1e5, 3.5e7, "transmissions");
         v.quantity(k, &mut self.filling_pressure);
         v.quantity(END_VOLUME_KEY, &mut self.end_volume);
         let mut segments = Some(self.segments);
@@ -230,11 +241,20 @@ impl<S: TableNumber> SpringCoil<S> {
         let k = key("index", &RATIO, "Mean diameter of the coil over the diameter of the wire.");
         v.quantity(k.at_least(3.0).at_most(20.0), &mut self.index);
         let k =
-            key("allowed_shear_stress", &PRESSURE, "Greatest shear stress in the wire, by Wahl's factor.");
+            key("allowed_shear_stress", &PRESSURE, "Greatest shear stress in the wire, by Wahl's factor.")
+                .usual(2e8, 1.2e9, "spring steels");
         v.quantity(k.positive(), &mut self.allowed_shear_stress);
-        let k = key("shear_modulus", &PRESSURE, "Of the wire.").positive().or(STEEL_SHEAR_MODULUS);
+        let k = key("shear_modulus", &PRESSURE, "Of the wire.").positive().or(STEEL_SHEAR_MODULUS).usual(
+            4e10,
+            9e10,
+            "spring materials",
+        );
         v.quantity(k, &mut self.shear_modulus);
-        let k = key("density", &DENSITY, "Of the wire.").positive().or(STEEL_DENSITY);
+        let k = key("density", &DENSITY, "Of the wire.").positive().or(STEEL_DENSITY).usual(
+            4000.0,
+            9000.0,
+            "spring materials",
+        );
         v.quantity(k, &mut self.density);
     }
 }

@@ -12,7 +12,9 @@ pub(super) const TARE_PRESSURE_KEY: Key =
 pub(super) const NOMINAL_VOLTAGE_KEY: Key =
     key("nominal_voltage", &VOLTAGE, "Command of full opening.").positive().or(10.0);
 pub(super) const NATURAL_FREQUENCY_KEY: Key =
-    key("natural_frequency", &ANGULAR_FREQUENCY, "Natural frequency of the spool's dynamics.").positive();
+    key("natural_frequency", &ANGULAR_FREQUENCY, "Natural frequency of the spool's dynamics.")
+        .positive()
+        .usual(60.0, 3000.0, "servovalves");
 pub(super) const DAMPING_RATIO_KEY: Key =
     key("damping_ratio", &RATIO, "Damping ratio of the spool's dynamics.").positive();
 pub(super) const TRANSITION_PRESSURE_KEY: Key =
@@ -166,8 +168,16 @@ impl<R, S> ValveCoefficients<R, S> {
 
 impl<S: TableNumber> RatedFlow<S> {
     fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
-        v.quantity(key("nominal_flow", &FLOW, "Rated flow of the data sheet.").positive(), &mut self.flow);
-        let k = key("nominal_pressure_drop", &PRESSURE, "Drop over both edges together at the rated flow.");
+        v.quantity(
+            key("nominal_flow", &FLOW, "Rated flow of the data sheet.").positive().usual(
+                5e-6,
+                2e-2,
+                "servovalves",
+            ),
+            &mut self.flow,
+        );
+        let k = key("nominal_pressure_drop", &PRESSURE, "Drop over both edges together at the rated flow.")
+            .usual(5e5, 3.5e7, "servovalves");
         v.quantity(k.positive(), &mut self.pressure_drop);
     }
 }
