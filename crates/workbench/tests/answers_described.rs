@@ -124,7 +124,7 @@ fn every_metric_of_an_event_is_in_its_answer() {
     for motion in [MotionKind::Linear, MotionKind::Rotary] {
         for metric in Metric::ALL {
             let key = metric.quantity().text(motion);
-            assert!(properties.contains_key(&key), "{key}");
+            assert!(properties.contains_key(key.as_ref()), "{key}");
         }
     }
 }
