@@ -12,8 +12,8 @@ use super::simulate::{
     RunStatus, Window,
 };
 
-/// Metrics in the order of a row: a new metric is added at the end, since the columns of stored rows
-/// have fixed positions.
+/// Metrics in the order of a row: a new metric is added at the end, since the columns of stored
+/// rows have fixed positions.
 pub const ROW_METRICS: [Metric; Metric::ALL.len()] = [
     Metric::Overshoot,
     Metric::RiseTime,
