@@ -30,6 +30,7 @@ pub mod load;
 pub mod machine;
 pub mod operating_point;
 pub mod orifice;
+pub mod outward_flow;
 pub mod parameter;
 pub mod plant;
 pub mod power_unit;

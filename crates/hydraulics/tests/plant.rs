@@ -17,6 +17,7 @@ use phea_hydraulics::linear::linear_model_coefficients;
 use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{InitialCondition, Machine, MachineOptions, PowerUnit};
 use phea_hydraulics::operating_point::{Balance, Condition, OperatingPoint, Steady, operating_point};
+use phea_hydraulics::outward_flow::OutwardFlow;
 use phea_hydraulics::plant::{LinearLoad, LinearPlant};
 use phea_hydraulics::reference_rig::{components, cylinder, hose_line, leaking, nominal_plant, pipe_line};
 use phea_hydraulics::servovalve::{LeakageModel, Servovalve, SpoolDirection, Supply};
@@ -39,16 +40,14 @@ struct Drawn {
     load: LinearLoad,
 }
 
-/// Some leak to the tank, some rotate without limit, and some are telescopic, mostly within a
-/// transition.
+/// Some rotate without limit, and some are telescopic, mostly within a transition.
 fn turning(cylinder: Cylinder, number: u64) -> Cylinder {
-    let external_leakage = (number % 5 == 3).then_some(1e-14 * pow(1e3, number as f64 / 300.0));
     let stroke = match number % 9 {
         4 => ActuatorStroke::Unlimited,
         2 | 7 => ActuatorStroke::Telescopic(telescope(number)),
         _ => cylinder.stroke,
     };
-    Cylinder { external_leakage, stroke, ..cylinder }
+    Cylinder { stroke, ..cylinder }
 }
 
 /// Three stages with long transitions.
@@ -80,7 +79,10 @@ fn drawn(number: u64) -> Drawn {
         force_sensor: ForceSensor { stiffness: spread(1e6, 1e8) },
         ..reference
     };
-    let parts = Components { cylinder: turning(parts.cylinder, number), ..parts };
+    // every fifth leaks to the tank
+    let external_leakage = (number % 5 == 3).then_some(1e-14 * pow(1e3, number as f64 / 300.0));
+    let outward = OutwardFlow { external_leakage };
+    let parts = Components { cylinder: turning(parts.cylinder, number), outward, ..parts };
     let (mass, stiffness, damping) = (spread(1.0, 500.0), spread(1e4, 1e8), spread(10.0, 1e4));
     let leakage = if number % 4 == 1 { 0.0 } else { spread(1e-14, 1e-10) };
     let relative_damping = spread(0.01, 1.0);

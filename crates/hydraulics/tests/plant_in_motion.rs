@@ -23,6 +23,7 @@ use phea_hydraulics::line::{
 use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{Chambers, InitialCondition, Machine, MachineOptions};
 use phea_hydraulics::operating_point::{Condition, operating_point};
+use phea_hydraulics::outward_flow::OutwardFlow;
 use phea_hydraulics::plant::{BehindLines, ChamberDynamics, LinearLoad, LinearPlant, PlantInMotion};
 use phea_hydraulics::reference_rig::{components, cylinder, hose, hose_line, leaking, pipe_line};
 use phea_hydraulics::stiffness::StiffnessModel;
@@ -81,7 +82,7 @@ pub(super) fn plant_with_lines(
     let (oil, gas) = (oil.compliance(position, pressures), parts.gas_compliance(pressures));
     let own = without_branches(parts, pressures, [0, 1].map(|side| oil[side] + gas[side].unwrap_or(0.0)));
     let ChamberDynamics::TwoPressures { flow_pressures, .. } = plant.chambers else { unreachable!() };
-    let outward = parts.cylinder.external_leakage.unwrap_or(0.0);
+    let outward = parts.outward.external_leakage.unwrap_or(0.0);
     let leaking = flow_pressures.map(|whole| outward / whole);
     (plant, BehindLines { lines, chambers: own, lumped, leaking })
 }
@@ -122,7 +123,7 @@ fn parts(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> (Components, 
     };
     // every fifth leaks to the tank as well, from the chamber side of its lines
     let external_leakage = (number % 5 == 3).then_some(1e-14 * pow(1e3, number as f64 / 108.0));
-    let parts = Components { cylinder: Cylinder { external_leakage, ..parts.cylinder }, ..parts };
+    let parts = Components { outward: OutwardFlow { external_leakage }, ..parts };
     (parts, models)
 }
 

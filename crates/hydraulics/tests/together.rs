@@ -20,6 +20,7 @@ use phea_hydraulics::linkage::Linkage;
 use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{InitialCondition, Machine, MachineOptions, PowerUnit};
 use phea_hydraulics::operating_point::{Condition, operating_point};
+use phea_hydraulics::outward_flow::OutwardFlow;
 use phea_hydraulics::plant::{
     BehindLines, LinearLoad, LinearPlant, LinearSeries, PlantInMotion, PressureFeedback, SeriesOutput,
 };
@@ -167,15 +168,8 @@ fn actuator(draw: &mut Draw, number: u64, stroke: f64, motor: bool) -> Component
         (false, false) => ActuatorStroke::Limited(stroke),
     };
     Components {
-        cylinder: Cylinder {
-            area_a,
-            area_b,
-            stroke,
-            moving_mass,
-            external_leakage,
-            internal_leakage,
-            ..cylinder()
-        },
+        cylinder: Cylinder { area_a, area_b, stroke, moving_mass, internal_leakage, ..cylinder() },
+        outward: OutwardFlow { external_leakage },
         friction: Friction::Viscous { viscous },
         force_sensor: ForceSensor { stiffness },
         ..components(

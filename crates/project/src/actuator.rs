@@ -6,6 +6,7 @@ use super::{
     DeclaredVelocitySensor, Key, Load, Motions, TableNumber, Valve, Visitor, plain,
 };
 use phea_quantity::MotionKind;
+use phea_table::PartCost;
 
 /// Hydraulic actuator and its load.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -34,6 +35,19 @@ pub struct DeclaredActuator<S = f64> {
     pub linkage: Option<DeclaredLinkage<S>>,
     /// Load on which the force acts.
     pub load: Load<S>,
+}
+
+/// Valve at the chambers with its cost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChamberValve {
+    /// Table that declares it.
+    pub table: &'static str,
+    /// Names of one such valve and of several.
+    pub names: [&'static str; 2],
+    /// Chamber of the valve, `A` or `B`; `None` for a valve of both.
+    pub side: Option<&'static str>,
+    /// Cost and mass.
+    pub cost: PartCost,
 }
 
 impl DeclaredActuator {
@@ -169,6 +183,15 @@ impl DeclaredActuator {
 }
 
 impl DeclaredActuator {
+    /// Valves at the chambers, in the order of their tables.
+    pub fn chamber_valves(&self) -> Vec<ChamberValve> {
+        let names = ["cross-port valve", "cross-port valves"];
+        let cross_port = self.cross_port.iter();
+        cross_port
+            .map(|port| ChamberValve { table: "cross_port", names, side: None, cost: port.cost })
+            .collect()
+    }
+
     /// Adjustments of the accumulators at chambers A and B.
     pub fn adjustments(&self) -> [Option<DeclaredAdjustment>; 2] {
         [&self.line.a, &self.line.b].map(|line| line.accumulator.as_ref()?.adjustment)

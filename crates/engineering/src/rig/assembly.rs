@@ -6,6 +6,7 @@ use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::line::{Anchoring, Hose, Line, Pipe, PipeWall, Stiffening};
 use phea_hydraulics::linkage::{Linkage, STANDARD_GRAVITY};
+use phea_hydraulics::outward_flow::OutwardFlow;
 use phea_hydraulics::series::{SeriesElement, SeriesSpring, SeriesTravel, Transmission};
 use phea_hydraulics::servovalve::{
     Edges, LeakageShape, OpeningLaw, OpeningShape, Servovalve, SpoolImperfection, Supply,
@@ -57,6 +58,9 @@ pub fn components<S: Scalar>(
         line_b: line(&declared.line.b, pressures),
         line_models: [&plain.line.a, &plain.line.b].map(|line| line_model(&line.motion)),
         cross_port: cross_port(declared.cross_port.as_ref(), fluid.density),
+        outward: OutwardFlow {
+            external_leakage: declared.motor.as_ref().and_then(|motor| motor.case_leakage),
+        },
         cylinder: match &declared.motor {
             None => cylinder(&declared.cylinder),
             Some(motor) => motor_as_cylinder(motor),
@@ -313,7 +317,6 @@ fn cylinder<S: Scalar>(declared: &project::DeclaredCylinder<S>) -> Cylinder<S> {
         dead_volume_a,
         dead_volume_b,
         internal_leakage: declared.internal_leakage,
-        external_leakage: None,
         end_stops: declared.end_stops,
     }
 }
@@ -348,7 +351,6 @@ fn motor_as_cylinder<S: Scalar>(declared: &project::DeclaredMotor<S>) -> Cylinde
         dead_volume_a,
         dead_volume_b,
         internal_leakage: declared.internal_leakage,
-        external_leakage: declared.case_leakage,
         end_stops: declared.end_stops,
     }
 }

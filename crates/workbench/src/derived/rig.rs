@@ -5,7 +5,7 @@ use phea_hydraulics::operating_point::Condition;
 
 use super::Derived;
 use super::accumulator::accumulators;
-use super::cross_port::cross_port;
+use super::chamber_valves::chamber_valves;
 use super::dynamics::dynamics;
 use super::impedance::impedance;
 use super::linkage::linkage;
@@ -41,7 +41,7 @@ pub fn derive(setup: &Setup<'_>) -> Result<Vec<Derived>, RigError> {
     linkage(project, rig, &mut list);
     valve(project, rig, &mut list);
     equilibrium(rig, &mut list);
-    cross_port(setup, rig, &mut list);
+    chamber_valves(setup, rig, &mut list);
     linear_parameters(rig, &mut list);
     dynamics(rig, &mut list);
     impedance(rig, &mut list);
@@ -266,7 +266,7 @@ fn equilibrium(rig: &Rig, list: &mut List) {
 
 fn linear_parameters(rig: &Rig, list: &mut List) {
     list.group("Linear model");
-    let slopes = match rig.model.external_leakage {
+    let slopes = match rig.actuator.components().outward.external_leakage {
         None => list.motion.either(SLOPES, SLOPES_OF_A_MOTOR),
         Some(_) => "1/K_c = 1/(K_{cA} + G_e) + 1/(K_{cB} + G_e), with the leakage G_e through the case",
     };

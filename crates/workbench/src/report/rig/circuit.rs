@@ -12,7 +12,8 @@ use crate::project::{
     Project, SupplyModel,
 };
 use crate::quantity::{self, FLOW, LENGTH, MASS, MotionWords, PRESSURE, STIFFNESS, VOLTAGE, VOLUME};
-use crate::rig::Rig;
+use crate::rig::{CrossPortAtPoint, Rig, cross_port_at_point};
+use phea_hydraulics::cross_port::Restrictor;
 
 pub(super) fn circuit(project: &Project, actuator: &DeclaredActuator, rig: &Rig) -> Figure {
     let [rod_a, rod_b] = actuator.cylinder.rod_diameters_m();
@@ -175,6 +176,33 @@ pub(super) fn line_words(declared: &DeclaredLine) -> String {
         }));
     }
     rows.join(", ")
+}
+
+/// The valves at the chambers of a rig, each with its place and a few words.
+pub(super) fn chamber_valve_rows(rig: &Rig) -> Vec<(&'static str, String)> {
+    let cross_port = cross_port_at_point(rig);
+    cross_port.map(|found| ("between the chambers", cross_port_words(&found))).into_iter().collect()
+}
+
+/// A valve between the chambers in a few words, with its flow and loss at rest.
+fn cross_port_words(found: &CrossPortAtPoint) -> String {
+    let conductance = quantity::significant(found.conductance, 3);
+    let kind = match (found.valve.restrictor, found.valve.capacity) {
+        (_, Some(_)) => "dynamic pressure feedback",
+        (Restrictor::Laminar { .. }, None) => "laminar valve",
+        (Restrictor::Orifice { .. }, None) => "orifice",
+    };
+    let cost = match found.valve.capacity {
+        Some(capacity) => {
+            format!("capacity {} m3/Pa, nothing flows at rest", quantity::significant(capacity, 3))
+        }
+        None => format!(
+            "passes {} and loses {} W at rest",
+            shown(found.flow, &FLOW),
+            quantity::significant(found.loss(), 3)
+        ),
+    };
+    format!("{kind}, conductance {conductance} m3/(s.Pa), {cost}")
 }
 
 fn series_symbol(series: &DeclaredSeries) -> SeriesSymbol {

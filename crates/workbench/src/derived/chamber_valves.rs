@@ -4,8 +4,13 @@ use super::list::List;
 use crate::rig::{CrossPortAtPoint, Rig, cross_port_at_point};
 use crate::setup::Setup;
 
+/// Valves at the chambers.
+pub(super) fn chamber_valves(setup: &Setup<'_>, rig: &Rig, list: &mut List) {
+    cross_port(setup, rig, list);
+}
+
 /// A valve between the chambers: its flow and its cost at rest, and the origin of its feedback.
-pub(super) fn cross_port(setup: &Setup<'_>, rig: &Rig, list: &mut List) {
+fn cross_port(setup: &Setup<'_>, rig: &Rig, list: &mut List) {
     let Some(found) = cross_port_at_point(rig) else { return };
     list.group("Valve between the chambers");
     if let Restrictor::Orifice { flow_coefficient, .. } = found.valve.restrictor {
