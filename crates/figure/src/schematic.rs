@@ -49,6 +49,13 @@ pub struct LineSymbol {
     pub rows: Vec<String>,
 }
 
+impl LineSymbol {
+    /// Line from the valve to a chamber without further parts.
+    pub fn new(kind: LineKind, rows: Vec<String>) -> LineSymbol {
+        LineSymbol { kind, accumulator: None, rows }
+    }
+}
+
 /// Largest number of text rows of a line.
 pub const LINE_ROWS: usize = 6;
 

@@ -82,23 +82,19 @@ fn cylinder_words(cylinder: &project::DeclaredCylinder, context: DescriptionCont
 }
 
 fn single_line(declared: &project::DeclaredLine) -> LineSymbol {
-    match &declared.component {
-        Component::Pipe { pipe, length } => LineSymbol {
-            kind: LineKind::Pipe,
-            accumulator: None,
-            rows: vec![format!("pipe {}", shown(pipe.bore, &LENGTH)), shown(*length, &LENGTH)],
-        },
-        Component::Hose { properties, length, .. } => LineSymbol {
-            kind: LineKind::Hose,
-            accumulator: None,
-            rows: vec![format!("hose {}", shown(properties.bore, &LENGTH)), shown(*length, &LENGTH)],
-        },
-        Component::Volume(LineVolume { volume, effective_bulk_modulus }) => LineSymbol {
-            kind: LineKind::Pipe,
-            accumulator: None,
-            rows: vec![shown(*volume, &VOLUME), format!("β {}", shown(*effective_bulk_modulus, &PRESSURE))],
-        },
-    }
+    let (kind, rows) = match &declared.component {
+        Component::Pipe { pipe, length } => {
+            (LineKind::Pipe, [format!("pipe {}", shown(pipe.bore, &LENGTH)), shown(*length, &LENGTH)])
+        }
+        Component::Hose { properties, length, .. } => {
+            (LineKind::Hose, [format!("hose {}", shown(properties.bore, &LENGTH)), shown(*length, &LENGTH)])
+        }
+        Component::Volume(LineVolume { volume, effective_bulk_modulus }) => {
+            let modulus = format!("β {}", shown(*effective_bulk_modulus, &PRESSURE));
+            (LineKind::Pipe, [shown(*volume, &VOLUME), modulus])
+        }
+    };
+    LineSymbol::new(kind, rows.to_vec())
 }
 
 /// The load in a few words.
