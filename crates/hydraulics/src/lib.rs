@@ -33,6 +33,7 @@ pub mod orifice;
 pub mod outward_flow;
 pub mod parameter;
 pub mod plant;
+pub mod port_valves;
 pub mod power_unit;
 pub mod reference_rig;
 pub mod series;

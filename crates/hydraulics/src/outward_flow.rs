@@ -1,7 +1,7 @@
 //! Flow from each chamber to the tank that does not pass the servovalve.
 //!
 //! ```text
-//! q_e = G_e (p - p_T)                                      leakage through the case of a motor
+//! q_e = G_e (p - p_T) + q_r + q_c                          leakage through the case of a motor, port_valves.rs
 //! ```
 //!
 //! Positive out of the chamber. The equilibrium, the linear models and the machine take this flow
@@ -10,6 +10,7 @@
 use phea_dynamics::scalar::Scalar;
 
 use crate::parameter::{ParameterError, Problems};
+use crate::port_valves::PortValves;
 
 /// Everything that passes oil from the chambers to the tank, next to the servovalve.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -17,9 +18,11 @@ pub struct OutwardFlow<S = f64> {
     /// Laminar leakage of each chamber per pressure above tank pressure, m3/(s Pa), as of a motor
     /// through its case; `None` without such leakage.
     pub external_leakage: Option<S>,
+    /// Relief and check valves of chambers A and B.
+    pub port_valves: [Option<PortValves<S>>; 2],
 }
 
-phea_dynamics::parameters! { OutwardFlow { external_leakage } }
+phea_dynamics::parameters! { OutwardFlow { external_leakage, port_valves } }
 
 impl OutwardFlow {
     /// Impossible parameters of these parts, by their paths; empty if there are none.
@@ -28,6 +31,9 @@ impl OutwardFlow {
         if let Some(leakage) = self.external_leakage {
             problems.positive("cylinder.external_leakage", leakage);
         }
+        for (valves, path) in self.port_valves.iter().zip(["port_valves.a", "port_valves.b"]) {
+            problems.component(path, valves.map_or(Vec::new(), |valves| valves.problems()));
+        }
         problems.into_vec()
     }
 }
@@ -35,7 +41,8 @@ impl OutwardFlow {
 impl<S: Scalar> OutwardFlow<S> {
     /// These parts, or `None` if nothing passes from a chamber to the tank.
     pub fn if_present(self) -> Option<OutwardFlow<S>> {
-        self.external_leakage.is_some().then_some(self)
+        let is_present = self.external_leakage.is_some() || self.port_valves.iter().any(Option::is_some);
+        is_present.then_some(self)
     }
 
     /// Flows out of both chambers at their pressures and that of the tank in Pa, m3/s.
@@ -43,7 +50,7 @@ impl<S: Scalar> OutwardFlow<S> {
     /// # Example
     /// ```
     /// use phea_hydraulics::outward_flow::OutwardFlow;
-    /// let case = OutwardFlow { external_leakage: Some(2e-12) };
+    /// let case = OutwardFlow { external_leakage: Some(2e-12), port_valves: [None; 2] };
     /// assert_eq!(case.flows([30e5, 10e5], 10e5), [4e-6, 0.0]);
     /// assert_eq!(case.slopes([30e5, 10e5], 10e5), [2e-12; 2]);
     /// ```
@@ -59,18 +66,37 @@ impl<S: Scalar> OutwardFlow<S> {
 
     /// Flow out of chamber A (0) or B (1) at a pressure above that of the tank in Pa, m3/s.
     #[inline(always)]
-    pub(crate) fn flow(&self, _side: usize, above_tank: S) -> S {
-        self.external_leakage.map_or(S::from(0.0), |conductance| conductance * above_tank)
+    pub(crate) fn flow(&self, side: usize, above_tank: S) -> S {
+        let leakage = self.external_leakage.map(|conductance| conductance * above_tank);
+        let valves = self.port_valves[side].map(|valves| valves.flow(above_tank));
+        match (leakage, valves) {
+            (Some(leakage), Some(valves)) => leakage + valves,
+            (one, other) => one.or(other).unwrap_or(S::from(0.0)),
+        }
+    }
+
+    fn slope(&self, side: usize, above_tank: S) -> S {
+        let valves = self.port_valves[side].map(|valves| valves.slope(above_tank));
+        match (self.external_leakage, valves) {
+            (Some(leakage), Some(valves)) => leakage + valves,
+            (one, other) => one.or(other).unwrap_or(S::from(0.0)),
+        }
+    }
+
+    /// Flows out of both chambers through their relief and check valves, at pressures in Pa, m3/s.
+    pub(crate) fn through_port_valves(&self, pressures: [S; 2], tank_pressure: S) -> [S; 2] {
+        [0, 1].map(|side| {
+            let valves = self.port_valves[side];
+            valves.map_or(S::from(0.0), |valves| valves.flow(pressures[side] - tank_pressure))
+        })
     }
 
     /// Least pressure of chamber A (0) or B (1) above that of the tank, and the width of its range,
-    /// in Pa: without this flow the pressure is `free`, the supply is `drop` above the tank, and the
-    /// piston and the other chamber take `taken` in m3/s.
-    pub(crate) fn range(&self, _side: usize, _free: S, drop: S, _taken: S) -> [S; 2] {
-        [S::from(0.0), drop]
-    }
-
-    fn slope(&self, _side: usize, _above_tank: S) -> S {
-        self.external_leakage.unwrap_or(S::from(0.0))
+    /// in Pa: without this flow the pressure is `free`, the supply is `drop` above the tank, and
+    /// the piston and the other chamber take `taken` in m3/s.
+    pub(crate) fn range(&self, side: usize, free: S, drop: S, taken: S) -> [S; 2] {
+        let Some(valves) = &self.port_valves[side] else { return [S::from(0.0), drop] };
+        let [least, greatest] = valves.range(free, drop, taken);
+        [least, greatest - least]
     }
 }

@@ -41,7 +41,7 @@ fn cylinder_rig() -> Components {
         end_stops: Some(contact),
         ..rig.cylinder
     };
-    let outward = OutwardFlow { external_leakage: Some(1e-13) };
+    let outward = OutwardFlow { external_leakage: Some(1e-13), ..OutwardFlow::default() };
     Components { cylinder, outward, line_a: hose_line(), line_b: hose_line(), ..rig }
 }
 
@@ -213,7 +213,7 @@ fn a_leaking_motor_rests_at_its_operating_point() {
         for internal_leakage in [None, Some(3e-13)] {
             let rig = on_lever(cylinder_rig());
             let cylinder = Cylinder { internal_leakage, ..rig.cylinder };
-            let outward = OutwardFlow { external_leakage: Some(external_leakage) };
+            let outward = OutwardFlow { external_leakage: Some(external_leakage), ..OutwardFlow::default() };
             let actuator = Actuator::new(Components { cylinder, outward, ..rig }).unwrap();
             let machine = Machine::new(&actuator, &MachineOptions::default()).unwrap();
             for condition in [Condition::Command(0.2), Condition::Load(SteadyLoad::Force(50.0))] {
@@ -237,7 +237,10 @@ fn turning_machines() -> Vec<(&'static str, Machine)> {
         Some(ChamberGas::from(Accumulator { gas_volume, precharge_pressure, polytropic_exponent }))
     };
     let at_chambers = |rig| Components { gas: [gas(2e-5, 8e5, 1.4), gas(5e-6, 3e5, 1.0)], ..rig };
-    let vane = Components { outward: OutwardFlow { external_leakage: Some(2e-12) }, ..rig };
+    let vane = Components {
+        outward: OutwardFlow { external_leakage: Some(2e-12), ..OutwardFlow::default() },
+        ..rig
+    };
     // a motor of this kind discharges on one side the flow that it takes in on the other
     let turning = Cylinder { area_b: rig.cylinder.area_a, stroke: ActuatorStroke::Unlimited, ..rig.cylinder };
     let motor = Components { cylinder: turning, ..vane };

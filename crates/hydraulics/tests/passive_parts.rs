@@ -449,7 +449,7 @@ fn a_motor_is_passive_at_its_shaft() {
         let stiffness = spread(5e3, 5e4);
         let rig = Components {
             cylinder,
-            outward: OutwardFlow { external_leakage },
+            outward: OutwardFlow { external_leakage, ..OutwardFlow::default() },
             supply: Supply { pressure: REST + 1e5, tank_pressure: REST },
             force_sensor: ForceSensor { stiffness },
             ..rig

@@ -60,6 +60,7 @@ pub fn components<S: Scalar>(
         cross_port: cross_port(declared.cross_port.as_ref(), fluid.density),
         outward: OutwardFlow {
             external_leakage: declared.motor.as_ref().and_then(|motor| motor.case_leakage),
+            port_valves: declared.port_valves.as_ref().map_or([None; 2], |valves| valves.components()),
         },
         cylinder: match &declared.motor {
             None => cylinder(&declared.cylinder),
