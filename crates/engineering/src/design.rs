@@ -452,8 +452,8 @@ fn trial_design(
     watch: Watch<'_>,
 ) -> Result<Option<Trial>, DesignError> {
     let deployed = project_design.deployed(inputs.setup.project);
-    let of = (&project_design.designed.problem, &project_design.designed.view);
-    Ok(simulated_trial(inputs.source, &Setup::new(&deployed)?, of, DrivenCorners::Always, watch)?)
+    let audited = project_design.designed.audited();
+    Ok(simulated_trial(inputs.source, &Setup::new(&deployed)?, audited, DrivenCorners::Always, watch)?)
 }
 
 /// Effect of sampling and delay on a design that ignores them: its structure shaped for the
