@@ -184,6 +184,15 @@ pub struct ProjectAudit {
     pub below_design: Option<JudgedLimits>,
 }
 
+/// A problem with the audit of its loop.
+#[derive(Clone, Copy, Debug)]
+pub struct AuditedProblem<'a> {
+    /// Family in the loop of the controller.
+    pub problem: &'a RobustProblem,
+    /// Audit of the loop.
+    pub view: &'a ProjectAudit,
+}
+
 /// A closed-loop magnitude and the limit to which it is nearest, or which it violates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReachedLimit {

@@ -62,7 +62,7 @@ use crate::audit::{ProjectAudit, audit_problem, audit_request, caveat_of_rig, pr
 use crate::project::{self, Project};
 use crate::quantity::{DisplayUnit, FORCE};
 use crate::robust::{RobustProblem, robust_problem};
-use crate::setup::{Setup, is_of_position};
+use crate::setup::{ProjectInputs, Setup, is_of_position};
 use crate::side_by_side::{all_cores, both};
 use crate::source::Source;
 use crate::trial::{Agreement, DrivenCorners, Trial, simulated_trial};
@@ -325,14 +325,14 @@ pub fn design_and_repair(
 ) -> Result<ProjectDesign, DesignError> {
     let damped = with_free_pressure_feedback(source, setup, watch)?;
     let Some((project, found)) = damped else {
-        let (run, project_design) = designed(source, [setup; 2], seed, &mut within(&mut *watch, [0.0, 0.6]))?;
-        return repair::repaired((source, setup), run, project_design, &mut within(watch, [0.6, 1.0]));
+        let searched = designed(source, [setup; 2], seed, &mut within(&mut *watch, [0.0, 0.6]))?;
+        let inputs = ProjectInputs { source, setup };
+        return repair::repaired(inputs, searched, &mut within(watch, [0.6, 1.0]));
     };
     let damped = Setup::new(&project)?;
-    let (run, project_design) =
-        designed(source, [setup, &damped], seed, &mut within(&mut *watch, [0.0, 0.6]))?;
-    let project_design =
-        repair::repaired((source, &damped), run, project_design, &mut within(watch, [0.6, 1.0]))?;
+    let searched = designed(source, [setup, &damped], seed, &mut within(&mut *watch, [0.0, 0.6]))?;
+    let inputs = ProjectInputs { source, setup: &damped };
+    let project_design = repair::repaired(inputs, searched, &mut within(watch, [0.6, 1.0]))?;
     Ok(project_design.with_pressure_feedback(Some(found)))
 }
 
@@ -349,10 +349,10 @@ pub fn design_project(
     watch: Watch<'_>,
 ) -> Result<ProjectDesign, DesignError> {
     let Some((project, found)) = with_free_pressure_feedback(source, setup, watch)? else {
-        return designed(source, [setup; 2], seed, watch).map(|(_, project_design)| project_design);
+        return designed(source, [setup; 2], seed, watch).map(|searched| searched.project_design);
     };
-    let (_, project_design) = designed(source, [setup, &Setup::new(&project)?], seed, watch)?;
-    Ok(project_design.with_pressure_feedback(Some(found)))
+    let searched = designed(source, [setup, &Setup::new(&project)?], seed, watch)?;
+    Ok(searched.project_design.with_pressure_feedback(Some(found)))
 }
 
 /// A problem and its result.
@@ -365,6 +365,12 @@ struct DesignRun {
     led: Option<LedSearch>,
 }
 
+/// A design with the problem and the result of its search.
+struct SearchedDesign {
+    run: DesignRun,
+    project_design: ProjectDesign,
+}
+
 /// The design with its problem, for the project as given and with the pressure feedback for which
 /// it is designed.
 fn designed(
@@ -372,7 +378,7 @@ fn designed(
     [as_given, setup]: [&Setup<'_>; 2],
     seed: Option<u32>,
     watch: Watch<'_>,
-) -> Result<(DesignRun, ProjectDesign), DesignError> {
+) -> Result<SearchedDesign, DesignError> {
     let project = setup.project;
     if project.specifications.is_empty() {
         return Err(DesignError::NoSpecification);
@@ -394,15 +400,17 @@ fn designed(
         0.05,
         |watch| audited_as_given(as_given, &given, watch),
         |watch| {
-            let (run, mut project_design, twin) =
-                found_and_tried((source, setup), &limited, seed, &mut within(&mut *watch, [0.0, 0.9]))?;
+            let inputs = ProjectInputs { source, setup };
+            let (searched, twin) =
+                found_and_tried(inputs, &limited, seed, &mut within(&mut *watch, [0.0, 0.9]))?;
+            let SearchedDesign { run, mut project_design } = searched;
             let mut unfinished = std::mem::take(&mut project_design.unfinished);
             let is_sampled = run.problem.timing.sample_time_s.is_some();
             let continuous = match is_sampled {
                 true => unless_stopped(&mut unfinished, DesignPart::WithoutSamples, || {
                     let watch = &mut within(watch, [0.9, 1.0]);
                     twin.and_then(|twin| twin.of(&project_design.design)).unwrap_or_else(|| {
-                        continuous_as_sampled((source, setup), &run.problem, &project_design, watch)
+                        continuous_as_sampled(inputs, &run.problem, &project_design, watch)
                     })
                 })?,
                 false => None,
@@ -421,7 +429,8 @@ fn designed(
     };
     project_design.explanations.extend(feedback_not_required);
     let [published, continuous] = [published, continuous].map(|one| one.map(Box::new));
-    Ok((run, ProjectDesign { published, continuous, ..project_design }))
+    let project_design = ProjectDesign { published, continuous, ..project_design };
+    Ok(SearchedDesign { run, project_design })
 }
 
 /// The controller that the project gives, with its audit; `None` if it gives none.
@@ -438,21 +447,20 @@ fn audited_as_given(
 
 /// The machine under the designed controller, as declared in a project.
 fn trial_design(
-    source: &dyn Source,
-    project: &Project,
+    inputs: ProjectInputs<'_>,
     project_design: &ProjectDesign,
     watch: Watch<'_>,
 ) -> Result<Option<Trial>, DesignError> {
-    let deployed = project_design.deployed(project);
-    let of = (&project_design.designed.problem, &project_design.designed.view);
-    Ok(simulated_trial(source, &Setup::new(&deployed)?, of, DrivenCorners::Always, watch)?)
+    let deployed = project_design.deployed(inputs.setup.project);
+    let audited = project_design.designed.audited();
+    Ok(simulated_trial(inputs.source, &Setup::new(&deployed)?, audited, DrivenCorners::Always, watch)?)
 }
 
 /// Effect of sampling and delay on a design that ignores them: its structure shaped for the
 /// continuous loop, starting from its controller, and audited in the sampled one. `None` if the
 /// loop is not sampled, or no such design is found.
 fn continuous_as_sampled(
-    (source, setup): (&dyn Source, &Setup<'_>),
+    inputs: ProjectInputs<'_>,
     sampled: &DesignProblem,
     project_design: &ProjectDesign,
     watch: Watch<'_>,
@@ -470,7 +478,7 @@ fn continuous_as_sampled(
     // a sampled loop closes the pressure feedback itself
     let family = match timing.inner_feedback.is_zero() {
         true => sampled.family.clone(),
-        false => damping::family_at_once(source, setup.project)?,
+        false => damping::family_at_once(inputs.source, inputs.setup.project)?,
     };
     let problem = DesignProblem { timing: at_once, family, ..sampled.clone() };
     let stage = "designing without samples";
@@ -483,7 +491,7 @@ fn continuous_as_sampled(
     )?;
     let Some(law) = law else { return Ok(None) };
     let controller = Controller { timing, ..law };
-    let compensation = setup.compensation(&controller)?;
+    let compensation = inputs.setup.compensation(&controller)?;
     let problem = RobustProblem { compensation, ..project_design.designed.problem.clone() };
     let view = audit_problem(&problem, watch)?;
     Ok(Some(AuditedController::new(controller, problem, view)?))

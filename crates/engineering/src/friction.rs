@@ -150,14 +150,11 @@ pub fn identify_friction(
     let guess::Guess { around, others, by_direction, presses, shakes } =
         guess::guess(&recordings, &slides, known.moving_mass)
             .ok_or_else(|| FrictionFitError::NothingDetermined(unsteady(&recordings, &varying)))?;
-    let goes_both_ways = goes_both_ways(&slides, &presses);
-    let setting = (known.moving_mass, around);
-    let problem = FrictionProblem::new(&recordings, &slides, (&presses, &shakes), setting, goes_both_ways);
+    let problem = FrictionProblem::new(&recordings, &slides, &presses, &shakes, known.moving_mass, around);
     let mut cache = ShapeCache::default();
-    let curves = (others.as_slice(), by_direction);
-    let (best, evidence) = SearchedFriction::by_evidence(problem, curves, &mut cache, watch)?;
+    let (best, evidence) = SearchedFriction::by_evidence(problem, &others, by_direction, &mut cache, watch)?;
     let SearchedFriction { problem, minimum } = best;
-    let (lugre, _) = problem.friction(&minimum.variables);
+    let lugre = problem.friction(&minimum.variables).lugre;
     let estimates::Estimates { estimates, retracting, zero } = estimates::estimates(&problem, &minimum);
     let residual_rms = curves::residual_rms(&problem, &minimum);
     let misfits = misfit::misfits(&problem, &minimum.linearised.residuals);
@@ -197,7 +194,8 @@ impl<'a> SearchedFriction<'a> {
     /// levels for each direction.
     fn by_evidence(
         problem: FrictionProblem<'a>,
-        (others, by_direction): (&[(Stribeck, f64)], Option<Stribeck>),
+        others: &[(Stribeck, f64)],
+        by_direction: Option<Stribeck>,
         cache: &mut ShapeCache,
         watch: Watch<'_>,
     ) -> Result<(SearchedFriction<'a>, Option<DirectionEvidence>), IdentifyError> {

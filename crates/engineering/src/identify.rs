@@ -309,13 +309,13 @@ pub fn identify(
         Some(with_memories) => with_memories.fitted(&first, watch)?,
         None => first,
     };
-    let (evidence, found, terms) = best_model(first, (search.leakage_model, known.leakage_model), watch)?;
+    let (evidence, found, terms) = best_model(first, search.leakage_model, known.leakage_model, watch)?;
     let variables = found.together.variables.clone();
     let coefficients = found.coefficients();
     let groups = found.together.groups(found.block_rows());
     let shared = instruments::shared_changes(&found.together, &found.minimum.variables, oil.as_ref());
     let uncertainty =
-        intervals::uncertainty(&found.minimum.linearised, (&groups, &shared), &variables, &coefficients);
+        intervals::uncertainty(&found.minimum.linearised, &groups, &shared, &variables, &coefficients);
     let signals = found.signals_with(&instruments::without_errors(&found.minimum.linearised, &shared));
     let mut estimates = intervals::estimates(&variables, &coefficients, &uncertainty.deviations);
     intervals::lowered_tare_flow(&mut estimates, &recordings, &signals);
@@ -328,7 +328,7 @@ pub fn identify(
     };
     let tested = found.together.tested;
     let recordings = found.together.recordings.to_vec();
-    let combinations = not_identifiable::combinations(&uncertainty, &usual, &scales, (&recordings, &tested));
+    let combinations = not_identifiable::combinations(&uncertainty, &usual, &scales, &recordings, &tested);
     Ok(Identification {
         coefficients,
         estimates,
@@ -374,10 +374,11 @@ fn usual(
 /// both are compared again with it.
 fn best_model<'a>(
     first: Fit<'a>,
-    models: (Option<LeakageModel>, LeakageModel),
+    wanted: Option<LeakageModel>,
+    usual: LeakageModel,
     watch: Watch<'_>,
 ) -> Result<(ModelEvidence, Fit<'a>, Vec<TermEvidence>), IdentifyError> {
-    let (evidence, found) = better_leakage(first, models, watch)?;
+    let (evidence, found) = better_leakage(first, wanted, usual, watch)?;
     // in addition to a model that the recordings contradict, a term would replace what that model
     // lacks
     if evidence.preferred().is_some_and(|preferred| preferred != found.together.tested.leakage_model) {
@@ -388,7 +389,7 @@ fn best_model<'a>(
         return Ok((evidence, found, terms));
     }
     let model = found.together.tested.leakage_model;
-    let (evidence, found) = better_leakage(found, models, watch)?;
+    let (evidence, found) = better_leakage(found, wanted, usual, watch)?;
     match found.together.tested.leakage_model == model {
         true => Ok((evidence, found, terms)),
         false => {
@@ -403,7 +404,8 @@ fn best_model<'a>(
 /// preferred one, or else the usual one.
 fn better_leakage<'a>(
     first: Fit<'a>,
-    (wanted, usual): (Option<LeakageModel>, LeakageModel),
+    wanted: Option<LeakageModel>,
+    usual: LeakageModel,
     watch: Watch<'_>,
 ) -> Result<(ModelEvidence, Fit<'a>), IdentifyError> {
     let model = first.together.tested.leakage_model;

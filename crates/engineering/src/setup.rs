@@ -14,6 +14,7 @@ use phea_qft::design::quantization::{CoefficientFormat, Quantization, rounded};
 
 use crate::project::Project;
 use crate::rig::{OutsideParameter, Rig, RigError, outside};
+use crate::source::Source;
 
 pub use control::{ControlError, LawPlace};
 pub(crate) use control::{
@@ -44,6 +45,15 @@ pub struct Setup<'a> {
     /// The virtual impedance of the loop; `None` where there is none, or one of zero.
     pub virtual_impedance: Option<VirtualImpedance>,
     rig: Result<Rig, RigError>,
+}
+
+/// Setup of a project with the source of the files that the project names.
+#[derive(Clone, Copy)]
+pub(crate) struct ProjectInputs<'a> {
+    /// Source of recordings, tables of measurements and catalogue files.
+    pub(crate) source: &'a dyn Source,
+    /// Setup of the project.
+    pub(crate) setup: &'a Setup<'a>,
 }
 
 impl<'a> Setup<'a> {

@@ -76,6 +76,7 @@ pub use bench::machine_of;
 pub(crate) use file_names::table_names;
 pub use files::{RunTable, files};
 pub use follower::Follower;
+pub use following::MetricWindows;
 pub use force_limits::ForceLimit;
 pub use force_limits::{BeyondReach, ExceededForce, RestLimit, StepEnd};
 pub(crate) use force_limits::{ForceLimits, steps_beyond};
@@ -361,12 +362,13 @@ impl PreparedRun<'_> {
     fn pass<'t>(
         &self,
         plan: PassPlan,
-        (output, name): (&RunOutput<'t>, &str),
+        output: &RunOutput<'t>,
+        name: &str,
         watch: &mut dyn FnMut(f64) -> bool,
     ) -> Result<RunPass<'t>, SimulateError> {
-        let begin = |(destination, format)| RunTable::begin((destination, name), format, &self.bench);
+        let begin = |(destination, format)| RunTable::begin(destination, name, format, &self.bench);
         let table = output.table.filter(|_| !plan.moved).map(begin).transpose()?;
-        run::run(&self.bench, self.scenario, (&self.prepared, &self.measured), (plan, table, output), watch)
+        run::run(self, plan, table, output, watch)
     }
 }
 
@@ -393,7 +395,7 @@ pub fn simulate_into(
         let mut pass = |plan: PassPlan| {
             let stage = if plan.is_first(tolerance) { "simulating" } else { "repeating the run" };
             let mut watched = |time_s: f64| watch(Progress { stage, fraction: (before + time_s) / whole });
-            prepared.pass(plan, (&output, name), &mut watched)
+            prepared.pass(plan, &output, name, &mut watched)
         };
         let first = pass(PassPlan { tolerance, moved: false })?;
         let errors_amplified = first.run.errors_amplified;

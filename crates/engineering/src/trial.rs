@@ -33,7 +33,7 @@ pub use run::{Agreement, BAND_PERCENT, Leg, StepSize, TrialRun, TrialStep};
 use run::{DrivenSteps, PredictedMachine};
 pub use steps::REACH;
 
-use crate::audit::ProjectAudit;
+use crate::audit::AuditedProblem;
 use crate::rig::RigError;
 use crate::robust::RobustProblem;
 use crate::setup::{ControlError, Setup};
@@ -142,7 +142,7 @@ impl Trial {
 pub fn simulated_trial(
     source: &dyn Source,
     setup: &Setup<'_>,
-    (problem, view): (&RobustProblem, &ProjectAudit),
+    audited: AuditedProblem<'_>,
     corners: DrivenCorners,
     watch: Watch<'_>,
 ) -> Result<Option<Trial>, TrialError> {
@@ -150,8 +150,9 @@ pub fn simulated_trial(
         return Ok(None);
     }
     let rig = setup.rig()?;
-    let (rigs, mut not_driven) = rigs::rigs(setup, rig, problem, view);
-    let left_out = RequiredOfSteps::of(&problem.in_time).left_out((setup.project, rig));
+    let problem = audited.problem;
+    let (rigs, mut not_driven) = rigs::rigs(setup, rig, audited);
+    let left_out = RequiredOfSteps::of(&problem.in_time).left_out(setup.project, rig);
     not_driven.extend(left_out.into_iter().map(NotDriven::SmallerStep));
     let count = rigs.len() as f64 + CORNERS_FRACTION;
     let from = rigs.len() as f64 / count;
@@ -160,12 +161,11 @@ pub fn simulated_trial(
     for (index, (rig, own)) in rigs.iter().zip(&all).enumerate() {
         let driven = all.first().filter(|_| rig.is_declared).unwrap_or(own);
         let fraction = [index, index + 1].map(|done| from * (0.9 + 0.1 * done as f64 / rigs.len() as f64));
-        for mut run in PredictedMachine::of(rig, problem)?.judged(driven, problem, view) {
+        for mut run in PredictedMachine::of(rig, problem)?.judged(driven, audited) {
             if rig.quarter_wave_rad_per_s.is_some() && run.agreement >= Agreement::Differs {
-                let seen = (driven.as_slice(), &run, runs.as_slice());
-                let declared = rigs.first().unwrap_or(rig);
-                let on = (source, [rig, declared]);
-                run.reason.cause = cause(on, seen, (problem, view), &mut within(&mut *watch, fraction))?;
+                let watch = &mut within(&mut *watch, fraction);
+                let machines = [rig, rigs.first().unwrap_or(rig)];
+                run.reason.cause = cause(source, machines, driven, &run, &runs, audited, watch)?;
             }
             runs.push(run);
         }
@@ -176,7 +176,7 @@ pub fn simulated_trial(
         DrivenCorners::WhereElseSatisfies => trial.satisfies() == Some(true),
     };
     if wanted {
-        trial.corners = runs_of_corners(source, setup, (problem, view), &mut within(watch, [from, 1.0]))?;
+        trial.corners = runs_of_corners(source, setup, audited, &mut within(watch, [from, 1.0]))?;
         trial.runs.extend(worst_of(&trial.corners));
     }
     Ok(Some(trial))
@@ -202,18 +202,21 @@ fn driven(
 /// Cause of the disagreement of a run with waves in its lines: repeating the steps without the
 /// noise of the sensors, and with lumped lines, distinguishes noise from waves.
 fn cause(
-    (source, [waves, declared]): (&dyn Source, [&rigs::TrialRig; 2]),
-    (driven, run, runs): (&[DrivenSteps], &TrialRun, &[TrialRun]),
-    (problem, view): (&RobustProblem, &ProjectAudit),
+    source: &dyn Source,
+    [waves, declared]: [&rigs::TrialRig; 2],
+    driven: &[DrivenSteps],
+    run: &TrialRun,
+    runs: &[TrialRun],
+    audited: AuditedProblem<'_>,
     watch: Watch<'_>,
 ) -> Result<Option<DifferenceCause>, TrialError> {
-    let machine = PredictedMachine::of(waves, problem)?;
+    let machine = PredictedMachine::of(waves, audited.problem)?;
     let Some(steps) = driven.iter().find(|steps| steps.are_of(run)) else {
         return Ok(machine.cause_of_waves(run, None));
     };
     let mut repeated = |rig: &rigs::TrialRig| -> Result<TrialRun, TrialError> {
-        let machine = PredictedMachine::of(rig, problem)?;
-        let run = machine.repeated(source, steps, (problem, view), &mut *watch)?;
+        let machine = PredictedMachine::of(rig, audited.problem)?;
+        let run = machine.repeated(source, steps, audited, &mut *watch)?;
         Ok(run.ok_or(Stopped)?)
     };
     let quiet = [waves, declared].map(rigs::without_noise);

@@ -17,9 +17,9 @@ use crate::rig::{RigError, actuator};
 use crate::setup::Setup;
 use crate::simulate::{
     COMMAND_LIMIT, ControlledMachine, Divergence, ERRORS_AMPLIFIED, Follower, LineLimits, LineWatch,
-    Occurrence, PassAgreement, PassPlan, PassResult, PreparedScenario, REPEATED, Repetition, SimulateError,
-    StoppedRun, amplification, machine_of, moved, occurrences, outside_model_s, prepared_scenario_of,
-    run_status,
+    MetricWindows, Occurrence, PassAgreement, PassPlan, PassResult, PreparedScenario, REPEATED, Repetition,
+    SimulateError, StoppedRun, amplification, machine_of, moved, occurrences, outside_model_s,
+    prepared_scenario_of, run_status,
 };
 
 /// A run that is ready to be simulated.
@@ -129,7 +129,8 @@ impl Prepared {
     pub(super) fn again<'a>(
         &'a self,
         plan: &'a Plan,
-        (pass, every_sample): (PassPlan, bool),
+        pass: PassPlan,
+        every_sample: bool,
         watch: &mut dyn FnMut() -> bool,
     ) -> Result<DrivenPass<'a>, SimulationError> {
         self.log.replace(ControllerSamples::default());
@@ -265,7 +266,11 @@ struct Seen<'a> {
 
 impl<'a> Watched<'a> {
     pub(super) fn new(plan: &'a Plan, prepared: &'a Prepared, every_sample: bool) -> Watched<'a> {
-        let windows = (plan.windows(), plan.scenario.settling_band_percent, plan.scenario.duration);
+        let windows = MetricWindows {
+            windows: plan.windows(),
+            band_percent: plan.scenario.settling_band_percent,
+            duration_s: plan.scenario.duration,
+        };
         let reference = &plan.driven.reference;
         let follower = Follower::of(&prepared.bench, &plan.look, &prepared.log, reference, windows);
         let kept = if every_sample { plan.times_s.len() } else { plan.band_samples.len() };

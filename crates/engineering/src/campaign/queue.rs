@@ -40,7 +40,8 @@ pub(super) struct Shared<'p> {
 impl<'p> Shared<'p> {
     pub(super) fn new(
         plan: &'p Plan,
-        (runs, known): (Range<u64>, BTreeSet<u64>),
+        runs: Range<u64>,
+        known: BTreeSet<u64>,
         threads: usize,
         forces: bool,
     ) -> Shared<'p> {
@@ -82,7 +83,7 @@ pub(super) type Give<'g> = &'g mut dyn FnMut(Finished);
 /// The errors of [`in_lanes`].
 pub(super) fn one_by_one(shared: &Shared<'_>, most: usize, give: Give<'_>) -> Result<(), CampaignError> {
     let bench = &shared.plan.bench;
-    driven(shared, (most, give), |batch| phea_machine::one_by_one(&bench.control, batch, &bench.settings))
+    driven(shared, most, give, |batch| phea_machine::one_by_one(&bench.control, batch, &bench.settings))
 }
 
 /// Simulates at most this number of runs in lanes; cancelled runs are not returned. Under a sampled
@@ -101,13 +102,14 @@ pub(super) fn in_lanes(shared: &Shared<'_>, most: usize, give: Give<'_>) -> Resu
     let law = plan.law.as_ref().map(|(controller, fed)| (controller, *fed));
     let lanes = Lanewise::new(&plan.bench.machine, &plan.sensor, law);
     let mut lanes = lanes.map_err(SimulateError::from)?;
-    driven(shared, (most, give), |batch| lanes.in_lanes(batch, &plan.bench.settings))
+    driven(shared, most, give, |batch| lanes.in_lanes(batch, &plan.bench.settings))
 }
 
 /// Simulates runs, each prepared in its turn.
 fn driven(
     shared: &Shared<'_>,
-    (most, give): (usize, Give<'_>),
+    most: usize,
+    give: Give<'_>,
     drive: impl for<'a> FnOnce(&mut Batch<'a>) -> Result<(), SimulationError>,
 ) -> Result<(), CampaignError> {
     let made: Vec<OnceCell<Prepared>> = (0..most).map(|_| OnceCell::new()).collect();
@@ -149,7 +151,7 @@ impl Batch<'_> {
     {
         let shared = self.shared;
         let mut continues = || !shared.stop.load(Ordering::Relaxed);
-        let again = |pass| prepared.again(shared.plan, (pass, shared.forces), &mut continues);
+        let again = |pass| prepared.again(shared.plan, pass, shared.forces, &mut continues);
         let (last, _, repetition) =
             repeated((prepared.bench.settings.tolerance, first), DrivenPass::result, again)?;
         if repetition.as_ref().is_some_and(Repetition::was_cancelled) {

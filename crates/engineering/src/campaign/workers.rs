@@ -84,7 +84,7 @@ pub(super) fn run(
     if !report_progress(News::Done(0))? {
         return Ok(());
     }
-    let shared = Shared::new(plan, (runs, known.keys().copied().collect()), threads, forces);
+    let shared = Shared::new(plan, runs, known.keys().copied().collect(), threads, forces);
     let (sender, receiver) = mpsc::channel();
     std::thread::scope(|scope| {
         for _ in 0..threads {
@@ -92,7 +92,7 @@ pub(super) fn run(
             scope.spawn(move || work(shared, effort, &sender));
         }
         drop(sender);
-        let told = in_order(&shared, &receiver, (first, known), report_progress);
+        let told = in_order(&shared, &receiver, first, known, report_progress);
         shared.stop.store(true, Ordering::Relaxed);
         told
     })
@@ -135,7 +135,8 @@ struct QueuedRow {
 fn in_order(
     shared: &Shared<'_>,
     receiver: &mpsc::Receiver<Message>,
-    (mut next, known): (u64, BTreeMap<u64, Row>),
+    mut next: u64,
+    known: BTreeMap<u64, Row>,
     report_progress: Tell<'_>,
 ) -> Result<(), CampaignError> {
     let known = known.into_iter().map(|(run, row)| {

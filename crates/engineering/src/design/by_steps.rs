@@ -28,7 +28,7 @@ pub(super) use self::wider::last_step_search;
 use super::added_by_rig::AddedByRig;
 use super::problem::design_problem;
 use super::step_aim::StepAim;
-use super::{DesignError, DesignRun, LedBy, ProjectDesign, structures};
+use super::{DesignError, DesignRun, LedBy, SearchedDesign, structures};
 use crate::audit::spread_over;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
@@ -73,6 +73,17 @@ pub(super) struct AimedSteps<'a> {
     pub(super) from: SearchStarts,
 }
 
+impl<'a> AimedSteps<'a> {
+    /// Aim without known differences on the nonlinear rig, from the nearest designs.
+    pub(super) fn without_rig(
+        given: &'a RobustProblem,
+        aim: StepAim,
+        plants: &'a SteppedPlants,
+    ) -> AimedSteps<'a> {
+        AimedSteps { given, aim, added: &[], plants, from: SearchStarts::Nearest }
+    }
+}
+
 /// The design with its steps led towards the aimed fraction of the requirement, from its structure
 /// and from others that came near: the first that reaches the aim, or else the nearest. The known
 /// contribution of the nonlinear rig to a step is added. `None` if nothing is required in time, no
@@ -80,10 +91,11 @@ pub(super) struct AimedSteps<'a> {
 pub(super) fn by_steps(
     setup: &Setup<'_>,
     aimed: AimedSteps<'_>,
-    (run, project_design): (&DesignRun, &ProjectDesign),
+    before: &SearchedDesign,
     watch: Watch<'_>,
-) -> Result<Option<(DesignRun, ProjectDesign)>, DesignError> {
-    let Some(led) = led(setup, aimed, (run, project_design))? else { return Ok(None) };
+) -> Result<Option<SearchedDesign>, DesignError> {
+    let SearchedDesign { run, project_design } = before;
+    let Some(led) = led(setup, aimed, before)? else { return Ok(None) };
     let starts = led.starts(project_design, run.outcome.searched());
     let count = starts.len() as f64;
     let least_db = if aimed.added.is_empty() { 0.0 } else { -NEARLY_DB };
@@ -116,7 +128,7 @@ pub(super) fn by_steps(
     }
     let Some(best) = best else { return Ok(None) };
     let best = led.completed(best, project_design, &mut within(watch, [0.9, 1.0]))?;
-    Ok(Some(taken(best, aimed.added, (run, project_design))?))
+    Ok(Some(taken(best, aimed.added, before)?))
 }
 
 /// The simplest structure that reaches the requirement by its steps: shorter than that of a design,
@@ -125,10 +137,11 @@ pub(super) fn by_steps(
 pub(super) fn simpler(
     setup: &Setup<'_>,
     aimed: AimedSteps<'_>,
-    (run, project_design): (&DesignRun, &ProjectDesign),
+    before: &SearchedDesign,
     watch: Watch<'_>,
-) -> Result<Option<(DesignRun, ProjectDesign)>, DesignError> {
-    let Some(led) = led(setup, aimed, (run, project_design))? else { return Ok(None) };
+) -> Result<Option<SearchedDesign>, DesignError> {
+    let SearchedDesign { run, project_design } = before;
+    let Some(led) = led(setup, aimed, before)? else { return Ok(None) };
     let starts = led.simpler(project_design, run)?;
     let count = starts.len() as f64;
     for (index, start) in starts.into_iter().enumerate() {
@@ -145,7 +158,7 @@ pub(super) fn simpler(
         let Some(found) = found else { continue };
         if !structures::earns_its_poles(run, project_design, &found.project_design)? {
             let found = led.completed(found, project_design, &mut watch)?;
-            return Ok(Some(taken(found, aimed.added, (run, project_design))?));
+            return Ok(Some(taken(found, aimed.added, before)?));
         }
     }
     Ok(None)
@@ -156,13 +169,14 @@ pub(super) fn simpler(
 pub(super) fn shortened(
     setup: &Setup<'_>,
     aimed: AimedSteps<'_>,
-    (run, project_design): (&DesignRun, &ProjectDesign),
+    before: &SearchedDesign,
     watch: Watch<'_>,
-) -> Result<Option<(DesignRun, ProjectDesign)>, DesignError> {
-    let Some(led) = led(setup, aimed, (run, project_design))? else { return Ok(None) };
+) -> Result<Option<SearchedDesign>, DesignError> {
+    let project_design = &before.project_design;
+    let Some(led) = led(setup, aimed, before)? else { return Ok(None) };
     let Some(begun) = led.shorter(project_design, watch)? else { return Ok(None) };
     let found = led.agreed(begun, None, project_design, watch)?.filter(AuditedStep::is_reached);
-    found.map(|found| taken(found, aimed.added, (run, project_design))).transpose()
+    found.map(|found| taken(found, aimed.added, before)).transpose()
 }
 
 /// Problem of a design that is led by its steps; `None` if nothing is required in time and no
@@ -170,8 +184,9 @@ pub(super) fn shortened(
 fn led<'a>(
     setup: &'a Setup<'_>,
     aimed: AimedSteps<'a>,
-    (run, project_design): (&DesignRun, &ProjectDesign),
+    before: &SearchedDesign,
 ) -> Result<Option<LedDesign<'a>>, DesignError> {
+    let SearchedDesign { run, project_design } = before;
     let given = aimed.given;
     let required = given.in_time.iter().find(|one| one.follows).map(|one| one.step_limits);
     let required =
@@ -196,8 +211,9 @@ fn led<'a>(
 fn taken(
     found: AuditedStep,
     added: &[AddedByRig],
-    (run, project_design): (&DesignRun, &ProjectDesign),
-) -> Result<(DesignRun, ProjectDesign), DesignError> {
+    before: &SearchedDesign,
+) -> Result<SearchedDesign, DesignError> {
+    let SearchedDesign { run, project_design } = before;
     let AuditedStep { project_design: mut best, least, search, .. } = found;
     best.structures = structures::led(run, project_design, &best, least)?;
     best.explanations = project_design.explanations.clone();
@@ -205,7 +221,8 @@ fn taken(
     let mut outcome = run.outcome.clone();
     outcome.design = Some(best.design.clone());
     let (aimed, problem) = (run.aimed.clone(), run.problem.clone());
-    Ok((DesignRun { aimed, problem, outcome, led: Some(search) }, *best))
+    let run = DesignRun { aimed, problem, outcome, led: Some(search) };
+    Ok(SearchedDesign { run, project_design: *best })
 }
 
 /// Search in which a design was led by its steps.

@@ -140,7 +140,8 @@ pub(super) enum CommandDepth {
 /// # Errors
 /// [`Stopped`] if `watch` cancels it.
 pub(super) fn command_of_steps(
-    (setup, project_design): (&Setup<'_>, &ProjectDesign),
+    setup: &Setup<'_>,
+    project_design: &ProjectDesign,
     plants: &SteppedPlants,
     depth: CommandDepth,
     watch: Watch<'_>,
@@ -165,7 +166,8 @@ pub(super) fn command_of_steps(
 /// # Errors
 /// None at present: a cancelled search is recorded in the result.
 pub(super) fn with_command_of_steps(
-    (setup, project_design): (&Setup<'_>, ProjectDesign),
+    setup: &Setup<'_>,
+    project_design: ProjectDesign,
     plants: &SteppedPlants,
     watch: Watch<'_>,
 ) -> Result<ProjectDesign, DesignError> {
@@ -173,7 +175,7 @@ pub(super) fn with_command_of_steps(
     let command_of_steps =
         match ScenarioSteps::of(setup, &project_design).is_some_and(|steps| !steps.is_empty()) {
             true => unless_stopped(&mut unfinished, DesignPart::CommandOfSteps, || {
-                Ok(command_of_steps((setup, &project_design), plants, CommandDepth::Whole, watch)?)
+                Ok(command_of_steps(setup, &project_design, plants, CommandDepth::Whole, watch)?)
             })?,
             false => None,
         };

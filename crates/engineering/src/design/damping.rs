@@ -27,7 +27,7 @@ use crate::family::family;
 use crate::limit_kind::DesignLimitKind;
 use crate::project::{DeclaredController, DeclaredPressureFeedback, FeedbackChoice, Project, Transfer};
 use crate::robust::{RobustError, robust_problem};
-use crate::setup::{Setup, with_pressure_feedback};
+use crate::setup::{ProjectInputs, Setup, with_pressure_feedback};
 use crate::source::Source;
 use crate::trial;
 
@@ -116,23 +116,24 @@ pub fn with_free_pressure_feedback(
         ..declared
     };
     let with = with_pressure_feedback(project, Some(declared));
-    let found = described((source, &undamped), &with, declared, (&found, &probed))?;
+    let found = described(ProjectInputs { source, setup: &undamped }, &with, declared, &found, &probed)?;
     let found = PressureFeedbackDesign { missing_with_waves, ..found };
     Ok(Some((if found.is_used { with } else { plain }, found)))
 }
 
 /// Effect of a feedback, for display and for programs.
 fn described(
-    (source, undamped): (&dyn Source, &Setup<'_>),
+    undamped: ProjectInputs<'_>,
     with: &Project,
     declared: DeclaredPressureFeedback,
-    (found, probed): (&FoundInnerFeedback, &ProbedPlants),
+    found: &FoundInnerFeedback,
+    probed: &ProbedPlants,
 ) -> Result<PressureFeedbackDesign, DesignError> {
     let loop_gain_factor = found.reach.loop_gain / found.without.loop_gain;
     let with = Setup::new(with)?;
     let band = RESONANCE.map(|factor| factor * found.without.frequency_rad_per_s);
-    let ratio = |setup: &Setup<'_>| least_damping_ratio(source, setup, (probed, band));
-    let least_damping_ratio = match ratio(undamped)? {
+    let ratio = |setup: &Setup<'_>| least_damping_ratio(undamped.source, setup, probed, band);
+    let least_damping_ratio = match ratio(undamped.setup)? {
         Some(without) => ratio(&with)?.map(|with| [without, with]),
         None => None,
     };

@@ -93,7 +93,7 @@ pub fn design_limits(setup: &Setup<'_>, given: &RobustProblem) -> Vec<DesignLimi
     ];
     let asks = |(kind, found): (DesignLimitKind, Option<(f64, LimitOrigin)>)| {
         let (value, origin) = found.filter(|(value, _)| *value > 0.0 && value.is_finite())?;
-        let specification = specification((setup, given), kind, value);
+        let specification = specification(setup, given, kind, value);
         // without a noisy sensor in a sampled loop, or a reference to follow, no limit applies
         let is_void = match kind {
             DesignLimitKind::NoiseToCommand => specification.is_none(),
@@ -213,7 +213,8 @@ fn fastest_pole(
 
 /// Specification that enforces a limit.
 pub(super) fn specification(
-    (setup, given): (&Setup<'_>, &RobustProblem),
+    setup: &Setup<'_>,
+    given: &RobustProblem,
     kind: DesignLimitKind,
     value: f64,
 ) -> Option<Specification> {

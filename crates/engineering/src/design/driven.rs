@@ -15,14 +15,13 @@ use super::relaxed::relaxations;
 use super::search::{found, rank};
 use super::step_aim::StepAim;
 use super::{
-    AuditedController, DesignError, DesignPart, DesignRun, ProjectDesign, continuous_as_sampled,
+    AuditedController, DesignError, DesignPart, ProjectDesign, SearchedDesign, continuous_as_sampled,
     trial_design, unless_stopped,
 };
 use crate::audit::prove_claims;
 use crate::robust::RobustProblem;
-use crate::setup::Setup;
+use crate::setup::{ProjectInputs, Setup};
 use crate::side_by_side::{all_cores, both};
-use crate::source::Source;
 use crate::trial::Agreement;
 
 /// Largest number of continuations while the nonlinear rig misses the requirement.
@@ -53,36 +52,35 @@ impl ContinuousTwin {
 /// The best design with its trial; without a trial if `watch` cancels before. Also the design made
 /// without sampling, which is searched during the trial if that leads to no other design.
 pub(super) fn found_and_tried(
-    (source, setup): (&dyn Source, &Setup<'_>),
+    inputs: ProjectInputs<'_>,
     given: &RobustProblem,
     seed: Option<u32>,
     watch: Watch<'_>,
-) -> Result<(DesignRun, ProjectDesign, Option<ContinuousTwin>), DesignError> {
+) -> Result<(SearchedDesign, Option<ContinuousTwin>), DesignError> {
+    let setup = inputs.setup;
     let plants = SteppedPlants::default();
     let first = StepAim::first(setup, given);
-    let begins = (given, first, &plants);
-    let (mut driven, mut twin) =
-        simplest((source, setup), begins, seed, &mut within(&mut *watch, [0.0, 0.7]))?;
+    let begins = AimedSteps::without_rig(given, first, &plants);
+    let (mut driven, mut twin) = simplest(inputs, begins, seed, &mut within(&mut *watch, [0.0, 0.7]))?;
     // without the limit that leads away from a loop without gain, the search takes another path
-    if first != StepAim::AS_REQUIRED && !driven.project_design.is_stopped() && misses(&driven.project_design)
-    {
-        let begins = (given, StepAim::AS_REQUIRED, &plants);
-        match simplest((source, setup), begins, seed, &mut within(&mut *watch, [0.7, 0.9])) {
-            Ok((other, _)) if is_better(&other.project_design, &driven.project_design) => {
-                (driven, twin) = (other.with_missed(&driven.project_design), None);
+    let of_first = &driven.searched.project_design;
+    if first != StepAim::AS_REQUIRED && !of_first.is_stopped() && misses(of_first) {
+        let begins = AimedSteps { aim: StepAim::AS_REQUIRED, ..begins };
+        match simplest(inputs, begins, seed, &mut within(&mut *watch, [0.7, 0.9])) {
+            Ok((other, _)) if is_better(&other.searched.project_design, of_first) => {
+                (driven, twin) = (other.with_missed(of_first), None);
             }
-            Err(DesignError::Stopped(_)) => driven.project_design.leave(DesignPart::Search),
+            Err(DesignError::Stopped(_)) => driven.searched.project_design.leave(DesignPart::Search),
             // the earlier result remains
             Ok(_) | Err(_) => {}
         }
     }
-    let DrivenDesign { aim, run, project_design, known } = driven;
-    let best = (run, project_design);
-    let aimed = AimedSteps { given, aim, added: &known, plants: &plants, from: SearchStarts::Nearest };
-    let (run, mut project_design) =
-        shorter((source, setup), aimed, best, &mut within(&mut *watch, [0.9, 0.94]));
+    let DrivenDesign { aim, searched, known } = driven;
+    let aimed = AimedSteps { aim, added: &known, ..begins };
+    let searched = shorter(inputs, aimed, searched, &mut within(&mut *watch, [0.9, 0.94]));
+    let SearchedDesign { run, mut project_design } = searched;
     if project_design.command_of_steps.is_none() {
-        project_design = with_command_of_steps((setup, project_design), &plants, watch)?;
+        project_design = with_command_of_steps(setup, project_design, &plants, watch)?;
     }
     // a design led by its steps is not proven before the end
     if project_design.designed.view.proof.is_none() {
@@ -96,36 +94,39 @@ pub(super) fn found_and_tried(
     let twin = twin.filter(|twin| twin.of == project_design.design);
     let is_to_be_found =
         twin.is_none() && run.problem.timing.sample_time_s.is_some() && !project_design.is_stopped();
+    let searched = SearchedDesign { run, project_design };
     let (own_twin, found) = both(
         &mut within(watch, [0.97, 1.0]),
         0.5,
         |watch| {
-            is_to_be_found
-                .then(|| continuous_as_sampled((source, setup), &run.problem, &project_design, watch))
+            is_to_be_found.then(|| {
+                continuous_as_sampled(inputs, &searched.run.problem, &searched.project_design, watch)
+            })
         },
         |watch| {
             unless_stopped(&mut unfinished, DesignPart::Relaxations, || {
-                relaxations(setup, aimed, (&run, &project_design), watch).map(Some)
+                relaxations(setup, aimed, &searched, watch).map(Some)
             })
         },
     );
     let relaxations = found?.unwrap_or_default();
+    let SearchedDesign { run, project_design } = searched;
     let twin = own_twin.map(|found| ContinuousTwin { of: project_design.design.clone(), found }).or(twin);
-    Ok((run, ProjectDesign { unfinished, relaxations, ..project_design }, twin))
+    let project_design = ProjectDesign { unfinished, relaxations, ..project_design };
+    Ok((SearchedDesign { run, project_design }, twin))
 }
 
 /// A design with its trial, and the contribution of its runs to the steps of the linear loop.
 struct DrivenDesign {
     aim: StepAim,
-    run: DesignRun,
-    project_design: ProjectDesign,
+    searched: SearchedDesign,
     known: Vec<AddedByRig>,
 }
 
 impl DrivenDesign {
     /// The design together with a shorter structure whose runs miss the requirement.
     fn with_missed(mut self, shorter: &ProjectDesign) -> DrivenDesign {
-        self.project_design.note_missed_on_rig(shorter);
+        self.searched.project_design.note_missed_on_rig(shorter);
         self
     }
 }
@@ -133,116 +134,113 @@ impl DrivenDesign {
 /// Best design to which a search with this aim leads: the simplest structure by its steps, unless
 /// the nonlinear rig misses the requirement with that and misses less with another.
 fn simplest(
-    (source, setup): (&dyn Source, &Setup<'_>),
-    (given, first, plants): (&RobustProblem, StepAim, &SteppedPlants),
+    inputs: ProjectInputs<'_>,
+    begins: AimedSteps<'_>,
     seed: Option<u32>,
     watch: Watch<'_>,
 ) -> Result<(DrivenDesign, Option<ContinuousTwin>), DesignError> {
-    let rig = (source, setup);
-    let (aim, run, project_design) =
-        found(setup, (given, first, plants), seed, &mut within(&mut *watch, [0.0, 0.5]))?;
-    let aimed = AimedSteps { given, aim, added: &[], plants, from: SearchStarts::Nearest };
-    let (simple, project_design) =
-        with_simpler(setup, aimed, (&run, project_design), &mut within(&mut *watch, [0.5, 0.55]));
+    let (aim, mut searched) = found(inputs.setup, begins, seed, &mut within(&mut *watch, [0.0, 0.5]))?;
+    let aimed = AimedSteps { aim, ..begins };
+    let simple = simpler_searched(inputs.setup, aimed, &mut searched, &mut within(&mut *watch, [0.5, 0.55]));
     let Some(simple) = simple else {
-        return driven(rig, aimed, (run, project_design), &mut within(watch, [0.55, 1.0]));
+        return driven(inputs, aimed, searched, &mut within(watch, [0.55, 1.0]));
     };
-    let (of_simple, twin) = driven(rig, aimed, simple, &mut within(&mut *watch, [0.55, 0.8]))?;
-    if of_simple.project_design.is_stopped() || !misses(&of_simple.project_design) {
+    let (of_simple, twin) = driven(inputs, aimed, simple, &mut within(&mut *watch, [0.55, 0.8]))?;
+    let simple = &of_simple.searched.project_design;
+    if simple.is_stopped() || !misses(simple) {
         return Ok((of_simple, twin));
     }
-    let (other, _) = driven(rig, aimed, (run, project_design), &mut within(watch, [0.8, 1.0]))?;
-    Ok(match is_better(&other.project_design, &of_simple.project_design) {
-        true => (other.with_missed(&of_simple.project_design), None),
+    let (other, _) = driven(inputs, aimed, searched, &mut within(watch, [0.8, 1.0]))?;
+    Ok(match is_better(&other.searched.project_design, simple) {
+        true => (other.with_missed(simple), None),
         false => (of_simple, twin),
     })
 }
 
-/// The simplest structure that is as good a design by its steps, if there is one, and the design
-/// itself.
-fn with_simpler(
+/// The simplest structure that is as good a design by its steps, if there is one; a cancellation is
+/// recorded in the design.
+fn simpler_searched(
     setup: &Setup<'_>,
     aimed: AimedSteps<'_>,
-    (run, mut project_design): (&DesignRun, ProjectDesign),
+    searched: &mut SearchedDesign,
     watch: Watch<'_>,
-) -> (Option<(DesignRun, ProjectDesign)>, ProjectDesign) {
-    if project_design.is_stopped() || !project_design.is_met() {
-        return (None, project_design);
+) -> Option<SearchedDesign> {
+    if searched.project_design.is_stopped() || !searched.project_design.is_met() {
+        return None;
     }
-    let found = simpler(setup, aimed, (run, &project_design), watch);
+    let found = simpler(setup, aimed, searched, watch);
     if matches!(found, Err(DesignError::Stopped(_))) {
-        project_design.leave(DesignPart::Search);
+        searched.project_design.leave(DesignPart::Search);
     }
     // the earlier result remains
-    (found.ok().flatten(), project_design)
+    found.ok().flatten()
 }
 
 /// A design with its trial and, as long as the trial misses the requirement, the designs that
 /// follow from the contributions of the runs: the best of them.
 fn driven(
-    (source, setup): (&dyn Source, &Setup<'_>),
+    inputs: ProjectInputs<'_>,
     aimed: AimedSteps<'_>,
-    (run, project_design): (DesignRun, ProjectDesign),
+    searched: SearchedDesign,
     watch: Watch<'_>,
 ) -> Result<(DrivenDesign, Option<ContinuousTwin>), DesignError> {
-    let problem = run.problem.clone();
-    let (project_design, twin) = with_trial_and_twin(
-        (source, setup),
-        &problem,
-        project_design,
-        &mut within(&mut *watch, [0.0, 0.25]),
-    )?;
-    let mut best = (run, project_design);
+    let SearchedDesign { run, project_design } = searched;
+    let (project_design, twin) =
+        with_trial_and_twin(inputs, &run.problem, project_design, &mut within(&mut *watch, [0.0, 0.25]))?;
+    let mut best = SearchedDesign { run, project_design };
     // the design from which the next one begins, unless it is the best one
-    let mut latest: Option<(DesignRun, ProjectDesign)> = None;
-    let mut known = added(&best.1, &[]);
-    let (mut nearest, mut in_vain) = (best.1.worst_run_with_room(), 0);
+    let mut latest: Option<SearchedDesign> = None;
+    let mut known = added(&best.project_design, &[]);
+    let (mut nearest, mut in_vain) = (best.project_design.worst_run_with_room(), 0);
     let mut for_room = 0;
     for index in 0..TRIES {
         let fraction = [index, index + 1].map(|done| 0.25 + 0.75 * done as f64 / TRIES as f64);
         let before = latest.as_ref().unwrap_or(&best);
         // a search with these runs may satisfy a limit that the design misses although the rig
         // satisfies the requirement
-        let lacks_a_limit = latest.as_ref().is_some_and(|(_, project_design)| rank(project_design).0 > 0);
-        let suffices = best.1.worst_run() <= 1.0;
-        if !misses(&before.1) && !lacks_a_limit || in_vain > IN_VAIN || for_room >= TRIES_FOR_ROOM {
+        let lacks_a_limit = latest.as_ref().is_some_and(|latest| rank(&latest.project_design).0 > 0);
+        let suffices = best.project_design.worst_run() <= 1.0;
+        if !misses(&before.project_design) && !lacks_a_limit
+            || in_vain > IN_VAIN
+            || for_room >= TRIES_FOR_ROOM
+        {
             break;
         }
         for_room += usize::from(suffices);
         let from = if in_vain == IN_VAIN { SearchStarts::Others } else { SearchStarts::Nearest };
         let aimed = AimedSteps { added: &known, from, ..aimed };
-        match next_design((source, setup), aimed, before, &mut within(&mut *watch, fraction)) {
+        match next_design(inputs, aimed, before, &mut within(&mut *watch, fraction)) {
             Ok(Some(found)) => {
-                known = added(&found.1, &known);
-                if found.1.is_stopped() {
-                    best.1.leave(DesignPart::Search);
+                known = added(&found.project_design, &known);
+                if found.project_design.is_stopped() {
+                    best.project_design.leave(DesignPart::Search);
                 }
-                let gains = found.1.worst_run_with_room() < (1.0 - GAIN) * nearest;
-                in_vain = if gains || found.1.worst_run_with_room() <= 1.0 { 0 } else { in_vain + 1 };
-                nearest = nearest.min(found.1.worst_run_with_room());
-                latest = if is_better(&found.1, &best.1) {
+                let gains = found.project_design.worst_run_with_room() < (1.0 - GAIN) * nearest;
+                in_vain =
+                    if gains || found.project_design.worst_run_with_room() <= 1.0 { 0 } else { in_vain + 1 };
+                nearest = nearest.min(found.project_design.worst_run_with_room());
+                latest = if is_better(&found.project_design, &best.project_design) {
                     best = found;
                     None
                 } else {
                     Some(found)
                 };
             }
-            Err(DesignError::Stopped(_)) => best.1.leave(DesignPart::Search),
+            Err(DesignError::Stopped(_)) => best.project_design.leave(DesignPart::Search),
             // the earlier result remains
             Ok(None) | Err(_) => break,
         }
-        if best.1.is_stopped() {
+        if best.project_design.is_stopped() {
             break;
         }
     }
-    let (run, project_design) = best;
-    Ok((DrivenDesign { aim: aimed.aim, run, project_design, known }, twin))
+    Ok((DrivenDesign { aim: aimed.aim, searched: best, known }, twin))
 }
 
 /// A design with the trial of its controller, and concurrently with the design made without
 /// sampling.
 fn with_trial_and_twin(
-    (source, setup): (&dyn Source, &Setup<'_>),
+    inputs: ProjectInputs<'_>,
     problem: &DesignProblem,
     project_design: ProjectDesign,
     watch: Watch<'_>,
@@ -250,14 +248,14 @@ fn with_trial_and_twin(
     // a rig that misses a requirement in time leads to another design
     let is_required = project_design.designed.problem.in_time.iter().any(|one| one.follows);
     if project_design.is_stopped() || is_required || all_cores().at_once == 1 {
-        return Ok((with_trial((source, setup), project_design, watch)?, None));
+        return Ok((with_trial(inputs, project_design, watch)?, None));
     }
     let untried = project_design.clone();
     let (found, project_design) = both(
         watch,
         0.5,
-        |watch| continuous_as_sampled((source, setup), problem, &untried, watch),
-        |watch| with_trial((source, setup), project_design, watch),
+        |watch| continuous_as_sampled(inputs, problem, &untried, watch),
+        |watch| with_trial(inputs, project_design, watch),
     );
     Ok((project_design?, Some(ContinuousTwin { of: untried.design, found })))
 }
@@ -265,34 +263,36 @@ fn with_trial_and_twin(
 /// The design without zeros and poles that have next to no effect, if the nonlinear rig satisfies
 /// the requirement with it too; otherwise the unchanged design.
 fn shorter(
-    (source, setup): (&dyn Source, &Setup<'_>),
+    inputs: ProjectInputs<'_>,
     aimed: AimedSteps<'_>,
-    (run, project_design): (DesignRun, ProjectDesign),
+    mut searched: SearchedDesign,
     watch: Watch<'_>,
-) -> (DesignRun, ProjectDesign) {
-    if project_design.is_stopped() || !project_design.is_met() || misses(&project_design) {
-        return (run, project_design);
+) -> SearchedDesign {
+    let project_design = &searched.project_design;
+    if project_design.is_stopped() || !project_design.is_met() || misses(project_design) {
+        return searched;
     }
-    let found = shortened(setup, aimed, (&run, &project_design), &mut within(&mut *watch, [0.0, 0.7]));
+    let found = shortened(inputs.setup, aimed, &searched, &mut within(&mut *watch, [0.0, 0.7]));
     // the earlier result remains
     let found = found.and_then(|found| {
-        let Some((run, shorter)) = found else { return Ok(None) };
-        Ok(Some((run, with_trial((source, setup), shorter, &mut within(watch, [0.7, 1.0]))?)))
+        let Some(SearchedDesign { run, project_design }) = found else { return Ok(None) };
+        let project_design = with_trial(inputs, project_design, &mut within(watch, [0.7, 1.0]))?;
+        Ok(Some(SearchedDesign { run, project_design }))
     });
     match found {
-        Ok(Some((_, searched))) if searched.is_stopped() => stopped_in_search(run, project_design),
-        Ok(Some((run, searched))) if agrees_as_well(&searched, &project_design) && !misses(&searched) => {
-            (run, searched)
+        Ok(Some(shorter)) if shorter.project_design.is_stopped() => {
+            searched.project_design.leave(DesignPart::Search);
         }
-        Err(DesignError::Stopped(_)) => stopped_in_search(run, project_design),
-        Ok(_) | Err(_) => (run, project_design),
+        Ok(Some(shorter))
+            if agrees_as_well(&shorter.project_design, &searched.project_design)
+                && !misses(&shorter.project_design) =>
+        {
+            return shorter;
+        }
+        Err(DesignError::Stopped(_)) => searched.project_design.leave(DesignPart::Search),
+        Ok(_) | Err(_) => {}
     }
-}
-
-/// A design whose continued search was cancelled.
-fn stopped_in_search(run: DesignRun, mut project_design: ProjectDesign) -> (DesignRun, ProjectDesign) {
-    project_design.leave(DesignPart::Search);
-    (run, project_design)
+    searched
 }
 
 /// True if the nonlinear rig agrees with one design as well as with another; settling times that
@@ -311,30 +311,30 @@ fn misses(project_design: &ProjectDesign) -> bool {
 /// A design with the known contribution of the rig to its steps, and its trial; `None` if the steps
 /// of the one before lead to none.
 fn next_design(
-    (source, setup): (&dyn Source, &Setup<'_>),
+    inputs: ProjectInputs<'_>,
     aimed: AimedSteps<'_>,
-    (run, project_design): &(DesignRun, ProjectDesign),
+    before: &SearchedDesign,
     watch: Watch<'_>,
-) -> Result<Option<(DesignRun, ProjectDesign)>, DesignError> {
-    let found = by_steps(setup, aimed, (run, project_design), &mut within(&mut *watch, [0.0, 0.7]))?;
-    let Some((run, project_design)) = found else { return Ok(None) };
-    Ok(Some((run, with_trial((source, setup), project_design, &mut within(watch, [0.7, 1.0]))?)))
+) -> Result<Option<SearchedDesign>, DesignError> {
+    let found = by_steps(inputs.setup, aimed, before, &mut within(&mut *watch, [0.0, 0.7]))?;
+    let Some(SearchedDesign { run, project_design }) = found else { return Ok(None) };
+    let project_design = with_trial(inputs, project_design, &mut within(watch, [0.7, 1.0]))?;
+    Ok(Some(SearchedDesign { run, project_design }))
 }
 
 /// A design with the trial of its controller; the trial is absent after cancellation, and without a
 /// rig.
 fn with_trial(
-    (source, setup): (&dyn Source, &Setup<'_>),
+    inputs: ProjectInputs<'_>,
     project_design: ProjectDesign,
     watch: Watch<'_>,
 ) -> Result<ProjectDesign, DesignError> {
-    if setup.project.actuator.is_none() {
+    if inputs.setup.project.actuator.is_none() {
         return Ok(project_design);
     }
     let mut unfinished = project_design.unfinished.clone();
-    let trial = unless_stopped(&mut unfinished, DesignPart::Trial, || {
-        trial_design(source, setup.project, &project_design, watch)
-    })?;
+    let trial =
+        unless_stopped(&mut unfinished, DesignPart::Trial, || trial_design(inputs, &project_design, watch))?;
     Ok(ProjectDesign { unfinished, trial, ..project_design })
 }
 

@@ -19,7 +19,8 @@ const REFUTATIONS_MAXIMUM: usize = 4;
 /// The design with its audit and the proof; `None` if nothing was found, or after cancellation by
 /// `watch`.
 pub(super) fn proven(
-    (setup, given): (&Setup<'_>, &RobustProblem),
+    setup: &Setup<'_>,
+    given: &RobustProblem,
     mut run: DesignRun,
     options: &DesignOptions,
     watch: Watch<'_>,

@@ -18,7 +18,7 @@ use phea_qft::specification::Specification;
 use super::by_steps::{AimedSteps, StepShaping, last_step_search};
 use super::deployable::specification;
 use super::structures::noise_gain_around;
-use super::{DesignError, DesignLimit, DesignLimitKind, DesignRun, ProjectDesign};
+use super::{DesignError, DesignLimit, DesignLimitKind, ProjectDesign, SearchedDesign};
 use crate::limit_kind::RELAXED_BY;
 use crate::robust::{RobustError, RobustProblem};
 use crate::setup::Setup;
@@ -102,9 +102,10 @@ struct RelaxedDesign<'a> {
 pub(super) fn relaxations<'a>(
     setup: &'a Setup<'a>,
     aimed: AimedSteps<'a>,
-    (run, project_design): (&'a DesignRun, &'a ProjectDesign),
+    searched: &'a SearchedDesign,
     watch: Watch<'_>,
 ) -> Result<Relaxations, DesignError> {
+    let SearchedDesign { run, project_design } = searched;
     let has_no_end = matches!(
         project_design.design.status,
         DesignStatus::NotConverged { .. } | DesignStatus::NotStabilised
@@ -113,7 +114,7 @@ pub(super) fn relaxations<'a>(
         return Ok(Relaxations::default());
     };
     let watch = &mut part(watch, STAGE, [0.0, 1.0]);
-    let (search, (aim, reserve_db)) = match last_step_search(setup, aimed, (run, project_design))? {
+    let (search, (aim, reserve_db)) = match last_step_search(setup, aimed, searched)? {
         Some((search, aim)) => (LastSearch::BySteps(Box::new(search)), aim),
         None => {
             let found = last_search(&project_design.design, samples.clone(), &project_design.options);
@@ -276,7 +277,7 @@ impl RelaxedDesign<'_> {
                 let place = self.index(kind).and_then(|index| specifications.get_mut(own + index));
                 let limit = self.project_design.limits.iter().find(|known| known.kind == kind);
                 let wider = limit.and_then(|limit| {
-                    specification((self.setup, self.aimed.given), kind, kind.relaxed(limit.value))
+                    specification(self.setup, self.aimed.given, kind, kind.relaxed(limit.value))
                 });
                 if let (Some(place), Some(wider)) = (place, wider) {
                     *place = wider;

@@ -14,13 +14,14 @@ use phea_qft::verification::Verdict;
 
 use super::by_steps::SteppedPlants;
 use super::command_of_steps::with_command_of_steps;
-use super::{DesignError, DesignPart, DesignRun, ProjectDesign, trial_design, unless_stopped};
+use super::{
+    DesignError, DesignPart, DesignRun, ProjectDesign, SearchedDesign, trial_design, unless_stopped,
+};
 use crate::audit::{ProjectAudit, audit_problem, prove_claims};
 use crate::family::{ProjectFamilyError, family};
 use crate::project::{DeclaredLine, Project};
 use crate::robust::RobustProblem;
-use crate::setup::Setup;
-use crate::source::Source;
+use crate::setup::{ProjectInputs, Setup};
 use crate::trial::{self, Agreement, StepSize, TrialMachine, TrialRun, waves_only};
 use phea_dynamics::watch::{Stopped, Watch, part};
 
@@ -119,15 +120,15 @@ const STAGE: &str = "designing again";
 
 /// The design after the correction by the machine; unchanged if the machine does not contradict it.
 pub(super) fn repaired(
-    (source, setup): (&dyn Source, &Setup<'_>),
-    run: DesignRun,
-    project_design: ProjectDesign,
+    inputs: ProjectInputs<'_>,
+    searched: SearchedDesign,
     watch: Watch<'_>,
 ) -> Result<ProjectDesign, DesignError> {
+    let SearchedDesign { run, project_design } = searched;
     if project_design.agreement() != Agreement::Contradicts {
         return Ok(project_design);
     }
-    let mut repair = match with_waves((source, setup), run, &project_design, watch) {
+    let mut repair = match with_waves(inputs, run, &project_design, watch) {
         Err(DesignError::Stopped(_)) => Repair::without(RepairStatus::Stopped),
         other => other?,
     };
@@ -160,16 +161,17 @@ pub(super) fn repaired(
 
 /// Adds the plant with waves in its lines, if this plant contradicts the design.
 fn with_waves(
-    (source, setup): (&dyn Source, &Setup<'_>),
+    inputs: ProjectInputs<'_>,
     run: DesignRun,
     project_design: &ProjectDesign,
     watch: Watch<'_>,
 ) -> Result<Repair, DesignError> {
     let nothing = Repair::without(RepairStatus::NothingToAdd);
-    let (Some(contradicting), Some(alone)) = (project_design.contradicting_waves(), waves_only(setup)) else {
+    let (Some(contradicting), Some(alone)) = (project_design.contradicting_waves(), waves_only(inputs.setup))
+    else {
         return Ok(nothing);
     };
-    let plant = match family(&Setup::new(&alone)?, source) {
+    let plant = match family(&Setup::new(&alone)?, inputs.source) {
         Ok(Family::Uncertain(family)) => family.plant().clone(),
         Ok(Family::Measured(_)) => return Ok(nothing),
         Err(error) => return Ok(Repair { no_family: Some(error), ..nothing }),
@@ -184,17 +186,17 @@ fn with_waves(
     if before.audit.verdict == Verdict::Met {
         return Ok(Repair { added_plant: None, ..known });
     }
-    let Some((status, found)) = designed_again((source, setup), run, (&plant, project_design), watch)? else {
+    let Some((status, found)) = designed_again(inputs, run, &plant, project_design, watch)? else {
         return Ok(Repair { status: RepairStatus::NotStabilised, ..known });
     };
     let after = Some(audit_problem(&alone_in_loop(&plant, &found), watch)?);
     let whole = match status {
-        RepairStatus::Met => family_with_waves((source, setup), &found, watch)?,
+        RepairStatus::Met => family_with_waves(inputs, &found, watch)?,
         _ => None,
     };
     let remedies = match status {
         RepairStatus::Met => vec![],
-        _ => remedies(setup.project, status, known.quarter_wave_rad_per_s, project_design),
+        _ => remedies(inputs.setup.project, status, known.quarter_wave_rad_per_s, project_design),
     };
     Ok(Repair { status, after, whole, remedies, other: Some(Box::new(found)), ..known })
 }
@@ -256,12 +258,12 @@ fn alone_in_loop(plant: &UncertainPlant, design: &ProjectDesign) -> RobustProble
 /// The loop of a design with waves in every plant of its family, one of which was added; `None`
 /// without such a family.
 fn family_with_waves(
-    (source, setup): (&dyn Source, &Setup<'_>),
+    inputs: ProjectInputs<'_>,
     found: &ProjectDesign,
     watch: Watch<'_>,
 ) -> Result<Option<ProjectAudit>, DesignError> {
-    let Some(project) = trial::with_waves(setup.project) else { return Ok(None) };
-    let Ok(family) = family(&Setup::new(&project)?, source) else { return Ok(None) };
+    let Some(project) = trial::with_waves(inputs.setup.project) else { return Ok(None) };
+    let Ok(family) = family(&Setup::new(&project)?, inputs.source) else { return Ok(None) };
     let problem = RobustProblem {
         family,
         before_feedback: None,
@@ -276,9 +278,10 @@ fn family_with_waves(
 /// The design continued with the additional plant and simulated on the machine; `None` if no
 /// controller was found.
 fn designed_again(
-    (source, setup): (&dyn Source, &Setup<'_>),
+    inputs: ProjectInputs<'_>,
     run: DesignRun,
-    (plant, project_design): (&UncertainPlant, &ProjectDesign),
+    plant: &UncertainPlant,
+    project_design: &ProjectDesign,
     watch: Watch<'_>,
 ) -> Result<Option<(RepairStatus, ProjectDesign)>, DesignError> {
     let DesignRun { aimed, mut problem, outcome, .. } = run;
@@ -299,12 +302,12 @@ fn designed_again(
         DesignStatus::NotConverged { .. } => RepairStatus::NotConverged,
         DesignStatus::NotStabilised => RepairStatus::NotStabilised,
     };
-    let mut found = ProjectDesign::new(setup, &aimed, &problem, design, options, watch)?;
+    let mut found = ProjectDesign::new(inputs.setup, &aimed, &problem, design, options, watch)?;
     let own = &project_design.designed.problem.specifications;
     if aimed.specifications[..own.len()] != own[..] {
         found = found.judged_by(&project_design.designed.problem, watch)?;
     }
-    found = with_command_of_steps((setup, found), &SteppedPlants::default(), watch)?;
-    let trial = trial_design(source, setup.project, &found, watch)?;
+    found = with_command_of_steps(inputs.setup, found, &SteppedPlants::default(), watch)?;
+    let trial = trial_design(inputs, &found, watch)?;
     Ok(Some((status, ProjectDesign { trial, ..found })))
 }

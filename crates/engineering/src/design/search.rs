@@ -7,12 +7,13 @@ use phea_dynamics::watch::{Stopped, Watch, within};
 use phea_qft::design::{ControllerChoice, DesignStatus, Finding, design_stricter};
 use phea_qft::verification::Verdict;
 
-use super::by_steps::{AimedSteps, SearchStarts, SteppedPlants, by_steps};
+use super::by_steps::{AimedSteps, by_steps};
 use super::command_of_steps::with_command_of_steps;
 use super::problem::{design_options, design_problem};
 use super::step_aim::{REPETITIONS, StepAim};
 use super::{
-    DesignError, DesignPart, DesignRun, Explanation, ProjectDesign, ReachedStructure, proven, structures,
+    DesignError, DesignPart, DesignRun, Explanation, ProjectDesign, ReachedStructure, SearchedDesign, proven,
+    structures,
 };
 use crate::audit::TimeFinding;
 use crate::robust::RobustProblem;
@@ -22,11 +23,12 @@ use crate::setup::Setup;
 /// aim on, and the aim that led to it.
 pub(super) fn found(
     setup: &Setup<'_>,
-    (given, mut aim, plants): (&RobustProblem, StepAim, &SteppedPlants),
+    begins: AimedSteps<'_>,
     seed: Option<u32>,
     watch: Watch<'_>,
-) -> Result<(StepAim, DesignRun, ProjectDesign), DesignError> {
-    let mut found: Vec<(StepAim, DesignRun, ProjectDesign)> = Vec::new();
+) -> Result<(StepAim, SearchedDesign), DesignError> {
+    let AimedSteps { given, mut aim, plants, .. } = begins;
+    let mut found: Vec<(StepAim, SearchedDesign)> = Vec::new();
     for repetition in 0..=REPETITIONS {
         let aimed = match aim.of(setup.project, given) {
             Ok(aimed) => aimed,
@@ -35,59 +37,58 @@ pub(super) fn found(
             Err(error) => return Err(error),
         };
         let fraction = [repetition, repetition + 1].map(|done| done as f64 / (REPETITIONS + 1) as f64);
-        let before = found.last().map(|(_, run, project_design)| (run, project_design));
-        let design = searched(setup, (given, &aimed), (seed, before), &mut within(&mut *watch, fraction));
+        let before = found.last().map(|(_, searched)| searched);
+        let design = searched(setup, given, &aimed, seed, before, &mut within(&mut *watch, fraction));
         match design {
-            Ok((run, project_design)) => {
-                let design = (run, with_command_of_steps((setup, project_design), plants, watch)?);
-                let (run, project_design) =
-                    led_by_steps(setup, (given, aim, plants), design, &mut within(&mut *watch, fraction));
-                found.push((aim, run, project_design));
+            Ok(SearchedDesign { run, project_design }) => {
+                let project_design = with_command_of_steps(setup, project_design, plants, watch)?;
+                let design = SearchedDesign { run, project_design };
+                let aimed = AimedSteps { aim, ..begins };
+                found.push((aim, led_by_steps(setup, aimed, design, &mut within(&mut *watch, fraction))));
             }
             // the earlier result remains
             Err(error) if found.is_empty() => return Err(error),
             Err(_) => break,
         }
         // a stricter aim seldom helps if the limits of this one are missed, and takes as long
-        let met = found.last().filter(|(.., project_design)| {
-            !project_design.is_stopped() && project_design.design.status == DesignStatus::Met
-        });
-        let Some((.., project_design)) = met else { break };
+        let last = found.last().map(|(_, searched)| &searched.project_design);
+        let met = last.filter(|last| !last.is_stopped() && last.design.status == DesignStatus::Met);
+        let Some(project_design) = met else { break };
         match aim.stricter(project_design).filter(|_| repetition < REPETITIONS) {
             Some(stricter) => aim = stricter,
             None => break,
         }
     }
     let reached_structures: Vec<ReachedStructure> =
-        found.iter().flat_map(|(.., project_design)| project_design.structures.clone()).collect();
-    let best = found.into_iter().min_by(|(.., one), (.., other)| by_rank(one, other));
-    let (aim, run, project_design) = best.ok_or(Stopped)?;
-    Ok((aim, run, project_design.with_shorter(reached_structures)))
+        found.iter().flat_map(|(_, searched)| searched.project_design.structures.clone()).collect();
+    let best =
+        found.into_iter().min_by(|(_, one), (_, other)| by_rank(&one.project_design, &other.project_design));
+    let (aim, SearchedDesign { run, project_design }) = best.ok_or(Stopped)?;
+    let project_design = project_design.with_shorter(reached_structures);
+    Ok((aim, SearchedDesign { run, project_design }))
 }
 
 /// A design whose steps miss the requirement, led to it by its steps; unchanged if that gains
 /// nothing.
 fn led_by_steps(
     setup: &Setup<'_>,
-    (given, aim, plants): (&RobustProblem, StepAim, &SteppedPlants),
-    (run, mut project_design): (DesignRun, ProjectDesign),
+    aimed: AimedSteps<'_>,
+    mut searched: SearchedDesign,
     watch: Watch<'_>,
-) -> (DesignRun, ProjectDesign) {
+) -> SearchedDesign {
+    let project_design = &searched.project_design;
     let misses = project_design.designed.view.in_time.iter().any(TimeFinding::violates);
     let command = project_design.exceeded_command().is_some_and(|command| !command.is_out_of_reach());
     if project_design.is_stopped() || !(misses || command) {
-        return (run, project_design);
+        return searched;
     }
-    let aimed = AimedSteps { given, aim, added: &[], plants, from: SearchStarts::Nearest };
-    match by_steps(setup, aimed, (&run, &project_design), watch) {
-        Ok(Some(moved)) if by_rank(&moved.1, &project_design).is_lt() => moved,
-        Err(DesignError::Stopped(_)) => {
-            project_design.leave(DesignPart::Search);
-            (run, project_design)
-        }
+    match by_steps(setup, aimed, &searched, watch) {
+        Ok(Some(moved)) if by_rank(&moved.project_design, project_design).is_lt() => return moved,
+        Err(DesignError::Stopped(_)) => searched.project_design.leave(DesignPart::Search),
         // the earlier result remains
-        Ok(_) | Err(_) => (run, project_design),
+        Ok(_) | Err(_) => {}
     }
+    searched
 }
 
 /// Rank of a design among several, the least the best: its verdict over frequency with a prefilter
@@ -120,23 +121,25 @@ fn by_rank(one: &ProjectDesign, other: &ProjectDesign) -> Ordering {
 /// are not sampled again.
 fn searched(
     setup: &Setup<'_>,
-    (given, aimed): (&RobustProblem, &RobustProblem),
-    (seed, before): (Option<u32>, Option<(&DesignRun, &ProjectDesign)>),
+    given: &RobustProblem,
+    aimed: &RobustProblem,
+    seed: Option<u32>,
+    before: Option<&SearchedDesign>,
     watch: Watch<'_>,
-) -> Result<(DesignRun, ProjectDesign), DesignError> {
+) -> Result<SearchedDesign, DesignError> {
     let problem = design_problem(setup, aimed);
     let mut options = design_options(setup, aimed, seed)?;
     if let ControllerChoice::Any { from: first, .. } = &mut options.controller {
         // a structure too short for the earlier limits is too short for stricter ones
-        *first = before.and_then(|(_, project_design)| project_design.design.name);
+        *first = before.and_then(|before| before.project_design.design.name);
     }
     let mut outcome = match before {
-        Some((run, _)) => design_stricter(&problem, &options, &run.outcome, watch)?,
+        Some(before) => design_stricter(&problem, &options, &before.run.outcome, watch)?,
         None => phea_qft::design::design(&problem, &options, watch)?,
     };
     outcome.conclude()?;
     let run = DesignRun { aimed: aimed.clone(), problem, outcome, led: None };
-    let (run, proven) = proven::proven((setup, aimed), run, &options, watch)?;
+    let (run, proven) = proven::proven(setup, aimed, run, &options, watch)?;
     let DesignRun { problem, outcome, .. } = &run;
     let explained = |finding: &Finding| Explanation::of(finding, aimed);
     let explanations = outcome.findings.iter().map(explained).collect::<Vec<_>>();
@@ -157,5 +160,6 @@ fn searched(
     }
     project_design = project_design.met_where_it_is(known);
     project_design.structures = structures::reached(&run, &project_design)?;
-    Ok((run, ProjectDesign { unfinished, explanations, ..project_design }))
+    let project_design = ProjectDesign { unfinished, explanations, ..project_design };
+    Ok(SearchedDesign { run, project_design })
 }

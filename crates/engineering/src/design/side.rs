@@ -6,7 +6,7 @@ use phea_dynamics::linear::{LinearError, TimeDomain};
 use phea_dynamics::portable;
 
 pub use crate::audit::NominalMargins;
-use crate::audit::ProjectAudit;
+use crate::audit::{AuditedProblem, ProjectAudit};
 use crate::robust::RobustProblem;
 
 /// A controller with its audit.
@@ -65,6 +65,11 @@ impl AuditedController {
     ) -> Result<AuditedController, LinearError> {
         let figures = figures(&controller, &problem, &view)?;
         Ok(AuditedController { controller, problem, view, figures })
+    }
+
+    /// Loop with its audit.
+    pub(super) fn audited(&self) -> AuditedProblem<'_> {
+        AuditedProblem { problem: &self.problem, view: &self.view }
     }
 
     /// True if the controller is given in z.

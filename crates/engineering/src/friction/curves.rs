@@ -99,7 +99,8 @@ pub(super) fn shaken(
     minimum: &Minimum,
     cache: &mut ShapeCache,
 ) -> Vec<PressedCurve> {
-    let (lugre, zero) = problem.friction(&minimum.variables);
+    let friction = problem.friction(&minimum.variables);
+    let zero = friction.zero;
     let mut first = problem.first_of_shakes();
     let of = |shake: &ShakenRows| {
         let own = minimum.variables.get(first..first + shake.variable_count())?;
@@ -108,7 +109,7 @@ pub(super) fn shaken(
         let found = problem.shake_of(own)?;
         let start = recording.positions.first()? + found.begins;
         let modelled = cache.at_rows(shake, recording.time_step).times(&found.sizes);
-        let moved = found.moved((problem.mass, recording.time_step), &lugre, zero, (shake, cache));
+        let moved = found.moved(problem.mass, recording.time_step, &friction, shake, cache);
         Some(PressedCurve {
             forces: recording.forces.iter().map(|force| force - zero).collect(),
             positions: recording.positions.iter().map(|at| at - start).collect(),

@@ -5,7 +5,7 @@ use phea_dynamics::portable;
 use phea_hydraulics::friction::LuGre;
 
 use super::SearchedFriction;
-use super::problem::{FrictionChannel, FrictionProblem};
+use super::problem::{FrictionChannel, FrictionProblem, MeasuredFriction};
 use crate::identify::DECISIVE;
 
 /// Model of friction in both directions.
@@ -83,7 +83,7 @@ impl DirectionEvidence {
             .map(|(channel, fraction)| fraction * rows_of(channel))
             .sum();
         let models = fits.map(|fit| {
-            let (lugre, zero) = fit.problem.friction(&fit.minimum.variables);
+            let MeasuredFriction { lugre, zero } = fit.problem.friction(&fit.minimum.variables);
             let loss: f64 = losses(&fit.problem, &fit.minimum.linearised.residuals)
                 .zip(&fractions)
                 .map(|(loss, fraction)| loss * fraction)

@@ -6,7 +6,9 @@ use phea_hydraulics::friction::FRICTION_COEFFICIENTS;
 
 use super::BOTH_WAYS;
 use super::directions::DirectionModel;
-use super::problem::{Around, DAMPING, EXTENDING, FrictionProblem, LevelVariables, RETRACTING, ZERO};
+use super::problem::{
+    Around, DAMPING, EXTENDING, FrictionProblem, LevelVariables, MeasuredFriction, RETRACTING, ZERO,
+};
 use super::profile::{HeldCoefficient, SlidingProfile};
 use super::reasons::{Fall, NotIdentifiableFriction, reasons};
 use crate::estimate::{Estimate, NORMAL_95};
@@ -99,7 +101,7 @@ fn forms(around: &Around) -> [CoefficientForm; FRICTION_COEFFICIENTS] {
 
 /// Estimates of each coefficient, and of the zero error of the force.
 pub(super) fn estimates(problem: &FrictionProblem<'_>, minimum: &Minimum) -> Estimates {
-    let (lugre, zero) = problem.friction(&minimum.variables);
+    let MeasuredFriction { lugre, zero } = problem.friction(&minimum.variables);
     let uncertainty = uncertainty_by_scale(&searched_only(problem, minimum), problem.count());
     let force = problem.around.force;
     let profile = SlidingProfile::around(problem, minimum);
@@ -119,7 +121,7 @@ pub(super) fn estimates(problem: &FrictionProblem<'_>, minimum: &Minimum) -> Est
         let at = |index: usize| minimum.variables.get(index).copied().unwrap_or(0.0);
         Fall { value: force * at(levels.fall), deviation: force * deviation_of(&uncertainty, levels.fall) }
     });
-    reasons((problem, &lugre), &mut all, falls);
+    reasons(problem, &lugre, &mut all, falls);
     let [a, b, c, d, e, f, g, back @ ..] = all.map(OpenCoefficient::judged);
     let zero = problem.finds_zero().then(|| Estimate::of(zero, force * deviation_of(&uncertainty, ZERO)));
     Estimates { estimates: [a, b, c, d, e, f, g], retracting: differs.then_some(back), zero }

@@ -73,7 +73,7 @@ pub(super) fn misfits(problem: &FrictionProblem<'_>, residuals: &[f64]) -> Vec<F
     let mut channels = problem.channels.iter();
     for slides in problem.slides.chunk_by(|one, next| one.recording == next.recording) {
         let Some(channel) = channels.next() else { break };
-        found.extend(of_slides(slides, channel, (residuals, explained_by(problem.directions))));
+        found.extend(of_slides(slides, channel, residuals, explained_by(problem.directions)));
     }
     let presses = problem.presses.iter().map(|press| (press.recording, press.rows));
     let shakes = problem.shakes.iter().map(|shake| (shake.recording, shake.force.rows));
@@ -115,7 +115,8 @@ struct SlideResidual {
 fn of_slides(
     slides: &[super::ConstantVelocity],
     channel: &FrictionChannel,
-    (residuals, explained): (&[f64], usize),
+    residuals: &[f64],
+    explained: usize,
 ) -> Option<FrictionMisfit> {
     let recording = slides.first()?.recording;
     let mut rest = own(channel, residuals).iter();

@@ -10,11 +10,11 @@ use phea_dynamics::least_squares::{Ending, Linearised, Minimum, Settings, minimi
 use phea_dynamics::watch::{Stopped, Watch, report_progress};
 use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, KnottedForce, LuGre, PressedMass, Stribeck};
 
-use super::FrictionRecording;
 use super::directions::DirectionModel;
 use super::motion::ConstantVelocity;
 use super::pressing::PressedRows;
 use super::shaking::ShakenRows;
+use super::{FrictionRecording, goes_both_ways};
 use phea_dynamics::order::median;
 
 /// Largest number of evaluations of a search.
@@ -94,13 +94,30 @@ pub(super) struct FrictionProblem<'a> {
     pub(super) channels: Vec<FrictionChannel>,
 }
 
+/// Friction with the zero error of the measured force.
+#[derive(Clone, Copy)]
+pub(super) struct MeasuredFriction {
+    pub(super) lugre: LuGre,
+    /// Zero error of the force, N.
+    pub(super) zero: f64,
+}
+
+/// Variables of one press or shake.
+#[derive(Clone, Copy)]
+struct OwnVariables<'a> {
+    /// Index of the first among all variables.
+    first: usize,
+    values: &'a [f64],
+}
+
 impl<'a> FrictionProblem<'a> {
     pub(super) fn new(
         recordings: &'a [FrictionRecording],
         slides: &'a [ConstantVelocity],
-        (presses, shakes): (&'a [PressedRows], &'a [ShakenRows]),
-        (mass, around): (f64, Around),
-        goes_both_ways: bool,
+        presses: &'a [PressedRows],
+        shakes: &'a [ShakenRows],
+        mass: f64,
+        around: Around,
     ) -> FrictionProblem<'a> {
         let mut channels = Vec::new();
         let mut first = 0;
@@ -133,7 +150,7 @@ impl<'a> FrictionProblem<'a> {
             shakes,
             mass,
             around,
-            goes_both_ways,
+            goes_both_ways: goes_both_ways(slides, presses),
             directions,
             channels,
         }
@@ -153,27 +170,27 @@ impl<'a> FrictionProblem<'a> {
     /// Residuals divided by their scales, with derivatives; `None` if there is no such friction, or
     /// the simulation does not reach its end.
     fn linearised(&self, variables: &[f64], cache: &mut ShapeCache) -> Option<Linearised> {
-        let (lugre, zero) = self.friction(variables);
-        if !slides_at_all(&lugre) {
+        let friction = self.friction(variables);
+        if !slides_at_all(&friction.lugre) {
             return None;
         }
         let all = self.channels.last().map_or(0, |channel| channel.residuals[1]);
         let mut rows = ResidualRows::with_room_for(all, self.count());
-        self.slid_rows(variables, (&lugre, zero), &mut rows)?;
+        self.slid_rows(variables, &friction, &mut rows)?;
         let mut channels = self.channels.iter().skip(self.sliding_channels());
         let mut first = SHARED + self.slides.len();
         for press in self.presses {
             let scales = [channels.next()?, channels.next()?].map(FrictionChannel::effective_scale);
             let knots = press.force.knots.len();
-            let own = variables.get(first..=first + knots)?;
-            self.press(press, (&lugre, zero), (first, own), scales, &mut rows)?;
+            let own = OwnVariables { first, values: variables.get(first..=first + knots)? };
+            self.press(press, &friction, own, scales, &mut rows)?;
             first += 1 + knots;
         }
         for shake in self.shakes {
             let scales = [channels.next()?, channels.next()?].map(FrictionChannel::effective_scale);
             let count = shake.variable_count();
-            let own = variables.get(first..first + count)?;
-            self.shake(shake, (&lugre, zero), (first, own), scales, (cache, &mut rows))?;
+            let own = OwnVariables { first, values: variables.get(first..first + count)? };
+            self.shake(shake, &friction, own, scales, cache, &mut rows)?;
             first += count;
         }
         Some(rows.found)
@@ -183,15 +200,20 @@ impl<'a> FrictionProblem<'a> {
     /// the slides.
     pub(super) fn slides_linearised(&self, variables: &[f64]) -> Option<Linearised> {
         let friction = self.friction(variables);
-        if !slides_at_all(&friction.0) {
+        if !slides_at_all(&friction.lugre) {
             return None;
         }
         let mut rows = ResidualRows::with_room_for(self.first_row_of_others(), variables.len());
-        self.slid_rows(variables, (&friction.0, friction.1), &mut rows)?;
+        self.slid_rows(variables, &friction, &mut rows)?;
         Some(rows.found)
     }
 
-    fn slid_rows(&self, variables: &[f64], friction: (&LuGre, f64), rows: &mut ResidualRows) -> Option<()> {
+    fn slid_rows(
+        &self,
+        variables: &[f64],
+        friction: &MeasuredFriction,
+        rows: &mut ResidualRows,
+    ) -> Option<()> {
         let mut channels = self.channels.iter();
         let mut recording = None;
         let mut scale = 1.0;
@@ -201,7 +223,7 @@ impl<'a> FrictionProblem<'a> {
                 scale = channels.next()?.effective_scale();
             }
             let place = SHARED + index;
-            self.slide(slide, friction, (place, *variables.get(place)?), scale, rows);
+            self.slide(slide, friction, place, *variables.get(place)?, scale, rows);
         }
         Some(())
     }
@@ -209,11 +231,13 @@ impl<'a> FrictionProblem<'a> {
     fn slide(
         &self,
         slide: &ConstantVelocity,
-        (lugre, zero): (&LuGre, f64),
-        (place, left): (usize, f64),
+        friction: &MeasuredFriction,
+        place: usize,
+        left: f64,
         scale: f64,
         rows: &mut ResidualRows,
     ) {
+        let MeasuredFriction { lugre, zero } = friction;
         let force = self.around.force;
         for block in &slide.blocks {
             let (shown, gradient) = block.slid.sensitive_force(lugre, left * force);
@@ -235,14 +259,16 @@ impl<'a> FrictionProblem<'a> {
     fn press(
         &self,
         press: &PressedRows,
-        (lugre, zero): (&LuGre, f64),
-        (first, own): (usize, &[f64]),
+        friction: &MeasuredFriction,
+        own: OwnVariables<'_>,
         [force_scale, position_scale]: [f64; 2],
         rows: &mut ResidualRows,
     ) -> Option<()> {
+        let MeasuredFriction { lugre, zero } = friction;
+        let OwnVariables { first, values } = own;
         let Around { force, length, .. } = self.around;
         let recording = self.recordings.get(press.recording)?;
-        let (begins, knots) = own.split_first()?;
+        let (begins, knots) = values.split_first()?;
         // the pressures show the acting force plus the zero error
         let measured: Vec<f64> = knots.iter().map(|value| value * force).collect();
         let acting = measured.iter().map(|value| value - zero).collect();

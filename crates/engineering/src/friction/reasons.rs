@@ -94,7 +94,8 @@ struct LoadedDirection<'a> {
 
 /// Adds the known reasons to each open coefficient.
 pub(super) fn reasons(
-    (problem, lugre): (&FrictionProblem<'_>, &LuGre),
+    problem: &FrictionProblem<'_>,
+    lugre: &LuGre,
     found: &mut [OpenCoefficient; FRICTION_COEFFICIENTS],
     falls: [Fall; 2],
 ) {

@@ -158,8 +158,8 @@ fn disturbed(
             .inputs
             .iter_mut()
             .for_each(|input| input.supply.tank_pressure += error.on(input.supply.tank_pressure)),
-        TestSignal::PressureA => port_pressure(&mut found, SignalKind::PressureA, (1.0, error)),
-        TestSignal::PressureB => port_pressure(&mut found, SignalKind::PressureB, (-1.0, error)),
+        TestSignal::PressureA => port_pressure(&mut found, SignalKind::PressureA, 1.0, error),
+        TestSignal::PressureB => port_pressure(&mut found, SignalKind::PressureB, -1.0, error),
         TestSignal::LeakFlow => values(&mut found, &[SignalKind::LeakFlow], error),
         TestSignal::Flow => {
             values(&mut found, &[SignalKind::PortFlow, SignalKind::PortFlowMagnitude], error);
@@ -179,7 +179,7 @@ fn values(recording: &mut Recording, kinds: &[SignalKind], error: SharedError) {
 
 /// Adds an error to the pressure of a port: to this pressure if the ports are shut; for joined
 /// ports to the mean, and with its sign to the drop across the meter.
-fn port_pressure(recording: &mut Recording, kind: SignalKind, (sign, error): (f64, SharedError)) {
+fn port_pressure(recording: &mut Recording, kind: SignalKind, sign: f64, error: SharedError) {
     values(recording, &[kind], error);
     let means = recording.signals.iter_mut().find(|one| one.kind == SignalKind::MeanPressure);
     let Some(means) = means else { return };

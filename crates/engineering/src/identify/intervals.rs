@@ -16,7 +16,8 @@ const NOTHING_SAID: f64 = 14.0;
 /// Uncertainty of the coefficients, in changes that matter, see [`Variables::scales`].
 pub(super) fn uncertainty(
     at: &Linearised,
-    (groups, shared): (&[usize], &[Vec<f64>]),
+    groups: &[usize],
+    shared: &[Vec<f64>],
     variables: &Variables,
     coefficients: &StaticCoefficients,
 ) -> Uncertainty {

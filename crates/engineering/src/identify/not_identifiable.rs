@@ -37,7 +37,8 @@ pub(super) fn combinations(
     uncertainty: &Uncertainty,
     coefficients: &StaticCoefficients,
     slopes: &[f64; STATIC_COEFFICIENTS],
-    (recordings, tested): (&[Recording], &TestedValve),
+    recordings: &[Recording],
+    tested: &TestedValve,
 ) -> Vec<NotIdentifiableCombination> {
     let varied = |direction: &&Direction| {
         let components = direction.fractions.iter().enumerate();
@@ -47,7 +48,7 @@ pub(super) fn combinations(
         uncertainty.directions.iter().rev().filter(|direction| direction.deviation > NOT_IDENTIFIABLE);
     let unknown = unknown.filter(varied);
     let tests =
-        StaticTest::ALL.map(|test| (test, sensitivities(test, coefficients, slopes, (recordings, tested))));
+        StaticTest::ALL.map(|test| (test, sensitivities(test, coefficients, slopes, recordings, tested)));
     unknown
         .map(|direction| {
             let parts = COEFFICIENT_NAMES.iter().zip(&direction.fractions);
@@ -75,7 +76,8 @@ fn sensitivities(
     test: StaticTest,
     coefficients: &StaticCoefficients,
     slopes: &[f64; STATIC_COEFFICIENTS],
-    (recordings, tested): (&[Recording], &TestedValve),
+    recordings: &[Recording],
+    tested: &TestedValve,
 ) -> Vec<[f64; STATIC_COEFFICIENTS]> {
     const ROWS: i32 = 100;
     let amplitude = if test == StaticTest::PressureGain { 0.05 } else { 0.3 };

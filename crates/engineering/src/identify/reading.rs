@@ -137,19 +137,19 @@ fn recording(
     }
     let plausible_v = plausible::greatest(TestSignal::Command, known.nominal_voltage);
     let is_used =
-        rows::used(&table, &columns, (&numbers, plausible_v), |signal| is_input(signal, circuit), findings);
+        rows::used(&table, &columns, &numbers, plausible_v, |signal| is_input(signal, circuit), findings);
     let left_out = is_used.iter().filter(|used| !**used).count() + usize::from(numbers.cut_off.is_some());
     let gaps: Vec<usize> = numbers.gaps.iter().map(Vec::len).collect();
     let used: Vec<usize> =
         is_used.iter().enumerate().filter(|(_, used)| **used).map(|(row, _)| row).collect();
     let taken = rows::kept(&columns, numbers, &is_used);
     if findings.error_count() == before {
-        plausible::check(&table, &columns, &taken, (&used, known), findings);
+        plausible::check(&table, &columns, &taken, &used, known, findings);
         is_above_tank(&table, &columns, &taken, &used, known, findings);
     }
     if findings.error_count() == before {
         polarity::check(&table, &columns, &taken, circuit, findings);
-        rated::check(&table, &columns, &taken, (circuit, known), findings);
+        rated::check(&table, &columns, &taken, circuit, known, findings);
     }
     let whole = table.header_place();
     if taken.rows() < FEWEST_ROWS && findings.error_count() == before {

@@ -87,7 +87,7 @@ impl ControlledMachine {
                 Control::Sampled(Box::new(sampled(setup, sensed, controller, sample_time_s, feed_forward)?))
             }
         };
-        Ok(ControlledMachine::assembled(project, rig, machine, (control, feed_forward)))
+        Ok(ControlledMachine::assembled(project, rig, machine, control, feed_forward))
     }
 
     /// The machine alone, for a stated command, which is not subject to limits, samples and delays
@@ -98,14 +98,15 @@ impl ControlledMachine {
         let machine = *sensed.plant();
         let control =
             Control::Open(Box::new(CommandedPlant::on_hold(sensed, &TransferFunction::gain_only(1.0))?));
-        Ok(ControlledMachine::assembled(project, rig, machine, (control, 0.0)))
+        Ok(ControlledMachine::assembled(project, rig, machine, control, 0.0))
     }
 
     fn assembled(
         project: &Project,
         rig: Rig,
         machine: Machine,
-        (control, feed_forward): (Control, f64),
+        control: Control,
+        feed_forward: f64,
     ) -> ControlledMachine {
         ControlledMachine {
             relief_shut_pa: relief_shut_pa(rig.actuator.components()),

@@ -101,7 +101,7 @@ pub fn simulate_checked(
             watch(Progress { stage: "tolerance check", fraction })
         };
         let plan = PassPlan { tolerance: run.tolerance / FOLD, moved: false };
-        let other = prepared.pass(plan, (&output, ""), &mut watched)?.run;
+        let other = prepared.pass(plan, &output, "", &mut watched)?.run;
         run.check = Some(check(run, &other, plan.tolerance));
         before += prepared.scenario.duration;
         if other.was_cancelled() {

@@ -36,7 +36,8 @@ pub struct RunTable<'a> {
 impl<'a> RunTable<'a> {
     /// A table with its headings; `bench` determines its columns.
     pub(super) fn begin(
-        (destination, name): (&'a dyn Destination, &str),
+        destination: &'a dyn Destination,
+        name: &str,
         format: TableFormat,
         bench: &ControlledMachine,
     ) -> Result<RunTable<'a>, WriteError> {

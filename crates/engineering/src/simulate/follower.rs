@@ -57,7 +57,8 @@ impl<'a> Follower<'a> {
         commanded: CommandSource<'a>,
         inputs: usize,
         reference: Option<&'a Profile>,
-        (windows, band): (&[Window], f64),
+        windows: &[Window],
+        band: f64,
     ) -> Follower<'a> {
         let tally = |window: &Window| {
             Tally::new(*window, band, reference.map(|reference| last_value(reference, window)))
@@ -279,7 +280,7 @@ mod tests {
         let schedule =
             InputSchedule { duration_s: 3.0, output_step_s, inputs: vec![Input::Value(driving.clone())] };
         let commanded = CommandSource::Continuously(SignalSum::single(1), limit);
-        let follower = Follower::new(SignalSum::single(0), commanded, 1, Some(reference), (&[window], 1.0));
+        let follower = Follower::new(SignalSum::single(0), commanded, 1, Some(reference), &[window], 1.0);
         let observer = Following(follower);
         let task = Task { start: start.to_vec(), schedule: &schedule, sampler: None, observer };
         let settings = SimulationSettings { tolerance: 1e-11, ..SimulationSettings::default() };
@@ -413,7 +414,7 @@ mod tests {
             inputs: vec![Input::Value(Profile::sine(0.1, 1e-9, 7.0).unwrap())],
         };
         let commanded = CommandSource::Continuously(SignalSum::single(1), f64::INFINITY);
-        let follower = Follower::new(SignalSum::single(0), commanded, 1, Some(&reference), (&[window], 1.0));
+        let follower = Follower::new(SignalSum::single(0), commanded, 1, Some(&reference), &[window], 1.0);
         let observer = Following(follower);
         let task = Task { start: vec![0.0; 2], schedule: &schedule, sampler: None, observer };
         let (_, seen) = drive_one(&swing, task, &SimulationSettings::default(), &mut |_| true).unwrap();

@@ -11,17 +11,27 @@ use super::divergence::DivergenceWatch;
 use super::follower::{CommandSource, Follower};
 use super::sums;
 
+/// Windows of a run in which its metrics are evaluated.
+#[derive(Clone, Copy, Debug)]
+pub struct MetricWindows<'a> {
+    /// Windows in the order of their starts.
+    pub windows: &'a [Window],
+    /// Band of settling times, percent.
+    pub band_percent: f64,
+    /// Duration of the run, s.
+    pub duration_s: f64,
+}
+
 impl<'a> Follower<'a> {
-    /// Follower for the loop of a bench whose observer needs these states, over a run of this
-    /// length, s, in windows in the order of their starts; with the band of settling times,
-    /// percent.
+    /// Follower for the loop of a bench whose observer needs these states.
     pub fn of(
         bench: &'a ControlledMachine,
         wanted: &[usize],
         samples: &'a RefCell<ControllerSamples>,
         reference: &'a Profile,
-        (windows, band, duration_s): (&[Window], f64, f64),
+        of_metrics: MetricWindows<'_>,
     ) -> Follower<'a> {
+        let MetricWindows { windows, band_percent, duration_s } = of_metrics;
         let commanded = match &bench.control {
             Control::Continuous(closed) => {
                 CommandSource::Continuously(sums::command(bench, wanted), closed.limit())
@@ -33,7 +43,7 @@ impl<'a> Follower<'a> {
         let [_, inputs] = bench.control.size();
         let range_v = bench.rig.actuator.components().valve.nominal_voltage.min(limit(bench));
         let watch = DivergenceWatch::new(range_v, duration_s, windows);
-        Follower::new(sums::force(bench, wanted), commanded, inputs, reference, (windows, band))
+        Follower::new(sums::force(bench, wanted), commanded, inputs, reference, windows, band_percent)
             .watching(watch)
     }
 }

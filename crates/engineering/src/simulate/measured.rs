@@ -15,7 +15,7 @@ use super::Sample;
 use super::columns::SignalParts;
 use super::metrics::{Measured, Unmeasured};
 use super::motion_file::rising;
-use super::plausible;
+use super::plausible::{self, PhysicalColumn};
 use crate::project::{Findings, MeasuredFile, MeasuredSignal, Project, Refusal, Scenario};
 use crate::quantity::{DisplayUnit, TIME, Units};
 use crate::source;
@@ -78,7 +78,7 @@ pub(super) fn measurements(
     for declared in &scenario.measured {
         let path = project.path_of(&declared.file);
         if let Some(bytes) = findings.bytes_of(source, &path) {
-            let taken = of_file(project, (declared, scenario.duration), (&path, bytes), &mut findings);
+            let taken = of_file(project, declared, scenario.duration, &path, bytes, &mut findings);
             found.extend(taken.unwrap_or_default());
         }
     }
@@ -87,8 +87,10 @@ pub(super) fn measurements(
 
 fn of_file(
     project: &Project,
-    (declared, duration_s): (&MeasuredFile, f64),
-    (path, bytes): (&str, Vec<u8>),
+    declared: &MeasuredFile,
+    duration_s: f64,
+    path: &str,
+    bytes: Vec<u8>,
     findings: &mut Findings,
 ) -> Option<Vec<Measurement>> {
     let measurands: Vec<Measurand> =
@@ -118,7 +120,8 @@ fn of_file(
     for ((signal, column), values) in
         declared.signals.iter().zip(columns.iter().skip(1)).zip(numbers.as_slice())
     {
-        plausible::check(project, &table, (column, signal.signal.dimension()), values, findings);
+        let column = PhysicalColumn { table: &table, column, dimension: signal.signal.dimension() };
+        plausible::check(project, column, values, findings);
     }
     times_s.iter_mut().for_each(|time_s| *time_s += declared.offset);
     rising(&table, time, &times_s, findings);

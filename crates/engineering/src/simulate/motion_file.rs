@@ -10,7 +10,7 @@
 
 use phea_dynamics::simulation::{Profile, ProfileError};
 
-use super::plausible;
+use super::plausible::{self, PhysicalColumn};
 use crate::project::{Findings, Project, RawFinding, Refusal};
 use crate::quantity::{FORCE, LENGTH, RATIO, VOLTAGE};
 use crate::source::Source;
@@ -62,13 +62,14 @@ fn read(
     let mut findings = Findings::default();
     let path = project.path_of(file);
     let bytes = findings.bytes_of(source, &path);
-    let rows = bytes.and_then(|bytes| rows(project, (&path, bytes), values, &mut findings));
+    let rows = bytes.and_then(|bytes| rows(project, &path, bytes, values, &mut findings));
     findings.or_refused(rows.unwrap_or_default())
 }
 
 fn rows(
     project: &Project,
-    (path, bytes): (&str, Vec<u8>),
+    path: &str,
+    bytes: Vec<u8>,
     values: &'static Measurand,
     findings: &mut Findings,
 ) -> Option<Vec<(f64, f64)>> {
@@ -86,7 +87,8 @@ fn rows(
     let numbers = table.all_numbers(&wanted, findings);
     let [times, values_at] = numbers.as_slice() else { return None };
     rising(&table, time, times, findings);
-    plausible::check_driving(project, &table, (value, values.dimension), values_at, findings);
+    let value = PhysicalColumn { table: &table, column: value, dimension: values.dimension };
+    plausible::check_driving(project, value, values_at, findings);
     if times.len() < 2 && findings.error_count() == 0 {
         let of = if std::ptr::eq(values, &POSITION) { "motion" } else { "signal" };
         findings.push(RawFinding::error(table.header_place(), TooFewRows(of).to_string()));

@@ -73,37 +73,39 @@ fn is_of_full_scale(dimension: &Dimension) -> bool {
     [&FORCE, &TORQUE].iter().any(|one| std::ptr::eq(dimension, *one))
 }
 
+/// Column of a table with the dimension of its values.
+#[derive(Clone, Copy)]
+pub(super) struct PhysicalColumn<'a> {
+    pub(super) table: &'a MeasuredTable,
+    pub(super) column: &'a Column,
+    pub(super) dimension: &'static Dimension,
+}
+
 /// Rejects a measured column that exceeds ten times the capability of the rig. It may be as small
 /// as noise.
-pub(super) fn check(
-    project: &Project,
-    table: &MeasuredTable,
-    of_column: (&Column, &'static Dimension),
-    values: &[f64],
-    findings: &mut Findings,
-) {
-    doubt(project, (table, false), of_column, values, findings);
+pub(super) fn check(project: &Project, column: PhysicalColumn<'_>, values: &[f64], findings: &mut Findings) {
+    doubt(project, column, false, values, findings);
 }
 
 /// Rejects a column that drives a scenario by this criterion; forces below a thousandth of the
 /// capability of the rig are rejected too if another unit would make them plausible.
 pub(super) fn check_driving(
     project: &Project,
-    table: &MeasuredTable,
-    of_column: (&Column, &'static Dimension),
+    column: PhysicalColumn<'_>,
     values: &[f64],
     findings: &mut Findings,
 ) {
-    doubt(project, (table, true), of_column, values, findings);
+    doubt(project, column, true, values, findings);
 }
 
 fn doubt(
     project: &Project,
-    (table, drives): (&MeasuredTable, bool),
-    (column, dimension): (&Column, &'static Dimension),
+    column: PhysicalColumn<'_>,
+    drives: bool,
     values: &[f64],
     findings: &mut Findings,
 ) {
+    let PhysicalColumn { table, column, dimension } = column;
     let held = project.actuator.as_ref().and_then(|actuator| held(actuator, dimension));
     let Some((held, holder)) = held.filter(|(held, _)| *held > 0.0) else { return };
     let most =

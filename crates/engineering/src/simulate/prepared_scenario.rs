@@ -119,7 +119,7 @@ pub(super) fn driven_by(
     let file = scenario.start.as_ref().and_then(|start| start.file.as_ref());
     let begins = setting_change.value(0.0);
     let read = |(file, bench): (&String, &ControlledMachine)| {
-        saved::read(source, project, file, (bench, begins)).map_err(SimulateError::Motion)
+        saved::read(source, project, file, bench, begins).map_err(SimulateError::Motion)
     };
     let saved = file.zip(bench).map(read).transpose()?;
     Ok(ScenarioDrive { reference, command, external_force, setting_change, motion, windows, saved })

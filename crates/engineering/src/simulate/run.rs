@@ -15,8 +15,9 @@ use super::bench::ControlledMachine;
 use super::columns::SignalParts;
 use super::divergence::Divergence;
 use super::exceeded::Exceeded;
+use super::following::MetricWindows;
 use super::gas::GasRange;
-use super::measured::{Measurement, Overlay};
+use super::measured::Overlay;
 use super::metrics::Metrics;
 use super::prepared_scenario::PreparedScenario;
 use super::record::Record;
@@ -24,7 +25,7 @@ use super::repetition::{self, PassPlan, PassResult, Repetition};
 use super::run_observer::RunObserver;
 use super::run_status::RunStatus;
 use super::saved::{self, NotSaved, SavedState};
-use super::{NoLedger, RunLedger, RunOutput, RunTable, SimulateError, ToleranceCheck, Window};
+use super::{NoLedger, PreparedRun, RunLedger, RunOutput, RunTable, SimulateError, ToleranceCheck, Window};
 use crate::project::Scenario;
 
 /// Longest interval between two samples, from which figures are drawn: 1 ms would cut off the peaks
@@ -226,12 +227,13 @@ impl RunPass<'_> {
 /// Simulates a scenario once, writes its rows into a table, if one is given, and records its
 /// samples, if requested; `watch` is called with the simulated time at intervals.
 pub(super) fn run<'t>(
-    bench: &ControlledMachine,
-    scenario: &Scenario,
-    (prepared, measurements): (&PreparedScenario, &[Measurement]),
-    (plan, table, output): (PassPlan, Option<RunTable<'t>>, &RunOutput<'_>),
+    run: &PreparedRun<'_>,
+    plan: PassPlan,
+    table: Option<RunTable<'t>>,
+    output: &RunOutput<'_>,
     watch: &mut dyn FnMut(f64) -> bool,
 ) -> Result<RunPass<'t>, SimulateError> {
+    let PreparedRun { scenario, bench, prepared, measured } = run;
     let samples_per_row = if output.attention == Attention::Steps { 1 } else { samples_per_row(scenario) };
     let sample_interval_s = scenario.output_step / samples_per_row as f64;
     let (samples, full) = (RefCell::new(ControllerSamples::default()), Cell::new(false));
@@ -243,10 +245,14 @@ pub(super) fn run<'t>(
     };
     let inputs = inputs(&bench.control, prepared);
     let drive = InputSchedule { duration_s: scenario.duration, output_step_s: sample_interval_s, inputs };
-    let during = (prepared, scenario.settling_band_percent, scenario.duration);
+    let windows = MetricWindows {
+        windows: &prepared.windows,
+        band_percent: scenario.settling_band_percent,
+        duration_s: scenario.duration,
+    };
     let looks = scenario.duration / sample_interval_s;
-    let looking = RunObserver::new(bench, &samples, (table, samples_per_row), measurements, &full, during);
-    let looking = looking.following(output.attention, looks);
+    let looking = RunObserver::new(bench, &samples, measured, &full, prepared, windows);
+    let looking = looking.writing(table, samples_per_row).following(output.attention, looks);
     let looking = if output.samples { looking.keeping(looks + 2.0) } else { looking };
     let looking = if output.line_limits { looking } else { looking.without_line_limits() };
     let mut looking = if output.ledger { looking.accounting() } else { looking };
@@ -257,11 +263,11 @@ pub(super) fn run<'t>(
     let named = |error| SimulateError::Simulation { name: scenario.name.clone(), error };
     let outcome = bench.control.drive(task, &settings, &mut watch).map_err(named)?;
     let seen = looking.finish()?;
-    let occurrences = found((bench, prepared), &outcome, &samples.borrow(), &seen.exceeded);
+    let occurrences = found(bench, prepared, &outcome, &samples.borrow(), &seen.exceeded);
     let outside_model_s = outside_model_s(&occurrences, bench.machine.has_end_stops());
     let memory = memory.into_inner();
     let memory = matches!(bench.control, Control::Sampled(_)).then_some(&memory);
-    let end = saved::of_end(bench, prepared, (outcome.status, &outcome.end, scenario.duration), memory);
+    let end = saved::of_end(bench, prepared, &outcome, scenario.duration, memory);
     let record = Record { units: bench.units, parts: SignalParts::of(bench), ..seen.record };
     let amplification = amplification(&outcome, &samples.borrow());
     let run = ScenarioRun {
@@ -352,7 +358,8 @@ fn inputs(control: &Control, prepared: &PreparedScenario) -> Vec<Input> {
 
 /// All events of the run, including the limits of lines that were exceeded.
 fn found(
-    (bench, prepared): (&ControlledMachine, &PreparedScenario),
+    bench: &ControlledMachine,
+    prepared: &PreparedScenario,
     outcome: &Outcome,
     samples: &ControllerSamples,
     exceeded: &[Exceeded],

@@ -13,6 +13,7 @@ use super::divergence::Divergence;
 use super::exceeded::{Exceeded, LimitWatch};
 use super::files::RunTable;
 use super::follower::Follower;
+use super::following::MetricWindows;
 use super::gas::{GasRange, GasWatch};
 use super::ledgers::{LedgerWatch, NoLedger, RunLedger};
 use super::line_limits::LineWatch;
@@ -97,14 +98,13 @@ impl<'a, 't> RunObserver<'a, 't> {
     pub(super) fn new(
         bench: &'a ControlledMachine,
         samples: &'a RefCell<ControllerSamples>,
-        (table, samples_per_row): (Option<RunTable<'t>>, usize),
         measurements: &'a [Measurement],
         full: &'a Cell<bool>,
-        (prepared, band, duration_s): (&'a PreparedScenario, f64, f64),
+        prepared: &'a PreparedScenario,
+        windows: MetricWindows<'_>,
     ) -> RunObserver<'a, 't> {
         let [states, _] = bench.control.size();
         let wanted: Vec<usize> = (0..states).collect();
-        let windows = (prepared.windows.as_slice(), band, duration_s);
         let follower = Follower::of(bench, &wanted, samples, &prepared.reference, windows);
         let pressures = sums::pressures(bench, &wanted);
         let gas = GasWatch::of(bench, &wanted);
@@ -116,8 +116,8 @@ impl<'a, 't> RunObserver<'a, 't> {
             samples,
             wanted,
             count: 0,
-            samples_per_row: samples_per_row as u64,
-            table,
+            samples_per_row: 1,
+            table: None,
             record: None,
             limits,
             lines,
@@ -135,6 +135,11 @@ impl<'a, 't> RunObserver<'a, 't> {
             full,
             fault: None,
         }
+    }
+
+    /// Writes the rows into a table, if there is one, of which each has this number of samples.
+    pub(super) fn writing(self, table: Option<RunTable<'t>>, samples_per_row: usize) -> RunObserver<'a, 't> {
+        RunObserver { table, samples_per_row: samples_per_row as u64, ..self }
     }
 
     /// Sets the detail in which steps are evaluated, and records some hundreds of values of the

@@ -17,7 +17,7 @@
 
 use std::fmt::Write as _;
 
-use phea_dynamics::simulation::Status;
+use phea_dynamics::simulation::{Outcome, Status};
 use phea_machine::{Control, DigitalMemory};
 
 use super::bench::ControlledMachine;
@@ -100,10 +100,11 @@ fn remembered(number: usize) -> String {
 pub(super) fn of_end(
     bench: &ControlledMachine,
     prepared: &PreparedScenario,
-    (status, end, end_s): (Status, &[f64], f64),
+    outcome: &Outcome,
+    end_s: f64,
     memory: Option<&DigitalMemory>,
 ) -> Result<SavedState, NotSaved> {
-    if status != Status::Completed {
+    if outcome.status != Status::Completed {
         return Err(NotSaved::NotCompleted);
     }
     if bench.units.motion.is_rotary() {
@@ -127,7 +128,7 @@ pub(super) fn of_end(
     }
     Ok(SavedState {
         time_s: end_s,
-        states: state_names(bench).into_iter().zip(end.iter().copied()).collect(),
+        states: state_names(bench).into_iter().zip(outcome.end.iter().copied()).collect(),
         ground_m: prepared.ground.value(end_s),
         setting_change: prepared.setting_change.as_ref().map(|change| change.value(end_s)),
         memory: memory.cloned(),
@@ -171,7 +172,8 @@ pub(super) fn read(
     source: &dyn Source,
     project: &Project,
     file: &str,
-    (bench, setting_change): (&ControlledMachine, f64),
+    bench: &ControlledMachine,
+    setting_change: f64,
 ) -> Result<SavedState, Box<Refusal>> {
     let mut findings = Findings::default();
     let path = project.path_of(file);

@@ -11,8 +11,7 @@ use super::reason::TrialMachine;
 use super::rigs::{TrialRig, rig_with};
 use super::run::{PredictedMachine, TrialRun};
 use super::{STAGE, TrialError};
-use crate::audit::ProjectAudit;
-use crate::robust::RobustProblem;
+use crate::audit::AuditedProblem;
 use crate::setup::Setup;
 use crate::side_by_side::side_by_side;
 use crate::source::Source;
@@ -36,14 +35,14 @@ const LEAST_INSIDE: usize = 4;
 pub(super) fn runs_of_corners(
     source: &dyn Source,
     setup: &Setup<'_>,
-    (problem, view): (&RobustProblem, &ProjectAudit),
+    audited: AuditedProblem<'_>,
     watch: Watch<'_>,
 ) -> Result<Vec<TrialRun>, TrialError> {
-    let rigs = rigs(setup, problem, view)?;
+    let rigs = rigs(setup, audited)?;
     let runs_of = |rig: &TrialRig, watch: Watch<'_>| -> Result<Option<Vec<TrialRun>>, TrialError> {
-        let machine = PredictedMachine::of(rig, problem)?.at_corner();
+        let machine = PredictedMachine::of(rig, audited.problem)?.at_corner();
         let Some(driven) = machine.driven(source, watch)? else { return Ok(None) };
-        let judged = machine.judged(&driven, problem, view).into_iter();
+        let judged = machine.judged(&driven, audited).into_iter();
         Ok(Some(judged.filter(|run| !run.requirements.is_empty()).collect()))
     };
     let each =
@@ -65,11 +64,8 @@ pub(super) fn worst_of(runs: &[TrialRun]) -> Vec<TrialRun> {
     worst
 }
 
-fn rigs(
-    setup: &Setup<'_>,
-    problem: &RobustProblem,
-    view: &ProjectAudit,
-) -> Result<Vec<TrialRig>, TrialError> {
+fn rigs(setup: &Setup<'_>, audited: AuditedProblem<'_>) -> Result<Vec<TrialRig>, TrialError> {
+    let AuditedProblem { problem, view } = audited;
     let Family::Uncertain(family) = &problem.family else { return Ok(vec![]) };
     let (corners, inside) = (corners(family), inside(family));
     let machine = TrialMachine::WorstOfBox { corners: corners.len(), inside: inside.len() };

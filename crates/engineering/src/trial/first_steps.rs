@@ -52,19 +52,19 @@ impl RequiredOfSteps {
     }
 
     /// Steps of a machine.
-    pub(super) fn first_steps(&self, (project, rig): (&Project, &Rig), legs: HeldLegs) -> Vec<FirstSteps> {
-        self.wanted((project, rig), legs).0
+    pub(super) fn first_steps(&self, project: &Project, rig: &Rig, legs: HeldLegs) -> Vec<FirstSteps> {
+        self.wanted(project, rig, legs).0
     }
 
     /// Smaller steps of the scenarios, which are not simulated, from and to, N.
-    pub(super) fn left_out(&self, (project, rig): (&Project, &Rig)) -> Vec<[f64; 2]> {
+    pub(super) fn left_out(&self, project: &Project, rig: &Rig) -> Vec<[f64; 2]> {
         let held_anyhow = HeldLegs { hold_s: 0.0, last: Leg::There };
-        let left = self.wanted((project, rig), held_anyhow).1;
+        let left = self.wanted(project, rig, held_anyhow).1;
         left.into_iter().map(|steps| [steps.from_n, steps.to_n]).collect()
     }
 
     /// Steps of a machine, and those of the scenarios that are omitted.
-    fn wanted(&self, (project, rig): (&Project, &Rig), legs: HeldLegs) -> (Vec<FirstSteps>, Vec<Steps>) {
+    fn wanted(&self, project: &Project, rig: &Rig, legs: HeldLegs) -> (Vec<FirstSteps>, Vec<Steps>) {
         let (mut all, mut left): (Vec<FirstSteps>, Vec<Steps>) = (Vec::new(), Vec::new());
         for &required in &self.stated {
             let steps = Steps::first(rig, required, legs);

@@ -10,7 +10,7 @@ use phea_qft::verification::Verdict;
 use super::reason::{OvershootNote, TrialFinding, UnsettledEnd};
 use super::run::{Agreement, BAND_PERCENT, Leg, StepSize, TrialStep};
 use super::steps::Steps;
-use crate::audit::ProjectAudit;
+use crate::audit::{AuditedProblem, ProjectAudit};
 use crate::robust::RobustProblem;
 use crate::simulate::{RunStatus, ScenarioRun, SimulateError, TimeRequirement};
 
@@ -82,11 +82,8 @@ pub(super) fn not_started(error: &SimulateError, view: &ProjectAudit) -> (Agreem
 }
 
 /// Agreement, and its reason.
-pub(super) fn judge(
-    driven: &Driven<'_>,
-    problem: &RobustProblem,
-    view: &ProjectAudit,
-) -> (Agreement, TrialFinding) {
+pub(super) fn judge(driven: &Driven<'_>, audited: AuditedProblem<'_>) -> (Agreement, TrialFinding) {
+    let AuditedProblem { problem, view } = audited;
     let promised = view.audit.verdict != Verdict::Violated;
     let broken = if promised { Agreement::Contradicts } else { Agreement::Differs };
     if let Some(stopped) = driven.run.stopped() {

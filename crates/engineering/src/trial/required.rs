@@ -29,7 +29,8 @@ pub(crate) const BAND_WITH_ROOM: f64 = 0.9;
 pub(super) fn held(
     requirements: &[TimeRequirement],
     steps: &Steps,
-    (required, run): (RequiredSteps, &ScenarioRun),
+    required: RequiredSteps,
+    run: &ScenarioRun,
 ) -> Vec<HeldRequirement> {
     let concerned = requirements.iter().filter(|one| one.follows && holds_for(one, required));
     let of = |one: &TimeRequirement| {

@@ -9,14 +9,13 @@ use phea_qft::family::Family;
 use phea_qft::verification::PlantPoint;
 
 use super::reason::{MissedParameter, NoRig, NotDriven, TrialMachine, WorstOf};
-use crate::audit::ProjectAudit;
+use crate::audit::{AuditedProblem, ProjectAudit};
 use crate::plant_names::NamedPlant;
 use crate::project::{
     Component, DeclaredActuator, DeclaredLine, DeclaredSeries, LINEAR_PARAMETERS, LineMotion, Linear,
     Project, ValveCoefficients,
 };
 use crate::rig::{Rig, quarter_wave, with_controller_of};
-use crate::robust::RobustProblem;
 use crate::setup::Setup;
 
 /// A machine and its plant in the linear loop.
@@ -46,9 +45,9 @@ const NUDGE: f64 = 1e-3;
 pub(super) fn rigs(
     setup: &Setup<'_>,
     rig: &Rig,
-    problem: &RobustProblem,
-    view: &ProjectAudit,
+    audited: AuditedProblem<'_>,
 ) -> (Vec<TrialRig>, Vec<NotDriven>) {
+    let AuditedProblem { problem, view } = audited;
     let project = setup.project;
     let seen = rig.in_loop();
     let plant = match seen.in_motion {

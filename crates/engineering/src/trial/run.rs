@@ -8,13 +8,13 @@ use super::required::{HeldRequirement, held};
 use super::rigs::TrialRig;
 use super::steps::{CommandLimits, HeldLegs, Steps};
 use super::{STAGE, TrialError};
-use crate::audit::ProjectAudit;
+use crate::audit::AuditedProblem;
 use crate::linear_step::StepResponse;
 use crate::plant_names::NamedPlant;
 use crate::project::{LineMotion, Project};
 use crate::quantity::Units;
 use crate::robust::RobustProblem;
-use crate::setup::Setup;
+use crate::setup::{ProjectInputs, Setup};
 use crate::simulate::{
     RequiredSteps, RunOutput, RunStatus, ScenarioRun, SimulateError, simulate_into, stepped_references,
 };
@@ -243,12 +243,12 @@ impl<'a> PredictedMachine<'a> {
     ) -> Result<Option<Vec<DrivenSteps>>, TrialError> {
         let setup = Setup::new(&self.trial_rig.project)?;
         let rig = setup.rig()?;
-        let on = (source, &setup);
-        let firsts = self.required.first_steps((&self.trial_rig.project, rig), self.legs());
+        let inputs = ProjectInputs { source, setup: &setup };
+        let firsts = self.required.first_steps(&self.trial_rig.project, rig, self.legs());
         let (count, mut all) = (firsts.len() as f64, Vec::new());
         for (index, FirstSteps { size, required, steps }) in firsts.into_iter().enumerate() {
             let fraction = [index, index + 1].map(|done| 0.3 * done as f64 / count);
-            let Some(outcome) = self.driven_by(on, &steps, &mut part(watch, STAGE, fraction)) else {
+            let Some(outcome) = self.driven_by(inputs, &steps, &mut part(watch, STAGE, fraction)) else {
                 return Ok(None);
             };
             all.push(DrivenSteps { size, required, steps, outcome });
@@ -268,7 +268,7 @@ impl<'a> PredictedMachine<'a> {
                 break;
             }
             let from = 0.3 + 0.7 * reduction as f64 / REDUCTIONS as f64;
-            let Some(outcome) = self.driven_by(on, &steps, &mut part(watch, STAGE, [from, 1.0])) else {
+            let Some(outcome) = self.driven_by(inputs, &steps, &mut part(watch, STAGE, [from, 1.0])) else {
                 return Ok(None);
             };
             if outcome.as_ref().is_ok_and(|driven| !is_limited(driven) && !steps.stalls(driven)) {
@@ -282,52 +282,43 @@ impl<'a> PredictedMachine<'a> {
     }
 
     /// Judgement of each run.
-    pub(super) fn judged(
-        &self,
-        all: &[DrivenSteps],
-        problem: &RobustProblem,
-        view: &ProjectAudit,
-    ) -> Vec<TrialRun> {
-        all.iter().map(|driven| self.judgement(driven, (problem, view))).collect()
+    pub(super) fn judged(&self, all: &[DrivenSteps], audited: AuditedProblem<'_>) -> Vec<TrialRun> {
+        all.iter().map(|driven| self.judgement(driven, audited)).collect()
     }
 
     /// Simulates the machine; `None` if `watch` cancels. The first step is made first: if it is
     /// decisive, the other steps and the repetition at smaller tolerances would take most of the
     /// time.
-    fn driven_by(
-        &self,
-        on: (&dyn Source, &Setup<'_>),
-        steps: &Steps,
-        watch: Watch<'_>,
-    ) -> Option<TrialOutcome> {
+    fn driven_by(&self, inputs: ProjectInputs<'_>, steps: &Steps, watch: Watch<'_>) -> Option<TrialOutcome> {
         let once = RunOutput { repeats: false, ..RunOutput::new(true, None) };
         match self.effort {
             TrialEffort::Corner => {
                 // the limit of a line only ends the search for a larger step
                 let line_limits = self.drives_larger();
                 let as_in_campaigns = RunOutput { attention: Attention::Steps, line_limits, ..once };
-                return self.driven_up_to(on, (steps, steps.legs.last), as_in_campaigns, watch);
+                return self.driven_up_to(inputs, steps, steps.legs.last, as_in_campaigns, watch);
             }
-            TrialEffort::Once => return self.driven_up_to(on, (steps, Leg::Again), once, watch),
+            TrialEffort::Once => return self.driven_up_to(inputs, steps, Leg::Again, once, watch),
             TrialEffort::Repeated => {}
         }
-        let first = self.driven_up_to(on, (steps, Leg::There), once, &mut part(watch, STAGE, [0.0, 0.3]));
+        let first = self.driven_up_to(inputs, steps, Leg::There, once, &mut part(watch, STAGE, [0.0, 0.3]));
         if !matches!(&first, Some(Ok(driven)) if !self.is_decided(steps, driven)) {
             return first;
         }
         let whole = RunOutput::new(true, None);
-        self.driven_up_to(on, (steps, Leg::Again), whole, &mut part(watch, STAGE, [0.3, 1.0]))
+        self.driven_up_to(inputs, steps, Leg::Again, whole, &mut part(watch, STAGE, [0.3, 1.0]))
     }
 
     fn driven_up_to(
         &self,
-        (source, setup): (&dyn Source, &Setup<'_>),
-        (steps, last): (&Steps, Leg),
+        inputs: ProjectInputs<'_>,
+        steps: &Steps,
+        last: Leg,
         output: RunOutput<'_>,
         watch: Watch<'_>,
     ) -> Option<TrialOutcome> {
         let project = steps.project(&self.trial_rig.project, last);
-        match simulate_into(source, &setup.for_project(&project), output, watch) {
+        match simulate_into(inputs.source, &inputs.setup.for_project(&project), output, watch) {
             Ok(runs) => runs.into_iter().next().filter(|driven| !driven.was_cancelled()).map(Ok),
             Err(error) => Some(Err(error)),
         }
@@ -343,7 +334,7 @@ impl<'a> PredictedMachine<'a> {
     fn judgement(
         &self,
         DrivenSteps { size, required, steps, outcome }: &DrivenSteps,
-        (problem, view): (&RobustProblem, &ProjectAudit),
+        audited: AuditedProblem<'_>,
     ) -> TrialRun {
         let size = *size;
         let LinearStep { step: linear, ref response, grows } = self.linear;
@@ -370,19 +361,19 @@ impl<'a> PredictedMachine<'a> {
         let run = match outcome {
             Ok(run) => run,
             Err(error) => {
-                let (agreement, finding) = not_started(error, view);
+                let (agreement, finding) = not_started(error, audited.view);
                 return TrialRun { agreement, reason: finding.into(), ..blank };
             }
         };
         let legs: Vec<(Leg, TrialStep)> = steps.driven().map(|leg| (leg, steps.step(run, leg))).collect();
         let driven = Driven { run, steps, size, legs: &legs, linear, grows };
-        let (agreement, finding) = judge(&driven, problem, view);
+        let (agreement, finding) = judge(&driven, audited);
         TrialRun {
             status: run.run_status(),
             machine: Some(driven.whole()),
             worst: driven.worst(),
             remaining_amplitude_n: driven.remains().map(|[low, high]| 0.5 * (high - low)),
-            requirements: held(&problem.in_time, steps, (*required, run)),
+            requirements: held(&audited.problem.in_time, steps, *required, run),
             machine_response: steps.response(run, driven.worst()),
             agreement,
             reason: finding.into(),
@@ -397,13 +388,14 @@ impl<'a> PredictedMachine<'a> {
         &self,
         source: &dyn Source,
         other: &DrivenSteps,
-        (problem, view): (&RobustProblem, &ProjectAudit),
+        audited: AuditedProblem<'_>,
         watch: Watch<'_>,
     ) -> Result<Option<TrialRun>, TrialError> {
         let setup = Setup::new(&self.trial_rig.project)?;
-        let Some(outcome) = self.driven_by((source, &setup), &other.steps, watch) else { return Ok(None) };
+        let inputs = ProjectInputs { source, setup: &setup };
+        let Some(outcome) = self.driven_by(inputs, &other.steps, watch) else { return Ok(None) };
         let DrivenSteps { size, required, steps, .. } = *other;
-        Ok(Some(self.judgement(&DrivenSteps { size, required, steps, outcome }, (problem, view))))
+        Ok(Some(self.judgement(&DrivenSteps { size, required, steps, outcome }, audited)))
     }
 
     /// Cause of the disagreement of a run with waves: the waves, unless the rig with lumped lines

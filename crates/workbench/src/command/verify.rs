@@ -9,8 +9,8 @@ use super::impossible::{Impossible, ImpossibleAnswer};
 use super::unprinted::Unprinted;
 use crate::answer::{Answer, Body};
 use crate::audit::{
-    self, AuditAnswer, CERTIFICATE_FILE, ProjectAudit, audit_problem, certificate_of, problem_to_audit,
-    prove_audit,
+    self, AuditAnswer, AuditedProblem, CERTIFICATE_FILE, ProjectAudit, audit_problem, certificate_of,
+    problem_to_audit, prove_audit,
 };
 use crate::design::below_design;
 use crate::document::Document;
@@ -83,7 +83,8 @@ pub(super) fn verify_answer(
     }
     let watch = &mut within(watch, [proven, 1.0]);
     let corners = DrivenCorners::WhereElseSatisfies;
-    let Some(trial) = simulated_trial(source, &setup, (&problem, &view), corners, watch)? else {
+    let audited = AuditedProblem { problem: &problem, view: &view };
+    let Some(trial) = simulated_trial(source, &setup, audited, corners, watch)? else {
         return Err(RigError::NoActuator.into());
     };
     document.append(audit::output(&view, Some(&trial)));

@@ -4,7 +4,7 @@
 use phea_dynamics::watch::Watch;
 
 use super::design::{self, Designed};
-use crate::audit::{ProjectAudit, audit_problem, prove_claims};
+use crate::audit::{AuditedProblem, ProjectAudit, audit_problem, prove_claims};
 use crate::design::{ProjectDesign, below_design};
 use crate::error::CommandError;
 use crate::robust::{DesignFrequency, RobustProblem, robust_problem};
@@ -53,7 +53,8 @@ pub(super) fn judged(
     let bounds = problem.at_design_frequencies(watch)?;
     let given_trial = match &given {
         Some(view) => {
-            simulated_trial(source, setup, (&problem, view), DrivenCorners::WhereElseSatisfies, watch)?
+            let audited = AuditedProblem { problem: &problem, view };
+            simulated_trial(source, setup, audited, DrivenCorners::WhereElseSatisfies, watch)?
         }
         None => None,
     };

@@ -283,7 +283,7 @@ impl<'a> LedDesign<'a> {
         };
         // a command far from its limit is evaluated only once the design has been found
         if project_design.command_of_steps.as_ref().is_some_and(|command| command.ratio() > COMMAND_NEAR) {
-            found.command_of_steps = command_of_steps((self.setup, &found), self.aimed.plants, depth, watch)?;
+            found.command_of_steps = command_of_steps(self.setup, &found, self.aimed.plants, depth, watch)?;
         }
         Ok(found)
     }

@@ -5,8 +5,8 @@ use phea_qft::specification::Specification;
 
 use super::shaping::{AimedStepLimits, RESERVE_DB, StepShaping};
 use super::{AimedSteps, DesignError, led, with_rig};
+use crate::design::SearchedDesign;
 use crate::design::command_of_steps::ScenarioSteps;
-use crate::design::{DesignRun, ProjectDesign};
 use crate::setup::Setup;
 
 /// Last search of a design that was led by its steps, and its aim.
@@ -16,9 +16,10 @@ pub(in crate::design) type LastStepSearch<'a> = (StepShaping<'a>, (Aim, f64));
 pub(in crate::design) fn last_step_search<'a>(
     setup: &'a Setup<'_>,
     aimed: AimedSteps<'a>,
-    (run, project_design): (&DesignRun, &ProjectDesign),
+    searched: &SearchedDesign,
 ) -> Result<Option<LastStepSearch<'a>>, DesignError> {
-    let (Some(search), Some(led)) = (&run.led, led(setup, aimed, (run, project_design))?) else {
+    let SearchedDesign { run, project_design } = searched;
+    let (Some(search), Some(led)) = (&run.led, led(setup, aimed, searched)?) else {
         return Ok(None);
     };
     let linear = search.room.of(aimed.aim.step_limits(led.required));

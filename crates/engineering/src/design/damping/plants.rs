@@ -207,7 +207,8 @@ fn points(at: &dyn Fn(f64) -> Option<InnerPoint>, end: f64, resonances: Vec<Comp
 pub(super) fn least_damping_ratio(
     source: &dyn Source,
     setup: &Setup<'_>,
-    (probed, band): (&ProbedPlants, [f64; 2]),
+    probed: &ProbedPlants,
+    band: [f64; 2],
 ) -> Result<Option<f64>, DesignError> {
     let family = uncertain(source, setup)?;
     let open = Controller { timing: setup.timing, ..Controller::default() };

@@ -2,11 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use phea_hydraulics::friction::{
-    FRICTION_COEFFICIENTS, LuGre, MultisineShapes, PressedMass, SensitiveDisplacement,
-};
+use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, MultisineShapes, PressedMass, SensitiveDisplacement};
 
-use super::{FrictionProblem, ResidualRows, ZERO};
+use super::{FrictionProblem, MeasuredFriction, OwnVariables, ResidualRows, ZERO};
 use crate::friction::shaking::ShakenRows;
 
 /// Number of variables of a shake in addition to the coefficients of its force: initial position,
@@ -105,14 +103,16 @@ impl FrictionProblem<'_> {
     pub(super) fn shake(
         &self,
         shake: &ShakenRows,
-        (lugre, zero): (&LuGre, f64),
-        (first, own): (usize, &[f64]),
+        friction: &MeasuredFriction,
+        own: OwnVariables<'_>,
         [force_scale, position_scale]: [f64; 2],
-        (cache, rows): (&mut ShapeCache, &mut ResidualRows),
+        cache: &mut ShapeCache,
+        rows: &mut ResidualRows,
     ) -> Option<()> {
+        let OwnVariables { first, values } = own;
         let force = self.around.force;
         let recording = self.recordings.get(shake.recording)?;
-        let found = self.shake_of(own)?;
+        let found = self.shake_of(values)?;
         let count = shake.force.sizes.len();
         let sizes_from = first + BEGINNINGS;
         let shapes = cache.at_rows(shake, recording.time_step);
@@ -123,7 +123,7 @@ impl FrictionProblem<'_> {
                 *to = shape * force / force_scale;
             }
         }
-        let moved = found.moved((self.mass, recording.time_step), lugre, zero, (shake, cache));
+        let moved = found.moved(self.mass, recording.time_step, friction, shake, cache);
         let start = recording.positions.first()? + found.begins;
         let slopes = moved.gradients.chunks_exact(FRICTION_COEFFICIENTS + 2 + count);
         for ((moved, gradient), shown) in moved.displacements.iter().zip(slopes).zip(&recording.positions) {
@@ -132,7 +132,7 @@ impl FrictionProblem<'_> {
             }
             let row = rows.next((start + moved - shown) / position_scale);
             let (coefficients, own) = gradient.split_at(FRICTION_COEFFICIENTS);
-            for (to, slope) in row.iter_mut().zip(self.shared_slopes(lugre, coefficients)) {
+            for (to, slope) in row.iter_mut().zip(self.shared_slopes(&friction.lugre, coefficients)) {
                 *to = slope / position_scale;
             }
             let (state, by_size) = own.split_at(2);
@@ -151,14 +151,16 @@ impl FrictionProblem<'_> {
 }
 
 impl Shake {
-    /// Displacement from the first row, with this zero error of the force.
+    /// Displacement from the first row.
     pub(in crate::friction) fn moved(
         &self,
-        (mass, time_step): (f64, f64),
-        lugre: &LuGre,
-        zero: f64,
-        (shake, cache): (&ShakenRows, &mut ShapeCache),
+        mass: f64,
+        time_step: f64,
+        friction: &MeasuredFriction,
+        shake: &ShakenRows,
+        cache: &mut ShapeCache,
     ) -> SensitiveDisplacement {
+        let MeasuredFriction { lugre, zero } = friction;
         let mut acting = self.sizes.clone();
         acting.iter_mut().take(1).for_each(|mean| *mean -= zero);
         let ringing = (lugre.bristle_stiffness / mass).sqrt();

@@ -3,7 +3,7 @@
 use phea_dynamics::portable;
 use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, FrictionLevels, LuGre, Stribeck};
 
-use super::{Around, FrictionProblem};
+use super::{Around, FrictionProblem, MeasuredFriction};
 use crate::friction::directions::DirectionModel;
 use crate::friction::shaking::ShakenRows;
 
@@ -65,8 +65,8 @@ impl FrictionProblem<'_> {
         self.goes_both_ways && self.directions == DirectionModel::SameBothWays
     }
 
-    /// Friction, and zero error of the force, N.
-    pub(in crate::friction) fn friction(&self, variables: &[f64]) -> (LuGre, f64) {
+    /// Friction and zero error for these variables.
+    pub(in crate::friction) fn friction(&self, variables: &[f64]) -> MeasuredFriction {
         let at = |index: usize| variables.get(index).copied().unwrap_or(0.0);
         let Around { lugre, force, damping, .. } = self.around;
         let by = |value: f64, index: usize| value * portable::exp(at(index));
@@ -88,7 +88,8 @@ impl FrictionProblem<'_> {
             },
         };
         let bristle_stiffness = by(lugre.bristle_stiffness, 5);
-        (LuGre { curve, bristle_stiffness, bristle_damping: at(DAMPING) * damping[1] }, at(ZERO) * force)
+        let lugre = LuGre { curve, bristle_stiffness, bristle_damping: at(DAMPING) * damping[1] };
+        MeasuredFriction { lugre, zero: at(ZERO) * force }
     }
 
     /// Derivatives with respect to the shared variables from those with respect to the

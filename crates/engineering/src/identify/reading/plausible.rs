@@ -45,7 +45,8 @@ pub(super) fn check(
     table: &MeasuredTable,
     columns: &[(TestSignal, Column)],
     taken: &Taken,
-    (rows, known): (&[usize], &Known),
+    rows: &[usize],
+    known: &Known,
     findings: &mut Findings,
 ) {
     let nominal_voltage = known.nominal_voltage;
@@ -70,7 +71,7 @@ pub(super) fn check(
             limits = [LEAST_OF_SUPPLY * supply, BEYOND_SUPPLY * supply];
         }
         if !(limits[0]..=limits[1]).contains(&level) {
-            findings.push(implausible(table, (*signal, column), level, limits, of_supply));
+            findings.push(implausible(table, *signal, column, level, limits, of_supply));
             continue;
         }
         if std::ptr::eq(signal.dimension(), &PRESSURE) {
@@ -110,7 +111,8 @@ fn duration(times: &[f64]) -> f64 {
 /// plausible.
 fn implausible(
     table: &MeasuredTable,
-    (signal, column): (TestSignal, &Column),
+    signal: TestSignal,
+    column: &Column,
     level: f64,
     limits: [f64; 2],
     supply: Option<f64>,

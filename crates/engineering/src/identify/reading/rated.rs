@@ -36,7 +36,8 @@ pub(super) fn check(
     table: &MeasuredTable,
     columns: &[(TestSignal, Column)],
     taken: &Taken,
-    (circuit, known): (PortCircuit, &Known),
+    circuit: PortCircuit,
+    known: &Known,
     findings: &mut Findings,
 ) {
     let column = columns.iter().find(|(signal, _)| *signal == TestSignal::Flow);

@@ -26,7 +26,8 @@ const MOST_OUTLIERS: f64 = 0.05;
 pub(super) fn used(
     table: &MeasuredTable,
     columns: &[(TestSignal, Column)],
-    (numbers, plausible_v): (&ColumnNumbers, f64),
+    numbers: &ColumnNumbers,
+    plausible_v: f64,
     is_input: impl Fn(TestSignal) -> bool,
     findings: &mut Findings,
 ) -> Vec<bool> {
@@ -59,7 +60,7 @@ pub(super) fn used(
         findings.push(table.warning(gaps, column, &message.to_string(), findings));
     }
     leave_out_repeated(table, columns, numbers, &mut is_used, findings);
-    leave_out_outliers(table, columns, (numbers, plausible_v), &mut is_used, findings);
+    leave_out_outliers(table, columns, numbers, plausible_v, &mut is_used, findings);
     is_used
 }
 
@@ -68,7 +69,8 @@ pub(super) fn used(
 fn leave_out_outliers(
     table: &MeasuredTable,
     columns: &[(TestSignal, Column)],
-    (numbers, plausible_v): (&ColumnNumbers, f64),
+    numbers: &ColumnNumbers,
+    plausible_v: f64,
     is_used: &mut [bool],
     findings: &mut Findings,
 ) {

@@ -43,7 +43,7 @@ pub(super) fn flow_gains(
     let null = null.unwrap_or(0.0);
     let of = |recording: &Recording| {
         [1.0, -1.0].map(|sign| {
-            let ways = [true, false].map(|rising| branch(recording, tested, null, (sign, rising)));
+            let ways = [true, false].map(|rising| branch(recording, tested, null, sign, rising));
             let lines: Vec<Estimate> = ways.into_iter().flatten().collect();
             Estimate::mean(&lines).map(|slope| slope.times((drop / 2.0).sqrt()))
         })
@@ -64,7 +64,8 @@ fn branch(
     recording: &Recording,
     tested: &TestedValve,
     null: f64,
-    (sign, rising): (f64, bool),
+    sign: f64,
+    rising: bool,
 ) -> Option<Estimate> {
     let kinds = [SignalKind::PortFlow, SignalKind::PortFlowMagnitude];
     let signal = kinds.into_iter().find_map(|kind| recording.signal(kind))?;

@@ -63,7 +63,7 @@ pub(super) fn measured(
     let shared = LoopParts { rested, model: &model, reference_n, measured_n, amplitude };
     match &bench.control {
         Control::Continuous(closed) => {
-            shared.continuous((&bench.control, closed), frequencies, continues).map(Ok)
+            shared.continuous(&bench.control, closed, frequencies, continues).map(Ok)
         }
         Control::Sampled(sampled) => shared.sampled(sampled, frequencies, continues).map(Ok),
         Control::Open(_) => Ok(Err(NoClosedLoop::Open)),
@@ -132,7 +132,8 @@ impl LoopParts<'_> {
 
     fn continuous(
         &self,
-        (control, closed): (&Control, &CommandedPlant<Sensed<Machine>>),
+        control: &Control,
+        closed: &CommandedPlant<Sensed<Machine>>,
         frequencies: &[f64],
         continues: &mut dyn FnMut(usize) -> bool,
     ) -> Result<MachineResponse, SimulateError> {
