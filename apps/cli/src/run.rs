@@ -210,7 +210,7 @@ fn print_answer(json: bool, outcome: Result<(Answer, Vec<PathBuf>), Failure>) ->
     match outcome {
         Ok((answer, _)) if json => print(&format!("{}\n", answer.json)).map(|()| status(&answer)),
         Ok((answer, written)) => {
-            print(&format!("{}{}", answer.text, written_sentence(&written))).map(|()| status(&answer))
+            print(&format!("{}{}", answer.text(), written_sentence(&written))).map(|()| status(&answer))
         }
         Err(failure) => {
             if json {

@@ -13,7 +13,7 @@ pub(crate) use answer::{body, body_swept, passivity as passivity_body};
 pub(crate) use document::output;
 pub(crate) use document::{
     document, impedance_at_joint, linkage_table, model_words, models, passivity_sentence,
-    required_impedance_sentence, required_impedance_table, root_list,
+    required_impedance_sentence, required_impedance_table, roots,
 };
 pub(crate) use sweep_answer::sweep_document;
 pub(crate) use sweep_answer::{sweep_figure, sweep_files};

@@ -9,5 +9,5 @@ pub use phea_engineering::specification::*;
 
 pub(crate) use answer::{RequiredStepAnswer, WishAnswer, document, wish_answer};
 pub(crate) use late::late;
-pub(crate) use names::{name_words, numbered, stated, subject_words};
+pub(crate) use names::{name_words, numbered, numbered_cell, stated, subject_words};
 pub use requirement::wish_sentence;

@@ -70,6 +70,7 @@ mod plant_of_verdicts;
 mod predicted_step;
 mod prefilter_gain;
 mod pressure_feedback;
+mod printers;
 mod proof;
 mod proof_region;
 mod recorded_signs;

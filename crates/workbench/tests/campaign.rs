@@ -125,7 +125,7 @@ fn an_open_loop_is_drawn_as_a_closed_one_is() {
     for run in 0..2 {
         let request = CampaignRequest { seed: 1, runs: CampaignRuns::One(run), files: false };
         let answer = command::answer(&source, &loaded, &[], &Request::Campaign(request)).unwrap();
-        assert!(answer.text.contains("open loop"), "{}", answer.text);
+        assert!(answer.text().contains("open loop"), "{}", answer.text());
         let project = plan.settings(&plan.draw(run));
         let settings: Vec<String> = SHORT
             .iter()
@@ -404,7 +404,7 @@ fn runs_that_do_not_settle_are_counted_next_to_the_quantiles() {
     assert!(missing.iter().any(|missing| *missing > 1), "{missing:?}");
     for missing in missing.iter().filter(|missing| **missing > 1) {
         let words = format!("settling to 1 % (s); {missing} of 20 do not settle within their window");
-        assert!(answer.text.contains(&words), "{}", answer.text);
+        assert!(answer.text().contains(&words), "{}", answer.text());
     }
 }
 

@@ -226,7 +226,7 @@ fn a_late_feed_forward_is_in_the_loop() {
             &Request::Verify { proof: false, on_machine: true },
         );
         let object: Value = parsed(&output.json);
-        assert_eq!(object["stable"], Value::from(stable), "{gain} {delay_ms}: {}", output.text);
+        assert_eq!(object["stable"], Value::from(stable), "{gain} {delay_ms}: {}", output.text());
         let run = &object["machine"]["runs"][0];
         let overshoot = |of: &str| run[of]["overshoot_percent"].as_f64();
         let machine = overshoot("machine").unwrap();
@@ -236,7 +236,7 @@ fn a_late_feed_forward_is_in_the_loop() {
             assert_eq!(run["agrees"], Value::from(true), "{gain} {delay_ms}: {run}");
         }
         let words = "every plant by its response with the load's velocity fed forward late";
-        assert_eq!(output.text.contains(words), gain != 0, "{}", output.text);
+        assert_eq!(output.text().contains(words), gain != 0, "{}", output.text());
     }
 }
 
@@ -255,7 +255,7 @@ fn a_sampled_feed_forward_is_in_the_loop() {
         let settings = [&SPRUNG[..], &[viscous, &timing[0], &timing[1], &fed, TENTH_ONLY]].concat();
         let output = answer(&text, &settings, &[], &Request::Verify { proof: false, on_machine: true });
         let object: Value = parsed(&output.json);
-        assert_eq!(object["stable"], Value::from(stable), "{gain} {sample_ms} {delay_ms}: {}", output.text);
+        assert_eq!(object["stable"], Value::from(stable), "{gain} {sample_ms} {delay_ms}: {}", output.text());
         let run = &object["machine"]["runs"][0];
         let overshoot = |of: &str| run[of]["overshoot_percent"].as_f64();
         let machine = overshoot("machine").unwrap();
@@ -264,7 +264,7 @@ fn a_sampled_feed_forward_is_in_the_loop() {
             assert!((machine - overshoot("linear").unwrap()).abs() < 5.0, "{gain} {delay_ms}: {run}");
             assert_eq!(run["agrees"], Value::from(true), "{gain} {delay_ms}: {run}");
         }
-        assert!(object["warnings"].as_array().unwrap().is_empty(), "{}", output.text);
+        assert!(object["warnings"].as_array().unwrap().is_empty(), "{}", output.text());
     }
 }
 

@@ -177,7 +177,8 @@ fn allowed_errors_of_the_converters_are_specifications() {
             assert!(design["rounding"]["effects"][2]["rms"].as_f64().unwrap() < 0.055);
         }
     }
-    let text = answer(CONVERTED, &[command], &[], &Request::Verify { proof: false, on_machine: false }).text;
+    let text =
+        answer(CONVERTED, &[command], &[], &Request::Verify { proof: false, on_machine: false }).text();
     assert!(text.contains("\n  command error of the rounded measurement is"), "{text}");
 }
 

@@ -85,7 +85,7 @@ fn a_controller_that_is_not_stable_is_not_to_be_used() {
     let of = |text: &str| {
         let output = answer(text, &[], &[], &design);
         let file = output.files.iter().find(|file| file.name == "designed.toml").unwrap();
-        (output.text.clone(), String::from_utf8(file.bytes.clone()).unwrap())
+        (output.text().clone(), String::from_utf8(file.bytes.clone()).unwrap())
     };
     let (words, file) = of(UNSTABLE);
     let why = "it does not make every plant of the family stable";

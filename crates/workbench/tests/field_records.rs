@@ -305,7 +305,8 @@ fn a_response_is_read_by_its_usual_headings() {
 }
 
 fn places(text: &str, settings: &[&str], request: &Request) -> Vec<Diagnostic> {
-    let error = run_command::try_answer(text, settings, &[], request).map(|answer| answer.text).unwrap_err();
+    let error =
+        run_command::try_answer(text, settings, &[], request).map(|answer| answer.text()).unwrap_err();
     error.refusal().unwrap_or_else(|| panic!("without a place: {error}")).diagnostics.clone()
 }
 
@@ -317,7 +318,7 @@ fn errors_of_the_computed_rig_have_a_place() {
         "{}\n[[specification]]\nkind = \"tracking\"\nfrequencies = [1, 50]\nlower = {{ numerator = \"10\", denominator = \"s + 10\" }}\nupper = {{ numerator = \"2\", denominator = \"s + 2\" }}\n",
         run_command::HOSE
     );
-    let output = run_command::answer(&tracking, &[], &[], &Request::Check).text;
+    let output = run_command::answer(&tracking, &[], &[], &Request::Check).text();
     let line = format!("(line {})", line_of(&tracking, "lower = { numerator = \"10\""));
     assert!(output.contains("limits cross") && output.contains(&line), "{output}");
     let design = Request::Design { seed: None, stages: false, repair: true };

@@ -300,7 +300,7 @@ fn the_answer_has_its_keys_files_and_figures() {
         "frequency-response-closed-loop.svg",
     ];
     assert_eq!(names, expected);
-    assert!(answer.text.contains("minus linear plant"), "{}", answer.text);
+    assert!(answer.text().contains("minus linear plant"), "{}", answer.text());
 }
 
 #[test]

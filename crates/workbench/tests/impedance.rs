@@ -275,7 +275,7 @@ name = "pipe with an inner position loop"
     let both = [2, 3].map(|index| found["alternatives"][index]["columns"].clone());
     assert_eq!(both[0], both[1]);
     assert!(
-        output.text.contains(
+        output.text().contains(
             "pipe with an inner position loop: designed as the same loop with form = \"impedance\""
         )
     );
@@ -380,7 +380,7 @@ fn every_answer_mentions_the_impedance() {
     let models: Value = parsed(&of(&Request::Linearize { sweep: None }).json);
     assert_eq!(models["virtual_impedance"]["stiffness_n_per_m"], 1e5);
     assert_eq!(models["virtual_impedance"]["points"].as_array().unwrap().len(), 5);
-    assert!(of(&Request::Linearize { sweep: None }).text.contains("Impedance requested and achieved"));
+    assert!(of(&Request::Linearize { sweep: None }).text().contains("Impedance requested and achieved"));
     assert!(of(&Request::Check).json.contains("impedance.spring_below"));
     let design = Request::Design { seed: None, stages: false, repair: false };
     let refused = try_answer(&yielding(), &[position, law], &[], &design).unwrap_err().to_string();

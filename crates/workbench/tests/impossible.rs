@@ -59,7 +59,7 @@ fn specifications_in_conflict_are_named_by_their_tables() {
 #[test]
 fn a_step_beyond_the_stall_force_is_reported_once() {
     let text = rig("settling_time = \"5 s\"\namplitude = \"60 kN\"\n");
-    let words = crate::run_command::answer(&text, &[], &[], &Request::Check).text;
+    let words = crate::run_command::answer(&text, &[], &[], &Request::Check).text();
     assert_eq!(words.matches("the piston stalls at").count(), 1, "{words}");
 }
 

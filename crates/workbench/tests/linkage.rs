@@ -177,7 +177,7 @@ fn the_impedance_about_the_joint_is_reported() {
     assert!((geometric / stiffness).abs() > 1e-3, "{geometric}");
     let sentence = "about the joint it is r² (Z + k_g/s), in N·m·s/rad, with the lever arm r = 49.84 mm";
     let found_answer =
-        |text: &str| try_answer(text, &[], &[], &Request::Linearize { sweep: None }).unwrap().text;
+        |text: &str| try_answer(text, &[], &[], &Request::Linearize { sweep: None }).unwrap().text();
     assert!(found_answer(KNEE).contains(sentence));
     assert!(!found_answer(HOSE).contains("joint"));
 }

@@ -127,7 +127,7 @@ fn impossible_means_have_their_reason() {
     assert_eq!(unstated["gas"]["reason"], "not stated: sizing.other_means.force_range");
     let hose = json(crate::run_command::HOSE, &[], &[], &Request::Size { gain: None, length: None });
     assert!(hose.get("other_means").is_none());
-    let text = answer(COMPLIANCE, &[], &[], &Request::Size { gain: None, length: None }).text;
+    let text = answer(COMPLIANCE, &[], &[], &Request::Size { gain: None, length: None }).text();
     assert!(text.contains("of the hose by other means") && text.contains("spring on the rod"), "{text}");
 }
 

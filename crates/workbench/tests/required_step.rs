@@ -26,7 +26,7 @@ fn answer(text: &str, request: &Request) -> (Value, String) {
     let loaded = phea_workbench::project::read(&source, "rig.toml", &[], &[])
         .unwrap_or_else(|report| panic!("{report}"));
     let answer = phea_workbench::command::answer(&source, &loaded, &[], request).unwrap();
-    (parsed(&answer.json), answer.text)
+    (parsed(&answer.json), answer.text())
 }
 
 fn verify(text: &str) -> (Value, String) {
@@ -415,7 +415,7 @@ fn steps_lead_the_design_without_limits_of_tracking() {
     let request = Request::Design { seed: None, stages: false, repair: false };
     let designed = phea_workbench::command::answer(&source, &loaded, &[], &request).unwrap();
     let object: Value = parsed(&designed.json);
-    assert_eq!(object["status"], "met", "{}", designed.text);
+    assert_eq!(object["status"], "met", "{}", designed.text());
     of_its_own(&object);
     let file = designed.files.iter().find(|file| file.name == phea_workbench::design::DESIGNED_PROJECT);
     let (object, words) = verify(std::str::from_utf8(&file.unwrap().bytes).unwrap());

@@ -172,7 +172,7 @@ fn the_answer_has_the_describing_function_of_a_saturation() {
         let answer = response_watched(&source, Some(&loaded), &ResponseRequest::default(), &mut |_| true);
         let answer = answer.unwrap();
         let json: Value = parsed(&answer.json);
-        (answer.text, json["response"]["comparisons"][0].clone())
+        (answer.text(), json["response"]["comparisons"][0].clone())
     };
     let (text, found) = output([2.0, 0.5]);
     assert_eq!(found["files"], serde_json::json!(["small.csv", "large.csv"]));

@@ -188,7 +188,7 @@ pub(crate) fn refused(outcome: Result<Answer, IdentifyError>, expected: &[&str])
     let message = match outcome {
         Err(IdentifyError::Files(report)) => report.render(false),
         Err(other) => other.to_string(),
-        Ok(answer) => panic!("{}", answer.text),
+        Ok(answer) => panic!("{}", answer.text()),
     };
     for part in expected {
         assert!(message.contains(part), "`{part}` is not in: {message}");

@@ -149,9 +149,9 @@ fn a_run_that_begins_some_samples_later_is_the_same() {
 /// The text of a comparison contains the statement of a single run on its repetition.
 #[test]
 fn a_comparison_agrees_with_its_runs() {
-    let output = answer(CONTINUOUS, &SLOW, &[], &Request::Simulate(SimulateRequest::default())).text;
+    let output = answer(CONTINUOUS, &SLOW, &[], &Request::Simulate(SimulateRequest::default())).text();
     let sentence = output.lines().find(|line| line.contains("of the last two passes")).unwrap().trim();
     let projects = [(); 2].map(|()| load(CONTINUOUS, &SLOW, &[]));
     let compared = command::compare_watched(&Memory::default(), &projects, false, &mut |_| true).unwrap();
-    assert!(compared.text.contains(sentence), "{sentence}\n{}", compared.text);
+    assert!(compared.text().contains(sentence), "{sentence}\n{}", compared.text());
 }

@@ -200,9 +200,10 @@ fn an_open_loop_ignores_its_controller() {
     let answer =
         command::answer(&Memory::default(), &loaded, &[], &Request::Simulate(Default::default())).unwrap();
     assert!(
-        answer.text.contains("one: completed open loop (") && answer.text.contains("command to 3 V at 50 ms"),
+        answer.text().contains("one: completed open loop (")
+            && answer.text().contains("command to 3 V at 50 ms"),
         "{}",
-        answer.text
+        answer.text()
     );
     let json: Value = parsed(&answer.json);
     let run = &json["scenarios"][0];

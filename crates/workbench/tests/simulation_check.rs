@@ -88,7 +88,7 @@ fn an_answer_contains_the_check_if_requested() {
         let answer = command::answer(&Memory::default(), &load(settings), &[], request).unwrap();
         assert!(answer.affirmative);
         let json: Value = parsed(&answer.json);
-        (json["scenarios"][0].clone(), answer.text)
+        (json["scenarios"][0].clone(), answer.text())
     };
     let doubt = "more than a thousandth";
     let (plain, text) = run(&[SHORT], &Request::Simulate(Default::default()));
@@ -133,7 +133,7 @@ fn a_run_reports_where_errors_may_be_visible() {
             command::answer(&Memory::default(), &load(settings), &[], &Request::Simulate(Default::default()))
                 .unwrap();
         let json: Value = parsed(&answer.json);
-        (json["scenarios"][0].clone(), answer.text)
+        (json["scenarios"][0].clone(), answer.text())
     };
     let words = "errors within the tolerance may become visible";
     let (calm, text) = run(&[SHORT]);

@@ -83,7 +83,7 @@ fn the_comparison_is_in_text_json_and_a_figure() {
     let (source, loaded) = rig(MAPPED, content);
     let request = Request::Simulate(SimulateRequest { figures: true, ..SimulateRequest::default() });
     let answer = command::answer(&source, &loaded, &[], &request).unwrap();
-    assert!(answer.text.contains("NRMSE") && answer.text.contains("bench.csv `F`"), "{}", answer.text);
+    assert!(answer.text().contains("NRMSE") && answer.text().contains("bench.csv `F`"), "{}", answer.text());
     let json: Value = parsed(&answer.json);
     let row = &json["scenarios"][0]["measured"][0];
     assert_eq!(

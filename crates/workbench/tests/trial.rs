@@ -23,7 +23,7 @@ const DESIGNED: [&str; 4] = [
 
 fn on_machine(settings: &[&str]) -> (bool, Value, String) {
     let output = answer(HOSE, settings, &[], &Request::Verify { proof: false, on_machine: true });
-    (output.affirmative, parsed(&output.json), output.text)
+    (output.affirmative, parsed(&output.json), output.text())
 }
 
 /// The run of this machine.

@@ -150,7 +150,7 @@ fn the_gap_counts_from_the_equilibrium() {
 #[test]
 fn return_and_suction_lines_get_their_bores() {
     let sized = |text: &str| {
-        crate::run_command::answer(text, &[], &[], &Request::Size { gain: None, length: None }).text
+        crate::run_command::answer(text, &[], &[], &Request::Size { gain: None, length: None }).text()
     };
     // ORIGIN: analytic, D = sqrt(4 q/(pi v)) with 9.8 L/min at 1.2 and 0.6 m/s
     assert!(sized(HOSE).contains(

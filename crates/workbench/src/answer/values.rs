@@ -3,7 +3,7 @@
 use num_complex::Complex64;
 
 use super::describe::Describe;
-use super::object::{Json, Object};
+use super::object::Json;
 use super::shape::ValueShape;
 use crate::plant_names::NamedPlant;
 use crate::quantity::QuantityName;
@@ -36,7 +36,6 @@ describe! {
     &str => Text,
     String => Text,
     QuantityName => Text,
-    Object => Open,
 }
 
 impl<Value: Describe> Describe for Box<Value> {

@@ -154,7 +154,7 @@ fn answer(
         reason: rejected.map(|(_, reason)| reason.to_string()),
     };
     Answer {
-        text: out.text(),
+        document: out,
         json: body.into_object().print(MotionKind::default()),
         files: vec![],
         affirmative: rejected.is_none() && is_of_project,

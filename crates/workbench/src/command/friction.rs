@@ -41,7 +41,7 @@ pub fn friction_watched(
         files.extend(picture_files(&friction::pictures(&found)));
     }
     Ok(Answer {
-        text: friction::document(&found).text(),
+        document: friction::document(&found),
         json: friction::json(loaded, &found),
         files,
         affirmative: found.has_converged()

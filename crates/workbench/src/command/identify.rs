@@ -63,7 +63,7 @@ pub fn identify_watched(
         written.extend(picture_files(&ValveFigures::of(&found).all()));
     }
     Ok(Answer {
-        text: identify::document(&found, of_thesis, &read, region.as_ref()).text(),
+        document: identify::document(&found, of_thesis, &read, region.as_ref()),
         json: identify::json(loaded, &found, &read, region.as_ref()),
         files: written,
         affirmative: found.has_converged() && found.not_identifiable.is_empty(),

@@ -53,7 +53,7 @@ pub fn line_watched(
     let pictures = picture_files(&drawn);
     let affirmative = found.effective_bulk_modulus.is_ok() || found.dynamic_bulk_modulus.is_ok();
     Ok(Answer {
-        text: line_test::document(&found).text(),
+        document: line_test::document(&found),
         json: line_test::json(loaded, &found),
         files: line_test::files(&found).into_iter().chain(pictures).collect(),
         affirmative,

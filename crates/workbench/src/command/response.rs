@@ -76,7 +76,7 @@ pub fn response_watched(
     let pictures = picture_files(&drawn);
     let files = response::files(&found).into_iter().chain(pictures).collect();
     Ok(Answer {
-        text: response::document(&found, &comparisons).text(),
+        document: response::document(&found, &comparisons),
         json: response::json(loaded, &found, &comparisons),
         files,
         affirmative: true,

@@ -29,7 +29,7 @@ pub(crate) fn write(found: &FrictionIdentification, out: &mut Document) {
         let rows = points.iter().map(|point| {
             [
                 Cell::from(file(found, point.recording)),
-                Cell::number(DisplayUnit::MILLIMETRE.of(point.velocity), 4),
+                Cell::number_in(point.velocity, 4, DisplayUnit::MILLIMETRE),
                 Cell::number(point.force, 4),
                 Cell::number(point.modelled, 4),
             ]
@@ -102,7 +102,7 @@ fn rows(found: &FrictionIdentification) -> Vec<[Cell; 5]> {
             true => Cell::number(end, 4),
             false => Cell::Missing,
         });
-        [Cell::Code(name), value, low, high, Cell::from(unit)]
+        [Cell::Code(name), value, low, high, Cell::unit(unit)]
     };
     coefficients(found).map(row).collect()
 }

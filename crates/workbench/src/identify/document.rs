@@ -232,11 +232,11 @@ fn signal(found: &Identification, signal: &SignalFit) -> [Cell; 8] {
         Cell::from(file),
         Cell::from(signal.kind.name().replace('_', " ")),
         Cell::count(signal.rows),
-        Cell::number(unit.of(signal.rms), 3),
-        Cell::number(unit.of(found.residual_rms_of(signal, &found.first_guess)), 3),
-        Cell::number(unit.of(signal.range), 4),
-        Cell::from(unit.symbol),
-        Cell::decimal(signal.correlation, 2),
+        Cell::number_in(signal.rms, 3, unit),
+        Cell::number_in(found.residual_rms_of(signal, &found.first_guess), 3, unit),
+        Cell::number_in(signal.range, 4, unit),
+        Cell::unit(unit.symbol),
+        Cell::decimal(signal.correlation, 2, DisplayUnit::ONE),
     ]
 }
 

@@ -21,7 +21,7 @@ use port::{
 };
 use stiffness::{LinearStiffnessAnswer, stiffness};
 
-pub(crate) use port::{PassivityAnswer, passivity};
+pub(crate) use port::{PassivityAnswer, passivity, phase_difference_deg};
 
 /// Answer of `linearize`.
 #[derive(Answer)]
@@ -83,8 +83,12 @@ struct ModelPolesAnswer {
     plant: Vec<Complex64>,
     /// Fifth-order model (thesis 6.7) with the parameters in use.
     full: Vec<Complex64>,
+    /// Fifth-order model (thesis 6.7) with derived parameters.
+    full_derived: Vec<Complex64>,
     /// Decomposed model (thesis 6.12) with the damping corrected.
     decomposed: Vec<Complex64>,
+    /// Decomposed model as the thesis prints it.
+    decomposed_as_printed: Vec<Complex64>,
     /// First-order model (thesis 6.13).
     first_order: Vec<Complex64>,
     /// Linearised two-pressure model with derived parameters.
@@ -228,7 +232,9 @@ fn model_poles(linearization: &Linearization) -> ModelPolesAnswer {
     ModelPolesAnswer {
         plant: linearization.plant.command.poles().to_vec(),
         full: linearization.full.command.poles().to_vec(),
+        full_derived: linearization.derived_full.command.poles().to_vec(),
         decomposed: linearization.decomposed[1].poles().to_vec(),
+        decomposed_as_printed: linearization.decomposed[0].poles().to_vec(),
         first_order: linearization.first_order.poles().to_vec(),
         two_pressure: linearization.two_pressure.command.poles().to_vec(),
     }

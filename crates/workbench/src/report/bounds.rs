@@ -18,6 +18,7 @@ use crate::error::CommandError;
 use crate::figure::{
     BoundGroup, Figure, FrequencySeries, NicholsChart, OpenLoopViolation, USUAL_CONTOURS_DB, Words, templates,
 };
+use crate::quantity::DisplayUnit;
 use crate::robust::{DesignFrequency, RobustProblem};
 use crate::specification::{kind_key, name_words, stated};
 use crate::verdict_words::frequency_number;
@@ -258,15 +259,18 @@ fn placement(problem: &RobustProblem, placement: &Placement) -> Cell {
             Cell::from("allowed, nothing is forbidden at this phase").marked(true)
         }
         Placement::Allowed { slack_db } => {
-            Cell::from(format!("allowed, {} dB from a bound", significant(*slack_db, 3))).marked(true)
+            let slack = Cell::quantity(*slack_db, 3, DisplayUnit::DECIBEL);
+            slack.between("allowed, ", " from a bound").marked(true)
         }
         Placement::Forbidden { by, nearest_db } => {
             let names: Vec<String> = by.iter().map(|index| named(problem, *index)).collect();
             let change = match nearest_db {
-                Some(change) => format!("allowed with {change:+.2} dB"),
-                None => "no gain is allowed at this phase".to_string(),
+                Some(change) => {
+                    Cell::from("allowed with ").then(Cell::change(*change, 2, DisplayUnit::DECIBEL))
+                }
+                None => "no gain is allowed at this phase".into(),
             };
-            Cell::from(format!("forbidden by {}; {change}", names.join(", "))).marked(false)
+            Cell::from(format!("forbidden by {}; ", names.join(", "))).then(change).marked(false)
         }
     }
 }

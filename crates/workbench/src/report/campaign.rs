@@ -235,7 +235,7 @@ fn drawn(out: &mut Document, plan: &Plan, summary: &Summary) {
         let shown = range.unit();
         let unit = if shown.symbol == "1" { "" } else { shown.symbol };
         let all = [range.minimum, range.maximum].into_iter().chain(values);
-        let numbers = all.map(|value| Cell::number(shown.of(value), DIGITS));
+        let numbers = all.map(|value| Cell::number_in(value, DIGITS, shown));
         [Cell::Code(range.path.clone()), Cell::unit(unit)].into_iter().chain(numbers).collect::<Vec<_>>()
     };
     let normal = plan.ranges().iter().any(|range| range.distribution == Distribution::Normal);

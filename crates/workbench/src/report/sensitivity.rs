@@ -130,7 +130,12 @@ fn event_table(varied: &[VariedQuantity], event: usize) -> Option<Table> {
             rows.group(varied.quantity);
         }
         let as_declared = if varied.factor == 1.0 { ", as declared" } else { "" };
-        rows.row(metrics_row(format!("{}{as_declared}", varied.value), &shown, (&metrics, units), None));
+        rows.row(metrics_row(
+            format!("{}{as_declared}", varied.value).into(),
+            &shown,
+            (&metrics, units),
+            None,
+        ));
     }
     Some(rows)
 }

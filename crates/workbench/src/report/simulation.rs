@@ -9,7 +9,7 @@ use crate::figure::Figure;
 use crate::project::{Project, Scenario};
 use crate::quantity::{MotionWords, Units};
 use crate::simulate::{
-    Metric, Metrics, NamedRun, TimeRequirement, TrackingWish, Window, adjustment_sentence, cause_words,
+    Metric, Metrics, NamedRun, TimeRequirement, TrackingWish, Window, adjustment_sentence, cause_cell,
     cells_of, close_ups, coarse_sentence, gas_sentence, headline, label_within, measured, measured_together,
     metrics_row, occurrence_sentences, pictures, published, published_row, required_overshoot,
     required_settling, requirement_of, together, turns, windows,
@@ -127,11 +127,11 @@ fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, required: Option<&TimeReq
             let heads = std::iter::once(String::new()).chain(words);
             let mut rows = Table::grouped_by("event", heads);
             for (index, (window, _)) in first.windows.iter().enumerate() {
-                rows.group(cause_words(window, first.record.units));
+                rows.group(cause_cell(window, first.record.units));
                 for named in several {
                     if let Some((_, metrics)) = named.run.windows.get(index) {
                         rows.row(metrics_row(
-                            named.name.to_string(),
+                            Cell::Code(named.name.to_string()),
                             &shown,
                             (metrics, named.run.record.units),
                             requirement_of(required, window),

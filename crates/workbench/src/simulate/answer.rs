@@ -13,6 +13,7 @@ use super::frequency::{self, MachineResponsesAnswer};
 use super::{MachineResponses, ScenarioComparison, ScenarioRun, required_of_run, state_names};
 use crate::answer::{Answer, RecordedAnswer, body_in_use};
 use crate::project::Loaded;
+pub(crate) use event::{SteppedAnswer, stepped};
 use scenario::{ScenarioAnswer, scenario};
 
 /// Answer of `simulate`.

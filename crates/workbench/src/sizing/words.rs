@@ -7,6 +7,7 @@ use super::{
     SoonerRequirement, TimeConstantOrigin, UncertainHoseNumber, UnlikeLines,
 };
 use crate::answer::significant;
+use crate::document::Cell;
 use crate::quantity::DisplayUnit;
 use crate::rig::{FlowLimit, LargestFlow};
 
@@ -46,9 +47,10 @@ pub(crate) fn uncertain_name(quantity: UncertainHoseNumber) -> &'static str {
 }
 
 /// Low, nominal and high, with their unit.
-pub(super) fn setting_words(influence: &Influence) -> String {
-    let unit = influence.unit;
-    unit.with_symbol(influence.values.map(|value| unit.number(value, 4)).join(" · "))
+pub(super) fn setting_cell(influence: &Influence) -> Cell {
+    let [low, nominal, high] = influence.values;
+    let [low, nominal] = [low, nominal].map(|value| Cell::number_in(value, 4, influence.unit));
+    Cell::listed([low, nominal, Cell::quantity(high, 4, influence.unit)], " · ")
 }
 
 /// Reason why the winding of a spring is not known.

@@ -62,7 +62,7 @@ fn far(entry: &KeyEntry, own: &Loaded) -> Vec<String> {
 fn outputs(loaded: &Loaded) -> String {
     let source = Memory::default();
     let text = |request: &Request| match answer(&source, loaded, &[], request) {
-        Ok(answer) => answer.text,
+        Ok(answer) => answer.text(),
         Err(error) => error.to_string(),
     };
     let printed = [Request::Check, Request::Size { gain: None, length: None }].map(|request| text(&request));

@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::frequency::PassivityReport;
-use phea_dynamics::portable::magnitude;
+use phea_dynamics::portable::{argument, magnitude};
 use phea_hydraulics::impedance::{Asymptote, AsymptoteKind};
 
 use super::super::{
@@ -117,6 +117,8 @@ struct VirtualImpedancePointAnswer {
     asked: Complex64,
     /// Impedance -F_e/(s X_L) of the loop, in the unit of the magnitude.
     shown: Complex64,
+    /// Phase of the impedance of the loop less that of the required one, within half a turn.
+    phase_difference_deg: f64,
 }
 
 /// Force or torque that remains after a step of the position by 0.001.
@@ -193,6 +195,7 @@ fn virtual_impedance_point(point: &AskedAt) -> VirtualImpedancePointAnswer {
         shown_magnitude: magnitude(point.shown),
         asked: point.asked,
         shown: point.shown,
+        phase_difference_deg: phase_difference_deg(point),
     }
 }
 
@@ -206,4 +209,9 @@ pub(super) fn final_forces(linearization: &Linearization) -> FinalForcesAnswer {
         open_loop: OrReason::new(linearization.open_loop.final_force_n, unstable),
         closed_loop: OrReason::new(closed_loop, reason),
     }
+}
+
+/// Phase of the impedance of the loop less that of the required one, within half a turn.
+pub(crate) fn phase_difference_deg(point: &AskedAt) -> f64 {
+    argument(point.shown / point.asked).to_degrees()
 }
