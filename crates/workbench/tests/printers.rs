@@ -177,7 +177,7 @@ fn linearize() {
 #[test]
 fn verify() {
     let request = Request::Verify { proof: false, on_machine: false };
-    agree(&[HOSE, SERVO_SHAPED, BY_HAND, UNSTABLE, VANE], &[], &request);
+    agree(&[HOSE, SERVO, UNSTABLE, VANE], &[], &request);
 }
 
 #[test]
