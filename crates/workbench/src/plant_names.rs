@@ -35,7 +35,7 @@ pub fn plant_text(names: &PlantNames, plant: &PlantPoint) -> String {
 /// A plant in one cell, in the words of [`plant_text`].
 pub(crate) fn plant_cell(names: &PlantNames, plant: &PlantPoint) -> Cell {
     match (names, plant) {
-        (_, PlantPoint::Beside(_)) => ADDED.into(),
+        (_, PlantPoint::Additional(_)) => ADDED.into(),
         (PlantNames::Parameters(own), PlantPoint::Parameters(values))
             if own.is_empty() || values.is_empty() =>
         {

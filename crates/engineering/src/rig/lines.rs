@@ -6,7 +6,7 @@ use phea_hydraulics::actuator::Components;
 use phea_hydraulics::line::{
     Conduit, END_SHARE, LaminarFriction, Line, LineError, LineModel, Stiffening, StiffeningMember,
 };
-use phea_hydraulics::plant::{BehindLines, LinearPlant, PlantInMotion};
+use phea_hydraulics::plant::{LineChambers, LinearPlant, PlantInMotion};
 use phea_hydraulics::servovalve::ChamberCoefficients;
 use phea_hydraulics::stiffness::compliance_at;
 
@@ -33,14 +33,14 @@ impl RigAtPoint {
             [None, None] => compliances,
             _ => without_branches(components, pressures, compliances),
         };
-        let chambers_alone = own(compliance_at(&bare, point.position));
+        let chambers_only = own(compliance_at(&bare, point.position));
         let leakage = components.cylinder.external_leakage.unwrap_or(0.0);
         // in the limit of an ideal valve both coefficients would vanish
         let ChamberCoefficients { flow_pressure_a, flow_pressure_b, .. } = self.leaking;
         let leaking = [flow_pressure_a, flow_pressure_b].map(|whole| leakage / whole);
         Ok(moving.map(|lines| {
             let lumped = own(chambers.compliances);
-            let behind = BehindLines { lines, chambers: chambers_alone, lumped, leaking };
+            let behind = LineChambers { lines, chambers: chambers_only, lumped, leaking };
             PlantInMotion::new(plant, &behind)
         }))
     }
@@ -70,16 +70,16 @@ fn without_volume(mut line: Line) -> Line {
 
 /// The model of a line in motion as it is declared.
 pub fn line_model(motion: &LineMotion) -> LineModel {
-    let share = |stated: &Option<f64>| stated.unwrap_or(END_SHARE);
+    let fraction = |stated: &Option<f64>| stated.unwrap_or(END_SHARE);
     match motion {
         LineMotion::Automatic | LineMotion::Lumped => LineModel::Lumped,
         LineMotion::Creeping { relaxation_time } => LineModel::Creeping { relaxation_time: *relaxation_time },
         LineMotion::Segments(segments) => segmented(segments),
         LineMotion::TransmissionLine { end_share } => {
-            LineModel::TransmissionLine { end_share: share(end_share) }
+            LineModel::TransmissionLine { end_share: fraction(end_share) }
         }
         LineMotion::TwoWave { end_share, wall } => {
-            LineModel::TwoWave { end_share: share(end_share), wall: wall.unwrap_or_default() }
+            LineModel::TwoWave { end_share: fraction(end_share), wall: wall.unwrap_or_default() }
         }
     }
 }

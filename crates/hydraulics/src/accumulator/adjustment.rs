@@ -86,8 +86,8 @@ impl GasValve {
 
 fn setting_problems(setting: f64) -> Vec<ParameterError> {
     let mut problems = Problems::default();
-    let is_share = (0.0..=1.0).contains(&setting);
-    problems.require("adjustment.setting", setting, is_share, ParameterRequirement::FractionWithEnds);
+    let is_fraction = (0.0..=1.0).contains(&setting);
+    problems.require("adjustment.setting", setting, is_fraction, ParameterRequirement::FractionWithEnds);
     problems.into_vec()
 }
 

@@ -88,15 +88,15 @@ impl<S: TableNumber> Variants<S> for LineMotion<S> {
     }
 
     fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
-        let share = key("end_share", &RATIO, "Share of the compliance at each end of a line with waves.");
-        let share = share.positive().below(0.5);
+        let fraction = key("end_share", &RATIO, "Share of the compliance at each end of a line with waves.");
+        let fraction = fraction.positive().below(0.5);
         match self {
             LineMotion::Automatic | LineMotion::Lumped => {}
             LineMotion::Creeping { relaxation_time } => v.quantity(RELAXATION, relaxation_time),
             LineMotion::Segments(segments) => segments.visit(v),
-            LineMotion::TransmissionLine { end_share } => v.optional(share, end_share),
+            LineMotion::TransmissionLine { end_share } => v.optional(fraction, end_share),
             LineMotion::TwoWave { end_share, wall } => {
-                v.optional(share, end_share);
+                v.optional(fraction, end_share);
                 let k = plain("wall", "The wall of a hose with two waves; what is absent is assumed.");
                 v.table(k, wall, LineWall::visit);
             }

@@ -51,8 +51,8 @@ impl TransmissionLine {
 
 pub(super) fn check_end_share(end_share: f64) -> Result<(), LineError> {
     let mut problems = Problems::default();
-    let is_share = end_share > 0.0 && end_share < 0.5;
-    problems.require("end_share", end_share, is_share, ParameterRequirement::BelowHalf);
+    let is_fraction = end_share > 0.0 && end_share < 0.5;
+    problems.require("end_share", end_share, is_fraction, ParameterRequirement::BelowHalf);
     let problems = problems.into_vec();
     if problems.is_empty() { Ok(()) } else { Err(LineError::Impossible { problems }) }
 }

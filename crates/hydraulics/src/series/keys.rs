@@ -158,7 +158,7 @@ impl<S: TableNumber> DeclaredTransmission<S> {
         v.optional_count(k.at_most(MOST_SEGMENTS as f64), &mut segments);
         self.segments = segments.unwrap_or(SEGMENTS);
         v.needed_table(plain("line", "The hose or pipe between its pistons."), &mut self.line, |line, v| {
-            line.visit_alone(v);
+            line.visit_unconnected(v);
         });
         let k = key("cylinder_length", &LENGTH, "Length of either of its cylinders, when retracted.");
         v.optional(k.positive(), &mut self.cylinder_length);

@@ -87,7 +87,7 @@ pub(crate) fn replaced_table(ranges: &[ReplacedRange]) -> Table {
     let row = |range: &ReplacedRange| {
         let ends = [range.stated[0], range.stated[1], range.visited[0], range.visited[1]];
         let [least, most, low, high] = ends.map(|end| Cell::number(end, 3));
-        let percent = Cell::quantity(range.share, 2, DisplayUnit::PERCENT);
+        let percent = Cell::quantity(range.fraction, 2, DisplayUnit::PERCENT);
         [range.symbol.into(), least, most, low, high, Cell::unit(range.unit), percent]
     };
     let headings = ["quantity", "replaced from", "to", "visited from", "to", "unit", "share visited"];
@@ -129,13 +129,13 @@ fn stated(derived: &[Derived]) -> Vec<&Derived> {
 /// A stated value next to the derived one, in a sentence.
 fn sentence(quantity: &Derived, units: &WrittenUnits) -> String {
     let Some(stated) = &quantity.stated else { return String::new() };
-    let shown = |value: f64| significant(units.shown(&quantity.name, value, quantity.unit).0, 4);
-    let with_unit = match units.shown(&quantity.name, stated.value, quantity.unit).1.as_str() {
-        "1" => shown(stated.value),
-        unit => format!("{} {unit}", shown(stated.value)),
+    let displayed = |value: f64| significant(units.displayed(&quantity.name, value, quantity.unit).0, 4);
+    let with_unit = match units.displayed(&quantity.name, stated.value, quantity.unit).1.as_str() {
+        "1" => displayed(stated.value),
+        unit => format!("{} {unit}", displayed(stated.value)),
     };
     let bounds = stated.bounds.map_or(String::new(), |[minimum, maximum]| {
-        format!(", from {} to {}", shown(minimum), shown(maximum))
+        format!(", from {} to {}", displayed(minimum), displayed(maximum))
     });
     let own = if quantity.outside_own_bounds() { "; the stated value lies outside these bounds" } else { "" };
     let verdict = match (quantity.contradicts_derived(), stated.bounds) {
@@ -150,6 +150,6 @@ fn sentence(quantity: &Derived, units: &WrittenUnits) -> String {
         quantity.symbol,
         with_unit,
         stated.place,
-        quantity.value.map_or("-".to_string(), shown)
+        quantity.value.map_or("-".to_string(), displayed)
     )
 }

@@ -4,11 +4,11 @@ use num_complex::Complex64;
 use phea_dynamics::frequency::PassivityReport;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;
-use phea_hydraulics::linear::{ModeShare, ResponseDifference};
+use phea_hydraulics::linear::{ModeContribution, ResponseDifference};
 
 use super::answer::phase_difference_deg;
 use super::{
-    AgreementBand, AskedAt, AskedImpedance, FIRST_ORDER, LUMPED, Linearization, LinkagePlace,
+    AgreementBand, ComparedImpedance, RequiredImpedance, FIRST_ORDER, LUMPED, Linearization, LinkagePlace,
     LinkagePosition, ReductionDifference, WITHIN_DB, WITHIN_DEG, WITHIN_PERCENT, hiding_mass_words,
     no_closed_impedance_words, stiffness_sentence,
 };
@@ -47,7 +47,7 @@ pub(crate) fn output(setup: &Setup<'_>, linearization: &Linearization) -> Docume
         ),
     ]);
     out.sentences(impedance_at_joint(linearization));
-    if let Some(required) = &linearization.asked {
+    if let Some(required) = &linearization.required_impedance {
         out.section("Impedance requested and achieved", required_impedance_table(required, motion));
         out.sentences([required_impedance_sentence(required)]);
     }
@@ -117,13 +117,13 @@ pub(crate) fn impedance_at_joint(linearization: &Linearization) -> Option<String
 }
 
 /// A virtual impedance and the impedance at the port, at a few frequencies.
-pub(crate) fn required_impedance_table(required: &AskedImpedance, motion: MotionKind) -> Table {
-    let row = |point: &AskedAt| {
+pub(crate) fn required_impedance_table(required: &RequiredImpedance, motion: MotionKind) -> Table {
+    let row = |point: &ComparedImpedance| {
         let size = |value: Complex64| Cell::number(portable::magnitude(value), 3);
         [
             Cell::number(point.frequency_rad_per_s, 3),
-            size(point.asked),
-            size(point.shown),
+            size(point.required),
+            size(point.achieved),
             Cell::number_in(phase_difference_deg(point), 2, DisplayUnit::IN_DEGREES),
         ]
     };
@@ -134,7 +134,7 @@ pub(crate) fn required_impedance_table(required: &AskedImpedance, motion: Motion
 }
 
 /// Sentence on the band in which the port has the required impedance.
-pub(crate) fn required_impedance_sentence(required: &AskedImpedance) -> String {
+pub(crate) fn required_impedance_sentence(required: &RequiredImpedance) -> String {
     let within = significant(WITHIN_PERCENT, 3);
     match required.follows_rad_per_s {
         Some([from, to]) => format!(
@@ -147,11 +147,11 @@ pub(crate) fn required_impedance_sentence(required: &AskedImpedance) -> String {
 }
 
 /// A mode with its participation and decay ratio, or the reason why a number does not exist.
-fn mode_cells(mode: &ModeShare) -> [Cell; 3] {
+fn mode_cells(mode: &ModeContribution) -> [Cell; 3] {
     let absence = mode.absence.map(|absence| absence.to_string()).unwrap_or_default();
     let or =
         |value: f64, otherwise: &str| if value.is_nan() { otherwise.into() } else { Cell::number(value, 3) };
-    [roots(&[mode.pole]), or(mode.step_share, &absence), or(mode.decay_ratio, "none")]
+    [roots(&[mode.pole]), or(mode.step_fraction, &absence), or(mode.decay_ratio, "none")]
 }
 
 /// The bands of an agreement in words.

@@ -1,59 +1,59 @@
 //! Required steps and the values that a step reaches, in words.
 
 use super::metrics::STATED;
-use super::{NO_OVERSHOOT_PERCENT, ReachedStep, TrackingWish};
+use super::{NO_OVERSHOOT_PERCENT, ReachedStep, StepLimits};
 use crate::document::Cell;
 use crate::quantity::DisplayUnit;
 
 /// The required overshoot.
-pub(crate) fn required_overshoot(required: &TrackingWish) -> Option<String> {
+pub(crate) fn required_overshoot(required: &StepLimits) -> Option<String> {
     overshoot(required).map(|cell| cell.text())
 }
 
-fn overshoot(required: &TrackingWish) -> Option<Cell> {
+fn overshoot(required: &StepLimits) -> Option<Cell> {
     let most = required.overshoot_percent?;
     let most_cell = Cell::short(most, STATED, DisplayUnit::IN_PERCENT);
     Some(if most == 0.0 { "no overshoot".into() } else { most_cell.between("at most ", " overshoot") })
 }
 
 /// The required settling time.
-pub(crate) fn required_settling(required: &TrackingWish) -> Option<String> {
+pub(crate) fn required_settling(required: &StepLimits) -> Option<String> {
     settling(required).map(|cell| cell.text())
 }
 
-fn settling(required: &TrackingWish) -> Option<Cell> {
+fn settling(required: &StepLimits) -> Option<Cell> {
     let time = Cell::short(required.settling_time_s?, STATED, DisplayUnit::SECOND);
     let band = Cell::short(required.band_percent, STATED, DisplayUnit::IN_PERCENT);
     Some(band.between("settled within ", " in ").then(time))
 }
 
 /// The required rise time.
-pub(crate) fn required_rise(required: &TrackingWish) -> Option<String> {
+pub(crate) fn required_rise(required: &StepLimits) -> Option<String> {
     rise(required).map(|cell| cell.text())
 }
 
-fn rise(required: &TrackingWish) -> Option<Cell> {
+fn rise(required: &StepLimits) -> Option<Cell> {
     let time = Cell::short(required.rise_time_s?, STATED, DisplayUnit::SECOND);
     Some(Cell::from("risen from ").then(Cell::unit("10 to 90 %")).then(" in ").then(time))
 }
 
 /// The requirements on a step.
-pub(crate) fn required_words(required: &TrackingWish) -> String {
+pub(crate) fn required_words(required: &StepLimits) -> String {
     required_cell(required).text()
 }
 
 /// The requirements on a step in a cell.
-pub(crate) fn required_cell(required: &TrackingWish) -> Cell {
+pub(crate) fn required_cell(required: &StepLimits) -> Cell {
     Cell::listed([overshoot(required), settling(required), rise(required)].into_iter().flatten(), ", ")
 }
 
 /// Values that a step reaches, for the required quantities.
-pub(crate) fn reached_words(required: &TrackingWish, reached: &ReachedStep) -> String {
+pub(crate) fn reached_words(required: &StepLimits, reached: &ReachedStep) -> String {
     reached_cell(required, reached).text()
 }
 
 /// Values that a step reaches in a cell.
-pub(crate) fn reached_cell(required: &TrackingWish, reached: &ReachedStep) -> Cell {
+pub(crate) fn reached_cell(required: &StepLimits, reached: &ReachedStep) -> Cell {
     if reached.overshoot_percent == f64::INFINITY {
         return "stopped before the end of the run".into();
     }

@@ -132,7 +132,7 @@ fn valve_cell(valve: &SizedValve) -> Cell {
     let unit = DisplayUnit { symbol: "m3/(s.Pa)", in_si: 1.0 };
     let [ratio, at] = valve.most;
     let most = Cell::number(ratio, 3).then(" at most, with ");
-    let own_damping = Cell::number(valve.alone, 3);
+    let own_damping = Cell::number(valve.damping_ratio_without_valve, 3);
     let Some(conductance) = valve.conductance else {
         let from =
             own_damping.between(" (no conductance damps the load cell so much: from ", " without it to ");
