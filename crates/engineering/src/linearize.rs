@@ -35,14 +35,16 @@ pub use agreement::AgreementBand;
 pub use agreement::{FIRST_ORDER, LUMPED, WITHIN_DB, WITHIN_DEG};
 pub use linkage::{LinkagePlace, LinkagePosition, linkage_places};
 pub use over_force::{StiffnessOverForce, stiffness_over_force};
-pub use port::{ComparedImpedance, RequiredImpedance, HidingMass, REPORTED_AT_RAD_PER_S, WITHIN_PERCENT, hidden_above};
+pub use port::{
+    ComparedImpedance, HidingMass, REPORTED_AT_RAD_PER_S, RequiredImpedance, WITHIN_PERCENT, hidden_above,
+};
 pub use sweep::{
     NoBandwidth, NoSweptModels, POINTS, Sweep, SweepError, SweepPoint, SweepRequest, Swept, sweep,
 };
 pub(crate) use sweep::{points, range, values};
 
 use crate::quantity::MotionKind;
-use crate::rig::{Rig, components_at_setting};
+use crate::rig::Rig;
 
 /// Frequency up to which the thesis compares its models, rad/s.
 const COMPARISON_END: f64 = 1000.0;
@@ -207,7 +209,10 @@ pub fn linearize(
         open_loop: open_loop_view(rig, [&port, &plant])?,
         closed_loop_absent: absence(feedback.as_ref(), closed_loop.as_ref()),
         closed_loop,
-        required_impedance: controller.map(|given| port::required_impedance(rig, given, sensor)).transpose()?.flatten(),
+        required_impedance: controller
+            .map(|given| port::required_impedance(rig, given, sensor))
+            .transpose()?
+            .flatten(),
         linkage: linkage_places(rig),
         compliance_hidden_above_rad_per_s,
         hidden_by,
@@ -303,7 +308,7 @@ pub fn stiffness_at_settings(rig: &Rig) -> Vec<(f64, StrokeStiffness)> {
     let settings = || components.gas.iter().flatten().filter_map(ChamberGas::setting);
     let rests = |setting: f64| settings().all(|at_rest| at_rest == setting);
     let of = |setting: f64| {
-        let there = components_at_setting(components, setting);
+        let there = components.at_setting(setting);
         (setting, there.chamber_compliance(pressures, StiffeningMember::Nominal).over_stroke())
     };
     [0.0, 1.0].into_iter().filter(|setting| !rests(*setting)).map(of).collect()
@@ -311,7 +316,7 @@ pub fn stiffness_at_settings(rig: &Rig) -> Vec<(f64, StrokeStiffness)> {
 
 /// Stiffness at a position by the project's model, with the accumulators adjusted to a setting.
 pub fn stiffness_at_setting(rig: &Rig, setting: f64, position: f64) -> f64 {
-    let there = components_at_setting(rig.actuator.components(), setting);
+    let there = rig.actuator.components().at_setting(setting);
     let pressures = [rig.point.pressure_a, rig.point.pressure_b];
     hydraulic_stiffness(&there.chamber_compliance(pressures, StiffeningMember::Nominal), position)
 }

@@ -5,6 +5,8 @@ mod adjustment_keys;
 mod bladder;
 mod branch;
 mod chamber_gas;
+mod checks;
+mod component;
 mod heat;
 mod keys;
 mod neck;
@@ -21,7 +23,7 @@ pub use neck::Neck;
 use phea_dynamics::scalar::{LocalFunction, Parameters, Scalar};
 
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
-use crate::parameter::{ParameterError, ParameterRequirement, Problems};
+use crate::parameter::{ParameterError, Problems};
 
 /// Gas-charged accumulator. Units: m3, Pa gauge, 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,15 +41,9 @@ impl Accumulator {
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         let Accumulator { gas_volume, precharge_pressure, polytropic_exponent } = *self;
-        problems.positive("gas_volume", gas_volume);
-        problems.positive("precharge_pressure", precharge_pressure);
-        let is_index = (1.0..=5.0 / 3.0).contains(&polytropic_exponent);
-        problems.require(
-            "polytropic_exponent",
-            polytropic_exponent,
-            is_index,
-            ParameterRequirement::PolytropicExponent,
-        );
+        problems.key(keys::GAS_VOLUME_KEY, gas_volume);
+        problems.key(keys::PRECHARGE_PRESSURE_KEY, precharge_pressure);
+        problems.key(keys::POLYTROPIC_EXPONENT_KEY, polytropic_exponent);
         problems.into_vec()
     }
 }

@@ -109,6 +109,13 @@ impl<S: Scalar> Components<S> {
 }
 
 impl Components {
+    /// Components with the setting of every adjustment there, for slow motions: an open valve is
+    /// the gas at its chamber, a shut one no gas.
+    pub fn at_setting(&self, setting: f64) -> Components {
+        let gas = self.gas.map(|gas| Some(ChamberGas::Sealed(gas?.at_setting(setting)?)));
+        Components { gas, ..*self }
+    }
+
     /// Pressure in Pa midway between supply and tank.
     fn mean_pressure(&self) -> f64 {
         0.5 * (self.supply.pressure + self.supply.tank_pressure)

@@ -28,8 +28,8 @@ impl Contact {
     /// Impossible parameters of this contact; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
-        problems.positive("stiffness", self.stiffness);
-        problems.not_negative("relative_damping", self.relative_damping);
+        problems.key(keys::STIFFNESS_KEY, self.stiffness);
+        problems.key(keys::RELATIVE_DAMPING_KEY, self.relative_damping);
         problems.into_vec()
     }
 }

@@ -12,8 +12,11 @@
 //! pressure difference p_cp is that of the chambers, and nothing flows. Source: Merritt, Hydraulic
 //! Control Systems (1967), which uses it to damp a lightly damped load.
 
+mod checks;
+mod component;
 mod keys;
 
+pub(crate) use keys::TRANSITION_PRESSURE_KEY;
 pub use keys::{
     CrossPortKind, DeclaredCapacity, DeclaredCrossPort, DeclaredOrifice, DeclaredRestrictor, OrificeSize,
 };
@@ -55,14 +58,14 @@ impl CrossPort {
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         match self.restrictor {
-            Restrictor::Laminar { conductance } => problems.positive("conductance", conductance),
+            Restrictor::Laminar { conductance } => problems.key(keys::CONDUCTANCE_KEY, conductance),
             Restrictor::Orifice { flow_coefficient, transition_pressure } => {
                 problems.positive("flow_coefficient", flow_coefficient);
-                problems.positive("transition_pressure", transition_pressure);
+                problems.key(keys::TRANSITION_PRESSURE_KEY, transition_pressure);
             }
         }
         if let Some(capacity) = self.capacity {
-            problems.positive("capacity", capacity);
+            problems.key(keys::CAPACITY_KEY, capacity);
         }
         problems.into_vec()
     }

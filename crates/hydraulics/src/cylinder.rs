@@ -1,6 +1,8 @@
 //! Cylinder, or the motor in its place: areas, stroke, moving mass and chamber volumes, symmetric
 //! or not.
 
+mod checks;
+mod component;
 mod keys;
 mod motor_keys;
 
@@ -12,7 +14,7 @@ use phea_dynamics::scalar::{Parameters, Scalar};
 use crate::contact::Contact;
 use crate::parameter::{ParameterError, Problems};
 use crate::servovalve::Supply;
-use crate::stroke::ActuatorStroke;
+use crate::stroke::{ActuatorStroke, STROKE_KEY};
 
 /// Double-acting cylinder. Units: m2, m, kg, m3.
 ///
@@ -79,18 +81,18 @@ impl Cylinder {
         problems.positive("area_a", self.area_a);
         problems.positive("area_b", self.area_b);
         match self.stroke {
-            ActuatorStroke::Limited(stroke) => problems.positive("stroke", stroke),
+            ActuatorStroke::Limited(stroke) => problems.key(STROKE_KEY, stroke),
             ActuatorStroke::Telescopic(telescope) => problems.all(telescope.problems()),
             ActuatorStroke::Unlimited => {}
         }
-        problems.positive("moving_mass", self.moving_mass);
-        problems.not_negative("dead_volume_a", self.dead_volume_a);
-        problems.not_negative("dead_volume_b", self.dead_volume_b);
+        problems.key(keys::MOVING_MASS_KEY, self.moving_mass);
+        problems.key_as("dead_volume_a", keys::DEAD_VOLUME_KEY, self.dead_volume_a);
+        problems.key_as("dead_volume_b", keys::DEAD_VOLUME_KEY, self.dead_volume_b);
         if let Some(leakage) = self.internal_leakage {
-            problems.positive("internal_leakage", leakage);
+            problems.key(keys::INTERNAL_LEAKAGE_KEY, leakage);
         }
         if let Some(leakage) = self.external_leakage {
-            problems.positive("external_leakage", leakage);
+            problems.key_as("external_leakage", motor_keys::CASE_LEAKAGE_KEY, leakage);
         }
         if let Some(contact) = self.end_stops {
             problems.component("end_stops", contact.problems());

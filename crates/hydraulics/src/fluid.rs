@@ -1,17 +1,21 @@
 //! Hydraulic fluid and the air entrained in it.
 
+mod component;
 mod keys;
 
 pub use keys::DeclaredFluid;
 
 use phea_dynamics::scalar::Scalar;
 
-use crate::parameter::{ParameterError, ParameterRequirement, Problems};
+use crate::parameter::{ParameterError, Problems};
 
 /// Atmospheric pressure in Pa absolute (ISO 2533 standard atmosphere at sea level): the pressure at
 /// which the volume fraction of entrained air is stated, and the difference between gauge and
 /// absolute pressures.
 pub const ATMOSPHERIC_PRESSURE_ABSOLUTE: f64 = 101_325.0;
+
+/// Polytropic exponent of a monatomic gas, the greatest of all.
+pub(crate) const MONATOMIC_EXPONENT: f64 = 5.0 / 3.0;
 
 /// Hydraulic fluid. Units: Pa, kg/m3, m2/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,25 +47,14 @@ impl Fluid {
     /// Invalid parameters of this fluid; empty if all are valid.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
-        problems.positive("bulk_modulus", self.bulk_modulus);
-        problems.positive("density", self.density);
-        problems.positive("kinematic_viscosity", self.kinematic_viscosity);
-        problems.not_negative("vapour_pressure_absolute", self.vapour_pressure_absolute);
+        problems.key(keys::BULK_MODULUS_KEY, self.bulk_modulus);
+        problems.key(keys::DENSITY_KEY, self.density);
+        problems.key(keys::KINEMATIC_VISCOSITY_KEY, self.kinematic_viscosity);
+        problems.key_as("vapour_pressure_absolute", keys::VAPOUR_PRESSURE_KEY, self.vapour_pressure_absolute);
         if let Some(EntrainedAir { volume_fraction, polytropic_exponent }) = self.entrained_air {
-            let is_fraction = (0.0..1.0).contains(&volume_fraction);
-            problems.require(
-                "entrained_air.volume_fraction",
-                volume_fraction,
-                is_fraction,
-                ParameterRequirement::FractionBelowOne,
-            );
-            let is_index = (1.0..=5.0 / 3.0).contains(&polytropic_exponent);
-            problems.require(
-                "entrained_air.polytropic_exponent",
-                polytropic_exponent,
-                is_index,
-                ParameterRequirement::PolytropicExponent,
-            );
+            problems.key_as("entrained_air.volume_fraction", keys::ENTRAINED_AIR_KEY, volume_fraction);
+            let exponent = keys::POLYTROPIC_EXPONENT_KEY;
+            problems.key_as("entrained_air.polytropic_exponent", exponent, polytropic_exponent);
         }
         problems.into_vec()
     }

@@ -19,7 +19,7 @@ impl ForceSensor {
     /// Impossible parameters of this sensor; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
-        problems.positive("stiffness", self.stiffness);
+        problems.key(keys::STIFFNESS_KEY, self.stiffness);
         problems.into_vec()
     }
 }

@@ -1,13 +1,15 @@
 //! Friction of the piston and rods: viscous, Stribeck or LuGre, and the one slope that a linear
 //! model uses.
 
+mod checks;
+mod component;
 mod keys;
 mod lugre;
 mod moving;
 mod stribeck;
 mod tested;
 
-pub use keys::{DeclaredFriction, FrictionLaw, RetractingFriction, StribeckCurve};
+pub use keys::{DeclaredFriction, RetractingFriction};
 pub use lugre::{LuGre, LuGrePassivity};
 pub use moving::{FrictionForce, MovingFriction};
 pub use stribeck::{FrictionLevels, Stribeck, StribeckShape};
@@ -35,6 +37,38 @@ pub enum Friction<S = f64> {
     },
     /// Bristles: the steady curve with a spring-like beginning.
     LuGre(LuGre<S>),
+}
+
+impl<S: Default> Default for Friction<S> {
+    fn default() -> Self {
+        Friction::Viscous { viscous: S::default() }
+    }
+}
+
+impl<S> Friction<S> {
+    /// Steady curve; `None` for viscous friction.
+    pub fn curve(&self) -> Option<&Stribeck<S>> {
+        match self {
+            Friction::Viscous { .. } => None,
+            Friction::Stribeck { curve, .. } | Friction::LuGre(LuGre { curve, .. }) => Some(curve),
+        }
+    }
+
+    /// Steady curve, mutable.
+    pub fn curve_mut(&mut self) -> Option<&mut Stribeck<S>> {
+        match self {
+            Friction::Viscous { .. } => None,
+            Friction::Stribeck { curve, .. } | Friction::LuGre(LuGre { curve, .. }) => Some(curve),
+        }
+    }
+
+    /// Viscous coefficient f_v, mutable.
+    pub fn viscous_mut(&mut self) -> &mut S {
+        match self {
+            Friction::Viscous { viscous } => viscous,
+            Friction::Stribeck { curve, .. } | Friction::LuGre(LuGre { curve, .. }) => &mut curve.viscous,
+        }
+    }
 }
 
 impl<S: Copy> Friction<S> {
@@ -65,14 +99,14 @@ impl Friction {
         match self {
             Friction::Viscous { viscous } => {
                 let mut problems = Problems::default();
-                problems.not_negative("viscous", *viscous);
+                problems.key(keys::VISCOUS_KEY, *viscous);
                 problems.into_vec()
             }
             Friction::Stribeck { curve, regular_velocity } => {
                 let mut problems = Problems::default();
                 problems.all(curve.problems());
                 if let Some(velocity) = regular_velocity {
-                    problems.positive("regular_velocity", *velocity);
+                    problems.key(keys::REGULAR_VELOCITY_KEY, *velocity);
                 }
                 problems.into_vec()
             }

@@ -7,6 +7,8 @@
 mod attenuation;
 mod blocked;
 mod braided_wall;
+mod checks;
+mod component;
 mod conduit;
 mod dynamic_line;
 mod hose;
@@ -26,6 +28,7 @@ mod two_wave;
 
 pub use blocked::BlockedLine;
 pub use braided_wall::{BraidedWall, LineWall};
+pub use component::ExpansionPressures;
 pub use conduit::{Conduit, LineError};
 pub use dynamic_line::DynamicLine;
 pub use hose::{Hose, Stiffening, static_hose_modulus};
@@ -90,6 +93,27 @@ pub enum StiffeningMember {
 }
 
 impl Line {
+    /// Line whose hose has a single ratio of stiffening, the nominal one: that of a member of a
+    /// family need not be in the declared interval.
+    pub fn stiffened_alike(self) -> Line {
+        match self {
+            Line::Hose { mut hose, length } => {
+                hose.dynamic_stiffening = Stiffening::certain(hose.dynamic_stiffening.nominal);
+                Line::Hose { hose, length }
+            }
+            Line::Pipe { .. } | Line::Volume { .. } => self,
+        }
+    }
+
+    /// Line that holds nothing.
+    pub fn without_volume(mut self) -> Line {
+        match &mut self {
+            Line::Hose { length, .. } | Line::Pipe { length, .. } => *length = 0.0,
+            Line::Volume { volume, .. } => *volume = 0.0,
+        }
+        self
+    }
+
     /// Impossible parameters of this line; empty if there are none. A length or volume of zero is
     /// possible: no line.
     pub fn problems(&self) -> Vec<ParameterError> {
@@ -104,8 +128,8 @@ impl Line {
                 problems.not_negative("length", length);
             }
             Line::Volume { volume, effective_bulk_modulus } => {
-                problems.not_negative("volume", volume);
-                problems.positive("effective_bulk_modulus", effective_bulk_modulus);
+                problems.key(keys::VOLUME_KEY, volume);
+                problems.key(keys::EFFECTIVE_BULK_MODULUS_KEY, effective_bulk_modulus);
             }
         }
         problems.into_vec()

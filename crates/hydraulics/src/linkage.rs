@@ -10,6 +10,8 @@
 //! to one polynomial over the stroke, which both machine and plant evaluate.
 
 mod chebyshev;
+mod checks;
+mod component;
 mod geometry;
 mod keys;
 mod weight;

@@ -56,15 +56,15 @@ impl Load {
         match *self {
             Load::Prescribed => {}
             Load::SpringMassDamper { mass, stiffness, damping } => {
-                problems.positive("mass", mass);
-                problems.not_negative("stiffness", stiffness);
-                problems.not_negative("damping", damping);
+                problems.key(keys::MASS_KEY, mass);
+                problems.key(keys::STIFFNESS_KEY, stiffness);
+                problems.key(keys::DAMPING_KEY, damping);
             }
             Load::Wall { mass, damping, gap, .. } => {
                 if let Some(mass) = mass {
-                    problems.positive("mass", mass);
+                    problems.key(keys::MASS_KEY, mass);
                 }
-                problems.not_negative("damping", damping);
+                problems.key(keys::DAMPING_KEY, damping);
                 problems.require("gap", gap, true, ParameterRequirement::FiniteNumber);
                 problems.all(self.wall().map_or(Vec::new(), |wall| wall.problems()));
             }

@@ -1,5 +1,7 @@
 //! Rejection of impossible parameters, with the quantity, its value and the requirement.
 
+use phea_table::{AcceptedRange, Key};
+
 /// Error for a parameter that cannot describe a real component.
 ///
 /// # Example
@@ -23,35 +25,14 @@ pub struct ParameterError {
 }
 
 /// Requirement on a parameter, to follow "must be".
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ParameterRequirement {
     /// Any finite number.
     #[error("a finite number")]
     FiniteNumber,
-    /// Positive numbers.
-    #[error("positive")]
-    Positive,
-    /// Numbers that are not negative.
-    #[error("zero or positive")]
-    ZeroOrPositive,
-    /// Fractions, both ends included.
-    #[error("from 0 to 1")]
-    FractionWithEnds,
-    /// Fractions, the upper end excluded.
-    #[error("from 0 to below 1")]
-    FractionBelowOne,
-    /// Fractions up to a half, both ends excluded.
-    #[error("between 0 and 1/2")]
-    BelowHalf,
-    /// Poisson ratios of an elastic solid.
-    #[error("from 0 to 0.5")]
-    PoissonRatio,
-    /// Polytropic exponents, from isothermal to that of a monatomic gas.
-    #[error("from 1 to 5/3")]
-    PolytropicExponent,
-    /// Counts of segments.
-    #[error("from 1 to 8")]
-    SegmentCount,
+    /// Numbers of a range, that of a key of a table where there is one.
+    #[error("{0}")]
+    Within(AcceptedRange),
     /// Volume of a chamber and its line at the end of the stroke.
     #[error("positive together with the line's volume: an empty chamber has no pressure")]
     ChamberNotEmpty,
@@ -91,9 +72,6 @@ pub enum ParameterRequirement {
     /// Filling pressure.
     #[error("above vacuum")]
     AboveVacuum,
-    /// Tank pressure.
-    #[error("above vacuum (a gauge pressure)")]
-    GaugeAboveVacuum,
     /// Supply pressure.
     #[error("above the tank pressure")]
     AboveTankPressure,
@@ -133,12 +111,28 @@ impl Problems {
         }
     }
 
-    pub(crate) fn positive(&mut self, quantity: &str, value: f64) {
-        self.require(quantity, value, value > 0.0, ParameterRequirement::Positive);
+    /// Records an error for a value outside the range of its key.
+    pub(crate) fn key(&mut self, key: Key, value: f64) {
+        self.key_as(key.name, key, value);
     }
 
+    /// Records an error for a value outside the range of its key, under another name.
+    pub(crate) fn key_as(&mut self, quantity: &str, key: Key, value: f64) {
+        self.within(quantity, value, key.range);
+    }
+
+    /// Records an error for a value that is not positive and has no key of its own.
+    pub(crate) fn positive(&mut self, quantity: &str, value: f64) {
+        self.within(quantity, value, AcceptedRange::POSITIVE);
+    }
+
+    /// Records an error for a negative value that has no key of its own.
     pub(crate) fn not_negative(&mut self, quantity: &str, value: f64) {
-        self.require(quantity, value, value >= 0.0, ParameterRequirement::ZeroOrPositive);
+        self.within(quantity, value, AcceptedRange::NOT_NEGATIVE);
+    }
+
+    fn within(&mut self, quantity: &str, value: f64, range: AcceptedRange) {
+        self.require(quantity, value, range.contains(value), ParameterRequirement::Within(range));
     }
 
     pub(crate) fn component(&mut self, owner: &str, problems: Vec<ParameterError>) {

@@ -1,7 +1,10 @@
 //! Source of the supply pressure: a constant pressure, or a pump with its relief valve.
 
+mod checks;
+mod component;
 mod keys;
 
+pub(crate) use keys::TANK_PRESSURE_KEY;
 pub use keys::{DeclaredSupply, Pump, SupplyModel};
 
 use phea_dynamics::scalar::Scalar;
@@ -61,14 +64,19 @@ impl PumpLimited {
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.not_negative("pump_flow", self.pump_flow);
-        problems.positive("relief_override", self.relief_override);
-        problems.positive("volume", self.volume);
-        problems.positive("effective_bulk_modulus", self.effective_bulk_modulus);
+        problems.key(keys::RELIEF_OVERRIDE_KEY, self.relief_override);
+        problems.key(keys::VOLUME_KEY, self.volume);
+        problems.key(keys::EFFECTIVE_BULK_MODULUS_KEY, self.effective_bulk_modulus);
         if let Some(accumulator) = self.accumulator {
             problems.component("accumulator", accumulator.problems());
         }
         problems.into_vec()
     }
+}
+
+/// True if a supply drives no flow to its tank, with these pressures in Pa.
+pub(crate) fn drives_nothing(pressure: f64, tank_pressure: f64) -> bool {
+    tank_pressure >= pressure
 }
 
 phea_dynamics::parameters! { PowerUnit = PowerUnit::Constant | PowerUnit::PumpLimited(pump) }

@@ -10,7 +10,9 @@
 //! deflection of the spring does not include it. With a transmission it also measures the forces of
 //! the oil's acceleration and of line friction, which the line's fixings hold and not the load.
 
+mod checks;
 mod coil;
+mod component;
 mod keys;
 mod oil_column;
 mod spring;

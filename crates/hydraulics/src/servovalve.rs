@@ -1,7 +1,9 @@
 //! Servovalve: four edges with their leakage, a second-order spool, and the evaluation of data
 //! sheets.
 
+mod checks;
 mod coefficients;
+mod component;
 mod edge_keys;
 mod flow;
 mod identification;
@@ -40,6 +42,7 @@ pub use test_stand::{StandState, TestStand};
 use phea_dynamics::scalar::Scalar;
 
 use crate::parameter::{ParameterError, ParameterRequirement, Problems};
+use crate::power_unit::{TANK_PRESSURE_KEY, drives_nothing};
 
 /// Set of one number for each of the valve's four edges; the thesis numbers them 3, 4, 5, 6 in this
 /// order.
@@ -162,19 +165,19 @@ impl Servovalve {
             shape.check(&mut problems);
         }
         match self.leakage_shape {
-            LeakageShape::Common(shape) => problems.not_negative("leakage_shape", shape),
+            LeakageShape::Common(shape) => problems.key(keys::LEAKAGE_SHAPE_KEY, shape),
             LeakageShape::ByEdge(shapes) => {
                 for (name, value) in NAMES.into_iter().zip(shapes.to_array()) {
                     problems.not_negative(&format!("leakage_shapes.{name}"), value);
                 }
             }
         }
-        problems.not_negative("tare_flow", self.tare_flow);
-        problems.positive("tare_reference_drop", self.tare_reference_drop);
-        problems.positive("nominal_voltage", self.nominal_voltage);
-        problems.positive("natural_frequency", self.natural_frequency);
-        problems.positive("damping_ratio", self.damping_ratio);
-        problems.positive("transition_pressure", self.transition_pressure);
+        problems.key(keys::TARE_FLOW_KEY, self.tare_flow);
+        problems.key_as("tare_reference_drop", keys::TARE_PRESSURE_KEY, self.tare_reference_drop);
+        problems.key(keys::NOMINAL_VOLTAGE_KEY, self.nominal_voltage);
+        problems.key(keys::NATURAL_FREQUENCY_KEY, self.natural_frequency);
+        problems.key(keys::DAMPING_RATIO_KEY, self.damping_ratio);
+        problems.key(keys::TRANSITION_PRESSURE_KEY, self.transition_pressure);
         problems.all(self.spool.problems());
         problems.into_vec()
     }
@@ -194,17 +197,11 @@ impl Supply {
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         let Supply { pressure, tank_pressure } = *self;
-        let above_vacuum = tank_pressure > -crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
-        problems.require(
-            "tank_pressure",
-            tank_pressure,
-            above_vacuum,
-            ParameterRequirement::GaugeAboveVacuum,
-        );
+        problems.key(TANK_PRESSURE_KEY, tank_pressure);
         problems.require(
             "pressure",
             pressure,
-            pressure > tank_pressure,
+            !drives_nothing(pressure, tank_pressure),
             ParameterRequirement::AboveTankPressure,
         );
         problems.into_vec()

@@ -1,7 +1,9 @@
 //! Stroke of a cylinder or motor, and its effect on the chambers.
 
+mod keys;
 mod telescope;
 
+pub(crate) use keys::{STAGE_TRANSITION_KEY, STROKE_KEY};
 pub use telescope::{FURTHER_STAGES, PistonStage, Telescope};
 
 use phea_dynamics::scalar::Scalar;

@@ -92,7 +92,7 @@ pub use phea_hydraulics::cross_port::{
 pub use phea_hydraulics::cylinder::{DeclaredCylinder, DeclaredMotor, DeclaredStage};
 pub use phea_hydraulics::fluid::DeclaredFluid;
 pub use phea_hydraulics::force_sensor::DeclaredForceSensor;
-pub use phea_hydraulics::friction::{DeclaredFriction, FrictionLaw, RetractingFriction, StribeckCurve};
+pub use phea_hydraulics::friction::{DeclaredFriction, RetractingFriction};
 pub use phea_hydraulics::line::{
     Component, DeclaredLine, DeclaredLines, DeclaredPipe, ElasticWall, HoseExpansion, HoseProperties,
     LineMotion, LineSegments, LineVolume, LineWall,

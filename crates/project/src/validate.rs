@@ -3,7 +3,6 @@
 mod adjustment;
 mod alternative;
 mod cost;
-mod cross_port;
 mod design;
 mod direction;
 mod family;
@@ -11,37 +10,38 @@ mod ideal;
 mod identify;
 mod impedance;
 mod input_signal;
-mod line_motion;
 mod linear_loop;
 mod linkage;
 mod measured;
 mod motor;
 mod order;
 mod plausible;
+mod precharge;
 mod pressure_feedback;
+mod requirements;
 mod rig;
 mod series;
 mod specification;
-mod requirements;
 
 use super::catalogue_entry::Catalogue;
 use super::reader::Reader;
 use super::text::{Findings, Place, RawFinding};
 use super::tree::{Entry, TreeNode, Value};
-use super::{DeclaredElement, LINEAR_PARAMETERS, LateError, Project};
-use phea_table::Visitor;
-use phea_table::plain;
+use super::{DeclaredActuator, DeclaredElement, LINEAR_PARAMETERS, LateError, Project};
+use phea_quantity::MotionKind;
+use phea_table::{TableCheck, TableFinding, Visitor, plain};
 
 /// Reports all contradictions between values.
 pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     let mut check = Check { reader };
     if let Some(actuator) = &project.actuator {
-        rig::actuator(actuator, &mut check);
-        rig::precharge_ranges(project, actuator, &mut check);
+        rig::parts(actuator, &mut check);
+        precharge::ranges(project, actuator, &mut check);
         match actuator.motor {
             Some(_) => motor::motor(project, actuator, &mut check),
-            None => series::series(project, actuator, &mut check),
+            None => series::spring(project, actuator, &mut check),
         }
+        tests_of_one_stage(actuator, &mut check);
         linkage::linkage(project, actuator, &mut check);
         ideal::limits(project, actuator, &mut check);
         cost::prices(actuator, &mut check);
@@ -71,6 +71,17 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     }
     alternative::alternatives(&project.alternatives, &mut check);
     alternative::load_cases(project, &mut check);
+}
+
+/// Rejects tests with a telescopic piston.
+fn tests_of_one_stage(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
+    for test in ["bench.friction", "bench.line"] {
+        if !actuator.cylinder.stages.is_empty() && check.declared(test) {
+            let message = "tests with the piston are made with one pair of areas, and those of a telescopic piston change";
+            let help = format!("remove [{test}], or [[cylinder.stage]] to test one stage");
+            check.error_with_help(test, message, help);
+        }
+    }
 }
 
 /// Reports an error that was found later. An absent table would be at the end of the file.
@@ -112,7 +123,7 @@ struct Check<'r, 'a> {
 
 impl Check<'_, '_> {
     /// Motion of the rig.
-    fn motion(&self) -> phea_quantity::MotionKind {
+    fn motion(&self) -> MotionKind {
         self.reader.motion()
     }
 
@@ -199,6 +210,40 @@ impl Check<'_, '_> {
         if values.windows(2).any(|pair| pair[0] >= pair[1]) {
             self.error(path, format!("`{}` must increase from each to the next", last(path)));
         }
+    }
+}
+
+impl TableCheck for Check<'_, '_> {
+    fn motion(&self) -> MotionKind {
+        self.motion()
+    }
+
+    fn declared(&self, path: &str) -> bool {
+        self.declared(path)
+    }
+
+    fn refused(&self, path: &str) -> bool {
+        self.refused(path)
+    }
+
+    fn report(&mut self, path: &str, TableFinding { is_error, message, help }: TableFinding) {
+        let place = self.place(path);
+        match is_error {
+            true => self.push_error(path, RawFinding::error(place, message).maybe_help(help)),
+            false => self.push_warning(path, RawFinding::warning(place, message).maybe_help(help)),
+        }
+    }
+
+    fn report_missing(&mut self, table: &str, name: &str, message: String) {
+        self.missing(table, name, message);
+    }
+
+    fn in_order(&mut self, paths: [&str; 2], numbers: [f64; 2]) {
+        self.in_order(paths, numbers);
+    }
+
+    fn bounds(&mut self, path: &str, numbers: [f64; 3]) {
+        self.bounds(path, numbers);
     }
 }
 

@@ -1,6 +1,8 @@
 //! Key of the project file: its name, dimension, range, default and meaning, in one place.
 
-use phea_quantity::{Dimension, MotionKind, RATIO};
+use std::fmt;
+
+use phea_quantity::{Dimension, MotionKind, RATIO, significant};
 
 /// Key of the project file. Built at the description of its field, in the `visit` function of its
 /// table.
@@ -20,8 +22,21 @@ pub struct Key {
     /// True if they measure the motion of the load or its drive, which may turn although the rig
     /// does not: behind a linkage.
     pub of_load: bool,
+    /// Usual numbers, if a number far from them was hardly intended.
+    pub usual: Option<UsualRange>,
     /// Meaning, in one sentence.
     pub doc: &'static str,
+}
+
+/// Usual numbers of a kind of part, SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UsualRange {
+    /// Least.
+    pub minimum: f64,
+    /// Greatest.
+    pub maximum: f64,
+    /// Parts that have them, in the plural.
+    pub of: &'static str,
 }
 
 /// Motion of a rig and of its load.
@@ -65,6 +80,12 @@ impl AcceptedRange {
         infinity: false,
     };
 
+    /// Range of the positive numbers.
+    pub const POSITIVE: AcceptedRange =
+        AcceptedRange { minimum: 0.0, above_minimum: true, ..AcceptedRange::ANY };
+    /// Range of the numbers that are not negative.
+    pub const NOT_NEGATIVE: AcceptedRange = AcceptedRange { minimum: 0.0, ..AcceptedRange::ANY };
+
     /// True if the number is accepted; never true for NaN.
     pub fn contains(&self, value: f64) -> bool {
         if value == f64::INFINITY {
@@ -76,9 +97,36 @@ impl AcceptedRange {
     }
 }
 
+/// The range in words that follow "must be": `positive`, `from 0 to below 0.5`. The numbers are SI.
+impl fmt::Display for AcceptedRange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let AcceptedRange { minimum, maximum, above_minimum, below_maximum, .. } = *self;
+        let [low, high] = [minimum, maximum].map(short);
+        let below = if below_maximum { "below " } else { "" };
+        match (minimum == f64::MIN, maximum == f64::MAX, above_minimum) {
+            (true, true, _) => write!(f, "a finite number"),
+            (true, false, _) if below_maximum => write!(f, "below {high}"),
+            (true, false, _) => write!(f, "at most {high}"),
+            (false, true, true) if minimum == 0.0 => write!(f, "positive"),
+            (false, true, false) if minimum == 0.0 => write!(f, "zero or positive"),
+            (false, true, true) => write!(f, "above {low}"),
+            (false, true, false) => write!(f, "at least {low}"),
+            (false, false, true) => write!(f, "from above {low} to {below}{high}"),
+            (false, false, false) => write!(f, "from {low} to {below}{high}"),
+        }
+    }
+}
+
+/// A number as it is, or with four digits if it has more.
+fn short(value: f64) -> String {
+    let exact = value.to_string();
+    if exact.len() <= 6 { exact } else { significant(value, 4) }
+}
+
 /// Key whose numbers have a dimension.
 pub const fn key(name: &'static str, dimension: &'static Dimension, doc: &'static str) -> Key {
-    Key { name, dimension, range: AcceptedRange::ANY, default: None, of_motion: false, of_load: false, doc }
+    let range = AcceptedRange::ANY;
+    Key { name, dimension, range, default: None, of_motion: false, of_load: false, usual: None, doc }
 }
 
 /// Key without a dimension: a table, a list, a text or a choice.
@@ -152,6 +200,13 @@ impl Key {
     /// Accepts `inf` too.
     pub const fn or_infinite(mut self) -> Key {
         self.range.infinity = true;
+        self
+    }
+
+    /// States the usual numbers, SI, of parts of this kind; of a rig that moves along a line where
+    /// they measure its motion.
+    pub const fn usual(mut self, minimum: f64, maximum: f64, of: &'static str) -> Key {
+        self.usual = Some(UsualRange { minimum, maximum, of });
         self
     }
 

@@ -10,14 +10,16 @@ mod formula;
 mod key;
 mod misfit;
 mod open_table;
+mod table_check;
 mod visitor;
 
 pub use catalogue_kind::CatalogueKind;
 pub use cost::{LineCost, PartCost};
 pub use formula::{Formula, FormulaError, Ratio, Variable};
-pub use key::{AcceptedRange, Key, Motions, key, plain};
+pub use key::{AcceptedRange, Key, Motions, UsualRange, key, plain};
 pub use misfit::DeclaredMisfit;
 pub use open_table::{OpenTable, OpenTableReader, OpenTableWriter};
+pub use table_check::{TableCheck, TableFinding};
 pub use visitor::{
     FormulaShape, Kinds, NamedNumber, TableNumber, ValueForm, Variants, Visitor, once_read, word_of,
 };

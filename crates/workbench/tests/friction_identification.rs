@@ -186,7 +186,7 @@ fn the_fragment_is_a_table_of_a_project() {
     let friction = loaded.project.actuator.unwrap().cylinder.friction.unwrap();
     let json: Value = parsed(&answer.json);
     let viscous = json["friction"]["viscous_n_s_per_m"]["value"].as_f64().unwrap();
-    assert!((friction.viscous / viscous - 1.0).abs() < 1e-4, "{fragment}");
+    assert!((friction.law.viscous() / viscous - 1.0).abs() < 1e-4, "{fragment}");
 }
 
 #[track_caller]

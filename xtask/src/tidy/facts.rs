@@ -1,5 +1,6 @@
 //! The crates below the workbench return facts: a string literal of four words is the message of an
-//! error, or the meaning of a key in a file `keys.rs`.
+//! error, the meaning of a key in a file `keys.rs`, or a message about the keys of a part in its
+//! file `checks.rs`.
 
 use super::Violation;
 use crate::repository::Repository;
@@ -13,7 +14,8 @@ const MESSAGE: &str = "is a sentence: return a fact, and word it in the workbenc
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let is_below = |path: &str| FOLDERS.iter().any(|folder| path.starts_with(folder));
-    let is_below = |file: &&RustFile| is_below(&file.path) && !file.path.ends_with("keys.rs");
+    let is_of_keys = |path: &str| path.ends_with("keys.rs") || path.ends_with("/checks.rs");
+    let is_below = |file: &&RustFile| is_below(&file.path) && !is_of_keys(&file.path);
     repository.rust_files.iter().filter(is_below).flat_map(sentences).collect()
 }
 

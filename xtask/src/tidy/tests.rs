@@ -228,6 +228,7 @@ fn facts_are_no_sentences() {
     let fine = "/// the force does not settle\n#[error(\n    \"the force does not settle\"\n)]\nstruct A;\nconst B: &str = \"line.a model\";\n#[test]\nfn t() {\n    f(\"the force does not settle\");\n}\n";
     breaks("facts", (path, broken), (path, fine), &[]);
     breaks("facts", (path, broken), ("crates/workbench/src/a.rs", broken), &[]);
+    breaks("facts", (path, broken), ("crates/hydraulics/src/a/checks.rs", broken), &[]);
 }
 
 #[test]

@@ -6,7 +6,6 @@ use phea_hydraulics::line::{Conduit, LaminarFriction, Line, LineModel};
 use super::rise_air::AeratedOil;
 use crate::identify_error::KnownLineError;
 use crate::project::{LineMotion, LineSegments, LineSide};
-use crate::rig::line_model;
 use crate::setup::Setup;
 
 /// Facts that a project states about a line, in addition to the identified ones.
@@ -104,7 +103,7 @@ impl KnownLine {
 
     /// Model of its motion as declared.
     pub(crate) fn declared_model(&self) -> LineModel {
-        line_model(&self.motion)
+        self.motion.component()
     }
 
     /// Model of its motion with nearly exact waves if no volume at the ends is stated: the end

@@ -7,7 +7,7 @@ use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::operating_point::{Condition, OperatingPoint, SteadyLoad, operating_point};
 use phea_hydraulics::stiffness::hydraulic_stiffness;
 
-use crate::rig::{ChargedRange, Rig, charged_range, components_at_setting};
+use crate::rig::{ChargedRange, Rig, charged_range};
 
 /// Number of forces at which the stiffness is computed.
 const FORCES: u32 = 120;
@@ -56,7 +56,7 @@ pub fn stiffness_over_force(rig: &Rig) -> Option<StiffnessOverForce> {
     let settings = || components.gas.iter().flatten().filter_map(ChamberGas::setting);
     let rests = |setting: f64| settings().all(|at_rest| at_rest == setting);
     let others = [0.0, 0.5, 1.0].into_iter().filter(|setting| !rests(*setting));
-    let others = others.map(|setting| (setting, along(&components_at_setting(components, setting))));
+    let others = others.map(|setting| (setting, along(&components.at_setting(setting))));
     Some(StiffnessOverForce {
         forces: points.iter().map(|point| point.hydraulic_force).collect(),
         // for slow motions the opening of a valve makes no difference

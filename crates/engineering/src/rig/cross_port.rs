@@ -1,61 +1,8 @@
-//! A valve between the chambers, as it is declared, and what it costs at the operating point.
+//! What a valve between the chambers costs at the operating point.
 
-use phea_dynamics::scalar::Scalar;
-use phea_hydraulics::cross_port::{CrossPort, Restrictor, orifice_coefficient};
+use phea_hydraulics::cross_port::CrossPort;
 
 use super::Rig;
-use crate::project::{
-    CrossPortKind, DeclaredCapacity, DeclaredCrossPort, DeclaredOrifice, DeclaredRestrictor, OrificeSize,
-};
-
-/// As physics, in a fluid of this density in kg/m3.
-pub(super) fn cross_port<S: Scalar>(
-    declared: Option<&DeclaredCrossPort<S>>,
-    density: S,
-) -> Option<CrossPort<S>> {
-    let edge = |declared: &DeclaredOrifice<S>| {
-        let [flow_coefficient, transition_pressure] = edge(declared, density);
-        Restrictor::Orifice { flow_coefficient, transition_pressure }
-    };
-    Some(match &declared?.kind {
-        CrossPortKind::Laminar { conductance } => {
-            CrossPort { restrictor: Restrictor::Laminar { conductance: *conductance }, capacity: None }
-        }
-        CrossPortKind::Orifice(declared) => CrossPort { restrictor: edge(declared), capacity: None },
-        CrossPortKind::DynamicPressureFeedback { restrictor, capacity } => CrossPort {
-            restrictor: match restrictor {
-                DeclaredRestrictor::Laminar { conductance } => {
-                    Restrictor::Laminar { conductance: *conductance }
-                }
-                DeclaredRestrictor::Orifice(declared) => edge(declared),
-            },
-            capacity: Some(self::capacity(capacity)),
-        },
-    })
-}
-
-/// Flow coefficient in m3/(s Pa^0.5) and transition pressure in Pa of an orifice in a fluid of this
-/// density in kg/m3.
-pub(super) fn edge<S: Scalar>(declared: &DeclaredOrifice<S>, density: S) -> [S; 2] {
-    let flow_coefficient = match declared.size {
-        OrificeSize::Diameter { diameter, discharge_coefficient } => {
-            orifice_coefficient(discharge_coefficient, diameter, density)
-        }
-        OrificeSize::Flow { flow, pressure_drop } => flow / pressure_drop.sqrt(),
-    };
-    [flow_coefficient, declared.transition_pressure]
-}
-
-/// C_cp = A_cp^2/k_cp of a piston between springs.
-fn capacity<S: Scalar>(declared: &DeclaredCapacity<S>) -> S {
-    match *declared {
-        DeclaredCapacity::Stated(capacity) => capacity,
-        DeclaredCapacity::Piston { diameter, stiffness } => {
-            let area = S::from(std::f64::consts::FRAC_PI_4) * diameter.squared();
-            area.squared() / stiffness
-        }
-    }
-}
 
 /// What a valve between the chambers does at the operating point of a rig.
 #[derive(Clone, Copy, Debug, PartialEq)]

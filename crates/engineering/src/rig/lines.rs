@@ -3,9 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use phea_hydraulics::actuator::Components;
-use phea_hydraulics::line::{
-    Conduit, END_SHARE, LaminarFriction, Line, LineError, LineModel, Stiffening, StiffeningMember,
-};
+use phea_hydraulics::line::{Conduit, Line, LineError, StiffeningMember};
 use phea_hydraulics::plant::{LineChambers, LinearPlant, PlantInMotion};
 use phea_hydraulics::servovalve::ChamberCoefficients;
 use phea_hydraulics::stiffness::compliance_at;
@@ -13,7 +11,6 @@ use phea_hydraulics::stiffness::compliance_at;
 use super::Rig;
 use super::at_point::RigAtPoint;
 use super::plant::without_branches;
-use crate::project::{LineMotion, LineSegments};
 
 impl RigAtPoint {
     /// Plant with lines in motion in place of the lumped ones; `None` if both are lumped.
@@ -22,10 +19,10 @@ impl RigAtPoint {
     /// A line that its model cannot describe.
     pub(crate) fn in_motion(&self, plant: &LinearPlant) -> Result<Option<PlantInMotion>, LineError> {
         let RigAtPoint { components, point, chambers, .. } = self;
-        let [line_a, line_b] = [components.line_a, components.line_b].map(stiffened_alike);
+        let [line_a, line_b] = [components.line_a, components.line_b].map(Line::stiffened_alike);
         let moving = Components { line_a, line_b, ..*components };
         let moving = moving.lines_in_motion(StiffeningMember::Nominal)?;
-        let [line_a, line_b] = [line_a, line_b].map(without_volume);
+        let [line_a, line_b] = [line_a, line_b].map(Line::without_volume);
         let bare = Components { line_a, line_b, ..*components };
         let bare = bare.chamber_compliance([point.pressure_a, point.pressure_b], StiffeningMember::Nominal);
         let pressures = [point.pressure_a, point.pressure_b];
@@ -43,52 +40,6 @@ impl RigAtPoint {
             let behind = LineChambers { lines, chambers: chambers_only, lumped, leaking };
             PlantInMotion::new(plant, &behind)
         }))
-    }
-}
-
-/// A hose with a single stiffening ratio: that of a member of a family need not lie in the declared
-/// interval.
-fn stiffened_alike(line: Line) -> Line {
-    match line {
-        Line::Hose { mut hose, length } => {
-            let nominal = hose.dynamic_stiffening.nominal;
-            hose.dynamic_stiffening = Stiffening { nominal, minimum: nominal, maximum: nominal };
-            Line::Hose { hose, length }
-        }
-        Line::Pipe { .. } | Line::Volume { .. } => line,
-    }
-}
-
-/// The same line, holding nothing.
-fn without_volume(mut line: Line) -> Line {
-    match &mut line {
-        Line::Hose { length, .. } | Line::Pipe { length, .. } => *length = 0.0,
-        Line::Volume { volume, .. } => *volume = 0.0,
-    }
-    line
-}
-
-/// The model of a line in motion as it is declared.
-pub fn line_model(motion: &LineMotion) -> LineModel {
-    let fraction = |stated: &Option<f64>| stated.unwrap_or(END_SHARE);
-    match motion {
-        LineMotion::Automatic | LineMotion::Lumped => LineModel::Lumped,
-        LineMotion::Creeping { relaxation_time } => LineModel::Creeping { relaxation_time: *relaxation_time },
-        LineMotion::Segments(segments) => segmented(segments),
-        LineMotion::TransmissionLine { end_share } => {
-            LineModel::TransmissionLine { end_share: fraction(end_share) }
-        }
-        LineMotion::TwoWave { end_share, wall } => {
-            LineModel::TwoWave { end_share: fraction(end_share), wall: wall.unwrap_or_default() }
-        }
-    }
-}
-
-fn segmented(declared: &LineSegments) -> LineModel {
-    LineModel::Segments {
-        count: declared.count() as usize,
-        friction: declared.friction.unwrap_or(LaminarFriction::FrequencyDependent),
-        relaxation_time: declared.relaxation_time,
     }
 }
 

@@ -1,26 +1,12 @@
-//! The declared supply of a rig, and its settled state, over any scalar.
+//! The settled state of the supply of a rig, over any scalar.
 
 use phea_dynamics::scalar::Scalar;
-use phea_hydraulics::machine::{PowerUnit, PumpLimited};
 use phea_hydraulics::operating_point::{Balance, SettledSupply, Steady};
 use phea_hydraulics::plant::YieldingSupply;
+use phea_hydraulics::power_unit::PowerUnit;
 use phea_hydraulics::servovalve::{SpoolDirection, edge_conductances, edge_flows, tare_flow};
 
 use super::Rig;
-use super::gas::accumulator;
-use crate::project::{self, SupplyModel};
-
-/// Where the supply pressure comes from.
-pub(super) fn power_unit<S: Scalar>(declared: &project::DeclaredActuator<S>) -> PowerUnit<S> {
-    let SupplyModel::PumpLimited(pump) = &declared.supply.model else { return PowerUnit::Constant };
-    PowerUnit::PumpLimited(PumpLimited {
-        pump_flow: pump.flow,
-        relief_override: pump.relief_override,
-        volume: pump.volume,
-        effective_bulk_modulus: pump.effective_bulk_modulus.unwrap_or(declared.fluid.bulk_modulus),
-        accumulator: pump.accumulator.as_ref().map(accumulator),
-    })
-}
 
 /// The settled state of a limited pump with valve and chambers, given the balance at the stated
 /// supply; `None` for a constant pressure.

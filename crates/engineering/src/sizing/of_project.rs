@@ -1,6 +1,7 @@
 use phea_dynamics::portable::ln;
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::force_sensor::in_series;
+use phea_hydraulics::line::ExpansionPressures;
 use phea_hydraulics::linear::LinearParameters;
 
 use super::{
@@ -10,7 +11,7 @@ use super::{
 use crate::catalogue::{Catalogue, CatalogueKind, DASH_SIZES};
 use crate::caveat::overlap;
 use crate::project::{self, HoseProperties, Load, Project, SettlingTime, Speed};
-use crate::rig::{ExpansionPressures, Rig, RigError, VolumetricExpansion, hose, largest_flow, stiffening};
+use crate::rig::{Rig, RigError, largest_flow};
 use crate::setup::Setup;
 use crate::simulate::time_requirements;
 
@@ -90,7 +91,8 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
         load: sized_load(actuator, rig),
         dead_band: dead_band(setup, requirement.flow_gain)?,
         null_flow_gains: rig.null_flow_gains().filter(|_| {
-            requirement.flow_gain
+            requirement
+                .flow_gain
                 .or(project.linear.get("flow_gain"))
                 .or(project.operating_point.spool_side)
                 .is_none()
@@ -198,11 +200,7 @@ fn hoses(actuator: &project::DeclaredActuator, catalogue: &Catalogue) -> Vec<Hos
     });
     let pressures = ExpansionPressures::of(actuator.supply.pressure, actuator.supply.tank_pressure);
     let option = |name: HoseName, properties: [&HoseProperties; 2]| {
-        let hoses = [0, 1].map(|side: usize| {
-            let expansion = VolumetricExpansion::of(&properties[side].expansion);
-            let stiffening = stiffening(stiffenings[side]);
-            hose(properties[side].bore, expansion, pressures, stiffening)
-        });
+        let hoses = [0, 1].map(|side: usize| properties[side].component(pressures, stiffenings[side]));
         let [working_a, working_b] = properties.map(|hose| hose.working_pressure);
         let stated = properties.map(|hose| hose.expansion.pressure());
         let [radius_a, radius_b] = properties.map(|hose| hose.minimum_bend_radius);

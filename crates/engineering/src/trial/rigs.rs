@@ -256,7 +256,7 @@ fn scaled(project: &Project, name: &str, factor: f64) -> Result<Project, NoRig> 
 fn behind<'a>(actuator: &'a mut DeclaredActuator, name: &str) -> Vec<&'a mut f64> {
     match name {
         "viscous_friction" => {
-            actuator.friction_mut().map(|friction| &mut friction.viscous).into_iter().collect()
+            actuator.friction_mut().map(|friction| friction.law.viscous_mut()).into_iter().collect()
         }
         "flow_gain" => match &mut actuator.valve.flow {
             ValveCoefficients::Edges { edges, .. } => edges.each_mut().into(),

@@ -10,9 +10,10 @@
 use phea_dynamics::scalar::Scalar;
 
 use super::{Accumulator, Neck};
+use crate::cross_port::TRANSITION_PRESSURE_KEY;
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use crate::orifice::{flow, regular_root_slope};
-use crate::parameter::{ParameterError, ParameterRequirement, Problems};
+use crate::parameter::{ParameterError, Problems};
 
 /// Gas that is added and removed in operation. Units: 1, m3, Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,7 +79,7 @@ impl GasValve {
         let mut problems = Problems::default();
         problems.all(setting_problems(self.setting));
         problems.positive("adjustment.flow_coefficient", self.flow_coefficient);
-        problems.positive("adjustment.transition_pressure", self.transition_pressure);
+        problems.key_as("adjustment.transition_pressure", TRANSITION_PRESSURE_KEY, self.transition_pressure);
         problems.positive("adjustment.compliance", self.compliance);
         problems.into_vec()
     }
@@ -86,8 +87,7 @@ impl GasValve {
 
 fn setting_problems(setting: f64) -> Vec<ParameterError> {
     let mut problems = Problems::default();
-    let is_fraction = (0.0..=1.0).contains(&setting);
-    problems.require("adjustment.setting", setting, is_fraction, ParameterRequirement::FractionWithEnds);
+    problems.key_as("adjustment.setting", super::adjustment_keys::SETTING_KEY, setting);
     problems.into_vec()
 }
 

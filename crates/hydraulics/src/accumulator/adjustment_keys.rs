@@ -3,7 +3,13 @@
 use crate::cross_port::DeclaredOrifice;
 use phea_dynamics::scalar::Scalar;
 use phea_quantity::{PRESSURE, RATIO, VOLUME};
-use phea_table::{TableNumber, Variants, Visitor, key, plain};
+use phea_table::{Key, TableNumber, Variants, Visitor, key, plain};
+
+pub(super) const SETTING_KEY: Key =
+    key("setting", &RATIO, "Its value at rest, from 0, as declared or shut, to 1.")
+        .at_least(0.0)
+        .at_most(1.0)
+        .or(0.0);
 
 /// Adjusted part of an accumulator, with a setting from 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -100,8 +106,7 @@ impl<S: TableNumber> DeclaredAdjustment<S> {
     /// Visits the keys of the table.
     pub fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         v.variant(plain("kind", "What the setting moves."), &mut self.kind, true);
-        let k = key("setting", &RATIO, "Its value at rest, from 0, as declared or shut, to 1.");
-        v.unless_zero(k.at_least(0.0).at_most(1.0).or(0.0), &mut self.setting);
+        v.unless_zero(SETTING_KEY, &mut self.setting);
     }
 }
 

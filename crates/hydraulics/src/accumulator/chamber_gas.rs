@@ -82,7 +82,7 @@ impl ChamberGas {
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         if let Some(ratio) = self.maximum_pressure_ratio() {
-            problems.positive("maximum_pressure_ratio", ratio);
+            problems.key(super::keys::MAXIMUM_PRESSURE_RATIO_KEY, ratio);
         }
         match self {
             ChamberGas::Adjusted(gas) => problems.all(gas.problems()),

@@ -68,7 +68,7 @@ impl RelaxingGas {
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.all(self.isothermal().problems());
-        problems.positive("thermal_time_constant", self.time_constant);
+        problems.key(super::keys::THERMAL_TIME_CONSTANT_KEY, self.time_constant);
         problems.into_vec()
     }
 }

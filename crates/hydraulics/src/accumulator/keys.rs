@@ -1,9 +1,27 @@
 //! Table of an accumulator, at a chamber or at a pump.
 
 use phea_quantity::{LENGTH, PRESSURE, RATIO, TEMPERATURE, TIME, VOLUME, ZERO_CELSIUS};
-use phea_table::{PartCost, TableNumber, Visitor, key, plain};
+use phea_table::{Key, PartCost, TableNumber, Visitor, key, plain};
 
 use super::adjustment_keys::{AdjustmentKind, DeclaredAdjustment};
+use crate::fluid::MONATOMIC_EXPONENT;
+
+pub(super) const GAS_VOLUME_KEY: Key =
+    key("gas_volume", &VOLUME, "Volume of the gas at its precharge.").positive();
+pub(super) const PRECHARGE_PRESSURE_KEY: Key =
+    key("precharge_pressure", &PRESSURE, "Pressure of the gas without oil, gauge.").positive();
+pub(super) const POLYTROPIC_EXPONENT_KEY: Key =
+    key("polytropic_exponent", &RATIO, "Of the gas: 1 is slow, 1.4 fast.")
+        .at_least(1.0)
+        .at_most(MONATOMIC_EXPONENT);
+pub(super) const THERMAL_TIME_CONSTANT_KEY: Key = key(
+    "thermal_time_constant",
+    &TIME,
+    "Of the heat between gas and wall, in place of `polytropic_exponent`: slow isothermal, fast adiabatic.",
+)
+.positive();
+pub(super) const MAXIMUM_PRESSURE_RATIO_KEY: Key =
+    key("maximum_pressure_ratio", &RATIO, "Maker's limit of p_2/p_0, both absolute.").at_least(1.0);
 
 /// Gas-charged accumulator.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -104,8 +122,7 @@ impl DeclaredAccumulator {
 impl<S: TableNumber> DeclaredAccumulator<S> {
     /// Visits an accumulator at a chamber, which may have a neck, exchange heat and be adjusted.
     pub fn visit_at_chamber<V: Visitor<S>>(&mut self, v: &mut V) {
-        let doc = "Of the heat between gas and wall, in place of `polytropic_exponent`: slow isothermal, fast adiabatic.";
-        v.optional(key("thermal_time_constant", &TIME, doc).positive(), &mut self.thermal_time_constant);
+        v.optional(THERMAL_TIME_CONSTANT_KEY, &mut self.thermal_time_constant);
         self.visit(v);
         v.way(&["neck_diameter", "neck_length"], &mut self.neck, DeclaredNeck::visit);
         let k = plain("adjustment", "What of it is adjusted in operation, by a setting from 0 to 1.");
@@ -115,12 +132,9 @@ impl<S: TableNumber> DeclaredAccumulator<S> {
 
     /// Visits the keys of the table.
     pub fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
-        let k = key("gas_volume", &VOLUME, "Volume of the gas at its precharge.").positive();
-        v.quantity(k, &mut self.gas_volume);
-        let k = key("precharge_pressure", &PRESSURE, "Pressure of the gas without oil, gauge.").positive();
-        v.quantity(k, &mut self.precharge_pressure);
-        let k = key("polytropic_exponent", &RATIO, "Of the gas: 1 is slow, 1.4 fast.");
-        let k = k.at_least(1.0).at_most(5.0 / 3.0);
+        v.quantity(GAS_VOLUME_KEY, &mut self.gas_volume);
+        v.quantity(PRECHARGE_PRESSURE_KEY, &mut self.precharge_pressure);
+        let k = POLYTROPIC_EXPONENT_KEY;
         match self.thermal_time_constant {
             None => v.quantity(k.or(1.4), &mut self.polytropic_exponent),
             // a value would be contradictory, and is rejected where it is written
@@ -131,7 +145,6 @@ impl<S: TableNumber> DeclaredAccumulator<S> {
             &mut self.temperatures,
             GasTemperatures::visit,
         );
-        let k = key("maximum_pressure_ratio", &RATIO, "Maker's limit of p_2/p_0, both absolute.");
-        v.optional(k.at_least(1.0), &mut self.maximum_pressure_ratio);
+        v.optional(MAXIMUM_PRESSURE_RATIO_KEY, &mut self.maximum_pressure_ratio);
     }
 }

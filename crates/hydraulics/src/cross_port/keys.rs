@@ -3,6 +3,17 @@
 use phea_quantity::{CAPACITY, FLOW, FLOW_PRESSURE_COEFFICIENT, LENGTH, PRESSURE, RATIO, STIFFNESS};
 use phea_table::{Key, PartCost, TableNumber, Variants, Visitor, key, once_read, plain};
 
+pub(super) const CONDUCTANCE_KEY: Key =
+    key("conductance", &FLOW_PRESSURE_COEFFICIENT, "Of a laminar restrictor: flow over the drop.").positive();
+pub(crate) const TRANSITION_PRESSURE_KEY: Key = key(
+    "transition_pressure",
+    &PRESSURE,
+    "Drop below which the orifice is laminar, which makes its root regular; absent: 1 kPa.",
+)
+.positive();
+pub(super) const CAPACITY_KEY: Key =
+    key("capacity", &CAPACITY, "Volume that it takes over its pressure difference.").positive();
+
 /// Valve between the chambers, at the cylinder.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredCrossPort<S = f64> {
@@ -156,7 +167,7 @@ impl<S: TableNumber> Variants<S> for CrossPortKind<S> {
 
     fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         match self {
-            CrossPortKind::Laminar { conductance } => v.quantity(conductance_key(), conductance),
+            CrossPortKind::Laminar { conductance } => v.quantity(CONDUCTANCE_KEY, conductance),
             CrossPortKind::Orifice(orifice) => {
                 orifice.visit(v);
             }
@@ -170,10 +181,6 @@ impl<S: TableNumber> Variants<S> for CrossPortKind<S> {
     }
 }
 
-fn conductance_key() -> Key {
-    key("conductance", &FLOW_PRESSURE_COEFFICIENT, "Of a laminar restrictor: flow over the drop.").positive()
-}
-
 impl<S: TableNumber> DeclaredRestrictor<S> {
     fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let (mut conductance, orifice) = match self {
@@ -181,7 +188,7 @@ impl<S: TableNumber> DeclaredRestrictor<S> {
             DeclaredRestrictor::Orifice(orifice) => (None, Some(&*orifice)),
         };
         let mut parts = OrificeParts::of(orifice);
-        v.optional(conductance_key(), &mut conductance);
+        v.optional(CONDUCTANCE_KEY, &mut conductance);
         parts.visit(v);
         *self = match (conductance, parts.orifice(v)) {
             (None, Some(orifice)) => DeclaredRestrictor::Orifice(orifice),
@@ -200,8 +207,7 @@ impl<S: TableNumber> DeclaredCapacity<S> {
         v.optional(k.positive(), &mut diameter);
         let k = key("spring_stiffness", &STIFFNESS, "Of all springs of that piston together.").positive();
         v.optional(k, &mut stiffness);
-        let k = key("capacity", &CAPACITY, "Volume that it takes over its pressure difference.").positive();
-        v.optional(k, &mut capacity);
+        v.optional(CAPACITY_KEY, &mut capacity);
         *self = match (capacity, diameter, stiffness) {
             (None, Some(diameter), Some(stiffness)) => DeclaredCapacity::Piston { diameter, stiffness },
             (None, Some(_), None) => {
@@ -257,12 +263,7 @@ impl<S: TableNumber> OrificeParts<S> {
         v.optional(k, &mut self.flow);
         let k = key("pressure_drop", &PRESSURE, "Drop over the orifice at `flow`.").positive();
         v.optional(k, &mut self.pressure_drop);
-        let k = key(
-            "transition_pressure",
-            &PRESSURE,
-            "Drop below which the orifice is laminar, which makes its root regular; absent: 1 kPa.",
-        );
-        v.optional(k.positive(), &mut self.transition_pressure);
+        v.optional(TRANSITION_PRESSURE_KEY, &mut self.transition_pressure);
     }
 
     /// Orifice; `None` if nothing states its size.

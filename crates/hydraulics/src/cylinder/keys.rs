@@ -4,8 +4,21 @@ use std::f64::consts::FRAC_PI_4;
 
 use crate::contact::Contact;
 use crate::friction::DeclaredFriction;
+use crate::stroke::{STAGE_TRANSITION_KEY, STROKE_KEY};
 use phea_quantity::{AREA, FLOW_PRESSURE_COEFFICIENT, LENGTH, MASS, VOLUME};
-use phea_table::{CatalogueKind, TableNumber, Visitor, key, plain};
+use phea_table::{CatalogueKind, Key, TableNumber, Visitor, key, plain};
+
+pub(super) const MOVING_MASS_KEY: Key =
+    key("moving_mass", &MASS, "Mass of piston, rod and what moves with them.").positive().usual(
+        0.1,
+        1e4,
+        "pistons with what is fixed to them",
+    );
+pub(super) const DEAD_VOLUME_KEY: Key =
+    key("dead_volume", &VOLUME, "Volume of each chamber besides the swept volume and the line.")
+        .not_negative();
+pub(super) const INTERNAL_LEAKAGE_KEY: Key =
+    key("internal_leakage", &FLOW_PRESSURE_COEFFICIENT, "Laminar leakage across the piston.").positive();
 
 /// Cylinder; `a` is the end x = 0, and x grows from A to B.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -56,14 +69,6 @@ pub struct DeclaredStage<S = f64> {
     pub piston_areas: Option<[S; 2]>,
 }
 
-impl DeclaredStage {
-    /// Effective areas in chambers A and B, m².
-    pub fn areas_m2(&self) -> [f64; 2] {
-        let area = self.piston_area.unwrap_or(0.0);
-        self.piston_areas.unwrap_or([area, area])
-    }
-}
-
 impl<S: TableNumber> DeclaredStage<S> {
     fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = key("from", &LENGTH, "Position of the piston from which this stage moves.").positive();
@@ -84,19 +89,6 @@ impl DeclaredCylinder {
         self.piston_diameter.unwrap_or(by_area)
     }
 
-    /// Diameters of the rods in chambers A and B, m.
-    pub fn rod_diameters_m(&self) -> [f64; 2] {
-        let rod = self.rod_diameter.unwrap_or(0.0);
-        self.rod_diameters.unwrap_or([rod, rod])
-    }
-
-    /// Effective areas in chambers A and B, m²: declared, or those of the piston less the rod.
-    pub fn effective_areas_m2(&self) -> [f64; 2] {
-        let declared = self.piston_areas.or(self.piston_area.map(|area| [area, area]));
-        let piston = self.piston_diameter.unwrap_or(0.0);
-        declared.unwrap_or(self.rod_diameters_m().map(|rod| FRAC_PI_4 * (piston - rod) * (piston + rod)))
-    }
-
     /// Length of the longest stage, which determines the retracted length, m.
     pub fn longest_stage_m(&self) -> f64 {
         let ends = self.stages.iter().map(|stage| stage.from).chain([self.stroke]);
@@ -112,44 +104,39 @@ impl<S: TableNumber> DeclaredCylinder<S> {
         v.catalogue(k, CatalogueKind::Cylinder, &mut self.model);
         let k =
             key("piston_diameter", &LENGTH, "Diameter of the piston; or `piston_area` or `piston_areas`.")
-                .positive();
+                .positive()
+                .usual(0.01, 0.5, "pistons");
         v.optional(k, &mut self.piston_diameter);
         let k =
-            key("piston_area", &AREA, "Area the pressure acts on in each chamber, rods already subtracted.");
+            key("piston_area", &AREA, "Area the pressure acts on in each chamber, rods already subtracted.")
+                .usual(5e-5, 0.2, "pistons");
         v.optional(k.positive(), &mut self.piston_area);
         let k = key("piston_areas", &AREA, "Areas the pressure acts on in chamber A and in chamber B.");
         v.pair(k.positive(), &mut self.piston_areas);
         v.one_of(&["piston_areas", "piston_diameter", "piston_area"], true);
-        let k = key("rod_diameter", &LENGTH, "Diameter of the rod through both chambers.").not_negative();
+        let k = key("rod_diameter", &LENGTH, "Diameter of the rod through both chambers.")
+            .not_negative()
+            .usual(0.005, 0.4, "rods");
         v.optional(k, &mut self.rod_diameter);
         let k = key("rod_diameters", &LENGTH, "Diameters of the rods in chamber A and in chamber B.");
         v.pair(k.not_negative(), &mut self.rod_diameters);
         v.one_of(&["rod_diameter", "rod_diameters"], false);
-        let k = key("stroke", &LENGTH, "Stroke; x = 0 is the end of chamber A.").positive();
-        v.quantity(k, &mut self.stroke);
+        v.quantity(STROKE_KEY, &mut self.stroke);
         let k = plain("stage", "A stage of a telescopic piston that follows those before it; at most three.");
         v.tables(k, &mut self.stages, DeclaredStage::visit);
-        let k = key(
-            "stage_transition",
-            &LENGTH,
-            "Width over which the areas of a stage blend into those of the next, about `from`.",
-        );
-        v.quantity(k.positive().or(5e-3), &mut self.stage_transition);
-        let k = key("moving_mass", &MASS, "Mass of piston, rod and what moves with them.").positive();
-        v.quantity(k, &mut self.moving_mass);
+        v.quantity(STAGE_TRANSITION_KEY, &mut self.stage_transition);
+        v.quantity(MOVING_MASS_KEY, &mut self.moving_mass);
         let k = key(
             "dead_length",
             &LENGTH,
             "Length of the retracted actuator from mount to mount, less its stroke: covers, rod ends, force sensor.",
         );
         v.optional(k.not_negative(), &mut self.dead_length);
-        let k = key("dead_volume", &VOLUME, "Volume of each chamber besides the swept volume and the line.");
-        v.optional(k.not_negative(), &mut self.dead_volume);
+        v.optional(DEAD_VOLUME_KEY, &mut self.dead_volume);
         let k = key("dead_volumes", &VOLUME, "Dead volumes of chamber A and of chamber B.").not_negative();
         v.pair(k, &mut self.dead_volumes);
         v.one_of(&["dead_volume", "dead_volumes"], false);
-        let k = key("internal_leakage", &FLOW_PRESSURE_COEFFICIENT, "Laminar leakage across the piston.");
-        v.optional(k.positive(), &mut self.internal_leakage);
+        v.optional(INTERNAL_LEAKAGE_KEY, &mut self.internal_leakage);
         let k = plain("end_stops", "End stops of the piston at both ends; absent: none.");
         v.table(k, &mut self.end_stops, Contact::visit);
         let k = plain("friction", "Friction of seals and bearings; absent: none.");

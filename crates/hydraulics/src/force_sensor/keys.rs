@@ -1,7 +1,13 @@
 //! Table `[force_sensor]`.
 
 use phea_quantity::{FORCE, STIFFNESS};
-use phea_table::{TableNumber, Visitor, key};
+use phea_table::{Key, TableNumber, Visitor, key};
+
+pub(super) const STIFFNESS_KEY: Key =
+    key("stiffness", &STIFFNESS, "K_S: with a prescribed load motion, of cell and environment.")
+        .of_motion()
+        .positive()
+        .usual(1e6, 1e10, "load cells");
 
 /// Load cell.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,9 +24,7 @@ pub struct DeclaredForceSensor<S = f64> {
 impl<S: TableNumber> DeclaredForceSensor<S> {
     /// Visits the keys of the table.
     pub fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
-        let k = key("stiffness", &STIFFNESS, "K_S: with a prescribed load motion, of cell and environment.")
-            .of_motion();
-        v.quantity(k.positive(), &mut self.stiffness);
+        v.quantity(STIFFNESS_KEY, &mut self.stiffness);
         let k =
             key("noise", &FORCE, "Root mean square of the white noise in what a sampled controller sees.")
                 .of_motion();

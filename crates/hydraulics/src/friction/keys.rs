@@ -1,15 +1,39 @@
 //! Tables `[cylinder.friction]` and `[motor.friction]`.
 
 use phea_quantity::{DAMPING, FORCE, RATIO, STIFFNESS, VELOCITY};
-use phea_table::{DeclaredMisfit, TableNumber, Variants, Visitor, key, plain};
+use phea_table::{DeclaredMisfit, Key, TableNumber, Variants, Visitor, key, plain};
+
+use super::{Friction, LuGre, Stribeck};
+
+pub(super) const COULOMB_KEY: Key = key("coulomb", &FORCE, "Sliding friction F_C.").of_motion().positive();
+pub(super) const STRIBECK_VELOCITY_KEY: Key =
+    key("stribeck_velocity", &VELOCITY, "Velocity at which friction has fallen from F_S.")
+        .of_motion()
+        .positive();
+pub(super) const STRIBECK_EXPONENT_KEY: Key =
+    key("stribeck_exponent", &RATIO, "Exponent of the Stribeck curve.")
+        .positive()
+        .or(2.0)
+        .at_most(10.0)
+        .above(0.0);
+pub(super) const REGULAR_VELOCITY_KEY: Key =
+    key("regular_velocity", &VELOCITY, "Smooths the jump of a Stribeck curve, to simulate it.")
+        .of_motion()
+        .positive();
+pub(super) const BRISTLE_STIFFNESS_KEY: Key =
+    key("bristle_stiffness", &STIFFNESS, "σ₀ of LuGre.").of_motion().positive();
+pub(super) const BRISTLE_DAMPING_KEY: Key =
+    key("bristle_damping", &DAMPING, "σ₁ of LuGre.").of_motion().not_negative();
+pub(super) const VISCOUS_KEY: Key = key("viscous", &DAMPING, "Slope of friction over velocity, σ₂ of LuGre.")
+    .of_motion()
+    .not_negative()
+    .or(0.0);
 
 /// Friction of seals and bearings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredFriction<S = f64> {
-    /// Law of its non-viscous part.
-    pub law: FrictionLaw<S>,
-    /// Slope at high velocity (σ₂ of LuGre), N·s/m.
-    pub viscous: S,
+    /// Law with the levels in extension.
+    pub law: Friction<S>,
     /// Levels in retraction, if different.
     pub retracting: Option<RetractingFriction<S>>,
     /// Residual of the recordings from which it was identified.
@@ -45,96 +69,47 @@ impl<S: TableNumber> RetractingFriction<S> {
     }
 }
 
-/// Friction law, without its viscous part.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub enum FrictionLaw<S = f64> {
-    /// No other part: proportional to velocity.
-    #[default]
-    Viscous,
-    /// Coulomb and breakaway friction as a function of velocity.
-    Stribeck {
-        /// Curve over velocity.
-        curve: StribeckCurve<S>,
-        /// Velocity that smooths the jump at standstill for simulation, m/s.
-        regular_velocity: Option<S>,
-    },
-    /// Bristles with a state of their own.
-    LuGre {
-        /// Friction at constant velocity.
-        curve: StribeckCurve<S>,
-        /// Bristle stiffness σ₀, N/m.
-        bristle_stiffness: S,
-        /// Bristle damping σ₁, N·s/m.
-        bristle_damping: S,
-    },
-}
-
-/// Friction that falls from breakaway to sliding.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct StribeckCurve<S = f64> {
-    /// Sliding friction F_C, N.
-    pub coulomb: S,
-    /// Breakaway friction F_S, N.
-    pub static_friction: S,
-    /// Stribeck velocity, m/s.
-    pub stribeck_velocity: S,
-    /// Exponent.
-    pub stribeck_exponent: S,
-}
-
-impl<S: TableNumber> StribeckCurve<S> {
+impl<S: TableNumber> Stribeck<S> {
     fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
-        let k = key("coulomb", &FORCE, "Sliding friction F_C.").of_motion().positive();
-        v.quantity(k, &mut self.coulomb);
+        v.quantity(COULOMB_KEY, &mut self.coulomb);
         v.quantity(
             key("static", &FORCE, "Breakaway friction F_S.").of_motion().positive(),
             &mut self.static_friction,
         );
-        let k = key("stribeck_velocity", &VELOCITY, "Velocity at which friction has fallen from F_S.")
-            .of_motion();
-        v.quantity(k.positive(), &mut self.stribeck_velocity);
-        let k = key("stribeck_exponent", &RATIO, "Exponent of the Stribeck curve.").positive().or(2.0);
-        v.quantity(k.at_most(10.0).above(0.0), &mut self.stribeck_exponent);
+        v.quantity(STRIBECK_VELOCITY_KEY, &mut self.stribeck_velocity);
+        v.quantity(STRIBECK_EXPONENT_KEY, &mut self.stribeck_exponent);
     }
 }
 
-impl<S: TableNumber> Variants<S> for FrictionLaw<S> {
-    fn all(&self) -> Vec<FrictionLaw<S>> {
-        let curve = StribeckCurve::default();
+impl<S: TableNumber> Variants<S> for Friction<S> {
+    fn all(&self) -> Vec<Friction<S>> {
+        let curve = Stribeck::default();
         vec![
-            FrictionLaw::Viscous,
-            FrictionLaw::Stribeck { curve, regular_velocity: None },
-            FrictionLaw::LuGre { curve, bristle_stiffness: S::default(), bristle_damping: S::default() },
+            Friction::default(),
+            Friction::Stribeck { curve, regular_velocity: None },
+            Friction::LuGre(LuGre::default()),
         ]
     }
 
     fn word(&self) -> &'static str {
         match self {
-            FrictionLaw::Viscous => "viscous",
-            FrictionLaw::Stribeck { .. } => "stribeck",
-            FrictionLaw::LuGre { .. } => "lugre",
+            Friction::Viscous { .. } => "viscous",
+            Friction::Stribeck { .. } => "stribeck",
+            Friction::LuGre(_) => "lugre",
         }
     }
 
     fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         match self {
-            FrictionLaw::Viscous => {}
-            FrictionLaw::Stribeck { curve, regular_velocity } => {
+            Friction::Viscous { .. } => {}
+            Friction::Stribeck { curve, regular_velocity } => {
                 curve.visit(v);
-                let k = key(
-                    "regular_velocity",
-                    &VELOCITY,
-                    "Smooths the jump of a Stribeck curve, to simulate it.",
-                )
-                .of_motion();
-                v.optional(k.positive(), regular_velocity);
+                v.optional(REGULAR_VELOCITY_KEY, regular_velocity);
             }
-            FrictionLaw::LuGre { curve, bristle_stiffness, bristle_damping } => {
+            Friction::LuGre(LuGre { curve, bristle_stiffness, bristle_damping }) => {
                 curve.visit(v);
-                let k = key("bristle_stiffness", &STIFFNESS, "σ₀ of LuGre.").of_motion().positive();
-                v.quantity(k, bristle_stiffness);
-                let k = key("bristle_damping", &DAMPING, "σ₁ of LuGre.").of_motion().not_negative();
-                v.quantity(k, bristle_damping);
+                v.quantity(BRISTLE_STIFFNESS_KEY, bristle_stiffness);
+                v.quantity(BRISTLE_DAMPING_KEY, bristle_damping);
             }
         }
     }
@@ -144,10 +119,7 @@ impl<S: TableNumber> DeclaredFriction<S> {
     /// Visits the keys of the table.
     pub fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         v.variant(plain("model", "Which friction law."), &mut self.law, true);
-        let k = key("viscous", &DAMPING, "Slope of friction over velocity, σ₂ of LuGre.")
-            .of_motion()
-            .not_negative();
-        v.quantity(k.or(0.0), &mut self.viscous);
+        v.quantity(VISCOUS_KEY, self.law.viscous_mut());
     }
 
     /// Visits the friction of a cylinder, which is identified from recordings.

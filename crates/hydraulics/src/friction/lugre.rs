@@ -11,7 +11,7 @@ use crate::parameter::{ParameterError, Problems};
 /// ```
 ///
 /// Source: Canudas de Wit, Olsson, Astrom and Lischinsky (1995); the thesis' (4.30) drops sigma_0.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LuGre<S = f64> {
     /// Steady curve, with g(v) and sigma_2.
     pub curve: Stribeck<S>,
@@ -87,8 +87,8 @@ impl LuGre {
     /// possible: see [`LuGre::passivity`].
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
-        problems.positive("bristle_stiffness", self.bristle_stiffness);
-        problems.not_negative("bristle_damping", self.bristle_damping);
+        problems.key(super::keys::BRISTLE_STIFFNESS_KEY, self.bristle_stiffness);
+        problems.key(super::keys::BRISTLE_DAMPING_KEY, self.bristle_damping);
         let mut all = self.curve.problems();
         all.extend(problems.into_vec());
         all

@@ -11,7 +11,7 @@ use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 ///
 /// If a seal resists one direction more than the other, F_C, F_S and sigma_2 for v < 0 are those of
 /// `retracting`. F is zero or jumps at v = 0 in either case, so that this adds no jump.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stribeck<S = f64> {
     /// Coulomb friction F_C, N; with `retracting`, for v > 0.
     pub coulomb: S,
@@ -23,7 +23,7 @@ pub struct Stribeck<S = f64> {
     pub stribeck_exponent: S,
     /// Viscous coefficient sigma_2, N s/m.
     pub viscous: S,
-    /// Levels for v < 0; if absent, those for v > 0.
+    /// Levels for v < 0; if absent, those for v > 0. A table states them apart from its curve.
     pub retracting: Option<FrictionLevels<S>>,
 }
 
@@ -49,6 +49,13 @@ pub enum StribeckShape {
 }
 
 impl<S: Scalar> Stribeck<S> {
+    /// Levels for v > 0.
+    #[inline(always)]
+    pub(super) fn extending(&self) -> FrictionLevels<S> {
+        let Stribeck { coulomb, static_friction, viscous, .. } = *self;
+        FrictionLevels { coulomb, static_friction, viscous }
+    }
+
     /// Levels in the direction of a velocity in m/s.
     ///
     /// # Example
@@ -64,8 +71,9 @@ impl<S: Scalar> Stribeck<S> {
     /// ```
     #[inline(always)]
     pub fn levels(&self, velocity: S) -> FrictionLevels<S> {
-        let Stribeck { coulomb, static_friction, viscous, retracting, .. } = *self;
-        let Some(back) = retracting else { return FrictionLevels { coulomb, static_friction, viscous } };
+        let extending = self.extending();
+        let Some(back) = self.retracting else { return extending };
+        let FrictionLevels { coulomb, static_friction, viscous } = extending;
         let is_back = velocity.less_than(S::from(0.0));
         FrictionLevels {
             coulomb: S::select(is_back, back.coulomb, coulomb),
@@ -160,8 +168,8 @@ impl Stribeck {
         let [extending, retracting] = self.both_levels().map(|levels| levels.problems());
         let mut problems = Problems::default();
         problems.all(extending);
-        problems.positive("stribeck_velocity", self.stribeck_velocity);
-        problems.positive("stribeck_exponent", self.stribeck_exponent);
+        problems.key(super::keys::STRIBECK_VELOCITY_KEY, self.stribeck_velocity);
+        problems.key(super::keys::STRIBECK_EXPONENT_KEY, self.stribeck_exponent);
         if self.retracting.is_some() {
             problems.component("retracting", retracting);
         }
@@ -181,12 +189,17 @@ impl Stribeck {
 }
 
 impl FrictionLevels {
+    /// True if it breaks away at less than it slides with.
+    pub(super) fn is_reversed(&self) -> bool {
+        self.static_friction < self.coulomb
+    }
+
     fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
-        problems.positive("coulomb", self.coulomb);
-        let not_below = self.static_friction >= self.coulomb;
-        problems.require("static", self.static_friction, not_below, ParameterRequirement::AtLeastCoulomb);
-        problems.not_negative("viscous", self.viscous);
+        problems.key(super::keys::COULOMB_KEY, self.coulomb);
+        let requirement = ParameterRequirement::AtLeastCoulomb;
+        problems.require("static", self.static_friction, !self.is_reversed(), requirement);
+        problems.key(super::keys::VISCOUS_KEY, self.viscous);
         problems.into_vec()
     }
 

@@ -56,7 +56,7 @@ impl Hose {
     /// Impossible parameters of this hose; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
-        problems.positive("bore", self.bore);
+        problems.key(super::keys::HOSE_BORE, self.bore);
         problems.not_negative("volumetric_expansion", self.volumetric_expansion);
         let oil = FRAC_PI_4 * self.bore * self.bore + self.operating_expansion;
         problems.require(
@@ -65,7 +65,7 @@ impl Hose {
             oil > 0.0,
             ParameterRequirement::HoseHoldsOil,
         );
-        problems.positive("expansion_slope", self.expansion_slope);
+        problems.key_as("expansion_slope", super::keys::EXPANSION_SLOPE_KEY, self.expansion_slope);
         let Stiffening { nominal, minimum, maximum } = self.dynamic_stiffening;
         let at_least_one = ParameterRequirement::AtLeastOneOfHose;
         problems.require("dynamic_stiffening.minimum", minimum, minimum >= 1.0, at_least_one);

@@ -4,7 +4,28 @@ use super::motion_keys::LineMotion;
 use crate::accumulator::DeclaredAccumulator;
 use crate::line::Stiffening;
 use phea_quantity::{DENSITY, EXPANSION_SLOPE, LENGTH, PRESSURE, RATIO, VOLUME, VOLUME_PER_LENGTH};
-use phea_table::{CatalogueKind, DeclaredMisfit, Kinds, LineCost, TableNumber, Visitor, key, plain};
+use phea_table::{CatalogueKind, DeclaredMisfit, Key, Kinds, LineCost, TableNumber, Visitor, key, plain};
+
+pub(super) const HOSE_BORE: Key =
+    key("bore", &LENGTH, "Inner diameter of the hose.").positive().usual(0.003, 0.08, "hoses");
+pub(super) const PIPE_BORE: Key = key("bore", &LENGTH, "Inner diameter of the pipe.").positive();
+pub(super) const EXPANSION_SLOPE_KEY: Key =
+    key("volumetric_expansion_slope", &EXPANSION_SLOPE, "Slope of the expansion over pressure.").positive();
+pub(super) const WALL_THICKNESS_KEY: Key =
+    key("wall_thickness", &LENGTH, "Thickness of the wall; absent: the wall is rigid.").positive();
+pub(super) const YOUNGS_MODULUS_KEY: Key =
+    key("youngs_modulus", &PRESSURE, "Young's modulus of the wall.").positive();
+pub(super) const POISSON_RATIO_KEY: Key =
+    key("poisson_ratio", &RATIO, "Poisson's ratio of the wall.").not_negative().below(0.5).or(0.3);
+pub(super) const VOLUME_KEY: Key = key(
+    "volume",
+    &VOLUME,
+    "Volume of the line, instead of a hose or pipe; zero: the valve is on the chamber.",
+)
+.not_negative()
+.usual(1e-6, 0.05, "lines");
+pub(super) const EFFECTIVE_BULK_MODULUS_KEY: Key =
+    key("effective_bulk_modulus", &PRESSURE, "Effective bulk modulus that goes with `volume`.").positive();
 
 /// Modulus of the fluid in the cylinder's chambers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -196,6 +217,15 @@ impl DeclaredLine {
         if let Component::Pipe { pipe, .. } = &self.component { Some(pipe) } else { None }
     }
 
+    /// Bore of a hose or pipe, m.
+    pub fn bore(&self) -> Option<f64> {
+        match &self.component {
+            Component::Hose { properties, .. } => Some(properties.bore),
+            Component::Pipe { pipe, .. } => Some(pipe.bore),
+            Component::Volume(_) => None,
+        }
+    }
+
     /// Length of a hose or pipe, m.
     pub fn length(&self) -> Option<f64> {
         match self.component {
@@ -258,7 +288,7 @@ impl<S: TableNumber> Component<S> {
             v.way(&Component::VOLUME, &mut volume, LineVolume::visit);
         }
         let words = if or_volume { "Length of the line to one chamber." } else { "Length of the line." };
-        let k = key("length", &LENGTH, words).positive();
+        let k = key("length", &LENGTH, words).positive().usual(0.05, 30.0, "lines");
         match (hose, pipe, volume) {
             (Some(properties), _, _) => {
                 v.quantity(k, &mut length);
@@ -278,21 +308,8 @@ impl<S: TableNumber> Component<S> {
 
 impl<S: TableNumber> LineVolume<S> {
     fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
-        let doc = "Volume of the line, instead of a hose or pipe; zero: the valve is on the chamber.";
-        let k = key("volume", &VOLUME, doc).not_negative();
-        v.quantity(k, &mut self.volume);
-        let k = key("effective_bulk_modulus", &PRESSURE, "Effective bulk modulus that goes with `volume`.");
-        v.quantity(k.positive(), &mut self.effective_bulk_modulus);
-    }
-}
-
-impl HoseExpansion {
-    /// Declared slope, or the expansion over the pressure of its measurement, m³/(m·Pa).
-    pub fn slope(&self) -> f64 {
-        match *self {
-            HoseExpansion::Slope { slope, .. } => slope,
-            HoseExpansion::Measured { measured, pressure } => measured / pressure,
-        }
+        v.quantity(VOLUME_KEY, &mut self.volume);
+        v.quantity(EFFECTIVE_BULK_MODULUS_KEY, &mut self.effective_bulk_modulus);
     }
 }
 
@@ -324,8 +341,7 @@ impl<S: TableNumber> HoseExpansion<S> {
         v.optional(k.positive(), &mut measured);
         let k = key("volumetric_expansion_pressure", &PRESSURE, "Pressure the expansion was measured at.");
         v.optional(k.positive(), &mut pressure);
-        let k = key("volumetric_expansion_slope", &EXPANSION_SLOPE, "Slope of the expansion over pressure.");
-        v.optional(k.positive(), &mut slope);
+        v.optional(EXPANSION_SLOPE_KEY, &mut slope);
         *self = match (slope, measured, pressure) {
             (Some(slope), ..) => HoseExpansion::Slope { slope, measured, pressure },
             (None, Some(measured), Some(pressure)) => HoseExpansion::Measured { measured, pressure },
@@ -342,8 +358,7 @@ impl<S: TableNumber> HoseExpansion<S> {
 impl<S: TableNumber> HoseProperties<S> {
     /// Visits the keys of a hose in the catalogue.
     pub fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
-        let k = key("bore", &LENGTH, "Inner diameter of the hose.").positive();
-        v.quantity(k, &mut self.bore);
+        v.quantity(HOSE_BORE, &mut self.bore);
         self.expansion.visit(v);
         let k = key("minimum_bend_radius", &LENGTH, "Smallest permitted bend radius.").positive();
         v.optional(k, &mut self.minimum_bend_radius);
@@ -360,11 +375,9 @@ impl<S: TableNumber> DeclaredPipe<S> {
     pub fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = plain("model", "Name of a pipe of the catalogue.");
         v.catalogue(k, CatalogueKind::Pipe, &mut self.model);
-        v.quantity(key("bore", &LENGTH, "Inner diameter of the pipe.").positive(), &mut self.bore);
+        v.quantity(PIPE_BORE, &mut self.bore);
         v.way(&["wall_thickness", "youngs_modulus"], &mut self.wall, ElasticWall::visit);
-        let k =
-            key("poisson_ratio", &RATIO, "Poisson's ratio of the wall.").not_negative().below(0.5).or(0.3);
-        v.quantity(k, &mut self.poisson_ratio);
+        v.quantity(POISSON_RATIO_KEY, &mut self.poisson_ratio);
         let k = key("outer_diameter", &LENGTH, "Outer diameter of the pipe.").positive();
         v.optional(k, &mut self.outer_diameter);
         let k = key("working_pressure", &PRESSURE, "Highest permitted working pressure.").positive();
@@ -377,10 +390,8 @@ impl<S: TableNumber> DeclaredPipe<S> {
 
 impl<S: TableNumber> ElasticWall<S> {
     fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
-        let k = key("wall_thickness", &LENGTH, "Thickness of the wall; absent: the wall is rigid.");
-        v.quantity(k.positive(), &mut self.thickness);
-        let k = key("youngs_modulus", &PRESSURE, "Young's modulus of the wall.").positive();
-        v.quantity(k, &mut self.youngs_modulus);
+        v.quantity(WALL_THICKNESS_KEY, &mut self.thickness);
+        v.quantity(YOUNGS_MODULUS_KEY, &mut self.youngs_modulus);
         let k = key("wall_density", &DENSITY, "Density of the wall, from which its mass follows.").positive();
         v.optional(k, &mut self.density);
     }

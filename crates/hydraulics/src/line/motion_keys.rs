@@ -51,7 +51,12 @@ static FRICTIONS: [(&str, Option<LaminarFriction>); 2] = [
     ("frequency_dependent", Some(LaminarFriction::FrequencyDependent)),
 ];
 
-const RELAXATION: Key = key(
+pub(super) const END_FRACTION_KEY: Key =
+    key("end_share", &RATIO, "Share of the compliance at each end of a line with waves.")
+        .positive()
+        .below(0.5);
+
+pub(super) const RELAXATION: Key = key(
     "relaxation_time",
     &TIME,
     "Time in which pressure relaxes while the volume is held; none is assumed.",
@@ -88,15 +93,13 @@ impl<S: TableNumber> Variants<S> for LineMotion<S> {
     }
 
     fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
-        let fraction = key("end_share", &RATIO, "Share of the compliance at each end of a line with waves.");
-        let fraction = fraction.positive().below(0.5);
         match self {
             LineMotion::Automatic | LineMotion::Lumped => {}
             LineMotion::Creeping { relaxation_time } => v.quantity(RELAXATION, relaxation_time),
             LineMotion::Segments(segments) => segments.visit(v),
-            LineMotion::TransmissionLine { end_share } => v.optional(fraction, end_share),
+            LineMotion::TransmissionLine { end_share } => v.optional(END_FRACTION_KEY, end_share),
             LineMotion::TwoWave { end_share, wall } => {
-                v.optional(fraction, end_share);
+                v.optional(END_FRACTION_KEY, end_share);
                 let k = plain("wall", "The wall of a hose with two waves; what is absent is assumed.");
                 v.table(k, wall, LineWall::visit);
             }

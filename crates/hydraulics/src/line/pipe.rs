@@ -1,6 +1,6 @@
 use phea_dynamics::scalar::Scalar;
 
-use crate::parameter::{ParameterError, ParameterRequirement, Problems};
+use crate::parameter::{ParameterError, Problems};
 
 /// Round pipe. Units: m, Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,12 +47,11 @@ impl Pipe {
     /// Impossible parameters of this pipe; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
-        problems.positive("bore", self.bore);
+        problems.key(super::keys::PIPE_BORE, self.bore);
         if let PipeWall::Elastic { thickness, youngs_modulus, poisson_ratio, .. } = self.wall {
-            problems.positive("wall_thickness", thickness);
-            problems.positive("youngs_modulus", youngs_modulus);
-            let possible = (0.0..=0.5).contains(&poisson_ratio);
-            problems.require("poisson_ratio", poisson_ratio, possible, ParameterRequirement::PoissonRatio);
+            problems.key(super::keys::WALL_THICKNESS_KEY, thickness);
+            problems.key(super::keys::YOUNGS_MODULUS_KEY, youngs_modulus);
+            problems.key(super::keys::POISSON_RATIO_KEY, poisson_ratio);
         }
         problems.into_vec()
     }

@@ -57,7 +57,7 @@ impl StandardLinearSolid {
             stiffens,
             ParameterRequirement::AtLeastStaticModulus,
         );
-        problems.positive("relaxation_time", self.relaxation_time);
+        problems.key(super::motion_keys::RELAXATION, self.relaxation_time);
         problems.into_vec()
     }
 

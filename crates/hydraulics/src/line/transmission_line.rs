@@ -1,6 +1,6 @@
 use super::travelling_waves::WaveData;
 use super::{Conduit, LineError, TravellingWaves};
-use crate::parameter::{ParameterRequirement, Problems};
+use crate::parameter::Problems;
 
 /// Default fraction of a line's compliance in each end volume.
 pub const END_SHARE: f64 = 0.01;
@@ -51,8 +51,7 @@ impl TransmissionLine {
 
 pub(super) fn check_end_share(end_share: f64) -> Result<(), LineError> {
     let mut problems = Problems::default();
-    let is_fraction = end_share > 0.0 && end_share < 0.5;
-    problems.require("end_share", end_share, is_fraction, ParameterRequirement::BelowHalf);
+    problems.key(super::motion_keys::END_FRACTION_KEY, end_share);
     let problems = problems.into_vec();
     if problems.is_empty() { Ok(()) } else { Err(LineError::Impossible { problems }) }
 }

@@ -1,9 +1,16 @@
 //! Table `[load]`.
 
 use phea_quantity::{DAMPING, INVERSE_VELOCITY, LENGTH, MASS, STIFFNESS};
-use phea_table::{TableNumber, Variants, Visitor, key, plain};
+use phea_table::{Key, TableNumber, Variants, Visitor, key, plain};
 
 use super::Load;
+
+pub(super) const MASS_KEY: Key = key("mass", &MASS, "Mass of the load.").of_load().positive();
+/// Zero for a free mass.
+pub(super) const STIFFNESS_KEY: Key =
+    key("stiffness", &STIFFNESS, "Stiffness of the load or of the wall.").of_load().not_negative();
+pub(super) const DAMPING_KEY: Key =
+    key("damping", &DAMPING, "Damping of the load or of its guide.").of_load().not_negative().or(0.0);
 
 impl<S: TableNumber> Load<S> {
     /// Visits the table of the load.
@@ -31,22 +38,17 @@ impl<S: TableNumber> Variants<S> for Load<S> {
     }
 
     fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
-        let kilograms = key("mass", &MASS, "Mass of the load.").of_load().positive();
-        let spring = key("stiffness", &STIFFNESS, "Stiffness of the load or of the wall.").of_load();
-        let damper =
-            key("damping", &DAMPING, "Damping of the load or of its guide.").of_load().not_negative().or(0.0);
         match self {
             Load::Prescribed => {}
             Load::SpringMassDamper { mass, stiffness, damping } => {
-                v.quantity(kilograms, mass);
-                // zero for a free mass
-                v.quantity(spring.not_negative(), stiffness);
-                v.quantity(damper, damping);
+                v.quantity(MASS_KEY, mass);
+                v.quantity(STIFFNESS_KEY, stiffness);
+                v.quantity(DAMPING_KEY, damping);
             }
             Load::Wall { mass, damping, stiffness, gap, relative_damping } => {
-                v.optional(kilograms, mass);
-                v.quantity(spring.positive(), stiffness);
-                v.quantity(damper, damping);
+                v.optional(MASS_KEY, mass);
+                v.quantity(STIFFNESS_KEY.positive(), stiffness);
+                v.quantity(DAMPING_KEY, damping);
                 let k = key("gap", &LENGTH, "Free play before the wall is touched.").of_load().not_negative();
                 v.quantity(k.or(0.0), gap);
                 let k = key(

@@ -1,9 +1,21 @@
 //! Table `[supply]`.
 
 use phea_quantity::{FLOW, PRESSURE, VOLUME};
-use phea_table::{TableNumber, Variants, Visitor, key, plain};
+use phea_table::{Key, TableNumber, Variants, Visitor, key, plain};
 
 use crate::accumulator::DeclaredAccumulator;
+use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
+
+pub(crate) const TANK_PRESSURE_KEY: Key =
+    key("tank_pressure", &PRESSURE, "Return pressure, gauge.").above(-ATMOSPHERIC_PRESSURE_ABSOLUTE).or(0.0);
+pub(super) const RELIEF_OVERRIDE_KEY: Key =
+    key("relief_override", &PRESSURE, "Rise over which the relief valve opens for all of `flow`.")
+        .positive()
+        .or(5e5);
+pub(super) const VOLUME_KEY: Key =
+    key("volume", &VOLUME, "Volume of the line from a limited pump to the valve.").positive().or(1e-3);
+pub(super) const EFFECTIVE_BULK_MODULUS_KEY: Key =
+    key("effective_bulk_modulus", &PRESSURE, "Of that line; absent: the fluid's.").positive();
 
 /// Pressure supply.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -63,7 +75,7 @@ impl<S: TableNumber> Variants<S> for SupplyModel<S> {
     }
 
     fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
-        let k = key("flow", &FLOW, "Flow the pump can give.").positive();
+        let k = key("flow", &FLOW, "Flow the pump can give.").positive().usual(5e-6, 2e-2, "pumps");
         match self {
             SupplyModel::Constant { flow } => v.optional(k, flow),
             SupplyModel::PumpLimited(pump) => {
@@ -76,13 +88,9 @@ impl<S: TableNumber> Variants<S> for SupplyModel<S> {
 
 impl<S: TableNumber> Pump<S> {
     fn visit_line<V: Visitor<S>>(&mut self, v: &mut V) {
-        let k =
-            key("relief_override", &PRESSURE, "Rise over which the relief valve opens for all of `flow`.");
-        v.quantity(k.positive().or(5e5), &mut self.relief_override);
-        let k = key("volume", &VOLUME, "Volume of the line from a limited pump to the valve.").positive();
-        v.quantity(k.or(1e-3), &mut self.volume);
-        let k = key("effective_bulk_modulus", &PRESSURE, "Of that line; absent: the fluid's.").positive();
-        v.optional(k, &mut self.effective_bulk_modulus);
+        v.quantity(RELIEF_OVERRIDE_KEY, &mut self.relief_override);
+        v.quantity(VOLUME_KEY, &mut self.volume);
+        v.optional(EFFECTIVE_BULK_MODULUS_KEY, &mut self.effective_bulk_modulus);
         let k = plain("accumulator", "A gas-charged accumulator on that line.");
         v.table(k, &mut self.accumulator, DeclaredAccumulator::visit);
     }
@@ -103,9 +111,8 @@ impl<S: TableNumber> DeclaredSupply<S> {
     pub fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
         let k = plain("model", "How the pressure behaves under load; `pump_limited` uses `flow`.");
         v.variant(k, &mut self.model, false);
-        let k = key("pressure", &PRESSURE, "Supply pressure, gauge.").positive();
+        let k = key("pressure", &PRESSURE, "Supply pressure, gauge.").positive().usual(1e6, 5e7, "supplies");
         v.quantity(k, &mut self.pressure);
-        let k = key("tank_pressure", &PRESSURE, "Return pressure, gauge.").above(-101_325.0).or(0.0);
-        v.quantity(k, &mut self.tank_pressure);
+        v.quantity(TANK_PRESSURE_KEY, &mut self.tank_pressure);
     }
 }

@@ -7,7 +7,51 @@ use crate::line::DeclaredLine;
 use phea_quantity::{
     AREA, DAMPING, DENSITY, INVERSE_VELOCITY, LENGTH, MASS, PRESSURE, PricedBy, RATIO, STIFFNESS, VOLUME,
 };
-use phea_table::{PartCost, TableNumber, Variants, Visitor, key, plain};
+use phea_table::{Key, PartCost, TableNumber, Variants, Visitor, key, plain};
+
+pub(super) const STOP_DAMPING_KEY: Key = key(
+    "stop_damping",
+    &INVERSE_VELOCITY,
+    "Damping of the stops relative to their elastic force; needs `damping` or `mass`.",
+)
+.not_negative()
+.or(0.0);
+pub(super) const SEGMENTS_KEY: Key =
+    key("segments", &RATIO, "Into how many segments its line is cut; absent: 4.")
+        .at_least(1.0)
+        .at_most(MOST_SEGMENTS as f64);
+pub(super) const PISTON_AREA_KEY: Key = key("piston_area", &AREA, "Of either piston of the transmission.")
+    .positive()
+    .usual(5e-5, 0.02, "pistons of transmissions");
+pub(super) const END_VOLUME_KEY: Key =
+    key("end_volume", &VOLUME, "Oil at either piston, in addition to that of the line.")
+        .not_negative()
+        .or(0.0);
+pub(super) const STIFFNESS_KEY: Key =
+    key("stiffness", &STIFFNESS, "Of the spring between force sensor and load, at rest.").positive().usual(
+        1e4,
+        1e8,
+        "series springs",
+    );
+pub(super) const TRAVEL_KEY: Key =
+    key("travel", &LENGTH, "Travel of the spring to either side; absent: not limited.").positive().usual(
+        1e-3,
+        0.1,
+        "series springs",
+    );
+pub(super) const PROGRESSION_KEY: Key = key(
+    "progression",
+    &RATIO,
+    "Share by which the force at the end of the travel exceeds `stiffness` times `travel`; needs `travel`.",
+)
+.not_negative()
+.or(0.0);
+pub(super) const STOP_STIFFNESS_KEY: Key = key(
+    "stop_stiffness",
+    &STIFFNESS,
+    "Of the stops at both ends of the travel; absent: the ends are reported, and nothing stops the spring.",
+)
+.positive();
 
 /// Element between force sensor and load.
 #[derive(Clone, Debug, PartialEq)]
@@ -146,16 +190,14 @@ impl<S: TableNumber> Variants<S> for DeclaredSeries<S> {
 
 impl<S: TableNumber> DeclaredTransmission<S> {
     fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
-        let k = key("piston_area", &AREA, "Of either piston of the transmission.").positive();
-        v.quantity(k, &mut self.piston_area);
-        let k = key("filling_pressure", &PRESSURE, "Of its oil, at rest and without force.").positive();
+        v.quantity(PISTON_AREA_KEY, &mut self.piston_area);
+        let k = key("filling_pressure", &PRESSURE, "Of its oil, at rest and without force.")
+            .positive()
+            .usual(1e5, 3.5e7, "transmissions");
         v.quantity(k, &mut self.filling_pressure);
-        let k = key("end_volume", &VOLUME, "Oil at either piston, in addition to that of the line.")
-            .not_negative();
-        v.quantity(k.or(0.0), &mut self.end_volume);
-        let k = key("segments", &RATIO, "Into how many segments its line is cut; absent: 4.").at_least(1.0);
+        v.quantity(END_VOLUME_KEY, &mut self.end_volume);
         let mut segments = Some(self.segments);
-        v.optional_count(k.at_most(MOST_SEGMENTS as f64), &mut segments);
+        v.optional_count(SEGMENTS_KEY, &mut segments);
         self.segments = segments.unwrap_or(SEGMENTS);
         v.needed_table(plain("line", "The hose or pipe between its pistons."), &mut self.line, |line, v| {
             line.visit_unconnected(v);
@@ -170,32 +212,15 @@ impl<S: TableNumber> DeclaredTransmission<S> {
 
 impl<S: TableNumber> DeclaredSpring<S> {
     fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
-        let k = key("stiffness", &STIFFNESS, "Of the spring between force sensor and load, at rest.");
-        v.quantity(k.positive(), &mut self.stiffness);
+        v.quantity(STIFFNESS_KEY, &mut self.stiffness);
         let k = key("damping", &DAMPING, "Damping parallel to the spring.").not_negative();
         v.unless_zero(k.or(0.0), &mut self.damping);
         let k = key("mass", &MASS, "Mass between force sensor and spring.").not_negative();
         v.unless_zero(k.or(0.0), &mut self.mass);
-        let k = key("travel", &LENGTH, "Travel of the spring to either side; absent: not limited.");
-        v.optional(k.positive(), &mut self.travel);
-        let k = key(
-            "progression",
-            &RATIO,
-            "Share by which the force at the end of the travel exceeds `stiffness` times `travel`; needs `travel`.",
-        );
-        v.unless_zero(k.not_negative().or(0.0), &mut self.progression);
-        let k = key(
-            "stop_stiffness",
-            &STIFFNESS,
-            "Of the stops at both ends of the travel; absent: the ends are reported, and nothing stops the spring.",
-        );
-        v.optional(k.positive(), &mut self.stop_stiffness);
-        let k = key(
-            "stop_damping",
-            &INVERSE_VELOCITY,
-            "Damping of the stops relative to their elastic force; needs `damping` or `mass`.",
-        );
-        v.quantity(k.not_negative().or(0.0), &mut self.stop_damping);
+        v.optional(TRAVEL_KEY, &mut self.travel);
+        v.unless_zero(PROGRESSION_KEY, &mut self.progression);
+        v.optional(STOP_STIFFNESS_KEY, &mut self.stop_stiffness);
+        v.quantity(STOP_DAMPING_KEY, &mut self.stop_damping);
         let words = &[("sensor", ForceFrom::Sensor), ("deflection", ForceFrom::Deflection)];
         let k = plain(
             "force_from",
@@ -216,11 +241,20 @@ impl<S: TableNumber> SpringCoil<S> {
         let k = key("index", &RATIO, "Mean diameter of the coil over the diameter of the wire.");
         v.quantity(k.at_least(3.0).at_most(20.0), &mut self.index);
         let k =
-            key("allowed_shear_stress", &PRESSURE, "Greatest shear stress in the wire, by Wahl's factor.");
+            key("allowed_shear_stress", &PRESSURE, "Greatest shear stress in the wire, by Wahl's factor.")
+                .usual(2e8, 1.2e9, "spring steels");
         v.quantity(k.positive(), &mut self.allowed_shear_stress);
-        let k = key("shear_modulus", &PRESSURE, "Of the wire.").positive().or(STEEL_SHEAR_MODULUS);
+        let k = key("shear_modulus", &PRESSURE, "Of the wire.").positive().or(STEEL_SHEAR_MODULUS).usual(
+            4e10,
+            9e10,
+            "spring materials",
+        );
         v.quantity(k, &mut self.shear_modulus);
-        let k = key("density", &DENSITY, "Of the wire.").positive().or(STEEL_DENSITY);
+        let k = key("density", &DENSITY, "Of the wire.").positive().or(STEEL_DENSITY).usual(
+            4000.0,
+            9000.0,
+            "spring materials",
+        );
         v.quantity(k, &mut self.density);
     }
 }

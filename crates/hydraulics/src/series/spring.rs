@@ -55,7 +55,7 @@ impl SeriesSpring {
     /// Impossible parameters of this spring; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
-        problems.positive("stiffness", self.stiffness);
+        problems.key(super::keys::STIFFNESS_KEY, self.stiffness);
         if let Some(damping) = self.damping {
             problems.positive("damping", damping);
         }
@@ -63,22 +63,21 @@ impl SeriesSpring {
             problems.positive("mass", mass);
         }
         if let Some(SeriesTravel { travel, progression, ends }) = self.travel {
-            problems.positive("travel", travel);
-            problems.not_negative("progression", progression.unwrap_or(0.0));
+            problems.key(super::keys::TRAVEL_KEY, travel);
+            problems.key(super::keys::PROGRESSION_KEY, progression.unwrap_or(0.0));
             if let Some(ends) = ends {
-                problems.positive("stop_stiffness", ends.stiffness);
+                problems.key(super::keys::STOP_STIFFNESS_KEY, ends.stiffness);
                 let damped = ends.relative_damping;
-                let free = self.damping.is_none() && self.mass.is_none();
-                let requirement = match free {
-                    true => ParameterRequirement::NothingMovesAgainstStop,
-                    false => ParameterRequirement::ZeroOrPositive,
-                };
-                problems.require(
-                    "stop_damping",
-                    damped,
-                    damped == 0.0 || (damped > 0.0 && !free),
-                    requirement,
-                );
+                let free = is_free(self.damping, self.mass);
+                match free {
+                    true => problems.require(
+                        "stop_damping",
+                        damped,
+                        damped == 0.0,
+                        ParameterRequirement::NothingMovesAgainstStop,
+                    ),
+                    false => problems.key(super::keys::STOP_DAMPING_KEY, damped),
+                }
             }
         }
         problems.into_vec()
@@ -103,6 +102,12 @@ impl SeriesSpring {
         }
         deflection
     }
+}
+
+/// True if only the force determines the velocity of a spring: with a damper or a mass, something
+/// moves against its stops.
+pub(super) fn is_free(damping: Option<f64>, mass: Option<f64>) -> bool {
+    damping.is_none() && mass.is_none()
 }
 
 /// Largest number of Newton steps for a deflection: three suffice for a linear spring, about ten

@@ -61,7 +61,7 @@ impl Transmission {
     /// Impossible parameters of this transmission; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
-        problems.positive("piston_area", self.piston_area);
+        problems.key(super::keys::PISTON_AREA_KEY, self.piston_area);
         problems.component("line", self.line.problems());
         let (is_conduit, length) = match self.line {
             Line::Hose { length, .. } | Line::Pipe { length, .. } => (true, length),
@@ -69,8 +69,8 @@ impl Transmission {
         };
         let conduit = ParameterRequirement::HoseOrPipe;
         problems.require("line.volume", length, is_conduit, conduit);
-        problems.require("line.length", length, length > 0.0, ParameterRequirement::Positive);
-        problems.not_negative("end_volume", self.end_volume);
+        problems.positive("line.length", length);
+        problems.key(super::keys::END_VOLUME_KEY, self.end_volume);
         let absolute = self.filling_pressure + ATMOSPHERIC_PRESSURE_ABSOLUTE;
         problems.require(
             "filling_pressure",
@@ -78,8 +78,7 @@ impl Transmission {
             absolute > 0.0,
             ParameterRequirement::AboveVacuum,
         );
-        let count = (1..=MOST_SEGMENTS).contains(&self.segments);
-        problems.require("segments", self.segments as f64, count, ParameterRequirement::SegmentCount);
+        problems.key(super::keys::SEGMENTS_KEY, self.segments as f64);
         problems.into_vec()
     }
 }

@@ -3,7 +3,36 @@
 use crate::power_unit::DeclaredSupply;
 use crate::servovalve::{Edges, LeakageModel};
 use phea_quantity::{ANGULAR_FREQUENCY, FLOW, PRESSURE, RATIO, TIME, VOLTAGE, VOLTAGE_RATE};
-use phea_table::{CatalogueKind, DeclaredMisfit, PartCost, TableNumber, Visitor, key, plain};
+use phea_table::{CatalogueKind, DeclaredMisfit, Key, PartCost, TableNumber, Visitor, key, plain};
+
+pub(super) const TARE_FLOW_KEY: Key =
+    key("tare_flow", &FLOW, "Pilot stage flow from supply to tank.").not_negative().or(0.0);
+pub(super) const TARE_PRESSURE_KEY: Key =
+    key("tare_pressure", &PRESSURE, "Drop at which `tare_flow` is stated; absent: the supply's.").positive();
+pub(super) const NOMINAL_VOLTAGE_KEY: Key =
+    key("nominal_voltage", &VOLTAGE, "Command of full opening.").positive().or(10.0);
+pub(super) const NATURAL_FREQUENCY_KEY: Key =
+    key("natural_frequency", &ANGULAR_FREQUENCY, "Natural frequency of the spool's dynamics.")
+        .positive()
+        .usual(60.0, 3000.0, "servovalves");
+pub(super) const DAMPING_RATIO_KEY: Key =
+    key("damping_ratio", &RATIO, "Damping ratio of the spool's dynamics.").positive();
+pub(super) const TRANSITION_PRESSURE_KEY: Key =
+    key("transition_pressure", &PRESSURE, "Drop below which the square root is made regular.")
+        .positive()
+        .or(1000.0);
+pub(super) const SATURATION_KEY: Key =
+    key("saturation", &RATIO, "c of the opening u/(1 + c u), beyond the lap; 0: in proportion.")
+        .not_negative()
+        .or(0.0);
+pub(super) const THRESHOLD_KEY: Key =
+    key("threshold", &VOLTAGE, "Change of command that a reversal takes.").positive();
+pub(super) const RATE_LIMIT_KEY: Key =
+    key("rate_limit", &VOLTAGE_RATE, "Greatest rate of the spool, as equivalent command.").positive();
+pub(super) const LEAKAGE_SHAPE_KEY: Key =
+    key("leakage_shape", &RATIO, "λ of sech(λ U/U_n) in the leakage; 0 keeps it constant.")
+        .not_negative()
+        .or(0.0);
 
 /// Words of `leakage_model`.
 pub static LEAKAGE_MODELS: [(&str, LeakageModel); 2] =
@@ -139,8 +168,16 @@ impl<R, S> ValveCoefficients<R, S> {
 
 impl<S: TableNumber> RatedFlow<S> {
     fn visit<V: Visitor<S>>(&mut self, v: &mut V) {
-        v.quantity(key("nominal_flow", &FLOW, "Rated flow of the data sheet.").positive(), &mut self.flow);
-        let k = key("nominal_pressure_drop", &PRESSURE, "Drop over both edges together at the rated flow.");
+        v.quantity(
+            key("nominal_flow", &FLOW, "Rated flow of the data sheet.").positive().usual(
+                5e-6,
+                2e-2,
+                "servovalves",
+            ),
+            &mut self.flow,
+        );
+        let k = key("nominal_pressure_drop", &PRESSURE, "Drop over both edges together at the rated flow.")
+            .usual(5e5, 3.5e7, "servovalves");
         v.quantity(k.positive(), &mut self.pressure_drop);
     }
 }
@@ -181,22 +218,16 @@ impl<S: TableNumber> Valve<S> {
             CatalogueKind::Valve,
             &mut self.model,
         );
-        let k = key("nominal_voltage", &VOLTAGE, "Command of full opening.").positive().or(10.0);
-        v.quantity(k, &mut self.nominal_voltage);
-        let k = key("natural_frequency", &ANGULAR_FREQUENCY, "Natural frequency of the spool's dynamics.");
-        v.quantity(k.positive(), &mut self.natural_frequency);
-        let k = key("damping_ratio", &RATIO, "Damping ratio of the spool's dynamics.").positive();
-        v.quantity(k, &mut self.damping_ratio);
-        let k = key("leakage_shape", &RATIO, "λ of sech(λ U/U_n) in the leakage; 0 keeps it constant.");
-        v.quantity(k.not_negative().or(0.0), &mut self.leakage_shape);
+        v.quantity(NOMINAL_VOLTAGE_KEY, &mut self.nominal_voltage);
+        v.quantity(NATURAL_FREQUENCY_KEY, &mut self.natural_frequency);
+        v.quantity(DAMPING_RATIO_KEY, &mut self.damping_ratio);
+        v.quantity(LEAKAGE_SHAPE_KEY, &mut self.leakage_shape);
         let k = plain("leakage_shapes", "λ of each edge, in place of `leakage_shape`: a table, or an array.");
         v.record(k, &mut self.leakage_shapes, Edges::visit_shapes);
         let k = plain("leakage_model", "What follows sech(λ U/U_n): each edge's leakage, or the valve's.");
         v.choice(k, &LEAKAGE_MODELS, &mut self.leakage_model, false);
-        let k = key("tare_flow", &FLOW, "Pilot stage flow from supply to tank.").not_negative().or(0.0);
-        v.quantity(k, &mut self.tare_flow);
-        let k = key("transition_pressure", &PRESSURE, "Drop below which the square root is made regular.");
-        v.quantity(k.positive().or(1000.0), &mut self.transition_pressure);
+        v.quantity(TARE_FLOW_KEY, &mut self.tare_flow);
+        v.quantity(TRANSITION_PRESSURE_KEY, &mut self.transition_pressure);
         self.visit_coefficients(v);
         let k = key("response_time", &TIME, "Step response time of the data sheet; for information.");
         v.optional(k.positive(), &mut self.response_time);
@@ -213,8 +244,7 @@ impl<S: TableNumber> Valve<S> {
         v.record(leaks, &mut leaking_edges, Edges::visit_coefficients);
         let k = plain("lap", "Overlap of the edges, positive and negative command; below zero: underlap.");
         v.record(k, &mut self.lap, ValveLap::visit);
-        let k = key("saturation", &RATIO, "c of the opening u/(1 + c u), beyond the lap; 0: in proportion.");
-        v.unless_zero(k.not_negative().or(0.0), &mut self.saturation);
+        v.unless_zero(SATURATION_KEY, &mut self.saturation);
         self.visit_imperfections(v);
         v.way(&["nominal_flow"], &mut rating, RatedFlow::visit);
         v.way(&["null_leakage"], &mut leakage, NullLeakage::visit);
@@ -231,15 +261,12 @@ impl<S: TableNumber> Valve<S> {
     }
 
     fn visit_imperfections<V: Visitor<S>>(&mut self, v: &mut V) {
-        let k = key("tare_pressure", &PRESSURE, "Drop at which `tare_flow` is stated; absent: the supply's.");
-        v.optional(k.positive(), &mut self.tare_pressure);
+        v.optional(TARE_PRESSURE_KEY, &mut self.tare_pressure);
         let k = key("null_bias", &VOLTAGE, "Spool position at which the valve is at null.").or(0.0);
         v.quantity(k, &mut self.null_bias);
         let k = key("hysteresis", &VOLTAGE, "Width of the loop over a slow full cycle, threshold included.");
         v.optional(k.positive(), &mut self.hysteresis);
-        let k = key("threshold", &VOLTAGE, "Change of command that a reversal takes.").positive();
-        v.optional(k, &mut self.threshold);
-        let k = key("rate_limit", &VOLTAGE_RATE, "Greatest rate of the spool, as equivalent command.");
-        v.optional(k.positive(), &mut self.rate_limit);
+        v.optional(THRESHOLD_KEY, &mut self.threshold);
+        v.optional(RATE_LIMIT_KEY, &mut self.rate_limit);
     }
 }

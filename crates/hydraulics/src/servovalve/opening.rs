@@ -209,12 +209,17 @@ impl<S: Scalar> OpeningShape<S> {
 }
 
 impl OpeningShape {
+    /// True if a lap is not less than the full travel of the spool.
+    pub(super) fn exceeds_travel(lap: f64) -> bool {
+        lap.abs() >= 1.0
+    }
+
     pub(super) fn check(&self, problems: &mut Problems) {
         let OpeningShape { lap_positive, lap_negative, saturation } = *self;
         for (name, lap) in [("lap.positive", lap_positive), ("lap.negative", lap_negative)] {
-            problems.require(name, lap, lap.abs() < 1.0, ParameterRequirement::WithinTravel);
+            problems.require(name, lap, !Self::exceeds_travel(lap), ParameterRequirement::WithinTravel);
         }
-        problems.not_negative("saturation", saturation);
+        problems.key(super::keys::SATURATION_KEY, saturation);
     }
 }
 

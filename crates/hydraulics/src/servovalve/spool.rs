@@ -54,24 +54,25 @@ pub struct SpoolState<S> {
 }
 
 impl SpoolImperfection {
+    /// True if a hysteresis of this width does not include this threshold, both in V.
+    pub(super) fn lacks_threshold(width: f64, threshold: f64) -> bool {
+        width <= threshold
+    }
+
     /// Impossible parameters of this spool; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         problems.require("null_bias", self.null_bias, true, ParameterRequirement::FiniteNumber);
         let threshold = self.threshold.unwrap_or(0.0);
         if let Some(threshold) = self.threshold {
-            problems.positive("threshold", threshold);
+            problems.key(super::keys::THRESHOLD_KEY, threshold);
         }
         if let Some(width) = self.hysteresis_width {
-            problems.require(
-                "hysteresis_width",
-                width,
-                width > threshold,
-                ParameterRequirement::AboveThreshold,
-            );
+            let includes = !SpoolImperfection::lacks_threshold(width, threshold);
+            problems.require("hysteresis_width", width, includes, ParameterRequirement::AboveThreshold);
         }
         if let Some(limit) = self.rate_limit {
-            problems.positive("rate_limit", limit);
+            problems.key(super::keys::RATE_LIMIT_KEY, limit);
         }
         problems.into_vec()
     }

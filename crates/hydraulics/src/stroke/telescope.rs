@@ -1,5 +1,6 @@
 use phea_dynamics::scalar::Scalar;
 
+use super::keys::{STAGE_TRANSITION_KEY, STROKE_KEY};
 use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
 /// Largest number of stages after the first.
@@ -110,8 +111,8 @@ impl Telescope {
     /// Invalid parameters; empty if all are valid.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
-        problems.positive("stroke", self.stroke);
-        problems.positive("transition", self.transition);
+        problems.key(STROKE_KEY, self.stroke);
+        problems.key_as("transition", STAGE_TRANSITION_KEY, self.transition);
         let half = 0.5 * self.transition;
         let mut before = 0.0;
         for stage in self.stages.iter().flatten() {

@@ -1,73 +1,8 @@
-//! Adjusted accumulators, and the motion of their setting.
+//! Motion of the setting of adjusted accumulators.
 
 use super::Check;
-use crate::{
-    AdjustmentKind, DeclaredAccumulator, DeclaredActuator, DeclaredAdjustment, DeclaredSupply, GasAtOne,
-    InputSignal, InputUnit, Scenario, Uncertain,
-};
-use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE as ATMOSPHERE;
-use phea_quantity::{self as quantity, PRESSURE, TIME};
-
-/// Checks the adjustment of the gas at a chamber.
-pub(super) fn adjustment(
-    gas: &DeclaredAccumulator,
-    supply: &DeclaredSupply,
-    path: &str,
-    check: &mut Check<'_, '_>,
-) {
-    let Some(declared) = &gas.adjustment else { return };
-    let path = &format!("{path}.adjustment");
-    match &declared.kind {
-        AdjustmentKind::Valve(_) => {
-            if gas.neck.is_some() {
-                let message = "a `valve` lies between chamber and gas, and the accumulator states a neck: one of them leads to the gas";
-                let help = "leave out `neck_diameter` and `neck_length`, or adjust the `gas`";
-                check.error_with_help(&format!("{path}.kind"), message, help);
-            }
-        }
-        AdjustmentKind::Gas(last) => {
-            if gas.thermal_time_constant.is_some() {
-                let message = "which temperature gas has that is added is not modelled: `kind` \"gas\" goes with a `polytropic_exponent`";
-                let help = "leave out `thermal_time_constant`, or adjust by a `valve`";
-                check.error_with_help(&format!("{path}.kind"), message, help);
-            }
-            moved(gas, last, supply, path, check);
-        }
-    }
-}
-
-fn moved(
-    gas: &DeclaredAccumulator,
-    last: &GasAtOne,
-    supply: &DeclaredSupply,
-    path: &str,
-    check: &mut Check<'_, '_>,
-) {
-    let stands = |name: &str| {
-        let message = format!("`{name}` at setting 1 is that of the accumulator: the setting moves nothing");
-        let help = format!("state another `{name}`, or leave out the adjustment");
-        (format!("{path}.{name}"), message, help)
-    };
-    let same = [
-        ("gas_volume", last.gas_volume, gas.gas_volume),
-        ("precharge_pressure", last.precharge_pressure, gas.precharge_pressure),
-    ];
-    for (name, _, _) in same.into_iter().filter(|(_, last, first)| *last == Some(*first)) {
-        let (path, message, help) = stands(name);
-        check.error_with_help(&path, message, help);
-    }
-    let [_, at_one] = gas.ends();
-    let working = at_one.working_precharge(ATMOSPHERE);
-    if last.precharge_pressure.is_some() && supply.pressure > 0.0 && working >= supply.pressure {
-        let [precharge, pressure] =
-            [working, supply.pressure].map(|pressure| quantity::display(pressure, &PRESSURE, 4));
-        let message = format!(
-            "`precharge_pressure` is {precharge} at setting 1 and the supply has {pressure}: no chamber ever lets oil into this accumulator there"
-        );
-        let help = "the gas is in use only above its precharge: state one below the lowest pressure at which it is to work";
-        check.error_with_help(&format!("{path}.precharge_pressure"), message, help);
-    }
-}
+use crate::{DeclaredActuator, DeclaredAdjustment, InputSignal, InputUnit, Scenario, Uncertain};
+use phea_quantity::{self as quantity, TIME};
 
 /// Checks the input schedule of the setting in a scenario.
 pub(super) fn input_schedule(
@@ -110,7 +45,8 @@ pub(super) fn input_schedule(
 fn leaves_its_way(signals: &[InputSignal], rest: f64, place: &str, check: &mut Check<'_, '_>) {
     let schedules: Option<Vec<PartSchedule>> = signals.iter().map(PartSchedule::of).collect();
     let Some(schedules) = schedules else { return };
-    let sum = |time: f64| rest + schedules.iter().map(|input_schedule| input_schedule.value(time)).sum::<f64>();
+    let sum =
+        |time: f64| rest + schedules.iter().map(|input_schedule| input_schedule.value(time)).sum::<f64>();
     let times = schedules.iter().flat_map(|input_schedule| &input_schedule.corners).map(|[time, _]| *time);
     let beyond = |time: &f64| !(-ROUNDING..=1.0 + ROUNDING).contains(&sum(*time));
     let Some(time) = times.filter(beyond).reduce(f64::min) else { return };
@@ -121,8 +57,10 @@ fn leaves_its_way(signals: &[InputSignal], rest: f64, place: &str, check: &mut C
         quantity::display(time, &TIME, 4),
         words(rest)
     );
-    let index =
-        schedules.iter().position(|input_schedule| input_schedule.corners.iter().any(|[start, _]| *start == time)).unwrap_or(0);
+    let index = schedules
+        .iter()
+        .position(|input_schedule| input_schedule.corners.iter().any(|[start, _]| *start == time))
+        .unwrap_or(0);
     let help = "no simulation runs this scenario: one of them must be smaller";
     check.warning_with_help(&format!("{place}[{index}]"), message, help);
 }

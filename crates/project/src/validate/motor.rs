@@ -1,15 +1,9 @@
-//! Motor in place of the cylinder: its requirements, and features that phea does not yet support
-//! with one.
+//! Motor in place of the cylinder: features that phea does not yet support with one.
 
 use super::Check;
 use crate::{DeclaredActuator, InputSignal, MotionShape, Project, Scenario};
 
 pub(super) fn motor(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
-    let Some(motor) = &actuator.motor else { return };
-    if motor.end_stops.is_some() && motor.stroke.is_none() && !check.declared("motor.stroke") {
-        let message = "a motor without `stroke` rotates without limit: it has no ends to stop at";
-        check.error_with_help("motor.end_stops", message, "state the `stroke`, or remove [motor.end_stops]");
-    }
     let absent = [
         (actuator.series.is_some(), "series", "a spring or transmission between force sensor and load"),
         (project.sizing.is_some(), "sizing", "the sizing of a hose"),

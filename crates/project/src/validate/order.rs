@@ -3,7 +3,6 @@
 use super::{Check, last};
 use crate::Bench;
 use crate::toml_text::quoted;
-use phea_hydraulics::line::Stiffening;
 
 impl Check<'_, '_> {
     /// Value as in the file or the setting, without quotes; empty if it is not stated.
@@ -88,12 +87,6 @@ impl Check<'_, '_> {
             };
             self.error_with_help(at, self.compared(at, word, other), self.exchanged(lower, upper));
         }
-    }
-
-    /// Checks a number between two others, each stated.
-    pub(super) fn interval(&mut self, path: &str, interval: Option<Stiffening>) {
-        let Some(Stiffening { nominal, minimum, maximum }) = interval else { return };
-        self.bounds(path, [minimum, nominal, maximum]);
     }
 
     /// Checks that minimum, nominal and maximum are in order.

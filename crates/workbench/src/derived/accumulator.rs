@@ -5,9 +5,10 @@ use phea_hydraulics::operating_point::OperatingPoint;
 use phea_hydraulics::stiffness::hydraulic_stiffness;
 
 use super::list::List;
-use crate::project::{DeclaredAccumulator, Project};
+use crate::project::DeclaredAccumulator;
 use crate::quantity::{FORCE, STIFFNESS};
-use crate::rig::{ChargedRange, Rig, charged_range, components_at_setting};
+use crate::rig::{ChargedRange, Rig, charged_range};
+use crate::setup::Setup;
 
 /// The precharge at operating temperature, and the stated one.
 fn precharge(declared: &DeclaredAccumulator, gas: &Accumulator, name: String, list: &mut List) {
@@ -59,7 +60,7 @@ fn at_settings(
     for (name, setting) in
         [("stiffness.at_setting_0", 0.0), ("stiffness.at_setting_half", 0.5), ("stiffness.at_setting_1", 1.0)]
     {
-        let there = components_at_setting(components, setting);
+        let there = components.at_setting(setting);
         let equation = list.motion.either(
             "K_H = A_A^2/C_A + A_B^2/C_B, slow, at this setting",
             "K_θ = D^2 (1/C_A + 1/C_B), slow, at this setting",
@@ -88,7 +89,8 @@ const WITH_GAS_OF_A_MOTOR: [&str; 3] = [
 ];
 
 /// The gas at the chambers, and the stiffness of the actuator without it.
-pub(super) fn accumulators(project: &Project, rig: &Rig, list: &mut List) {
+pub(super) fn accumulators(setup: &Setup<'_>, rig: &Rig, list: &mut List) {
+    let project = setup.project;
     let components = rig.actuator.components();
     let pressures = [rig.point.pressure_a, rig.point.pressure_b];
     let [gas_a, gas_b] = components.gas;

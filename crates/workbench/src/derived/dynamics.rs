@@ -5,10 +5,11 @@ use super::list::List;
 use crate::linearize::{HidingMass, hidden_above};
 use crate::quantity::STIFFNESS;
 use crate::rig::Rig;
+use crate::setup::Setup;
 
 /// Dynamics of the rig against its load; a quantity that belongs to the actuator itself is named so
 /// if the load can move.
-pub(super) fn dynamics(rig: &Rig, list: &mut List) {
+pub(super) fn dynamics(_: &Setup<'_>, rig: &Rig, list: &mut List) {
     let linear = &rig.against_load();
     let factors = decompose(linear, MechanicalDamping::Corrected);
     let springs = match (rig.load_stiffness().is_some(), rig.plant.series.is_some()) {

@@ -1,9 +1,10 @@
 use super::list::List;
 use crate::rig::Rig;
+use crate::setup::Setup;
 
 /// Consequences of a virtual impedance: the frequency at which its terms are equal, and the
 /// frequency at which its filter begins.
-pub(super) fn impedance(rig: &Rig, list: &mut List) {
+pub(super) fn impedance(_: &Setup<'_>, rig: &Rig, list: &mut List) {
     let Some(impedance) = rig.virtual_impedance else { return };
     list.group("Virtual impedance");
     let (mass, damping, stiffness) = (impedance.mass, impedance.damping, impedance.stiffness);

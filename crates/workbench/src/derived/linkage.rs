@@ -1,10 +1,11 @@
 use super::list::List;
 use crate::linearize::{LinkagePosition, linkage_places};
-use crate::project::Project;
 use crate::rig::{Rig, rod_end};
+use crate::setup::Setup;
 
 /// The linkage at the operating point, and over the stroke.
-pub(super) fn linkage(project: &Project, rig: &Rig, list: &mut List) {
+pub(super) fn linkage(setup: &Setup<'_>, rig: &Rig, list: &mut List) {
+    let project = setup.project;
     let components = rig.actuator.components();
     let Some((end, weight)) = rod_end(components, &rig.point) else { return };
     list.group("Linkage");

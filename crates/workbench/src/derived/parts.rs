@@ -1,14 +1,15 @@
 use phea_engineering::parts::{self, CostedPart, PartKind, PartsCounted, parts};
 
 use super::list::List;
-use crate::project::Project;
 use crate::rig::Rig;
+use crate::setup::Setup;
 
 const NOT_STATED: &str = "not stated";
 const NOT_ALL: &str = "not stated for each of these parts";
 
 /// Cost and mass of the parts, if any of them states them.
-pub(super) fn costs(project: &Project, rig: &Rig, list: &mut List) {
+pub(super) fn costs(setup: &Setup<'_>, rig: &Rig, list: &mut List) {
+    let project = setup.project;
     let Some(declared) = &project.actuator else { return };
     let counted = PartsCounted::of(std::iter::once(project)).unwrap_or_default();
     let all = parts(declared, rig);

@@ -5,10 +5,12 @@ use phea_hydraulics::series::{CoilPair, LEAST_ACTIVE_COILS, SeriesElement, Serie
 use super::list::List;
 use crate::project::Project;
 use crate::rig::{Rig, series_coil, stall_force, waves_right_to};
+use crate::setup::Setup;
 use crate::sizing::{CoilUnknown, coil_unknown_words};
 
 /// The part between force sensor and load.
-pub(super) fn series(project: &Project, rig: &Rig, list: &mut List) {
+pub(super) fn series(setup: &Setup<'_>, rig: &Rig, list: &mut List) {
+    let project = setup.project;
     let components = rig.actuator.components();
     match &components.series {
         None => {}

@@ -28,7 +28,8 @@ const FROM_RATING: &str = "K_{vp} = q_{vn}/sqrt(Δp_{tn}/2)";
 const FROM_LEAKAGE: &str = "K_{vinp} = (q_0 - q_{tare} sqrt(p_{in}/p_{tare}))/sqrt(2 p_{in})";
 
 /// Derived quantities of the servovalve: edges, flow gains, slopes.
-pub(super) fn valve(project: &Project, rig: &Rig, list: &mut List) {
+pub(super) fn valve(setup: &Setup<'_>, rig: &Rig, list: &mut List) {
+    let project = setup.project;
     list.group("Servovalve");
     if let Some(actuator) = &project.actuator {
         edges(&actuator.valve, &actuator.supply, rig, list);

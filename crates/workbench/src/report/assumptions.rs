@@ -5,8 +5,7 @@ use phea_hydraulics::stiffness::StiffnessModel;
 
 use crate::answer::significant;
 use crate::project::{
-    DeclaredActuator, DeclaredLine, FrictionLaw, LineMotion, Load, Project, SETTLING_BAND_PERCENT, Speed,
-    SupplyModel,
+    DeclaredActuator, DeclaredLine, LineMotion, Load, Project, SETTLING_BAND_PERCENT, Speed, SupplyModel,
 };
 
 /// The assumptions of the models.
@@ -110,7 +109,7 @@ fn lines(actuator: &DeclaredActuator) -> Vec<&'static str> {
 
 fn friction(actuator: &DeclaredActuator) -> Option<&'static str> {
     let law = &actuator.friction()?.law;
-    (*law != FrictionLaw::Viscous).then_some(
+    law.curve().is_some().then_some(
         "Friction enters the linear models by its viscous part alone; the simulation has all of it.",
     )
 }

@@ -2,6 +2,7 @@
 //! stiffness and of the friction.
 
 use phea_dynamics::watch::{Stopped, Watch};
+use phea_hydraulics::friction::Friction;
 
 use super::chapter::Chapter;
 use super::driven::MachineChapter;
@@ -9,7 +10,7 @@ use super::simulation::shown_metrics;
 use crate::document::{Document, Table};
 use crate::error::CommandError;
 use crate::figure::DisplayUnit;
-use crate::project::{DeclaredActuator, FrictionLaw, Project, RetractingFriction};
+use crate::project::{DeclaredActuator, Project, RetractingFriction};
 use crate::setup::Setup;
 use crate::simulate::{
     Metrics, ScenarioRun, Window, cause_words, label_within, metrics_row, simulate_project,
@@ -81,15 +82,15 @@ fn sensitivity(
         let Some(friction) = project.actuator.as_mut().and_then(DeclaredActuator::friction_mut) else {
             break;
         };
-        friction.viscous *= factor;
+        *friction.law.viscous_mut() *= factor;
         for level in friction.retracting.iter_mut().flat_map(RetractingFriction::each_mut) {
             *level *= factor;
         }
         if factor == 0.0 {
-            friction.law = FrictionLaw::Viscous;
+            friction.law = Friction::default();
             friction.retracting = None;
         }
-        if let FrictionLaw::Stribeck { curve, .. } | FrictionLaw::LuGre { curve, .. } = &mut friction.law {
+        if let Some(curve) = friction.law.curve_mut() {
             curve.coulomb *= factor;
             curve.static_friction *= factor;
         }
