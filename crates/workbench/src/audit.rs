@@ -13,8 +13,6 @@ mod signal_noise;
 mod stability;
 mod words;
 
-pub use phea_engineering::audit::*;
-
 pub use answer::files;
 pub(crate) use answer::json;
 pub(crate) use answer::{AuditAnswer, SpecificationMarginAnswer, StableAnswer, body, margin, stable};

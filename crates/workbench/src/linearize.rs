@@ -5,8 +5,6 @@ mod document;
 mod sweep_answer;
 mod words;
 
-pub use phea_engineering::linearize::*;
-
 pub use answer::files;
 pub(crate) use answer::{LinearizeAnswer, PassivityAnswer};
 pub(crate) use answer::{body, body_swept, passivity as passivity_body};

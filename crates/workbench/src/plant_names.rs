@@ -1,7 +1,6 @@
 //! The names of the plants of a family, for people.
 
-pub use phea_engineering::plant_names::*;
-
+use phea_engineering::plant_names::{NamedPlant, NamedValue, PlantNames};
 use phea_qft::verification::PlantPoint;
 
 use crate::document::Cell;

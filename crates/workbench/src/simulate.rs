@@ -18,8 +18,6 @@ mod run_status;
 mod span;
 mod together;
 
-pub use phea_engineering::simulate::*;
-
 pub(crate) use answer::{
     CompareAnswer, ScenariosAnswer, SimulateAnswer, SteppedAnswer, body, comparison_body, frequency_body,
     scenarios, stepped,

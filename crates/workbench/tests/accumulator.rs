@@ -5,9 +5,9 @@
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
 use phea_workbench::command::Request;
-use phea_workbench::linearize::stiffness_over_force;
+use phea_workbench::engineering::linearize::stiffness_over_force;
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project::Severity;
-use phea_workbench::setup::Setup;
 
 use crate::run_command::{
     HOSE, answer, check, derived, json, near, number, project_of, size_request, try_answer, within,

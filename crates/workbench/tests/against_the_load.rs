@@ -9,8 +9,8 @@ use crate::run_command::{
 };
 use num_complex::Complex64;
 use phea_workbench::command::Request;
-use phea_workbench::linearize::{Linearization, linearize as linearized};
-use phea_workbench::setup::Setup;
+use phea_workbench::engineering::linearize::{Linearization, linearize as linearized};
+use phea_workbench::engineering::setup::Setup;
 use serde_json::Value;
 
 /// A differential cylinder without any stated value of its linear model.

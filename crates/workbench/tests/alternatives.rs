@@ -8,9 +8,11 @@ use std::sync::OnceLock;
 
 use crate::json_contract::unexplained;
 use crate::run_command::{HOSE, answer, load, retracted_length, source};
-use phea_workbench::alternatives::{ColumnKey, LengthUnknown, prepared as prepared_alternatives};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{AlternativesRequest, Request, answer_into};
+use phea_workbench::engineering::alternatives::{
+    ColumnKey, LengthUnknown, prepared as prepared_alternatives,
+};
 use phea_workbench::quantity::MotionKind;
 use serde_json::Value;
 
@@ -218,10 +220,11 @@ fn impedances_are_those_of_the_written_project() {
     for (index, name) in ["as declared", "pipe"].into_iter().enumerate() {
         let file = found.files.iter().find(|file| file.name == format!("{name}.toml")).unwrap();
         let loaded = load(std::str::from_utf8(&file.bytes).unwrap(), &[], &[]);
-        let setup = phea_workbench::setup::Setup::new(&loaded.project).unwrap();
+        let setup = phea_workbench::engineering::setup::Setup::new(&loaded.project).unwrap();
         let rig = setup.rig().unwrap();
         let models =
-            phea_workbench::linearize::linearize(rig, setup.controller.as_ref(), &setup.sensor).unwrap();
+            phea_workbench::engineering::linearize::linearize(rig, setup.controller.as_ref(), &setup.sensor)
+                .unwrap();
         let columns = json["alternatives"][index]["columns"]["impedance"].as_array().unwrap();
         assert_eq!(columns.len(), 3);
         for at in columns {

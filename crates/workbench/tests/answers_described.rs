@@ -6,8 +6,8 @@ use std::path::Path;
 use crate::answer_schema::{conforms, schema, validated};
 use crate::run_command::{HOSE, json};
 use phea_workbench::command::{Request, answers_schema};
+use phea_workbench::engineering::simulate::Metric;
 use phea_workbench::quantity::MotionKind;
-use phea_workbench::simulate::Metric;
 use serde_json::{Value, json as value};
 
 fn verified() -> Value {

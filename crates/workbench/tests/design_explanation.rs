@@ -8,8 +8,9 @@ use phea_qft::design::{Constraint, ConstraintPlace, Finding, SharedLimit};
 use phea_qft::specification::ClosedLoop;
 use phea_qft::verification::PlantPoint;
 use phea_workbench::command::Request;
-use phea_workbench::design::{ExplainedFact, ExplainedLimit, Explanation, explanation_sentence};
-use phea_workbench::specification::{NamedSpecification, SpecificationName};
+use phea_workbench::design::explanation_sentence;
+use phea_workbench::engineering::design::{ExplainedFact, ExplainedLimit, Explanation};
+use phea_workbench::engineering::specification::{NamedSpecification, SpecificationName};
 
 /// The sentence of a finding on limits of the sensitivity, numbered from 3.
 fn sentence(finding: Finding) -> String {

@@ -14,9 +14,9 @@ use num_complex::Complex64;
 use phea_dynamics::portable;
 use phea_qft::family::{Family, MeasuredFamily};
 use phea_workbench::command::{Request, answer};
-use phea_workbench::family::{ProjectFamilyError, family};
+use phea_workbench::engineering::family::{ProjectFamilyError, family};
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project;
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 const PROJECT: &str = "schema = 1\n[family]\nmeasured = [\"a.csv\"]\n";

@@ -5,9 +5,9 @@
 use std::fmt::Write as _;
 
 use phea_workbench::command::{IdentifyError, Request, SimulateRequest};
-use phea_workbench::friction::{KnownCylinder, friction_recordings};
+use phea_workbench::engineering::friction::{KnownCylinder, friction_recordings};
+use phea_workbench::engineering::response::{SampledPair, sampled_pairs};
 use phea_workbench::project::{self, Diagnostic, RecordedResponse};
-use phea_workbench::response::{SampledPair, sampled_pairs};
 use phea_workbench::source::Memory;
 
 use crate::run_command;
@@ -283,8 +283,8 @@ fn a_response_is_read_by_its_usual_headings() {
         let text = "schema = 1\n[family]\nmeasured = [\"a.csv\"]\n";
         let source = Memory::default().with("p.toml", text).with("a.csv", csv);
         let loaded = project::read(&source, "p.toml", &[], &[]).unwrap();
-        let setup = phea_workbench::setup::Setup::new(&loaded.project).unwrap();
-        phea_workbench::family::family(&setup, &source)
+        let setup = phea_workbench::engineering::setup::Setup::new(&loaded.project).unwrap();
+        phea_workbench::engineering::family::family(&setup, &source)
             .map(|family| format!("{family:?}"))
             .map_err(|error| error.to_string())
     };

@@ -9,13 +9,13 @@ use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, FrequencyOptions, Request, SimulateRequest};
-use phea_workbench::linearize::linearize;
-use phea_workbench::project::{self, Loaded};
-use phea_workbench::quantity::MotionKind;
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{
+use phea_workbench::engineering::linearize::linearize;
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{
     FrequencyRequest, MachineResponses, NoClosedLoop, ResponsePoint, frequency_response,
 };
+use phea_workbench::project::{self, Loaded};
+use phea_workbench::quantity::MotionKind;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 

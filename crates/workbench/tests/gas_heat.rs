@@ -6,9 +6,9 @@
 use phea_dynamics::portable::pow;
 use phea_hydraulics::signal::Signal;
 use phea_workbench::command::{Request, SimulateRequest};
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{ScenarioRun, simulate_project};
 use phea_workbench::report::report;
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{ScenarioRun, simulate_project};
 
 use super::plant_of_verdicts::{assert_nominal_is_the_rig, responses, without_uncertainty};
 use super::run_command::{answer, check, derived, json, load, near, project_of, source, try_answer};

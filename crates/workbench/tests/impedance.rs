@@ -14,12 +14,12 @@ use phea_hydraulics::linear::transfer_functions;
 use phea_hydraulics::plant::{LinearPlant, PlantInMotion};
 use phea_hydraulics::signal::Signal;
 use phea_qft::stability::{StabilityStatus, member_stability};
-use phea_workbench::audit::audit_project;
 use phea_workbench::command::{AlternativesRequest, Request};
-use phea_workbench::linearize::linearize;
+use phea_workbench::engineering::audit::audit_project;
+use phea_workbench::engineering::linearize::linearize;
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{ScenarioRun, simulate_project};
 use phea_workbench::project::{self, Project};
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 

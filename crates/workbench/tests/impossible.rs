@@ -6,9 +6,9 @@
 
 use crate::run_command::{json, load};
 use phea_workbench::command::Request;
-use phea_workbench::design::{DesignError, design_project};
+use phea_workbench::engineering::design::{DesignError, design_project};
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::report::report;
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 

@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
 use crate::answer_schema::parsed;
-use phea_workbench::campaign::{Effort, RequestedRuns, Shard};
 use phea_workbench::command::{CampaignRequest, CampaignRuns, Request, SimulateRequest};
-use phea_workbench::shaping::Shaped;
+use phea_workbench::engineering::campaign::{Effort, RequestedRuns, Shard};
+use phea_workbench::engineering::shaping::Shaped;
 use serde_json::Value;
 
 use super::run_command::{answer, json};

@@ -10,9 +10,9 @@ use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, bulk_modulus_with_ai
 use phea_hydraulics::line::{Conduit, Line, StiffeningMember};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, IdentifyError, LineRequest, Request, line_watched};
-use phea_workbench::line_test::KnownLine;
+use phea_workbench::engineering::line_test::KnownLine;
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project::{self as language, LineSide};
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 

@@ -8,12 +8,12 @@ use phea_dynamics::uncertain_plant::PlantCoefficients;
 use phea_hydraulics::signal::Signal;
 use phea_qft::family::Family;
 use phea_workbench::command::Request;
-use phea_workbench::family::family;
-use phea_workbench::linearize::{LinkagePosition, linkage_places};
+use phea_workbench::engineering::family::family;
+use phea_workbench::engineering::linearize::{LinkagePosition, linkage_places};
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{ControlledMachine, Metric, ScenarioRun, simulate_project};
 use phea_workbench::project::Project;
 use phea_workbench::report::report;
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{ControlledMachine, Metric, ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
 
 use super::run_command::{HOSE, load, project_of, try_answer};

@@ -6,7 +6,7 @@
 
 use phea_hydraulics::servovalve::blocked_ports;
 use phea_workbench::command::Request;
-use phea_workbench::setup::Setup;
+use phea_workbench::engineering::setup::Setup;
 
 use super::run_command::{HOSE, answer, json, near, number, project_of};
 

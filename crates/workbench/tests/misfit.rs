@@ -5,7 +5,9 @@
 
 use crate::answer_schema::parsed;
 use phea_workbench::command::{self, Request, SimulateRequest};
-use phea_workbench::identify::{Identification, Known, Search, SignalKind, identify, recordings};
+use phea_workbench::engineering::identify::{
+    Identification, Known, Search, SignalKind, identify, recordings,
+};
 use phea_workbench::project::RecordedTest;
 use phea_workbench::source::{Memory, Source};
 use serde_json::Value;

@@ -5,14 +5,14 @@
 
 use crate::answer_schema::parsed;
 use phea_workbench::answer::Answer;
-use phea_workbench::campaign::{Effort, RequestedRuns, Shard};
 use phea_workbench::command::{
     AlternativesRequest, CampaignRequest, CampaignRuns, CommandError, FrequencyOptions, Request,
     SimulateRequest,
 };
-use phea_workbench::linearize::SweepRequest;
-use phea_workbench::setup::Setup;
-use phea_workbench::shaping::Shaped;
+use phea_workbench::engineering::campaign::{Effort, RequestedRuns, Shard};
+use phea_workbench::engineering::linearize::SweepRequest;
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::shaping::Shaped;
 use serde_json::Value;
 
 use super::run_command::{load, project_of, try_answer};

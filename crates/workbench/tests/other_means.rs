@@ -4,8 +4,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use phea_workbench::alternatives::prepared;
 use phea_workbench::command::Request;
+use phea_workbench::engineering::alternatives::prepared;
 use serde_json::Value;
 
 use crate::run_command::{answer, check, derived, json, load, near, size, source};

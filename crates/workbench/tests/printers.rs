@@ -11,13 +11,13 @@ use crate::{
 };
 use phea_workbench::answer::{Answer, OutputFile};
 use phea_workbench::audit::check_certificate;
-use phea_workbench::campaign::{Effort, RequestedRuns, Shard};
 use phea_workbench::command::{
     self, CampaignRequest, CampaignRuns, FrequencyOptions, Request, SimulateRequest,
 };
-use phea_workbench::linearize::SweepRequest;
+use phea_workbench::engineering::campaign::{Effort, RequestedRuns, Shard};
+use phea_workbench::engineering::linearize::SweepRequest;
+use phea_workbench::engineering::shaping::Shaped;
 use phea_workbench::project;
-use phea_workbench::shaping::Shaped;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 

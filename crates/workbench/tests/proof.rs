@@ -206,7 +206,7 @@ fn the_delay_of_a_sensor_is_not_that_of_the_plant() {
 }
 
 /// A problem of a project text, with settings.
-fn problem(project: &str, settings: &[&str]) -> phea_workbench::robust::RobustProblem {
+fn problem(project: &str, settings: &[&str]) -> phea_workbench::engineering::robust::RobustProblem {
     let source = phea_workbench::source::Memory::default().with("p.toml", project);
     let settings: Vec<String> = settings.iter().map(ToString::to_string).collect();
     let loaded = phea_workbench::project::read(&source, "p.toml", &settings, &[]).unwrap();

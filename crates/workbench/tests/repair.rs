@@ -5,7 +5,7 @@
 use crate::answer_schema::parsed;
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, CommandError, Progress, Request};
-use phea_workbench::design::{DESIGNED_PROJECT, NEAREST_PROJECT};
+use phea_workbench::engineering::design::{DESIGNED_PROJECT, NEAREST_PROJECT};
 use serde_json::Value;
 
 use super::run_command::{HOSE, UNLIMITED, answer, designed_hose, json, load, number, source};

@@ -9,10 +9,10 @@ use std::sync::OnceLock;
 use phea_qft::verification::Verdict;
 use phea_workbench::answer::{Answer, picture_of};
 use phea_workbench::command::Request;
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::trial::Agreement;
 use phea_workbench::report::{Report, report};
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
-use phea_workbench::trial::Agreement;
 use resvg::usvg::roxmltree::{Document, Node};
 
 const PLANT: &str = include_str!("truth/plant.toml");

@@ -6,8 +6,8 @@
 use crate::answer_schema::parsed;
 use crate::run_command::{self, near, number};
 use num_complex::Complex64;
-use phea_workbench::campaign::{Effort, RequestedRuns, SatisfiedRuns, Shard};
 use phea_workbench::command::{CampaignRequest, CampaignRuns, Request};
+use phea_workbench::engineering::campaign::{Effort, RequestedRuns, SatisfiedRuns, Shard};
 use serde_json::Value;
 
 const STABILITY: &str = "[[specification]]\nkind = \"robust_stability\"\nlimit = 10\nfrequencies = [1]\n";
@@ -147,7 +147,7 @@ fn specifications_have_their_numbers_in_the_file() {
 
 fn report(text: &str) -> phea_workbench::report::Report {
     let loaded = run_command::load(text, &[], &[]);
-    let setup = phea_workbench::setup::Setup::new(&loaded.project).unwrap();
+    let setup = phea_workbench::engineering::setup::Setup::new(&loaded.project).unwrap();
     phea_workbench::report::report(&run_command::source(text), &loaded, &setup, None, &mut |_| true).unwrap()
 }
 
@@ -417,7 +417,8 @@ fn steps_lead_the_design_without_limits_of_tracking() {
     let object: Value = parsed(&designed.json);
     assert_eq!(object["status"], "met", "{}", designed.text());
     of_its_own(&object);
-    let file = designed.files.iter().find(|file| file.name == phea_workbench::design::DESIGNED_PROJECT);
+    let file =
+        designed.files.iter().find(|file| file.name == phea_workbench::engineering::design::DESIGNED_PROJECT);
     let (object, words) = verify(std::str::from_utf8(&file.unwrap().bytes).unwrap());
     assert_eq!(object["verdict"], "met", "{words}");
     let found = &object["specifications"][0];

@@ -13,9 +13,9 @@ use phea_workbench::answer::Answer;
 use phea_workbench::command::{
     self, IdentifyError, Request, ResponseRequest, ResponseSettings, response_watched,
 };
-use phea_workbench::family::family;
+use phea_workbench::engineering::family::family;
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project::{self, Loaded};
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 

@@ -3,10 +3,10 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
 use crate::answer_schema::parsed;
-use phea_workbench::campaign::{Effort, RequestedRuns, Shard};
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, Request, SimulateRequest};
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{Metrics, ScenarioRun, simulate_project};
+use phea_workbench::engineering::campaign::{Effort, RequestedRuns, Shard};
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{Metrics, ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 

@@ -5,7 +5,7 @@
 use crate::run_command::{answer, json, load, near};
 use phea_dynamics::linear::Discretization;
 use phea_workbench::command::Request;
-use phea_workbench::setup::Setup;
+use phea_workbench::engineering::setup::Setup;
 
 /// A load cell's mode and a notch on it, sampled at three times its frequency.
 const LOOP: &str = r#"

@@ -8,11 +8,11 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use phea_dynamics::portable;
-use phea_workbench::campaign::Plan;
 use phea_workbench::command::{self, Request};
+use phea_workbench::engineering::campaign::Plan;
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{Cause, NotSaved, ScenarioRun, Unmeasured, simulate_project};
 use phea_workbench::project::{self, Loaded};
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{Cause, NotSaved, ScenarioRun, Unmeasured, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 

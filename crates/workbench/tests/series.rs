@@ -10,12 +10,12 @@ use phea_qft::family::Family;
 use phea_workbench::catalogue;
 use phea_workbench::command::Request;
 use phea_workbench::derived::derive;
-use phea_workbench::family::family;
-use phea_workbench::linearize::{Linearization, linearize};
+use phea_workbench::engineering::family::family;
+use phea_workbench::engineering::linearize::{Linearization, linearize};
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::simulate_project;
+use phea_workbench::engineering::sizing::sizing_problem;
 use phea_workbench::project::Project;
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::simulate_project;
-use phea_workbench::sizing::sizing_problem;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 

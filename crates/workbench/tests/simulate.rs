@@ -5,9 +5,9 @@
 use crate::answer_schema::parsed;
 use phea_hydraulics::signal::Signal;
 use phea_workbench::command::{self, Request};
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{Cause, ScenarioRun, SimulateError, simulate_project};
 use phea_workbench::project::{self, Loaded, Project};
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{Cause, ScenarioRun, SimulateError, simulate_project};
 use phea_workbench::source::{HeldFiles, Memory};
 use serde_json::Value;
 use std::fmt::Write as _;

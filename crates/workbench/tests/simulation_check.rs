@@ -5,9 +5,11 @@
 use crate::answer_schema::parsed;
 use phea_hydraulics::signal::Signal;
 use phea_workbench::command::{self, Request, SimulateRequest};
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{
+    Metric, RunStatus, ScenarioRun, simulate_checked, simulate_project,
+};
 use phea_workbench::project::{self, Loaded};
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{Metric, RunStatus, ScenarioRun, simulate_checked, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 

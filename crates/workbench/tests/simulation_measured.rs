@@ -8,9 +8,9 @@ use phea_hydraulics::signal::Signal;
 use std::fmt::Write as _;
 
 use phea_workbench::command::{self, Request, SimulateRequest};
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{ScenarioRun, SimulateError, Unmeasured, simulate_project};
 use phea_workbench::project;
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{ScenarioRun, SimulateError, Unmeasured, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 

@@ -5,7 +5,7 @@
 use crate::answer_schema::parsed;
 use crate::run_command::{HOSE, answer, try_answer};
 use phea_workbench::command::Request;
-use phea_workbench::linearize::SweepRequest;
+use phea_workbench::engineering::linearize::SweepRequest;
 use serde_json::Value;
 
 fn request(range: &str, points: Option<usize>) -> Request {

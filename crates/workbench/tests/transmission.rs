@@ -118,7 +118,7 @@ fn cost_and_mass_are_reported() {
     // ORIGIN: analytic, 0.5 m of stroke, 0.3 m and two cylinders of 0.2 m
     near(length(&["cylinder.dead_length=0.3 m"]).unwrap(), 1.2, 1e-12);
     let unstated = length(&["cylinder.dead_length=0.3 m", PIPE]).unwrap_err();
-    assert_eq!(unstated, phea_workbench::alternatives::LengthUnknown::NoSeriesCylinderLength);
+    assert_eq!(unstated, phea_workbench::engineering::alternatives::LengthUnknown::NoSeriesCylinderLength);
     let costs = [
         "series.price=180 EUR",
         "series.cylinders_mass=3 kg",

@@ -5,8 +5,8 @@
 use crate::answer_schema::parsed;
 use phea_hydraulics::signal::Signal;
 use phea_workbench::command::{CommandError, Request};
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{ScenarioRun, simulate_project};
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{ScenarioRun, simulate_project};
 use serde_json::Value;
 
 use super::run_command::{answer, project_of, source, try_answer};

@@ -6,9 +6,9 @@
 use crate::answer_schema::parsed;
 use phea_hydraulics::signal::Signal;
 use phea_workbench::command::Request;
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::simulate_project;
 use phea_workbench::project;
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::simulate_project;
 use phea_workbench::source::Memory;
 
 use crate::run_command::{

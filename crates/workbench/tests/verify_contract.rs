@@ -7,8 +7,9 @@
 use crate::answer_schema::parsed;
 use crate::run_command::{self, HOSE, answer, json, try_answer};
 use phea_workbench::command::{CommandError, Progress, Request, answer_into};
-use phea_workbench::plant_names::{PlantNames, plant_text};
-use phea_workbench::shaping::Shaped;
+use phea_workbench::engineering::plant_names::PlantNames;
+use phea_workbench::engineering::shaping::Shaped;
+use phea_workbench::plant_names::plant_text;
 use serde_json::Value;
 
 fn verify(project: &str, settings: &[&str]) -> Value {

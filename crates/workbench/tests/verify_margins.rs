@@ -7,8 +7,9 @@ use crate::answer_schema::parsed;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::run_command::{HOSE, answer, json};
-use phea_workbench::audit::{Crossovers, above_one_again_words};
+use phea_workbench::audit::above_one_again_words;
 use phea_workbench::command::Request;
+use phea_workbench::engineering::audit::Crossovers;
 use serde_json::{Value, json as object_of};
 
 const VERIFY: Request = Request::Verify { proof: false, on_machine: false };

@@ -1,18 +1,19 @@
 //! Alternatives for people: a summary, the findings, then the table of all numbers.
 
+use phea_engineering::alternatives::{
+    AlternativeColumn, AlternativeColumns, Alternatives, ColumnKey, ColumnPart, JudgedAlternative, NoNumber,
+};
+use phea_engineering::linearize::PortView;
+use phea_engineering::rig::OutsideParameter;
+use phea_engineering::simulate::ScenarioRun;
+
 use super::findings::findings;
 use super::front;
 use super::summary::{self, machine, motion_of};
 use super::words::{NOT_STATED, column_name, is_unstated, no_number_words};
-use super::{
-    AlternativeColumn, AlternativeColumns, Alternatives, ColumnKey, ColumnPart, JudgedAlternative, NoNumber,
-};
 use crate::caveat::outside_parameters;
 use crate::document::{Cell, Document, Table};
-use crate::linearize::PortView;
 use crate::quantity::DisplayUnit;
-use crate::rig::OutsideParameter;
-use crate::simulate::ScenarioRun;
 use crate::specification::subject_words;
 use phea_qft::verification::Verdict;
 

@@ -2,9 +2,10 @@
 
 use std::borrow::Cow;
 
+use phea_engineering::alternatives::{ColumnKey, ColumnSense, Front, FrontPoint, FrontValue, NoFrontValue};
+
 use super::document::WHOLE;
 use super::words::{column_name, no_front_value_words};
-use super::{ColumnKey, ColumnSense, Front, FrontPoint, FrontValue, NoFrontValue};
 use crate::answer::{Csv, OutputFile, quoted};
 use crate::document::{Cell, Table};
 use crate::figure::{Figure, FrontPlace, ParetoCurve, ParetoFront, ParetoPoint, Words};

@@ -1,11 +1,13 @@
 //! A row for each alternative, under the declared load and under each load case: the numbers needed
 //! for a decision, before the table of all numbers.
 
+use phea_engineering::alternatives::{AlternativeColumns, Alternatives, ColumnKey, JudgedAlternative};
+use phea_engineering::simulate::ScenarioRun;
+
 use super::document::WHOLE;
-use super::{AlternativeColumns, Alternatives, ColumnKey, JudgedAlternative};
 use crate::document::{Cell, Table};
 use crate::quantity::{DisplayUnit, MotionKind};
-use crate::simulate::{ScenarioRun, settling_cell};
+use crate::simulate::settling_cell;
 use crate::verdict_words::agreement_word;
 
 /// Name of the group of the project's declared load, if there are load cases too.

@@ -2,10 +2,11 @@
 
 use num_complex::Complex64;
 
+use phea_engineering::plant_names::NamedPlant;
+
 use super::describe::Describe;
 use super::object::Json;
 use super::shape::ValueShape;
-use crate::plant_names::NamedPlant;
 use crate::quantity::QuantityName;
 
 macro_rules! describe {

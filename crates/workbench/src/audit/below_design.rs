@@ -1,9 +1,9 @@
 //! Limits of a design that a given loop satisfies or exceeds, in words and in JSON.
 
+use phea_engineering::audit::ProjectAudit;
 use phea_engineering::limit_kind::{DesignLimitKind, ExceededLimit, JudgedLimits, LimitOrigin, limit_key};
 use phea_qft::verification::Verdict;
 
-use super::ProjectAudit;
 use crate::answer::{Answer, Keyed};
 use crate::document::{Cell, Document, Table};
 use crate::limit_kind::{LimitKeys, LimitValueKeys, in_limit_unit, limit_words, origin_words};

@@ -1,6 +1,9 @@
 //! An audit for people.
 
 use phea_dynamics::portable;
+use phea_engineering::audit::{DelayedPaths, ProjectAudit};
+use phea_engineering::robust::DEFAULT_TOLERANCE_DB;
+use phea_engineering::trial::Trial;
 use phea_qft::proof::{ClaimStatus, Proof};
 use phea_qft::verification::{SpecificationFinding, SpecificationMargin, Verdict};
 
@@ -9,16 +12,15 @@ use super::proven::{status_word, why_not_proven};
 use super::remark::remark_sentences;
 use super::stability::{infinity_sentence, stability_sentence};
 use super::words::{closed_loop_symbol, evidence_sentence, finding_sentence, place_words, worst_at_design};
-use super::{DelayedPaths, ProjectAudit, below_design, in_time, margins, noise_sentence};
+use super::{below_design, in_time, margins, noise_sentence};
 use crate::caveat;
 use crate::document::{Cell, Document, Table};
 use crate::figure::Figure;
 use crate::grouped::grouped;
 use crate::plant_names::plant_cells;
 use crate::quantity::{DisplayUnit, significant};
-use crate::robust::DEFAULT_TOLERANCE_DB;
 use crate::specification::{name_words, numbered, numbered_cell};
-use crate::trial::{self, Trial};
+use crate::trial;
 use crate::verdict_words::verdict_words;
 
 /// The tables and sentences of `verify` for people, with the trial on the machine if there is one.

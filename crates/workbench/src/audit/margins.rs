@@ -1,11 +1,11 @@
 //! Margins of the nominal loop, and the worst of the family, in words and in JSON.
 
+use phea_engineering::audit::{Crossovers, LoopMargin, MarginSet, NominalMargins, ProjectAudit};
+use phea_engineering::plant_names::{NamedPlant, PlantNames};
 use phea_qft::verification::{Evidence, Remark};
 
-use super::{Crossovers, LoopMargin, MarginSet, NominalMargins, ProjectAudit};
 use crate::answer::{Answer, OrReason};
 use crate::document::{Cell, Table};
-use crate::plant_names::{NamedPlant, PlantNames};
 use crate::quantity::{DisplayUnit, significant};
 
 /// Reason why the nominal loop has none.

@@ -1,10 +1,10 @@
 //! The tests of a line: text, JSON and tables.
 
 use phea_dynamics::order::ends;
+use phea_engineering::line_test::{LineRun, LineSeries};
 
 use super::table::{BenchColumn, BenchFileAnswer, BenchTable};
 use crate::answer::{Answer, OutputFile};
-use crate::line_test::{LineRun, LineSeries};
 use crate::quantity::DisplayUnit;
 
 /// The record of a test.

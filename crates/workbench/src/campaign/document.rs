@@ -1,15 +1,16 @@
 //! The output of `campaign` for people.
 
-use super::Summary;
-use super::{CampaignRequirement, FamilyBox, RequestedRuns};
-use super::{Draw, Plan};
-use super::{LUMP_NAMES, meaningful};
-use super::{QUANTILES, Spread};
+use phea_engineering::campaign::{
+    CampaignRequirement, Draw, FamilyBox, LUMP_NAMES, Plan, QUANTILES, RequestedRuns, Spread, Summary,
+    meaningful,
+};
+use phea_engineering::simulate::{Metric, RunStatus, ScenarioRun};
+
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::project::Loaded;
 use crate::quantity::{DisplayUnit, MotionKind};
-use crate::simulate::{self, Metric, RunStatus, ScenarioRun, cause_cell, shown_in, status_words};
+use crate::simulate::{self, cause_cell, shown_in, status_words};
 use crate::simulate::{not_judged_words, reached_words, required_words};
 
 /// Largest number of listed runs that were rejected or stopped early.

@@ -1,11 +1,12 @@
 //! `identify`: the valve that explains recorded tests.
 
-use crate::answer::{Answer, picture_files};
-use crate::identify::{
-    self, Known, Read, RecordedFiles, SMALLEST_EFFECT, Search, ValveFigures, identify, joint_region,
-    recorded_files, recordings,
+use phea_engineering::identify::{
+    Known, RecordedFiles, SMALLEST_EFFECT, Search, identify, joint_region, recordings,
 };
-use crate::identify_error::{IdentifyError, NothingToIdentify};
+use phea_engineering::identify_error::{IdentifyError, NothingToIdentify};
+
+use crate::answer::{Answer, picture_files};
+use crate::identify::{self, Read, ValveFigures, recorded_files};
 use crate::project::{Loaded, RecordedTest};
 use crate::source::Source;
 use phea_hydraulics::servovalve::LeakageModel;

@@ -1,8 +1,8 @@
+use phea_engineering::rig::{CrossPortAtPoint, Rig, cross_port_at_point};
+use phea_engineering::setup::Setup;
 use phea_hydraulics::cross_port::{DynamicFeedback, Restrictor};
 
 use super::list::List;
-use crate::rig::{CrossPortAtPoint, Rig, cross_port_at_point};
-use crate::setup::Setup;
 
 /// A valve between the chambers: its flow and its cost at rest, and the origin of its feedback.
 pub(super) fn cross_port(setup: &Setup<'_>, rig: &Rig, list: &mut List) {

@@ -1,12 +1,13 @@
 //! The derived quantities of a project, for people.
 
+use phea_engineering::family::{Extreme, VisitedRange};
+use phea_engineering::replaced::{ReplacedRange, replaced_ranges};
+
 use super::Derived;
 use crate::answer::significant;
 use crate::document::{Cell, Document, StatusMark, Table};
-use crate::family::{Extreme, VisitedRange};
 use crate::project::{Project, WrittenUnits};
 use crate::quantity::DisplayUnit;
-use crate::replaced::{ReplacedRange, replaced_ranges};
 
 /// Every derived quantity, and the values that the project states instead.
 pub(crate) fn document(derived: &[Derived], units: &WrittenUnits) -> Document {

@@ -1,7 +1,7 @@
 //! A design for people.
 
 use phea_dynamics::linear::{LinearError, TimeDomain, TransferFunction};
-use phea_engineering::design::LedBy;
+use phea_engineering::design::{AuditedController, Explanation, LedBy, ProjectDesign, Repair, RepairStatus};
 use phea_qft::design::quantization::CoefficientFormat;
 use phea_qft::design::{BINDING_DB, DesignRound, DesignStatus, Objective, Starts};
 use phea_qft::verification::{SpecificationMargin, Verdict};
@@ -13,7 +13,6 @@ use super::repair::{repair_sentences, repair_words};
 use super::rounding::rounding_sentences;
 use super::unfinished::unfinished_sentence;
 use super::words::{searched_limit_cell, structure_words, unusable_words, verdict_sentence};
-use super::{AuditedController, Explanation, ProjectDesign, Repair, RepairStatus};
 use crate::answer::significant;
 use crate::audit::{self, summary};
 use crate::document::{Cell, Document, StatusMark, Table};

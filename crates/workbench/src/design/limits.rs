@@ -1,12 +1,13 @@
 //! Limits of a design in addition to its specifications, with what it reaches.
 
-use phea_engineering::design::{CommandOfSteps, DesignLimit, DesignLimitKind, StepLimit, limit_key};
+use phea_engineering::audit::PrefilterGain;
+use phea_engineering::design::{
+    CommandOfSteps, DesignLimit, DesignLimitKind, ProjectDesign, StepLimit, limit_key,
+};
 use phea_engineering::plant_names::NamedPlant;
 use phea_engineering::simulate::ForceLimit;
 
-use super::ProjectDesign;
 use crate::answer::significant;
-use crate::audit::PrefilterGain;
 use crate::document::{Cell, Document, Table};
 use crate::limit_kind::{limit_words, origin_words};
 use crate::plant_names::plant_words;

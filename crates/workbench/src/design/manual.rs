@@ -5,9 +5,8 @@ use std::f64::consts::{PI, TAU};
 use phea_dynamics::controller::NamedStructure;
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::linear::Discretization;
-use phea_engineering::design::{ManualLaw, ManualPart};
+use phea_engineering::design::{ManualLaw, ManualPart, ProjectDesign};
 
-use super::ProjectDesign;
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;

@@ -1,9 +1,10 @@
 //! The tested structures and the values that each reaches.
 
-use phea_engineering::design::{DesignLimitKind, LedBy, ReachedStructure, SearchedLimit, structure_key};
+use phea_engineering::design::{
+    DesignLimitKind, LedBy, ProjectDesign, ReachedStructure, SearchedLimit, structure_key,
+};
 use phea_qft::design::{ControllerChoice, Objective, StructureEnding};
 
-use super::ProjectDesign;
 use super::comparison::{gain_at_high_frequency, limited};
 use super::words::{reached_words, searched_limit_cell, searched_limit_name, structure_name};
 use crate::answer::significant;

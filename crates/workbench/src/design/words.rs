@@ -1,6 +1,7 @@
 //! Verdict, objective and structure of a design in words.
 
 use phea_dynamics::controller::NamedStructure;
+use phea_engineering::audit::DelayedPaths;
 use phea_engineering::design::{
     DesignVerdict, ProjectDesign, ReachedStructure, RigMiss, SearchedControllers, SearchedLimit,
     UnusableController,
@@ -9,7 +10,6 @@ use phea_qft::loop_shaping::{Structure, StructureFactor};
 
 use super::manual::part_name;
 use crate::answer::Word;
-use crate::audit::DelayedPaths;
 use crate::document::Cell;
 use crate::limit_kind::limit_words;
 use crate::quantity::{MotionKind, significant};

@@ -1,10 +1,11 @@
-use super::{
-    ConstantVelocity, ExplainedByDirections, FrictionIdentification, FrictionMisfit, FrictionRecording,
-    FrictionSignal, OpenCoefficient, ShakenRows, SteadyPoint, VaryingVelocity, because, misfit_in_words,
+use phea_engineering::estimate::Estimate;
+use phea_engineering::friction::{
+    ConstantVelocity, DirectionModel, ExplainedByDirections, FrictionIdentification, FrictionMisfit,
+    FrictionRecording, FrictionSignal, OpenCoefficient, ShakenRows, SteadyPoint, VaryingVelocity,
 };
+
+use super::{because, misfit_in_words};
 use crate::answer::{Answer, Body, FileWarningAnswer, OrReason, envelope, words};
-use crate::estimate::Estimate;
-use crate::friction::DirectionModel;
 use crate::project::Loaded;
 use crate::quantity::DisplayUnit;
 

@@ -1,13 +1,14 @@
 //! The friction of a cylinder for people.
 
-use super::{
+use phea_engineering::estimate::Estimate;
+use phea_engineering::friction::{
     DirectionEvidence, DirectionModel, FrictionIdentification, OpenCoefficient, ShakenRows, VaryingVelocity,
-    because, coefficients, misfit_in_words,
 };
+use phea_engineering::identify::DECISIVE;
+
+use super::{because, coefficients, misfit_in_words};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
-use crate::estimate::Estimate;
-use crate::identify::DECISIVE;
 use crate::quantity::DisplayUnit;
 
 /// Coefficients with their intervals and the reasons why some are open, the friction map, and the

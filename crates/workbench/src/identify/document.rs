@@ -1,15 +1,16 @@
 //! An identified valve for people.
 
+use phea_engineering::identify::{
+    Bootstrap, COEFFICIENT_NAMES, DECISIVE, Identification, NotIdentifiableCombination, SignalFit,
+    TermEvidence, TestOil, ValveTerm,
+};
 use phea_hydraulics::servovalve::{LeakageModel, STATIC_COEFFICIENTS};
 
+use super::Read;
 use super::answer::{EITHER_SIGN, correlations};
 use super::misfit::misfit_in_words;
 use super::numbers;
 use super::region::{self, FoundRegion};
-use super::{
-    Bootstrap, COEFFICIENT_NAMES, DECISIVE, Identification, NotIdentifiableCombination, Read, SignalFit,
-    TermEvidence, TestOil, ValveTerm,
-};
 use crate::answer::{Word, significant};
 use crate::document::{Cell, Document, Table};
 use crate::quantity::{DisplayUnit, PRESSURE, display};

@@ -1,9 +1,9 @@
 //! Contents of the files, and findings in them.
 
+use phea_engineering::identify::{ColumnContents, FileContents, Identification};
 use phea_hydraulics::servovalve::PortCircuit;
 
 use super::misfit::misfit_in_words;
-use super::{ColumnContents, FileContents, Identification};
 use crate::answer::{Answer, FileWarningAnswer, words};
 use crate::document::{Cell, Document, Table};
 use crate::project::{Diagnostic, StaticTest, TestSignal};

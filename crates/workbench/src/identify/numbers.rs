@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use super::{COEFFICIENT_NAMES, Identification, NullMethod, NullReading};
+use phea_engineering::estimate::Estimate;
+use phea_engineering::identify::{COEFFICIENT_NAMES, Identification, NullMethod, NullReading};
+
 use crate::answer::{Answer, KeyList, Keyed, ObjectKey, significant, words};
 use crate::document::{Cell, Document, Table};
-use crate::estimate::Estimate;
 use crate::project::DeclaredActuator;
 use crate::quantity::{DisplayUnit, PRESSURE, VOLTAGE, display};
 

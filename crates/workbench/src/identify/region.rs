@@ -3,7 +3,8 @@
 
 use std::collections::BTreeMap;
 
-use super::{COVERAGE, Identification, JointRegion, JointRegionError};
+use phea_engineering::identify::{COVERAGE, Identification, JointRegion, JointRegionError};
+
 use crate::answer::{Answer, Entries, OutputFile, significant};
 use crate::document::{Cell, Document, Table};
 use crate::project::UncertaintyDirection;

@@ -1,7 +1,9 @@
-use super::{LineIdentification, ResponseFit, RiseFit, because, misfit_in_words, numbers, remark};
+use phea_engineering::estimate::Estimate;
+use phea_engineering::line_test::{LineIdentification, ResponseFit, RiseFit};
+
+use super::{because, misfit_in_words, numbers, remark};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
-use crate::estimate::Estimate;
 use crate::project::LineSide;
 use crate::quantity::{DisplayUnit, FLOW, PRESSURE, VOLUME, display};
 use crate::response::resampling;

@@ -6,14 +6,15 @@ mod stiffness;
 
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
+use phea_engineering::linearize::{AgreementBand, Linearization, LinkagePlace, LinkagePosition, Sweep};
+use phea_engineering::setup::Setup;
 use phea_hydraulics::linear::ModeContribution;
 
+use super::models;
 use super::sweep_answer::{SweptKeyAnswer, SweptPointAnswer, head, rows};
-use super::{AgreementBand, Linearization, LinkagePlace, LinkagePosition, Sweep, models};
 use crate::answer::{Answer, Csv, OutputFile, quoted, words};
 use crate::caveat;
 use crate::quantity::{FORCE, QuantityName};
-use crate::setup::Setup;
 use differences::{DecompositionErrorAnswer, ResponseDifferenceAnswer, decomposition, difference};
 use port::{
     FinalForcesAnswer, ImpedancesAnswer, PassivitiesAnswer, VirtualImpedanceAnswer, final_forces, impedances,

@@ -4,20 +4,20 @@ use num_complex::Complex64;
 use phea_dynamics::frequency::PassivityReport;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;
+use phea_engineering::linearize::{
+    AgreementBand, ComparedImpedance, FIRST_ORDER, LUMPED, Linearization, LinkagePlace, LinkagePosition,
+    ReductionDifference, RequiredImpedance, WITHIN_DB, WITHIN_DEG, WITHIN_PERCENT,
+};
+use phea_engineering::setup::Setup;
 use phea_hydraulics::linear::{ModeContribution, ResponseDifference};
 
 use super::answer::phase_difference_deg;
-use super::{
-    AgreementBand, ComparedImpedance, FIRST_ORDER, LUMPED, Linearization, LinkagePlace, LinkagePosition,
-    ReductionDifference, RequiredImpedance, WITHIN_DB, WITHIN_DEG, WITHIN_PERCENT, hiding_mass_words,
-    no_closed_impedance_words, stiffness_sentence,
-};
+use super::{hiding_mass_words, no_closed_impedance_words, stiffness_sentence};
 use crate::answer::significant;
 use crate::caveat;
 use crate::document::{Cell, Document, Table};
 use crate::figure::Figure;
 use crate::quantity::{DAMPING, DisplayUnit, MotionKind};
-use crate::setup::Setup;
 
 /// The tables and sentences of `linearize` for people.
 pub(crate) fn output(setup: &Setup<'_>, linearization: &Linearization) -> Document {

@@ -2,9 +2,10 @@
 
 use num_complex::Complex64;
 
+use phea_engineering::linearize::{Sweep, SweepPoint, Swept};
+
 use super::roots;
 use super::words::no_bandwidth_words;
-use super::{Sweep, SweepPoint, Swept};
 use crate::answer::{Answer, Csv, OutputFile, words};
 use crate::caveat;
 use crate::document::{Cell, Document, Table};

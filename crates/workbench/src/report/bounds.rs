@@ -5,13 +5,16 @@ use num_complex::Complex64;
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::order::sort_by_number;
 use phea_dynamics::portable::exp_complex;
+use phea_engineering::audit::ProjectAudit;
+use phea_engineering::robust::{DesignFrequency, RobustProblem};
+use phea_engineering::specification::kind_key;
 use phea_qft::bound::{Bound, Collision, Feasibility, Placement};
 use phea_qft::template::{Resolution, Template};
 use phea_qft::verification::Verdict;
 
 use super::chapter::Chapter;
 use crate::answer::significant;
-use crate::audit::{ProjectAudit, closed_loop_symbol};
+use crate::audit::closed_loop_symbol;
 use crate::design::drawn;
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::error::CommandError;
@@ -19,8 +22,7 @@ use crate::figure::{
     BoundGroup, Figure, FrequencySeries, NicholsChart, OpenLoopViolation, USUAL_CONTOURS_DB, Words, templates,
 };
 use crate::quantity::DisplayUnit;
-use crate::robust::{DesignFrequency, RobustProblem};
-use crate::specification::{kind_key, name_words, stated};
+use crate::specification::{name_words, stated};
 use crate::verdict_words::frequency_number;
 
 /// The chapter; `chart` is the Nichols chart of the given loop if it is shown nowhere else.

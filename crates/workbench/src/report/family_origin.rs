@@ -2,18 +2,18 @@
 //! the reduction of the templates, and the benefit for the controller.
 
 use phea_dynamics::watch::Watch;
+use phea_engineering::audit::{ProjectAudit, audit_project};
+use phea_engineering::family::visited_box;
+use phea_engineering::replaced::{TemplateAreas, boxed, replaced_ranges, template_areas};
+use phea_engineering::setup::Setup;
 
 use super::chapter::Chapter;
 use super::judged::Judged;
-use crate::audit::{ProjectAudit, audit_project};
 use crate::derived::{replaced_sentences, replaced_table};
 use crate::document::{Cell, Document, Table};
 use crate::error::CommandError;
-use crate::family::visited_box;
 use crate::project::Project;
 use crate::quantity::DisplayUnit;
-use crate::replaced::{TemplateAreas, boxed, replaced_ranges, template_areas};
-use crate::setup::Setup;
 use crate::source::Source;
 use crate::specification::numbered_cell;
 

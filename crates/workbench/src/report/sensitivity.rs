@@ -2,6 +2,8 @@
 //! stiffness and of the friction.
 
 use phea_dynamics::watch::{Stopped, Watch};
+use phea_engineering::setup::Setup;
+use phea_engineering::simulate::{Metrics, ScenarioRun, Window, simulate_project};
 use phea_hydraulics::friction::Friction;
 
 use super::chapter::Chapter;
@@ -11,10 +13,7 @@ use crate::document::{Document, Table};
 use crate::error::CommandError;
 use crate::figure::DisplayUnit;
 use crate::project::{DeclaredActuator, Project, RetractingFriction};
-use crate::setup::Setup;
-use crate::simulate::{
-    Metrics, ScenarioRun, Window, cause_words, label_within, metrics_row, simulate_project,
-};
+use crate::simulate::{cause_words, label_within, metrics_row};
 use crate::source::Source;
 
 /// Factors of the sensitivity.

@@ -1,6 +1,8 @@
 //! The chapter on the nonlinear model: each scenario over time under each controller, and its
 //! metrics compared with requirements in time, published values and measurements.
 
+use phea_engineering::simulate::{Metric, Metrics, StepLimits, TimeRequirement, Window};
+
 use super::chapter::Chapter;
 use super::driven::MachineChapter;
 use super::driving;
@@ -9,10 +11,9 @@ use crate::figure::Figure;
 use crate::project::{Project, Scenario};
 use crate::quantity::{MotionWords, Units};
 use crate::simulate::{
-    Metric, Metrics, NamedRun, StepLimits, TimeRequirement, Window, adjustment_sentence, cause_cell,
-    cells_of, close_ups, coarse_sentence, gas_sentence, headline, label_within, measured, measured_together,
-    metrics_row, occurrence_sentences, pictures, published, published_row, required_overshoot,
-    required_settling, requirement_of, together, turns, windows,
+    NamedRun, adjustment_sentence, cause_cell, cells_of, close_ups, coarse_sentence, gas_sentence, headline,
+    label_within, measured, measured_together, metrics_row, occurrence_sentences, pictures, published,
+    published_row, required_overshoot, required_settling, requirement_of, together, turns, windows,
 };
 
 /// The chapter.

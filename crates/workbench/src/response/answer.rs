@@ -1,8 +1,9 @@
 use phea_dynamics::portable::{argument, log10, magnitude};
 use phea_dynamics::spectrum::{LOCAL_BLOCKS, SpectralPoint};
+use phea_engineering::response::{Averaging, LeftOut, LevelComparison, ReferenceSource, Resampled, Unusable};
 
 use super::levels::{LevelComparisonAnswer, compared_levels};
-use super::{Averaging, Compared, LeftOut, LevelComparison, ReferenceSource, Resampled, Unusable, because};
+use super::{Compared, because};
 use crate::answer::{Answer, Body, SCHEMA, VERSION, words};
 use crate::project::Loaded;
 use crate::quantity::MotionKind;

@@ -1,9 +1,10 @@
 use phea_dynamics::portable::{argument, log10, magnitude};
+use phea_engineering::response::{
+    Averaging, LeftOut, LevelComparison, ReferenceSource, ResponseMember, Unusable,
+};
 
 use super::answer::relative_radius;
-use super::{
-    Averaging, Compared, LeftOut, LevelComparison, ReferenceSource, ResponseMember, Unusable, levels,
-};
+use super::{Compared, levels};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;

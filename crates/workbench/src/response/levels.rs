@@ -1,6 +1,7 @@
 use phea_dynamics::portable::{argument, log10, magnitude};
+use phea_engineering::response::{FALSE_ALARM, LevelComparison, LevelDifference};
 
-use super::{Compared, FALSE_ALARM, LevelComparison, LevelDifference};
+use super::Compared;
 use crate::answer::{Answer, significant};
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;

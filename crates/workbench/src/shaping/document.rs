@@ -1,10 +1,10 @@
 //! Elements, margins and the loop for people.
 
 use phea_dynamics::portable;
+use phea_engineering::shaping::{ProjectShaping, Shaped};
 use phea_qft::bound::Placement;
 use phea_qft::manual_shaping::DesignMargin;
 
-use super::{ProjectShaping, Shaped};
 use crate::audit::stability_sentence;
 use crate::caveat;
 use crate::document::{Cell, Document, Table};

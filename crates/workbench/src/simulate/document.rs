@@ -1,15 +1,16 @@
 //! The output of `simulate` and `compare` for people.
 
+use phea_engineering::simulate::{
+    AdjustmentWork, BeyondExpansion, Cause, GasRange, Metric, Metrics, Occurrence, Overlay, PerMetric,
+    RunStatus, ScenarioComparison, ScenarioRun, StepLimits, StoppedRun, TimeRequirement, Window, concerns,
+};
+
 use super::check;
 use super::exceeded_words;
 use super::metrics::{cells_of, label_cell, label_within, metric_cell};
 use super::repetition::{divergence_words, sentences as doubts, work_words};
 use super::required::requirement_sentences;
-use super::{
-    AdjustmentWork, BeyondExpansion, Cause, GasRange, Metric, Metrics, Occurrence, Overlay, PerMetric,
-    RunStatus, ScenarioComparison, ScenarioRun, StepLimits, StoppedRun, TimeRequirement, Window, concerns,
-    status_words,
-};
+use super::status_words;
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::project::{InputSignal, Loaded, Scenario};

@@ -1,6 +1,8 @@
 //! The metrics of an event in tables and answers.
 
-use super::{Metric, Metrics, PerMetric, Unmeasured, unmeasured_words};
+use phea_engineering::simulate::{Metric, Metrics, PerMetric, Unmeasured};
+
+use super::unmeasured_words;
 use crate::answer::{Answer, Reasoned};
 use crate::document::Cell;
 use crate::quantity::{DisplayUnit, MotionKind, Units};

@@ -1,7 +1,8 @@
 //! Required steps and the values that a step reaches, in words.
 
+use phea_engineering::simulate::{NO_OVERSHOOT_PERCENT, ReachedStep, StepLimits};
+
 use super::metrics::STATED;
-use super::{NO_OVERSHOOT_PERCENT, ReachedStep, StepLimits};
 use crate::document::Cell;
 use crate::quantity::DisplayUnit;
 

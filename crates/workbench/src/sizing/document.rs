@@ -1,13 +1,14 @@
 //! A sizing for people.
 
+use phea_engineering::sizing::{
+    Candidate, Consequence, Influence, OtherMeans, OtherMeansError, SizedGas, SizedLoad, SizedPipe,
+    SizedSpring, SizedValve, Sizing,
+};
+
 use super::answer::branch_name;
 use super::words::{
     coil_unknown_words, decisions, hose_name, length_words, model_name, reason_words, setting_cell,
     uncertain_name,
-};
-use super::{
-    Candidate, Consequence, Influence, OtherMeans, OtherMeansError, SizedGas, SizedLoad, SizedPipe,
-    SizedSpring, SizedValve, Sizing,
 };
 use crate::answer::significant;
 use crate::document::{Cell, Document, StatusMark, Table};

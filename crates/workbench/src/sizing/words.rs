@@ -1,15 +1,15 @@
 //! The names and sentences of a sizing.
 
-use phea_hydraulics::stiffness::StiffnessModel;
-
-use super::{
+use phea_engineering::rig::{FlowLimit, LargestFlow};
+use phea_engineering::sizing::{
     Branch, CoilUnknown, HoseName, Influence, SizedLoad, SizedSystem, SizingReason, SizingStep,
     SoonerRequirement, TimeConstantOrigin, UncertainHoseNumber, UnlikeLines,
 };
+use phea_hydraulics::stiffness::StiffnessModel;
+
 use crate::answer::significant;
 use crate::document::Cell;
 use crate::quantity::DisplayUnit;
-use crate::rig::{FlowLimit, LargestFlow};
 
 /// The model's name in the project file.
 pub(crate) fn model_name(model: StiffnessModel) -> &'static str {

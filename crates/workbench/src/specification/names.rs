@@ -1,8 +1,8 @@
 //! The names of specifications, for people.
 
+use phea_engineering::specification::{NamedSpecification, SpecificationName};
 use phea_qft::specification::ClosedLoop;
 
-use super::{NamedSpecification, SpecificationName};
 use crate::document::Cell;
 
 /// The name of a limit on a closed loop.

@@ -1,11 +1,12 @@
 //! The trial of a verdict on the machine, for people.
 
-use super::words::{
-    have_one_name, largest_step_words, not_driven, percent_cell, reason_words, run_cell, run_name, units_of,
-};
-use super::{
+use phea_engineering::trial::{
     Agreement, BAND_PERCENT, Leg, MOST_OF_SCENARIOS, OVERSHOOT_ROOM_PERCENT, SETTLING_RATIO, SETTLING_ROOM,
     StepResponse, StepSize, Trial, TrialRun, TrialStep,
+};
+
+use super::words::{
+    have_one_name, largest_step_words, not_driven, percent_cell, reason_words, run_cell, run_name, units_of,
 };
 use crate::document::{Cell, Document, Table, capital};
 use crate::figure::{FamilySteps, Figure, TimeSeries, Words};

@@ -1,9 +1,10 @@
 //! Machines of a trial and the results of their runs, in words.
 
-use super::{
+use phea_engineering::trial::{
     Agreement, DampingWall, DifferenceCause, Leg, NotDriven, OvershootNote, REACH, StepSize, Trial,
     TrialFinding, TrialMachine, TrialReason, TrialRun, UnsettledEnd, WorstOf,
 };
+
 use crate::document::Cell;
 use crate::plant_names::plant_words;
 use crate::quantity::{DisplayUnit, MotionKind, MotionWords, Units, significant};

@@ -1,9 +1,11 @@
 //! The spread of numbers over the runs of a campaign.
 
+use phea_engineering::campaign::{LUMP_NAMES, Plan, QUANTILES, Spread, Summary, meaningful};
+use phea_engineering::simulate::{Cause, PerMetric, Window};
+
 use crate::answer::{Answer, Reasoned};
-use crate::campaign::{LUMP_NAMES, Plan, QUANTILES, Spread, Summary, meaningful};
 use crate::quantity::QuantityName;
-use crate::simulate::{Cause, PerMetric, SteppedAnswer, Window, stepped};
+use crate::simulate::{SteppedAnswer, stepped};
 
 /// Metrics of an event over the runs.
 #[derive(Answer)]

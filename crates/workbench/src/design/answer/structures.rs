@@ -1,12 +1,11 @@
 //! The structures that a design evaluated, in JSON.
 
 use phea_dynamics::controller::NamedStructure;
-use phea_engineering::design::{LedBy, ReachedStructure};
+use phea_engineering::design::{LedBy, ProjectDesign, ReachedStructure};
 use phea_qft::design::StructureEnding;
 
 use super::side::{CrossoverAnswer, crossovers};
 use crate::answer::{Answer, words};
-use crate::design::ProjectDesign;
 use crate::design::structures::{binding, misses_in_time, reached_steps};
 use crate::design::words::reached_words;
 

@@ -1,10 +1,10 @@
 //! Fit of the signals, and what the recordings leave open, for programs.
 
 use phea_dynamics::order::sort_by_number;
-
-use super::super::{
+use phea_engineering::identify::{
     COEFFICIENT_NAMES, Identification, Misfit, MisfitPlace, NotIdentifiableCombination, SignalFit, SignalKind,
 };
+
 use crate::answer::{Answer, words};
 use crate::project::StaticTest;
 

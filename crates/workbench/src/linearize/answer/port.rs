@@ -3,11 +3,12 @@
 use num_complex::Complex64;
 use phea_dynamics::frequency::PassivityReport;
 use phea_dynamics::portable::{argument, magnitude};
+use phea_engineering::linearize::{
+    ComparedImpedance, Linearization, PortView, RequiredImpedance, WITHIN_PERCENT,
+};
 use phea_hydraulics::impedance::{Asymptote, AsymptoteKind};
 
-use super::super::{
-    ComparedImpedance, Linearization, PortView, RequiredImpedance, WITHIN_PERCENT, no_closed_impedance_words,
-};
+use super::super::no_closed_impedance_words;
 use super::{FactorsAnswer, factors};
 use crate::answer::{Answer, OrReason, words};
 use crate::quantity::{DAMPING, MASS, QuantityName, STIFFNESS};

@@ -1,10 +1,11 @@
 //! The events of a run.
 
+use phea_engineering::simulate::{Cause, Metrics, Occurrence, Window};
+
 use crate::answer::{Answer, Reasoned, words};
 use crate::quantity::{FORCE, MotionKind, QuantityName};
 use crate::simulate::metrics::{EventMetricsAnswer, metrics_answer};
 use crate::simulate::occurrence_kind::OccurrenceKind;
-use crate::simulate::{Cause, Metrics, Occurrence, Window};
 
 /// Event of a run, with the metrics of the time from it to the next.
 #[derive(Answer)]

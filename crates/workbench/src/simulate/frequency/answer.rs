@@ -4,13 +4,13 @@ use std::io;
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
+use phea_engineering::simulate::RunStatus;
 use phea_hydraulics::signal::Signal;
 
 use super::document::polar_of_machine;
 use super::{MachineResponse, MachineResponses, ResponsePoint};
 use crate::answer::{Answer, NumberTable, OutputFile, Reasoned, TableFormat};
 use crate::quantity::{FORCE, MotionKind, QuantityName};
-use crate::simulate::RunStatus;
 use crate::simulate::occurrence_kind::OccurrenceKind;
 use crate::simulate::reasons::no_closed_loop_words;
 
