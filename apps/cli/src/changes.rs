@@ -1,7 +1,7 @@
 //! Changes of a controller, in the order in which they are given on the command line.
 
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches};
-use phea_workbench::shaping::{Change, RequestedChange};
+use phea_workbench::engineering::shaping::{Change, RequestedChange};
 
 /// Requested changes, in order.
 #[derive(Clone, Debug, Default)]

@@ -11,10 +11,11 @@ use phea_workbench::audit::{CERTIFICATE_FILE, check_certificate, check_certifica
 use phea_workbench::command::{
     self, AlternativesRequest, CommandError, FrequencyOptions, OutputNames, Request, SimulateRequest,
 };
-use phea_workbench::design::DESIGNED_PROJECT;
-use phea_workbench::linearize::SweepRequest;
+use phea_workbench::engineering::design::DESIGNED_PROJECT;
+use phea_workbench::engineering::linearize::SweepRequest;
+use phea_workbench::engineering::shaping::Shaped;
 use phea_workbench::project::{self, Loaded, STARTER};
-use phea_workbench::shaping::{SHAPED_PROJECT, Shaped};
+use phea_workbench::shaping::SHAPED_PROJECT;
 use phea_workbench::source::Destination;
 
 use crate::arguments::{Arguments, Certified, Command, Common, Several};
@@ -210,7 +211,7 @@ fn print_answer(json: bool, outcome: Result<(Answer, Vec<PathBuf>), Failure>) ->
     match outcome {
         Ok((answer, _)) if json => print(&format!("{}\n", answer.json)).map(|()| status(&answer)),
         Ok((answer, written)) => {
-            print(&format!("{}{}", answer.text, written_sentence(&written))).map(|()| status(&answer))
+            print(&format!("{}{}", answer.text(), written_sentence(&written))).map(|()| status(&answer))
         }
         Err(failure) => {
             if json {

@@ -6,6 +6,8 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
+use crate::answer_schema::parsed;
+
 /// A folder with the example project, a binary file, an empty one, and a file instead of a folder.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
@@ -152,8 +154,7 @@ fn every_outcome_has_its_exit_status_and_one_json_object() {
         assert_eq!(output.status.code(), Some(*expected), "{arguments:?}: {complaint}");
         assert_eq!(complaint.contains("error: "), *expected >= 2, "{arguments:?}: {complaint}");
         assert!(!complaint.contains("panicked"), "{arguments:?}: {complaint}");
-        let object: serde_json::Value =
-            serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{arguments:?}: {error}"));
+        let object = parsed(&String::from_utf8(output.stdout).expect("text"));
         for key in ["schema", "version", "command", "project_sha256"] {
             assert!(object.get(key).is_some(), "{arguments:?} lacks {key}");
         }
@@ -189,7 +190,7 @@ fn a_refusal_is_printed_on_standard_error() {
 fn a_bad_row_of_a_measurement_has_its_place() {
     let folder = folder("measurement");
     let output = phea(&folder, &["check", "measured.toml", "--json"]);
-    let object: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one object");
+    let object = parsed(&String::from_utf8(output.stdout).expect("text"));
     let rows: Vec<_> = object["errors"].as_array().expect("a list").iter().collect();
     let place = |row: &serde_json::Value| (row["file"].clone(), row["line"].as_u64(), row["column"].as_u64());
     let places: Vec<_> = rows.iter().map(|row| place(row)).collect();

@@ -104,15 +104,20 @@ impl WrittenUnits {
     /// Number in the unit that the project uses most often for such numbers; otherwise in the
     /// customary unit, or in the SI unit if there is none, or if the number would be far from one.
     pub fn displayed(&self, name: &str, value: f64, si: &'static str) -> (f64, String) {
+        let (in_si, unit) = self.unit_of(name, value, si);
+        (value / in_si, unit)
+    }
+
+    /// Unit in which such a number is shown: its size in SI, and its symbol.
+    pub fn unit_of(&self, name: &str, value: f64, si: &'static str) -> (f64, String) {
         let dimension = DIMENSIONS.iter().find(|dimension| dimension.si == si);
         let family = UnitFamily::of(name);
         let unit = self.most(si, family).or_else(|| customary(si, family));
         let in_si = unit
             .zip(dimension)
             .and_then(|(unit, dimension)| Some((UnitScale::new(unit, dimension).ok()?.read("1")?, unit)));
-        let displayed = in_si.map(|(one, unit)| (value / one, unit.to_string()));
-        let is_handy = |(number, _): &(f64, String)| *number == 0.0 || HANDY.contains(&number.abs());
-        displayed.filter(is_handy).unwrap_or_else(|| (value, si.to_string()))
+        let is_handy = |(one, _): &(f64, &str)| value == 0.0 || HANDY.contains(&(value / one).abs());
+        in_si.filter(is_handy).map_or_else(|| (1.0, si.to_string()), |(one, unit)| (one, unit.to_string()))
     }
 
     /// Counts the texts in quotes, each with the key before it.

@@ -21,6 +21,8 @@ impl DisplayUnit {
     pub const SQUARE_CENTIMETRE: Self = DisplayUnit { symbol: "cm2", in_si: 1e-4 };
     /// Modulus.
     pub const GIGAPASCAL: Self = DisplayUnit { symbol: "GPa", in_si: 1e9 };
+    /// Volume.
+    pub const MILLILITRE: Self = DisplayUnit { symbol: "mL", in_si: 1e-6 };
     /// Volume to a length.
     pub const CUBIC_CENTIMETRE_PER_METRE: Self = DisplayUnit { symbol: "cm3/m", in_si: 1e-6 };
     /// Time.
@@ -61,6 +63,16 @@ impl DisplayUnit {
     pub const VOLT: Self = DisplayUnit { symbol: "V", in_si: 1.0 };
     /// Voltage for a force.
     pub const MILLIVOLT_PER_NEWTON: Self = DisplayUnit { symbol: "mV/N", in_si: 1e-3 };
+    /// Ratio of magnitudes, stated in dB inside too.
+    pub const DECIBEL: Self = DisplayUnit { symbol: "dB", in_si: 1.0 };
+    /// Fraction.
+    pub const PERCENT: Self = DisplayUnit { symbol: "%", in_si: 0.01 };
+    /// Frequency that is in Hz inside too.
+    pub const IN_HERTZ: Self = DisplayUnit { symbol: "Hz", in_si: 1.0 };
+    /// Number that is in percent inside too.
+    pub const IN_PERCENT: Self = DisplayUnit { symbol: "%", in_si: 1.0 };
+    /// Angle that is in degrees inside too.
+    pub const IN_DEGREES: Self = DisplayUnit { symbol: "deg", in_si: 1.0 };
     /// Ratio.
     pub const ONE: Self = DisplayUnit { symbol: "1", in_si: 1.0 };
 

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 
-use phea_workbench::campaign::{Effort, Plan};
+use phea_workbench::engineering::campaign::{Effort, Plan};
 use phea_workbench::project;
 use phea_workbench::source::Memory;
 

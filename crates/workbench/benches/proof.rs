@@ -11,11 +11,12 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use phea_qft::proof::ClaimStatus;
-use phea_workbench::audit::{CERTIFICATE_FILE, audit_problem, check_certificate, prove_audit};
+use phea_workbench::audit::{CERTIFICATE_FILE, check_certificate};
 use phea_workbench::command::{self, Request};
+use phea_workbench::engineering::audit::{audit_problem, prove_audit};
+use phea_workbench::engineering::robust::robust_problem;
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project;
-use phea_workbench::robust::robust_problem;
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");

@@ -23,8 +23,8 @@ use phea_dynamics::simulation::{
 use phea_engineering::simulate;
 use phea_hydraulics::machine::StartValues;
 use phea_machine::{Control, Digital, Waking, Watcher};
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project::{self, InputSignal, MotionShape, Project};
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 /// Name, project file and golden reference.

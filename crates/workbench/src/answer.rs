@@ -17,6 +17,7 @@ mod shape;
 mod values;
 mod words;
 
+use crate::document::Document;
 use crate::quantity::print_bare;
 pub use crate::quantity::significant;
 pub use object::Object;
@@ -42,7 +43,7 @@ pub(crate) use words::{Word, describe_words, words};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
     /// Tables and short sentences for people.
-    pub text: String,
+    pub document: Document,
     /// One JSON object.
     pub json: String,
     /// Files for the output folder; the PNG of a drawing, which [`picture_of`] makes, is written
@@ -50,6 +51,13 @@ pub struct Answer {
     pub files: Vec<OutputFile>,
     /// Whether the answer is yes; a no ends the command with status 1.
     pub affirmative: bool,
+}
+
+impl Answer {
+    /// The document as text for a terminal.
+    pub fn text(&self) -> String {
+        self.document.text()
+    }
 }
 
 /// A number with this many significant digits as TOML writes it.

@@ -13,8 +13,6 @@ mod signal_noise;
 mod stability;
 mod words;
 
-pub use phea_engineering::audit::*;
-
 pub use answer::files;
 pub(crate) use answer::json;
 pub(crate) use answer::{AuditAnswer, SpecificationMarginAnswer, StableAnswer, body, margin, stable};
@@ -23,7 +21,8 @@ pub(crate) use certificate::{CheckCertificateAnswer, certificate_of};
 pub use document::output;
 pub(crate) use document::{basis, document, proven, summary};
 pub(crate) use family_and_loop::position_words;
-pub use margins::{above_one_again_words, crossover_words};
+pub use margins::above_one_again_words;
+pub(crate) use margins::{above_one_again, crossover_cell};
 pub use signal_noise::noise_sentence;
 pub(crate) use stability::{stability_reason, stability_sentence};
 pub(crate) use words::{closed_loop_symbol, meaning};

@@ -6,11 +6,11 @@ mod friction;
 mod line;
 mod table;
 
-pub use phea_engineering::bench::*;
+use phea_engineering::line_test::KnownLine;
+use phea_engineering::setup::Setup;
 
-use crate::line_test::{KnownLine, remark};
+use crate::line_test::remark;
 use crate::project::IdentifiedUse;
-use crate::setup::Setup;
 
 pub use answer::files;
 pub(crate) use answer::{BenchAnswer, body};

@@ -4,8 +4,6 @@ mod answer;
 mod document;
 mod figures;
 
-pub use phea_engineering::campaign::*;
-
 pub(crate) use answer::{CampaignAnswer, CampaignRunAnswer, body, run_body};
 pub(crate) use document::{
     beyond_box, counted, document, left_out, lumps, metrics, requirement, run_document,

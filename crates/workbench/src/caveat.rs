@@ -7,13 +7,12 @@ mod misfit;
 mod rig;
 mod valve;
 
-pub use phea_engineering::caveat::*;
-
 pub(crate) use misfit::misfits_in_runs;
+use phea_engineering::caveat::{Caveat, UncountedEffect, of_models};
+use phea_engineering::setup::Setup;
 pub(crate) use rig::{outside, outside_parameters};
 
 use crate::quantity::Units;
-use crate::setup::Setup;
 use crate::simulate::beyond_reach;
 
 /// The sentences of caveats, in their order.

@@ -36,28 +36,31 @@ pub use simulate::{FrequencyOptions, SimulateRequest};
 use std::borrow::Cow;
 
 use phea_dynamics::watch::{Stopped, rising, within};
+use phea_engineering::alternatives::{AlternativesOptions as RequestedOfAlternatives, judge};
+use phea_engineering::design::{design_and_repair, design_project};
 use phea_engineering::line_choice::{LoopInQuestion, with_chosen_lines};
+use phea_engineering::line_test::line_runs;
+use phea_engineering::linearize::SweepRequest;
+use phea_engineering::option::OptionError;
+use phea_engineering::robust::{RobustProblem, robust_problem};
+use phea_engineering::setup::Setup;
+use phea_engineering::shaping::{RequestedChange, Shaped, shape};
+use phea_engineering::simulate::compare_projects;
+use phea_engineering::sizing::{Candidate, Question, SizingError, size, sizing_problem};
+use phea_engineering::specification::crossed_limits;
+use phea_engineering::trial::{Agreement, Trial};
 
-use crate::alternatives::{AlternativesOptions as RequestedOfAlternatives, judge};
 use crate::answer::{Answer, Body};
 use crate::bench;
-use crate::design::{self, design_and_repair, design_project};
+use crate::design;
 use crate::document::Document;
 use crate::identify::in_use;
-use crate::line_test::line_runs;
-use crate::linearize::SweepRequest;
-use crate::option::OptionError;
 use crate::project::Loaded;
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
 use crate::report::{self, report_next_to};
-use crate::robust::{RobustProblem, robust_problem};
-use crate::setup::Setup;
-use crate::shaping::{self, RequestedChange, Shaped, shape};
-use crate::simulate::compare_projects;
-use crate::sizing::{self, Candidate, Question, SizingError, size, sizing_problem};
+use crate::shaping;
+use crate::sizing;
 use crate::source::{Destination, HeldFiles, Source};
-use crate::specification::crossed_limits;
-use crate::trial::{Agreement, Trial};
 use alternatives::alternatives_answer;
 use check::check;
 use linearize::{linearize_answer, swept_answer};
@@ -327,9 +330,9 @@ fn size_answer(
 
 fn bench_answer(loaded: &Loaded, watch: Watch<'_>) -> Result<Unprinted, CommandError> {
     let setup = Setup::new(&loaded.project)?;
-    let runs = bench::bench(&setup, &mut within(&mut *watch, [0.0, 0.5]))?;
+    let runs = phea_engineering::bench::bench(&setup, &mut within(&mut *watch, [0.0, 0.5]))?;
     let lines = line_runs(&setup, &mut within(&mut *watch, [0.5, 0.75]))?;
-    let of_friction = bench::friction_runs(&setup, &mut within(watch, [0.75, 1.0]))?;
+    let of_friction = phea_engineering::bench::friction_runs(&setup, &mut within(watch, [0.75, 1.0]))?;
     let remarks = bench::remarks(&setup);
     let document = bench::document(loaded, &remarks, &runs, &of_friction, &lines);
     let files = bench::files(&runs, &of_friction).into_iter().chain(bench::line_files(&lines)).collect();

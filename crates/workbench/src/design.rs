@@ -16,7 +16,7 @@ mod unfinished;
 mod words;
 
 pub use crate::explanation::explanation_sentence;
-pub use phea_engineering::design::*;
+use phea_engineering::design::ProjectDesign;
 
 pub use answer::pressure_feedback_object;
 pub(crate) use answer::{DesignAnswer, body};

@@ -2,12 +2,14 @@
 //! procedure builds the tree; the terminal and the page print it.
 
 mod cell;
+mod number;
 mod page;
 mod table;
 mod terminal;
 mod typeset;
 
 pub(crate) use cell::{Cell, StatusMark};
+pub use number::TableNumber;
 pub(crate) use table::Table;
 pub(crate) use typeset::capital;
 pub use typeset::{prose, typeset};
@@ -15,14 +17,14 @@ pub use typeset::{prose, typeset};
 use crate::figure::Figure;
 
 /// Blocks in the order in which they are read.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Document {
     blocks: Vec<Block>,
 }
 
 /// A part of a document. In every text, words such as `K_H` are symbols, and text between backticks
 /// is code.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 enum Block {
     /// A sentence printed before everything else.
     Warning(String),

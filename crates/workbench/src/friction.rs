@@ -6,17 +6,19 @@ mod document;
 mod figures;
 mod files;
 
-pub use phea_engineering::friction::*;
-
 pub(crate) use answer::IdentifiedFrictionAnswer;
 pub use answer::json;
 pub(crate) use document::document;
 pub(crate) use document::write;
 pub(crate) use figures::pictures;
 pub use files::files;
+use phea_engineering::estimate::Estimate;
+use phea_engineering::friction::{
+    FRICTION_NAMES, FrictionIdentification, FrictionMisfit, NotIdentifiableFriction, OpenCoefficient,
+    RETRACTING_NAMES, ROWS_OF_RINGING,
+};
 
 use crate::answer::significant;
-use crate::estimate::Estimate;
 use crate::project::DeclaredMisfit;
 use crate::quantity::{DisplayUnit, TIME, VELOCITY, display};
 

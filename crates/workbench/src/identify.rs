@@ -11,8 +11,6 @@ mod misfit;
 mod numbers;
 mod region;
 
-pub use phea_engineering::identify::*;
-
 pub(crate) use answer::IdentifiedValveAnswer;
 pub use answer::json;
 pub(crate) use document::document;

@@ -2,6 +2,7 @@
 
 use phea_engineering::design::Explanation;
 use phea_engineering::impossible::Impossibility;
+use phea_engineering::robust::RobustProblem;
 use phea_qft::design::Finding;
 
 use crate::explanation::explanation_sentence;
@@ -9,7 +10,6 @@ use crate::impossible_steps::late_of_step;
 use crate::plant_names::plant_text;
 use crate::project::LateError;
 use crate::quantity::{Units, significant};
-use crate::robust::RobustProblem;
 use crate::specification::{self, stated};
 
 /// A requirement of a project that no loop can satisfy, at its key; `None` for a requirement that

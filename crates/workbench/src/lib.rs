@@ -19,9 +19,9 @@
 //! answer::Answer { text, json, files, affirmative }
 //! ```
 //!
-//! The module X of a procedure has the name of that procedure's module in `phea_engineering`, and
-//! exports its values next to their output, so that a caller finds both in one place. The list of
-//! `derived` quantities is output only: no procedure reads it.
+//! The module X of a procedure has the name of that procedure's module in `phea_engineering`, which
+//! applications reach as [`engineering`]. The list of `derived` quantities is output only: no
+//! procedure reads it.
 
 pub mod alternatives;
 pub mod answer;
@@ -55,9 +55,7 @@ pub mod specification;
 pub mod trial;
 mod verdict_words;
 
-pub use phea_engineering::{
-    estimate, family, identify_error, linear_loop, linear_step, option, replaced, rig, robust, setup,
-};
+pub use phea_engineering as engineering;
 pub use phea_figure as figure;
 pub use phea_project::{self as project, catalogue, source};
 pub use phea_quantity::{self as quantity, spelling};

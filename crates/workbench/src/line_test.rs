@@ -5,16 +5,17 @@ mod document;
 mod figures;
 mod files;
 
-pub use phea_engineering::line_test::*;
-
 pub(crate) use answer::IdentifiedLineAnswer;
 pub use answer::json;
 pub(crate) use document::document;
 pub(crate) use figures::pictures;
 pub use files::files;
+use phea_engineering::estimate::Estimate;
+use phea_engineering::line_test::{
+    KnownLine, LineIdentification, LineMisfit, NotIdentifiableLine, WideQuantity,
+};
 
 use crate::answer::significant;
-use crate::estimate::Estimate;
 use crate::quantity::DisplayUnit;
 
 /// Remark on an accumulator, which is left out.

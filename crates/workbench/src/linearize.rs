@@ -5,15 +5,13 @@ mod document;
 mod sweep_answer;
 mod words;
 
-pub use phea_engineering::linearize::*;
-
 pub use answer::files;
 pub(crate) use answer::{LinearizeAnswer, PassivityAnswer};
 pub(crate) use answer::{body, body_swept, passivity as passivity_body};
 pub(crate) use document::output;
 pub(crate) use document::{
     document, impedance_at_joint, linkage_table, model_words, models, passivity_sentence,
-    required_impedance_sentence, required_impedance_table, root_list,
+    required_impedance_sentence, required_impedance_table, roots,
 };
 pub(crate) use sweep_answer::sweep_document;
 pub(crate) use sweep_answer::{sweep_figure, sweep_files};

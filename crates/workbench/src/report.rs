@@ -36,21 +36,24 @@ pub use campaign::runs_within_budget;
 pub use opening::{DecidedAnswer, DecisionAnswer};
 
 use phea_dynamics::watch::{Watch, within};
+use phea_engineering::alternatives::Alternatives;
+use phea_engineering::audit::{ProjectAudit, TimeFinding};
+use phea_engineering::linear_loop::{LinearLoop, LoopStability, StepView, linear_loop_of};
+use phea_engineering::linearize::{Linearization, linearize, stiffness_at_settings};
+use phea_engineering::rig::Rig;
+use phea_engineering::setup::Setup;
+use phea_engineering::sizing::{Question, Sizing, SizingError, SizingProblem, size};
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
-use crate::alternatives::Alternatives;
 use crate::answer::{OutputFile, picture_files, significant};
-use crate::audit::{CERTIFICATE_FILE, ProjectAudit, TimeFinding, certificate_of};
+use crate::audit::{CERTIFICATE_FILE, certificate_of};
 use crate::derived::{self, derive};
 use crate::error::CommandError;
 use crate::figure::Figure;
-use crate::linear_loop::{LinearLoop, LoopStability, StepView, linear_loop_of};
-use crate::linearize::{Linearization, linearize, stiffness_at_settings, stiffness_words};
+use crate::linearize::stiffness_words;
 use crate::project::{DeclaredActuator, InputSignal, Loaded, Project, WrittenUnits};
 use crate::quantity::MotionKind;
-use crate::rig::Rig;
-use crate::setup::Setup;
-use crate::sizing::{Question, Sizing, SizingError, SizingProblem, hose_name, length_words, size};
+use crate::sizing::{hose_name, length_words};
 use crate::source::Source;
 use crate::verdict_words::verdict_words;
 
@@ -384,8 +387,9 @@ fn summary(
     } else if sizing.is_some() {
         facts.push(("Hose", "none of the catalogue fits".to_string()));
     }
-    let port =
-        |view: &crate::linearize::PortView| if view.passivity.passive { "passive" } else { "not passive" };
+    let port = |view: &phea_engineering::linearize::PortView| {
+        if view.passivity.passive { "passive" } else { "not passive" }
+    };
     let mut passive = format!("open loop {}", port(&linearization.open_loop));
     if let Some(view) = &linearization.closed_loop {
         passive.push_str(&format!(", closed loop {}", port(view)));

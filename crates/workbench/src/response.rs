@@ -7,13 +7,13 @@ mod figures;
 mod files;
 mod levels;
 
-pub use phea_engineering::response::*;
-
 pub(crate) use answer::IdentifiedResponsesAnswer;
 pub use answer::json;
 pub(crate) use document::document;
 pub(crate) use figures::pictures;
 pub use files::files;
+use phea_engineering::response::{ResponseMember, Unusable};
+use phea_engineering::rig::Rig;
 
 use num_complex::Complex64;
 use phea_dynamics::portable::argument;
@@ -21,7 +21,6 @@ use phea_dynamics::spectrum::Distortion;
 
 use crate::answer::significant;
 use crate::quantity::DisplayUnit;
-use crate::rig::Rig;
 
 /// Points, the lowest frequencies first, that show the sign of a response.
 const LOWEST: usize = 3;

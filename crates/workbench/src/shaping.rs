@@ -5,8 +5,6 @@ mod document;
 mod refused;
 mod words;
 
-pub use phea_engineering::shaping::*;
-
 pub use answer::{SHAPED_PROJECT, files};
 pub(crate) use answer::{ShapeAnswer, body};
 pub(crate) use document::document;

@@ -4,8 +4,6 @@ mod answer;
 mod document;
 mod words;
 
-pub use phea_engineering::sizing::*;
-
 pub use answer::files;
 pub(crate) use answer::{SizeAnswer, body};
 pub(crate) use document::document;

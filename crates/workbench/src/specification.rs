@@ -5,9 +5,7 @@ mod late;
 mod names;
 mod requirement;
 
-pub use phea_engineering::specification::*;
-
 pub(crate) use answer::{CheckedRequirementAnswer, RequiredStepAnswer, document, requirement_answer};
 pub(crate) use late::late;
-pub(crate) use names::{name_words, numbered, stated, subject_words};
+pub(crate) use names::{name_words, numbered, numbered_cell, stated, subject_words};
 pub use requirement::requirement_sentence;

@@ -4,8 +4,6 @@ mod answer;
 mod document;
 mod words;
 
-pub use phea_engineering::trial::*;
-
 pub(crate) use answer::{TrialAnswer, body};
 pub(crate) use document::{agreement_detail, document, words};
 pub(crate) use words::{

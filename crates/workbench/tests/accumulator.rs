@@ -5,9 +5,9 @@
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
 use phea_workbench::command::Request;
-use phea_workbench::linearize::stiffness_over_force;
+use phea_workbench::engineering::linearize::stiffness_over_force;
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project::Severity;
-use phea_workbench::setup::Setup;
 
 use crate::run_command::{
     HOSE, answer, check, derived, json, near, number, project_of, size_request, try_answer, within,
@@ -132,7 +132,7 @@ fn families_have_the_stiffness_of_their_gas() {
         &["line.accumulator.polytropic_exponent=1", "line.accumulator.precharge_pressure=16.5 bar"],
     );
     let stiff = check(GAS, &["line.accumulator.precharge_pressure=13.5 bar"]);
-    let text = answer(GAS, &[], &[], &Request::Check).text;
+    let text = answer(GAS, &[], &[], &Request::Check).text();
     for one in [&soft, &stiff] {
         let shown = format!("{:.3}e6", derived(one, "linear.hydraulic_stiffness") / 1e6);
         assert!(text.contains(&shown), "{shown} is not in {text}");
@@ -144,7 +144,7 @@ fn families_have_the_stiffness_of_their_gas() {
 #[test]
 fn a_run_reports_where_the_gas_is_shut_off() {
     let scenario = "scenario=[{ name = \"push\", duration = \"2 s\", reference = [{ at = \"0.2 s\", force = \"7 kN\" }, { at = \"1 s\", force = \"0 N\" }] }]";
-    let run = |settings: &[&str]| answer(GAS, settings, &[], &Request::Simulate(Default::default())).text;
+    let run = |settings: &[&str]| answer(GAS, settings, &[], &Request::Simulate(Default::default())).text();
     let output = run(&[scenario]);
     assert!(output.contains("the gas at chamber B is shut off"), "{output}");
     assert!(output.contains("the gas at chamber B is in use again"), "{output}");

@@ -119,7 +119,7 @@ fn a_verdict_reports_that_settings_are_frozen() {
     let valve = warned(&[&at(VALVE, 0.5)]);
     assert!(valve.contains("has no drop at rest"), "{valve}");
     assert!(!warned(&[&accumulator("6 mL", "15 bar", "")]).contains("adjustment"));
-    let models = answer(&text, &[&at(VALVE, 0.5)], &[], &Request::Linearize { sweep: None }).text;
+    let models = answer(&text, &[&at(VALVE, 0.5)], &[], &Request::Linearize { sweep: None }).text();
     assert!(models.contains("the valve of line.accumulator.adjustment is counted in the plant"), "{models}");
 }
 
@@ -205,7 +205,7 @@ fn the_loss_of_switching_is_reported() {
         &[],
         &Request::Simulate(Default::default()),
     )
-    .text;
+    .text();
     assert!(text.contains("the valves between chambers and gas throttle"), "{text}");
 }
 

@@ -9,8 +9,8 @@ use crate::run_command::{
 };
 use num_complex::Complex64;
 use phea_workbench::command::Request;
-use phea_workbench::linearize::{Linearization, linearize as linearized};
-use phea_workbench::setup::Setup;
+use phea_workbench::engineering::linearize::{Linearization, linearize as linearized};
+use phea_workbench::engineering::setup::Setup;
 use serde_json::Value;
 
 /// A differential cylinder without any stated value of its linear model.
@@ -135,11 +135,11 @@ fn the_component_that_holds_the_load_is_named() {
     let load = specimen("15 kN/mm");
     let request = Request::Linearize { sweep: None };
     let [with, without] = [&[&load[..]][..], &[]].map(|settings| answer(RIG, settings, &[], &request));
-    assert!(with.text.contains("fifth order, load held still") && with.json.contains("load_held_still_in"));
-    assert!(with.text.contains("first order, the load's stiffness in series"));
-    assert!(with.text.contains("of the actuator, whatever its load"));
-    assert!(!without.text.contains("held still") && !without.json.contains("load_held_still_in"));
-    let groups = |settings: &[&str]| answer(RIG, settings, &[], &Request::Check).text;
+    assert!(with.text().contains("fifth order, load held still") && with.json.contains("load_held_still_in"));
+    assert!(with.text().contains("first order, the load's stiffness in series"));
+    assert!(with.text().contains("of the actuator, whatever its load"));
+    assert!(!without.text().contains("held still") && !without.json.contains("load_held_still_in"));
+    let groups = |settings: &[&str]| answer(RIG, settings, &[], &Request::Check).text();
     assert!(groups(&[&load]).contains("Dynamics with the load held still"));
     assert!(!groups(&[]).contains("held still"));
 }
@@ -239,7 +239,7 @@ fn a_free_mass_is_held_still_and_named() {
     let settings = [load, "operating_point={ position = \"150 mm\" }"];
     let request = crate::run_command::size_request(None, Some("1.5 m"));
     let sized = answer(HOSE, &[load], &[], &request);
-    assert!(sized.text.contains("the load held still, as no stiffness holds it"), "{}", sized.text);
+    assert!(sized.text().contains("the load held still, as no stiffness holds it"), "{}", sized.text());
     let output = answer(RIG, &settings, &[], &Request::Check);
-    assert!(output.text.contains("Dynamics with the load held still, as no stiffness holds it"));
+    assert!(output.text().contains("Dynamics with the load held still, as no stiffness holds it"));
 }

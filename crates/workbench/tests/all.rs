@@ -71,6 +71,7 @@ mod port_valves;
 mod predicted_step;
 mod prefilter_gain;
 mod pressure_feedback;
+mod printers;
 mod proof;
 mod proof_region;
 mod recorded_signs;

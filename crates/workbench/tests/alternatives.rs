@@ -8,9 +8,11 @@ use std::sync::OnceLock;
 
 use crate::json_contract::unexplained;
 use crate::run_command::{HOSE, answer, load, retracted_length, source};
-use phea_workbench::alternatives::{ColumnKey, LengthUnknown, prepared as prepared_alternatives};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{AlternativesRequest, Request, answer_into};
+use phea_workbench::engineering::alternatives::{
+    ColumnKey, LengthUnknown, prepared as prepared_alternatives,
+};
 use phea_workbench::quantity::MotionKind;
 use serde_json::Value;
 
@@ -18,7 +20,7 @@ fn alternatives_request(files: bool) -> Request {
     Request::Alternatives(AlternativesRequest { files, ..AlternativesRequest::default() })
 }
 
-pub(super) const LOOP: &str = r#"
+pub(crate) const LOOP: &str = r#"
 schema = 1
 title = "A lag"
 [plant]
@@ -83,12 +85,12 @@ name = "pipe"
     )
 }
 
-pub(super) fn json_of(answer: &Answer) -> Value {
+pub(crate) fn json_of(answer: &Answer) -> Value {
     parsed(&answer.json)
 }
 
 /// The answer for the rig, computed once for all tests.
-pub(super) fn judged() -> &'static (Answer, Value) {
+pub(crate) fn judged() -> &'static (Answer, Value) {
     static JUDGED: OnceLock<(Answer, Value)> = OnceLock::new();
     JUDGED.get_or_init(|| {
         let found = answer(&rig(), &[], &[], &alternatives_request(true));
@@ -131,7 +133,7 @@ fn lengths_and_losses_are_those_of_the_rig() {
     assert!((columns(1)["actuator_length_m"].as_f64().unwrap() - 0.8).abs() < 1e-12);
     assert!(columns(0)["actuator_length_m"].is_null() && columns(0)["gas_volume_m3"].is_null());
     assert_eq!(columns(0)["actuator_length_m_reason"], "not stated: cylinder.dead_length");
-    assert!(judged().0.text.contains("not stated"));
+    assert!(judged().0.text().contains("not stated"));
     for index in 0..2 {
         let power = columns(index)["power_at_rest_w"].as_f64().unwrap();
         let energy = columns(index)["scenarios"][1]["energy_from_supply_j"].as_f64().unwrap();
@@ -205,7 +207,8 @@ fn a_load_case_equals_every_alternative_with_set() {
     assert!(rows.starts_with("load_case,name,feasible,") && rows.contains("\n\"slow\",\"late\",true,"));
     assert!(file("late, slow.toml").contains("s + 0.5") && file("late.toml").contains("s + 1"));
     assert!(
-        found.text.contains("declared load") && found.text.contains("slow: all satisfy every specification")
+        found.text().contains("declared load")
+            && found.text().contains("slow: all satisfy every specification")
     );
 }
 
@@ -217,10 +220,11 @@ fn impedances_are_those_of_the_written_project() {
     for (index, name) in ["as declared", "pipe"].into_iter().enumerate() {
         let file = found.files.iter().find(|file| file.name == format!("{name}.toml")).unwrap();
         let loaded = load(std::str::from_utf8(&file.bytes).unwrap(), &[], &[]);
-        let setup = phea_workbench::setup::Setup::new(&loaded.project).unwrap();
+        let setup = phea_workbench::engineering::setup::Setup::new(&loaded.project).unwrap();
         let rig = setup.rig().unwrap();
         let models =
-            phea_workbench::linearize::linearize(rig, setup.controller.as_ref(), &setup.sensor).unwrap();
+            phea_workbench::engineering::linearize::linearize(rig, setup.controller.as_ref(), &setup.sensor)
+                .unwrap();
         let columns = json["alternatives"][index]["columns"]["impedance"].as_array().unwrap();
         assert_eq!(columns.len(), 3);
         for at in columns {
@@ -270,7 +274,7 @@ fn every_column_has_a_sense() {
 /// The tables for people have the names of the columns, not their keys.
 #[test]
 fn every_column_has_a_name() {
-    let text = &judged().0.text;
+    let text = &judged().0.text();
     let keys = ColumnKey::ALL.iter().map(|key| key.quantity().text(MotionKind::Linear));
     let printed: Vec<_> = keys.filter(|key| key.contains('_') && text.contains(&**key)).collect();
     assert!(text.contains("oil in both lines") && printed.is_empty(), "{printed:?}");
@@ -294,7 +298,7 @@ fn ranges_follow_the_rig_if_requested() {
     assert!((greatest / 1.24e8 - 1.0).abs() < 5e-3, "{greatest}");
     assert!(following[1].outside(&following).is_none());
     let warning = "pipe: the ranges of [uncertainty] do not contain its rig";
-    let check = |recentre: &str| answer(&text(recentre), &[], &[], &Request::Check).text;
+    let check = |recentre: &str| answer(&text(recentre), &[], &[], &Request::Check).text();
     assert!(check("recentre = false").contains(warning) && !check("recentre = true").contains(warning));
 }
 
@@ -388,7 +392,7 @@ fn a_stop_returns_the_finished_alternatives() {
     let json = json_of(&stopped);
     assert_eq!(json["alternatives"].as_array().unwrap().len(), 1);
     assert_eq!(json["not_reached"], serde_json::json!(["faster", "late"]));
-    assert!(!stopped.affirmative && stopped.text.contains("late: not reached"));
+    assert!(!stopped.affirmative && stopped.text().contains("late: not reached"));
 }
 
 /// The report judges the alternatives if requested, and otherwise states how to request it.
@@ -444,6 +448,6 @@ fn soak_the_book_agrees_with_the_comparison() {
     let found = answer(project, &[], &[], &alternatives_request(false));
     let rows = [rows_of_the_book(10), rows_of_the_book(8)].concat();
     assert_eq!(rows.len(), 39);
-    let missing: Vec<&String> = rows.iter().filter(|row| !is_in_line(row, &found.text)).collect();
-    assert!(missing.is_empty(), "{missing:#?}\n{}", found.text);
+    let missing: Vec<&String> = rows.iter().filter(|row| !is_in_line(row, &found.text())).collect();
+    assert!(missing.is_empty(), "{missing:#?}\n{}", found.text());
 }

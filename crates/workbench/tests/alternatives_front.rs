@@ -34,8 +34,8 @@ fn soak_the_book_agrees_with_the_front() {
     let rows: Vec<String> =
         rows_of_the_book(7).into_iter().filter(|row| !row.starts_with("alternative")).collect();
     assert_eq!(rows.len(), 16);
-    let missing: Vec<&String> = rows.iter().filter(|row| !is_in_line(row, &found.text)).collect();
-    assert!(missing.is_empty(), "{missing:#?}\n{}", found.text);
+    let missing: Vec<&String> = rows.iter().filter(|row| !is_in_line(row, &found.text())).collect();
+    assert!(missing.is_empty(), "{missing:#?}\n{}", found.text());
     let drawn = found.files.iter().find(|file| file.name == "front.svg").unwrap();
     assert!(drawn.bytes == FIGURE.as_bytes(), "the figure of the book is not the one that is drawn");
     let json = json_of(&found);
@@ -53,7 +53,7 @@ fn soak_the_book_agrees_with_the_front() {
     assert!(by_volume(2.5) > by_volume(1.5));
 }
 
-fn front(columns: &str, sweep: &str) -> Request {
+pub(crate) fn front(columns: &str, sweep: &str) -> Request {
     Request::Alternatives(AlternativesRequest {
         files: true,
         front: Some(columns.to_string()),
@@ -73,7 +73,7 @@ fn a_front_consists_of_the_undominated_rows() {
         both.map(|one| one.join().unwrap())
     });
     assert_eq!(found.json, again.json);
-    assert_eq!(found.text, again.text);
+    assert_eq!(found.text(), again.text());
     let json = json_of(&found);
     let points = json["front"]["points"].as_array().unwrap();
     assert_eq!(points.len(), 6);

@@ -29,7 +29,7 @@ pub(crate) fn validated(answer: &Value) -> Result<(), String> {
     let command = if answer["errors"].is_array() { &Value::Null } else { &answer["command"] };
     let described: Vec<&Value> = described.filter(|one| is_of(one, command)).collect();
     match described.as_slice() {
-        [] => Ok(()),
+        [] => Err("the command has no described answer".to_string()),
         [only] => conforms(only, answer, "answer"),
         several if several.iter().any(|one| conforms(one, answer, "answer").is_ok()) => Ok(()),
         several => Err(several
@@ -51,7 +51,7 @@ fn referenced(path: &str) -> &'static Value {
 }
 
 /// Compares a value with a schema; the fault of a value at `at`.
-fn conforms(schema: &Value, value: &Value, at: &str) -> Result<(), String> {
+pub(crate) fn conforms(schema: &Value, value: &Value, at: &str) -> Result<(), String> {
     for (keyword, rule) in schema.as_object().unwrap() {
         let is_satisfied = match keyword.as_str() {
             "description" | "title" | "properties" | "minItems" | "maxItems" => continue,
@@ -59,6 +59,7 @@ fn conforms(schema: &Value, value: &Value, at: &str) -> Result<(), String> {
                 conforms(referenced(rule.as_str().unwrap()), value, at)?;
                 continue;
             }
+            "type" if *rule == "object" && is_open(schema) => return Err(format!("{at} may have any key")),
             "type" => is_kind(rule.as_str().unwrap(), value),
             "const" => value == rule,
             "enum" => rule.as_array().unwrap().contains(value),
@@ -93,6 +94,11 @@ fn conforms(schema: &Value, value: &Value, at: &str) -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+/// True for an object whose keys are not described.
+fn is_open(schema: &Value) -> bool {
+    ["properties", "additionalProperties"].iter().all(|keyword| schema.get(keyword).is_none())
 }
 
 fn is_kind(kind: &str, value: &Value) -> bool {

@@ -3,11 +3,11 @@
 
 use std::path::Path;
 
-use crate::answer_schema::{schema, validated};
+use crate::answer_schema::{conforms, schema, validated};
 use crate::run_command::{HOSE, json};
 use phea_workbench::command::{Request, answers_schema};
+use phea_workbench::engineering::simulate::Metric;
 use phea_workbench::quantity::MotionKind;
-use phea_workbench::simulate::Metric;
 use serde_json::{Value, json as value};
 
 fn verified() -> Value {
@@ -26,6 +26,19 @@ fn refused(change: impl Fn(&mut Value), expected: &str) {
 #[test]
 fn a_key_that_is_not_described_is_refused() {
     refused(|answer| answer["stability"]["made_up"] = value!(1), "answer.stability.made_up is not described");
+}
+
+#[test]
+fn an_answer_of_an_unknown_command_is_refused() {
+    refused(|answer| answer["command"] = value!("guess"), "the command has no described answer");
+}
+
+#[test]
+fn an_object_of_any_keys_is_refused() {
+    assert_eq!(
+        conforms(&value!({ "type": "object" }), &value!({}), "it"),
+        Err("it may have any key".to_string())
+    );
 }
 
 #[test]

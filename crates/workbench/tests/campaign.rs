@@ -12,13 +12,13 @@ use std::path::Path;
 
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
-use phea_workbench::campaign::{
+use phea_workbench::command::{self, CampaignRequest, CampaignRuns, CommandError, Request};
+use phea_workbench::engineering::campaign::{
     CampaignError, Effort, FamilyBox, Plan, RequestedRuns, Row, RowOutcome, RowStore, Shard, Summary,
 };
-use phea_workbench::command::{self, CampaignRequest, CampaignRuns, CommandError, Request};
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{Metric, RunStatus, simulate_project};
 use phea_workbench::project::{self, Loaded};
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{Metric, RunStatus, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -125,7 +125,7 @@ fn an_open_loop_is_drawn_as_a_closed_one_is() {
     for run in 0..2 {
         let request = CampaignRequest { seed: 1, runs: CampaignRuns::One(run), files: false };
         let answer = command::answer(&source, &loaded, &[], &Request::Campaign(request)).unwrap();
-        assert!(answer.text.contains("open loop"), "{}", answer.text);
+        assert!(answer.text().contains("open loop"), "{}", answer.text());
         let project = plan.settings(&plan.draw(run));
         let settings: Vec<String> = SHORT
             .iter()
@@ -287,7 +287,7 @@ fn lumps_are_those_of_the_drawn_linear_model() {
     for row in plan.rows(0..3, lanes(1)).unwrap() {
         let drawn = plan.settings(&plan.draw(row.run));
         let all: Vec<&str> = SHORT.iter().copied().chain(drawn.iter().map(String::as_str)).collect();
-        let linear = phea_workbench::setup::Setup::rig_of(&load(&all).project).unwrap().derived;
+        let linear = phea_workbench::engineering::setup::Setup::rig_of(&load(&all).project).unwrap().derived;
         let expected = [linear.hydraulic_stiffness, linear.flow_gain, linear.flow_pressure_coefficient];
         assert_eq!(row.lumps, Some(expected));
     }
@@ -404,7 +404,7 @@ fn runs_that_do_not_settle_are_counted_next_to_the_quantiles() {
     assert!(missing.iter().any(|missing| *missing > 1), "{missing:?}");
     for missing in missing.iter().filter(|missing| **missing > 1) {
         let words = format!("settling to 1 % (s); {missing} of 20 do not settle within their window");
-        assert!(answer.text.contains(&words), "{}", answer.text);
+        assert!(answer.text().contains(&words), "{}", answer.text());
     }
 }
 
@@ -431,7 +431,8 @@ fn the_worst_of_runs_that_do_not_settle_overshoots_most() {
         project::read(&source, "required.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"));
     let plan = Plan::new(&source, &loaded, 1).unwrap();
     let requested = RequestedRuns { runs: 20, shard: Shard::default(), effort: lanes(1) };
-    let rows = phea_workbench::campaign::campaign(&plan, requested, None, &mut |_| true).unwrap();
+    let rows =
+        phea_workbench::engineering::campaign::campaign(&plan, requested, None, &mut |_| true).unwrap();
     let summary = Summary::of(&plan, &rows);
     let (run, reached) = summary.requirements[0].judged.unwrap().worst.unwrap();
     assert_eq!(reached.settling_time_s, f64::INFINITY);

@@ -3,11 +3,11 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
 use crate::answer_schema::parsed;
-use phea_workbench::campaign::{Effort, Plan};
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, Request};
+use phea_workbench::engineering::campaign::{Effort, Plan};
+use phea_workbench::engineering::simulate::Metric;
 use phea_workbench::project;
 use phea_workbench::quantity::MotionKind;
-use phea_workbench::simulate::Metric;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 

@@ -16,7 +16,7 @@ use phea_engineering::linear_step::linear_command_step;
 use phea_engineering::robust::robust_problem;
 use phea_qft::closed_loop::Compensation;
 use phea_workbench::command::Request;
-use phea_workbench::setup::Setup;
+use phea_workbench::engineering::setup::Setup;
 
 use crate::run_command::{HOSE, json, load, number, source, within};
 

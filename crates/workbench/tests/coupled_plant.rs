@@ -9,17 +9,18 @@ use phea_dynamics::portable::exp;
 use phea_qft::specification::ClosedLoop;
 use phea_qft::stability::{StabilityStatus, member_stability};
 use phea_qft::verification::Verdict;
-use phea_workbench::audit::{self, ProjectAudit, audit_project};
-use phea_workbench::caveat::{Caveat, LoopWithRig, OutsideFamily, UncountedEffect};
+use phea_workbench::audit;
 use phea_workbench::command::Request;
-use phea_workbench::linear_loop::linear_loop;
-use phea_workbench::linearize::{Linearization, linearize};
+use phea_workbench::engineering::audit::{ProjectAudit, audit_project};
+use phea_workbench::engineering::caveat::{Caveat, LoopWithRig, OutsideFamily, UncountedEffect};
+use phea_workbench::engineering::linear_loop::linear_loop;
+use phea_workbench::engineering::linearize::{Linearization, linearize};
+use phea_workbench::engineering::robust::robust_problem;
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::simulate_project;
+use phea_workbench::engineering::specification::SpecificationName;
 use phea_workbench::project::{self, Project};
-use phea_workbench::robust::robust_problem;
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::simulate_project;
 use phea_workbench::source::Memory;
-use phea_workbench::specification::SpecificationName;
 use serde_json::Value;
 
 use super::run_command::{answer, project_of};
@@ -226,7 +227,7 @@ fn a_late_feed_forward_is_in_the_loop() {
             &Request::Verify { proof: false, on_machine: true },
         );
         let object: Value = parsed(&output.json);
-        assert_eq!(object["stable"], Value::from(stable), "{gain} {delay_ms}: {}", output.text);
+        assert_eq!(object["stable"], Value::from(stable), "{gain} {delay_ms}: {}", output.text());
         let run = &object["machine"]["runs"][0];
         let overshoot = |of: &str| run[of]["overshoot_percent"].as_f64();
         let machine = overshoot("machine").unwrap();
@@ -236,7 +237,7 @@ fn a_late_feed_forward_is_in_the_loop() {
             assert_eq!(run["agrees"], Value::from(true), "{gain} {delay_ms}: {run}");
         }
         let words = "every plant by its response with the load's velocity fed forward late";
-        assert_eq!(output.text.contains(words), gain != 0, "{}", output.text);
+        assert_eq!(output.text().contains(words), gain != 0, "{}", output.text());
     }
 }
 
@@ -255,7 +256,7 @@ fn a_sampled_feed_forward_is_in_the_loop() {
         let settings = [&SPRUNG[..], &[viscous, &timing[0], &timing[1], &fed, TENTH_ONLY]].concat();
         let output = answer(&text, &settings, &[], &Request::Verify { proof: false, on_machine: true });
         let object: Value = parsed(&output.json);
-        assert_eq!(object["stable"], Value::from(stable), "{gain} {sample_ms} {delay_ms}: {}", output.text);
+        assert_eq!(object["stable"], Value::from(stable), "{gain} {sample_ms} {delay_ms}: {}", output.text());
         let run = &object["machine"]["runs"][0];
         let overshoot = |of: &str| run[of]["overshoot_percent"].as_f64();
         let machine = overshoot("machine").unwrap();
@@ -264,7 +265,7 @@ fn a_sampled_feed_forward_is_in_the_loop() {
             assert!((machine - overshoot("linear").unwrap()).abs() < 5.0, "{gain} {delay_ms}: {run}");
             assert_eq!(run["agrees"], Value::from(true), "{gain} {delay_ms}: {run}");
         }
-        assert!(object["warnings"].as_array().unwrap().is_empty(), "{}", output.text);
+        assert!(object["warnings"].as_array().unwrap().is_empty(), "{}", output.text());
     }
 }
 

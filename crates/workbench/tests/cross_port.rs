@@ -152,7 +152,7 @@ fn the_machine_agrees_with_the_linear_loop() {
 #[test]
 fn sizing_counts_a_leak_and_refuses_a_capacity() {
     let request = size_request(None, None);
-    let leak = |settings: &[&str]| answer(HOSE, settings, &[], &request).text;
+    let leak = |settings: &[&str]| answer(HOSE, settings, &[], &request).text();
     let valve = leak(&["cross_port={ kind = \"laminar\", conductance = 2e-12 }"]);
     assert!(valve.contains("with 2.000e-12 m3/(s.Pa) from chamber to chamber"), "{valve}");
     assert_eq!(
@@ -169,7 +169,7 @@ fn sizing_counts_a_leak_and_refuses_a_capacity() {
 /// them.
 #[test]
 fn models_without_feedback_are_reported() {
-    let text = |settings: &[&str]| answer(PIPE, settings, &[], &Request::Linearize { sweep: None }).text;
+    let text = |settings: &[&str]| answer(PIPE, settings, &[], &Request::Linearize { sweep: None }).text();
     let feedback =
         "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1e-10, capacity = 1e-12 }";
     assert!(text(&[feedback]).contains("is counted in the plant and the impedance at the load"));

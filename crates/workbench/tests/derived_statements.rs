@@ -59,7 +59,7 @@ fn a_stated_value_outside_its_own_bounds_contradicts() {
     let outside = row(&["linear.hydraulic_stiffness=2.23e6"], "linear.hydraulic_stiffness");
     assert_eq!(outside["declared"]["contradicts"], true);
     assert_eq!(row(&[], "linear.hydraulic_stiffness")["declared"]["contradicts"], false);
-    let text = answer(HOSE, &["linear.hydraulic_stiffness=2.23e6"], &[], &Request::Check).text;
+    let text = answer(HOSE, &["linear.hydraulic_stiffness=2.23e6"], &[], &Request::Check).text();
     assert!(text.contains("the stated value lies outside these bounds"), "{text}");
 }
 
@@ -75,7 +75,7 @@ fn stated_sizes_are_compared_with_the_derived_values() {
 
 #[test]
 fn contradictions_come_first_and_agreements_last() {
-    let text = answer(HOSE, &[], &[], &Request::Check).text;
+    let text = answer(HOSE, &[], &[], &Request::Check).text();
     let stated: Vec<&str> = text.lines().filter(|line| line.contains("; derived ")).collect();
     let rank = |line: &&str| match () {
         () if line.contains("contradict each other") || line.contains("outside these bounds") => 0,

@@ -9,10 +9,11 @@ use phea_qft::design::{
 };
 use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_workbench::command::{CommandError, Request};
-use phea_workbench::design::{Explanation, design_options, design_problem, explanation_sentence};
+use phea_workbench::design::explanation_sentence;
+use phea_workbench::engineering::design::{Explanation, design_options, design_problem};
+use phea_workbench::engineering::robust::robust_problem;
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project;
-use phea_workbench::robust::robust_problem;
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 const TIMED: &str = include_str!("../../project/tests/valid/design.toml");
@@ -177,7 +178,8 @@ fn allowed_errors_of_the_converters_are_specifications() {
             assert!(design["rounding"]["effects"][2]["rms"].as_f64().unwrap() < 0.055);
         }
     }
-    let text = answer(CONVERTED, &[command], &[], &Request::Verify { proof: false, on_machine: false }).text;
+    let text =
+        answer(CONVERTED, &[command], &[], &Request::Verify { proof: false, on_machine: false }).text();
     assert!(text.contains("\n  command error of the rounded measurement is"), "{text}");
 }
 

@@ -8,8 +8,9 @@ use phea_qft::design::{Constraint, ConstraintPlace, Finding, SharedLimit};
 use phea_qft::specification::ClosedLoop;
 use phea_qft::verification::PlantPoint;
 use phea_workbench::command::Request;
-use phea_workbench::design::{ExplainedFact, ExplainedLimit, Explanation, explanation_sentence};
-use phea_workbench::specification::{NamedSpecification, SpecificationName};
+use phea_workbench::design::explanation_sentence;
+use phea_workbench::engineering::design::{ExplainedFact, ExplainedLimit, Explanation};
+use phea_workbench::engineering::specification::{NamedSpecification, SpecificationName};
 
 /// The sentence of a finding on limits of the sensitivity, numbered from 3.
 fn sentence(finding: Finding) -> String {
@@ -85,7 +86,7 @@ fn a_controller_that_is_not_stable_is_not_to_be_used() {
     let of = |text: &str| {
         let output = answer(text, &[], &[], &design);
         let file = output.files.iter().find(|file| file.name == "designed.toml").unwrap();
-        (output.text.clone(), String::from_utf8(file.bytes.clone()).unwrap())
+        (output.text().clone(), String::from_utf8(file.bytes.clone()).unwrap())
     };
     let (words, file) = of(UNSTABLE);
     let why = "it does not make every plant of the family stable";

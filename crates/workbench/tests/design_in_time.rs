@@ -3,9 +3,11 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
 use phea_qft::design::{DesignStatus, NamedStructure, StructureEnding};
-use phea_workbench::design::{ProjectDesign, ReachedStructure};
-use phea_workbench::simulate::{ReachedStep, RunStatus};
-use phea_workbench::trial::{self, Agreement, HeldRequirement, Leg, StepSize, Trial, TrialFinding, TrialRun};
+use phea_workbench::engineering::design::{ProjectDesign, ReachedStructure};
+use phea_workbench::engineering::simulate::{ReachedStep, RunStatus};
+use phea_workbench::engineering::trial::{
+    Agreement, HeldRequirement, Leg, StepSize, Trial, TrialFinding, TrialRun,
+};
 
 use super::design_printing::{PROJECT, object, view};
 
@@ -68,7 +70,7 @@ fn run(view: &ProjectDesign, satisfied: &[bool]) -> TrialRun {
         is_satisfied: *is_satisfied,
     };
     TrialRun {
-        machine_driven: trial::TrialMachine::Declared,
+        machine_driven: phea_workbench::engineering::trial::TrialMachine::Declared,
         size: StepSize::Required,
         plant: None,
         status: RunStatus::Completed,

@@ -16,19 +16,18 @@ use phea_qft::design::{
 };
 use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_qft::verification::{AuditProblem, PlantPoint, SpecificationMargin, TrackingJudgement, Verdict};
-use phea_workbench::audit::audit_project;
 use phea_workbench::command::{Request, answer};
-use phea_workbench::design::{
+use phea_workbench::design::{files, output, printed, stage_files};
+use phea_workbench::engineering::audit::audit_project;
+use phea_workbench::engineering::design::{
     AuditedController, DESIGNED_PROJECT, DesignPart, LedBy, ProjectDesign, design_options, design_problem,
-    files, output, printed, stage_files,
 };
+use phea_workbench::engineering::robust::{DEFAULT_TOLERANCE_DB, robust_problem};
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project::{
     self, DeclaredQuantization, FeedForward, Loaded, Prefilter, RationalFunction, Transfer,
 };
 use phea_workbench::quantity::MotionKind;
-use phea_workbench::robust::DEFAULT_TOLERANCE_DB;
-use phea_workbench::robust::robust_problem;
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 /// Plant k/(s (s + 10)) with two specifications and a law that is too slow for the second.

@@ -9,7 +9,7 @@ use crate::answer_schema::parsed;
 use crate::run_command::{PIPE, UNLIMITED, answer, built_hose, designed_hose, json, number, within};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::Request;
-use phea_workbench::design::DESIGNED_PROJECT;
+use phea_workbench::engineering::design::DESIGNED_PROJECT;
 use serde_json::Value;
 
 const EDGE_PLANTS: &str = include_str!("../../../examples/qft/edge_plants.toml");

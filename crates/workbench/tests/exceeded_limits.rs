@@ -14,7 +14,7 @@ const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 fn exceeded(text: &str, settings: &[&str]) -> (Vec<Value>, String) {
     let output = answer(text, settings, &[], &Request::Simulate(Default::default()));
     let object: Value = parsed(&output.json);
-    (object["scenarios"][0]["exceeded"].as_array().unwrap().clone(), output.text)
+    (object["scenarios"][0]["exceeded"].as_array().unwrap().clone(), output.text())
 }
 
 #[test]

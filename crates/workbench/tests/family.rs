@@ -10,9 +10,9 @@
 use num_complex::Complex64;
 use phea_dynamics::portable;
 use phea_qft::family::{Extent, Family, UncertainFamily};
-use phea_workbench::family::{ProjectFamilyError, family};
+use phea_workbench::engineering::family::{ProjectFamilyError, family};
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project::{self, Project};
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 const SERVO: &str = "schema = 1\n[plant]\nnumerator = \"k*a/2\"\ndenominator = \"(s + a)^2 - a*(s - b)\"\n\

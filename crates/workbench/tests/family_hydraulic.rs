@@ -5,9 +5,9 @@
 use phea_dynamics::uncertain_plant::{RationalCoefficients, UncertainParameter, UncertainPlant};
 use phea_hydraulics::linear::{LinearParameters, linear_model_coefficients};
 use phea_qft::family::Family;
-use phea_workbench::family::{ProjectFamilyError, family};
+use phea_workbench::engineering::family::{ProjectFamilyError, family};
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project::{self, LINEAR_PARAMETERS, Project, Random, Uncertain};
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 fn loaded(text: &str) -> Project {

@@ -14,9 +14,9 @@ use num_complex::Complex64;
 use phea_dynamics::portable;
 use phea_qft::family::{Family, MeasuredFamily};
 use phea_workbench::command::{Request, answer};
-use phea_workbench::family::{ProjectFamilyError, family};
+use phea_workbench::engineering::family::{ProjectFamilyError, family};
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project;
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 const PROJECT: &str = "schema = 1\n[family]\nmeasured = [\"a.csv\"]\n";
@@ -234,7 +234,7 @@ fn check_reads_what_was_measured() {
         let source = Memory::default().with("rigs/p.toml", PROJECT).with("rigs/a.csv", csv);
         let loaded = project::read(&source, "rigs/p.toml", &[], &[]).unwrap();
         answer(&source, &loaded, &[], &Request::Check)
-            .map(|answer| answer.text)
+            .map(|answer| answer.text())
             .map_err(|error| error.to_string())
     };
     assert!(checked("frequency_hz,real,imaginary\n1,1,0\n").unwrap().contains("measured"));
@@ -296,14 +296,14 @@ fn discs_and_tolerance_decide_the_verdict() {
     };
     let json = |answer: &phea_workbench::answer::Answer| -> serde_json::Value { parsed(&answer.json) };
     let met = verified("", &csv(0.05), "");
-    assert_eq!(json(&met)["verdict"], "met", "{}", met.text);
+    assert_eq!(json(&met)["verdict"], "met", "{}", met.text());
     let open = verified("", &csv(0.5), "");
-    assert_eq!(json(&open)["verdict"], "not_proven", "{}", open.text);
-    assert!(open.text.contains("leaves it open"), "{}", open.text);
+    assert_eq!(json(&open)["verdict"], "not_proven", "{}", open.text());
+    assert!(open.text().contains("leaves it open"), "{}", open.text());
     let worst = json(&open)["specifications"][0]["worst_margin_db"].as_f64().unwrap();
     let tolerance = format!("[verification]\ntolerance = \"{} dB\"\n", -worst + 0.01);
     let tolerated = verified("", &csv(0.5), &tolerance);
-    assert_eq!(json(&tolerated)["verdict"], "met", "{}", tolerated.text);
+    assert_eq!(json(&tolerated)["verdict"], "met", "{}", tolerated.text());
     let tolerance_db = json(&tolerated)["tolerance_db"].as_f64().unwrap();
     assert!((tolerance_db - (0.01 - worst)).abs() < 1e-9, "{tolerance_db}");
 }

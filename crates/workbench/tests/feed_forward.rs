@@ -7,9 +7,9 @@ use num_complex::Complex64;
 use phea_dynamics::controller::RateFilter;
 use phea_dynamics::linear::TransferFunction;
 use phea_hydraulics::linear::{LinearParameters, linear_model};
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{Cause, Metrics, RunStatus, simulate_project};
 use phea_workbench::project::{self, Project};
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{Cause, Metrics, RunStatus, simulate_project};
 use phea_workbench::source::Memory;
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");

@@ -5,9 +5,9 @@
 use std::fmt::Write as _;
 
 use phea_workbench::command::{IdentifyError, Request, SimulateRequest};
-use phea_workbench::friction::{KnownCylinder, friction_recordings};
+use phea_workbench::engineering::friction::{KnownCylinder, friction_recordings};
+use phea_workbench::engineering::response::{SampledPair, sampled_pairs};
 use phea_workbench::project::{self, Diagnostic, RecordedResponse};
-use phea_workbench::response::{SampledPair, sampled_pairs};
 use phea_workbench::source::Memory;
 
 use crate::run_command;
@@ -283,8 +283,8 @@ fn a_response_is_read_by_its_usual_headings() {
         let text = "schema = 1\n[family]\nmeasured = [\"a.csv\"]\n";
         let source = Memory::default().with("p.toml", text).with("a.csv", csv);
         let loaded = project::read(&source, "p.toml", &[], &[]).unwrap();
-        let setup = phea_workbench::setup::Setup::new(&loaded.project).unwrap();
-        phea_workbench::family::family(&setup, &source)
+        let setup = phea_workbench::engineering::setup::Setup::new(&loaded.project).unwrap();
+        phea_workbench::engineering::family::family(&setup, &source)
             .map(|family| format!("{family:?}"))
             .map_err(|error| error.to_string())
     };
@@ -305,7 +305,8 @@ fn a_response_is_read_by_its_usual_headings() {
 }
 
 fn places(text: &str, settings: &[&str], request: &Request) -> Vec<Diagnostic> {
-    let error = run_command::try_answer(text, settings, &[], request).map(|answer| answer.text).unwrap_err();
+    let error =
+        run_command::try_answer(text, settings, &[], request).map(|answer| answer.text()).unwrap_err();
     error.refusal().unwrap_or_else(|| panic!("without a place: {error}")).diagnostics.clone()
 }
 
@@ -317,7 +318,7 @@ fn errors_of_the_computed_rig_have_a_place() {
         "{}\n[[specification]]\nkind = \"tracking\"\nfrequencies = [1, 50]\nlower = {{ numerator = \"10\", denominator = \"s + 10\" }}\nupper = {{ numerator = \"2\", denominator = \"s + 2\" }}\n",
         run_command::HOSE
     );
-    let output = run_command::answer(&tracking, &[], &[], &Request::Check).text;
+    let output = run_command::answer(&tracking, &[], &[], &Request::Check).text();
     let line = format!("(line {})", line_of(&tracking, "lower = { numerator = \"10\""));
     assert!(output.contains("limits cross") && output.contains(&line), "{output}");
     let design = Request::Design { seed: None, stages: false, repair: true };

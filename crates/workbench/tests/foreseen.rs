@@ -20,7 +20,7 @@ fn check(text: &str, settings: &[&str], files: &[(&str, &str)]) -> Result<String
     let settings: Vec<String> = settings.iter().map(ToString::to_string).collect();
     let loaded =
         project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"));
-    command::answer(&source, &loaded, &[], &Request::Check).map(|answer| answer.text)
+    command::answer(&source, &loaded, &[], &Request::Check).map(|answer| answer.text())
 }
 
 /// The warnings on the scenario.

@@ -4,15 +4,16 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
 use phea_qft::verification::Audit;
-use phea_workbench::audit::audit_project;
-use phea_workbench::design::{
-    self, DesignLimitKind, PressureFeedbackDesign, ProjectDesign, design_limits, design_project,
-    pressure_feedback_document, pressure_feedback_object, with_free_pressure_feedback,
+use phea_workbench::design::{self, pressure_feedback_document, pressure_feedback_object};
+use phea_workbench::engineering::audit::audit_project;
+use phea_workbench::engineering::design::{
+    DesignLimitKind, PressureFeedbackDesign, ProjectDesign, design_limits, design_project,
+    with_free_pressure_feedback,
 };
+use phea_workbench::engineering::robust::robust_problem;
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project::{self, Loaded, Project};
 use phea_workbench::quantity::MotionKind;
-use phea_workbench::robust::robust_problem;
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 const RIG: &str = include_str!("../../../examples/structural/rig.toml");

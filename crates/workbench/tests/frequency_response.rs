@@ -9,13 +9,13 @@ use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, FrequencyOptions, Request, SimulateRequest};
-use phea_workbench::linearize::linearize;
-use phea_workbench::project::{self, Loaded};
-use phea_workbench::quantity::MotionKind;
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{
+use phea_workbench::engineering::linearize::linearize;
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{
     FrequencyRequest, MachineResponses, NoClosedLoop, ResponsePoint, frequency_response,
 };
+use phea_workbench::project::{self, Loaded};
+use phea_workbench::quantity::MotionKind;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -300,7 +300,7 @@ fn the_answer_has_its_keys_files_and_figures() {
         "frequency-response-closed-loop.svg",
     ];
     assert_eq!(names, expected);
-    assert!(answer.text.contains("minus linear plant"), "{}", answer.text);
+    assert!(answer.text().contains("minus linear plant"), "{}", answer.text());
 }
 
 #[test]

@@ -144,7 +144,7 @@ fn a_run_that_sticks_and_slips_is_no_constant_velocity() {
     assert!((one["velocity_m_per_s"].as_f64().unwrap_or(0.0) / 4e-3 - 1.0).abs() < 0.1, "{slips}");
     let ends = [0, 1].map(|end| one["velocity_range_m_per_s"][end].as_f64().unwrap());
     assert!(ends[0] < 1e-3 && ends[1] > 8e-3, "{slips}");
-    assert!(answer.text.contains("slips.csv"), "{}", answer.text);
-    assert!(answer.text.contains("velocities that are not constant"), "{}", answer.text);
+    assert!(answer.text().contains("slips.csv"), "{}", answer.text());
+    assert!(answer.text().contains("velocities that are not constant"), "{}", answer.text());
     assert!(found["recordings"][0]["varying_velocities"].as_array().is_some_and(Vec::is_empty), "{found}");
 }

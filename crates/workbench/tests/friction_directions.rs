@@ -56,7 +56,7 @@ fn a_family_without_the_viscous_friction_of_one_direction_is_reported() {
         let loaded = run_command::load(run_command::HOSE, &[&[anything], settings].concat(), &[]);
         let request = Request::Verify { proof: false, on_machine: false };
         let answer = command::answer(&Memory::default(), &loaded, &[], &request).unwrap();
-        (parsed(&answer.json)["verdict"].clone(), answer.text)
+        (parsed(&answer.json)["verdict"].clone(), answer.text())
     };
     let range = |minimum: f64, maximum: f64| {
         format!(

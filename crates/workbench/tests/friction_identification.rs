@@ -38,7 +38,7 @@ const NOISY: &str = "bench.friction={ velocities = 8 }";
 
 /// The friction of that bench from all four recordings, and from those without the shaken piston:
 /// each identified once for all tests.
-fn from_all() -> &'static Answer {
+pub(crate) fn from_all() -> &'static Answer {
     static ANSWER: LazyLock<Answer> = LazyLock::new(|| {
         identified(&recorded(&[NOISY]), &[SLIDING, PRESSED[0], PRESSED[1], SHAKEN]).unwrap()
     });
@@ -108,7 +108,7 @@ fn a_noisy_bench_identifies_all_but_the_damper() {
 #[test]
 fn a_noisy_bench_identifies_all_of_the_friction() {
     let answer = from_all();
-    assert!(answer.affirmative, "{}", answer.text);
+    assert!(answer.affirmative, "{}", answer.text());
     holds_the_truth(&parsed(&answer.json), &TRUTH);
 }
 
@@ -192,7 +192,7 @@ fn the_fragment_is_a_table_of_a_project() {
 #[track_caller]
 fn refused(table: &str, expected: &[&str]) {
     let source = Memory::default().with("run.csv", table);
-    let error = identified(&source, &["run.csv"]).map(|answer| answer.text).unwrap_err();
+    let error = identified(&source, &["run.csv"]).map(|answer| answer.text()).unwrap_err();
     let message = match &error {
         IdentifyError::Files(report) => report.to_string(),
         other => other.to_string(),

@@ -222,7 +222,7 @@ fn the_project_may_name_the_recordings() {
     let declares = load(HOSE, &["identify.friction=[\"sliding.csv\"]"], &[]);
     let request = FrictionRequest::default();
     let declared = friction_watched(&source, Some(&declares), &request, &mut |_| true).unwrap();
-    assert_eq!(declared.text, named.text);
+    assert_eq!(declared.text(), named.text());
     assert!(source.read(SHAKEN).is_ok());
     let error = friction_watched(&source, Some(&load(HOSE, &[], &[])), &request, &mut |_| true).unwrap_err();
     assert!(error.to_string().contains("declare `friction` in `[identify]`"), "{error}");

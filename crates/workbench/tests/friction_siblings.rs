@@ -205,7 +205,7 @@ fn directions_hold(friction: &TrueFriction, with_breakaways: bool, seed: u64) {
     assert!(found["direction_models_difference"].as_f64().unwrap() > 10.0);
     assert!(found["force_zero_n"].is_null());
     assert_eq!(found["misfits"].as_array().map(Vec::len), Some(0), "{}", found["misfits"]);
-    assert!(answer.text.contains("The friction differs by direction"), "{}", answer.text);
+    assert!(answer.text().contains("The friction differs by direction"), "{}", answer.text());
 }
 
 fn retracting(coulomb: f64, breaking: f64, viscous: f64) -> TrueFriction {

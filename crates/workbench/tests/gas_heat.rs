@@ -6,9 +6,9 @@
 use phea_dynamics::portable::pow;
 use phea_hydraulics::signal::Signal;
 use phea_workbench::command::{Request, SimulateRequest};
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{ScenarioRun, simulate_project};
 use phea_workbench::report::report;
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{ScenarioRun, simulate_project};
 
 use super::plant_of_verdicts::{assert_nominal_is_the_rig, responses, without_uncertainty};
 use super::run_command::{answer, check, derived, json, load, near, project_of, source, try_answer};
@@ -85,7 +85,7 @@ fn check_derives_both_compliances_and_both_precharges() {
     let fast = derived(&output, "line.b.accumulator.compliance") / 1.4;
     near(derived(&output, "line.b.accumulator.fast_compliance"), fast, 1e-12);
     near(derived(&output, "line.b.accumulator.isothermal_below"), 1.0 / (1.4 * 0.6), 1e-12);
-    let text = answer(HEAT, &[], &[], &Request::Check).text;
+    let text = answer(HEAT, &[], &[], &Request::Check).text();
     for part in ["line.b.accumulator.working_precharge", "precharge_temperature"] {
         assert!(text.contains(part), "{part}: {text}");
     }
@@ -125,9 +125,9 @@ fn a_precharge_that_is_too_high_when_warm_is_refused() {
 #[test]
 fn models_without_it_are_reported() {
     let text = with_gas("thermal_time_constant = \"2 s\"");
-    let models = answer(&text, &[], &[], &Request::Linearize { sweep: None }).text;
+    let models = answer(&text, &[], &[], &Request::Linearize { sweep: None }).text();
     assert!(models.contains("line.accumulator.thermal_time_constant is counted in the plant"), "{models}");
-    let both = answer(&text, RIGS[3], &[], &Request::Linearize { sweep: None }).text;
+    let both = answer(&text, RIGS[3], &[], &Request::Linearize { sweep: None }).text();
     assert!(
         both.contains("the neck of line.accumulator and its thermal_time_constant are counted"),
         "{both}"
@@ -153,7 +153,7 @@ fn a_run_reports_where_the_limit_of_the_manufacturer_is_exceeded() {
     let scenario = "scenario=[{ name = \"pressed\", duration = \"0.6 s\", load_motion = { kind = \"smooth_step\", start = \"0.1 s\", duration = \"20 ms\", distance = \"-20 mm\" } }]";
     let run = |ratio: &str| {
         let limit = format!("line.accumulator.maximum_pressure_ratio={ratio}");
-        answer(GAS, &[scenario, &limit, CERTAIN], &[], &Request::Simulate(Default::default())).text
+        answer(GAS, &[scenario, &limit, CERTAIN], &[], &Request::Simulate(Default::default())).text()
     };
     let output = run("4.44");
     assert!(output.contains("is above its maximum_pressure_ratio"), "{output}");

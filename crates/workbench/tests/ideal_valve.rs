@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
 use crate::run_command::{self, HOSE, derived};
+use phea_workbench::engineering::rig::Rig;
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project;
-use phea_workbench::rig::Rig;
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 

@@ -14,12 +14,12 @@ use phea_hydraulics::linear::transfer_functions;
 use phea_hydraulics::plant::{LinearPlant, PlantInMotion};
 use phea_hydraulics::signal::Signal;
 use phea_qft::stability::{StabilityStatus, member_stability};
-use phea_workbench::audit::audit_project;
 use phea_workbench::command::{AlternativesRequest, Request};
-use phea_workbench::linearize::linearize;
+use phea_workbench::engineering::audit::audit_project;
+use phea_workbench::engineering::linearize::linearize;
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{ScenarioRun, simulate_project};
 use phea_workbench::project::{self, Project};
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -275,7 +275,7 @@ name = "pipe with an inner position loop"
     let both = [2, 3].map(|index| found["alternatives"][index]["columns"].clone());
     assert_eq!(both[0], both[1]);
     assert!(
-        output.text.contains(
+        output.text().contains(
             "pipe with an inner position loop: designed as the same loop with form = \"impedance\""
         )
     );
@@ -380,7 +380,7 @@ fn every_answer_mentions_the_impedance() {
     let models: Value = parsed(&of(&Request::Linearize { sweep: None }).json);
     assert_eq!(models["virtual_impedance"]["stiffness_n_per_m"], 1e5);
     assert_eq!(models["virtual_impedance"]["points"].as_array().unwrap().len(), 5);
-    assert!(of(&Request::Linearize { sweep: None }).text.contains("Impedance requested and achieved"));
+    assert!(of(&Request::Linearize { sweep: None }).text().contains("Impedance requested and achieved"));
     assert!(of(&Request::Check).json.contains("impedance.spring_below"));
     let design = Request::Design { seed: None, stages: false, repair: false };
     let refused = try_answer(&yielding(), &[position, law], &[], &design).unwrap_err().to_string();

@@ -6,9 +6,9 @@
 
 use crate::run_command::{json, load};
 use phea_workbench::command::Request;
-use phea_workbench::design::{DesignError, design_project};
+use phea_workbench::engineering::design::{DesignError, design_project};
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::report::report;
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -59,7 +59,7 @@ fn specifications_in_conflict_are_named_by_their_tables() {
 #[test]
 fn a_step_beyond_the_stall_force_is_reported_once() {
     let text = rig("settling_time = \"5 s\"\namplitude = \"60 kN\"\n");
-    let words = crate::run_command::answer(&text, &[], &[], &Request::Check).text;
+    let words = crate::run_command::answer(&text, &[], &[], &Request::Check).text();
     assert_eq!(words.matches("the piston stalls at").count(), 1, "{words}");
 }
 

@@ -22,7 +22,7 @@ fn a_run_without_a_carried_deviation_reports_it() {
         let settings = [&SHORT, settings].concat();
         let request = Request::Simulate(SimulateRequest { check, ..SimulateRequest::default() });
         let run = json(CONTINUOUS, &settings, &[], &request)["scenarios"][0].clone();
-        (run, answer(CONTINUOUS, &settings, &[], &request).text)
+        (run, answer(CONTINUOUS, &settings, &[], &request).text())
     };
     for (settings, cause) in [
         (&["controller.sample_time=1 ms"][..], "samples"),

@@ -7,10 +7,10 @@
 use num_complex::Complex64;
 use phea_dynamics::portable::{exp_complex, sqrt_complex};
 use phea_dynamics::random::{normal, stream};
-use phea_workbench::line_test::{
+use phea_workbench::engineering::line_test::{
     KnownLine, LineIdentification, LineRecord, RiseRecord, VolumeSource, identify_line,
 };
-use phea_workbench::response::{ResponseSettings, SampledPair};
+use phea_workbench::engineering::response::{ResponseSettings, SampledPair};
 
 use crate::line_coverage::{WAVES, known, project};
 

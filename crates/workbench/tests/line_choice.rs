@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
 use crate::answer_schema::parsed;
-use phea_workbench::campaign::{Effort, RequestedRuns, Shard};
 use phea_workbench::command::{CampaignRequest, CampaignRuns, Request, SimulateRequest};
-use phea_workbench::shaping::Shaped;
+use phea_workbench::engineering::campaign::{Effort, RequestedRuns, Shard};
+use phea_workbench::engineering::shaping::Shaped;
 use serde_json::Value;
 
 use super::run_command::{answer, json};
@@ -133,10 +133,10 @@ fn every_command_names_the_chosen_model() {
         .map(|request| {
             let output = answer(&rig, &settings, &[], request);
             assert!(
-                output.text.starts_with("Lines: with waves, since"),
+                output.text().starts_with("Lines: with waves, since"),
                 "{}: {}",
                 request.name(),
-                output.text
+                output.text()
             );
             let object: Value = parsed(&output.json);
             object["line_model"].clone()
@@ -188,7 +188,7 @@ fn answers_without_waves_use_lumped_lines() {
 fn a_quarter_wave_that_limits_the_bandwidth_is_not_compared_with_itself() {
     let rig = rig_to_be_designed();
     let sentence = |settings: &[&str]| {
-        let text_of_check = answer(&rig, settings, &[], &Request::Check).text;
+        let text_of_check = answer(&rig, settings, &[], &Request::Check).text();
         text_of_check.lines().next().unwrap_or_default().to_string()
     };
     let own = sentence(&[]);

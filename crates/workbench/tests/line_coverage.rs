@@ -5,14 +5,14 @@
 
 use crate::run_command::{HOSE, load};
 use phea_hydraulics::line::{Conduit, Line, Stiffening, StiffeningMember};
-use phea_workbench::estimate::Estimate;
-use phea_workbench::line_test::{
+use phea_workbench::engineering::estimate::Estimate;
+use phea_workbench::engineering::line_test::{
     KnownLine, LineIdentification, LineRecord, LineRun, LineSeries, NotIdentifiableLine, RiseRecord,
     VolumeSource, clean_line_runs, identify_line, recorded,
 };
+use phea_workbench::engineering::response::{ResponseSettings, SampledPair};
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project::{Bench, Loaded};
-use phea_workbench::response::{ResponseSettings, SampledPair};
-use phea_workbench::setup::Setup;
 
 /// A hose whose wall creeps, with one pressure in it.
 pub(crate) const CREEPING: [&str; 5] = [

@@ -10,14 +10,14 @@ use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, bulk_modulus_with_ai
 use phea_hydraulics::line::{Conduit, Line, StiffeningMember};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, IdentifyError, LineRequest, Request, line_watched};
-use phea_workbench::line_test::KnownLine;
+use phea_workbench::engineering::line_test::KnownLine;
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project::{self as language, LineSide};
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
 /// Files that `bench` writes for the line of a project to chamber A.
-fn benched(project: &str, settings: &[&str]) -> Vec<(String, String)> {
+pub(crate) fn benched(project: &str, settings: &[&str]) -> Vec<(String, String)> {
     benched_side(project, settings, "a")
 }
 
@@ -30,7 +30,11 @@ fn benched_side(project: &str, settings: &[&str], side: &str) -> Vec<(String, St
     lines.map(|file| (file.name, String::from_utf8(file.bytes).unwrap())).collect()
 }
 
-fn identified(project: &str, settings: &[&str], files: &[(String, String)]) -> Result<Answer, IdentifyError> {
+pub(crate) fn identified(
+    project: &str,
+    settings: &[&str],
+    files: &[(String, String)],
+) -> Result<Answer, IdentifyError> {
     identified_side(project, settings, files, LineSide::A)
 }
 
@@ -139,7 +143,7 @@ fn one_of_two_unequal_lines_is_identified_and_written_for_its_side() {
     let found = line(&answer);
     assert_eq!(found["chamber"], "b");
     within(value(&found, "dynamic_stiffening"), 3.0, 0.2);
-    assert!(answer.text.contains("The line to chamber B at "), "{}", answer.text);
+    assert!(answer.text().contains("The line to chamber B at "), "{}", answer.text());
     let fragment = answer.files.iter().find(|file| file.name == "line.toml").expect("a fragment");
     let fragment = String::from_utf8(fragment.bytes.clone()).unwrap();
     // the creep of the wall is declared for both lines
@@ -202,7 +206,7 @@ fn air_shows_with_a_modulus_that_grows_with_the_pressure() {
     assert!(0.999 * low < truth && truth < 1.001 * high, "{low} {truth} {high}");
     let slope = (modulus(36e5) - modulus(34e5)) / 2e5;
     near(value(&found, "modulus_slope"), slope, 0.1);
-    assert!(answer.text.contains("explained by free air in the oil"), "{}", answer.text);
+    assert!(answer.text().contains("explained by free air in the oil"), "{}", answer.text());
     let air = value(&found, "entrained_air");
     assert!((air / 0.02 - 1.0).abs() < 0.02, "{air}");
 }
@@ -225,7 +229,7 @@ fn unidentifiable_parameters_are_not_determined_with_the_reason() {
     open(&fast, "relaxation_time_s", "the declared model of the line has no creep");
     // the wall of the project does not creep, but that of the record does
     let answer = identified(HOSE, &[], &files).unwrap();
-    assert!(answer.text.contains("does not explain this response"), "{}", answer.text);
+    assert!(answer.text().contains("does not explain this response"), "{}", answer.text());
     // far below the quarter wave nothing determines the inertance
     let low = ["bench.line.frequencies=[\"0.5 Hz\", \"4 Hz\"]", "bench.line.periods=4"];
     let files = benched(HOSE, &[&["line.model=\"segments\"", "line.segments=1"], &low[..]].concat());

@@ -3,8 +3,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use phea_workbench::campaign::{Effort, RequestedRuns, Shard};
 use phea_workbench::command::{CampaignRequest, CampaignRuns, Request, SimulateRequest};
+use phea_workbench::engineering::campaign::{Effort, RequestedRuns, Shard};
 use serde_json::Value;
 
 use super::run_command::{HOSE, json};

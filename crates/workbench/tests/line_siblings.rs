@@ -4,8 +4,8 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-use phea_workbench::estimate::Estimate;
-use phea_workbench::line_test::NotIdentifiableLine;
+use phea_workbench::engineering::estimate::Estimate;
+use phea_workbench::engineering::line_test::NotIdentifiableLine;
 
 use crate::line_as_recorded::{OfVolume, Rise, compliance, found, of_oil, response, rise_of};
 use crate::line_coverage::{WAVES, known, project};

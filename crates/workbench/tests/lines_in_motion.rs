@@ -5,11 +5,11 @@
 
 use crate::answer_schema::parsed;
 use phea_hydraulics::signal::Signal;
-use phea_workbench::campaign::{Effort, Plan};
 use phea_workbench::command::{self, Request};
+use phea_workbench::engineering::campaign::{Effort, Plan};
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{RunStatus, ScenarioRun, simulate_project};
 use phea_workbench::project::{self, LineMotion, LineSegments, Loaded, Refusal};
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{RunStatus, ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");

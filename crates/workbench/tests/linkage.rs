@@ -8,12 +8,12 @@ use phea_dynamics::uncertain_plant::PlantCoefficients;
 use phea_hydraulics::signal::Signal;
 use phea_qft::family::Family;
 use phea_workbench::command::Request;
-use phea_workbench::family::family;
-use phea_workbench::linearize::{LinkagePosition, linkage_places};
+use phea_workbench::engineering::family::family;
+use phea_workbench::engineering::linearize::{LinkagePosition, linkage_places};
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{ControlledMachine, Metric, ScenarioRun, simulate_project};
 use phea_workbench::project::Project;
 use phea_workbench::report::report;
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{ControlledMachine, Metric, ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
 
 use super::run_command::{HOSE, load, project_of, try_answer};
@@ -177,7 +177,7 @@ fn the_impedance_about_the_joint_is_reported() {
     assert!((geometric / stiffness).abs() > 1e-3, "{geometric}");
     let sentence = "about the joint it is r² (Z + k_g/s), in N·m·s/rad, with the lever arm r = 49.84 mm";
     let found_answer =
-        |text: &str| try_answer(text, &[], &[], &Request::Linearize { sweep: None }).unwrap().text;
+        |text: &str| try_answer(text, &[], &[], &Request::Linearize { sweep: None }).unwrap().text();
     assert!(found_answer(KNEE).contains(sentence));
     assert!(!found_answer(HOSE).contains("joint"));
 }

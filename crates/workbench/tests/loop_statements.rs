@@ -6,7 +6,7 @@
 
 use phea_hydraulics::servovalve::blocked_ports;
 use phea_workbench::command::Request;
-use phea_workbench::setup::Setup;
+use phea_workbench::engineering::setup::Setup;
 
 use super::run_command::{HOSE, answer, json, near, number, project_of};
 
@@ -30,7 +30,7 @@ frequencies = [0.1, 1]
 "#;
 
 fn loop_sentence(text: &str, settings: &[&str]) -> String {
-    let statement = answer(text, settings, &[], &VERIFY).text;
+    let statement = answer(text, settings, &[], &VERIFY).text();
     statement.lines().find(|line| line.trim_start().starts_with("Loop: ")).unwrap().trim().to_string()
 }
 
@@ -38,7 +38,7 @@ fn loop_sentence(text: &str, settings: &[&str]) -> String {
 /// on it.
 #[test]
 fn the_position_of_all_plants_is_named() {
-    let statement = |text: &str, settings: &[&str]| answer(text, settings, &[], &VERIFY).text;
+    let statement = |text: &str, settings: &[&str]| answer(text, settings, &[], &VERIFY).text();
     let sentence = "Position: every plant is taken at 150 mm of 300 mm of stroke.";
     assert!(statement(STRUCTURAL, &["line.model=lumped"]).contains(sentence));
     let position = &json(STRUCTURAL, &["line.model=lumped"], &[], &VERIFY)["position"];
@@ -93,7 +93,7 @@ fn a_region_of_positions_only_states_its_force() {
     let positions = region("[\"50 mm\", \"400 mm\"]");
     let none = "uncertainty={}";
     let statement = |text: &str, settings: &[&str]| {
-        let sentence_of = answer(text, settings, &[], &VERIFY).text;
+        let sentence_of = answer(text, settings, &[], &VERIFY).text();
         sentence_of.lines().find(|line| line.contains(POSITIONS_ONLY)).map(str::to_string)
     };
     let project = project_of(HOSE, &[none]);
@@ -142,7 +142,7 @@ fn a_valve_that_leaks_most_next_to_null_is_reported() {
         assert_eq!(own.count(), 1, "{}", request.name());
     }
     let sentence_of = |text: &str, settings: &[&str]| {
-        let statement = answer(text, settings, &[], &Request::Check).text;
+        let statement = answer(text, settings, &[], &Request::Check).text();
         statement.lines().find(|line| line.contains(NEXT_TO_NULL)).map(str::to_string)
     };
     for (text, shape) in [(HOSE, "40"), (super::against_the_load::RIG, "30"), (VANE, "60")] {

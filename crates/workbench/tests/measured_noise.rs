@@ -16,9 +16,9 @@ use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Family, MeasuredFamily, MeasuredPlant};
 use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::verification::{Audit, AuditProblem, TOLERANCE_DB, TrackingJudgement, Verdict};
-use phea_workbench::family::family;
+use phea_workbench::engineering::family::family;
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project;
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 const PROJECT: &str = "schema = 1\n[family]\nmeasured = [\"a.csv\"]\n";

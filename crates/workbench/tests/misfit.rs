@@ -5,7 +5,9 @@
 
 use crate::answer_schema::parsed;
 use phea_workbench::command::{self, Request, SimulateRequest};
-use phea_workbench::identify::{Identification, Known, Search, SignalKind, identify, recordings};
+use phea_workbench::engineering::identify::{
+    Identification, Known, Search, SignalKind, identify, recordings,
+};
 use phea_workbench::project::RecordedTest;
 use phea_workbench::source::{Memory, Source};
 use serde_json::Value;
@@ -90,7 +92,7 @@ fn no_verdict_on_a_valve_of_a_large_misfit_is_met() {
             run_command::load(run_command::HOSE, &[anything, &format!("valve.misfit={misfit}")], &[]);
         let request = Request::Verify { proof: false, on_machine: false };
         let answer = command::answer(&Memory::default(), &loaded, &[], &request).unwrap();
-        (parsed(&answer.json), answer.text)
+        (parsed(&answer.json), answer.text())
     };
     let [small, large] =
         ["{ share = 0.004 }", "{ share = \"1.2 %\", at = \"flow of metering.csv\" }"].map(verify);
@@ -107,7 +109,7 @@ fn judged(settings: &[&str]) -> (Value, String) {
     let loaded = run_command::load(run_command::HOSE, &[&[anything], settings].concat(), &[]);
     let request = Request::Verify { proof: false, on_machine: false };
     let answer = command::answer(&Memory::default(), &loaded, &[], &request).unwrap();
-    (parsed(&answer.json)["verdict"].clone(), answer.text)
+    (parsed(&answer.json)["verdict"].clone(), answer.text())
 }
 
 /// The moduli of the lines are in every plant; of a friction the plant contains `viscous`, unless
@@ -143,7 +145,11 @@ fn runs_of_the_machine_warn_of_a_misfit() {
     let answer = command::answer(&Memory::default(), &loaded, &[], &request).unwrap();
     let json: Value = parsed(&answer.json);
     let warning = json["warnings"][0].as_str().unwrap_or_else(|| panic!("{json}"));
-    assert!(warning.contains("cylinder.friction.misfit") && answer.text.contains(warning), "{}", answer.text);
+    assert!(
+        warning.contains("cylinder.friction.misfit") && answer.text().contains(warning),
+        "{}",
+        answer.text()
+    );
 }
 
 /// The greatest misfit of recorded friction is in the fragment, which the project reads.

@@ -5,14 +5,14 @@
 
 use crate::answer_schema::parsed;
 use phea_workbench::answer::Answer;
-use phea_workbench::campaign::{Effort, RequestedRuns, Shard};
 use phea_workbench::command::{
     AlternativesRequest, CampaignRequest, CampaignRuns, CommandError, FrequencyOptions, Request,
     SimulateRequest,
 };
-use phea_workbench::linearize::SweepRequest;
-use phea_workbench::setup::Setup;
-use phea_workbench::shaping::Shaped;
+use phea_workbench::engineering::campaign::{Effort, RequestedRuns, Shard};
+use phea_workbench::engineering::linearize::SweepRequest;
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::shaping::Shaped;
 use serde_json::Value;
 
 use super::run_command::{load, project_of, try_answer};
@@ -239,7 +239,7 @@ fn texts_of_the_user_are_unchanged() {
     let direction = "\n[[uncertainty_direction]]\nname = \"wear of the piston\"\nchanges = { \"motor.inertia\" = 1e-3 }\n";
     let of_audit =
         returned(&format!("{text}{direction}"), &Request::Verify { proof: false, on_machine: false });
-    assert!(of_audit.text.contains("wear of the piston"), "{}", of_audit.text);
+    assert!(of_audit.text().contains("wear of the piston"), "{}", of_audit.text());
     let of_run = returned(&text, &Request::Report { files: false, alternatives: false });
     let page = String::from_utf8(of_run.files[0].bytes.clone()).unwrap();
     assert!(page.contains("force of the piston"), "{page}");
@@ -290,7 +290,7 @@ fn equations_and_symbols_are_those_of_a_motor() {
         Request::Report { files: true, alternatives: false },
     ] {
         let answer = returned(TURNING, &request);
-        assert_eq!(symbols_of_a_cylinder(&answer.text), [""; 0], "{}", request.name());
+        assert_eq!(symbols_of_a_cylinder(&answer.text()), [""; 0], "{}", request.name());
         for file in
             answer.files.iter().filter(|file| file.name.ends_with("svg") || file.name.ends_with("html"))
         {
@@ -316,7 +316,7 @@ fn a_motor_has_no_retracted_length() {
     let json: Value = parsed(&answer.json);
     let reason = &json["alternatives"][0]["columns"]["actuator_length_m_reason"];
     assert_eq!(reason, "a motor has no retracted length");
-    assert!(!answer.text.contains("dead_length") && !answer.json.contains("dead_length"));
+    assert!(!answer.text().contains("dead_length") && !answer.json.contains("dead_length"));
 }
 
 /// The text of a page or drawing, its code and styles left out.
@@ -368,7 +368,7 @@ fn keys_of_linear_motion(value: &Value) -> Vec<String> {
 fn check(project: &str, request: &Request) {
     let answer = returned(project, request);
     let name = request.name();
-    assert_eq!(of_linear_motion(&answer.text), [""; 0], "{name}: {}", answer.text);
+    assert_eq!(of_linear_motion(&answer.text()), [""; 0], "{name}: {}", answer.text());
     let json: Value = parsed(&answer.json);
     assert_eq!(json["motion"], "rotary", "{name}");
     assert_eq!(keys_of_linear_motion(&json), [""; 0], "{name}");

@@ -98,7 +98,7 @@ fn models_without_it_are_reported() {
             is_warned,
             "{verdict}"
         );
-        let models = answer(text, necks, &[], &Request::Linearize { sweep: None }).text;
+        let models = answer(text, necks, &[], &Request::Linearize { sweep: None }).text();
         let sentence = "the neck of line.accumulator is counted in the plant and the impedance";
         assert_eq!(models.contains(sentence), text == NECK, "{models}");
     }

@@ -8,13 +8,14 @@ use phea_dynamics::uncertain_plant::{PlantMember, UncertainPlant};
 use phea_dynamics::watch::unwatched;
 use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::verification::{PlantPoint, Verdict};
-use phea_workbench::audit::{ProjectAudit, audit_project};
-use phea_workbench::family::{family, visited_box};
-use phea_workbench::plant_names::{PlantNames, plant_cells};
+use phea_workbench::engineering::audit::{ProjectAudit, audit_project};
+use phea_workbench::engineering::family::{family, visited_box};
+use phea_workbench::engineering::plant_names::PlantNames;
+use phea_workbench::engineering::rig::Rig;
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::plant_names::plant_text;
 use phea_workbench::project::{self, Project};
 use phea_workbench::quantity::{VELOCITY, parse};
-use phea_workbench::rig::Rig;
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 const SIDE: &str = "operating_point.spool_side";
@@ -199,12 +200,12 @@ fn a_place_next_to_null_reads_back_on_its_own_side() {
     let printed = PlantNames::of_parameters(&project, names.into_iter());
     assert!(family.members().len() > 1, "{:?}", family.members());
     for values in family.members() {
-        let cells = plant_cells(&printed, &PlantPoint::Parameters(values.clone()));
-        let read = parse(&cells[0], &VELOCITY).unwrap();
+        let text = plant_text(&printed, &PlantPoint::Parameters(values.clone()));
+        let read = parse(text.strip_prefix("operating_point.velocity ").unwrap(), &VELOCITY).unwrap();
         let [own, again] = [values[0], read].map(|value| response(family.plant(), &[value], 3.0));
         let apart = (own[0] - again[0]).hypot(own[1] - again[1]) / own[0].hypot(own[1]);
-        assert!(apart < 1e-3, "{cells:?} for {values:?}: {apart}");
+        assert!(apart < 1e-3, "{text} for {values:?}: {apart}");
     }
-    let corner = plant_cells(&printed, &PlantPoint::Parameters(vec![-1.1e-3]));
-    assert_eq!(corner, ["-1.1 mm/s"]);
+    let corner = plant_text(&printed, &PlantPoint::Parameters(vec![-1.1e-3]));
+    assert_eq!(corner, "operating_point.velocity -1.1 mm/s");
 }

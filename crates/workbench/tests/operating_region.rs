@@ -7,10 +7,10 @@ use phea_dynamics::random::uniform;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, UncertainPlant};
 use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_workbench::command::{self, Request};
-use phea_workbench::family::{VisitedRange, family, visited_box};
+use phea_workbench::engineering::family::{VisitedRange, family, visited_box};
+use phea_workbench::engineering::rig::Rig;
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project::{self, Project};
-use phea_workbench::rig::Rig;
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");

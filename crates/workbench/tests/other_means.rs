@@ -4,8 +4,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use phea_workbench::alternatives::prepared;
 use phea_workbench::command::Request;
+use phea_workbench::engineering::alternatives::prepared;
 use serde_json::Value;
 
 use crate::run_command::{answer, check, derived, json, load, near, size, source};
@@ -128,7 +128,7 @@ fn impossible_means_have_their_reason() {
     assert_eq!(unstated["gas_reason"], "not stated: sizing.other_means.force_range");
     let hose = json(crate::run_command::HOSE, &[], &[], &Request::Size { gain: None, length: None });
     assert!(hose.get("other_means").is_none());
-    let text = answer(COMPLIANCE, &[], &[], &Request::Size { gain: None, length: None }).text;
+    let text = answer(COMPLIANCE, &[], &[], &Request::Size { gain: None, length: None }).text();
     assert!(text.contains("of the hose by other means") && text.contains("spring on the rod"), "{text}");
 }
 

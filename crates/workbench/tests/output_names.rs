@@ -3,13 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use phea_workbench::answer::TableFormat;
-use phea_workbench::campaign::{Effort, RequestedRuns, Shard};
 use phea_workbench::command::{
     self, AlternativesRequest, CampaignRequest, CampaignRuns, FrequencyOptions, OutputNames, Request,
     SimulateRequest,
 };
-use phea_workbench::linearize::SweepRequest;
-use phea_workbench::shaping::Shaped;
+use phea_workbench::engineering::campaign::{Effort, RequestedRuns, Shard};
+use phea_workbench::engineering::linearize::SweepRequest;
+use phea_workbench::engineering::shaping::Shaped;
 
 use super::run_command::{HOSE, load, source};
 

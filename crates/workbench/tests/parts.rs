@@ -88,6 +88,6 @@ fn parts_have_their_stated_cost_and_mass() {
         assert!((number(index, "parts_mass_kg") - (mass + oil(index))).abs() < 1e-12);
         assert_eq!(columns(index)["parts_currency"], "EUR");
     }
-    let text = &judged().0.text;
+    let text = &judged().0.text();
     assert!(text.contains("170.0 EUR") && text.contains("price 24.00 EUR instead of 170.0 EUR"), "{text}");
 }

@@ -2,9 +2,9 @@
 
 use num_complex::Complex64;
 use phea_qft::family::Family;
-use phea_workbench::family::family;
+use phea_workbench::engineering::family::family;
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project::Project;
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 /// Responses F_e/U_C and F_e/X_0 at a frequency in rad/s.

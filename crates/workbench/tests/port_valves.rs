@@ -49,7 +49,7 @@ fn check_derives_what_a_valve_passes_at_rest() {
 fn a_verdict_states_the_opening_of_a_valve() {
     let verdict = |valves: &str| {
         let request = Request::Verify { proof: false, on_machine: false };
-        answer(PIPE, &[valves, LOADED, VISCOUS], &[], &request).text
+        answer(PIPE, &[valves, LOADED, VISCOUS], &[], &request).text()
     };
     let states = |text: &str, words: &str| assert!(text.contains(words), "{words}: {text}");
     let far = verdict(&relief(90.0, 0.1));

@@ -6,11 +6,13 @@ use num_complex::Complex64;
 use phea_hydraulics::signal::Signal;
 use phea_qft::stability::{StabilityStatus, member_stability};
 use phea_qft::verification::Verdict;
-use phea_workbench::audit::audit_project;
+use phea_workbench::engineering::audit::audit_project;
+use phea_workbench::engineering::robust::robust_problem;
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{
+    FrequencyRequest, MachineResponses, frequency_response, simulate_project,
+};
 use phea_workbench::project::{self, Project};
-use phea_workbench::robust::robust_problem;
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{FrequencyRequest, MachineResponses, frequency_response, simulate_project};
 use phea_workbench::source::Memory;
 
 use super::run_command::project_of;

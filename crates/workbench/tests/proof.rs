@@ -144,7 +144,7 @@ fn the_design_of_the_rig_is_proven() {
 fn certificates_round_trip_and_other_files_are_refused() {
     let (_, text) = proven(example!("servo"), &[]);
     let answer = check_certificate(&text).unwrap();
-    assert!(answer.affirmative && answer.text.contains("Every claim holds"));
+    assert!(answer.affirmative && answer.text().contains("Every claim holds"));
     let object: Value = parsed(&answer.json);
     assert_eq!(object["claims"].as_array().map(Vec::len), Some(7));
     // a claim that is not true: the ratio that is not exceeded is reduced
@@ -206,7 +206,7 @@ fn the_delay_of_a_sensor_is_not_that_of_the_plant() {
 }
 
 /// A problem of a project text, with settings.
-fn problem(project: &str, settings: &[&str]) -> phea_workbench::robust::RobustProblem {
+fn problem(project: &str, settings: &[&str]) -> phea_workbench::engineering::robust::RobustProblem {
     let source = phea_workbench::source::Memory::default().with("p.toml", project);
     let settings: Vec<String> = settings.iter().map(ToString::to_string).collect();
     let loaded = phea_workbench::project::read(&source, "p.toml", &settings, &[]).unwrap();
@@ -234,7 +234,7 @@ fn a_certificate_is_compared_with_a_project() {
             (Some(true), Some(true))
         );
         let found = object["differences"].as_array().unwrap().clone();
-        assert_eq!(answer.affirmative, found.is_empty(), "{}", answer.text);
+        assert_eq!(answer.affirmative, found.is_empty(), "{}", answer.text());
         found.iter().map(|one| one.as_str().unwrap().to_string()).collect::<Vec<_>>().join("; ")
     };
     assert_eq!(compared(COMPARED, &[]), "");
@@ -272,12 +272,12 @@ fn a_certificate_without_stability_reports_it() {
     claims.retain(|claim| claim["claim"] == "reached");
     let without = serde_json::to_string(&file).unwrap();
     let answer = check_certificate(&without).unwrap();
-    assert!(answer.text.contains("Nothing is claimed of stability"), "{}", answer.text);
+    assert!(answer.text().contains("Nothing is claimed of stability"), "{}", answer.text());
     let object: Value = parsed(&answer.json);
     assert_eq!(object["stability_claimed"], false);
     let compared = check_certificate_of(&without, &problem(COMPARED, &[])).unwrap();
     assert!(!compared.affirmative);
-    assert!(compared.text.contains("does not claim that every plant is stable"), "{}", compared.text);
+    assert!(compared.text().contains("does not claim that every plant is stable"), "{}", compared.text());
 }
 
 /// Closed loop 1/(s + 1), whose magnitude is 1 at low frequencies, with a limit that is lower by
@@ -296,7 +296,7 @@ fn a_proof_within_the_tolerance_reports_it() {
     for (limit, is_allowed) in [(0.9994, true), (1.01, false)] {
         let output = answer(&text(limit), &[], &[], &PROVEN);
         let object: Value = parsed(&output.json);
-        assert_eq!(object["specifications"][0]["verdict"], "met", "{}", output.text);
-        assert_eq!(output.text.contains(", within the 0.01 dB allowed"), is_allowed, "{}", output.text);
+        assert_eq!(object["specifications"][0]["verdict"], "met", "{}", output.text());
+        assert_eq!(output.text().contains(", within the 0.01 dB allowed"), is_allowed, "{}", output.text());
     }
 }

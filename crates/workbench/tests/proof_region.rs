@@ -12,9 +12,9 @@ use phea_qft::family::Family;
 use phea_qft::proof::{Certificate, Claim, ClaimStatus, ProofOptions, check, differences, prove};
 use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement};
+use phea_workbench::engineering::robust::{RobustProblem, robust_problem};
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project;
-use phea_workbench::robust::{RobustProblem, robust_problem};
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 /// Largest |T|, which every plant of these regions satisfies.

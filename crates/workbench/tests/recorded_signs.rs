@@ -10,8 +10,8 @@ use std::fmt::Write as _;
 
 use crate::run_command::{HOSE, load};
 use phea_workbench::command::{ResponseRequest, response_watched};
-use phea_workbench::friction::{KnownCylinder, friction_recordings};
-use phea_workbench::identify::{Known, RecordedFiles, recordings};
+use phea_workbench::engineering::friction::{KnownCylinder, friction_recordings};
+use phea_workbench::engineering::identify::{Known, RecordedFiles, recordings};
 use phea_workbench::project::{self, RecordedTest, Refusal};
 use phea_workbench::source::Memory;
 use serde_json::Value;

@@ -12,7 +12,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use crate::run_command::HOSE;
-use phea_workbench::identify::{Known, RecordedFiles, Recording, SignalKind, recordings};
+use phea_workbench::engineering::identify::{Known, RecordedFiles, Recording, SignalKind, recordings};
 use phea_workbench::project::{self, Diagnostic, RecordedTest, Refusal, Severity};
 use phea_workbench::source::Memory;
 

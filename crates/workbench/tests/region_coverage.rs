@@ -11,11 +11,11 @@ use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
 use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::verification::{Audit, AuditProblem, TOLERANCE_DB, TrackingJudgement, Verdict};
-use phea_workbench::family::{VisitedRange, family, visited_box};
+use phea_workbench::engineering::family::{VisitedRange, family, visited_box};
+use phea_workbench::engineering::rig::Rig;
+use phea_workbench::engineering::robust::robust_problem;
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project::{self, Project};
-use phea_workbench::rig::Rig;
-use phea_workbench::robust::robust_problem;
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 /// Number of points of a region that are drawn evenly, and of those at which the spool is next to

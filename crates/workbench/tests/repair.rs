@@ -5,7 +5,7 @@
 use crate::answer_schema::parsed;
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, CommandError, Progress, Request};
-use phea_workbench::design::{DESIGNED_PROJECT, NEAREST_PROJECT};
+use phea_workbench::engineering::design::{DESIGNED_PROJECT, NEAREST_PROJECT};
 use serde_json::Value;
 
 use super::run_command::{HOSE, UNLIMITED, answer, designed_hose, json, load, number, source};
@@ -70,7 +70,7 @@ fn infeasibility_with_waves_is_reported() {
     for words in
         ["Repair: infeasible", "beyond the quarter wave", "what would help: a line shorter than 0.63 m"]
     {
-        assert!(output.text.contains(words), "{words}: {}", output.text);
+        assert!(output.text().contains(words), "{words}: {}", output.text());
     }
 }
 
@@ -111,7 +111,7 @@ fn a_design_is_repaired_if_possible() {
     assert_eq!(repair["plant_after"]["verdict"], "met");
     // the first design is printed in addition
     assert_eq!(repair["before"]["controller"], first["controller"]);
-    assert!(output.text.contains("before the repair"), "{}", output.text);
+    assert!(output.text().contains("before the repair"), "{}", output.text());
     // the verdicts with waves in every plant are those of the audit of the project that declares
     // them
     let written = file(&output, DESIGNED_PROJECT).unwrap();

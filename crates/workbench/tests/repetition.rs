@@ -54,7 +54,7 @@ fn a_peak_disturbed_by_errors_is_computed_again() {
     assert_eq!(&run["work"]["steps"], steps);
     let agreed = repetition["status"] == "agreed";
     assert_eq!(agreed, spread <= 1e-3, "{repetition}");
-    assert!(answer.text.contains("of the last two passes"), "{}", answer.text);
+    assert!(answer.text().contains("of the last two passes"), "{}", answer.text());
 }
 
 /// A run without growth of errors is made once.
@@ -75,8 +75,8 @@ fn an_unstable_sampled_loop_is_reported() {
     assert!(number(&run["errors_amplified"]["growth_logarithm"]) > 7.0, "{run}");
     assert!(run["repetition"]["passes"].as_array().unwrap().len() > 1);
     assert_eq!(run["errors_amplified"]["cause"], "closed_loop");
-    assert!(answer.text.contains("the closed loop is unstable"), "{}", answer.text);
-    assert!(answer.text.contains("errors within the tolerance may become visible"), "{}", answer.text);
+    assert!(answer.text().contains("the closed loop is unstable"), "{}", answer.text());
+    assert!(answer.text().contains("errors within the tolerance may become visible"), "{}", answer.text());
     let rest = [
         "controller.numerator=0.03*s+0.1",
         "scenario=[{ name = \"rest\", duration = 1.0, output_step = 1e-3, reference = [{ at = 0.0, force = 0.0 }] }]",
@@ -84,7 +84,7 @@ fn an_unstable_sampled_loop_is_reported() {
     let (run, answer) = simulated(SAMPLED, &rest);
     assert!(number(&run["errors_amplified"]["growth_logarithm"]) > 30.0, "{run}");
     assert_eq!(run["repetition"]["status"], "undetermined", "{run}");
-    assert!(answer.text.contains("no solver determines"), "{}", answer.text);
+    assert!(answer.text().contains("no solver determines"), "{}", answer.text());
     // numbers that rounding decides are not results
     let (run, answer) = simulated(include_str!("projects/unstable_rest_sampled.toml"), &[]);
     assert_eq!(run["errors_amplified"]["cause"], "closed_loop");
@@ -139,9 +139,9 @@ fn a_diverging_run_is_reported() {
     assert_eq!((&run["status"], answer.affirmative), (&"diverged".into(), false), "{run}");
     assert_eq!(run["divergence"]["kind"], "command_beyond_range");
     assert!(
-        run["end_time_s"].is_null() && answer.text.contains("the loop does not come back"),
+        run["end_time_s"].is_null() && answer.text().contains("the loop does not come back"),
         "{}",
-        answer.text
+        answer.text()
     );
     let unstable = ["controller.numerator=0.03*s+0.1", "scenario.0.duration=2.5 s"];
     let (run, answer) = simulated(SAMPLED, &unstable);

@@ -5,8 +5,8 @@
 
 use crate::run_command::{HOSE, contradictory_report, load};
 use phea_workbench::command::{CommandError, Progress};
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::report::{Report, report};
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 const PROCESS: &str = include_str!("../../../examples/qft/dead_time.toml");

@@ -10,12 +10,12 @@ use std::fmt::Write as _;
 
 use crate::run_command::{built_hose, contradictory_report};
 use phea_workbench::command::{self, Request};
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{ScenarioRun, simulate_project};
+use phea_workbench::engineering::trial::Agreement;
 use phea_workbench::project::{self, Loaded};
 use phea_workbench::report::{DecidedAnswer, Report, report};
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
-use phea_workbench::trial::Agreement;
 use serde_json::Value;
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");

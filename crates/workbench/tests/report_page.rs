@@ -9,10 +9,10 @@ use std::sync::OnceLock;
 use phea_qft::verification::Verdict;
 use phea_workbench::answer::{Answer, picture_of};
 use phea_workbench::command::Request;
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::trial::Agreement;
 use phea_workbench::report::{Report, report};
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
-use phea_workbench::trial::Agreement;
 use resvg::usvg::roxmltree::{Document, Node};
 
 const PLANT: &str = include_str!("truth/plant.toml");
@@ -431,7 +431,7 @@ fn the_summary_agrees_with_the_commands() {
         "1.50 m a line at K_p = 2.73e-4 V/N",
         "open loop passive, closed loop not passive",
     ] {
-        assert!(answer.text.contains(words), "{words}: {}", answer.text);
+        assert!(answer.text().contains(words), "{words}: {}", answer.text());
     }
 }
 
@@ -449,7 +449,7 @@ fn only_models_of_the_same_parameters_are_drawn_against_each_other() {
     assert!(!reduction.contains("(6.12)") && !reduction.contains("(6.13)"));
     // Derived K_H of the hose at mid stroke is softer than the value in use: the table names both
     // fifth orders.
-    let text = answer(HOSE, &[], &[], &Request::Linearize { sweep: None }).text;
+    let text = answer(HOSE, &[], &[], &Request::Linearize { sweep: None }).text();
     for row in
         ["two-pressure, derived parameters", "fifth order, derived parameters", "6.7 instead of two-pressure"]
     {

@@ -4,9 +4,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
 use crate::report_page::{nominal, report_of};
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project;
 use phea_workbench::report::{Report, report, runs_within_budget};
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");

@@ -6,8 +6,8 @@
 use crate::answer_schema::parsed;
 use crate::run_command::{self, near, number};
 use num_complex::Complex64;
-use phea_workbench::campaign::{Effort, RequestedRuns, SatisfiedRuns, Shard};
 use phea_workbench::command::{CampaignRequest, CampaignRuns, Request};
+use phea_workbench::engineering::campaign::{Effort, RequestedRuns, SatisfiedRuns, Shard};
 use serde_json::Value;
 
 const STABILITY: &str = "[[specification]]\nkind = \"robust_stability\"\nlimit = 10\nfrequencies = [1]\n";
@@ -26,7 +26,7 @@ fn answer(text: &str, request: &Request) -> (Value, String) {
     let loaded = phea_workbench::project::read(&source, "rig.toml", &[], &[])
         .unwrap_or_else(|report| panic!("{report}"));
     let answer = phea_workbench::command::answer(&source, &loaded, &[], request).unwrap();
-    (parsed(&answer.json), answer.text)
+    (parsed(&answer.json), answer.text())
 }
 
 fn verify(text: &str) -> (Value, String) {
@@ -147,7 +147,7 @@ fn specifications_have_their_numbers_in_the_file() {
 
 fn report(text: &str) -> phea_workbench::report::Report {
     let loaded = run_command::load(text, &[], &[]);
-    let setup = phea_workbench::setup::Setup::new(&loaded.project).unwrap();
+    let setup = phea_workbench::engineering::setup::Setup::new(&loaded.project).unwrap();
     phea_workbench::report::report(&run_command::source(text), &loaded, &setup, None, &mut |_| true).unwrap()
 }
 
@@ -415,9 +415,10 @@ fn steps_lead_the_design_without_limits_of_tracking() {
     let request = Request::Design { seed: None, stages: false, repair: false };
     let designed = phea_workbench::command::answer(&source, &loaded, &[], &request).unwrap();
     let object: Value = parsed(&designed.json);
-    assert_eq!(object["status"], "met", "{}", designed.text);
+    assert_eq!(object["status"], "met", "{}", designed.text());
     of_its_own(&object);
-    let file = designed.files.iter().find(|file| file.name == phea_workbench::design::DESIGNED_PROJECT);
+    let file =
+        designed.files.iter().find(|file| file.name == phea_workbench::engineering::design::DESIGNED_PROJECT);
     let (object, words) = verify(std::str::from_utf8(&file.unwrap().bytes).unwrap());
     assert_eq!(object["verdict"], "met", "{words}");
     let found = &object["specifications"][0];

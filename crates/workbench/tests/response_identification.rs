@@ -13,9 +13,9 @@ use phea_workbench::answer::Answer;
 use phea_workbench::command::{
     self, IdentifyError, Request, ResponseRequest, ResponseSettings, response_watched,
 };
-use phea_workbench::family::family;
+use phea_workbench::engineering::family::family;
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project::{self, Loaded};
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -38,10 +38,10 @@ const AMPLITUDE: f64 = 2e-3;
 const MULTISINE: &str = "kind = \"multisine\", start = \"0 s\", duration = \"26.88 s\", \
 frequencies = [\"0.78125 Hz\", \"2.34375 Hz\", \"6.25 Hz\", \"15.625 Hz\", \"35.15625 Hz\", \"70.3125 Hz\"]";
 
-const SETTINGS: ResponseSettings =
+pub(crate) const SETTINGS: ResponseSettings =
     ResponseSettings { period: None, settling: Some(20.48), segment: None, coherence: 0.8 };
 
-fn rig(amplitude: f64) -> Loaded {
+pub(crate) fn rig(amplitude: f64) -> Loaded {
     let scenario = format!(
         "scenario=[{{ name = \"shaken\", duration = \"26.88 s\", output_step = \"1 ms\", command = {{ amplitude = {amplitude}, {MULTISINE} }} }}]"
     );
@@ -51,7 +51,7 @@ fn rig(amplitude: f64) -> Loaded {
 }
 
 /// The table that `simulate` writes.
-fn simulated(loaded: &Loaded) -> String {
+pub(crate) fn simulated(loaded: &Loaded) -> String {
     let source = Memory::default().with("rig.toml", BENCHMARK);
     let answer = command::answer(&source, loaded, &[], &Request::Simulate(Default::default()));
     let answer = answer.unwrap_or_else(|error| panic!("{error}"));
@@ -76,7 +76,7 @@ fn table(names: &str, columns: [&[f64]; 3]) -> String {
     })
 }
 
-fn identified(
+pub(crate) fn identified(
     table: &str,
     loaded: Option<&Loaded>,
     settings: &ResponseSettings,
@@ -232,7 +232,11 @@ fn an_identified_response_is_a_family_that_verify_audits() {
     let stated =
         |member: &MeasuredPlant| member.radii.len() == 4 && member.radii.iter().all(|one| *one > 0.0);
     assert!(read.plants().iter().all(stated));
-    assert!(verdict.text.contains("within the discs that hold all measured responses"), "{}", verdict.text);
+    assert!(
+        verdict.text().contains("within the discs that hold all measured responses"),
+        "{}",
+        verdict.text()
+    );
 }
 
 /// Frequencies at which noise hides the output are incoherent, and are listed with the reason.
@@ -254,7 +258,7 @@ fn frequencies_hidden_by_noise_are_left_out_with_the_reason() {
         assert_eq!(row["reason"], "the coherence is below the threshold");
         assert!(row["frequency_rad_per_s"].as_f64().unwrap() > 800.0, "{row}");
     }
-    assert!(answer.text.contains("Left out, because the squared coherence is below"), "{}", answer.text);
+    assert!(answer.text().contains("Left out, because the squared coherence is below"), "{}", answer.text());
 }
 
 #[track_caller]
@@ -469,7 +473,7 @@ fn uneven_rows_are_resampled_and_reported() {
     .unwrap();
     let found = member(&answer);
     let warning = found["warnings"][0].as_str().unwrap();
-    assert!(warning.contains("the rows are not even") && answer.text.contains(warning), "{warning}");
+    assert!(warning.contains("the rows are not even") && answer.text().contains(warning), "{warning}");
     let gap = found["resampled"]["longest_gap_s"].as_f64().unwrap();
     let highest = found["resampled"]["highest_frequency_rad_per_s"].as_f64().unwrap();
     assert!((highest * gap - 0.2 * std::f64::consts::PI).abs() < 1e-9);

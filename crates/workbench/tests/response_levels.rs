@@ -9,8 +9,10 @@ use std::f64::consts::PI;
 
 use phea_dynamics::random::{normal, stream};
 use phea_workbench::command::{ResponseRequest, response_watched};
+use phea_workbench::engineering::response::{
+    LevelComparison, ResponseSettings, SampledPair, compare_levels, members,
+};
 use phea_workbench::project;
-use phea_workbench::response::{LevelComparison, ResponseSettings, SampledPair, compare_levels, members};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -129,7 +131,7 @@ fn a_saturation_is_found_with_the_gain_it_has_for_noise() {
     assert!(comparison.has_two_levels());
     // ORIGIN: analytic, erf(1/sqrt 2) = 0.682689 and erf(1/(0.3 sqrt 2)) = 0.999142
     let expected = 0.682689 / 0.999142;
-    let ratio = |one: &phea_workbench::response::LevelDifference| {
+    let ratio = |one: &phea_workbench::engineering::response::LevelDifference| {
         let [small, large] = one.pair.responses;
         assert!((large - expected * small).norm_sqr().sqrt() < one.by_noise);
         let weight = small.norm_sqr() / (one.by_noise * one.by_noise);
@@ -172,7 +174,7 @@ fn the_answer_has_the_describing_function_of_a_saturation() {
         let answer = response_watched(&source, Some(&loaded), &ResponseRequest::default(), &mut |_| true);
         let answer = answer.unwrap();
         let json: Value = parsed(&answer.json);
-        (answer.text, json["response"]["comparisons"][0].clone())
+        (answer.text(), json["response"]["comparisons"][0].clone())
     };
     let (text, found) = output([2.0, 0.5]);
     assert_eq!(found["files"], serde_json::json!(["small.csv", "large.csv"]));

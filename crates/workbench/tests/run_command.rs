@@ -4,12 +4,12 @@
 use std::sync::OnceLock;
 
 use crate::answer_schema::parsed;
-use phea_workbench::alternatives::{self, LengthUnknown};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, CommandError, IdentifyError, Request};
+use phea_workbench::engineering::alternatives::LengthUnknown;
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project::{self, Loaded, Project};
 use phea_workbench::report::{Report, report};
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -43,7 +43,7 @@ pub(crate) fn source(project: &str) -> Memory {
 /// Length from mount to mount, as reported by `alternatives`.
 pub(crate) fn retracted_length(project: &Project) -> Result<f64, LengthUnknown> {
     let rig = Setup::rig_of(project).unwrap();
-    alternatives::retracted_length(project.actuator.as_ref().unwrap(), &rig)
+    phea_workbench::engineering::alternatives::retracted_length(project.actuator.as_ref().unwrap(), &rig)
 }
 
 fn owned(texts: &[&str]) -> Vec<String> {
@@ -188,7 +188,7 @@ pub(crate) fn refused(outcome: Result<Answer, IdentifyError>, expected: &[&str])
     let message = match outcome {
         Err(IdentifyError::Files(report)) => report.render(false),
         Err(other) => other.to_string(),
-        Ok(answer) => panic!("{}", answer.text),
+        Ok(answer) => panic!("{}", answer.text()),
     };
     for part in expected {
         assert!(message.contains(part), "`{part}` is not in: {message}");

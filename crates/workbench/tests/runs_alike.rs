@@ -3,10 +3,10 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
 use crate::answer_schema::parsed;
-use phea_workbench::campaign::{Effort, RequestedRuns, Shard};
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, Request, SimulateRequest};
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{Metrics, ScenarioRun, simulate_project};
+use phea_workbench::engineering::campaign::{Effort, RequestedRuns, Shard};
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{Metrics, ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -149,9 +149,9 @@ fn a_run_that_begins_some_samples_later_is_the_same() {
 /// The text of a comparison contains the statement of a single run on its repetition.
 #[test]
 fn a_comparison_agrees_with_its_runs() {
-    let output = answer(CONTINUOUS, &SLOW, &[], &Request::Simulate(SimulateRequest::default())).text;
+    let output = answer(CONTINUOUS, &SLOW, &[], &Request::Simulate(SimulateRequest::default())).text();
     let sentence = output.lines().find(|line| line.contains("of the last two passes")).unwrap().trim();
     let projects = [(); 2].map(|()| load(CONTINUOUS, &SLOW, &[]));
     let compared = command::compare_watched(&Memory::default(), &projects, false, &mut |_| true).unwrap();
-    assert!(compared.text.contains(sentence), "{sentence}\n{}", compared.text);
+    assert!(compared.text().contains(sentence), "{sentence}\n{}", compared.text());
 }

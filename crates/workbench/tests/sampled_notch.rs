@@ -5,7 +5,7 @@
 use crate::run_command::{answer, json, load, near};
 use phea_dynamics::linear::Discretization;
 use phea_workbench::command::Request;
-use phea_workbench::setup::Setup;
+use phea_workbench::engineering::setup::Setup;
 
 /// A load cell's mode and a notch on it, sampled at three times its frequency.
 const LOOP: &str = r#"
@@ -35,23 +35,23 @@ fn a_moved_notch_is_reported_and_can_be_preserved() {
     let moved = answer(LOOP, &[], &[], &VERIFY);
     // ORIGIN: analytic, 1000 atan(1)
     assert!(
-        moved.text.contains("moves the zero at 1000 rad/s with a damping ratio of 0.010 to 785.4 rad/s"),
+        moved.text().contains("moves the zero at 1000 rad/s with a damping ratio of 0.010 to 785.4 rad/s"),
         "{}",
-        moved.text
+        moved.text()
     );
-    assert!(moved.text.contains("discretization_frequency = \"1000 rad/s\""));
+    assert!(moved.text().contains("discretization_frequency = \"1000 rad/s\""));
     assert_eq!(json(LOOP, &[], &[], &VERIFY)["stable"], false);
     for preserved in [PRESERVED, "controller.discretization=\"matched\""] {
-        assert!(!answer(LOOP, &[preserved], &[], &VERIFY).text.contains("moves the zero"), "{preserved}");
+        assert!(!answer(LOOP, &[preserved], &[], &VERIFY).text().contains("moves the zero"), "{preserved}");
         assert_eq!(json(LOOP, &[preserved], &[], &VERIFY)["stable"], true, "{preserved}");
     }
     // nothing moves by more than two percent if the sample time is short compared with the notch:
     // (w T/2)^2/3
     let fast = answer(LOOP, &["controller.sample_time=\"0.4 ms\""], &[], &VERIFY);
-    assert!(!fast.text.contains("moves the zero"), "{}", fast.text);
+    assert!(!fast.text().contains("moves the zero"), "{}", fast.text());
     // a frequency elsewhere moves it in the other direction
     let beyond = answer(LOOP, &["controller.discretization_frequency=\"1300 rad/s\""], &[], &VERIFY);
-    assert!(beyond.text.contains("moves the zero") && beyond.text.contains("keeps one frequency alone"));
+    assert!(beyond.text().contains("moves the zero") && beyond.text().contains("keeps one frequency alone"));
 }
 
 /// Commands use the sampled controller, whose response is that of the continuous one at the stated

@@ -8,11 +8,11 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use phea_dynamics::portable;
-use phea_workbench::campaign::Plan;
 use phea_workbench::command::{self, Request};
+use phea_workbench::engineering::campaign::Plan;
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{Cause, NotSaved, ScenarioRun, Unmeasured, simulate_project};
 use phea_workbench::project::{self, Loaded};
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{Cause, NotSaved, ScenarioRun, Unmeasured, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -200,9 +200,10 @@ fn an_open_loop_ignores_its_controller() {
     let answer =
         command::answer(&Memory::default(), &loaded, &[], &Request::Simulate(Default::default())).unwrap();
     assert!(
-        answer.text.contains("one: completed open loop (") && answer.text.contains("command to 3 V at 50 ms"),
+        answer.text().contains("one: completed open loop (")
+            && answer.text().contains("command to 3 V at 50 ms"),
         "{}",
-        answer.text
+        answer.text()
     );
     let json: Value = parsed(&answer.json);
     let run = &json["scenarios"][0];

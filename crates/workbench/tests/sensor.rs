@@ -6,10 +6,10 @@ use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::portable;
 use phea_dynamics::time_response::step_response;
-use phea_workbench::linear_loop::{LoopStability, linear_loop};
-use phea_workbench::linearize::linearize;
+use phea_workbench::engineering::linear_loop::{LoopStability, linear_loop};
+use phea_workbench::engineering::linearize::linearize;
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project;
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 fn rational(numerator: &[f64], denominator: &[f64]) -> TransferFunction {

@@ -10,12 +10,12 @@ use phea_qft::family::Family;
 use phea_workbench::catalogue;
 use phea_workbench::command::Request;
 use phea_workbench::derived::derive;
-use phea_workbench::family::family;
-use phea_workbench::linearize::{Linearization, linearize};
+use phea_workbench::engineering::family::family;
+use phea_workbench::engineering::linearize::{Linearization, linearize};
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::simulate_project;
+use phea_workbench::engineering::sizing::sizing_problem;
 use phea_workbench::project::Project;
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::simulate_project;
-use phea_workbench::sizing::sizing_problem;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -188,7 +188,7 @@ fn the_machine_follows_its_linear_loop() {
         let settings = [settings, &[viscous, small]].concat();
         let output = answer(SERIES, &settings, &[], &Request::Verify { proof: false, on_machine: true });
         let object: Value = parsed(&output.json);
-        assert_eq!(object["stable"], Value::from(true), "{}", output.text);
+        assert_eq!(object["stable"], Value::from(true), "{}", output.text());
         let run = &object["machine"]["runs"][0];
         assert_eq!(run["agrees"], Value::from(true), "{run}");
     }
@@ -216,12 +216,12 @@ fn uncounted_effects_are_reported() {
     let spring =
         "series={ stiffness = \"2.24 MN/m\", damping = 500, travel = \"5.5 mm\", progression = 0.2 }";
     let output = answer(SERIES, &[spring], &[], &Request::Verify { proof: false, on_machine: false });
-    assert!(output.text.contains("series.progression is counted for small motions"), "{}", output.text);
+    assert!(output.text().contains("series.progression is counted for small motions"), "{}", output.text());
     let output = answer(SERIES, &[], &[], &Request::Linearize { sweep: None });
     assert!(
-        output.text.contains("series.damping and series.mass are counted in the plant"),
+        output.text().contains("series.damping and series.mass are counted in the plant"),
         "{}",
-        output.text
+        output.text()
     );
 }
 

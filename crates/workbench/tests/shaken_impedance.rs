@@ -8,8 +8,8 @@ use std::f64::consts::TAU;
 
 use crate::shaken_load::{SENSOR, WAVES, apart, loaded, of_machine, response};
 use num_complex::Complex64;
-use phea_workbench::rig::Rig;
-use phea_workbench::setup::Setup;
+use phea_workbench::engineering::rig::Rig;
+use phea_workbench::engineering::setup::Setup;
 
 const GENTLE: &str = "controller.numerator=0.0004*s + 0.0032";
 const SPRUNG: &str =

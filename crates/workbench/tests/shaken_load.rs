@@ -12,10 +12,10 @@ use num_complex::Complex64;
 use phea_dynamics::portable::exp_complex;
 use phea_dynamics::simulation::Status;
 use phea_qft::closed_loop::{Compensation, MemberResponse};
+use phea_workbench::engineering::rig::Rig;
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::simulate_project;
 use phea_workbench::project::{self, Project};
-use phea_workbench::rig::Rig;
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::simulate_project;
 use phea_workbench::source::Memory;
 
 const BENCHMARK: &str = include_str!("../../../examples/benchmark/closed_loop.toml");

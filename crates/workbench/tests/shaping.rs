@@ -11,8 +11,9 @@ use phea_dynamics::controller::Timing;
 use phea_dynamics::linear::Discretization;
 use phea_qft::manual_shaping::{ElementPattern, WantedPoint, pass_through};
 use phea_workbench::command::{CommandError, Request};
+use phea_workbench::engineering::shaping::{Change, RequestedChange, Shaped};
 use phea_workbench::project::{self, DeclaredElement, ElementKind, Loaded};
-use phea_workbench::shaping::{Change, RequestedChange, Shaped, pass_words};
+use phea_workbench::shaping::pass_words;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 

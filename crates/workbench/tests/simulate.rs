@@ -5,9 +5,9 @@
 use crate::answer_schema::parsed;
 use phea_hydraulics::signal::Signal;
 use phea_workbench::command::{self, Request};
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{Cause, ScenarioRun, SimulateError, simulate_project};
 use phea_workbench::project::{self, Loaded, Project};
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{Cause, ScenarioRun, SimulateError, simulate_project};
 use phea_workbench::source::{HeldFiles, Memory};
 use serde_json::Value;
 use std::fmt::Write as _;
@@ -382,7 +382,12 @@ fn a_long_scenario_reports_its_sample_interval() {
         let json: Value = parsed(&answer.json);
         let found = json["scenarios"][0]["sample_interval_s"].as_f64().unwrap();
         assert!((found / interval_s - 1.0).abs() < 1e-9, "{found}");
-        assert_eq!(answer.text.contains("is drawn from samples every 5.00 ms only"), long, "{}", answer.text);
+        assert_eq!(
+            answer.text().contains("is drawn from samples every 5.00 ms only"),
+            long,
+            "{}",
+            answer.text()
+        );
     }
 }
 
@@ -404,11 +409,12 @@ fn projects_are_compared_side_by_side() {
     let names: Vec<&str> = answer.files.iter().map(|file| file.name.as_str()).collect();
     assert_eq!(names.len(), 3, "{names:?}");
     assert!(names.contains(&"compare-1.svg") && names.contains(&"compare-1-event-2.svg"), "{names:?}");
-    assert!(answer.text.contains("disturbance peak"), "{}", answer.text);
-    assert!(answer.text.contains("settling (1 %, 2 %)"), "{}", answer.text);
-    let overloads: Vec<&str> = answer.text.lines().filter(|line| line.contains("is overloaded")).collect();
-    assert!(overloads.len() == 1 && overloads[0].starts_with("   B: from 2."), "{}", answer.text);
-    assert!(overloads[0].contains("its capacity is 3 kN"), "{}", answer.text);
+    assert!(answer.text().contains("disturbance peak"), "{}", answer.text());
+    assert!(answer.text().contains("settling (1 %, 2 %)"), "{}", answer.text());
+    let text = answer.text();
+    let overloads: Vec<&str> = text.lines().filter(|line| line.contains("is overloaded")).collect();
+    assert!(overloads.len() == 1 && overloads[0].starts_with("   B: from 2."), "{}", answer.text());
+    assert!(overloads[0].contains("its capacity is 3 kN"), "{}", answer.text());
 }
 
 /// Peaks of the force deviation for a load that moves by 5 mm as a first-order lag, for hose and

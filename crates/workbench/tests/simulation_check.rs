@@ -5,9 +5,11 @@
 use crate::answer_schema::parsed;
 use phea_hydraulics::signal::Signal;
 use phea_workbench::command::{self, Request, SimulateRequest};
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{
+    Metric, RunStatus, ScenarioRun, simulate_checked, simulate_project,
+};
 use phea_workbench::project::{self, Loaded};
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{Metric, RunStatus, ScenarioRun, simulate_checked, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -88,7 +90,7 @@ fn an_answer_contains_the_check_if_requested() {
         let answer = command::answer(&Memory::default(), &load(settings), &[], request).unwrap();
         assert!(answer.affirmative);
         let json: Value = parsed(&answer.json);
-        (json["scenarios"][0].clone(), answer.text)
+        (json["scenarios"][0].clone(), answer.text())
     };
     let doubt = "more than a thousandth";
     let (plain, text) = run(&[SHORT], &Request::Simulate(Default::default()));
@@ -133,7 +135,7 @@ fn a_run_reports_where_errors_may_be_visible() {
             command::answer(&Memory::default(), &load(settings), &[], &Request::Simulate(Default::default()))
                 .unwrap();
         let json: Value = parsed(&answer.json);
-        (json["scenarios"][0].clone(), answer.text)
+        (json["scenarios"][0].clone(), answer.text())
     };
     let words = "errors within the tolerance may become visible";
     let (calm, text) = run(&[SHORT]);

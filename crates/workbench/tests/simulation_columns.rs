@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
 use phea_hydraulics::signal::Signal;
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{Record, simulate_project};
 use phea_workbench::project;
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{Record, simulate_project};
 use phea_workbench::source::Memory;
 
 const BENCHMARK: &str = include_str!("../../../examples/simulation/benchmark.toml");

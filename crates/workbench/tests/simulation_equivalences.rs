@@ -14,11 +14,11 @@ use phea_dynamics::simulation::{
 };
 use phea_hydraulics::machine::{Machine, MachineOptions};
 use phea_machine::{Control, Watcher};
-use phea_workbench::linearize::linearize;
+use phea_workbench::engineering::linearize::linearize;
+use phea_workbench::engineering::rig::Rig;
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{Cause, Metrics, ScenarioRun, simulate_project};
 use phea_workbench::project::{self, Project};
-use phea_workbench::rig::Rig;
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{Cause, Metrics, ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
 
 const BENCHMARK: &str = include_str!("../../../examples/benchmark/closed_loop.toml");

@@ -8,9 +8,9 @@ use phea_hydraulics::signal::Signal;
 use std::fmt::Write as _;
 
 use phea_workbench::command::{self, Request, SimulateRequest};
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{ScenarioRun, SimulateError, Unmeasured, simulate_project};
 use phea_workbench::project;
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{ScenarioRun, SimulateError, Unmeasured, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -83,7 +83,7 @@ fn the_comparison_is_in_text_json_and_a_figure() {
     let (source, loaded) = rig(MAPPED, content);
     let request = Request::Simulate(SimulateRequest { figures: true, ..SimulateRequest::default() });
     let answer = command::answer(&source, &loaded, &[], &request).unwrap();
-    assert!(answer.text.contains("NRMSE") && answer.text.contains("bench.csv `F`"), "{}", answer.text);
+    assert!(answer.text().contains("NRMSE") && answer.text().contains("bench.csv `F`"), "{}", answer.text());
     let json: Value = parsed(&answer.json);
     let row = &json["scenarios"][0]["measured"][0];
     assert_eq!(

@@ -5,9 +5,9 @@
 
 use phea_dynamics::simulation::Status;
 use phea_hydraulics::signal::Signal;
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{ScenarioRun, simulate_project};
 use phea_workbench::project::{self, Loaded, Project, Refusal};
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
 
 const BENCHMARK: &str = include_str!("../../../examples/simulation/benchmark.toml");

@@ -191,7 +191,7 @@ fn no_hose_is_accepted_without_its_working_pressure() {
         );
         let size: Value = parsed(&output.json);
         let row = candidates(&size, "eaton_synflex_3130_08", "uniform")[0].clone();
-        (output.affirmative, row, output.text)
+        (output.affirmative, row, output.text())
     };
     let (affirmative, row, text) = of(&[]);
     assert!(!affirmative && row["accepted"] == false && row["rejections"] == Value::Array(vec![]), "{row}");

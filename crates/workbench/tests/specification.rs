@@ -10,11 +10,10 @@
 use num_complex::Complex64;
 use phea_dynamics::portable;
 use phea_qft::specification::{Limit, LoopResponse, RequirementOutcome, Specification};
+use phea_workbench::engineering::specification::{SpecificationError, requirements_in_time, specifications};
 use phea_workbench::project::{self, Project};
 use phea_workbench::source::Memory;
-use phea_workbench::specification::{
-    SpecificationError, requirement_sentence, requirements_in_time, specifications,
-};
+use phea_workbench::specification::requirement_sentence;
 
 fn loaded(requirements_in_time: &str) -> Project {
     let text = format!(

@@ -55,11 +55,11 @@ fn a_stopped_design_lists_its_missing_stages() {
         let is_simulated = !expected.as_array().unwrap().contains(&json!("machine"));
         assert_eq!(design["machine"].is_object(), is_simulated, "{stage}");
         assert_eq!(
-            answer.text.contains("no trial on the nonlinear rig was finished"),
+            answer.text().contains("no trial on the nonlinear rig was finished"),
             !is_simulated,
             "{stage}"
         );
-        assert_eq!(answer.text.contains("templates and bounds are not among the files"), !is_whole);
+        assert_eq!(answer.text().contains("templates and bounds are not among the files"), !is_whole);
         let files = names(&answer);
         assert!(files.contains(&"designed.toml") && files.contains(&"loop.csv"), "{files:?}");
         assert_eq!(files.contains(&"bounds.csv"), is_whole, "{files:?}");

@@ -5,7 +5,7 @@
 use crate::answer_schema::parsed;
 use crate::run_command::{HOSE, answer, try_answer};
 use phea_workbench::command::Request;
-use phea_workbench::linearize::SweepRequest;
+use phea_workbench::engineering::linearize::SweepRequest;
 use serde_json::Value;
 
 fn request(range: &str, points: Option<usize>) -> Request {
@@ -63,7 +63,7 @@ fn a_key_without_effect_on_the_plant_is_reported() {
     assert_eq!(swept["swept"]["plant_follows"], false);
     assert_eq!(rows[0]["poles"]["plant"], rows[2]["poles"]["plant"]);
     assert_ne!(rows[0]["poles"]["derived"], rows[2]["poles"]["derived"]);
-    let text = answer(HOSE, &[], &[], &request("line.length=0.5..3", None)).text;
+    let text = answer(HOSE, &[], &[], &request("line.length=0.5..3", None)).text();
     assert!(text.contains("does not follow `line.length`") && text.contains("line.length, m"), "{text}");
 }
 

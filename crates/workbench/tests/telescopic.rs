@@ -56,9 +56,9 @@ fn every_position_is_proven_to_be_stable() {
     let file = answered.files.iter().find(|file| file.name == CERTIFICATE_FILE).unwrap();
     assert!(check_certificate(&String::from_utf8(file.bytes.clone()).unwrap()).unwrap().affirmative);
     assert!(
-        answered.text.contains("only a simulation shows a motion from one stage to the next"),
+        answered.text().contains("only a simulation shows a motion from one stage to the next"),
         "{}",
-        answered.text
+        answered.text()
     );
 }
 
@@ -104,7 +104,7 @@ fn a_steady_motion_through_a_transition_is_not_proven() {
         let answered =
             answer(TELESCOPIC, settings, &[], &Request::Verify { proof: false, on_machine: false });
         let object: serde_json::Value = parsed(&answered.json);
-        (object["verdict"].clone(), answered.text)
+        (object["verdict"].clone(), answered.text())
     };
     assert_eq!(verdict(&[MIDDLE]).0, "met");
     let (moving, text) = verdict(&[MIDDLE, "operating_point.velocity=10 mm/s"]);

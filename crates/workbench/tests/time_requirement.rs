@@ -28,7 +28,7 @@ fn verify(text: &str) -> (Value, String) {
         .unwrap_or_else(|report| panic!("{report}"));
     let request = Request::Verify { proof: false, on_machine: false };
     let answer = phea_workbench::command::answer(&source, &loaded, &[], &request).unwrap();
-    (parsed(&answer.json), answer.text)
+    (parsed(&answer.json), answer.text())
 }
 
 fn lower(settling_s: f64) -> String {

@@ -103,10 +103,10 @@ fn a_run_reports_where_the_oil_column_separates() {
         &[],
         &Request::Simulate(Default::default()),
     );
-    assert!(verified.text.contains("the oil of the transmission cavitates"), "{}", verified.text);
+    assert!(verified.text().contains("the oil of the transmission cavitates"), "{}", verified.text());
     assert!(verified.json.contains("\"cavitation_transmission\""), "{}", verified.json);
     let filled = answer(TRANSMISSION, &[scenario], &[], &Request::Simulate(Default::default()));
-    assert!(!filled.text.contains("cavitates"), "{}", filled.text);
+    assert!(!filled.text().contains("cavitates"), "{}", filled.text());
     let warned = load(TRANSMISSION, &["series.filling_pressure=2 bar"], &[]).warnings;
     assert!(warned.iter().any(|one| one.message.contains("the oil tears off at a pull of")), "{warned:?}");
 }
@@ -118,7 +118,7 @@ fn cost_and_mass_are_reported() {
     // ORIGIN: analytic, 0.5 m of stroke, 0.3 m and two cylinders of 0.2 m
     near(length(&["cylinder.dead_length=0.3 m"]).unwrap(), 1.2, 1e-12);
     let unstated = length(&["cylinder.dead_length=0.3 m", PIPE]).unwrap_err();
-    assert_eq!(unstated, phea_workbench::alternatives::LengthUnknown::NoSeriesCylinderLength);
+    assert_eq!(unstated, phea_workbench::engineering::alternatives::LengthUnknown::NoSeriesCylinderLength);
     let costs = [
         "series.price=180 EUR",
         "series.cylinders_mass=3 kg",
@@ -144,11 +144,11 @@ fn cost_and_mass_are_reported() {
 fn the_reduced_models_report_their_neglected_effects() {
     let page = answer(TRANSMISSION, &["series.segments=1"], &[], &Request::Linearize { sweep: None });
     assert!(
-        page.text.contains(
+        page.text().contains(
             "inertia and resistance of the transmission are counted in the plant and its impedance alone"
         ),
         "{}",
-        page.text
+        page.text()
     );
 }
 

@@ -5,8 +5,8 @@
 use crate::answer_schema::parsed;
 use phea_hydraulics::signal::Signal;
 use phea_workbench::command::{CommandError, Request};
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{ScenarioRun, simulate_project};
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{ScenarioRun, simulate_project};
 use serde_json::Value;
 
 use super::run_command::{answer, project_of, source, try_answer};
@@ -23,7 +23,7 @@ const DESIGNED: [&str; 4] = [
 
 fn on_machine(settings: &[&str]) -> (bool, Value, String) {
     let output = answer(HOSE, settings, &[], &Request::Verify { proof: false, on_machine: true });
-    (output.affirmative, parsed(&output.json), output.text)
+    (output.affirmative, parsed(&output.json), output.text())
 }
 
 /// The run of this machine.

@@ -6,9 +6,9 @@
 use crate::answer_schema::parsed;
 use phea_hydraulics::signal::Signal;
 use phea_workbench::command::Request;
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::simulate_project;
 use phea_workbench::project;
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::simulate_project;
 use phea_workbench::source::Memory;
 
 use crate::run_command::{
@@ -150,7 +150,7 @@ fn the_gap_counts_from_the_equilibrium() {
 #[test]
 fn return_and_suction_lines_get_their_bores() {
     let sized = |text: &str| {
-        crate::run_command::answer(text, &[], &[], &Request::Size { gain: None, length: None }).text
+        crate::run_command::answer(text, &[], &[], &Request::Size { gain: None, length: None }).text()
     };
     // ORIGIN: analytic, D = sqrt(4 q/(pi v)) with 9.8 L/min at 1.2 and 0.6 m/s
     assert!(sized(HOSE).contains(

@@ -13,15 +13,15 @@ use phea_dynamics::random::{normal, stream};
 use phea_hydraulics::servovalve::STATIC_COEFFICIENTS;
 use phea_qft::family::{Family, UncertainFamily};
 use phea_qft::template::{TemplateOptions, template};
-use phea_workbench::family::{family, visited_box};
-use phea_workbench::identify::{
+use phea_workbench::engineering::family::{family, visited_box};
+use phea_workbench::engineering::identify::{
     COEFFICIENT_NAMES, Identification, JointRegion, JointRegionError, Known, Search, identify, joint_region,
     recordings, with_valve,
 };
+use phea_workbench::engineering::replaced::{replaced_ranges, template_areas};
+use phea_workbench::engineering::robust::robust_problem;
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project::{self, Project};
-use phea_workbench::replaced::{replaced_ranges, template_areas};
-use phea_workbench::robust::robust_problem;
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 /// Number of coefficients on which the plant depends.

@@ -52,7 +52,7 @@ fn is_printed_in(project: &str, unit: &str, other: &str) {
         let output = answer(project, &[], &[], &request);
         let pages = output.files.iter().filter(|file| file.name.ends_with(".html"));
         let page: String = pages.map(|file| texts(&String::from_utf8_lossy(&file.bytes))).collect();
-        let all = format!("{}\n{page}", output.text);
+        let all = format!("{}\n{page}", output.text());
         assert_eq!(places(&all, other), Vec::<String>::new(), "{name} prints {other} next to {unit}");
         let has_forces = !matches!(request, Request::Linearize { .. });
         assert_eq!(!places(&all, unit).is_empty(), has_forces, "{name} and {unit}");

@@ -12,8 +12,8 @@ use phea_hydraulics::servovalve::{
     LeakageModel, PortCircuit, STATIC_COEFFICIENTS, StaticCoefficients, Supply, TestInput, TestOutput,
     TestedValve, ValveTerms,
 };
-use phea_workbench::bench::StaticTest;
 use phea_workbench::command::{IdentifyRequest, Request, identify_watched};
+use phea_workbench::engineering::bench::StaticTest;
 use phea_workbench::project::Bench;
 use phea_workbench::source::Memory;
 

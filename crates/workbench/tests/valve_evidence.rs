@@ -43,7 +43,7 @@ fn the_wrong_model_is_reported_first() {
     let files = recorded(&[FEW_ROWS, ONE_CURVE]);
     let request = IdentifyRequest { leakage_model: Some(LeakageModel::EachEdge), ..files_of(&files) };
     let answer = try_request(&files, &request).unwrap();
-    let first = answer.text.lines().take(4).collect::<Vec<_>>().join(" ");
+    let first = answer.text().lines().take(4).collect::<Vec<_>>().join(" ");
     assert!(first.contains("one curve for the whole valve (`one_curve`) rather than"), "{first}");
     assert!(first.contains("leakage_model = \"each_edge\"`, against the recordings"), "{first}");
     let found: Value = parsed(&answer.json);
@@ -77,7 +77,7 @@ fn undecided_recordings_are_reported() {
     let coarse = ["bench.flow_meter.minimum=\"3 L/min\"", "bench.pressure_noise=\"2 bar\"", FEW_ROWS];
     let files: Vec<_> = recorded(&coarse).into_iter().filter(|(name, _)| name == "metering.csv").collect();
     let answer = try_request(&files, &files_of(&files)).unwrap();
-    assert!(answer.text.contains("The recordings do not decide"), "{}", answer.text);
+    assert!(answer.text().contains("The recordings do not decide"), "{}", answer.text());
     let found: Value = parsed(&answer.json);
     assert_eq!(found["leakage_model_preferred"], Value::Null);
     assert_eq!(found["leakage_model"], "each_edge");
@@ -124,7 +124,7 @@ fn a_valve_without_tare_flow_has_an_upper_bound_from_every_meter() {
         let found: Value = parsed(&answer.json);
         let [low, high] = interval(&found, "/tare_flow_m3_per_s").unwrap_or_else(|| panic!("{meter:?}"));
         assert!(low == 0.0 && high < most, "{meter:?}: {low} {high}");
-        assert!(answer.text.contains("These may be zero: tare_flow, at most"), "{}", answer.text);
+        assert!(answer.text().contains("These may be zero: tare_flow, at most"), "{}", answer.text());
         let fragment = String::from_utf8(answer.files[0].bytes.clone()).unwrap();
         assert!(fragment.contains("# 95 %: at most"), "{fragment}");
         assert_eq!(found["leakage_model"], "each_edge");
@@ -160,7 +160,7 @@ fn a_possibly_absent_hysteresis_is_a_comment() {
     let answer = try_request(&files, &files_of(&files)).unwrap();
     let fragment = String::from_utf8(answer.files[0].bytes.clone()).unwrap();
     assert!(fragment.contains("# hysteresis: at most"), "{fragment}");
-    assert!(answer.text.contains("These may be zero: hysteresis"), "{}", answer.text);
+    assert!(answer.text().contains("These may be zero: hysteresis"), "{}", answer.text());
 }
 
 /// Methods for an interval agree if the model is right.
@@ -169,7 +169,7 @@ fn the_bootstrap_agrees_with_the_linearised_intervals() {
     let files = recorded(&[FEW_ROWS]);
     let request = IdentifyRequest { bootstrap: 100, ..files_of(&files) };
     let answer = try_request(&files, &request).unwrap();
-    assert!(answer.text.contains("Bootstrap: 100 repetitions"), "{}", answer.text);
+    assert!(answer.text().contains("Bootstrap: 100 repetitions"), "{}", answer.text());
     let found: Value = parsed(&answer.json);
     assert_eq!((&found["bootstrap"]["repetitions"], &found["bootstrap"]["failed"]), (&100.into(), &0.into()));
     for (path, _) in TRUTH {

@@ -8,8 +8,8 @@ use phea_workbench::project::{self, Loaded, sha256};
 use phea_workbench::source::{Memory, Source as _};
 use serde_json::Value;
 
-const IDENTIFIED: &str = include_str!("../../../examples/ybitu/identified.toml");
-const RECORDED: [(&str, &str); 4] = [
+pub(crate) const IDENTIFIED: &str = include_str!("../../../examples/ybitu/identified.toml");
+pub(crate) const RECORDED: [(&str, &str); 4] = [
     ("recorded/leakage.csv", include_str!("../../../examples/ybitu/recorded/leakage.csv")),
     ("recorded/metering.csv", include_str!("../../../examples/ybitu/recorded/metering.csv")),
     (
@@ -20,19 +20,19 @@ const RECORDED: [(&str, &str); 4] = [
 ];
 
 /// The project with this number of its recordings.
-fn source(text: &str, files: usize) -> Memory {
+pub(crate) fn source(text: &str, files: usize) -> Memory {
     let all = RECORDED.iter().take(files);
     all.fold(Memory::default().with("rig.toml", text), |source, (name, text)| source.with(name, *text))
 }
 
-fn read(source: &Memory, settings: &[&str]) -> Loaded {
+pub(crate) fn read(source: &Memory, settings: &[&str]) -> Loaded {
     let settings: Vec<String> = settings.iter().map(ToString::to_string).collect();
     project::read(source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"))
 }
 
 fn refusal(source: &Memory, settings: &[&str]) -> String {
     match command::answer(source, &read(source, settings), &[], &Request::Check) {
-        Ok(answer) => panic!("{}", answer.text),
+        Ok(answer) => panic!("{}", answer.text()),
         Err(error) => error.to_string(),
     }
 }
@@ -47,9 +47,9 @@ fn the_bench_reports_the_declared_valve() {
     };
     let answer = check_of(&[quick]);
     assert!(
-        answer.text.trim_start().starts_with("The valve under test is the declared one"),
+        answer.text().trim_start().starts_with("The valve under test is the declared one"),
         "{}",
-        answer.text
+        answer.text()
     );
     assert!(answer.json.contains("\"remarks\""), "{}", answer.json);
     assert!(!check_of(&[quick, "identify.use=nothing"]).json.contains("\"remarks\""));
@@ -76,7 +76,7 @@ fn every_identified_number_is_the_true_one_of_the_bench() {
         let middle = 0.5 * (low + high);
         assert!((truth - middle).abs() < 1.5 * (high - low), "{path}: {truth} and {low} to {high}");
     }
-    assert!(answer.text.contains("The valve as identified from its recordings"), "{}", answer.text);
+    assert!(answer.text().contains("The valve as identified from its recordings"), "{}", answer.text());
     // cat rig.toml recorded/... | sha256sum
     let together = RECORDED.iter().fold(IDENTIFIED.to_string(), |all, (_, text)| all + text);
     assert_eq!(json["project_sha256"], sha256(together.as_bytes()).as_str());
@@ -101,7 +101,7 @@ fn the_tare_flow_has_its_pressure() {
     let at_seventy = tare["value"].as_f64().unwrap() * (70e5 / pressure).sqrt();
     assert!((at_seventy / 7.55e-6 - 1.0).abs() < 5e-3, "{at_seventy}");
     let words = "`valve.tare_flow` is that at 206.8 bar from supply to tank.";
-    assert!(answer.text.contains(words), "{}", answer.text);
+    assert!(answer.text().contains(words), "{}", answer.text());
 }
 
 /// Port pressures determine only ratios of the coefficients: the command rejects them and names the

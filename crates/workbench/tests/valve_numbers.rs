@@ -259,16 +259,20 @@ fn the_numbers_of_a_valve_with_lap_state_their_command() {
         of_lap["flow_pressure_coefficient"].is_null() && proportional["flow_pressure_coefficient"].is_f64()
     );
     for words in ["flow gain beyond the lap K_qU, positive command", "between 300 mV and 1.5 V from null"] {
-        assert!(with.text.contains(words), "{words} is not in\n{}", with.text);
+        assert!(with.text().contains(words), "{words} is not in\n{}", with.text());
     }
-    assert!(!with.text.contains("at null K_qU") && !with.text.contains("at null K_c  "), "{}", with.text);
-    assert!(without.text.contains("flow gain at null K_qU, positive command"), "{}", without.text);
+    assert!(
+        !with.text().contains("at null K_qU") && !with.text().contains("at null K_c  "),
+        "{}",
+        with.text()
+    );
+    assert!(without.text().contains("flow gain at null K_qU, positive command"), "{}", without.text());
 }
 
 /// The numbers are printed with their equations and the published values.
 #[test]
 fn the_table_is_next_to_the_published_numbers() {
-    let text = identified(&MEASURED).text;
+    let text = identified(&MEASURED).text();
     for words in ["Numbers of section 5.2", "tare flow in the leakage at null", "2.488e-9", "42.6 to 65.0 %"]
     {
         assert!(text.contains(words), "{words} is not in\n{text}");

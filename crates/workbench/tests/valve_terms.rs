@@ -103,10 +103,10 @@ fn laps_that_differ_within_a_pair_are_reported() {
     let found: Value = parsed(&answer.json);
     assert!(!found["misfits"].as_array().unwrap().is_empty(), "{}", found["signals"]);
     assert!(taken(&found).contains(&"lap"), "{}", found["terms"]);
-    assert!(answer.text.contains("the laps of the two differ"), "{}", answer.text);
+    assert!(answer.text().contains("the laps of the two differ"), "{}", answer.text());
     // equal laps are explained, and no others are mentioned
     let alike = try_request(&lapped, &files_of(&lapped)).unwrap_or_else(|error| panic!("{error}"));
-    assert!(!alike.text.contains("the laps of the two differ"), "{}", alike.text);
+    assert!(!alike.text().contains("the laps of the two differ"), "{}", alike.text());
 }
 
 /// Lap and saturation together are both found, whichever is taken first.

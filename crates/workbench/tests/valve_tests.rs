@@ -61,7 +61,7 @@ fn ideal_instruments_show_the_closed_forms() {
 #[test]
 fn with_a_small_pump_the_pressure_falls_and_a_meter_stalls() {
     let found = tested(&["bench.pump_flow=\"9.8 L/min\"", "bench.flow_meter.minimum=\"3 L/min\""]);
-    assert!(found.text.contains("The pump does not keep 70 bar"));
+    assert!(found.text().contains("The pump does not keep 70 bar"));
     let flow = column(&found, "metering.csv", "flow_l_per_min");
     assert!(most(&flow) < 9.8 - 0.2);
     assert!(flow.iter().all(|flow| *flow == 0.0 || *flow > 2.5), "noise aside, nothing between");

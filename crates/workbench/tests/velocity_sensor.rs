@@ -5,12 +5,13 @@
 
 use crate::answer_schema::parsed;
 use phea_hydraulics::signal::Signal;
-use phea_workbench::audit::{ProjectAudit, audit_project, noise_sentence};
-use phea_workbench::campaign::{Effort, Plan};
+use phea_workbench::audit::noise_sentence;
 use phea_workbench::command::{self, Request};
+use phea_workbench::engineering::audit::{ProjectAudit, audit_project};
+use phea_workbench::engineering::campaign::{Effort, Plan};
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::{ScenarioRun, simulate_project};
 use phea_workbench::project::{self, Loaded, Project};
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 

@@ -7,8 +7,9 @@
 use crate::answer_schema::parsed;
 use crate::run_command::{self, HOSE, answer, json, try_answer};
 use phea_workbench::command::{CommandError, Progress, Request, answer_into};
-use phea_workbench::plant_names::{PlantNames, plant_text};
-use phea_workbench::shaping::Shaped;
+use phea_workbench::engineering::plant_names::PlantNames;
+use phea_workbench::engineering::shaping::Shaped;
+use phea_workbench::plant_names::plant_text;
 use serde_json::Value;
 
 fn verify(project: &str, settings: &[&str]) -> Value {
@@ -86,7 +87,7 @@ fn unreachable_limits_are_not_reported_as_met() {
 
 #[test]
 fn the_text_begins_with_the_verdict_and_its_basis() {
-    let text = answer(HOSE, &[], &[], &Request::Verify { proof: false, on_machine: false }).text;
+    let text = answer(HOSE, &[], &[], &Request::Verify { proof: false, on_machine: false }).text();
     assert!(text.starts_with("Verdict: violated\n"));
     for words in ["11.89", "at the design frequencies alone it would have passed", "a search is not a proof"]
     {
@@ -115,7 +116,7 @@ fn a_neglected_feed_forward_is_reported() {
             let warnings = object["warnings"].as_array().unwrap();
             let of_it = warnings.iter().filter(|warning| warning.as_str().unwrap().contains(words));
             assert_eq!(
-                (output.text.contains(words), of_it.count()),
+                (output.text().contains(words), of_it.count()),
                 (is_reported, usize::from(is_reported)),
                 "{}",
                 request.name()
@@ -197,8 +198,8 @@ fn a_loop_around_an_unstable_plant_states_how_far_its_gain_may_fall() {
     let object: Value = parsed(&output.json);
     // ORIGIN: analytic, 20 log10(1/8)
     close(&object["gain_reduction_db"], -18.0618, 1e-5);
-    assert!(output.text.contains("becomes unstable where that falls by 18.1 dB"), "{}", output.text);
+    assert!(output.text().contains("becomes unstable where that falls by 18.1 dB"), "{}", output.text());
     let output = answer(INTEGRATOR, &[], &[], &request);
-    assert!(!output.text.contains("needs its gain"), "{}", output.text);
+    assert!(!output.text().contains("needs its gain"), "{}", output.text());
     assert_eq!(verify(INTEGRATOR, &[])["gain_reduction_db"], "-inf");
 }

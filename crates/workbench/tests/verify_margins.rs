@@ -7,8 +7,9 @@ use crate::answer_schema::parsed;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::run_command::{HOSE, answer, json};
-use phea_workbench::audit::{Crossovers, above_one_again_words, crossover_words};
+use phea_workbench::audit::above_one_again_words;
 use phea_workbench::command::Request;
+use phea_workbench::engineering::audit::Crossovers;
 use serde_json::{Value, json as object_of};
 
 const VERIFY: Request = Request::Verify { proof: false, on_machine: false };
@@ -61,7 +62,7 @@ fn the_worst_of_a_family_of_gains_is_at_the_largest() {
     assert_eq!(margins["evidence"], "search");
     // ORIGIN: analytic, 20 log10(5 pi/4) dB and 90 deg - 0.4 rad
     for part in ["gain may grow by", "11.9 dB", "67.1 deg", "worst of the family"] {
-        assert!(output.text.contains(part), "{part} is missing in: {}", output.text);
+        assert!(output.text().contains(part), "{part} is missing in: {}", output.text());
     }
 }
 
@@ -139,10 +140,10 @@ fn a_loop_lists_the_design_limits_that_it_violates() {
     assert_eq!((&modulus["limit"], &modulus["origin"]), (&0.5.into(), &"default".into()));
     // the loop tolerates 2 ms and half a millisecond is enough
     assert!(of_key(found, "minimum_delay_margin").is_none());
-    assert!(output.text.contains("`phea design` would refuse this loop"), "{}", output.text);
+    assert!(output.text().contains("`phea design` would refuse this loop"), "{}", output.text());
     let explained =
-        output.text.contains("The bandwidth is the frequency above which |L/(1+L)| of every plant");
-    assert_eq!(explained, of_key(found, "highest_bandwidth").is_some(), "{}", output.text);
+        output.text().contains("The bandwidth is the frequency above which |L/(1+L)| of every plant");
+    assert_eq!(explained, of_key(found, "highest_bandwidth").is_some(), "{}", output.text());
     let reached = modulus["value"].as_f64().unwrap();
     for (fraction, is_below) in [(0.98, false), (1.02, true)] {
         let stated = format!("design.modulus_margin={}", fraction * reached);
@@ -167,10 +168,10 @@ fn a_loop_lists_the_design_limits_that_it_satisfies() {
         (&object_of!([]), &object_of!(["modulus_margin"]))
     );
     let sentence = "the loop keeps every limit of `[design]` that a given loop is held against, stated or by default: modulus margin";
-    assert!(output.text.contains(sentence), "{}", output.text);
-    assert!(output.text.contains("90.0 deg of lag"), "{}", output.text);
+    assert!(output.text().contains(sentence), "{}", output.text());
+    assert!(output.text().contains("90.0 deg of lag"), "{}", output.text());
     let nothing = answer(&plant, &[], &[], &VERIFY);
-    assert!(!nothing.text.contains("`[design]`"), "{}", nothing.text);
+    assert!(!nothing.text().contains("`[design]`"), "{}", nothing.text());
 }
 
 /// The noise in the command equals its value at the limit if a limit just above it is satisfied and
@@ -206,5 +207,5 @@ fn the_crossover_is_the_first_fall_through_one() {
     assert_eq!((resonance.first_rad_per_s, resonance.again_rad_per_s), (Some(4.0), None));
     assert_eq!(of(&[2.0], -1.0), Crossovers::default());
     assert_eq!(of(&[1.0, 3.0], 1.0).again_rad_per_s, Some([3.0, f64::INFINITY]));
-    assert_eq!(crossover_words(&of(&[], -1.0)), "none");
+    assert_eq!(of(&[], -1.0).first_rad_per_s, None);
 }

@@ -131,7 +131,7 @@ fn worst_plants_have_their_parameters() {
     let worst = &object["specifications"][1]["plant"];
     let flow_gain = worst["flow_gain"].as_f64().unwrap();
     assert!((3.23e-5..=5.61e-5).contains(&flow_gain), "{worst}");
-    assert!(output.text.contains("every plant by its response with lines in motion"), "{}", output.text);
+    assert!(output.text().contains("every plant by its response with lines in motion"), "{}", output.text());
 }
 
 /// A box with lines in motion is searched between its members too: no rig that is declared anywhere
@@ -150,7 +150,7 @@ fn a_box_is_searched_between_its_members() {
     let margin = |text: &str, settings: &[&str]| {
         let output = answer(text, settings, &[], &Request::Verify { proof: false, on_machine: false });
         let object: Value = parsed(&output.json);
-        assert_eq!(object["stability"]["verdict"], Value::from("met"), "{}", output.text);
+        assert_eq!(object["stability"]["verdict"], Value::from("met"), "{}", output.text());
         object["specifications"][0]["worst_margin_db"].as_f64().unwrap()
     };
     let found = margin(&text, &moving);

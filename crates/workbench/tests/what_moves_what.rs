@@ -12,11 +12,11 @@ use std::sync::Mutex;
 
 use num_complex::Complex64;
 use phea_workbench::catalogue::Catalogue;
+use phea_workbench::engineering::rig::{ResolvedParameter, Rig};
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::ControlledMachine;
+use phea_workbench::engineering::sizing::{Question, size, sizing_problem};
 use phea_workbench::project::{self, KeyEntry, LINEAR_PARAMETERS, Loaded, Project};
-use phea_workbench::rig::{ResolvedParameter, Rig};
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::ControlledMachine;
-use phea_workbench::sizing::{Question, size, sizing_problem};
 use phea_workbench::source::Memory;
 
 use linear::linear_parameters_follow_from_what_is_listed;

@@ -8,8 +8,8 @@ use phea_dynamics::spectrum::Transform;
 use phea_hydraulics::line::friction_factor;
 use phea_hydraulics::signal::Signal;
 use phea_workbench::command::Request;
-use phea_workbench::setup::Setup;
-use phea_workbench::simulate::simulate_project;
+use phea_workbench::engineering::setup::Setup;
+use phea_workbench::engineering::simulate::simulate_project;
 use phea_workbench::source::Memory;
 
 use super::run_command::{json, project_of};

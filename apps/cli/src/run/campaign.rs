@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use phea_workbench::answer::Answer;
-use phea_workbench::campaign::{Effort, RequestedRuns, RowStore, Shard};
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, Request};
+use phea_workbench::engineering::campaign::{Effort, RequestedRuns, RowStore, Shard};
 use phea_workbench::source::Destination;
 
 use super::{FileSystem, failed, load, refused, reject_replaced_inputs};

@@ -3,12 +3,12 @@
 mod columns;
 mod front;
 
+use phea_engineering::alternatives::{Alternatives, JudgedAlternative, JudgedCase, MovedRange};
 use phea_qft::verification::Verdict;
 
 use super::document::first_warnings;
 use super::findings::{findings, of_case};
 use super::words::judge_error_words;
-use super::{Alternatives, JudgedAlternative, JudgedCase, MovedRange};
 use crate::answer::{Answer, OrReason};
 use crate::design::{self, DesignAnswer};
 use crate::trial::{self, TrialAnswer};

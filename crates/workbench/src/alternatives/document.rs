@@ -1,18 +1,19 @@
 //! Alternatives for people: a summary, the findings, then the table of all numbers.
 
+use phea_engineering::alternatives::{
+    AlternativeColumn, AlternativeColumns, Alternatives, ColumnKey, ColumnPart, JudgedAlternative, NoNumber,
+};
+use phea_engineering::linearize::PortView;
+use phea_engineering::rig::OutsideParameter;
+use phea_engineering::simulate::ScenarioRun;
+
 use super::findings::findings;
 use super::front;
 use super::summary::{self, machine, motion_of};
 use super::words::{NOT_STATED, column_name, is_unstated, no_number_words};
-use super::{
-    AlternativeColumn, AlternativeColumns, Alternatives, ColumnKey, ColumnPart, JudgedAlternative, NoNumber,
-};
 use crate::caveat::outside_parameters;
 use crate::document::{Cell, Document, Table};
-use crate::linearize::PortView;
-use crate::quantity::{DisplayUnit, significant};
-use crate::rig::OutsideParameter;
-use crate::simulate::ScenarioRun;
+use crate::quantity::DisplayUnit;
 use crate::specification::subject_words;
 use phea_qft::verification::Verdict;
 
@@ -39,6 +40,9 @@ pub(crate) fn document(found: &Alternatives) -> Document {
     out.table(table(found).in_parts_of(PART));
     out
 }
+
+/// Digits of a number that is printed as it is, such as an order.
+pub(super) const WHOLE: usize = 17;
 
 /// Number of alternatives side by side on the paper.
 const PART: usize = 6;
@@ -93,10 +97,12 @@ fn table(found: &Alternatives) -> Table {
         }
         let settling = summary::settling(found.judged.iter(), |run| is_of(run, &part));
         for key in keys {
-            let name =
-                if key == ColumnKey::SettlingTime { settling.as_str() } else { column_name(key, motion) };
+            let name = match key {
+                ColumnKey::SettlingTime => settling.clone(),
+                key => column_name(key, motion).into(),
+            };
             let cells = all.iter().map(|columns| cell(columns, &part, key));
-            rows.row(std::iter::once(Cell::from(name)).chain(cells));
+            rows.row(std::iter::once(name).chain(cells));
         }
         if part == ColumnPart::Rig && has_rig {
             rows.row(words("passive, open loop", found, |one| port(one, false)));
@@ -144,12 +150,12 @@ pub(super) fn port(one: &JudgedAlternative, closed: bool) -> Cell {
     match (report.passive, report.bands.first(), report.bands.len()) {
         (true, ..) => "yes".into(),
         (false, Some(band), 1) => {
-            let [from, to] =
-                [band.from_rad_per_s, band.to_rad_per_s].map(|end| DisplayUnit::HERTZ.number(end, 3));
-            format!("not in {from} to {to} Hz").into()
+            let from = Cell::number_in(band.from_rad_per_s, 3, DisplayUnit::HERTZ);
+            let to = Cell::quantity(band.to_rad_per_s, 3, DisplayUnit::HERTZ);
+            from.between("not in ", " to ").then(to)
         }
         (false, None, _) => "no".into(),
-        (false, Some(_), bands) => format!("not in {bands} bands").into(),
+        (false, Some(_), bands) => Cell::count(bands).between("not in ", " bands"),
     }
 }
 
@@ -193,7 +199,7 @@ fn cell(columns: &AlternativeColumns, part: &ColumnPart, key: ColumnKey) -> Cell
     let Some(column) = at(columns, part, key) else { return Cell::Missing };
     match &column.value {
         Ok(value) if key == ColumnKey::WorstMargin => Cell::margin(*value),
-        Ok(value) if column.digits == 0 => value.to_string().into(),
+        Ok(value) if column.digits == 0 => Cell::short(*value, WHOLE, DisplayUnit::ONE),
         Ok(value) => Cell::quantity(*value, column.digits, column.unit),
         // the table of its part lists what is missing
         Err(reason @ NoNumber::Parts(_)) if is_unstated(reason) => no_number_words(reason).into(),
@@ -202,12 +208,14 @@ fn cell(columns: &AlternativeColumns, part: &ColumnPart, key: ColumnKey) -> Cell
     }
 }
 
-fn group(part: &ColumnPart) -> String {
+fn group(part: &ColumnPart) -> Cell {
     match part {
-        ColumnPart::Loop => "loop".to_string(),
-        ColumnPart::Rig => "rig".to_string(),
-        ColumnPart::Impedance(frequency) => format!("|Z| at {} rad/s", significant(*frequency, 4)),
-        ColumnPart::Specification(index, name) => format!("{} {}", index + 1, subject_words(*name)),
-        ColumnPart::Scenario(name) => name.clone(),
+        ColumnPart::Loop => "loop".into(),
+        ColumnPart::Rig => "rig".into(),
+        ColumnPart::Impedance(frequency) => {
+            Cell::from("|Z| at ").then(Cell::quantity(*frequency, 4, DisplayUnit::RADIAN_PER_SECOND))
+        }
+        ColumnPart::Specification(index, name) => Cell::count(index + 1).then(" ").then(subject_words(*name)),
+        ColumnPart::Scenario(name) => Cell::Code(name.clone()),
     }
 }

@@ -1,18 +1,20 @@
 //! The files of `alternatives`: the table, each designed project, and the forces laid over each
 //! other.
 
-use phea_engineering::simulate::file_names;
+use phea_engineering::alternatives::{
+    AlternativeColumns, Alternatives, ColumnKey, ColumnPart, JudgedAlternative,
+};
+use phea_engineering::linearize::frequency_grid;
+use phea_engineering::simulate::{ScenarioRun, file_names};
 
 use super::document::{at, parts, port, stable};
 use super::front;
 use super::summary::{groups, machine, motion_of};
-use super::{AlternativeColumns, Alternatives, ColumnKey, ColumnPart, JudgedAlternative};
 use crate::answer::{Csv, OutputFile, picture_files, quoted};
 use crate::document::capital;
 use crate::figure::{Figure, FrequencySeries, ImpedanceDiagram, Words};
-use crate::linearize::frequency_grid;
 use crate::project::{IdentifiedUse, Project, print};
-use crate::simulate::{ScenarioRun, laid_over};
+use crate::simulate::laid_over;
 use crate::specification::subject_words;
 
 /// Returns all files.

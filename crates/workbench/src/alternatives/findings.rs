@@ -1,21 +1,23 @@
 //! Findings on the columns, in sentences that are read in a minute: specifications that are met,
 //! contradictions by the machine, the best values, dominance, and the costs of each alternative.
 
+use phea_engineering::alternatives::{
+    AlternativeColumns, Alternatives, ColumnKey, ComparedMeasure, ComparedMeasures, JudgedAlternative,
+    JudgedCase, MovedRange,
+};
+use phea_engineering::simulate::{ScenarioRun, required_of_run};
+use phea_engineering::trial::Agreement;
 use phea_qft::design::ControllerChoice;
 use phea_qft::design::DesignStatus;
 
 use super::words::{judge_error_words, measure_name};
-use super::{
-    AlternativeColumns, Alternatives, ColumnKey, ComparedMeasure, ComparedMeasures, JudgedAlternative,
-    JudgedCase, MovedRange,
-};
 use crate::caveat;
 use crate::design::verdict_sentence;
 use crate::grouped::grouped;
 use crate::project::{AS_DECLARED, ImpedanceForm, LINEAR_PARAMETERS};
 use crate::quantity::{DisplayUnit, MotionKind, MotionWords, fitting, significant};
-use crate::simulate::{ScenarioRun, required_of_run, requirement_sentence};
-use crate::trial::{Agreement, finding_words, run_name};
+use crate::simulate::requirement_sentence;
+use crate::trial::{finding_words, run_name};
 
 /// Findings for the declared load, and then for each load case.
 pub(crate) fn findings(found: &Alternatives) -> Vec<String> {

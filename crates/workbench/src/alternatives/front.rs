@@ -2,8 +2,10 @@
 
 use std::borrow::Cow;
 
+use phea_engineering::alternatives::{ColumnKey, ColumnSense, Front, FrontPoint, FrontValue, NoFrontValue};
+
+use super::document::WHOLE;
 use super::words::{column_name, no_front_value_words};
-use super::{ColumnKey, ColumnSense, Front, FrontPoint, FrontValue, NoFrontValue};
 use crate::answer::{Csv, OutputFile, quoted};
 use crate::document::{Cell, Table};
 use crate::figure::{Figure, FrontPlace, ParetoCurve, ParetoFront, ParetoPoint, Words};
@@ -25,17 +27,17 @@ pub(super) fn table(front: &Front) -> Table {
             (Err(_), _) => "not known".into(),
         };
         let value = |value: &Result<FrontValue, NoFrontValue>| match value {
-            Ok(found) if found.digits == 0 => found.value.to_string().into(),
+            Ok(found) if found.digits == 0 => Cell::short(found.value, WHOLE, DisplayUnit::ONE),
             Ok(found) => Cell::quantity(found.value, found.digits, found.unit),
             Err(_) => Cell::Missing,
         };
         let place = match (point.is_on_front(), point.dominated_by.first()) {
-            (true, _) => "yes".to_string(),
-            (false, Some(first)) => format!("dominated by {}", named(front, *first)),
-            (false, None) => "-".to_string(),
+            (true, _) => "yes".into(),
+            (false, Some(first)) => Cell::from("dominated by ").then(named(front, *first)),
+            (false, None) => Cell::Missing,
         };
-        let own = [point.alternative.clone().into(), front.unit.number(point.value, 4).into(), feasible];
-        rows.row(own.into_iter().chain(point.values.iter().map(value)).chain([place.into()]));
+        let own = [point.alternative.clone().into(), Cell::number_in(point.value, 4, front.unit), feasible];
+        rows.row(own.into_iter().chain(point.values.iter().map(value)).chain([place]));
     }
     rows
 }
@@ -51,13 +53,18 @@ fn column_words(front: &Front, index: usize) -> Cow<'_, str> {
     }
 }
 
-/// A point in words, by its index.
-fn named(front: &Front, place: usize) -> String {
-    front.points.get(place).map_or(String::new(), |point| name_of(front, point))
+/// A point by its index.
+fn named(front: &Front, place: usize) -> Cell {
+    front.points.get(place).map_or_else(Cell::empty, |point| point_cell(front, point))
+}
+
+fn point_cell(front: &Front, point: &FrontPoint) -> Cell {
+    let value = Cell::quantity(point.value, 4, front.unit);
+    Cell::Code(point.alternative.clone()).then(" at ").then(value)
 }
 
 fn name_of(front: &Front, point: &FrontPoint) -> String {
-    format!("{} at {}", point.alternative, front.unit.text(point.value, 4))
+    point_cell(front, point).text()
 }
 
 /// Sentences on the front from its best end in the first column to the other, each step with its

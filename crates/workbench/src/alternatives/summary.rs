@@ -1,10 +1,13 @@
 //! A row for each alternative, under the declared load and under each load case: the numbers needed
 //! for a decision, before the table of all numbers.
 
-use super::{AlternativeColumns, Alternatives, ColumnKey, JudgedAlternative};
+use phea_engineering::alternatives::{AlternativeColumns, Alternatives, ColumnKey, JudgedAlternative};
+use phea_engineering::simulate::ScenarioRun;
+
+use super::document::WHOLE;
 use crate::document::{Cell, Table};
-use crate::quantity::{MotionKind, significant};
-use crate::simulate::{ScenarioRun, settling_within};
+use crate::quantity::{DisplayUnit, MotionKind};
+use crate::simulate::settling_cell;
 use crate::verdict_words::agreement_word;
 
 /// Name of the group of the project's declared load, if there are load cases too.
@@ -37,7 +40,7 @@ pub(super) fn table(found: &Alternatives) -> Table {
     let shown = shown(all.iter().flatten());
     let settling = settling(groups.iter().flat_map(|(_, judged)| judged.iter()), |_| true);
     let words = shown.iter().map(|(key, words)| match *key {
-        ColumnKey::SettlingTime => settling.clone(),
+        ColumnKey::SettlingTime => settling.text(),
         _ => (*words).to_string(),
     });
     let headings = ["alternative", "specifications", "nonlinear simulation"].map(String::from);
@@ -63,11 +66,11 @@ pub(super) fn table(found: &Alternatives) -> Table {
 pub(super) fn settling<'a>(
     all: impl Iterator<Item = &'a JudgedAlternative>,
     counts: impl Fn(&ScenarioRun) -> bool,
-) -> String {
+) -> Cell {
     let runs = all.filter_map(|one| one.runs.as_ref().ok()).flatten().filter(|run| counts(run));
     let metrics = runs.flat_map(|run| &run.windows).map(|(_, metrics)| metrics);
     let settled = metrics.filter(|metrics| metrics.settling_time_s.is_ok());
-    settling_within(settled.map(|metrics| metrics.settling_band_percent))
+    settling_cell(settled.map(|metrics| metrics.settling_band_percent))
 }
 
 /// The declared load and the load cases, each with its alternatives.
@@ -86,7 +89,7 @@ fn shown<'c>(all: impl Iterator<Item = &'c AlternativeColumns> + Clone) -> Vec<(
 fn number(columns: &AlternativeColumns, key: ColumnKey) -> Cell {
     let (Some(value), Some(column)) = (columns.worst(key), columns.first(key)) else { return Cell::Missing };
     match column.digits {
-        0 => value.to_string().into(),
+        0 => Cell::short(value, WHOLE, DisplayUnit::ONE),
         digits => Cell::quantity(value, digits, column.unit),
     }
 }
@@ -98,7 +101,8 @@ fn specifications(one: &JudgedAlternative) -> Cell {
     match (one.feasible(), relaxation) {
         (Some(true), _) => Cell::from("met").marked(true),
         (Some(false), Some(relaxation)) => {
-            Cell::from(format!("missed by {} dB", significant(relaxation, 2))).marked(false)
+            let by = Cell::quantity(relaxation, 2, DisplayUnit::DECIBEL);
+            Cell::from("missed by ").then(by).marked(false)
         }
         (Some(false), None) => Cell::from("missed").marked(false),
         (None, _) => "not known".into(),

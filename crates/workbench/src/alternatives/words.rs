@@ -1,14 +1,16 @@
 //! The names of the columns of alternatives, and why there are no numbers in them.
 
-use super::{
+use phea_engineering::alternatives::{
     ColumnKey, FeasibilityUnknown, JudgeError, JudgedAlternative, LengthUnknown, NoFrontValue, NoNumber,
 };
+use phea_engineering::parts::{PartKind, PartsUnknown, UnstatedPart};
+use phea_engineering::simulate::RunStatus;
+
 use crate::design::verdict_sentence;
 use crate::error::design_error_words;
 use crate::linearize::no_closed_impedance_words;
 use crate::quantity::MotionKind;
-use crate::simulate::{RunStatus, unmeasured_words};
-use phea_engineering::parts::{PartKind, PartsUnknown, UnstatedPart};
+use crate::simulate::unmeasured_words;
 
 /// The name of a column for people.
 pub(super) fn column_name(key: ColumnKey, motion: MotionKind) -> &'static str {

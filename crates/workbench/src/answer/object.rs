@@ -5,7 +5,9 @@ use std::borrow::Cow;
 use num_complex::Complex64;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-use crate::plant_names::{ADDED, NamedPlant, NamedValue};
+use phea_engineering::plant_names::{NamedPlant, NamedValue};
+
+use crate::plant_names::ADDED;
 use crate::quantity::{MotionKind, QuantityName};
 
 /// A value of JSON. Infinity, which JSON lacks, is printed as the text `inf`, NaN as `null`.

@@ -140,7 +140,6 @@ impl Definitions {
             ValueShape::Count => kind("integer").with("minimum", 0_u32),
             ValueShape::Integer => kind("integer"),
             ValueShape::Text => kind("string"),
-            ValueShape::Open => kind("object"),
             ValueShape::Number => self.known("Number", number),
             ValueShape::Complex => self.known("Complex", complex),
             ValueShape::Plant => self.known("Plant", plant),

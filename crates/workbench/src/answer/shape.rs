@@ -27,8 +27,6 @@ pub(crate) enum ValueShape {
     Nullable(Box<ValueShape>),
     Either(EitherShape),
     Object(ObjectShape),
-    /// Object that is not described.
-    Open,
 }
 
 /// The words of an enumeration.

@@ -2,10 +2,11 @@
 
 use num_complex::Complex64;
 
+use phea_engineering::plant_names::NamedPlant;
+
 use super::describe::Describe;
-use super::object::{Json, Object};
+use super::object::Json;
 use super::shape::ValueShape;
-use crate::plant_names::NamedPlant;
 use crate::quantity::QuantityName;
 
 macro_rules! describe {
@@ -36,7 +37,6 @@ describe! {
     &str => Text,
     String => Text,
     QuantityName => Text,
-    Object => Open,
 }
 
 impl<Value: Describe> Describe for Box<Value> {

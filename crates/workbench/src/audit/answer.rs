@@ -4,18 +4,18 @@ mod noise;
 mod specification;
 mod stability;
 
+use phea_engineering::audit::{PrefilterGain, ProjectAudit};
 use phea_engineering::limit_kind::DesignLimitKind;
+use phea_engineering::plant_names::NamedPlant;
+use phea_engineering::specification::kind_key;
 use phea_qft::verification::{Evidence, Verdict};
 
 use super::below_design::{self, ExceededLimitAnswer};
 use super::margins::{self, AuditMarginsAnswer};
-use super::{PrefilterGain, ProjectAudit};
 use crate::answer::{Answer, Body, Csv, OrReason, OutputFile, envelope};
 use crate::caveat;
-use crate::plant_names::NamedPlant;
 use crate::project::Loaded;
 use crate::quantity::{LENGTH, QuantityName};
-use crate::specification::kind_key;
 use noise::{PressureNoiseAnswer, VelocityNoiseAnswer, pressure_noise, velocity_noise};
 use specification::{AuditedSpecification, in_file_order};
 use stability::{AuditProofAnswer, StabilityAnswer, proof, stability};

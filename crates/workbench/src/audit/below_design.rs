@@ -1,13 +1,13 @@
 //! Limits of a design that a given loop satisfies or exceeds, in words and in JSON.
 
+use phea_engineering::audit::ProjectAudit;
 use phea_engineering::limit_kind::{DesignLimitKind, ExceededLimit, JudgedLimits, LimitOrigin, limit_key};
 use phea_qft::verification::Verdict;
 
-use super::ProjectAudit;
 use crate::answer::{Answer, Keyed};
 use crate::document::{Cell, Document, Table};
 use crate::limit_kind::{LimitKeys, LimitValueKeys, in_limit_unit, limit_words, origin_words};
-use crate::quantity::{DisplayUnit, significant};
+use crate::quantity::DisplayUnit;
 
 /// A table of the limits that the loop exceeds, with their meaning, or a statement that it
 /// satisfies all; empty if none was judged.
@@ -26,12 +26,12 @@ pub(super) fn document(view: &ProjectAudit) -> Document {
     }
     let row = |one: &ExceededLimit| {
         let least = matches!(one.kind, DesignLimitKind::ModulusMargin | DesignLimitKind::MinimumDelayMargin);
-        let limit = format!("at {} {}", if least { "least" } else { "most" }, words(one.kind, one.limit));
+        let limit = Cell::from(if least { "at least " } else { "at most " }).then(cell(one.kind, one.limit));
         [
             Cell::from(limit_words(one.kind)),
             Cell::Code(format!("design.{}", limit_key(one.kind))),
-            words(one.kind, one.reached).into(),
-            limit.into(),
+            cell(one.kind, one.reached),
+            limit,
             origin_words(one.origin).into(),
         ]
     };
@@ -52,21 +52,21 @@ pub(super) fn document(view: &ProjectAudit) -> Document {
 }
 
 /// The value of a limit with its unit.
-fn words(kind: DesignLimitKind, value: f64) -> String {
+fn cell(kind: DesignLimitKind, value: f64) -> Cell {
     match kind {
         DesignLimitKind::NoiseToCommand => {
-            format!("{} % of the nominal voltage", significant(100.0 * value, 3))
+            Cell::quantity(value, 3, DisplayUnit::PERCENT).then(" of the nominal voltage")
         }
-        DesignLimitKind::HighestBandwidth if value.is_infinite() => "no end of it".to_string(),
+        DesignLimitKind::HighestBandwidth if value.is_infinite() => "no end of it".into(),
         DesignLimitKind::HighestBandwidth | DesignLimitKind::FastestPole => {
-            format!("{} rad/s", significant(value, 3))
+            Cell::quantity(value, 3, DisplayUnit::RADIAN_PER_SECOND)
         }
-        DesignLimitKind::MinimumDelayMargin => DisplayUnit::MILLISECOND.text(value, 3),
+        DesignLimitKind::MinimumDelayMargin => Cell::quantity(value, 3, DisplayUnit::MILLISECOND),
         DesignLimitKind::ModulusMargin
         | DesignLimitKind::PoleDampingRatio
         | DesignLimitKind::PrefilterGain
         | DesignLimitKind::CommandOfSteps
-        | DesignLimitKind::RequiredStep => significant(value, 3),
+        | DesignLimitKind::RequiredStep => Cell::number(value, 3),
     }
 }
 

@@ -5,15 +5,15 @@ mod comparison;
 mod layout;
 
 use phea_dynamics::portable;
+use phea_engineering::audit::ProjectAudit;
+use phea_engineering::robust::RobustProblem;
+use phea_engineering::specification::closed_loop_key;
 use phea_qft::proof::{Certificate, CertificateSide, Claim, LimitedLoop, Rejection, check};
 
-use super::ProjectAudit;
 use crate::answer::{Answer, Body, OutputFile, SCHEMA, VERSION};
 use crate::document::Document;
 use crate::project::Loaded;
 use crate::quantity::MotionKind;
-use crate::robust::RobustProblem;
-use crate::specification::closed_loop_key;
 pub use layout::CertificateError;
 use layout::File;
 
@@ -154,7 +154,7 @@ fn answer(
         reason: rejected.map(|(_, reason)| reason.to_string()),
     };
     Answer {
-        text: out.text(),
+        document: out,
         json: body.into_object().print(MotionKind::default()),
         files: vec![],
         affirmative: rejected.is_none() && is_of_project,

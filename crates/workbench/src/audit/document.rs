@@ -1,6 +1,9 @@
 //! An audit for people.
 
 use phea_dynamics::portable;
+use phea_engineering::audit::{DelayedPaths, ProjectAudit};
+use phea_engineering::robust::DEFAULT_TOLERANCE_DB;
+use phea_engineering::trial::Trial;
 use phea_qft::proof::{ClaimStatus, Proof};
 use phea_qft::verification::{SpecificationFinding, SpecificationMargin, Verdict};
 
@@ -9,16 +12,15 @@ use super::proven::{status_word, why_not_proven};
 use super::remark::remark_sentences;
 use super::stability::{infinity_sentence, stability_sentence};
 use super::words::{closed_loop_symbol, evidence_sentence, finding_sentence, place_words, worst_at_design};
-use super::{DelayedPaths, ProjectAudit, below_design, in_time, margins, noise_sentence};
+use super::{below_design, in_time, margins, noise_sentence};
 use crate::caveat;
 use crate::document::{Cell, Document, Table};
 use crate::figure::Figure;
 use crate::grouped::grouped;
 use crate::plant_names::plant_cells;
 use crate::quantity::{DisplayUnit, significant};
-use crate::robust::DEFAULT_TOLERANCE_DB;
-use crate::specification::{name_words, numbered};
-use crate::trial::{self, Trial};
+use crate::specification::{name_words, numbered, numbered_cell};
+use crate::trial;
 use crate::verdict_words::verdict_words;
 
 /// The tables and sentences of `verify` for people, with the trial on the machine if there is one.
@@ -161,10 +163,10 @@ pub(crate) fn proven(view: &ProjectAudit, title: &str) -> Document {
         let is_allowed =
             own.claim_status == ClaimStatus::Proven && own.most_db.is_some_and(|most_db| most_db > 0.0);
         let most: Cell = match is_allowed {
-            true => most.then(Cell::from(allowed_words(view.audit.tolerance_db))),
+            true => most.then(allowed(view.audit.tolerance_db)),
             false => most,
         };
-        rows.row([numbered(view.named(index)).into(), word(&own.claim_status), least, most]);
+        rows.row([numbered_cell(view.named(index)), word(&own.claim_status), least, most]);
     }
     out.section(title, rows);
     out.sentences(not_proven(view, proof));
@@ -175,9 +177,9 @@ pub(crate) fn proven(view: &ProjectAudit, title: &str) -> Document {
     out
 }
 
-/// Words for the tolerance up to which a closed loop is proven to satisfy its limit, dB.
-fn allowed_words(tolerance_db: f64) -> String {
-    format!(", within the {tolerance_db} dB allowed")
+/// The tolerance up to which a closed loop is proven to satisfy its limit, dB.
+fn allowed(tolerance_db: f64) -> Cell {
+    Cell::short(tolerance_db, 4, DisplayUnit::DECIBEL).between(", within the ", " allowed")
 }
 
 /// Reason why claims are neither proven nor refuted, each reason once.
@@ -202,15 +204,14 @@ fn plants(view: &ProjectAudit) -> Table {
     let names = columns.iter().map(|(name, _)| name.as_str());
     let mut rows = Table::new(std::iter::once("parameter").chain(names));
     for (index, parameter) in view.names.headings().into_iter().enumerate() {
-        let values =
-            columns.iter().map(|(_, cells)| Cell::from(cells.get(index).cloned().unwrap_or_default()));
+        let values = columns.iter().map(|(_, cells)| cells.get(index).cloned().unwrap_or_else(Cell::empty));
         rows.row(std::iter::once(Cell::Code(parameter.to_string())).chain(values));
     }
     rows
 }
 
 /// The specifications that have a worst plant, each with the values of that plant.
-fn worst_plants(view: &ProjectAudit) -> Vec<(String, Vec<String>)> {
+fn worst_plants(view: &ProjectAudit) -> Vec<(String, Vec<Cell>)> {
     let findings = view.audit.specifications.iter().enumerate();
     let of = |(index, finding): (usize, &SpecificationFinding)| {
         let worst = finding.worst.as_ref()?;
@@ -239,7 +240,7 @@ fn violations(view: &ProjectAudit) -> Table {
         for band in &finding.violations {
             let [from, to] = band.band_rad_per_s.map(Cell::frequency);
             let [margin, frequency] = margin_at(Some(&band.worst));
-            rows.row([numbered(view.named(index)).into(), from, to, margin, frequency]);
+            rows.row([numbered_cell(view.named(index)), from, to, margin, frequency]);
         }
     }
     rows

@@ -1,10 +1,11 @@
 //! The plants of an audit, their position and the loop around them, in sentences.
 
-use super::{CommonPosition, LoopDeadTime, ProjectAudit};
+use phea_engineering::audit::{CommonPosition, LoopDeadTime, ProjectAudit};
+use phea_engineering::plant_names::PlantNames;
+use phea_engineering::robust::NoPolynomials;
+
 use crate::document::capital;
-use crate::plant_names::PlantNames;
 use crate::quantity::DisplayUnit;
-use crate::robust::NoPolynomials;
 
 /// `lines in motion`
 pub(super) fn no_polynomials_words(why: NoPolynomials) -> &'static str {

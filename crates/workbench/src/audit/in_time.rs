@@ -1,8 +1,8 @@
 //! Requirements in time, and a prefilter that amplifies, in sentences.
 
+use phea_engineering::audit::{PrefilterGain, ProjectAudit, TimeFinding, TimeOutcome, Unexamined, WorstStep};
 use phea_qft::verification::Verdict;
 
-use super::{PrefilterGain, ProjectAudit, TimeFinding, TimeOutcome, Unexamined, WorstStep};
 use crate::answer::significant;
 use crate::plant_names::plant_text;
 use crate::simulate::required_words;

@@ -1,11 +1,11 @@
 //! Margins of the nominal loop, and the worst of the family, in words and in JSON.
 
+use phea_engineering::audit::{Crossovers, LoopMargin, MarginSet, NominalMargins, ProjectAudit};
+use phea_engineering::plant_names::{NamedPlant, PlantNames};
 use phea_qft::verification::{Evidence, Remark};
 
-use super::{Crossovers, LoopMargin, MarginSet, NominalMargins, ProjectAudit};
 use crate::answer::{Answer, OrReason};
 use crate::document::{Cell, Table};
-use crate::plant_names::{NamedPlant, PlantNames};
 use crate::quantity::{DisplayUnit, significant};
 
 /// Reason why the nominal loop has none.
@@ -144,16 +144,12 @@ pub(super) fn table(view: &ProjectAudit) -> Table {
 
 type PrintedMargin = (&'static str, fn(&MarginSet) -> &LoopMargin, DisplayUnit);
 
-const DECIBEL: DisplayUnit = DisplayUnit { symbol: "dB", in_si: 1.0 };
-const DEGREE: DisplayUnit = DisplayUnit { symbol: "deg", in_si: 1.0 };
-const NUMBER: DisplayUnit = DisplayUnit { symbol: "1", in_si: 1.0 };
-
 fn rows_of() -> [PrintedMargin; 5] {
     [
-        ("gain may grow by", |set| &set.gain_db, DECIBEL),
-        ("gain may fall by", |set| &set.gain_reduction_db, DECIBEL),
-        ("phase", |set| &set.phase_deg, DEGREE),
-        ("modulus, least |1 + L|", |set| &set.modulus, NUMBER),
+        ("gain may grow by", |set| &set.gain_db, DisplayUnit::DECIBEL),
+        ("gain may fall by", |set| &set.gain_reduction_db, DisplayUnit::DECIBEL),
+        ("phase", |set| &set.phase_deg, DisplayUnit::IN_DEGREES),
+        ("modulus, least |1 + L|", |set| &set.modulus, DisplayUnit::ONE),
         ("delay", |set| &set.delay_s, DisplayUnit::MILLISECOND),
     ]
 }
@@ -164,9 +160,9 @@ fn cells(margin: &LoopMargin, unit: DisplayUnit) -> [Cell; 2] {
     if margin.value.is_infinite() {
         return ["no limit".into(), Cell::Missing];
     }
-    let mut value = Cell::quantity(margin.value.abs(), 3, unit);
-    if unit == DEGREE {
-        value = value.then(Cell::from(if margin.value < 0.0 { " of lead" } else { " of lag" }));
+    let mut value = Cell::magnitude(margin.value, 3, unit);
+    if unit == DisplayUnit::IN_DEGREES {
+        value = value.then(if margin.value < 0.0 { " of lead" } else { " of lag" });
     }
     [value, margin.frequency_rad_per_s.map_or(Cell::Missing, Cell::frequency)]
 }
@@ -217,18 +213,23 @@ pub(super) fn reduction_sentence(margins: &NominalMargins) -> Option<String> {
 }
 
 /// `40.9 rad/s`; `none` if |L| does not fall below 1.
-pub fn crossover_words(crossovers: &Crossovers) -> String {
+pub(crate) fn crossover_cell(crossovers: &Crossovers) -> Cell {
     let first = crossovers.first_rad_per_s;
-    first.map_or("none".to_string(), |rad_per_s| format!("{} rad/s", significant(rad_per_s, 3)))
+    first.map_or("none".into(), |rad_per_s| Cell::quantity(rad_per_s, 3, DisplayUnit::RADIAN_PER_SECOND))
+}
+
+/// The range of [`above_one_again`] in words.
+pub fn above_one_again_words(crossovers: &Crossovers) -> Option<String> {
+    above_one_again(crossovers).map(|cell| cell.text())
 }
 
 /// `between 655 and 681 rad/s`, the range in which |L| is above 1 again; `None` if it remains
 /// below.
-pub fn above_one_again_words(crossovers: &Crossovers) -> Option<String> {
+pub(crate) fn above_one_again(crossovers: &Crossovers) -> Option<Cell> {
     let [low, high] = crossovers.again_rad_per_s?;
-    let low = significant(low, 3);
+    let unit = DisplayUnit::RADIAN_PER_SECOND;
     Some(match high.is_infinite() {
-        true => format!("from {low} rad/s on"),
-        false => format!("between {low} and {} rad/s", significant(high, 3)),
+        true => Cell::quantity(low, 3, unit).between("from ", " on"),
+        false => Cell::number(low, 3).between("between ", " and ").then(Cell::quantity(high, 3, unit)),
     })
 }

@@ -1,8 +1,8 @@
 //! Proven claims, and the reasons why others are not, in words.
 
+use phea_engineering::audit::ProjectAudit;
 use phea_qft::proof::{ClaimStatus, NotProven, Proof, ProofRegion};
 
-use super::ProjectAudit;
 use super::words::rounded;
 
 /// The outcome of a claim, in a word.

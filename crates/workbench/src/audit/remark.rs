@@ -1,9 +1,10 @@
 //! The omissions of the verdict on a specification, in words.
 
+use phea_engineering::plant_names::PlantNames;
 use phea_qft::verification::{PlantPoint, Remark, SpecificationFinding};
 
 use super::words::rounded;
-use crate::plant_names::{PlantNames, plant_text};
+use crate::plant_names::plant_text;
 
 /// The remarks of a finding, each a sentence.
 pub(super) fn remark_sentences(finding: &SpecificationFinding, names: &PlantNames) -> Vec<String> {

@@ -1,12 +1,13 @@
 //! The effect of the noise of the signals that a controller reads in addition to the force, in a
 //! sentence.
 
+use phea_engineering::audit::{NoisySignal, SignalNoise, UnknownNoiseEffect};
+use phea_engineering::plant_names::PlantNames;
 use phea_qft::design::quantization::QuantizationError;
 use phea_qft::verification::PlantPoint;
 
 use super::family_and_loop::no_polynomials_words;
-use super::{NoisySignal, SignalNoise, UnknownNoiseEffect};
-use crate::plant_names::{PlantNames, plant_text};
+use crate::plant_names::plant_text;
 use crate::quantity::{PRESSURE, VELOCITY, display, significant};
 
 /// The noise and its largest effects, or the reason why these are not known.

@@ -1,12 +1,13 @@
 //! Stability in words: the finding, the method, and the reason if it is undecided.
 
+use phea_engineering::plant_names::PlantNames;
 use phea_qft::stability::{Instability, Irresolution};
 use phea_qft::verification::{
     ClosestApproach, Evidence, SearchedInfinity, StabilityFinding, StabilityMethod, StabilityReason, Verdict,
 };
 
 use super::words::rounded;
-use crate::plant_names::{PlantNames, plant_text};
+use crate::plant_names::plant_text;
 use crate::quantity::significant;
 
 /// Sentence on the stability of the family and its evidence.

@@ -1,10 +1,10 @@
 //! Evidence, requirements and findings in words.
 
 use phea_dynamics::portable;
+use phea_engineering::audit::{LimitSide, ProjectAudit, ReachedLimit};
 use phea_qft::specification::{ClosedLoop, Requirement};
 use phea_qft::verification::{Evidence, SpecificationFinding, SpecificationMargin, Verdict};
 
-use super::{LimitSide, ProjectAudit, ReachedLimit};
 use crate::answer::words;
 use crate::quantity::{RATIO, display, significant};
 use crate::verdict_words::{frequency_words, margin_words};

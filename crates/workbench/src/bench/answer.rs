@@ -1,11 +1,13 @@
 //! The answer of `bench`, and the tables of its tests.
 
+use phea_engineering::bench::{BenchRow, BenchRun, BenchSeries, FrictionRun, ReversalReading};
+use phea_engineering::estimate::Estimate;
+use phea_engineering::line_test::LineRun;
+
+use super::friction;
 use super::line::{LineTestTableAnswer, line_test};
 use super::table::{BenchColumn, BenchRecordAnswer, BenchTable};
-use super::{BenchRow, BenchRun, BenchSeries, FrictionRun, ReversalReading, friction};
 use crate::answer::{Answer, OutputFile};
-use crate::estimate::Estimate;
-use crate::line_test::LineRun;
 use crate::quantity::DisplayUnit;
 
 /// What a test records.

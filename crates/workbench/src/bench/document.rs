@@ -1,11 +1,13 @@
 //! The tests of the bench for people.
 
+use phea_engineering::bench::{BenchRun, BenchSeries, FrictionRun, ReversalReading};
+use phea_engineering::estimate::Estimate;
+use phea_engineering::line_test::LineRun;
+
 use super::answer::recorded;
-use super::{BenchRun, BenchSeries, FrictionRun, ReversalReading, friction, line};
+use super::{friction, line};
 use crate::answer::significant;
 use crate::document::Document;
-use crate::estimate::Estimate;
-use crate::line_test::LineRun;
 use crate::project::Loaded;
 use crate::quantity::{PRESSURE, display};
 

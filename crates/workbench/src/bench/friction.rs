@@ -1,7 +1,8 @@
 //! The runs of a cylinder for its friction.
 
+use phea_engineering::bench::{FrictionRow, FrictionRun, FrictionSeries};
+
 use super::table::{BenchColumn, BenchTable};
-use super::{FrictionRow, FrictionRun, FrictionSeries};
 use crate::quantity::DisplayUnit;
 
 /// The record of a run.

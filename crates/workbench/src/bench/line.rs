@@ -1,23 +1,23 @@
 //! The tests of a line: text, JSON and tables.
 
 use phea_dynamics::order::ends;
+use phea_engineering::line_test::{LineRun, LineSeries};
 
 use super::table::{BenchColumn, BenchFileAnswer, BenchTable};
 use crate::answer::{Answer, OutputFile};
-use crate::line_test::{LineRun, LineSeries};
 use crate::quantity::DisplayUnit;
 
 /// The record of a test.
 pub(super) fn recorded(run: &LineRun) -> BenchTable {
-    let litres = DisplayUnit::LITRE_PER_MINUTE;
-    let (name, quantity, unit, factor, si) = match run.series {
-        LineSeries::PressureRise => ("volume_ml", "volume displaced into the line", "mL", 1e6, "m3"),
+    let (names, unit) = match run.series {
+        LineSeries::PressureRise => {
+            (["volume_ml", "volume displaced into the line", "m3"], DisplayUnit::MILLILITRE)
+        }
         LineSeries::FrequencyResponse => {
-            ("flow_l_per_min", "flow into the line", litres.symbol, litres.of(1.0), "m3/s")
+            (["flow_l_per_min", "flow into the line", "m3/s"], DisplayUnit::LITRE_PER_MINUTE)
         }
     };
-    let printed = run.inputs.iter().map(|input| factor * input).collect();
-    let input = BenchColumn { name, quantity, unit, printed, si, values: run.inputs.clone() };
+    let input = BenchColumn::of(names, unit, run.inputs.clone());
     let names = ["pressure_bar", "pressure at the open end", "Pa"];
     let pressure = BenchColumn::of(names, DisplayUnit::BAR, run.pressures.clone());
     BenchTable {

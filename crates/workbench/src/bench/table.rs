@@ -60,7 +60,7 @@ pub(super) struct BenchColumn {
     /// Quantity, for people.
     pub(super) quantity: &'static str,
     /// Unit in the file, and the values in it.
-    pub(super) unit: &'static str,
+    pub(super) unit: DisplayUnit,
     pub(super) printed: Vec<f64>,
     /// SI unit, and the values in it.
     pub(super) si: &'static str,
@@ -75,7 +75,7 @@ impl BenchColumn {
         values: Vec<f64>,
     ) -> BenchColumn {
         let printed = values.iter().map(|value| unit.of(*value)).collect();
-        BenchColumn { name, quantity, unit: unit.symbol, printed, si, values }
+        BenchColumn { name, quantity, unit, printed, si, values }
     }
 
     /// Smallest and largest value, SI.
@@ -113,8 +113,8 @@ impl BenchTable {
     /// A section that shows the range of each column.
     pub(super) fn write_ranges(&self, digits: usize, out: &mut Document) {
         let rows = self.columns.iter().map(|column| {
-            let [least, most] = ends(column.printed.iter().copied()).map(|value| Cell::number(value, digits));
-            [Cell::from(column.quantity), least, most, Cell::from(column.unit)]
+            let [least, most] = column.range().map(|value| Cell::number_in(value, digits, column.unit));
+            [Cell::from(column.quantity), least, most, Cell::unit(column.unit.symbol)]
         });
         out.section(self.title, Table::new(["recorded", "least", "most", "unit"]).with(rows));
         let duration = display(self.duration_s(), &TIME, 4);

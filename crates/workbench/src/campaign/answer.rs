@@ -3,11 +3,13 @@
 mod requirement;
 mod spread;
 
-use super::{Draw, Plan, QUANTILES, RequestedRuns, Summary, VariedRange, WorstRun};
+use phea_engineering::campaign::{Draw, Plan, QUANTILES, RequestedRuns, Summary, VariedRange, WorstRun};
+use phea_engineering::simulate::{RunStatus, ScenarioRun};
+
 use crate::answer::{Answer, Reasoned, words};
 use crate::project::{DISTRIBUTIONS, Distribution, Loaded};
 use crate::quantity::QuantityName;
-use crate::simulate::{self, CampaignOccurrenceKind, RunStatus, ScenarioRun, ScenariosAnswer};
+use crate::simulate::{self, CampaignOccurrenceKind, ScenariosAnswer};
 use phea_hydraulics::signal::Signal;
 use requirement::{CampaignRequirementAnswer, requirement};
 use spread::{CampaignEventAnswer, CampaignLumpAnswer, events, lumps};

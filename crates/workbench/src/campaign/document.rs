@@ -1,29 +1,32 @@
 //! The output of `campaign` for people.
 
-use super::Summary;
-use super::{CampaignRequirement, FamilyBox, RequestedRuns};
-use super::{Draw, Plan};
-use super::{LUMP_NAMES, meaningful};
-use super::{QUANTILES, Spread};
+use phea_engineering::campaign::{
+    CampaignRequirement, Draw, FamilyBox, LUMP_NAMES, Plan, QUANTILES, RequestedRuns, Spread, Summary,
+    meaningful,
+};
+use phea_engineering::simulate::{Metric, RunStatus, ScenarioRun};
+
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::project::Loaded;
 use crate::quantity::{DisplayUnit, MotionKind};
-use crate::simulate::{self, Metric, RunStatus, ScenarioRun, cause_words, shown_in, status_words};
+use crate::simulate::{self, cause_cell, shown_in, status_words};
 use crate::simulate::{not_judged_words, reached_words, required_words};
 
 /// Largest number of listed runs that were rejected or stopped early.
 const LISTED: usize = 6;
 
 /// A metric in words, with its unit.
-fn metric_words(metric: Metric, plan: &Plan) -> String {
+fn metric_cell(metric: Metric, plan: &Plan) -> Cell {
+    let label = Cell::from(metric.label(plan.motion()));
     let label = match metric {
         Metric::SettlingTime => {
-            format!("{} to {} %", metric.label(plan.motion()), plan.settling_band_percent())
+            let band = Cell::short(plan.settling_band_percent(), 4, DisplayUnit::IN_PERCENT);
+            label.then(" to ").then(band)
         }
-        other => other.label(plan.motion()).to_string(),
+        _ => label,
     };
-    shown_in(metric, plan.units()).title(&label)
+    label.then(shown_in(metric, plan.units()).title(""))
 }
 
 /// A name of [`LUMP_NAMES`] as it is written in equations, with its unit.
@@ -39,7 +42,7 @@ pub(crate) fn counted(runs: usize) -> String {
 
 /// Number of driven runs that are left out of the quantiles of a metric because they have no such
 /// number; `None` if all have one.
-fn without(metric: Metric, spread: Option<Spread>, driven: usize) -> Option<String> {
+fn without(metric: Metric, spread: Option<Spread>, driven: usize) -> Option<Cell> {
     let missing = spread.map_or(driven, |spread| spread.missing);
     let words = match (metric, missing) {
         (Metric::SettlingTime, 1) => "does not settle within its window",
@@ -47,7 +50,8 @@ fn without(metric: Metric, spread: Option<Spread>, driven: usize) -> Option<Stri
         (_, 1) => "has none",
         _ => "have none",
     };
-    (missing > 0).then(|| format!("{missing} of {driven} {words}"))
+    let runs = || Cell::count(missing).between("; ", " of ").then(Cell::count(driven));
+    (missing > 0).then(|| runs().then(format!(" {words}")))
 }
 
 /// The scenarios of the project that a campaign leaves out; `None` if it has no other.
@@ -138,11 +142,10 @@ pub(crate) fn metrics(plan: &Plan, summary: &Summary) -> Table {
     let mut rows = Table::grouped_by("event", heads);
     let units = plan.units();
     for (window, spreads) in plan.windows().iter().zip(&summary.metrics) {
-        rows.group(cause_words(window, units));
+        rows.group(cause_cell(window, units));
         for metric in meaningful(window, plan.is_open_loop()) {
             let missing = without(metric, spreads[metric], summary.driven());
-            let missing = missing.map_or(String::new(), |text| format!("; {text}"));
-            let name = Cell::from(format!("{}{missing}", metric_words(metric, plan)));
+            let name = metric_cell(metric, plan).then(missing.unwrap_or_else(Cell::empty));
             rows.row(std::iter::once(name).chain(spread_cells(spreads[metric], shown_in(metric, units))));
         }
     }
@@ -153,8 +156,9 @@ pub(crate) fn metrics(plan: &Plan, summary: &Summary) -> Table {
 fn spread_cells(spread: Option<Spread>, unit: DisplayUnit) -> Vec<Cell> {
     let Some(spread) = spread else { return vec![Cell::Missing; QUANTILES.len() + 1] };
     let (value, run) = spread.worst;
-    let worst = format!("{} ({run})", significant(unit.of(value), 4)).into();
-    spread.quantiles.iter().map(|value| Cell::number(unit.of(*value), 4)).chain([worst]).collect()
+    let number = |value: f64| Cell::number_in(value, 4, unit);
+    let worst = number(value).then(" (").then(Cell::count(run as usize)).then(")");
+    spread.quantiles.iter().map(|value| number(*value)).chain([worst]).collect()
 }
 
 /// The parameters of the linear models that were visited, next to the box for which the controller
@@ -162,16 +166,16 @@ fn spread_cells(spread: Option<Spread>, unit: DisplayUnit) -> Vec<Cell> {
 pub(crate) fn lumps(plan: &Plan, summary: &Summary) -> Table {
     let row = |(index, spread): (usize, &Option<Spread>)| {
         let spread = (*spread)?;
-        let number = |value: f64| significant(value, 4);
-        let bounds =
-            plan.bounds(LUMP_NAMES[index]).map(|[low, high]| format!("{} to {}", number(low), number(high)));
+        let number = |value: f64| Cell::number(value, 4);
+        let bounds = plan.bounds(LUMP_NAMES[index]);
+        let bounds = bounds.map(|[low, high]| number(low).then(" to ").then(number(high)));
         Some([
             lump_words(index, plan.motion()).into(),
-            Cell::number(spread.extremes[0], 4),
-            Cell::number(spread.quantiles[2], 4),
-            Cell::number(spread.extremes[1], 4),
+            number(spread.extremes[0]),
+            number(spread.quantiles[2]),
+            number(spread.extremes[1]),
             bounds.into(),
-            summary.outside[index].map(|count| count.to_string()).into(),
+            summary.outside[index].map(Cell::count).into(),
         ])
     };
     Table::new(["visited", "least", "median", "greatest", "box of [uncertainty]", "runs outside"])

@@ -1,14 +1,12 @@
 //! Figures of a campaign: the bands of the force over time, with the worst run in them.
 
-use super::Plan;
-use super::QUANTILES;
-use super::Row;
-use super::Summary;
-use super::{CampaignError, Effort, Shard};
+use phea_engineering::campaign::{CampaignError, Effort, Plan, QUANTILES, Row, Shard, Summary};
+use phea_engineering::simulate::{Cause, Metric, Window};
+
 use crate::answer::{OutputFile, part_files};
 use crate::figure::{FanChart, Figure, TimeBand, TimeSeries, Words};
 use crate::over_time::measured_force;
-use crate::simulate::{Cause, Metric, Window, around, cause_words};
+use crate::simulate::{around, cause_words};
 
 /// The bands over the whole scenario, and around each event; empty if no run was driven.
 ///

@@ -3,8 +3,8 @@
 use num_complex::Complex64;
 use phea_dynamics::linear::{Discretization, MovedRoot};
 use phea_dynamics::portable;
+use phea_engineering::caveat::FeedForwardObstacle;
 
-use super::FeedForwardObstacle;
 use crate::quantity::{ANGULAR_FREQUENCY, MotionKind, display, significant};
 
 pub(super) const PRESSURE_FEEDBACK_UNMEASURED: &str = "controller.pressure_feedback is not counted, as the plants of the family were measured without it: this is the loop without \

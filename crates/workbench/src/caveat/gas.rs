@@ -1,7 +1,8 @@
 //! Effects of accumulators at the chambers.
 
-use super::CountedSettings;
-use crate::family::{NumberAt, ShutGas};
+use phea_engineering::caveat::CountedSettings;
+use phea_engineering::family::{NumberAt, ShutGas};
+
 use crate::quantity::{PRESSURE, Units, display, significant};
 
 pub(super) const NECK_LOSS: &str = "line.accumulator.neck_loss_coefficient is not counted for small motions, which the laminar resistance of the neck \

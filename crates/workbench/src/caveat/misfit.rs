@@ -1,6 +1,9 @@
 //! Identified parts whose numbers do not explain their recordings.
 
-use super::{MISFIT_BOUND, MisfitConsequence, UnexplainedKind, UnexplainedPart, unexplained_parts};
+use phea_engineering::caveat::{
+    MISFIT_BOUND, MisfitConsequence, UnexplainedKind, UnexplainedPart, unexplained_parts,
+};
+
 use crate::project::Project;
 use crate::quantity::significant;
 

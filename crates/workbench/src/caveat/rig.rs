@@ -1,11 +1,12 @@
 //! Effects of spring, load, supply and friction, and steps that the rig does not reach.
 
 use phea_engineering::caveat::{LoopWithRig, OutsideFamily};
+use phea_engineering::rig::OutsideParameter;
+use phea_engineering::specification::SpecificationName;
 use phea_hydraulics::series::MOST_SEGMENTS;
 
 use crate::quantity::{DAMPING, DisplayUnit, MotionKind, Units, display, significant};
-use crate::rig::OutsideParameter;
-use crate::specification::{SpecificationName, subject_words};
+use crate::specification::subject_words;
 
 pub(super) const TRANSMISSION_AS_SPRING: &str = "inertia and resistance of the transmission are counted in the plant and its impedance alone: the other models have \
      its oil as a spring in series with the force sensor";

@@ -1,14 +1,16 @@
 //! `alternatives`: one project with several sets of values, judged side by side.
 
+use phea_engineering::alternatives::{
+    AlternativesError, AlternativesOptions, FrontRequest, IMPEDANCE_AT, PreparedAlternative, judge, prepared,
+    prepared_cases,
+};
+use phea_engineering::linearize::SweepRequest;
+
 use super::simulate::frequencies;
 use super::unprinted::Unprinted;
 use super::{CommandError, Watch};
-use crate::alternatives::{
-    self, AlternativesError, AlternativesOptions, FrontRequest, IMPEDANCE_AT, PreparedAlternative, judge,
-    outside_words, prepared, prepared_cases,
-};
+use crate::alternatives::{self, outside_words};
 use crate::answer::Body;
-use crate::linearize::SweepRequest;
 use crate::project::{AS_DECLARED, Loaded};
 use crate::source::Source;
 

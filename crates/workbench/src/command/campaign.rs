@@ -1,16 +1,18 @@
 //! Campaigns as a command: all runs with their rows stored, or one run repeated.
 
+use phea_engineering::campaign::{CampaignError, Plan, RequestedRuns, RowStore, Summary};
+use phea_engineering::line_choice::{LoopInQuestion, with_chosen_lines};
+use phea_engineering::setup::Setup;
+use phea_engineering::simulate::{RunOutput, ScenarioRun, simulate_into};
+
 use super::unprinted::Unprinted;
 use super::{CommandError, Watch, with_recordings};
 use crate::answer::{Answer, Body, TableFormat};
-use crate::campaign::{self, CampaignError, Plan, RequestedRuns, RowStore, Summary};
+use crate::campaign;
 use crate::caveat::misfits_in_runs;
 use crate::project::{self, Loaded};
-use crate::setup::Setup;
-use crate::simulate::{self, RunOutput, ScenarioRun, simulate_into};
 use crate::source::{Destination, Source};
 use phea_dynamics::simulation::Attention;
-use phea_engineering::line_choice::{LoopInQuestion, with_chosen_lines};
 
 /// A request on the campaign that a project declares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,7 +61,7 @@ pub fn campaign_watched(
             return Ok(answer.print("campaign", std::slice::from_ref(loaded)));
         }
     };
-    let rows = campaign::campaign(&plan, wanted, ledger, watch)?;
+    let rows = phea_engineering::campaign::campaign(&plan, wanted, ledger, watch)?;
     let summary = Summary::of(&plan, &rows);
     let runs = wanted.shard.runs_of(wanted.runs);
     let complete = rows.len() as u64 == runs.end - runs.start;
@@ -101,7 +103,7 @@ fn one(
     Ok(Unprinted {
         document: campaign::run_document(&draw, &settings, &drawn, &runs),
         body: campaign::run_body((plan, &draw), settings, (&drawn, &runs), warnings.clone()).into_object(),
-        files: simulate::files(&drawn, &runs),
+        files: phea_engineering::simulate::files(&drawn, &runs),
         affirmative: runs.iter().all(ScenarioRun::is_reliable),
     }
     .with_warnings(warnings))

@@ -1,5 +1,12 @@
 //! `check`: the consequences of a project, and its errors, found before anything is run.
 
+use phea_engineering::caveat::{Caveat, caveats};
+use phea_engineering::family::{family, visited_box};
+use phea_engineering::rig::RigError;
+use phea_engineering::robust::robust_problem;
+use phea_engineering::setup::Setup;
+use phea_engineering::simulate::{foreseen, unreadable};
+use phea_engineering::specification::requirements_in_time;
 use phea_qft::family::Family;
 
 use super::CommandError;
@@ -7,17 +14,13 @@ use super::alternatives::read_alternatives;
 use super::impossible::{Impossible, ImpossibleAnswer};
 use super::unprinted::Unprinted;
 use crate::answer::{Answer, Body};
-use crate::caveat::{self, Caveat, caveats};
+use crate::caveat;
 use crate::derived::{self, DerivedAnswer, derive};
 use crate::document::Document;
-use crate::family::{family, visited_box};
 use crate::project::{LateError, Loaded, Severity, WrittenUnits, refused};
-use crate::rig::RigError;
-use crate::robust::robust_problem;
-use crate::setup::Setup;
-use crate::simulate::{foreseen, foreseen_late, unreadable};
+use crate::simulate::foreseen_late;
 use crate::source::Source;
-use crate::specification::{self, requirements_in_time};
+use crate::specification;
 
 /// Answer of `check`.
 #[derive(Answer)]

@@ -1,8 +1,10 @@
 //! `identify --of friction`: the friction that explains recorded runs of the cylinder.
 
+use phea_engineering::friction::{KnownCylinder, friction_recordings, identify_friction, recorded_runs};
+use phea_engineering::identify_error::{IdentifyError, NothingToIdentify};
+
 use crate::answer::{Answer, picture_files};
-use crate::friction::{self, KnownCylinder, friction_recordings, identify_friction, recorded_runs};
-use crate::identify_error::{IdentifyError, NothingToIdentify};
+use crate::friction;
 use crate::project::Loaded;
 use crate::source::Source;
 
@@ -41,7 +43,7 @@ pub fn friction_watched(
         files.extend(picture_files(&friction::pictures(&found)));
     }
     Ok(Answer {
-        text: friction::document(&found).text(),
+        document: friction::document(&found),
         json: friction::json(loaded, &found),
         files,
         affirmative: found.has_converged()

@@ -1,11 +1,12 @@
 //! `identify`: the valve that explains recorded tests.
 
-use crate::answer::{Answer, picture_files};
-use crate::identify::{
-    self, Known, Read, RecordedFiles, SMALLEST_EFFECT, Search, ValveFigures, identify, joint_region,
-    recorded_files, recordings,
+use phea_engineering::identify::{
+    Known, RecordedFiles, SMALLEST_EFFECT, Search, identify, joint_region, recordings,
 };
-use crate::identify_error::{IdentifyError, NothingToIdentify};
+use phea_engineering::identify_error::{IdentifyError, NothingToIdentify};
+
+use crate::answer::{Answer, picture_files};
+use crate::identify::{self, Read, ValveFigures, recorded_files};
 use crate::project::{Loaded, RecordedTest};
 use crate::source::Source;
 use phea_hydraulics::servovalve::LeakageModel;
@@ -63,7 +64,7 @@ pub fn identify_watched(
         written.extend(picture_files(&ValveFigures::of(&found).all()));
     }
     Ok(Answer {
-        text: identify::document(&found, of_thesis, &read, region.as_ref()).text(),
+        document: identify::document(&found, of_thesis, &read, region.as_ref()),
         json: identify::json(loaded, &found, &read, region.as_ref()),
         files: written,
         affirmative: found.has_converged() && found.not_identifiable.is_empty(),

@@ -1,15 +1,15 @@
 //! Requirements that no loop can satisfy, with their lines, in words and in JSON.
 
+use phea_engineering::caveat::{Caveat, UncountedEffect};
 use phea_engineering::impossible::{Impossibility, ImpossibleStep, impossibilities};
+use phea_engineering::robust::RobustProblem;
+use phea_engineering::setup::Setup;
+use phea_engineering::specification::SpecificationError;
 
 use crate::answer::Answer;
-use crate::caveat::{Caveat, UncountedEffect};
 use crate::impossible::late_of;
 use crate::project::{LateError, Loaded, refused};
-use crate::robust::RobustProblem;
-use crate::setup::Setup;
 use crate::source::Source;
-use crate::specification::SpecificationError;
 
 /// Requirement that no loop can satisfy, in JSON.
 #[derive(Answer)]

@@ -1,11 +1,13 @@
 //! `identify --of line`: the effective bulk modulus of a line from recordings.
 
+use phea_engineering::identify_error::{IdentifyError, LineFitError, NothingToIdentify};
+use phea_engineering::line_test::{KnownLine, identify_line, line_records};
+use phea_engineering::response::ResponseSettings;
+use phea_engineering::setup::Setup;
+
 use crate::answer::{Answer, picture_files};
-use crate::identify_error::{IdentifyError, LineFitError, NothingToIdentify};
-use crate::line_test::{self, KnownLine, identify_line, line_records};
+use crate::line_test;
 use crate::project::{LineSide, Loaded};
-use crate::response::ResponseSettings;
-use crate::setup::Setup;
 use crate::source::Source;
 
 use super::Watch;
@@ -53,7 +55,7 @@ pub fn line_watched(
     let pictures = picture_files(&drawn);
     let affirmative = found.effective_bulk_modulus.is_ok() || found.dynamic_bulk_modulus.is_ok();
     Ok(Answer {
-        text: line_test::document(&found).text(),
+        document: line_test::document(&found),
         json: line_test::json(loaded, &found),
         files: line_test::files(&found).into_iter().chain(pictures).collect(),
         affirmative,

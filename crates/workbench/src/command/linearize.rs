@@ -1,11 +1,13 @@
 //! `linearize`: the linear models, at one value or over a sweep.
 
+use phea_engineering::linearize::{Linearization, SweepRequest, linearize, sweep};
+use phea_engineering::setup::Setup;
+
 use super::CommandError;
 use super::unprinted::Unprinted;
 use crate::answer::{Body, picture_files};
-use crate::linearize::{self, Linearization, SweepRequest, linearize, sweep};
+use crate::linearize;
 use crate::project::Loaded;
-use crate::setup::Setup;
 use crate::source::Source;
 
 fn linearized(setup: &Setup<'_>) -> Result<Linearization, CommandError> {

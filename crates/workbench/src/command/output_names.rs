@@ -1,11 +1,12 @@
 //! Names of the files that a command may write, known before it runs.
 
+use phea_engineering::design::{DESIGNED_CERTIFICATE, DESIGNED_PROJECT, NEAREST_PROJECT};
+use phea_engineering::simulate::file_names;
+
 use crate::answer::TableFormat;
 use crate::audit::CERTIFICATE_FILE;
-use crate::design::{DESIGNED_CERTIFICATE, DESIGNED_PROJECT, NEAREST_PROJECT};
 use crate::project::{AS_DECLARED, Loaded, Project};
 use crate::shaping::SHAPED_PROJECT;
-use crate::simulate::file_names;
 
 use super::{CampaignRuns, Request};
 

@@ -1,12 +1,12 @@
 //! `identify --of response`: frequency responses from recorded signals.
 
+use phea_engineering::identify_error::{IdentifyError, NothingToIdentify};
+use phea_engineering::response::{ResponseSettings, TestController, compare_levels, members, sampled_pairs};
+use phea_engineering::setup::Setup;
+
 use crate::answer::{Answer, picture_files};
-use crate::identify_error::{IdentifyError, NothingToIdentify};
 use crate::project::{Loaded, RecordedController, RecordedResponse};
-use crate::response::{
-    self, Compared, ResponseSettings, TestController, compare_levels, members, sampled_pairs,
-};
-use crate::setup::Setup;
+use crate::response::{self, Compared};
 use crate::source::Source;
 
 use super::Watch;
@@ -76,7 +76,7 @@ pub fn response_watched(
     let pictures = picture_files(&drawn);
     let files = response::files(&found).into_iter().chain(pictures).collect();
     Ok(Answer {
-        text: response::document(&found, &comparisons).text(),
+        document: response::document(&found, &comparisons),
         json: response::json(loaded, &found, &comparisons),
         files,
         affirmative: true,

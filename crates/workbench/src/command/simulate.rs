@@ -1,5 +1,10 @@
 //! `simulate`: scenarios, or a frequency response.
 
+use phea_engineering::setup::Setup;
+use phea_engineering::simulate::{
+    FrequencyRequest, RunOutput, ScenarioRun, files, frequency_response, simulate_checked, simulate_into,
+};
+
 use super::unprinted::Unprinted;
 use super::{CommandError, Watch, positive};
 use crate::answer::{Body, OutputFile, TableFormat, picture_files};
@@ -7,11 +12,8 @@ use crate::caveat::misfits_in_runs;
 use crate::project::Loaded;
 use crate::quantity::MotionKind;
 use crate::quantity::{ANGULAR_FREQUENCY, Dimension, FORCE, VOLTAGE};
-use crate::setup::Setup;
 use crate::simulate::{
-    FrequencyRequest, RunOutput, ScenarioRun, body, document, figure_files, files, frequency_body,
-    frequency_document, frequency_files, frequency_pictures, frequency_response, simulate_checked,
-    simulate_into,
+    body, document, figure_files, frequency_body, frequency_document, frequency_files, frequency_pictures,
 };
 use crate::source::{Destination, Source};
 

@@ -34,7 +34,7 @@ impl Unprinted {
         // projects with different motions are not printed together
         let motion = projects.first().map(|loaded| loaded.project.motion()).unwrap_or_default();
         Answer {
-            text: document.text(),
+            document,
             json: envelope.and(self.body).print(motion),
             files: self.files,
             affirmative: self.affirmative,

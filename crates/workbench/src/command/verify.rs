@@ -2,24 +2,23 @@
 //! requested.
 
 use phea_dynamics::watch::{Watch, within};
+use phea_engineering::audit::{AuditedProblem, ProjectAudit, audit_problem, problem_to_audit, prove_audit};
+use phea_engineering::design::below_design;
+use phea_engineering::rig::RigError;
+use phea_engineering::robust::RobustProblem;
+use phea_engineering::setup::Setup;
+use phea_engineering::trial::{Agreement, DrivenCorners, simulated_trial};
 use phea_qft::verification::Verdict;
 
 use super::CommandError;
 use super::impossible::{Impossible, ImpossibleAnswer};
 use super::unprinted::Unprinted;
 use crate::answer::{Answer, Body};
-use crate::audit::{
-    self, AuditAnswer, AuditedProblem, CERTIFICATE_FILE, ProjectAudit, audit_problem, certificate_of,
-    problem_to_audit, prove_audit,
-};
-use crate::design::below_design;
+use crate::audit::{self, AuditAnswer, CERTIFICATE_FILE, certificate_of};
 use crate::document::Document;
 use crate::project::Loaded;
-use crate::rig::RigError;
-use crate::robust::RobustProblem;
-use crate::setup::Setup;
 use crate::source::Source;
-use crate::trial::{self, Agreement, DrivenCorners, TrialAnswer, simulated_trial};
+use crate::trial::{self, TrialAnswer};
 
 /// Answer of `verify`.
 #[derive(Answer)]

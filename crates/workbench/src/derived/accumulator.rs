@@ -1,3 +1,5 @@
+use phea_engineering::rig::{ChargedRange, Rig, charged_range};
+use phea_engineering::setup::Setup;
 use phea_hydraulics::accumulator::{Accumulator, GasBranch};
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::line::StiffeningMember;
@@ -7,8 +9,6 @@ use phea_hydraulics::stiffness::hydraulic_stiffness;
 use super::list::List;
 use crate::project::DeclaredAccumulator;
 use crate::quantity::{FORCE, STIFFNESS};
-use crate::rig::{ChargedRange, Rig, charged_range};
-use crate::setup::Setup;
 
 /// The precharge at operating temperature, and the stated one.
 fn precharge(declared: &DeclaredAccumulator, gas: &Accumulator, name: String, list: &mut List) {

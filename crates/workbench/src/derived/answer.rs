@@ -1,11 +1,13 @@
 //! The answer of `check`.
 
+use phea_engineering::family::{Extreme, VisitedRange};
+use phea_engineering::replaced::{ReplacedRange, replaced_ranges};
+use phea_engineering::specification::CheckedRequirement;
+
 use super::Derived;
 use crate::answer::{Answer, Csv, Entries, OutputFile, quoted, words};
-use crate::family::{Extreme, VisitedRange};
 use crate::project::Loaded;
-use crate::replaced::{ReplacedRange, replaced_ranges};
-use crate::specification::{CheckedRequirement, CheckedRequirementAnswer, requirement_answer};
+use crate::specification::{CheckedRequirementAnswer, requirement_answer};
 
 /// Quantities that follow from a project, and the warnings about it.
 #[derive(Answer)]

@@ -1,9 +1,9 @@
+use phea_engineering::rig::{CrossPortAtPoint, Rig, cross_port_at_point};
+use phea_engineering::setup::Setup;
 use phea_hydraulics::cross_port::{DynamicFeedback, Restrictor};
 use phea_hydraulics::port_valves::PortValveKind;
 
 use super::list::List;
-use crate::rig::{CrossPortAtPoint, Rig, cross_port_at_point};
-use crate::setup::Setup;
 
 /// Valves at the chambers.
 pub(super) fn chamber_valves(setup: &Setup<'_>, rig: &Rig, list: &mut List) {

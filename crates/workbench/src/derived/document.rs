@@ -1,11 +1,13 @@
 //! The derived quantities of a project, for people.
 
+use phea_engineering::family::{Extreme, VisitedRange};
+use phea_engineering::replaced::{ReplacedRange, replaced_ranges};
+
 use super::Derived;
 use crate::answer::significant;
 use crate::document::{Cell, Document, StatusMark, Table};
-use crate::family::{Extreme, VisitedRange};
 use crate::project::{Project, WrittenUnits};
-use crate::replaced::{ReplacedRange, replaced_ranges};
+use crate::quantity::DisplayUnit;
 
 /// Every derived quantity, and the values that the project states instead.
 pub(crate) fn document(derived: &[Derived], units: &WrittenUnits) -> Document {
@@ -35,16 +37,16 @@ pub(crate) fn document(derived: &[Derived], units: &WrittenUnits) -> Document {
 }
 
 fn cells(quantity: &Derived, units: &WrittenUnits) -> [Cell; 4] {
-    let displayed = |value: f64| units.displayed(&quantity.name, value, quantity.unit);
-    let (_, unit) = displayed(quantity.value.unwrap_or_default());
+    let (in_si, symbol) = units.unit_of(&quantity.name, quantity.value.unwrap_or_default(), quantity.unit);
+    let unit = DisplayUnit { symbol: quantity.unit, in_si };
     [
         Cell::Name {
             name: quantity.name.clone(),
             words: quantity.words.clone(),
             symbol: quantity.symbol.to_string(),
         },
-        quantity.value.map_or(Cell::Missing, |value| Cell::number(displayed(value).0, 5)),
-        Cell::unit(unit),
+        quantity.value.map_or(Cell::Missing, |value| Cell::number_in(value, 5, unit)),
+        Cell::unit(symbol),
         Cell::Equation(quantity.equation.to_string()),
     ]
 }
@@ -86,7 +88,7 @@ pub(crate) fn replaced_table(ranges: &[ReplacedRange]) -> Table {
     let row = |range: &ReplacedRange| {
         let ends = [range.stated[0], range.stated[1], range.visited[0], range.visited[1]];
         let [least, most, low, high] = ends.map(|end| Cell::number(end, 3));
-        let percent = Cell::from(format!("{} %", significant(100.0 * range.fraction, 2)));
+        let percent = Cell::quantity(range.fraction, 2, DisplayUnit::PERCENT);
         [range.symbol.into(), least, most, low, high, Cell::unit(range.unit), percent]
     };
     let headings = ["quantity", "replaced from", "to", "visited from", "to", "unit", "share visited"];

@@ -1,11 +1,11 @@
 use num_complex::Complex64;
+use phea_engineering::linearize::{HidingMass, hidden_above};
+use phea_engineering::rig::Rig;
+use phea_engineering::setup::Setup;
 use phea_hydraulics::linear::{MechanicalDamping, decompose, transfer_functions};
 
 use super::list::List;
-use crate::linearize::{HidingMass, hidden_above};
 use crate::quantity::STIFFNESS;
-use crate::rig::Rig;
-use crate::setup::Setup;
 
 /// Dynamics of the rig against its load; a quantity that belongs to the actuator itself is named so
 /// if the load can move.

@@ -1,9 +1,9 @@
+use phea_engineering::rig::{FlowLimit, Rig, largest_flow};
+use phea_engineering::setup::Setup;
 use phea_hydraulics::line::Line;
 
 use super::list::List;
 use crate::quantity::VELOCITY;
-use crate::rig::{FlowLimit, Rig, largest_flow};
-use crate::setup::Setup;
 
 /// The speed at which the flow of the pump drives the piston, for each direction if they differ.
 fn piston_speed(flow: f64, [area_a, area_b]: [f64; 2], list: &mut List) {

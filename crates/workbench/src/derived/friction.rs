@@ -1,9 +1,9 @@
+use phea_engineering::rig::Rig;
+use phea_engineering::setup::Setup;
 use phea_hydraulics::friction::Friction;
 
 use super::list::List;
 use crate::quantity::DAMPING;
-use crate::rig::Rig;
-use crate::setup::Setup;
 
 /// The viscous friction with which a LuGre model is passive.
 pub(super) fn friction(_: &Setup<'_>, rig: &Rig, list: &mut List) {

@@ -1,6 +1,7 @@
+use phea_engineering::rig::Rig;
+use phea_engineering::setup::Setup;
+
 use super::list::List;
-use crate::rig::Rig;
-use crate::setup::Setup;
 
 /// Consequences of a virtual impedance: the frequency at which its terms are equal, and the
 /// frequency at which its filter begins.

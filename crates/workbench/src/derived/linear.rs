@@ -1,7 +1,8 @@
+use phea_engineering::rig::{ParameterOrigin, Rig};
+use phea_engineering::setup::Setup;
+
 use super::list::List;
 use crate::quantity::{DAMPING, MASS, STIFFNESS};
-use crate::rig::{ParameterOrigin, Rig};
-use crate::setup::Setup;
 
 /// Equations of the flow gain and of the flow-pressure coefficient, for a cylinder and for a motor.
 pub(super) const FLOW_GAIN: &str = "K_{qU} = A_u (A_A K_{qA}/C_A + A_B K_{qB}/C_B)/K_H";

@@ -1,8 +1,8 @@
+use phea_engineering::rig::Rig;
+use phea_engineering::setup::Setup;
 use phea_hydraulics::line::{Hose, Line, StiffeningMember};
 
 use super::list::List;
-use crate::rig::Rig;
-use crate::setup::Setup;
 
 /// The modulus of the fluid, and the lines from the valve to the chambers.
 pub(super) fn lines(_: &Setup<'_>, rig: &Rig, list: &mut List) {

@@ -1,7 +1,8 @@
+use phea_engineering::linearize::{LinkagePosition, linkage_places};
+use phea_engineering::rig::{Rig, rod_end};
+use phea_engineering::setup::Setup;
+
 use super::list::List;
-use crate::linearize::{LinkagePosition, linkage_places};
-use crate::rig::{Rig, rod_end};
-use crate::setup::Setup;
 
 /// The linkage at the operating point, and over the stroke.
 pub(super) fn linkage(setup: &Setup<'_>, rig: &Rig, list: &mut List) {

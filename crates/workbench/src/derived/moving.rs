@@ -1,9 +1,9 @@
+use phea_engineering::rig::Rig;
+use phea_engineering::setup::Setup;
 use phea_hydraulics::cylinder::{Cylinder, chamber_volumes};
 
 use super::list::List;
 use crate::quantity::MotionKind;
-use crate::rig::Rig;
-use crate::setup::Setup;
 
 /// The moving part: cylinder or motor.
 pub(super) fn moving(_: &Setup<'_>, rig: &Rig, list: &mut List) {

@@ -1,9 +1,9 @@
+use phea_engineering::rig::Rig;
+use phea_engineering::setup::Setup;
 use phea_hydraulics::operating_point::Condition;
 
 use super::list::List;
 use crate::quantity::{FORCE, LENGTH, VELOCITY};
-use crate::rig::Rig;
-use crate::setup::Setup;
 
 /// The equilibrium at the operating point.
 pub(super) fn operating_point(_: &Setup<'_>, rig: &Rig, list: &mut List) {

@@ -1,8 +1,8 @@
 use phea_engineering::parts::{self, CostedPart, PartKind, PartsCounted, parts};
+use phea_engineering::rig::Rig;
+use phea_engineering::setup::Setup;
 
 use super::list::List;
-use crate::rig::Rig;
-use crate::setup::Setup;
 
 const NOT_STATED: &str = "not stated";
 const NOT_ALL: &str = "not stated for each of these parts";

@@ -1,10 +1,11 @@
+use phea_engineering::rig::{Rig, RigError};
+use phea_engineering::setup::Setup;
+
 use super::list::List;
 use super::{
     Derived, accumulator, chamber_valves, dynamics, flow, friction, impedance, linear, lines, linkage,
 };
 use super::{moving, operating_point, parts, series, sizing, stiffness, valve};
-use crate::rig::{Rig, RigError};
-use crate::setup::Setup;
 
 /// The quantities that follow from one part of a rig, or from all of them together.
 type DerivedChapter = fn(&Setup<'_>, &Rig, &mut List);

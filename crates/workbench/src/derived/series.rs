@@ -1,12 +1,13 @@
+use phea_engineering::rig::{Rig, series_coil, stall_force, waves_right_to};
+use phea_engineering::setup::Setup;
+use phea_engineering::sizing::CoilUnknown;
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use phea_hydraulics::line::{Conduit, StiffeningMember};
 use phea_hydraulics::series::{CoilPair, LEAST_ACTIVE_COILS, SeriesElement, SeriesSpring, Transmission};
 
 use super::list::List;
 use crate::project::Project;
-use crate::rig::{Rig, series_coil, stall_force, waves_right_to};
-use crate::setup::Setup;
-use crate::sizing::{CoilUnknown, coil_unknown_words};
+use crate::sizing::coil_unknown_words;
 
 /// The part between force sensor and load.
 pub(super) fn series(setup: &Setup<'_>, rig: &Rig, list: &mut List) {

@@ -1,7 +1,8 @@
+use phea_engineering::rig::Rig;
+use phea_engineering::setup::Setup;
+
 use super::linear::{FLOW_GAIN, SLOPES};
 use super::list::List;
-use crate::rig::Rig;
-use crate::setup::Setup;
 
 /// The values of the valve that `[sizing]` states, next to the derived ones.
 pub(super) fn sizing(setup: &Setup<'_>, rig: &Rig, list: &mut List) {

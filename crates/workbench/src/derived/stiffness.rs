@@ -1,10 +1,10 @@
+use phea_engineering::linearize::{stiffness_models, stroke_stiffness};
+use phea_engineering::rig::Rig;
+use phea_engineering::setup::Setup;
 use phea_hydraulics::line::{Line, StiffeningMember};
 
 use super::list::List;
-use crate::linearize::{stiffness_models, stroke_stiffness};
 use crate::quantity::{LENGTH, STIFFNESS};
-use crate::rig::Rig;
-use crate::setup::Setup;
 
 /// The stiffness of the oil over the stroke.
 pub(super) fn stiffness(_: &Setup<'_>, rig: &Rig, list: &mut List) {

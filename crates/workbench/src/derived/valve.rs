@@ -1,6 +1,8 @@
 //! The servovalve's part of the list: its edges as declared or from the data sheet, flow gains,
 //! slopes.
 
+use phea_engineering::rig::{Rig, is_ideal, reduced, two_pressures};
+use phea_engineering::setup::Setup;
 use phea_hydraulics::servovalve::{
     ChamberCoefficients, SpoolDirection, flow_coefficient_from_rating, leakage_coefficient_from_rating,
     velocity_gain,
@@ -9,8 +11,6 @@ use phea_hydraulics::two_pressure::{TwoPressureLinearParameters, TwoPressureMode
 
 use super::list::List;
 use crate::project::{self, NullLeakage, Project, RatedFlow, ValveCoefficients};
-use crate::rig::{Rig, is_ideal, reduced, two_pressures};
-use crate::setup::Setup;
 
 /// Unit of the coefficients of the edges.
 const COEFFICIENT: &str = "m3/(s.Pa^0.5)";

@@ -15,15 +15,16 @@ mod status;
 mod structures;
 
 use phea_dynamics::linear::LinearError;
+use phea_engineering::design::{DesignPart, LedBy, ProjectDesign};
+use phea_engineering::trial::Agreement;
 use phea_qft::design::{DesignStatus, Objective};
 
 use super::structures::earned_per_pole_db;
 use super::words::unusable_words;
-use super::{DesignPart, LedBy, ProjectDesign};
 use crate::answer::{Answer, OrReason, words};
 use crate::audit::{self, AuditAnswer};
 use crate::project::DESIGN_OBJECTIVES;
-use crate::trial::{self, Agreement, TrialAnswer};
+use crate::trial::{self, TrialAnswer};
 use binding::{BindingLimitAnswer, binding, conflicts};
 use explained::{ExplanationAnswer, explanations};
 pub(super) use law::factors;

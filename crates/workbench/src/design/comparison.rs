@@ -3,11 +3,11 @@
 use phea_engineering::design::AuditedController;
 use phea_qft::verification::Verdict;
 
-use crate::audit::{above_one_again_words, crossover_words};
+use crate::audit::{above_one_again, crossover_cell};
 use crate::document::Cell;
-use crate::quantity::{DisplayUnit, significant};
-use crate::specification::numbered;
-use crate::verdict_words::{margin_words, verdict_words};
+use crate::quantity::DisplayUnit;
+use crate::specification::numbered_cell;
+use crate::verdict_words::verdict_words;
 
 /// A criterion by which controllers are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,7 +29,7 @@ pub(super) enum ComparedBy {
 pub(super) struct ComparedFigure {
     pub(super) by: ComparedBy,
     /// The name of the criterion.
-    pub(super) name: String,
+    pub(super) name: Cell,
     pub(super) cell: Cell,
 }
 
@@ -43,92 +43,88 @@ pub(super) fn compared(side: &AuditedController, per: Option<&str>) -> Vec<Compa
         }
         Verdict::NotProven => verdict_words(verdict).into(),
     };
-    let mut rows = vec![ComparedFigure { by: ComparedBy::Verdict, name: "verdict".to_string(), cell }];
+    let mut rows = vec![ComparedFigure { by: ComparedBy::Verdict, name: "verdict".into(), cell }];
     rows.extend(side.view.audit.specifications.iter().enumerate().map(|(index, finding)| {
-        let margin = finding.worst.as_ref().map_or("-".to_string(), |worst| margin_words(worst.margin_db));
-        let name = format!("margin of {}", numbered(side.view.named(index)));
-        ComparedFigure { by: ComparedBy::Margin(index), name, cell: margin.into() }
+        let cell = finding.worst.as_ref().map(|worst| Cell::margin(worst.margin_db)).into();
+        let name = Cell::from("margin of ").then(numbered_cell(side.view.named(index)));
+        ComparedFigure { by: ComparedBy::Margin(index), name, cell }
     }));
-    let named = |(by, name, text): (ComparedBy, &str, String)| ComparedFigure {
-        by,
-        name: name.to_string(),
-        cell: text.into(),
-    };
+    let named = |(by, name, cell): (ComparedBy, &str, Cell)| ComparedFigure { by, name: name.into(), cell };
     rows.extend(figures(side, per).map(named));
     rows
 }
 
 /// Size and margins of a controller.
-fn figures(side: &AuditedController, per: Option<&str>) -> [(ComparedBy, &'static str, String); 8] {
+fn figures(side: &AuditedController, per: Option<&str>) -> [(ComparedBy, &'static str, Cell); 8] {
     let figures = &side.figures;
     let nominal = figures.nominal.as_ref();
-    let or_dash = |text: Option<String>| text.unwrap_or("-".to_string());
     [
         (
             ComparedBy::Order,
             "order of controller and prefilter",
-            format!("{} and {}", figures.order, figures.prefilter_order),
+            Cell::count(figures.order).then(" and ").then(Cell::count(figures.prefilter_order)),
         ),
-        (ComparedBy::HighFrequencyGain, "high-frequency gain", high_frequency_words(side, per)),
+        (ComparedBy::HighFrequencyGain, "high-frequency gain", high_frequency_gain(side, per)),
         (
             ComparedBy::Crossover,
             "crossover of the nominal loop",
-            or_dash(nominal.map(|margins| crossover_words(&margins.crossovers))),
+            nominal.map(|margins| crossover_cell(&margins.crossovers)).into(),
         ),
         (
             ComparedBy::AboveOneAgain,
             "|L| of the nominal loop above 1 again",
-            or_dash(
-                nominal.map(|margins| {
-                    above_one_again_words(&margins.crossovers).unwrap_or("nowhere".to_string())
-                }),
-            ),
+            nominal.map(|margins| above_one_again(&margins.crossovers).unwrap_or("nowhere".into())).into(),
         ),
         (
             ComparedBy::GainMargin,
             "gain margin of the nominal loop",
-            or_dash(nominal.map(|margins| limited(margins.gain_margin_db, "dB"))),
+            nominal.map(|margins| limited(margins.gain_margin_db, DisplayUnit::DECIBEL)).into(),
         ),
         (
             ComparedBy::PhaseMargin,
             "phase margin of the nominal loop",
-            or_dash(nominal.map(|margins| phase_words(side, margins.phase_margin_deg))),
+            nominal.map(|margins| phase(side, margins.phase_margin_deg)).into(),
         ),
         (
             ComparedBy::ModulusMargin,
             "modulus margin of the family",
-            or_dash(figures.modulus_margin.map(|margin| significant(margin, 3))),
+            figures.modulus_margin.map(|margin| Cell::number(margin, 3)).into(),
         ),
         (
             ComparedBy::DelayMargin,
             "delay margin of the family",
-            or_dash(figures.delay_margin_s.map(|delay| limited(DisplayUnit::MILLISECOND.of(delay), "ms"))),
+            figures.delay_margin_s.map(|delay| limited(delay, DisplayUnit::MILLISECOND)).into(),
         ),
     ]
 }
 
-fn high_frequency_words(side: &AuditedController, per: Option<&str>) -> String {
-    let gain = significant(side.figures.high_frequency_gain_db, 5);
+fn high_frequency_gain(side: &AuditedController, per: Option<&str>) -> Cell {
+    let gain = |degree: i64| gain_at_high_frequency(side.figures.high_frequency_gain_db, 5, degree, per);
     match side.is_in_z() {
-        true => format!("{}, |G| at pi/T", gain_at_high_frequency(&gain, 0, per)),
+        true => gain(0).then(", |G| at pi/T"),
         false if side.problem.compensation.sample_time_s().is_some() => {
-            let gain = gain_at_high_frequency(&gain, side.figures.relative_degree, per);
-            format!("{gain}, of the continuous law")
+            gain(side.figures.relative_degree).then(", of the continuous law")
         }
-        false => gain_at_high_frequency(&gain, side.figures.relative_degree, per),
+        false => gain(side.figures.relative_degree),
     }
 }
 
 /// `-20.6 dB re 1 V/(N s)`, the limit of s^r G for a controller of relative degree r, in dB of the
 /// unit of that limit; `-20.6 dB, s G` for a plant without units.
-pub(super) fn gain_at_high_frequency(gain_db: &str, relative_degree: i64, per: Option<&str>) -> String {
+pub(super) fn gain_at_high_frequency(
+    gain_db: f64,
+    digits: usize,
+    relative_degree: i64,
+    per: Option<&str>,
+) -> Cell {
+    let gain = Cell::quantity(gain_db, digits, DisplayUnit::DECIBEL);
     let Some(per) = per else {
         let of = match relative_degree {
             0 => String::new(),
             1 => ", s G".to_string(),
             degree => format!(", s^{degree} G"),
         };
-        return format!("{gain_db} dB{of}");
+        return gain.then(of);
     };
     let under = match relative_degree {
         0 if per.contains('.') => format!("({per})"),
@@ -136,18 +132,22 @@ pub(super) fn gain_at_high_frequency(gain_db: &str, relative_degree: i64, per: O
         1 => format!("({per} s)"),
         degree => format!("({per} s^{degree})"),
     };
-    format!("{gain_db} dB re 1 V/{under}")
+    // the reference is a part of the unit
+    gain.then(" re ").then(Cell::unit(format!("1 V/{under}")))
 }
 
 /// The least change of phase that reaches -1; a stable loop with several crossovers may be nearest
 /// to it in lead.
-fn phase_words(side: &AuditedController, phase_deg: f64) -> String {
+fn phase(side: &AuditedController, phase_deg: f64) -> Cell {
     match side.view.audit.stability.verdict {
-        Verdict::Met if phase_deg < 0.0 => format!("{}, of lead", limited(-phase_deg, "deg")),
-        _ => limited(phase_deg, "deg"),
+        Verdict::Met if phase_deg < 0.0 => {
+            Cell::magnitude(phase_deg, 3, DisplayUnit::IN_DEGREES).then(", of lead")
+        }
+        _ => limited(phase_deg, DisplayUnit::IN_DEGREES),
     }
 }
 
-fn limited(value: f64, unit: &str) -> String {
-    if value == f64::INFINITY { "unlimited".to_string() } else { format!("{} {unit}", significant(value, 3)) }
+/// A margin with its unit, which nothing may limit.
+pub(super) fn limited(value: f64, unit: DisplayUnit) -> Cell {
+    if value == f64::INFINITY { "unlimited".into() } else { Cell::quantity(value, 3, unit) }
 }

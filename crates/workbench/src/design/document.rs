@@ -1,7 +1,7 @@
 //! A design for people.
 
 use phea_dynamics::linear::{LinearError, TimeDomain, TransferFunction};
-use phea_engineering::design::LedBy;
+use phea_engineering::design::{AuditedController, Explanation, LedBy, ProjectDesign, Repair, RepairStatus};
 use phea_qft::design::quantization::CoefficientFormat;
 use phea_qft::design::{BINDING_DB, DesignRound, DesignStatus, Objective, Starts};
 use phea_qft::verification::{SpecificationMargin, Verdict};
@@ -12,8 +12,7 @@ use super::relaxed;
 use super::repair::{repair_sentences, repair_words};
 use super::rounding::rounding_sentences;
 use super::unfinished::unfinished_sentence;
-use super::words::{searched_limit_name, structure_words, unusable_words, verdict_sentence};
-use super::{AuditedController, Explanation, ProjectDesign, Repair, RepairStatus};
+use super::words::{searched_limit_cell, structure_words, unusable_words, verdict_sentence};
 use crate::answer::significant;
 use crate::audit::{self, summary};
 use crate::document::{Cell, Document, StatusMark, Table};
@@ -295,7 +294,7 @@ pub(crate) fn side_by_side(view: &ProjectDesign) -> Document {
             let own = rows.iter().find(|own| own.by == *by);
             own.map_or(Cell::Missing, |own| own.cell.clone())
         };
-        table.row(std::iter::once(name.as_str().into()).chain(columns.iter().map(|(_, rows)| cell(rows))));
+        table.row(std::iter::once(name.clone()).chain(columns.iter().map(|(_, rows)| cell(rows))));
     }
     let mut out = Document::default();
     out.heading_on_page(if view.published.is_some() {
@@ -323,9 +322,9 @@ fn limits(view: &ProjectDesign, margins: &[SpecificationMargin]) -> Table {
     let names = &view.designed.view.names;
     let mut found = Table::new(["specification", "rad/s", "margin"].into_iter().chain(names.headings()));
     for SpecificationMargin { specification, frequency_rad_per_s, margin_db, plant, .. } in margins {
-        let name = searched_limit_name(view, view.searched_limit(*specification)).into();
+        let name = searched_limit_cell(view, view.searched_limit(*specification));
         let row = [name, Cell::frequency(*frequency_rad_per_s), Cell::margin(*margin_db)];
-        found.row(row.into_iter().chain(plant_cells(names, plant).into_iter().map(Cell::from)));
+        found.row(row.into_iter().chain(plant_cells(names, plant)));
     }
     found
 }
@@ -337,7 +336,7 @@ fn rounds(view: &ProjectDesign) -> Table {
         [
             Cell::count(index + 1),
             structure_words(&round.structure).into(),
-            format!("{} dB", significant(round.objective_db, 5)).into(),
+            Cell::quantity(round.objective_db, 5, DisplayUnit::DECIBEL),
             Cell::count(round.plants),
             Cell::count(round.frequencies),
             Cell::margin(round.searched_margin_db),

@@ -1,12 +1,13 @@
 //! Limits of a design in addition to its specifications, with what it reaches.
 
-use phea_engineering::design::{CommandOfSteps, DesignLimit, DesignLimitKind, StepLimit, limit_key};
+use phea_engineering::audit::PrefilterGain;
+use phea_engineering::design::{
+    CommandOfSteps, DesignLimit, DesignLimitKind, ProjectDesign, StepLimit, limit_key,
+};
 use phea_engineering::plant_names::NamedPlant;
 use phea_engineering::simulate::ForceLimit;
 
-use super::ProjectDesign;
 use crate::answer::significant;
-use crate::audit::PrefilterGain;
 use crate::document::{Cell, Document, Table};
 use crate::limit_kind::{limit_words, origin_words};
 use crate::plant_names::plant_words;
@@ -34,7 +35,7 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
                 true => Cell::Code(format!("design.{}", limit_key(limit.kind))),
                 false => Cell::Missing,
             },
-            value_words(view, limit).into(),
+            value_cell(view, limit),
             origin_words(limit.origin).into(),
             margin_db(view, limit).map_or(Cell::Missing, Cell::margin),
             if view.binds(limit) == Some(true) { "binds" } else { "" }.into(),
@@ -138,41 +139,48 @@ pub(super) fn margin_db(view: &ProjectDesign, limit: &DesignLimit) -> Option<f64
     }
 }
 
-fn value_words(view: &ProjectDesign, limit: &DesignLimit) -> String {
+fn value_cell(view: &ProjectDesign, limit: &DesignLimit) -> Cell {
     let value = limit.value;
+    let three = |unit: DisplayUnit| Cell::quantity(value, 3, unit);
     match limit.kind {
         DesignLimitKind::NoiseToCommand => {
-            let percent = significant(100.0 * value, 3);
-            format!("{percent} % of the nominal voltage, rms, by the largest gain")
+            three(DisplayUnit::PERCENT).then(" of the nominal voltage, rms, by the largest gain")
         }
-        DesignLimitKind::ModulusMargin => format!("|1+L| at least {}", significant(value, 3)),
+        DesignLimitKind::ModulusMargin => {
+            Cell::Equation("|1+L|".to_string()).then(" at least ").then(three(DisplayUnit::ONE))
+        }
         DesignLimitKind::HighestBandwidth => {
-            format!("|L/(1+L)| at most -3 dB from {} rad/s on", significant(value, 3))
+            let loop_gain =
+                Cell::Equation("|L/(1+L)|".to_string()).then(" at most ").then(Cell::unit("-3 dB"));
+            loop_gain.then(three(DisplayUnit::RADIAN_PER_SECOND).between(" from ", " on"))
         }
         DesignLimitKind::MinimumDelayMargin => {
-            let words = |seconds: f64| DisplayUnit::MILLISECOND.text(seconds, 3);
-            let reached = match view.designed.figures.delay_margin_s {
-                Some(f64::INFINITY) => "; the family tolerates any".to_string(),
-                Some(margin_s) => format!("; the family tolerates {}", words(margin_s)),
-                None => String::new(),
-            };
-            format!("{} more{reached}", words(value))
-        }
-        DesignLimitKind::PoleDampingRatio => format!("at least {}", significant(value, 3)),
-        DesignLimitKind::FastestPole => format!("at most {} rad/s", significant(value, 3)),
-        DesignLimitKind::PrefilterGain => {
-            let reached = PrefilterGain::of_loop(&view.designed.problem.compensation).largest;
-            format!("|F| at most {}; it has {}", significant(value, 3), significant(reached, 3))
-        }
-        DesignLimitKind::CommandOfSteps => {
-            let volts = |value: f64| format!("{} V", significant(value, 3));
-            match &view.command_of_steps {
-                Some(found) => {
-                    format!("at most {}; they take {}", volts(found.limit_v), volts(found.largest_v))
-                }
-                None => format!("at most {} % of the nominal voltage", significant(100.0 * value, 3)),
+            let more = three(DisplayUnit::MILLISECOND).then(" more");
+            match view.designed.figures.delay_margin_s {
+                Some(f64::INFINITY) => more.then("; the family tolerates any"),
+                Some(margin_s) => more.then("; the family tolerates ").then(Cell::quantity(
+                    margin_s,
+                    3,
+                    DisplayUnit::MILLISECOND,
+                )),
+                None => more,
             }
         }
-        DesignLimitKind::RequiredStep => String::new(),
+        DesignLimitKind::PoleDampingRatio => Cell::from("at least ").then(three(DisplayUnit::ONE)),
+        DesignLimitKind::FastestPole => Cell::from("at most ").then(three(DisplayUnit::RADIAN_PER_SECOND)),
+        DesignLimitKind::PrefilterGain => {
+            let reached = PrefilterGain::of_loop(&view.designed.problem.compensation).largest;
+            three(DisplayUnit::ONE).between("|F| at most ", "; it has ").then(Cell::number(reached, 3))
+        }
+        DesignLimitKind::CommandOfSteps => {
+            let volts = |value: f64| Cell::quantity(value, 3, DisplayUnit::VOLT);
+            match &view.command_of_steps {
+                Some(found) => {
+                    volts(found.limit_v).between("at most ", "; they take ").then(volts(found.largest_v))
+                }
+                None => three(DisplayUnit::PERCENT).between("at most ", " of the nominal voltage"),
+            }
+        }
+        DesignLimitKind::RequiredStep => Cell::empty(),
     }
 }

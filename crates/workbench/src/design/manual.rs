@@ -5,9 +5,8 @@ use std::f64::consts::{PI, TAU};
 use phea_dynamics::controller::NamedStructure;
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::linear::Discretization;
-use phea_engineering::design::{ManualLaw, ManualPart};
+use phea_engineering::design::{ManualLaw, ManualPart, ProjectDesign};
 
-use super::ProjectDesign;
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
@@ -31,7 +30,7 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
         }
     };
     let of_gain = Gain::of(view);
-    let row = |part: &ManualPart| [Cell::from(part_name(part)), Cell::from(settings(part, of_gain))];
+    let row = |part: &ManualPart| [Cell::from(part_name(part)), settings(part, of_gain)];
     out.table(Table::new(["part", "settings"]).with(words.parts.iter().map(row)));
     out.explanation(
         "The parts act in series: PI is K_p (1 + 1/(T_i s)), PID is K_p (1 + 1/(T_i s) + T_d s/(T_f s + 1)), the standard form (ISA) with one gain for all terms; a low pass is 1/(T_f s + 1); the depth of a notch is that of its magnitude at its frequency, its width the frequency times twice the damping ratio of its poles.",
@@ -115,14 +114,17 @@ impl Gain {
         Gain { per: view.gain_per }
     }
 
-    fn text(self, name: &str, gain: f64, then: &str) -> String {
+    fn cell(self, name: &str, gain: f64, then: &str) -> Cell {
+        let in_si = self.per.map_or(1.0, |unit| 1.0 / unit.in_si);
+        let number = Cell::number_in(gain, DIGITS, DisplayUnit { symbol: "1", in_si });
+        let named = Cell::from(format!("{name} = ")).then(number);
         match self.per {
             Some(unit) => {
                 let under =
                     if unit.symbol.contains('.') { format!("({})", unit.symbol) } else { unit.symbol.into() };
-                format!("{name} = {} V/{under}{then}", significant(gain * unit.in_si, DIGITS))
+                named.then(Cell::unit(format!(" V/{under}{then}")))
             }
-            None => format!("{name} = {}", significant(gain, DIGITS)),
+            None => named,
         }
     }
 }
@@ -142,37 +144,38 @@ pub(super) fn part_name(part: &ManualPart) -> &'static str {
     }
 }
 
-fn settings(part: &ManualPart, of_gain: Gain) -> String {
-    let time = |name: &str, time_s: f64| format!("{name} = {} s", significant(time_s, DIGITS));
+fn settings(part: &ManualPart, of_gain: Gain) -> Cell {
+    let time = |name: &str, time_s: f64| {
+        Cell::from(format!("{name} = ")).then(Cell::quantity(time_s, DIGITS, DisplayUnit::SECOND))
+    };
+    let hertz = |rad_per_s: f64| Cell::quantity(rad_per_s, DIGITS, DisplayUnit::HERTZ);
     let at = |rad_per_s: f64| {
-        let [rad_per_s, hz] = [rad_per_s, rad_per_s / TAU].map(|value| significant(value, DIGITS));
-        format!("{rad_per_s} rad/s ({hz} Hz)")
+        let number = Cell::quantity(rad_per_s, DIGITS, DisplayUnit::RADIAN_PER_SECOND);
+        number.then(hertz(rad_per_s).between(" (", ")"))
     };
     match *part {
-        ManualPart::Proportional { gain } => of_gain.text("K_p", gain, ""),
-        ManualPart::Integral { gain } => of_gain.text("K_i", gain, "/s"),
+        ManualPart::Proportional { gain } => of_gain.cell("K_p", gain, ""),
+        ManualPart::Integral { gain } => of_gain.cell("K_i", gain, "/s"),
         ManualPart::ProportionalIntegral { gain, integral_time_s } => {
-            [of_gain.text("K_p", gain, ""), time("T_i", integral_time_s)].join(", ")
+            Cell::listed([of_gain.cell("K_p", gain, ""), time("T_i", integral_time_s)], ", ")
         }
         ManualPart::ProportionalIntegralDerivative {
             gain,
             integral_time_s,
             derivative_time_s,
             filter_time_s,
-        } => [
-            of_gain.text("K_p", gain, ""),
-            time("T_i", integral_time_s),
-            time("T_d", derivative_time_s),
-            time("T_f", filter_time_s),
-        ]
-        .join(", "),
-        ManualPart::LowPass { time_s } => format!("{}, {}", time("T_f", time_s), at(1.0 / time_s)),
+        } => {
+            let times =
+                [time("T_i", integral_time_s), time("T_d", derivative_time_s), time("T_f", filter_time_s)];
+            Cell::listed([of_gain.cell("K_p", gain, "")].into_iter().chain(times), ", ")
+        }
+        ManualPart::LowPass { time_s } => time("T_f", time_s).then(", ").then(at(1.0 / time_s)),
         ManualPart::SecondOrderLowPass { frequency_rad_per_s, damping_ratio } => {
-            format!("{}, damping ratio {}", at(frequency_rad_per_s), significant(damping_ratio, DIGITS))
+            at(frequency_rad_per_s).then(", damping ratio ").then(Cell::number(damping_ratio, DIGITS))
         }
         ManualPart::Lead { zero_rad_per_s, pole_rad_per_s }
         | ManualPart::Lag { zero_rad_per_s, pole_rad_per_s } => {
-            format!("zero at {}, pole at {}", at(zero_rad_per_s), at(pole_rad_per_s))
+            at(zero_rad_per_s).between("zero at ", ", pole at ").then(at(pole_rad_per_s))
         }
         ManualPart::Notch {
             frequency_rad_per_s,
@@ -180,18 +183,17 @@ fn settings(part: &ManualPart, of_gain: Gain) -> String {
             zero_damping_ratio,
             pole_damping_ratio,
         } => {
+            let depth = Cell::quantity(depth_db(part), 3, DisplayUnit::DECIBEL);
+            let width = Cell::quantity(width_hz(part), DIGITS, DisplayUnit::IN_HERTZ);
             let [zeros, poles] =
-                [zero_damping_ratio, pole_damping_ratio].map(|value| significant(value, DIGITS));
+                [zero_damping_ratio, pole_damping_ratio].map(|value| Cell::number(value, DIGITS));
             let poles_at = match frequency_rad_per_s == pole_frequency_rad_per_s {
-                true => String::new(),
-                false => format!(", its poles at {}", at(pole_frequency_rad_per_s)),
+                true => Cell::empty(),
+                false => Cell::from(", its poles at ").then(at(pole_frequency_rad_per_s)),
             };
-            format!(
-                "{} Hz, depth {} dB, width {} Hz (damping ratios {zeros} over {poles}){poles_at}",
-                significant(frequency_rad_per_s / TAU, DIGITS),
-                significant(depth_db(part), 3),
-                significant(width_hz(part), DIGITS)
-            )
+            let sizes = depth.between(", depth ", ", width ").then(width);
+            let ratios = zeros.between(" (damping ratios ", " over ").then(poles).then(")");
+            hertz(frequency_rad_per_s).then(sizes).then(ratios).then(poles_at)
         }
     }
 }

@@ -1,8 +1,7 @@
 //! The pressure feedback that a design found before its loop.
 
-use phea_engineering::design::{MissingPlants, PressureFeedbackDesign};
+use phea_engineering::design::{MissingPlants, PressureFeedbackDesign, ProjectDesign};
 
-use super::ProjectDesign;
 use crate::answer::significant;
 use crate::document::Document;
 use crate::error::design_error_words;

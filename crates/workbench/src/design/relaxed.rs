@@ -1,10 +1,11 @@
 //! The gain from relaxing each limit that binds.
 
-use phea_engineering::design::{DesignLimitKind, Gained, RELAXED_BY, RelaxedGain, RelaxedLimit};
+use phea_engineering::design::{
+    DesignLimitKind, Gained, ProjectDesign, RELAXED_BY, RelaxedGain, RelaxedLimit,
+};
 use phea_qft::design::{DesignStatus, Objective};
 use phea_qft::specification::Limit;
 
-use super::ProjectDesign;
 use crate::answer::significant;
 use crate::document::Document;
 use crate::limit_kind::limit_words;

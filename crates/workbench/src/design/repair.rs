@@ -1,12 +1,14 @@
 //! Sentences on the steps of a repair, and on the limits of what can be achieved.
 
+use phea_engineering::audit::ProjectAudit;
 use phea_engineering::design::{NEAREST_PROJECT, ProjectDesign, Repair, RepairRemedy, RepairStatus};
+use phea_engineering::trial::{Agreement, TrialRun};
 use phea_qft::verification::Verdict;
 
-use crate::audit::{ProjectAudit, stability_sentence};
+use crate::audit::stability_sentence;
 use crate::quantity::{DisplayUnit, significant};
 use crate::specification::numbered;
-use crate::trial::{Agreement, TrialRun, reason_words, run_name};
+use crate::trial::{reason_words, run_name};
 use crate::verdict_words::{agreement_word, frequency_words, margin_words};
 
 /// The outcome for people.

@@ -5,20 +5,21 @@ use phea_dynamics::frequency::decibels;
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
 use phea_dynamics::watch::Watch;
-use phea_engineering::design::DesignPart;
+use phea_engineering::design::{
+    AuditedController, DESIGNED_CERTIFICATE, DESIGNED_PROJECT, DesignPart, NEAREST_PROJECT, ProjectDesign,
+    Repair,
+};
+use phea_engineering::robust::{BoundsError, DesignFrequency, RobustProblem};
+use phea_engineering::specification::kind_key;
 use phea_qft::bound::Placement;
 
 use super::answer::factors;
 use super::words::{structure_parts, unusable_words};
-use super::{AuditedController, ProjectDesign, Repair};
-use super::{DESIGNED_CERTIFICATE, DESIGNED_PROJECT, NEAREST_PROJECT};
 use crate::answer::{Body, Csv, OutputFile};
 use crate::audit::{self, certificate_of};
 use crate::error::CommandError;
 use crate::project::{Loaded, with_laws, with_line_model, with_pressure_feedback};
 use crate::quantity::MotionKind;
-use crate::robust::{BoundsError, DesignFrequency, RobustProblem};
-use crate::specification::kind_key;
 
 /// Factors from the design frequencies to the ends of the drawn range.
 const BEYOND: [f64; 2] = [0.1, 30.0];

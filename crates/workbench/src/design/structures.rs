@@ -1,13 +1,14 @@
 //! The tested structures and the values that each reaches.
 
-use phea_engineering::design::{DesignLimitKind, LedBy, ReachedStructure, SearchedLimit, structure_key};
+use phea_engineering::design::{
+    DesignLimitKind, LedBy, ProjectDesign, ReachedStructure, SearchedLimit, structure_key,
+};
 use phea_qft::design::{ControllerChoice, Objective, StructureEnding};
 
-use super::ProjectDesign;
-use super::comparison::gain_at_high_frequency;
-use super::words::{reached_words, searched_limit_name, structure_name};
+use super::comparison::{gain_at_high_frequency, limited};
+use super::words::{reached_words, searched_limit_cell, searched_limit_name, structure_name};
 use crate::answer::significant;
-use crate::audit::{above_one_again_words, crossover_words};
+use crate::audit::{above_one_again_words, crossover_cell};
 use crate::document::{Cell, Document, Table};
 use crate::limit_kind::limit_words;
 use crate::quantity::DisplayUnit;
@@ -152,36 +153,29 @@ fn earned_sentence(view: &ProjectDesign) -> Option<String> {
 }
 
 fn row(view: &ProjectDesign, one: &ReachedStructure) -> Vec<Cell> {
-    let or_missing = |text: Option<String>| text.map_or(Cell::Missing, Cell::from);
-    let compared = one.compared_db.map(|value| compared_words(view, value));
+    let compared = one.compared_db.map(|value| compared(view, value));
     let gain = one.high_frequency_gain_db.map(|gain_db| {
         let degree = i64::from(one.relative_degree);
-        gain_at_high_frequency(&significant(gain_db, 4), degree, view.controlled_unit())
+        gain_at_high_frequency(gain_db, 4, degree, view.controlled_unit())
     });
-    let crossover = one.nominal.map(|margins| crossover_words(&margins.crossovers));
-    let delay = one.nominal.map(|margins| match margins.delay_margin_s {
-        f64::INFINITY => "unlimited".to_string(),
-        delay_s => DisplayUnit::MILLISECOND.text(delay_s, 3),
-    });
-    let [overshoot, settling] = steps(view, one);
-    let rise = requires_rise(view).then(|| {
-        let reached = one.steps.as_ref().map(|steps| steps.rise_time_s);
-        or_missing(reached.map(|time_s| time_words(time_s, "not risen")))
-    });
+    let crossover = one.nominal.map(|margins| crossover_cell(&margins.crossovers));
+    let delay = one.nominal.map(|margins| limited(margins.delay_margin_s, DisplayUnit::MILLISECOND));
+    let [overshoot, settling, rise] = steps(view, one);
+    let binding = one.binding.map(|limit| searched_limit_cell(view, limit));
     let mut cells = vec![
         reached_words(one).into(),
         Cell::count(one.order),
         ending_words(view, one).into(),
         one.least.as_ref().map_or(Cell::Missing, |least| Cell::margin(least.margin_db)),
-        or_missing(binding(view, one).or_else(|| led_words(view, one))),
-        or_missing(crossover),
-        or_missing(delay),
-        or_missing(gain),
-        or_missing(compared),
-        or_missing(overshoot),
-        or_missing(settling),
+        binding.or_else(|| led_words(view, one).map(Cell::from)).into(),
+        crossover.into(),
+        delay.into(),
+        gain.into(),
+        compared.into(),
+        overshoot.into(),
+        settling.into(),
     ];
-    cells.extend(rise);
+    cells.extend(requires_rise(view).then(|| rise.into()));
     cells
 }
 
@@ -192,36 +186,38 @@ fn requires_rise(view: &ProjectDesign) -> bool {
 }
 
 /// A time in s; infinite if the response does not settle or rise that far.
-fn time_words(time_s: f64, never: &str) -> String {
-    if time_s.is_finite() { DisplayUnit::MILLISECOND.text(time_s, 3) } else { never.to_string() }
+fn time_cell(time_s: f64, never: &str) -> Cell {
+    if time_s.is_finite() { Cell::quantity(time_s, 3, DisplayUnit::MILLISECOND) } else { never.into() }
 }
 
 /// The quantity by which structures are compared, in dB; the noise gain |G/(1+L)| has the unit of
 /// G.
-fn compared_words(view: &ProjectDesign, value_db: f64) -> String {
-    let value = significant(value_db, 4);
+fn compared(view: &ProjectDesign, value_db: f64) -> Cell {
     match view.options.objective {
-        Objective::LeastHighFrequencyGain => gain_at_high_frequency(&value, 0, view.controlled_unit()),
-        Objective::LeastBandwidth | Objective::BestWorstMargin => format!("{value} dB"),
+        Objective::LeastHighFrequencyGain => gain_at_high_frequency(value_db, 4, 0, view.controlled_unit()),
+        Objective::LeastBandwidth | Objective::BestWorstMargin => {
+            Cell::quantity(value_db, 4, DisplayUnit::DECIBEL)
+        }
     }
 }
 
-/// The worst overshoot and settling time.
-fn steps(view: &ProjectDesign, one: &ReachedStructure) -> [Option<String>; 2] {
-    let Some(reached) = reached_steps(view, one) else { return [None, None] };
-    let [overshoot, settling] = reached;
+/// The worst overshoot, settling time and rise time.
+fn steps(view: &ProjectDesign, one: &ReachedStructure) -> [Option<Cell>; 3] {
+    let [overshoot, settling, rise] = reached_steps(view, one).unwrap_or_default();
     [
-        overshoot.map(|percent| format!("{} %", significant(percent, 3))),
-        settling.map(|time_s| time_words(time_s, "not settled")),
+        overshoot.map(|percent| Cell::quantity(percent, 3, DisplayUnit::IN_PERCENT)),
+        settling.map(|time_s| time_cell(time_s, "not settled")),
+        rise.map(|time_s| time_cell(time_s, "not risen")),
     ]
 }
 
-/// Percent and s, as far as they are required.
-pub(super) fn reached_steps(view: &ProjectDesign, one: &ReachedStructure) -> Option<[Option<f64>; 2]> {
+/// Overshoot in percent, settling and rise time, as far as they are required.
+pub(super) fn reached_steps(view: &ProjectDesign, one: &ReachedStructure) -> Option<[Option<f64>; 3]> {
     let (reached, required) = (one.steps?, view.designed.view.in_time.first()?.requirement.step_limits);
     Some([
         required.overshoot_percent.map(|_| reached.overshoot_percent),
         required.settling_time_s.map(|_| reached.settling_time_s),
+        required.rise_time_s.map(|_| reached.rise_time_s),
     ])
 }
 

@@ -1,6 +1,7 @@
 //! Verdict, objective and structure of a design in words.
 
 use phea_dynamics::controller::NamedStructure;
+use phea_engineering::audit::DelayedPaths;
 use phea_engineering::design::{
     DesignVerdict, ProjectDesign, ReachedStructure, RigMiss, SearchedControllers, SearchedLimit,
     UnusableController,
@@ -9,10 +10,10 @@ use phea_qft::loop_shaping::{Structure, StructureFactor};
 
 use super::manual::part_name;
 use crate::answer::Word;
-use crate::audit::DelayedPaths;
+use crate::document::Cell;
 use crate::limit_kind::limit_words;
 use crate::quantity::{MotionKind, significant};
-use crate::specification::numbered;
+use crate::specification::numbered_cell;
 
 /// The verdict for people, with what it means.
 pub(crate) fn verdict_sentence(verdict: &DesignVerdict, motion: MotionKind) -> String {
@@ -148,9 +149,14 @@ pub(super) fn unusable_words(view: &ProjectDesign) -> Option<String> {
 
 /// The name of a limit that the search satisfies.
 pub(super) fn searched_limit_name(view: &ProjectDesign, limit: SearchedLimit) -> String {
+    searched_limit_cell(view, limit).text()
+}
+
+/// The name of a limit of a search in a cell.
+pub(super) fn searched_limit_cell(view: &ProjectDesign, limit: SearchedLimit) -> Cell {
     match limit {
-        SearchedLimit::Specification(index) => numbered(view.designed.view.named(index)),
-        SearchedLimit::Design(kind) => limit_words(kind).to_string(),
+        SearchedLimit::Specification(index) => numbered_cell(view.designed.view.named(index)),
+        SearchedLimit::Design(kind) => limit_words(kind).into(),
     }
 }
 

@@ -1,13 +1,13 @@
 //! The content of a cell of a table, with its type.
 
-use crate::verdict_words::{frequency_number, margin_words, verdict_words};
+use std::borrow::Cow;
+
 use phea_engineering::trial::Agreement;
 use phea_qft::verification::Verdict;
 
-use std::borrow::Cow;
-
-use crate::answer::significant;
-use crate::quantity::DisplayUnit;
+use super::number::{CellNumber, Digits, NumberUnit};
+use crate::quantity::{Dimension, DisplayUnit};
+use crate::verdict_words::verdict_words;
 
 /// A verdict as a form and a colour next to its word, so that no reader depends on a single one of
 /// them.
@@ -47,19 +47,6 @@ impl From<Agreement> for StatusMark {
     }
 }
 
-/// Rule for the number of digits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Precision {
-    /// This many significant digits.
-    Significant(usize),
-    /// Four significant digits without trailing zeros, as for a frequency.
-    Frequency,
-    /// A signed number, to a hundredth or a thousandth, as for a margin in dB.
-    Margin,
-    /// This number of decimal places; zero has no sign.
-    Decimal(usize),
-}
-
 /// A cell.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) enum Cell {
@@ -74,8 +61,10 @@ pub(crate) enum Cell {
     Equation(String),
     /// A unit.
     Unit(Cow<'static, str>),
-    /// A number with its unit; the unit is empty if the heading has it.
-    Quantity { value: f64, precision: Precision, unit: &'static str },
+    /// A number.
+    Number(CellNumber),
+    /// A count.
+    Count(usize),
     /// A good or bad result, with its mark.
     Status(StatusMark, Box<Cell>),
     /// A cell in bold letters.
@@ -98,38 +87,85 @@ impl Cell {
         Cell::Unit(symbol.into())
     }
 
-    /// A number with this number of significant digits.
+    /// A number in SI with this number of significant digits, the heading having its unit.
     pub(crate) fn number(value: f64, digits: usize) -> Cell {
-        Cell::Quantity { value, precision: Precision::Significant(digits), unit: "" }
+        Cell::number_in(value, digits, DisplayUnit::ONE)
+    }
+
+    /// A number, converted from SI to a unit that the heading has.
+    pub(crate) fn number_in(value: f64, digits: usize, unit: DisplayUnit) -> Cell {
+        Cell::Number(CellNumber::new(value, Digits::Significant(digits), NumberUnit::Heading(unit)))
     }
 
     /// A number with its unit, converted from SI.
     pub(crate) fn quantity(value: f64, digits: usize, unit: DisplayUnit) -> Cell {
-        let symbol = if unit.symbol == "1" { "" } else { unit.symbol };
-        Cell::Quantity { value: unit.of(value), precision: Precision::Significant(digits), unit: symbol }
+        Cell::Number(CellNumber::new(value, Digits::Significant(digits), NumberUnit::Symbol(unit)))
+    }
+
+    /// A number with its unit, converted from SI, without trailing zeros.
+    pub(crate) fn short(value: f64, digits: usize, unit: DisplayUnit) -> Cell {
+        Cell::Number(CellNumber::new(value, Digits::Shortest(digits), NumberUnit::Symbol(unit)))
+    }
+
+    /// A number in the customary unit for its size, without trailing zeros.
+    pub(crate) fn customary(value: f64, digits: usize, dimension: &'static Dimension) -> Cell {
+        Cell::Number(CellNumber::new(value, Digits::Shortest(digits), NumberUnit::Customary(dimension)))
+    }
+
+    /// A number whose sign the words next to it give.
+    pub(crate) fn magnitude(value: f64, digits: usize, unit: DisplayUnit) -> Cell {
+        Cell::Number(CellNumber::new(value, Digits::Magnitude(digits), NumberUnit::Symbol(unit)))
+    }
+
+    /// A number with its unit and this many decimal places, with its sign if it is positive too.
+    pub(crate) fn change(value: f64, places: usize, unit: DisplayUnit) -> Cell {
+        Cell::Number(CellNumber::new(value, Digits::Signed(places), NumberUnit::Symbol(unit)))
+    }
+
+    /// The number, as zero if its magnitude in SI is below this.
+    pub(crate) fn zero_below(self, least: f64) -> Cell {
+        match self {
+            Cell::Number(number) => Cell::Number(CellNumber { zero_below: least, ..number }),
+            other => other,
+        }
     }
 
     /// A frequency in rad/s, the heading having the unit.
     pub(crate) fn frequency(value: f64) -> Cell {
-        Cell::Quantity { value, precision: Precision::Frequency, unit: "" }
+        Cell::Number(CellNumber::new(value, Digits::Frequency, NumberUnit::Heading(DisplayUnit::ONE)))
     }
 
     /// A margin in dB.
     pub(crate) fn margin(value: f64) -> Cell {
-        Cell::Quantity { value, precision: Precision::Margin, unit: "" }
+        Cell::Number(CellNumber::new(value, Digits::Margin, NumberUnit::Heading(DisplayUnit::DECIBEL)))
     }
 
-    /// A number with this many decimal places; missing if it is not finite.
-    pub(crate) fn decimal(value: f64, places: usize) -> Cell {
+    /// A number with this many decimal places, converted from SI to a unit that the heading has;
+    /// missing if it is not finite.
+    pub(crate) fn decimal(value: f64, places: usize, unit: DisplayUnit) -> Cell {
         match value.is_finite() {
-            true => Cell::Quantity { value, precision: Precision::Decimal(places), unit: "" },
+            true => Cell::Number(CellNumber::new(value, Digits::Decimal(places), NumberUnit::Heading(unit))),
             false => Cell::Missing,
         }
     }
 
     /// A count.
     pub(crate) fn count(value: usize) -> Cell {
-        Cell::Text(value.to_string())
+        Cell::Count(value)
+    }
+
+    /// Cells in one, with a separator between each two.
+    pub(crate) fn listed(cells: impl IntoIterator<Item = Cell>, separator: &str) -> Cell {
+        let separated = cells.into_iter().enumerate().flat_map(|(index, cell)| {
+            let before = (index > 0).then(|| Cell::from(separator));
+            before.into_iter().chain([cell])
+        });
+        Cell::Joined(separated.collect())
+    }
+
+    /// The cell between two texts.
+    pub(crate) fn between(self, before: &str, after: &str) -> Cell {
+        Cell::from(before).then(self).then(after)
     }
 
     /// The cell with a mark.
@@ -156,13 +192,22 @@ impl Cell {
     pub(crate) fn verdict(verdict: Verdict) -> Cell {
         Cell::from(verdict_words(verdict)).marked(verdict)
     }
+
     /// True if the cell is a number.
     pub(super) fn is_numeric(&self) -> bool {
         match self {
-            Cell::Quantity { .. } => true,
-            Cell::Status(_, cell) => cell.is_numeric(),
-            Cell::Text(text) => text.parse::<f64>().is_ok(),
+            Cell::Number(_) | Cell::Count(_) => true,
+            Cell::Status(_, cell) | Cell::Strong(cell) => cell.is_numeric(),
             _ => false,
+        }
+    }
+
+    /// The parts of which none has parts.
+    pub(super) fn parts(&self) -> Vec<&Cell> {
+        match self {
+            Cell::Status(_, cell) | Cell::Strong(cell) => cell.parts(),
+            Cell::Joined(cells) => cells.iter().flat_map(Cell::parts).collect(),
+            cell => vec![cell],
         }
     }
 
@@ -175,25 +220,9 @@ impl Cell {
             Cell::Unit(unit) => unit.to_string(),
             // braces are needed only for typesetting
             Cell::Equation(equation) => equation.replace(['{', '}'], ""),
-            Cell::Quantity { value, precision, unit } => {
-                let number = number(*value, *precision);
-                if unit.is_empty() { number } else { format!("{number} {unit}") }
-            }
+            Cell::Number(number) => number.text(),
+            Cell::Count(count) => count.to_string(),
             Cell::Missing => "-".to_string(),
-        }
-    }
-}
-
-/// The digits of a number.
-fn number(value: f64, precision: Precision) -> String {
-    match precision {
-        Precision::Significant(digits) => significant(value, digits),
-        Precision::Frequency => frequency_number(value),
-        Precision::Margin => margin_words(value),
-        Precision::Decimal(places) => {
-            let text = format!("{value:.places$}");
-            let is_zero = text.trim_start_matches('-').trim_matches(['0', '.']).is_empty();
-            if is_zero { text.replace('-', "") } else { text }
         }
     }
 }

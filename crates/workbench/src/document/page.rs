@@ -87,7 +87,7 @@ impl Table {
                 thead { tr { @for (is_number, heading) in placed(&self.headings, &numeric) { th.number[is_number] { (breakable(heading)) } } } }
                 @for group in &self.groups {
                     tbody.group[self.grouped_by.is_some()] {
-                        @if self.grouped_by.is_some() { tr { th colspan=(columns.len()) { (prose(&group.name)) } } }
+                        @if self.grouped_by.is_some() { tr { th colspan=(columns.len()) { (group.name.markup()) } } }
                         @for row in &group.rows { tr { @for (is_number, cell) in placed(row, &numeric) { td.number[is_number] { (cell.markup()) } } } }
                     }
                 }
@@ -124,7 +124,7 @@ impl Cell {
             Cell::Status(mark, cell) => badge(*mark, &cell.text()),
             Cell::Strong(cell) => html! { b { (cell.markup()) } },
             Cell::Joined(cells) => html! { @for cell in cells { (cell.markup()) } },
-            Cell::Quantity { .. } | Cell::Missing => prose(&self.text()),
+            Cell::Number(_) | Cell::Count(_) | Cell::Missing => prose(&self.text()),
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::Cell;
 
 /// A table.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Table {
     /// The heading of the groups; without one, the rows form no groups.
     pub(super) grouped_by: Option<String>,
@@ -15,9 +15,9 @@ pub(crate) struct Table {
 }
 
 /// Rows that belong together.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct RowGroup {
-    pub(super) name: String,
+    pub(super) name: Cell,
     pub(super) rows: Vec<Vec<Cell>>,
 }
 
@@ -37,7 +37,7 @@ impl Table {
     }
 
     /// Begins a group with the rows that follow.
-    pub(crate) fn group(&mut self, name: impl Into<String>) {
+    pub(crate) fn group(&mut self, name: impl Into<Cell>) {
         self.groups.push(RowGroup { name: name.into(), rows: vec![] });
     }
 

@@ -56,7 +56,7 @@ impl Table {
         printed.load_style(presets::NOTHING);
         printed.set_header(self.grouped_by.iter().chain(&self.headings));
         for group in &self.groups {
-            let mut name = group.name.clone();
+            let mut name = group.name.text();
             for row in &group.rows {
                 let first = self.grouped_by.is_some().then(|| std::mem::take(&mut name));
                 printed.add_row(first.into_iter().chain(row.iter().map(Cell::text)));

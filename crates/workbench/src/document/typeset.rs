@@ -95,5 +95,5 @@ fn number(word: &str) -> Markup {
 
 /// Printed form of a unit: m3/(s.V) becomes m³/(s·V).
 pub(super) fn unit(text: &str) -> String {
-    text.replace("Pa^0.5", "√Pa").replace('2', "²").replace('3', "³").replace('.', "·")
+    text.replace("Pa^0.5", "√Pa").replace('^', "").replace('2', "²").replace('3', "³").replace('.', "·")
 }

@@ -1,10 +1,11 @@
-use super::{
-    ConstantVelocity, ExplainedByDirections, FrictionIdentification, FrictionMisfit, FrictionRecording,
-    FrictionSignal, OpenCoefficient, ShakenRows, VaryingVelocity, because, misfit_in_words,
+use phea_engineering::estimate::Estimate;
+use phea_engineering::friction::{
+    ConstantVelocity, DirectionModel, ExplainedByDirections, FrictionIdentification, FrictionMisfit,
+    FrictionRecording, FrictionSignal, OpenCoefficient, ShakenRows, SteadyPoint, VaryingVelocity,
 };
+
+use super::{because, misfit_in_words};
 use crate::answer::{Answer, Body, FileWarningAnswer, OrReason, envelope, words};
-use crate::estimate::Estimate;
-use crate::friction::DirectionModel;
 use crate::project::Loaded;
 use crate::quantity::DisplayUnit;
 
@@ -123,6 +124,8 @@ struct ConstantVelocityAnswer {
     velocity_m_per_s: f64,
     /// Friction force there, less `force_zero_n`.
     force_n: f64,
+    /// Friction force of the identified curve there.
+    modelled_force_n: f64,
     /// Number of rows.
     rows: usize,
 }
@@ -271,7 +274,8 @@ fn misfit(found: &FrictionIdentification, one: &FrictionMisfit) -> FrictionMisfi
 }
 
 fn run(found: &FrictionIdentification, index: usize, own: &FrictionRecording) -> FrictionRunAnswer {
-    let slides = found.slides.iter().filter(|slide| slide.recording == index);
+    let steady = found.slides.iter().zip(found.steady_points());
+    let steady = steady.filter(|(slide, _)| slide.recording == index);
     let varying = found.varying.iter().filter(|one| one.recording == index);
     let press = found.presses.iter().find(|press| press.recording == index);
     let shake = found.shakes.iter().find(|shake| shake.recording == index);
@@ -279,7 +283,7 @@ fn run(found: &FrictionIdentification, index: usize, own: &FrictionRecording) ->
         file: own.file.clone(),
         rows: own.forces.len(),
         time_step_s: own.time_step,
-        constant_velocities: slides.map(|slide| constant_velocity(found, slide)).collect(),
+        constant_velocities: steady.map(constant_velocity).collect(),
         varying_velocities: varying.map(varying_velocity).collect(),
         pressed: press
             .map(|press| PressedAnswer { pressed_rows: press.rows, breaks_away: press.breaks_away }),
@@ -287,10 +291,11 @@ fn run(found: &FrictionIdentification, index: usize, own: &FrictionRecording) ->
     }
 }
 
-fn constant_velocity(found: &FrictionIdentification, slide: &ConstantVelocity) -> ConstantVelocityAnswer {
+fn constant_velocity((slide, point): (&ConstantVelocity, SteadyPoint)) -> ConstantVelocityAnswer {
     ConstantVelocityAnswer {
-        velocity_m_per_s: slide.velocity,
-        force_n: slide.settled_force() - found.zero.as_ref().map_or(0.0, |zero| zero.value),
+        velocity_m_per_s: point.velocity,
+        force_n: point.force,
+        modelled_force_n: point.modelled,
         rows: slide.rows.len(),
     }
 }

@@ -1,13 +1,14 @@
 //! The friction of a cylinder for people.
 
-use super::{
+use phea_engineering::estimate::Estimate;
+use phea_engineering::friction::{
     DirectionEvidence, DirectionModel, FrictionIdentification, OpenCoefficient, ShakenRows, VaryingVelocity,
-    because, coefficients, misfit_in_words,
 };
+use phea_engineering::identify::DECISIVE;
+
+use super::{because, coefficients, misfit_in_words};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
-use crate::estimate::Estimate;
-use crate::identify::DECISIVE;
 use crate::quantity::DisplayUnit;
 
 /// Coefficients with their intervals and the reasons why some are open, the friction map, and the
@@ -29,7 +30,7 @@ pub(crate) fn write(found: &FrictionIdentification, out: &mut Document) {
         let rows = points.iter().map(|point| {
             [
                 Cell::from(file(found, point.recording)),
-                Cell::number(DisplayUnit::MILLIMETRE.of(point.velocity), 4),
+                Cell::number_in(point.velocity, 4, DisplayUnit::MILLIMETRE),
                 Cell::number(point.force, 4),
                 Cell::number(point.modelled, 4),
             ]
@@ -102,7 +103,7 @@ fn rows(found: &FrictionIdentification) -> Vec<[Cell; 5]> {
             true => Cell::number(end, 4),
             false => Cell::Missing,
         });
-        [Cell::Code(name), value, low, high, Cell::from(unit)]
+        [Cell::Code(name), value, low, high, Cell::unit(unit)]
     };
     coefficients(found).map(row).collect()
 }

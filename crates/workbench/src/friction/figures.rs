@@ -1,4 +1,7 @@
-use super::{FrictionIdentification, PressedCurve, PressedRows, ShakenRows, SteadyPoint};
+use phea_engineering::friction::{
+    FrictionIdentification, PressedCurve, PressedRows, ShakenRows, SteadyPoint,
+};
+
 use crate::figure::{Curve, CurveChart, CurvePanel, CurveStyle, Figure, Words};
 use crate::quantity::DisplayUnit;
 

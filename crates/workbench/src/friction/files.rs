@@ -1,8 +1,8 @@
-use super::{
-    FrictionIdentification, OpenCoefficient, RETRACTING_NAMES, because, declared_misfit, misfit_in_words,
-};
+use phea_engineering::estimate::Estimate;
+use phea_engineering::friction::{FrictionIdentification, OpenCoefficient, RETRACTING_NAMES};
+
+use super::{because, declared_misfit, misfit_in_words};
 use crate::answer::{OutputFile, in_toml};
-use crate::estimate::Estimate;
 
 /// The table `[cylinder.friction]` of a project with the identified values; coefficients that the
 /// data do not determine are comments.

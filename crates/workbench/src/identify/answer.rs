@@ -7,6 +7,7 @@ mod residuals;
 pub(super) use estimates::EITHER_SIGN;
 pub(super) use residuals::correlations;
 
+use phea_engineering::identify::{Identification, TestOil};
 use phea_hydraulics::servovalve::LeakageModel;
 
 use self::estimates::{
@@ -14,10 +15,10 @@ use self::estimates::{
 };
 use self::evidence::{CoefficientValuesAnswer, LeakageFitAnswer, ValveTermAnswer};
 use self::residuals::{CorrelationAnswer, NotIdentifiableAnswer, ValveMisfitAnswer, ValveSignalAnswer};
+use super::Read;
 use super::files::ValveTestAnswer;
 use super::numbers::{GraphReadingsAnswer, graph_readings};
 use super::region::{FoundRegion, JointRegionAnswer, joint_region_answer};
-use super::{Identification, Read, TestOil};
 use crate::answer::{Answer, Body, FileWarningAnswer, SCHEMA, VERSION};
 use crate::project::Loaded;
 use crate::quantity::MotionKind;

@@ -1,15 +1,16 @@
 //! An identified valve for people.
 
+use phea_engineering::identify::{
+    Bootstrap, COEFFICIENT_NAMES, DECISIVE, Identification, NotIdentifiableCombination, SignalFit,
+    TermEvidence, TestOil, ValveTerm,
+};
 use phea_hydraulics::servovalve::{LeakageModel, STATIC_COEFFICIENTS};
 
+use super::Read;
 use super::answer::{EITHER_SIGN, correlations};
 use super::misfit::misfit_in_words;
 use super::numbers;
 use super::region::{self, FoundRegion};
-use super::{
-    Bootstrap, COEFFICIENT_NAMES, DECISIVE, Identification, NotIdentifiableCombination, Read, SignalFit,
-    TermEvidence, TestOil, ValveTerm,
-};
 use crate::answer::{Word, significant};
 use crate::document::{Cell, Document, Table};
 use crate::quantity::{DisplayUnit, PRESSURE, display};
@@ -232,11 +233,11 @@ fn signal(found: &Identification, signal: &SignalFit) -> [Cell; 8] {
         Cell::from(file),
         Cell::from(signal.kind.name().replace('_', " ")),
         Cell::count(signal.rows),
-        Cell::number(unit.of(signal.rms), 3),
-        Cell::number(unit.of(found.residual_rms_of(signal, &found.first_guess)), 3),
-        Cell::number(unit.of(signal.range), 4),
-        Cell::from(unit.symbol),
-        Cell::decimal(signal.correlation, 2),
+        Cell::number_in(signal.rms, 3, unit),
+        Cell::number_in(found.residual_rms_of(signal, &found.first_guess), 3, unit),
+        Cell::number_in(signal.range, 4, unit),
+        Cell::unit(unit.symbol),
+        Cell::decimal(signal.correlation, 2, DisplayUnit::ONE),
     ]
 }
 

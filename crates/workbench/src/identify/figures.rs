@@ -1,8 +1,8 @@
 //! The figures of chapter 5 of the thesis, from recordings and the valve that explains them.
 
+use phea_engineering::identify::{Identification, Recording, SignalFit, SignalKind};
 use phea_hydraulics::servovalve::{PortCircuit, TestOutput};
 
-use super::{Identification, Recording, SignalFit, SignalKind};
 use crate::figure::{Curve, CurveChart, CurvePanel, CurveStyle, Figure, TestCircuit, TestPorts, Words};
 use crate::quantity::{DisplayUnit, PRESSURE, display};
 

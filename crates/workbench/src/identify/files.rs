@@ -1,9 +1,9 @@
 //! Contents of the files, and findings in them.
 
+use phea_engineering::identify::{ColumnContents, FileContents, Identification};
 use phea_hydraulics::servovalve::PortCircuit;
 
 use super::misfit::misfit_in_words;
-use super::{ColumnContents, FileContents, Identification};
 use crate::answer::{Answer, FileWarningAnswer, words};
 use crate::document::{Cell, Document, Table};
 use crate::project::{Diagnostic, StaticTest, TestSignal};
@@ -109,7 +109,7 @@ impl Read {
     pub(crate) fn write(&self, out: &mut Document) {
         let mut table = Table::grouped_by("file", ["column", "holds", "from", "to", "unit", "gaps"]);
         for file in &self.contents {
-            table.group(file.file.clone());
+            table.group(Cell::Code(file.file.clone()));
             file.columns.iter().for_each(|column| table.row(row(column)));
         }
         out.section("What the files hold", table);
@@ -147,13 +147,13 @@ fn row(column: &ColumnContents) -> [Cell; 6] {
     };
     let signal = column.signal.name().replace('_', " ");
     let holds = if column.is_reversed { format!("{signal}, reversed") } else { signal };
-    let [least, greatest] = column.range.map(|value| Cell::number(unit.of(value), 4));
+    let [least, greatest] = column.range.map(|value| Cell::number_in(value, 4, unit));
     [
         Cell::Code(column.heading.clone()),
         Cell::from(holds),
         least,
         greatest,
-        Cell::from(unit.symbol),
+        Cell::unit(unit.symbol),
         Cell::count(column.gaps),
     ]
 }

@@ -1,8 +1,9 @@
 //! Fragment of a project file with the identified valve.
 
+use phea_engineering::identify::{COEFFICIENT_NAMES, Identification};
+
 use super::answer::EITHER_SIGN;
 use super::misfit::declared_misfit;
-use super::{COEFFICIENT_NAMES, Identification};
 use crate::answer::{OutputFile, Word, in_toml};
 
 /// The coefficient that a project leaves out where it may be zero.

@@ -8,14 +8,14 @@
 //! condition between values is checked, and no later code has to handle two rigs.
 
 use phea_dynamics::watch::Watch;
-
-use super::misfit::declared_misfit;
-use super::{
+use phea_engineering::estimate::Estimate;
+use phea_engineering::identify::{
     COEFFICIENT_NAMES, Identification, JointRegion, JointRegionError, Known, RecordedFiles, SMALLEST_EFFECT,
     Search, identify, joint_region, recordings,
 };
-use crate::estimate::Estimate;
-use crate::identify_error::IdentifyError;
+use phea_engineering::identify_error::IdentifyError;
+
+use super::misfit::declared_misfit;
 use crate::project::{
     self, FromRecordings, HashedFile, IdentifiedFamily, IdentifiedNumber, IdentifiedUse, LEAKAGE_MODELS,
     Loaded, Origin, Project, RecordedTest, UncertaintyDirection, UnchangedNumber, UnchangedReason, sha256,

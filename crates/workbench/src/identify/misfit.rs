@@ -1,6 +1,7 @@
 //! Signals that the identified valve does not explain, in words.
 
-use super::{Identification, Misfit, MisfitPlace};
+use phea_engineering::identify::{Identification, Misfit, MisfitPlace};
+
 use crate::answer::significant;
 use crate::project::DeclaredMisfit;
 use crate::quantity::{VOLTAGE, display};

@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use super::{COEFFICIENT_NAMES, Identification, NullMethod, NullReading};
+use phea_engineering::estimate::Estimate;
+use phea_engineering::identify::{COEFFICIENT_NAMES, Identification, NullMethod, NullReading};
+
 use crate::answer::{Answer, KeyList, Keyed, ObjectKey, significant, words};
 use crate::document::{Cell, Document, Table};
-use crate::estimate::Estimate;
 use crate::project::DeclaredActuator;
-use crate::quantity::{PRESSURE, VOLTAGE, display};
+use crate::quantity::{DisplayUnit, PRESSURE, VOLTAGE, display};
 
 /// Values read from the recorded curves by the equations of the thesis, section 5.2; null without
 /// the test for it.
@@ -148,7 +149,7 @@ fn coefficient_at_null(found: &Identification) -> Option<Estimate> {
 struct NumberLine {
     name: &'static str,
     equation: &'static str,
-    unit: &'static str,
+    unit: DisplayUnit,
     thesis: Option<&'static str>,
 }
 
@@ -166,7 +167,7 @@ pub(crate) fn write(found: &Identification, of_thesis: bool, out: &mut Document)
     headings.extend(of_thesis.then_some("Ledezma (2019)"));
     let rows = lines(found).into_iter().filter_map(|(line, reading)| {
         let reading = reading?;
-        let number = |value: f64| Cell::from(significant(value, 4));
+        let number = |value: f64| Cell::number_in(value, 4, line.unit);
         let ends = reading.bounds().map(|ends| ends.map(number));
         let [low, high] = ends.unwrap_or([Cell::Missing, Cell::Missing]);
         let mut cells = vec![
@@ -174,10 +175,10 @@ pub(crate) fn write(found: &Identification, of_thesis: bool, out: &mut Document)
             number(reading.value),
             low,
             high,
-            Cell::unit(line.unit),
+            Cell::unit(line.unit.symbol),
             Cell::Equation(line.equation.to_string()),
         ];
-        cells.extend(of_thesis.then(|| line.thesis.map_or(Cell::Missing, Cell::from)));
+        cells.extend(of_thesis.then(|| line.thesis.map(|number| Cell::Code(number.to_string())).into()));
         Some(cells)
     });
     let table = Table::new(headings).with(rows);
@@ -260,10 +261,9 @@ fn slopes(has_lap: bool) -> [&'static str; 3] {
 fn lines(found: &Identification) -> Vec<(NumberLine, Option<Estimate>)> {
     const COEFFICIENT: &str = "m3/(s.Pa^0.5)";
     let simple = &found.simple;
-    let line = |name, equation, unit, thesis| NumberLine { name, equation, unit, thesis };
-    let percent = |reading: Option<Estimate>| {
-        reading
-            .map(|one| Estimate { value: 100.0 * one.value, interval: one.interval.map(|end| 100.0 * end) })
+    let line = |name, equation, symbol, thesis| {
+        let unit = if symbol == "%" { DisplayUnit::PERCENT } else { DisplayUnit { symbol, in_si: 1.0 } };
+        NumberLine { name, equation, unit, thesis }
     };
     let [extending, retracting] = simple.flow_coefficients;
     let [gain_extending, gain_retracting] = simple.flow_gains;
@@ -291,11 +291,11 @@ fn lines(found: &Identification) -> Vec<(NumberLine, Option<Estimate>)> {
     vec![
         (tare, simple.tare_flow),
         (leak, simple.null_leakage),
-        (fraction, percent(simple.tare_fraction())),
+        (fraction, simple.tare_fraction()),
         (inner, simple.leakage_coefficient()),
         (ext, extending),
         (ret, retracting),
-        (rated, percent(simple.fraction_of_nominal)),
+        (rated, simple.fraction_of_nominal),
         (
             line("null, rising command", null_equation(rising), "V", Some("0.078")),
             rising.map(|null| null.command),

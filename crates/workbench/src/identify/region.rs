@@ -3,11 +3,12 @@
 
 use std::collections::BTreeMap;
 
-use super::{COVERAGE, Identification, JointRegion, JointRegionError};
+use phea_engineering::identify::{COVERAGE, Identification, JointRegion, JointRegionError};
+
 use crate::answer::{Answer, Entries, OutputFile, significant};
 use crate::document::{Cell, Document, Table};
 use crate::project::UncertaintyDirection;
-use crate::quantity::print_bare;
+use crate::quantity::{DisplayUnit, print_bare};
 
 /// The joint region of the coefficients, or the reason why there is none.
 pub type FoundRegion = Result<JointRegion, JointRegionError>;
@@ -63,7 +64,7 @@ fn sentences(found: &Identification, region: &JointRegion) -> Vec<String> {
 }
 
 fn row(direction: &UncertaintyDirection, effect: f64) -> [Cell; 3] {
-    [Cell::Code(direction.name.clone()), Cell::number(100.0 * effect, 2), Cell::unit("%")]
+    [Cell::Code(direction.name.clone()), Cell::number_in(effect, 2, DisplayUnit::PERCENT), Cell::unit("%")]
 }
 
 /// Family of valves that the recordings allow, as independent directions of the uncertainty.

@@ -1,9 +1,10 @@
-use super::{
+use phea_engineering::estimate::Estimate;
+use phea_engineering::line_test::{
     CompliancePoint, LineIdentification, LineMisfit, NotIdentifiableLine, ResponseFit, RiseFit, VolumeSource,
-    because, misfit_in_words, remark,
 };
+
+use super::{because, misfit_in_words, remark};
 use crate::answer::{Answer, Body, FileWarningAnswer, OrReason, SCHEMA, VERSION, words};
-use crate::estimate::Estimate;
 use crate::project::{LineSide, Loaded};
 
 /// Line identified from recordings with its far end blocked.

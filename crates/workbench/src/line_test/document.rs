@@ -1,7 +1,9 @@
-use super::{LineIdentification, ResponseFit, RiseFit, because, misfit_in_words, numbers, remark};
+use phea_engineering::estimate::Estimate;
+use phea_engineering::line_test::{LineIdentification, ResponseFit, RiseFit};
+
+use super::{because, misfit_in_words, numbers, remark};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
-use crate::estimate::Estimate;
 use crate::project::LineSide;
 use crate::quantity::{DisplayUnit, FLOW, PRESSURE, VOLUME, display};
 use crate::response::resampling;
@@ -12,8 +14,8 @@ pub(crate) fn document(found: &LineIdentification) -> Document {
     let rows = numbers(found).into_iter().filter_map(|(key, what, number)| {
         let Estimate { value, interval: [low, high] } = *number.as_ref().ok()?;
         let unit = unit(key);
-        let shown = |value: f64| Cell::number(unit.of(value), 4);
-        Some([Cell::from(what), shown(value), shown(low), shown(high), Cell::from(unit.symbol)])
+        let shown = |value: f64| Cell::number_in(value, 4, unit);
+        Some([Cell::from(what), shown(value), shown(low), shown(high), Cell::unit(unit.symbol)])
     });
     let pressure = display(found.pressure, &PRESSURE, 4);
     let title = format!("The line to chamber {} at {pressure}", chamber(found.known.side));
@@ -44,7 +46,7 @@ fn unit(key: &str) -> DisplayUnit {
         "wave_speed_m_per_s" => DisplayUnit::METRE_PER_SECOND,
         "relaxation_time_s" => DisplayUnit::SECOND,
         "dynamic_stiffening" | "modulus_slope" => DisplayUnit::ONE,
-        "entrained_air" => DisplayUnit { symbol: "%", in_si: 0.01 },
+        "entrained_air" => DisplayUnit::PERCENT,
         "density_kg_per_m3" => DisplayUnit { symbol: "kg/m3", in_si: 1.0 },
         _ => DisplayUnit::BAR,
     }

@@ -1,6 +1,6 @@
 use phea_dynamics::portable::{exp, ln};
+use phea_engineering::line_test::{LineIdentification, ResponseFit, RiseFit};
 
-use super::{LineIdentification, ResponseFit, RiseFit};
 use crate::figure::{Curve, CurveChart, CurvePanel, CurveStyle, Figure, Words};
 use crate::quantity::DisplayUnit;
 
@@ -56,7 +56,7 @@ fn compliance_over_frequency(found: &LineIdentification, fit: &ResponseFit) -> F
         let compliance = fit.model_response(&found.known, at(index))?.inv().im / at(index);
         Some((hertz(at(index)), per_bar(compliance)))
     });
-    let bar = |p: &super::CompliancePoint| {
+    let bar = |p: &phea_engineering::line_test::CompliancePoint| {
         let end = |sign: f64| (hertz(p.frequency), per_bar(p.measured + sign * p.edge));
         Curve::line([end(-1.0), end(1.0)], 0)
     };

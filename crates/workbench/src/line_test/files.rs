@@ -1,7 +1,7 @@
+use phea_engineering::line_test::{KnownLine, LineIdentification};
 use phea_hydraulics::fluid::EntrainedAir;
 use phea_hydraulics::line::Line;
 
-use super::{KnownLine, LineIdentification};
 use crate::answer::{OutputFile, significant};
 use crate::project::{DeclaredMisfit, LineSide};
 

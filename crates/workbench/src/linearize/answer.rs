@@ -6,14 +6,15 @@ mod stiffness;
 
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
+use phea_engineering::linearize::{AgreementBand, Linearization, LinkagePlace, LinkagePosition, Sweep};
+use phea_engineering::setup::Setup;
 use phea_hydraulics::linear::ModeContribution;
 
+use super::models;
 use super::sweep_answer::{SweptKeyAnswer, SweptPointAnswer, head, rows};
-use super::{AgreementBand, Linearization, LinkagePlace, LinkagePosition, Sweep, models};
 use crate::answer::{Answer, Csv, OutputFile, quoted, words};
 use crate::caveat;
 use crate::quantity::{FORCE, QuantityName};
-use crate::setup::Setup;
 use differences::{DecompositionErrorAnswer, ResponseDifferenceAnswer, decomposition, difference};
 use port::{
     FinalForcesAnswer, ImpedancesAnswer, PassivitiesAnswer, VirtualImpedanceAnswer, final_forces, impedances,
@@ -21,7 +22,7 @@ use port::{
 };
 use stiffness::{LinearStiffnessAnswer, stiffness};
 
-pub(crate) use port::{PassivityAnswer, passivity};
+pub(crate) use port::{PassivityAnswer, passivity, phase_difference_deg};
 
 /// Answer of `linearize`.
 #[derive(Answer)]
@@ -83,8 +84,12 @@ struct ModelPolesAnswer {
     plant: Vec<Complex64>,
     /// Fifth-order model (thesis 6.7) with the parameters in use.
     full: Vec<Complex64>,
+    /// Fifth-order model (thesis 6.7) with derived parameters.
+    full_derived: Vec<Complex64>,
     /// Decomposed model (thesis 6.12) with the damping corrected.
     decomposed: Vec<Complex64>,
+    /// Decomposed model as the thesis prints it.
+    decomposed_as_printed: Vec<Complex64>,
     /// First-order model (thesis 6.13).
     first_order: Vec<Complex64>,
     /// Linearised two-pressure model with derived parameters.
@@ -228,7 +233,9 @@ fn model_poles(linearization: &Linearization) -> ModelPolesAnswer {
     ModelPolesAnswer {
         plant: linearization.plant.command.poles().to_vec(),
         full: linearization.full.command.poles().to_vec(),
+        full_derived: linearization.derived_full.command.poles().to_vec(),
         decomposed: linearization.decomposed[1].poles().to_vec(),
+        decomposed_as_printed: linearization.decomposed[0].poles().to_vec(),
         first_order: linearization.first_order.poles().to_vec(),
         two_pressure: linearization.two_pressure.command.poles().to_vec(),
     }

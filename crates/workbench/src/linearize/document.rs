@@ -4,19 +4,20 @@ use num_complex::Complex64;
 use phea_dynamics::frequency::PassivityReport;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;
+use phea_engineering::linearize::{
+    AgreementBand, ComparedImpedance, FIRST_ORDER, LUMPED, Linearization, LinkagePlace, LinkagePosition,
+    ReductionDifference, RequiredImpedance, WITHIN_DB, WITHIN_DEG, WITHIN_PERCENT,
+};
+use phea_engineering::setup::Setup;
 use phea_hydraulics::linear::{ModeContribution, ResponseDifference};
 
-use super::{
-    AgreementBand, ComparedImpedance, FIRST_ORDER, LUMPED, Linearization, LinkagePlace, LinkagePosition,
-    ReductionDifference, RequiredImpedance, WITHIN_DB, WITHIN_DEG, WITHIN_PERCENT, hiding_mass_words,
-    no_closed_impedance_words, stiffness_sentence,
-};
+use super::answer::phase_difference_deg;
+use super::{hiding_mass_words, no_closed_impedance_words, stiffness_sentence};
 use crate::answer::significant;
 use crate::caveat;
 use crate::document::{Cell, Document, Table};
 use crate::figure::Figure;
-use crate::quantity::{DAMPING, MotionKind};
-use crate::setup::Setup;
+use crate::quantity::{DAMPING, DisplayUnit, MotionKind};
 
 /// The tables and sentences of `linearize` for people.
 pub(crate) fn output(setup: &Setup<'_>, linearization: &Linearization) -> Document {
@@ -57,7 +58,7 @@ pub(crate) fn output(setup: &Setup<'_>, linearization: &Linearization) -> Docume
 pub(crate) fn document(linearization: &Linearization, figures: Vec<Figure>) -> Document {
     let mut out = Document::default();
     let pole = |(model, equation, function): (String, &'static str, &TransferFunction)| {
-        [model.into(), equation.into(), Cell::Text(root_list(function.poles()))]
+        [model.into(), Cell::Equation(equation.to_string()), roots(function.poles())]
     };
     out.section(
         "Poles",
@@ -65,14 +66,15 @@ pub(crate) fn document(linearization: &Linearization, figures: Vec<Figure>) -> D
     );
     out.figures(figures);
     let band = |one: &AgreementBand| {
-        [model_words(linearization, one.model).into(), one.equation.into(), Cell::Text(band_words(one))]
+        let equation = Cell::Equation(one.equation.to_string());
+        [model_words(linearization, one.model).into(), equation, bands(one)]
     };
     out.section(
         format!("Where a reduction is within {WITHIN_DB} dB and {WITHIN_DEG}° of the plant"),
         Table::new(["model", "equation", "frequencies"]).with(linearization.agreement.iter().map(band)),
     );
     let error = |(name, one): (&str, &ReductionDifference)| {
-        [name.to_string(), difference_text(&one.low), located(&one.all)]
+        [Cell::Code(name.to_string()), difference(&one.low), located(&one.all)]
     };
     let held = if linearization.load_yields { ", the load held still" } else { "" };
     out.section(
@@ -94,9 +96,9 @@ pub(crate) fn linkage_table(places: &[LinkagePlace]) -> Table {
     let row = |place: &LinkagePlace| {
         [
             place.at.words().into(),
-            Cell::number(1e3 * place.position_m, 4),
-            Cell::number(place.angle_rad.to_degrees(), 4),
-            Cell::number(1e3 * place.lever_arm_m, 4),
+            Cell::number_in(place.position_m, 4, DisplayUnit::MILLIMETRE),
+            Cell::number_in(place.angle_rad, 4, DisplayUnit::DEGREE),
+            Cell::number_in(place.lever_arm_m, 4, DisplayUnit::MILLIMETRE),
             place.reflected_mass_kg.map_or(Cell::Missing, |mass| Cell::number(mass, 4)),
         ]
     };
@@ -118,12 +120,11 @@ pub(crate) fn impedance_at_joint(linearization: &Linearization) -> Option<String
 pub(crate) fn required_impedance_table(required: &RequiredImpedance, motion: MotionKind) -> Table {
     let row = |point: &ComparedImpedance| {
         let size = |value: Complex64| Cell::number(portable::magnitude(value), 3);
-        let turned = portable::argument(point.achieved / point.required).to_degrees();
         [
             Cell::number(point.frequency_rad_per_s, 3),
             size(point.required),
             size(point.achieved),
-            Cell::number(turned, 2),
+            Cell::number_in(phase_difference_deg(point), 2, DisplayUnit::IN_DEGREES),
         ]
     };
     let unit = motion.dimension(&DAMPING).si;
@@ -150,14 +151,18 @@ fn mode_cells(mode: &ModeContribution) -> [Cell; 3] {
     let absence = mode.absence.map(|absence| absence.to_string()).unwrap_or_default();
     let or =
         |value: f64, otherwise: &str| if value.is_nan() { otherwise.into() } else { Cell::number(value, 3) };
-    [root_list(&[mode.pole]).into(), or(mode.step_fraction, &absence), or(mode.decay_ratio, "none")]
+    [roots(&[mode.pole]), or(mode.step_fraction, &absence), or(mode.decay_ratio, "none")]
 }
 
 /// The bands of an agreement in words.
-fn band_words(agreement: &AgreementBand) -> String {
-    let band = |[from, to]: &[f64; 2]| format!("{} to {} rad/s", significant(*from, 3), significant(*to, 3));
-    let bands: Vec<String> = agreement.bands_rad_per_s.iter().map(band).collect();
-    if bands.is_empty() { "nowhere".to_string() } else { bands.join(", ") }
+fn bands(agreement: &AgreementBand) -> Cell {
+    let band = |[from, to]: &[f64; 2]| {
+        Cell::number(*from, 3).then(" to ").then(Cell::quantity(*to, 3, DisplayUnit::RADIAN_PER_SECOND))
+    };
+    match agreement.bands_rad_per_s.as_slice() {
+        [] => "nowhere".into(),
+        bands => Cell::listed(bands.iter().map(band), ", "),
+    }
 }
 
 /// Every model with its equation, the fullest first; with the values in use unless stated
@@ -199,30 +204,26 @@ fn comparisons(linearization: &Linearization) -> [(&'static str, &ReductionDiffe
 }
 
 /// Roots in the upper half plane, pairs as `a ± bi`.
-pub(crate) fn root_list(roots: &[Complex64]) -> String {
-    let shown: Vec<String> = roots
-        .iter()
-        .filter(|root| root.im >= 0.0)
-        .map(|root| match root.im {
-            0.0 => significant(root.re, 4),
-            imaginary => format!("{} ± {}i", significant(root.re, 4), significant(imaginary, 4)),
-        })
-        .collect();
-    shown.join(", ")
+pub(crate) fn roots(roots: &[Complex64]) -> Cell {
+    let shown = roots.iter().filter(|root| root.im >= 0.0).map(|root| match root.im {
+        0.0 => Cell::number(root.re, 4),
+        imaginary => Cell::number(root.re, 4).then(Cell::number(imaginary, 4).between(" ± ", "i")),
+    });
+    Cell::listed(shown, ", ")
 }
 
-fn difference_text(difference: &ResponseDifference) -> String {
-    format!("{} dB, {}°", significant(difference.magnitude_db, 2), significant(difference.phase_deg, 2))
+fn difference(difference: &ResponseDifference) -> Cell {
+    let magnitude = Cell::quantity(difference.magnitude_db, 2, DisplayUnit::DECIBEL);
+    magnitude.then(Cell::number(difference.phase_deg, 2).between(", ", "°"))
 }
 
-fn located(difference: &ResponseDifference) -> String {
-    format!(
-        "{} dB at {} rad/s, {}° at {} rad/s",
-        significant(difference.magnitude_db, 2),
-        significant(difference.magnitude_frequency, 4),
-        significant(difference.phase_deg, 2),
-        significant(difference.phase_frequency, 4)
-    )
+fn located(difference: &ResponseDifference) -> Cell {
+    let at = |frequency: f64| {
+        Cell::from(" at ").then(Cell::quantity(frequency, 4, DisplayUnit::RADIAN_PER_SECOND))
+    };
+    let magnitude = Cell::quantity(difference.magnitude_db, 2, DisplayUnit::DECIBEL);
+    let phase = Cell::number(difference.phase_deg, 2).between(", ", "°");
+    magnitude.then(at(difference.magnitude_frequency)).then(phase).then(at(difference.phase_frequency))
 }
 
 /// Sentence on the passivity of an impedance, and on the bands in which it is not passive.
@@ -232,8 +233,10 @@ pub(crate) fn passivity_sentence(report: &PassivityReport) -> String {
     }
     let mut reasons = Vec::new();
     if !report.right_half_plane_poles.is_empty() {
-        reasons
-            .push(format!("poles in the right half plane at {}", root_list(&report.right_half_plane_poles)));
+        reasons.push(format!(
+            "poles in the right half plane at {}",
+            roots(&report.right_half_plane_poles).text()
+        ));
     }
     for pole in report.imaginary_poles.iter().filter(|pole| !pole.passive) {
         reasons.push(format!(

@@ -2,12 +2,13 @@
 
 use num_complex::Complex64;
 
-use super::root_list;
+use phea_engineering::linearize::{Sweep, SweepPoint, Swept};
+
+use super::roots;
 use super::words::no_bandwidth_words;
-use super::{Sweep, SweepPoint, Swept};
-use crate::answer::{Answer, Csv, OutputFile, significant, words};
+use crate::answer::{Answer, Csv, OutputFile, words};
 use crate::caveat;
-use crate::document::{Document, Table};
+use crate::document::{Cell, Document, Table};
 use crate::figure::{Figure, PoleSweep, PoleSweepPoint, Words};
 use crate::quantity::{DisplayUnit, MotionKind, QuantityName, STIFFNESS};
 
@@ -201,32 +202,32 @@ fn stiffness_unit(sweep: &Sweep) -> DisplayUnit {
     sweep.units.motion.unit(DisplayUnit::MEGANEWTON_PER_METRE)
 }
 
-fn cells(sweep: &Sweep, point: &SweepPoint) -> [String; 7] {
-    let value = sweep.unit.number(point.value, 4);
+fn cells(sweep: &Sweep, point: &SweepPoint) -> [Cell; 7] {
+    let value = Cell::number_in(point.value, 4, sweep.unit);
     let Ok(found) = &point.found else {
-        let [a, b, c, d, e, f] = ["-"; 6].map(String::from);
+        let [a, b, c, d, e, f] = [(); 6].map(|()| Cell::Missing);
         return [value, a, b, c, d, e, f];
     };
     let stiffness = found.linearization.stiffness[0];
-    let mega = |value: f64| stiffness_unit(sweep).number(value, 3);
-    let [frequency, damping] = resonance(found)
-        .map_or(["-".to_string(), "-".to_string()], |[frequency, ratio]| {
-            [significant(frequency, 4), significant(ratio, 3)]
-        });
+    let mega = |value: f64| Cell::number_in(value, 3, stiffness_unit(sweep));
+    let [frequency, damping] = match resonance(found) {
+        Some([frequency, ratio]) => [Cell::number(frequency, 4), Cell::number(ratio, 3)],
+        None => [Cell::Missing, Cell::Missing],
+    };
     let yes = |passive: bool| if passive { "yes" } else { "no" };
     let open = yes(found.linearization.open_loop.passivity.passive);
     let closed = found.linearization.closed_loop.as_ref().map(|view| yes(view.passivity.passive));
     [
         value,
-        format!("{} to {}", mega(stiffness.minimum), mega(stiffness.maximum)),
-        root_list(&found.poles),
+        mega(stiffness.minimum).then(" to ").then(mega(stiffness.maximum)),
+        roots(&found.poles),
         frequency,
         damping,
         found.bandwidth_rad_per_s.map_or_else(
-            |why| no_bandwidth_words(why, sweep.units.motion).to_string(),
-            |bandwidth| significant(bandwidth, 4),
+            |why| no_bandwidth_words(why, sweep.units.motion).into(),
+            |bandwidth| Cell::number(bandwidth, 4),
         ),
-        closed.map_or(open.to_string(), |closed| format!("{open}, closed loop {closed}")),
+        closed.map_or(open.into(), |closed| format!("{open}, closed loop {closed}").into()),
     ]
 }
 

@@ -1,6 +1,6 @@
 //! Stiffness over the stroke, and reasons for missing parts of a linearisation, in words.
 
-use super::{HidingMass, Linearization, NoBandwidth, NoClosedImpedance};
+use phea_engineering::linearize::{HidingMass, Linearization, NoBandwidth, NoClosedImpedance};
 use phea_hydraulics::stiffness::StrokeStiffness;
 
 use crate::quantity::{DisplayUnit, MotionKind, TORSIONAL_STIFFNESS, fitting, significant};

@@ -1,8 +1,10 @@
 //! The chapter on the alternatives of the project: one table, the findings, and their curves laid
 //! over each other.
 
+use phea_engineering::alternatives::Alternatives;
+
 use super::chapter::Chapter;
-use crate::alternatives::{Alternatives, document, figures, first_warnings};
+use crate::alternatives::{document, figures, first_warnings};
 use crate::document::Document;
 use crate::project::Project;
 

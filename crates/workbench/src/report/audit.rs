@@ -1,12 +1,15 @@
 //! The chapter on the audit of the given controller: the audit with its figures, and the trial on
 //! the machine.
 
+use phea_engineering::audit::ProjectAudit;
+use phea_engineering::robust::RobustProblem;
+use phea_engineering::trial::Trial;
+
 use super::chapter::Chapter;
 use super::{closed_loops, family_steps};
-use crate::audit::{ProjectAudit, document};
+use crate::audit::document;
 use crate::error::CommandError;
-use crate::robust::RobustProblem;
-use crate::trial::{self, Trial};
+use crate::trial;
 
 pub(super) fn chapter(
     problem: &RobustProblem,

@@ -5,21 +5,24 @@ use num_complex::Complex64;
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::order::sort_by_number;
 use phea_dynamics::portable::exp_complex;
+use phea_engineering::audit::ProjectAudit;
+use phea_engineering::robust::{DesignFrequency, RobustProblem};
+use phea_engineering::specification::kind_key;
 use phea_qft::bound::{Bound, Collision, Feasibility, Placement};
 use phea_qft::template::{Resolution, Template};
 use phea_qft::verification::Verdict;
 
 use super::chapter::Chapter;
 use crate::answer::significant;
-use crate::audit::{ProjectAudit, closed_loop_symbol};
+use crate::audit::closed_loop_symbol;
 use crate::design::drawn;
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::error::CommandError;
 use crate::figure::{
     BoundGroup, Figure, FrequencySeries, NicholsChart, OpenLoopViolation, USUAL_CONTOURS_DB, Words, templates,
 };
-use crate::robust::{DesignFrequency, RobustProblem};
-use crate::specification::{kind_key, name_words, stated};
+use crate::quantity::DisplayUnit;
+use crate::specification::{name_words, stated};
 use crate::verdict_words::frequency_number;
 
 /// The chapter; `chart` is the Nichols chart of the given loop if it is shown nowhere else.
@@ -258,15 +261,18 @@ fn placement(problem: &RobustProblem, placement: &Placement) -> Cell {
             Cell::from("allowed, nothing is forbidden at this phase").marked(true)
         }
         Placement::Allowed { slack_db } => {
-            Cell::from(format!("allowed, {} dB from a bound", significant(*slack_db, 3))).marked(true)
+            let slack = Cell::quantity(*slack_db, 3, DisplayUnit::DECIBEL);
+            slack.between("allowed, ", " from a bound").marked(true)
         }
         Placement::Forbidden { by, nearest_db } => {
             let names: Vec<String> = by.iter().map(|index| named(problem, *index)).collect();
             let change = match nearest_db {
-                Some(change) => format!("allowed with {change:+.2} dB"),
-                None => "no gain is allowed at this phase".to_string(),
+                Some(change) => {
+                    Cell::from("allowed with ").then(Cell::change(*change, 2, DisplayUnit::DECIBEL))
+                }
+                None => "no gain is allowed at this phase".into(),
             };
-            Cell::from(format!("forbidden by {}; {change}", names.join(", "))).marked(false)
+            Cell::from(format!("forbidden by {}; ", names.join(", "))).then(change).marked(false)
         }
     }
 }

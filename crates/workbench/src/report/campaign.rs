@@ -2,19 +2,21 @@
 //! and the worst runs.
 
 use phea_dynamics::watch::{Stopped, Watch};
+use phea_engineering::campaign::{
+    CampaignError, Effort, Plan, QUANTILES, RequestedRuns, Row, Shard, Spread, Summary, VariedRange,
+    WorstRun, campaign,
+};
+use phea_engineering::simulate::{Cause, Metric, PerMetric, Window};
 
 use super::chapter::Chapter;
 use crate::answer::significant;
-use crate::campaign::{
-    CampaignError, Effort, Plan, QUANTILES, RequestedRuns, Row, Shard, Spread, Summary, VariedRange,
-    WorstRun, beyond_box, campaign, counted, left_out, lumps, metrics, pictures, requirement,
-};
+use crate::campaign::{beyond_box, counted, left_out, lumps, metrics, pictures, requirement};
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::error::CommandError;
 use crate::figure::Figure;
 use crate::grouped::grouped;
 use crate::project::{Distribution, Loaded};
-use crate::simulate::{Cause, Metric, PerMetric, Window, cause_words, shown_in, status_words};
+use crate::simulate::{cause_words, shown_in, status_words};
 use crate::source::Source;
 
 /// Number of runs if the project states none, and their seed.
@@ -235,7 +237,7 @@ fn drawn(out: &mut Document, plan: &Plan, summary: &Summary) {
         let shown = range.unit();
         let unit = if shown.symbol == "1" { "" } else { shown.symbol };
         let all = [range.minimum, range.maximum].into_iter().chain(values);
-        let numbers = all.map(|value| Cell::number(shown.of(value), DIGITS));
+        let numbers = all.map(|value| Cell::number_in(value, DIGITS, shown));
         [Cell::Code(range.path.clone()), Cell::unit(unit)].into_iter().chain(numbers).collect::<Vec<_>>()
     };
     let normal = plan.ranges().iter().any(|range| range.distribution == Distribution::Normal);

@@ -1,6 +1,7 @@
+use phea_engineering::setup::Setup;
+
 use crate::caveat::of_models_in_words;
 use crate::document::{Document, StatusMark};
-use crate::setup::Setup;
 
 /// A chapter of the report.
 pub(super) struct Chapter {

@@ -4,16 +4,18 @@ use phea_dynamics::frequency::decibels;
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::order::sorted_distinct;
 use phea_dynamics::portable;
+use phea_engineering::audit::ProjectAudit;
+use phea_engineering::robust::RobustProblem;
+use phea_engineering::specification::kind_key;
 use phea_qft::closed_loop::Member;
 use phea_qft::specification::{Limit, Requirement, Specification};
 use phea_qft::verification::{SpecificationFinding, SpecificationMargin, Verdict};
 
 use super::specifications::titled;
 use crate::answer::significant;
-use crate::audit::{ProjectAudit, closed_loop_symbol};
+use crate::audit::closed_loop_symbol;
 use crate::figure::{FamilyEnvelope, FamilyMagnitude, Figure, MagnitudeCurve, MagnitudeMark, Words};
-use crate::robust::RobustProblem;
-use crate::specification::{kind_key, name_words};
+use crate::specification::name_words;
 use crate::verdict_words::frequency_words;
 
 /// Number of members that are drawn, in addition to the worst.

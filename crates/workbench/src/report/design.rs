@@ -7,6 +7,10 @@ mod prefilter;
 mod sampling;
 
 use phea_dynamics::watch::{Stopped, Watch};
+use phea_engineering::design::{DesignError, ProjectDesign, design_project};
+use phea_engineering::robust::DesignFrequency;
+use phea_engineering::setup::Setup;
+use phea_engineering::trial::Trial;
 use phea_qft::design::DesignStatus;
 use phea_qft::verification::Verdict;
 
@@ -15,8 +19,7 @@ use super::family_steps;
 use crate::answer::{OutputFile, significant};
 use crate::audit::basis;
 use crate::design::{
-    DesignError, ProjectDesign, costs, design_project, files, laws, limits, manual, pressure_feedback,
-    side_by_side, status, structures,
+    costs, files, laws, limits, manual, pressure_feedback, side_by_side, status, structures,
 };
 use crate::document::{Document, StatusMark};
 use crate::error::CommandError;
@@ -24,10 +27,8 @@ use crate::explanation::explanation_sentence;
 use crate::figure::Figure;
 use crate::impossible_steps::late_of_steps;
 use crate::project::{LateError, Loaded, Project};
-use crate::robust::DesignFrequency;
-use crate::setup::Setup;
 use crate::source::Source;
-use crate::trial::{self, Trial};
+use crate::trial;
 
 /// True if the report of a project designs a controller: the project has `[design]`, or gives no
 /// controller.

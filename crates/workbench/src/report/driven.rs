@@ -1,13 +1,15 @@
 //! The scenarios of a project, driven under each controller of the report.
 
+use phea_engineering::setup::Setup;
+use phea_engineering::simulate::{
+    Cause, Metric, RunStatus, ScenarioRun, SimulateError, StepLimits, TimeRequirement, Window, concerns,
+    simulate_project, time_requirements,
+};
+
 use crate::answer::significant;
 use crate::error::CommandError;
 use crate::project::Project;
-use crate::setup::Setup;
-use crate::simulate::{
-    Cause, Metric, NamedRun, RunStatus, ScenarioRun, SimulateError, StepLimits, TimeRequirement, Window,
-    cause_words, cells_of, concerns, simulate_project, status_words, time_requirements,
-};
+use crate::simulate::{NamedRun, cause_words, cells_of, status_words};
 use crate::source::Source;
 use phea_dynamics::watch::{Stopped, Watch};
 

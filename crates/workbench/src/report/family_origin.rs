@@ -2,20 +2,20 @@
 //! the reduction of the templates, and the benefit for the controller.
 
 use phea_dynamics::watch::Watch;
+use phea_engineering::audit::{ProjectAudit, audit_project};
+use phea_engineering::family::visited_box;
+use phea_engineering::replaced::{TemplateAreas, boxed, replaced_ranges, template_areas};
+use phea_engineering::setup::Setup;
 
 use super::chapter::Chapter;
 use super::judged::Judged;
-use crate::audit::{ProjectAudit, audit_project};
 use crate::derived::{replaced_sentences, replaced_table};
 use crate::document::{Cell, Document, Table};
 use crate::error::CommandError;
-use crate::family::visited_box;
 use crate::project::Project;
-use crate::replaced::{TemplateAreas, boxed, replaced_ranges, template_areas};
-use crate::setup::Setup;
+use crate::quantity::DisplayUnit;
 use crate::source::Source;
-use crate::specification::numbered;
-use crate::verdict_words::frequency_number;
+use crate::specification::numbered_cell;
 
 /// The chapter; `None` if no range of the project is replaced by its family.
 pub(super) fn chapter(
@@ -69,15 +69,10 @@ fn origin(project: &Project) -> String {
 fn area(areas: &TemplateAreas) -> [Cell; 4] {
     let TemplateAreas { frequency_rad_per_s, replaced, visited } = *areas;
     let fraction = match visited / replaced {
-        fraction if fraction.is_finite() => Cell::number(100.0 * fraction, 2),
+        fraction if fraction.is_finite() => Cell::number_in(fraction, 2, DisplayUnit::PERCENT),
         _ => Cell::Missing,
     };
-    [
-        Cell::from(frequency_number(frequency_rad_per_s)),
-        Cell::number(replaced, 3),
-        Cell::number(visited, 3),
-        fraction,
-    ]
+    [Cell::frequency(frequency_rad_per_s), Cell::number(replaced, 3), Cell::number(visited, 3), fraction]
 }
 
 /// The worst margins of the given controller over both families.
@@ -87,7 +82,6 @@ fn margins(over_box: &ProjectAudit, own: &ProjectAudit) -> Table {
         Some(worst) => Cell::margin(worst.margin_db),
         None => Cell::Missing,
     };
-    let row =
-        |(index, (found, boxed))| [Cell::from(numbered(own.named(index))), margin(boxed), margin(found)];
+    let row = |(index, (found, boxed))| [numbered_cell(own.named(index)), margin(boxed), margin(found)];
     Table::new(["specification", "worst margin over the box", "over the family"]).with(rows.map(row))
 }

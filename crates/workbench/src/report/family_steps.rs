@@ -2,15 +2,15 @@
 
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::time_response::{TimeResponseError, step_response, uniform_times};
+use phea_engineering::audit::ProjectAudit;
+use phea_engineering::linear_step::{StepResponse, linear_step};
+use phea_engineering::robust::RobustProblem;
 use phea_qft::family::{Family, UncertainFamily};
 use phea_qft::specification::Limit;
 use phea_qft::verification::{PlantPoint, Verdict};
 
 use super::closed_loops::DRAWN_MEMBERS;
-use crate::audit::ProjectAudit;
 use crate::figure::{FamilySteps, Figure, TimeBand, TimeSeries, Words};
-use crate::linear_step::{StepResponse, linear_step};
-use crate::robust::RobustProblem;
 
 /// Number of points of each response, and of those of the limits.
 const POINTS: usize = 1200;

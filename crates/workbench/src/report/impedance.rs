@@ -3,6 +3,8 @@
 
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::time_response::TimeResponseError;
+use phea_engineering::linearize::{HidingMass, Linearization, PortView, frequency_grid};
+use phea_engineering::setup::Setup;
 use phea_hydraulics::impedance::AsymptoteKind;
 
 use super::chapter::Chapter;
@@ -11,12 +13,11 @@ use crate::answer::significant;
 use crate::document::{Document, Table};
 use crate::figure::{AsymptoteLine, Figure, FrequencyMark, FrequencySeries, ImpedanceDiagram, Words};
 use crate::linearize::{
-    HidingMass, Linearization, PortView, frequency_grid, hiding_mass_words, impedance_at_joint,
-    no_closed_impedance_words, passivity_sentence, required_impedance_sentence, required_impedance_table,
+    hiding_mass_words, impedance_at_joint, no_closed_impedance_words, passivity_sentence,
+    required_impedance_sentence, required_impedance_table,
 };
 use crate::project::DeclaredSeries;
 use crate::quantity::{DAMPING, DisplayUnit, MASS, MotionKind, STIFFNESS};
-use crate::setup::Setup;
 
 pub(super) fn chapter(
     setup: &Setup<'_>,

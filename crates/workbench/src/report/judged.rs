@@ -2,15 +2,15 @@
 //! on the machine.
 
 use phea_dynamics::watch::Watch;
+use phea_engineering::audit::{AuditedProblem, ProjectAudit, audit_problem, prove_claims};
+use phea_engineering::design::{ProjectDesign, below_design};
+use phea_engineering::robust::{DesignFrequency, RobustProblem, robust_problem};
+use phea_engineering::setup::Setup;
+use phea_engineering::trial::{DrivenCorners, Trial, simulated_trial};
 
 use super::design::{self, Designed};
-use crate::audit::{AuditedProblem, ProjectAudit, audit_problem, prove_claims};
-use crate::design::{ProjectDesign, below_design};
 use crate::error::CommandError;
-use crate::robust::{DesignFrequency, RobustProblem, robust_problem};
-use crate::setup::Setup;
 use crate::source::Source;
-use crate::trial::{DrivenCorners, Trial, simulated_trial};
 
 /// The results of the robust method for a project with specifications.
 pub(super) struct Judged {

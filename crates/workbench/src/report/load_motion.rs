@@ -4,11 +4,11 @@ use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::time_response::{
     Interpolation, SampledSignal, TimeResponseError, forced_response, uniform_times,
 };
+use phea_engineering::linearize::PortView;
 
 use crate::answer::significant;
 use crate::figure::axis::extent;
 use crate::figure::{Figure, Words};
-use crate::linearize::PortView;
 use crate::over_time::{Trace, chart, measured_force, panel, trace};
 use crate::project::{LoadMotion, MotionShape, Project};
 use crate::quantity::Units;

@@ -1,14 +1,16 @@
 //! The chapter on linear models: poles, Bode diagram of the models with their difference,
 //! dominance.
 
+use phea_engineering::linearize::{Linearization, frequency_grid, resonance};
+use phea_engineering::setup::Setup;
+
 use super::chapter::Chapter;
 use crate::document::{Document, capital};
 use crate::figure::{
     BodeDiagram, Figure, FrequencyMark, FrequencySeries, PoleMap, PoleMapScale, PoleSeries, Words,
 };
-use crate::linearize::{Linearization, document, frequency_grid, model_words, resonance};
+use crate::linearize::{document, model_words};
 use crate::quantity::MotionWords;
-use crate::setup::Setup;
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
 

@@ -6,6 +6,8 @@ mod side;
 mod steps;
 mod verdicts;
 
+use phea_engineering::setup::Setup;
+use phea_engineering::trial::Agreement;
 use phea_qft::verification::Verdict;
 
 use super::campaign::CampaignStep;
@@ -17,9 +19,7 @@ use crate::answer::Answer;
 use crate::design::explanation_words;
 use crate::document::{Document, StatusMark};
 use crate::figure::Figure;
-use crate::setup::Setup;
 use crate::simulate::at_a_glance;
-use crate::trial::Agreement;
 use next::next_steps;
 use side::{Side, sides};
 

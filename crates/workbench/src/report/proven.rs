@@ -1,10 +1,12 @@
 //! The chapter on proofs: for both controllers, with the assumptions of the model.
 
+use phea_engineering::audit::ProjectAudit;
+use phea_engineering::design::DESIGNED_CERTIFICATE;
+
 use super::assumptions::assumptions;
 use super::chapter::Chapter;
 use super::judged::Judged;
-use crate::audit::{CERTIFICATE_FILE, ProjectAudit, proven};
-use crate::design::DESIGNED_CERTIFICATE;
+use crate::audit::{CERTIFICATE_FILE, proven};
 use crate::document::Document;
 use crate::project::Project;
 

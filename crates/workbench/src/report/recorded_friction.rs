@@ -1,9 +1,11 @@
 //! The chapter on the recorded runs of the cylinder.
 
+use phea_engineering::friction::{KnownCylinder, friction_recordings, identify_friction, recorded_runs};
+
 use super::chapter::Chapter;
 use crate::document::Document;
 use crate::error::CommandError;
-use crate::friction::{self, KnownCylinder, friction_recordings, identify_friction, recorded_runs};
+use crate::friction;
 use crate::project::Loaded;
 use crate::source::Source;
 use phea_dynamics::watch::Watch;

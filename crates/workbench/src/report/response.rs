@@ -2,15 +2,15 @@
 
 use phea_dynamics::frequency::Margins;
 use phea_dynamics::time_response::{Settling, StepMetrics};
+use phea_engineering::linear_loop::{LinearLoop, LoopStability, StepView};
+use phea_engineering::setup::Setup;
 
 use super::chapter::Chapter;
 use crate::answer::significant;
 use crate::document::{Document, StatusMark, Table};
 use crate::figure::{Figure, SettlingBand, Words};
-use crate::linear_loop::{LinearLoop, LoopStability, StepView};
 use crate::over_time::ForceStep;
 use crate::quantity::{DisplayUnit, Units};
-use crate::setup::Setup;
 
 /// Height of the drawn step if the project's scenarios give none, N.
 const REFERENCE: f64 = 1000.0;

@@ -2,17 +2,18 @@
 
 mod circuit;
 
+use phea_engineering::linearize::linkage_places;
+use phea_engineering::rig::Rig;
 use phea_hydraulics::series::ForceFrom;
 
 use super::chapter::Chapter;
 use crate::document::{Document, Table};
 use crate::figure::{LineKind, LineSymbol};
-use crate::linearize::{linkage_places, linkage_table};
+use crate::linearize::linkage_table;
 use crate::project::{
     self, Component, CylinderTriangle, DeclaredSeries, LineVolume, LinkageKind, Load, Project, RatedFlow,
 };
 use crate::quantity::{self, AREA, Dimension, FLOW, LENGTH, MASS, PRESSURE, STIFFNESS, VOLUME};
-use crate::rig::Rig;
 
 pub(super) fn chapter(project: &Project, actuator: &project::DeclaredActuator, rig: &Rig) -> Chapter {
     let mut out = Document::default();

@@ -2,6 +2,8 @@
 //! stiffness and of the friction.
 
 use phea_dynamics::watch::{Stopped, Watch};
+use phea_engineering::setup::Setup;
+use phea_engineering::simulate::{Metrics, ScenarioRun, Window, simulate_project};
 use phea_hydraulics::friction::Friction;
 
 use super::chapter::Chapter;
@@ -11,10 +13,7 @@ use crate::document::{Document, Table};
 use crate::error::CommandError;
 use crate::figure::DisplayUnit;
 use crate::project::{DeclaredActuator, Project, RetractingFriction};
-use crate::setup::Setup;
-use crate::simulate::{
-    Metrics, ScenarioRun, Window, cause_words, label_within, metrics_row, simulate_project,
-};
+use crate::simulate::{cause_words, label_within, metrics_row};
 use crate::source::Source;
 
 /// Factors of the sensitivity.
@@ -131,7 +130,12 @@ fn event_table(varied: &[VariedQuantity], event: usize) -> Option<Table> {
             rows.group(varied.quantity);
         }
         let as_declared = if varied.factor == 1.0 { ", as declared" } else { "" };
-        rows.row(metrics_row(format!("{}{as_declared}", varied.value), &shown, (&metrics, units), None));
+        rows.row(metrics_row(
+            format!("{}{as_declared}", varied.value).into(),
+            &shown,
+            (&metrics, units),
+            None,
+        ));
     }
     Some(rows)
 }

@@ -1,6 +1,8 @@
 //! The chapter on the nonlinear model: each scenario over time under each controller, and its
 //! metrics compared with requirements in time, published values and measurements.
 
+use phea_engineering::simulate::{Metric, Metrics, StepLimits, TimeRequirement, Window};
+
 use super::chapter::Chapter;
 use super::driven::MachineChapter;
 use super::driving;
@@ -9,10 +11,9 @@ use crate::figure::Figure;
 use crate::project::{Project, Scenario};
 use crate::quantity::{MotionWords, Units};
 use crate::simulate::{
-    Metric, Metrics, NamedRun, StepLimits, TimeRequirement, Window, adjustment_sentence, cause_words,
-    cells_of, close_ups, coarse_sentence, gas_sentence, headline, label_within, measured, measured_together,
-    metrics_row, occurrence_sentences, pictures, published, published_row, required_overshoot,
-    required_settling, requirement_of, together, turns, windows,
+    NamedRun, adjustment_sentence, cause_cell, cells_of, close_ups, coarse_sentence, gas_sentence, headline,
+    label_within, measured, measured_together, metrics_row, occurrence_sentences, pictures, published,
+    published_row, required_overshoot, required_settling, requirement_of, together, turns, windows,
 };
 
 /// The chapter.
@@ -127,11 +128,11 @@ fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, required: Option<&TimeReq
             let heads = std::iter::once(String::new()).chain(words);
             let mut rows = Table::grouped_by("event", heads);
             for (index, (window, _)) in first.windows.iter().enumerate() {
-                rows.group(cause_words(window, first.record.units));
+                rows.group(cause_cell(window, first.record.units));
                 for named in several {
                     if let Some((_, metrics)) = named.run.windows.get(index) {
                         rows.row(metrics_row(
-                            named.name.to_string(),
+                            Cell::Code(named.name.to_string()),
                             &shown,
                             (metrics, named.run.record.units),
                             requirement_of(required, window),

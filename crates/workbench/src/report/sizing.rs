@@ -1,15 +1,14 @@
 //! The chapter on sizing: decisions, nomograph, candidates, uncertainties.
 
+use phea_engineering::sizing::{BoreVerdict, Candidate, Sizing, SizingError, SizingProblem};
+
 use super::chapter::Chapter;
 use crate::document::{Document, StatusMark};
 use crate::figure::{
     CandidateVerdict, DisplayUnit, Figure, Nomograph, NomographBore, SizingCandidate, SizingChart,
     SizingCurve, Tornado, TornadoBar, Words,
 };
-use crate::sizing::{
-    BoreVerdict, Candidate, Sizing, SizingError, SizingProblem, document, hose_name, model_name,
-    uncertain_name,
-};
+use crate::sizing::{document, hose_name, model_name, uncertain_name};
 use phea_hydraulics::stiffness::StiffnessModel;
 
 pub(super) fn chapter(problem: &SizingProblem, sizing: &Sizing) -> Chapter {
@@ -33,7 +32,7 @@ pub(super) fn refused(error: &SizingError) -> Chapter {
 }
 
 fn bores(problem: &SizingProblem, sizing: &Sizing) -> Figure {
-    let bore = |bore: &crate::sizing::CommercialBore| NomographBore {
+    let bore = |bore: &phea_engineering::sizing::CommercialBore| NomographBore {
         bore_m: bore.bore_m,
         label: hose_name(&bore.name),
         verdict: match bore.verdict {

@@ -4,6 +4,9 @@
 use num_complex::Complex64;
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
 use phea_dynamics::portable;
+use phea_engineering::robust::RobustProblem;
+use phea_engineering::simulate::{RequiredSteps, TimeRequirement};
+use phea_engineering::specification::{SpecificationError, requirements_in_time};
 use phea_qft::specification::{
     GuaranteedMargins, Limit, LimitOrder, Requirement, Specification, guaranteed_margins, tracking_spread,
 };
@@ -15,11 +18,8 @@ use crate::document::{Cell, Document, StatusMark, Table};
 use crate::error::CommandError;
 use crate::project::Project;
 use crate::quantity::{DisplayUnit, RATIO, display};
-use crate::robust::RobustProblem;
-use crate::simulate::{RequiredSteps, TimeRequirement, required_words};
-use crate::specification::{
-    SpecificationError, name_words, requirement_sentence, requirements_in_time, stated,
-};
+use crate::simulate::required_words;
+use crate::specification::{name_words, requirement_sentence, stated};
 use crate::verdict_words::{frequency_number, frequency_words};
 
 pub(super) fn chapter(project: &Project, problem: &RobustProblem) -> Result<Chapter, CommandError> {

@@ -1,5 +1,10 @@
 //! The chapter on stiffness over the stroke, Figure 6.4, in both models.
 
+use phea_engineering::linearize::{
+    Linearization, StiffnessOverForce, stiffness_at, stiffness_at_setting, stiffness_at_settings,
+    stiffness_over_force,
+};
+use phea_engineering::rig::Rig;
 use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::stiffness::StiffnessModel;
 
@@ -7,13 +12,9 @@ use super::chapter::Chapter;
 use crate::document::Document;
 use crate::figure::{Figure, StiffnessCurve, StiffnessDiagram, StiffnessOver, Words};
 use crate::identify::is_valve_of_thesis;
-use crate::linearize::{
-    Linearization, StiffnessOverForce, stiffness_at, stiffness_at_setting, stiffness_at_settings,
-    stiffness_over_force, stiffness_sentence,
-};
+use crate::linearize::stiffness_sentence;
 use crate::project::DeclaredActuator;
 use crate::quantity::{MotionWords, Units};
-use crate::rig::Rig;
 use crate::sizing::model_name;
 
 /// Number of positions of a curve over the stroke.

@@ -1,13 +1,14 @@
 //! The chapter on the recorded tests of the valve, chapter 5 of the thesis.
 
+use phea_engineering::identify::{Identification, Known, RecordedFiles, Search, identify, recordings};
+use phea_engineering::identify_error::IdentifyError;
+
 use super::chapter::Chapter;
 use crate::document::Document;
 use crate::error::CommandError;
 use crate::identify::{
-    Identification, Known, Read, RecordedFiles, Search, ValveFigures, identify, is_valve_of_thesis,
-    recorded_files, recordings, write_coefficients, write_numbers, write_signals,
+    Read, ValveFigures, is_valve_of_thesis, recorded_files, write_coefficients, write_numbers, write_signals,
 };
-use crate::identify_error::IdentifyError;
 use crate::project::{Loaded, Project};
 use crate::source::Source;
 use phea_dynamics::watch::Watch;

@@ -1,8 +1,9 @@
 use phea_dynamics::portable::{argument, log10, magnitude};
 use phea_dynamics::spectrum::{LOCAL_BLOCKS, SpectralPoint};
+use phea_engineering::response::{Averaging, LeftOut, LevelComparison, ReferenceSource, Resampled, Unusable};
 
 use super::levels::{LevelComparisonAnswer, compared_levels};
-use super::{Averaging, Compared, LeftOut, LevelComparison, ReferenceSource, Resampled, Unusable, because};
+use super::{Compared, because};
 use crate::answer::{Answer, Body, SCHEMA, VERSION, words};
 use crate::project::Loaded;
 use crate::quantity::MotionKind;
@@ -127,6 +128,8 @@ struct ResponsePointAnswer {
     standard_deviation: f64,
     /// Radius of the disc around the response that contains the true one with 95 %, in its unit.
     confidence_95: f64,
+    /// The same radius over the magnitude of the response.
+    relative_confidence_95: f64,
 }
 
 /// Frequency without a usable response.
@@ -231,6 +234,11 @@ fn member(compared: &Compared) -> ResponseMemberAnswer {
     }
 }
 
+/// Radius of the disc of 95 % over the magnitude of the response.
+pub(super) fn relative_radius(point: &SpectralPoint) -> f64 {
+    point.radius / magnitude(point.response)
+}
+
 fn point(point: &SpectralPoint) -> ResponsePointAnswer {
     ResponsePointAnswer {
         frequency_rad_per_s: point.frequency,
@@ -239,6 +247,7 @@ fn point(point: &SpectralPoint) -> ResponsePointAnswer {
         coherence: point.coherence,
         standard_deviation: point.deviation,
         confidence_95: point.radius,
+        relative_confidence_95: relative_radius(point),
     }
 }
 

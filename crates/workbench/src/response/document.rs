@@ -1,8 +1,10 @@
 use phea_dynamics::portable::{argument, log10, magnitude};
-
-use super::{
-    Averaging, Compared, LeftOut, LevelComparison, ReferenceSource, ResponseMember, Unusable, levels,
+use phea_engineering::response::{
+    Averaging, LeftOut, LevelComparison, ReferenceSource, ResponseMember, Unusable,
 };
+
+use super::answer::relative_radius;
+use super::{Compared, levels};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
@@ -21,10 +23,10 @@ pub(crate) fn document(found: &[Compared], comparisons: &[LevelComparison]) -> D
         let every = member.points.len().div_ceil(SHOWN).max(1);
         let shown = member.points.iter().step_by(every).map(|point| {
             [
-                Cell::number(DisplayUnit::HERTZ.of(point.frequency), 4),
-                Cell::number(20.0 * log10(magnitude(point.response)), 4),
-                Cell::number(argument(point.response).to_degrees(), 4),
-                Cell::number(100.0 * point.radius / magnitude(point.response), 2),
+                Cell::number_in(point.frequency, 4, DisplayUnit::HERTZ),
+                Cell::number_in(20.0 * log10(magnitude(point.response)), 4, DisplayUnit::DECIBEL),
+                Cell::number_in(argument(point.response).to_degrees(), 4, DisplayUnit::IN_DEGREES),
+                Cell::number_in(relative_radius(point), 2, DisplayUnit::PERCENT),
                 Cell::number(point.coherence, 4),
             ]
         });

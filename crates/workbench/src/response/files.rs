@@ -1,6 +1,7 @@
 use phea_dynamics::portable::{argument, log10, magnitude};
+use phea_engineering::response::{Averaging, ReferenceSource};
 
-use super::{Averaging, Compared, ReferenceSource};
+use super::Compared;
 use crate::answer::{Csv, OutputFile, significant};
 use crate::quantity::DisplayUnit;
 

@@ -1,6 +1,7 @@
 use phea_dynamics::portable::{argument, log10, magnitude};
+use phea_engineering::response::{FALSE_ALARM, LevelComparison, LevelDifference};
 
-use super::{Compared, FALSE_ALARM, LevelComparison, LevelDifference};
+use super::Compared;
 use crate::answer::{Answer, significant};
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
@@ -41,6 +42,10 @@ struct LevelDifferenceAnswer {
     distance: f64,
     /// Distance that noise explains, in the unit of the responses.
     explained_by_noise: f64,
+    /// The distance over the magnitude of the response at the smaller input.
+    relative_distance: f64,
+    /// The distance that noise explains over the same magnitude.
+    relative_explained_by_noise: f64,
     /// True if the distance is larger than noise explains.
     exceeds_noise: bool,
 }
@@ -55,6 +60,8 @@ pub(super) fn compared_levels(comparison: &LevelComparison, found: &[Compared]) 
             difference_deg,
             distance: one.pair.distance(),
             explained_by_noise: one.by_noise,
+            relative_distance: relative(one, one.pair.distance()),
+            relative_explained_by_noise: relative(one, one.by_noise),
             exceeds_noise: one.is_found(),
         }
     };
@@ -86,13 +93,12 @@ pub(super) fn document(comparisons: &[LevelComparison], found: &[Compared]) -> D
         let every = differences.len().div_ceil(SHOWN).max(1);
         let shown = differences.iter().step_by(every).map(|one| {
             let (decibels, degrees) = ratio(one);
-            let size = magnitude(one.pair.responses[0]);
             [
-                Cell::number(DisplayUnit::HERTZ.of(one.pair.frequency), 4),
-                Cell::number(decibels, 3),
-                Cell::number(degrees, 3),
-                Cell::number(100.0 * one.pair.distance() / size, 2),
-                Cell::number(100.0 * one.by_noise / size, 2),
+                Cell::number_in(one.pair.frequency, 4, DisplayUnit::HERTZ),
+                Cell::number_in(decibels, 3, DisplayUnit::DECIBEL),
+                Cell::number_in(degrees, 3, DisplayUnit::IN_DEGREES),
+                Cell::number_in(relative(one, one.pair.distance()), 2, DisplayUnit::PERCENT),
+                Cell::number_in(relative(one, one.by_noise), 2, DisplayUnit::PERCENT),
             ]
         });
         let headings = [
@@ -127,6 +133,11 @@ fn ratio(one: &LevelDifference) -> (f64, f64) {
     (20.0 * log10(magnitude(ratio)), argument(ratio).to_degrees())
 }
 
+/// A distance over the magnitude of the response at the smaller input.
+fn relative(one: &LevelDifference, distance: f64) -> f64 {
+    distance / magnitude(one.pair.responses[0])
+}
+
 /// The result of a comparison.
 fn sentences(comparison: &LevelComparison) -> Vec<String> {
     let all = comparison.frequencies.len();
@@ -138,8 +149,8 @@ fn sentences(comparison: &LevelComparison) -> Vec<String> {
     let hertz = |one: &LevelDifference| significant(DisplayUnit::HERTZ.of(one.pair.frequency), 3);
     let percent = 100.0 * FALSE_ALARM;
     let differences = || comparison.frequencies.iter().filter(|one| one.is_found());
-    let relative = |one: &LevelDifference| one.pair.distance() / magnitude(one.pair.responses[0]);
-    let largest = differences().max_by(|one, other| relative(one).total_cmp(&relative(other)));
+    let apart = |one: &LevelDifference| relative(one, one.pair.distance());
+    let largest = differences().max_by(|one, other| apart(one).total_cmp(&apart(other)));
     let (Some(first), Some(last), Some(largest)) = (differences().next(), differences().next_back(), largest)
     else {
         return vec![format!(
@@ -172,8 +183,8 @@ fn sentences(comparison: &LevelComparison) -> Vec<String> {
 
 /// Median of the differences in magnitude that noise would explain, dB.
 fn detectable(comparison: &LevelComparison) -> f64 {
-    let size = |one: &LevelDifference| one.by_noise / magnitude(one.pair.responses[0]);
-    let mut sizes: Vec<f64> = comparison.frequencies.iter().map(size).collect();
+    let by_noise = |one: &LevelDifference| relative(one, one.by_noise);
+    let mut sizes: Vec<f64> = comparison.frequencies.iter().map(by_noise).collect();
     sizes.sort_by(f64::total_cmp);
     sizes.get(sizes.len() / 2).map_or(f64::INFINITY, |size| 20.0 * log10(1.0 + size))
 }

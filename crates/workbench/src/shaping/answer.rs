@@ -1,17 +1,17 @@
 //! The answer of `shape`.
 
+use phea_engineering::plant_names::NamedPlant;
+use phea_engineering::shaping::{ProjectShaping, Shaped};
+use phea_engineering::specification::kind_key;
 use phea_qft::bound::Placement;
 use phea_qft::manual_shaping::{DesignMargin, DesignPoint};
 use phea_qft::verification::Verdict;
 
 use super::document::polar;
-use super::{ProjectShaping, Shaped};
 use crate::answer::{Answer, Csv, OrReason, OutputFile, words};
 use crate::audit::{self, SpecificationMarginAnswer, StableAnswer, stability_reason, stable};
 use crate::caveat;
-use crate::plant_names::NamedPlant;
 use crate::project::{DeclaredElement, ElementKind, SpecificationKind};
-use crate::specification::kind_key;
 
 /// Answer of `shape`.
 #[derive(Answer)]

@@ -1,15 +1,15 @@
 //! Elements, margins and the loop for people.
 
 use phea_dynamics::portable;
+use phea_engineering::shaping::{ProjectShaping, Shaped};
 use phea_qft::bound::Placement;
 use phea_qft::manual_shaping::DesignMargin;
 
-use super::{ProjectShaping, Shaped};
-use crate::answer::significant;
 use crate::audit::stability_sentence;
 use crate::caveat;
 use crate::document::{Cell, Document, Table};
-use crate::plant_names::plant_text;
+use crate::plant_names::plant_cell;
+use crate::quantity::DisplayUnit;
 use crate::specification::name_words;
 use crate::verdict_words::frequency_number;
 use phea_qft::verification::Verdict;
@@ -63,14 +63,15 @@ pub(crate) fn document(view: &ProjectShaping) -> Document {
 fn margins(view: &ProjectShaping) -> Table {
     let row = |margin: &DesignMargin| {
         let worst = &margin.worst;
-        let plants: Vec<String> = worst.plants().map(|plant| plant_text(&view.names, plant)).collect();
+        let plants = worst.plants().map(|plant| plant_cell(&view.names, plant));
         [
             Cell::frequency(worst.frequency_rad_per_s),
-            format!("{} {}", worst.specification + 1, name_words(view.problem.named(worst.specification)))
-                .into(),
+            Cell::count(worst.specification + 1)
+                .then(" ")
+                .then(name_words(view.problem.named(worst.specification))),
             Cell::margin(worst.margin_db),
-            placement(&margin.placement).into(),
-            plants.join("; ").into(),
+            placement(&margin.placement),
+            Cell::listed(plants, "; "),
         ]
     };
     Table::new(["rad/s", "specification", "margin", "the nominal loop", "worst plant"])
@@ -78,14 +79,16 @@ fn margins(view: &ProjectShaping) -> Table {
 }
 
 /// Target of a placement.
-fn placement(placement: &Placement) -> String {
+fn placement(placement: &Placement) -> Cell {
     match placement {
-        Placement::Allowed { slack_db } if slack_db.is_infinite() => "any gain is allowed".to_string(),
-        Placement::Allowed { slack_db } => format!("{} dB from the bound", significant(*slack_db, 3)),
-        Placement::Forbidden { nearest_db: None, .. } => "no gain is allowed at this phase".to_string(),
+        Placement::Allowed { slack_db } if slack_db.is_infinite() => "any gain is allowed".into(),
+        Placement::Allowed { slack_db } => {
+            Cell::quantity(*slack_db, 3, DisplayUnit::DECIBEL).then(" from the bound")
+        }
+        Placement::Forbidden { nearest_db: None, .. } => "no gain is allowed at this phase".into(),
         Placement::Forbidden { nearest_db: Some(change), .. } => {
-            let way = if *change > 0.0 { "raise" } else { "lower" };
-            format!("{way} by {} dB", significant(change.abs(), 3))
+            let way = if *change > 0.0 { "raise by " } else { "lower by " };
+            Cell::from(way).then(Cell::magnitude(*change, 3, DisplayUnit::DECIBEL))
         }
     }
 }
@@ -96,9 +99,9 @@ fn points(view: &ProjectShaping) -> Table {
         let (decibels, degrees) = polar(point.nominal_loop);
         rows.row([
             Cell::frequency(point.frequency_rad_per_s),
-            format!("{decibels:.2}").into(),
-            format!("{degrees:.2}").into(),
-            placement(&point.placement).into(),
+            Cell::decimal(decibels, 2, DisplayUnit::DECIBEL),
+            Cell::decimal(degrees, 2, DisplayUnit::IN_DEGREES),
+            placement(&point.placement),
         ]);
     }
     rows

@@ -9,10 +9,14 @@ mod repetition;
 mod scenario;
 mod step_counts;
 
+use phea_engineering::simulate::{
+    MachineResponses, ScenarioComparison, ScenarioRun, required_of_run, state_names,
+};
+
 use super::frequency::{self, MachineResponsesAnswer};
-use super::{MachineResponses, ScenarioComparison, ScenarioRun, required_of_run, state_names};
 use crate::answer::{Answer, RecordedAnswer, body_in_use};
 use crate::project::Loaded;
+pub(crate) use event::{SteppedAnswer, stepped};
 use scenario::{ScenarioAnswer, scenario};
 
 /// Answer of `simulate`.

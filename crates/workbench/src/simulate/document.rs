@@ -1,19 +1,20 @@
 //! The output of `simulate` and `compare` for people.
 
-use super::check;
-use super::exceeded_words;
-use super::metrics::{cells_of, label_within, metric_cell};
-use super::repetition::{divergence_words, sentences as doubts, work_words};
-use super::required::requirement_sentences;
-use super::{
+use phea_engineering::simulate::{
     AdjustmentWork, BeyondExpansion, Cause, GasRange, Metric, Metrics, Occurrence, Overlay, PerMetric,
     RunStatus, ScenarioComparison, ScenarioRun, StepLimits, StoppedRun, TimeRequirement, Window, concerns,
-    status_words,
 };
+
+use super::check;
+use super::exceeded_words;
+use super::metrics::{cells_of, label_cell, label_within, metric_cell};
+use super::repetition::{divergence_words, sentences as doubts, work_words};
+use super::required::requirement_sentences;
+use super::status_words;
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::project::{InputSignal, Loaded, Scenario};
-use crate::quantity::{DisplayUnit, MotionKind, TIME, Units, VOLTAGE, ZERO_CELSIUS, display};
+use crate::quantity::{DisplayUnit, MotionKind, TIME, Units, VOLTAGE, ZERO_CELSIUS};
 
 /// Number of occurrences that are listed one by one; more are counted.
 const LISTED: usize = 8;
@@ -103,7 +104,7 @@ pub(crate) fn windows(
     let mut rows = Table::new(std::iter::once("event".to_string()).chain(shown.iter().map(head)));
     for (window, metrics) in &run.windows {
         let requirement = requirement_of(required, window);
-        rows.row(metrics_row(cause_words(window, units), &shown, (metrics, units), requirement));
+        rows.row(metrics_row(cause_cell(window, units), &shown, (metrics, units), requirement));
         if let Some((source, cells)) = declared.and_then(|declared| published(declared, window, units)) {
             rows.row(published_row(source, &shown, cells));
         }
@@ -121,7 +122,7 @@ pub(crate) fn requirement_of<'r>(
 
 /// The metrics of one event, with marks on those that have a requirement.
 pub(crate) fn metrics_row(
-    name: String,
+    name: Cell,
     shown: &[Metric],
     (metrics, units): (&Metrics, Units),
     requirement: Option<&StepLimits>,
@@ -135,9 +136,7 @@ pub(crate) fn metrics_row(
             cells[metric] = std::mem::take(&mut cells[metric]).marked(is_satisfied);
         }
     }
-    std::iter::once(name.into())
-        .chain(shown.iter().map(|metric| std::mem::take(&mut cells[*metric])))
-        .collect()
+    std::iter::once(name).chain(shown.iter().map(|metric| std::mem::take(&mut cells[*metric]))).collect()
 }
 
 /// The published values of an event.
@@ -190,32 +189,38 @@ pub(crate) fn measured(runs: &[(Option<&'static str>, &ScenarioRun)]) -> Table {
 }
 
 fn measured_cells(overlay: &Overlay, units: Units) -> [Cell; 5] {
-    let percent = |ratio: f64| Cell::quantity(100.0 * ratio, 3, DisplayUnit { symbol: "%", in_si: 1.0 });
+    let percent = |ratio: f64| Cell::quantity(ratio, 3, DisplayUnit::PERCENT);
+    let inside = Cell::count(overlay.times_s.len());
     let rows = match overlay.rows_outside {
-        0 => overlay.times_s.len().to_string(),
-        outside => format!("{}, {outside} more outside", overlay.times_s.len()),
+        0 => inside,
+        outside => inside.then(", ").then(Cell::count(outside)).then(" more outside"),
     };
     [
         overlay.signal.quantity().text(units.motion).into_owned().into(),
         format!("{} `{}`", overlay.file, overlay.column).into(),
         overlay.nrmse.map_or(Cell::Missing, percent),
         overlay.rmse.map_or(Cell::Missing, |rmse| Cell::quantity(rmse, 3, overlay.display_unit(units))),
-        rows.into(),
+        rows,
     ]
 }
 
 /// Cause of a window.
 pub(crate) fn cause_words(window: &Window, units: Units) -> String {
-    let at = display(window.start_s, &TIME, 4);
-    match window.cause {
-        Cause::ReferenceStep { to_n, .. } => format!("step to {} at {at}", units.force.short(to_n, 4)),
-        Cause::ReferenceMotion { kind } => format!("{kind} at {at}"),
-        Cause::CommandStep { to_v, .. } => format!("command to {} at {at}", display(to_v, &VOLTAGE, 4)),
-        Cause::CommandMotion { kind } => format!("{kind} of the command at {at}"),
-        Cause::LoadMotion => format!("load motion at {at}"),
-        Cause::ExternalForce { .. } => format!("{} at {at}", window.cause.label(units.motion)),
-        Cause::SettingChange => format!("setting of the accumulators at {at}"),
-    }
+    cause_cell(window, units).text()
+}
+
+/// Cause of a window in a cell.
+pub(crate) fn cause_cell(window: &Window, units: Units) -> Cell {
+    let cause = match window.cause {
+        Cause::ReferenceStep { to_n, .. } => Cell::from("step to ").then(Cell::short(to_n, 4, units.force)),
+        Cause::ReferenceMotion { kind } => kind.into(),
+        Cause::CommandStep { to_v, .. } => Cell::from("command to ").then(Cell::customary(to_v, 4, &VOLTAGE)),
+        Cause::CommandMotion { kind } => format!("{kind} of the command").into(),
+        Cause::LoadMotion => "load motion".into(),
+        Cause::ExternalForce { .. } => window.cause.label(units.motion).into(),
+        Cause::SettingChange => "setting of the accumulators".into(),
+    };
+    cause.then(" at ").then(Cell::customary(window.start_s, 4, &TIME))
 }
 
 /// The resolution of the figures of a long scenario.
@@ -417,7 +422,7 @@ fn side_by_side(columns: &[Option<&ScenarioRun>], units: Units) -> Table {
         let windows: Vec<Option<&(Window, Metrics)>> =
             columns.iter().map(|run| run.and_then(|run| run.windows.get(index))).collect();
         let Some((first, _)) = windows.iter().flatten().next() else { continue };
-        rows.group(cause_words(first, units));
+        rows.group(cause_cell(first, units));
         let bands = || windows.iter().flatten().map(|(_, metrics)| metrics.settling_band_percent);
         let cells: Vec<_> =
             windows.iter().map(|window| window.map(|(_, metrics)| cells_of(metrics, units))).collect();
@@ -425,7 +430,7 @@ fn side_by_side(columns: &[Option<&ScenarioRun>], units: Units) -> Table {
             let of = |cells: &Option<PerMetric<Cell>>| cells.as_ref().map(|cells| cells[metric].clone());
             let values: Vec<Cell> = cells.iter().map(|cells| of(cells).unwrap_or_default()).collect();
             if values.iter().any(|value| *value != Cell::Missing) {
-                rows.row(std::iter::once(label_within(metric, bands(), units.motion).into()).chain(values));
+                rows.row(std::iter::once(label_cell(metric, bands(), units.motion)).chain(values));
             }
         }
     }

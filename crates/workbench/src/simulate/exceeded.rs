@@ -1,6 +1,7 @@
 //! Limits of the rig that a run exceeds, in sentences.
 
-use super::{Exceeded, LimitPlace, RigLimit};
+use phea_engineering::simulate::{Exceeded, LimitPlace, RigLimit};
+
 use crate::answer::Word;
 use crate::quantity::{DisplayUnit, LENGTH, MotionWords, Units, VOLTAGE, display, significant};
 

@@ -1,7 +1,9 @@
 //! Figures of runs over time.
 
+use phea_engineering::simulate::{Cause, Metrics, Record, ScenarioComparison, ScenarioRun, Window};
+
+use super::cause_words;
 use super::span::{span_of, span_of_events};
-use super::{Cause, Metrics, Record, ScenarioComparison, ScenarioRun, Window, cause_words};
 use crate::answer::{OutputFile, picture_files, significant};
 use crate::document::capital;
 use crate::figure::axis::extent;

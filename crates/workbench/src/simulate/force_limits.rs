@@ -1,6 +1,7 @@
 //! Limits on the force at rest that required steps and references exceed, in sentences.
 
-use super::{BeyondReach, ExceededForce, RestLimit, StepEnd};
+use phea_engineering::simulate::{BeyondReach, ExceededForce, RestLimit, StepEnd};
+
 use crate::quantity::{FORCE, PRESSURE, Units, display};
 
 /// A required step that the rig does not reach, and the remedy.

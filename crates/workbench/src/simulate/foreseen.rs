@@ -1,7 +1,8 @@
 //! Signals of scenarios that a rig cannot follow, in sentences.
 
+use phea_engineering::simulate::{BeyondRig, Foreseen};
+
 use super::force_limits::{exceeded_force, force};
-use super::{BeyondRig, Foreseen};
 use crate::project::LateError;
 use crate::quantity::{LENGTH, TIME, Units, display};
 

@@ -1,6 +1,8 @@
 //! The metrics of an event in tables and answers.
 
-use super::{Metric, Metrics, PerMetric, Unmeasured, unmeasured_words};
+use phea_engineering::simulate::{Metric, Metrics, PerMetric, Unmeasured};
+
+use super::unmeasured_words;
 use crate::answer::{Answer, Reasoned};
 use crate::document::Cell;
 use crate::quantity::{DisplayUnit, MotionKind, Units};
@@ -12,9 +14,11 @@ pub(crate) fn shown_in(metric: Metric, units: Units) -> DisplayUnit {
 
 /// A value of a metric.
 pub(crate) fn metric_cell(metric: Metric, value: f64, units: Units) -> Cell {
-    let small = matches!(metric, Metric::SteadyStateError | Metric::DisturbancePeak);
-    let value = if small { small_as_zero(value) } else { value };
-    Cell::quantity(value, metric.digits(), shown_in(metric, units))
+    let cell = Cell::quantity(value, metric.digits(), shown_in(metric, units));
+    match metric {
+        Metric::SteadyStateError | Metric::DisturbancePeak => cell.zero_below(NEGLIGIBLE_N),
+        _ => cell,
+    }
 }
 
 /// The label of a metric, for the settling time with its band: `settling (1 %)`; with each band
@@ -24,23 +28,35 @@ pub(crate) fn label_within(
     bands_percent: impl IntoIterator<Item = f64>,
     motion: MotionKind,
 ) -> String {
+    label_cell(metric, bands_percent, motion).text()
+}
+
+/// The label of a metric in a cell.
+pub(super) fn label_cell(
+    metric: Metric,
+    bands_percent: impl IntoIterator<Item = f64>,
+    motion: MotionKind,
+) -> Cell {
     match metric {
-        Metric::SettlingTime => settling_within(bands_percent),
-        other => other.label(motion).to_string(),
+        Metric::SettlingTime => settling_cell(bands_percent),
+        other => other.label(motion).into(),
     }
 }
 
 /// The label of a settling time, with its bands: see [`label_within`].
-pub(crate) fn settling_within(bands_percent: impl IntoIterator<Item = f64>) -> String {
-    let mut bands: Vec<String> = Vec::new();
-    for band in bands_percent.into_iter().map(|band| format!("{band} %")) {
+pub(crate) fn settling_cell(bands_percent: impl IntoIterator<Item = f64>) -> Cell {
+    let mut bands: Vec<Cell> = Vec::new();
+    for band in bands_percent.into_iter().map(|band| Cell::short(band, STATED, DisplayUnit::IN_PERCENT)) {
         if !bands.contains(&band) {
             bands.push(band);
         }
     }
-    let label = Metric::SettlingTime.label(MotionKind::Linear);
-    if bands.is_empty() { label.to_string() } else { format!("{label} ({})", bands.join(", ")) }
+    let label = Cell::from(Metric::SettlingTime.label(MotionKind::Linear));
+    if bands.is_empty() { label } else { label.then(Cell::listed(bands, ", ").between(" (", ")")) }
 }
+
+/// Digits of a number that is printed as it is stated.
+pub(super) const STATED: usize = 17;
 
 /// The cell of each metric, with its unit.
 pub(crate) fn cells_of(metrics: &Metrics, units: Units) -> PerMetric<Cell> {
@@ -51,10 +67,8 @@ pub(crate) fn cells_of(metrics: &Metrics, units: Units) -> PerMetric<Cell> {
     })
 }
 
-/// An error of the force below a millinewton is due to the integration, not to the loop.
-fn small_as_zero(error_n: f64) -> f64 {
-    if error_n.abs() < 1e-3 { 0.0 } else { error_n }
-}
+/// Error of the force below which it is due to the integration, not to the loop.
+const NEGLIGIBLE_N: f64 = 1e-3;
 
 /// Metrics of an event, of the solution itself and not of its samples.
 #[derive(Answer)]

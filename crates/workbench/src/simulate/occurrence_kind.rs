@@ -1,6 +1,7 @@
 //! The words of the conditions that begin and end in a run.
 
-use super::{COMMAND_LIMIT, ERRORS_AMPLIFIED, LINE_OCCURRENCES, REPEATED};
+use phea_engineering::simulate::{COMMAND_LIMIT, ERRORS_AMPLIFIED, LINE_OCCURRENCES, REPEATED};
+
 use crate::answer::{Word, describe_words};
 use phea_hydraulics::machine::INDICATORS;
 

@@ -1,6 +1,7 @@
 //! Reasons why a run lacks a number, a saved end, accounts or a closed loop.
 
-use super::{NoClosedLoop, NoLedger, NotSaved, RunStatus, Unmeasured};
+use phea_engineering::simulate::{NoClosedLoop, NoLedger, NotSaved, RunStatus, Unmeasured};
+
 use crate::quantity::MotionKind;
 
 /// Status of a run.

@@ -1,8 +1,8 @@
 //! Runs that were repeated, and runs that diverge, for people.
 
-use super::{
-    Divergence, Measured, PassAgreement, PassSpread, Repetition, ScenarioRun, shown_in, status_words,
-};
+use phea_engineering::simulate::{Divergence, Measured, PassAgreement, PassSpread, Repetition, ScenarioRun};
+
+use super::{shown_in, status_words};
 use crate::answer::significant;
 use crate::quantity::{DisplayUnit, Units, VOLTAGE, display};
 use phea_dynamics::simulation::{GrowthCause, UnfollowedCause, UnfollowedKinks};

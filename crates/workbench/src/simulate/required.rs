@@ -1,8 +1,8 @@
 //! Requirements in time, compared with the runs of scenarios, in words and for programs.
 
-use super::{
-    NotJudged, ReachedStep, ScenarioRequirement, ScenarioRun, reached_words, required_of_run, required_words,
-};
+use phea_engineering::simulate::{NotJudged, ReachedStep, ScenarioRequirement, ScenarioRun, required_of_run};
+
+use super::{reached_words, required_words};
 use crate::answer::{Answer, OrReason, Word, words};
 use crate::project::Project;
 use crate::specification::RequiredStepAnswer;

@@ -1,7 +1,7 @@
 //! The time that a figure of an event shows: until a step has settled, or two cycles of a repeating
 //! input.
 
-use super::{Cause, Metrics, Record, ScenarioRun, Window};
+use phea_engineering::simulate::{Cause, Metrics, Record, ScenarioRun, Window};
 use phea_hydraulics::signal::Signal;
 
 /// Time shown before an event, as a fraction of the time after it.

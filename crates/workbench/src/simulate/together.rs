@@ -1,14 +1,14 @@
 //! Figures of one scenario under several controllers: one machine and one reference, a colour for
 //! each controller.
 
+use phea_engineering::simulate::{Cause, Record, ScenarioRun, StepLimits, Window};
+
 use super::figures::{
     close_up, enlarged, error_title, instants, load_pressure, moves_load, over_time, reference_trace,
     shown_words, tracking_error,
 };
 use super::span::{are_alike, span_of, span_of_events};
-use super::{
-    Cause, Record, ScenarioRun, StepLimits, Window, cause_words, required_overshoot, required_settling,
-};
+use super::{cause_words, required_overshoot, required_settling};
 use crate::document::capital;
 use crate::figure::{CurveChart, CurvePanel, CurveRange, CurveStyle, DisplayUnit, Figure, Words};
 use crate::over_time::{Trace, chart, has, measured_force, panel, trace, with_lines_beneath};

@@ -2,15 +2,15 @@
 
 mod means;
 
-use phea_hydraulics::stiffness::StiffnessModel;
-
-use super::words::{decisions, hose_name, model_name, reason_words, uncertain_name};
-use super::{
+use phea_engineering::rig::FlowLimit;
+use phea_engineering::sizing::{
     BoreVerdict, Candidate, CommercialBore, Consequence, GainStep, Influence, SizedLoad, Sizing,
     UncertainHoseNumber,
 };
+use phea_hydraulics::stiffness::StiffnessModel;
+
+use super::words::{decisions, hose_name, model_name, reason_words, uncertain_name};
 use crate::answer::{Answer, Csv, OutputFile, Word, quoted, words};
-use crate::rig::FlowLimit;
 use means::{OtherMeansAnswer, other_means};
 
 /// Answer of `size`.

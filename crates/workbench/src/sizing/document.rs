@@ -1,16 +1,20 @@
 //! A sizing for people.
 
+use phea_engineering::sizing::{
+    Candidate, Consequence, Influence, OtherMeans, OtherMeansError, SizedGas, SizedLoad, SizedPipe,
+    SizedSpring, SizedValve, Sizing,
+};
+
 use super::answer::branch_name;
 use super::words::{
-    coil_unknown_words, decisions, hose_name, length_words, model_name, reason_words, setting_words,
+    coil_unknown_words, decisions, hose_name, length_words, model_name, reason_words, setting_cell,
     uncertain_name,
 };
-use super::{Candidate, Consequence, Influence, OtherMeans, OtherMeansError, SizedLoad, SizedValve, Sizing};
 use crate::answer::significant;
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::figure::Figure;
 use crate::grouped::grouped;
-use crate::quantity::{DisplayUnit, LENGTH, MASS, PRESSURE, VOLUME, display};
+use crate::quantity::{DisplayUnit, LENGTH, MASS, PRESSURE, VOLUME};
 
 /// Every decision, the candidates with the objections to them, the answer with its figures, and the
 /// uncertainties.
@@ -50,79 +54,97 @@ pub(crate) fn document(sizing: &Sizing, figures: Vec<Figure>) -> Document {
 
 /// Other parts with the stiffness of the hose, and parts that damp the load cell.
 fn other_means(out: &mut Document, found: &OtherMeans) {
-    let mega = |value: f64| DisplayUnit::MEGANEWTON_PER_METRE.text(value, 3);
-    let length = |value: f64| display(value, &LENGTH, 3);
-    let pipe = found.pipe.as_ref().map(|pipe| {
-        let oil = display(pipe.oil, &VOLUME, 3);
-        format!("{} of {} bore a line, with {oil} of oil in both", length(pipe.length), length(pipe.bore))
-    });
-    let gas = found.gas.as_ref().map(|gas| {
-        let [volume, precharge] = [display(gas.volume, &VOLUME, 3), display(gas.precharge, &PRESSURE, 3)];
-        let ratio = significant(gas.pressure_ratio, 3);
-        let [soft, stiff] = gas.stiffness.map(mega);
-        format!(
-            "{volume} at {precharge} at each chamber: K_H at its least over the stroke from {soft} to {stiff} over the forces; at the \
-             supply pressure the gas has {ratio} times the absolute pressure of its precharge"
-        )
-    });
-    let spring = found.spring.as_ref().map(|spring| {
-        let wound = spring.coil.as_ref().map_or_else(
-            |reason| format!("how it is wound is not known ({})", coil_unknown_words(*reason)),
-            |coil| {
-                let [wire, coils] = [length(coil.wire_diameter), significant(coil.active_coils, 3)];
-                let [long, heavy] = [length(coil.installed_length), display(coil.mass, &MASS, 3)];
-                format!(
-                    "two coils of {wire} wire with {coils} active turns each, {long} and {heavy} together"
-                )
-            },
-        );
-        let actuator = spring.actuator_length.map(|long| format!("; the actuator is {} long", length(long)));
-        let [stiffness, travel] = [mega(spring.stiffness), length(spring.travel)];
-        format!("{stiffness}, ±{travel} under the stall force; {wound}{}", actuator.unwrap_or_default())
-    });
-    out.heading(format!("The {} of the hose by other means", mega(found.stiffness)));
-    let cell =
-        |found: Result<String, &OtherMeansError>| found.unwrap_or_else(|reason| format!("- ({reason})"));
+    out.heading(format!("The {} of the hose by other means", mega(found.stiffness).text()));
+    let cell = |found: Result<Cell, &OtherMeansError>| {
+        found.unwrap_or_else(|reason| Cell::Missing.then(format!(" ({reason})")))
+    };
     let mut rows = Table::new(["means", "size"]);
-    rows.row(["chambers without any line".to_string(), mega(found.chambers)]);
-    rows.row(["pipe".to_string(), cell(pipe)]);
-    rows.row(["gas at the chambers".to_string(), cell(gas)]);
-    rows.row(["spring on the rod".to_string(), cell(spring)]);
+    rows.row(["chambers without any line".into(), mega(found.chambers)]);
+    rows.row(["pipe".into(), cell(found.pipe.as_ref().map(pipe))]);
+    rows.row(["gas at the chambers".into(), cell(found.gas.as_ref().map(gas))]);
+    rows.row(["spring on the rod".into(), cell(found.spring.as_ref().map(spring))]);
     match &found.valves {
-        Err(reason) => rows.row(["valve between the chambers".to_string(), format!("- ({reason})")]),
+        Err(reason) => rows.row(["valve between the chambers".into(), cell(Err(reason))]),
         Ok(valves) => {
             for valve in valves {
-                let name = format!("valve between the chambers, K_H {}", mega(valve.stiffness));
-                rows.row([name, valve_words(valve)]);
+                let name = Cell::from("valve between the chambers, K_H ").then(mega(valve.stiffness));
+                rows.row([name, valve_cell(valve)]);
             }
         }
     }
     let without = found.actuator_length.map_or_else(
-        || "- (not stated: cylinder.dead_length)".to_string(),
-        |long| format!("{} with any of them but the spring", length(long)),
+        || Cell::Missing.then(" (not stated: cylinder.dead_length)"),
+        |long| length(long).then(" with any of them but the spring"),
     );
-    rows.row(["length of the actuator, retracted".to_string(), without]);
+    rows.row(["length of the actuator, retracted".into(), without]);
     out.table(rows);
     out.explanation("Pipe, gas and spring stand in place of the hose: K_H is that of chambers and pipe, of chambers and gas, or of chambers and spring in series. A valve between the chambers does not soften: it damps the mode of the load cell, of the rig as it is declared and of its chambers without any line.");
 }
 
+fn mega(stiffness: f64) -> Cell {
+    Cell::quantity(stiffness, 3, DisplayUnit::MEGANEWTON_PER_METRE)
+}
+
+fn length(value: f64) -> Cell {
+    Cell::customary(value, 3, &LENGTH)
+}
+
+fn pipe(pipe: &SizedPipe) -> Cell {
+    let lengths = length(pipe.length).then(" of ").then(length(pipe.bore));
+    lengths.then(Cell::customary(pipe.oil, 3, &VOLUME).between(" bore a line, with ", " of oil in both"))
+}
+
+fn gas(gas: &SizedGas) -> Cell {
+    let [soft, stiff] = gas.stiffness.map(mega);
+    let size = Cell::customary(gas.volume, 3, &VOLUME).then(" at ").then(Cell::customary(
+        gas.precharge,
+        3,
+        &PRESSURE,
+    ));
+    let stiffness =
+        soft.between(" at each chamber: K_H at its least over the stroke from ", " to ").then(stiff);
+    let ratio = Cell::number(gas.pressure_ratio, 3).between(
+        " over the forces; at the supply pressure the gas has ",
+        " times the absolute pressure of its precharge",
+    );
+    size.then(stiffness).then(ratio)
+}
+
+fn spring(spring: &SizedSpring) -> Cell {
+    let wound = spring.coil.as_ref().map_or_else(
+        |reason| format!("how it is wound is not known ({})", coil_unknown_words(*reason)).into(),
+        |coil| {
+            let wire = length(coil.wire_diameter).between("two coils of ", " wire with ");
+            let turns = Cell::number(coil.active_coils, 3).then(" active turns each, ");
+            let both = length(coil.installed_length).then(" and ").then(Cell::customary(coil.mass, 3, &MASS));
+            wire.then(turns).then(both).then(" together")
+        },
+    );
+    let travel = length(spring.travel).between(", ±", " under the stall force; ");
+    let cell = mega(spring.stiffness).then(travel).then(wound);
+    match spring.actuator_length {
+        Some(long) => cell.then(length(long).between("; the actuator is ", " long")),
+        None => cell,
+    }
+}
+
 /// Damping by a valve, and its cost.
-fn valve_words(valve: &SizedValve) -> String {
-    let [most, at] = valve.most.map(|value| significant(value, 3));
-    let own_damping = significant(valve.damping_ratio_without_valve, 3);
+fn valve_cell(valve: &SizedValve) -> Cell {
+    let unit = DisplayUnit { symbol: "m3/(s.Pa)", in_si: 1.0 };
+    let [ratio, at] = valve.most;
+    let most = Cell::number(ratio, 3).then(" at most, with ");
+    let own_damping = Cell::number(valve.damping_ratio_without_valve, 3);
     let Some(conductance) = valve.conductance else {
-        return format!(
-            "- (no conductance damps the load cell so much: from {own_damping} without it to {most} at most, with {at} m3/(s.Pa))"
-        );
+        let from =
+            own_damping.between(" (no conductance damps the load cell so much: from ", " without it to ");
+        return Cell::Missing.then(from).then(most).then(Cell::quantity(at, 3, unit)).then(")");
     };
-    let loss = valve
-        .loss
-        .map(|watt| format!("; it loses {} at the greatest force", DisplayUnit::WATT.text(watt, 3)));
-    format!(
-        "{} m3/(s.Pa), from a damping ratio of {own_damping} without it{}; {most} at most, with {at}",
-        significant(conductance, 3),
-        loss.unwrap_or_default()
-    )
+    let from = own_damping.between(", from a damping ratio of ", " without it");
+    let loss = valve.loss.map_or_else(Cell::empty, |watt| {
+        Cell::quantity(watt, 3, DisplayUnit::WATT).between("; it loses ", " at the greatest force")
+    });
+    let found = Cell::quantity(conductance, 3, unit).then(from).then(loss);
+    found.then("; ").then(most).then(Cell::number(at, 3))
 }
 
 fn is_accepted(best: Option<&Candidate>) -> bool {
@@ -209,8 +231,10 @@ fn candidate_cells(candidate: &Candidate) -> [Cell; 7] {
     let branch = &candidate.branch;
     let stiffness = &branch.stiffness;
     let accepted = candidate.accepted();
-    let [fastest, slowest] =
-        candidate.time_constant_s.map(|time_s| DisplayUnit::MILLISECOND.number(time_s, 3));
+    let newton_per_metre = DisplayUnit { symbol: "N/m", in_si: 1.0 };
+    let metres = |length: f64| Cell::quantity(length, 4, DisplayUnit::METRE);
+    let [fastest, slowest] = candidate.time_constant_s;
+    let gain_unit = DisplayUnit { symbol: "V/N", in_si: 1.0 };
     [
         Cell::from(match (accepted, candidate.fits()) {
             (true, _) => "yes",
@@ -221,22 +245,31 @@ fn candidate_cells(candidate: &Candidate) -> [Cell; 7] {
         Cell::Code(hose_name(&candidate.option.name)),
         Cell::Code(model_name(branch.model).to_string()),
         match branch.is_alike() {
-            true => format!("{} m", significant(candidate.length_m(), 4)).into(),
-            false => branch.lengths_m.map(|length| format!("{} m", significant(length, 4))).join(", ").into(),
+            true => metres(candidate.length_m()),
+            false => Cell::listed(branch.lengths_m.map(metres), ", "),
         },
-        format!("{} to {} N/m", significant(stiffness.minimum, 4), significant(stiffness.maximum, 4)).into(),
-        format!("{} V/N", significant(branch.gain_v_per_n, 3)).into(),
-        format!("{fastest} to {slowest} ms").into(),
+        Cell::number(stiffness.minimum, 4).then(" to ").then(Cell::quantity(
+            stiffness.maximum,
+            4,
+            newton_per_metre,
+        )),
+        Cell::quantity(branch.gain_v_per_n, 3, gain_unit),
+        Cell::number_in(fastest, 3, DisplayUnit::MILLISECOND).then(" to ").then(Cell::quantity(
+            slowest,
+            3,
+            DisplayUnit::MILLISECOND,
+        )),
     ]
 }
 
-fn influence_cells(influence: &Influence) -> [String; 4] {
-    let three = |values: [f64; 3]| values.map(|value| significant(value, 4)).join(" · ");
-    let mega = DisplayUnit::MEGANEWTON_PER_METRE;
+fn influence_cells(influence: &Influence) -> [Cell; 4] {
+    let three = |values: [f64; 3], unit: DisplayUnit| {
+        Cell::listed(values.map(|value| Cell::number_in(value, 4, unit)), " · ")
+    };
     [
-        uncertain_name(influence.quantity).to_string(),
-        setting_words(influence),
-        three(influence.stiffness_n_per_m.map(|stiffness| mega.of(stiffness))),
-        three(influence.length_m),
+        uncertain_name(influence.quantity).into(),
+        setting_cell(influence),
+        three(influence.stiffness_n_per_m, DisplayUnit::MEGANEWTON_PER_METRE),
+        three(influence.length_m, DisplayUnit::METRE),
     ]
 }

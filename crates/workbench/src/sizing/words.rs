@@ -1,14 +1,15 @@
 //! The names and sentences of a sizing.
 
-use phea_hydraulics::stiffness::StiffnessModel;
-
-use super::{
+use phea_engineering::rig::{FlowLimit, LargestFlow};
+use phea_engineering::sizing::{
     Branch, CoilUnknown, HoseName, Influence, SizedLoad, SizedSystem, SizingReason, SizingStep,
     SoonerRequirement, TimeConstantOrigin, UncertainHoseNumber, UnlikeLines,
 };
+use phea_hydraulics::stiffness::StiffnessModel;
+
 use crate::answer::significant;
+use crate::document::Cell;
 use crate::quantity::DisplayUnit;
-use crate::rig::{FlowLimit, LargestFlow};
 
 /// The model's name in the project file.
 pub(crate) fn model_name(model: StiffnessModel) -> &'static str {
@@ -46,9 +47,10 @@ pub(crate) fn uncertain_name(quantity: UncertainHoseNumber) -> &'static str {
 }
 
 /// Low, nominal and high, with their unit.
-pub(super) fn setting_words(influence: &Influence) -> String {
-    let unit = influence.unit;
-    unit.with_symbol(influence.values.map(|value| unit.number(value, 4)).join(" · "))
+pub(super) fn setting_cell(influence: &Influence) -> Cell {
+    let [low, nominal, high] = influence.values;
+    let [low, nominal] = [low, nominal].map(|value| Cell::number_in(value, 4, influence.unit));
+    Cell::listed([low, nominal, Cell::quantity(high, 4, influence.unit)], " · ")
 }
 
 /// Reason why the winding of a spring is not known.

@@ -2,8 +2,9 @@
 
 use phea_dynamics::time_response::Settling;
 use phea_engineering::simulate::StepLimits;
+use phea_engineering::specification::CheckedRequirement;
 
-use super::{CheckedRequirement, requirement_sentence};
+use super::requirement_sentence;
 use crate::answer::{Answer, significant, words};
 use crate::document::Document;
 use crate::project::{SPECIFICATION_KINDS, SpecificationKind};

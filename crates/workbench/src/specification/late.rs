@@ -1,6 +1,7 @@
 //! A limit that cannot be used, at its place in the project.
 
-use super::{SpecificationError, SpecificationProblem};
+use phea_engineering::specification::{SpecificationError, SpecificationProblem};
+
 use crate::project::LateError;
 
 /// The error at the place of its limit, with the change that would satisfy it.

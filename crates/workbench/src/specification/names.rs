@@ -1,8 +1,9 @@
 //! The names of specifications, for people.
 
+use phea_engineering::specification::{NamedSpecification, SpecificationName};
 use phea_qft::specification::ClosedLoop;
 
-use super::{NamedSpecification, SpecificationName};
+use crate::document::Cell;
 
 /// The name of a limit on a closed loop.
 pub(crate) fn subject_words(name: SpecificationName) -> &'static str {
@@ -34,8 +35,16 @@ pub(crate) fn name_words(named: Option<NamedSpecification>) -> &'static str {
 
 /// `2 tracking`; only the name for a specification that is not declared.
 pub(crate) fn numbered(named: Option<NamedSpecification>) -> String {
-    let name = name_words(named);
-    number(named).map_or_else(|| name.to_string(), |number| format!("{number} {name}"))
+    numbered_cell(named).text()
+}
+
+/// The name of a specification after its number, as in [`numbered`].
+pub(crate) fn numbered_cell(named: Option<NamedSpecification>) -> Cell {
+    let name = Cell::from(name_words(named));
+    match number(named) {
+        Some(number) => Cell::count(number).then(" ").then(name),
+        None => name,
+    }
 }
 
 /// A specification as a sentence names it: by table and number if it is in the file.

@@ -1,9 +1,9 @@
 //! A requirement in time and the values that its limit reaches, in a sentence.
 
 use phea_dynamics::time_response::Settling;
+use phea_engineering::specification::CheckedRequirement;
 use phea_qft::specification::{RequiredResponse, RequirementCheck, RequirementOutcome};
 
-use super::CheckedRequirement;
 use crate::quantity::{RATIO, display};
 
 /// The requirement, the verdict on its limit, and the values that the limit itself reaches.

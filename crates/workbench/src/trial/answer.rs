@@ -1,11 +1,13 @@
 //! The key `machine` of an answer.
 
+use phea_engineering::plant_names::NamedPlant;
+use phea_engineering::simulate::RunStatus;
+use phea_engineering::trial::{Agreement, HeldRequirement, Leg, StepSize, Trial, TrialRun, TrialStep};
+
 use super::words::{agreement_key, not_driven, reason_words, run_name};
-use super::{Agreement, HeldRequirement, Leg, StepSize, Trial, TrialRun, TrialStep};
 use crate::answer::{Answer, OrReason, words};
-use crate::plant_names::NamedPlant;
 use crate::quantity::{FORCE, QuantityName};
-use crate::simulate::{RunStatus, Satisfaction, WorstStepAnswer};
+use crate::simulate::{Satisfaction, WorstStepAnswer};
 use crate::specification::RequiredStepAnswer;
 
 /// Verdict of an audit tested on the nonlinear machine.

@@ -1,17 +1,18 @@
 //! The trial of a verdict on the machine, for people.
 
-use super::words::{
-    have_one_name, largest_step_words, not_driven, percent_words, reason_words, run_name, units_of,
-};
-use super::{
+use phea_engineering::trial::{
     Agreement, BAND_PERCENT, Leg, MOST_OF_SCENARIOS, OVERSHOOT_ROOM_PERCENT, SETTLING_RATIO, SETTLING_ROOM,
     StepResponse, StepSize, Trial, TrialRun, TrialStep,
+};
+
+use super::words::{
+    have_one_name, largest_step_words, not_driven, percent_cell, reason_words, run_cell, run_name, units_of,
 };
 use crate::document::{Cell, Document, Table, capital};
 use crate::figure::{FamilySteps, Figure, TimeSeries, Words};
 use crate::plant_names::plant_words;
 use crate::quantity::DisplayUnit;
-use crate::simulate::{reached_words, required_words, satisfied_word};
+use crate::simulate::{reached_cell, required_cell, satisfied_word};
 use crate::verdict_words::agreement_word;
 use phea_qft::verification::Verdict;
 
@@ -28,7 +29,7 @@ fn settling_apart(trial: &Trial) -> Option<String> {
         let own_s = run.machine.as_ref()?.settling_time_s?;
         let slowest = run.legs.iter().find(|(_, step)| step.settling_time_s == Some(own_s));
         let is_back = slowest.is_some_and(|(leg, _)| *leg == Leg::Back);
-        Some((own_s, run.linear.as_ref()?.settling_time_s?, ends_words(run, is_back)))
+        Some((own_s, run.linear.as_ref()?.settling_time_s?, ends_cell(run, is_back).text()))
     };
     let apart = |own_s: &f64, linear_s: &f64| (own_s / linear_s).max(linear_s / own_s);
     let furthest = trial.runs.iter().filter_map(both);
@@ -94,19 +95,18 @@ fn cells(run: &TrialRun) -> [Cell; 8] {
         let time_s = step.and_then(|step| step.settling_time_s);
         time_s.map_or(Cell::Missing, |time_s| Cell::quantity(time_s, 3, DisplayUnit::MILLISECOND))
     };
-    let overshoot = |step: Option<&TrialStep>| {
-        Cell::from(step.and_then(|step| step.overshoot_percent).map(percent_words))
-    };
+    let overshoot =
+        |step: Option<&TrialStep>| step.and_then(|step| step.overshoot_percent).map(percent_cell).into();
     let (linear, machine) = (run.linear.as_ref(), run.machine.as_ref());
     [
-        run_name(run).into(),
-        step_words(run).into(),
+        run_cell(run),
+        ends_cell(run, false),
         Cell::agreement(run.agreement),
         overshoot(machine),
         overshoot(linear),
         settling(machine),
         settling(linear),
-        run.remaining_amplitude_n.map_or(Cell::Missing, |amplitude| remaining_words(run, amplitude).into()),
+        run.remaining_amplitude_n.map(|amplitude| remaining_cell(run, amplitude)).into(),
     ]
 }
 
@@ -173,10 +173,10 @@ fn required(trial: &Trial) -> Document {
     for (run, held) in distinct(trial).flat_map(|run| run.requirements.iter().map(move |held| (run, held))) {
         let verdict = if held.is_satisfied { Verdict::Met } else { Verdict::Violated };
         rows.row([
-            run_name(run).into(),
-            required_words(&held.step_limits).into(),
+            run_cell(run),
+            required_cell(&held.step_limits),
             Cell::from(satisfied_word(held.is_satisfied)).marked(verdict),
-            reached_words(&held.step_limits, &held.reached).into(),
+            reached_cell(&held.step_limits, &held.reached),
         ]);
     }
     let verdict = if satisfies { Verdict::Met } else { Verdict::Violated };
@@ -210,25 +210,20 @@ fn corners(trial: &Trial) -> Vec<String> {
     sentences
 }
 
-/// Words for a step from one reference to the other.
-fn step_words(run: &TrialRun) -> String {
-    ends_words(run, false)
-}
-
-/// Words for a step from one reference to the other, or back.
-fn ends_words(run: &TrialRun, is_back: bool) -> String {
-    let [from, to] = run.reference_n.map(|force| run.units.force.short(force, 3));
-    if is_back { format!("{to} to {from}") } else { format!("{from} to {to}") }
+/// A step from one reference to the other, or back.
+fn ends_cell(run: &TrialRun, is_back: bool) -> Cell {
+    let [from, to] = run.reference_n.map(|force| Cell::short(force, 3, run.units.force));
+    if is_back { to.then(" to ").then(from) } else { from.then(" to ").then(to) }
 }
 
 /// Fraction of the step below which an oscillation counts as none.
 const NOTHING: f64 = 1e-4;
 
 /// The amplitude of an oscillation that remains.
-fn remaining_words(run: &TrialRun, amplitude_n: f64) -> String {
+fn remaining_cell(run: &TrialRun, amplitude_n: f64) -> Cell {
     let [from, to] = run.reference_n;
-    let is_nothing = amplitude_n < NOTHING * (to - from).abs();
-    format!("±{}", run.units.force.short(if is_nothing { 0.0 } else { amplitude_n }, 2))
+    let amplitude = Cell::short(amplitude_n, 2, run.units.force);
+    Cell::from("±").then(amplitude.zero_below(NOTHING * (to - from).abs()))
 }
 
 /// Reason why a machine does not behave like the linear loop, and which plants were not driven.

@@ -1,50 +1,65 @@
 //! Machines of a trial and the results of their runs, in words.
 
-use super::{
+use phea_engineering::trial::{
     Agreement, DampingWall, DifferenceCause, Leg, NotDriven, OvershootNote, REACH, StepSize, Trial,
     TrialFinding, TrialMachine, TrialReason, TrialRun, UnsettledEnd, WorstOf,
 };
+
 use crate::document::Cell;
 use crate::plant_names::plant_words;
 use crate::quantity::{DisplayUnit, MotionKind, MotionWords, Units, significant};
-use crate::specification::numbered;
+use crate::specification::numbered_cell;
 use crate::verdict_words::agreement_word;
 
 /// The machine of a run, without the size of its steps.
 pub(crate) fn machine_words(machine: &TrialMachine) -> String {
+    machine_cell(machine).text()
+}
+
+fn machine_cell(machine: &TrialMachine) -> Cell {
     match machine {
-        TrialMachine::Declared => "the rig as declared".to_string(),
-        TrialMachine::WithWaves => "the rig with waves in its lines".to_string(),
+        TrialMachine::Declared => "the rig as declared".into(),
+        TrialMachine::WithWaves => "the rig with waves in its lines".into(),
         TrialMachine::WorstPlant(of) => worst_plant(of),
-        TrialMachine::WorstOfBox { corners, inside } => {
-            format!("the worst of {corners} corners of the box and {inside} plants inside")
-        }
+        TrialMachine::WorstOfBox { corners, inside } => Cell::count(*corners)
+            .between("the worst of ", " corners of the box and ")
+            .then(Cell::count(*inside))
+            .then(" plants inside"),
     }
 }
 
-fn worst_plant(of: &WorstOf) -> String {
+fn worst_plant(of: &WorstOf) -> Cell {
     match of {
-        WorstOf::Specification(named) => format!("the worst plant of {}", numbered(Some(*named))),
-        WorstOf::InTime(named) => format!("the worst plant of {} in time", numbered(Some(*named))),
-        WorstOf::RequiredStep => "the worst plant of the required step".to_string(),
+        WorstOf::Specification(named) => Cell::from("the worst plant of ").then(numbered_cell(Some(*named))),
+        WorstOf::InTime(named) => numbered_cell(Some(*named)).between("the worst plant of ", " in time"),
+        WorstOf::RequiredStep => "the worst plant of the required step".into(),
     }
 }
 
 /// The name of a run: its machine, and the size of its steps if it is not the usual one.
 pub(crate) fn run_name(run: &TrialRun) -> String {
-    name_of(&run.machine_driven, run.size)
+    run_cell(run).text()
+}
+
+/// The name of a run in a cell.
+pub(super) fn run_cell(run: &TrialRun) -> Cell {
+    machine_cell(&run.machine_driven).then(size_words(run.size))
 }
 
 /// The name of a run through steps of this size.
 pub(crate) fn name_of(machine: &TrialMachine, size: StepSize) -> String {
-    let ending = match size {
+    format!("{}{}", machine_words(machine), size_words(size))
+}
+
+/// The size of the steps of a run; empty for the usual one.
+fn size_words(size: StepSize) -> &'static str {
+    match size {
         StepSize::Tenth => "",
         StepSize::Reversed => ", the other way",
         StepSize::Scenario => ", step of a scenario",
         StepSize::Largest => ", largest step",
         StepSize::Required => ", required step",
-    };
-    format!("{}{ending}", machine_words(machine))
+    }
 }
 
 /// True if two runs have one machine and steps of equal size.
@@ -78,7 +93,12 @@ impl Cell {
 
 /// `2.10 %`; values below a hundredth count as zero.
 pub(crate) fn percent_words(percent: f64) -> String {
-    if percent < 0.01 { "0 %".to_string() } else { format!("{} %", significant(percent, 3)) }
+    percent_cell(percent).text()
+}
+
+/// A percentage in a cell, in the words of [`percent_words`].
+pub(super) fn percent_cell(percent: f64) -> Cell {
+    Cell::quantity(percent, 3, DisplayUnit::IN_PERCENT).zero_below(0.01)
 }
 
 /// Result of a run, with the cause of a difference.
@@ -224,7 +244,7 @@ fn cause_of_difference(cause: &DifferenceCause) -> String {
 fn not_driven_words(one: &NotDriven, units: Units) -> String {
     match one {
         NotDriven::Plant { of, plant, reason } => {
-            format!("{} ({}): {reason}", worst_plant(of), plant_words(plant))
+            format!("{} ({}): {reason}", worst_plant(of).text(), plant_words(plant))
         }
         NotDriven::SmallerStep(forces) => {
             let [from, to] = forces.map(|force| units.force.short(force, 3));

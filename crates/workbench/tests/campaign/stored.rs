@@ -2,7 +2,7 @@
 //! campaign.
 
 use crate::answer_schema::parsed;
-use phea_workbench::campaign::RowFault;
+use phea_workbench::engineering::campaign::RowFault;
 
 use super::*;
 

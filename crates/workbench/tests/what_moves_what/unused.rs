@@ -4,10 +4,10 @@ use std::cell::OnceCell;
 use std::collections::BTreeSet;
 use std::sync::Mutex;
 
-use phea_workbench::alternatives::retracted_length;
 use phea_workbench::command::{Request, answer};
+use phea_workbench::engineering::alternatives::retracted_length;
+use phea_workbench::engineering::setup::Setup;
 use phea_workbench::project::{KeyEntry, Loaded};
-use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
 use super::rigs::{absent_tables, is_within, others, stated};
@@ -62,7 +62,7 @@ fn far(entry: &KeyEntry, own: &Loaded) -> Vec<String> {
 fn outputs(loaded: &Loaded) -> String {
     let source = Memory::default();
     let text = |request: &Request| match answer(&source, loaded, &[], request) {
-        Ok(answer) => answer.text,
+        Ok(answer) => answer.text(),
         Err(error) => error.to_string(),
     };
     let printed = [Request::Check, Request::Size { gain: None, length: None }].map(|request| text(&request));

@@ -1,9 +1,9 @@
 //! Numbers by which alternatives are compared, for programs.
 
+use phea_engineering::alternatives::{AlternativeColumn, ColumnKey, ColumnPart, JudgedAlternative};
 use phea_qft::verification::Verdict;
 
 use super::super::words::{judge_error_words, no_number_words, undecided_words};
-use super::super::{AlternativeColumn, ColumnKey, ColumnPart, JudgedAlternative};
 use crate::answer::{Answer, OrReason};
 use crate::linearize::{PassivityAnswer, no_closed_impedance_words, passivity_body};
 use crate::specification::subject_words;

@@ -1,8 +1,9 @@
 //! Fronts of alternatives over a swept key, for programs.
 
+use phea_engineering::alternatives::{ColumnKey, ColumnSense, Front, FrontPoint, FrontValue};
+
 use super::super::front::findings;
 use super::super::words::{no_front_value_words, unknown_words};
-use super::super::{ColumnKey, ColumnSense, Front, FrontPoint, FrontValue};
 use super::columns::{
     ImpedanceColumnsAnswer, LoopColumnsAnswer, RigColumnsAnswer, ScenarioColumnsAnswer,
     SpecificationColumnsAnswer,

@@ -1,9 +1,10 @@
 //! The noise of signals that are fed forward or back, in the answer of an audit.
 
+use phea_engineering::audit::{SignalNoise, SignalNoiseEffect};
+use phea_engineering::plant_names::{NamedPlant, PlantNames};
+
 use crate::answer::{Answer, OrReason};
 use crate::audit::signal_noise::unknown_words;
-use crate::audit::{SignalNoise, SignalNoiseEffect};
-use crate::plant_names::{NamedPlant, PlantNames};
 use crate::quantity::{FORCE, QuantityName, VELOCITY};
 
 /// Noise of the load velocity that is fed forward, with its effects in a sampled loop.

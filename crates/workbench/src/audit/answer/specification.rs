@@ -1,15 +1,16 @@
 //! The specifications in the answer of an audit.
 
+use phea_engineering::audit::{ProjectAudit, ReachedLimit, TimeFinding, TimeOutcome, WorstStep};
+use phea_engineering::plant_names::{NamedPlant, PlantNames};
+use phea_engineering::specification::SpecificationName;
 use phea_qft::verification::{Evidence, SpecificationFinding, SpecificationMargin, Verdict};
 
 use super::stability::{ProvenAnswer, proven};
 use crate::answer::{Answer, OrReason};
 use crate::audit::in_time::unexamined_words;
 use crate::audit::remark::remark_sentences;
-use crate::audit::{ProjectAudit, ReachedLimit, TimeFinding, TimeOutcome, WorstStep};
-use crate::plant_names::{NamedPlant, PlantNames};
 use crate::project::SpecificationKind;
-use crate::specification::{RequiredStepAnswer, SpecificationName, subject_words};
+use crate::specification::{RequiredStepAnswer, subject_words};
 
 /// Finding on a specification.
 #[derive(Answer)]

@@ -1,12 +1,13 @@
 //! Stability of the family, and its proof, in the answer of an audit.
 
+use phea_engineering::audit::ProjectAudit;
+use phea_engineering::plant_names::{NamedPlant, PlantNames};
 use phea_qft::proof::{Certificate, ClaimStatus, Proof};
 use phea_qft::verification::{Evidence, SearchedInfinity, StabilityFinding, Verdict};
 
 use crate::answer::{Answer, OrReason};
 use crate::audit::proven::why_not_proven;
-use crate::audit::{ProjectAudit, stability_reason};
-use crate::plant_names::{NamedPlant, PlantNames};
+use crate::audit::stability_reason;
 
 /// Stability of every plant.
 #[derive(Answer)]

@@ -1,9 +1,9 @@
 //! Differences between a certificate and a project, in words.
 
+use phea_engineering::audit::audit_request;
+use phea_engineering::robust::RobustProblem;
 use phea_qft::proof::{Certificate, CertificateDifference, CertificateSide, differences};
 
-use crate::audit::audit_request;
-use crate::robust::RobustProblem;
 use crate::specification::stated;
 
 /// A sentence without its full stop for each difference.

@@ -1,7 +1,8 @@
 //! A requirement in time over the runs of a campaign.
 
+use phea_engineering::campaign::{CampaignRequirement, SatisfiedRuns};
+
 use crate::answer::{Answer, OrReason};
-use crate::campaign::{CampaignRequirement, SatisfiedRuns};
 use crate::simulate::{WorstStepAnswer, not_judged_words, required_words};
 use crate::specification::RequiredStepAnswer;
 

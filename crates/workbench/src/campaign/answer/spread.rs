@@ -1,9 +1,11 @@
 //! The spread of numbers over the runs of a campaign.
 
+use phea_engineering::campaign::{LUMP_NAMES, Plan, QUANTILES, Spread, Summary, meaningful};
+use phea_engineering::simulate::{Cause, PerMetric, Window};
+
 use crate::answer::{Answer, Reasoned};
-use crate::campaign::{LUMP_NAMES, Plan, QUANTILES, Spread, Summary, meaningful};
 use crate::quantity::QuantityName;
-use crate::simulate::{Cause, PerMetric, Window};
+use crate::simulate::{SteppedAnswer, stepped};
 
 /// Metrics of an event over the runs.
 #[derive(Answer)]
@@ -14,6 +16,8 @@ pub(super) struct CampaignEventAnswer {
     time_s: f64,
     /// Time of the next event, or the end of the scenario.
     until_s: f64,
+    #[answer(flatten)]
+    step: SteppedAnswer,
     /// Metrics that such an event can have.
     metrics: Vec<CampaignMetricAnswer>,
 }
@@ -76,6 +80,7 @@ pub(super) fn events(plan: &Plan, summary: &Summary) -> Vec<CampaignEventAnswer>
         kind: window.cause,
         time_s: window.start_s,
         until_s: window.end_s,
+        step: stepped(window),
         metrics: meaningful(window, plan.is_open_loop())
             .map(|metric| CampaignMetricAnswer {
                 name: metric.quantity(),

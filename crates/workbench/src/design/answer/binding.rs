@@ -1,12 +1,12 @@
 //! Limits that bind or conflict, in JSON.
 
+use phea_engineering::design::ProjectDesign;
+use phea_engineering::plant_names::NamedPlant;
 use phea_qft::design::DesignStatus;
 use phea_qft::verification::SpecificationMargin;
 
 use crate::answer::{Answer, OrReason};
-use crate::design::ProjectDesign;
 use crate::design::words::searched_limit_name;
-use crate::plant_names::NamedPlant;
 use crate::project::SpecificationKind;
 
 /// Limit over frequency that binds or conflicts, at the frequency where it does.

@@ -1,9 +1,10 @@
 //! Facts about a problem that hold whatever a search finds, in JSON.
 
+use phea_engineering::design::{Explanation, ProjectDesign};
+use phea_engineering::plant_names::NamedPlant;
+
 use crate::answer::{Answer, words};
-use crate::design::{Explanation, ProjectDesign};
 use crate::explanation::explanation_sentence;
-use crate::plant_names::NamedPlant;
 
 /// Fact that is impossible or hard for any controller.
 #[derive(Answer)]

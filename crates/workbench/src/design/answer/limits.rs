@@ -1,15 +1,16 @@
 //! Limits of a design in addition to its specifications, with what it reaches, in JSON.
 
-use phea_engineering::design::{CommandOfSteps, DesignLimit, DesignLimitKind, LimitOrigin, StepLimit};
+use phea_engineering::design::{
+    CommandOfSteps, DesignLimit, DesignLimitKind, LimitOrigin, ProjectDesign, StepLimit,
+};
+use phea_engineering::plant_names::NamedPlant;
 use phea_engineering::simulate::ForceLimit;
 use phea_qft::verification::{Evidence, Verdict};
 
 use super::relaxed::{RelaxedValueAnswer, of_limit};
 use crate::answer::{Answer, Keyed, words};
-use crate::design::ProjectDesign;
 use crate::design::limits::margin_db;
 use crate::limit_kind::{LimitValueKeys, in_limit_unit};
-use crate::plant_names::NamedPlant;
 use crate::quantity::{FORCE, QuantityName};
 
 /// Limit of a design in addition to its specifications.

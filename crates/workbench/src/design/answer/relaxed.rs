@@ -1,9 +1,10 @@
 //! The gain from relaxing each limit that binds, in JSON.
 
-use phea_engineering::design::{DesignLimitKind, Gained, RELAXED_BY, RelaxedGain, RelaxedLimit};
+use phea_engineering::design::{
+    DesignLimitKind, Gained, ProjectDesign, RELAXED_BY, RelaxedGain, RelaxedLimit,
+};
 
 use crate::answer::{Answer, Keyed};
-use crate::design::ProjectDesign;
 use crate::design::relaxed::name;
 use crate::limit_kind::{LimitValueKeys, in_limit_unit};
 

@@ -1,6 +1,6 @@
 //! The key `repair` of the answer of a design.
 
-use phea_engineering::design::RepairStatus;
+use phea_engineering::design::{ProjectDesign, Repair, RepairStatus};
 
 use super::binding::{BindingLimitAnswer, conflicts};
 use super::rounds::{DesignRoundAnswer, rounds};
@@ -8,7 +8,6 @@ use super::side::{AuditedControllerAnswer, audited};
 use crate::answer::{Answer, OrReason, words};
 use crate::audit::{self, AuditAnswer};
 use crate::design::repair::repair_sentences;
-use crate::design::{ProjectDesign, Repair};
 use crate::trial::{self, TrialAnswer};
 
 /// Repair of a design that the nonlinear machine contradicts: the plant of that machine is added

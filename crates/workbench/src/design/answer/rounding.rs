@@ -1,12 +1,11 @@
 //! The effect of converters on a designed loop, in JSON.
 
-use phea_engineering::design::RoundedSignal;
+use phea_engineering::design::{RoundedSignal, Rounding};
+use phea_engineering::plant_names::{NamedPlant, PlantNames};
 use phea_qft::design::quantization::LimitCycle;
 
 use crate::answer::{Answer, words};
-use crate::design::Rounding;
 use crate::design::rounding::signal_word;
-use crate::plant_names::{NamedPlant, PlantNames};
 
 /// Effect of the converters of the controller's computer on the loop.
 #[derive(Answer)]

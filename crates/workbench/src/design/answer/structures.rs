@@ -1,12 +1,11 @@
 //! The structures that a design evaluated, in JSON.
 
 use phea_dynamics::controller::NamedStructure;
-use phea_engineering::design::{LedBy, ReachedStructure};
+use phea_engineering::design::{LedBy, ProjectDesign, ReachedStructure};
 use phea_qft::design::StructureEnding;
 
 use super::side::{CrossoverAnswer, crossovers};
 use crate::answer::{Answer, words};
-use crate::design::ProjectDesign;
 use crate::design::structures::{binding, misses_in_time, reached_steps};
 use crate::design::words::reached_words;
 
@@ -60,6 +59,10 @@ pub(super) struct ReachedStructureAnswer {
     /// settle; only if one is required.
     #[answer(optional)]
     worst_settling_time_s: Option<f64>,
+    /// Longest rise from 10 to 90 percent of the linear steps of the same plants, `inf` if a step
+    /// does not rise; only if one is required.
+    #[answer(optional)]
+    worst_rise_time_s: Option<f64>,
 }
 
 /// Outcome of the search with a structure.
@@ -102,7 +105,8 @@ pub(super) fn rows(view: &ProjectDesign) -> Vec<ReachedStructureAnswer> {
 }
 
 fn row(view: &ProjectDesign, one: &ReachedStructure) -> ReachedStructureAnswer {
-    let [worst_overshoot_percent, worst_settling_time_s] = reached_steps(view, one).unwrap_or_default();
+    let [worst_overshoot_percent, worst_settling_time_s, worst_rise_time_s] =
+        reached_steps(view, one).unwrap_or_default();
     ReachedStructureAnswer {
         name: one.name,
         words: reached_words(one),
@@ -120,6 +124,7 @@ fn row(view: &ProjectDesign, one: &ReachedStructure) -> ReachedStructureAnswer {
         compared_db: one.compared_db,
         worst_overshoot_percent,
         worst_settling_time_s,
+        worst_rise_time_s,
     }
 }
 

@@ -1,6 +1,7 @@
 //! Coefficients with their intervals, for programs.
 
-use super::super::{Bootstrap, Identification};
+use phea_engineering::identify::{Bootstrap, Identification};
+
 use crate::answer::Answer;
 
 /// Value for each of the four edges of a valve.

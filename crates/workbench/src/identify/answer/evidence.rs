@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use phea_engineering::identify::{COEFFICIENT_NAMES, ExplainedBy, Identification, TermEvidence, ValveTerm};
 use phea_hydraulics::servovalve::{LeakageModel, StaticCoefficients};
 
-use super::super::{COEFFICIENT_NAMES, ExplainedBy, Identification, TermEvidence, ValveTerm};
 use crate::answer::{Answer, KeyList, Keyed, ObjectKey, words};
 use crate::project::LEAKAGE_MODELS;
 

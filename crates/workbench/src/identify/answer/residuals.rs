@@ -1,10 +1,10 @@
 //! Fit of the signals, and what the recordings leave open, for programs.
 
 use phea_dynamics::order::sort_by_number;
-
-use super::super::{
+use phea_engineering::identify::{
     COEFFICIENT_NAMES, Identification, Misfit, MisfitPlace, NotIdentifiableCombination, SignalFit, SignalKind,
 };
+
 use crate::answer::{Answer, words};
 use crate::project::StaticTest;
 
@@ -15,12 +15,14 @@ pub(super) struct ValveSignalAnswer {
     file: String,
     /// Explained signal.
     signal: SignalKind,
-    /// SI unit of `rms`, `scale` and `range`.
+    /// SI unit of `rms`, `rms_by_hand`, `scale` and `range`.
     unit: &'static str,
     /// Number of rows that count.
     rows: usize,
     /// Root mean square of the residuals.
     rms: f64,
+    /// Root mean square of the residuals with the coefficients that are calculated by hand.
+    rms_by_hand: f64,
     /// Scale of the residuals that a few outliers do not change.
     scale: f64,
     /// Largest less smallest recorded value.
@@ -103,6 +105,7 @@ pub(super) fn signals(found: &Identification) -> Vec<ValveSignalAnswer> {
         unit: if signal.kind.is_pressure() { "Pa" } else { "m3/s" },
         rows: signal.rows,
         rms: signal.rms,
+        rms_by_hand: found.residual_rms_of(signal, &found.first_guess),
         scale: signal.scale,
         range: signal.range,
         neighbour_correlation: signal.correlation,

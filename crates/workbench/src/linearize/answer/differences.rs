@@ -1,6 +1,7 @@
 //! Differences of the linear models for programs.
 
-use super::super::{Linearization, ReductionDifference};
+use phea_engineering::linearize::{Linearization, ReductionDifference};
+
 use crate::answer::Answer;
 
 /// Largest differences of the responses of two models over frequency.

@@ -2,12 +2,13 @@
 
 use num_complex::Complex64;
 use phea_dynamics::frequency::PassivityReport;
-use phea_dynamics::portable::magnitude;
+use phea_dynamics::portable::{argument, magnitude};
+use phea_engineering::linearize::{
+    ComparedImpedance, Linearization, PortView, RequiredImpedance, WITHIN_PERCENT,
+};
 use phea_hydraulics::impedance::{Asymptote, AsymptoteKind};
 
-use super::super::{
-    ComparedImpedance, Linearization, PortView, RequiredImpedance, WITHIN_PERCENT, no_closed_impedance_words,
-};
+use super::super::no_closed_impedance_words;
 use super::{FactorsAnswer, factors};
 use crate::answer::{Answer, OrReason, words};
 use crate::quantity::{DAMPING, MASS, QuantityName, STIFFNESS};
@@ -119,6 +120,8 @@ struct VirtualImpedancePointAnswer {
     /// Impedance -F_e/(s X_L) of the loop, real and imaginary part.
     #[answer(key = QuantityName::moving("achieved_complex", &DAMPING))]
     achieved: Complex64,
+    /// Phase of the impedance of the loop less that of the required one, within half a turn.
+    phase_difference_deg: f64,
 }
 
 /// Force or torque that remains after a step of the position by 0.001.
@@ -195,6 +198,7 @@ fn virtual_impedance_point(point: &ComparedImpedance) -> VirtualImpedancePointAn
         achieved_magnitude: magnitude(point.achieved),
         required: point.required,
         achieved: point.achieved,
+        phase_difference_deg: phase_difference_deg(point),
     }
 }
 
@@ -208,4 +212,9 @@ pub(super) fn final_forces(linearization: &Linearization) -> FinalForcesAnswer {
         open_loop: OrReason::new(linearization.open_loop.final_force_n, unstable),
         closed_loop: OrReason::new(closed_loop, reason),
     }
+}
+
+/// Phase of the impedance of the loop less that of the required one, within half a turn.
+pub(crate) fn phase_difference_deg(point: &ComparedImpedance) -> f64 {
+    argument(point.achieved / point.required).to_degrees()
 }

@@ -1,6 +1,8 @@
 //! Hydraulic stiffness over the stroke for programs.
 
-use super::super::{Linearization, stiffness_sentence};
+use phea_engineering::linearize::Linearization;
+
+use super::super::stiffness_sentence;
 use crate::answer::Answer;
 use crate::quantity::{LENGTH, QuantityName, STIFFNESS};
 

@@ -1,12 +1,12 @@
 //! The nominal loops of both controllers among the bounds (thesis, Figure 6.14).
 
 use phea_dynamics::linear::LinearError;
+use phea_engineering::design::{AuditedController, ProjectDesign};
+use phea_engineering::robust::DesignFrequency;
 use phea_qft::bound::Placement;
 
 use super::super::bounds::{NO_BOUNDS, WITHIN_TOLERANCE, group, nearest_bounds, nearest_words, nominal_loop};
-use crate::design::{AuditedController, ProjectDesign};
 use crate::figure::{Figure, FrequencySeries, NicholsChart, OpenLoopViolation, Words};
-use crate::robust::DesignFrequency;
 use crate::verdict_words::frequency_number;
 
 /// The chart; `None` without a nominal plant.

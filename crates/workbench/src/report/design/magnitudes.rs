@@ -1,14 +1,15 @@
 //! The closed loops of the family with both controllers against each limit (thesis, Figure 6.15).
 
 use phea_dynamics::linear::LinearError;
+use phea_engineering::design::ProjectDesign;
+use phea_engineering::specification::kind_key;
 use phea_qft::specification::Requirement;
 
 use super::super::closed_loops::{LoopFamily, magnitudes};
 use super::super::specifications::titled;
 
-use crate::design::ProjectDesign;
 use crate::figure::{FamilyMagnitude, Figure, Words};
-use crate::specification::{kind_key, name_words};
+use crate::specification::name_words;
 
 /// A figure for each specification to which a loop has a margin.
 pub(super) fn figures(view: &ProjectDesign) -> Result<Vec<Figure>, LinearError> {

@@ -3,14 +3,14 @@
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::portable;
+use phea_engineering::design::{AuditedController, ProjectDesign};
+use phea_engineering::robust::DEFAULT_TOLERANCE_DB;
 use phea_qft::prefilter::{PrefilterBand, PrefilterBandPoint};
 use phea_qft::specification::Specification;
 use phea_qft::verification::Verdict;
 
 use crate::answer::significant;
-use crate::design::{AuditedController, ProjectDesign};
 use crate::figure::{Figure, PrefilterPanel, PrefilterPoint, Words, prefilter_band};
-use crate::robust::DEFAULT_TOLERANCE_DB;
 use crate::specification::stated;
 use crate::verdict_words::frequency_words;
 

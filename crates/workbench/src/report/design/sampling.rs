@@ -1,8 +1,8 @@
 //! The effect of sampling and delay on a design that ignores them.
 
+use phea_engineering::design::AuditedController;
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
-use crate::design::AuditedController;
 use crate::specification::numbered;
 use crate::verdict_words::margin_words;
 

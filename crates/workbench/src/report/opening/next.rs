@@ -4,6 +4,12 @@
 
 use phea_dynamics::closed_loop::ClosedLoop;
 use phea_dynamics::order::sort_by_number;
+use phea_engineering::audit::ProjectAudit;
+use phea_engineering::caveat::caveats;
+use phea_engineering::design::{DESIGNED_PROJECT, ProjectDesign};
+use phea_engineering::setup::Setup;
+use phea_engineering::simulate::TimeRequirement;
+use phea_engineering::trial::{Agreement, Trial, TrialRun};
 use phea_qft::design::{DesignStatus, Relaxation};
 use phea_qft::verification::Verdict;
 
@@ -11,19 +17,17 @@ use super::Contents;
 use super::side::Side;
 use super::steps::{NEVER_RISEN, NEVER_SETTLED, StepProperty, steps};
 use crate::answer::significant;
-use crate::audit::{ProjectAudit, in_time};
-use crate::caveat::{caveats, outside_parameters, sentence};
-use crate::design::{DESIGNED_PROJECT, ProjectDesign, rig_miss_words};
+use crate::audit::in_time;
+use crate::caveat::{outside_parameters, sentence};
+use crate::design::rig_miss_words;
 use crate::document::capital;
 use crate::plant_names::plant_text;
 use crate::project::{DeclaredSpecification, Project, SpecificationKind};
 use crate::quantity::DisplayUnit;
 use crate::report::design::Designed;
 use crate::report::driven::{DESIGNED, GIVEN};
-use crate::setup::Setup;
-use crate::simulate::TimeRequirement;
 use crate::specification::numbered;
-use crate::trial::{self, Agreement, Trial, TrialRun, brief_reason, run_name};
+use crate::trial::{self, brief_reason, run_name};
 use crate::verdict_words::frequency_words;
 
 /// Largest number of sentences.

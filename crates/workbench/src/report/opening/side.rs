@@ -1,16 +1,16 @@
 //! A controller with all its results.
 
+use phea_engineering::audit::ProjectAudit;
+use phea_engineering::design::LoopFigures;
+use phea_engineering::simulate::{ScenarioRun, TimeRequirement};
+use phea_engineering::trial::Trial;
 use phea_qft::proof::{ClaimStatus, Proof};
 use phea_qft::verification::Verdict;
 
 use super::steps::{StepProperty, steps};
-use crate::audit::ProjectAudit;
-use crate::design::LoopFigures;
 use crate::report::campaign::CampaignStep;
 use crate::report::driven::{DESIGNED, GIVEN, MachineChapter};
 use crate::report::judged::Judged;
-use crate::simulate::{ScenarioRun, TimeRequirement};
-use crate::trial::Trial;
 
 /// A controller.
 pub(super) struct Side<'a> {

@@ -5,13 +5,15 @@
 use std::collections::BTreeSet;
 
 use phea_dynamics::time_response::{StepBaseline, step_metrics};
+use phea_engineering::audit::{TimeOutcome, WorstStep};
+use phea_engineering::simulate::{Metrics, ReachedStep, StepLimits, TimeRequirement, Unmeasured, concerns};
+use phea_engineering::trial::{Trial, TrialRun};
 
 use super::side::Side;
 use crate::answer::significant;
-use crate::audit::{TimeOutcome, WorstStep};
 use crate::plant_names::{plant_text, plant_words};
-use crate::simulate::{Metrics, ReachedStep, StepLimits, TimeRequirement, Unmeasured, cause_words, concerns};
-use crate::trial::{Trial, TrialRun, have_one_name, run_name};
+use crate::simulate::cause_words;
+use crate::trial::{have_one_name, run_name};
 
 /// Property of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,5 +1,6 @@
 //! The table of verdicts and numbers: a row for each requirement, a column for each controller.
 
+use phea_engineering::simulate::{Overlay, RunStatus, ScenarioRun};
 use phea_qft::proof::ClaimStatus;
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
@@ -11,9 +12,7 @@ use crate::audit::position_words;
 use crate::document::{Cell, StatusMark, Table};
 use crate::quantity::DisplayUnit;
 use crate::report::specifications::demand;
-use crate::simulate::{
-    Overlay, RunStatus, ScenarioRun, required_overshoot, required_rise, required_settling,
-};
+use crate::simulate::{required_overshoot, required_rise, required_settling};
 use crate::specification::numbered;
 use crate::trial;
 use crate::verdict_words::frequency_words;

@@ -1,20 +1,21 @@
 //! The circuit of a project, in symbols and a few words each.
 
+use phea_engineering::linearize::{LinkagePosition, linkage_places};
+use phea_engineering::rig::{CrossPortAtPoint, Rig, cross_port_at_point};
+use phea_hydraulics::cross_port::Restrictor;
+use phea_hydraulics::port_valves::{PortValveKind, PortValves};
+
 use super::{DescriptionContext, moving_mass, moving_words, shown, shown_in_millimetres, single_line};
 use crate::figure::{
     AccumulatorSymbol, ControllerSymbol, CrossPortSymbol, Environment, Figure, LineSymbol, LinkageSymbol,
     Rods, Schematic, SeriesKind, SeriesSymbol, SupplyKind, Words,
 };
-use crate::linearize::{LinkagePosition, linkage_places};
 use crate::project::{
     self, AdjustmentKind, CrossPortKind, DeclaredAccumulator, DeclaredActuator, DeclaredAdjustment,
     DeclaredCrossPort, DeclaredLine, DeclaredLinkage, DeclaredSeries, LinkageKind, Load, OrificeSize,
     Project, SupplyModel,
 };
 use crate::quantity::{self, FLOW, LENGTH, MASS, MotionWords, PRESSURE, STIFFNESS, VOLTAGE, VOLUME};
-use crate::rig::{CrossPortAtPoint, Rig, cross_port_at_point};
-use phea_hydraulics::cross_port::Restrictor;
-use phea_hydraulics::port_valves::{PortValveKind, PortValves};
 
 pub(super) fn circuit(project: &Project, actuator: &DeclaredActuator, rig: &Rig) -> Figure {
     let [rod_a, rod_b] = actuator.cylinder.rod_diameters_m();

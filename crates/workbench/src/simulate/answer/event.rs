@@ -1,10 +1,11 @@
 //! The events of a run.
 
+use phea_engineering::simulate::{Cause, Metrics, Occurrence, Window};
+
 use crate::answer::{Answer, Reasoned, words};
 use crate::quantity::{FORCE, MotionKind, QuantityName};
 use crate::simulate::metrics::{EventMetricsAnswer, metrics_answer};
 use crate::simulate::occurrence_kind::OccurrenceKind;
-use crate::simulate::{Cause, Metrics, Occurrence, Window};
 
 /// Event of a run, with the metrics of the time from it to the next.
 #[derive(Answer)]
@@ -15,13 +16,20 @@ pub(super) struct ScenarioEventAnswer {
     time_s: f64,
     /// Time of the next event, or the end of the scenario.
     until_s: f64,
+    #[answer(flatten)]
+    step: SteppedAnswer,
+    /// Metrics of the event.
+    metrics: EventMetricsAnswer,
+}
+
+/// Reference and open-loop command before and after the step of an event.
+#[derive(Answer)]
+pub(crate) struct SteppedAnswer {
     /// Reference before and after its step.
     #[answer(key = QuantityName::moving("reference", &FORCE))]
     reference: Reasoned<[f64; 2]>,
     /// Open-loop command before and after its step.
     command_v: Reasoned<[f64; 2]>,
-    /// Metrics of the event.
-    metrics: EventMetricsAnswer,
 }
 
 words! {
@@ -52,6 +60,17 @@ pub(super) struct OccurrenceAnswer {
 
 /// An event with its metrics.
 pub(super) fn event((window, metrics): &(Window, Metrics), motion: MotionKind) -> ScenarioEventAnswer {
+    ScenarioEventAnswer {
+        kind: window.cause,
+        time_s: window.start_s,
+        until_s: window.end_s,
+        step: stepped(window),
+        metrics: metrics_answer(metrics, motion),
+    }
+}
+
+/// The step of an event.
+pub(crate) fn stepped(window: &Window) -> SteppedAnswer {
     let reference_n = match window.cause {
         Cause::ReferenceStep { from_n, to_n } => Some([from_n, to_n]),
         _ => None,
@@ -60,13 +79,9 @@ pub(super) fn event((window, metrics): &(Window, Metrics), motion: MotionKind) -
         Cause::CommandStep { from_v, to_v } => Some([from_v, to_v]),
         _ => None,
     };
-    ScenarioEventAnswer {
-        kind: window.cause,
-        time_s: window.start_s,
-        until_s: window.end_s,
+    SteppedAnswer {
         reference: Reasoned::new(reference_n, "the reference does not step"),
         command_v: Reasoned::new(command_v, "no open-loop command steps"),
-        metrics: metrics_answer(metrics, motion),
     }
 }
 

@@ -1,7 +1,8 @@
 //! Gas and hoses at the chambers over a run.
 
+use phea_engineering::simulate::{BeyondExpansion, GasRange, ScenarioRun};
+
 use crate::answer::{Answer, Reasoned};
-use crate::simulate::{BeyondExpansion, GasRange, ScenarioRun};
 
 /// Work of the adjustment of accumulators over a run, and the loss in the valves to their gas.
 #[derive(Answer)]

@@ -1,8 +1,9 @@
 //! The accounts of oil and energy of a run.
 
+use phea_engineering::simulate::{AccountSum, RunLedger};
+
 use crate::answer::Answer;
 use crate::quantity::MotionKind;
-use crate::simulate::{AccountSum, RunLedger};
 
 /// Accounts of oil and energy over a run; the last of each is that of the whole rig.
 #[derive(Answer)]

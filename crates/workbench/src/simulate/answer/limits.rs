@@ -1,7 +1,8 @@
 //! The limits of the rig that a run exceeds.
 
+use phea_engineering::simulate::{Exceeded, LimitPlace, RigLimit};
+
 use crate::answer::{Answer, Reasoned, words};
-use crate::simulate::{Exceeded, LimitPlace, RigLimit};
 
 /// Limit of the rig that a run exceeds, with values in the SI unit of the limit.
 #[derive(Answer)]

@@ -1,9 +1,11 @@
 //! Runs that were repeated, and runs that diverge.
 
+use phea_engineering::simulate::{Divergence, Pass, PassAgreement, PassSpread, Repetition, RunStatus};
+
 use super::step_counts::StepCountsAnswer;
 use crate::answer::{Answer, Reasoned, words};
 use crate::quantity::{MotionKind, QuantityName};
-use crate::simulate::{Divergence, Pass, PassAgreement, PassSpread, Repetition, RunStatus, unmeasured_words};
+use crate::simulate::unmeasured_words;
 use phea_hydraulics::signal::Signal;
 
 /// Passes of a run that was repeated because errors may be visible.

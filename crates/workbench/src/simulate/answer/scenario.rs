@@ -1,5 +1,9 @@
 //! The run of a scenario.
 
+use phea_engineering::simulate::{
+    Overlay, RunStatus, ScenarioRequirement, ScenarioRun, StoppedRun, UnresolvedMode,
+};
+
 use super::event::{OccurrenceAnswer, ScenarioEventAnswer, event, occurrence};
 use super::gas::{BeyondExpansionAnswer, ChamberGasAnswer, GasAdjustmentAnswer, adjustment, beyond, gas};
 use super::growth::{AmplificationAnswer, UnfollowedKinksAnswer, amplification, unfollowed};
@@ -12,7 +16,6 @@ use crate::quantity::{MotionKind, QuantityName};
 use crate::simulate::check::{self, ToleranceCheckAnswer};
 use crate::simulate::reasons::{no_ledger_words, not_saved_words, unmeasured_words};
 use crate::simulate::required::{ScenarioRequirementAnswer, requirement};
-use crate::simulate::{Overlay, RunStatus, ScenarioRequirement, ScenarioRun, StoppedRun, UnresolvedMode};
 
 /// Run of a scenario.
 #[derive(Answer)]

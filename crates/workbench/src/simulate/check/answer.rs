@@ -1,9 +1,11 @@
 //! A check, in an answer and for people.
 
+use phea_engineering::simulate::RunStatus;
+
 use super::{Cause, Difference, Metric, MetricDifferences, ToleranceCheck};
 use crate::answer::{Answer, Reasoned, significant};
 use crate::quantity::{FORCE, MotionKind, QuantityName, Units};
-use crate::simulate::{RunStatus, unmeasured_words};
+use crate::simulate::unmeasured_words;
 
 /// Difference between the reported run and one at a tenth of its tolerance.
 #[derive(Answer)]

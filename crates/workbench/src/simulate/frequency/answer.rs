@@ -4,12 +4,13 @@ use std::io;
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
+use phea_engineering::simulate::RunStatus;
 use phea_hydraulics::signal::Signal;
 
+use super::document::polar_of_machine;
 use super::{MachineResponse, MachineResponses, ResponsePoint};
 use crate::answer::{Answer, NumberTable, OutputFile, Reasoned, TableFormat};
 use crate::quantity::{FORCE, MotionKind, QuantityName};
-use crate::simulate::RunStatus;
 use crate::simulate::occurrence_kind::OccurrenceKind;
 use crate::simulate::reasons::no_closed_loop_words;
 
@@ -54,6 +55,11 @@ struct MachineResponsePointAnswer {
     amplitude: ShakenAmplitude,
     /// Fundamental of the force over the amplitude.
     machine: Reasoned<Complex64>,
+    /// Magnitude of the machine over that of 1 in the unit of the response; null with a `reason`.
+    machine_magnitude_db: Option<f64>,
+    /// Phase of the machine without jumps by a full turn from one frequency to the next; null with
+    /// a `reason`.
+    machine_phase_deg: Option<f64>,
     /// Response of the linear plant, or of the loop around it.
     linear_plant: Complex64,
     /// Response of the exact derivatives of the machine at its equilibrium; null if they form no
@@ -127,23 +133,26 @@ fn response(
     response: &MachineResponse,
     amplitude: fn(&ResponsePoint) -> ShakenAmplitude,
 ) -> MachineResponseAnswer {
-    let points = response.points.iter();
-    MachineResponseAnswer { points: points.map(|one| point(one, amplitude(one))).collect() }
+    let points = response.points.iter().zip(polar_of_machine(response));
+    MachineResponseAnswer { points: points.map(|(one, polar)| point(one, amplitude(one), polar)).collect() }
 }
 
-/// `reason` is that of the five numbers above it, where one is missing.
-fn point(point: &ResponsePoint, amplitude: ShakenAmplitude) -> MachineResponsePointAnswer {
+/// `reason` is that of the numbers above it, where one is missing.
+fn point(point: &ResponsePoint, amplitude: ShakenAmplitude, polar: [f64; 2]) -> MachineResponsePointAnswer {
     let finite = |value: f64| value.is_finite().then_some(value);
     let pair = |value: Complex64| value.is_finite().then_some(value);
     let [difference_db, difference_deg] = point.differs(point.linear_plant).map(finite);
     let linearised = point.linearised_machine.map(|model| point.differs(model).map(finite));
     let [linearised_difference_db, linearised_difference_deg] = linearised.unwrap_or([None; 2]);
     let machine = pair(point.machine);
+    let [machine_magnitude_db, machine_phase_deg] = polar.map(finite);
     let no_system = point.linearised_machine.is_none().then_some(NO_SYSTEM);
     MachineResponsePointAnswer {
         frequency_rad_per_s: point.frequency_rad_per_s,
         amplitude,
         machine: Reasoned::new(machine, NO_WINDOW),
+        machine_magnitude_db,
+        machine_phase_deg,
         linear_plant: point.linear_plant,
         linearised_machine: point.linearised_machine.and_then(pair),
         linearised_machine_reason: no_system,

@@ -49,27 +49,42 @@ fn response(response: &MachineResponse, unit: DisplayUnit) -> Table {
         heads.extend(["minus linearised machine, dB", "deg"]);
     }
     heads.extend(["distortion, %", "periods"]);
-    let mut last: Option<f64> = None;
-    let row = |point: &ResponsePoint| {
-        let [decibels, degrees] = own(point);
-        // removes jumps by a full turn from row to row
-        let degrees = degrees - 360.0 * last.map_or(0.0, |last| ((degrees - last) / 360.0_f64).round());
-        last = Some(degrees);
+    let row = |(point, [decibels, degrees]): (&ResponsePoint, [f64; 2])| {
         let mut cells = vec![
             Cell::number(point.frequency_rad_per_s, 4),
-            Cell::number(unit.of(point.amplitude), 3),
-            Cell::decimal(decibels, 2),
-            Cell::decimal(degrees, 1),
+            Cell::number_in(point.amplitude, 3, unit),
+            Cell::decimal(decibels, 2, DisplayUnit::DECIBEL),
+            Cell::decimal(degrees, 1, DisplayUnit::IN_DEGREES),
         ];
         let linearised = with_machine.then_some(point.linearised_machine);
         for model in std::iter::once(Some(point.linear_plant)).chain(linearised) {
             let [decibels, degrees] = model.map_or([f64::NAN; 2], |model| point.differs(model));
-            cells.extend([Cell::decimal(decibels, 3), Cell::decimal(degrees, 2)]);
+            cells.extend([
+                Cell::decimal(decibels, 3, DisplayUnit::DECIBEL),
+                Cell::decimal(degrees, 2, DisplayUnit::IN_DEGREES),
+            ]);
         }
-        cells.extend([Cell::decimal(100.0 * point.distortion, 2), point.periods.to_string().into()]);
+        cells.extend([
+            Cell::decimal(100.0 * point.distortion, 2, DisplayUnit::IN_PERCENT),
+            Cell::count(point.periods as usize),
+        ]);
         cells
     };
-    Table::new(heads).with(response.points.iter().map(row))
+    Table::new(heads).with(response.points.iter().zip(polar_of_machine(response)).map(row))
+}
+
+/// Magnitude in dB and phase in degrees of the machine at each point, without jumps of the phase by
+/// a full turn from one point to the next.
+pub(super) fn polar_of_machine(response: &MachineResponse) -> Vec<[f64; 2]> {
+    let mut last: Option<f64> = None;
+    let polar = |point: &ResponsePoint| {
+        let [decibels, degrees] = own(point);
+        let turns = last.map_or(0.0, |last| ((degrees - last) / 360.0_f64).round());
+        // a point without a response has no phase to continue from
+        last = Some(degrees - 360.0 * turns).filter(|degrees| degrees.is_finite()).or(last);
+        [decibels, degrees - 360.0 * turns]
+    };
+    response.points.iter().map(polar).collect()
 }
 
 /// Magnitude in dB and phase in degrees of the machine, the phase near that of the linear plant.

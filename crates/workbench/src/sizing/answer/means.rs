@@ -1,6 +1,7 @@
 //! The stiffness of a hose by other means for programs.
 
-use super::super::{OtherMeans, OtherMeansError, SizedGas, SizedPipe, SizedSpring, SizedValve};
+use phea_engineering::sizing::{OtherMeans, OtherMeansError, SizedGas, SizedPipe, SizedSpring, SizedValve};
+
 use crate::answer::{Answer, OrReason};
 
 /// Other means with the stiffness of a hose.

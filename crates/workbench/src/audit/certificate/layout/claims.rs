@@ -1,5 +1,6 @@
 //! The claims of a certificate and their panels, as the file has them.
 
+use phea_engineering::specification::closed_loop_key;
 use phea_qft::proof::{
     CertificateMember, CertificateSide, Claim, FrequencyPanel, Late, LimitOf, LimitedLoop, PoleCount,
     StableBox,
@@ -9,7 +10,6 @@ use serde::{Deserialize, Serialize};
 use super::{CertificateError, CertificateRational, meaning};
 
 use crate::project::{SPECIFICATION_KINDS, SpecificationKind};
-use crate::specification::closed_loop_key;
 
 #[derive(Serialize, Deserialize)]
 #[serde(tag = "claim", rename_all = "snake_case", deny_unknown_fields)]
