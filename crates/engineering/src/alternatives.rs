@@ -205,15 +205,14 @@ pub fn judge(
         cases::judged(&judging, &all, true, &mut |progress| round(watch, [0.0, 1.0], progress));
     let continues = not_reached.is_empty();
     let until = 1.0 + cases.len() as f64;
-    let cases = cases::judged_cases((source, &catalogue, impedance_at), cases, continues, &mut |progress| {
-        round(watch, [1.0, until], progress)
-    });
+    let mut watched = |progress: Progress| round(watch, [1.0, until], progress);
+    let cases = cases::judged_cases(source, &catalogue, impedance_at, cases, continues, &mut watched);
     let mut found = Alternatives { judged, not_reached, cases, front: None };
     if let Some(plan) = planned {
         let continues = continues && found.cases.iter().all(|case| case.not_reached.is_empty());
         let again = ReadingAgain { source, catalogues };
         let mut watched = |progress: Progress| round(watch, [until, rounds], progress);
-        found.front = Some(front::swept(&judging, (&again, &all), &plan, continues, &mut watched));
+        found.front = Some(front::swept(&judging, &again, &all, &plan, continues, &mut watched));
     }
     Ok(found)
 }

@@ -60,7 +60,7 @@ pub(crate) fn followed(command: &[f64], roughness: f64) -> Vec<f64> {
     for pair in pieces.windows(2).filter(|_| goes_back) {
         let [before, after] = pair else { continue };
         let rows = before.rows.start..after.rows.end;
-        turn(&mut found, command, (before.rows.end - 1, before.way()), rows, roughness);
+        turn(&mut found, command, before.rows.end - 1, before.way(), rows, roughness);
     }
     found
 }
@@ -73,7 +73,8 @@ pub(crate) fn followed(command: &[f64], roughness: f64) -> Vec<f64> {
 fn turn(
     found: &mut [f64],
     command: &[f64],
-    (at, way): (usize, f64),
+    at: usize,
+    way: f64,
     rows: std::ops::Range<usize>,
     roughness: f64,
 ) {

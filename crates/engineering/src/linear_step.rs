@@ -51,7 +51,7 @@ pub fn linear_step(
     points: usize,
 ) -> Result<StepResponse, TimeResponseError> {
     let known = KnownResponses::default();
-    linear_step_knowing((member, StepSignal::Output), compensation, (duration_s, points), &known)
+    linear_step_knowing(member, StepSignal::Output, compensation, duration_s, points, &known)
 }
 
 /// Command of the controller in such a step, in its unit for each unit of the reference: the step
@@ -66,15 +66,17 @@ pub fn linear_command_step(
     points: usize,
 ) -> Result<StepResponse, TimeResponseError> {
     let known = KnownResponses::default();
-    linear_step_knowing((member, StepSignal::Command), compensation, (duration_s, points), &known)
+    linear_step_knowing(member, StepSignal::Command, compensation, duration_s, points, &known)
 }
 
 /// Step response of a signal of the loop, with the known responses of this plant in a loop of equal
 /// timing and sensor.
 pub(crate) fn linear_step_knowing(
-    (member, signal): (&Member, StepSignal),
+    member: &Member,
+    signal: StepSignal,
     compensation: &Compensation,
-    (duration_s, points): (f64, usize),
+    duration_s: f64,
+    points: usize,
     known: &KnownResponses,
 ) -> Result<StepResponse, TimeResponseError> {
     let prefilter = compensation.prefilter_of_step()?;
@@ -108,7 +110,7 @@ pub(crate) fn linear_step_knowing(
         Member::Responding { plant, .. } => {
             let sample_time_s = compensation.sample_time_s();
             let step_s = sample_time_s.unwrap_or(duration_s / points as f64);
-            let ClosedParts { parts, scale, at_once } = real_parts((plant, signal), compensation, known)?;
+            let ClosedParts { parts, scale, at_once } = real_parts(plant, signal, compensation, known)?;
             let count = samples(step_s);
             let values = step_of_frequency_response(&parts, step_s, count, sample_time_s.is_some());
             let values = values.into_iter().map(|value| at_once + scale * value).collect();
@@ -135,7 +137,8 @@ impl CarriedDisturbance {
     pub(crate) fn new(
         member: &Member,
         loops: [&Compensation; 2],
-        (step_s, count): (f64, usize),
+        step_s: f64,
+        count: usize,
         known: &KnownResponses,
     ) -> CarriedDisturbance {
         let range = [LOWEST / (count as f64 * step_s), PI / step_s];
@@ -194,7 +197,7 @@ mod tests {
                 };
                 let scale = (OTHER - before) / (OTHER - after);
                 let known = KnownResponses::default();
-                let carried = CarriedDisturbance::new(&member, loops.each_ref(), (STEP_S, COUNT), &known);
+                let carried = CarriedDisturbance::new(&member, loops.each_ref(), STEP_S, COUNT, &known);
                 for (found, expected) in carried.of(&answer(before)).into_iter().zip(answer(after)) {
                     assert!((found - scale * expected).abs() < 2e-3, "{found} {expected}");
                 }

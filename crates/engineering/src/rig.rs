@@ -237,8 +237,7 @@ impl Rig {
         let pressures = [point.pressure_a, point.pressure_b];
         let supply = supply
             .map(|found| SettledSupply { settled: Settled { command: point.command, pressures }, ..found });
-        let solved = (settled, point);
-        let at = RigAtPoint::of(&plain, &unsolved, solved, stated(project));
+        let at = RigAtPoint::of(&plain, &unsolved, settled, point, stated(project));
         // steps that choose, for numbers only: no small motions of a supply that settles nowhere,
         // the edges of the valve as it leaks, then the limit of an ideal one, which passes no flow
         let at = RigAtPoint { supply: at.supply.filter(|_| supply.is_some()), ..at };

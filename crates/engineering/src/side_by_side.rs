@@ -88,7 +88,7 @@ fn on_all_cores(pieces: Vec<WorkPiece<'_>>, stage: &'static str, watch: Watch<'_
             });
         }
         drop(sender);
-        let ended = own_pieces(&next, &receiver, (stage, count), watch);
+        let ended = own_pieces(&next, &receiver, stage, count, watch);
         continues.store(false, Ordering::Relaxed);
         ended
     })
@@ -98,7 +98,8 @@ fn on_all_cores(pieces: Vec<WorkPiece<'_>>, stage: &'static str, watch: Watch<'_
 fn own_pieces<'p>(
     next: &dyn Fn() -> Option<WorkPiece<'p>>,
     others: &Receiver<Result<(), Stopped>>,
-    (stage, count): (&'static str, usize),
+    stage: &'static str,
+    count: usize,
     watch: Watch<'_>,
 ) -> Result<(), Stopped> {
     let mut done = 0;

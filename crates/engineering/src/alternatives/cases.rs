@@ -84,7 +84,9 @@ pub(super) fn judged(
 
 /// Every load case that is reached before `watch` cancels.
 pub(super) fn judged_cases(
-    (source, catalogue, impedance_at): (&dyn Source, &Catalogue, &[f64]),
+    source: &dyn Source,
+    catalogue: &Catalogue,
+    impedance_at: &[f64],
     cases: Vec<PreparedCase>,
     continues: bool,
     watch: Watch<'_>,

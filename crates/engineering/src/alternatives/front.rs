@@ -221,7 +221,8 @@ fn column_of(text: &str, motion: MotionKind) -> Result<FrontColumn, FrontColumns
 /// alternative.
 pub(super) fn swept(
     judging: &Judging<'_>,
-    (again, all): (&ReadingAgain<'_>, &[PreparedAlternative]),
+    again: &ReadingAgain<'_>,
+    all: &[PreparedAlternative],
     plan: &FrontPlan,
     continues: bool,
     watch: Watch<'_>,
@@ -235,7 +236,7 @@ pub(super) fn swept(
                 watch(Progress { fraction: (done + progress.fraction) / count, ..progress })
             };
             let point = match continues && not_reached == 0 {
-                true => point(judging, again, (one, plan), value, &mut watched),
+                true => point(judging, again, one, plan, value, &mut watched),
                 false => None,
             };
             done += 1.0;
@@ -261,7 +262,8 @@ pub(super) fn swept(
 fn point(
     judging: &Judging<'_>,
     again: &ReadingAgain<'_>,
-    (one, plan): (&PreparedAlternative, &FrontPlan),
+    one: &PreparedAlternative,
+    plan: &FrontPlan,
     value: f64,
     watch: Watch<'_>,
 ) -> Option<FrontPoint> {

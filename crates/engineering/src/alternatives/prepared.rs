@@ -106,7 +106,7 @@ pub fn prepared(
     for (index, alternative) in loaded.project.alternatives.iter().enumerate() {
         let other =
             read_alternative(source, loaded, catalogues, index).map_err(AlternativesError::Refused)?;
-        let mut one = sized(&again, alternative, (&itself, other), &catalogue)?;
+        let mut one = sized(&again, alternative, &itself, other, &catalogue)?;
         if let Err(RigError::Accumulator(empty)) = &one.rig {
             let refusal = refused_alternative(source, loaded, index, &empty.at());
             return Err(AlternativesError::Refused(refusal));
@@ -142,7 +142,8 @@ fn counted(all: &[PreparedAlternative]) -> Result<PartsCounted, AlternativesErro
 fn sized(
     again: &ReadingAgain<'_>,
     alternative: &Alternative,
-    (declared, other): (&PreparedAlternative, Loaded),
+    declared: &PreparedAlternative,
+    other: Loaded,
     catalogue: &Catalogue,
 ) -> Result<PreparedAlternative, AlternativesError> {
     let name = alternative.name.clone();

@@ -250,9 +250,9 @@ impl StepSearch<'_> {
         let member = compensation.member_of(self.family.plant(), values)?;
         let known = KnownResponses::default();
         let within = |duration_s: f64, points: usize| {
-            let signal = (&member, StepSignal::Output);
+            let signal = StepSignal::Output;
             let StepResponse { times_s, values } =
-                linear_step_knowing(signal, compensation, (duration_s, points), &known)?;
+                linear_step_knowing(&member, signal, compensation, duration_s, points, &known)?;
             step_metrics(&times_s, &values, StepBaseline::unit(), self.step_limits.band_percent)
         };
         let is_responding = matches!(member, Member::Responding { .. });

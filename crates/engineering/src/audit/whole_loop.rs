@@ -50,7 +50,7 @@ impl DelayedPaths {
     /// and nothing else is fed back.
     pub(super) fn of(problem: &RobustProblem) -> DelayedPaths {
         let RobustProblem { before_feedback, compensation, .. } = problem;
-        let nominal = WholeLoop::of((problem, compensation), &nominal_point(problem));
+        let nominal = WholeLoop::of(problem, compensation, &nominal_point(problem));
         let closes = nominal.is_some();
         let pressure_feedback =
             closes && (before_feedback.is_some() || compensation.inner_feedback().is_some());
@@ -74,7 +74,7 @@ pub(super) fn least_delay(problem: &RobustProblem, audit: &Audit) -> Option<Dela
     let plants = plants.map(PlantPoint::Parameters).chain(worst_of(audit));
     let plants: Vec<PlantPoint> = plants.collect();
     let estimated = of_each(&plants, |plant| {
-        Some(WholeLoop::of((problem, &problem.compensation), plant)?.critical_delay()?.delay_s)
+        Some(WholeLoop::of(problem, &problem.compensation, plant)?.critical_delay()?.delay_s)
     });
     let ranked = estimated.into_iter().zip(&plants).filter_map(|(delay_s, plant)| Some((delay_s?, plant)));
     let mut ranked: Vec<(f64, &PlantPoint)> = ranked.collect();
@@ -87,10 +87,10 @@ pub(super) fn least_delay(problem: &RobustProblem, audit: &Audit) -> Option<Dela
 /// Least delay that makes this plant unstable, s; the plant must be stable without it. A sampled
 /// loop is sampled anew with each delay: between whole samples a delay also changes |L_t|.
 pub(super) fn delay_margin(problem: &RobustProblem, plant: &PlantPoint) -> Option<DelayMargin> {
-    let whole = WholeLoop::of((problem, &problem.compensation), plant)?;
+    let whole = WholeLoop::of(problem, &problem.compensation, plant)?;
     let remaining = |delay_s: f64| {
         let delayed = problem.compensation.with_delay(problem.compensation.delay_s() + delay_s);
-        let whole = WholeLoop::of((problem, &delayed), plant)?;
+        let whole = WholeLoop::of(problem, &delayed, plant)?;
         let is_stable = member_stability(&whole.with, &delayed).status == StabilityStatus::Stable;
         whole.critical_delay().filter(|_| is_stable)
     };
@@ -112,7 +112,8 @@ struct WholeLoop<'c> {
 impl<'c> WholeLoop<'c> {
     /// `None` if no path within the loop changes the plant.
     fn of(
-        (problem, compensation): (&RobustProblem, &'c Compensation),
+        problem: &RobustProblem,
+        compensation: &'c Compensation,
         plant: &PlantPoint,
     ) -> Option<WholeLoop<'c>> {
         let (PlantPoint::Parameters(values), Family::Uncertain(family)) = (plant, &problem.family) else {

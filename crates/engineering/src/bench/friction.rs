@@ -115,7 +115,7 @@ pub fn friction_runs(setup: &Setup<'_>, watch: Watch<'_>) -> Result<Vec<Friction
         let chambers = EvenChambers { cylinder: &components.cylinder, mean };
         runs.push(FrictionRun {
             series,
-            rows: recorded((&moments, sample_time), (&chambers, &settings), instruments, &mut noise),
+            rows: recorded(&moments, sample_time, &chambers, &settings, instruments, &mut noise),
         });
     }
     Ok(runs)
@@ -140,8 +140,10 @@ impl EvenChambers<'_> {
 }
 
 fn recorded(
-    (moments, sample_time): (&[CylinderMoment], f64),
-    (chambers, settings): (&EvenChambers<'_>, &FrictionBench),
+    moments: &[CylinderMoment],
+    sample_time: f64,
+    chambers: &EvenChambers<'_>,
+    settings: &FrictionBench,
     mut instruments: Instruments,
     noise: &mut u64,
 ) -> Vec<FrictionRow> {

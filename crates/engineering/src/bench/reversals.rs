@@ -56,7 +56,7 @@ pub(super) fn read(
     let amplitude = reversals.amplitude * nominal_voltage;
     let mut evaluate = |x: &[f64]| -> Result<Option<Linearised>, Stopped> {
         report_progress(watch, "reversals", 0, 1)?;
-        Ok(Some(linearised(rows, &counts, x, (amplitude, greatest))))
+        Ok(Some(linearised(rows, &counts, x, amplitude, greatest)))
     };
     let lower = LEAST * nominal_voltage;
     let upper = reversals.size * nominal_voltage;
@@ -90,7 +90,8 @@ fn linearised(
     rows: &[(f64, f64)],
     counts: &[bool],
     variables: &[f64],
-    (amplitude, greatest): (f64, f64),
+    amplitude: f64,
+    greatest: f64,
 ) -> Linearised {
     type ReversalSensitive = Dual<VARIABLES>;
     let at = |index: usize| ReversalSensitive::variable(variables.get(index).copied().unwrap_or(0.0), index);

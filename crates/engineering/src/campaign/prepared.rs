@@ -266,11 +266,7 @@ struct Seen<'a> {
 
 impl<'a> Watched<'a> {
     pub(super) fn new(plan: &'a Plan, prepared: &'a Prepared, every_sample: bool) -> Watched<'a> {
-        let windows = MetricWindows {
-            windows: plan.windows(),
-            band_percent: plan.scenario.settling_band_percent,
-            duration_s: plan.scenario.duration,
-        };
+        let windows = MetricWindows::of(plan.windows(), &plan.scenario);
         let reference = &plan.driven.reference;
         let follower = Follower::of(&prepared.bench, &plan.look, &prepared.log, reference, windows);
         let kept = if every_sample { plan.times_s.len() } else { plan.band_samples.len() };

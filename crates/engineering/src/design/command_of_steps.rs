@@ -212,14 +212,14 @@ impl CommandSearch<'_> {
         project_design.ok()?;
         let compensation = &self.project_design.designed.problem.compensation;
         if !self.family.plant().is_rational() {
-            let plant = self.plants.plant(values, (self.family, compensation)).ok()?;
-            return plant.command(compensation, (self.of.duration_s, POINTS));
+            let plant = self.plants.plant(values, self.family, compensation).ok()?;
+            return plant.command(compensation, self.of.duration_s, POINTS);
         }
         let member = compensation.member_of(self.family.plant(), values).ok()?;
         let within = |duration_s: f64| {
             let known = KnownResponses::default();
-            let of = (&member, StepSignal::Command);
-            linear_step_knowing(of, compensation, (duration_s, POINTS), &known).ok()
+            let signal = StepSignal::Command;
+            linear_step_knowing(&member, signal, compensation, duration_s, POINTS, &known).ok()
         };
         let whole = within(self.of.duration_s)?;
         if !matches!(member, Member::Continuous { .. }) {

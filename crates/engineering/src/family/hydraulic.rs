@@ -87,7 +87,7 @@ impl Open<'_> {
     /// The declared rig with these values of its open numbers.
     pub(super) fn rig_with<S: Scalar>(&self, values: &[S]) -> DeclaredRig<'_, S> {
         let all = self.all(values);
-        DeclaredRig::open((self.project, self.declared), self.table, self.names, &all)
+        DeclaredRig::open(self.project, self.declared, self.table, self.names, &all)
     }
 
     /// The rig before its pressures are solved, with the supply as it is stated.
@@ -118,17 +118,19 @@ impl Open<'_> {
         moved: bool,
         equal: Equal,
     ) -> (RigAtPoint<S>, LinearPlant<S>) {
-        self.plant_at(values, self.solved(values, moved), equal)
+        let (supply, settled) = self.solved(values, moved);
+        self.plant_at(values, supply, settled, equal)
     }
 
     /// The rig and its plant with supply, spool and pressures at these.
     pub(super) fn plant_at<S: Scalar>(
         &self,
         values: &[S],
-        solved: (Supply<S>, Settled<S>),
+        supply: Supply<S>,
+        settled: Settled<S>,
         equal: Equal,
     ) -> (RigAtPoint<S>, LinearPlant<S>) {
-        let place = self.place_at(values, solved);
+        let place = self.place_at(values, supply, settled);
         let plant = self.rig.with_inner_paths(place.plant(equal));
         (place, plant)
     }
@@ -136,7 +138,8 @@ impl Open<'_> {
     /// The rig with these values; its pressures are those of the declared rig if nothing changes
     /// them.
     pub(super) fn place<S: Scalar>(&self, values: &[S], moved: bool) -> RigAtPoint<S> {
-        self.place_at(values, self.solved(values, moved))
+        let (supply, settled) = self.solved(values, moved);
+        self.place_at(values, supply, settled)
     }
 
     /// Supply, spool and pressures at the operating point.
@@ -156,15 +159,14 @@ impl Open<'_> {
     }
 
     /// The rig with these values, and with supply, spool and pressures at these.
-    fn place_at<S: Scalar>(&self, values: &[S], (supply, settled): (Supply<S>, Settled<S>)) -> RigAtPoint<S> {
+    fn place_at<S: Scalar>(&self, values: &[S], supply: Supply<S>, settled: Settled<S>) -> RigAtPoint<S> {
         let all = self.all(values);
         let rig = self.rig_with(values);
         let unsolved = UnsolvedRig::of(&rig);
         let known = stated(self.project).map(|(name, value)| (name, S::from(value)));
         let open = self.names.iter().map(String::as_str).zip(all.iter().copied());
         let linear = known.chain(open.filter(|(name, _)| is_linear(name)));
-        let solved = (supply, unsolved.point(settled));
-        RigAtPoint::of(&rig, &unsolved, solved, linear)
+        RigAtPoint::of(&rig, &unsolved, supply, unsolved.point(settled), linear)
     }
 }
 

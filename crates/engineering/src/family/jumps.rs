@@ -69,8 +69,8 @@ fn signs(visited: &Visited, open: &Open<'_>, family: &UncertainFamily) -> Option
         let (own, solved) = values.split_at(own.len());
         let &[command, a, b, pressure] = solved else { return Vec::new() };
         let supply = Supply { pressure, ..open.unsolved(own).balance.supply };
-        let solved = (supply, Settled { command, pressures: [a, b] });
-        let plant = open.plant_at(own, solved, visited.equal).1.coefficients();
+        let settled = Settled { command, pressures: [a, b] };
+        let plant = open.plant_at(own, supply, settled, visited.equal).1.coefficients();
         let paths = [Some(plant.command), plant.disturbance].into_iter().flatten();
         paths.flat_map(|path| path.numerator.into_iter().chain(path.denominator)).collect()
     });

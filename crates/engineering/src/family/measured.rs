@@ -63,8 +63,8 @@ fn plant(name: &str, path: &str, bytes: Vec<u8>, findings: &mut Findings) -> Opt
     let radii = columns.radius.as_ref().zip(spread.first());
     if let Some((column, radii)) = radii {
         for row in (0..radii.len()).filter(|row| radii.get(*row).is_some_and(|radius| *radius < 0.0)) {
-            let wrong = (MeasurementProblem::NegativeRadius, ExpectedValue::Radius);
-            report(&table, (row, column), wrong, findings);
+            let problem = MeasurementProblem::NegativeRadius;
+            report(&table, row, column, problem, ExpectedValue::Radius, findings);
         }
     }
     let responses: Vec<Vec<Complex64>> = forms()
@@ -74,8 +74,8 @@ fn plant(name: &str, path: &str, bytes: Vec<u8>, findings: &mut Findings) -> Opt
     let mut responses = responses.into_iter();
     let command = responses.next()?;
     for row in (0..command.len()).filter(|row| command.get(*row) == Some(&Complex64::new(0.0, 0.0))) {
-        let wrong = (MeasurementProblem::ZeroResponse, ExpectedValue::NonzeroResponse);
-        report(&table, (row, columns.command.parts()[0]), wrong, findings);
+        let (problem, expected) = (MeasurementProblem::ZeroResponse, ExpectedValue::NonzeroResponse);
+        report(&table, row, columns.command.parts()[0], problem, expected, findings);
     }
     let (command, radii) = match radii {
         Some((_, radii)) if findings.error_count() == before => {
@@ -113,8 +113,10 @@ fn within_discs(
 /// Reports a problem of a value, with the expected value.
 fn report(
     table: &MeasuredTable,
-    (row, column): (usize, &Column),
-    (problem, expected): (MeasurementProblem, ExpectedValue),
+    row: usize,
+    column: &Column,
+    problem: MeasurementProblem,
+    expected: ExpectedValue,
     findings: &mut Findings,
 ) {
     let found = table.error(row, column, problem.to_string(), findings);
@@ -134,7 +136,7 @@ fn rising(table: &MeasuredTable, column: &Column, frequencies: &[f64], findings:
             false => MeasurementProblem::FrequencyNotRising,
         };
         let expected = ExpectedValue::HigherFrequency { unit: column.unit.clone() };
-        report(table, (row, column), (problem, expected), findings);
+        report(table, row, column, problem, expected, findings);
     }
 }
 
@@ -150,8 +152,8 @@ fn responses(
     for (row, (one, other)) in ones.iter().zip(others).enumerate() {
         let is_polar = matches!(form, ResponseForm::Polar(..));
         if is_polar && *one < 0.0 {
-            let wrong = (MeasurementProblem::NegativeMagnitude, ExpectedValue::SignInPhase);
-            report(table, (row, form.parts()[0]), wrong, findings);
+            let problem = MeasurementProblem::NegativeMagnitude;
+            report(table, row, form.parts()[0], problem, ExpectedValue::SignInPhase, findings);
         }
         values.push(match form {
             ResponseForm::Cartesian(..) => Complex64::new(*one, *other),

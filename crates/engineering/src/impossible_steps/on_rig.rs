@@ -114,7 +114,7 @@ fn too_slow(
     let time_s = settling_s - setup.timing.delay_s;
     let fraction = 1.0 - required.step_limits.band_percent / 100.0;
     let each = sized_steps(setup, required)?.into_iter().filter_map(|step| {
-        let (reached_n, values) = least_reached(few, (time_s, step.from_n), limit_v)?;
+        let (reached_n, values) = least_reached(few, time_s, step.from_n, limit_v)?;
         Some((fraction * step.size_n / reached_n, step, reached_n, values))
     });
     let (ratio, step, reached_n, values) = each.max_by(|one, other| one.0.total_cmp(&other.0))?;
@@ -135,23 +135,18 @@ fn too_slow(
 }
 
 /// Result of [`reached`] for the plant that reaches least, and its parameters.
-fn least_reached(few: &UncertainFamily, during: (f64, f64), limit_v: f64) -> Option<(f64, &Vec<f64>)> {
+fn least_reached(few: &UncertainFamily, time_s: f64, from_n: f64, limit_v: f64) -> Option<(f64, &Vec<f64>)> {
     let each = few
         .members()
         .iter()
-        .filter_map(|values| Some((reached(few.plant(), values, during, limit_v)?, values)));
+        .filter_map(|values| Some((reached(few.plant(), values, time_s, from_n, limit_v)?, values)));
     each.min_by(|one, other| one.0.total_cmp(&other.0))
 }
 
 /// Largest change of the plant with these parameters within a time, s, from an equilibrium at a
 /// force, N, by commands of at most this voltage, V; `None` if it is not known. The command that
 /// holds the force may be removed too.
-fn reached(
-    plant: &UncertainPlant,
-    values: &[f64],
-    (time_s, from_n): (f64, f64),
-    limit_v: f64,
-) -> Option<f64> {
+fn reached(plant: &UncertainPlant, values: &[f64], time_s: f64, from_n: f64, limit_v: f64) -> Option<f64> {
     let slow = plant.member(values)?.slow();
     let command = slow.command.transfer_function().ok()?;
     let moving_s = time_s - slow.dead_time_s;
@@ -184,8 +179,8 @@ mod tests {
     }
 
     #[track_caller]
-    fn assert_reached(plant: &UncertainPlant, (time_s, from_n): (f64, f64), limit_v: f64, expected: f64) {
-        let found = reached(plant, &[], (time_s, from_n), limit_v).unwrap() / (1.0 + BETWEEN_POINTS);
+    fn assert_reached(plant: &UncertainPlant, time_s: f64, from_n: f64, limit_v: f64, expected: f64) {
+        let found = reached(plant, &[], time_s, from_n, limit_v).unwrap() / (1.0 + BETWEEN_POINTS);
         assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
     }
 
@@ -195,11 +190,11 @@ mod tests {
     // ORIGIN: analytic
     #[test]
     fn the_most_that_a_bounded_command_does() {
-        assert_reached(&plant(3.0, &[1.0, 0.0], 0.1), (0.6, 8.0), 2.0, 3.0);
+        assert_reached(&plant(3.0, &[1.0, 0.0], 0.1), 0.6, 8.0, 2.0, 3.0);
         let lag = 1.0 - portable::exp(-2.0);
-        assert_reached(&plant(5.0, &[0.1, 1.0], 0.0), (0.2, 0.0), 2.0, 10.0 * lag);
-        assert_reached(&plant(5.0, &[0.1, 1.0], 0.0), (0.2, 10.0), 2.0, 20.0 * lag);
+        assert_reached(&plant(5.0, &[0.1, 1.0], 0.0), 0.2, 0.0, 2.0, 10.0 * lag);
+        assert_reached(&plant(5.0, &[0.1, 1.0], 0.0), 0.2, 10.0, 2.0, 20.0 * lag);
         let periods = 10.0 * std::f64::consts::TAU / 50.0;
-        assert_reached(&plant(1.0, &[1.0, 0.0, 2500.0], 0.0), (periods, 0.0), 1.0, 40.0 / 2500.0);
+        assert_reached(&plant(1.0, &[1.0, 0.0, 2500.0], 0.0), periods, 0.0, 1.0, 40.0 / 2500.0);
     }
 }

@@ -121,7 +121,7 @@ pub fn identify_line(
     };
     let response = match responses.pop() {
         None => None,
-        Some(record) => Some(shaken(&record, rise.as_ref(), (&known, settings), watch)?),
+        Some(record) => Some(shaken(&record, rise.as_ref(), &known, settings, watch)?),
     };
     if rise.is_none() && response.is_none() {
         return Err(LineFitError::NoRecording.into());
@@ -133,7 +133,8 @@ pub fn identify_line(
 fn shaken(
     record: &SampledPair,
     rise: Option<&RiseFit>,
-    (known, settings): (&KnownLine, &ResponseSettings),
+    known: &KnownLine,
+    settings: &ResponseSettings,
     watch: Watch<'_>,
 ) -> Result<ResponseFit, IdentifyError> {
     let pressure = record.output.iter().sum::<f64>() / record.output.len().max(1) as f64;

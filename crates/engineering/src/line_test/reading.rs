@@ -158,7 +158,7 @@ fn are_enough(table: &MeasuredTable, rows: &[f64], findings: &mut Findings) -> b
 fn increasing(table: &MeasuredTable, column: &Column, times: &[f64], findings: &mut Findings) {
     let falls = |pair: &[f64]| matches!(pair, [one, next] if next <= one);
     if let Some(row) = times.windows(2).position(falls) {
-        findings.push(not_increasing(table, column, (times, row + 1), findings));
+        findings.push(not_increasing(table, column, times, row + 1, findings));
     }
 }
 

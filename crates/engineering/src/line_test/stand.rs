@@ -122,7 +122,7 @@ fn rise(line: &BlockedLine, bench: &LineBench, watch: Watch<'_>) -> Result<LineR
     flows.push(0.0);
     let profile = Profile::table(&times, &flows).map_err(BenchLineError::from)?;
     let mut found =
-        run(line, LineSeries::PressureRise, (profile.clone(), low), [at, bench.rise_sample_time], watch)?;
+        run(line, LineSeries::PressureRise, profile.clone(), low, [at, bench.rise_sample_time], watch)?;
     found.inputs = integral(&found.times, |time| profile.value(time));
     Ok(found)
 }
@@ -167,7 +167,7 @@ fn shaken(
     let profile = Profile::multisine(0.0, &harmonics).map_err(BenchLineError::from)?;
     let duration = bench.period * f64::from(bench.periods) - bench.sample_time;
     let times = [duration, bench.sample_time];
-    run(line, LineSeries::FrequencyResponse, (profile, first), times, watch)
+    run(line, LineSeries::FrequencyResponse, profile, first, times, watch)
 }
 
 /// Lines of the period, at approximately equal ratios between the ends, below half of the sampling
@@ -189,7 +189,8 @@ fn excited(bench: &LineBench) -> Vec<f64> {
 fn run(
     line: &BlockedLine,
     series: LineSeries,
-    (profile, pressure): (Profile, f64),
+    profile: Profile,
+    pressure: f64,
     [duration, sample_time]: [f64; 2],
     watch: Watch<'_>,
 ) -> Result<LineRun, BenchError> {

@@ -65,7 +65,8 @@ pub(super) struct ClosedParts {
 /// # Errors
 /// [`LinearError`] if the prefilter cannot be sampled.
 pub(super) fn real_parts(
-    (plant, signal): (&Arc<dyn RespondingPlant>, StepSignal),
+    plant: &Arc<dyn RespondingPlant>,
+    signal: StepSignal,
     compensation: &Compensation,
     known: &KnownResponses,
 ) -> Result<ClosedParts, LinearError> {
@@ -86,7 +87,7 @@ pub(super) fn real_parts(
     };
     let closed = |frequency: f64| {
         let plant = known.response(&member, frequency)?;
-        Some(closed((plant, signal), compensation, &prefilter, frequency) - at_once)
+        Some(closed(plant, signal, compensation, &prefilter, frequency) - at_once)
     };
     let scale = match signal {
         StepSignal::Output => 1.0,
@@ -125,7 +126,8 @@ pub(super) fn parts_of_change(
 
 /// Response F P G/(1 + L) or F G/(1 + L), with F as a step passes through it.
 fn closed(
-    (plant, signal): (MemberResponse, StepSignal),
+    plant: MemberResponse,
+    signal: StepSignal,
     compensation: &Compensation,
     prefilter: &TransferFunction,
     frequency: f64,

@@ -133,7 +133,8 @@ pub enum NoBandwidth {
 /// [`SweepError`] for an invalid request, or a value that makes the project invalid.
 pub fn sweep(
     source: &dyn Source,
-    (loaded, setup): (&Loaded, &Setup<'_>),
+    loaded: &Loaded,
+    setup: &Setup<'_>,
     catalogues: &[String],
     request: &SweepRequest,
 ) -> Result<Sweep, SweepError> {

@@ -104,7 +104,8 @@ impl<S: Scalar> RigAtPoint<S> {
     pub(crate) fn of<'n>(
         rig: &DeclaredRig<'_, S>,
         unsolved: &UnsolvedRig<S>,
-        (supply, point): (Supply<S>, OperatingPoint<S>),
+        supply: Supply<S>,
+        point: OperatingPoint<S>,
         stated: impl Iterator<Item = (&'n str, S)>,
     ) -> RigAtPoint<S> {
         let UnsolvedRig { components, balance, .. } = unsolved;

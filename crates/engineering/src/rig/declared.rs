@@ -32,7 +32,8 @@ impl<'a> DeclaredRig<'a> {
 impl<'a, S: Scalar> DeclaredRig<'a, S> {
     /// The rig with these values of the numbers at these paths, which `table` has open.
     pub fn open(
-        (project, plain): (&'a Project, &'a DeclaredActuator),
+        project: &'a Project,
+        plain: &'a DeclaredActuator,
         table: &OpenRig,
         paths: &'a [String],
         values: &[S],

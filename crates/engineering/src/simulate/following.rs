@@ -10,16 +10,25 @@ use super::bench::ControlledMachine;
 use super::divergence::DivergenceWatch;
 use super::follower::{CommandSource, Follower};
 use super::sums;
+use crate::project::Scenario;
 
 /// Windows of a run in which its metrics are evaluated.
 #[derive(Clone, Copy, Debug)]
 pub struct MetricWindows<'a> {
     /// Windows in the order of their starts.
-    pub windows: &'a [Window],
+    windows: &'a [Window],
     /// Band of settling times, percent.
-    pub band_percent: f64,
+    band_percent: f64,
     /// Duration of the run, s.
-    pub duration_s: f64,
+    duration_s: f64,
+}
+
+impl<'a> MetricWindows<'a> {
+    /// Windows in the order of their starts, of a run of this scenario.
+    pub(crate) fn of(windows: &'a [Window], scenario: &Scenario) -> MetricWindows<'a> {
+        let (band_percent, duration_s) = (scenario.settling_band_percent, scenario.duration);
+        MetricWindows { windows, band_percent, duration_s }
+    }
 }
 
 impl<'a> Follower<'a> {
@@ -29,9 +38,9 @@ impl<'a> Follower<'a> {
         wanted: &[usize],
         samples: &'a RefCell<ControllerSamples>,
         reference: &'a Profile,
-        of_metrics: MetricWindows<'_>,
+        metric_windows: MetricWindows<'_>,
     ) -> Follower<'a> {
-        let MetricWindows { windows, band_percent, duration_s } = of_metrics;
+        let MetricWindows { windows, band_percent, duration_s } = metric_windows;
         let commanded = match &bench.control {
             Control::Continuous(closed) => {
                 CommandSource::Continuously(sums::command(bench, wanted), closed.limit())

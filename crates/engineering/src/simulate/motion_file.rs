@@ -106,7 +106,7 @@ pub(super) fn rising(table: &MeasuredTable, column: &Column, times: &[f64], find
     let mut last = f64::NEG_INFINITY;
     for (row, time) in times.iter().enumerate().filter(|(_, time)| !time.is_nan()) {
         if *time <= last {
-            return findings.push(not_increasing(table, column, (times, row), findings));
+            return findings.push(not_increasing(table, column, times, row, findings));
         }
         last = *time;
     }

@@ -227,13 +227,12 @@ impl RunPass<'_> {
 /// Simulates a scenario once, writes its rows into a table, if one is given, and records its
 /// samples, if requested; `watch` is called with the simulated time at intervals.
 pub(super) fn run<'t>(
-    run: &PreparedRun<'_>,
+    PreparedRun { scenario, bench, prepared, measured }: &PreparedRun<'_>,
     plan: PassPlan,
     table: Option<RunTable<'t>>,
     output: &RunOutput<'_>,
     watch: &mut dyn FnMut(f64) -> bool,
 ) -> Result<RunPass<'t>, SimulateError> {
-    let PreparedRun { scenario, bench, prepared, measured } = run;
     let samples_per_row = if output.attention == Attention::Steps { 1 } else { samples_per_row(scenario) };
     let sample_interval_s = scenario.output_step / samples_per_row as f64;
     let (samples, full) = (RefCell::new(ControllerSamples::default()), Cell::new(false));
@@ -245,11 +244,7 @@ pub(super) fn run<'t>(
     };
     let inputs = inputs(&bench.control, prepared);
     let drive = InputSchedule { duration_s: scenario.duration, output_step_s: sample_interval_s, inputs };
-    let windows = MetricWindows {
-        windows: &prepared.windows,
-        band_percent: scenario.settling_band_percent,
-        duration_s: scenario.duration,
-    };
+    let windows = MetricWindows::of(&prepared.windows, scenario);
     let looks = scenario.duration / sample_interval_s;
     let looking = RunObserver::new(bench, &samples, measured, &full, prepared, windows);
     let looking = looking.writing(table, samples_per_row).following(output.attention, looks);

@@ -19,7 +19,8 @@ pub(crate) fn median_step(times: &[f64]) -> f64 {
 pub(crate) fn not_increasing(
     table: &MeasuredTable,
     column: &Column,
-    (times, row): (&[f64], usize),
+    times: &[f64],
+    row: usize,
     findings: &Findings,
 ) -> RawFinding {
     let wrong = misplaced(times, row);

@@ -33,7 +33,7 @@ pub(super) fn swept_answer(
 ) -> Result<Unprinted, CommandError> {
     let setup = Setup::new(&loaded.project)?;
     let linearization = linearized(&setup)?;
-    let swept = sweep(source, (loaded, &setup), catalogues, request)?;
+    let swept = sweep(source, loaded, &setup, catalogues, request)?;
     let mut files = linearize::files(&linearization);
     files.extend(linearize::sweep_files(&swept));
     files.extend(picture_files(&[linearize::sweep_figure(&swept)]));

@@ -59,7 +59,7 @@ impl StepCommands {
     /// Margin of a plant, dB; negative infinity if its command cannot be computed.
     fn margin_db(&self, plant: &SteppedPlant, around: &Compensation) -> f64 {
         let Some(steps) = &self.steps else { return f64::INFINITY };
-        let command = plant.command(around, (steps.duration_s, POINTS));
+        let command = plant.command(around, steps.duration_s, POINTS);
         command.map_or(f64::NEG_INFINITY, |command| decibels(steps.limit_v / steps.largest_v(&command)))
     }
 

@@ -105,6 +105,15 @@ pub(super) struct BegunDesign<'a> {
     pub(super) least_db: f64,
 }
 
+/// A start with the free numbers that a search found.
+#[derive(Clone, Copy)]
+struct MovedDesign<'a> {
+    start: &'a Design,
+    /// Design that is led.
+    project_design: &'a ProjectDesign,
+    free_numbers: &'a [f64],
+}
+
 impl<'a> LedDesign<'a> {
     /// The problem with little room for the contribution of the rig to the steps.
     pub(super) fn with_less_room(&self) -> LedDesign<'a> {
@@ -128,8 +137,8 @@ impl<'a> LedDesign<'a> {
             linear: self.room.of(self.aimed.aim.step_limits(self.required)),
             with_rig: with_rig(self.required),
         };
-        let added = (aimed_limits, self.aimed.added.to_vec());
-        let search = StepShaping::new(shaping, added, self.problem.sensor.clone(), self.aimed.plants);
+        let (added, sensor) = (self.aimed.added.to_vec(), self.problem.sensor.clone());
+        let search = StepShaping::new(shaping, aimed_limits, added, sensor, self.aimed.plants);
         let mut search = search.with_commands(ScenarioSteps::of(self.setup, project_design));
         if reach == SearchReach::Near {
             search.stay_near(&start.free_numbers);
@@ -194,7 +203,7 @@ impl<'a> LedDesign<'a> {
             if round > 0 {
                 free_numbers = self.descended(&mut search, &free_numbers, &mut watch)?;
             }
-            let at = (&start, project_design, free_numbers.as_slice());
+            let at = MovedDesign { start: &start, project_design, free_numbers: &free_numbers };
             let (mut moved, mut is_new) =
                 self.judged(&mut search, at, AuditDepth::KnownPlants, &mut watch)?;
             if moved.is_reached() {
@@ -218,11 +227,11 @@ impl<'a> LedDesign<'a> {
     fn judged(
         &self,
         search: &mut StepShaping<'_>,
-        (start, project_design, free_numbers): (&Design, &ProjectDesign, &[f64]),
+        at: MovedDesign<'_>,
         depth: AuditDepth,
         watch: Watch<'_>,
     ) -> Result<(AuditedStep, bool), DesignError> {
-        let at = (start, project_design, free_numbers);
+        let MovedDesign { start, free_numbers, .. } = at;
         let moved = self.audited(&search.shaping, at, depth, watch)?;
         let is_new = search.take_worst(&moved.design)? | search.take_steps(&moved)?;
         let with_rig = search.excess_with_rig(free_numbers, &self.required);
@@ -249,7 +258,7 @@ impl<'a> LedDesign<'a> {
         if found.audit == AuditDepth::Whole {
             return Ok(found);
         }
-        let at = (&found.start, project_design, found.free_numbers.as_slice());
+        let at = MovedDesign { start: &found.start, project_design, free_numbers: &found.free_numbers };
         let project_design = self.audited(&found.search.shaping, at, AuditDepth::Whole, watch)?;
         Ok(AuditedStep { project_design: Box::new(project_design), audit: AuditDepth::Whole, ..found })
     }
@@ -258,10 +267,11 @@ impl<'a> LedDesign<'a> {
     fn audited(
         &self,
         shaping: &Shaping,
-        (start, project_design, free_numbers): (&Design, &ProjectDesign, &[f64]),
+        at: MovedDesign<'_>,
         depth: AuditDepth,
         watch: Watch<'_>,
     ) -> Result<ProjectDesign, DesignError> {
+        let MovedDesign { start, project_design, free_numbers } = at;
         let compensation = Compensation::new(&shaping.controller(free_numbers), self.problem.sensor.clone())?;
         let has_prefilter = project_design.designed.problem.has_prefilter;
         let problem =
@@ -302,7 +312,7 @@ impl<'a> LedDesign<'a> {
             free_numbers = descended(search, &free_numbers, &mut within(&mut *watch, fraction))?;
             // numbers that miss the aim with these plants miss it with more
             let misses = search.judge(&free_numbers).worst_margin_db < 0.0;
-            if misses || !search.take_unseen(&free_numbers, (self.aimed.given, &self.evaluated))? {
+            if misses || !search.take_unseen(&free_numbers, self.aimed.given, &self.evaluated)? {
                 break;
             }
         }

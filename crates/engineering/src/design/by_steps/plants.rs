@@ -26,23 +26,24 @@ pub(in crate::design) struct SteppedPlants {
 impl SteppedPlant {
     /// Step of the plant over a time, s, with about this number of points; `None` if it cannot be
     /// computed.
-    pub(super) fn step(&self, around: &Compensation, duration: (f64, usize)) -> Option<StepResponse> {
-        linear_step_knowing((&self.member, StepSignal::Output), around, duration, &self.known).ok()
+    pub(super) fn step(&self, around: &Compensation, duration_s: f64, points: usize) -> Option<StepResponse> {
+        linear_step_knowing(&self.member, StepSignal::Output, around, duration_s, points, &self.known).ok()
     }
 
     /// Command in such a step; `None` if it cannot be computed.
     pub(in crate::design) fn command(
         &self,
         around: &Compensation,
-        duration: (f64, usize),
+        duration_s: f64,
+        points: usize,
     ) -> Option<StepResponse> {
-        linear_step_knowing((&self.member, StepSignal::Command), around, duration, &self.known).ok()
+        linear_step_knowing(&self.member, StepSignal::Command, around, duration_s, points, &self.known).ok()
     }
 
     /// Transfer of a disturbance from the loop of one controller to that of another, in this number
     /// of samples at this distance.
-    pub(super) fn carried(&self, loops: [&Compensation; 2], samples: (f64, usize)) -> CarriedDisturbance {
-        CarriedDisturbance::new(&self.member, loops, samples, &self.known)
+    pub(super) fn carried(&self, loops: [&Compensation; 2], step_s: f64, count: usize) -> CarriedDisturbance {
+        CarriedDisturbance::new(&self.member, loops, step_s, count, &self.known)
     }
 }
 
@@ -52,7 +53,8 @@ impl SteppedPlants {
     pub(in crate::design) fn plant(
         &self,
         values: &[f64],
-        (family, around): (&UncertainFamily, &Compensation),
+        family: &UncertainFamily,
+        around: &Compensation,
     ) -> Result<Arc<SteppedPlant>, LinearError> {
         let mut plants = self.plants.borrow_mut();
         if let Some(known) = plants.iter().find(|known| known.values == values) {

@@ -93,7 +93,8 @@ impl StepShaping<'_> {
     /// Shaping without plants whose steps are judged.
     pub(super) fn new(
         shaping: Shaping,
-        (aimed_limits, added): (AimedStepLimits, Vec<AddedByRig>),
+        aimed_limits: AimedStepLimits,
+        added: Vec<AddedByRig>,
         sensor: TransferFunction,
         all: &SteppedPlants,
     ) -> StepShaping<'_> {
@@ -200,7 +201,7 @@ impl StepShaping<'_> {
             (self.commands.unseen(project_design), &project_design.designed.problem.family)
         {
             let around = &project_design.designed.problem.compensation;
-            self.commands.take(self.all.plant(values, (family, around))?);
+            self.commands.take(self.all.plant(values, family, around)?);
             is_new = true;
         }
         Ok(is_new)
@@ -211,7 +212,8 @@ impl StepShaping<'_> {
     pub(super) fn take_unseen(
         &mut self,
         x: &[f64],
-        (problem, plants): (&RobustProblem, &[Vec<f64>]),
+        problem: &RobustProblem,
+        plants: &[Vec<f64>],
     ) -> Result<bool, DesignError> {
         let Some(around) = self.around(x) else { return Ok(false) };
         let mut missed: Vec<(f64, LedPlant)> = Vec::new();
@@ -245,7 +247,7 @@ impl StepShaping<'_> {
         if self.plants.iter().any(|known| known.plant.values == values) {
             return Ok(None);
         }
-        let plant = self.all.plant(values, (family, &problem.compensation))?;
+        let plant = self.all.plant(values, family, &problem.compensation)?;
         Ok(Some(LedPlant { plant, added: added_to(family, &self.added, values).cloned() }))
     }
 }
@@ -253,12 +255,12 @@ impl StepShaping<'_> {
 impl AimedStepLimits {
     /// Steps of a plant, that of the linear loop first; `None` if one cannot be computed.
     fn steps(&self, plant: &LedPlant, around: &Compensation) -> Option<Vec<JudgedStep>> {
-        let duration = (SETTLING_TIMES * self.linear.horizon_s, POINTS);
-        let linear = plant.plant.step(around, duration)?;
+        let duration_s = SETTLING_TIMES * self.linear.horizon_s;
+        let linear = plant.plant.step(around, duration_s, POINTS)?;
         let mut steps: Vec<JudgedStep> = Vec::new();
         if let (Some(added), [first, second, ..]) = (&plant.added, linear.times_s.as_slice()) {
-            let samples = (second - first, linear.times_s.len());
-            let carried = plant.plant.carried([&added.around, around], samples);
+            let loops = [&added.around, around];
+            let carried = plant.plant.carried(loops, second - first, linear.times_s.len());
             let with_rig = |added: &StepResponse| {
                 let added = carried.of(&added.at_times(&linear.times_s));
                 let values = linear.values.iter().zip(added).map(|(value, added)| value + added);

@@ -24,8 +24,8 @@ pub(in crate::design) fn last_step_search<'a>(
     };
     let linear = search.room.of(aimed.aim.step_limits(led.required));
     let aimed_limits = AimedStepLimits { linear, with_rig: with_rig(led.required) };
-    let added = (aimed_limits, aimed.added.to_vec());
-    let search = StepShaping::new(search.shaping.clone(), added, led.problem.sensor.clone(), aimed.plants);
+    let (shaping, sensor) = (search.shaping.clone(), led.problem.sensor.clone());
+    let search = StepShaping::new(shaping, aimed_limits, aimed.added.to_vec(), sensor, aimed.plants);
     let mut search = search.with_commands(ScenarioSteps::of(setup, project_design));
     search.take_worst(&project_design.design)?;
     search.take_steps(project_design)?;

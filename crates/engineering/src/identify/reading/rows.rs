@@ -133,7 +133,7 @@ fn leave_out_repeated(
                 continue;
             }
             Some((_, at_last)) if time <= at_last => {
-                findings.push(not_increasing(table, column, (times, row), findings));
+                findings.push(not_increasing(table, column, times, row, findings));
             }
             _ => {}
         }
