@@ -9,7 +9,8 @@ mod terminal;
 mod typeset;
 
 pub(crate) use cell::{Cell, StatusMark};
-pub use number::TableNumber;
+pub use number::PrintedNumber;
+pub(crate) use number::{frequency_number, margin_words};
 pub(crate) use table::Table;
 pub(crate) use typeset::capital;
 pub use typeset::{prose, typeset};

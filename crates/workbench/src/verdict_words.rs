@@ -4,7 +4,7 @@ use phea_engineering::trial::Agreement;
 use phea_qft::verification::Verdict;
 
 use crate::answer::words;
-use crate::quantity::{RATIO, display};
+use crate::document::{Cell, frequency_number};
 
 words! {
     /// Verdict on a requirement: satisfied by every plant, violated by one, or not resolved.
@@ -28,31 +28,12 @@ pub(crate) fn verdict_words(verdict: Verdict) -> &'static str {
     }
 }
 
-/// `4.31 dB`, with its sign; zero, for a limit that is just reached, without sign.
-pub(crate) fn margin_words(margin_db: f64) -> String {
-    match margin_db {
-        _ if margin_db == f64::INFINITY => "unlimited".to_string(),
-        _ if margin_db.abs() < 5e-4 => "0.000 dB".to_string(),
-        _ if margin_db.abs() < 1.0 => format!("{margin_db:+.3} dB"),
-        _ => format!("{margin_db:+.2} dB"),
-    }
-}
-
 /// `at 1304 rad/s`, `towards zero frequency`, `towards infinite frequency`.
 pub(crate) fn frequency_words(frequency_rad_per_s: f64) -> String {
     match frequency_rad_per_s {
         0.0 => "towards zero frequency".to_string(),
         f64::INFINITY => "towards infinite frequency".to_string(),
         _ => format!("at {} rad/s", frequency_number(frequency_rad_per_s)),
-    }
-}
-
-/// A frequency with four digits, without trailing zeros: `0.01`, `1304`.
-pub(crate) fn frequency_number(frequency_rad_per_s: f64) -> String {
-    if frequency_rad_per_s == f64::INFINITY {
-        "inf".to_string()
-    } else {
-        display(frequency_rad_per_s, &RATIO, 4)
     }
 }
 
@@ -63,5 +44,12 @@ pub(crate) fn agreement_word(agreement: Agreement) -> &'static str {
         Agreement::AgreesButForSettling => "agrees but for the settling",
         Agreement::Differs => "differs",
         Agreement::Contradicts => "contradicts",
+    }
+}
+
+impl Cell {
+    /// The cell of a verdict.
+    pub(crate) fn verdict(verdict: Verdict) -> Cell {
+        Cell::from(verdict_words(verdict)).marked(verdict)
     }
 }

@@ -10,11 +10,8 @@ use phea_dynamics::portable::{exp_complex, magnitude};
 use phea_dynamics::random::{normal, stream};
 use phea_qft::family::{Family, MeasuredPlant};
 use phea_workbench::answer::Answer;
-use phea_workbench::command::{
-    self, IdentifyError, Request, ResponseRequest, ResponseSettings, response_watched,
-};
-use phea_workbench::engineering::family::family;
-use phea_workbench::engineering::setup::Setup;
+use phea_workbench::command::{self, IdentifyError, Request, ResponseRequest, ResponseSettings};
+use phea_workbench::engineering::{family::family, setup::Setup};
 use phea_workbench::project::{self, Loaded};
 use phea_workbench::source::Memory;
 use serde_json::Value;
@@ -84,7 +81,7 @@ pub(crate) fn identified(
     let source = Memory::default().with("bench/shaken.csv", table);
     let files = vec!["bench/shaken.csv".to_string()];
     let request = ResponseRequest { files, settings: *settings, figures: false };
-    response_watched(&source, loaded, &request, &mut |_| true)
+    command::response_watched(&source, loaded, &request, &mut |_| true)
 }
 
 fn member(answer: &Answer) -> Value {
@@ -201,7 +198,7 @@ fn an_identified_response_is_a_family_that_verify_audits() {
     let files = vec!["a/run.csv".to_string(), "b/run.csv".to_string()];
     let request = ResponseRequest { files, settings: ResponseSettings::default(), figures: true };
     let source = Memory::default().with("a/run.csv", shaken(5.0)).with("b/run.csv", shaken(8.0));
-    let answer = response_watched(&source, None, &request, &mut |_| true).unwrap();
+    let answer = command::response_watched(&source, None, &request, &mut |_| true).unwrap();
     let names: Vec<&str> = answer.files.iter().map(|file| file.name.as_str()).collect();
     assert_eq!(names[..3], ["run.response.csv", "run-2.response.csv", "measured.toml"]);
     assert_eq!(names.len(), 5, "a picture of each: {names:?}");
@@ -232,11 +229,8 @@ fn an_identified_response_is_a_family_that_verify_audits() {
     let stated =
         |member: &MeasuredPlant| member.radii.len() == 4 && member.radii.iter().all(|one| *one > 0.0);
     assert!(read.plants().iter().all(stated));
-    assert!(
-        verdict.text().contains("within the discs that hold all measured responses"),
-        "{}",
-        verdict.text()
-    );
+    let text = verdict.text();
+    assert!(text.contains("within the discs that hold all measured responses"), "{text}");
 }
 
 /// Frequencies at which noise hides the output are incoherent, and are listed with the reason.
@@ -368,7 +362,7 @@ fn the_project_may_state_the_loop() {
         let source = Memory::default().with("rig.toml", project).with("shaken.csv", text.as_str());
         let loaded = project::read(&source, "rig.toml", &[], &[]).unwrap_or_else(|report| panic!("{report}"));
         let request = ResponseRequest::default();
-        response_watched(&source, Some(&loaded), &request, &mut |_| true)
+        command::response_watched(&source, Some(&loaded), &request, &mut |_| true)
     };
     run_command::refused(stated("closed"), &["no column says what moved it"]);
     assert_eq!(member(&stated("open").unwrap())["method"], "local_polynomials");
@@ -383,7 +377,7 @@ fn by_controller(signals: &[Vec<f64>; 4], controller: &str) -> Result<Answer, Id
     let text = table("time_s,command_v,force_n", [times, inputs, outputs]);
     let source = Memory::default().with("rig.toml", project).with("shaken.csv", text);
     let loaded = project::read(&source, "rig.toml", &[], &[]).unwrap_or_else(|report| panic!("{report}"));
-    response_watched(&source, Some(&loaded), &ResponseRequest::default(), &mut |_| true)
+    command::response_watched(&source, Some(&loaded), &ResponseRequest::default(), &mut |_| true)
 }
 
 /// A controller that is a gain reconstructs the reference that was not recorded.

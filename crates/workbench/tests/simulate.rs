@@ -380,14 +380,9 @@ fn a_long_scenario_reports_its_sample_interval() {
             command::answer(&Memory::default(), &loaded, &[], &Request::Simulate(Default::default()))
                 .unwrap();
         let json: Value = parsed(&answer.json);
-        let found = json["scenarios"][0]["sample_interval_s"].as_f64().unwrap();
+        let (found, text) = (json["scenarios"][0]["sample_interval_s"].as_f64().unwrap(), answer.text());
         assert!((found / interval_s - 1.0).abs() < 1e-9, "{found}");
-        assert_eq!(
-            answer.text().contains("is drawn from samples every 5.00 ms only"),
-            long,
-            "{}",
-            answer.text()
-        );
+        assert_eq!(text.contains("is drawn from samples every 5.00 ms only"), long, "{text}");
     }
 }
 
@@ -409,12 +404,11 @@ fn projects_are_compared_side_by_side() {
     let names: Vec<&str> = answer.files.iter().map(|file| file.name.as_str()).collect();
     assert_eq!(names.len(), 3, "{names:?}");
     assert!(names.contains(&"compare-1.svg") && names.contains(&"compare-1-event-2.svg"), "{names:?}");
-    assert!(answer.text().contains("disturbance peak"), "{}", answer.text());
-    assert!(answer.text().contains("settling (1 %, 2 %)"), "{}", answer.text());
     let text = answer.text();
+    assert!(text.contains("disturbance peak") && text.contains("settling (1 %, 2 %)"), "{text}");
     let overloads: Vec<&str> = text.lines().filter(|line| line.contains("is overloaded")).collect();
-    assert!(overloads.len() == 1 && overloads[0].starts_with("   B: from 2."), "{}", answer.text());
-    assert!(overloads[0].contains("its capacity is 3 kN"), "{}", answer.text());
+    let [only] = overloads[..] else { panic!("{text}") };
+    assert!(only.starts_with("   B: from 2.") && only.contains("its capacity is 3 kN"), "{text}");
 }
 
 /// Peaks of the force deviation for a load that moves by 5 mm as a first-order lag, for hose and

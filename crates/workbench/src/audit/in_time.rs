@@ -4,10 +4,11 @@ use phea_engineering::audit::{PrefilterGain, ProjectAudit, TimeFinding, TimeOutc
 use phea_qft::verification::Verdict;
 
 use crate::answer::significant;
+use crate::document::margin_words;
 use crate::plant_names::plant_text;
 use crate::simulate::required_words;
 use crate::specification::numbered;
-use crate::verdict_words::{frequency_words, margin_words};
+use crate::verdict_words::frequency_words;
 
 /// `2 tracking in time: at most 5 % overshoot and settled within 2 % in 0.8 s are required and not
 /// met; ...`

@@ -6,8 +6,9 @@ use phea_qft::specification::{ClosedLoop, Requirement};
 use phea_qft::verification::{Evidence, SpecificationFinding, SpecificationMargin, Verdict};
 
 use crate::answer::words;
+use crate::document::margin_words;
 use crate::quantity::{RATIO, display, significant};
-use crate::verdict_words::{frequency_words, margin_words};
+use crate::verdict_words::frequency_words;
 
 words! {
     /// Evidence for a verdict: plants and frequencies one by one, a search for the worst case over

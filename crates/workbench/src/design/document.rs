@@ -15,13 +15,12 @@ use super::unfinished::unfinished_sentence;
 use super::words::{searched_limit_cell, structure_words, unusable_words, verdict_sentence};
 use crate::answer::significant;
 use crate::audit::{self, summary};
-use crate::document::{Cell, Document, StatusMark, Table};
+use crate::document::{Cell, Document, StatusMark, Table, margin_words};
 use crate::explanation::explanation_sentence;
 use crate::plant_names::{plant_cells, plant_text};
 use crate::project::{Loaded, snippet};
 use crate::quantity::DisplayUnit;
 use crate::trial;
-use crate::verdict_words::margin_words;
 
 /// Accuracy to which a design satisfies a reserve, dB.
 const RESERVE_ACCURACY_DB: f64 = 2e-3;

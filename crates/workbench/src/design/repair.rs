@@ -6,10 +6,11 @@ use phea_engineering::trial::{Agreement, TrialRun};
 use phea_qft::verification::Verdict;
 
 use crate::audit::stability_sentence;
+use crate::document::margin_words;
 use crate::quantity::{DisplayUnit, significant};
 use crate::specification::numbered;
 use crate::trial::{reason_words, run_name};
-use crate::verdict_words::{agreement_word, frequency_words, margin_words};
+use crate::verdict_words::{agreement_word, frequency_words};
 
 /// The outcome for people.
 pub(super) fn repair_words(status: RepairStatus) -> &'static str {

@@ -7,7 +7,6 @@ use phea_qft::verification::Verdict;
 
 use super::number::{CellNumber, Digits, NumberUnit};
 use crate::quantity::{Dimension, DisplayUnit};
-use crate::verdict_words::verdict_words;
 
 /// A verdict as a form and a colour next to its word, so that no reader depends on a single one of
 /// them.
@@ -186,11 +185,6 @@ impl Cell {
         };
         cells.push(next.into());
         Cell::Joined(cells)
-    }
-
-    /// The cell of a verdict.
-    pub(crate) fn verdict(verdict: Verdict) -> Cell {
-        Cell::from(verdict_words(verdict)).marked(verdict)
     }
 
     /// True if the cell is a number.

@@ -1,8 +1,7 @@
 //! The numbers in the cells of tables, as values and as they are printed.
 
 use super::{Block, Cell, Document, Table};
-use crate::quantity::{Dimension, DisplayUnit, display, significant};
-use crate::verdict_words::{frequency_number, margin_words};
+use crate::quantity::{Dimension, DisplayUnit, RATIO, display, significant};
 
 /// Rule for the digits of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,7 +82,7 @@ impl Digits {
 
 /// A number in a table of a document.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TableNumber {
+pub struct PrintedNumber {
     /// Heading of its column and the text of the first cell of its row.
     pub place: String,
     /// Value in SI; in dB, degrees or percent if the quantity is stated in these everywhere.
@@ -91,7 +90,7 @@ pub struct TableNumber {
     number: CellNumber,
 }
 
-impl TableNumber {
+impl PrintedNumber {
     /// The number as it is printed.
     pub fn text(&self) -> String {
         self.number.text()
@@ -111,21 +110,21 @@ struct PlacedCell<'d> {
 
 impl Document {
     /// The numbers in the cells of all tables, in the order in which they are printed.
-    pub fn table_numbers(&self) -> Vec<TableNumber> {
+    pub fn table_numbers(&self) -> Vec<PrintedNumber> {
         let number = |PlacedCell { place, part }: PlacedCell<'_>| match part {
-            Cell::Number(number) => Some(TableNumber { place, si: number.si, number: *number }),
+            Cell::Number(number) => Some(PrintedNumber { place, si: number.si, number: *number }),
             Cell::Count(count) => {
                 let unit = NumberUnit::Heading(DisplayUnit::ONE);
                 let number = CellNumber::new(*count as f64, Digits::Decimal(0), unit);
-                Some(TableNumber { place, si: number.si, number })
+                Some(PrintedNumber { place, si: number.si, number })
             }
             _ => None,
         };
         self.placed_cells().into_iter().filter_map(number).collect()
     }
 
-    /// The texts in the cells of all tables, which should contain no number of the answer, each with
-    /// the place of its cell.
+    /// The texts in the cells of all tables, each with the place of its cell; they should contain
+    /// no number of the answer.
     pub fn table_texts(&self) -> Vec<(String, String)> {
         let text = |PlacedCell { place, part }: PlacedCell<'_>| match part {
             Cell::Text(text) => Some((place, text.clone())),
@@ -164,5 +163,24 @@ impl Table {
             })
         });
         names.chain(cells).collect()
+    }
+}
+
+/// `4.31 dB`, with its sign; zero, for a limit that is just reached, without sign.
+pub(crate) fn margin_words(margin_db: f64) -> String {
+    match margin_db {
+        _ if margin_db == f64::INFINITY => "unlimited".to_string(),
+        _ if margin_db.abs() < 5e-4 => "0.000 dB".to_string(),
+        _ if margin_db.abs() < 1.0 => format!("{margin_db:+.3} dB"),
+        _ => format!("{margin_db:+.2} dB"),
+    }
+}
+
+/// A frequency with four digits, without trailing zeros: `0.01`, `1304`.
+pub(crate) fn frequency_number(frequency_rad_per_s: f64) -> String {
+    if frequency_rad_per_s == f64::INFINITY {
+        "inf".to_string()
+    } else {
+        display(frequency_rad_per_s, &RATIO, 4)
     }
 }

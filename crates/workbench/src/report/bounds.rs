@@ -16,14 +16,13 @@ use super::chapter::Chapter;
 use crate::answer::significant;
 use crate::audit::closed_loop_symbol;
 use crate::design::drawn;
-use crate::document::{Cell, Document, StatusMark, Table};
+use crate::document::{Cell, Document, StatusMark, Table, frequency_number};
 use crate::error::CommandError;
 use crate::figure::{
     BoundGroup, Figure, FrequencySeries, NicholsChart, OpenLoopViolation, USUAL_CONTOURS_DB, Words, templates,
 };
 use crate::quantity::DisplayUnit;
 use crate::specification::{name_words, stated};
-use crate::verdict_words::frequency_number;
 
 /// The chapter; `chart` is the Nichols chart of the given loop if it is shown nowhere else.
 pub(super) fn chapter(problem: &RobustProblem, found: &[DesignFrequency], chart: Option<Figure>) -> Chapter {

@@ -14,13 +14,13 @@ use phea_qft::specification::{
 use super::chapter::Chapter;
 use crate::answer::significant;
 use crate::audit::{closed_loop_symbol, meaning};
-use crate::document::{Cell, Document, StatusMark, Table};
+use crate::document::{Cell, Document, StatusMark, Table, frequency_number};
 use crate::error::CommandError;
 use crate::project::Project;
 use crate::quantity::{DisplayUnit, RATIO, display};
 use crate::simulate::required_words;
 use crate::specification::{name_words, requirement_sentence, stated};
-use crate::verdict_words::{frequency_number, frequency_words};
+use crate::verdict_words::frequency_words;
 
 pub(super) fn chapter(project: &Project, problem: &RobustProblem) -> Result<Chapter, CommandError> {
     let specifications = &problem.specifications;

@@ -7,11 +7,10 @@ use phea_qft::manual_shaping::DesignMargin;
 
 use crate::audit::stability_sentence;
 use crate::caveat;
-use crate::document::{Cell, Document, Table};
+use crate::document::{Cell, Document, Table, frequency_number};
 use crate::plant_names::plant_cell;
 use crate::quantity::DisplayUnit;
 use crate::specification::name_words;
-use crate::verdict_words::frequency_number;
 use phea_qft::verification::Verdict;
 
 /// The tables and sentences of `shape`.

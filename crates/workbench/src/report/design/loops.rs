@@ -6,8 +6,8 @@ use phea_engineering::robust::DesignFrequency;
 use phea_qft::bound::Placement;
 
 use super::super::bounds::{NO_BOUNDS, WITHIN_TOLERANCE, group, nearest_bounds, nearest_words, nominal_loop};
+use crate::document::frequency_number;
 use crate::figure::{Figure, FrequencySeries, NicholsChart, OpenLoopViolation, Words};
-use crate::verdict_words::frequency_number;
 
 /// The chart; `None` without a nominal plant.
 pub(super) fn figure(view: &ProjectDesign, found: &[DesignFrequency]) -> Result<Option<Figure>, LinearError> {

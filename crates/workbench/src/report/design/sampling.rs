@@ -3,8 +3,8 @@
 use phea_engineering::design::AuditedController;
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
+use crate::document::margin_words;
 use crate::specification::numbered;
-use crate::verdict_words::margin_words;
 
 /// Frequency at which the continuous design is worst compared with the one that takes sampling into
 /// account.
