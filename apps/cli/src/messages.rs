@@ -68,13 +68,13 @@ impl ProgressLine {
     /// Shows the progress and the remaining time, for work that proceeds evenly.
     pub(crate) fn show_evenly(&mut self, progress: Progress) {
         let now = Instant::now();
-        let (start, share) = *self.even.get_or_insert((now, progress.share));
-        let gained = progress.share - share;
+        let (start, fraction) = *self.even.get_or_insert((now, progress.fraction));
+        let gained = progress.fraction - fraction;
         let took = now.duration_since(start);
         if gained <= 0.0 || took < UPDATE_INTERVAL {
             return self.show(progress);
         }
-        let left = took.as_secs_f64() * (1.0 - progress.share) / gained;
+        let left = took.as_secs_f64() * (1.0 - progress.fraction) / gained;
         let left = Duration::from_secs_f64(left.clamp(0.0, LONGEST_S)).as_secs();
         let (hours, minutes, seconds) = (left / 3600, left / 60 % 60, left % 60);
         self.write(progress, &format!(", {hours}:{minutes:02}:{seconds:02} left"));
@@ -99,7 +99,7 @@ impl ProgressLine {
         let now = Instant::now();
         if self.next.is_some_and(|next| now >= next) {
             self.next = Some(now + self.update_interval());
-            let percent = (100.0 * progress.share).clamp(0.0, 100.0);
+            let percent = (100.0 * progress.fraction).clamp(0.0, 100.0);
             let line = format!("{}: {percent:.0} %{more}", progress.stage);
             if line == self.shown {
                 return;

@@ -119,8 +119,8 @@ fn misread_number(error: &clap::Error) -> Option<String> {
         ("invalid float literal", Ok(_)) => format!("a comma inside a number; write {with_point}"),
         ("invalid digit found in string", Ok(number)) if number >= 0.0 => {
             let [below, above] = [number.floor(), number.ceil()];
-            let cure = if below == above { format!("{below}") } else { format!("{below} or {above}") };
-            format!("a whole number is needed, without comma or point; write {cure}")
+            let remedy = if below == above { format!("{below}") } else { format!("{below} or {above}") };
+            format!("a whole number is needed, without comma or point; write {remedy}")
         }
         ("invalid digit found in string", _) => "a whole number is needed, such as 20".to_string(),
         _ => return None,

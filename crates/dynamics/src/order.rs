@@ -104,7 +104,7 @@ pub fn sorted_distinct(mut numbers: Vec<f64>) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::share;
+    use crate::random::uniform;
 
     #[test]
     fn items_lie_as_the_stable_sort_lays_them() {
@@ -112,8 +112,8 @@ mod tests {
         for count in 0..200 {
             let special = [0.0, -0.0, f64::NAN, -f64::NAN, f64::INFINITY, -f64::INFINITY, 1.0, -1.0];
             let drawn = |_| {
-                let chosen = special.get((share(&mut state) * 12.0) as usize);
-                chosen.copied().unwrap_or_else(|| share(&mut state))
+                let chosen = special.get((uniform(&mut state) * 12.0) as usize);
+                chosen.copied().unwrap_or_else(|| uniform(&mut state))
             };
             let items: Vec<(f64, usize)> = (0..count).map(drawn).zip(0..).collect();
             let bits = |items: &[(f64, usize)]| -> Vec<(u64, usize)> {

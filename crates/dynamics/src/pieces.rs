@@ -61,8 +61,8 @@ impl PartialEq for Workers {
 fn one_by_one(pieces: Vec<WorkPiece<'_>>, stage: &'static str, watch: Watch<'_>) -> Result<(), Stopped> {
     let count = pieces.len() as f64;
     for (index, piece) in pieces.into_iter().enumerate() {
-        let share = [index, index + 1].map(|done| done as f64 / count);
-        piece(&mut part(&mut *watch, stage, share))?;
+        let fraction = [index, index + 1].map(|done| done as f64 / count);
+        piece(&mut part(&mut *watch, stage, fraction))?;
     }
     Ok(())
 }

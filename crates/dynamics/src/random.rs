@@ -9,10 +9,10 @@ use crate::portable;
 /// # Example
 /// ```
 /// let mut state = 7;
-/// let first = phea_dynamics::random::share(&mut state);
-/// assert!((0.0..1.0).contains(&first) && phea_dynamics::random::share(&mut state) != first);
+/// let first = phea_dynamics::random::uniform(&mut state);
+/// assert!((0.0..1.0).contains(&first) && phea_dynamics::random::uniform(&mut state) != first);
 /// ```
-pub fn share(state: &mut u64) -> f64 {
+pub fn uniform(state: &mut u64) -> f64 {
     *state = state.wrapping_add(INCREMENT);
     (mixed(*state) >> 11) as f64 / (1_u64 << 53) as f64
 }
@@ -22,8 +22,8 @@ pub fn share(state: &mut u64) -> f64 {
 ///
 /// # Example
 /// ```
-/// use phea_dynamics::random::{share, stream};
-/// let first = |seed, index| share(&mut stream(seed, index));
+/// use phea_dynamics::random::{uniform, stream};
+/// let first = |seed, index| uniform(&mut stream(seed, index));
 /// assert_eq!(first(1, 7), first(1, 7));
 /// assert!(first(1, 7) != first(1, 8) && first(1, 7) != first(2, 7));
 /// ```
@@ -50,13 +50,13 @@ fn mixed(number: u64) -> u64 {
 ///
 /// Source: Box and Muller (1958).
 pub fn normal(state: &mut u64) -> f64 {
-    let (first, second) = (share(state), share(state));
+    let (first, second) = (uniform(state), uniform(state));
     (-2.0 * portable::log1p(-first)).sqrt() * portable::cos(2.0 * std::f64::consts::PI * second)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{normal, share};
+    use super::{normal, uniform};
 
     #[test]
     fn normal_numbers_have_the_moments_of_their_distribution() {
@@ -82,7 +82,7 @@ mod tests {
             [6_457_827_717_110_365_317, 3_203_168_211_198_807_973, 9_817_491_932_198_370_423];
         let mut state = 1_234_567;
         for number in expected {
-            assert_eq!(share(&mut state), (number >> 11) as f64 / 9_007_199_254_740_992.0);
+            assert_eq!(uniform(&mut state), (number >> 11) as f64 / 9_007_199_254_740_992.0);
         }
     }
 }

@@ -7,7 +7,7 @@
 
 mod carried;
 mod commanded_plant;
-mod course;
+mod interface;
 mod derivatives;
 mod driver;
 mod equilibrium;
@@ -37,7 +37,7 @@ mod trajectory;
 mod vector;
 
 pub use commanded_plant::{CommandedPlant, LoopSignals};
-pub use course::{
+pub use interface::{
     Amplification, Attention, Event, GrowthCause, Input, InputSchedule, Observer, Outcome, Sampler,
     SimulationError, SimulationSettings, Status, StepCounts, UnfollowedCause, UnfollowedKinks,
 };

@@ -6,7 +6,7 @@ pub struct Progress {
     /// Current stage.
     pub stage: &'static str,
     /// Completed fraction, 0 to 1.
-    pub share: f64,
+    pub fraction: f64,
 }
 
 /// Progress callback; return `false` to cancel.
@@ -24,22 +24,22 @@ pub struct Stopped;
 ///
 /// # Example
 /// ```
-/// use phea_dynamics::watch::{Progress, Stopped, Watch, tell, unwatched};
+/// use phea_dynamics::watch::{Progress, Stopped, Watch, report_progress, unwatched};
 /// fn sum(numbers: &[f64], watch: Watch<'_>) -> Result<f64, Stopped> {
 ///     let mut sum = 0.0;
 ///     for (done, number) in numbers.iter().enumerate() {
-///         tell(watch, "adding", done, numbers.len())?;
+///         report_progress(watch, "adding", done, numbers.len())?;
 ///         sum += number;
 ///     }
 ///     Ok(sum)
 /// }
 /// assert_eq!(sum(&[1.0, 2.0], &mut unwatched), Ok(3.0));
-/// let mut until_half = |progress: Progress| progress.share < 0.5;
+/// let mut until_half = |progress: Progress| progress.fraction < 0.5;
 /// assert_eq!(sum(&[1.0, 2.0], &mut until_half), Err(Stopped));
 /// ```
-pub fn tell(watch: Watch<'_>, stage: &'static str, done: usize, all: usize) -> Result<(), Stopped> {
-    let share = done as f64 / all.max(1) as f64;
-    if watch(Progress { stage, share }) { Ok(()) } else { Err(Stopped) }
+pub fn report_progress(watch: Watch<'_>, stage: &'static str, done: usize, all: usize) -> Result<(), Stopped> {
+    let fraction = done as f64 / all.max(1) as f64;
+    if watch(Progress { stage, fraction }) { Ok(()) } else { Err(Stopped) }
 }
 
 /// Watch of a part of a procedure, which covers a given interval of the whole; the stage is that of
@@ -49,13 +49,13 @@ pub fn part<'a>(
     stage: &'static str,
     [from, to]: [f64; 2],
 ) -> impl FnMut(Progress) -> bool + use<'a> {
-    move |progress| watch(Progress { stage, share: from + (to - from) * progress.share })
+    move |progress| watch(Progress { stage, fraction: from + (to - from) * progress.fraction })
 }
 
 /// Watch of a part of a procedure, which covers a given interval of the whole and names its own
 /// stages.
 pub fn within<'a>(watch: Watch<'a>, [from, to]: [f64; 2]) -> impl FnMut(Progress) -> bool + use<'a> {
-    move |progress| watch(Progress { share: from + (to - from) * progress.share, ..progress })
+    move |progress| watch(Progress { fraction: from + (to - from) * progress.fraction, ..progress })
 }
 
 /// Watch whose fraction never decreases, since the number of steps of a search is only estimated.
@@ -63,23 +63,23 @@ pub fn within<'a>(watch: Watch<'a>, [from, to]: [f64; 2]) -> impl FnMut(Progress
 /// # Example
 /// ```
 /// use phea_dynamics::watch::{Progress, rising};
-/// let mut shares = Vec::new();
+/// let mut fractions = Vec::new();
 /// let mut show = |progress: Progress| {
-///     shares.push(progress.share);
+///     fractions.push(progress.fraction);
 ///     true
 /// };
-/// let mut told = rising(&mut show);
-/// for share in [0.1, 0.4, 0.2, 0.5, f64::NAN] {
-///     told(Progress { stage: "searching", share });
+/// let mut watched = rising(&mut show);
+/// for fraction in [0.1, 0.4, 0.2, 0.5, f64::NAN] {
+///     watched(Progress { stage: "searching", fraction });
 /// }
-/// drop(told);
-/// assert_eq!(shares, [0.1, 0.4, 0.4, 0.5, 0.5]);
+/// drop(watched);
+/// assert_eq!(fractions, [0.1, 0.4, 0.4, 0.5, 0.5]);
 /// ```
 pub fn rising<'a>(watch: Watch<'a>) -> impl FnMut(Progress) -> bool + use<'a> {
     let mut most = 0.0_f64;
     move |progress| {
-        most = most.max(progress.share).min(1.0);
-        watch(Progress { share: most, ..progress })
+        most = most.max(progress.fraction).min(1.0);
+        watch(Progress { fraction: most, ..progress })
     }
 }
 

@@ -5,7 +5,7 @@
 use num_complex::Complex64;
 use phea_dynamics::linear::{Discretization, HeldModes, LinearError, TransferFunction};
 use phea_dynamics::portable::{cos, magnitude, pow, sin};
-use phea_dynamics::random::share;
+use phea_dynamics::random::uniform;
 
 const fn c(re: f64, im: f64) -> Complex64 {
     Complex64::new(re, im)
@@ -129,7 +129,7 @@ fn modes_give_the_response_of_the_sampled_plant() {
 #[test]
 fn modes_agree_with_the_factors_of_random_plants() {
     let mut state = 7;
-    let mut within = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let mut within = |low: f64, high: f64| low * pow(high / low, uniform(&mut state));
     let (mut compared, mut refused, mut worst) = (0, 0, 0.0_f64);
     for case in 0..300 {
         let mut roots = |count: usize, origin: bool| {

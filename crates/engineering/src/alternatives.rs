@@ -5,7 +5,7 @@
 //! [[alternative]] -> project -> sizing, design, audit, trial -> the designed loop, simulated -> columns -> dominance
 //! ```
 
-mod asked;
+mod prepared;
 mod by_other_means;
 mod cases;
 mod column_key;
@@ -18,8 +18,8 @@ mod no_number;
 mod port;
 mod recentred;
 
-pub use asked::{AskedAlternative, asked};
-pub use cases::{AskedCase, JudgedCase, asked_cases};
+pub use prepared::{PreparedAlternative, prepared};
+pub use cases::{PreparedCase, JudgedCase, prepared_cases};
 pub use column_key::ColumnKey;
 pub use columns::{AlternativeColumn, AlternativeColumns, ColumnPart};
 pub use comparison::{
@@ -45,7 +45,7 @@ use crate::simulate::{ScenarioRun, simulate_project};
 use crate::sizing::{Question, Sizing, size, sizing_problem};
 use crate::source::Source;
 use crate::trial::Agreement;
-use asked::ReadingAgain;
+use prepared::ReadingAgain;
 
 /// The project as declared and its alternatives, judged.
 #[derive(Clone, Debug)]
@@ -190,30 +190,30 @@ pub fn judge(
         return Err(AlternativesError::NoSpecification(DesignError::NoSpecification));
     }
     let motions = loaded.project.motions();
-    let planned = request.front.as_ref().map(|asked| front::plan(asked, motions)).transpose()?;
-    let (all, counted) = asked(source, loaded, catalogues)?;
-    let cases = asked_cases(source, loaded, catalogues)?;
+    let planned = request.front.as_ref().map(|prepared| front::plan(prepared, motions)).transpose()?;
+    let (all, counted) = prepared(source, loaded, catalogues)?;
+    let cases = prepared_cases(source, loaded, catalogues)?;
     let catalogue = catalogue::load(source, catalogues).map_err(AlternativesError::Refused)?;
     let impedance_at = request.impedance_at.as_slice();
     let judging = Judging { source, catalogue: &catalogue, all: &all, impedance_at, counted };
     let swept = planned.as_ref().map_or(0, |plan| plan.values.len());
     let rounds = (1 + cases.len() + swept) as f64;
     let round = |watch: Watch<'_>, [first, last]: [f64; 2], progress: Progress| {
-        watch(Progress { share: (first + (last - first) * progress.share) / rounds, ..progress })
+        watch(Progress { fraction: (first + (last - first) * progress.fraction) / rounds, ..progress })
     };
     let (judged, not_reached) =
         cases::judged(&judging, &all, true, &mut |progress| round(watch, [0.0, 1.0], progress));
-    let goes_on = not_reached.is_empty();
+    let continues = not_reached.is_empty();
     let until = 1.0 + cases.len() as f64;
-    let cases = cases::judged_cases((source, &catalogue, impedance_at), cases, goes_on, &mut |progress| {
+    let cases = cases::judged_cases((source, &catalogue, impedance_at), cases, continues, &mut |progress| {
         round(watch, [1.0, until], progress)
     });
     let mut found = Alternatives { judged, not_reached, cases, front: None };
     if let Some(plan) = planned {
-        let goes_on = goes_on && found.cases.iter().all(|case| case.not_reached.is_empty());
+        let continues = continues && found.cases.iter().all(|case| case.not_reached.is_empty());
         let again = ReadingAgain { source, catalogues };
-        let mut told = |progress: Progress| round(watch, [until, rounds], progress);
-        found.front = Some(front::swept(&judging, (&again, &all), &plan, goes_on, &mut told));
+        let mut watched = |progress: Progress| round(watch, [until, rounds], progress);
+        found.front = Some(front::swept(&judging, (&again, &all), &plan, continues, &mut watched));
     }
     Ok(found)
 }
@@ -225,18 +225,18 @@ const DESIGNING: f64 = 0.7;
 pub(crate) struct Judging<'a> {
     source: &'a dyn Source,
     catalogue: &'a Catalogue,
-    all: &'a [AskedAlternative],
+    all: &'a [PreparedAlternative],
     impedance_at: &'a [f64],
     counted: PartsCounted,
 }
 
 impl Judging<'_> {
     /// A judged alternative; `None` if `watch` cancels.
-    fn judged(&self, asked: AskedAlternative, watch: Watch<'_>) -> Option<JudgedAlternative> {
-        let outside = asked.outside(self.all);
-        let AskedAlternative { name, loaded, rig, no_hose, moved } = asked;
+    fn judged(&self, prepared: PreparedAlternative, watch: Watch<'_>) -> Option<JudgedAlternative> {
+        let outside = prepared.outside(self.all);
+        let PreparedAlternative { name, loaded, rig, no_hose, moved } = prepared;
         let mut designing =
-            |progress: Progress| watch(Progress { share: DESIGNING * progress.share, ..progress });
+            |progress: Progress| watch(Progress { fraction: DESIGNING * progress.fraction, ..progress });
         let project = in_impedance_form(&loaded.project);
         let setup = Setup::around(&project, rig.clone());
         let setup = setup.as_ref().map_err(Clone::clone);
@@ -253,7 +253,7 @@ impl Judging<'_> {
             Err(_) => Err(JudgeError::NoController),
         };
         let mut driving = |progress: Progress| {
-            watch(Progress { share: DESIGNING + (1.0 - DESIGNING) * progress.share, ..progress })
+            watch(Progress { fraction: DESIGNING + (1.0 - DESIGNING) * progress.fraction, ..progress })
         };
         let last = Setup::new(deployed.as_ref().unwrap_or(&loaded.project));
         let last = last.as_ref().map_err(Clone::clone);
@@ -293,17 +293,17 @@ fn in_impedance_form(project: &Project) -> Project {
     project
 }
 
-type Lowered<'a> = Result<&'a Setup<'a>, ControlError>;
+type AssembledSetup<'a> = Result<&'a Setup<'a>, ControlError>;
 
-fn designed(source: &dyn Source, setup: Lowered<'_>, watch: Watch<'_>) -> Result<ProjectDesign, DesignError> {
+fn designed(source: &dyn Source, setup: AssembledSetup<'_>, watch: Watch<'_>) -> Result<ProjectDesign, DesignError> {
     design_project(source, setup?, None, watch)
 }
 
-fn sized(setup: Lowered<'_>, catalogue: &Catalogue) -> Result<Sizing, JudgeError> {
+fn sized(setup: AssembledSetup<'_>, catalogue: &Catalogue) -> Result<Sizing, JudgeError> {
     Ok(size(&sizing_problem(setup?, catalogue)?, Question::Both))
 }
 
-fn linearized(setup: Lowered<'_>) -> Result<Linearization, JudgeError> {
+fn linearized(setup: AssembledSetup<'_>) -> Result<Linearization, JudgeError> {
     let setup = setup?;
     Ok(linearize(setup.rig()?, setup.controller.as_ref(), &setup.sensor)?)
 }
@@ -311,7 +311,7 @@ fn linearized(setup: Lowered<'_>) -> Result<Linearization, JudgeError> {
 fn driven(
     source: &dyn Source,
     project: &Project,
-    setup: Lowered<'_>,
+    setup: AssembledSetup<'_>,
     watch: Watch<'_>,
 ) -> Result<Vec<ScenarioRun>, JudgeError> {
     if project.actuator.is_none() || project.scenarios.is_empty() {

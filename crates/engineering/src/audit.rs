@@ -15,13 +15,13 @@ pub use signal_noise::{NoisySignal, SignalNoise, SignalNoiseEffect, UnknownNoise
 pub use crate::common_position::CommonPosition;
 pub use dead_time::LoopDeadTime;
 pub use in_time::{TimeFinding, TimeOutcome, Unexamined, WorstStep};
-pub(crate) use in_time::{VisitedPlant, spread_over, steps_of_members, visited, worst_beside};
+pub(crate) use in_time::{VisitedPlant, spread_over, steps_of_members, visited, worst_additional};
 pub use margins::{AuditMargins, LoopMargin, MarginSet};
 pub(crate) use margins::{highest_crossover, plants_of_margins};
 pub(crate) use nominal::nominal_margins;
 pub use nominal::{Crossovers, NominalMargins};
 pub use prefilter::PrefilterGain;
-pub use proven::{prove_audit, try_to_prove};
+pub use proven::{prove_audit, prove_claims};
 pub(crate) use rig_outside_family::{caveat as caveat_of_rig, unexamined as unexamined_rig};
 pub use whole_loop::DelayedPaths;
 
@@ -108,10 +108,10 @@ pub fn problem_to_audit(source: &dyn Source, setup: &Setup<'_>) -> Result<Robust
 /// # Errors
 /// [`Stopped`] if `watch` cancels it.
 pub fn audit_problem(problem: &RobustProblem, watch: Watch<'_>) -> Result<ProjectAudit, Stopped> {
-    let share = if problem.rig_outside.is_some() { 0.8 } else { 1.0 };
-    let asked = audit_request(problem, &problem.family);
-    let audit = audit_by(&asked, all_cores(), &mut part(watch, STAGE, [0.0, share]))?;
-    let of_rig = caveat_of_rig(problem, &mut part(watch, STAGE, [share, 1.0]))?;
+    let fraction = if problem.rig_outside.is_some() { 0.8 } else { 1.0 };
+    let requested = audit_request(problem, &problem.family);
+    let audit = audit_by(&requested, all_cores(), &mut part(watch, STAGE, [0.0, fraction]))?;
+    let of_rig = caveat_of_rig(problem, &mut part(watch, STAGE, [fraction, 1.0]))?;
     Ok(ProjectAudit::new(problem, audit, of_rig))
 }
 

@@ -18,7 +18,7 @@ pub use reversals::ReversalReading;
 
 use phea_dynamics::random::stream;
 use phea_dynamics::simulation::{ProfileError, SimulationError};
-use phea_dynamics::watch::{Stopped, Watch, tell};
+use phea_dynamics::watch::{Stopped, Watch, report_progress};
 use phea_hydraulics::line::LineError;
 use phea_hydraulics::servovalve::{OilLaw, SlowSpool, TestStand, WarmOil, ramp_delay};
 
@@ -252,9 +252,9 @@ fn meter_coefficient(meter: &FlowMeter) -> f64 {
 }
 
 /// The oil after a fraction of the test, relative to the oil for which the valve is stated.
-fn oil_at(oil: &OilTemperature, share: f64) -> (f64, WarmOil) {
+fn oil_at(oil: &OilTemperature, fraction: f64) -> (f64, WarmOil) {
     let law = OilLaw { viscosity_slope: oil.viscosity_slope, density_slope: oil.density_slope };
-    let temperature = oil.start + (oil.end - oil.start) * share;
+    let temperature = oil.start + (oil.end - oil.start) * fraction;
     (temperature, law.warmer(temperature - oil.reference.unwrap_or(oil.start)))
 }
 
@@ -294,7 +294,7 @@ fn record(
     let mut before = 0.0;
     for index in 0..rows {
         if index % 64 == 0 {
-            tell(watch, series.name(), index, rows)?;
+            report_progress(watch, series.name(), index, rows)?;
         }
         let time = index as f64 * settings.sample_time;
         let command = instruments.command(nominal_voltage * path.at(time / settings.duration));

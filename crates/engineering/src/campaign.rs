@@ -138,13 +138,13 @@ pub enum CampaignError {
     },
     /// More rows are stored than requested.
     #[error(
-        "the kept table has {kept} rows, more than the {asked} that are asked for: choose another folder"
+        "the kept table has {stored} rows, more than the {requested} that are requested: choose another folder"
     )]
-    MoreKept {
+    MoreStored {
         /// Number of rows.
-        kept: u64,
+        stored: u64,
         /// Number of runs.
-        asked: u64,
+        requested: u64,
     },
     /// Rows cannot be stored.
     #[error("{0}")]

@@ -2,7 +2,7 @@
 //! every specification, with the given one for comparison.
 
 mod added_by_rig;
-mod asked;
+mod feedback_required;
 mod below;
 mod binding;
 mod by_steps;
@@ -45,7 +45,7 @@ pub use side::{AuditedController, LoopFigures, NominalMargins};
 pub use structures::{ReachedStructure, structure_key};
 pub use unfinished::DesignPart;
 use unfinished::unless_stopped;
-pub use verdict::{DesignVerdict, RigMiss, TriedControllers};
+pub use verdict::{DesignVerdict, RigMiss, SearchedControllers};
 
 use phea_dynamics::controller::{Controller, RateSensor, Timing};
 use phea_qft::audit::audit_by;
@@ -58,14 +58,14 @@ use phea_qft::verification::Verdict;
 use self::by_steps::LedSearch;
 use self::deployable::{limited, split};
 use self::driven::found_and_tried;
-use crate::audit::{ProjectAudit, audit_problem, audit_request, caveat_of_rig, try_to_prove, unexamined_rig};
+use crate::audit::{ProjectAudit, audit_problem, audit_request, caveat_of_rig, prove_claims, unexamined_rig};
 use crate::project::{self, Project};
 use crate::quantity::{DisplayUnit, FORCE};
 use crate::robust::{RobustProblem, robust_problem};
 use crate::setup::{Setup, is_of_position};
 use crate::side_by_side::{all_cores, both};
 use crate::source::Source;
-use crate::trial::{Agreement, DrivenCorners, Trial, tried};
+use crate::trial::{Agreement, DrivenCorners, Trial, simulated_trial};
 use phea_dynamics::watch::{Stopped, Watch, part, within};
 
 /// Name of the file with the designed project.
@@ -137,14 +137,14 @@ pub struct ProjectDesign {
 
 impl ProjectDesign {
     /// A design without the given controller for comparison and without explanations. `given` is
-    /// the family in the loop of the project, and `asked` is the problem that was solved.
+    /// the family in the loop of the project, and `requested` is the problem that was solved.
     ///
     /// # Errors
     /// [`DesignError`] for a controller or a sensor that is not a transfer function.
     pub fn new(
         setup: &Setup<'_>,
         given: &RobustProblem,
-        asked: &DesignProblem,
+        requested: &DesignProblem,
         design: Design,
         options: DesignOptions,
         watch: Watch<'_>,
@@ -183,8 +183,8 @@ impl ProjectDesign {
         };
         let designed = AuditedController::new(law, problem, view)?;
         Ok(ProjectDesign {
-            tolerates_its_delay: asked.tolerates_its_delay(designed.figures.delay_margin_s.unwrap_or(0.0)),
-            minimum_delay_margin_s: asked.minimum_delay_margin_s,
+            tolerates_its_delay: requested.tolerates_its_delay(designed.figures.delay_margin_s.unwrap_or(0.0)),
+            minimum_delay_margin_s: requested.minimum_delay_margin_s,
             designed,
             design,
             limits: design_limits(setup, given),
@@ -224,7 +224,7 @@ impl ProjectDesign {
         let mut view = ProjectAudit::new(&problem, audit, of_rig);
         // the proof of a design led by its steps is made at the end
         if !problem.in_time.iter().any(|one| one.follows) {
-            try_to_prove(&problem, &mut view, watch)?;
+            prove_claims(&problem, &mut view, watch)?;
         }
         let controller = self.designed.controller.clone();
         let designed = AuditedController::new(controller, problem, view)?;
@@ -233,7 +233,7 @@ impl ProjectDesign {
 
     /// The design with the status met, if it missed only the path to a required step.
     fn met_where_it_is(mut self, known: usize) -> ProjectDesign {
-        if self.designed.view.audit.verdict == Verdict::Met && self.keeps_its_limits() {
+        if self.designed.view.audit.verdict == Verdict::Met && self.satisfies_its_limits() {
             self.design.status = DesignStatus::Met;
         }
         self.design.binding.retain(|limit| limit.specification < known);
@@ -303,11 +303,11 @@ impl ProjectDesign {
             && self.tolerates_its_delay
             && self.exceeded_prefilter_gain().is_none()
             && self.exceeded_command().is_none()
-            && self.keeps_its_limits()
+            && self.satisfies_its_limits()
     }
 
     /// True if every limit by which a design is judged is satisfied.
-    fn keeps_its_limits(&self) -> bool {
+    fn satisfies_its_limits(&self) -> bool {
         self.limit_findings.iter().all(|(kind, finding)| kind.is_led_to() || finding.verdict == Verdict::Met)
     }
 }
@@ -324,13 +324,13 @@ pub fn design_and_repair(
 ) -> Result<ProjectDesign, DesignError> {
     let damped = with_free_pressure_feedback(source, setup, watch)?;
     let Some((project, found)) = damped else {
-        let (run, told) = designed(source, [setup; 2], seed, &mut within(&mut *watch, [0.0, 0.6]))?;
-        return repair::repaired((source, setup), run, told, &mut within(watch, [0.6, 1.0]));
+        let (run, project_design) = designed(source, [setup; 2], seed, &mut within(&mut *watch, [0.0, 0.6]))?;
+        return repair::repaired((source, setup), run, project_design, &mut within(watch, [0.6, 1.0]));
     };
     let damped = Setup::new(&project)?;
-    let (run, told) = designed(source, [setup, &damped], seed, &mut within(&mut *watch, [0.0, 0.6]))?;
-    let told = repair::repaired((source, &damped), run, told, &mut within(watch, [0.6, 1.0]))?;
-    Ok(told.with_pressure_feedback(Some(found)))
+    let (run, project_design) = designed(source, [setup, &damped], seed, &mut within(&mut *watch, [0.0, 0.6]))?;
+    let project_design = repair::repaired((source, &damped), run, project_design, &mut within(watch, [0.6, 1.0]))?;
+    Ok(project_design.with_pressure_feedback(Some(found)))
 }
 
 /// Designs a controller for the project, after the audit of the given one.
@@ -346,10 +346,10 @@ pub fn design_project(
     watch: Watch<'_>,
 ) -> Result<ProjectDesign, DesignError> {
     let Some((project, found)) = with_free_pressure_feedback(source, setup, watch)? else {
-        return designed(source, [setup; 2], seed, watch).map(|(_, told)| told);
+        return designed(source, [setup; 2], seed, watch).map(|(_, project_design)| project_design);
     };
-    let (_, told) = designed(source, [setup, &Setup::new(&project)?], seed, watch)?;
-    Ok(told.with_pressure_feedback(Some(found)))
+    let (_, project_design) = designed(source, [setup, &Setup::new(&project)?], seed, watch)?;
+    Ok(project_design.with_pressure_feedback(Some(found)))
 }
 
 /// A problem and its result.
@@ -384,40 +384,40 @@ fn designed(
     };
     error::refuse_impossible_steps(setup, &as_designed)?;
     let limits = design_limits(setup, &as_designed);
-    let nothing_asks = asked::nothing_asks(&as_designed);
+    let feedback_not_required = feedback_required::feedback_not_required(&as_designed);
     let limited = limited(&as_designed, &limits);
     let (published, found) = both(
         watch,
         0.05,
         |watch| audited_as_given(as_given, &given, watch),
         |watch| {
-            let (run, mut told, twin) =
+            let (run, mut project_design, twin) =
                 found_and_tried((source, setup), &limited, seed, &mut within(&mut *watch, [0.0, 0.9]))?;
-            let mut unfinished = std::mem::take(&mut told.unfinished);
+            let mut unfinished = std::mem::take(&mut project_design.unfinished);
             let is_sampled = run.problem.timing.sample_time_s.is_some();
             let continuous = match is_sampled {
                 true => unless_stopped(&mut unfinished, DesignPart::WithoutSamples, || {
                     let watch = &mut within(watch, [0.9, 1.0]);
-                    twin.and_then(|twin| twin.of(&told.design))
-                        .unwrap_or_else(|| continuous_as_sampled((source, setup), &run.problem, &told, watch))
+                    twin.and_then(|twin| twin.of(&project_design.design))
+                        .unwrap_or_else(|| continuous_as_sampled((source, setup), &run.problem, &project_design, watch))
                 })?,
                 false => None,
             };
-            Ok::<_, DesignError>((run, ProjectDesign { unfinished, ..told }, continuous))
+            Ok::<_, DesignError>((run, ProjectDesign { unfinished, ..project_design }, continuous))
         },
     );
-    let (run, mut told, continuous) = found?;
+    let (run, mut project_design, continuous) = found?;
     // the audit of the given controller may have ended before `watch` cancelled the design
     let published = match published {
         Err(DesignError::Stopped(_)) => {
-            told.leave(DesignPart::GivenController);
+            project_design.leave(DesignPart::GivenController);
             None
         }
         other => other?,
     };
-    told.explanations.extend(nothing_asks);
+    project_design.explanations.extend(feedback_not_required);
     let [published, continuous] = [published, continuous].map(|one| one.map(Box::new));
-    Ok((run, ProjectDesign { published, continuous, ..told }))
+    Ok((run, ProjectDesign { published, continuous, ..project_design }))
 }
 
 /// The controller that the project gives, with its audit; `None` if it gives none.
@@ -433,15 +433,15 @@ fn audited_as_given(
 }
 
 /// The machine under the designed controller, as declared in a project.
-fn tried_design(
+fn trial_design(
     source: &dyn Source,
     project: &Project,
-    told: &ProjectDesign,
+    project_design: &ProjectDesign,
     watch: Watch<'_>,
 ) -> Result<Option<Trial>, DesignError> {
-    let deployed = told.deployed(project);
-    let of = (&told.designed.problem, &told.designed.view);
-    Ok(tried(source, &Setup::new(&deployed)?, of, DrivenCorners::Always, watch)?)
+    let deployed = project_design.deployed(project);
+    let of = (&project_design.designed.problem, &project_design.designed.view);
+    Ok(simulated_trial(source, &Setup::new(&deployed)?, of, DrivenCorners::Always, watch)?)
 }
 
 /// Effect of sampling and delay on a design that ignores them: its structure shaped for the
@@ -450,7 +450,7 @@ fn tried_design(
 fn continuous_as_sampled(
     (source, setup): (&dyn Source, &Setup<'_>),
     sampled: &DesignProblem,
-    told: &ProjectDesign,
+    project_design: &ProjectDesign,
     watch: Watch<'_>,
 ) -> Result<Option<AuditedController>, DesignError> {
     let timing = sampled.timing;
@@ -471,11 +471,11 @@ fn continuous_as_sampled(
     let problem = DesignProblem { timing: at_once, family, ..sampled.clone() };
     let stage = "designing without samples";
     // the structure is unchanged, so that only sampling makes the difference
-    let law = reshaped(&problem, &told.options, &told.design, &mut part(&mut *watch, stage, [0.0, 1.0]))?;
+    let law = reshaped(&problem, &project_design.options, &project_design.design, &mut part(&mut *watch, stage, [0.0, 1.0]))?;
     let Some(law) = law else { return Ok(None) };
     let controller = Controller { timing, ..law };
     let compensation = setup.compensation(&controller)?;
-    let problem = RobustProblem { compensation, ..told.designed.problem.clone() };
+    let problem = RobustProblem { compensation, ..project_design.designed.problem.clone() };
     let view = audit_problem(&problem, watch)?;
     Ok(Some(AuditedController::new(controller, problem, view)?))
 }

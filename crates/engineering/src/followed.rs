@@ -100,17 +100,17 @@ fn turning_value(values: &[f64], near: usize) -> Option<f64> {
     let parabola = fitted(values, |row| place(row) * place(row))?;
     let corner = fitted(values, |row| (place(row) - middle).abs())?;
     Some(if parabola.squares <= corner.squares {
-        let [constant, slope, bend] = parabola.shares;
+        let [constant, slope, bend] = parabola.fractions;
         constant - slope * slope / (4.0 * bend)
     } else {
-        let [constant, slope, _] = corner.shares;
+        let [constant, slope, _] = corner.fractions;
         constant + slope * middle
     })
 }
 
 /// A least-squares fit and its residual.
 struct TurnFit {
-    shares: [f64; 3],
+    fractions: [f64; 3],
     squares: f64,
 }
 
@@ -123,10 +123,10 @@ fn fitted(values: &[f64], third: impl Fn(usize) -> f64) -> Option<TurnFit> {
         _ => third(row),
     });
     let right = DVector::from_column_slice(values);
-    let shares = terms.clone().svd(true, true).solve(&right, f64::EPSILON).ok()?;
-    let squares = (terms * &shares - right).norm_squared();
-    let shares = [*shares.get(0)?, *shares.get(1)?, *shares.get(2)?];
-    shares.iter().all(|share| share.is_finite()).then_some(TurnFit { shares, squares })
+    let fractions = terms.clone().svd(true, true).solve(&right, f64::EPSILON).ok()?;
+    let squares = (terms * &fractions - right).norm_squared();
+    let fractions = [*fractions.get(0)?, *fractions.get(1)?, *fractions.get(2)?];
+    fractions.iter().all(|fraction| fraction.is_finite()).then_some(TurnFit { fractions, squares })
 }
 
 /// Rows that move in one direction.
@@ -203,8 +203,8 @@ fn nearest_rising(values: &[f64], step: f64) -> Vec<f64> {
             found.resize(begun + count.div_ceil(2), mean);
         }
         while 2 * found.len() <= middle {
-            let share = (2 * found.len()).saturating_sub(from.0) as f64 / (middle - from.0).max(1) as f64;
-            found.push(if share == 1.0 { mean } else { from.1 + share * (mean - from.1) });
+            let fraction = (2 * found.len()).saturating_sub(from.0) as f64 / (middle - from.0).max(1) as f64;
+            found.push(if fraction == 1.0 { mean } else { from.1 + fraction * (mean - from.1) });
         }
         begun += count;
         before = Some((middle, mean));

@@ -22,7 +22,7 @@ mod profile;
 mod reading;
 mod reasons;
 mod shaking;
-mod shown;
+mod curves;
 mod sign_error;
 mod signs;
 mod varying;
@@ -35,14 +35,14 @@ pub use pressing::PressedRows;
 pub use reading::{FrictionRecording, KnownCylinder, friction_recordings, recorded_runs};
 pub use reasons::{NotIdentifiableFriction, ROWS_OF_RINGING};
 pub use shaking::ShakenRows;
-pub use shown::{PressedCurve, SteadyPoint};
+pub use curves::{PressedCurve, SteadyPoint};
 pub use varying::VaryingVelocity;
 
 use phea_dynamics::least_squares::{Ending, Minimum};
 use phea_dynamics::watch::{Stopped, Watch};
 use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, LuGre, Stribeck};
 
-use self::problem::{FrictionProblem, KeptShapes};
+use self::problem::{FrictionProblem, ShapeCache};
 use crate::estimate::Estimate;
 use crate::identify_error::{FrictionFitError, IdentifyError, UnsteadyRun};
 
@@ -153,17 +153,17 @@ pub fn identify_friction(
     let goes_both_ways = goes_both_ways(&slides, &presses);
     let setting = (known.moving_mass, around);
     let problem = FrictionProblem::new(&recordings, &slides, (&presses, &shakes), setting, goes_both_ways);
-    let mut kept = KeptShapes::default();
+    let mut cache = ShapeCache::default();
     let curves = (others.as_slice(), by_direction);
-    let (best, evidence) = SearchedFriction::by_evidence(problem, curves, &mut kept, watch)?;
+    let (best, evidence) = SearchedFriction::by_evidence(problem, curves, &mut cache, watch)?;
     let SearchedFriction { problem, minimum } = best;
     let (lugre, _) = problem.friction(&minimum.variables);
     let estimates::Estimates { estimates, retracting, zero } = estimates::estimates(&problem, &minimum);
-    let residual_rms = shown::residual_rms(&problem, &minimum);
+    let residual_rms = curves::residual_rms(&problem, &minimum);
     let misfits = misfit::misfits(&problem, &minimum.linearised.residuals);
     let independent = problem.channels.iter().map(|channel| channel.independent).fold(1.0, f64::min);
-    let pressed = shown::pressed(&problem, &minimum);
-    let shaken = shown::shaken(&problem, &minimum, &mut kept);
+    let pressed = curves::pressed(&problem, &minimum);
+    let shaken = curves::shaken(&problem, &minimum, &mut cache);
     let ending = minimum.ending;
     Ok(FrictionIdentification {
         estimates,
@@ -198,10 +198,10 @@ impl<'a> SearchedFriction<'a> {
     fn by_evidence(
         problem: FrictionProblem<'a>,
         (others, by_direction): (&[(Stribeck, f64)], Option<Stribeck>),
-        kept: &mut KeptShapes,
+        cache: &mut ShapeCache,
         watch: Watch<'_>,
     ) -> Result<(SearchedFriction<'a>, Option<DirectionEvidence>), IdentifyError> {
-        let same = SearchedFriction::from_guess(problem.clone(), others, kept, watch)?;
+        let same = SearchedFriction::from_guess(problem.clone(), others, cache, watch)?;
         if same.minimum.ending == Ending::NoStart {
             return Err(FrictionFitError::NoStart.into());
         }
@@ -211,7 +211,7 @@ impl<'a> SearchedFriction<'a> {
         let Some(curve) = by_direction else { return Ok((same, None)) };
         let directions = DirectionModel::DiffersByDirection;
         let differs =
-            SearchedFriction::by_direction(FrictionProblem { directions, ..problem }, curve, kept, watch)?;
+            SearchedFriction::by_direction(FrictionProblem { directions, ..problem }, curve, cache, watch)?;
         if differs.minimum.ending == Ending::NoStart {
             return Ok((same, None));
         }
@@ -223,40 +223,40 @@ impl<'a> SearchedFriction<'a> {
     fn from_guess(
         problem: FrictionProblem<'a>,
         others: &[(Stribeck, f64)],
-        kept: &mut KeptShapes,
+        cache: &mut ShapeCache,
         watch: Watch<'_>,
     ) -> Result<SearchedFriction<'a>, Stopped> {
-        let minimum = problem.first_minimum(others, ROUGH, kept, watch)?;
-        SearchedFriction::refined(problem, minimum, kept, watch)
+        let minimum = problem.first_minimum(others, ROUGH, cache, watch)?;
+        SearchedFriction::refined(problem, minimum, cache, watch)
     }
 
     /// Levels for each direction, from a curve that has both.
     fn by_direction(
         problem: FrictionProblem<'a>,
         curve: Stribeck,
-        kept: &mut KeptShapes,
+        cache: &mut ShapeCache,
         watch: Watch<'_>,
     ) -> Result<SearchedFriction<'a>, Stopped> {
-        let minimum = problem.minimum_from(&(curve, 0.0), ROUGH, kept, watch)?;
-        SearchedFriction::refined(problem, minimum, kept, watch)
+        let minimum = problem.minimum_from(&(curve, 0.0), ROUGH, cache, watch)?;
+        SearchedFriction::refined(problem, minimum, cache, watch)
     }
 
     /// The search with the scale of each signal from its residuals.
     fn refined(
         mut problem: FrictionProblem<'a>,
         mut minimum: Minimum,
-        kept: &mut KeptShapes,
+        cache: &mut ShapeCache,
         watch: Watch<'_>,
     ) -> Result<SearchedFriction<'a>, Stopped> {
         for _ in 0..ROUNDS {
             let change = problem.rescale(&minimum.linearised.residuals);
-            minimum = problem.searched(&minimum.variables, ROUGH, kept, watch)?;
+            minimum = problem.searched(&minimum.variables, ROUGH, cache, watch)?;
             if change < SAME_SCALE {
                 break;
             }
         }
         for _ in 0..FINE_SEARCHES {
-            minimum = problem.searched(&minimum.variables, FINE, kept, watch)?;
+            minimum = problem.searched(&minimum.variables, FINE, cache, watch)?;
             if minimum.ending == Ending::Converged {
                 break;
             }

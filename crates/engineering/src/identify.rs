@@ -253,7 +253,7 @@ impl Identification {
 
     /// Indices of those coefficients on which the linear plant depends.
     pub fn of_plant(&self) -> impl Iterator<Item = usize> {
-        self.in_model().filter(|index| !variables::OF_TEST_ALONE.contains(index))
+        self.in_model().filter(|index| !variables::ONLY_OF_TEST.contains(index))
     }
 
     /// True if no further step explains more.

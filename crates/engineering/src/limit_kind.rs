@@ -121,7 +121,7 @@ pub struct JudgedLimits {
     /// Violated limits.
     pub exceeded: Vec<ExceededLimit>,
     /// Satisfied limits.
-    pub kept: Vec<DesignLimitKind>,
+    pub satisfied: Vec<DesignLimitKind>,
 }
 
 /// A limit that an audited loop violates.

@@ -78,12 +78,12 @@ fn choice(source: &dyn Source, project: &Project, question: LoopInQuestion) -> O
     let quarter_wave_rad_per_s = open_quarter_wave(project, setup.rig().ok()?)?;
     let reach = reach(source, &setup, question);
     let is_near = reach.as_ref().is_some_and(|(reached, _)| quarter_wave_rad_per_s <= LUMPED_FROM * reached);
-    let hindrance = is_near.then(|| hindrance(project)).flatten();
-    Some(ChosenLines { with_waves: is_near && hindrance.is_none(), quarter_wave_rad_per_s, reach, hindrance })
+    let obstacle = is_near.then(|| obstacle(project)).flatten();
+    Some(ChosenLines { with_waves: is_near && obstacle.is_none(), quarter_wave_rad_per_s, reach, obstacle })
 }
 
 /// Reason why a rig is not computed with waves.
-fn hindrance(project: &Project) -> Option<WavesHindrance> {
+fn obstacle(project: &Project) -> Option<WavesHindrance> {
     if project.has_free_load() {
         return Some(WavesHindrance::FreeLoad);
     }
@@ -119,9 +119,9 @@ fn bandwidth(setup: &Setup<'_>, problem: &RobustProblem) -> Option<(f64, Reached
 fn required_times(project: &Project) -> Vec<(f64, ReachedBy)> {
     let requirements = time_requirements(project).unwrap_or_default();
     let each = requirements.into_iter().flat_map(|required| {
-        let wish = required.wish;
-        let settles = wish.settling_time_s.map(|time_s| portable::ln(100.0 / wish.band_percent) / time_s);
-        let rises = wish.rise_time_s.map(|time_s| RISE_TIMES_BANDWIDTH / time_s);
+        let step_limits = required.step_limits;
+        let settles = step_limits.settling_time_s.map(|time_s| portable::ln(100.0 / step_limits.band_percent) / time_s);
+        let rises = step_limits.rise_time_s.map(|time_s| RISE_TIMES_BANDWIDTH / time_s);
         settles
             .into_iter()
             .chain(rises)

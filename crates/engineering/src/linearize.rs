@@ -23,7 +23,7 @@ use phea_hydraulics::impedance::{
 };
 use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::linear::{
-    LinearModel, MechanicalDamping, ModeShare, ResponseDifference, decomposed_model, dominance,
+    LinearModel, MechanicalDamping, ModeContribution, ResponseDifference, decomposed_model, dominance,
     first_order_model, linear_model, response_difference, transfer_functions,
 };
 use phea_hydraulics::plant::ChamberDynamics;
@@ -35,7 +35,7 @@ pub use agreement::AgreementBand;
 pub use agreement::{FIRST_ORDER, LUMPED, WITHIN_DB, WITHIN_DEG};
 pub use linkage::{LinkagePlace, LinkagePosition, linkage_places};
 pub use over_force::{StiffnessOverForce, stiffness_over_force};
-pub use port::{AskedAt, AskedImpedance, HidingMass, SHOWN_AT, WITHIN_PERCENT, hidden_above};
+pub use port::{ComparedImpedance, RequiredImpedance, HidingMass, REPORTED_AT_RAD_PER_S, WITHIN_PERCENT, hidden_above};
 pub use sweep::{
     NoBandwidth, NoSweptModels, POINTS, Sweep, SweepError, SweepPoint, SweepRequest, Swept, sweep,
 };
@@ -94,7 +94,7 @@ pub struct Linearization {
     /// Equation 6.13 against 6.7, both with the load at rest.
     pub truncation: ReductionDifference,
     /// Fraction of each mode in the step response of the plant.
-    pub modes: Vec<ModeShare>,
+    pub modes: Vec<ModeContribution>,
     /// The impedance at the load with constant command.
     pub open_loop: PortView,
     /// The impedance at the load with the given controller, if it is continuous and without dead
@@ -104,7 +104,7 @@ pub struct Linearization {
     pub closed_loop_absent: Option<NoClosedImpedance>,
     /// Impedance required at the port by a virtual impedance, and the impedance of the loop there;
     /// `None` without a virtual impedance, or without a controller.
-    pub asked: Option<AskedImpedance>,
+    pub required_impedance: Option<RequiredImpedance>,
     /// The linkage over the stroke; empty without one.
     pub linkage: Vec<LinkagePlace>,
     /// Frequency above which the piston's mass hides the compliance, rad/s.
@@ -207,7 +207,7 @@ pub fn linearize(
         open_loop: open_loop_view(rig, [&port, &plant])?,
         closed_loop_absent: absence(feedback.as_ref(), closed_loop.as_ref()),
         closed_loop,
-        asked: controller.map(|given| port::asked(rig, given, sensor)).transpose()?.flatten(),
+        required_impedance: controller.map(|given| port::required_impedance(rig, given, sensor)).transpose()?.flatten(),
         linkage: linkage_places(rig),
         compliance_hidden_above_rad_per_s,
         hidden_by,
@@ -264,7 +264,7 @@ fn is_fifth_order(rig: &Rig) -> bool {
         && rig.plant.dynamic_feedback.is_none()
         && !rig.load_moves()
         && rig.plant.supply.is_none()
-        && rig.plant.series.is_none_or(|series| series.is_spring_alone())
+        && rig.plant.series.is_none_or(|series| series.is_pure_spring())
 }
 
 /// True if the ground of the load moves instead of the load: with a virtual impedance the output of

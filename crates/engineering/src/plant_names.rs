@@ -81,7 +81,7 @@ impl PlantNames {
                     .collect(),
             ),
             None => NamedPlant(vec![match (self, plant) {
-                (_, PlantPoint::Beside(_)) => ("beside".to_string(), NamedValue::Added),
+                (_, PlantPoint::Additional(_)) => ("additional".to_string(), NamedValue::Added),
                 (PlantNames::Measured(names), PlantPoint::Measured(index)) => {
                     let name = names.get(*index).cloned().unwrap_or_default();
                     ("measured".to_string(), NamedValue::Measurement(name))

@@ -22,7 +22,7 @@ pub struct ReplacedRange {
     /// Range that the family visits.
     pub visited: [f64; 2],
     /// Visited fraction of the range: of its logarithm if it is spaced by equal factors.
-    pub share: f64,
+    pub fraction: f64,
 }
 
 impl ReplacedRange {
@@ -63,7 +63,7 @@ pub fn replaced_ranges(project: &Project, visited: &[VisitedRange]) -> Vec<Repla
             unit: visited.unit,
             stated: [one.minimum, one.maximum],
             visited: [low, high],
-            share: both / (scale(one.maximum) - scale(one.minimum)),
+            fraction: both / (scale(one.maximum) - scale(one.minimum)),
         })
     };
     declared.filter_map(range).collect()

@@ -25,7 +25,7 @@ pub use spacing::{RowSpacing, UNEVEN, time_step};
 pub use spacing_error::EvenlySampled;
 pub use test_controller::TestController;
 
-use phea_dynamics::watch::{Watch, tell};
+use phea_dynamics::watch::{Watch, report_progress};
 
 use crate::identify_error::{IdentifyError, ResponseFitError};
 
@@ -61,7 +61,7 @@ pub fn members(
 ) -> Result<Vec<ResponseMember>, IdentifyError> {
     let mut members = Vec::with_capacity(records.len());
     for (index, record) in records.iter().enumerate() {
-        tell(watch, "frequency responses", index, records.len())?;
+        report_progress(watch, "frequency responses", index, records.len())?;
         let fault = |fault| ResponseFitError { file: record.file.clone(), fault };
         members.push(member::member(record, settings).map_err(fault)?);
     }

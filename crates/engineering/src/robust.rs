@@ -287,9 +287,9 @@ impl RobustProblem {
         let options = TemplateOptions::default();
         let mut found = Vec::new();
         let mut templates = Templates::new(&self.family, &self.compensation, &frequencies, options);
-        let share = |done: usize| done as f64 / frequencies.len().max(1) as f64;
+        let fraction = |done: usize| done as f64 / frequencies.len().max(1) as f64;
         for index in 0..frequencies.len() {
-            let own = [index, index + 1].map(share);
+            let own = [index, index + 1].map(fraction);
             let watch = &mut part(&mut *watch, TEMPLATES, own);
             match templates.next_watched(watch) {
                 // a measurement contains nothing beyond its range, so there is no template either
@@ -390,8 +390,8 @@ impl RobustProblem {
         for root in roots.iter().filter(|root| root.im > 0.0) {
             let (size, width) = (portable::magnitude(*root), root.re.abs());
             let offsets = (-ROOT_POINTS..=ROOT_POINTS).map(|step| {
-                let share = f64::from(step) / f64::from(ROOT_POINTS);
-                size + ROOT_WIDTHS * width * share * share * share
+                let fraction = f64::from(step) / f64::from(ROOT_POINTS);
+                size + ROOT_WIDTHS * width * fraction * fraction * fraction
             });
             frequencies.extend(offsets.filter(|frequency| (from..=to).contains(frequency)));
         }

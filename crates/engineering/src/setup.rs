@@ -125,7 +125,7 @@ impl<'a> Setup<'a> {
 
     /// The same rig and controller for another question: the project may differ only in its
     /// scenarios, specifications and settings.
-    pub fn asked<'b>(&self, project: &'b Project) -> Setup<'b>
+    pub fn for_project<'b>(&self, project: &'b Project) -> Setup<'b>
     where
         'a: 'b,
     {

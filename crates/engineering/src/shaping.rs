@@ -5,12 +5,12 @@ mod change;
 mod piece;
 mod refused;
 mod save;
-mod wish;
+mod element_request;
 mod workpiece;
 
 pub use change::{Change, RequestedChange};
 pub use refused::{ChangeProblem, RefusedChange};
-pub use wish::solved_kinds;
+pub use element_request::solved_kinds;
 
 use num_complex::Complex64;
 use phea_dynamics::controller::Compensator;
@@ -188,9 +188,9 @@ fn chart(problem: &RobustProblem, watch: Watch<'_>) -> Result<(DesignChart, Vec<
     let options = TemplateOptions::default();
     let (mut found, mut unreached) = (Vec::new(), Vec::new());
     let mut templates = Templates::new(&problem.family, &problem.compensation, &frequencies, options);
-    let share = |done: usize| done as f64 / frequencies.len().max(1) as f64;
+    let fraction = |done: usize| done as f64 / frequencies.len().max(1) as f64;
     for index in 0..frequencies.len() {
-        let own = [index, index + 1].map(share);
+        let own = [index, index + 1].map(fraction);
         match templates.next_watched(&mut part(&mut *watch, "templates", own)) {
             None => {}
             Some(Err(TemplateError::OutOfReach { frequency_rad_per_s })) => {

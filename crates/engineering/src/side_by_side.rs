@@ -6,12 +6,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use phea_dynamics::pieces::{WorkPiece, Workers};
-use phea_dynamics::watch::{Progress, Stopped, Watch, tell, unwatched, within};
+use phea_dynamics::watch::{Progress, Stopped, Watch, report_progress, unwatched, within};
 
 /// Interval between calls of `watch` while pieces of work are in progress.
 const ROUND: Duration = Duration::from_millis(20);
 /// Interval between calls of `watch` while another thread works and the calling thread is idle.
-const WAITING: Duration = Duration::from_millis(2);
+const POLL_INTERVAL: Duration = Duration::from_millis(2);
 
 /// Results of `count` pieces of work in their order, computed by as many threads as there are
 /// cores; by the calling thread if there is one core. The pieces receive their index and a watch
@@ -69,19 +69,19 @@ fn on_all_cores(pieces: Vec<WorkPiece<'_>>, stage: &'static str, watch: Watch<'_
     if threads <= 1 {
         return Workers::CALLER.work(pieces, stage, watch);
     }
-    let (left, goes_on) = (Mutex::new(pieces.into_iter()), AtomicBool::new(true));
+    let (left, continues) = (Mutex::new(pieces.into_iter()), AtomicBool::new(true));
     let next = || left.lock().unwrap_or_else(PoisonError::into_inner).next();
     let (sender, receiver) = channel();
     std::thread::scope(|scope| {
         for _ in 1..threads {
-            let (sender, next, goes_on) = (sender.clone(), &next, &goes_on);
+            let (sender, next, continues) = (sender.clone(), &next, &continues);
             scope.spawn(move || {
-                let mut told = |_: Progress| goes_on.load(Ordering::Relaxed);
-                while goes_on.load(Ordering::Relaxed)
+                let mut watched = |_: Progress| continues.load(Ordering::Relaxed);
+                while continues.load(Ordering::Relaxed)
                     && let Some(piece) = next()
                 {
                     // without a receiver, the work was cancelled
-                    if sender.send(piece(&mut told)).is_err() {
+                    if sender.send(piece(&mut watched)).is_err() {
                         return;
                     }
                 }
@@ -89,7 +89,7 @@ fn on_all_cores(pieces: Vec<WorkPiece<'_>>, stage: &'static str, watch: Watch<'_
         }
         drop(sender);
         let ended = own_pieces(&next, &receiver, (stage, count), watch);
-        goes_on.store(false, Ordering::Relaxed);
+        continues.store(false, Ordering::Relaxed);
         ended
     })
 }
@@ -103,7 +103,7 @@ fn own_pieces<'p>(
 ) -> Result<(), Stopped> {
     let mut done = 0;
     while let Some(piece) = next() {
-        piece(&mut |_: Progress| tell(&mut *watch, stage, done, count).is_ok())?;
+        piece(&mut |_: Progress| report_progress(&mut *watch, stage, done, count).is_ok())?;
         done += 1;
         for other in others.try_iter() {
             other?;
@@ -111,7 +111,7 @@ fn own_pieces<'p>(
         }
     }
     loop {
-        tell(&mut *watch, stage, done, count)?;
+        report_progress(&mut *watch, stage, done, count)?;
         match others.recv_timeout(ROUND) {
             Ok(other) => other?,
             Err(RecvTimeoutError::Timeout) => continue,
@@ -139,18 +139,18 @@ pub(crate) fn left_behind<T: Send + 'static>(
     let shared = Arc::new((AtomicBool::new(true), AtomicU64::new(0)));
     let of_work = Arc::clone(&shared);
     std::thread::spawn(move || {
-        let (goes_on, share) = &*of_work;
+        let (continues, fraction) = &*of_work;
         let found = work(&mut |progress: Progress| {
-            share.store(progress.share.to_bits(), Ordering::Relaxed);
-            goes_on.load(Ordering::Relaxed)
+            fraction.store(progress.fraction.to_bits(), Ordering::Relaxed);
+            continues.load(Ordering::Relaxed)
         });
         // without a receiver, the work was cancelled
         let _ = sender.send(found);
     });
-    let (goes_on, share) = &*shared;
+    let (continues, fraction) = &*shared;
     loop {
-        if !watch(Progress { stage, share: f64::from_bits(share.load(Ordering::Relaxed)) }) {
-            goes_on.store(false, Ordering::Relaxed);
+        if !watch(Progress { stage, fraction: f64::from_bits(fraction.load(Ordering::Relaxed)) }) {
+            continues.store(false, Ordering::Relaxed);
             return Err(Stopped);
         }
         match receiver.recv_timeout(ROUND) {
@@ -168,38 +168,38 @@ pub(crate) fn left_behind<T: Send + 'static>(
 /// progress.
 pub(crate) fn both<A: Send, B>(
     watch: Watch<'_>,
-    fraction: f64,
+    first_fraction: f64,
     first: impl FnOnce(Watch<'_>) -> A + Send,
     second: impl FnOnce(Watch<'_>) -> B,
 ) -> (A, B) {
     if all_cores().at_once == 1 {
-        let first = first(&mut within(&mut *watch, [0.0, fraction]));
-        return (first, second(&mut within(watch, [fraction, 1.0])));
+        let first = first(&mut within(&mut *watch, [0.0, first_fraction]));
+        return (first, second(&mut within(watch, [first_fraction, 1.0])));
     }
-    let (goes_on, stage) = (AtomicBool::new(true), Mutex::new(None));
+    let (continues, stage) = (AtomicBool::new(true), Mutex::new(None));
     let of_first = || stage.lock().unwrap_or_else(PoisonError::into_inner);
     std::thread::scope(|scope| {
         let beside = scope.spawn(|| {
             first(&mut |progress: Progress| {
                 *of_first() = Some(progress.stage);
-                goes_on.load(Ordering::Relaxed)
+                continues.load(Ordering::Relaxed)
             })
         });
-        let mut share = fraction;
-        let mut told = |progress: Progress| {
-            share = progress.share;
+        let mut fraction = first_fraction;
+        let mut watched = |progress: Progress| {
+            fraction = progress.fraction;
             let answer = watch(progress);
-            goes_on.fetch_and(answer, Ordering::Relaxed);
+            continues.fetch_and(answer, Ordering::Relaxed);
             answer
         };
-        let second = second(&mut within(&mut told, [fraction, 1.0]));
+        let second = second(&mut within(&mut watched, [first_fraction, 1.0]));
         while !beside.is_finished() {
             // a piece that has not called its watch yet would not notice a cancellation either
             let stage = *of_first();
             if let Some(stage) = stage {
-                goes_on.fetch_and(watch(Progress { stage, share }), Ordering::Relaxed);
+                continues.fetch_and(watch(Progress { stage, fraction }), Ordering::Relaxed);
             }
-            std::thread::sleep(WAITING);
+            std::thread::sleep(POLL_INTERVAL);
         }
         match beside.join() {
             Ok(first) => (first, second),
@@ -251,7 +251,7 @@ mod tests {
             seen.len() < 3
         };
         let first = |watch: Watch<'_>| {
-            while watch(Progress { stage: "first", share: 0.5 }) {
+            while watch(Progress { stage: "first", fraction: 0.5 }) {
                 std::thread::sleep(Duration::from_millis(1));
             }
         };
@@ -266,26 +266,26 @@ mod tests {
         let begun = AtomicBool::new(false);
         let first = |watch: Watch<'_>| {
             begun.store(true, Ordering::Relaxed);
-            while watch(Progress { stage: "", share: 0.5 }) {
+            while watch(Progress { stage: "", fraction: 0.5 }) {
                 std::thread::sleep(Duration::from_millis(1));
             }
             1
         };
-        let mut shares = vec![];
+        let mut fractions = vec![];
         let mut watch = |progress: Progress| {
-            shares.push(progress.share);
-            shares.len() < 3
+            fractions.push(progress.fraction);
+            fractions.len() < 3
         };
         // on one core the first piece is cancelled before the second begins
         let second = |watch: Watch<'_>| {
             while all_cores().at_once > 1 && !begun.load(Ordering::Relaxed) {
                 std::thread::sleep(Duration::from_millis(1));
             }
-            if watch(Progress { stage: "", share: 0.0 }) { 2 } else { 3 }
+            if watch(Progress { stage: "", fraction: 0.0 }) { 2 } else { 3 }
         };
         let found = both(&mut watch, 0.1, first, second);
         assert!(found == (1, 2) || found == (1, 3), "{found:?}");
-        assert!(shares.is_sorted());
+        assert!(fractions.is_sorted());
     }
 
     /// Pieces that call their watch end soon after cancellation, later ones do not begin, and
@@ -295,7 +295,7 @@ mod tests {
         let begun = AtomicUsize::new(0);
         let until_stopped = |_: usize, watch: Watch<'_>| {
             begun.fetch_add(1, Ordering::Relaxed);
-            while watch(Progress { stage: "", share: 0.0 }) {
+            while watch(Progress { stage: "", fraction: 0.0 }) {
                 std::thread::sleep(Duration::from_millis(1));
             }
             None::<()>
@@ -312,12 +312,12 @@ mod tests {
         );
         assert_eq!(found, Err(Stopped));
         assert!(begun.load(Ordering::Relaxed) <= std::thread::available_parallelism().map_or(1, usize::from));
-        let mut shares = vec![];
-        let mut told = |progress: Progress| {
-            shares.push(progress.share);
+        let mut fractions = vec![];
+        let mut watched = |progress: Progress| {
+            fractions.push(progress.fraction);
             true
         };
-        assert!(side_by_side(20, "", &mut told, |index, _| Some(index)).is_ok());
-        assert!(shares.is_sorted());
+        assert!(side_by_side(20, "", &mut watched, |index, _| Some(index)).is_ok());
+        assert!(fractions.is_sorted());
     }
 }

@@ -5,7 +5,7 @@ mod bench;
 mod check;
 mod columns;
 mod compare;
-mod course;
+mod prepared_scenario;
 mod divergence;
 mod equilibrium;
 mod exceeded;
@@ -20,7 +20,7 @@ mod gas;
 mod input_signal;
 mod ledgers;
 mod line_limits;
-mod look;
+mod run_observer;
 mod measured;
 mod metric;
 mod metrics;
@@ -38,7 +38,7 @@ pub(crate) mod shortest_number;
 mod sum;
 mod sums;
 mod tally;
-mod wish;
+mod step_limits;
 pub use file_names::{file_names, state_names};
 pub use metrics::stays_settled;
 
@@ -73,8 +73,8 @@ pub use run_status::RunStatus;
 pub use saved::{NotSaved, SavedState};
 
 pub use bench::machine_of;
-pub(crate) use course::{PreparedScenario, course_of};
-pub use course::{ScenarioDrive, driven};
+pub(crate) use prepared_scenario::{PreparedScenario, prepared_scenario_of};
+pub use prepared_scenario::{ScenarioDrive, driven};
 pub(crate) use file_names::table_names;
 pub use files::{RunTable, files};
 pub use follower::Follower;
@@ -87,7 +87,7 @@ pub(crate) use required::concerned;
 pub use required::{NotJudged, ScenarioRequirement, concerns, required_of_run};
 pub use requirement::{RequiredSteps, TimeRequirement, time_requirements};
 pub use run::occurrences;
-pub use wish::{NO_OVERSHOOT_PERCENT, ReachedStep, TrackingWish};
+pub use step_limits::{NO_OVERSHOOT_PERCENT, ReachedStep, StepLimits};
 
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::simulation::{Attention, EquilibriumError, ProfileError, SimulationError};
@@ -324,7 +324,7 @@ impl<'a> RunOutput<'a> {
 struct PreparedRun<'p> {
     scenario: &'p Scenario,
     bench: ControlledMachine,
-    course: PreparedScenario,
+    prepared: PreparedScenario,
     measured: Vec<measured::Measurement>,
 }
 
@@ -336,9 +336,9 @@ fn prepared<'p>(source: &dyn Source, setup: &Setup<'p>) -> Result<Vec<PreparedRu
     }
     let prepare = |scenario: &'p Scenario| {
         let bench = ControlledMachine::of_scenario(setup, scenario)?;
-        let course = course::course(source, project, &bench, scenario)?;
+        let prepared = prepared_scenario::prepared(source, project, &bench, scenario)?;
         let measured = measured::measurements(source, project, scenario).map_err(SimulateError::Motion)?;
-        Ok(PreparedRun { scenario, bench, course, measured })
+        Ok(PreparedRun { scenario, bench, prepared, measured })
     };
     project.scenarios.iter().map(prepare).collect()
 }
@@ -352,7 +352,7 @@ pub fn scenario_problems(
     setup: &Setup<'_>,
 ) -> Result<Vec<ScenarioProblem>, SimulateError> {
     let prepared = prepared(source, setup)?;
-    let of = |one: &PreparedRun<'_>| ScenarioProblem::of(&one.bench, one.scenario, &one.course);
+    let of = |one: &PreparedRun<'_>| ScenarioProblem::of(&one.bench, one.scenario, &one.prepared);
     Ok(prepared.iter().map(of).collect())
 }
 
@@ -366,7 +366,7 @@ impl PreparedRun<'_> {
     ) -> Result<RunPass<'t>, SimulateError> {
         let begin = |(destination, format)| RunTable::begin((destination, name), format, &self.bench);
         let table = output.table.filter(|_| !plan.moved).map(begin).transpose()?;
-        run::run(&self.bench, self.scenario, (&self.course, &self.measured), (plan, table, output), watch)
+        run::run(&self.bench, self.scenario, (&self.prepared, &self.measured), (plan, table, output), watch)
     }
 }
 
@@ -392,8 +392,8 @@ pub fn simulate_into(
         let tolerance = prepared.bench.settings.tolerance;
         let mut pass = |plan: PassPlan| {
             let stage = if plan.is_first(tolerance) { "simulating" } else { "repeating the run" };
-            let mut told = |time_s: f64| watch(Progress { stage, share: (before + time_s) / whole });
-            prepared.pass(plan, (&output, name), &mut told)
+            let mut watched = |time_s: f64| watch(Progress { stage, fraction: (before + time_s) / whole });
+            prepared.pass(plan, (&output, name), &mut watched)
         };
         let first = pass(PassPlan { tolerance, moved: false })?;
         let errors_amplified = first.run.errors_amplified;

@@ -9,7 +9,7 @@ use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::order::sorted_distinct;
 use phea_qft::specification::{
-    ClosedLoop, LimitError, MarginError, Requirement, Specification, TimeDomainError, WishCheck, WishOutcome,
+    ClosedLoop, LimitError, MarginError, Requirement, Specification, TimeDomainError, RequirementCheck, RequirementOutcome,
 };
 
 pub use self::kind::{closed_loop_key, kind_key};
@@ -72,28 +72,28 @@ pub enum SpecificationProblem {
     #[error("this kind of specification does not take margins")]
     TakesNoMargins,
     /// A requirement in time is stated, which belongs to another kind of specification.
-    #[error("this kind of specification does not take a wish in time")]
-    TakesNoWish,
+    #[error("this kind of specification takes no requirement in time")]
+    TakesNoRequirementInTime,
 }
 
 /// A limit of tracking that was stated in time, and its step response.
 #[derive(Clone, Debug, PartialEq)]
-pub struct CheckedWish {
+pub struct CheckedRequirement {
     /// Number of the specification in the file, from 1.
     pub number: usize,
     /// Key: `upper` or `lower`.
     pub key: &'static str,
     /// Required and reached values.
-    pub check: WishCheck,
+    pub check: RequirementCheck,
     /// True if the limit follows from the requirement in time; otherwise it is stated, and only
     /// compared with it.
     pub follows: bool,
 }
 
-impl CheckedWish {
+impl CheckedRequirement {
     /// True if the limit meets the requirement in time.
     pub fn is_met(&self) -> bool {
-        self.check.outcome() == WishOutcome::Met
+        self.check.outcome() == RequirementOutcome::Met
     }
 }
 
@@ -143,25 +143,25 @@ pub(crate) fn closed_loops(
 ///             overshoot_percent = 1\nsettling_time = \"0.1 s\"\nsettling_band_percent = 1\n";
 /// let source = Memory::default().with("servo.toml", text);
 /// let project = phea_project::read(&source, "servo.toml", &[], &[])?.project;
-/// let wishes = phea_engineering::specification::wishes(&project)?;
-/// assert_eq!((wishes[0].number, wishes[0].key), (1, "upper"));
-/// assert!((wishes[0].check.reached.overshoot_percent - 2.19).abs() < 0.005); // thesis: 1 %
+/// let requirements_in_time = phea_engineering::specification::requirements_in_time(&project)?;
+/// assert_eq!((requirements_in_time[0].number, requirements_in_time[0].key), (1, "upper"));
+/// assert!((requirements_in_time[0].check.reached.overshoot_percent - 2.19).abs() < 0.005); // thesis: 1 %
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn wishes(project: &Project) -> Result<Vec<CheckedWish>, SpecificationError> {
+pub fn requirements_in_time(project: &Project) -> Result<Vec<CheckedRequirement>, SpecificationError> {
     let mut checked = Vec::new();
     for (index, declared) in project.specifications.iter().enumerate() {
         let number = index + 1;
         for (key, side, limit) in
             [("upper", TrackingSide::Upper, &declared.upper), ("lower", TrackingSide::Lower, &declared.lower)]
         {
-            if let Some(project::DeclaredLimit::Response(wish)) = limit {
-                let (_, check) = limit::of_wish(wish, side).map_err(|reason| SpecificationError {
+            if let Some(project::DeclaredLimit::Response(response)) = limit {
+                let (_, check) = limit::of_requirement(response, side).map_err(|reason| SpecificationError {
                     number,
                     key,
                     reason,
                 })?;
-                checked.push(CheckedWish { number, key, check, follows: wish.function.is_none() });
+                checked.push(CheckedRequirement { number, key, check, follows: response.function.is_none() });
             }
         }
     }
@@ -181,8 +181,8 @@ pub(crate) fn specification(
     };
     let requirement = match kind {
         ClosedLoop::Tracking => Requirement::tracking(
-            found("lower", &declared.lower, limit::Takes::Wish(TrackingSide::Lower))?,
-            found("upper", &declared.upper, limit::Takes::Wish(TrackingSide::Upper))?,
+            found("lower", &declared.lower, limit::Takes::RequirementInTime(TrackingSide::Lower))?,
+            found("upper", &declared.upper, limit::Takes::RequirementInTime(TrackingSide::Upper))?,
         ),
         closed_loop => Requirement::at_most(
             closed_loop,

@@ -2,7 +2,7 @@
 //! with the prediction of the linear loop.
 //!
 //! ```text
-//! project, audit -> rigs::rigs -> Tried { project, plant } -> TriedMachine::driven, the first steps and the largest -> judge -> Run { linear, machine, agreement, reason } -> answer
+//! project, audit -> rigs::rigs -> TrialRig { project, plant } -> PredictedMachine::driven, the first steps and the largest -> judge -> Run { linear, machine, agreement, reason } -> answer
 //! all satisfy the requirements -> corners of the box and plants inside -> the worst of them
 //! ```
 
@@ -27,10 +27,10 @@ pub use reason::{
 };
 pub(crate) use required::BAND_WITH_ROOM;
 pub use required::HeldRequirement;
-pub(crate) use rigs::waves_alone;
+pub(crate) use rigs::waves_only;
 pub use rigs::with_waves;
 pub use run::{Agreement, BAND_PERCENT, Leg, StepSize, TrialRun, TrialStep};
-use run::{DrivenSteps, TriedMachine};
+use run::{DrivenSteps, PredictedMachine};
 pub use steps::REACH;
 
 use crate::audit::ProjectAudit;
@@ -64,7 +64,7 @@ pub enum TrialError {
 }
 
 /// Work for the corners of the box and the plants inside, in multiples of the work for one rig.
-const CORNERS_SHARE: f64 = 4.0;
+const CORNERS_FRACTION: f64 = 4.0;
 /// Name of the stage in progress reports.
 const STAGE: &str = "nonlinear simulation";
 
@@ -122,7 +122,7 @@ impl Trial {
     }
 
     /// True if corners of the box were simulated, but not through the largest step.
-    pub fn keeps_largest_from_corners(&self) -> bool {
+    pub fn corners_lack_largest_step(&self) -> bool {
         let has_largest = |runs: &[TrialRun]| runs.iter().any(|run| run.size == StepSize::Largest);
         !self.corners.is_empty() && has_largest(&self.runs) && !has_largest(&self.corners)
     }
@@ -139,7 +139,7 @@ impl Trial {
 /// # Errors
 /// [`TrialError`] for a controller or a sensor that is not a transfer function, and for
 /// cancellation by `watch`.
-pub fn tried(
+pub fn simulated_trial(
     source: &dyn Source,
     setup: &Setup<'_>,
     (problem, view): (&RobustProblem, &ProjectAudit),
@@ -153,19 +153,19 @@ pub fn tried(
     let (rigs, mut not_driven) = rigs::rigs(setup, rig, problem, view);
     let left_out = RequiredOfSteps::of(&problem.in_time).left_out((setup.project, rig));
     not_driven.extend(left_out.into_iter().map(NotDriven::SmallerStep));
-    let count = rigs.len() as f64 + CORNERS_SHARE;
+    let count = rigs.len() as f64 + CORNERS_FRACTION;
     let from = rigs.len() as f64 / count;
     let all = driven(source, &rigs, problem, &mut within(&mut *watch, [0.0, 0.9 * from]))?;
     let mut runs: Vec<TrialRun> = Vec::new();
     for (index, (rig, own)) in rigs.iter().zip(&all).enumerate() {
         let driven = all.first().filter(|_| rig.is_declared).unwrap_or(own);
-        let share = [index, index + 1].map(|done| from * (0.9 + 0.1 * done as f64 / rigs.len() as f64));
-        for mut run in TriedMachine::of(rig, problem)?.judged(driven, problem, view) {
+        let fraction = [index, index + 1].map(|done| from * (0.9 + 0.1 * done as f64 / rigs.len() as f64));
+        for mut run in PredictedMachine::of(rig, problem)?.judged(driven, problem, view) {
             if rig.quarter_wave_rad_per_s.is_some() && run.agreement >= Agreement::Differs {
                 let seen = (driven.as_slice(), &run, runs.as_slice());
                 let declared = rigs.first().unwrap_or(rig);
                 let on = (source, [rig, declared]);
-                run.reason.cause = cause(on, seen, (problem, view), &mut within(&mut *watch, share))?;
+                run.reason.cause = cause(on, seen, (problem, view), &mut within(&mut *watch, fraction))?;
             }
             runs.push(run);
         }
@@ -185,13 +185,13 @@ pub fn tried(
 /// Steps of each rig; empty for one whose machine is that of the first, the rig as declared.
 fn driven(
     source: &dyn Source,
-    rigs: &[rigs::Tried],
+    rigs: &[rigs::TrialRig],
     problem: &RobustProblem,
     watch: Watch<'_>,
 ) -> Result<Vec<Vec<DrivenSteps>>, TrialError> {
     let steps_of = |index: usize, watch: Watch<'_>| -> Result<Option<Vec<DrivenSteps>>, TrialError> {
         match rigs.get(index).filter(|rig| !rig.is_declared) {
-            Some(rig) => TriedMachine::of(rig, problem)?.driven(source, watch),
+            Some(rig) => PredictedMachine::of(rig, problem)?.driven(source, watch),
             None => Ok(Some(vec![])),
         }
     };
@@ -202,17 +202,17 @@ fn driven(
 /// Cause of the disagreement of a run with waves in its lines: repeating the steps without the
 /// noise of the sensors, and with lumped lines, distinguishes noise from waves.
 fn cause(
-    (source, [waves, declared]): (&dyn Source, [&rigs::Tried; 2]),
+    (source, [waves, declared]): (&dyn Source, [&rigs::TrialRig; 2]),
     (driven, run, runs): (&[DrivenSteps], &TrialRun, &[TrialRun]),
     (problem, view): (&RobustProblem, &ProjectAudit),
     watch: Watch<'_>,
 ) -> Result<Option<DifferenceCause>, TrialError> {
-    let machine = TriedMachine::of(waves, problem)?;
+    let machine = PredictedMachine::of(waves, problem)?;
     let Some(steps) = driven.iter().find(|steps| steps.are_of(run)) else {
         return Ok(machine.cause_of_waves(run, None));
     };
-    let mut repeated = |rig: &rigs::Tried| -> Result<TrialRun, TrialError> {
-        let machine = TriedMachine::of(rig, problem)?;
+    let mut repeated = |rig: &rigs::TrialRig| -> Result<TrialRun, TrialError> {
+        let machine = PredictedMachine::of(rig, problem)?;
         let run = machine.repeated(source, steps, (problem, view), &mut *watch)?;
         Ok(run.ok_or(Stopped)?)
     };

@@ -44,9 +44,9 @@ impl EstimatedResponse {
         let (levels, degrees) =
             (decibels(&self.estimate.response), unwrapped_degrees(&self.estimate.response, None));
         let level = |value: f64| 20.0 * log10(value);
-        let in_decibels = self.band(&levels, |share| [level((1.0 - share).max(LEAST)), level(1.0 + share)]);
-        let in_degrees = self.band(&degrees, |share| {
-            let edge = asin(share.min(1.0)).to_degrees();
+        let in_decibels = self.band(&levels, |fraction| [level((1.0 - fraction).max(LEAST)), level(1.0 + fraction)]);
+        let in_degrees = self.band(&degrees, |fraction| {
+            let edge = asin(fraction.min(1.0)).to_degrees();
             [-edge, edge]
         });
         // on the same turn as the estimate
@@ -90,7 +90,7 @@ impl EstimatedResponse {
     /// Band around each value, from the ratio of the radius to the magnitude.
     fn band(&self, values: &[f64], of: impl Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
         let sizes = self.estimate.response.iter().map(|value| magnitude(*value));
-        let shares = sizes.zip(&self.radii).map(|(size, radius)| radius / size);
-        values.iter().zip(shares).map(|(value, share)| of(share).map(|edge| value + edge)).collect()
+        let fractions = sizes.zip(&self.radii).map(|(size, radius)| radius / size);
+        values.iter().zip(fractions).map(|(value, fraction)| of(fraction).map(|edge| value + edge)).collect()
     }
 }

@@ -60,7 +60,7 @@ pub enum AccumulatorSymbol {
     /// Accumulator with gas that is adjusted in operation: an arrow through it.
     Adjusted,
     /// Accumulator with an adjusted valve before it: an arrow through the valve.
-    BehindValve,
+    ThroughValve,
 }
 
 /// Valve between the chambers.
@@ -153,7 +153,7 @@ pub struct Schematic {
     /// Stages of a telescopic piston after the first; [`STAGES`] of them are drawn.
     pub further_stages: usize,
     /// True if chamber B faces the load; otherwise chamber A does.
-    pub load_beside_b: bool,
+    pub load_at_b: bool,
     /// Text above the cylinder, such as `50/22 mm, stroke 500 mm`.
     pub cylinder: String,
     /// Text above the moving mass, such as `13.1 kg`.

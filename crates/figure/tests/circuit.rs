@@ -123,7 +123,7 @@ fn an_arrow_goes_through_what_is_adjusted() {
     let plain = triangles(&with(Some(AccumulatorSymbol::Fixed))).len();
     assert_eq!(plain, triangles(&with(None)).len() + 1, "the triangle of the gas");
     assert_eq!(triangles(&with(Some(AccumulatorSymbol::Adjusted))).len(), plain + 1);
-    let figure = with(Some(AccumulatorSymbol::BehindValve));
+    let figure = with(Some(AccumulatorSymbol::ThroughValve));
     let all = triangles(&figure);
     assert_eq!(all.len(), plain + 3);
     let meets = |one: &[Point; 3]| {

@@ -307,7 +307,7 @@ fn tornadoes() {
 fn circuits() {
     repeat(9, |r| {
         let accumulators =
-            [AccumulatorSymbol::Fixed, AccumulatorSymbol::Adjusted, AccumulatorSymbol::BehindValve];
+            [AccumulatorSymbol::Fixed, AccumulatorSymbol::Adjusted, AccumulatorSymbol::ThroughValve];
         let line = |r: &mut Random| LineSymbol {
             kind: if r.unit() < 0.5 { LineKind::Hose } else { LineKind::Pipe },
             accumulator: r.maybe(|r| accumulators[r.below(3)]),
@@ -331,7 +331,7 @@ fn circuits() {
             line_a: line(r),
             line_b: line(r),
             rods: if r.unit() < 0.5 { Rods::Both } else { Rods::TowardsLoad },
-            load_beside_b: r.unit() < 0.5,
+            load_at_b: r.unit() < 0.5,
             cylinder: r.name(),
             mass: r.name(),
             load_cell: r.maybe(|r| r.many(4, Random::name)),

@@ -64,7 +64,7 @@ const LIFTING: f64 = 0.01;
 /// State of the bladder at a pressure.
 struct Lifted<S> {
     /// Fraction w, from 0 on the shell to 1.
-    share: S,
+    fraction: S,
     /// Absolute precharge P_0, Pa.
     precharge: S,
     /// Absolute gas pressure P, Pa.
@@ -98,9 +98,9 @@ impl<S: Scalar> Accumulator<S> {
     /// assert_eq!(gas.compliance(14.8e5), 0.0);
     /// ```
     pub fn compliance(&self, pressure: S) -> S {
-        let Lifted { share, absolute, .. } = self.lifted(pressure);
+        let Lifted { fraction, absolute, .. } = self.lifted(pressure);
         let gas = self.gas_volume * (-self.squeeze(pressure)).exp();
-        share * gas / (self.polytropic_exponent * absolute)
+        fraction * gas / (self.polytropic_exponent * absolute)
     }
 
     /// Gas at another temperature: its precharge is the pressure in the unchanged volume. Absolute
@@ -141,10 +141,10 @@ impl<S: Scalar> Accumulator<S> {
         let precharge = self.precharge_pressure + S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
         let band = precharge * S::from(LIFTING);
         let above = pressure - self.precharge_pressure;
-        let share = (above + band) / (S::from(2.0) * band);
-        let share = share.maximum(S::from(0.0)).minimum(S::from(1.0));
-        let compressed = S::select(above.less_than(band), band * share.squared(), above);
-        Lifted { share, precharge, absolute: precharge + compressed }
+        let fraction = (above + band) / (S::from(2.0) * band);
+        let fraction = fraction.maximum(S::from(0.0)).minimum(S::from(1.0));
+        let compressed = S::select(above.less_than(band), band * fraction.squared(), above);
+        Lifted { fraction, precharge, absolute: precharge + compressed }
     }
 
     /// Reduction ln(P/P_0)/n of the logarithm of the gas volume; zero below the precharge.
@@ -187,17 +187,17 @@ impl<S: Scalar> Accumulator<S> {
     /// Binomial series, whose terms decrease by a hundred each.
     fn lifting_energy(&self, pressure: S) -> S {
         const TERMS: u32 = 6;
-        let Lifted { share, precharge, .. } = self.lifted(pressure);
+        let Lifted { fraction, precharge, .. } = self.lifted(pressure);
         let exponent = S::from(1.0) + S::from(1.0) / self.polytropic_exponent;
-        let (mut factor, mut power, mut sum) = (S::from(1.0), share.squared(), S::from(0.0));
+        let (mut factor, mut power, mut sum) = (S::from(1.0), fraction.squared(), S::from(0.0));
         for term in 0..TERMS {
             let order = f64::from(2 * term);
-            let integral = S::from(1.0 / (order + 2.0)) - S::from(2.0 / (order + 3.0)) * share
-                + S::from(1.0 / (order + 4.0)) * share.squared();
+            let integral = S::from(1.0 / (order + 2.0)) - S::from(2.0 / (order + 3.0)) * fraction
+                + S::from(1.0 / (order + 4.0)) * fraction.squared();
             sum = sum + factor * power * integral;
             let next = S::from(f64::from(term)) + exponent;
             factor = -factor * next * S::from(LIFTING / f64::from(term + 1));
-            power = power * share.squared();
+            power = power * fraction.squared();
         }
         let scale = S::from(2.0 * LIFTING * LIFTING) * precharge * self.gas_volume / self.polytropic_exponent;
         scale * sum

@@ -155,7 +155,7 @@ impl Machine {
                 None => Chambers::new(actuator, options.member),
                 Some(lines) => {
                     let added = lines.map(|line| line.chamber_compliance());
-                    Chambers::behind_lines(actuator, options.member, added)
+                    Chambers::with_line_compliance(actuator, options.member, added)
                 }
             },
             gas: components.gas.map(|gas| Some(gas?.of_machine(options.moving_setting))),

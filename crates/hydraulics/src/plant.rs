@@ -21,7 +21,7 @@ mod series;
 mod supply;
 mod virtual_impedance;
 pub use chambers::ChamberDynamics;
-pub use in_motion::{BehindLines, PlantInMotion};
+pub use in_motion::{LineChambers, PlantInMotion};
 pub use load::LinearLoad;
 pub use pressure_feedback::PressureFeedback;
 pub use series::{LinearElement, LinearSeries, LinearSpring, SeriesOutput};
@@ -104,7 +104,7 @@ impl<S> Default for VelocitySensor<S> {
 
 impl<S> VelocitySensor<S> {
     /// Sensor with this gain, and no filter within the plant.
-    pub fn shown_by(gain: Option<S>) -> VelocitySensor<S> {
+    pub fn with_gain(gain: Option<S>) -> VelocitySensor<S> {
         VelocitySensor { gain, filter: RateFilter::None }
     }
 }

@@ -17,7 +17,7 @@ mod range;
 
 pub use crate::line::StiffnessModel;
 pub use length::{
-    LineLength, hose_length_by_volume, hose_length_uniform, line_share_for_stiffness,
+    LineLength, hose_length_by_volume, hose_length_uniform, line_fraction_for_stiffness,
     stiffness_from_hose_length,
 };
 pub use range::{ModelDifference, StrokeStiffness, model_difference};

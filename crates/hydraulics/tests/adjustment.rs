@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use phea_dynamics::portable::{exp, pow, sin};
-use phea_dynamics::random::{share, stream};
+use phea_dynamics::random::{uniform, stream};
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::accumulator::{
     Accumulator, AdjustedGas, Bladder, ChamberGas, GasBranch, GasContent, GasPassage, GasValve, MovedGas,
@@ -258,7 +258,7 @@ fn switching_loses_what_two_compliances_lose() {
 fn a_frozen_opening_is_passive() {
     for number in 0..24 {
         let mut random = stream(60, number);
-        let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut random));
+        let mut spread = |low: f64, high: f64| low * pow(high / low, uniform(&mut random));
         let (opening, compliance) = (spread(0.02, 1.0), spread(5e-13, 5e-12));
         let waves = [0; 4].map(|_| [spread(2e5, 3e6), spread(3.0, 600.0), spread(0.1, 6.0)]);
         let flow = |time: f64| -> f64 {
@@ -306,7 +306,7 @@ fn a_frozen_opening_is_passive() {
 fn its_conductance_has_two_limits() {
     let gas = GAS.compliance(35e5);
     let gas_side =
-        |conductance: f64| Some(GasBranch::of(gas, None, None).behind_valve(conductance, VALVE.compliance));
+        |conductance: f64| Some(GasBranch::of(gas, None, None).through_valve(conductance, VALVE.compliance));
     let gap = |one: &[num_complex::Complex64], other: &[num_complex::Complex64]| {
         let gaps = one.iter().zip(other).map(|(one, other)| (one / other - 1.0).norm_sqr().sqrt());
         gaps.fold(0.0, f64::max)

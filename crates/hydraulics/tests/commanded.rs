@@ -4,7 +4,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::portable::pow;
-use phea_dynamics::random::{share, stream};
+use phea_dynamics::random::{uniform, stream};
 use phea_dynamics::scalar::{Dual, Scalar};
 use phea_dynamics::simulation::{DIRECTIONS, Plant, System, small_signal};
 use phea_hydraulics::accumulator::{
@@ -25,7 +25,7 @@ pub(super) fn power_unit(number: u64) -> PowerUnit {
         return PowerUnit::Constant;
     }
     let mut state = stream(31, number);
-    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let mut spread = |low: f64, high: f64| low * pow(high / low, uniform(&mut state));
     let gas_volume = spread(1e-4, 1e-2);
     let accumulator = Accumulator { gas_volume, precharge_pressure: 40e5, polytropic_exponent: 1.3 };
     PowerUnit::PumpLimited(PumpLimited {
@@ -40,7 +40,7 @@ pub(super) fn power_unit(number: u64) -> PowerUnit {
 /// Necks of the accumulators at the chambers, for two out of three numbers.
 fn necks(number: u64) -> [Option<Neck>; 2] {
     let mut state = stream(43, number);
-    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let mut spread = |low: f64, high: f64| low * pow(high / low, uniform(&mut state));
     [0.0, 0.0].map(|_| {
         let neck =
             Neck::round([spread(2e-3, 1e-2), spread(1e-2, 0.3)], [870.0, spread(1e-5, 1e-4), 1.45e9], 1.5);
@@ -51,14 +51,14 @@ fn necks(number: u64) -> [Option<Neck>; 2] {
 /// Thermal time constants of the gas at the chambers, for half of the numbers.
 fn thermal_time_constants(number: u64) -> [Option<f64>; 2] {
     let mut state = stream(47, number);
-    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let mut spread = |low: f64, high: f64| low * pow(high / low, uniform(&mut state));
     [0, 1].map(|_| (spread(1.0, 4.0) > 2.0).then_some(spread(1e-3, 1e2)))
 }
 
 /// Passages between chambers and gas: a valve for half of the chambers whose gas has no neck.
 fn passages(number: u64) -> [GasPassage; 2] {
     let mut state = stream(59, number);
-    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let mut spread = |low: f64, high: f64| low * pow(high / low, uniform(&mut state));
     necks(number).map(|neck| {
         let valve = GasValve {
             flow_coefficient: spread(1e-9, 1e-7),
@@ -79,7 +79,7 @@ fn passages(number: u64) -> [GasPassage; 2] {
 /// numbers.
 pub(super) fn chamber_gas(source: u64, number: u64) -> [Option<ChamberGas>; 2] {
     let mut state = stream(source, number);
-    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let mut spread = |low: f64, high: f64| low * pow(high / low, uniform(&mut state));
     let has_gas = [number % 8 < 3, (1..5).contains(&(number % 8))];
     let (heat, passages) = (thermal_time_constants(number), passages(number));
     [0, 1].map(|side| {
@@ -116,7 +116,7 @@ pub(super) fn without_branches(
 /// Valve of every kind between the chambers, or none.
 pub(super) fn cross_port(number: u64) -> Option<CrossPort> {
     let mut state = stream(41, number);
-    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let mut spread = |low: f64, high: f64| low * pow(high / low, uniform(&mut state));
     let laminar = Restrictor::Laminar { conductance: spread(1e-13, 1e-9) };
     let orifice =
         Restrictor::Orifice { flow_coefficient: spread(1e-10, 1e-7), transition_pressure: spread(1e2, 1e5) };

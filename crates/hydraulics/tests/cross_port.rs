@@ -6,7 +6,7 @@
 use num_complex::Complex64;
 use phea_dynamics::linear::Polynomial;
 use phea_dynamics::portable::{magnitude, pow};
-use phea_dynamics::random::{share, stream};
+use phea_dynamics::random::{uniform, stream};
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cross_port::{CrossPort, DynamicFeedback, Restrictor};
@@ -113,7 +113,7 @@ fn the_impedance_stays_passive() {
     let linear = nominal_plant();
     for number in 0..50 {
         let mut state = stream(51, number);
-        let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+        let mut spread = |low: f64, high: f64| low * pow(high / low, uniform(&mut state));
         let feedback = DynamicFeedback { conductance: spread(1e-13, 1e-8), capacity: spread(1e-15, 1e-10) };
         let plant = LinearPlant::of_load_pressure(&linear, 0.0, LinearLoad::Prescribed);
         let coefficients = LinearPlant { dynamic_feedback: Some(feedback), ..plant }.coefficients();
@@ -197,7 +197,7 @@ fn an_orifice_settles_where_the_machine_rests() {
     let mut found = 0;
     for number in 0..300 {
         let mut state = stream(52, number);
-        let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+        let mut spread = |low: f64, high: f64| low * pow(high / low, uniform(&mut state));
         let equal = number % 3 == 0;
         let [area_a, area_b] =
             [0.022, if equal { 0.022 } else { spread(0.01, 0.036) }].map(|rod| annulus_area(0.05, rod));

@@ -49,7 +49,7 @@ fn released() -> KnottedForce {
 
 fn rows(force: &KnottedForce) -> Vec<f64> {
     force
-        .shares()
+        .fractions()
         .into_iter()
         .map(|(knot, fraction)| force.forces[knot] * (1.0 - fraction) + force.forces[knot + 1] * fraction)
         .collect()

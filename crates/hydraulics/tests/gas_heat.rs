@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use phea_dynamics::portable::{exp, pow, sin};
-use phea_dynamics::random::{share, stream};
+use phea_dynamics::random::{uniform, stream};
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::accumulator::{
     Accumulator, ChamberGas, GasBranch, GasContent, GasPassage, Neck, RelaxingGas, SealedGas,
@@ -187,7 +187,7 @@ fn a_machine_with_fast_gas_is_the_polytropic_one() {
 fn it_is_passive_under_random_flows() {
     for number in 0..64 {
         let mut random = stream(48, number);
-        let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut random));
+        let mut spread = |low: f64, high: f64| low * pow(high / low, uniform(&mut random));
         let gas = RelaxingGas {
             gas_volume: spread(1e-6, 1e-3),
             precharge_pressure: spread(2e5, 20e5),

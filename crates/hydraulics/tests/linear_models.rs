@@ -6,7 +6,7 @@ use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant};
 use phea_hydraulics::linear::{
-    LinearParameters, MechanicalDamping, RequiredStiffness, ShareAbsence, closed_loop_steady_state_gain,
+    LinearParameters, MechanicalDamping, RequiredStiffness, ContributionAbsence, closed_loop_steady_state_gain,
     closed_loop_time_constant, decompose, decomposed_model, dominance, first_order_model, linear_model,
     linear_model_coefficients, proportional_gain, required_stiffness, response_difference, rigid_limit_gain,
 };
@@ -241,10 +241,10 @@ fn hydraulic_mode_dominates_more_the_softer_it_is() {
     let (stiff, soft) = (modes(1.5e7), modes(1.5e5));
     // ORIGIN: analytic, over (6.12) the fraction of the slow pole -a is
     // 1/((1 - a e_1/e_0 + ...)(1 - ...)): within 1 % of 1
-    assert!((stiff[0].step_share - 1.0).abs() < 1e-2 && (soft[0].step_share - 1.0).abs() < 1e-4);
+    assert!((stiff[0].step_fraction - 1.0).abs() < 1e-2 && (soft[0].step_fraction - 1.0).abs() < 1e-4);
     for index in [1, 2] {
-        assert!(stiff[index].step_share < 1e-2);
-        assert!(soft[index].step_share < 0.02 * stiff[index].step_share);
+        assert!(stiff[index].step_fraction < 1e-2);
+        assert!(soft[index].step_fraction < 0.02 * stiff[index].step_fraction);
         assert!(soft[index].decay_ratio > 50.0 * stiff[index].decay_ratio);
     }
     // ORIGIN: recomputed from Table 6.1, 11.638369/2.9580891
@@ -259,15 +259,15 @@ fn an_absent_fraction_has_its_reason() {
         dominance(&TransferFunction::from_factors(1.0, vec![], poles).unwrap())
     };
     let double = of(&[-1.0, -5.0, -5.0]);
-    assert!(double[0].absence.is_none() && double[0].step_share.is_finite());
+    assert!(double[0].absence.is_none() && double[0].step_fraction.is_finite());
     for mode in &double[1..] {
-        assert_eq!(mode.absence, Some(ShareAbsence::CoincidentPole));
-        assert!(mode.step_share.is_nan() && mode.decay_ratio == 5.0);
+        assert_eq!(mode.absence, Some(ContributionAbsence::CoincidentPole));
+        assert!(mode.step_fraction.is_nan() && mode.decay_ratio == 5.0);
     }
     for poles in [[0.0, -5.0], [2.0, -5.0]] {
         for mode in of(&poles) {
-            assert_eq!(mode.absence, Some(ShareAbsence::NoFinalValue));
-            assert!(mode.step_share.is_nan() && mode.decay_ratio.is_nan());
+            assert_eq!(mode.absence, Some(ContributionAbsence::NoFinalValue));
+            assert!(mode.step_fraction.is_nan() && mode.decay_ratio.is_nan());
         }
     }
 }

@@ -4,7 +4,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::portable::{cos, pow, sin};
-use phea_dynamics::random::{share, stream};
+use phea_dynamics::random::{uniform, stream};
 use phea_dynamics::scalar::{Interval, Parameters};
 use phea_dynamics::simulation::{Plant, small_signal};
 use phea_hydraulics::actuator::{Actuator, Components};
@@ -65,7 +65,7 @@ fn table(rows: usize, roughness: f64, tolerance: f64) -> LinkageGeometry {
     let mut state = stream(5, rows as u64);
     let mut measured = extensions;
     for extension in measured.iter_mut().skip(1).rev().skip(1) {
-        *extension += roughness * (2.0 * share(&mut state) - 1.0);
+        *extension += roughness * (2.0 * uniform(&mut state) - 1.0);
     }
     LinkageGeometry::Table(LinkageTable { extensions: measured, angles, tolerance })
 }
@@ -338,7 +338,7 @@ struct Drawn {
 
 fn drawn(number: u64) -> Drawn {
     let mut state = stream(61, number);
-    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let mut spread = |low: f64, high: f64| low * pow(high / low, uniform(&mut state));
     let linkage = linkages()[number as usize % 4];
     let friction = spread(20.0, 5e3);
     let cylinder = Cylinder {

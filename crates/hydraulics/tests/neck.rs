@@ -7,7 +7,7 @@ use std::f64::consts::FRAC_PI_4;
 
 use num_complex::Complex64;
 use phea_dynamics::portable::{exp, pow, sin};
-use phea_dynamics::random::{share, stream};
+use phea_dynamics::random::{uniform, stream};
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::accumulator::{
     Accumulator, Bladder, ChamberGas, GasBranch, GasContent, GasPassage, Neck, NeckImpedance, SealedGas,
@@ -152,7 +152,7 @@ fn it_rings_at_the_helmholtz_resonance() {
 /// Gas and neck of either side, with any size and index.
 fn drawn(number: u64) -> [(Accumulator, Neck); 2] {
     let mut state = stream(44, number);
-    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let mut spread = |low: f64, high: f64| low * pow(high / low, uniform(&mut state));
     [0, 1].map(|_| {
         let gas = Accumulator {
             gas_volume: spread(3e-5, 1e-4),
@@ -169,7 +169,7 @@ struct Shaking([[f64; 3]; 4]);
 impl Shaking {
     fn drawn(number: u64) -> Shaking {
         let mut random = stream(45, number);
-        let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut random));
+        let mut spread = |low: f64, high: f64| low * pow(high / low, uniform(&mut random));
         Shaking([0; 4].map(|_| [spread(2e-5, 4e-4), spread(20.0, 900.0), spread(0.1, 0.6)]))
     }
 

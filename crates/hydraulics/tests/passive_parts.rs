@@ -12,7 +12,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use phea_dynamics::portable::{cos, ln, pow, sin};
-use phea_dynamics::random::{share, stream};
+use phea_dynamics::random::{uniform, stream};
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::accumulator::{
     Accumulator, ChamberGas, GasContent, GasPassage, GasValve, RelaxingGas, SealedGas,
@@ -77,9 +77,9 @@ impl Strokes {
         let (mut times, mut positions) = (vec![0.0], vec![start]);
         for index in 0..STROKES {
             // whole steps, so that no step has two strokes
-            let steps = (LONGEST / WIDTH * (0.2 + 0.8 * share(&mut state))).round();
+            let steps = (LONGEST / WIDTH * (0.2 + 0.8 * uniform(&mut state))).round();
             times.push(times[index] + steps * WIDTH);
-            positions.push(start + reach * (2.0 * share(&mut state) - 1.0));
+            positions.push(start + reach * (2.0 * uniform(&mut state) - 1.0));
         }
         Strokes { times, positions }
     }
@@ -93,9 +93,9 @@ impl Strokes {
         let next = self.times.partition_point(|of| *of <= time).clamp(1, STROKES);
         let [from, to] = [self.positions[next - 1], self.positions[next]];
         let duration = self.times[next] - self.times[next - 1];
-        let share = (time - self.times[next - 1]) / duration;
-        let way = share * share * (3.0 - 2.0 * share);
-        [from + (to - from) * way, (to - from) * 6.0 * share * (1.0 - share) / duration]
+        let fraction = (time - self.times[next - 1]) / duration;
+        let way = fraction * fraction * (3.0 - 2.0 * fraction);
+        [from + (to - from) * way, (to - from) * 6.0 * fraction * (1.0 - fraction) / duration]
     }
 }
 
@@ -218,7 +218,7 @@ fn check_lossless(what: &str, passed: &Passed, error: f64) {
 /// Numbers that differ from run to run.
 fn spreads(number: u64) -> impl FnMut(f64, f64) -> f64 {
     let mut state = stream(94, number);
-    move |low, high| low * pow(high / low, share(&mut state))
+    move |low, high| low * pow(high / low, uniform(&mut state))
 }
 
 fn at_rest(pressure: f64) -> StartValues {

@@ -5,7 +5,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::portable::pow;
-use phea_dynamics::random::{share, stream};
+use phea_dynamics::random::{uniform, stream};
 use phea_dynamics::simulation::small_signal;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
@@ -54,14 +54,14 @@ fn turning(cylinder: Cylinder, number: u64) -> Cylinder {
 /// Three stages with long transitions.
 pub(super) fn telescope(number: u64) -> Telescope {
     let mut state = stream(13, number);
-    let mut ratio = || 0.4 + 0.9 * share(&mut state);
+    let mut ratio = || 0.4 + 0.9 * uniform(&mut state);
     let mut stage = |from: f64| Some(PistonStage { from, ratios: [ratio(), ratio()] });
     Telescope { stroke: 0.5, stages: [stage(0.15), stage(0.35), None], transition: 0.18 }
 }
 
 fn drawn(number: u64) -> Drawn {
     let mut state = stream(11, number);
-    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let mut spread = |low: f64, high: f64| low * pow(high / low, uniform(&mut state));
     let friction = spread(50.0, 2e4);
     let air = (number.is_multiple_of(3))
         .then(|| EntrainedAir { volume_fraction: spread(1e-3, 3e-2), polytropic_exponent: spread(1.0, 1.4) });

@@ -8,7 +8,7 @@ use phea_dynamics::analytic::Disc;
 use phea_dynamics::controller::RateFilter;
 use phea_dynamics::linear::Polynomial;
 use phea_dynamics::portable::{exp_complex, pow};
-use phea_dynamics::random::{share, stream};
+use phea_dynamics::random::{uniform, stream};
 use phea_dynamics::simulation::small_signal;
 use phea_dynamics::uncertain_plant::RationalCoefficients;
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
@@ -23,7 +23,7 @@ use phea_hydraulics::line::{
 use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{Chambers, InitialCondition, Machine, MachineOptions};
 use phea_hydraulics::operating_point::{Condition, operating_point};
-use phea_hydraulics::plant::{BehindLines, ChamberDynamics, LinearLoad, LinearPlant, PlantInMotion};
+use phea_hydraulics::plant::{LineChambers, ChamberDynamics, LinearLoad, LinearPlant, PlantInMotion};
 use phea_hydraulics::reference_rig::{components, cylinder, hose, hose_line, leaking, pipe_line};
 use phea_hydraulics::stiffness::StiffnessModel;
 
@@ -51,7 +51,7 @@ pub(crate) struct Drawn {
     command: f64,
     sensor: f64,
     pub(crate) plant: LinearPlant,
-    pub(crate) behind: BehindLines,
+    pub(crate) behind: LineChambers,
 }
 
 /// Every third load is prescribed, the others are sprung.
@@ -72,18 +72,18 @@ pub(super) fn plant_with_lines(
     lines: [DynamicLine; 2],
     (position, rest): (f64, &InitialCondition),
     load: LinearLoad,
-) -> (LinearPlant, BehindLines) {
+) -> (LinearPlant, LineChambers) {
     let parts = actuator.components();
     let ports = machine.signals(&rest.state, &rest.all_inputs()).port_pressures;
     let (plant, lumped) = plant_at_rest(actuator, machine, (position, ports, &rest.state), load);
     let pressures = [rest.state[2], rest.state[3]];
-    let oil = Chambers::behind_lines(actuator, StiffeningMember::Nominal, [0.0; 2]);
+    let oil = Chambers::with_line_compliance(actuator, StiffeningMember::Nominal, [0.0; 2]);
     let (oil, gas) = (oil.compliance(position, pressures), parts.gas_compliance(pressures));
     let own = without_branches(parts, pressures, [0, 1].map(|side| oil[side] + gas[side].unwrap_or(0.0)));
     let ChamberDynamics::TwoPressures { flow_pressures, .. } = plant.chambers else { unreachable!() };
     let outward = parts.cylinder.external_leakage.unwrap_or(0.0);
     let leaking = flow_pressures.map(|whole| outward / whole);
-    (plant, BehindLines { lines, chambers: own, lumped, leaking })
+    (plant, LineChambers { lines, chambers: own, lumped, leaking })
 }
 
 /// Components of a rig for every number and the models of its lines, with numbers drawn by
@@ -128,7 +128,7 @@ fn parts(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> (Components, 
 
 pub(crate) fn drawn(number: u64) -> Drawn {
     let mut state = stream(23, number);
-    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let mut spread = |low: f64, high: f64| low * pow(high / low, uniform(&mut state));
     let (parts, models) = parts(number, &mut spread);
     let actuator = Actuator::new(parts).unwrap();
     let line = |line: &Line, model: &LineModel| {
@@ -295,8 +295,8 @@ fn a_late_feed_forward_is_enclosed() {
         for (start, width) in [(3.0, 1e-3), (80.0, 1e-4), (2000.0, 1e-5)] {
             let ends = [start, start * (1.0 + width)];
             let held: Disc = late.enclosure(ends);
-            for share in [0.0, 0.3, 1.0] {
-                let [command, _] = late.response(Complex64::new(0.0, start * (1.0 + share * width)));
+            for fraction in [0.0, 0.3, 1.0] {
+                let [command, _] = late.response(Complex64::new(0.0, start * (1.0 + fraction * width)));
                 assert!(held.contains(command) && held.radius() < 0.2 * command.norm_sqr().sqrt());
             }
         }
@@ -365,10 +365,10 @@ fn lumped_lines_make_the_rational_plant() {
                 rig.plant.load,
             ),
         ];
-        let BehindLines { chambers, lumped, .. } = rig.behind;
+        let LineChambers { chambers, lumped, .. } = rig.behind;
         let lines = [0, 1].map(|side| DynamicLine::Segments(Segments::lumped(lumped[side] - chambers[side])));
         for plant in plants {
-            let moving = PlantInMotion::new(&plant, &BehindLines { lines, ..rig.behind });
+            let moving = PlantInMotion::new(&plant, &LineChambers { lines, ..rig.behind });
             let rational = plant.coefficients();
             for frequency in [0.01, 1.0, 30.0, 400.0, 2e4] {
                 let [command, load] = moving.response(Complex64::new(0.0, frequency));
@@ -408,8 +408,8 @@ fn enclosures_contain_the_response() {
         let moving = sometimes_fed(PlantInMotion::new(&rig.plant, &rig.behind), number);
         let [from, to] = moving.range_rad_per_s();
         for _ in 0..30 {
-            let low = from * pow(to / from, share(&mut state));
-            let high = low * (1.0 + 0.02 * share(&mut state));
+            let low = from * pow(to / from, uniform(&mut state));
+            let high = low * (1.0 + 0.02 * uniform(&mut state));
             let held = moving.enclosure([low, high]);
             for part in [0.0, 0.2, 0.7, 1.0] {
                 let [command, _] = RespondingPlant::response(&moving, low + part * (high - low));

@@ -8,7 +8,7 @@ use phea_dynamics::analytic::Disc;
 use phea_dynamics::controller::{InnerFeedback, VirtualImpedance};
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::portable::{exp_complex, pow};
-use phea_dynamics::random::{share, stream};
+use phea_dynamics::random::{uniform, stream};
 use phea_dynamics::uncertain_plant::RationalCoefficients;
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_hydraulics::linear::LinearParameters;
@@ -79,7 +79,7 @@ fn a_high_pass_leaves_the_equilibrium_unchanged() {
 /// Feedback with either sign, with each filter or without, of any reading of the pressures.
 fn any(number: u64) -> PressureFeedback {
     let mut state = stream(62, number);
-    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let mut spread = |low: f64, high: f64| low * pow(high / low, uniform(&mut state));
     let corners = [spread(0.1, 300.0), spread(30.0, 3e4)];
     let gain = spread(1e-8, 3e-5) * if number % 4 == 3 { -1.0 } else { 1.0 };
     let filter = InnerFeedback {

@@ -6,7 +6,7 @@
 use num_complex::Complex64;
 use phea_dynamics::controller::RateFilter;
 use phea_dynamics::portable::{pow, sin};
-use phea_dynamics::random::{share, stream};
+use phea_dynamics::random::{uniform, stream};
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;
@@ -17,7 +17,7 @@ use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{ENERGY_ACCOUNTS, InitialCondition, Machine, MachineOptions, StartValues};
 use phea_hydraulics::operating_point::{Condition, OperatingPoint, operating_point};
 use phea_hydraulics::plant::{
-    BehindLines, LinearLoad, LinearPlant, LinearSeries, PlantInMotion, SeriesOutput, VelocitySensor,
+    LineChambers, LinearLoad, LinearPlant, LinearSeries, PlantInMotion, SeriesOutput, VelocitySensor,
 };
 use phea_hydraulics::reference_rig::{components, hose_line, nominal_plant};
 use phea_hydraulics::series::{ForceFrom, SeriesElement, SeriesSpring, SeriesTravel};
@@ -40,7 +40,7 @@ fn rig(spring: SeriesSpring) -> Components {
 /// ends.
 pub(super) fn element(number: u64) -> SeriesSpring {
     let mut state = stream(41, number);
-    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let mut spread = |low: f64, high: f64| low * pow(high / low, uniform(&mut state));
     let free = number.is_multiple_of(4);
     let ends =
         Contact { stiffness: spread(1e7, 1e9), relative_damping: if free { 0.0 } else { spread(0.05, 1.0) } };
@@ -72,7 +72,7 @@ fn drawn(number: u64) -> Drawn {
 
 pub(super) fn drawn_with(series: SeriesElement, number: u64) -> Drawn {
     let mut state = stream(42, number);
-    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let mut spread = |low: f64, high: f64| low * pow(high / low, uniform(&mut state));
     let friction = spread(50.0, 2e4);
     let parts = Components {
         friction: Friction::Viscous { viscous: friction },
@@ -244,7 +244,7 @@ fn a_rigid_spring_has_no_effect() {
             };
             let series = Some(LinearSeries::of_spring(&rigid(damping), 1e3));
             let sprung = LinearPlant { series, ..plain };
-            let behind = BehindLines {
+            let behind = LineChambers {
                 lines: [line(components(hose_line(), StiffnessModel::ByVolume).fluid); 2],
                 chambers: [2.7e-13; 2],
                 lumped: [2.7e-13 + 4e-12; 2],
@@ -295,7 +295,7 @@ fn a_spring_without_mass_is_a_softer_sensor() {
     let softer = ForceSensor { stiffness: in_series(plain.force_sensor.stiffness, 2.24e6) };
     let machines = [Components { force_sensor: softer, ..plain }, rig(spring)]
         .map(|parts| machine_of(Components { load, ..parts }, &MachineOptions::default()));
-    let share = softer.stiffness / 2.24e6;
+    let fraction = softer.stiffness / 2.24e6;
     let motion = Motion { amplitude: 1.5, bias: 0.4, ground: 0.0, ground_amplitude: 1e-3 };
     let start = StartValues {
         position: 0.25,
@@ -320,7 +320,7 @@ fn a_spring_without_mass_is_a_softer_sensor() {
     let [(force, one), (other_force, other)] = runs;
     assert!((force / other_force - 1.0_f64).abs() < 1e-9, "{force} {other_force}");
     for (index, (one, other)) in one.iter().zip(&other).enumerate() {
-        let one = if index == 4 { one * share } else { *one };
+        let one = if index == 4 { one * fraction } else { *one };
         assert!((one - other).abs() <= 1e-8 * one.abs().max(1e-6), "{index}: {one} {other}");
     }
 }
@@ -411,7 +411,7 @@ fn it_is_passive_under_random_motions_of_its_ports() {
 pub(super) fn stays_passive(machine: &Machine, seed: u64, number: u64) {
     let series = ENERGY_ACCOUNTS.iter().position(|name| *name == "series").unwrap();
     let mut state = stream(seed, number);
-    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let mut spread = |low: f64, high: f64| low * pow(high / low, uniform(&mut state));
     let waves: Vec<[f64; 3]> =
         (0..4).map(|_| [spread(2e-5, 4e-4), spread(20.0, 900.0), spread(0.05, 0.5)]).collect();
     let start = StartValues { position: 0.25, pressure_a: 35e5, pressure_b: 35e5, ..StartValues::default() };

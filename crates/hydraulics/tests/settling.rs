@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use phea_dynamics::expression::Expression;
-use phea_dynamics::random::share;
+use phea_dynamics::random::uniform;
 use phea_dynamics::scalar::{Dual, Interval, Parameters};
 use phea_dynamics::simulation::DIRECTIONS;
 use phea_hydraulics::actuator::{Actuator, Components};
@@ -37,7 +37,7 @@ fn pressures_at_rest_are_enclosed_between_tank_and_supply() {
             };
             balance.settle(steady).pressures.to_vec()
         });
-        let [low, high] = [0.8, 1.2].map(|share| share * supply.pressure);
+        let [low, high] = [0.8, 1.2].map(|fraction| fraction * supply.pressure);
         let enclosed = recorded.enclosures(&[Interval::new(low, high)]);
         for step in 0..=20 {
             let pressures = recorded.evaluate(&[low + (high - low) * f64::from(step) / 20.0]);
@@ -56,11 +56,11 @@ struct Draw(u64);
 
 impl Draw {
     fn even(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * share(&mut self.0)
+        low + (high - low) * uniform(&mut self.0)
     }
 
     fn factor(&mut self, low: f64, high: f64) -> f64 {
-        low * phea_dynamics::portable::pow(high / low, share(&mut self.0))
+        low * phea_dynamics::portable::pow(high / low, uniform(&mut self.0))
     }
 
     fn edges(&mut self, low: f64, high: f64) -> Edges {
@@ -68,7 +68,7 @@ impl Draw {
     }
 
     fn leakage_model(&mut self) -> LeakageModel {
-        if share(&mut self.0) < 0.5 { LeakageModel::EachEdge } else { LeakageModel::OneCurve }
+        if uniform(&mut self.0) < 0.5 { LeakageModel::EachEdge } else { LeakageModel::OneCurve }
     }
 
     /// Edges that differ threefold, any leakage of them by either model, one rod or two, and a
@@ -97,12 +97,12 @@ impl Draw {
         let Components { supply, cylinder, .. } = actuator.components();
         let drop = supply.pressure - supply.tank_pressure;
         let pressure = self.even(-0.8, 0.8) * drop;
-        let load = match share(&mut self.0) < 0.5 {
+        let load = match uniform(&mut self.0) < 0.5 {
             true => SteadyLoad::Pressure(pressure),
             false => SteadyLoad::Force(pressure * cylinder.area_a.min(cylinder.area_b)),
         };
         let reach = 1e-7 * (0.1 * drop).sqrt() / cylinder.area_a.max(cylinder.area_b);
-        match share(&mut self.0) {
+        match uniform(&mut self.0) {
             kind if kind < 0.2 => Steady::Command(self.even(-10.0, 10.0)),
             kind if kind < 0.4 => Steady::Command(self.even(-0.3, 0.3)),
             kind if kind < 0.7 => Steady::Moving { velocity: 0.0, load },

@@ -9,7 +9,7 @@ use phea_hydraulics::line::{Hose, Line, StiffeningMember};
 use phea_hydraulics::reference_rig::{USEFUL_AREA, components, cylinder, hose, hose_line, pipe_line};
 use phea_hydraulics::stiffness::{
     LineLength, StiffnessModel, StrokeStiffness, chamber_compliance, hose_length_by_volume,
-    hose_length_uniform, hydraulic_stiffness, line_share_for_stiffness, model_difference,
+    hose_length_uniform, hydraulic_stiffness, line_fraction_for_stiffness, model_difference,
     stiffness_from_hose_length,
 };
 use phea_hydraulics::stroke::ActuatorStroke;
@@ -93,7 +93,7 @@ fn models_agree_when_the_line_is_as_stiff_as_the_fluid() {
         [None; 2],
         StiffeningMember::Nominal,
     );
-    assert!(hose.minimum_ratio > 2.0 && hose.maximum_ratio > 1.2 && hose.line_compliance_share > 0.7);
+    assert!(hose.minimum_ratio > 2.0 && hose.maximum_ratio > 1.2 && hose.line_compliance_fraction > 0.7);
 }
 
 fn asymmetric() -> Cylinder {
@@ -160,7 +160,7 @@ fn lengths_undo_stiffnesses_in_both_models() {
                 }
             };
             assert!((closed / length - 1.0).abs() < 1e-12);
-            let solved = line_share_for_stiffness(
+            let solved = line_fraction_for_stiffness(
                 model,
                 FLUID_MODULUS,
                 &cylinder(),
@@ -219,7 +219,7 @@ fn unequal_lines_divide_the_compliance() {
                 Line::Hose { hose: narrow, length: metre_a / metre_b },
             ];
             let [line_a, line_b] = &lines;
-            let found = line_share_for_stiffness(
+            let found = line_fraction_for_stiffness(
                 model,
                 FLUID_MODULUS,
                 &cylinder,
@@ -227,8 +227,8 @@ fn unequal_lines_divide_the_compliance() {
                 member,
                 stiffness,
             );
-            let LineLength::Length(share) = found else { panic!("{found:?}") };
-            assert!((share * metre_a / common - 1.0).abs() < 1e-11, "{model:?} {stiffness}: {share}");
+            let LineLength::Length(fraction) = found else { panic!("{found:?}") };
+            assert!((fraction * metre_a / common - 1.0).abs() < 1e-11, "{model:?} {stiffness}: {fraction}");
         }
     }
     assert!(within > 2, "{within}");
@@ -256,7 +256,7 @@ fn no_hose_is_needed_when_the_chambers_are_soft_enough() {
     let solve = |stiffness| {
         let (cylinder, line) = (asymmetric(), hose_line());
         let model = StiffnessModel::ByVolume;
-        line_share_for_stiffness(
+        line_fraction_for_stiffness(
             model,
             FLUID_MODULUS,
             &cylinder,

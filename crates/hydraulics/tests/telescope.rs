@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
-use phea_dynamics::random::{share, stream};
+use phea_dynamics::random::{uniform, stream};
 use phea_dynamics::scalar::{Dual, Interval, Parameters};
 use phea_dynamics::simulation::{DIRECTIONS, Plant};
 use phea_hydraulics::accumulator::Accumulator;
@@ -42,7 +42,7 @@ fn areas_are_the_slopes_of_the_volumes() {
     let cylinder = with(three(0.05), asymmetric()).cylinder;
     let mut state = stream(71, 1);
     for _ in 0..400 {
-        let x = 0.5 * share(&mut state);
+        let x = 0.5 * uniform(&mut state);
         let [volume_a, volume_b] = chamber_volumes(&cylinder, Dual::<DIRECTIONS>::variable(x, 0));
         let [area_a, area_b] = cylinder.areas_at(x);
         assert!(
@@ -64,8 +64,8 @@ fn intervals_enclose_it() {
     let over = telescope.convert(&mut Interval::from);
     let mut state = stream(72, 1);
     for _ in 0..200 {
-        let (from, width) = (0.4 * share(&mut state), 0.1 * share(&mut state));
-        let x = from + width * share(&mut state);
+        let (from, width) = (0.4 * uniform(&mut state), 0.1 * uniform(&mut state));
+        let x = from + width * uniform(&mut state);
         let interval = Interval::new(from, from + width);
         let enclosed = [over.ratios(interval), over.travels(interval), over.slopes(interval)].concat();
         let own = [telescope.ratios(x), telescope.travels(x), telescope.slopes(x)].concat();

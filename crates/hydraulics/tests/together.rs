@@ -5,7 +5,7 @@
 use num_complex::Complex64;
 use phea_dynamics::controller::InnerFeedback;
 use phea_dynamics::portable::pow;
-use phea_dynamics::random::{share, stream};
+use phea_dynamics::random::{uniform, stream};
 use phea_hydraulics::accumulator::{
     Accumulator, AdjustedGas, ChamberGas, GasContent, GasPassage, GasValve, Neck, RelaxingGas, SealedGas,
 };
@@ -21,7 +21,7 @@ use phea_hydraulics::load::Load;
 use phea_hydraulics::machine::{InitialCondition, Machine, MachineOptions, PowerUnit};
 use phea_hydraulics::operating_point::{Condition, operating_point};
 use phea_hydraulics::plant::{
-    BehindLines, LinearLoad, LinearPlant, LinearSeries, PlantInMotion, PressureFeedback, SeriesOutput,
+    LineChambers, LinearLoad, LinearPlant, LinearSeries, PlantInMotion, PressureFeedback, SeriesOutput,
 };
 use phea_hydraulics::reference_rig::{components, cylinder, hose, hose_line};
 use phea_hydraulics::series::SeriesElement;
@@ -84,12 +84,12 @@ impl Draw {
     }
 
     fn spread(&mut self, low: f64, high: f64) -> f64 {
-        low * pow(high / low, share(&mut self.state))
+        low * pow(high / low, uniform(&mut self.state))
     }
 
     /// True if the rig has a part that this fraction of the rigs has.
     fn part(&mut self, name: &'static str, likely: f64) -> bool {
-        let has = share(&mut self.state) < likely;
+        let has = uniform(&mut self.state) < likely;
         self.parts.extend(has.then_some(name));
         has
     }
@@ -97,7 +97,7 @@ impl Draw {
 
 /// Gas at a chamber, with all its options.
 fn gas(draw: &mut Draw) -> Option<ChamberGas> {
-    if share(&mut draw.state) > 0.65 {
+    if uniform(&mut draw.state) > 0.65 {
         return None;
     }
     let heat = draw.part("gas with heat", 0.4).then(|| draw.spread(1e-3, 1e2));
@@ -195,7 +195,7 @@ fn lines(draw: &mut Draw) -> [Line; 2] {
         }
     };
     let (one, other) = (line(true), line(false));
-    let swapped = share(&mut draw.state) < 0.5;
+    let swapped = uniform(&mut draw.state) < 0.5;
     let [one, other] = if swapped { [other, one] } else { [one, other] };
     [one, if draw.part("unequal lines", 0.5) { other } else { one }]
 }
@@ -231,7 +231,7 @@ fn linkage(draw: &mut Draw, kinds: &[Linkage; 4]) -> Option<Linkage> {
     if !draw.part("linkage", 0.5) {
         return None;
     }
-    let linkage = kinds[(4.0 * share(&mut draw.state)) as usize];
+    let linkage = kinds[(4.0 * uniform(&mut draw.state)) as usize];
     let weighed = linkage.level_at(draw.spread(0.1, 6.0)).with_moment(draw.spread(0.1, 30.0));
     Some(if draw.part("weight", 0.6) { weighed } else { linkage })
 }
@@ -244,7 +244,7 @@ struct Drawn {
     turned: f64,
     plant: LinearPlant,
     /// Lines with dynamics.
-    behind: Option<BehindLines>,
+    behind: Option<LineChambers>,
     parts: Vec<&'static str>,
 }
 
@@ -288,7 +288,7 @@ fn parts(draw: &mut Draw, number: u64, kinds: &[Linkage; 4]) -> (Components, [Dr
 
 /// Rest of a machine at a small command to either side, its rod within the linkage.
 fn rest(draw: &mut Draw, rig: &Actuator, machine: &Machine, position: f64) -> InitialCondition {
-    let side = if share(&mut draw.state) < 0.5 { -1.0 } else { 1.0 };
+    let side = if uniform(&mut draw.state) < 0.5 { -1.0 } else { 1.0 };
     let command = draw.spread(3e-3, 0.3);
     let mut rests = (0..60).filter_map(|step| {
         let condition = Condition::Command(side * command * pow(0.8, f64::from(step)));
@@ -369,10 +369,10 @@ fn pressure_feedback(draw: &mut Draw, actuator: &Actuator) -> Option<PressureFee
         return None;
     }
     let Cylinder { area_a, area_b, .. } = actuator.components().cylinder;
-    let ratio = [1.0, area_b / area_a, draw.spread(0.1, 3.0)][(3.0 * share(&mut draw.state)) as usize];
+    let ratio = [1.0, area_b / area_a, draw.spread(0.1, 3.0)][(3.0 * uniform(&mut draw.state)) as usize];
     let corners = [draw.spread(0.1, 300.0), draw.spread(30.0, 3e4)];
     let [high_pass_rad_per_s, low_pass_rad_per_s] =
-        corners.map(|corner| (share(&mut draw.state) < 0.6).then_some(corner));
+        corners.map(|corner| (uniform(&mut draw.state) < 0.6).then_some(corner));
     let filter = InnerFeedback { gain: draw.spread(1e-9, 1e-5), high_pass_rad_per_s, low_pass_rad_per_s };
     Some(PressureFeedback { filter, ratio })
 }

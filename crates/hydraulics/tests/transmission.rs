@@ -6,7 +6,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::portable::pow;
-use phea_dynamics::random::{share, stream};
+use phea_dynamics::random::{uniform, stream};
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::impedance::{
@@ -47,7 +47,7 @@ fn pipe(bore: f64, length: f64) -> Line {
 /// addition to the line.
 pub(super) fn transmission(number: u64) -> Transmission {
     let mut state = stream(81, number);
-    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let mut spread = |low: f64, high: f64| low * pow(high / low, uniform(&mut state));
     let length = spread(0.2, 6.0);
     let line = match (hose_line(), number % 3) {
         (Line::Hose { hose, .. }, 0) => Line::Hose { hose, length },

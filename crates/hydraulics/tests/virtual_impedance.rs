@@ -7,7 +7,7 @@ use num_complex::Complex64;
 use phea_dynamics::analytic::Disc;
 use phea_dynamics::controller::VirtualImpedance;
 use phea_dynamics::portable::{exp_complex, pow};
-use phea_dynamics::random::{share, stream};
+use phea_dynamics::random::{uniform, stream};
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_hydraulics::plant::{
     LinearElement, LinearPlant, LinearSeries, LinearSpring, PlantInMotion, SeriesOutput,
@@ -18,7 +18,7 @@ use super::plant_in_motion::drawn;
 /// Spring, with a damper, with a mass, or only a mass.
 fn impedance(number: u64) -> VirtualImpedance {
     let mut state = stream(61, number);
-    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let mut spread = |low: f64, high: f64| low * pow(high / low, uniform(&mut state));
     let (stiffness, damping, mass) = (spread(1e3, 1e7), spread(1e2, 1e5), spread(0.1, 200.0));
     let filter_time_s = spread(1e-4, 1e-1);
     let [spring, damper, heavy] = match number % 4 {
@@ -50,7 +50,7 @@ fn check(found: Complex64, expected: Complex64, what: &str) {
 fn the_output_is_that_of_the_machine() {
     for number in 0..36 {
         let (rig, own_impedance) = (drawn(number), impedance(number));
-        let moving = PlantInMotion::new(&rig.plant, &rig.behind).beside(Some(own_impedance));
+        let moving = PlantInMotion::new(&rig.plant, &rig.behind).with_virtual_impedance(Some(own_impedance));
         let (fed, delay) = (25.0, 2e-3);
         let with_both = moving.fed_forward(Some(fed)).late(delay);
         for frequency in frequencies() {
@@ -111,7 +111,7 @@ fn enclosure_and_roll_off_hold() {
     let mut bounded = 0;
     for number in 0..36 {
         let rig = drawn(number);
-        let moving = PlantInMotion::new(&rig.plant, &rig.behind).beside(Some(impedance(number)));
+        let moving = PlantInMotion::new(&rig.plant, &rig.behind).with_virtual_impedance(Some(impedance(number)));
         for from in [1.0, 30.0, 400.0, 3e3, 3e4] {
             let ends = [from, 1.02 * from];
             let disc: Disc = moving.enclosure(ends);

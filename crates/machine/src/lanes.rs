@@ -24,7 +24,7 @@ pub trait Fleet<'a> {
     fn done(&mut self, lane: usize, outcome: Outcome);
 
     /// Progress callback, called once per step; return `false` to cancel.
-    fn goes_on(&mut self) -> bool;
+    fn continues(&mut self) -> bool;
 }
 
 /// Simulates machines one by one until none remain. Simulations in lanes must agree with it.
@@ -74,7 +74,7 @@ pub trait Fleet<'a> {
 ///     fn done(&mut self, _lane: usize, outcome: Outcome) {
 ///         self.ends.push(outcome.end);
 ///     }
-///     fn goes_on(&mut self) -> bool {
+///     fn continues(&mut self) -> bool {
 ///         true
 ///     }
 /// }
@@ -171,7 +171,7 @@ impl<'a, S: Lane> Queue<'a, Commanded<S>> for Queued<'_, 'a> {
         self.0.done(lane, outcome);
     }
 
-    fn goes_on(&mut self, _lane: usize, _time_s: f64) -> bool {
-        self.0.goes_on()
+    fn continues(&mut self, _lane: usize, _time_s: f64) -> bool {
+        self.0.continues()
     }
 }

@@ -63,8 +63,8 @@ pub struct Rest {
 /// let sensed = Sensed::new(machine.clone(), &TransferFunction::gain_only(1.0))?;
 /// let closed = CommandedPlant::in_loop(sensed, &controller, 0.0)?;
 /// let guess = [beginning.state.clone(), closed.controller_at_rest(2e3, [3e3, 0.0], beginning.command)].concat();
-/// let standing = HeldInputs { reference_n: 2e3, command_v: 0.0, external_n: 0.0, setting_change: 0.0 };
-/// let rest = at_rest(&Control::Continuous(Box::new(closed)), &guess, &beginning, standing)?;
+/// let held_inputs = HeldInputs { reference_n: 2e3, command_v: 0.0, external_n: 0.0, setting_change: 0.0 };
+/// let rest = at_rest(&Control::Continuous(Box::new(closed)), &guess, &beginning, held_inputs)?;
 /// assert!((rest.measured_n - 2e3).abs() < 1e-3 && (force(&machine, &rest.start) - 2e3).abs() < 1e-3);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -72,27 +72,27 @@ pub fn at_rest(
     control: &Control,
     guess: &[f64],
     beginning: &InitialCondition,
-    standing: HeldInputs,
+    held_inputs: HeldInputs,
 ) -> Result<Rest, EquilibriumError> {
     let beside = control.impedance_states();
     if !beside.is_empty() {
         let other = [&guess[..beside.start], &guess[beside.end..]].concat();
-        let mut rest = at_rest(&control.clone().without_impedance(), &other, beginning, standing)?;
+        let mut rest = at_rest(&control.clone().without_impedance(), &other, beginning, held_inputs)?;
         rest.start.splice(beside.start..beside.start, vec![0.0; beside.len()]);
         return Ok(rest);
     }
     let machine = control.sensed().plant();
     let [ground, _] = beginning.inputs;
     let mut kept = machine.memories();
-    kept.extend(machine.shut_gas(standing.setting_change));
-    let mut inputs = vec![standing.reference_n, ground, 0.0];
-    inputs.extend(machine.has_external_force().then_some(standing.external_n));
+    kept.extend(machine.shut_gas(held_inputs.setting_change));
+    let mut inputs = vec![held_inputs.reference_n, ground, 0.0];
+    inputs.extend(machine.has_external_force().then_some(held_inputs.external_n));
     inputs
-        .extend(machine.has_moving_setting().then_some([standing.setting_change, 0.0]).into_iter().flatten());
+        .extend(machine.has_moving_setting().then_some([held_inputs.setting_change, 0.0]).into_iter().flatten());
     Ok(match control {
         Control::Open(commanded) | Control::Continuous(commanded) => {
             if let Control::Open(_) = control {
-                inputs.insert(0, standing.command_v);
+                inputs.insert(0, held_inputs.command_v);
             }
             let free = commanded.as_ref().clone().unlimited();
             let start = equilibrium(&free, guess, &inputs, &kept)?;

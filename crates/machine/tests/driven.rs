@@ -56,12 +56,12 @@ pub(crate) fn driven(
     let control = Control::Open(Box::new(open));
     let reference = Input::Value(Profile::constant(0.0));
     let inputs = vec![Input::Value(command), reference, Input::Value(ground.clone()), Input::Rate(ground)];
-    let course = InputSchedule { duration_s, output_step_s, inputs };
+    let schedule = InputSchedule { duration_s, output_step_s, inputs };
     let leading = control.leading_inputs();
     let mut rows = Rows::default();
     let recorder = Recorder { wanted: (0..control.size()[0]).collect(), rows: &mut rows };
     let task =
-        Task { start, course: &course, sampler: None, observer: Box::new(recorder) as Box<dyn Observer> };
+        Task { start, schedule: &schedule, sampler: None, observer: Box::new(recorder) as Box<dyn Observer> };
     let outcome = control.drive(task, settings, &mut |_| true).unwrap();
     let inputs = rows.inputs.into_iter().map(|all| all[leading..].to_vec()).collect();
     Driven { times_s: rows.times_s, states: rows.states, inputs, outcome }

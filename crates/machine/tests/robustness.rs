@@ -87,9 +87,9 @@ fn a_shut_valve_settles() {
 #[test]
 fn a_piston_meets_its_end_stops() {
     let rig = Components { load: free_load(), ..hose_rig() };
-    let course = [(0.0, 10.0), (1.0, -10.0), (3.5, 0.0)];
+    let schedule = [(0.0, 10.0), (1.0, -10.0), (3.5, 0.0)];
     let machine = machine_of(rig, &MachineOptions::default());
-    let (result, outputs) = drive(machine, &at(0.4), 4.0, &course, Profile::constant(0.4));
+    let (result, outputs) = drive(machine, &at(0.4), 4.0, &schedule, Profile::constant(0.4));
     assert_eq!(result.outcome.status, Status::Completed);
     assert!(happened(&result, "end_stop_b") && happened(&result, "end_stop_a"));
     let position = column(&outputs, Signal::Position);
@@ -139,8 +139,8 @@ fn lost_supplies_and_reversed_pressures_are_no_error() {
     let power_unit = PowerUnit::PumpLimited(unit);
     let rig = Components { power_unit, load: free_load(), ..hose_rig() };
     let machine = machine_of(rig, &MachineOptions::default());
-    let course = [(0.5, 5.0), (1.0, -5.0), (1.5, 0.0)];
-    let (result, outputs) = drive(machine, &at(0.25), 3.0, &course, Profile::constant(0.25));
+    let schedule = [(0.5, 5.0), (1.0, -5.0), (1.5, 0.0)];
+    let (result, outputs) = drive(machine, &at(0.25), 3.0, &schedule, Profile::constant(0.25));
     assert_eq!(result.outcome.status, Status::Completed);
     let supply = column(&outputs, Signal::SupplyPressure);
     assert!(supply[0] > 60e5 && supply[supply.len() - 1] < 5e5);
@@ -173,8 +173,8 @@ fn walls_are_met_with_every_friction() {
         let rig = components(hose_line(), StiffnessModel::ByVolume);
         let rig = Components { friction, valve: Servovalve { spool, ..rig.valve }, load, ..rig };
         let machine = machine_of(rig, &MachineOptions::default());
-        let course = [(0.1, 2.0), (0.8, -2.0)];
-        let (result, outputs) = drive(machine, &at(0.25), 1.5, &course, Profile::constant(0.25));
+        let schedule = [(0.1, 2.0), (0.8, -2.0)];
+        let (result, outputs) = drive(machine, &at(0.25), 1.5, &schedule, Profile::constant(0.25));
         assert_eq!(result.outcome.status, Status::Completed);
         assert!(happened(&result, "load_contact") && result.outcome.work.steps < 20_000);
         let force = column(&outputs, Signal::Force);

@@ -12,7 +12,7 @@ pub struct ChosenLines {
     /// Highest frequency of loop and requirements, and its origin; `None` if there is neither.
     pub reach: Option<(f64, ReachedBy)>,
     /// Reason why they are lumped although their waves are within the frequency range.
-    pub hindrance: Option<WavesHindrance>,
+    pub obstacle: Option<WavesHindrance>,
 }
 
 /// Reason why no model with waves is computed.

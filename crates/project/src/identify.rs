@@ -316,11 +316,11 @@ impl RecordedColumn {
     /// Accuracy of the instrument; `None` if none is stated, or none that can be read.
     pub fn stated_accuracy(&self, dimension: &Dimension) -> Option<Accuracy> {
         let text = self.accuracy.as_ref()?;
-        let share = || quantity::parse(text, &RATIO).ok().map(Accuracy::OfReading);
+        let fraction = || quantity::parse(text, &RATIO).ok().map(Accuracy::OfReading);
         if text.trim_end().ends_with('%') {
-            return share();
+            return fraction();
         }
-        quantity::parse(text, dimension).ok().map(Accuracy::OfRange).or_else(share)
+        quantity::parse(text, dimension).ok().map(Accuracy::OfRange).or_else(fraction)
     }
 }
 

@@ -3,7 +3,7 @@
 //! ```text
 //! bytes -> tree -> setting (--set) -> reader <- catalogue: values of named parts
 //!                                     |
-//!                             Project::visit_system, visit_wishes: each key next to its field
+//!                             Project::visit_system, visit_requirements: each key next to its field
 //!                                     |
 //!                                     -> validate: the conditions between keys -> Loaded, or a Refusal
 //!
@@ -213,7 +213,7 @@ impl Project {
     }
 
     /// Visits the requirements on the system.
-    fn visit_wishes<V: Visitor>(&mut self, v: &mut V) {
+    fn visit_requirements<V: Visitor>(&mut self, v: &mut V) {
         let k = plain("operating_point", "Where the linear model is taken.");
         v.table_or_default(k, &mut self.operating_point, DeclaredOperatingPoint::visit);
         let k = plain("linear", "Parameters of the linear model, set outright.");

@@ -19,9 +19,9 @@ pub enum DeclaredLimit {
     /// Numbers at frequencies, interpolated linearly in a log-log diagram.
     Table(DeclaredLimitTable),
     /// Limit that guarantees these margins.
-    Margins(MarginWish),
+    Margins(MarginRequirement),
     /// Limit that follows from a requirement in time, or is checked against one.
-    Response(ResponseWish),
+    Response(ResponseRequirement),
 }
 
 /// Limit at frequencies.
@@ -35,7 +35,7 @@ pub struct DeclaredLimitTable {
 
 /// Margins that a limit must guarantee; the strictest one determines the limit.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct MarginWish {
+pub struct MarginRequirement {
     /// Factor by which the gain may grow, above 1.
     pub gain_margin: Option<f64>,
     /// Factor to which the gain may fall, below 1.
@@ -50,7 +50,7 @@ pub struct MarginWish {
 
 /// Required step response: the fastest one for `upper`, the slowest for `lower`.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct ResponseWish {
+pub struct ResponseRequirement {
     /// Overshoot, percent of the step; for `upper`.
     pub overshoot_percent: Option<f64>,
     /// Settling time, s.
@@ -102,7 +102,7 @@ impl DeclaredLimit {
     /// present determine the form. No key at all counts as an empty table.
     fn visit_table<V: Visitor>(&mut self, v: &mut V) {
         let (mut table, mut function) = (DeclaredLimitTable::default(), None);
-        let (mut margins, mut response) = (MarginWish::default(), ResponseWish::default());
+        let (mut margins, mut response) = (MarginRequirement::default(), ResponseRequirement::default());
         match std::mem::take(self) {
             DeclaredLimit::Table(of) => table = of,
             DeclaredLimit::Rational(of) => function = Some(of),
@@ -129,9 +129,9 @@ impl DeclaredLimit {
             function.map(|(numerator, denominator)| Rational { numerator, denominator, factors: None });
         *self = match function {
             _ if !table.frequencies.is_empty() => DeclaredLimit::Table(table),
-            _ if margins != MarginWish::default() => DeclaredLimit::Margins(margins),
-            function if response != ResponseWish::default() => {
-                DeclaredLimit::Response(ResponseWish { function, ..response })
+            _ if margins != MarginRequirement::default() => DeclaredLimit::Margins(margins),
+            function if response != ResponseRequirement::default() => {
+                DeclaredLimit::Response(ResponseRequirement { function, ..response })
             }
             Some(function) => DeclaredLimit::Rational(function),
             None => DeclaredLimit::Table(table),
@@ -139,7 +139,7 @@ impl DeclaredLimit {
     }
 }
 
-impl MarginWish {
+impl MarginRequirement {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         let gain = |name, doc| key(name, &GAIN, doc);
         let k = gain("gain_margin", "Factor by which the gain may grow, such as \"6 dB\".").above(1.0);
@@ -155,7 +155,7 @@ impl MarginWish {
     }
 }
 
-impl ResponseWish {
+impl ResponseRequirement {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         let percent = |name, doc| -> Key { key(name, &PERCENT, doc).below(100.0) };
         let k = percent("overshoot_percent", "Largest overshoot, in percent of the step; of `upper`.");
@@ -168,7 +168,7 @@ impl ResponseWish {
         v.optional(k, &mut self.zero);
         let k = key("pole", &ANGULAR_FREQUENCY, "The pole added to `lower`.").positive();
         v.optional(k, &mut self.pole);
-        if v.names_everything() || *self != ResponseWish::default() {
+        if v.names_everything() || *self != ResponseRequirement::default() {
             let words = &[
                 ("exact", None),
                 ("five_percent", Some(SettlingRule::FivePercent)),
@@ -178,7 +178,7 @@ impl ResponseWish {
                 ("critically_damped_two_percent", Some(SettlingRule::CriticallyDampedTwoPercent)),
             ];
             v.choice(
-                plain("rule", "How the wish becomes a transfer function."),
+                plain("rule", "How the requirement becomes a transfer function."),
                 words,
                 &mut self.rule,
                 false,

@@ -178,7 +178,7 @@ fn project(reader: &mut Reader<'_>, root: &TreeNode) -> Project {
     }
     let directions = directions(root);
     reader.named.extend(directions.map(|name| (name.to_string(), DIRECTION)));
-    project.visit_wishes(reader);
+    project.visit_requirements(reader);
     reader.close();
     validate::project(&project, reader);
     project
@@ -306,7 +306,7 @@ pub fn print(project: &Project) -> String {
     named.extend(missing.into_iter().map(|name| (name, parameter)));
     let mut printer = Printer::new(named);
     project.visit_system(&mut printer);
-    project.visit_wishes(&mut printer);
+    project.visit_requirements(&mut printer);
     printer.finish()
 }
 
@@ -315,7 +315,7 @@ pub fn keys() -> Vec<KeyEntry> {
     let mut listing = Listing::of_everything();
     let mut project = Project::default();
     project.visit_system(&mut listing);
-    project.visit_wishes(&mut listing);
+    project.visit_requirements(&mut listing);
     listing.keys
 }
 

@@ -58,7 +58,7 @@ struct Frame<'a> {
     /// The table itself, then the layers from which it inherits.
     layers: Vec<Layer<'a>>,
     /// Keys requested so far.
-    asked: Vec<&'static str>,
+    requested: Vec<&'static str>,
     /// Missing required keys, with the finding for each at the end of the table: a misspelt key
     /// explains one.
     lacking: Vec<(&'static str, RawFinding)>,
@@ -151,7 +151,7 @@ impl<'a> Reader<'a> {
             path,
             place,
             layers,
-            asked: Vec::new(),
+            requested: Vec::new(),
             lacking: Vec::new(),
             chosen: None,
             lost: false,
@@ -163,9 +163,9 @@ impl<'a> Reader<'a> {
     /// Ends a table: keys that were not read are unknown. Returns the keys that were read.
     pub(crate) fn close(&mut self) -> Vec<&'static str> {
         let Some(mut frame) = self.frames.pop() else { return Vec::new() };
-        let Some(own) = frame.layers.first() else { return frame.asked };
-        let asked = frame.asked.clone();
-        let mut unknown = own.node.entries().iter().filter(|entry| !asked.contains(&entry.key.as_str()));
+        let Some(own) = frame.layers.first() else { return frame.requested };
+        let requested = frame.requested.clone();
+        let mut unknown = own.node.entries().iter().filter(|entry| !requested.contains(&entry.key.as_str()));
         if let Some(first) = unknown.next() {
             let known = (self.all_keys)();
             for entry in std::iter::once(first).chain(unknown) {
@@ -174,10 +174,10 @@ impl<'a> Reader<'a> {
         }
         frame.lacking.drain(..).for_each(|(_, found)| self.findings.push(found));
         if let Some(extra) = frame.in_order.and_then(|mut rest| rest.next()) {
-            let message = format!("too many values: `{}` has {}", frame.path, frame.asked.len());
+            let message = format!("too many values: `{}` has {}", frame.path, frame.requested.len());
             self.findings.push(RawFinding::error(extra.place, message));
         }
-        frame.asked
+        frame.requested
     }
 
     /// Ends a table whose unknown keys are reported in the table around it. Returns the keys that
@@ -185,7 +185,7 @@ impl<'a> Reader<'a> {
     fn leave(&mut self) -> Vec<&'static str> {
         let Some(frame) = self.frames.pop() else { return Vec::new() };
         frame.lacking.into_iter().for_each(|(name, found)| self.lack(name, found));
-        frame.asked
+        frame.requested
     }
 
     /// Place of the beginning of the file.
@@ -207,7 +207,7 @@ impl<'a> Reader<'a> {
     /// Marks a key of the current table as known.
     pub(crate) fn know(&mut self, key: &'static str) {
         if let Some(frame) = self.frames.last_mut() {
-            frame.asked.push(key);
+            frame.requested.push(key);
         }
     }
 
@@ -229,8 +229,8 @@ impl<'a> Reader<'a> {
         if frame.passed_over.as_ref().is_some_and(|keys| keys.contains(&key.name)) {
             return None;
         }
-        if !frame.asked.contains(&key.name) {
-            frame.asked.push(key.name);
+        if !frame.requested.contains(&key.name) {
+            frame.requested.push(key.name);
             if let Some(values) = &mut frame.in_order {
                 let node = values.next()?;
                 self.places.insert(path, node.place);
@@ -290,7 +290,7 @@ impl<'a> Reader<'a> {
     }
 
     /// True if the current table is only searched for keys of variants that were not chosen.
-    fn looks_elsewhere(&self) -> bool {
+    fn depends_on_other_file(&self) -> bool {
         self.frames.last().is_some_and(|frame| frame.passed_over.is_some())
     }
 
@@ -322,7 +322,7 @@ impl<'a> Reader<'a> {
     /// had them.
     fn takes_absent(&mut self) -> bool {
         self.incomplete = true;
-        self.partial || self.looks_elsewhere() || self.is_lost()
+        self.partial || self.depends_on_other_file() || self.is_lost()
     }
 
     /// Current table, as in `missing ... in [line]`.
@@ -356,7 +356,7 @@ impl<'a> Reader<'a> {
 /// missing key is not reported separately.
 fn unknown_key(entry: &Entry, known: &[KeyEntry], frame: &mut Frame<'_>) -> RawFinding {
     let place = if frame.path.is_empty() { String::new() } else { format!(" in [{}]", frame.path) };
-    let near = nearest(&entry.key, frame.asked.iter().copied());
+    let near = nearest(&entry.key, frame.requested.iter().copied());
     let missing = near.and_then(|name| {
         let before = frame.lacking.len();
         frame.lacking.retain(|(lacking, _)| *lacking != name);
@@ -369,7 +369,7 @@ fn unknown_key(entry: &Entry, known: &[KeyEntry], frame: &mut Frame<'_>) -> RawF
     if let Some(help) = of_one_side(&entry.key, frame) {
         return found.help(help);
     }
-    let near = near.or_else(|| word_of(&entry.key, &frame.asked));
+    let near = near.or_else(|| word_of(&entry.key, &frame.requested));
     match (near, homes.as_slice()) {
         (_, [first, ..]) if homes.len() > MOST_TABLES => {
             found.help(format!("it belongs to {} tables, such as {first}", homes.len()))
@@ -379,15 +379,15 @@ fn unknown_key(entry: &Entry, known: &[KeyEntry], frame: &mut Frame<'_>) -> RawF
         }
         (_, [only]) => found.help(format!("it belongs to {only}")),
         (Some(name), _) => found.help(format!("did you mean `{name}`?")),
-        (None, _) if frame.asked.len() <= 16 => found.help(format!("known here: {}", frame.asked.join(", "))),
+        (None, _) if frame.requested.len() <= 16 => found.help(format!("known here: {}", frame.requested.join(", "))),
         (None, _) => found,
     }
 }
 
 /// Only key that has this one as a word of its name: `bulk_modulus` for `modulus`.
-fn word_of(key: &str, asked: &[&'static str]) -> Option<&'static str> {
+fn word_of(key: &str, requested: &[&'static str]) -> Option<&'static str> {
     let inside = |name: &&str| name.split('_').any(|word| word == key);
-    let mut all = asked.iter().copied().filter(|name| inside(name));
+    let mut all = requested.iter().copied().filter(|name| inside(name));
     all.next().filter(|_| all.next().is_none())
 }
 
@@ -398,14 +398,14 @@ fn of_one_side(key: &str, frame: &Frame<'_>) -> Option<String> {
         Some((side, key.strip_suffix(after.as_str()).or_else(|| key.strip_prefix(before.as_str()))?))
     };
     let (side, name) = cut("a").or_else(|| cut("b"))?;
-    let has_sides = ["a", "b"].iter().all(|side| frame.asked.contains(side));
+    let has_sides = ["a", "b"].iter().all(|side| frame.requested.contains(side));
     if has_sides && name == frame.path {
         return Some(format!("line {} is [{name}.{side}]", side.to_uppercase()));
     }
-    if has_sides && frame.asked.contains(&name) {
+    if has_sides && frame.requested.contains(&name) {
         return Some(format!("that of side {} is `{name}` in [{}.{side}]", side.to_uppercase(), frame.path));
     }
-    let pair = frame.asked.iter().find(|asked| asked.strip_suffix('s') == Some(name));
+    let pair = frame.requested.iter().find(|requested| requested.strip_suffix('s') == Some(name));
     pair.map(|pair| format!("both sides are one pair: `{pair} = [A, B]`"))
 }
 

@@ -26,16 +26,16 @@ pub struct IdentifiedNumber {
 
 /// Number that remains as declared, because the recordings do not determine it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct KeptNumber {
+pub struct UnchangedNumber {
     /// Path of the number in the project.
     pub path: String,
     /// Reason.
-    pub reason: KeptReason,
+    pub reason: UnchangedReason,
 }
 
 /// Reason why a number remains as declared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum KeptReason {
+pub enum UnchangedReason {
     /// The recordings do not determine it.
     NotIdentifiable,
     /// The confidence interval contains zero.
@@ -65,7 +65,7 @@ pub struct FromRecordings {
     /// Identified numbers.
     pub numbers: Vec<IdentifiedNumber>,
     /// Numbers that remain as declared.
-    pub kept: Vec<KeptNumber>,
+    pub unchanged: Vec<UnchangedNumber>,
     /// Pressure drops from supply to tank at which the tare flow is stated, Pa: of the recordings,
     /// and as declared.
     pub tare_pressures: [f64; 2],

@@ -28,7 +28,7 @@ pub fn schema() -> Value {
     let mut project = Project::default();
     let table = writer.table_of(|writer| {
         project.visit_system(writer);
-        project.visit_wishes(writer);
+        project.visit_requirements(writer);
         what_is_described(writer);
     });
     let mut schema = table.object();

@@ -31,12 +31,12 @@ pub struct DeclaredSizing {
     /// Increment of hose lengths, m; any length if absent.
     pub length_increment: Option<f64>,
     /// Other components to be sized for the stiffness of the hose; none if absent.
-    pub other_means: Option<OtherMeansWish>,
+    pub other_means: Option<OtherMeansRequirement>,
 }
 
 /// Requirements on alternatives with the softness of the hose.
 #[derive(Clone, Debug, PartialEq)]
-pub struct OtherMeansWish {
+pub struct OtherMeansRequirement {
     /// Stiffness K_H, N/m; if absent, that of the accepted hose.
     pub stiffness: Option<f64>,
     /// Range of forces at standstill over which gas must be in use, N; if absent, no gas is sized.
@@ -58,9 +58,9 @@ const PRECHARGE_SHARE: f64 = 0.9;
 /// Polytropic exponent of nitrogen without heat exchange.
 const ADIABATIC: f64 = 1.4;
 
-impl Default for OtherMeansWish {
+impl Default for OtherMeansRequirement {
     fn default() -> Self {
-        OtherMeansWish {
+        OtherMeansRequirement {
             stiffness: None,
             force_range: None,
             precharge_share: PRECHARGE_SHARE,
@@ -71,7 +71,7 @@ impl Default for OtherMeansWish {
     }
 }
 
-impl OtherMeansWish {
+impl OtherMeansRequirement {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = key("stiffness", &STIFFNESS, "K_H of the other means; absent: that of the accepted hose.");
         v.optional(k.positive(), &mut self.stiffness);
@@ -155,6 +155,6 @@ impl DeclaredSizing {
         let k = key("length_increment", &LENGTH, "Hoses are cut to multiples of this.").positive();
         v.optional(k, &mut self.length_increment);
         let k = plain("other_means", "Sizes gas, a spring, a pipe and a valve between the chambers too.");
-        v.table(k, &mut self.other_means, OtherMeansWish::visit);
+        v.table(k, &mut self.other_means, OtherMeansRequirement::visit);
     }
 }

@@ -21,7 +21,7 @@ mod pressure_feedback;
 mod rig;
 mod series;
 mod specification;
-mod wishes;
+mod requirements;
 
 use super::catalogue_entry::Catalogue;
 use super::reader::Reader;
@@ -45,16 +45,16 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
         linkage::linkage(project, actuator, &mut check);
         ideal::limits(project, actuator, &mut check);
         cost::prices(actuator, &mut check);
-        wishes::with_actuator(project, actuator, &mut check);
+        requirements::with_actuator(project, actuator, &mut check);
     }
     if let Some(plant) = &project.plant {
-        wishes::with_plant(project, plant, &mut check);
+        requirements::with_plant(project, plant, &mut check);
     }
     if project.actuator.is_none() {
-        wishes::without_actuator(project, &mut check);
+        requirements::without_actuator(project, &mut check);
     }
     plausible::numbers(project, &mut check);
-    wishes::uncertainty(project, &mut check);
+    requirements::uncertainty(project, &mut check);
     direction::directions(project, &mut check);
     family::family(project, &mut check);
     linear_loop::sensor(project, &mut check);

@@ -59,8 +59,8 @@ impl WrittenUnits {
     /// use phea_project::source::Memory;
     /// let loaded = read(&Memory::default().with("p.toml", STARTER), "p.toml", &[], &[])?;
     /// let units = WrittenUnits::of(&loaded);
-    /// assert_eq!(units.shown("supply.pressure", 70e5, "Pa"), (70.0, "bar".to_string()));
-    /// assert_eq!(units.shown("line.wave_number", 3.0, "1/m"), (3.0, "1/m".to_string()));
+    /// assert_eq!(units.displayed("supply.pressure", 70e5, "Pa"), (70.0, "bar".to_string()));
+    /// assert_eq!(units.displayed("line.wave_number", 3.0, "1/m"), (3.0, "1/m".to_string()));
     /// # Ok::<(), phea_project::Refusal>(())
     /// ```
     pub fn of(loaded: &Loaded) -> WrittenUnits {
@@ -103,16 +103,16 @@ impl WrittenUnits {
 
     /// Number in the unit that the project uses most often for such numbers; otherwise in the
     /// customary unit, or in the SI unit if there is none, or if the number would be far from one.
-    pub fn shown(&self, name: &str, value: f64, si: &'static str) -> (f64, String) {
+    pub fn displayed(&self, name: &str, value: f64, si: &'static str) -> (f64, String) {
         let dimension = DIMENSIONS.iter().find(|dimension| dimension.si == si);
         let family = UnitFamily::of(name);
         let unit = self.most(si, family).or_else(|| customary(si, family));
         let in_si = unit
             .zip(dimension)
             .and_then(|(unit, dimension)| Some((UnitScale::new(unit, dimension).ok()?.read("1")?, unit)));
-        let shown = in_si.map(|(one, unit)| (value / one, unit.to_string()));
+        let displayed = in_si.map(|(one, unit)| (value / one, unit.to_string()));
         let is_handy = |(number, _): &(f64, String)| *number == 0.0 || HANDY.contains(&number.abs());
-        shown.filter(is_handy).unwrap_or_else(|| (value, si.to_string()))
+        displayed.filter(is_handy).unwrap_or_else(|| (value, si.to_string()))
     }
 
     /// Counts the texts in quotes, each with the key before it.
@@ -178,10 +178,10 @@ mod tests {
     fn an_expansion_is_no_area() {
         let mut units = WrittenUnits::default();
         units.take_in("volumetric_expansion = \"6 mL/m\"");
-        assert_eq!(units.shown("line.volumetric_expansion", 9.6e-6, "m3/m").1, "mL/m");
-        assert_eq!(units.shown("cylinder.area_a", 3e-3, "m2"), (3e-3, "m2".to_string()));
+        assert_eq!(units.displayed("line.volumetric_expansion", 9.6e-6, "m3/m").1, "mL/m");
+        assert_eq!(units.displayed("cylinder.area_a", 3e-3, "m2"), (3e-3, "m2".to_string()));
         units.take_in("area_a = \"31 cm2\"");
-        assert_eq!(units.shown("cylinder.area_a", 3e-3, "m2").1, "cm2");
+        assert_eq!(units.displayed("cylinder.area_a", 3e-3, "m2").1, "cm2");
     }
 
     /// Friction and the lengths of lines do not affect the units of forces and positions; a project

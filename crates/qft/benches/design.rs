@@ -194,7 +194,7 @@ fn servo() -> Result<DesignProblem, Failure> {
     ];
     Ok(DesignProblem {
         family: Family::Uncertain(family),
-        beside: vec![],
+        additional_plants: vec![],
         sensor: TransferFunction::gain_only(1.0),
         timing: Timing::default(),
         specifications,

@@ -9,7 +9,7 @@
 use phea_dynamics::pieces::Workers;
 use phea_dynamics::watch::{Stopped, Watch, part};
 
-use crate::kept_plants::KeptPlants;
+use crate::plant_cache::PlantCache;
 use crate::stability::{FamilyStability, StabilityAudit};
 use crate::verification::{
     Audit, AuditEffort, AuditProblem, Evidence, PlantPoint, Remark, SpecificationFinding,
@@ -74,7 +74,7 @@ pub fn audit(problem: &AuditProblem<'_>, watch: Watch<'_>) -> Result<Audit, Stop
 /// # Errors
 /// [`Stopped`] by the watch.
 pub fn audit_by(problem: &AuditProblem<'_>, workers: Workers, watch: Watch<'_>) -> Result<Audit, Stopped> {
-    audit_with(problem, (&KeptPlants::of(workers), AuditEffort::Complete), watch).map(|(audit, _)| audit)
+    audit_with(problem, (&PlantCache::of(workers), AuditEffort::Complete), watch).map(|(audit, _)| audit)
 }
 
 /// Audits only the members and corners of the family, without a search between them. Meant for a
@@ -139,7 +139,7 @@ pub fn audit_of_known_plants_by(
     watch: Watch<'_>,
 ) -> Result<Audit, Stopped> {
     let effort = AuditEffort::KnownPlants;
-    audit_with(problem, (&KeptPlants::of(workers), effort), watch).map(|(audit, _)| audit)
+    audit_with(problem, (&PlantCache::of(workers), effort), watch).map(|(audit, _)| audit)
 }
 
 /// Audits to the given extent, with plants of this family already sampled in the same loop (with
@@ -147,14 +147,14 @@ pub fn audit_of_known_plants_by(
 /// skipped.
 pub(crate) fn audit_with(
     problem: &AuditProblem<'_>,
-    (kept, effort): (&KeptPlants, AuditEffort),
+    (cache, effort): (&PlantCache, AuditEffort),
     watch: Watch<'_>,
 ) -> Result<(Audit, bool), Stopped> {
-    let mut stability = StabilityAudit::new(problem.family, problem.compensation, kept);
+    let mut stability = StabilityAudit::new(problem.family, problem.compensation, cache);
     let searches = stability.searched() && effort != AuditEffort::KnownPlants;
     match effort {
-        AuditEffort::KnownPlants => stability.look_at_plants(&mut part(watch, STAGE, [0.0, 0.4]))?,
-        _ => stability.look(&mut part(watch, STAGE, [0.0, 0.4]))?,
+        AuditEffort::KnownPlants => stability.evaluate_plants(&mut part(watch, STAGE, [0.0, 0.4]))?,
+        _ => stability.evaluate(&mut part(watch, STAGE, [0.0, 0.4]))?,
     }
     let found = stability.result();
     if is_unstable(&found.finding) {
@@ -163,9 +163,9 @@ pub(crate) fn audit_with(
     }
     let between = if searches { stability.plants_between() } else { vec![] };
     let (specifications, work) =
-        audit_among(problem, &between, (kept, effort), &mut part(watch, STAGE, [0.4, 0.98]))?;
+        audit_among(problem, &between, (cache, effort), &mut part(watch, STAGE, [0.4, 0.98]))?;
     if searches {
-        stability.look_at(&suspects(&specifications), &mut part(watch, STAGE, [0.98, 1.0]))?;
+        stability.evaluate_at(&suspects(&specifications), &mut part(watch, STAGE, [0.98, 1.0]))?;
     }
     Ok((joined(problem, stability.result(), specifications), work.skipped == 0))
 }

@@ -12,9 +12,9 @@ const VALUES_MAXIMUM: usize = 2000;
 /// A function over the unit box and the best point known; NaN counts as the lowest value.
 struct Climb<'a> {
     objective: &'a mut dyn FnMut(&[f64]) -> f64,
-    shares: Vec<f64>,
+    fractions: Vec<f64>,
     value: f64,
-    values_asked: usize,
+    requested_values: usize,
 }
 
 /// Climbs to a local maximum: along one coordinate after the other, to the better of two neighbours
@@ -32,11 +32,11 @@ pub(crate) fn climb_by(
 ) -> (Vec<f64>, f64) {
     let value = objective(start);
     let value = if value.is_nan() { f64::NEG_INFINITY } else { value };
-    let mut climb = Climb { objective, shares: start.to_vec(), value, values_asked: 1 };
+    let mut climb = Climb { objective, fractions: start.to_vec(), value, requested_values: 1 };
     let mut step = first_step;
-    while step >= SMALLEST_STEP && climb.values_asked < VALUES_MAXIMUM {
+    while step >= SMALLEST_STEP && climb.requested_values < VALUES_MAXIMUM {
         let way = (0..start.len()).map(|coordinate| climb.along(coordinate, step)).fold(0.0, f64::max);
-        let in_corner = climb.shares.iter().all(|&share| share <= 0.0 || share >= 1.0);
+        let in_corner = climb.fractions.iter().all(|&fraction| fraction <= 0.0 || fraction >= 1.0);
         if way == 0.0 && in_corner && step < SMALL_STEP {
             break;
         }
@@ -44,13 +44,13 @@ pub(crate) fn climb_by(
             step *= 0.25;
         }
     }
-    (climb.shares, climb.value)
+    (climb.fractions, climb.value)
 }
 
 impl Climb<'_> {
     /// Moves along one coordinate; returns the distance.
     fn along(&mut self, coordinate: usize, step: f64) -> f64 {
-        let Some(&centre) = self.shares.get(coordinate) else { return 0.0 };
+        let Some(&centre) = self.fractions.get(coordinate) else { return 0.0 };
         let here = self.value;
         let (low, high) = ((centre - step).max(0.0), (centre + step).min(1.0));
         let at_low = if low < centre { self.visit(coordinate, low) } else { f64::NEG_INFINITY };
@@ -63,19 +63,19 @@ impl Climb<'_> {
                 self.visit(coordinate, top);
             }
         }
-        self.shares.get(coordinate).map_or(0.0, |share| (share - centre).abs())
+        self.fractions.get(coordinate).map_or(0.0, |fraction| (fraction - centre).abs())
     }
 
     /// Evaluates the point with this fraction in one coordinate; retains it if it is the best.
-    fn visit(&mut self, coordinate: usize, share: f64) -> f64 {
-        let mut shares = self.shares.clone();
-        if let Some(slot) = shares.get_mut(coordinate) {
-            *slot = share;
+    fn visit(&mut self, coordinate: usize, fraction: f64) -> f64 {
+        let mut fractions = self.fractions.clone();
+        if let Some(slot) = fractions.get_mut(coordinate) {
+            *slot = fraction;
         }
-        let value = (self.objective)(&shares);
-        self.values_asked += 1;
+        let value = (self.objective)(&fractions);
+        self.requested_values += 1;
         if value > self.value {
-            (self.shares, self.value) = (shares, value);
+            (self.fractions, self.value) = (fractions, value);
         }
         if value.is_nan() { f64::NEG_INFINITY } else { value }
     }
@@ -88,21 +88,21 @@ mod tests {
     /// A ridge with its top inside along one coordinate and on the border along the other.
     #[test]
     fn the_top_is_found_inside_and_at_the_border() {
-        let mut asked = 0;
-        let (shares, value) = climb(&[0.9, 0.5], &mut |p| {
-            asked += 1;
+        let mut requested = 0;
+        let (fractions, value) = climb(&[0.9, 0.5], &mut |p| {
+            requested += 1;
             let inside = p[0] - 0.3 - 0.1 * (1.0 - p[1]);
             -inside * inside * (1.0 + inside) - (p[1] - 1.2) * (p[1] - 1.2)
         });
-        assert!((shares[0] - 0.3).abs() < 1e-7, "{shares:?}");
-        assert_eq!(shares[1], 1.0);
+        assert!((fractions[0] - 0.3).abs() < 1e-7, "{fractions:?}");
+        assert_eq!(fractions[1], 1.0);
         assert!((value + 0.04).abs() < 1e-13);
-        assert!(asked < 200, "{asked} values");
+        assert!(requested < 200, "{requested} values");
     }
 
     #[test]
     fn what_is_no_number_is_left_alone() {
-        let (shares, value) = climb(&[0.2], &mut |p| if p[0] > 0.5 { f64::NAN } else { p[0] });
-        assert!((shares[0] - 0.5).abs() < 1e-6 && value == shares[0]);
+        let (fractions, value) = climb(&[0.2], &mut |p| if p[0] > 0.5 { f64::NAN } else { p[0] });
+        assert!((fractions[0] - 0.5).abs() < 1e-6 && value == fractions[0]);
     }
 }

@@ -160,13 +160,13 @@ impl UncertainFamily {
 
     /// Parameter values at a point of the box, given by a fraction in [0, 1] of each coordinate.
     /// Fractions outside this range are set to the nearest end, and missing ones count as zero.
-    pub fn values(&self, shares: &[f64]) -> Vec<f64> {
-        coordinate::values(&self.plant, &self.coordinates, shares)
+    pub fn values(&self, fractions: &[f64]) -> Vec<f64> {
+        coordinate::values(&self.plant, &self.coordinates, fractions)
     }
 
     /// The fractions nearest to these parameter values, one for each coordinate.
-    pub fn shares(&self, values: &[f64]) -> Vec<f64> {
-        self.coordinates.iter().map(|coordinate| coordinate.share(&self.plant, values)).collect()
+    pub fn fractions(&self, values: &[f64]) -> Vec<f64> {
+        self.coordinates.iter().map(|coordinate| coordinate.fraction(&self.plant, values)).collect()
     }
 }
 

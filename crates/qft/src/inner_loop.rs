@@ -129,7 +129,7 @@ impl InnerLoopProblem {
     /// ```
     pub fn reach(&self, feedback: &InnerFeedback) -> Result<Option<InnerLoopReach>, LinearError> {
         let all: Vec<usize> = (0..self.plants.len()).collect();
-        let unit = limits::PlantsBehind::new(self, &InnerFeedback { gain: 1.0, ..*feedback }, &all)?;
+        let unit = limits::FedBackPlants::new(self, &InnerFeedback { gain: 1.0, ..*feedback }, &all)?;
         Ok(unit.reach(feedback.gain))
     }
 

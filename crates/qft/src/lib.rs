@@ -28,7 +28,7 @@ mod coordinate_climb;
 pub mod design;
 pub mod family;
 pub mod inner_loop;
-mod kept_plants;
+mod plant_cache;
 pub mod loop_shaping;
 pub mod manual_shaping;
 pub mod prefilter;

@@ -60,7 +60,7 @@ pub struct Proof {
     /// All claims that hold; `None` if no certificate can state such a loop.
     pub certificate: Option<Certificate>,
     /// Claim that every plant is stable.
-    pub stability: Standing,
+    pub stability: ClaimStatus,
     /// Claims that each specification is satisfied, in order.
     pub specifications: Vec<SpecificationProof>,
 }
@@ -69,7 +69,7 @@ pub struct Proof {
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpecificationProof {
     /// Claim that every plant satisfies it, up to the tolerance.
-    pub standing: Standing,
+    pub claim_status: ClaimStatus,
     /// Lower bound on the greatest ratio of closed loop to limit, dB: this value is reached
     /// somewhere.
     pub least_db: Option<f64>,
@@ -81,7 +81,7 @@ pub struct SpecificationProof {
 
 /// Status of a claim.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Standing {
+pub enum ClaimStatus {
     /// The claim holds for every plant and every frequency.
     Proven,
     /// The claim is contradicted by at least one plant, at one frequency.
@@ -90,13 +90,13 @@ pub enum Standing {
     NotProven(NotProven),
 }
 
-impl Standing {
+impl ClaimStatus {
     /// The verdict on the claim.
     pub fn verdict(&self) -> Verdict {
         match self {
-            Standing::Proven => Verdict::Met,
-            Standing::NotProven(_) => Verdict::NotProven,
-            Standing::Refuted => Verdict::Violated,
+            ClaimStatus::Proven => Verdict::Met,
+            ClaimStatus::NotProven(_) => Verdict::NotProven,
+            ClaimStatus::Refuted => Verdict::Violated,
         }
     }
 }

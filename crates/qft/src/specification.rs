@@ -21,8 +21,8 @@ pub use margin::{
 };
 pub use phea_dynamics::closed_loop::{ClosedLoop, LoopResponse};
 pub use time_domain::{
-    ExtraRoot, LimitOrder, LowerWish, Reached, TimeDomainError, TrackingLimit, TrackingSpread, Translation,
-    UpperWish, WishCheck, WishOutcome, Wished, check_lower, check_upper, tracking_lower, tracking_spread,
+    ExtraRoot, LimitOrder, LowerStepRequirement, Reached, TimeDomainError, TrackingLimit, TrackingSpread, Translation,
+    UpperStepRequirement, RequirementCheck, RequirementOutcome, RequiredResponse, check_lower, check_upper, tracking_lower, tracking_spread,
     tracking_upper,
 };
 

@@ -48,5 +48,5 @@ pub enum PlantPoint {
     /// Index of a measured plant.
     Measured(usize),
     /// Index of an additional plant of a design.
-    Beside(usize),
+    Additional(usize),
 }

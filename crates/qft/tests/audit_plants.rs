@@ -122,8 +122,8 @@ fn an_audit_can_be_stopped() {
     for limit in [0.0, 0.3, 0.5, 0.9] {
         let mut last = 0.0;
         let stopped = audit(&problem, &mut |progress| {
-            assert!((last..=1.0).contains(&progress.share) && last <= limit, "{progress:?}");
-            last = progress.share;
+            assert!((last..=1.0).contains(&progress.fraction) && last <= limit, "{progress:?}");
+            last = progress.fraction;
             last <= limit
         });
         assert_eq!(stopped, Err(Stopped));

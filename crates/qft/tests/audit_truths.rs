@@ -115,7 +115,7 @@ fn close(found: f64, truth: f64, tolerance: f64) {
 fn value(plant: &PlantPoint) -> f64 {
     match plant {
         PlantPoint::Parameters(values) => values[0],
-        PlantPoint::Measured(_) | PlantPoint::Beside(_) => f64::NAN,
+        PlantPoint::Measured(_) | PlantPoint::Additional(_) => f64::NAN,
     }
 }
 
@@ -286,7 +286,7 @@ fn a_leading_coefficient_without_enclosures_is_searched_for() {
     let stable = audit(&build(0.6), &Controller::default(), &[sensitivity(3.0)]);
     assert_eq!(stable.stability.verdict, Verdict::Met, "{:?}", stable.stability);
     let found = stable.stability.infinity.expect("a search");
-    assert!((found.least_share - 0.4).abs() < 1e-6 && found.parameters == [0], "{found:?}");
+    assert!((found.least_fraction - 0.4).abs() < 1e-6 && found.parameters == [0], "{found:?}");
     assert_eq!(value(&found.plant), 1.0);
     let changed = audit(&build(1.25), &Controller::default(), &[sensitivity(3.0)]);
     assert_eq!(changed.stability.verdict, Verdict::Violated, "{:?}", changed.stability);

@@ -60,7 +60,7 @@ fn fractions_and_values_are_inverse_to_each_other() {
     let members = random(&plant(), &coordinates(), 200, 42).unwrap();
     let family = UncertainFamily::new(plant(), coordinates(), members, Extent::Box).unwrap();
     for values in &family.members()[1..] {
-        let fractions = family.shares(values);
+        let fractions = family.fractions(values);
         let again = family.values(&fractions);
         for (one, other) in values.iter().zip(&again) {
             assert!((one / other - 1.0).abs() < 1e-13, "{values:?} {again:?}");

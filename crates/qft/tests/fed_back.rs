@@ -12,7 +12,7 @@ use phea_dynamics::analytic::{Analytic, Disc, Jet};
 use phea_dynamics::controller::{Compensator, Controller, Element, RateFilter, RateSensor, Timing};
 use phea_dynamics::linear::{LinearError, Polynomial, StateSpace, TimeDomain, TransferFunction};
 use phea_dynamics::portable::{exp, exp_complex, ln, magnitude};
-use phea_dynamics::random::share;
+use phea_dynamics::random::uniform;
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RateNumerators, RationalCoefficients, UncertainParameter, UncertainPlant,
@@ -185,7 +185,7 @@ struct Drawn {
 
 impl Drawn {
     fn new(state: &mut u64) -> Drawn {
-        let mut spread = |low: f64, high: f64| exp(ln(low) + share(state) * ln(high / low));
+        let mut spread = |low: f64, high: f64| exp(ln(low) + uniform(state) * ln(high / low));
         let mut pair = || {
             let (w, d) = (spread(2.0, 80.0), spread(0.02, 1.0));
             [2.0 * d * w, w * w]
@@ -332,14 +332,14 @@ fn its_poles_are_those_of_the_loop_in_states() {
     let mut hidden_seen = [0; 2];
     for number in 0..300 {
         let plant = Drawn::new(&mut state);
-        let gain = 3.0 * share(&mut state) - 1.0;
+        let gain = 3.0 * uniform(&mut state) - 1.0;
         let delay_s = [0.0, 0.0037, 0.02, 0.0237][number % 4];
         let integral = Element::ProportionalIntegral {
-            proportional_gain: 0.02 + 0.6 * share(&mut state),
-            integral_gain: 1.0 + 5.0 * share(&mut state),
+            proportional_gain: 0.02 + 0.6 * uniform(&mut state),
+            integral_gain: 1.0 + 5.0 * uniform(&mut state),
         };
         // every second loop with a sensor of its rate
-        let sensed = (number % 2 == 1).then(|| (exp(2.0 + 4.0 * share(&mut state)), (number / 2) % 4));
+        let sensed = (number % 2 == 1).then(|| (exp(2.0 + 4.0 * uniform(&mut state)), (number / 2) % 4));
         let (lag, samples) = (sensed.map(|(w, _)| w), sensed.map_or(0, |(_, samples)| samples));
         let rate_sensor = RateSensor {
             filter: lag.map_or(RateFilter::None, |frequency_rad_per_s| RateFilter::FirstOrder {
@@ -389,7 +389,7 @@ fn hidden_polynomials_fold_onto_equal_frequencies() {
     let mut state = 9;
     for number in 0..20 {
         let plant = Drawn::new(&mut state);
-        let gain = 2.0 * share(&mut state) - 1.0;
+        let gain = 2.0 * uniform(&mut state) - 1.0;
         let filter = RateFilter::SecondOrder { frequency_rad_per_s: 70.0, damping_ratio: 0.4 };
         let rate_sensor = match number % 2 {
             0 => RateSensor::default(),

@@ -11,7 +11,7 @@ use phea_dynamics::analytic::{Analytic, Disc, Jet};
 use phea_dynamics::controller::{Compensator, Controller, Element, InnerFeedback, Timing};
 use phea_dynamics::linear::{LinearError, StateSpace, TimeDomain, TransferFunction};
 use phea_dynamics::portable::{exp, exp_complex, ln, magnitude};
-use phea_dynamics::random::share;
+use phea_dynamics::random::uniform;
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RateNumerators, RationalCoefficients};
 use phea_qft::closed_loop::Compensation;
@@ -109,7 +109,7 @@ struct Drawn {
 
 impl Drawn {
     fn new(state: &mut u64) -> Drawn {
-        let mut spread = |low: f64, high: f64| exp(ln(low) + share(state) * ln(high / low));
+        let mut spread = |low: f64, high: f64| exp(ln(low) + uniform(state) * ln(high / low));
         let mut pair = || {
             let (w, d) = (spread(2.0, 80.0), spread(0.02, 1.0));
             [2.0 * d * w, w * w]
@@ -230,7 +230,7 @@ fn its_stability_is_that_of_the_loop_in_states() {
     let mut seen = [0; 2];
     for number in 0..200 {
         let plant = Drawn::new(&mut state);
-        let mut spread = |low: f64, high: f64| exp(ln(low) + share(&mut state) * ln(high / low));
+        let mut spread = |low: f64, high: f64| exp(ln(low) + uniform(&mut state) * ln(high / low));
         let feedback = InnerFeedback {
             gain: spread(0.05, 3.0) * if number % 5 == 4 { -0.3 } else { 1.0 },
             high_pass_rad_per_s: (number % 2 == 0).then_some(spread(0.2, 20.0)),

@@ -52,8 +52,8 @@ const PATTERNS: [ElementPattern; 14] = [
     ElementPattern::RollOff { damping_ratio: 2.5 },
     ElementPattern::ProportionalIntegral,
     ElementPattern::NotchHere { pole_damping_ratio: 0.6 },
-    ElementPattern::NotchBeside { natural_frequency: 0.5 },
-    ElementPattern::NotchBeside { natural_frequency: 1e4 },
+    ElementPattern::FurtherNotch { natural_frequency: 0.5 },
+    ElementPattern::FurtherNotch { natural_frequency: 1e4 },
 ];
 
 fn polar(decibels: f64, degrees: f64) -> Complex64 {
@@ -142,7 +142,7 @@ fn the_ends_of_the_reachable_range_are_as_stated() {
         pass_through(pattern, &wanted, Complex64::new(1.0, 0.0), &Timing::default())
     };
     let lift = -20.0 * 60_f64.to_radians().cos().log10();
-    let near_notch = ElementPattern::NotchBeside { natural_frequency: 20.0 };
+    let near_notch = ElementPattern::FurtherNotch { natural_frequency: 20.0 };
     for (pattern, edge_db, inward_db, edge_deg, inward_deg) in [
         (ElementPattern::Lead, lift, 0.01_f64, 60.0, 0.0),
         (ElementPattern::Lag, -lift, -0.01, -60.0, 0.0),

@@ -8,7 +8,7 @@ use phea_dynamics::controller::{Compensator, Controller, Element};
 use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::portable::{argument, exp, log10, magnitude, pow};
-use phea_dynamics::random::{normal, share, stream};
+use phea_dynamics::random::{normal, uniform, stream};
 use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
@@ -74,12 +74,12 @@ fn specification(requirement: Requirement, band: [f64; 2]) -> Specification {
 
 /// Plant k (s/z + 1)^(m - 1 or 0)/(s^m (s/60 + 1)(s/80 + 1)) with random sign and gain.
 fn drawn(state: &mut u64, integrators: usize) -> TransferFunction {
-    let sign = if share(state) < 0.25 { -1.0 } else { 1.0 };
-    let crossover = exp(3.5 * share(state));
+    let sign = if uniform(state) < 0.25 { -1.0 } else { 1.0 };
+    let crossover = exp(3.5 * uniform(state));
     let (zero, size) = match integrators {
         0 => (None, 1.0 + crossover / 5.0),
         1 => (None, crossover),
-        _ => (Some(crossover / (1.5 + 4.0 * share(state))), crossover),
+        _ => (Some(crossover / (1.5 + 4.0 * uniform(state))), crossover),
     };
     let gain = zero.map_or(size, |zero: f64| size * zero);
     let numerator = zero.map_or(vec![sign * gain], |zero: f64| vec![sign * gain / zero, sign * gain]);
@@ -108,7 +108,7 @@ fn noise_makes_no_verdict_false_and_leaves_few_undecided() {
             magnitude(open / (1.0 + open))
         };
         let peak = dense.iter().map(ratio).fold(0.0, f64::max);
-        let wanted_db = 24.0 * (share(&mut state) - 0.5);
+        let wanted_db = 24.0 * (uniform(&mut state) - 0.5);
         let limit = peak * pow(10.0, wanted_db / 20.0);
         let mut record = measured(&frequencies, |w| plant.at_frequency(w));
         record.radii = record.command.iter().map(|one| wide * magnitude(*one)).collect();

@@ -4,7 +4,7 @@
 
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::linear::{Polynomial, TransferFunction};
-use phea_dynamics::random::{share, stream};
+use phea_dynamics::random::{uniform, stream};
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
@@ -13,7 +13,7 @@ use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
 use phea_qft::proof::{
-    Certificate, Claim, ControlLaw, FrequencyPanel, Late, LimitOf, Proof, ProofOptions, Standing, check,
+    Certificate, Claim, ControlLaw, FrequencyPanel, Late, LimitOf, Proof, ProofOptions, ClaimStatus, check,
     prove,
 };
 use phea_qft::specification::{ClosedLoop, Limit, LimitTable, Requirement, Specification};
@@ -53,9 +53,9 @@ pub(crate) fn thesis_in(compensation: &Compensation) -> Proof {
 #[test]
 fn the_published_controller_is_refuted() {
     let proof = thesis(0.0);
-    assert_eq!(proof.stability, Standing::Proven);
+    assert_eq!(proof.stability, ClaimStatus::Proven);
     for (own, truth) in proof.specifications.iter().zip([19.2224, 8.1863, 6.0768]) {
-        assert_eq!(own.standing, Standing::Refuted);
+        assert_eq!(own.claim_status, ClaimStatus::Refuted);
         let (least, most) = (own.least_db.unwrap(), own.most_db.unwrap());
         assert!(
             least <= truth + 1e-4 && truth - 1e-4 <= most && most - least < 0.1,
@@ -73,12 +73,12 @@ fn the_published_controller_is_refuted() {
 #[test]
 fn delay_belongs_to_what_is_proven() {
     let proof = thesis(0.001);
-    assert_eq!(proof.stability, Standing::Proven);
+    assert_eq!(proof.stability, ClaimStatus::Proven);
     let [stability, sensitivity, tracking] = &proof.specifications[..] else { panic!("three") };
-    assert_eq!(stability.standing, Standing::Proven);
+    assert_eq!(stability.claim_status, ClaimStatus::Proven);
     let peak = 1.3 * phea_dynamics::portable::pow(10.0, stability.least_db.unwrap() / 20.0);
     assert!((peak - 1.134).abs() < 2e-3, "{peak}");
-    assert_eq!([&sensitivity.standing, &tracking.standing], [&Standing::Refuted; 2]);
+    assert_eq!([&sensitivity.claim_status, &tracking.claim_status], [&ClaimStatus::Refuted; 2]);
     assert_eq!(check(&proof.certificate.unwrap()), Ok(()));
 }
 
@@ -90,7 +90,7 @@ pub(crate) struct RandomProblem {
 }
 
 fn between(state: &mut u64, low: f64, high: f64) -> f64 {
-    low * phea_dynamics::portable::pow(high / low, share(state))
+    low * phea_dynamics::portable::pow(high / low, uniform(state))
 }
 
 fn rational(numerator: Vec<f64>, denominator: Vec<f64>) -> TransferFunction {
@@ -98,16 +98,16 @@ fn rational(numerator: Vec<f64>, denominator: Vec<f64>) -> TransferFunction {
 }
 
 fn random_family(state: &mut u64) -> Family {
-    let variables = 1 + (share(state) * 4.0) as usize;
+    let variables = 1 + (uniform(state) * 4.0) as usize;
     let parameters: Vec<UncertainParameter> = (0..4)
         .map(|index| {
             let nominal = between(state, 0.3, 3.0);
-            let spread = if index < variables { 1.0 + 0.6 * share(state) } else { 1.0 };
+            let spread = if index < variables { 1.0 + 0.6 * uniform(state) } else { 1.0 };
             let (minimum, maximum) = (nominal / spread, nominal * spread);
             UncertainParameter { name: format!("p{index}"), nominal, minimum, maximum }
         })
         .collect();
-    let is_late = share(state) < 0.2;
+    let is_late = uniform(state) < 0.2;
     let plant = UncertainPlant::record(parameters, |p| {
         let (gain, pole, frequency, damping) = (p[0], p[1], p[2], p[3]);
         let (square, middle) = (frequency * frequency, damping * frequency);
@@ -137,7 +137,7 @@ fn random_family(state: &mut u64) -> Family {
 pub(crate) fn random_problem(seed: u64, sampled: bool) -> RandomProblem {
     let state = &mut stream(if sampled { 22 } else { 20 }, seed);
     let family = random_family(state);
-    let delay_s = if share(state) < 0.4 { 0.15 * share(state) } else { 0.0 };
+    let delay_s = if uniform(state) < 0.4 { 0.15 * uniform(state) } else { 0.0 };
     let gain = between(state, 0.1, 1.5);
     let law = rational(vec![gain, gain * between(state, 0.1, 1.0)], vec![1.0, 0.0]);
     let low_pass = rational(vec![1.0], vec![0.25, 1.0, 1.0]);
@@ -158,7 +158,7 @@ fn timing(state: &mut u64, sampled: bool) -> Timing {
         return Timing::default();
     }
     let sample_time_s = Some(between(state, 0.003, 0.3));
-    Timing { sample_time_s, continuous_prefilter: share(state) < 0.3, ..Timing::default() }
+    Timing { sample_time_s, continuous_prefilter: uniform(state) < 0.3, ..Timing::default() }
 }
 
 /// A specification of each kind.
@@ -235,22 +235,22 @@ pub(crate) fn sound(problems: std::ops::Range<u64>, points: usize, sampled: bool
         for point in 0..points {
             // a third of the points are at corners
             let mut coordinate = || match point % 3 {
-                0 => share(state).round(),
-                _ => share(state),
+                0 => uniform(state).round(),
+                _ => uniform(state),
             };
             let fractions: Vec<f64> = family.coordinates().iter().map(|_| coordinate()).collect();
             let values = family.values(&fractions);
             let highest = random.compensation.highest_frequency_rad_per_s().min(300.0);
             let frequency = between(state, 0.003, highest);
             never_contradicted(&random, &proof, &values, frequency, seed);
-            if point % 25 == 0 && matches!(proof.stability, Standing::Proven) {
+            if point % 25 == 0 && matches!(proof.stability, ClaimStatus::Proven) {
                 let member = random.compensation.member_of(plant, &values).unwrap();
                 let found = member_stability(&member, &random.compensation).status;
                 assert!(!matches!(found, StabilityStatus::Unstable(_)), "seed {seed}: {values:?} {found:?}");
             }
         }
-        shown[0] += usize::from(proof.stability == Standing::Proven);
-        shown[1] += usize::from(proof.stability == Standing::Refuted);
+        shown[0] += usize::from(proof.stability == ClaimStatus::Proven);
+        shown[1] += usize::from(proof.stability == ClaimStatus::Refuted);
         shown[2] += proof.specifications.iter().filter(|own| own.most_db.is_some()).count();
     }
     shown
@@ -464,7 +464,7 @@ fn an_additional_plant_is_in_the_proof() {
     let problem = problem(&family, &compensation, &specifications);
     let found = audit(&problem, &mut unwatched).unwrap();
     let proof = prove(&problem, &found, ProofOptions::default(), &mut unwatched).unwrap();
-    assert_eq!(proof.specifications[0].standing, Standing::Refuted);
+    assert_eq!(proof.specifications[0].claim_status, ClaimStatus::Refuted);
     let reached = 0.8 * phea_dynamics::portable::pow(10.0, proof.specifications[0].least_db.unwrap() / 20.0);
     assert!((reached - 3.0 / 10.0_f64.sqrt()).abs() < 1e-6, "{reached}");
     assert_eq!(proof.certificate.unwrap().plant.boxes.len(), 2);

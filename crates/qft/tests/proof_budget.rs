@@ -2,7 +2,7 @@
 
 use phea_dynamics::watch::unwatched;
 use phea_qft::family::Family;
-use phea_qft::proof::{NotProven, ProofOptions, Standing, check, prove};
+use phea_qft::proof::{NotProven, ProofOptions, ClaimStatus, check, prove};
 
 use crate::proof::{blind, problem, random_problem};
 
@@ -23,15 +23,15 @@ fn a_proof_within_a_budget_reports_the_remainder() {
             if let Some(certificate) = &proof.certificate {
                 assert_eq!(check(certificate), Ok(()), "seed {seed}");
             }
-            let standings = proof.specifications.iter().map(|one| &one.standing);
-            for standing in std::iter::once(&proof.stability).chain(standings) {
-                match standing {
-                    Standing::Proven | Standing::Refuted => shown += 1,
-                    Standing::NotProven(NotProven::Budget(region)) => {
+            let claim_statuses = proof.specifications.iter().map(|one| &one.claim_status);
+            for claim_status in std::iter::once(&proof.stability).chain(claim_statuses) {
+                match claim_status {
+                    ClaimStatus::Proven | ClaimStatus::Refuted => shown += 1,
+                    ClaimStatus::NotProven(NotProven::Budget(region)) => {
                         let [from, to] = region.band_rad_per_s;
                         assert!(0.0 <= from && from < to, "{region:?}");
                     }
-                    Standing::NotProven(_) => {}
+                    ClaimStatus::NotProven(_) => {}
                 }
             }
         }

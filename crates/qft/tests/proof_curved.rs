@@ -5,7 +5,7 @@
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::expression::Recorded;
 use phea_dynamics::linear::TransferFunction;
-use phea_dynamics::random::{share, stream};
+use phea_dynamics::random::{uniform, stream};
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
@@ -14,7 +14,7 @@ use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
-use phea_qft::proof::{Certificate, ParameterSegment, Proof, ProofOptions, Standing, check, prove};
+use phea_qft::proof::{Certificate, ParameterSegment, Proof, ProofOptions, ClaimStatus, check, prove};
 use phea_qft::specification::{ClosedLoop, Limit, LoopResponse, Requirement, Specification};
 use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement};
 
@@ -118,7 +118,7 @@ fn proven(family: &Family, compensation: &Compensation) -> Proof {
     };
     let found = audit(&problem, &mut unwatched).unwrap();
     let proof = prove(&problem, &found, ProofOptions::default(), &mut unwatched).unwrap();
-    assert_eq!(proof.stability, Standing::Proven);
+    assert_eq!(proof.stability, ClaimStatus::Proven);
     for (own, searched) in proof.specifications.iter().zip(&found.specifications) {
         let (least, most) = (own.least_db.unwrap(), own.most_db.unwrap());
         let worst = -searched.worst.as_ref().unwrap().margin_db;
@@ -135,10 +135,10 @@ fn enclosures_hold_for_coefficients_that_are_no_polynomials() {
         let Family::Uncertain(own) = &family else { panic!("a box") };
         let state = &mut stream(31, u64::from(together));
         for _ in 0..2000 {
-            let fractions: Vec<f64> = own.coordinates().iter().map(|_| share(state)).collect();
+            let fractions: Vec<f64> = own.coordinates().iter().map(|_| uniform(state)).collect();
             let values = own.values(&fractions);
             let highest = compensation.highest_frequency_rad_per_s().min(30.0);
-            let frequency = 0.02 * phea_dynamics::portable::pow(highest / 0.02, share(state));
+            let frequency = 0.02 * phea_dynamics::portable::pow(highest / 0.02, uniform(state));
             let plant = compensation.response_of(own.plant(), &values, frequency).unwrap();
             let law = compensation.response(frequency);
             let response = LoopResponse {

@@ -11,7 +11,7 @@ use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
-use phea_qft::proof::{Certificate, Claim, ControlLaw, Proof, ProofOptions, Standing, check, prove};
+use phea_qft::proof::{Certificate, Claim, ControlLaw, Proof, ProofOptions, ClaimStatus, check, prove};
 use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement};
 
@@ -33,7 +33,7 @@ fn enclosures_of_the_published_controller_hold_what_the_audit_finds() {
     for (sample_time_s, delay_s) in [(0.001, 0.0), (0.001, 0.001), (0.0005, 0.0002)] {
         let compensation = published(sample_time_s, delay_s);
         let proof = thesis_in(&compensation);
-        assert_eq!(proof.stability, Standing::Proven);
+        assert_eq!(proof.stability, ClaimStatus::Proven);
         let (family, specifications) = (thesis_family([2; 6]), thesis_specifications());
         let tracking = TrackingJudgement::Magnitude;
         let problem = AuditProblem {
@@ -45,7 +45,7 @@ fn enclosures_of_the_published_controller_hold_what_the_audit_finds() {
         };
         let found = audit(&problem, &mut unwatched).unwrap();
         for (own, searched) in proof.specifications.iter().zip(&found.specifications) {
-            assert_eq!(own.standing, Standing::Refuted);
+            assert_eq!(own.claim_status, ClaimStatus::Refuted);
             let (least, most) = (own.least_db.unwrap(), own.most_db.unwrap());
             let worst = -searched.worst.as_ref().unwrap().margin_db;
             assert!(most - least < 0.06 && worst <= most, "{least} {worst} {most}");
@@ -114,7 +114,7 @@ fn the_sensitivity_of_a_sampled_integrator_is_enclosed() {
     let proof = integrator([0.3, 0.5], 1.0, [0.0, std::f64::consts::FRAC_PI_3]);
     let truth_db = 20.0 * phea_dynamics::portable::log10(2.0 / 3.0_f64.sqrt());
     let own = &proof.specifications[0];
-    assert_eq!([&proof.stability, &own.standing], [&Standing::Proven, &Standing::Refuted]);
+    assert_eq!([&proof.stability, &own.claim_status], [&ClaimStatus::Proven, &ClaimStatus::Refuted]);
     let (least, most) = (own.least_db.unwrap(), own.most_db.unwrap());
     assert!(least <= truth_db && truth_db <= most && most - least < 0.4, "{least} {truth_db} {most}");
 }
@@ -123,10 +123,10 @@ fn the_sensitivity_of_a_sampled_integrator_is_enclosed() {
 #[test]
 fn poles_of_a_sampled_loop_are_counted() {
     let whole = [0.0, f64::INFINITY];
-    assert_eq!(integrator([1.0, 1.8], 100.0, whole).stability, Standing::Proven);
-    assert_eq!(integrator([1.5, 3.0], 100.0, whole).stability, Standing::Refuted);
+    assert_eq!(integrator([1.0, 1.8], 100.0, whole).stability, ClaimStatus::Proven);
+    assert_eq!(integrator([1.5, 3.0], 100.0, whole).stability, ClaimStatus::Refuted);
     let crossed = integrator([1.9, 2.1], 100.0, whole);
-    assert!(crossed.stability != Standing::Proven, "{:?}", crossed.stability);
+    assert!(crossed.stability != ClaimStatus::Proven, "{:?}", crossed.stability);
 }
 
 /// A mode that is folded onto frequencies at which the loop has gain is unstable for some of its
@@ -157,7 +157,7 @@ fn a_folded_mode_that_passes_the_band_is_not_proven() {
         [0.0, f64::INFINITY],
         ProofOptions { leaves_maximum: 3000, ..ProofOptions::default() },
     );
-    assert!(found.stability != Standing::Proven, "{:?}", found.stability);
+    assert!(found.stability != ClaimStatus::Proven, "{:?}", found.stability);
 }
 
 /// Certificate of a sampled loop: valid as proven, and rejected if it claims more.

@@ -5,7 +5,7 @@ use phea_dynamics::controller::Timing;
 use phea_dynamics::portable;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::Family;
-use phea_qft::proof::{Standing, check};
+use phea_qft::proof::{ClaimStatus, check};
 
 use crate::proof::thesis_in;
 use crate::verification::plants::{compensation, rational};
@@ -44,8 +44,8 @@ fn an_optimistic_grid_verdict_is_refuted() {
     }
     assert!((1.2..LIMIT).contains(&greatest), "{greatest}");
     let proof = thesis_in(&loop_);
-    assert_eq!(proof.stability, Standing::Proven);
-    assert_eq!(proof.specifications[0].standing, Standing::Refuted);
+    assert_eq!(proof.stability, ClaimStatus::Proven);
+    assert_eq!(proof.specifications[0].claim_status, ClaimStatus::Refuted);
     assert!(proof.specifications[0].least_db.unwrap() > 1.5, "{:?}", proof.specifications[0]);
     assert_eq!(check(&proof.certificate.unwrap()), Ok(()));
 }

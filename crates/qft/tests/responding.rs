@@ -11,7 +11,7 @@ use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::portable::{cos, exp, ln, magnitude, sin};
-use phea_dynamics::random::share;
+use phea_dynamics::random::uniform;
 use phea_dynamics::uncertain_plant::responding::{RespondingPlant, RespondingPlants};
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
@@ -85,21 +85,21 @@ impl RespondingPlant for Hidden {
 }
 
 fn hidden(state: &mut u64) -> Hidden {
-    let mut spread = |low: f64, high: f64| exp(ln(low) + share(state) * ln(high / low));
+    let mut spread = |low: f64, high: f64| exp(ln(low) + uniform(state) * ln(high / low));
     let (slow, natural, damping) = (spread(0.1, 100.0), spread(1.0, 300.0), spread(0.02, 1.0));
     let gain = spread(0.3, 30.0) * slow * natural * natural;
     Hidden { gain, slow, natural, damping, dead_time_s: spread(1e-4, 3.0) / natural }
 }
 
 fn compensation(state: &mut u64, natural: f64) -> Compensation {
-    let gain = 0.02 * exp(7.0 * share(state));
+    let gain = 0.02 * exp(7.0 * uniform(state));
     let mut elements = vec![Element::Gain(gain)];
-    if share(state) < 0.7 {
-        let corner = natural * share(state);
+    if uniform(state) < 0.7 {
+        let corner = natural * uniform(state);
         elements.push(Element::ProportionalIntegral { proportional_gain: 1.0, integral_gain: corner });
     }
     let feedback = Compensator::new(elements);
-    let timing = Timing { delay_s: 0.3 * share(state) / natural, ..Timing::default() };
+    let timing = Timing { delay_s: 0.3 * uniform(state) / natural, ..Timing::default() };
     let controller = Controller { feedback, timing, ..Controller::default() };
     let sensor = TransferFunction::from_polynomials(
         &Polynomial::new(vec![5.0 * natural]),
@@ -117,9 +117,9 @@ fn folding_changes_no_more_than_its_bound() {
     let (mut sharpest, mut counted) = (0.0_f64, 0);
     while counted < 200 {
         let plant = hidden(&mut state);
-        let sample_time_s = (1.2 + 3.0 * share(&mut state)) * std::f64::consts::PI / plant.natural;
-        let plant = Hidden { slow: 0.1 * share(&mut state) * plant.natural, dead_time_s: 0.0, ..plant };
-        let gain = 0.3 * share(&mut state) / plant.gain * plant.natural * plant.natural / sample_time_s;
+        let sample_time_s = (1.2 + 3.0 * uniform(&mut state)) * std::f64::consts::PI / plant.natural;
+        let plant = Hidden { slow: 0.1 * uniform(&mut state) * plant.natural, dead_time_s: 0.0, ..plant };
+        let gain = 0.3 * uniform(&mut state) / plant.gain * plant.natural * plant.natural / sample_time_s;
         let feedback = Compensator::new(vec![Element::Gain(gain)]);
         let timing = Timing { sample_time_s: Some(sample_time_s), ..Timing::default() };
         let controller = Controller { feedback, timing, ..Controller::default() };
@@ -224,7 +224,7 @@ fn tables_enclose_values_between_their_points() {
         let plant = hidden(&mut state);
         let table = tabulated(&plant, plant.range_rad_per_s(), FINE);
         for pair in table.frequencies_rad_per_s.windows(2) {
-            let between = pair[0] + share(&mut state) * (pair[1] - pair[0]);
+            let between = pair[0] + uniform(&mut state) * (pair[1] - pair[0]);
             let (interpolated, _) = table.response(between).unwrap();
             let error = magnitude(interpolated / plant.at(Complex64::new(0.0, between))[0] - 1.0);
             assert!(error < 3e-3, "{plant:?} at {between}: {error}");
@@ -334,8 +334,8 @@ fn samples_are_those_of_the_polynomials() {
         let controller = Controller { timing, ..Controller::default() };
         let around = Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap();
         let members = [around.member(plant.shown()).unwrap(), around.responding(Arc::new(plant))];
-        for share in [1e-3, 0.03, 0.3, 0.9] {
-            let frequency = share * around.highest_frequency_rad_per_s();
+        for fraction in [1e-3, 0.03, 0.3, 0.9] {
+            let frequency = fraction * around.highest_frequency_rad_per_s();
             let [shown, own] = members.each_ref().map(|member| member.response(frequency).unwrap());
             assert!(magnitude(own.plant / shown.plant - 1.0) < 3e-4, "{plant:?} at {frequency}");
             assert_eq!(own.sensor.im, 0.0);

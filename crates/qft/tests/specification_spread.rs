@@ -41,7 +41,7 @@ fn as_scanned(lower: &Limit, upper: &Limit, band: [f64; 2]) -> TrackingSpread {
     let scan: Vec<f64> = grid.iter().map(|w| spread_db(lower, upper, *w)).collect();
     let least = scan.iter().copied().fold(f64::INFINITY, f64::min);
     match spread.order {
-        LimitOrder::Kept { least_db, .. } => {
+        LimitOrder::Satisfied { least_db, .. } => {
             assert!((least_db - least).abs() < 1e-3 && least_db <= least + 1e-9)
         }
         LimitOrder::Crossed { excess_db, from_rad_per_s, .. } => {
@@ -72,7 +72,7 @@ fn the_spread_of_the_printed_limits_increases_steadily() {
         let spread = tracking_spread(&lower, &upper, [0.0, frequency]).unwrap();
         assert!((spread.at_end_db - stated).abs() < 1e-7, "{spread:?}");
         assert_eq!(spread.grows_from_rad_per_s, Some(0.0));
-        assert!(matches!(spread.order, LimitOrder::Kept { least_db, .. } if least_db.abs() < 1e-12));
+        assert!(matches!(spread.order, LimitOrder::Satisfied { least_db, .. } if least_db.abs() < 1e-12));
     }
     let spread = tracking_spread(&lower, &upper, EVERYWHERE).unwrap();
     assert_eq!((spread.at_end_db, spread.grows_from_rad_per_s), (f64::INFINITY, Some(0.0)));
@@ -99,7 +99,7 @@ fn crossing_limits_are_reported_with_place_and_distance() {
     assert!((spread.at_end_db + 20.0 * log10(9.0)).abs() < 1e-12);
     assert_eq!(spread.grows_from_rad_per_s, None);
     // before they cross, the limits are consistent
-    assert!(matches!(tracking_spread(&lower, &upper, [0.0, 12.0]).unwrap().order, LimitOrder::Kept { .. }));
+    assert!(matches!(tracking_spread(&lower, &upper, [0.0, 12.0]).unwrap().order, LimitOrder::Satisfied { .. }));
     // crossed from the first frequency on
     let swapped = tracking_spread(&upper, &lower, [1.0, 10.0]).unwrap().order;
     assert!(matches!(swapped, LimitOrder::Crossed { from_rad_per_s: 1.0, .. }), "{swapped:?}");
@@ -164,7 +164,7 @@ fn equal_limits_are_no_crossing_and_sampled_ones_are_refused() {
     let lag = function(&[3.0], &[1.0, 3.0]);
     let spread = tracking_spread(&lag, &lag, EVERYWHERE).unwrap();
     assert_eq!((spread.at_end_db, spread.grows_from_rad_per_s), (0.0, Some(0.0)));
-    assert!(matches!(spread.order, LimitOrder::Kept { least_db: 0.0, .. }));
+    assert!(matches!(spread.order, LimitOrder::Satisfied { least_db: 0.0, .. }));
     let domain = TimeDomain::Discrete { sample_time_s: 0.1 };
     let sampled = Limit::Rational(TransferFunction::gain_only(1.0).in_domain(domain).unwrap());
     assert_eq!(tracking_spread(&lag, &sampled, EVERYWHERE), Err(TimeDomainError::NotContinuous));

@@ -8,13 +8,13 @@ use phea_dynamics::time_response::{
     SecondOrder, Settling, SettlingRule, StepBaseline, step_metrics, step_response, uniform_times,
 };
 use phea_qft::specification::{
-    ExtraRoot, LowerWish, TimeDomainError, Translation, UpperWish, WishCheck, WishOutcome, check_lower,
+    ExtraRoot, LowerStepRequirement, TimeDomainError, Translation, UpperStepRequirement, RequirementCheck, RequirementOutcome, check_lower,
     check_upper, tracking_lower, tracking_upper,
 };
 
-const UPPER: UpperWish =
-    UpperWish { overshoot_percent: 1.0, settling_time_s: 0.1, settling_band_percent: 1.0 };
-const LOWER: LowerWish = LowerWish { settling_time_s: 0.3, settling_band_percent: 1.0 };
+const UPPER: UpperStepRequirement =
+    UpperStepRequirement { overshoot_percent: 1.0, settling_time_s: 0.1, settling_band_percent: 1.0 };
+const LOWER: LowerStepRequirement = LowerStepRequirement { settling_time_s: 0.3, settling_band_percent: 1.0 };
 
 fn c(re: f64, im: f64) -> Complex64 {
     Complex64::new(re, im)
@@ -24,7 +24,7 @@ fn factored(gain: f64, zeros: &[Complex64], poles: &[Complex64]) -> TransferFunc
     TransferFunction::from_factors(gain, zeros.to_vec(), poles.to_vec()).unwrap()
 }
 
-fn settling(check: &WishCheck) -> f64 {
+fn settling(check: &RequirementCheck) -> f64 {
     check.reached.settling.time_s().unwrap()
 }
 
@@ -54,11 +54,11 @@ fn the_printed_limits_miss_their_requirement() {
     assert!(close(upper.reached.overshoot_percent, 2.194563521, 1e-8));
     assert!(close(settling(&upper), 0.126368769, 1e-8));
     match upper.outcome() {
-        WishOutcome::Missed { overshoot_excess_percent, settling_excess_s } => {
+        RequirementOutcome::Missed { overshoot_excess_percent, settling_excess_s } => {
             assert!(close(overshoot_excess_percent, 1.194563521, 1e-8));
             assert!(close(settling_excess_s, 0.026368769, 1e-8));
         }
-        WishOutcome::Met => panic!("6.28 meets its wish"),
+        RequirementOutcome::Met => panic!("6.28 meets its wish"),
     }
     let triple = [c(-20.0, 0.0), c(-20.0, 0.0), c(-50.0, 0.0)];
     let lower = check_lower(&factored(20_000.0, &[], &triple), &LOWER).unwrap();
@@ -77,7 +77,7 @@ fn the_printed_limits_miss_their_requirement() {
 fn exact_limits_are_those_of_an_independent_root_finder() {
     let at = |rad_per_s| ExtraRoot::At { rad_per_s };
     let times = |natural_frequencies| ExtraRoot::Times { natural_frequencies };
-    let wide = UpperWish { overshoot_percent: 5.0, settling_band_percent: 2.0, ..UPPER };
+    let wide = UpperStepRequirement { overshoot_percent: 5.0, settling_band_percent: 2.0, ..UPPER };
     for (required, zero, damping, natural) in [
         (UPPER, ExtraRoot::None, 0.826085055, 41.9161150),
         (UPPER, at(75.0), 0.837470485, 36.1277855),
@@ -89,14 +89,14 @@ fn exact_limits_are_those_of_an_independent_root_finder() {
         assert!(close(limit.natural_frequency_rad_per_s, natural, 1e-6), "{limit:?}");
         assert!(close(limit.check.reached.overshoot_percent, required.overshoot_percent, 1e-8));
         assert!(close(settling(&limit.check), 0.1, 1e-9));
-        assert_eq!(limit.check.outcome(), WishOutcome::Met);
+        assert_eq!(limit.check.outcome(), RequirementOutcome::Met);
     }
     for (pole, natural) in [(ExtraRoot::None, 22.1278402), (at(50.0), 24.1901582), (times(2.5), 23.7512649)] {
         let limit = tracking_lower(&LOWER, pole, Translation::Exact).unwrap();
         assert!(close(limit.natural_frequency_rad_per_s, natural, 1e-6), "{limit:?}");
         assert_eq!(limit.damping_ratio, 1.0);
         assert!(close(settling(&limit.check), 0.3, 1e-9));
-        assert_eq!(limit.check.outcome(), WishOutcome::Met);
+        assert_eq!(limit.check.outcome(), RequirementOutcome::Met);
     }
 }
 
@@ -107,7 +107,7 @@ fn exact_limits_meet_any_requirement_for_every_extra_root() {
         let overshoot_percent = numbers.between(0.1, 40.0);
         let settling_time_s = numbers.between(0.01, 10.0);
         let settling_band_percent = numbers.between(0.5, 8.0);
-        let required = UpperWish { overshoot_percent, settling_time_s, settling_band_percent };
+        let required = UpperStepRequirement { overshoot_percent, settling_time_s, settling_band_percent };
         // zeros below the natural frequency make the second-order part overdamped
         let extra = [
             ExtraRoot::None,
@@ -116,7 +116,7 @@ fn exact_limits_meet_any_requirement_for_every_extra_root() {
         ];
         for zero in extra {
             let limit = tracking_upper(&required, zero, Translation::Exact).unwrap();
-            assert_eq!(limit.check.outcome(), WishOutcome::Met, "{required:?} {zero:?} {limit:?}");
+            assert_eq!(limit.check.outcome(), RequirementOutcome::Met, "{required:?} {zero:?} {limit:?}");
             let overshoot = limit.check.reached.overshoot_percent;
             assert!(close(overshoot, overshoot_percent, 1e-7), "{overshoot} {required:?} {zero:?}");
             // slightly slower in frequency is too late in time
@@ -129,10 +129,10 @@ fn exact_limits_meet_any_requirement_for_every_extra_root() {
                 assert!(settling(&late) > settling_time_s, "{late:?}");
             }
         }
-        let required = LowerWish { settling_time_s, settling_band_percent };
+        let required = LowerStepRequirement { settling_time_s, settling_band_percent };
         for pole in extra {
             let limit = tracking_lower(&required, pole, Translation::Exact).unwrap();
-            assert_eq!(limit.check.outcome(), WishOutcome::Met, "{required:?} {pole:?} {limit:?}");
+            assert_eq!(limit.check.outcome(), RequirementOutcome::Met, "{required:?} {pole:?} {limit:?}");
             assert!(close(settling(&limit.check) / settling_time_s, 1.0, 1e-8), "{required:?} {pole:?}");
         }
     }
@@ -142,10 +142,10 @@ fn exact_limits_meet_any_requirement_for_every_extra_root() {
 /// then settles at exactly the required time, and the faster side of the jump is used.
 #[test]
 fn at_a_jump_of_the_settling_time_the_requirement_is_met_early() {
-    let required = UpperWish { overshoot_percent: 99.9, settling_time_s: 0.1, settling_band_percent: 1.0 };
+    let required = UpperStepRequirement { overshoot_percent: 99.9, settling_time_s: 0.1, settling_band_percent: 1.0 };
     let zero = ExtraRoot::At { rad_per_s: 30.0 };
     let limit = tracking_upper(&required, zero, Translation::Exact).unwrap();
-    assert_eq!(limit.check.outcome(), WishOutcome::Met);
+    assert_eq!(limit.check.outcome(), RequirementOutcome::Met);
     assert!(settling(&limit.check) < 0.099, "{limit:?}");
     // the third extreme, half a period after the second, is as large as the band
     let damped = limit.natural_frequency_rad_per_s * (1.0 - limit.damping_ratio * limit.damping_ratio).sqrt();
@@ -158,7 +158,7 @@ fn at_a_jump_of_the_settling_time_the_requirement_is_met_early() {
 
 #[test]
 fn a_requirement_ten_times_as_fast_has_limits_ten_times_as_fast() {
-    let fast = UpperWish { settling_time_s: UPPER.settling_time_s / 10.0, ..UPPER };
+    let fast = UpperStepRequirement { settling_time_s: UPPER.settling_time_s / 10.0, ..UPPER };
     for (zero, scaled) in [
         (ExtraRoot::None, ExtraRoot::None),
         (ExtraRoot::Times { natural_frequencies: 1.5 }, ExtraRoot::Times { natural_frequencies: 1.5 }),
@@ -179,10 +179,10 @@ fn a_requirement_ten_times_as_fast_has_limits_ten_times_as_fast() {
 
 #[test]
 fn no_overshoot_means_critical_damping_or_a_zero_that_cancels_the_slow_pole() {
-    let required = UpperWish { overshoot_percent: 0.0, ..UPPER };
+    let required = UpperStepRequirement { overshoot_percent: 0.0, ..UPPER };
     let none = tracking_upper(&required, ExtraRoot::None, Translation::Exact).unwrap();
     let lower = tracking_lower(
-        &LowerWish { settling_time_s: 0.1, settling_band_percent: 1.0 },
+        &LowerStepRequirement { settling_time_s: 0.1, settling_band_percent: 1.0 },
         ExtraRoot::None,
         Translation::Exact,
     );
@@ -194,7 +194,7 @@ fn no_overshoot_means_critical_damping_or_a_zero_that_cancels_the_slow_pole() {
     // constants
     assert!(close(limit.damping_ratio, 1.25, 1e-12));
     assert!(close(natural * 2.0 * 0.1, ln(100.0), 1e-7), "{natural}");
-    assert_eq!(limit.check.outcome(), WishOutcome::Met);
+    assert_eq!(limit.check.outcome(), RequirementOutcome::Met);
 }
 
 #[test]
@@ -204,14 +204,14 @@ fn rules_of_thumb_follow_the_thesis_within_their_band() {
     assert!(close(upper.natural_frequency_rad_per_s * upper.damping_ratio * 0.1, 5.0, 1e-12));
     assert_eq!(upper.extra_root_rad_per_s, Some(75.0));
     // the zero adds overshoot that the rule ignores
-    assert!(matches!(upper.check.outcome(), WishOutcome::Missed { settling_excess_s: 0.0, .. }));
+    assert!(matches!(upper.check.outcome(), RequirementOutcome::Missed { settling_excess_s: 0.0, .. }));
     // critical damping settles later than an envelope of the same sigma
     let lower = tracking_lower(&LOWER, ExtraRoot::None, rule).unwrap();
-    assert!(matches!(lower.check.outcome(), WishOutcome::Missed { overshoot_excess_percent: 0.0, .. }));
+    assert!(matches!(lower.check.outcome(), RequirementOutcome::Missed { overshoot_excess_percent: 0.0, .. }));
     let two = Translation::Rule(SettlingRule::TwoPercent);
     assert_eq!(
         tracking_lower(&LOWER, ExtraRoot::None, two),
-        Err(TimeDomainError::RuleBand { rule_percent: 2.0, wish_percent: 1.0 })
+        Err(TimeDomainError::RuleBand { rule_percent: 2.0, required_percent: 1.0 })
     );
 }
 
@@ -224,11 +224,11 @@ fn a_root_too_slow_is_refused_at_its_own_settling_time() {
     assert!(matches!(lower(fastest * (1.0 - 1e-4)), Err(TimeDomainError::ExtraRootTooSlow { .. })));
     // the tail due to a zero is as large as the overshoot: it takes ln(overshoot/band)/z
     let upper = |zero: f64, overshoot_percent: f64| {
-        let required = UpperWish { overshoot_percent, ..UPPER };
+        let required = UpperStepRequirement { overshoot_percent, ..UPPER };
         tracking_upper(&required, ExtraRoot::At { rad_per_s: zero }, Translation::Exact)
     };
     assert!(matches!(upper(1.0, 5.0), Err(TimeDomainError::ExtraRootTooSlow { .. })));
-    assert_eq!(upper(1.0, 1.0).unwrap().check.outcome(), WishOutcome::Met);
+    assert_eq!(upper(1.0, 1.0).unwrap().check.outcome(), RequirementOutcome::Met);
 }
 
 #[test]
@@ -245,7 +245,7 @@ fn the_check_agrees_with_dense_samples_of_any_response() {
         let unscaled = factored(1.0, &zeros, &poles);
         let function = factored(1.0 / unscaled.dc_gain(), &zeros, &poles).with_dead_time(0.05).unwrap();
         let required =
-            UpperWish { overshoot_percent: 10.0, settling_time_s: 1.0, settling_band_percent: 2.0 };
+            UpperStepRequirement { overshoot_percent: 10.0, settling_time_s: 1.0, settling_band_percent: 2.0 };
         let check = check_upper(&function, &required).unwrap();
         let times = uniform_times(20.0, 80_001).unwrap();
         let values = step_response(&function, &times).unwrap();
@@ -263,9 +263,9 @@ fn modes_far_apart_and_light_damping_are_followed_to_the_end() {
     // a lag of ten seconds in series with one of ten microseconds
     let spread = factored(0.1 * 1e5, &[], &[c(-0.1, 0.0), c(-1e5, 0.0)]);
     let check =
-        check_lower(&spread, &LowerWish { settling_time_s: 50.0, settling_band_percent: 1.0 }).unwrap();
+        check_lower(&spread, &LowerStepRequirement { settling_time_s: 50.0, settling_band_percent: 1.0 }).unwrap();
     assert!(close(settling(&check), 10.0 * ln(100.0), 1e-3));
-    assert_eq!(check.outcome(), WishOutcome::Met);
+    assert_eq!(check.outcome(), RequirementOutcome::Met);
     let ringing = SecondOrder::new(10.0, 0.004).unwrap();
     let check = check_upper(&ringing.transfer_function(), &UPPER).unwrap();
     assert!(close(check.reached.overshoot_percent, ringing.overshoot_percent(), 1e-8));
@@ -283,18 +283,18 @@ fn unsolvable_requirements_are_refused_and_unsettled_responses_reported() {
     );
     assert_eq!(
         check.outcome(),
-        WishOutcome::Missed { overshoot_excess_percent: 0.0, settling_excess_s: f64::INFINITY }
+        RequirementOutcome::Missed { overshoot_excess_percent: 0.0, settling_excess_s: f64::INFINITY }
     );
     let integrator = factored(1.0, &[], &[c(0.0, 0.0)]);
     assert_eq!(check_lower(&integrator, &LOWER), Err(TimeDomainError::NotStable { real_part: 0.0 }));
     let improper = factored(1.0, &[c(-1.0, 0.0)], &[]);
     assert!(matches!(check_lower(&improper, &LOWER), Err(TimeDomainError::Response(_))));
     for required in [
-        UpperWish { overshoot_percent: 100.0, ..UPPER },
-        UpperWish { overshoot_percent: -1.0, ..UPPER },
-        UpperWish { overshoot_percent: f64::NAN, ..UPPER },
-        UpperWish { settling_time_s: 0.0, ..UPPER },
-        UpperWish { settling_band_percent: 100.0, ..UPPER },
+        UpperStepRequirement { overshoot_percent: 100.0, ..UPPER },
+        UpperStepRequirement { overshoot_percent: -1.0, ..UPPER },
+        UpperStepRequirement { overshoot_percent: f64::NAN, ..UPPER },
+        UpperStepRequirement { settling_time_s: 0.0, ..UPPER },
+        UpperStepRequirement { settling_band_percent: 100.0, ..UPPER },
     ] {
         let refused = tracking_upper(&required, ExtraRoot::None, Translation::Exact);
         assert!(matches!(refused, Err(TimeDomainError::OutOfRange { .. })), "{required:?}");

@@ -8,7 +8,7 @@ use phea_quantity::{RATIO, significant};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredMisfit<S = f64> {
     /// Root mean square over the range of the signal.
-    pub share: S,
+    pub fraction: S,
     /// Signal and recording, and the location in it.
     pub at: Option<String>,
 }
@@ -19,7 +19,7 @@ impl DeclaredMisfit {
     /// # Example
     /// ```
     /// use phea_table::DeclaredMisfit;
-    /// let misfit = DeclaredMisfit { share: 0.0123, at: Some("force of \"a\".csv".to_string()) };
+    /// let misfit = DeclaredMisfit { fraction: 0.0123, at: Some("force of \"a\".csv".to_string()) };
     /// assert_eq!(misfit.in_toml(), "{ share = 0.0123, at = \"force of /a/.csv\" }");
     /// ```
     pub fn in_toml(&self) -> String {
@@ -29,7 +29,7 @@ impl DeclaredMisfit {
     /// Entries of its own keys with their values.
     pub fn entries(&self) -> Vec<String> {
         let at = self.at.iter().map(|at| format!("at = \"{}\"", at.replace(['"', '\\'], "/")));
-        [format!("share = {}", significant(self.share, 3))].into_iter().chain(at).collect()
+        [format!("share = {}", significant(self.fraction, 3))].into_iter().chain(at).collect()
     }
 }
 
@@ -39,7 +39,7 @@ impl<S: TableNumber> DeclaredMisfit<S> {
         let k = plain("misfit", "What these numbers leave unexplained of recordings, as identified.");
         v.table(k, misfit, |misfit, v| {
             let k = key("share", &RATIO, "Root mean square of the misfit, over the range of the signal.");
-            v.quantity(k.not_negative(), &mut misfit.share);
+            v.quantity(k.not_negative(), &mut misfit.fraction);
             v.text(plain("at", "Which signal of which recording, and where."), &mut misfit.at, false);
         });
     }

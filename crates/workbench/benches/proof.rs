@@ -10,7 +10,7 @@
 use std::process::ExitCode;
 use std::time::Instant;
 
-use phea_qft::proof::Standing;
+use phea_qft::proof::ClaimStatus;
 use phea_workbench::audit::{CERTIFICATE_FILE, audit_problem, check_certificate, prove_audit};
 use phea_workbench::command::{self, Request};
 use phea_workbench::project;
@@ -74,8 +74,8 @@ fn measured(name: &str, is_designed: bool, settings: &[&str]) -> Result<(), Fail
     let proof = view.proof.as_ref().ok_or("nothing is proven")?;
     let leaves = proof.certificate.as_ref().map_or(0, |certificate| certificate.leaves());
     println!("{search_s:.3}, {proof_s:.3}, {check_s:.3}, {leaves}, {}: {name}", certificate.len());
-    let each = proof.specifications.iter().map(|own| &own.standing);
-    let is_proven = std::iter::once(&proof.stability).chain(each).all(|one| *one == Standing::Proven);
+    let each = proof.specifications.iter().map(|own| &own.claim_status);
+    let is_proven = std::iter::once(&proof.stability).chain(each).all(|one| *one == ClaimStatus::Proven);
     if !checked || (is_designed && !is_proven) {
         return Err("not everything is proven".into());
     }

@@ -173,7 +173,7 @@ impl Bench {
         };
         let mut force = Force { stiffness: self.stiffness, rows: Vec::new() };
         let observer: Watcher<'_> = Box::new(&mut force);
-        let task = Task { start: self.start.clone(), course: &self.schedule, sampler, observer };
+        let task = Task { start: self.start.clone(), schedule: &self.schedule, sampler, observer };
         let outcome = self.control.drive(task, &settings, &mut |_| true)?;
         Ok((outcome, force.rows))
     }

@@ -11,5 +11,5 @@ mod words;
 pub use phea_engineering::alternatives::*;
 
 pub(crate) use answer::{AlternativesAnswer, body};
-pub(crate) use document::{document, output, outside_words, told_first};
+pub(crate) use document::{document, output, outside_words, first_warnings};
 pub(crate) use files::{figures, files};

@@ -33,7 +33,7 @@ pub(crate) use object::{Json, ObjectKey};
 pub(crate) use phea_derive::Answer;
 pub use pictures::picture_of;
 pub(crate) use pictures::{part_files, picture_files};
-pub(crate) use recorded::{RecordedAnswer, body_in_use, kept_because};
+pub(crate) use recorded::{RecordedAnswer, body_in_use, unchanged_because};
 pub(crate) use schema::{CommandAnswer, schema_of};
 pub(crate) use shape::{EitherShape, Members, ObjectShape, ValueShape, WordList};
 pub(crate) use words::{Word, describe_words, words};

@@ -51,8 +51,8 @@ pub(crate) fn sentence(effect: &UncountedEffect, units: &Units) -> String {
             rig::friction_directions(*extending, *retracting, units.motion)
         }
         Effect::BeyondReach(beyond) => {
-            let (sentence, cure) = beyond_reach(beyond, units);
-            format!("{sentence}; {cure}")
+            let (sentence, remedy) = beyond_reach(beyond, units);
+            format!("{sentence}; {remedy}")
         }
         Effect::OutsideFamily(outside) => rig::outside_family(outside),
         Effect::FixedSetting { moves_gas } => gas::fixed_setting(*moves_gas),

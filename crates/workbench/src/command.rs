@@ -38,7 +38,7 @@ use std::borrow::Cow;
 use phea_dynamics::watch::{Stopped, rising, within};
 use phea_engineering::line_choice::{LoopInQuestion, with_chosen_lines};
 
-use crate::alternatives::{AlternativesOptions as AskedOfAlternatives, judge};
+use crate::alternatives::{AlternativesOptions as RequestedOfAlternatives, judge};
 use crate::answer::{Answer, Body};
 use crate::bench;
 use crate::design::{self, design_and_repair, design_project};
@@ -49,7 +49,7 @@ use crate::linearize::SweepRequest;
 use crate::option::OptionError;
 use crate::project::Loaded;
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
-use crate::report::{self, report_beside};
+use crate::report::{self, report_next_to};
 use crate::robust::{RobustProblem, robust_problem};
 use crate::setup::Setup;
 use crate::shaping::{self, RequestedChange, Shaped, shape};
@@ -248,8 +248,8 @@ fn answer_as_read(
 ) -> Result<Answer, CommandError> {
     let answer = match request {
         Request::Compare => return compare_watched(source, std::slice::from_ref(loaded), false, watch),
-        Request::Campaign(asked) => {
-            return campaign_watched(source, loaded, catalogues, asked, (None, destination), watch);
+        Request::Campaign(requested) => {
+            return campaign_watched(source, loaded, catalogues, requested, (None, destination), watch);
         }
         Request::Check => check(source, loaded, catalogues),
         Request::Size { gain, length } => {
@@ -257,7 +257,7 @@ fn answer_as_read(
             size_answer(source, loaded, catalogues, question)
         }
         Request::Linearize { sweep: None } => linearize_answer(loaded),
-        Request::Linearize { sweep: Some(asked) } => swept_answer(source, loaded, catalogues, asked),
+        Request::Linearize { sweep: Some(requested) } => swept_answer(source, loaded, catalogues, requested),
         Request::Verify { proof, on_machine } => verify_answer(source, loaded, *proof, *on_machine, watch),
         Request::Shape { shaped, changes } => {
             let shaping = shape(source, loaded, *shaped, changes, watch).map_err(shaping::with_text)?;
@@ -267,8 +267,8 @@ fn answer_as_read(
         Request::Design { seed, stages, repair } => {
             design_answer(source, loaded, *seed, *stages, *repair, watch)
         }
-        Request::Simulate(asked) => simulate_answer(source, loaded, asked, destination, watch),
-        Request::Alternatives(asked) => alternatives_answer(source, loaded, catalogues, asked, watch),
+        Request::Simulate(requested) => simulate_answer(source, loaded, requested, destination, watch),
+        Request::Alternatives(requested) => alternatives_answer(source, loaded, catalogues, requested, watch),
         Request::Bench => bench_answer(loaded, watch),
         Request::Report { files, alternatives } => {
             report_answer(source, loaded, catalogues, *files, *alternatives, watch)
@@ -425,14 +425,14 @@ fn report_answer(
     let judged = alternatives
         .then(|| {
             let watch = &mut within(&mut *watch, [0.0, 0.5]);
-            judge(source, loaded, catalogues, &AskedOfAlternatives::default(), watch)
+            judge(source, loaded, catalogues, &RequestedOfAlternatives::default(), watch)
         })
         .transpose()?;
     if judged.as_ref().is_some_and(|judged| !judged.not_reached.is_empty()) {
         return Err(Stopped.into());
     }
     let watch = &mut within(watch, [if alternatives { 0.5 } else { 0.0 }, 1.0]);
-    let report = report_beside(source, loaded, (&setup, problem.as_ref()), judged.as_ref(), watch)?;
+    let report = report_next_to(source, loaded, (&setup, problem.as_ref()), judged.as_ref(), watch)?;
     let written = if files { report.files() } else { vec![report.page_file()] };
     let mut document = Document::default();
     report.summary.iter().for_each(|(name, value)| document.line(format!("{name}: {value}")));

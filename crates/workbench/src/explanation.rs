@@ -15,7 +15,7 @@ use crate::specification::stated;
 /// The sentence of an explanation.
 pub fn explanation_sentence(explanation: &Explanation) -> String {
     match &explanation.fact {
-        ExplainedFact::NothingAsksForFeedback => NO_FEEDBACK_REQUIRED.to_string(),
+        ExplainedFact::FeedbackNotRequired => NO_FEEDBACK_REQUIRED.to_string(),
         ExplainedFact::Finding(finding) => {
             let name_of = |index: usize| {
                 let named = explanation.limits.iter().find(|(known, _)| *known == index);
@@ -26,7 +26,7 @@ pub fn explanation_sentence(explanation: &Explanation) -> String {
     }
 }
 
-const NO_FEEDBACK_REQUIRED: &str = "nothing asks for feedback: the plants of the family differ by less than the limits on tracking allow, so that a prefilter alone could keep them; add a `sensitivity` or a `load_motion`, which say how much of a disturbance may remain";
+const NO_FEEDBACK_REQUIRED: &str = "nothing requires feedback: the plants of the family differ by less than the limits on tracking allow, so that a prefilter alone could keep them; add a `sensitivity` or a `load_motion`, which say how much of a disturbance may remain";
 
 fn limit_name(limit: &ExplainedLimit) -> String {
     match limit {

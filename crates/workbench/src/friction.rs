@@ -98,7 +98,7 @@ pub(crate) fn declared_misfit(found: &FrictionIdentification) -> Option<Declared
         .place
         .map_or_else(String::new, |[velocity, _]| format!(", most at {}", display(velocity, &VELOCITY, 3)));
     let at = Some(format!("{} of {file}{most}", misfit.signal.name()));
-    Some(DeclaredMisfit { share: misfit.fraction, at })
+    Some(DeclaredMisfit { fraction: misfit.fraction, at })
 }
 
 /// Test that would show the damping of the bristles.

@@ -32,11 +32,11 @@ fn of_plants(path: &str, finding: &Finding, problem: &RobustProblem) -> LateErro
     let plant = explanation.plants.first().map(|plant| plant_text(&problem.names, plant));
     let plant = plant.filter(|text| !text.is_empty()).map_or(String::new(), |text| format!(" ({text})"));
     let message = format!("{}{plant}", explanation_sentence(&explanation));
-    LateError { path: path.to_string(), message, help: cure(problem, finding) }
+    LateError { path: path.to_string(), message, help: remedy(problem, finding) }
 }
 
 /// Remedy for a requirement that a finding forbids.
-fn cure(problem: &RobustProblem, finding: &Finding) -> String {
+fn remedy(problem: &RobustProblem, finding: &Finding) -> String {
     match finding {
         Finding::SumBelowOne { frequency_rad_per_s, sensitivity, complementary, .. } => {
             let at = significant(*frequency_rad_per_s, 3);

@@ -41,9 +41,9 @@ fn chosen_words(lines: &ChosenLines, motion: MotionKind) -> String {
         }
     };
     let stated = |model: &str| format!("`line.model = \"{model}\"` states it otherwise");
-    match (&lines.hindrance, lines.with_waves) {
-        (Some(hindrance), _) => {
-            let reason = hindrance_words(hindrance, motion);
+    match (&lines.obstacle, lines.with_waves) {
+        (Some(obstacle), _) => {
+            let reason = hindrance_words(obstacle, motion);
             format!("Lines: lumped, although {of_reach}: no model with waves is computed ({reason}).")
         }
         (None, true) => format!("Lines: with waves, since {of_reach}; {}.", stated("lumped")),
@@ -60,7 +60,7 @@ fn is_quarter_wave(reached: f64, lines: &ChosenLines) -> bool {
 const SAME: f64 = 1e-9;
 
 fn is_near(lines: &ChosenLines) -> bool {
-    lines.with_waves || lines.hindrance.is_some()
+    lines.with_waves || lines.obstacle.is_some()
 }
 
 fn frequency(rad_per_s: f64) -> String {

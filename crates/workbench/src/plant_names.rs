@@ -22,7 +22,7 @@ pub(crate) const ADDED: &str = "the plant that was taken in";
 /// `viscous_friction 100 N.s/m, flow_gain 5.61e-5 m3/(s.V)`, or the name of the measurement.
 pub fn plant_text(names: &PlantNames, plant: &PlantPoint) -> String {
     match (names, plant) {
-        (_, PlantPoint::Beside(_)) => ADDED.to_string(),
+        (_, PlantPoint::Additional(_)) => ADDED.to_string(),
         (PlantNames::Parameters(own), PlantPoint::Parameters(values))
             if own.is_empty() || values.is_empty() =>
         {

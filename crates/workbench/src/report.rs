@@ -98,7 +98,7 @@ pub fn report(
     problem: Option<&ProblemOfSizing>,
     watch: Watch<'_>,
 ) -> Result<Report, CommandError> {
-    report_beside(source, loaded, (setup, problem), None, watch)
+    report_next_to(source, loaded, (setup, problem), None, watch)
 }
 
 /// The chapters on recordings of the valve and of the friction.
@@ -112,7 +112,7 @@ fn recordings(source: &dyn Source, loaded: &Loaded, watch: Watch<'_>) -> Result<
 ///
 /// # Errors
 /// Errors of [`report`].
-pub(crate) fn report_beside(
+pub(crate) fn report_next_to(
     source: &dyn Source,
     loaded: &Loaded,
     (setup, problem): (&Setup<'_>, Option<&ProblemOfSizing>),

@@ -7,7 +7,7 @@ mod requirement;
 
 pub use phea_engineering::specification::*;
 
-pub(crate) use answer::{RequiredStepAnswer, WishAnswer, document, wish_answer};
+pub(crate) use answer::{RequiredStepAnswer, CheckedRequirementAnswer, document, requirement_answer};
 pub(crate) use late::late;
 pub(crate) use names::{name_words, numbered, stated, subject_words};
-pub use requirement::wish_sentence;
+pub use requirement::requirement_sentence;

@@ -118,7 +118,7 @@ mod transmission;
 mod trial;
 mod trusted_data;
 mod uncertainty_directions;
-mod units_shown;
+mod units_printed;
 mod valve_coverage;
 mod valve_evidence;
 mod valve_identification;

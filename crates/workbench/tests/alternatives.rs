@@ -8,13 +8,13 @@ use std::sync::OnceLock;
 
 use crate::json_contract::unexplained;
 use crate::run_command::{HOSE, answer, load, retracted_length, source};
-use phea_workbench::alternatives::{ColumnKey, LengthUnknown, asked as requested_alternatives};
+use phea_workbench::alternatives::{ColumnKey, LengthUnknown, prepared as prepared_alternatives};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{AlternativesRequest, Request, answer_into};
 use phea_workbench::quantity::MotionKind;
 use serde_json::Value;
 
-fn asked(files: bool) -> Request {
+fn alternatives_request(files: bool) -> Request {
     Request::Alternatives(AlternativesRequest { files, ..AlternativesRequest::default() })
 }
 
@@ -91,7 +91,7 @@ pub(super) fn json_of(answer: &Answer) -> Value {
 pub(super) fn judged() -> &'static (Answer, Value) {
     static JUDGED: OnceLock<(Answer, Value)> = OnceLock::new();
     JUDGED.get_or_init(|| {
-        let found = answer(&rig(), &[], &[], &asked(true));
+        let found = answer(&rig(), &[], &[], &alternatives_request(true));
         let json = json_of(&found);
         (found, json)
     })
@@ -100,7 +100,7 @@ pub(super) fn judged() -> &'static (Answer, Value) {
 /// Sizing, rig and scenario of each alternative, and no absence without a reason.
 #[test]
 fn every_alternative_has_its_columns_and_reasons() {
-    for json in [&judged().1, &json_of(&answer(LOOP, &[], &[], &asked(false)))] {
+    for json in [&judged().1, &json_of(&answer(LOOP, &[], &[], &alternatives_request(false)))] {
         let mut found = Vec::new();
         unexplained("", json, &mut found);
         // the ends of a proof's interval have their reason next to the interval
@@ -176,9 +176,9 @@ fn a_spring_on_the_rod_has_a_length() {
 fn a_load_case_equals_every_alternative_with_set() {
     let text =
         format!("{LOOP}\n[[load_case]]\nname = \"slow\"\nset = {{ \"plant.denominator\" = \"s + 0.5\" }}\n");
-    let found = answer(&text, &[], &[], &asked(true));
+    let found = answer(&text, &[], &[], &alternatives_request(true));
     let json = json_of(&found);
-    assert_eq!(json["alternatives"], json_of(&answer(LOOP, &[], &[], &asked(false)))["alternatives"]);
+    assert_eq!(json["alternatives"], json_of(&answer(LOOP, &[], &[], &alternatives_request(false)))["alternatives"]);
     let case = &json["load_cases"][0];
     assert_eq!(
         (&case["name"], &case["settings"][0]),
@@ -281,7 +281,7 @@ fn ranges_follow_the_rig_if_requested() {
                 \"line\" = { pipe = { bore = \"10.5 mm\" }, length = \"0.35 m\", compliance = \"uniform\" }\n";
     let text = |recentre: &str| format!("{HOSE}{}", pipe.replace("RECENTRE", recentre));
     let declared = load(&text("recentre = true"), &[], &[]);
-    let following = requested_alternatives(&source(&text("recentre = true")), &declared, &[]).unwrap().0;
+    let following = prepared_alternatives(&source(&text("recentre = true")), &declared, &[]).unwrap().0;
     let moved: Vec<&str> = following[1].moved.iter().map(|range| range.name.as_str()).collect();
     assert_eq!(moved, ["hydraulic_stiffness"]);
     let [nominal, least, greatest] = following[1].moved[0].moved;
@@ -302,7 +302,7 @@ fn a_sized_alternative_has_the_hose_of_size() {
     let text = format!(
         "{HOSE}\n[[alternative]]\nname = \"sized\"\nsize = true\nset = {{ \"line.length\" = \"1 m\" }}\n"
     );
-    let all = requested_alternatives(&source(&text), &load(&text, &[], &[]), &[]).unwrap().0;
+    let all = prepared_alternatives(&source(&text), &load(&text, &[], &[]), &[]).unwrap().0;
     let size = Request::Size { gain: None, length: None };
     let sized = json_of(&answer(&text, &["line.length=1 m"], &[], &size));
     let best = &sized["candidates"][0];
@@ -316,14 +316,14 @@ fn a_sized_alternative_has_the_hose_of_size() {
         crate::run_command::PIPE
     );
     let refused =
-        requested_alternatives(&source(&pipe), &load(&pipe, &[], &[]), &[]).unwrap_err().to_string();
+        prepared_alternatives(&source(&pipe), &load(&pipe, &[], &[]), &[]).unwrap_err().to_string();
     assert_eq!(refused, "alternative `p`: `size` finds the hoses of both sides: its [line] must have them");
 }
 
 /// The design of an alternative is that of the project with identical settings.
 #[test]
 fn each_design_is_that_of_design_with_set() {
-    let json = json_of(&answer(LOOP, &[], &[], &asked(false)));
+    let json = json_of(&answer(LOOP, &[], &[], &alternatives_request(false)));
     let designed = Request::Design { seed: None, stages: false, repair: false };
     let settings: [&[&str]; 3] = [&[], &["plant.denominator=\"s + 3\""], &["plant.delay=\"10 ms\""]];
     for (index, settings) in settings.into_iter().enumerate() {
@@ -373,9 +373,9 @@ fn each_written_project_is_the_one_that_was_driven() {
 /// Results that are finished when the watch stops are returned; the rest is named.
 #[test]
 fn a_stop_returns_the_finished_alternatives() {
-    let mut watch = |progress: phea_workbench::command::Progress| progress.share < 0.34;
+    let mut watch = |progress: phea_workbench::command::Progress| progress.fraction < 0.34;
     let stopped =
-        answer_into(&source(LOOP), &load(LOOP, &[], &[]), &[], &asked(false), None, &mut watch).unwrap();
+        answer_into(&source(LOOP), &load(LOOP, &[], &[]), &[], &alternatives_request(false), None, &mut watch).unwrap();
     let json = json_of(&stopped);
     assert_eq!(json["alternatives"].as_array().unwrap().len(), 1);
     assert_eq!(json["not_reached"], serde_json::json!(["faster", "late"]));
@@ -432,7 +432,7 @@ fn the_book_agrees_with_the_story() {
 #[ignore = "thirty-nine designs, nineteen of them infeasible"]
 fn soak_the_book_agrees_with_the_comparison() {
     let project = include_str!("../../../examples/ybitu/compliance.toml");
-    let found = answer(project, &[], &[], &asked(false));
+    let found = answer(project, &[], &[], &alternatives_request(false));
     let rows = [rows_of_the_book(10), rows_of_the_book(8)].concat();
     assert_eq!(rows.len(), 39);
     let missing: Vec<&String> = rows.iter().filter(|row| !is_in_line(row, &found.text)).collect();

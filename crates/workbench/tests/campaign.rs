@@ -138,7 +138,7 @@ fn an_open_loop_is_drawn_as_a_closed_one_is() {
             simulate_project(&source, &Setup::new(&drawn.project).unwrap(), &mut |_| true).unwrap().remove(0);
         let force_n = plan.forces(run..run + 1, lanes(1)).unwrap().remove(0);
         let seen = simulated.record.signal(Signal::Force);
-        assert_eq!((simulated.looks_per_row, seen.len()), (1, force_n.len()));
+        assert_eq!((simulated.samples_per_row, seen.len()), (1, force_n.len()));
         assert!(seen.iter().zip(&force_n).all(|(one, other)| one.to_bits() == other.to_bits()), "run {run}");
         let row = &expected[run as usize];
         for ((_, metrics), numbers) in simulated.windows.iter().zip(&row.ran().unwrap().metrics) {
@@ -176,7 +176,7 @@ fn a_run_equals_simulate_with_its_settings() {
                     .unwrap()
                     .remove(0);
             let seen = simulated.record.signal(Signal::Force);
-            assert_eq!((simulated.looks_per_row, seen.len()), (1, force_n.len()));
+            assert_eq!((simulated.samples_per_row, seen.len()), (1, force_n.len()));
             assert!(
                 seen.iter().zip(force_n).all(|(one, other)| one.to_bits() == other.to_bits()),
                 "run {run}"
@@ -201,7 +201,7 @@ struct Page {
 }
 
 impl RowStore for Page {
-    fn kept(&mut self) -> Result<String, String> {
+    fn stored(&mut self) -> Result<String, String> {
         Ok(self.text.clone())
     }
 

@@ -57,7 +57,7 @@ fn without_the_section_names_come_first_and_tracking_decides_on_a_prefilter() {
     let options = |settings: &[&str]| begun(HOSE, settings, None).1;
     let plain = options(&[]);
     assert_eq!(plain.objective, Objective::LeastHighFrequencyGain);
-    let ControllerChoice::Any { maximum_order: 4, from: None, with_gain_alone: false, earned_per_pole_db } =
+    let ControllerChoice::Any { maximum_order: 4, from: None, with_pure_gain: false, earned_per_pole_db } =
         plain.controller
     else {
         panic!("{:?}", plain.controller)

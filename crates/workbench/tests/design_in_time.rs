@@ -58,11 +58,11 @@ fn a_structure_that_fails_by_its_steps_only_fails_in_time() {
 
 /// A run of the nonlinear rig with one requirement for each of these verdicts.
 fn run(view: &ProjectDesign, satisfied: &[bool]) -> TrialRun {
-    let required = view.designed.view.in_time[0].requirement.wish;
+    let required = view.designed.view.in_time[0].requirement.step_limits;
     let reached = ReachedStep { overshoot_percent: 1.0, settling_time_s: 1.0, rise_time_s: 1.0 };
     let held = |is_satisfied: &bool| HeldRequirement {
         number: 3,
-        wish: required,
+        step_limits: required,
         reached,
         reached_with_room: reached,
         is_satisfied: *is_satisfied,

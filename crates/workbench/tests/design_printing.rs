@@ -95,7 +95,7 @@ fn design(problem: &DesignProblem, coefficients: CoefficientFormat, status: Desi
         structure: structure.clone(),
         starts: None,
         objective_db: 34.0,
-        beside: vec![],
+        additional_audits: vec![],
         audit: audit(&problem, &mut unwatched).unwrap(),
         binding: vec![margin(1, 1.0, 0.0, plant)],
         rounds: vec![DesignRound {

@@ -83,7 +83,7 @@ fn the_rig_with_hoses_is_met_within_the_permitted_frequency() {
     assert_met(&design, &verified, [4.0, 3.0]);
     assert_eq!(design["machine"]["verdict"], "agrees_but_for_settling");
     let limits = design["limits"].as_array().unwrap();
-    assert!(limits.iter().all(|limit| limit["kept"] == true), "{limits:?}");
+    assert!(limits.iter().all(|limit| limit["satisfied"] == true), "{limits:?}");
     let value = |key: &str, of: &str| {
         let limit = limits.iter().find(|limit| limit["key"] == key).unwrap();
         (number(limit, of), limit["origin"].as_str().unwrap().to_string())

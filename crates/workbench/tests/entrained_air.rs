@@ -61,7 +61,7 @@ fn if_a_search_decides_the_parameters_are_named() {
     assert_eq!(searched["parameters"][0], "supply.pressure", "{searched}");
     // the stiffer the oil, the smaller: at the highest pressure, by one percent for so little air
     assert_eq!(searched["plant"]["supply.pressure"], 220e5, "{searched}");
-    let fraction = number(searched, "least_share_of_nominal");
+    let fraction = number(searched, "least_fraction_of_nominal");
     assert!((0.95..1.0).contains(&fraction), "{searched}");
     // if the enclosures decide, nothing is searched for
     let still = json(&format!("{RIG}{LOOP}"), &settings[..1], &[], &verify);

@@ -108,7 +108,7 @@ fn correlated_parameters_move_together() {
         let fraction = portable::ln(values[0]) / portable::ln(4.0);
         assert!(((values[1] - 2.0) / 4.0 - fraction).abs() < 1e-14, "{values:?}");
         assert!(((6.0 - values[2]) / 2.0 - fraction).abs() < 1e-14, "{values:?}");
-        assert!((family.shares(values)[0] - fraction).abs() < 1e-14);
+        assert!((family.fractions(values)[0] - fraction).abs() < 1e-14);
     }
 }
 

@@ -254,7 +254,7 @@ fn numbers_that_no_rig_of_this_size_has_are_refused_with_their_unit() {
             "plausible in mm",
         ),
     ];
-    for (keys, heading, value, cure) in cases {
+    for (keys, heading, value, remedy) in cases {
         let text = scenario(keys);
         let source = run_command::source(&text)
             .with("f.csv", format!("time_s;{heading}\n0;0\n0.05;{value}\n0.1;{value}\n"));
@@ -264,7 +264,7 @@ fn numbers_that_no_rig_of_this_size_has_are_refused_with_their_unit() {
         let error = phea_workbench::command::answer(&source, &loaded, &[], &request).unwrap_err();
         let found = &error.refusal().unwrap_or_else(|| panic!("{error}")).diagnostics[0];
         assert!(found.message.contains(heading) && found.file == "f.csv" && found.line == 1, "{found:?}");
-        assert!(found.help.as_deref().unwrap_or("").contains(cure), "{found:?}");
+        assert!(found.help.as_deref().unwrap_or("").contains(remedy), "{found:?}");
     }
 }
 

@@ -131,10 +131,10 @@ fn the_printed_impedance_is_that_of_the_port() {
     );
     let setup = Setup::new(&project).unwrap();
     let found = linearize(setup.rig().unwrap(), setup.controller.as_ref(), &setup.sensor).unwrap();
-    let (port, required) = (found.closed_loop.unwrap(), found.asked.unwrap());
+    let (port, required) = (found.closed_loop.unwrap(), found.required_impedance.unwrap());
     for point in &required.points {
         let expected = port.impedance.at_frequency(point.frequency_rad_per_s);
-        assert!((point.shown / expected - 1.0).norm_sqr().sqrt() < 1e-6, "{point:?}, not {expected}");
+        assert!((point.achieved / expected - 1.0).norm_sqr().sqrt() < 1e-6, "{point:?}, not {expected}");
     }
     let [from, to] = required.follows_rad_per_s.unwrap();
     assert!(from < 0.1 && to > 1.0 && to < 1e3, "{from} to {to}");
@@ -283,8 +283,8 @@ name = "pipe with an inner position loop"
     let at = |index: usize, key: &str| columns(index)["impedance"][0][key].as_f64();
     // at 1 rad/s: |B_v + K_v/(jw)|
     let required = (2e6_f64 * 2e6 + 4e5 * 4e5).sqrt();
-    assert!((at(2, "impedance_asked_n_s_per_m").unwrap() / required - 1.0).abs() < 1e-12);
-    assert_eq!((at(0, "impedance_asked_n_s_per_m"), at(1, "impedance_asked_n_s_per_m")), (None, None));
+    assert!((at(2, "impedance_required_n_s_per_m").unwrap() / required - 1.0).abs() < 1e-12);
+    assert_eq!((at(0, "impedance_required_n_s_per_m"), at(1, "impedance_required_n_s_per_m")), (None, None));
     let shown = [1, 2].map(|index| at(index, "impedance_closed_n_s_per_m").unwrap());
     // to within 1/(1 + L), at most 1/|1 - 5j| there, and the impedance of the pipe
     assert!((shown[1] / required - 1.0).abs() < 0.2 + shown[0] / required, "{shown:?}, {required}");

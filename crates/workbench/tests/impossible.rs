@@ -39,7 +39,7 @@ fn assert_begins(of: impl Fn(f64) -> String, possible: f64, impossible: f64, key
     let found = contradictions(&of(impossible));
     let own =
         found.iter().find(|one| one["key"] == key).unwrap_or_else(|| panic!("{key} is missing in {found:?}"));
-    let words = format!("{} {}", own["sentence"], own["cure"]);
+    let words = format!("{} {}", own["sentence"], own["remedy"]);
     parts.iter().for_each(|part| assert!(words.contains(part), "{part} is missing in: {words}"));
     assert!(own["line"].as_u64().unwrap() > 0);
 }

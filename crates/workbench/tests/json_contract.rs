@@ -216,7 +216,7 @@ fn check_reports_a_stated_value_that_contradicts_the_derived_one() {
 /// % of the reference.
 #[test]
 fn check_compares_tracking_limits_with_their_requirements() {
-    let requirements = |settings: &[&str]| json(HOSE, settings, &[], &Request::Check)["wishes"].clone();
+    let requirements = |settings: &[&str]| json(HOSE, settings, &[], &Request::Check)["requirements_in_time"].clone();
     let stated = requirements(&[]);
     let [upper, lower] = [&stated[0], &stated[1]];
     for (row, key, overshoot, time, reached) in
@@ -224,7 +224,7 @@ fn check_compares_tracking_limits_with_their_requirements() {
     {
         assert_eq!((number(row, "specification"), row["limit"].as_str()), (3.0, Some(key)));
         assert_eq!(row["met"], false);
-        for side in ["wished", "reached"] {
+        for side in ["required", "reached"] {
             assert_eq!(number(row, &format!("{side}.settling_band_percent")), 1.0);
         }
         assert_eq!(number(row, "wished.overshoot_percent"), overshoot);
@@ -237,7 +237,7 @@ fn check_compares_tracking_limits_with_their_requirements() {
     let low = &requirements(&["specification.2.upper.numerator=\"0.9*2116*(s + 75)/75\""])[0]["reached"];
     assert!(low["settling_time_s"].is_null());
     assert_eq!(low["reason"], "does not settle: it stays 10.0 % off");
-    assert_eq!(json(PLANT, &[], &[], &Request::Check)["wishes"], serde_json::json!([]));
+    assert_eq!(json(PLANT, &[], &[], &Request::Check)["requirements_in_time"], serde_json::json!([]));
 }
 
 #[test]

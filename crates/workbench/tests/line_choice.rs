@@ -179,7 +179,7 @@ fn answers_without_waves_use_lumped_lines() {
     let settings = ["load.stiffness=0", "operating_point.load_force=0", "design.highest_bandwidth=300"];
     let found = chosen(&rig_to_be_designed(), &settings);
     assert_eq!(found["model"], "lumped");
-    assert_eq!(found["hindrance"], "the load is a mass without stiffness");
+    assert_eq!(found["obstacle"], "the load is a mass without stiffness");
 }
 
 /// The reason of a design limited by the quarter wave does not compare the quarter wave with

@@ -270,6 +270,6 @@ fn the_fractions_of_the_modes_add_up_to_one() {
         let decay: Vec<f64> = modes.iter().map(|mode| number(mode, "decay_ratio")).collect();
         assert!(decay.iter().all(|ratio| *ratio >= 1.0) && decay.contains(&1.0), "{decay:?}");
         let slowest = modes.iter().find(|mode| number(mode, "decay_ratio") == 1.0).unwrap();
-        within(number(slowest, "step_share"), 1.0, 0.01);
+        within(number(slowest, "step_fraction"), 1.0, 0.01);
     }
 }

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
-use phea_dynamics::random::{share, stream};
+use phea_dynamics::random::{uniform, stream};
 use phea_dynamics::uncertain_plant::PlantCoefficients;
 use phea_hydraulics::signal::Signal;
 use phea_qft::family::Family;
@@ -77,10 +77,10 @@ fn follows_the_position(text: &str) {
     let mut state = stream(9, 1);
     let mut arms = [f64::INFINITY, 0.0_f64];
     for _ in 0..30 {
-        let of = |one: &phea_dynamics::uncertain_plant::UncertainParameter, share: f64| {
-            one.minimum + (one.maximum - one.minimum) * share
+        let of = |one: &phea_dynamics::uncertain_plant::UncertainParameter, fraction: f64| {
+            one.minimum + (one.maximum - one.minimum) * fraction
         };
-        let values: Vec<f64> = plant.parameters().iter().map(|one| of(one, share(&mut state))).collect();
+        let values: Vec<f64> = plant.parameters().iter().map(|one| of(one, uniform(&mut state))).collect();
         let mut stated = project.without_uncertainty();
         for (name, value) in names.iter().zip(&values) {
             stated = match *name {

@@ -126,7 +126,7 @@ fn a_region_of_positions_only_states_its_force() {
     assert!((worst(&[none, &positions]) - stated).abs() > 0.5);
 }
 
-const NEXT_TO_NULL: &str = "the valve leaks most beside null";
+const NEXT_TO_NULL: &str = "the valve leaks most near null";
 
 /// Two humps of the leakage are stated with the numbers of the blocked valve, for a cylinder and
 /// for a motor; a leakage that is highest at null is not mentioned.
@@ -156,7 +156,7 @@ fn a_valve_that_leaks_most_next_to_null_is_reported() {
             [1.0, -1.0].map(|side| steps.clone().map(|opening| leak(side * opening)).fold(0.0, f64::max));
         // ORIGIN: analytic, the lower of both humps in L/min
         let lower = 6e4 * sides[0].min(sides[1]);
-        let (_, after) = sentence_of.split_once("beside null, ").unwrap();
+        let (_, after) = sentence_of.split_once("near null, ").unwrap();
         let printed: f64 = after.split_once(" L/min").unwrap().0.parse().unwrap();
         near(printed, lower, 6e-3);
     }

@@ -9,7 +9,7 @@ use phea_dynamics::controller::Controller;
 use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::portable::{exp, magnitude, pow};
-use phea_dynamics::random::{normal, share, stream};
+use phea_dynamics::random::{normal, uniform, stream};
 use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
@@ -32,12 +32,12 @@ fn function(numerator: &[f64], denominator: &[f64]) -> TransferFunction {
 
 /// Plants k (s/z + 1)^(m - 1 or 0)/(s^m (s/60 + 1)(s/80 + 1)), with sign and gain drawn.
 fn drawn(state: &mut u64, integrators: usize) -> TransferFunction {
-    let sign = if share(state) < 0.25 { -1.0 } else { 1.0 };
-    let crossover = exp(3.5 * share(state));
+    let sign = if uniform(state) < 0.25 { -1.0 } else { 1.0 };
+    let crossover = exp(3.5 * uniform(state));
     let (zero, size) = match integrators {
         0 => (None, 1.0 + crossover / 5.0),
         1 => (None, crossover),
-        _ => (Some(crossover / (1.5 + 4.0 * share(state))), crossover),
+        _ => (Some(crossover / (1.5 + 4.0 * uniform(state))), crossover),
     };
     let gain = zero.map_or(size, |zero: f64| size * zero);
     let numerator = zero.map_or(vec![sign * gain], |zero: f64| vec![sign * gain / zero, sign * gain]);
@@ -126,7 +126,7 @@ fn noise_leaves_few_verdicts_open_and_makes_none_false() {
                 magnitude(open / (1.0 + open))
             };
             let peak = logarithmic_grid(0.1, 300.0, 20_000).unwrap().iter().map(ratio).fold(0.0, f64::max);
-            let off_db = span_db * (share(&mut state) - 0.5);
+            let off_db = span_db * (uniform(&mut state) - 0.5);
             let csv = record(&frequencies, NOISE, &mut state, |w| plant.at_frequency(w));
             let limit = peak * pow(10.0, off_db / 20.0);
             let found = judged(&csv, limit);
@@ -142,8 +142,8 @@ fn noise_leaves_few_verdicts_open_and_makes_none_false() {
 
 /// A smooth response, two resonances or dips with any damping, or a double integrator.
 fn response_of(state: &mut u64, kind: usize) -> impl Fn(f64) -> Complex64 + use<> {
-    let delay = 0.02 * share(state);
-    let mut drawn = |low: f64, high: f64| low * exp(share(state) * (high / low).ln());
+    let delay = 0.02 * uniform(state);
+    let mut drawn = |low: f64, high: f64| low * exp(uniform(state) * (high / low).ln());
     let modes: [[f64; 3]; 2] =
         std::array::from_fn(|_| [drawn(0.3, 200.0), drawn(0.005, 0.3), drawn(1.0, 3.0)]);
     move |w| {

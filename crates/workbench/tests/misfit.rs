@@ -165,7 +165,7 @@ fn a_misfit_of_friction_is_in_its_fragment() {
     let source = Memory::default().with(SLIDING, format!("{heading}\n{harder}"));
     let answer = friction_of(&source, &[SLIDING]).unwrap();
     let json: Value = parsed(&answer.json);
-    let fraction = json["misfits"][0]["share"].as_f64().unwrap_or_else(|| panic!("{json}"));
+    let fraction = json["misfits"][0]["fraction"].as_f64().unwrap_or_else(|| panic!("{json}"));
     let fragment = answer.files.iter().find(|file| file.name == "friction.toml").unwrap();
     let text = String::from_utf8(fragment.bytes.clone()).unwrap();
     let misfit =
@@ -173,6 +173,6 @@ fn a_misfit_of_friction_is_in_its_fragment() {
     let loaded = run_command::load(run_command::HOSE, &[&format!("cylinder.friction.misfit={misfit}")], &[]);
     let friction = loaded.project.actuator.as_ref().unwrap().cylinder.friction.clone().unwrap();
     let declared = friction.misfit.unwrap();
-    assert!((declared.share / fraction - 1.0).abs() < 0.01, "{declared:?} {fraction}");
+    assert!((declared.fraction / fraction - 1.0).abs() < 0.01, "{declared:?} {fraction}");
     assert!(declared.at.is_some_and(|at| at.starts_with("force of sliding.csv, most at")), "{text}");
 }

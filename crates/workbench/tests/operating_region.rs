@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
-use phea_dynamics::random::share;
+use phea_dynamics::random::uniform;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, UncertainPlant};
 use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_workbench::command::{self, Request};
@@ -87,7 +87,7 @@ fn follows_the_rig(project: &Project) -> [usize; 2] {
     let (mut state, mut sides) = (5, [0; 2]);
     let mut drawn: Vec<Vec<f64>> = Vec::new();
     for _ in 0..60 {
-        let mut within = |low: f64, high: f64| low + (high - low) * share(&mut state);
+        let mut within = |low: f64, high: f64| low + (high - low) * uniform(&mut state);
         drawn.push(plant.parameters().iter().map(|one| within(one.minimum, one.maximum)).collect());
     }
     for values in family.members().iter().take(300).chain(&drawn) {
@@ -327,7 +327,7 @@ fn a_region_is_the_points_that_the_rig_visits() {
     assert_eq!((friction.minimum.value, friction.maximum.value), (100.0, 3e4));
     let mut state = 9;
     for _ in 0..300 {
-        let mut drawn = |low: f64, high: f64| low + (high - low) * share(&mut state);
+        let mut drawn = |low: f64, high: f64| low + (high - low) * uniform(&mut state);
         let values: Vec<f64> =
             family.plant().parameters().iter().map(|one| drawn(one.minimum, one.maximum)).collect();
         let mut stated = project.clone();

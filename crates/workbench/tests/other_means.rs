@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use phea_workbench::alternatives::asked;
+use phea_workbench::alternatives::prepared;
 use phea_workbench::command::Request;
 use serde_json::Value;
 
@@ -142,7 +142,7 @@ fn an_alternative_uses_the_result() {
         let text =
             format!("{before}[[alternative]]\nname = \"sized\"\nsize = true\n\n[alternative.set]\n{set}\n");
         let loaded = load(&text, &[], &[]);
-        let (all, _) = asked(&source(&text), &loaded, &[]).unwrap();
+        let (all, _) = prepared(&source(&text), &loaded, &[]).unwrap();
         all.last().unwrap().loaded.project.clone()
     };
     let gas =

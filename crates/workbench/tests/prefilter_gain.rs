@@ -73,14 +73,14 @@ fn a_prefilter_has_its_gain_and_the_loop_tracks() {
     assert!(largest_gain(&limited) <= 1.5 * (1.0 + 1e-9), "{}", largest_gain(&limited));
     assert!(crossover(&free) < 1.0 && crossover(&limited) > 2.0);
     let limit = &limited["limits"][0];
-    assert_eq!((&limit["key"], &limit["kept"]), (&"prefilter_gain".into(), &true.into()));
+    assert_eq!((&limit["key"], &limit["satisfied"]), (&"prefilter_gain".into(), &true.into()));
 }
 
 /// A prefilter without a loop could satisfy the requirements on a single plant: this is reported
 /// until something limits the effect of a disturbance.
 #[test]
 fn superfluous_feedback_is_reported() {
-    let explains = |design: &Value| design["explanations"].to_string().contains("nothing asks for feedback");
+    let explains = |design: &Value| design["explanations"].to_string().contains("nothing requires feedback");
     assert!(explains(&designed(&[], "")));
     let limit = "[[specification]]\nkind = \"sensitivity\"\nlimit = 0.5\nfrequencies = [1]\nband = [0, 1]\n";
     assert!(!explains(&designed(&[], limit)));

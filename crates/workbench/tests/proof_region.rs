@@ -9,7 +9,7 @@ use phea_dynamics::portable::{log10, magnitude, pow};
 use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
 use phea_qft::family::Family;
-use phea_qft::proof::{Certificate, Claim, ProofOptions, Standing, check, differences, prove};
+use phea_qft::proof::{Certificate, Claim, ProofOptions, ClaimStatus, check, differences, prove};
 use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement};
 use phea_workbench::project;
@@ -54,10 +54,10 @@ fn proven(uncertainty: &str) -> Certificate {
     let request = request(&problem);
     let found = audit(&request, &mut unwatched).unwrap();
     let proof = prove(&request, &found, ProofOptions::default(), &mut unwatched).unwrap();
-    assert_eq!(proof.stability, Standing::Proven, "{uncertainty}");
+    assert_eq!(proof.stability, ClaimStatus::Proven, "{uncertainty}");
     assert_eq!(
-        proof.specifications[0].standing,
-        Standing::Proven,
+        proof.specifications[0].claim_status,
+        ClaimStatus::Proven,
         "{uncertainty} {:?}",
         proof.specifications
     );

@@ -6,7 +6,7 @@
 #![allow(clippy::print_stdout, reason = "how many regions were judged is worth reading")]
 
 use crate::run_command::HOSE;
-use phea_dynamics::random::{share, stream};
+use phea_dynamics::random::{uniform, stream};
 use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
 use phea_qft::family::{Extent, Family, UncertainFamily};
@@ -182,10 +182,10 @@ impl Region {
     /// Draws a point; each number is at one of its ends in half of the cases.
     fn point(&mut self) -> Vec<f64> {
         let state = &mut self.state;
-        let mut drawn = |low: f64, high: f64| match (4.0 * share(state)) as u8 {
+        let mut drawn = |low: f64, high: f64| match (4.0 * uniform(state)) as u8 {
             0 => low,
             1 => high,
-            _ => low + (high - low) * share(state),
+            _ => low + (high - low) * uniform(state),
         };
         self.family.plant().parameters().iter().map(|one| drawn(one.minimum, one.maximum)).collect()
     }
@@ -316,9 +316,9 @@ fn compared(found: &Audit, sampled: &Audit) -> Vec<String> {
     faults
 }
 
-/// The table of the part that switches, and the keys of the supply; `share` places the switch, for
+/// The table of the part that switches, and the keys of the supply; `fraction` places the switch, for
 /// this supply pressure in Pa and flow in m3/s.
-fn chosen(choosing: Choosing, share: f64, supply: f64, flow: f64) -> [String; 2] {
+fn chosen(choosing: Choosing, fraction: f64, supply: f64, flow: f64) -> [String; 2] {
     let constant = "model = \"constant\"\n".to_string();
     match choosing {
         Choosing::Nothing => [String::new(), constant],
@@ -327,12 +327,12 @@ fn chosen(choosing: Choosing, share: f64, supply: f64, flow: f64) -> [String; 2]
             [format!("[load]\nmodel = \"wall\"\n{keys}"), constant]
         }
         Choosing::Gas => {
-            let precharge = (0.25 + 0.15 * share) * supply;
+            let precharge = (0.25 + 0.15 * fraction) * supply;
             let keys = format!("gas_volume = \"14 mL\"\nprecharge_pressure = {precharge:e}\n");
             [format!("[line.accumulator]\n{keys}"), constant]
         }
         Choosing::Pump => {
-            let flow = (0.3 + 0.9 * share) * flow;
+            let flow = (0.3 + 0.9 * fraction) * flow;
             let keys = format!("flow = {flow:e}\nrelief_override = \"10 bar\"\nvolume = \"1 L\"\n");
             [String::new(), format!("model = \"pump_limited\"\n{keys}")]
         }
@@ -341,7 +341,7 @@ fn chosen(choosing: Choosing, share: f64, supply: f64, flow: f64) -> [String; 2]
 
 /// A rig and a region of it.
 fn text(state: &mut u64, choosing: Choosing) -> String {
-    let mut drawn = |low: f64, high: f64| low + (high - low) * share(state);
+    let mut drawn = |low: f64, high: f64| low + (high - low) * uniform(state);
     let equal = drawn(0.0, 1.0) < 0.2;
     let first = drawn(2e-7, 4e-7);
     let flow: [f64; 4] = std::array::from_fn(|_| if equal { first } else { drawn(1.8e-7, 4.2e-7) });
@@ -358,7 +358,7 @@ fn text(state: &mut u64, choosing: Choosing) -> String {
     let forces = format!("load_force = {}\n", range(-force, force));
     let speeds = format!("velocity = {}\n", range(-speed, speed));
     let positions = format!("position = {}\n", range(0.02, 0.48));
-    let which = share(state);
+    let which = uniform(state);
     let region = match (10.0 * which) as u8 {
         0 | 1 => forces,
         2 | 3 => speeds,
@@ -366,7 +366,7 @@ fn text(state: &mut u64, choosing: Choosing) -> String {
         5 | 6 => positions + &forces,
         _ => positions + &forces + &speeds,
     };
-    let mut drawn = |low: f64, high: f64| low + (high - low) * share(state);
+    let mut drawn = |low: f64, high: f64| low + (high - low) * uniform(state);
     let (gain, shape) = (drawn(0.2, 1.2), drawn(20.0, 250.0));
     let sampled = if drawn(0.0, 1.0) < 0.3 { "sample_time = \"1 ms\"\ndelay = \"0.5 ms\"\n" } else { "" };
     let leakage = match drawn(0.0, 1.0) < 0.3 {

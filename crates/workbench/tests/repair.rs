@@ -45,7 +45,7 @@ fn infeasibility_with_waves_is_reported() {
     assert!(!output.affirmative);
     assert_eq!((&object["status"], &object["machine"]["verdict"]), (&"met".into(), &"contradicts".into()));
     assert_eq!((&repair["status"], &repair["plant_before"]["stable"]), (&"infeasible".into(), &false.into()));
-    assert_eq!(repair["taken_in"], "the rig with waves in its lines");
+    assert_eq!(repair["added_plant"], "the rig with waves in its lines");
     // the printed controller satisfies the limits to the printed relaxation, for the family and for
     // the plant with waves
     let relaxation = number(repair, "relaxation_db");
@@ -54,7 +54,7 @@ fn infeasibility_with_waves_is_reported() {
     let worst = both.map(worst_margin).into_iter().fold(f64::INFINITY, f64::min);
     assert!((worst + relaxation).abs() < 0.01, "{worst} {relaxation}");
     let runs = repair["nearest_machine"]["runs"].as_array().unwrap();
-    let waves = runs.iter().find(|run| run["what"] == repair["taken_in"]).unwrap();
+    let waves = runs.iter().find(|run| run["what"] == repair["added_plant"]).unwrap();
     assert_eq!(waves["agreement"], "agrees");
     // the project written with it gives equal results
     let written = json(
@@ -98,7 +98,7 @@ const EXACT: [&str; 3] = [UNLIMITED[0], UNLIMITED[1], "verification.tolerance=0.
 fn a_design_is_repaired_if_possible() {
     let first = object(&answer(&wider(), &EXACT, &[], &LEFT));
     assert_eq!((&first["status"], &first["machine"]["verdict"]), (&"met".into(), &"contradicts".into()));
-    assert_eq!((&first["repair"], &first["repair_reason"]), (&Value::Null, &"it was not asked for".into()));
+    assert_eq!((&first["repair"], &first["repair_reason"]), (&Value::Null, &"it was not requested".into()));
 
     let output = answer(&wider(), &EXACT, &[], &REPAIRED);
     let object = object(&output);
@@ -141,7 +141,7 @@ fn an_unexplained_contradiction_is_reported() {
     let object = object(&output);
     assert_eq!((&object["status"], &object["machine"]["verdict"]), (&"met".into(), &"contradicts".into()));
     let repair = &object["repair"];
-    assert_eq!((&repair["status"], &repair["taken_in"]), (&"nothing_to_take_in".into(), &Value::Null));
+    assert_eq!((&repair["status"], &repair["added_plant"]), (&"nothing_to_add".into(), &Value::Null));
     let sentences = repair["sentences"].as_array().unwrap();
     assert!(
         sentences.iter().any(|one| one.as_str().unwrap().contains("command was at its limit")),

@@ -139,7 +139,7 @@ fn a_diverging_run_is_reported() {
     assert_eq!((&run["status"], answer.affirmative), (&"diverged".into(), false), "{run}");
     assert_eq!(run["divergence"]["kind"], "command_beyond_range");
     assert!(
-        run["ended_s"].is_null() && answer.text.contains("the loop does not come back"),
+        run["end_time_s"].is_null() && answer.text.contains("the loop does not come back"),
         "{}",
         answer.text
     );

@@ -228,8 +228,8 @@ fn every_limit_is_stated_with_its_meaning() {
         "|L/(1+L)| ≤ 1.3",
         "|1/(1+L)| ≤ |s/(s + 15)|",
         "|F L/(1+L)| ≤ |28.213 (s + 75)/(s2 + 73.6 s + 2116)|",
-        "upper limit, not met; wished: at most 1 % overshoot, settled within 1 % in 0.1 s; the limit itself reaches 2.19 %",
-        "lower limit, not met; wished: no overshoot, settled within 1 % in 0.3 s",
+        "upper limit, not met; required: at most 1 % overshoot, settled within 1 % in 0.1 s; the limit itself reaches 2.19 %",
+        "lower limit, not met; required: no overshoot, settled within 1 % in 0.3 s",
         "by a factor of 1.77 (4.96 dB) or falls to a share of 0.231 (-12.7 dB)",
         "the phase margin is at least 45.2°, and L stays at least 0.435 away from -1",
     ] {
@@ -262,7 +262,7 @@ fn limits_that_cross_are_reported() {
         !chapter.contains("[[specification]] 3 (sensitivity) stays"),
         "its band does not hold every frequency: {chapter}"
     );
-    assert!(!chapter.contains("Tracking limits in time"), "nothing was wished: {chapter}");
+    assert!(!chapter.contains("Tracking limits in time"), "nothing was required: {chapter}");
 }
 
 #[test]

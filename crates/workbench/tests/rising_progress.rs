@@ -15,8 +15,8 @@ fn reports(text: &str, settings: &[&str], request: &Request) -> Vec<Progress> {
         true
     };
     command::answer_into(&run_command::source(text), &loaded, &[], request, None, &mut watch).unwrap();
-    assert!(reports.is_sorted_by(|one, other| one.share <= other.share), "{request:?}");
-    assert!(reports.iter().all(|one| !one.stage.is_empty() && (0.0..=1.0).contains(&one.share)));
+    assert!(reports.is_sorted_by(|one, other| one.fraction <= other.fraction), "{request:?}");
+    assert!(reports.iter().all(|one| !one.stage.is_empty() && (0.0..=1.0).contains(&one.fraction)));
     reports
 }
 
@@ -24,6 +24,6 @@ fn reports(text: &str, settings: &[&str], request: &Request) -> Vec<Progress> {
 fn the_audit_leaves_room_for_the_machine() {
     let reports = reports(HOSE, &[], &Request::Verify { proof: false, on_machine: true });
     let first = reports.iter().find(|one| one.stage == "nonlinear simulation").unwrap();
-    assert!((0.4..0.6).contains(&first.share), "{first:?}");
+    assert!((0.4..0.6).contains(&first.fraction), "{first:?}");
     assert_eq!(reports.first().unwrap().stage, "auditing");
 }

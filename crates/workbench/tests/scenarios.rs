@@ -341,8 +341,8 @@ fn a_setting_continues_from_its_saved_value() {
             )
         };
         let first = format!("duration = \"0.4 s\"\n{common}\n{ramp}");
-        let goes_on = "setting_change = [{ at = 0, change = 0.4 }, { kind = \"ramp\", change = 0.4, duration = \"0.2 s\" }]";
-        let [_, other] = continued(&first, &second(goes_on), adjusted);
+        let continues = "setting_change = [{ at = 0, change = 0.4 }, { kind = \"ramp\", change = 0.4, duration = \"0.2 s\" }]";
+        let [_, other] = continued(&first, &second(continues), adjusted);
         let half = row(&whole, 0.4);
         for (signal, tolerance) in
             [(Signal::Force, 0.05), (Signal::PressureA, 50.0), (Signal::SettingA, 1e-9)]

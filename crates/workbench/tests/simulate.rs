@@ -356,14 +356,14 @@ fn a_stopped_run_returns_its_rows_so_far() {
         &[],
         &Request::Simulate(Default::default()),
         Some(&held),
-        &mut |progress| progress.share < 0.5,
+        &mut |progress| progress.fraction < 0.5,
     );
     let answer = answer.unwrap();
     assert!(!answer.affirmative);
     let json: Value = parsed(&answer.json);
     let scenario = &json["scenarios"][0];
     assert_eq!(scenario["status"], "cancelled");
-    let end_s = scenario["ended_s"].as_f64().unwrap();
+    let end_s = scenario["end_time_s"].as_f64().unwrap();
     assert!((2.5..5.0).contains(&end_s), "{end_s}");
     assert_eq!(scenario["events"][1]["metrics"]["settling_time_s_reason"], "the run ended before");
     assert!(!held.into_files()[0].bytes.is_empty());
@@ -380,7 +380,7 @@ fn a_long_scenario_reports_its_sample_interval() {
             command::answer(&Memory::default(), &loaded, &[], &Request::Simulate(Default::default()))
                 .unwrap();
         let json: Value = parsed(&answer.json);
-        let found = json["scenarios"][0]["look_s"].as_f64().unwrap();
+        let found = json["scenarios"][0]["sample_interval_s"].as_f64().unwrap();
         assert!((found / interval_s - 1.0).abs() < 1e-9, "{found}");
         assert_eq!(answer.text.contains("is drawn from samples every 5.00 ms only"), long, "{}", answer.text);
     }

@@ -155,7 +155,7 @@ fn a_run_reports_where_errors_may_be_visible() {
 #[test]
 fn a_stopped_check_compares_the_rows_so_far() {
     let project = load(&[SHORT]).project;
-    let mut watch = |progress: command::Progress| progress.share < 0.75;
+    let mut watch = |progress: command::Progress| progress.fraction < 0.75;
     let stopped = simulate_checked(&Memory::default(), &Setup::new(&project).unwrap(), None, &mut watch)
         .unwrap()
         .remove(0);
@@ -164,7 +164,7 @@ fn a_stopped_check_compares_the_rows_so_far() {
     assert_eq!(check.stopped.unwrap().status, RunStatus::Cancelled);
     assert!(check.force.unwrap().time_s <= check.stopped.unwrap().time_s);
     let project = load(&[SHORT]).project;
-    let mut watch = |progress: command::Progress| progress.share < 0.25;
+    let mut watch = |progress: command::Progress| progress.fraction < 0.25;
     let first = simulate_checked(&Memory::default(), &Setup::new(&project).unwrap(), None, &mut watch)
         .unwrap()
         .remove(0);

@@ -89,7 +89,7 @@ fn small_signal(rig: &Rig, shaken: &Shaken, amplitude: f64, frequency: f64) -> C
     let mut forces = Forces::default();
     let task = Task {
         start: rest.state,
-        course: &schedule,
+        schedule: &schedule,
         sampler: None,
         observer: Box::new(&mut forces) as Watcher,
     };
@@ -178,10 +178,10 @@ fn friction_is_the_difference_of_hydraulic_and_measured_force() {
         .zip(&force)
         .map(|((all, friction), force)| all - friction - force)
         .collect();
-    let [from, until] = [3.0, 3.5].map(|time: f64| (time / run.look_s).round() as usize);
+    let [from, until] = [3.0, 3.5].map(|time: f64| (time / run.sample_interval_s).round() as usize);
     let (mut impulse, mut of_friction, mut fastest) = (0.0, 0.0, 0.0_f64);
     for sample in from..until {
-        let over = |values: &[f64]| 0.5 * (values[sample] + values[sample + 1]) * run.look_s;
+        let over = |values: &[f64]| 0.5 * (values[sample] + values[sample + 1]) * run.sample_interval_s;
         impulse += over(&left);
         of_friction += over(&friction).abs();
         let momentum = MOVING_MASS_KG * (velocity[sample + 1] - velocity[from]);

@@ -92,7 +92,7 @@ fn a_sized_alternative_keeps_its_unequal_hoses() {
     let text =
         format!("{HOSE}\n[[alternative]]\nname = \"sized\"\nsize = true\nset = {{ \"title\" = \"x\" }}\n");
     let settings = [other, "sizing.length_increment=\"1 mm\""];
-    let requested = phea_workbench::alternatives::asked(
+    let requested = phea_workbench::alternatives::prepared(
         &run_command::source(&text),
         &run_command::load(&text, &settings, &[]),
         &[],

@@ -9,15 +9,15 @@
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
-use phea_qft::specification::{Limit, LoopResponse, Specification, WishOutcome};
+use phea_qft::specification::{Limit, LoopResponse, Specification, RequirementOutcome};
 use phea_workbench::project::{self, Project};
 use phea_workbench::source::Memory;
-use phea_workbench::specification::{SpecificationError, specifications, wish_sentence, wishes};
+use phea_workbench::specification::{SpecificationError, specifications, requirement_sentence, requirements_in_time};
 
-fn loaded(wishes: &str) -> Project {
+fn loaded(requirements_in_time: &str) -> Project {
     let text = format!(
         "schema = 1\n[plant]\nnumerator = \"1\"\ndenominator = \"s\"\n\
-         disturbance = {{ numerator = \"s\", denominator = \"s + 1\" }}\n{wishes}"
+         disturbance = {{ numerator = \"s\", denominator = \"s + 1\" }}\n{requirements_in_time}"
     );
     let source = Memory::default().with("p.toml", text);
     project::read(&source, "p.toml", &[], &[]).unwrap_or_else(|report| panic!("{report}")).project
@@ -122,7 +122,7 @@ fn requirements_in_time_are_checked() {
         upper = { overshoot_percent = 1, settling_time = \"0.1 s\", settling_band_percent = 1, zero = \"75 rad/s\" }\n\
         lower = { settling_time = \"0.3 s\", settling_band_percent = 1, pole = \"50 rad/s\" }\n";
     let project = loaded(&format!("{given}{required}"));
-    let checked = wishes(&project).unwrap();
+    let checked = requirements_in_time(&project).unwrap();
     let names: Vec<(usize, &str)> =
         checked.iter().map(|checked_one| (checked_one.number, checked_one.key)).collect();
     assert_eq!(names, [(1, "upper"), (1, "lower"), (2, "upper"), (2, "lower")]);
@@ -133,8 +133,8 @@ fn requirements_in_time_are_checked() {
         other => panic!("{other:?}"),
     };
     assert!((settled(0) - 0.126).abs() < 5e-4 && (settled(1) - 0.356).abs() < 5e-4);
-    assert!(matches!(checked[0].check.outcome(), WishOutcome::Missed { .. }));
-    assert_eq!([2, 3].map(|index: usize| checked[index].check.outcome()), [WishOutcome::Met; 2]);
+    assert!(matches!(checked[0].check.outcome(), RequirementOutcome::Missed { .. }));
+    assert_eq!([2, 3].map(|index: usize| checked[index].check.outcome()), [RequirementOutcome::Met; 2]);
     let requirement = &specifications(&project).unwrap()[0].requirement;
     let (Some(_), upper) = requirement.limits() else { panic!() };
     let s = Complex64::new(0.0, 30.0);
@@ -161,9 +161,9 @@ fn checks_of_requirements_read_as_sentences() {
              lower = {{ numerator = \"{gain}\", denominator = \"s + 10\", settling_time = \"{settling_time}\", \
              settling_band_percent = 1 }}\n"
         );
-        wish_sentence(&wishes(&loaded(&text)).unwrap()[side])
+        requirement_sentence(&requirements_in_time(&loaded(&text)).unwrap()[side])
     };
-    let required = "Specification 1, lower limit, not met; wished: no overshoot, settled within 1 % in";
+    let required = "Specification 1, lower limit, not met; required: no overshoot, settled within 1 % in";
     let of_itself = "the limit itself has no overshoot and";
     assert_eq!(sentence(1, 10.0, "0.3 s"), format!("{required} 0.3 s; {of_itself} settles in 0.461 s."));
     assert_eq!(sentence(1, 5.0, "0.3 s"), format!("{required} 0.3 s; {of_itself} stays 50 % off."));
@@ -173,7 +173,7 @@ fn checks_of_requirements_read_as_sentences() {
     );
     assert_eq!(
         sentence(0, 10.0, "0.3 s"),
-        "Specification 1, upper limit, met; wished: at most 1 % overshoot, settled within 1 % in 0.1 s; \
+        "Specification 1, upper limit, met; required: at most 1 % overshoot, settled within 1 % in 0.1 s; \
          the limit itself satisfies it."
     );
 }

@@ -123,8 +123,8 @@ fn an_unquoted_name_is_reported_with_the_quoted_form() {
         "uncertainty.cylinder.moving_mass={ nominal = 13.1, minimum = 12, maximum = 14 }".to_string();
     let source = Memory::default().with("rig.toml", HOSE);
     let refused = project::read(&source, "rig.toml", &[setting], &[]).unwrap_err().to_string();
-    let cure = "--set 'uncertainty.\"cylinder.moving_mass\"=...'";
-    assert!(refused.contains(cure), "{refused}");
+    let remedy = "--set 'uncertainty.\"cylinder.moving_mass\"=...'";
+    assert!(refused.contains(remedy), "{refused}");
     load(HOSE, &["uncertainty.\"cylinder.moving_mass\"={ nominal = 13.1, minimum = 12, maximum = 14 }"], &[]);
 }
 

@@ -291,7 +291,7 @@ fn ranges_that_are_replaced_are_compared_and_nothing_else() {
     assert!(leakage.visited[1] < 0.3 * 7e-11 && gain.visited[1] > 1.3 * 5.61e-5, "{ranges:?}");
     let logarithm = |value: f64| value.ln();
     let fraction = logarithm(leakage.visited[1] / 6.42e-13) / logarithm(7e-11 / 6.42e-13);
-    assert!((leakage.share - fraction).abs() < 1e-12);
+    assert!((leakage.fraction - fraction).abs() < 1e-12);
     assert_eq!((leakage.beyond(), gain.beyond()), ([true, false], [false, true]));
     let problem = robust_problem(&Memory::default(), &setup).unwrap();
     let own = template(&problem.family, &problem.compensation, 1.0, &TemplateOptions::default()).unwrap();

@@ -205,7 +205,7 @@ fn a_bootstrap_reports_its_progress_and_can_be_stopped() {
     let mut fractions = Vec::new();
     let stopped = identify_watched(&source, Some(&load(HOSE, &[], &[])), &request, &mut |progress| {
         if progress.stage == "bootstrap" {
-            fractions.push(progress.share);
+            fractions.push(progress.fraction);
         }
         fractions.len() < 5
     });

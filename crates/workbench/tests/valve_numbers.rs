@@ -74,14 +74,14 @@ fn the_published_numbers_are_identified_from_their_valve() {
     // ORIGIN: thesis section 5.2.1
     near(&found, "tare_flow_m3_per_s", 7.55e-6, 1e-3);
     near(&found, "null_leakage_m3_per_s", 9.31e-6, 5e-3);
-    near(&found, "tare_share", 0.4477, 5e-3);
+    near(&found, "tare_fraction", 0.4477, 5e-3);
     near(&found, "leakage_coefficient", 2.488e-9, 5e-3);
     near(&found, "null_rising_v", 0.078, 2e-2);
     near(&found, "null_falling_v", -0.05, 4e-2);
     // ORIGIN: thesis section 5.2.2
     near(&found, "flow_coefficient_extending", 2.97e-7, 5e-3);
     near(&found, "flow_coefficient_retracting", 2.97e-7, 5e-3);
-    near(&found, "share_of_nominal_flow", 0.88, 5e-3);
+    near(&found, "fraction_of_nominal_flow", 0.88, 5e-3);
 }
 
 /// The optimised column of Table 5.1 on the bench of the example, with its instruments. Tare flow
@@ -148,8 +148,8 @@ fn nulls_and_derived_quantities_have_intervals() {
         // both ends
         assert!(all.iter().all(|[low, high]| high - low < 0.02), "{name}: {all:?}");
     }
-    let [low, high] = of(&read[0], "tare_share");
-    let fraction = read[0]["tare_share"].as_f64().unwrap();
+    let [low, high] = of(&read[0], "tare_fraction");
+    let fraction = read[0]["tare_fraction"].as_f64().unwrap();
     assert!(low < fraction && fraction < high && high - low < 0.02 * fraction, "{low} {fraction} {high}");
     assert_eq!(read[0]["null_methods"], serde_json::json!(["leakage_centre", "leakage_centre"]));
     for (file, method) in [("metering.csv", "flow_lines"), ("pressure_gain.csv", "equal_pressures")] {

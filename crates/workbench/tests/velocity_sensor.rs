@@ -201,7 +201,7 @@ fn samples(project: &Project) -> [Vec<f64>; 2] {
     assert_eq!(run.stopped(), None);
     let held: &[f64] = &run.record.signal(Signal::Control);
     [held, &run.record.signal(Signal::Force)].map(|values| {
-        let at_samples: Vec<f64> = values.iter().copied().step_by(run.looks_per_row).skip(1000).collect();
+        let at_samples: Vec<f64> = values.iter().copied().step_by(run.samples_per_row).skip(1000).collect();
         let mean = at_samples.iter().sum::<f64>() / at_samples.len() as f64;
         at_samples.iter().map(|value| value - mean).collect()
     })
@@ -318,7 +318,7 @@ fn a_campaign_draws_the_gain_error() {
             let all: Vec<&str> = settings.iter().copied().chain(values.iter().map(String::as_str)).collect();
             let run = simulated(&self::loaded(CAMPAIGN, &all).project);
             let seen = run.record.signal(Signal::Force);
-            let shown = seen.iter().step_by(run.looks_per_row);
+            let shown = seen.iter().step_by(run.samples_per_row);
             assert!(shown.clone().count() >= 100);
             assert!(
                 force_n.iter().zip(shown).filter(|(one, other)| one.to_bits() != other.to_bits()).count()

@@ -136,10 +136,10 @@ fn without_a_controller_there_is_nothing_to_verify() {
 fn progress_increases_and_the_command_can_be_stopped() {
     let loaded = run_command::load(HOSE, &[], &[]);
     let source = run_command::source(HOSE);
-    let mut shares = Vec::new();
+    let mut fractions = Vec::new();
     let mut watch = |progress: Progress| {
-        shares.push(progress.share);
-        shares.len() < 50
+        fractions.push(progress.fraction);
+        fractions.len() < 50
     };
     let stopped = answer_into(
         &source,
@@ -150,8 +150,8 @@ fn progress_increases_and_the_command_can_be_stopped() {
         &mut watch,
     );
     assert!(matches!(stopped, Err(CommandError::Stopped(_))));
-    assert_eq!(shares.len(), 50);
-    assert!(shares.is_sorted() && shares.iter().all(|fraction| (0.0..=1.0).contains(fraction)));
+    assert_eq!(fractions.len(), 50);
+    assert!(fractions.is_sorted() && fractions.iter().all(|fraction| (0.0..=1.0).contains(fraction)));
 }
 
 #[test]

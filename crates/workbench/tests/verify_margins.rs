@@ -163,7 +163,7 @@ fn a_loop_lists_the_design_limits_that_it_satisfies() {
     let output = answer(&plant, &["design.modulus_margin=0.9"], &[], &VERIFY);
     let object: Value = parsed(&output.json);
     assert_eq!(
-        (&object["below_design"], &object["kept_of_design"]),
+        (&object["below_design"], &object["satisfied_limits_of_design"]),
         (&object_of!([]), &object_of!(["modulus_margin"]))
     );
     let sentence = "the loop keeps every limit of `[design]` that a given loop is held against, stated or by default: modulus margin";

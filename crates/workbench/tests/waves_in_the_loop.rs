@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
 use crate::answer_schema::parsed;
-use phea_dynamics::random::share;
+use phea_dynamics::random::uniform;
 use phea_workbench::command::Request;
 use serde_json::Value;
 
@@ -161,8 +161,8 @@ fn a_box_is_searched_between_its_members() {
         margin(&one_rig(), &settings)
     };
     for _ in 0..20 {
-        let position = 0.05 + 0.4 * share(&mut state);
-        let length = 0.8 + 1.4 * share(&mut state);
+        let position = 0.05 + 0.4 * uniform(&mut state);
+        let length = 0.8 + 1.4 * uniform(&mut state);
         let own = declared(position, length);
         assert!(own > found - 2e-3, "{own} dB at {position} m, {length} m; found {found} dB");
     }

@@ -53,6 +53,6 @@ fn declares(text: &str, name: &str) -> bool {
 fn check_name(path: &str) -> Option<Violation> {
     let mut parts = path.trim_end_matches(".rs").split('/');
     let leftover = parts.find(|part| LEFTOVERS.contains(part))?;
-    let cure = if leftover == "mod" { "foo.rs next to foo/" } else { "the concept it holds" };
-    Some(Violation::new(path, 0, format!("named `{leftover}`: name it after {cure}")))
+    let remedy = if leftover == "mod" { "foo.rs next to foo/" } else { "the concept it holds" };
+    Some(Violation::new(path, 0, format!("named `{leftover}`: name it after {remedy}")))
 }

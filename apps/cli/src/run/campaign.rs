@@ -142,7 +142,7 @@ impl LockedTable {
 }
 
 impl RowStore for LockedTable {
-    fn kept(&mut self) -> Result<String, String> {
+    fn stored(&mut self) -> Result<String, String> {
         let mut text = String::new();
         let read = self.file.rewind().and_then(|()| self.file.read_to_string(&mut text));
         read.map_err(|error| format!("cannot read {}: {error}", self.path.display()))?;

@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let settings = SimulationSettings { tolerance, ..SimulationSettings::default() };
         let task = Task {
             start: problem.start.clone(),
-            course: &problem.course,
+            schedule: &problem.schedule,
             sampler: None,
             observer: Box::new(Nobody) as Watcher<'_>,
         };
@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let counted =
                 Counted { problem: &problem, evaluated_at: Cell::new(f64::NAN), steps: Cell::new(0) };
             let following = Following::new(tolerance, method);
-            let rows = follow(&counted, &problem.start, &problem.course, None, &following);
+            let rows = follow(&counted, &problem.start, &problem.schedule, None, &following);
             println!(
                 "  CVODE {method:?}: {:?}, {} steps tried",
                 rows.map(|rows| rows.len()),

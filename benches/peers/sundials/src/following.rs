@@ -241,7 +241,7 @@ impl Kicked {
         if time >= self.count as f64 * period_s {
             self.count += 1;
             for (value, scale) in state.iter_mut().zip(scales) {
-                let sign = if random::share(&mut self.chance) < 0.5 { -1.0 } else { 1.0 };
+                let sign = if random::uniform(&mut self.chance) < 0.5 { -1.0 } else { 1.0 };
                 *value += sign * size * scale;
             }
         }

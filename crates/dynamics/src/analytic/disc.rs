@@ -179,16 +179,16 @@ impl Analytic for Disc {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::share;
+    use crate::random::uniform;
 
     fn drawn(state: &mut u64, size: f64) -> Complex64 {
-        Complex64::new(size * (2.0 * share(state) - 1.0), size * (2.0 * share(state) - 1.0))
+        Complex64::new(size * (2.0 * uniform(state) - 1.0), size * (2.0 * uniform(state) - 1.0))
     }
 
     fn within(disc: Disc, state: &mut u64) -> Complex64 {
-        let angle = 2.0 * std::f64::consts::PI * share(state);
+        let angle = 2.0 * std::f64::consts::PI * uniform(state);
         let turn = Complex64::new(portable::cos(angle), portable::sin(angle));
-        disc.centre + turn * (disc.radius * share(state).sqrt())
+        disc.centre + turn * (disc.radius * uniform(state).sqrt())
     }
 
     /// Sums, products, quotients and the other results of points of two discs are in the resulting
@@ -198,7 +198,7 @@ mod tests {
         let mut state = 4;
         for _ in 0..2000 {
             let (one, other) = (drawn(&mut state, 3.0), drawn(&mut state, 3.0));
-            let discs = [Disc::new(one, share(&mut state)), Disc::new(other, share(&mut state))];
+            let discs = [Disc::new(one, uniform(&mut state)), Disc::new(other, uniform(&mut state))];
             for _ in 0..10 {
                 let points = discs.map(|disc| within(disc, &mut state));
                 let [p, q] = points;

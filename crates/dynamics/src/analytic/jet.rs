@@ -122,8 +122,8 @@ mod tests {
             for length in [1e-2, 1e-3] {
                 let set = Disc::of_frequencies([middle, middle + length]);
                 let held = Jet::enclosed(set, function);
-                let ends = [0.0, 0.3, 0.7, 1.0].map(|share| {
-                    let at = function(Complex64::new(0.0, middle + share * length));
+                let ends = [0.0, 0.3, 0.7, 1.0].map(|fraction| {
+                    let at = function(Complex64::new(0.0, middle + fraction * length));
                     assert!(held.contains(at), "{middle} {length}");
                     at
                 });

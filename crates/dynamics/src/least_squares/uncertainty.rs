@@ -21,7 +21,7 @@ pub struct Uncertainty {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Direction {
     /// Components of the combination, one for each variable; of unit length.
-    pub shares: Vec<f64>,
+    pub fractions: Vec<f64>,
     /// Standard deviation along the combination; infinite for one without influence.
     pub deviation: f64,
 }
@@ -180,13 +180,13 @@ fn sandwich(information: DMatrix<f64>, scatter: &DMatrix<f64>) -> Uncertainty {
     for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
         let variance = (vector.transpose() * &covariance * vector).x;
         let deviation = if is_told(*value) { variance.max(0.0).sqrt() } else { f64::INFINITY };
-        directions.push((*value, Direction { shares: vector.iter().copied().collect(), deviation }));
+        directions.push((*value, Direction { fractions: vector.iter().copied().collect(), deviation }));
     }
     sort_by_number(&mut directions, |(value, _)| -value);
     let directions: Vec<Direction> = directions.into_iter().map(|(_, direction)| direction).collect();
     let untold = |index: usize| {
-        let share = |direction: &Direction| direction.shares.get(index).copied().unwrap_or(0.0);
-        directions.iter().any(|one| one.deviation.is_infinite() && share(one).abs() > 1e-6)
+        let fraction = |direction: &Direction| direction.fractions.get(index).copied().unwrap_or(0.0);
+        directions.iter().any(|one| one.deviation.is_infinite() && fraction(one).abs() > 1e-6)
     };
     let deviation = |index: usize| match untold(index) {
         true => f64::INFINITY,

@@ -93,7 +93,7 @@ impl<S: Lane> CarriedErrors<S> {
     fn renew(&mut self, lane: usize, time_s: f64, scales: &[S]) {
         let Some(own) = self.lanes.get_mut(lane) else { return };
         for (error, scale) in self.error.iter_mut().zip(scales) {
-            let sign = if random::share(&mut own.chance) < 0.5 { -1.0 } else { 1.0 };
+            let sign = if random::uniform(&mut own.chance) < 0.5 { -1.0 } else { 1.0 };
             let left = Some(error.lane(lane)).filter(|left| left.is_finite() && own.scaled == 0.0);
             error.set_lane(lane, left.unwrap_or(0.0) + sign * scale.lane(lane));
         }

@@ -8,7 +8,7 @@ pub use queued::drive;
 
 use super::Lane;
 use super::carried::CarriedErrors;
-use super::course::{
+use super::interface::{
     Amplification, Attention, Event, Observer, Outcome, SimulationError, SimulationSettings, Status,
 };
 use super::frozen::{Frozen, FrozenWatch};
@@ -125,7 +125,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         }
         self.method.scales = system.scales();
         let held = task.sampler.as_ref().map_or(0.0, |sampler| sampler.held());
-        let mut passage = Passage::new(task.course, held);
+        let mut passage = Passage::new(task.schedule, held);
         let mut inputs = vec![0.0; system.inputs()];
         passage.inputs_at(0.0, &mut inputs);
         if !delays.is_empty() {
@@ -190,7 +190,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
             *place = end;
         }
         self.indicate_ends(system);
-        let error = self.look_between(system, error);
+        let error = self.sample_between(system, error);
         self.learn(error);
         let mut taken = 0;
         for lane in 0..S::COUNT {
@@ -225,9 +225,9 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
             let (time_s, step_s) = (slot.passage.time_s, slot.passage.step_s);
             let watch = &mut self.watches[lane];
             let growing = watch.bound(time_s, step_s, steps, self.method.jacobian(), lane);
-            let (frozen, looked) = (&mut self.frozen[lane], watch.slow_modes());
-            if slot.sampler.is_none() && (frozen.grows(steps, time_s) || looked.is_some()) {
-                let known = looked.filter(|_| slot.passage.histories.is_empty());
+            let (frozen, sampled) = (&mut self.frozen[lane], watch.slow_modes());
+            if slot.sampler.is_none() && (frozen.grows(steps, time_s) || sampled.is_some()) {
+                let known = sampled.filter(|_| slot.passage.histories.is_empty());
                 let modes = known.unwrap_or_else(|| {
                     let inputs = &self.inputs.stages[0];
                     Frozen::of(system, &self.state, inputs, lane).least_stable(watch.slower())
@@ -271,7 +271,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         let Some(Slot { passage, sampler, inputs, .. }) = &mut self.slots[lane] else { return };
         passage.choose(sampler.as_ref().map(|sampler| sampler.sample_time_s()));
         self.step.set_lane(lane, passage.step_s);
-        if passage.stands_still() {
+        if passage.is_constant() {
             return;
         }
         for (part, stage) in self.method.stage_times().iter().zip(&mut self.inputs.stages) {
@@ -349,7 +349,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
     }
 
     /// Finds state and inputs of one lane at a fraction of its accepted step.
-    fn look(&mut self, lane: usize, part: f64) {
+    fn sample(&mut self, lane: usize, part: f64) {
         for index in 0..self.state.len() {
             self.between.state[index] = self.extension(index).at(S::from(part));
         }
@@ -364,7 +364,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         }
         let mut sent = vec![[0.0; NODES.len()]; self.between.waves.len()];
         for (node, part) in NODES.into_iter().enumerate() {
-            self.look(lane, part);
+            self.sample(lane, part);
             system.outgoing(&self.between.state, &self.between.inputs, &mut self.between.waves);
             for (values, wave) in sent.iter_mut().zip(&self.between.waves) {
                 values[node] = wave.lane(lane);
@@ -432,7 +432,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
     }
 
     fn indicator(&mut self, system: &dyn Kernel<S>, lane: usize, index: usize, part: f64) -> f64 {
-        self.look(lane, part);
+        self.sample(lane, part);
         system.indicate(&self.between.state, &self.between.inputs, &mut self.between.indicators);
         self.between.indicators[index].lane(lane)
     }

@@ -111,13 +111,13 @@ pub fn equilibrium<E: System<f64>>(
         let matrix =
             DMatrix::from_fn(rest.len(), rest.len(), |row, column| weights[row] * jacobian[(row, column)]);
         let Ok(step) = matrix.svd(true, true).solve(&before, SINGULAR) else { break };
-        let mut share = 2.0;
+        let mut fraction = 2.0;
         let better = (0..HALVINGS).find_map(|_| {
-            share *= 0.5;
+            fraction *= 0.5;
             let next: Vec<f64> = best
                 .iter()
                 .zip(step.iter().zip(&search.scales))
-                .map(|(value, (step, scale))| value - share * step * scale)
+                .map(|(value, (step, scale))| value - fraction * step * scale)
                 .collect();
             let (left, slopes) = search.surplus(&next);
             let finite = left.iter().chain(slopes.iter()).all(|value| value.is_finite());

@@ -216,7 +216,7 @@ impl GrowthWatch {
             if self.growth_at(damping) > 0.0 { self.interval / WHILE_GROWING } else { self.interval };
         let nearly = step_s <= self.small_s || (damping < 0.0 && step_s <= NEARLY * self.small_s);
         if age >= interval || !(nearly || self.is_known_at(damping)) {
-            self.look(method, lane);
+            self.sample(method, lane);
         }
         let growth_per_s = self.growth_at(damping);
         self.follow(time_s, growth_per_s);
@@ -314,7 +314,7 @@ impl GrowthWatch {
 
     /// Finds the modes anew.
     #[cold]
-    fn look<S: Lane>(&mut self, method: &Rosenbrock<S>, lane: usize) {
+    fn sample<S: Lane>(&mut self, method: &Rosenbrock<S>, lane: usize) {
         let states = method.end.len();
         let mut jacobian = DMatrix::zeros(states, states);
         for (row, column, value) in method.jacobian_entries() {

@@ -9,7 +9,7 @@ use super::rosenbrock::{self, Rosenbrock};
 
 /// Fraction of the step at which the dense-output residual is checked. Late, because a step
 /// shortened for a kink ends just after it.
-pub(super) const LOOKED_AT: f64 = 0.75;
+pub(super) const RESIDUAL_AT: f64 = 0.75;
 
 /// Integration method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

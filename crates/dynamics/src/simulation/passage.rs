@@ -31,7 +31,7 @@ enum InputSegment {
 
 /// Progress of one machine through time.
 pub(super) struct Passage<'a> {
-    pub(super) course: &'a InputSchedule,
+    pub(super) schedule: &'a InputSchedule,
     /// Inputs up to the next break.
     segments: Vec<InputSegment>,
     /// True if no input moves before the next break.
@@ -76,21 +76,21 @@ pub(super) struct Passage<'a> {
 
 impl<'a> Passage<'a> {
     /// Start at time zero, with a held command.
-    pub(super) fn new(course: &'a InputSchedule, command: f64) -> Passage<'a> {
+    pub(super) fn new(schedule: &'a InputSchedule, command: f64) -> Passage<'a> {
         let mut times: Vec<f64> = Vec::new();
-        let mut longest_s = course.duration_s;
-        for input in &course.inputs {
+        let mut longest_s = schedule.duration_s;
+        for input in &schedule.inputs {
             if let Input::Value(profile) | Input::Rate(profile) = input {
                 times.extend(profile.breaks().into_iter().filter(|&time| time > 0.0));
                 longest_s = longest_s.min(profile.longest_step().unwrap_or(longest_s));
             }
         }
-        times.push(course.duration_s);
-        times.retain(|&time| time <= course.duration_s);
+        times.push(schedule.duration_s);
+        times.retain(|&time| time <= schedule.duration_s);
         let times = sorted_distinct(times);
         Passage {
-            course,
-            segments: course.inputs.iter().map(|input| segment(input, 0.0)).collect(),
+            schedule,
+            segments: schedule.inputs.iter().map(|input| segment(input, 0.0)).collect(),
             still: false,
             time_s: 0.0,
             proposed_s: longest_s,
@@ -100,7 +100,7 @@ impl<'a> Passage<'a> {
             target_s: None,
             kink: None,
             kink_s: None,
-            goal_s: course.duration_s,
+            goal_s: schedule.duration_s,
             step_s: 0.0,
             breaks: times.into_iter().map(|time| (time, 0)).collect(),
             histories: Vec::new(),
@@ -140,7 +140,7 @@ impl<'a> Passage<'a> {
 
     /// Chooses the length of the next attempt.
     pub(super) fn choose(&mut self, sample_time_s: Option<f64>) {
-        let mut target = self.breaks.front().map_or(self.course.duration_s, |&(time, _)| time);
+        let mut target = self.breaks.front().map_or(self.schedule.duration_s, |&(time, _)| time);
         if let Some(sample_time_s) = sample_time_s {
             target = target.min(self.sample as f64 * sample_time_s);
         }
@@ -183,13 +183,13 @@ impl<'a> Passage<'a> {
 
     /// Time of the next row.
     pub(super) fn next_row_s(&self) -> f64 {
-        self.row as f64 * self.course.output_step_s
+        self.row as f64 * self.schedule.output_step_s
     }
 
     /// True if a state inside the attempted step is observed or sent.
     pub(super) fn looked_into(&self) -> bool {
         let past = self.next_row_s() <= later(self.time_s);
-        let next_row_s = (self.row + u64::from(past)) as f64 * self.course.output_step_s;
+        let next_row_s = (self.row + u64::from(past)) as f64 * self.schedule.output_step_s;
         self.attention != Attention::Rows || !self.histories.is_empty() || next_row_s < self.end_s()
     }
 
@@ -197,7 +197,7 @@ impl<'a> Passage<'a> {
     pub(super) fn whole_step(&self) -> Option<f64> {
         let step_s = self.goal_s - self.time_s;
         let past = self.next_row_s() <= later(self.time_s);
-        let next_row_s = (self.row + u64::from(past)) as f64 * self.course.output_step_s;
+        let next_row_s = (self.row + u64::from(past)) as f64 * self.schedule.output_step_s;
         let seen = next_row_s < self.time_s + step_s * (1.0 - 1e-9);
         (self.still && !seen && self.attention != Attention::Everything).then_some(step_s)
     }
@@ -324,12 +324,12 @@ impl<'a> Passage<'a> {
             }
         }
         if broken {
-            let inputs = self.course.inputs.iter();
+            let inputs = self.schedule.inputs.iter();
             self.segments.clear();
             self.segments.extend(inputs.map(|input| segment(input, begins_s)));
             self.begin_anew();
         }
-        if now_s >= self.course.duration_s {
+        if now_s >= self.schedule.duration_s {
             self.status = Some(Status::Completed);
         }
     }
@@ -367,7 +367,7 @@ impl<'a> Passage<'a> {
     }
 
     /// True if no input moves before the next break, and none moved before the previous one.
-    pub(super) fn stands_still(&mut self) -> bool {
+    pub(super) fn is_constant(&mut self) -> bool {
         let was = self.still;
         let at_rest =
             |segment: &InputSegment| matches!(segment, InputSegment::Still(_) | InputSegment::Command);
@@ -382,7 +382,7 @@ impl<'a> Passage<'a> {
         }
         for history in &self.histories {
             let arrival = time_s + history.delay_s();
-            if arrival < self.course.duration_s {
+            if arrival < self.schedule.duration_s {
                 // waves that travel equal delays in another order arrive together, except for
                 // rounding
                 let rounding = 4.0 * f64::EPSILON * arrival;

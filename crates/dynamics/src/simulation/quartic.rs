@@ -296,7 +296,7 @@ mod tests {
         let mut stream = 7;
         for _ in 0..500 {
             let signal = Quartic(std::array::from_fn(|_| random::normal(&mut stream)));
-            let span = [0.3 * random::share(&mut stream), 1.0 - 0.3 * random::share(&mut stream)];
+            let span = [0.3 * random::uniform(&mut stream), 1.0 - 0.3 * random::uniform(&mut stream)];
             let places = (0..=10_000).map(|place| span[0] + (span[1] - span[0]) * f64::from(place) / 1e4);
             let values: Vec<(f64, f64)> = places.map(|part| (part, signal.at(part))).collect();
             let [low, high] = signal.extremes(span);
@@ -318,7 +318,7 @@ mod tests {
                     assert!(found.is_some_and(|found| (found - seen).abs() < 1e-4), "{signal:?} {level}");
                 }
             }
-            let limit = 0.3 + random::share(&mut stream);
+            let limit = 0.3 + random::uniform(&mut stream);
             let mean =
                 |of: &dyn Fn(f64) -> f64| values.iter().map(|value| of(value.1)).sum::<f64>() / 10_001.0;
             assert!((signal.mean(span) - mean(&|value| value)).abs() < 1e-3);

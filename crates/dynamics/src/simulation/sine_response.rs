@@ -52,7 +52,7 @@ pub struct SineResponse {
     /// Steps and evaluations.
     pub work: StepCounts,
     /// Status of the simulation, if it neither settled nor used up its windows.
-    pub ended: Option<Status>,
+    pub early_end: Option<Status>,
 }
 
 /// Simulates a system from a state (and the waves in transit after it) under inputs of which one is
@@ -126,7 +126,7 @@ pub fn sine_response<E: System<f64> + Clone>(
     let output_step_s = period_s / ROWS as f64;
     let rows = window as f64 * f64::from(plan.most_windows);
     // half a row more, so that rounding does not omit the last one
-    let course = InputSchedule { duration_s: (rows + 0.5) * output_step_s, output_step_s, inputs };
+    let schedule = InputSchedule { duration_s: (rows + 0.5) * output_step_s, output_step_s, inputs };
     let done = Cell::new(false);
     let observer = Windows {
         wanted: (0..system.states()).collect(),
@@ -141,9 +141,9 @@ pub fn sine_response<E: System<f64> + Clone>(
         distortion: f64::NAN,
         change: f64::NAN,
     };
-    let task = Task { start: start.to_vec(), course: &course, sampler, observer };
-    let mut goes_on = |time_s: f64| !done.get() && watch(time_s);
-    let (outcome, windows) = drive_one(system, task, settings, &mut goes_on)?;
+    let task = Task { start: start.to_vec(), schedule: &schedule, sampler, observer };
+    let mut continues = |time_s: f64| !done.get() && watch(time_s);
+    let (outcome, windows) = drive_one(system, task, settings, &mut continues)?;
     let settled = done.get();
     let mut indicators: Vec<usize> = outcome.events.iter().map(|event| event.indicator).collect();
     indicators.sort_unstable();
@@ -156,7 +156,7 @@ pub fn sine_response<E: System<f64> + Clone>(
         periods: (windows.rows / ROWS) as u64,
         indicators,
         work: outcome.work,
-        ended: (!settled && outcome.status != Status::Completed).then_some(outcome.status),
+        early_end: (!settled && outcome.status != Status::Completed).then_some(outcome.status),
     })
 }
 

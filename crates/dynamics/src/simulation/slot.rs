@@ -1,6 +1,6 @@
 //! Machine in its lane, and the data for its observer.
 
-use super::course::{Observer, Sampler};
+use super::interface::{Observer, Sampler};
 use super::method::Extension;
 use super::passage::{Passage, later};
 use super::{Lane, Quartic, Stretch};
@@ -39,10 +39,10 @@ impl<O: Observer> Slot<'_, O> {
     }
 
     /// True if the observer requires the step more accurately.
-    pub(super) fn looks_closer(&self, wanted: &[Extension<f64>], quartics: &mut Vec<Quartic>) -> bool {
+    pub(super) fn needs_accurate_solution(&self, wanted: &[Extension<f64>], quartics: &mut Vec<Quartic>) -> bool {
         quartics.clear();
         quartics.extend(wanted.iter().map(Quartic::of));
-        self.observer.looks_closer(&Stretch { passage: &self.passage, states: quartics })
+        self.observer.needs_accurate_solution(&Stretch { passage: &self.passage, states: quartics })
     }
 
     /// Passes every row before the end of the step to the observer, from the required states over
@@ -77,7 +77,7 @@ impl<O: Observer> Slot<'_, O> {
     /// Passes the last row to the observer, at the end of the simulation.
     pub(super) fn observe_end<S: Lane>(&mut self, state: &[S], lane: usize) {
         let Slot { passage, observer, states, inputs, .. } = self;
-        let duration_s = passage.course.duration_s;
+        let duration_s = passage.schedule.duration_s;
         if passage.next_row_s() > later(duration_s) || !observer.wants_row(passage.row) {
             return;
         }

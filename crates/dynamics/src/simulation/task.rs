@@ -1,6 +1,6 @@
 //! Simulation tasks: their source, and their consistency with the system.
 
-use super::course::{Observer, Outcome, Sampler, SimulationError};
+use super::interface::{Observer, Outcome, Sampler, SimulationError};
 use super::kernel::Kernel;
 use super::{InputSchedule, Lane, SimulationCount, SimulationNumber};
 use crate::range::RequiredRange;
@@ -11,7 +11,7 @@ pub struct Task<'a, O> {
     /// it, each wave is the one that the start sends while nothing arrives.
     pub start: Vec<f64>,
     /// Input schedule.
-    pub course: &'a InputSchedule,
+    pub schedule: &'a InputSchedule,
     /// Digital controller of the plant, if there is one.
     pub sampler: Option<Box<dyn Sampler + 'a>>,
     /// Receiver of the results.
@@ -31,7 +31,7 @@ pub trait Queue<'a, E> {
     fn done(&mut self, lane: usize, outcome: Outcome, observer: Self::Observer);
 
     /// Called once per step with the simulated time of a lane; false stops all lanes.
-    fn goes_on(&mut self, lane: usize, time_s: f64) -> bool;
+    fn continues(&mut self, lane: usize, time_s: f64) -> bool;
 }
 
 /// Checks that the machine in a lane can be driven by its task.
@@ -41,7 +41,7 @@ pub(super) fn check<S: Lane, O: Observer>(
     lane: usize,
     delays: &[f64],
 ) -> Result<(), SimulationError> {
-    let InputSchedule { duration_s, output_step_s, inputs } = task.course;
+    let InputSchedule { duration_s, output_step_s, inputs } = task.schedule;
     let with_waves = system.states() + delays.len();
     let expected = if task.start.len() == with_waves { with_waves } else { system.states() };
     let scales = system.scales();

@@ -61,7 +61,7 @@ impl<'a, E, O: Observer> Queue<'a, E> for Single<'a, '_, O> {
         self.result = Some((outcome, observer));
     }
 
-    fn goes_on(&mut self, _lane: usize, time_s: f64) -> bool {
+    fn continues(&mut self, _lane: usize, time_s: f64) -> bool {
         (self.watch)(time_s)
     }
 }
@@ -104,8 +104,8 @@ impl<'a, E, O: Observer> Queue<'a, E> for Single<'a, '_, O> {
 ///         self.0 = self.0.max(8.0 * states[0]);
 ///     }
 /// }
-/// let course = InputSchedule { duration_s: 3.0, output_step_s: 1e-3, inputs: vec![] };
-/// let task = Task { start: vec![0.0], course: &course, sampler: None, observer: Largest(0.0) };
+/// let schedule = InputSchedule { duration_s: 3.0, output_step_s: 1e-3, inputs: vec![] };
+/// let task = Task { start: vec![0.0], schedule: &schedule, sampler: None, observer: Largest(0.0) };
 /// let (_, Largest(force_n)) = drive_one(&Drawn, task, &SimulationSettings::default(), &mut |_| true)?;
 /// assert!((force_n - 48.0).abs() < 1e-9);
 /// # Ok::<(), phea_dynamics::simulation::SimulationError>(())
@@ -151,9 +151,9 @@ pub fn drive_one<'a, E: System<f64> + Clone, O: Observer>(
 ///         rates[1] = T::from(-8.0) * state[0] / T::from(2.0);
 ///     }
 /// }
-/// let course = InputSchedule { duration_s: 3.0, output_step_s: 0.5, inputs: vec![] };
+/// let schedule = InputSchedule { duration_s: 3.0, output_step_s: 0.5, inputs: vec![] };
 /// let settings = SimulationSettings { tolerance: 1e-9, ..SimulationSettings::default() };
-/// let result = simulate(&Oscillator, &[1.0, 0.0], &course, None, &settings, &mut |_| true)?;
+/// let result = simulate(&Oscillator, &[1.0, 0.0], &schedule, None, &settings, &mut |_| true)?;
 /// assert_eq!(result.outcome.status, Status::Completed);
 /// for (time, state) in result.trajectory.times_s.iter().zip(&result.trajectory.states) {
 ///     assert!((state[0] - (2.0 * time).cos()).abs() < 1e-7);
@@ -163,13 +163,13 @@ pub fn drive_one<'a, E: System<f64> + Clone, O: Observer>(
 pub fn simulate<E: System<f64> + Clone>(
     system: &E,
     start: &[f64],
-    course: &InputSchedule,
+    schedule: &InputSchedule,
     sampler: Option<Box<dyn Sampler + '_>>,
     settings: &SimulationSettings,
     watch: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Simulated, SimulationError> {
     let recorder = Recorder { wanted: (0..system.states()).collect(), trajectory: Trajectory::default() };
-    let task = Task { start: start.to_vec(), course, sampler, observer: recorder };
+    let task = Task { start: start.to_vec(), schedule, sampler, observer: recorder };
     let (outcome, recorder) = drive_one(system, task, settings, watch)?;
     Ok(Simulated { trajectory: recorder.trajectory, outcome })
 }

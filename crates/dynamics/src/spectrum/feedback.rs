@@ -9,7 +9,7 @@ const NEW: f64 = 1e-12;
 /// Fraction of the output's power below which there is no noise that could return.
 const SILENT: f64 = 1e-6;
 /// Fraction of the innovation above which it counts as returned.
-const SHARE: f64 = 0.01;
+const FRACTION: f64 = 0.01;
 /// Ratio of mean squares above which it is significant: chance exceeds it once in ten thousand for
 /// ten columns.
 const SIGNIFICANT: f64 = 4.0;
@@ -116,8 +116,8 @@ fn explained(
     let after = product(innovation, innovation);
     let freedom = innovation.len() as f64 - basis.len() as f64;
     let of_each = (before - after) / (basis.len() - known).max(1) as f64;
-    let share = if before > 0.0 { 1.0 - after / before } else { 0.0 };
-    if of_each > significant * after / freedom && share > SHARE { share } else { 0.0 }
+    let fraction = if before > 0.0 { 1.0 - after / before } else { 0.0 };
+    if of_each > significant * after / freedom && fraction > FRACTION { fraction } else { 0.0 }
 }
 
 fn product(one: &[f64], other: &[f64]) -> f64 {

@@ -31,16 +31,16 @@ const ROUNDING: f64 = 1e-9;
 pub fn period(signal: &[f64]) -> Option<usize> {
     let unexplained = unexplained(signal);
     // neighbouring samples of a slow signal are alike: a period follows after they have differed
-    let first = unexplained.iter().position(|share| *share > 0.5)?;
+    let first = unexplained.iter().position(|fraction| *fraction > 0.5)?;
     let later = || unexplained.iter().copied().enumerate().skip(first);
-    let least = later().map(|(_, share)| share).fold(f64::INFINITY, f64::min);
+    let least = later().map(|(_, fraction)| fraction).fold(f64::INFINITY, f64::min);
     if least > MOST_NOISE {
         return None;
     }
     let enough = ALMOST_BEST * least + ROUNDING;
-    let begins = later().find(|(_, share)| *share <= enough)?.0;
+    let begins = later().find(|(_, fraction)| *fraction <= enough)?.0;
     // the best of the shifts next to each other
-    let near = later().skip_while(|(shift, _)| *shift < begins).take_while(|(_, share)| *share <= enough);
+    let near = later().skip_while(|(shift, _)| *shift < begins).take_while(|(_, fraction)| *fraction <= enough);
     near.min_by(|(_, one), (_, other)| one.total_cmp(other)).map(|(shift, _)| shift)
 }
 

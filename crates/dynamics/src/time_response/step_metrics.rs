@@ -193,6 +193,6 @@ fn settling_time(samples: &[(f64, f64)], band: f64) -> Option<f64> {
 }
 
 fn between(before: (f64, f64), after: (f64, f64), level: f64) -> f64 {
-    let share = (level - before.1) / (after.1 - before.1);
-    before.0 + share.clamp(0.0, 1.0) * (after.0 - before.0)
+    let fraction = (level - before.1) / (after.1 - before.1);
+    before.0 + fraction.clamp(0.0, 1.0) * (after.0 - before.0)
 }

@@ -199,7 +199,7 @@ struct Turned([[f64; 4]; 4]);
 impl Turned {
     fn drawn(number: u64) -> Turned {
         let mut chance = random::stream(91, number);
-        let mut draw = |most: f64| most * (2.0 * random::share(&mut chance) - 1.0);
+        let mut draw = |most: f64| most * (2.0 * random::uniform(&mut chance) - 1.0);
         let (turning, decay) = (2e4 + draw(1e4), 300.0 + draw(200.0));
         let mut matrix = [[0.0; 4]; 4];
         (matrix[0][1], matrix[1][0], matrix[1][1]) = (turning, -turning, -decay);

@@ -143,7 +143,7 @@ impl<'a, S: Lane> Queue<'a, Machine<S>> for Line<'a> {
             Box::new(Holding { sample_time_s, noise: case.noise, number: 0.4 }) as Box<dyn Sampler>
         });
         let (start, schedule) = (case.start.to_vec(), &case.schedule);
-        Some(Task { start, course: schedule, sampler, observer: Notes(Seen::default(), &[0, 2, 1]) })
+        Some(Task { start, schedule, sampler, observer: Notes(Seen::default(), &[0, 2, 1]) })
     }
 
     fn done(&mut self, lane: usize, outcome: Outcome, observer: Notes) {
@@ -155,7 +155,7 @@ impl<'a, S: Lane> Queue<'a, Machine<S>> for Line<'a> {
             Seen { outcome: Some((outcome.status, outcome.events, work, end)), ..observer.0 };
     }
 
-    fn goes_on(&mut self, _: usize, _: f64) -> bool {
+    fn continues(&mut self, _: usize, _: f64) -> bool {
         true
     }
 }
@@ -318,7 +318,7 @@ impl<'a, E> Queue<'a, E> for Ends<'a> {
         let schedule = self.0.pop()?;
         Some(Task {
             start: vec![0.0],
-            course: schedule,
+            schedule,
             sampler: None,
             observer: Notes(Seen::default(), self.2),
         })
@@ -326,7 +326,7 @@ impl<'a, E> Queue<'a, E> for Ends<'a> {
     fn done(&mut self, _: usize, outcome: Outcome, _: Notes) {
         self.1.push(outcome.status);
     }
-    fn goes_on(&mut self, _: usize, _: f64) -> bool {
+    fn continues(&mut self, _: usize, _: f64) -> bool {
         true
     }
 }
@@ -366,7 +366,7 @@ fn stopping_stops_all() {
         fn done(&mut self, lane: usize, outcome: Outcome, observer: Notes) {
             Queue::<Machine<Lanes>>::done(&mut self.0, lane, outcome, observer);
         }
-        fn goes_on(&mut self, _: usize, _: f64) -> bool {
+        fn continues(&mut self, _: usize, _: f64) -> bool {
             self.1 += 1;
             self.1 < 30
         }

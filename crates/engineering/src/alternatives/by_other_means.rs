@@ -1,7 +1,7 @@
 //! An alternative whose gas, spring, pipe or valve between the chambers is sized for the stiffness
 //! of the hose that `[sizing]` finds for the project as declared.
 
-use super::{AskedAlternative, PrepareError};
+use super::{PreparedAlternative, PrepareError};
 use crate::catalogue::Catalogue;
 use crate::project::{Component, CrossPortKind, DeclaredActuator};
 use crate::setup::Setup;
@@ -45,7 +45,7 @@ impl OtherPart {
     /// The reason why it cannot be sized.
     pub(super) fn settings(
         self,
-        declared: &AskedAlternative,
+        declared: &PreparedAlternative,
         other: &DeclaredActuator,
         catalogue: &Catalogue,
     ) -> Result<Vec<String>, PrepareError> {

@@ -2,8 +2,8 @@
 
 use phea_dynamics::watch::{Progress, Watch};
 
-use super::asked::asked;
-use super::{AlternativesError, AskedAlternative, JudgedAlternative, Judging};
+use super::prepared::prepared;
+use super::{AlternativesError, PreparedAlternative, JudgedAlternative, Judging};
 use crate::catalogue::Catalogue;
 use crate::parts::PartsCounted;
 use crate::project::{Loaded, read_load_case};
@@ -24,13 +24,13 @@ pub struct JudgedCase {
 
 /// The project under a load case with its alternatives, ready to be judged.
 #[derive(Clone, Debug)]
-pub struct AskedCase {
+pub struct PreparedCase {
     /// Name of the load case.
     pub name: String,
     /// Settings of the load case.
     pub settings: Vec<String>,
     /// The declared project first, then its alternatives in file order.
-    pub all: Vec<AskedAlternative>,
+    pub all: Vec<PreparedAlternative>,
     /// Attributes of parts that are counted.
     pub counted: PartsCounted,
 }
@@ -38,12 +38,12 @@ pub struct AskedCase {
 /// The load cases of a project in file order.
 ///
 /// # Errors
-/// The errors of [`asked()`], with the name of the load case.
-pub fn asked_cases(
+/// The errors of [`prepared()`], with the name of the load case.
+pub fn prepared_cases(
     source: &dyn Source,
     loaded: &Loaded,
     catalogues: &[String],
-) -> Result<Vec<AskedCase>, AlternativesError> {
+) -> Result<Vec<PreparedCase>, AlternativesError> {
     let each = loaded.project.load_cases.iter().enumerate().map(|(index, case)| {
         let there = read_load_case(source, loaded, catalogues, index).map_err(AlternativesError::Refused)?;
         let named = |error: AlternativesError| match error {
@@ -52,9 +52,9 @@ pub fn asked_cases(
             }
             other => other,
         };
-        let (all, counted) = asked(source, &there, catalogues).map_err(named)?;
+        let (all, counted) = prepared(source, &there, catalogues).map_err(named)?;
         let settings = case.settings().collect();
-        Ok(AskedCase { name: case.name.clone(), settings, all, counted })
+        Ok(PreparedCase { name: case.name.clone(), settings, all, counted })
     });
     each.collect()
 }
@@ -62,18 +62,18 @@ pub fn asked_cases(
 /// Judges one after the other; once `watch` cancels, no further one is reached.
 pub(super) fn judged(
     judging: &Judging<'_>,
-    all: &[AskedAlternative],
-    goes_on: bool,
+    all: &[PreparedAlternative],
+    continues: bool,
     watch: Watch<'_>,
 ) -> (Vec<JudgedAlternative>, Vec<String>) {
     let (mut found, mut not_reached) = (Vec::new(), Vec::new());
     let count = all.len() as f64;
     for (index, one) in all.iter().enumerate() {
-        let mut told = |progress: Progress| {
-            watch(Progress { share: (index as f64 + progress.share) / count, ..progress })
+        let mut watched = |progress: Progress| {
+            watch(Progress { fraction: (index as f64 + progress.fraction) / count, ..progress })
         };
-        let reached = goes_on && not_reached.is_empty();
-        let judged = if reached { judging.judged(one.clone(), &mut told) } else { None };
+        let reached = continues && not_reached.is_empty();
+        let judged = if reached { judging.judged(one.clone(), &mut watched) } else { None };
         match judged {
             Some(judged) => found.push(judged),
             None => not_reached.push(one.name.clone()),
@@ -85,19 +85,19 @@ pub(super) fn judged(
 /// Every load case that is reached before `watch` cancels.
 pub(super) fn judged_cases(
     (source, catalogue, impedance_at): (&dyn Source, &Catalogue, &[f64]),
-    cases: Vec<AskedCase>,
-    goes_on: bool,
+    cases: Vec<PreparedCase>,
+    continues: bool,
     watch: Watch<'_>,
 ) -> Vec<JudgedCase> {
     let count = cases.len() as f64;
-    let mut goes_on = goes_on;
+    let mut continues = continues;
     let judged = cases.into_iter().enumerate().map(|(index, case)| {
         let judging = Judging { source, catalogue, all: &case.all, impedance_at, counted: case.counted };
-        let mut told = |progress: Progress| {
-            watch(Progress { share: (index as f64 + progress.share) / count, ..progress })
+        let mut watched = |progress: Progress| {
+            watch(Progress { fraction: (index as f64 + progress.fraction) / count, ..progress })
         };
-        let (judged, not_reached) = judged(&judging, &case.all, goes_on, &mut told);
-        goes_on = goes_on && not_reached.is_empty();
+        let (judged, not_reached) = judged(&judging, &case.all, continues, &mut watched);
+        continues = continues && not_reached.is_empty();
         JudgedCase { name: case.name, settings: case.settings, judged, not_reached }
     });
     judged.collect()

@@ -57,7 +57,7 @@ pub enum ColumnKey {
     /// Impedance at the load under the designed controller.
     ImpedanceClosed,
     /// Impedance of the required virtual impedance.
-    ImpedanceAsked,
+    ImpedanceRequired,
     /// Overshoot in a scenario.
     Overshoot,
     /// Settling time in a scenario.
@@ -104,7 +104,7 @@ impl ColumnKey {
             SizedGain,
             ImpedanceOpen,
             ImpedanceClosed,
-            ImpedanceAsked,
+            ImpedanceRequired,
             Overshoot,
             SettlingTime,
             DisturbancePeak,
@@ -153,7 +153,7 @@ impl ColumnKey {
             ColumnKey::SizedGain => OfMotion(["sized_gain"; 2], &VOLTAGE_PER_FORCE),
             ColumnKey::ImpedanceOpen => OfMotion(["impedance_open"; 2], &DAMPING),
             ColumnKey::ImpedanceClosed => OfMotion(["impedance_closed"; 2], &DAMPING),
-            ColumnKey::ImpedanceAsked => OfMotion(["impedance_asked"; 2], &DAMPING),
+            ColumnKey::ImpedanceRequired => OfMotion(["impedance_required"; 2], &DAMPING),
             ColumnKey::Overshoot => Fixed("overshoot_percent"),
             ColumnKey::SettlingTime => Fixed("settling_time_s"),
             ColumnKey::DisturbancePeak => OfMotion(["disturbance_peak"; 2], &FORCE),

@@ -2,9 +2,9 @@
 
 use phea_dynamics::watch::{Progress, Watch};
 
-use super::asked::ReadingAgain;
+use super::prepared::ReadingAgain;
 use super::{AlternativesError, JudgeError, NoNumber};
-use super::{AskedAlternative, ColumnKey, ColumnSense, JudgedAlternative, Judging, dominates};
+use super::{PreparedAlternative, ColumnKey, ColumnSense, JudgedAlternative, Judging, dominates};
 use crate::design::DesignVerdict;
 use crate::linearize::{SweepRequest, points, range, values};
 use crate::option::OptionError;
@@ -176,11 +176,11 @@ pub(super) fn plan(request: &FrontRequest, motions: Motions) -> Result<FrontPlan
     if let Some(column) = columns.iter().find(|column| twice(column)) {
         return Err(refused(FrontColumnsError::Twice(column.key.quantity().text(motions.rig).into_owned())));
     }
-    let asked = range(&request.sweep.range, motions)?;
+    let requested = range(&request.sweep.range, motions)?;
     let count = points(request.sweep.points.or(Some(POINTS)))?;
-    let values = values(asked.ends, count, asked.by_ratio());
-    let unit = quantity::fitting(asked.ends[0].abs().max(asked.ends[1].abs()), asked.key.dimension);
-    Ok(FrontPlan { motion: motions.rig, columns, path: asked.path, unit, si: asked.key.dimension.si, values })
+    let values = values(requested.ends, count, requested.by_ratio());
+    let unit = quantity::fitting(requested.ends[0].abs().max(requested.ends[1].abs()), requested.key.dimension);
+    Ok(FrontPlan { motion: motions.rig, columns, path: requested.path, unit, si: requested.key.dimension.si, values })
 }
 
 /// Column by its name in a rig of this motion, or the nearest spelling.
@@ -213,9 +213,9 @@ fn column_of(text: &str, motion: MotionKind) -> Result<FrontColumn, FrontColumns
 /// alternative.
 pub(super) fn swept(
     judging: &Judging<'_>,
-    (again, all): (&ReadingAgain<'_>, &[AskedAlternative]),
+    (again, all): (&ReadingAgain<'_>, &[PreparedAlternative]),
     plan: &FrontPlan,
-    goes_on: bool,
+    continues: bool,
     watch: Watch<'_>,
 ) -> Front {
     let count = (all.len() * plan.values.len()) as f64;
@@ -223,10 +223,10 @@ pub(super) fn swept(
     let (mut not_reached, mut done) = (0, 0.0);
     for one in all {
         for &value in &plan.values {
-            let mut told =
-                |progress: Progress| watch(Progress { share: (done + progress.share) / count, ..progress });
-            let point = match goes_on && not_reached == 0 {
-                true => point(judging, again, (one, plan), value, &mut told),
+            let mut watched =
+                |progress: Progress| watch(Progress { fraction: (done + progress.fraction) / count, ..progress });
+            let point = match continues && not_reached == 0 {
+                true => point(judging, again, (one, plan), value, &mut watched),
                 false => None,
             };
             done += 1.0;
@@ -252,7 +252,7 @@ pub(super) fn swept(
 fn point(
     judging: &Judging<'_>,
     again: &ReadingAgain<'_>,
-    (one, plan): (&AskedAlternative, &FrontPlan),
+    (one, plan): (&PreparedAlternative, &FrontPlan),
     value: f64,
     watch: Watch<'_>,
 ) -> Option<FrontPoint> {
@@ -285,12 +285,12 @@ fn point(
 /// The alternative with the swept number, its uncertainty ranges moved with it.
 fn at(
     again: &ReadingAgain<'_>,
-    one: &AskedAlternative,
+    one: &PreparedAlternative,
     path: &str,
     value: f64,
-) -> Result<AskedAlternative, AlternativesError> {
+) -> Result<PreparedAlternative, AlternativesError> {
     let loaded = again.with(&one.loaded, &[format!("{path}={value:e}")])?.with_lines_of(&one.loaded);
-    let there = AskedAlternative::new(&one.name, loaded, one.no_hose);
+    let there = PreparedAlternative::new(&one.name, loaded, one.no_hose);
     match there.loaded.project.actuator {
         Some(_) => there.recentred(again, one),
         None => Ok(there),

@@ -3,7 +3,7 @@
 
 use phea_hydraulics::line::StiffeningMember;
 
-use super::{AskedAlternative, PrepareError};
+use super::{PreparedAlternative, PrepareError};
 use crate::linearize::stroke_stiffness;
 use crate::project::Uncertain;
 use crate::rig::Rig;
@@ -33,8 +33,8 @@ const SAME: f64 = 1e-9;
 /// greatest stiffness over the stroke. A range that the other project states differently is not
 /// moved, nor is a parameter that `[linear]` states.
 pub(super) fn moved(
-    base: &AskedAlternative,
-    other: &AskedAlternative,
+    base: &PreparedAlternative,
+    other: &PreparedAlternative,
 ) -> Result<Vec<MovedRange>, PrepareError> {
     let rigs = [base.rig.as_ref().map_err(Clone::clone)?, other.rig.as_ref().map_err(Clone::clone)?];
     let [base, other] = [base, other].map(|one| &one.loaded.project);

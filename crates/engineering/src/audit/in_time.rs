@@ -12,7 +12,7 @@ use phea_qft::verification::{Audit, PlantPoint, Verdict};
 use super::margins::{corners, spread, worst_plants};
 use crate::linear_step::{KnownResponses, StepResponse, StepSignal, linear_step_knowing};
 use crate::robust::RobustProblem;
-use crate::simulate::{ReachedStep, TimeRequirement, TrackingWish};
+use crate::simulate::{ReachedStep, TimeRequirement, StepLimits};
 
 /// Finding for the steps of the plants that were visited.
 #[derive(Clone, Debug, PartialEq)]
@@ -100,8 +100,8 @@ const MEMBERS_COMPARED: usize = 40;
 /// Number of plants from which each property is followed between the members; first and last step,
 /// as fractions of the box; largest number of visited plants.
 const STARTS: usize = 3;
-const FIRST_SHARE: f64 = 0.25;
-const LEAST_SHARE: f64 = 0.01;
+const FIRST_FRACTION: f64 = 0.25;
+const LEAST_FRACTION: f64 = 0.01;
 const VISITED_MAXIMUM: usize = 600;
 
 impl TimeFinding {
@@ -135,13 +135,13 @@ impl TimeFinding {
     /// Worst step of the property that is furthest beyond its limit, or else nearest to it.
     pub fn nearest(&self) -> Option<&WorstStep> {
         let TimeOutcome::Searched { overshoot, settling, rise, .. } = &self.outcome else { return None };
-        let TrackingWish { overshoot_percent, settling_time_s, rise_time_s, .. } = self.requirement.wish;
+        let StepLimits { overshoot_percent, settling_time_s, rise_time_s, .. } = self.requirement.step_limits;
         let each = [(overshoot, overshoot_percent), (settling, settling_time_s), (rise, rise_time_s)];
-        let shares = each.into_iter().filter_map(|(worst, most)| {
+        let fractions = each.into_iter().filter_map(|(worst, most)| {
             let worst = worst.as_ref()?;
             Some((worst.value / most?.max(ACCURACY_PERCENT), worst))
         });
-        shares.max_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, worst)| worst)
+        fractions.max_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, worst)| worst)
     }
 
     /// Verdict on the steps; `None` if no step was computed.
@@ -173,7 +173,7 @@ fn outcome(
     if audit.stability.verdict != Verdict::Met {
         return Err(Unexamined::NotStable);
     }
-    let mut search = StepSearch { problem, family, wish: requirement.wish, visited: vec![] };
+    let mut search = StepSearch { problem, family, step_limits: requirement.step_limits, visited: vec![] };
     for values in visited(family, audit) {
         search.visit(&values).map_err(Unexamined::Step)?;
     }
@@ -192,7 +192,7 @@ pub(crate) fn steps_of_members(
 ) -> Option<ReachedStep> {
     let Family::Uncertain(family) = &problem.family else { return None };
     let most = if family.plant().is_rational() { MEMBERS_COMPARED } else { MEMBERS_OF_RESPONSES };
-    let mut search = StepSearch { problem, family, wish: requirement.wish, visited: vec![] };
+    let mut search = StepSearch { problem, family, step_limits: requirement.step_limits, visited: vec![] };
     for values in std::iter::once(family.plant().nominal()).chain(spread(family.members(), most)) {
         let member = problem.compensation.member_of(family.plant(), &values).ok()?;
         if member_stability(&member, &problem.compensation).status != StabilityStatus::Stable {
@@ -239,7 +239,7 @@ pub(crate) fn visited(family: &UncertainFamily, audit: &Audit) -> Vec<Vec<f64>> 
 struct StepSearch<'a> {
     problem: &'a RobustProblem,
     family: &'a UncertainFamily,
-    wish: TrackingWish,
+    step_limits: StepLimits,
     visited: Vec<(Vec<f64>, [f64; 3])>,
 }
 
@@ -253,10 +253,10 @@ impl StepSearch<'_> {
             let signal = (&member, StepSignal::Output);
             let StepResponse { times_s, values } =
                 linear_step_knowing(signal, compensation, (duration_s, points), &known)?;
-            step_metrics(&times_s, &values, StepBaseline::unit(), self.wish.band_percent)
+            step_metrics(&times_s, &values, StepBaseline::unit(), self.step_limits.band_percent)
         };
         let is_responding = matches!(member, Member::Responding { .. });
-        let mut duration_s = SETTLING_TIMES * self.wish.horizon_s;
+        let mut duration_s = SETTLING_TIMES * self.step_limits.horizon_s;
         let mut metrics = within(duration_s, POINTS)?;
         let mut overshoot_percent = metrics.overshoot_percent;
         let mut points = POINTS;
@@ -282,7 +282,7 @@ impl StepSearch<'_> {
         let mut times_s = [metrics.settling.time_s(), metrics.rise_time_10_90_s];
         if matches!(member, Member::Continuous { .. }) {
             // the peak of a fast swing may fall between the points of a long response
-            let soon_s = SOON * self.wish.horizon_s;
+            let soon_s = SOON * self.step_limits.horizon_s;
             let soon = within(soon_s, POINTS)?;
             overshoot_percent = overshoot_percent.max(soon.overshoot_percent);
             let finer = [soon.settling.time_s(), soon.rise_time_10_90_s];
@@ -296,7 +296,7 @@ impl StepSearch<'_> {
 
     /// True if a required time is unknown.
     fn lacks(&self, metrics: &StepMetrics) -> bool {
-        let TrackingWish { settling_time_s, rise_time_s, .. } = self.wish;
+        let StepLimits { settling_time_s, rise_time_s, .. } = self.step_limits;
         settling_time_s.is_some() && metrics.settling.time_s().is_none()
             || rise_time_s.is_some() && metrics.rise_time_10_90_s.is_none()
     }
@@ -308,7 +308,7 @@ impl StepSearch<'_> {
             let forward = found.controller * found.plant;
             found.prefilter * forward / (1.0 + forward * found.sensor)
         });
-        let is_within = |at_rest| 100.0 * portable::magnitude(at_rest - 1.0) <= self.wish.band_percent;
+        let is_within = |at_rest| 100.0 * portable::magnitude(at_rest - 1.0) <= self.step_limits.band_percent;
         at_rest.is_none_or(is_within)
     }
 
@@ -326,7 +326,7 @@ impl StepSearch<'_> {
     fn required(&self) -> [Option<f64>; 3] {
         let room =
             if self.family.plant().is_rational() { ACCURACY_PERCENT } else { ACCURACY_OF_RESPONSE_PERCENT };
-        let TrackingWish { overshoot_percent, settling_time_s, rise_time_s, .. } = self.wish;
+        let StepLimits { overshoot_percent, settling_time_s, rise_time_s, .. } = self.step_limits;
         [overshoot_percent.map(|most| most.max(room)), settling_time_s, rise_time_s]
     }
 
@@ -364,7 +364,7 @@ impl StepSearch<'_> {
     /// Moves from a plant to a worse neighbour.
     fn follow(&mut self, property: usize, start: Vec<f64>) -> Result<(), TimeResponseError> {
         let family = self.family;
-        worst_beside(family, start, |values| {
+        worst_additional(family, start, |values| {
             let value = self.visit(values)?[property];
             Ok(VisitedPlant { value, is_last: self.visited.len() >= VISITED_MAXIMUM })
         })
@@ -381,24 +381,24 @@ pub(crate) struct VisitedPlant {
 
 /// Moves from a plant of a family to a worse neighbour, one coordinate after the other, and in
 /// smaller steps once none is worse.
-pub(crate) fn worst_beside<E>(
+pub(crate) fn worst_additional<E>(
     family: &UncertainFamily,
     start: Vec<f64>,
     mut visit: impl FnMut(&[f64]) -> Result<VisitedPlant, E>,
 ) -> Result<(), E> {
     let VisitedPlant { value: mut worst, mut is_last } = visit(&start)?;
-    let mut shares = family.shares(&start);
-    let mut step = FIRST_SHARE;
-    while step >= LEAST_SHARE && worst.is_finite() && !is_last {
+    let mut fractions = family.fractions(&start);
+    let mut step = FIRST_FRACTION;
+    while step >= LEAST_FRACTION && worst.is_finite() && !is_last {
         let before = worst;
-        for coordinate in 0..shares.len() {
+        for coordinate in 0..fractions.len() {
             for moved in [step, -step] {
-                let mut beside = shares.clone();
+                let mut beside = fractions.clone();
                 beside[coordinate] = (beside[coordinate] + moved).clamp(0.0, 1.0);
                 let found = visit(&family.values(&beside))?;
                 is_last = found.is_last;
                 if found.value > worst {
-                    (worst, shares) = (found.value, beside);
+                    (worst, fractions) = (found.value, beside);
                     break;
                 }
             }

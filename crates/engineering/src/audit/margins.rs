@@ -62,7 +62,7 @@ const MEMBERS: usize = 150;
 const CORNERS: usize = 64;
 const MEMBERS_OF_RESPONSES: usize = 8;
 /// First step of the search between the members, as a fraction of the box; it is halved this often.
-const FIRST_SHARE: f64 = 0.25;
+const FIRST_FRACTION: f64 = 0.25;
 const HALVINGS: usize = 3;
 
 impl MarginSet {
@@ -221,7 +221,7 @@ pub(crate) fn plants_of_margins(problem: &RobustProblem, audit: &Audit) -> Famil
     let Family::Uncertain(family) = &problem.family else { return problem.family.clone() };
     let members = visited(problem, audit).into_iter().filter_map(|plant| match plant {
         PlantPoint::Parameters(values) => Some(values),
-        PlantPoint::Measured(_) | PlantPoint::Beside(_) => None,
+        PlantPoint::Measured(_) | PlantPoint::Additional(_) => None,
     });
     let members = UncertainFamily::new(family.plant().clone(), vec![], members.collect(), Extent::Members);
     members.map_or_else(|_| problem.family.clone(), Family::Uncertain)
@@ -239,9 +239,9 @@ pub(super) fn corners(family: &UncertainFamily) -> Vec<Vec<f64>> {
     if family.extent() != Extent::Box || dimension == 0 || dimension > 8 {
         return Vec::new();
     }
-    let share = |mask: usize, index: usize| if (mask >> index) & 1 == 1 { 1.0 } else { 0.0 };
-    let shares = |mask: usize| (0..dimension).map(|index| share(mask, index)).collect::<Vec<f64>>();
-    (0..1_usize << dimension).map(|mask| family.values(&shares(mask))).collect()
+    let fraction = |mask: usize, index: usize| if (mask >> index) & 1 == 1 { 1.0 } else { 0.0 };
+    let fractions = |mask: usize| (0..dimension).map(|index| fraction(mask, index)).collect::<Vec<f64>>();
+    (0..1_usize << dimension).map(|mask| family.values(&fractions(mask))).collect()
 }
 
 /// Plants at which a specification is worst.
@@ -273,14 +273,14 @@ impl MarginSearch<'_> {
         if family.extent() != Extent::Box || !family.plant().is_rational() {
             return;
         }
-        let mut share = FIRST_SHARE;
+        let mut fraction = FIRST_FRACTION;
         for _ in 0..HALVINGS {
             for index in 0..3 {
                 for coordinate in 0..family.coordinates().len() {
-                    [share, -share].into_iter().for_each(|step| self.beside(family, index, coordinate, step));
+                    [fraction, -fraction].into_iter().for_each(|step| self.beside(family, index, coordinate, step));
                 }
             }
-            share *= 0.5;
+            fraction *= 0.5;
         }
     }
 
@@ -291,12 +291,12 @@ impl MarginSearch<'_> {
         if value.is_infinite() {
             return;
         }
-        let mut shares = family.shares(&values);
-        let Some(own) = shares.get_mut(coordinate) else { return };
+        let mut fractions = family.fractions(&values);
+        let Some(own) = fractions.get_mut(coordinate) else { return };
         let moved = (*own + step).clamp(0.0, 1.0);
         if moved != *own {
             *own = moved;
-            self.visit(&PlantPoint::Parameters(family.values(&shares)));
+            self.visit(&PlantPoint::Parameters(family.values(&fractions)));
         }
     }
 }

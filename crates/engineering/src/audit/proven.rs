@@ -1,7 +1,7 @@
 //! Proof or refutation of the findings of an audit; the verdict is then based on the proof.
 
 use phea_dynamics::watch::{Stopped, Watch};
-use phea_qft::proof::{NotProven, Proof, ProofOptions, Standing, prove};
+use phea_qft::proof::{NotProven, Proof, ProofOptions, ClaimStatus, prove};
 use phea_qft::verification::{Evidence, Verdict};
 
 use super::{ProjectAudit, audit_request};
@@ -30,39 +30,39 @@ pub fn prove_audit(
 ///
 /// # Errors
 /// [`Stopped`] if `watch` cancels it.
-pub fn try_to_prove(
+pub fn prove_claims(
     problem: &RobustProblem,
     view: &mut ProjectAudit,
     watch: Watch<'_>,
 ) -> Result<(), Stopped> {
     let options =
-        ProofOptions { leaves_maximum: TRIED_LEAVES, workers: all_cores(), ..ProofOptions::default() };
+        ProofOptions { leaves_maximum: TRIAL_LEAVES, workers: all_cores(), ..ProofOptions::default() };
     let proof = prove(&audit_request(problem, &problem.family), &view.audit, options, watch)?;
     rest_on(view, proof, Verdict::Met);
     Ok(())
 }
 
 /// Number of leaves of a panel if no proof was requested.
-const TRIED_LEAVES: usize = 10_000;
+const TRIAL_LEAVES: usize = 10_000;
 
 /// Bases the verdict on a proof; `unproven` is the verdict for an audit that is met but not proven.
 fn rest_on(view: &mut ProjectAudit, mut proof: Proof, unproven: Verdict) {
     let audit = &mut view.audit;
     for (finding, found) in audit.specifications.iter().zip(&mut proof.specifications) {
-        contradicted(&mut found.standing, finding.verdict);
+        contradicted(&mut found.claim_status, finding.verdict);
     }
     contradicted(&mut proof.stability, audit.stability.verdict);
     let stability = &mut audit.stability;
-    let judged = |standing: &Standing, searched: Verdict, evidence: Evidence| match standing {
-        Standing::Proven | Standing::Refuted => (standing.verdict(), Evidence::Proof),
-        Standing::NotProven(_) => (searched.max(unproven), evidence),
+    let judged = |claim_status: &ClaimStatus, searched: Verdict, evidence: Evidence| match claim_status {
+        ClaimStatus::Proven | ClaimStatus::Refuted => (claim_status.verdict(), Evidence::Proof),
+        ClaimStatus::NotProven(_) => (searched.max(unproven), evidence),
     };
     (stability.verdict, stability.evidence) = judged(&proof.stability, stability.verdict, stability.evidence);
     for (finding, found) in audit.specifications.iter_mut().zip(&proof.specifications) {
-        if found.standing == Standing::Refuted && finding.verdict != Verdict::Violated {
+        if found.claim_status == ClaimStatus::Refuted && finding.verdict != Verdict::Violated {
             finding.worst.clone_from(&found.worst);
         }
-        (finding.verdict, finding.evidence) = judged(&found.standing, finding.verdict, finding.evidence);
+        (finding.verdict, finding.evidence) = judged(&found.claim_status, finding.verdict, finding.evidence);
     }
     let all = || {
         let own = [(audit.stability.verdict, audit.stability.evidence)].into_iter();
@@ -87,8 +87,8 @@ fn rest_on(view: &mut ProjectAudit, mut proof: Proof, unproven: Verdict) {
 
 /// Corrects a standing: a plant and a frequency at which the search found a violation outweigh any
 /// proof.
-fn contradicted(standing: &mut Standing, searched: Verdict) {
-    if *standing == Standing::Proven && searched == Verdict::Violated {
-        *standing = Standing::NotProven(NotProven::Contradicted);
+fn contradicted(claim_status: &mut ClaimStatus, searched: Verdict) {
+    if *claim_status == ClaimStatus::Proven && searched == Verdict::Violated {
+        *claim_status = ClaimStatus::NotProven(NotProven::Contradicted);
     }
 }

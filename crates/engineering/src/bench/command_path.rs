@@ -32,12 +32,12 @@ impl CommandPath {
     }
 
     /// Command after a fraction of the test.
-    pub(super) fn at(&self, share: f64) -> f64 {
+    pub(super) fn at(&self, fraction: f64) -> f64 {
         match self {
             CommandPath::Cycles { waveform, cycles, amplitude } => {
-                amplitude * wave(*waveform, share * cycles)
+                amplitude * wave(*waveform, fraction * cycles)
             }
-            CommandPath::Straight(corners) => along(corners, share),
+            CommandPath::Straight(corners) => along(corners, fraction),
         }
     }
 }
@@ -62,10 +62,10 @@ pub(super) fn least_judged(reversals: &Reversals) -> f64 {
 }
 
 /// Command after a fraction of the path from corner to corner.
-fn along(corners: &[f64], share: f64) -> f64 {
+fn along(corners: &[f64], fraction: f64) -> f64 {
     let pieces = || corners.iter().zip(corners.iter().skip(1));
     let whole: f64 = pieces().map(|(from, to)| (to - from).abs()).sum();
-    let mut left = share * whole;
+    let mut left = fraction * whole;
     for (from, to) in pieces() {
         let length = (to - from).abs();
         if left <= length {

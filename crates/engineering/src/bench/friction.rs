@@ -8,7 +8,7 @@
 mod shaken;
 
 use phea_dynamics::random::{normal, stream};
-use phea_dynamics::watch::{Watch, tell};
+use phea_dynamics::watch::{Watch, report_progress};
 use phea_hydraulics::cylinder::Cylinder;
 use phea_hydraulics::friction::{Friction, LuGre, PressedMass};
 
@@ -99,7 +99,7 @@ pub fn friction_runs(setup: &Setup<'_>, watch: Watch<'_>) -> Result<Vec<Friction
     let mean = f64::midpoint(components.supply.pressure, components.supply.tank_pressure);
     let mut runs = Vec::new();
     for series in FrictionSeries::ALL {
-        tell(watch, series.name(), 0, 1)?;
+        report_progress(watch, series.name(), 0, 1)?;
         let moments = match series {
             FrictionSeries::Sliding => sliding(&lugre, &components.cylinder, &settings)?,
             FrictionSeries::Breakaway => breakaway(&lugre, &components.cylinder, &settings, 1.0)?,
@@ -205,8 +205,8 @@ fn velocities(settings: &FrictionBench) -> Vec<(f64, f64)> {
     let mut corners = vec![(0.0, 0.0), (REST, 0.0)];
     let mut time = REST;
     for index in 0..count {
-        let share = if count > 1 { f64::from(index) / f64::from(count - 1) } else { 0.0 };
-        let speed = settings.slowest * phea_dynamics::portable::pow(ratio, share);
+        let fraction = if count > 1 { f64::from(index) / f64::from(count - 1) } else { 0.0 };
+        let speed = settings.slowest * phea_dynamics::portable::pow(ratio, fraction);
         for velocity in [speed, -speed] {
             time += settings.change_time;
             corners.push((time, velocity));

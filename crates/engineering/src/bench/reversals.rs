@@ -2,7 +2,7 @@
 
 use phea_dynamics::least_squares::{Linearised, Settings, minimise, uncertainty};
 use phea_dynamics::scalar::{Dual, Scalar};
-use phea_dynamics::watch::{Stopped, Watch, tell};
+use phea_dynamics::watch::{Stopped, Watch, report_progress};
 use phea_hydraulics::servovalve::{SlowSpool, SpoolImperfection};
 
 use super::command_path::least_judged;
@@ -55,7 +55,7 @@ pub(super) fn read(
     }
     let amplitude = reversals.amplitude * nominal_voltage;
     let mut evaluate = |x: &[f64]| -> Result<Option<Linearised>, Stopped> {
-        tell(watch, "reversals", 0, 1)?;
+        report_progress(watch, "reversals", 0, 1)?;
         Ok(Some(linearised(rows, &counts, x, (amplitude, greatest))))
     };
     let lower = LEAST * nominal_voltage;

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::plan::Plan;
 use super::row::{NoRow, Row};
-use super::workers::{Asked, News, run};
+use super::workers::{MissingRuns, News, run};
 use super::{CampaignError, Effort, RowFault};
 use phea_dynamics::watch::{Progress, Watch};
 
@@ -62,8 +62,8 @@ impl Shard {
 
     /// Runs of the part, of this number in total.
     pub fn runs_of(&self, runs: u64) -> Range<u64> {
-        let share = |number: u64| (u128::from(runs) * u128::from(number) / u128::from(self.of)) as u64;
-        share(self.number - 1)..share(self.number)
+        let fraction = |number: u64| (u128::from(runs) * u128::from(number) / u128::from(self.of)) as u64;
+        fraction(self.number - 1)..fraction(self.number)
     }
 
     /// True if the part begins the table, with the header line.
@@ -91,7 +91,7 @@ pub trait RowStore {
     ///
     /// # Errors
     /// The reason why it cannot be read.
-    fn kept(&mut self) -> Result<String, String>;
+    fn stored(&mut self) -> Result<String, String>;
 
     /// Truncates the text to this number of bytes.
     ///
@@ -144,9 +144,9 @@ pub fn campaign(
     watch: Watch<'_>,
 ) -> Result<Vec<Row>, CampaignError> {
     let runs = wanted.shard.runs_of(wanted.runs);
-    let asked = runs.end - runs.start;
-    if asked > MOST_RUNS {
-        return Err(CampaignError::TooMany { runs: asked });
+    let requested = runs.end - runs.start;
+    if requested > MOST_RUNS {
+        return Err(CampaignError::TooMany { runs: requested });
     }
     let mut rows = match ledger.as_deref_mut() {
         Some(ledger) => resumed(plan, wanted, ledger)?,
@@ -158,10 +158,10 @@ pub fn campaign(
         None => BTreeMap::new(),
     };
     let before = (rows.len() + known.len()) as u64;
-    let mut tell = |news: News| match news {
+    let mut report_progress = |news: News| match news {
         News::Done(done) => {
-            let share = (before + done) as f64 / (asked.max(1)) as f64;
-            Ok(watch(Progress { stage: "driving", share }))
+            let fraction = (before + done) as f64 / (requested.max(1)) as f64;
+            Ok(watch(Progress { stage: "driving", fraction }))
         }
         News::Rows(more) => {
             if let Some(ledger) = ledger.as_deref_mut() {
@@ -179,8 +179,8 @@ pub fn campaign(
             Ok(true)
         }
     };
-    run(plan, Asked { runs: missing, known, forces: false }, wanted.effort, &mut tell)?;
-    if rows.len() as u64 == asked
+    run(plan, MissingRuns { runs: missing, known, forces: false }, wanted.effort, &mut report_progress)?;
+    if rows.len() as u64 == requested
         && let Some(ledger) = ledger
     {
         ledger.forget_ahead().map_err(CampaignError::RowStore)?;
@@ -221,7 +221,7 @@ fn kept_row(plan: &Plan, run: u64, text: &str, line: usize) -> Result<Row, Campa
 /// is started.
 fn resumed(plan: &Plan, wanted: RequestedRuns, ledger: &mut dyn RowStore) -> Result<Vec<Row>, CampaignError> {
     let runs = wanted.shard.runs_of(wanted.runs);
-    let text = ledger.kept().map_err(CampaignError::RowStore)?;
+    let text = ledger.stored().map_err(CampaignError::RowStore)?;
     let (whole, torn) = text.split_at(text.rfind('\n').map_or(0, |last| last + 1));
     let header = if wanted.shard.begins() { plan.columns.header() } else { String::new() };
     let (mut rows, mut lines) = (Vec::new(), whole.split_terminator('\n').zip(1..));
@@ -237,16 +237,16 @@ fn resumed(plan: &Plan, wanted: RequestedRuns, ledger: &mut dyn RowStore) -> Res
     for (text, line) in lines {
         rows.push(kept_row(plan, runs.start + rows.len() as u64, text, line)?);
     }
-    let kept = rows.len() as u64;
+    let stored = rows.len() as u64;
     let beginning = match (whole.is_empty(), header.is_empty()) {
         (true, false) => header.clone(),
-        _ => plan.columns.beginning(runs.start + kept),
+        _ => plan.columns.beginning(runs.start + stored),
     };
     if !(torn.starts_with(&beginning) || beginning.starts_with(torn)) {
         return Err(CampaignError::OtherCampaign { line: whole.lines().count() + 1 });
     }
-    if kept > runs.end - runs.start {
-        return Err(CampaignError::MoreKept { kept, asked: runs.end - runs.start });
+    if stored > runs.end - runs.start {
+        return Err(CampaignError::MoreStored { stored, requested: runs.end - runs.start });
     }
     if !torn.is_empty() {
         ledger.cut(whole.len()).map_err(CampaignError::RowStore)?;

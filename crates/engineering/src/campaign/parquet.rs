@@ -104,7 +104,7 @@ fn contents(columns: &CampaignColumns, rows: &[Row]) -> Vec<ParquetColumn> {
         text(&|_| Some(columns.mark.clone())),
         text(&|row| Some(row.status().key().to_string())),
         text(&reason),
-        double(&|row| row.ran()?.ended_s),
+        double(&|row| row.ran()?.end_time_s),
         whole(&|row| i64::try_from(row.ran()?.steps).ok()),
         text(&|row| Some(row.ran()?.occurrences.join(";"))),
     ];

@@ -72,7 +72,7 @@ pub struct Plan {
     /// Reference at every recorded time, N; at a step, the value after it. Zero in an open loop.
     pub reference_n: Vec<f64>,
     /// Indices of the recorded times of the bands.
-    pub(super) band_looks: Vec<usize>,
+    pub(super) band_samples: Vec<usize>,
     /// Indices of the states on which force and command depend.
     pub(super) look: Vec<usize>,
     /// Requirements in time.
@@ -155,11 +155,11 @@ impl Plan {
         let times_s: Vec<f64> = (0..looks).map(|look| look as f64 * scenario.output_step).collect();
         let reference_n = times_s.iter().map(|time_s| driven.reference.value(*time_s)).collect();
         let windows = driven.windows.clone();
-        let band_looks = band_looks(&times_s, &windows);
+        let band_samples = band_samples(&times_s, &windows);
         let columns = CampaignColumns {
             mark: mark(source, &project, &scenario, seed),
             paths: ranges.iter().map(|range| range.path.clone()).collect(),
-            times_s: band_looks
+            times_s: band_samples
                 .iter()
                 .filter_map(|look| times_s.get(*look))
                 .map(|time_s| plain(*time_s))
@@ -181,7 +181,7 @@ impl Plan {
             columns,
             times_s,
             reference_n,
-            band_looks,
+            band_samples,
             look,
             ranges,
             seed,
@@ -286,7 +286,7 @@ impl Plan {
             }
             Control::Continuous(_) | Control::Open(_) => false,
         };
-        let noise_seed = noisy.then(|| (random::share(&mut stream) * SEEDS) as u32);
+        let noise_seed = noisy.then(|| (random::uniform(&mut stream) * SEEDS) as u32);
         Draw { run, values, noise_seed }
     }
 
@@ -370,7 +370,7 @@ impl Plan {
 }
 
 /// Indices of recorded times, evenly over the scenario, and denser after the start of a window.
-fn band_looks(times_s: &[f64], windows: &[Window]) -> Vec<usize> {
+fn band_samples(times_s: &[f64], windows: &[Window]) -> Vec<usize> {
     let mut looks: Vec<usize> = (0..times_s.len()).step_by(times_s.len().div_ceil(BAND_TIMES)).collect();
     let each = (BAND_TIMES / windows.len().max(1)).max(1);
     for window in windows {

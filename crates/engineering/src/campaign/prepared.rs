@@ -18,7 +18,7 @@ use crate::setup::Setup;
 use crate::simulate::{
     COMMAND_LIMIT, ControlledMachine, Divergence, ERRORS_AMPLIFIED, Follower, LineLimits, LineWatch,
     Occurrence, PassAgreement, PassPlan, PassResult, PreparedScenario, REPEATED, Repetition, SimulateError,
-    StoppedRun, amplification, course_of, machine_of, moved, occurrences, outside_model_s, run_status,
+    StoppedRun, amplification, prepared_scenario_of, machine_of, moved, occurrences, outside_model_s, run_status,
 };
 
 /// A run that is ready to be simulated.
@@ -27,7 +27,7 @@ pub(super) struct Prepared {
     pub(super) lumps: Option<[f64; 3]>,
     /// Controller around this machine.
     pub(super) bench: ControlledMachine,
-    course: InputSchedule,
+    schedule: InputSchedule,
     scenario: PreparedScenario,
     /// Samples of a sampled controller.
     log: RefCell<ControllerSamples>,
@@ -81,16 +81,16 @@ pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
         if let (Control::Sampled(sampled), Some(seed)) = (&mut bench.control, draw.noise_seed) {
             sampled.seed = u64::from(seed);
         }
-        let course = course_of(&plan.driven, &bench, &plan.drawn_scenario(&draw))?;
-        Ok((bench, course))
+        let schedule = prepared_scenario_of(&plan.driven, &bench, &plan.drawn_scenario(&draw))?;
+        Ok((bench, schedule))
     };
-    let (bench, course) = made().map_err(|error| refused(error.into(), lumps))?;
-    let driving = course.machine_inputs();
-    let reference = Input::Value(course.reference.clone());
+    let (bench, schedule) = made().map_err(|error| refused(error.into(), lumps))?;
+    let driving = schedule.machine_inputs();
+    let reference = Input::Value(schedule.reference.clone());
     let first = match &bench.control {
         Control::Continuous(_) => vec![reference],
         Control::Sampled(_) => vec![Input::Command, reference],
-        Control::Open(_) => vec![Input::Value(course.command.clone()), reference],
+        Control::Open(_) => vec![Input::Value(schedule.command.clone()), reference],
     };
     let inputs = first.into_iter().chain(driving).collect();
     let scenario = &plan.scenario;
@@ -98,8 +98,8 @@ pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
         draw,
         lumps,
         bench,
-        course: InputSchedule { duration_s: scenario.duration, output_step_s: scenario.output_step, inputs },
-        scenario: course,
+        schedule: InputSchedule { duration_s: scenario.duration, output_step_s: scenario.output_step, inputs },
+        scenario: schedule,
         log: RefCell::default(),
     })
 }
@@ -117,14 +117,14 @@ impl Prepared {
                 Some(Box::new(Digital::new(sampled, &self.scenario.waking, &self.log)))
             }
         };
-        Task { start, course: &self.course, sampler, observer }
+        Task { start, schedule: &self.schedule, sampler, observer }
     }
 
     /// Repeats the run singly; its watcher cancels it by returning false.
     pub(super) fn again<'a>(
         &'a self,
         plan: &'a Plan,
-        (pass, every_look): (PassPlan, bool),
+        (pass, every_sample): (PassPlan, bool),
         watch: &mut dyn FnMut() -> bool,
     ) -> Result<DrivenPass<'a>, SimulationError> {
         self.log.replace(ControllerSamples::default());
@@ -132,7 +132,7 @@ impl Prepared {
         if pass.moved {
             moved(&mut start, &self.bench.control.scales());
         }
-        let watched = Watched::new(plan, self, every_look);
+        let watched = Watched::new(plan, self, every_sample);
         let settings = SimulationSettings { tolerance: pass.tolerance, ..self.bench.settings };
         let task = self.task_from(start, watched.watcher());
         let outcome = self.bench.control.drive(task, &settings, &mut |_| watch())?;
@@ -174,7 +174,7 @@ impl Prepared {
         }
         let ran = Ran {
             status: run_status(stopped, outside_s, undetermined),
-            ended_s: stopped.map(|stopped| stopped.time_s),
+            end_time_s: stopped.map(|stopped| stopped.time_s),
             steps: outcome.work.steps,
             occurrences: kinds,
             metrics: metrics.iter().map(numbers).collect(),
@@ -194,7 +194,7 @@ impl Prepared {
             Input::Rate(profile) => profile.rate(0.0),
             Input::Command => 0.0,
         };
-        let mut first: Vec<f64> = self.course.inputs.iter().map(value).collect();
+        let mut first: Vec<f64> = self.schedule.inputs.iter().map(value).collect();
         let control = &self.bench.control;
         let [states, _] = control.size();
         let start = &self.scenario.start;
@@ -253,19 +253,19 @@ struct Seen<'a> {
     follower: Follower<'a>,
     lines: LineWatch,
     /// True if the force at all recorded times is stored, false if only at those of the bands.
-    every_look: bool,
+    every_sample: bool,
     /// Force, N.
     force_n: Vec<f64>,
 }
 
 impl<'a> Watched<'a> {
-    pub(super) fn new(plan: &'a Plan, prepared: &'a Prepared, every_look: bool) -> Watched<'a> {
+    pub(super) fn new(plan: &'a Plan, prepared: &'a Prepared, every_sample: bool) -> Watched<'a> {
         let windows = (plan.windows(), plan.scenario.settling_band_percent, plan.scenario.duration);
         let reference = &plan.driven.reference;
         let follower = Follower::of(&prepared.bench, &plan.look, &prepared.log, reference, windows);
-        let kept = if every_look { plan.times_s.len() } else { plan.band_looks.len() };
+        let kept = if every_sample { plan.times_s.len() } else { plan.band_samples.len() };
         let lines = LineWatch::of(&prepared.bench, &plan.look);
-        let seen = Seen { plan, follower, lines, every_look, force_n: Vec::with_capacity(kept) };
+        let seen = Seen { plan, follower, lines, every_sample, force_n: Vec::with_capacity(kept) };
         Watched { plan, seen: Rc::new(RefCell::new(seen)) }
     }
 
@@ -282,9 +282,9 @@ impl<'a> Watched<'a> {
 impl Seen<'_> {
     /// Force at the times of the bands, up to the end of the run, N.
     fn of_bands(&self) -> impl Iterator<Item = f64> {
-        let places = self.plan.band_looks.iter().enumerate();
+        let places = self.plan.band_samples.iter().enumerate();
         places
-            .map_while(|(place, look)| self.force_n.get(if self.every_look { *look } else { place }).copied())
+            .map_while(|(place, look)| self.force_n.get(if self.every_sample { *look } else { place }).copied())
     }
 }
 
@@ -295,8 +295,8 @@ impl Observer for Watched<'_> {
 
     fn wants_row(&self, row: u64) -> bool {
         let seen = self.seen.borrow();
-        let next = self.plan.band_looks.get(seen.force_n.len());
-        seen.every_look || next.is_some_and(|look| *look as u64 == row)
+        let next = self.plan.band_samples.get(seen.force_n.len());
+        seen.every_sample || next.is_some_and(|look| *look as u64 == row)
     }
 
     fn observe(&mut self, _time_s: f64, states: &[f64], _inputs: &[f64]) {
@@ -318,7 +318,7 @@ impl Observer for Watched<'_> {
         seen.lines.follow(stretch);
     }
 
-    fn looks_closer(&self, stretch: &Stretch<'_>) -> bool {
-        self.seen.borrow().follower.looks_closer(stretch)
+    fn needs_accurate_solution(&self, stretch: &Stretch<'_>) -> bool {
+        self.seen.borrow().follower.needs_accurate_solution(stretch)
     }
 }

@@ -148,8 +148,8 @@ impl Batch<'_> {
         Self: 'a,
     {
         let shared = self.shared;
-        let mut goes_on = || !shared.stop.load(Ordering::Relaxed);
-        let again = |pass| prepared.again(shared.plan, (pass, shared.forces), &mut goes_on);
+        let mut continues = || !shared.stop.load(Ordering::Relaxed);
+        let again = |pass| prepared.again(shared.plan, (pass, shared.forces), &mut continues);
         let (last, _, repetition) =
             repeated((prepared.bench.settings.tolerance, first), DrivenPass::result, again)?;
         if repetition.as_ref().is_some_and(Repetition::was_cancelled) {
@@ -213,7 +213,7 @@ impl<'a> Fleet<'a> for Batch<'a> {
         }
     }
 
-    fn goes_on(&mut self) -> bool {
+    fn continues(&mut self) -> bool {
         !self.shared.stop.load(Ordering::Relaxed)
     }
 }

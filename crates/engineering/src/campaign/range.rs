@@ -33,15 +33,15 @@ impl VariedRange {
         let (low, high) = (self.minimum, self.maximum);
         let width = high - low;
         match self.distribution {
-            Distribution::Uniform => low + width * random::share(stream),
+            Distribution::Uniform => low + width * random::uniform(stream),
             Distribution::Normal => 0.5 * (low + high) + 0.25 * width * random::normal(stream),
             Distribution::LogUniform => {
                 let (from, to) = (portable::ln(low), portable::ln(high));
-                portable::exp(from + random::share(stream) * (to - from))
+                portable::exp(from + random::uniform(stream) * (to - from))
             }
-            Distribution::Triangular => match random::share(stream) {
-                share if share < 0.5 => low + width * (0.5 * share).sqrt(),
-                share => high - width * (0.5 * (1.0 - share)).sqrt(),
+            Distribution::Triangular => match random::uniform(stream) {
+                fraction if fraction < 0.5 => low + width * (0.5 * fraction).sqrt(),
+                fraction => high - width * (0.5 * (1.0 - fraction)).sqrt(),
             },
         }
     }

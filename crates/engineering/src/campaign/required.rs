@@ -3,7 +3,7 @@
 use super::plan::Plan;
 use super::row::{Ran, Row};
 use crate::estimate::NORMAL_95;
-use crate::simulate::{Metric, NotJudged, ReachedStep, RunStatus, TimeRequirement, TrackingWish, concerned};
+use crate::simulate::{Metric, NotJudged, ReachedStep, RunStatus, TimeRequirement, StepLimits, concerned};
 
 /// A requirement in time, and the number of runs that satisfy it.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,7 +11,7 @@ pub struct CampaignRequirement {
     /// Number of its specification in the file, from 1.
     pub number: usize,
     /// Requirement for every step of the reference.
-    pub wish: TrackingWish,
+    pub step_limits: StepLimits,
     /// Number of runs that satisfy it, or the reason why it is not known.
     pub judged: Result<SatisfiedRuns, NotJudged>,
 }
@@ -64,7 +64,7 @@ impl SatisfiedRuns {
 pub(super) fn required(plan: &Plan, rows: &[Row]) -> Vec<CampaignRequirement> {
     let of = |one: &TimeRequirement| CampaignRequirement {
         number: one.number,
-        wish: one.wish,
+        step_limits: one.step_limits,
         judged: judged(plan, rows, one),
     };
     plan.requirements.iter().filter(|one| one.follows).map(of).collect()
@@ -76,9 +76,9 @@ fn judged(plan: &Plan, rows: &[Row], one: &TimeRequirement) -> Result<SatisfiedR
     let mut most = [f64::NEG_INFINITY; 3];
     for (run, ran) in rows.iter().filter_map(|row| Some((row.run, row.ran()?))) {
         let reached = reached(ran, &concerned);
-        let excesses = one.wish.excesses(&reached);
+        let excesses = one.step_limits.excesses(&reached);
         found.runs += 1;
-        found.satisfied += usize::from(one.wish.is_satisfied(&reached));
+        found.satisfied += usize::from(one.step_limits.is_satisfied(&reached));
         if excesses > most {
             most = excesses;
             found.worst = Some((run, reached));

@@ -86,7 +86,7 @@ pub struct Ran {
     /// Status of the run.
     pub status: RunStatus,
     /// Time of an early end or of a divergence, s.
-    pub ended_s: Option<f64>,
+    pub end_time_s: Option<f64>,
     /// Accepted steps of the reported pass.
     pub steps: u64,
     /// Events of the run, each kind once: `cavitation_a`, `command_limit` and so on.
@@ -163,7 +163,7 @@ impl CampaignColumns {
     /// The header line above the rows.
     pub(super) fn header(&self) -> String {
         let mut csv = Csv::default();
-        csv.cells(&[&"run,campaign,status,reason,ended_s,steps,occurrences"]);
+        csv.cells(&[&"run,campaign,status,reason,end_time_s,steps,occurrences"]);
         let motion = self.units.motion;
         self.paths.iter().for_each(|path| csv.cells(&[path]));
         LUMP_COLUMNS.iter().for_each(|lump| csv.cells(&[&lump.text(motion)]));
@@ -204,7 +204,7 @@ impl CampaignColumns {
             RowOutcome::Refused(reason) => quoted(&reason.replace(['\n', '\r'], " ")),
             RowOutcome::Driven(_) => String::new(),
         }]);
-        cell(&mut csv, ran.and_then(|ran| ran.ended_s));
+        cell(&mut csv, ran.and_then(|ran| ran.end_time_s));
         csv.cells(&[&ran.map_or(String::new(), |ran| ran.steps.to_string())]);
         csv.cells(&[&ran.map_or(String::new(), |ran| ran.occurrences.join(";"))]);
         row.values.iter().for_each(|value| cell(&mut csv, Some(*value)));
@@ -249,7 +249,7 @@ impl CampaignColumns {
         let _mark = cells.next()?;
         let status = RunStatus::of_row(cells.next()?)?;
         let reason = cells.next()?.to_string();
-        let ended_s = number(cells.next()?)?;
+        let end_time_s = number(cells.next()?)?;
         let steps = cells.next()?;
         let happened = cells.next()?;
         let values = self.paths.iter().map(|_| number(cells.next()?)?).collect::<Option<Vec<f64>>>()?;
@@ -278,7 +278,7 @@ impl CampaignColumns {
         let went = forces.iter().take_while(|force| !force.is_empty());
         let outcome = RowOutcome::Driven(Ran {
             status,
-            ended_s,
+            end_time_s,
             steps: steps.parse().ok()?,
             occurrences: occurrences.collect::<Option<Vec<_>>>()?,
             metrics,
@@ -357,7 +357,7 @@ mod tests {
     fn driven() -> Row {
         let ran = Ran {
             status: RunStatus::TooManySteps,
-            ended_s: Some(2.5),
+            end_time_s: Some(2.5),
             steps: 17,
             occurrences: vec![INDICATORS[0], COMMAND_LIMIT],
             metrics: [

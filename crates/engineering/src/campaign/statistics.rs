@@ -34,7 +34,7 @@ pub struct Summary {
     /// Runs without a machine, with the reason.
     pub refused: Vec<(u64, String)>,
     /// Runs that ended early, with their status and the time, s.
-    pub ended: Vec<(u64, RunStatus, f64)>,
+    pub early_ends: Vec<(u64, RunStatus, f64)>,
     /// Events of the runs: kind, number of runs, and the first of them.
     pub occurrences: Vec<(&'static str, usize, u64)>,
     /// Spread of each metric that occurs in a window, for every window.
@@ -82,7 +82,7 @@ impl Summary {
             statuses: RunStatus::OF_ROWS
                 .map(|status| rows.iter().filter(|row| row.status() == status).count()),
             refused: rows.iter().filter_map(refused).collect(),
-            ended: driven.iter().filter_map(|(run, ran)| Some((*run, ran.status, ran.ended_s?))).collect(),
+            early_ends: driven.iter().filter_map(|(run, ran)| Some((*run, ran.status, ran.end_time_s?))).collect(),
             occurrences: occurrences(&driven),
             worst: worst(&metrics),
             requirements: required(plan, rows),

@@ -58,7 +58,7 @@ impl Effort {
 pub(super) type Tell<'t> = &'t mut dyn FnMut(News) -> Result<bool, CampaignError>;
 
 /// Requested runs.
-pub(super) struct Asked {
+pub(super) struct MissingRuns {
     pub(super) runs: std::ops::Range<u64>,
     /// Existing rows of some of these runs.
     pub(super) known: BTreeMap<u64, Row>,
@@ -66,17 +66,17 @@ pub(super) struct Asked {
     pub(super) forces: bool,
 }
 
-/// Simulates runs and reports them, rows in the order of the runs; if `tell` returns `false`,
+/// Simulates runs and reports them, rows in the order of the runs; if `report_progress` returns `false`,
 /// everything ends soon with the rows obtained so far. Each thread takes a run as soon as one is
 /// free, and takes more into its lanes if there are more runs than threads.
 ///
 /// # Errors
 /// [`CampaignError`] if a run does not fit the machine, or a notification fails.
-pub(super) fn run(plan: &Plan, asked: Asked, effort: Effort, tell: Tell<'_>) -> Result<(), CampaignError> {
+pub(super) fn run(plan: &Plan, requested: MissingRuns, effort: Effort, report_progress: Tell<'_>) -> Result<(), CampaignError> {
     let threads = effort.threads.max(1);
-    let Asked { runs, known, forces } = asked;
+    let MissingRuns { runs, known, forces } = requested;
     let first = runs.start;
-    if !tell(News::Done(0))? {
+    if !report_progress(News::Done(0))? {
         return Ok(());
     }
     let shared = Shared::new(plan, (runs, known.keys().copied().collect()), threads, forces);
@@ -87,7 +87,7 @@ pub(super) fn run(plan: &Plan, asked: Asked, effort: Effort, tell: Tell<'_>) -> 
             scope.spawn(move || work(shared, effort, &sender));
         }
         drop(sender);
-        let told = in_order(&shared, &receiver, (first, known), tell);
+        let told = in_order(&shared, &receiver, (first, known), report_progress);
         shared.stop.store(true, Ordering::Relaxed);
         told
     })
@@ -118,7 +118,7 @@ fn work(shared: &Shared<'_>, effort: Effort, sender: &mpsc::Sender<Message>) {
 }
 
 /// Row pending for earlier rows.
-struct WaitingRow {
+struct QueuedRow {
     finished: Finished,
     /// Number of rounds since.
     rounds: u32,
@@ -131,15 +131,15 @@ fn in_order(
     shared: &Shared<'_>,
     receiver: &mpsc::Receiver<Message>,
     (mut next, known): (u64, BTreeMap<u64, Row>),
-    tell: Tell<'_>,
+    report_progress: Tell<'_>,
 ) -> Result<(), CampaignError> {
     let known = known.into_iter().map(|(run, row)| {
         let finished = Finished { row, force_n: Vec::new() };
-        (run, WaitingRow { finished, rounds: 0, told: true })
+        (run, QueuedRow { finished, rounds: 0, told: true })
     });
-    let mut waiting: BTreeMap<u64, WaitingRow> = known.collect();
+    let mut waiting: BTreeMap<u64, QueuedRow> = known.collect();
     loop {
-        if !tell(News::Done(shared.done.load(Ordering::Relaxed)))? {
+        if !report_progress(News::Done(shared.done.load(Ordering::Relaxed)))? {
             shared.stop.store(true, Ordering::Relaxed);
         }
         sleep(ROUND);
@@ -148,17 +148,17 @@ fn in_order(
         waiting.values_mut().for_each(|one| one.rounds = one.rounds.saturating_add(1));
         let arrived = news
             .into_iter()
-            .map(|finished| (finished.row.run, WaitingRow { finished, rounds: 0, told: false }));
+            .map(|finished| (finished.row.run, QueuedRow { finished, rounds: 0, told: false }));
         waiting.extend(arrived);
         let mut rows = Vec::new();
         while let Some(one) = waiting.remove(&next) {
             rows.push(one.finished);
             next += 1;
         }
-        if !rows.is_empty() && !tell(News::Rows(rows))? {
+        if !rows.is_empty() && !report_progress(News::Rows(rows))? {
             shared.stop.store(true, Ordering::Relaxed);
         }
-        let late = |one: &&mut WaitingRow| !one.told && (over || one.rounds >= LATE);
+        let late = |one: &&mut QueuedRow| !one.told && (over || one.rounds >= LATE);
         let ahead: Vec<Row> = waiting
             .values_mut()
             .filter(late)
@@ -168,7 +168,7 @@ fn in_order(
             })
             .collect();
         if !ahead.is_empty() {
-            tell(News::Ahead(ahead))?;
+            report_progress(News::Ahead(ahead))?;
         }
         if over {
             return Ok(());
@@ -213,7 +213,7 @@ impl Plan {
         forces: bool,
     ) -> Result<Vec<Finished>, CampaignError> {
         let mut rows = Vec::new();
-        run(self, Asked { runs, known: BTreeMap::new(), forces }, effort, &mut |news| {
+        run(self, MissingRuns { runs, known: BTreeMap::new(), forces }, effort, &mut |news| {
             if let News::Rows(more) = news {
                 rows.extend(more);
             }

@@ -40,7 +40,7 @@ pub enum MisfitConsequence {
     /// Beyond the bound: no verdict on the part is met.
     Beyond,
     /// The viscous friction of the linear plant has another origin.
-    OfRunsAlone,
+    OnlyOfRuns,
 }
 
 /// Caveats for misfits of identified parts; beyond the bound no verdict that is based on their
@@ -64,7 +64,7 @@ pub fn unexplained_parts(project: &Project) -> Vec<UnexplainedPart> {
         .map(|(kind, table, misfit)| UnexplainedPart {
             kind,
             table,
-            fraction: misfit.share,
+            fraction: misfit.fraction,
             at: misfit.at.clone(),
         })
         .collect()
@@ -74,7 +74,7 @@ impl UnexplainedPart {
     /// Consequence for a verdict.
     fn caveat(self, setup: &Setup<'_>) -> Caveat {
         let consequence = match self.kind {
-            UnexplainedKind::Friction if !takes_viscous_of_friction(setup) => MisfitConsequence::OfRunsAlone,
+            UnexplainedKind::Friction if !takes_viscous_of_friction(setup) => MisfitConsequence::OnlyOfRuns,
             _ if self.fraction > MISFIT_BOUND => MisfitConsequence::Beyond,
             _ => MisfitConsequence::Within,
         };

@@ -35,11 +35,11 @@ const MOST_RUNS: usize = 2;
 
 /// Differences in the trial of a design, for each plant those of the runs that are furthest from
 /// the requirement, with those of other plants from earlier trials.
-pub(super) fn added(told: &ProjectDesign, before: &[AddedByRig]) -> Vec<AddedByRig> {
-    let Family::Uncertain(family) = &told.designed.problem.family else { return vec![] };
-    let around = Arc::new(told.designed.problem.compensation.clone());
+pub(super) fn added(project_design: &ProjectDesign, before: &[AddedByRig]) -> Vec<AddedByRig> {
+    let Family::Uncertain(family) = &project_design.designed.problem.family else { return vec![] };
+    let around = Arc::new(project_design.designed.problem.compensation.clone());
     let mut all: Vec<AddedByRig> = Vec::new();
-    let runs = told.trial.iter().flat_map(|trial| trial.runs.iter().chain(&trial.corners));
+    let runs = project_design.trial.iter().flat_map(|trial| trial.runs.iter().chain(&trial.corners));
     let mut runs: Vec<&TrialRun> = runs.collect();
     runs.sort_by(|one, other| other.excess_with_room().total_cmp(&one.excess_with_room()));
     for run in runs {
@@ -63,9 +63,9 @@ pub(super) fn added_to<'a>(
     all: &'a [AddedByRig],
     values: &[f64],
 ) -> Option<&'a AddedByRig> {
-    let own = family.shares(values);
+    let own = family.fractions(values);
     let distance = |one: &AddedByRig| {
-        let other = family.shares(&one.values);
+        let other = family.fractions(&one.values);
         own.iter().zip(other).map(|(own, other)| (own - other) * (own - other)).sum::<f64>()
     };
     all.iter().min_by(|one, other| distance(one).total_cmp(&distance(other)))

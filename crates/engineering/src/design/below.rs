@@ -48,9 +48,9 @@ pub fn below_design(
         tolerance_db: given.tolerance_db,
     };
     let findings = if searched.is_empty() { vec![] } else { audit_specifications(&problem, watch)?.0 };
-    let asked = design_problem(setup, given);
+    let requested = design_problem(setup, given);
     let of_audit =
-        stated.iter().filter_map(|limit| Some((limit, exceeded_margin(limit, &asked, given, view)?)));
+        stated.iter().filter_map(|limit| Some((limit, exceeded_margin(limit, &requested, given, view)?)));
     let violated = searched.iter().zip(&findings).filter(|(_, found)| found.verdict == Verdict::Violated);
     let of_search = violated.map(|(limit, found)| (limit, reached(limit, found)));
     let exceeded = |(limit, reached): (&DesignLimit, f64)| ExceededLimit {
@@ -61,10 +61,10 @@ pub fn below_design(
     };
     let exceeded: Vec<ExceededLimit> = of_audit.chain(of_search).map(exceeded).collect();
     let judged = searched.iter().chain(&stated).map(|limit| limit.kind);
-    let is_kept =
+    let is_satisfied =
         |kind: &DesignLimitKind| is_of_loop(*kind, given) && exceeded.iter().all(|one| one.kind != *kind);
-    let kept = judged.filter(is_kept).collect();
-    Ok(JudgedLimits { exceeded, kept })
+    let satisfied = judged.filter(is_satisfied).collect();
+    Ok(JudgedLimits { exceeded, satisfied })
 }
 
 /// True for a limit that applies to a given loop too, and not only to a search or to the scenarios.
@@ -91,7 +91,7 @@ fn is_searched(limit: &DesignLimit) -> bool {
 /// limit.
 fn exceeded_margin(
     limit: &DesignLimit,
-    asked: &DesignProblem,
+    requested: &DesignProblem,
     given: &RobustProblem,
     view: &ProjectAudit,
 ) -> Option<f64> {
@@ -102,7 +102,7 @@ fn exceeded_margin(
             Some(worst.modulus.value).filter(|modulus| *modulus < tolerated * limit.value)
         }
         DesignLimitKind::MinimumDelayMargin => {
-            Some(worst.delay_s.value).filter(|delay_s| !asked.tolerates_its_delay(*delay_s))
+            Some(worst.delay_s.value).filter(|delay_s| !requested.tolerates_its_delay(*delay_s))
         }
         DesignLimitKind::PrefilterGain => {
             let largest = PrefilterGain::of_loop(&given.compensation).largest;

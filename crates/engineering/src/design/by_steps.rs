@@ -32,22 +32,22 @@ use super::{DesignError, DesignRun, LedBy, ProjectDesign, structures};
 use crate::audit::spread_over;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
-use crate::simulate::TrackingWish;
+use crate::simulate::StepLimits;
 use crate::trial::BAND_WITH_ROOM;
 
 /// Largest number of members whose steps are checked after each search.
-const LOOKED_AT: usize = 12;
+const MOST_CHECKED: usize = 12;
 /// Largest shortfall of a search by steps, dB, for which a trial on the nonlinear rig gives more
 /// information than another start.
 const NEARLY_DB: f64 = 0.05;
 /// Fractions of the requirement at which the search aims with linear steps, since the nonlinear rig
 /// takes part of it.
-const OVERSHOOT_SHARE: f64 = 0.6;
-const SETTLING_SHARE: f64 = 0.9;
-const BAND_SHARE: f64 = 0.8;
+const OVERSHOOT_FRACTION: f64 = 0.6;
+const SETTLING_FRACTION: f64 = 0.9;
+const BAND_FRACTION: f64 = 0.8;
 /// Fractions for steps including the contribution of the rig.
-const OVERSHOOT_SHARE_WITH_RIG: f64 = 0.9;
-const SETTLING_SHARE_WITH_RIG: f64 = 0.97;
+const OVERSHOOT_FRACTION_WITH_RIG: f64 = 0.9;
+const SETTLING_FRACTION_WITH_RIG: f64 = 0.97;
 /// Least overshoot at which the search aims, percent.
 const LEAST_OVERSHOOT_PERCENT: f64 = 0.3;
 
@@ -80,22 +80,22 @@ pub(super) struct AimedSteps<'a> {
 pub(super) fn by_steps(
     setup: &Setup<'_>,
     aimed: AimedSteps<'_>,
-    (run, told): (&DesignRun, &ProjectDesign),
+    (run, project_design): (&DesignRun, &ProjectDesign),
     watch: Watch<'_>,
 ) -> Result<Option<(DesignRun, ProjectDesign)>, DesignError> {
-    let Some(led) = led(setup, aimed, (run, told))? else { return Ok(None) };
-    let starts = led.starts(told, run.outcome.tried());
+    let Some(led) = led(setup, aimed, (run, project_design))? else { return Ok(None) };
+    let starts = led.starts(project_design, run.outcome.searched());
     let count = starts.len() as f64;
     let least_db = if aimed.added.is_empty() { 0.0 } else { -NEARLY_DB };
     let mut best: Option<AuditedStep> = None;
     let mut waiting: Vec<BegunDesign<'_>> = Vec::new();
     for (index, (start, reach)) in starts.into_iter().enumerate() {
-        let share = [index, index + 1].map(|done| 0.6 * done as f64 / count);
-        let watch = &mut within(&mut *watch, share);
-        let begun = led.begun(start, told, reach, &mut within(&mut *watch, [0.0, 0.5]))?;
+        let fraction = [index, index + 1].map(|done| 0.6 * done as f64 / count);
+        let watch = &mut within(&mut *watch, fraction);
+        let begun = led.begun(start, project_design, reach, &mut within(&mut *watch, [0.0, 0.5]))?;
         match begun {
             Some(begun) if begun.least_db >= least_db => {
-                best = led.better(best, begun, told, &mut within(watch, [0.5, 1.0]))?;
+                best = led.better(best, begun, project_design, &mut within(watch, [0.5, 1.0]))?;
             }
             // other structures may reach what the neighbours of a design do not
             Some(begun) if reach == SearchReach::Anywhere => waiting.push(begun),
@@ -111,12 +111,12 @@ pub(super) fn by_steps(
         if led.suffices(best.as_ref()) {
             break;
         }
-        let share = [index, index + 1].map(|done| 0.6 + 0.3 * done as f64 / count);
-        best = led.better(best, begun, told, &mut within(&mut *watch, share))?;
+        let fraction = [index, index + 1].map(|done| 0.6 + 0.3 * done as f64 / count);
+        best = led.better(best, begun, project_design, &mut within(&mut *watch, fraction))?;
     }
     let Some(best) = best else { return Ok(None) };
-    let best = led.completed(best, told, &mut within(watch, [0.9, 1.0]))?;
-    Ok(Some(taken(best, aimed.added, (run, told))?))
+    let best = led.completed(best, project_design, &mut within(watch, [0.9, 1.0]))?;
+    Ok(Some(taken(best, aimed.added, (run, project_design))?))
 }
 
 /// The simplest structure that reaches the requirement by its steps: shorter than that of a design,
@@ -125,27 +125,27 @@ pub(super) fn by_steps(
 pub(super) fn simpler(
     setup: &Setup<'_>,
     aimed: AimedSteps<'_>,
-    (run, told): (&DesignRun, &ProjectDesign),
+    (run, project_design): (&DesignRun, &ProjectDesign),
     watch: Watch<'_>,
 ) -> Result<Option<(DesignRun, ProjectDesign)>, DesignError> {
-    let Some(led) = led(setup, aimed, (run, told))? else { return Ok(None) };
-    let starts = led.simpler(told, run)?;
+    let Some(led) = led(setup, aimed, (run, project_design))? else { return Ok(None) };
+    let starts = led.simpler(project_design, run)?;
     let count = starts.len() as f64;
     for (index, start) in starts.into_iter().enumerate() {
-        let share = [index, index + 1].map(|done| done as f64 / count);
-        let mut watch = within(&mut *watch, share);
+        let fraction = [index, index + 1].map(|done| done as f64 / count);
+        let mut watch = within(&mut *watch, fraction);
         let suffices = |begun: &BegunDesign<'_>| begun.least_db >= 0.0;
-        let begun = led.begun(start.clone(), told, SearchReach::Anywhere, &mut watch)?;
+        let begun = led.begun(start.clone(), project_design, SearchReach::Anywhere, &mut watch)?;
         let begun = match begun.filter(suffices) {
-            None => led.with_less_room().begun(start, told, SearchReach::Anywhere, &mut watch)?,
+            None => led.with_less_room().begun(start, project_design, SearchReach::Anywhere, &mut watch)?,
             begun => begun,
         };
         let Some(begun) = begun.filter(suffices) else { continue };
-        let found = led.agreed(begun, None, told, &mut watch)?.filter(AuditedStep::is_reached);
+        let found = led.agreed(begun, None, project_design, &mut watch)?.filter(AuditedStep::is_reached);
         let Some(found) = found else { continue };
-        if !structures::earns_its_poles(run, told, &found.told)? {
-            let found = led.completed(found, told, &mut watch)?;
-            return Ok(Some(taken(found, aimed.added, (run, told))?));
+        if !structures::earns_its_poles(run, project_design, &found.project_design)? {
+            let found = led.completed(found, project_design, &mut watch)?;
+            return Ok(Some(taken(found, aimed.added, (run, project_design))?));
         }
     }
     Ok(None)
@@ -156,13 +156,13 @@ pub(super) fn simpler(
 pub(super) fn shortened(
     setup: &Setup<'_>,
     aimed: AimedSteps<'_>,
-    (run, told): (&DesignRun, &ProjectDesign),
+    (run, project_design): (&DesignRun, &ProjectDesign),
     watch: Watch<'_>,
 ) -> Result<Option<(DesignRun, ProjectDesign)>, DesignError> {
-    let Some(led) = led(setup, aimed, (run, told))? else { return Ok(None) };
-    let Some(begun) = led.shorter(told, watch)? else { return Ok(None) };
-    let found = led.agreed(begun, None, told, watch)?.filter(AuditedStep::is_reached);
-    found.map(|found| taken(found, aimed.added, (run, told))).transpose()
+    let Some(led) = led(setup, aimed, (run, project_design))? else { return Ok(None) };
+    let Some(begun) = led.shorter(project_design, watch)? else { return Ok(None) };
+    let found = led.agreed(begun, None, project_design, watch)?.filter(AuditedStep::is_reached);
+    found.map(|found| taken(found, aimed.added, (run, project_design))).transpose()
 }
 
 /// Problem of a design that is led by its steps; `None` if nothing is required in time and no
@@ -170,34 +170,34 @@ pub(super) fn shortened(
 fn led<'a>(
     setup: &'a Setup<'_>,
     aimed: AimedSteps<'a>,
-    (run, told): (&DesignRun, &ProjectDesign),
+    (run, project_design): (&DesignRun, &ProjectDesign),
 ) -> Result<Option<LedDesign<'a>>, DesignError> {
     let given = aimed.given;
-    let required = given.in_time.iter().find(|one| one.follows).map(|one| one.wish);
+    let required = given.in_time.iter().find(|one| one.follows).map(|one| one.step_limits);
     let required = required
-        .or((run.led.is_some() || told.exceeded_command().is_some()).then_some(TrackingWish::NOTHING));
+        .or((run.led.is_some() || project_design.exceeded_command().is_some()).then_some(StepLimits::NOTHING));
     let (Some(required), Family::Uncertain(family)) = (required, &given.family) else { return Ok(None) };
-    let (Some(samples), CoefficientFormat::Double) = (run.outcome.samples(), told.options.coefficients)
+    let (Some(samples), CoefficientFormat::Double) = (run.outcome.samples(), project_design.options.coefficients)
     else {
         return Ok(None);
     };
     let problem = design_problem(setup, given);
     let samples = Samples::new(&problem, samples.plants(), &samples.frequencies_rad_per_s())
         .map_err(LoopDesignError::from)?;
-    let looked_at = spread_over(family, LOOKED_AT);
+    let evaluated = spread_over(family, MOST_CHECKED);
     let room = run.led.as_ref().map_or(StepRoom::Usual, |led| led.room);
-    Ok(Some(LedDesign { setup, aimed, looked_at, problem, samples, required, room }))
+    Ok(Some(LedDesign { setup, aimed, evaluated, problem, samples, required, room }))
 }
 
 /// A design led by its steps, replacing the one before it.
 fn taken(
     found: AuditedStep,
     added: &[AddedByRig],
-    (run, told): (&DesignRun, &ProjectDesign),
+    (run, project_design): (&DesignRun, &ProjectDesign),
 ) -> Result<(DesignRun, ProjectDesign), DesignError> {
-    let AuditedStep { told: mut best, least, search, .. } = found;
-    best.structures = structures::led(run, told, &best, least)?;
-    best.explanations = told.explanations.clone();
+    let AuditedStep { project_design: mut best, least, search, .. } = found;
+    best.structures = structures::led(run, project_design, &best, least)?;
+    best.explanations = project_design.explanations.clone();
     best.led_by = if added.is_empty() { LedBy::LinearSteps } else { LedBy::NonlinearRuns };
     let mut outcome = run.outcome.clone();
     outcome.design = Some(best.design.clone());
@@ -224,33 +224,33 @@ pub(super) enum StepRoom {
 
 impl StepRoom {
     /// Requirement at which the search aims.
-    fn of(self, wish: TrackingWish) -> TrackingWish {
+    fn of(self, step_limits: StepLimits) -> StepLimits {
         match self {
-            StepRoom::Usual => with_room(wish),
-            StepRoom::Little => with_rig(wish),
+            StepRoom::Usual => with_room(step_limits),
+            StepRoom::Little => with_rig(step_limits),
         }
     }
 }
 
 /// Requirement of steps including the contribution of the rig.
-fn with_rig(wish: TrackingWish) -> TrackingWish {
-    TrackingWish {
-        overshoot_percent: wish.overshoot_percent.map(|most| most * OVERSHOOT_SHARE_WITH_RIG),
-        settling_time_s: wish.settling_time_s.map(|time_s| time_s * SETTLING_SHARE_WITH_RIG),
-        rise_time_s: wish.rise_time_s.map(|time_s| time_s * SETTLING_SHARE_WITH_RIG),
-        band_percent: wish.band_percent * BAND_WITH_ROOM,
-        ..wish
+fn with_rig(step_limits: StepLimits) -> StepLimits {
+    StepLimits {
+        overshoot_percent: step_limits.overshoot_percent.map(|most| most * OVERSHOOT_FRACTION_WITH_RIG),
+        settling_time_s: step_limits.settling_time_s.map(|time_s| time_s * SETTLING_FRACTION_WITH_RIG),
+        rise_time_s: step_limits.rise_time_s.map(|time_s| time_s * SETTLING_FRACTION_WITH_RIG),
+        band_percent: step_limits.band_percent * BAND_WITH_ROOM,
+        ..step_limits
     }
 }
 
 /// Requirement at which the search aims, reduced by what the nonlinear rig may take.
-fn with_room(wish: TrackingWish) -> TrackingWish {
-    let lower = |most: f64| (most * OVERSHOOT_SHARE).max(LEAST_OVERSHOOT_PERCENT.min(most));
-    TrackingWish {
-        overshoot_percent: wish.overshoot_percent.map(lower),
-        settling_time_s: wish.settling_time_s.map(|time_s| time_s * SETTLING_SHARE),
-        rise_time_s: wish.rise_time_s.map(|time_s| time_s * SETTLING_SHARE),
-        band_percent: wish.band_percent * BAND_SHARE,
-        ..wish
+fn with_room(step_limits: StepLimits) -> StepLimits {
+    let lower = |most: f64| (most * OVERSHOOT_FRACTION).max(LEAST_OVERSHOOT_PERCENT.min(most));
+    StepLimits {
+        overshoot_percent: step_limits.overshoot_percent.map(lower),
+        settling_time_s: step_limits.settling_time_s.map(|time_s| time_s * SETTLING_FRACTION),
+        rise_time_s: step_limits.rise_time_s.map(|time_s| time_s * SETTLING_FRACTION),
+        band_percent: step_limits.band_percent * BAND_FRACTION,
+        ..step_limits
     }
 }

@@ -10,7 +10,7 @@
 
 mod scenario_steps;
 
-use phea_dynamics::watch::{Stopped, Watch, tell};
+use phea_dynamics::watch::{Stopped, Watch, report_progress};
 use phea_qft::closed_loop::Member;
 use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::verification::{PlantPoint, Verdict};
@@ -19,7 +19,7 @@ use self::scenario_steps::CommandedSteps;
 pub(super) use self::scenario_steps::ScenarioSteps;
 use super::by_steps::SteppedPlants;
 use super::{DesignError, DesignPart, ProjectDesign, unless_stopped};
-use crate::audit::{VisitedPlant, visited, worst_beside};
+use crate::audit::{VisitedPlant, visited, worst_additional};
 use crate::linear_step::{KnownResponses, StepResponse, StepSignal, linear_step_knowing};
 use crate::setup::Setup;
 use crate::simulate::{ForceLimit, ForceLimits, ReferenceStep};
@@ -76,7 +76,7 @@ pub enum StepLimit {
 
 impl CommandOfSteps {
     /// True if the command satisfies its limit.
-    pub fn is_kept(&self) -> bool {
+    pub fn is_satisfied(&self) -> bool {
         self.largest_v <= (1.0 + ACCURACY) * self.limit_v
     }
 
@@ -99,7 +99,7 @@ impl CommandOfSteps {
 impl ProjectDesign {
     /// Command of the scenarios' steps, if it is larger than the valve permits.
     pub fn exceeded_command(&self) -> Option<&CommandOfSteps> {
-        self.command_of_steps.as_ref().filter(|command| !command.is_kept())
+        self.command_of_steps.as_ref().filter(|command| !command.is_satisfied())
     }
 }
 
@@ -115,7 +115,7 @@ struct UnitCommand {
 
 /// Search for the plant whose steps need the largest command.
 struct CommandSearch<'a> {
-    told: &'a ProjectDesign,
+    project_design: &'a ProjectDesign,
     family: &'a UncertainFamily,
     plants: &'a SteppedPlants,
     of: ScenarioSteps,
@@ -140,20 +140,20 @@ pub(super) enum CommandDepth {
 /// # Errors
 /// [`Stopped`] if `watch` cancels it.
 pub(super) fn command_of_steps(
-    (setup, told): (&Setup<'_>, &ProjectDesign),
+    (setup, project_design): (&Setup<'_>, &ProjectDesign),
     plants: &SteppedPlants,
     depth: CommandDepth,
     watch: Watch<'_>,
 ) -> Result<Option<CommandOfSteps>, Stopped> {
     let (Some(of), Family::Uncertain(family)) =
-        (ScenarioSteps::of(setup, told), &told.designed.problem.family)
+        (ScenarioSteps::of(setup, project_design), &project_design.designed.problem.family)
     else {
         return Ok(None);
     };
-    if of.is_empty() || told.designed.view.audit.stability.verdict != Verdict::Met {
+    if of.is_empty() || project_design.designed.view.audit.stability.verdict != Verdict::Met {
         return Ok(None);
     }
-    let mut search = CommandSearch { told, family, plants, of, visited: vec![], watch, is_stopped: false };
+    let mut search = CommandSearch { project_design, family, plants, of, visited: vec![], watch, is_stopped: false };
     let found = search.found(setup, depth);
     if search.is_stopped { Err(Stopped) } else { Ok(found) }
 }
@@ -164,18 +164,18 @@ pub(super) fn command_of_steps(
 /// # Errors
 /// None at present: a cancelled search is recorded in the result.
 pub(super) fn with_command_of_steps(
-    (setup, told): (&Setup<'_>, ProjectDesign),
+    (setup, project_design): (&Setup<'_>, ProjectDesign),
     plants: &SteppedPlants,
     watch: Watch<'_>,
 ) -> Result<ProjectDesign, DesignError> {
-    let mut unfinished = told.unfinished.clone();
-    let command_of_steps = match ScenarioSteps::of(setup, &told).is_some_and(|steps| !steps.is_empty()) {
+    let mut unfinished = project_design.unfinished.clone();
+    let command_of_steps = match ScenarioSteps::of(setup, &project_design).is_some_and(|steps| !steps.is_empty()) {
         true => unless_stopped(&mut unfinished, DesignPart::CommandOfSteps, || {
-            Ok(command_of_steps((setup, &told), plants, CommandDepth::Whole, watch)?)
+            Ok(command_of_steps((setup, &project_design), plants, CommandDepth::Whole, watch)?)
         })?,
         false => None,
     };
-    Ok(ProjectDesign { unfinished, command_of_steps, ..told })
+    Ok(ProjectDesign { unfinished, command_of_steps, ..project_design })
 }
 
 impl CommandSearch<'_> {
@@ -185,7 +185,7 @@ impl CommandSearch<'_> {
         if let Some(nominal_v_per_n) = self.held_v_per_n(&family.plant().nominal()) {
             self.of.beginning_at_each_plant(nominal_v_per_n);
         }
-        for values in visited(family, &self.told.designed.view.audit) {
+        for values in visited(family, &self.project_design.designed.view.audit) {
             self.visit(&values)?;
         }
         let is_whole = depth == CommandDepth::Whole && family.extent() == Extent::Box;
@@ -203,10 +203,10 @@ impl CommandSearch<'_> {
 
     /// Command of a unit step; `None` if it cannot be computed.
     fn command(&mut self, values: &[f64]) -> Option<StepResponse> {
-        let told = tell(self.watch, STAGE, self.visited.len(), VISITED_MAXIMUM);
-        self.is_stopped |= told.is_err();
-        told.ok()?;
-        let compensation = &self.told.designed.problem.compensation;
+        let project_design = report_progress(self.watch, STAGE, self.visited.len(), VISITED_MAXIMUM);
+        self.is_stopped |= project_design.is_err();
+        project_design.ok()?;
+        let compensation = &self.project_design.designed.problem.compensation;
         if !self.family.plant().is_rational() {
             let plant = self.plants.plant(values, (self.family, compensation)).ok()?;
             return plant.command(compensation, (self.of.duration_s, POINTS));
@@ -253,7 +253,7 @@ impl CommandSearch<'_> {
     /// Command that holds 1 N at a plant in a loop with an integrator, F(0)/P(0), V/N; `None` for
     /// any other loop.
     fn held_v_per_n(&self, values: &[f64]) -> Option<f64> {
-        let compensation = &self.told.designed.problem.compensation;
+        let compensation = &self.project_design.designed.problem.compensation;
         let command = self.family.plant().member(values)?.slow().command.transfer_function().ok()?;
         let held = compensation.prefilter().dc_gain() / command.dc_gain();
         Some(held).filter(|held| held.is_finite() && compensation.feedback().dc_gain().is_infinite())
@@ -266,7 +266,7 @@ impl CommandSearch<'_> {
         sorted.sort_by(|(one, _), (other, _)| other.total_cmp(one));
         let family = self.family;
         for (_, start) in sorted.into_iter().take(STARTS) {
-            worst_beside(family, start, |values| {
+            worst_additional(family, start, |values| {
                 let value = self.visit(values).ok_or(())?;
                 Ok::<_, ()>(VisitedPlant { value, is_last: self.visited.len() >= VISITED_MAXIMUM })
             })
@@ -338,9 +338,9 @@ impl CommandSearch<'_> {
         let mut moved_by = Vec::new();
         for (index, coordinate) in self.family.coordinates().iter().enumerate() {
             for end in [0.0, 1.0] {
-                let mut shares = self.family.shares(values);
-                *shares.get_mut(index)? = end;
-                let moved = self.family.values(&shares);
+                let mut fractions = self.family.fractions(values);
+                *fractions.get_mut(index)? = end;
+                let moved = self.family.values(&fractions);
                 let known = self.visited.iter().find(|known| known.values == moved);
                 let largest_v = match known.map(|known| known.largest_v) {
                     Some(known_v) => known_v,

@@ -16,7 +16,7 @@
 mod plants;
 
 use phea_dynamics::controller::InnerFeedback;
-use phea_dynamics::watch::{Watch, tell};
+use phea_dynamics::watch::{Watch, report_progress};
 use phea_qft::family::Family;
 use phea_qft::inner_loop::{FoundInnerFeedback, InnerLoopLimits, InnerLoopProblem, InnerPoint};
 
@@ -94,7 +94,7 @@ pub fn with_free_pressure_feedback(
     if choice != Some(FeedbackChoice::Free) {
         return Ok(None);
     }
-    tell(watch, "pressure feedback", 0, 1)?;
+    report_progress(watch, "pressure feedback", 0, 1)?;
     let declared = project.controller.as_ref().and_then(|controller| controller.pressure_feedback);
     let declared = declared.unwrap_or_default();
     let plain = with_pressure_feedback(project, None);
@@ -109,7 +109,7 @@ pub fn with_free_pressure_feedback(
     let missing_with_waves = with_waves.and_then(|waves| probed.add(waves));
     let problem = problem(source, &undamped, &declared, &probed)?;
     let Some(found) = problem.best()? else { return Err(DesignError::NoPressureFeedback) };
-    tell(watch, "pressure feedback", 1, 1)?;
+    report_progress(watch, "pressure feedback", 1, 1)?;
     let declared = DeclaredPressureFeedback {
         gain: found.feedback.gain,
         high_pass: found.feedback.high_pass_rad_per_s,
@@ -169,7 +169,7 @@ fn problem(
             modulus_margin: value(DesignLimitKind::ModulusMargin).unwrap_or(MODULUS_MARGIN),
             delay_margin_s: value(DesignLimitKind::MinimumDelayMargin).unwrap_or(0.0),
             highest_bandwidth_rad_per_s: value(DesignLimitKind::HighestBandwidth).unwrap_or(f64::INFINITY),
-            noise: noise.map(|(share, volts)| [declared.noise, NOISE_TO_COMMAND_LEFT * share * volts]),
+            noise: noise.map(|(fraction, volts)| [declared.noise, NOISE_TO_COMMAND_LEFT * fraction * volts]),
         },
     };
     let without = problem.reach(&InnerFeedback::default())?.ok_or(DesignError::NoPressureFeedback)?;

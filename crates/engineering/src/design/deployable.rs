@@ -26,7 +26,7 @@ use crate::setup::Setup;
 use crate::simulate::stepped_references;
 
 /// Fraction of the nominal voltage that noise may take, rms.
-const NOISE_SHARE: f64 = 0.01;
+const NOISE_FRACTION: f64 = 0.01;
 /// Fraction of the permitted noise that is left to the force sensor, and to the pressures, if both
 /// have noise: half of its square.
 pub(super) const NOISE_TO_COMMAND_LEFT: f64 = FRAC_1_SQRT_2;
@@ -38,8 +38,8 @@ const PREFILTER_GAIN: f64 = 2.0;
 /// Fraction of the nominal voltage that the steps of the scenarios may take.
 const COMMAND_OF_STEPS: f64 = 1.0;
 /// Fraction of pi/T that a bandwidth may reach, and that a pole may reach.
-const BANDWIDTH_SHARE: f64 = 0.2;
-const FASTEST_SHARE: f64 = 0.5;
+const BANDWIDTH_FRACTION: f64 = 0.2;
+const FASTEST_FRACTION: f64 = 0.5;
 /// Ratio of the fastest pole of a continuous controller to the highest bandwidth.
 const BEYOND_BANDWIDTH: f64 = 10.0;
 /// Multiples of the highest bandwidth at which its bounds are drawn.
@@ -79,7 +79,7 @@ pub fn design_limits(setup: &Setup<'_>, given: &RobustProblem) -> Vec<DesignLimi
     let unstated = || highest_bandwidth(setup).filter(|_| is_rig);
     let bandwidth = stated(declared.highest_bandwidth).or_else(unstated);
     let each = [
-        (DesignLimitKind::NoiseToCommand, stated(declared.noise_to_command).or(default(NOISE_SHARE))),
+        (DesignLimitKind::NoiseToCommand, stated(declared.noise_to_command).or(default(NOISE_FRACTION))),
         (DesignLimitKind::ModulusMargin, stated(declared.modulus_margin).or(default(MODULUS_MARGIN))),
         (DesignLimitKind::HighestBandwidth, bandwidth),
         (DesignLimitKind::MinimumDelayMargin, stated(declared.minimum_delay_margin).or(default(delay_s))),
@@ -185,7 +185,7 @@ pub type LimitFinding = (DesignLimitKind, SpecificationFinding);
 pub(crate) fn highest_bandwidth(setup: &Setup<'_>) -> Option<(f64, LimitOrigin)> {
     let rig = setup.rig().ok()?;
     let valve = rig.actuator.components().valve.natural_frequency;
-    let sampled = setup.timing.sample_time_s.map(|time_s| BANDWIDTH_SHARE * std::f64::consts::PI / time_s);
+    let sampled = setup.timing.sample_time_s.map(|time_s| BANDWIDTH_FRACTION * std::f64::consts::PI / time_s);
     let each = [
         quarter_wave(rig).map(|frequency| (frequency, LimitOrigin::QuarterWave)),
         Some((valve, LimitOrigin::Servovalve)),
@@ -206,7 +206,7 @@ fn fastest_pole(
         return None;
     }
     match setup.timing.sample_time_s {
-        Some(time_s) => Some((FASTEST_SHARE * std::f64::consts::PI / time_s, LimitOrigin::Sampling)),
+        Some(time_s) => Some((FASTEST_FRACTION * std::f64::consts::PI / time_s, LimitOrigin::Sampling)),
         None => bandwidth.map(|(frequency, _)| (BEYOND_BANDWIDTH * frequency, LimitOrigin::Bandwidth)),
     }
 }
@@ -240,7 +240,7 @@ pub(super) fn specification(
             let left = if has_pressures { NOISE_TO_COMMAND_LEFT } else { 1.0 };
             let limit = left * value * nominal_v / noise_n;
             let mut frequencies = drawn();
-            frequencies.extend([0.1, 0.3, 0.9].map(|share| share * highest));
+            frequencies.extend([0.1, 0.3, 0.9].map(|fraction| fraction * highest));
             let found =
                 || over(ClosedLoop::ControlEffort, limit, sorted_distinct(frequencies), [0.0, highest]);
             (noise_n > 0.0).then(found)

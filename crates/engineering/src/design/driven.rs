@@ -16,9 +16,9 @@ use super::search::{found, rank};
 use super::step_aim::StepAim;
 use super::{
     AuditedController, DesignError, DesignPart, DesignRun, ProjectDesign, continuous_as_sampled,
-    tried_design, unless_stopped,
+    trial_design, unless_stopped,
 };
-use crate::audit::try_to_prove;
+use crate::audit::prove_claims;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::side_by_side::{all_cores, both};
@@ -64,62 +64,62 @@ pub(super) fn found_and_tried(
     let (mut driven, mut twin) =
         simplest((source, setup), begins, seed, &mut within(&mut *watch, [0.0, 0.7]))?;
     // without the limit that leads away from a loop without gain, the search takes another path
-    if first != StepAim::AS_REQUIRED && !driven.told.is_stopped() && misses(&driven.told) {
+    if first != StepAim::AS_REQUIRED && !driven.project_design.is_stopped() && misses(&driven.project_design) {
         let begins = (given, StepAim::AS_REQUIRED, &plants);
         match simplest((source, setup), begins, seed, &mut within(&mut *watch, [0.7, 0.9])) {
-            Ok((other, _)) if is_better(&other.told, &driven.told) => {
-                (driven, twin) = (other.with_missed(&driven.told), None);
+            Ok((other, _)) if is_better(&other.project_design, &driven.project_design) => {
+                (driven, twin) = (other.with_missed(&driven.project_design), None);
             }
-            Err(DesignError::Stopped(_)) => driven.told.leave(DesignPart::Search),
+            Err(DesignError::Stopped(_)) => driven.project_design.leave(DesignPart::Search),
             // the earlier result remains
             Ok(_) | Err(_) => {}
         }
     }
-    let DrivenDesign { aim, run, told, known } = driven;
-    let best = (run, told);
+    let DrivenDesign { aim, run, project_design, known } = driven;
+    let best = (run, project_design);
     let aimed = AimedSteps { given, aim, added: &known, plants: &plants, from: SearchStarts::Nearest };
-    let (run, mut told) = shorter((source, setup), aimed, best, &mut within(&mut *watch, [0.9, 0.94]));
-    if told.command_of_steps.is_none() {
-        told = with_command_of_steps((setup, told), &plants, watch)?;
+    let (run, mut project_design) = shorter((source, setup), aimed, best, &mut within(&mut *watch, [0.9, 0.94]));
+    if project_design.command_of_steps.is_none() {
+        project_design = with_command_of_steps((setup, project_design), &plants, watch)?;
     }
     // a design led by its steps is not proven before the end
-    if told.designed.view.proof.is_none() {
-        let problem = told.designed.problem.clone();
-        let view = &mut told.designed.view;
-        unless_stopped(&mut told.unfinished, DesignPart::Proof, || {
-            Ok(Some(try_to_prove(&problem, view, &mut within(&mut *watch, [0.94, 0.97]))?))
+    if project_design.designed.view.proof.is_none() {
+        let problem = project_design.designed.problem.clone();
+        let view = &mut project_design.designed.view;
+        unless_stopped(&mut project_design.unfinished, DesignPart::Proof, || {
+            Ok(Some(prove_claims(&problem, view, &mut within(&mut *watch, [0.94, 0.97]))?))
         })?;
     }
-    let mut unfinished = std::mem::take(&mut told.unfinished);
-    let twin = twin.filter(|twin| twin.of == told.design);
-    let is_to_be_found = twin.is_none() && run.problem.timing.sample_time_s.is_some() && !told.is_stopped();
+    let mut unfinished = std::mem::take(&mut project_design.unfinished);
+    let twin = twin.filter(|twin| twin.of == project_design.design);
+    let is_to_be_found = twin.is_none() && run.problem.timing.sample_time_s.is_some() && !project_design.is_stopped();
     let (own_twin, found) = both(
         &mut within(watch, [0.97, 1.0]),
         0.5,
-        |watch| is_to_be_found.then(|| continuous_as_sampled((source, setup), &run.problem, &told, watch)),
+        |watch| is_to_be_found.then(|| continuous_as_sampled((source, setup), &run.problem, &project_design, watch)),
         |watch| {
             unless_stopped(&mut unfinished, DesignPart::Relaxations, || {
-                relaxations(setup, aimed, (&run, &told), watch).map(Some)
+                relaxations(setup, aimed, (&run, &project_design), watch).map(Some)
             })
         },
     );
     let relaxations = found?.unwrap_or_default();
-    let twin = own_twin.map(|found| ContinuousTwin { of: told.design.clone(), found }).or(twin);
-    Ok((run, ProjectDesign { unfinished, relaxations, ..told }, twin))
+    let twin = own_twin.map(|found| ContinuousTwin { of: project_design.design.clone(), found }).or(twin);
+    Ok((run, ProjectDesign { unfinished, relaxations, ..project_design }, twin))
 }
 
 /// A design with its trial, and the contribution of its runs to the steps of the linear loop.
 struct DrivenDesign {
     aim: StepAim,
     run: DesignRun,
-    told: ProjectDesign,
+    project_design: ProjectDesign,
     known: Vec<AddedByRig>,
 }
 
 impl DrivenDesign {
     /// The design together with a shorter structure whose runs miss the requirement.
     fn with_missed(mut self, shorter: &ProjectDesign) -> DrivenDesign {
-        self.told.note_missed_on_rig(shorter);
+        self.project_design.note_missed_on_rig(shorter);
         self
     }
 }
@@ -133,19 +133,19 @@ fn simplest(
     watch: Watch<'_>,
 ) -> Result<(DrivenDesign, Option<ContinuousTwin>), DesignError> {
     let rig = (source, setup);
-    let (aim, run, told) = found(setup, (given, first, plants), seed, &mut within(&mut *watch, [0.0, 0.5]))?;
+    let (aim, run, project_design) = found(setup, (given, first, plants), seed, &mut within(&mut *watch, [0.0, 0.5]))?;
     let aimed = AimedSteps { given, aim, added: &[], plants, from: SearchStarts::Nearest };
-    let (simple, told) = with_simpler(setup, aimed, (&run, told), &mut within(&mut *watch, [0.5, 0.55]));
+    let (simple, project_design) = with_simpler(setup, aimed, (&run, project_design), &mut within(&mut *watch, [0.5, 0.55]));
     let Some(simple) = simple else {
-        return driven(rig, aimed, (run, told), &mut within(watch, [0.55, 1.0]));
+        return driven(rig, aimed, (run, project_design), &mut within(watch, [0.55, 1.0]));
     };
     let (of_simple, twin) = driven(rig, aimed, simple, &mut within(&mut *watch, [0.55, 0.8]))?;
-    if of_simple.told.is_stopped() || !misses(&of_simple.told) {
+    if of_simple.project_design.is_stopped() || !misses(&of_simple.project_design) {
         return Ok((of_simple, twin));
     }
-    let (other, _) = driven(rig, aimed, (run, told), &mut within(watch, [0.8, 1.0]))?;
-    Ok(match is_better(&other.told, &of_simple.told) {
-        true => (other.with_missed(&of_simple.told), None),
+    let (other, _) = driven(rig, aimed, (run, project_design), &mut within(watch, [0.8, 1.0]))?;
+    Ok(match is_better(&other.project_design, &of_simple.project_design) {
+        true => (other.with_missed(&of_simple.project_design), None),
         false => (of_simple, twin),
     })
 }
@@ -155,18 +155,18 @@ fn simplest(
 fn with_simpler(
     setup: &Setup<'_>,
     aimed: AimedSteps<'_>,
-    (run, mut told): (&DesignRun, ProjectDesign),
+    (run, mut project_design): (&DesignRun, ProjectDesign),
     watch: Watch<'_>,
 ) -> (Option<(DesignRun, ProjectDesign)>, ProjectDesign) {
-    if told.is_stopped() || !told.is_met() {
-        return (None, told);
+    if project_design.is_stopped() || !project_design.is_met() {
+        return (None, project_design);
     }
-    let found = simpler(setup, aimed, (run, &told), watch);
+    let found = simpler(setup, aimed, (run, &project_design), watch);
     if matches!(found, Err(DesignError::Stopped(_))) {
-        told.leave(DesignPart::Search);
+        project_design.leave(DesignPart::Search);
     }
     // the earlier result remains
-    (found.ok().flatten(), told)
+    (found.ok().flatten(), project_design)
 }
 
 /// A design with its trial and, as long as the trial misses the requirement, the designs that
@@ -174,24 +174,24 @@ fn with_simpler(
 fn driven(
     (source, setup): (&dyn Source, &Setup<'_>),
     aimed: AimedSteps<'_>,
-    (run, told): (DesignRun, ProjectDesign),
+    (run, project_design): (DesignRun, ProjectDesign),
     watch: Watch<'_>,
 ) -> Result<(DrivenDesign, Option<ContinuousTwin>), DesignError> {
     let problem = run.problem.clone();
-    let (told, twin) =
-        with_trial_and_twin((source, setup), &problem, told, &mut within(&mut *watch, [0.0, 0.25]))?;
-    let mut best = (run, told);
+    let (project_design, twin) =
+        with_trial_and_twin((source, setup), &problem, project_design, &mut within(&mut *watch, [0.0, 0.25]))?;
+    let mut best = (run, project_design);
     // the design from which the next one begins, unless it is the best one
     let mut latest: Option<(DesignRun, ProjectDesign)> = None;
     let mut known = added(&best.1, &[]);
     let (mut nearest, mut in_vain) = (best.1.worst_run_with_room(), 0);
     let mut for_room = 0;
     for index in 0..TRIES {
-        let share = [index, index + 1].map(|done| 0.25 + 0.75 * done as f64 / TRIES as f64);
+        let fraction = [index, index + 1].map(|done| 0.25 + 0.75 * done as f64 / TRIES as f64);
         let before = latest.as_ref().unwrap_or(&best);
         // a search with these runs may satisfy a limit that the design misses although the rig
         // satisfies the requirement
-        let lacks_a_limit = latest.as_ref().is_some_and(|(_, told)| rank(told).0 > 0);
+        let lacks_a_limit = latest.as_ref().is_some_and(|(_, project_design)| rank(project_design).0 > 0);
         let suffices = best.1.worst_run() <= 1.0;
         if !misses(&before.1) && !lacks_a_limit || in_vain > IN_VAIN || for_room >= TRIES_FOR_ROOM {
             break;
@@ -199,7 +199,7 @@ fn driven(
         for_room += usize::from(suffices);
         let from = if in_vain == IN_VAIN { SearchStarts::Others } else { SearchStarts::Nearest };
         let aimed = AimedSteps { added: &known, from, ..aimed };
-        match next_design((source, setup), aimed, before, &mut within(&mut *watch, share)) {
+        match next_design((source, setup), aimed, before, &mut within(&mut *watch, fraction)) {
             Ok(Some(found)) => {
                 known = added(&found.1, &known);
                 if found.1.is_stopped() {
@@ -223,8 +223,8 @@ fn driven(
             break;
         }
     }
-    let (run, told) = best;
-    Ok((DrivenDesign { aim: aimed.aim, run, told, known }, twin))
+    let (run, project_design) = best;
+    Ok((DrivenDesign { aim: aimed.aim, run, project_design, known }, twin))
 }
 
 /// A design with the trial of its controller, and concurrently with the design made without
@@ -232,22 +232,22 @@ fn driven(
 fn with_trial_and_twin(
     (source, setup): (&dyn Source, &Setup<'_>),
     problem: &DesignProblem,
-    told: ProjectDesign,
+    project_design: ProjectDesign,
     watch: Watch<'_>,
 ) -> Result<(ProjectDesign, Option<ContinuousTwin>), DesignError> {
     // a rig that misses a requirement in time leads to another design
-    let is_required = told.designed.problem.in_time.iter().any(|one| one.follows);
-    if told.is_stopped() || is_required || all_cores().at_once == 1 {
-        return Ok((with_trial((source, setup), told, watch)?, None));
+    let is_required = project_design.designed.problem.in_time.iter().any(|one| one.follows);
+    if project_design.is_stopped() || is_required || all_cores().at_once == 1 {
+        return Ok((with_trial((source, setup), project_design, watch)?, None));
     }
-    let untried = told.clone();
-    let (found, told) = both(
+    let untried = project_design.clone();
+    let (found, project_design) = both(
         watch,
         0.5,
         |watch| continuous_as_sampled((source, setup), problem, &untried, watch),
-        |watch| with_trial((source, setup), told, watch),
+        |watch| with_trial((source, setup), project_design, watch),
     );
-    Ok((told?, Some(ContinuousTwin { of: untried.design, found })))
+    Ok((project_design?, Some(ContinuousTwin { of: untried.design, found })))
 }
 
 /// The design without zeros and poles that have next to no effect, if the nonlinear rig satisfies
@@ -255,30 +255,30 @@ fn with_trial_and_twin(
 fn shorter(
     (source, setup): (&dyn Source, &Setup<'_>),
     aimed: AimedSteps<'_>,
-    (run, told): (DesignRun, ProjectDesign),
+    (run, project_design): (DesignRun, ProjectDesign),
     watch: Watch<'_>,
 ) -> (DesignRun, ProjectDesign) {
-    if told.is_stopped() || !told.is_met() || misses(&told) {
-        return (run, told);
+    if project_design.is_stopped() || !project_design.is_met() || misses(&project_design) {
+        return (run, project_design);
     }
-    let found = shortened(setup, aimed, (&run, &told), &mut within(&mut *watch, [0.0, 0.7]));
+    let found = shortened(setup, aimed, (&run, &project_design), &mut within(&mut *watch, [0.0, 0.7]));
     // the earlier result remains
     let found = found.and_then(|found| {
         let Some((run, shorter)) = found else { return Ok(None) };
         Ok(Some((run, with_trial((source, setup), shorter, &mut within(watch, [0.7, 1.0]))?)))
     });
     match found {
-        Ok(Some((_, tried))) if tried.is_stopped() => stopped_in_search(run, told),
-        Ok(Some((run, tried))) if agrees_as_well(&tried, &told) && !misses(&tried) => (run, tried),
-        Err(DesignError::Stopped(_)) => stopped_in_search(run, told),
-        Ok(_) | Err(_) => (run, told),
+        Ok(Some((_, searched))) if searched.is_stopped() => stopped_in_search(run, project_design),
+        Ok(Some((run, searched))) if agrees_as_well(&searched, &project_design) && !misses(&searched) => (run, searched),
+        Err(DesignError::Stopped(_)) => stopped_in_search(run, project_design),
+        Ok(_) | Err(_) => (run, project_design),
     }
 }
 
 /// A design whose continued search was cancelled.
-fn stopped_in_search(run: DesignRun, mut told: ProjectDesign) -> (DesignRun, ProjectDesign) {
-    told.leave(DesignPart::Search);
-    (run, told)
+fn stopped_in_search(run: DesignRun, mut project_design: ProjectDesign) -> (DesignRun, ProjectDesign) {
+    project_design.leave(DesignPart::Search);
+    (run, project_design)
 }
 
 /// True if the nonlinear rig agrees with one design as well as with another; settling times that
@@ -289,9 +289,9 @@ fn agrees_as_well(one: &ProjectDesign, other: &ProjectDesign) -> bool {
 
 /// True if the nonlinear rig misses the requirement under a design that is met, or satisfies it
 /// without room for the plants between the simulated ones.
-fn misses(told: &ProjectDesign) -> bool {
-    let is_met = told.design.status == DesignStatus::Met && !told.is_stopped();
-    is_met && told.misses_on_rig()
+fn misses(project_design: &ProjectDesign) -> bool {
+    let is_met = project_design.design.status == DesignStatus::Met && !project_design.is_stopped();
+    is_met && project_design.misses_on_rig()
 }
 
 /// A design with the known contribution of the rig to its steps, and its trial; `None` if the steps
@@ -299,35 +299,35 @@ fn misses(told: &ProjectDesign) -> bool {
 fn next_design(
     (source, setup): (&dyn Source, &Setup<'_>),
     aimed: AimedSteps<'_>,
-    (run, told): &(DesignRun, ProjectDesign),
+    (run, project_design): &(DesignRun, ProjectDesign),
     watch: Watch<'_>,
 ) -> Result<Option<(DesignRun, ProjectDesign)>, DesignError> {
-    let found = by_steps(setup, aimed, (run, told), &mut within(&mut *watch, [0.0, 0.7]))?;
-    let Some((run, told)) = found else { return Ok(None) };
-    Ok(Some((run, with_trial((source, setup), told, &mut within(watch, [0.7, 1.0]))?)))
+    let found = by_steps(setup, aimed, (run, project_design), &mut within(&mut *watch, [0.0, 0.7]))?;
+    let Some((run, project_design)) = found else { return Ok(None) };
+    Ok(Some((run, with_trial((source, setup), project_design, &mut within(watch, [0.7, 1.0]))?)))
 }
 
 /// A design with the trial of its controller; the trial is absent after cancellation, and without a
 /// rig.
 fn with_trial(
     (source, setup): (&dyn Source, &Setup<'_>),
-    told: ProjectDesign,
+    project_design: ProjectDesign,
     watch: Watch<'_>,
 ) -> Result<ProjectDesign, DesignError> {
     if setup.project.actuator.is_none() {
-        return Ok(told);
+        return Ok(project_design);
     }
-    let mut unfinished = told.unfinished.clone();
+    let mut unfinished = project_design.unfinished.clone();
     let trial = unless_stopped(&mut unfinished, DesignPart::Trial, || {
-        tried_design(source, setup.project, &told, watch)
+        trial_design(source, setup.project, &project_design, watch)
     })?;
-    Ok(ProjectDesign { unfinished, trial, ..told })
+    Ok(ProjectDesign { unfinished, trial, ..project_design })
 }
 
 /// True if one design is as good as another over frequency and its worst run is nearer to the
 /// requirement; if the runs of both satisfy it, the worst run with room for the plants between
 /// counts.
 fn is_better(one: &ProjectDesign, other: &ProjectDesign) -> bool {
-    let runs = |told: &ProjectDesign| (told.worst_run().max(1.0), told.worst_run_with_room());
+    let runs = |project_design: &ProjectDesign| (project_design.worst_run().max(1.0), project_design.worst_run_with_room());
     !one.is_stopped() && rank(one).0 <= rank(other).0 && runs(one) < runs(other)
 }

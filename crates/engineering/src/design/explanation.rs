@@ -33,7 +33,7 @@ pub enum ExplainedFact {
     Finding(Finding),
     /// The only limits are on tracking, and wider than the spread of the family: a prefilter
     /// without feedback could satisfy them.
-    NothingAsksForFeedback,
+    FeedbackNotRequired,
 }
 
 /// A specification that an explanation concerns.

@@ -26,7 +26,7 @@ const DAMPING_RATIOS: [f64; 2] = [0.1, 5.0];
 pub fn design_problem(setup: &Setup<'_>, given: &RobustProblem) -> DesignProblem {
     DesignProblem {
         family: given.family.clone(),
-        beside: vec![],
+        additional_plants: vec![],
         sensor: setup.sensor.clone(),
         timing: setup.timing,
         specifications: given.specifications.clone(),
@@ -60,8 +60,8 @@ pub fn design_options(
         StructureChoice::Named(name) => ControllerChoice::Named { name, earned_per_pole_db },
         StructureChoice::Free => ControllerChoice::Grow { maximum_order },
         StructureChoice::Any => {
-            let with_gain_alone = given.design_limits.contains(&DesignLimitKind::RequiredStep);
-            ControllerChoice::Any { maximum_order, from: None, with_gain_alone, earned_per_pole_db }
+            let with_pure_gain = given.design_limits.contains(&DesignLimitKind::RequiredStep);
+            ControllerChoice::Any { maximum_order, from: None, with_pure_gain, earned_per_pole_db }
         }
     };
     Ok(DesignOptions {
@@ -95,9 +95,9 @@ fn prefilter_choice(
 ) -> Result<PrefilterChoice, LinearError> {
     let tracks = |one: &phea_qft::specification::Specification| one.requirement.is_tracking();
     let is_designed = given.specifications.iter().any(tracks) && maximum_order > 0;
-    let is_kept = setup.prefilter.is_some() && (!given.has_controller || !is_designed);
+    let is_satisfied = setup.prefilter.is_some() && (!given.has_controller || !is_designed);
     Ok(match &setup.prefilter {
-        Some(kept) if is_kept => PrefilterChoice::Given(kept.transfer_function()?),
+        Some(kept) if is_satisfied => PrefilterChoice::Given(kept.transfer_function()?),
         _ if is_designed => PrefilterChoice::Grow { maximum_order: count(maximum_order) },
         _ => PrefilterChoice::None,
     })

@@ -5,11 +5,11 @@ use phea_dynamics::uncertain_plant::UncertainPlant;
 use phea_dynamics::watch::Watch;
 use phea_qft::design::{DesignOptions, design_again};
 use phea_qft::family::Family;
-use phea_qft::proof::Standing;
+use phea_qft::proof::ClaimStatus;
 use phea_qft::verification::{PlantPoint, Verdict};
 
 use super::{AuditedController, DesignError, DesignRun, ProjectDesign};
-use crate::audit::try_to_prove;
+use crate::audit::prove_claims;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 
@@ -27,13 +27,13 @@ pub(super) fn proven(
     for round in 0..=REFUTATIONS_MAXIMUM {
         let Some(design) = run.outcome.design.clone().filter(|_| !run.outcome.stopped) else { break };
         let was_met = design.audit.verdict == Verdict::Met;
-        let mut told = ProjectDesign::new(setup, given, &run.problem, design, options.clone(), watch)?;
-        try_to_prove(&told.designed.problem, &mut told.designed.view, watch)?;
-        let refuting = if was_met { refuting(&told.designed) } else { vec![] };
+        let mut project_design = ProjectDesign::new(setup, given, &run.problem, design, options.clone(), watch)?;
+        prove_claims(&project_design.designed.problem, &mut project_design.designed.view, watch)?;
+        let refuting = if was_met { refuting(&project_design.designed) } else { vec![] };
         if refuting.is_empty() || round == REFUTATIONS_MAXIMUM {
-            return Ok((run, Some(told)));
+            return Ok((run, Some(project_design)));
         }
-        run.problem.beside.extend(refuting);
+        run.problem.additional_plants.extend(refuting);
         run.outcome = design_again(&run.problem, options, run.outcome, watch)?;
         run.outcome.conclude()?;
     }
@@ -44,10 +44,10 @@ pub(super) fn proven(
 fn refuting(designed: &AuditedController) -> Vec<UncertainPlant> {
     let Family::Uncertain(family) = &designed.problem.family else { return vec![] };
     let proofs = designed.view.proof.iter().flat_map(|proof| &proof.specifications);
-    let refuted = proofs.filter(|own| own.standing == Standing::Refuted);
+    let refuted = proofs.filter(|own| own.claim_status == ClaimStatus::Refuted);
     let points = refuted.filter_map(|own| match &own.worst.as_ref()?.plant {
         PlantPoint::Parameters(values) => Some(family.plant().with_nominal(values)),
-        PlantPoint::Measured(_) | PlantPoint::Beside(_) => None,
+        PlantPoint::Measured(_) | PlantPoint::Additional(_) => None,
     });
     points.collect()
 }

@@ -11,7 +11,7 @@
 
 use phea_dynamics::watch::{Watch, part};
 use phea_qft::closed_loop::Compensation;
-use phea_qft::design::{BINDING_DB, DesignStatus, LoopDesignError, last_search, sample_beside_worst};
+use phea_qft::design::{BINDING_DB, DesignStatus, LoopDesignError, last_search, sample_near_worst};
 use phea_qft::loop_shaping::{Aim, LocalOptimum, SearchProblem, Shaping, Structure};
 use phea_qft::specification::Specification;
 
@@ -90,7 +90,7 @@ struct SearchLimits {
 struct RelaxedDesign<'a> {
     setup: &'a Setup<'a>,
     aimed: AimedSteps<'a>,
-    told: &'a ProjectDesign,
+    project_design: &'a ProjectDesign,
     search: LastSearch<'a>,
     delay_s: f64,
 }
@@ -102,35 +102,35 @@ struct RelaxedDesign<'a> {
 pub(super) fn relaxations<'a>(
     setup: &'a Setup<'a>,
     aimed: AimedSteps<'a>,
-    (run, told): (&'a DesignRun, &'a ProjectDesign),
+    (run, project_design): (&'a DesignRun, &'a ProjectDesign),
     watch: Watch<'_>,
 ) -> Result<Relaxations, DesignError> {
     let has_no_end =
-        matches!(told.design.status, DesignStatus::NotConverged { .. } | DesignStatus::NotStabilised);
-    let (Some(samples), false) = (run.outcome.samples(), has_no_end || told.is_stopped()) else {
+        matches!(project_design.design.status, DesignStatus::NotConverged { .. } | DesignStatus::NotStabilised);
+    let (Some(samples), false) = (run.outcome.samples(), has_no_end || project_design.is_stopped()) else {
         return Ok(Relaxations::default());
     };
     let watch = &mut part(watch, STAGE, [0.0, 1.0]);
-    let (search, (aim, reserve_db)) = match last_step_search(setup, aimed, (run, told))? {
+    let (search, (aim, reserve_db)) = match last_step_search(setup, aimed, (run, project_design))? {
         Some((search, aim)) => (LastSearch::BySteps(Box::new(search)), aim),
         None => {
-            let found = last_search(&told.design, samples.clone(), &told.options);
+            let found = last_search(&project_design.design, samples.clone(), &project_design.options);
             let (shaping, aim) = found.map_err(LoopDesignError::from)?;
             (LastSearch::OverFrequency(Box::new(shaping)), (aim, 0.0))
         }
     };
-    let at = told.design.free_numbers.as_slice();
-    let end = LocalOptimum::beside(search.clone().problem(), at, (aim, reserve_db), watch)?;
+    let at = project_design.design.free_numbers.as_slice();
+    let end = LocalOptimum::near(search.clone().problem(), at, (aim, reserve_db), watch)?;
     let Some(end) = end else { return Ok(Relaxations::default()) };
     let delay_s = run.problem.minimum_delay_margin_s;
-    let relaxed = RelaxedDesign { setup, aimed, told, search, delay_s };
+    let relaxed = RelaxedDesign { setup, aimed, project_design, search, delay_s };
     let mut limits = Vec::new();
     for limit in relaxed.binding() {
         // a limit that does not exist in its wider form cannot be relaxed
         let Ok(wider) = relaxed.wider(limit) else { continue };
         let mut wider = relaxed.search.with_limits(wider);
         let Some(first) = end.continued(wider.problem(), watch)? else { continue };
-        sample_beside_worst(wider.shaping(), &first.x)?;
+        sample_near_worst(wider.shaping(), &first.x)?;
         let Some(found) = first.continued(wider.problem(), watch)? else { continue };
         let noise_db = |x: &[f64]| relaxed.noise_gain_db(x);
         limits.push(RelaxedGain {
@@ -182,20 +182,20 @@ impl RelaxedDesign<'_> {
         };
         let sensor = self.setup.sensor.clone();
         let compensation = Compensation::new(&shaping.controller(x), sensor).ok()?;
-        let around = RobustProblem { compensation, ..self.told.designed.problem.clone() };
+        let around = RobustProblem { compensation, ..self.project_design.designed.problem.clone() };
         noise_gain_around(&around, &shaping.samples().frequencies_rad_per_s())
     }
 
     /// Limits that bind: those within [`BINDING_DB`] of the loop or in conflict, ends of ranges
     /// that a free number reaches, and, for a design led by its steps, their requirement.
     fn binding(&self) -> Vec<RelaxedLimit> {
-        let own = self.told.designed.problem.specifications.len();
-        let touched = self.told.touched();
+        let own = self.project_design.designed.problem.specifications.len();
+        let touched = self.project_design.touched();
         let specifications = (0..own).filter(|index| touched.contains(index));
-        let steps = self.told.designed.view.in_time.iter().enumerate();
+        let steps = self.project_design.designed.view.in_time.iter().enumerate();
         let steps =
             steps.filter(|(_, finding)| finding.requirement.limits.is_none() && self.leads_to_steps());
-        let limits = self.told.limits.iter().filter(|limit| self.is_relaxed(limit));
+        let limits = self.project_design.limits.iter().filter(|limit| self.is_relaxed(limit));
         specifications
             .map(RelaxedLimit::Specification)
             .chain(steps.map(|(index, _)| RelaxedLimit::Steps(index)))
@@ -210,7 +210,7 @@ impl RelaxedDesign<'_> {
 
     /// True if the limits of tracking on the path to a required step bind.
     fn touches_way(&self) -> bool {
-        let worst = self.told.limit_finding(DesignLimitKind::RequiredStep);
+        let worst = self.project_design.limit_finding(DesignLimitKind::RequiredStep);
         worst.and_then(|found| found.worst.as_ref()).is_some_and(|worst| worst.margin_db < BINDING_DB)
     }
 
@@ -219,12 +219,12 @@ impl RelaxedDesign<'_> {
     fn is_relaxed(&self, limit: &DesignLimit) -> bool {
         let is_searched =
             limit.kind != DesignLimitKind::CommandOfSteps || matches!(self.search, LastSearch::BySteps(_));
-        is_searched && self.told.binds(limit) == Some(true)
+        is_searched && self.project_design.binds(limit) == Some(true)
     }
 
     /// Index of a limit among those that are specifications.
     fn index(&self, kind: DesignLimitKind) -> Option<usize> {
-        self.told.limit_findings.iter().position(|(known, _)| *known == kind)
+        self.project_design.limit_findings.iter().position(|(known, _)| *known == kind)
     }
 
     /// Specifications for which the search was made, with this permitted multiple of the prefilter
@@ -245,12 +245,12 @@ impl RelaxedDesign<'_> {
     fn wider(&self, limit: RelaxedLimit) -> Result<SearchLimits, DesignError> {
         let mut given = self.aimed.given.clone();
         let (mut steps, mut command, mut gain, mut delay_s) = (1.0, 1.0, 1.0, self.delay_s);
-        let mut structure = self.told.design.structure.clone();
+        let mut structure = self.project_design.design.structure.clone();
         match limit {
             RelaxedLimit::Steps(index) => {
                 steps = 1.0 + RELAXED_BY;
                 if let Some(required) = given.in_time.get_mut(index) {
-                    required.wish = required.wish.wider(steps);
+                    required.step_limits = required.step_limits.wider(steps);
                 }
             }
             RelaxedLimit::Design(DesignLimitKind::PrefilterGain) => gain = 1.0 + RELAXED_BY,
@@ -258,11 +258,11 @@ impl RelaxedDesign<'_> {
             RelaxedLimit::Design(kind @ DesignLimitKind::MinimumDelayMargin) => {
                 delay_s = kind.relaxed(delay_s);
             }
-            RelaxedLimit::Design(kind) => structure = self.told.structure_with_wider(kind),
+            RelaxedLimit::Design(kind) => structure = self.project_design.structure_with_wider(kind),
             RelaxedLimit::Specification(_) => {}
         }
         let mut specifications = self.specifications(given, gain)?;
-        let own = self.told.designed.problem.specifications.len();
+        let own = self.project_design.designed.problem.specifications.len();
         match limit {
             RelaxedLimit::Specification(index) => {
                 if let Some(one) = specifications.get_mut(index) {
@@ -272,7 +272,7 @@ impl RelaxedDesign<'_> {
             }
             RelaxedLimit::Design(kind) => {
                 let place = self.index(kind).and_then(|index| specifications.get_mut(own + index));
-                let limit = self.told.limits.iter().find(|known| known.kind == kind);
+                let limit = self.project_design.limits.iter().find(|known| known.kind == kind);
                 let wider = limit.and_then(|limit| {
                     specification((self.setup, self.aimed.given), kind, kind.relaxed(limit.value))
                 });

@@ -14,14 +14,14 @@ use phea_qft::verification::Verdict;
 
 use super::by_steps::SteppedPlants;
 use super::command_of_steps::with_command_of_steps;
-use super::{DesignError, DesignPart, DesignRun, ProjectDesign, tried_design, unless_stopped};
-use crate::audit::{ProjectAudit, audit_problem, try_to_prove};
+use super::{DesignError, DesignPart, DesignRun, ProjectDesign, trial_design, unless_stopped};
+use crate::audit::{ProjectAudit, audit_problem, prove_claims};
 use crate::family::{ProjectFamilyError, family};
 use crate::project::{DeclaredLine, Project};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::source::Source;
-use crate::trial::{self, Agreement, StepSize, TrialMachine, TrialRun, waves_alone};
+use crate::trial::{self, Agreement, StepSize, TrialMachine, TrialRun, waves_only};
 use phea_dynamics::watch::{Stopped, Watch, part};
 
 /// Result of a repair.
@@ -42,7 +42,7 @@ pub enum RepairStatus {
     /// The progress callback cancelled the repair.
     Stopped,
     /// No linear plant reproduces the machine's behaviour, so none could be added.
-    NothingToTakeIn,
+    NothingToAdd,
 }
 
 /// Repair of a design that the machine contradicts.
@@ -51,7 +51,7 @@ pub struct Repair {
     /// Result of the repair.
     pub status: RepairStatus,
     /// Run of the machine whose plant was added; `None` if none was added.
-    pub taken_in: Option<(TrialMachine, StepSize)>,
+    pub added_plant: Option<(TrialMachine, StepSize)>,
     /// Quarter-wave frequency of the slower line of that machine, rad/s.
     pub quarter_wave_rad_per_s: Option<f64>,
     /// Audit of that plant in the loop of the first design.
@@ -97,7 +97,7 @@ impl Repair {
     fn without(status: RepairStatus) -> Repair {
         Repair {
             status,
-            taken_in: None,
+            added_plant: None,
             quarter_wave_rad_per_s: None,
             before: None,
             after: None,
@@ -121,26 +121,26 @@ const STAGE: &str = "designing again";
 pub(super) fn repaired(
     (source, setup): (&dyn Source, &Setup<'_>),
     run: DesignRun,
-    told: ProjectDesign,
+    project_design: ProjectDesign,
     watch: Watch<'_>,
 ) -> Result<ProjectDesign, DesignError> {
-    if told.agreement() != Agreement::Contradicts {
-        return Ok(told);
+    if project_design.agreement() != Agreement::Contradicts {
+        return Ok(project_design);
     }
-    let mut repair = match with_waves((source, setup), run, &told, watch) {
+    let mut repair = match with_waves((source, setup), run, &project_design, watch) {
         Err(DesignError::Stopped(_)) => Repair::without(RepairStatus::Stopped),
         other => other?,
     };
     let mut design = match repair.other.take() {
         Some(found) if repair.status == RepairStatus::Met => {
-            let (published, continuous) = (told.published.clone(), told.continuous.clone());
-            let explanations = told.explanations.clone();
-            repair.other = Some(Box::new(told));
+            let (published, continuous) = (project_design.published.clone(), project_design.continuous.clone());
+            let explanations = project_design.explanations.clone();
+            repair.other = Some(Box::new(project_design));
             ProjectDesign { published, continuous, explanations, ..*found }
         }
         other => {
             repair.other = other;
-            told
+            project_design
         }
     };
     if repair.status == RepairStatus::Stopped {
@@ -150,7 +150,7 @@ pub(super) fn repaired(
         let mut unfinished = std::mem::take(&mut design.unfinished);
         let designed = &mut design.designed;
         unless_stopped(&mut unfinished, DesignPart::Proof, || {
-            Ok(Some(try_to_prove(&designed.problem, &mut designed.view, watch)?))
+            Ok(Some(prove_claims(&designed.problem, &mut designed.view, watch)?))
         })?;
         design.unfinished = unfinished;
     }
@@ -161,11 +161,11 @@ pub(super) fn repaired(
 fn with_waves(
     (source, setup): (&dyn Source, &Setup<'_>),
     run: DesignRun,
-    told: &ProjectDesign,
+    project_design: &ProjectDesign,
     watch: Watch<'_>,
 ) -> Result<Repair, DesignError> {
-    let nothing = Repair::without(RepairStatus::NothingToTakeIn);
-    let (Some(contradicting), Some(alone)) = (told.contradicting_waves(), waves_alone(setup)) else {
+    let nothing = Repair::without(RepairStatus::NothingToAdd);
+    let (Some(contradicting), Some(alone)) = (project_design.contradicting_waves(), waves_only(setup)) else {
         return Ok(nothing);
     };
     let plant = match family(&Setup::new(&alone)?, source) {
@@ -173,17 +173,17 @@ fn with_waves(
         Ok(Family::Measured(_)) => return Ok(nothing),
         Err(error) => return Ok(Repair { no_family: Some(error), ..nothing }),
     };
-    let before = audit_problem(&alone_in_loop(&plant, told), watch)?;
+    let before = audit_problem(&alone_in_loop(&plant, project_design), watch)?;
     let known = Repair {
-        taken_in: Some((contradicting.machine_driven.clone(), contradicting.size)),
+        added_plant: Some((contradicting.machine_driven.clone(), contradicting.size)),
         quarter_wave_rad_per_s: contradicting.quarter_wave_rad_per_s,
         before: Some(before.clone()),
         ..nothing
     };
     if before.audit.verdict == Verdict::Met {
-        return Ok(Repair { taken_in: None, ..known });
+        return Ok(Repair { added_plant: None, ..known });
     }
-    let Some((status, found)) = designed_again((source, setup), run, (&plant, told), watch)? else {
+    let Some((status, found)) = designed_again((source, setup), run, (&plant, project_design), watch)? else {
         return Ok(Repair { status: RepairStatus::NotStabilised, ..known });
     };
     let after = Some(audit_problem(&alone_in_loop(&plant, &found), watch)?);
@@ -193,7 +193,7 @@ fn with_waves(
     };
     let remedies = match status {
         RepairStatus::Met => vec![],
-        _ => remedies(setup.project, status, known.quarter_wave_rad_per_s, told),
+        _ => remedies(setup.project, status, known.quarter_wave_rad_per_s, project_design),
     };
     Ok(Repair { status, after, whole, remedies, other: Some(Box::new(found)), ..known })
 }
@@ -204,12 +204,12 @@ fn remedies(
     project: &Project,
     status: RepairStatus,
     quarter_wave_rad_per_s: Option<f64>,
-    told: &ProjectDesign,
+    project_design: &ProjectDesign,
 ) -> Vec<RepairRemedy> {
     let mut ways = Vec::new();
     let lines = project.actuator.as_ref().map(|actuator| [&actuator.line.a, &actuator.line.b]);
     let longest = lines.iter().flatten().filter_map(|line| DeclaredLine::length(line)).fold(0.0, f64::max);
-    let crossing = told.designed.figures.last_crossing_rad_per_s();
+    let crossing = project_design.designed.figures.last_crossing_rad_per_s();
     if let (Some(own), Some(quarter)) = (crossing, quarter_wave_rad_per_s)
         && own > quarter
         && longest > 0.0
@@ -220,7 +220,7 @@ fn remedies(
         ways.push(RepairRemedy::WallDamping);
     }
     if let ControllerChoice::Grow { maximum_order } | ControllerChoice::Any { maximum_order, .. } =
-        told.options.controller
+        project_design.options.controller
     {
         ways.push(RepairRemedy::HigherOrder { maximum_order });
     }
@@ -277,12 +277,12 @@ fn family_with_waves(
 fn designed_again(
     (source, setup): (&dyn Source, &Setup<'_>),
     run: DesignRun,
-    (plant, told): (&UncertainPlant, &ProjectDesign),
+    (plant, project_design): (&UncertainPlant, &ProjectDesign),
     watch: Watch<'_>,
 ) -> Result<Option<(RepairStatus, ProjectDesign)>, DesignError> {
     let DesignRun { aimed, mut problem, outcome, .. } = run;
-    problem.beside.push(plant.clone());
-    let options = told.options.clone();
+    problem.additional_plants.push(plant.clone());
+    let options = project_design.options.clone();
     let outcome =
         phea_qft::design::design_again(&problem, &options, outcome, &mut part(watch, STAGE, [0.0, 1.0]));
     let outcome = outcome?;
@@ -299,11 +299,11 @@ fn designed_again(
         DesignStatus::NotStabilised => RepairStatus::NotStabilised,
     };
     let mut found = ProjectDesign::new(setup, &aimed, &problem, design, options, watch)?;
-    let own = &told.designed.problem.specifications;
+    let own = &project_design.designed.problem.specifications;
     if aimed.specifications[..own.len()] != own[..] {
-        found = found.judged_by(&told.designed.problem, watch)?;
+        found = found.judged_by(&project_design.designed.problem, watch)?;
     }
     found = with_command_of_steps((setup, found), &SteppedPlants::default(), watch)?;
-    let trial = tried_design(source, setup.project, &found, watch)?;
+    let trial = trial_design(source, setup.project, &found, watch)?;
     Ok(Some((status, ProjectDesign { trial, ..found })))
 }

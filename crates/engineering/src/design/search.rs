@@ -34,15 +34,15 @@ pub(super) fn found(
             Err(_) if !found.is_empty() => break,
             Err(error) => return Err(error),
         };
-        let share = [repetition, repetition + 1].map(|done| done as f64 / (REPETITIONS + 1) as f64);
-        let before = found.last().map(|(_, run, told)| (run, told));
-        let design = searched(setup, (given, &aimed), (seed, before), &mut within(&mut *watch, share));
+        let fraction = [repetition, repetition + 1].map(|done| done as f64 / (REPETITIONS + 1) as f64);
+        let before = found.last().map(|(_, run, project_design)| (run, project_design));
+        let design = searched(setup, (given, &aimed), (seed, before), &mut within(&mut *watch, fraction));
         match design {
-            Ok((run, told)) => {
-                let design = (run, with_command_of_steps((setup, told), plants, watch)?);
-                let (run, told) =
-                    led_by_steps(setup, (given, aim, plants), design, &mut within(&mut *watch, share));
-                found.push((aim, run, told));
+            Ok((run, project_design)) => {
+                let design = (run, with_command_of_steps((setup, project_design), plants, watch)?);
+                let (run, project_design) =
+                    led_by_steps(setup, (given, aim, plants), design, &mut within(&mut *watch, fraction));
+                found.push((aim, run, project_design));
             }
             // the earlier result remains
             Err(error) if found.is_empty() => return Err(error),
@@ -50,17 +50,17 @@ pub(super) fn found(
         }
         // a stricter aim seldom helps if the limits of this one are missed, and takes as long
         let met =
-            found.last().filter(|(.., told)| !told.is_stopped() && told.design.status == DesignStatus::Met);
-        let Some((.., told)) = met else { break };
-        match aim.stricter(told).filter(|_| repetition < REPETITIONS) {
+            found.last().filter(|(.., project_design)| !project_design.is_stopped() && project_design.design.status == DesignStatus::Met);
+        let Some((.., project_design)) = met else { break };
+        match aim.stricter(project_design).filter(|_| repetition < REPETITIONS) {
             Some(stricter) => aim = stricter,
             None => break,
         }
     }
-    let tried: Vec<ReachedStructure> = found.iter().flat_map(|(.., told)| told.structures.clone()).collect();
+    let reached_structures: Vec<ReachedStructure> = found.iter().flat_map(|(.., project_design)| project_design.structures.clone()).collect();
     let best = found.into_iter().min_by(|(.., one), (.., other)| by_rank(one, other));
-    let (aim, run, told) = best.ok_or(Stopped)?;
-    Ok((aim, run, told.with_shorter(tried)))
+    let (aim, run, project_design) = best.ok_or(Stopped)?;
+    Ok((aim, run, project_design.with_shorter(reached_structures)))
 }
 
 /// A design whose steps miss the requirement, led to it by its steps; unchanged if that gains
@@ -68,41 +68,41 @@ pub(super) fn found(
 fn led_by_steps(
     setup: &Setup<'_>,
     (given, aim, plants): (&RobustProblem, StepAim, &SteppedPlants),
-    (run, mut told): (DesignRun, ProjectDesign),
+    (run, mut project_design): (DesignRun, ProjectDesign),
     watch: Watch<'_>,
 ) -> (DesignRun, ProjectDesign) {
-    let misses = told.designed.view.in_time.iter().any(TimeFinding::violates);
-    let command = told.exceeded_command().is_some_and(|command| !command.is_out_of_reach());
-    if told.is_stopped() || !(misses || command) {
-        return (run, told);
+    let misses = project_design.designed.view.in_time.iter().any(TimeFinding::violates);
+    let command = project_design.exceeded_command().is_some_and(|command| !command.is_out_of_reach());
+    if project_design.is_stopped() || !(misses || command) {
+        return (run, project_design);
     }
     let aimed = AimedSteps { given, aim, added: &[], plants, from: SearchStarts::Nearest };
-    match by_steps(setup, aimed, (&run, &told), watch) {
-        Ok(Some(moved)) if by_rank(&moved.1, &told).is_lt() => moved,
+    match by_steps(setup, aimed, (&run, &project_design), watch) {
+        Ok(Some(moved)) if by_rank(&moved.1, &project_design).is_lt() => moved,
         Err(DesignError::Stopped(_)) => {
-            told.leave(DesignPart::Search);
-            (run, told)
+            project_design.leave(DesignPart::Search);
+            (run, project_design)
         }
         // the earlier result remains
-        Ok(_) | Err(_) => (run, told),
+        Ok(_) | Err(_) => (run, project_design),
     }
 }
 
 /// Rank of a design among several, the least the best: its verdict over frequency with a prefilter
 /// within its permitted gain, then the distance of its steps from the requirement.
-pub(super) fn rank(told: &ProjectDesign) -> (u8, f64) {
-    let verdict = match told.designed.view.audit.verdict {
+pub(super) fn rank(project_design: &ProjectDesign) -> (u8, f64) {
+    let verdict = match project_design.designed.view.audit.verdict {
         Verdict::Met
-            if told.design.status == DesignStatus::Met && told.exceeded_prefilter_gain().is_none() =>
+            if project_design.design.status == DesignStatus::Met && project_design.exceeded_prefilter_gain().is_none() =>
         {
             0
         }
         Verdict::Met => 1,
         Verdict::NotProven => 2,
         // a stabilising loop is nearer than any that does not stabilise the plants
-        Verdict::Violated => 3 + u8::from(told.designed.view.audit.stability.verdict == Verdict::Violated),
+        Verdict::Violated => 3 + u8::from(project_design.designed.view.audit.stability.verdict == Verdict::Violated),
     };
-    (verdict, StepAim::AS_REQUIRED.excess(told))
+    (verdict, StepAim::AS_REQUIRED.excess(project_design))
 }
 
 /// Order of two designs by their rank: the lesser is nearer to the requirement.
@@ -123,7 +123,7 @@ fn searched(
     let mut options = design_options(setup, aimed, seed)?;
     if let ControllerChoice::Any { from: first, .. } = &mut options.controller {
         // a structure too short for the earlier limits is too short for stricter ones
-        *first = before.and_then(|(_, told)| told.design.name);
+        *first = before.and_then(|(_, project_design)| project_design.design.name);
     }
     let mut outcome = match before {
         Some((run, _)) => design_stricter(&problem, &options, &run.outcome, watch)?,
@@ -141,16 +141,16 @@ fn searched(
         }
         return Err(DesignError::NoController(explanations));
     };
-    let mut told = match proven {
-        Some(told) => told,
+    let mut project_design = match proven {
+        Some(project_design) => project_design,
         None => ProjectDesign::new(setup, aimed, problem, design, options, watch)?,
     };
     let unfinished = Vec::from_iter(outcome.stopped.then_some(DesignPart::Search));
     let (known, aimed_at) = (given.specifications.len(), &aimed.specifications);
     if given.specifications != aimed_at[..known] {
-        told = told.judged_by(given, watch)?;
+        project_design = project_design.judged_by(given, watch)?;
     }
-    told = told.met_where_it_is(known);
-    told.structures = structures::reached(&run, &told)?;
-    Ok((run, ProjectDesign { unfinished, explanations, ..told }))
+    project_design = project_design.met_where_it_is(known);
+    project_design.structures = structures::reached(&run, &project_design)?;
+    Ok((run, ProjectDesign { unfinished, explanations, ..project_design }))
 }

@@ -14,10 +14,10 @@ use phea_qft::specification::{Limit, Requirement, Specification};
 use super::deployable::limit_value;
 use super::{CommandOfSteps, DesignError, DesignLimitKind, ProjectDesign, design_limits};
 use crate::audit::TimeFinding;
-use crate::project::{DeclaredLimit, DeclaredSpecification, Project, ResponseWish, SpecificationKind};
+use crate::project::{DeclaredLimit, DeclaredSpecification, Project, ResponseRequirement, SpecificationKind};
 use crate::robust::{RobustError, RobustProblem};
 use crate::setup::Setup;
-use crate::simulate::{ReachedStep, TimeRequirement, TrackingWish};
+use crate::simulate::{ReachedStep, TimeRequirement, StepLimits};
 use crate::specification::{specification, specifications};
 use phea_dynamics::closed_loop::ClosedLoop;
 
@@ -32,10 +32,10 @@ const POINTS: usize = 100;
 /// Room that is left in a tightened limit.
 const ROOM: f64 = 0.97;
 /// Least fraction of a requirement that is aimed at.
-const LEAST_SHARE: f64 = 0.2;
+const LEAST_FRACTION: f64 = 0.2;
 /// Settling time of the upper limit divided by that of the lower one, and zero and pole multiplied
 /// by it.
-const UPPER_SHARE: f64 = 0.4;
+const UPPER_FRACTION: f64 = 0.4;
 const EXTRA_ROOT: f64 = 15.0;
 /// Least decay of zero and pole within the settling time, divided by the decay that a band
 /// requires.
@@ -73,8 +73,8 @@ impl StepAim {
     }
 
     /// Requirement in time at which the search aims, from the stated one.
-    pub(super) fn wish(self, required: TrackingWish) -> TrackingWish {
-        TrackingWish {
+    pub(super) fn step_limits(self, required: StepLimits) -> StepLimits {
+        StepLimits {
             overshoot_percent: required.overshoot_percent.map(|most| most * self.overshoot),
             settling_time_s: required.settling_time_s.map(|time_s| time_s * self.settling),
             rise_time_s: required.rise_time_s.map(|time_s| time_s * self.settling),
@@ -84,22 +84,22 @@ impl StepAim {
 
     /// Largest ratio of a property of the steps of a design to the aim: at most 1 if all are within
     /// it.
-    pub(super) fn excess(self, told: &ProjectDesign) -> f64 {
-        let required = told.designed.view.in_time.iter().filter(|finding| finding.requirement.follows);
+    pub(super) fn excess(self, project_design: &ProjectDesign) -> f64 {
+        let required = project_design.designed.view.in_time.iter().filter(|finding| finding.requirement.follows);
         let ratio = |finding: &TimeFinding| {
-            let wish = self.wish(finding.requirement.wish);
-            finding.reached().map_or(f64::INFINITY, |reached| wish.excess(&reached))
+            let step_limits = self.step_limits(finding.requirement.step_limits);
+            finding.reached().map_or(f64::INFINITY, |reached| step_limits.excess(&reached))
         };
-        let command = told.exceeded_command().map_or(0.0, CommandOfSteps::ratio);
+        let command = project_design.exceeded_command().map_or(0.0, CommandOfSteps::ratio);
         required.map(ratio).fold(command, f64::max)
     }
 
     /// Aim made stricter by the deficits of a design: a loop that does without its prefilter what
     /// the prefilter exaggerates, and steps that miss a requirement; `None` without deficits, or if
     /// a stricter aim gains nothing.
-    pub(super) fn stricter(self, told: &ProjectDesign) -> Option<StepAim> {
-        let Some([most, largest]) = told.exceeded_prefilter_gain() else {
-            return self.stricter_steps(told);
+    pub(super) fn stricter(self, project_design: &ProjectDesign) -> Option<StepAim> {
+        let Some([most, largest]) = project_design.exceeded_prefilter_gain() else {
+            return self.stricter_steps(project_design);
         };
         let lower = |known: f64| (known * most / largest).max(LEAST_PREFILTER_GAIN);
         let aim = StepAim { prefilter_gain: Some(self.prefilter_gain.map_or(most, lower)), ..self };
@@ -108,27 +108,27 @@ impl StepAim {
 
     /// Aim made stricter by as much as the steps of a design miss a requirement; `None` if they
     /// miss none, or if a stricter aim gains nothing.
-    fn stricter_steps(self, told: &ProjectDesign) -> Option<StepAim> {
-        let missed = told.designed.view.in_time.iter().find(|finding| finding.violates())?;
-        self.stricter_by(&missed.requirement.wish, &missed.reached()?)
+    fn stricter_steps(self, project_design: &ProjectDesign) -> Option<StepAim> {
+        let missed = project_design.designed.view.in_time.iter().find(|finding| finding.violates())?;
+        self.stricter_by(&missed.requirement.step_limits, &missed.reached()?)
     }
 
     /// Aim made stricter by as much as these steps miss a requirement.
-    pub(super) fn stricter_by(self, wish: &TrackingWish, reached: &ReachedStep) -> Option<StepAim> {
+    pub(super) fn stricter_by(self, step_limits: &StepLimits, reached: &ReachedStep) -> Option<StepAim> {
         let over = |value: f64, most: Option<f64>| {
             let ratio = value / most?.max(LEAST_OVERSHOOT_PERCENT);
             (ratio > 1.0).then_some(ratio)
         };
         let late = |time_s: f64, most: Option<f64>| Some(time_s / most?).filter(|ratio| *ratio > 1.0);
-        let overshoot = over(reached.overshoot_percent, wish.overshoot_percent);
-        let slower = late(reached.settling_time_s, wish.settling_time_s)
+        let overshoot = over(reached.overshoot_percent, step_limits.overshoot_percent);
+        let slower = late(reached.settling_time_s, step_limits.settling_time_s)
             .into_iter()
-            .chain(late(reached.rise_time_s, wish.rise_time_s))
+            .chain(late(reached.rise_time_s, step_limits.rise_time_s))
             .reduce(f64::max);
-        let tightened = |share: f64, ratio: Option<f64>| match ratio {
-            Some(ratio) if ratio.is_finite() => (share * ROOM / ratio).max(LEAST_SHARE),
-            Some(_) => (0.5 * share).max(LEAST_SHARE),
-            None => share,
+        let tightened = |fraction: f64, ratio: Option<f64>| match ratio {
+            Some(ratio) if ratio.is_finite() => (fraction * ROOM / ratio).max(LEAST_FRACTION),
+            Some(_) => (0.5 * fraction).max(LEAST_FRACTION),
+            None => fraction,
         };
         let aim = StepAim {
             overshoot: tightened(self.overshoot, overshoot),
@@ -170,43 +170,43 @@ impl StepAim {
     fn aimed(self, declared: &DeclaredSpecification) -> DeclaredSpecification {
         let mut stricter = declared.clone();
         for limit in [&mut stricter.upper, &mut stricter.lower] {
-            let Some(DeclaredLimit::Response(wish)) = limit else { continue };
-            if wish.function.is_none() {
-                wish.overshoot_percent =
-                    wish.overshoot_percent.map(|most| (self.overshoot * most).max(LEAST_OVERSHOOT_PERCENT));
+            let Some(DeclaredLimit::Response(step_limits)) = limit else { continue };
+            if step_limits.function.is_none() {
+                step_limits.overshoot_percent =
+                    step_limits.overshoot_percent.map(|most| (self.overshoot * most).max(LEAST_OVERSHOOT_PERCENT));
             }
         }
-        if let Some(DeclaredLimit::Response(wish)) = &mut stricter.lower
-            && wish.function.is_none()
+        if let Some(DeclaredLimit::Response(step_limits)) = &mut stricter.lower
+            && step_limits.function.is_none()
         {
-            wish.settling_time = wish.settling_time.map(|time_s| self.settling * time_s);
+            step_limits.settling_time = step_limits.settling_time.map(|time_s| self.settling * time_s);
         }
         stricter
     }
 
     /// Limits of tracking that lead to a required step.
     fn towards(self, required: &TimeRequirement) -> Result<Specification, DesignError> {
-        let wish = required.wish;
-        let settling_s = self.settling * wish.horizon_s;
-        let response = |settling_s: f64| ResponseWish {
+        let step_limits = required.step_limits;
+        let settling_s = self.settling * step_limits.horizon_s;
+        let response = |settling_s: f64| ResponseRequirement {
             settling_time: Some(settling_s),
-            settling_band_percent: Some(wish.band_percent),
-            ..ResponseWish::default()
+            settling_band_percent: Some(step_limits.band_percent),
+            ..ResponseRequirement::default()
         };
         // one pole settles at p t = ln(100/band)
-        let decay = EXTRA_DECAY * portable::ln(100.0 / wish.band_percent);
-        let root = Some(EXTRA_ROOT.max(decay) / wish.horizon_s);
-        let overshoot_percent = self.overshoot * wish.overshoot_percent.unwrap_or(wish.band_percent);
-        let upper = ResponseWish {
+        let decay = EXTRA_DECAY * portable::ln(100.0 / step_limits.band_percent);
+        let root = Some(EXTRA_ROOT.max(decay) / step_limits.horizon_s);
+        let overshoot_percent = self.overshoot * step_limits.overshoot_percent.unwrap_or(step_limits.band_percent);
+        let upper = ResponseRequirement {
             overshoot_percent: Some(overshoot_percent.max(LEAST_OVERSHOOT_PERCENT)),
             zero: root,
-            ..response(UPPER_SHARE * settling_s)
+            ..response(UPPER_FRACTION * settling_s)
         };
-        let frequencies = FREQUENCIES.map(|factor| factor / wish.horizon_s).to_vec();
+        let frequencies = FREQUENCIES.map(|factor| factor / step_limits.horizon_s).to_vec();
         let declared = DeclaredSpecification {
             kind: SpecificationKind::ClosedLoop(ClosedLoop::Tracking),
             upper: Some(DeclaredLimit::Response(upper)),
-            lower: Some(DeclaredLimit::Response(ResponseWish { pole: root, ..response(settling_s) })),
+            lower: Some(DeclaredLimit::Response(ResponseRequirement { pole: root, ..response(settling_s) })),
             frequencies,
             ..DeclaredSpecification::default()
         };

@@ -6,7 +6,7 @@ use phea_dynamics::linear::LinearError;
 use phea_dynamics::portable;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::design::{
-    BINDING_DB, ControllerChoice, NamedStructure, Objective, PrefilterChoice, StructureEnding, TriedStructure,
+    BINDING_DB, ControllerChoice, NamedStructure, Objective, PrefilterChoice, StructureEnding, SearchedStructure,
 };
 use phea_qft::loop_shaping::Structure;
 use phea_qft::verification::SpecificationMargin;
@@ -62,8 +62,8 @@ pub fn structure_key(name: Option<NamedStructure>) -> &'static str {
 }
 
 /// The structures of a design.
-pub(super) fn reached(run: &DesignRun, told: &ProjectDesign) -> Result<Vec<ReachedStructure>, DesignError> {
-    let each = run.outcome.tried().iter().map(|tried| reached_by(run, told, tried));
+pub(super) fn reached(run: &DesignRun, project_design: &ProjectDesign) -> Result<Vec<ReachedStructure>, DesignError> {
+    let each = run.outcome.searched().iter().map(|searched| reached_by(run, project_design, searched));
     Ok(each.collect::<Result<Vec<ReachedStructure>, LinearError>>()?)
 }
 
@@ -76,7 +76,7 @@ pub(super) fn led(
     least: Option<SpecificationMargin>,
 ) -> Result<Vec<ReachedStructure>, DesignError> {
     let design = &led.design;
-    let own = TriedStructure {
+    let own = SearchedStructure {
         name: design.name,
         structure: design.structure.clone(),
         prefilter: design.prefilter.clone(),
@@ -89,9 +89,9 @@ pub(super) fn led(
     };
     let own = reached_by(run, led, &own)?;
     let mut all: Vec<ReachedStructure> = before.structures.clone();
-    for tried in all.iter_mut().filter(|one| one.is_chosen) {
-        tried.misses_on_rig = before.misses_on_rig();
-        tried.is_chosen = false;
+    for searched in all.iter_mut().filter(|one| one.is_chosen) {
+        searched.misses_on_rig = before.misses_on_rig();
+        searched.is_chosen = false;
     }
     match all.iter_mut().find(|one| one.structure == own.structure) {
         Some(known) => *known = own,
@@ -102,10 +102,10 @@ pub(super) fn led(
 
 fn reached_by(
     run: &DesignRun,
-    told: &ProjectDesign,
-    tried: &TriedStructure,
+    project_design: &ProjectDesign,
+    searched: &SearchedStructure,
 ) -> Result<ReachedStructure, LinearError> {
-    let law = tried.law.as_ref().filter(|_| tried.least.is_some());
+    let law = searched.law.as_ref().filter(|_| searched.least.is_some());
     let around = match law {
         Some(law) => {
             let compensation = Compensation::new(law, run.problem.sensor.clone())?;
@@ -121,24 +121,24 @@ fn reached_by(
         }
         None => None,
     };
-    let is_chosen = tried.structure == told.design.structure;
-    let audited = if is_chosen { audited_least(told) } else { None };
-    let least = tried.least.clone().map(|sampled| audited.unwrap_or(sampled));
+    let is_chosen = searched.structure == project_design.design.structure;
+    let audited = if is_chosen { audited_least(project_design) } else { None };
+    let least = searched.least.clone().map(|sampled| audited.unwrap_or(sampled));
     let own = run.aimed.specifications.len() - run.aimed.design_limits.len();
     let limit_of = |margin: &SpecificationMargin| {
         let limit =
             margin.specification.checked_sub(own).and_then(|limit| run.aimed.design_limits.get(limit));
         limit.map_or(SearchedLimit::Specification(margin.specification), |kind| SearchedLimit::Design(*kind))
     };
-    let leaves_no_room = |margin: &&SpecificationMargin| match told.options.objective {
+    let leaves_no_room = |margin: &&SpecificationMargin| match project_design.options.objective {
         Objective::BestWorstMargin => true,
         Objective::LeastHighFrequencyGain | Objective::LeastBandwidth => {
-            margin.margin_db <= told.options.reserve_db + BINDING_DB
+            margin.margin_db <= project_design.options.reserve_db + BINDING_DB
         }
     };
     let has_prefilter = law.is_some_and(|law| !law.prefilter.stages.is_empty());
-    let is_fitted = has_prefilter || !matches!(told.options.prefilter, PrefilterChoice::Grow { .. });
-    let steps = match (told.designed.view.in_time.first(), &around) {
+    let is_fitted = has_prefilter || !matches!(project_design.options.prefilter, PrefilterChoice::Grow { .. });
+    let steps = match (project_design.designed.view.in_time.first(), &around) {
         (Some(finding), _) if is_chosen => finding.reached(),
         (Some(finding), Some(around)) if is_fitted => steps_of_members(around, &finding.requirement),
         _ => None,
@@ -146,19 +146,19 @@ fn reached_by(
     Ok(ReachedStructure {
         steps,
         misses_on_rig: false,
-        name: tried.name,
-        no_pid: law.filter(|_| tried.name == Some(NamedStructure::Pid)).and_then(no_pid),
-        order: tried.structure.order()?,
-        relative_degree: tried.structure.relative_degree()?,
+        name: searched.name,
+        no_pid: law.filter(|_| searched.name == Some(NamedStructure::Pid)).and_then(no_pid),
+        order: searched.structure.order()?,
+        relative_degree: searched.structure.relative_degree()?,
         is_chosen,
-        slowest_zero_rad_per_s: tried.structure.slowest_zero_touched(&tried.free_numbers),
-        structure: tried.structure.clone(),
-        ending: tried.ending,
+        slowest_zero_rad_per_s: searched.structure.slowest_zero_touched(&searched.free_numbers),
+        structure: searched.structure.clone(),
+        ending: searched.ending,
         binding: least.as_ref().filter(leaves_no_room).map(limit_of),
         least,
         nominal,
         high_frequency_gain_db,
-        compared_db: tried.reached_db,
+        compared_db: searched.reached_db,
     })
 }
 
@@ -171,9 +171,9 @@ fn no_pid(law: &Controller) -> Option<ManualLaw> {
 }
 
 /// Least margin to any limit by which a design is judged, found by its audit.
-fn audited_least(told: &ProjectDesign) -> Option<SpecificationMargin> {
-    let of_project = told.designed.view.audit.specifications.iter().map(|finding| (true, finding));
-    let of_design = told.limit_findings.iter().map(|(kind, finding)| (!kind.is_led_to(), finding));
+fn audited_least(project_design: &ProjectDesign) -> Option<SpecificationMargin> {
+    let of_project = project_design.designed.view.audit.specifications.iter().map(|finding| (true, finding));
+    let of_design = project_design.limit_findings.iter().map(|(kind, finding)| (!kind.is_led_to(), finding));
     let judged = of_project.chain(of_design).filter(|(is_judged, _)| *is_judged);
     let margins = judged.filter_map(|(_, finding)| finding.worst.as_ref());
     margins.min_by(|one, other| one.margin_db.total_cmp(&other.margin_db)).cloned()
@@ -185,12 +185,12 @@ fn audited_least(told: &ProjectDesign) -> Option<SpecificationMargin> {
 /// ```text
 /// 20 log10 max |G/(1 + L)|         over the frequencies of the search
 /// ```
-fn noise_gain_db(run: &DesignRun, told: &ProjectDesign) -> Option<f64> {
-    if told.options.objective != Objective::LeastHighFrequencyGain {
+fn noise_gain_db(run: &DesignRun, project_design: &ProjectDesign) -> Option<f64> {
+    if project_design.options.objective != Objective::LeastHighFrequencyGain {
         return None;
     }
     let frequencies = run.outcome.samples()?.frequencies_rad_per_s();
-    noise_gain_around(&told.designed.problem, &frequencies)
+    noise_gain_around(&project_design.designed.problem, &frequencies)
 }
 
 /// True if a design reduces the compared quantity by enough to replace one with fewer poles.
@@ -233,10 +233,10 @@ impl ProjectDesign {
     }
 
     /// The design with the structures that were searched only for less strict limits.
-    pub(super) fn with_shorter(mut self, tried: Vec<ReachedStructure>) -> ProjectDesign {
+    pub(super) fn with_shorter(mut self, searched: Vec<ReachedStructure>) -> ProjectDesign {
         let is_same = |one: &ReachedStructure, other: &ReachedStructure| one.structure == other.structure;
         let mut all: Vec<ReachedStructure> = Vec::new();
-        for one in tried {
+        for one in searched {
             let own = self.structures.iter().find(|own| is_same(own, &one)).cloned();
             let one = own.unwrap_or(ReachedStructure { is_chosen: false, ..one });
             if !all.iter().any(|known| is_same(known, &one)) {

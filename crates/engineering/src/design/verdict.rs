@@ -50,11 +50,11 @@ pub enum DesignVerdict {
         tolerance_db: Option<f64>,
     },
     /// None of the controllers makes the required steps; the nearest one satisfies everything else.
-    StepsNotReached(TriedControllers),
+    StepsNotReached(SearchedControllers),
     /// None of the controllers satisfies every specification.
     Infeasible {
         /// Controllers of the search.
-        tried: TriedControllers,
+        searched: SearchedControllers,
         /// Amount by which every limit must be wider for one of them, dB.
         relaxation_db: f64,
     },
@@ -68,7 +68,7 @@ pub enum DesignVerdict {
         is_met: bool,
     },
     /// None of the controllers makes every plant stable.
-    NotStabilised(TriedControllers),
+    NotStabilised(SearchedControllers),
 }
 
 /// Failure of the nonlinear rig to satisfy a requirement in time.
@@ -82,7 +82,7 @@ pub enum RigMiss {
 
 /// Controllers among which a design was searched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TriedControllers {
+pub enum SearchedControllers {
     /// Controllers of the structure that the project gives.
     GivenStructure,
     /// Controllers of a named structure.
@@ -91,13 +91,13 @@ pub enum TriedControllers {
     UpToOrder(usize),
 }
 
-impl TriedControllers {
-    fn of(choice: &ControllerChoice) -> TriedControllers {
+impl SearchedControllers {
+    fn of(choice: &ControllerChoice) -> SearchedControllers {
         match choice {
-            ControllerChoice::Given(_) => TriedControllers::GivenStructure,
-            ControllerChoice::Named { name, .. } => TriedControllers::Named(*name),
+            ControllerChoice::Given(_) => SearchedControllers::GivenStructure,
+            ControllerChoice::Named { name, .. } => SearchedControllers::Named(*name),
             ControllerChoice::Any { maximum_order, .. } | ControllerChoice::Grow { maximum_order } => {
-                TriedControllers::UpToOrder(*maximum_order)
+                SearchedControllers::UpToOrder(*maximum_order)
             }
         }
     }
@@ -106,7 +106,7 @@ impl TriedControllers {
 impl ProjectDesign {
     /// Result of the design.
     pub fn verdict(&self) -> DesignVerdict {
-        let tried = TriedControllers::of(&self.options.controller);
+        let searched = SearchedControllers::of(&self.options.controller);
         match &self.design.status {
             _ if self.is_stopped() => DesignVerdict::Stopped {
                 is_met: self.is_met(),
@@ -115,10 +115,10 @@ impl ProjectDesign {
             },
             DesignStatus::Met => self.verdict_where_met(),
             DesignStatus::Infeasible(_) if self.keeps_all_but_steps() => {
-                DesignVerdict::StepsNotReached(tried)
+                DesignVerdict::StepsNotReached(searched)
             }
             DesignStatus::Infeasible(relaxation) => {
-                DesignVerdict::Infeasible { tried, relaxation_db: relaxation.relaxation_db }
+                DesignVerdict::Infeasible { searched, relaxation_db: relaxation.relaxation_db }
             }
             DesignStatus::NotConverged { .. } if self.designed.view.audit.verdict == Verdict::NotProven => {
                 DesignVerdict::Undecided
@@ -126,7 +126,7 @@ impl ProjectDesign {
             DesignStatus::NotConverged { rounds } => {
                 DesignVerdict::NotConverged { rounds: *rounds, is_met: self.is_met() }
             }
-            DesignStatus::NotStabilised => DesignVerdict::NotStabilised(tried),
+            DesignStatus::NotStabilised => DesignVerdict::NotStabilised(searched),
         }
     }
 
@@ -172,7 +172,7 @@ impl ProjectDesign {
 
     /// True if a design misses only a requirement in time.
     fn keeps_all_but_steps(&self) -> bool {
-        let is_met = self.designed.view.audit.verdict == Verdict::Met && self.keeps_its_limits();
+        let is_met = self.designed.view.audit.verdict == Verdict::Met && self.satisfies_its_limits();
         is_met && self.designed.view.misses_in_time()
     }
 }

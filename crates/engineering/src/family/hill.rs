@@ -43,7 +43,7 @@ enum Crest {
     /// Upper bound of its height.
     UpTo(f64),
     /// Position and height of the crest.
-    At { share: f64, height: f64 },
+    At { fraction: f64, height: f64 },
 }
 
 impl<'f> Hill<'f> {
@@ -58,36 +58,36 @@ impl<'f> Hill<'f> {
         Hill { family, expression, sign, along, rise: RISE }
     }
 
-    fn height(&self, shares: &[f64]) -> f64 {
-        self.sign * self.expression.number(&self.family.values(shares))
+    fn height(&self, fractions: &[f64]) -> f64 {
+        self.sign * self.expression.number(&self.family.values(fractions))
     }
 
     /// Point reached by steps along each coordinate, and along all of them together, while they
     /// increase the value, with decreasing length. After each step the coordinate `along` moves to
     /// the best place nearby: a coefficient has a crest where the spool is at null, and steps away
     /// from it decrease the value.
-    pub(super) fn climb(&self, shares: Vec<f64>) -> Vec<f64> {
+    pub(super) fn climb(&self, fractions: Vec<f64>) -> Vec<f64> {
         let [mut step, least] = STEPS;
         let mut crests = Crests::new();
-        let start = self.at_crest(shares.clone(), 1.0, f64::NEG_INFINITY, &mut crests);
-        let (mut shares, mut best) = start.unwrap_or((shares, f64::NEG_INFINITY));
+        let start = self.at_crest(fractions.clone(), 1.0, f64::NEG_INFINITY, &mut crests);
+        let (mut fractions, mut best) = start.unwrap_or((fractions, f64::NEG_INFINITY));
         let mut state = random::stream(SEED, 1);
         while step > least {
             let mut higher = false;
-            let axes = shares.len();
+            let axes = fractions.len();
             for direction in 0..2 * axes {
                 let course: Vec<f64> = (0..axes)
                     .map(|axis| match direction < axes {
                         true => f64::from(u8::from(axis == direction)),
-                        false => 2.0 * random::share(&mut state) - 1.0,
+                        false => 2.0 * random::uniform(&mut state) - 1.0,
                     })
                     .collect();
                 for side in [-step, step] {
-                    let moved = shares.iter().zip(&course);
-                    let next = moved.map(|(share, course)| (share + side * course).clamp(0.0, 1.0)).collect();
+                    let moved = fractions.iter().zip(&course);
+                    let next = moved.map(|(fraction, course)| (fraction + side * course).clamp(0.0, 1.0)).collect();
                     let wanted = best + SAME * best.abs();
                     if let Some(found) = self.at_crest(next, step, wanted, &mut crests) {
-                        ((shares, best), higher) = (found, true);
+                        ((fractions, best), higher) = (found, true);
                     }
                 }
             }
@@ -95,7 +95,7 @@ impl<'f> Hill<'f> {
                 step *= 0.5;
             }
         }
-        shares
+        fractions
     }
 
     /// The point with the coordinate `along` at the best place nearby, and the height there, if it
@@ -103,28 +103,28 @@ impl<'f> Hill<'f> {
     /// the result does not depend: such points are searched once.
     fn at_crest(
         &self,
-        mut shares: Vec<f64>,
+        mut fractions: Vec<f64>,
         step: f64,
         wanted: f64,
         crests: &mut Crests,
     ) -> Option<(Vec<f64>, f64)> {
-        let start = self.along.and_then(|axis| Some((axis, *shares.get(axis)?)));
+        let start = self.along.and_then(|axis| Some((axis, *fractions.get(axis)?)));
         let Some((axis, middle)) = start else {
-            let height = self.height(&shares);
-            return (height > wanted).then_some((shares, height));
+            let height = self.height(&fractions);
+            return (height > wanted).then_some((fractions, height));
         };
         let within = step.max(NEAR);
-        let values = self.family.values(&shares);
+        let values = self.family.values(&fractions);
         let felt = values.iter().enumerate().filter(|(index, _)| self.expression.depends_on(*index));
         let key = felt.map(|(_, value)| *value).chain([middle, within]).map(f64::to_bits).collect();
         let known = crests.entry(key).or_insert(Crest::UpTo(f64::INFINITY));
         if matches!(known, Crest::UpTo(height) if *height > wanted) {
-            *known = self.crest(&shares, axis, within, wanted);
+            *known = self.crest(&fractions, axis, within, wanted);
         }
         match *known {
-            Crest::At { share, height } if height > wanted => {
-                shares[axis] = share;
-                Some((shares, height))
+            Crest::At { fraction, height } if height > wanted => {
+                fractions[axis] = fraction;
+                Some((fractions, height))
             }
             _ => None,
         }
@@ -132,11 +132,11 @@ impl<'f> Hill<'f> {
 
     /// Crest along one coordinate within a distance: by a scan, then by ternary search around its
     /// best point, if that may reach more than `wanted`.
-    fn crest(&self, shares: &[f64], axis: usize, within: f64, wanted: f64) -> Crest {
-        let middle = shares[axis];
+    fn crest(&self, fractions: &[f64], axis: usize, within: f64, wanted: f64) -> Crest {
+        let middle = fractions[axis];
         let heights = |places: &[f64]| -> Vec<f64> {
             let at = |place: &f64| {
-                let mut moved = shares.to_vec();
+                let mut moved = fractions.to_vec();
                 moved[axis] = place.clamp(0.0, 1.0);
                 self.family.values(&moved)
             };
@@ -184,8 +184,8 @@ impl<'f> Hill<'f> {
         let found = 0.5 * (low + high);
         let height = heights(&[found]);
         match height[..] {
-            [height] if height > best.0 => Crest::At { share: found.clamp(0.0, 1.0), height },
-            _ => Crest::At { share: best.1.clamp(0.0, 1.0), height: best.0 },
+            [height] if height > best.0 => Crest::At { fraction: found.clamp(0.0, 1.0), height },
+            _ => Crest::At { fraction: best.1.clamp(0.0, 1.0), height: best.0 },
         }
     }
 }
@@ -239,7 +239,7 @@ mod tests {
     impl DrawnCrest {
         fn drawn(number: u64) -> DrawnCrest {
             let mut state = random::stream(SEED, number);
-            let mut between = |low: f64, high: f64| low + (high - low) * random::share(&mut state);
+            let mut between = |low: f64, high: f64| low + (high - low) * random::uniform(&mut state);
             DrawnCrest {
                 rise: [between(-1.0, 1.0), between(-1.0, 1.0)],
                 place: [between(0.35, 0.65), between(-0.15, 0.15), between(-0.15, 0.15)],

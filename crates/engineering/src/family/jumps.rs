@@ -104,13 +104,13 @@ impl Choices<'_> {
 
     /// Both plants next to each jump along one coordinate.
     fn along(&self, from: &[f64], axis: usize) -> Vec<[Vec<f64>; 2]> {
-        let at = |share: f64| {
-            let mut shares = from.to_vec();
-            shares[axis] = share;
-            self.family.values(&shares)
+        let at = |fraction: f64| {
+            let mut fractions = from.to_vec();
+            fractions[axis] = fraction;
+            self.family.values(&fractions)
         };
         let places: Vec<f64> = (0..ALONG).map(|place| place as f64 / (ALONG - 1) as f64).collect();
-        let seen: Vec<Vec<f64>> = places.iter().map(|&share| self.at(&at(share)).0).collect();
+        let seen: Vec<Vec<f64>> = places.iter().map(|&fraction| self.at(&at(fraction)).0).collect();
         let full = self.open.rig.actuator.components().valve.nominal_voltage;
         let mut found: Vec<[Vec<f64>; 2]> = Vec::new();
         for (pair, ends) in seen.windows(2).zip(places.windows(2)) {

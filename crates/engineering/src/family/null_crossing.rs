@@ -51,7 +51,7 @@ pub(super) fn with_crossings(
 fn crossings(visited: &Visited, family: &UncertainFamily) -> Vec<Vec<f64>> {
     let mut found = Vec::new();
     for axis in visited.axes(family) {
-        let beside = |from: Vec<f64>| beside_null(visited, family, &from, axis);
+        let beside = |from: Vec<f64>| near_null(visited, family, &from, axis);
         found.extend(lines(family, axis, CORNER_COORDINATES).map(beside).filter(|two| !two.is_empty()));
     }
     let step = found.len().div_ceil(CROSSINGS).max(1);
@@ -60,16 +60,16 @@ fn crossings(visited: &Visited, family: &UncertainFamily) -> Vec<Vec<f64>> {
 
 /// Plants along one coordinate between which the spool passes through null, slightly below and
 /// above it: exactly at null it has no side. Only one of them if the box ends at null.
-fn beside_null(visited: &Visited, family: &UncertainFamily, from: &[f64], axis: usize) -> Vec<Vec<f64>> {
+fn near_null(visited: &Visited, family: &UncertainFamily, from: &[f64], axis: usize) -> Vec<Vec<f64>> {
     let beside = BESIDE * visited.rig.actuator.components().valve.nominal_voltage;
-    let at = |share: f64| {
-        let mut shares = from.to_vec();
-        shares[axis] = share;
-        family.values(&shares)
+    let at = |fraction: f64| {
+        let mut fractions = from.to_vec();
+        fractions[axis] = fraction;
+        family.values(&fractions)
     };
     let mut found = Vec::new();
     for sign in [-1.0, 1.0] {
-        let is_there = |share: f64| sign * visited.command(&at(share)) > beside;
+        let is_there = |fraction: f64| sign * visited.command(&at(fraction)) > beside;
         for [mut there, mut beyond] in [[0.0, 1.0], [1.0, 0.0]] {
             if !is_there(there) || is_there(beyond) {
                 continue;

@@ -165,8 +165,8 @@ impl Fitted<'_> {
         let width = balance.valve.nominal_voltage / balance.valve.leakage_shape.widest().max(1.0);
         let command = |value: f64| self.visited.command(&self.values(movers, &[value]));
         let rises = command(high) > command(low);
-        let mut cuts = [-AROUND_NULL, AROUND_NULL].map(|share| {
-            let is_above = |value: f64| (command(value) > share * width) == rises;
+        let mut cuts = [-AROUND_NULL, AROUND_NULL].map(|fraction| {
+            let is_above = |value: f64| (command(value) > fraction * width) == rises;
             if is_above(low) || !is_above(high) {
                 return None;
             }

@@ -166,13 +166,13 @@ impl Visited {
             Extent::Box => 1_usize.checked_shl(axes.len() as u32).unwrap_or(CORNERS).min(CORNERS),
             Extent::Members => 0,
         };
-        let nominal = family.shares(&family.plant().nominal());
+        let nominal = family.fractions(&family.plant().nominal());
         let corner = |corner: usize| {
-            let mut shares = nominal.clone();
+            let mut fractions = nominal.clone();
             for (place, &axis) in axes.iter().enumerate() {
-                shares[axis] = f64::from(u8::from(corner >> place & 1 == 1));
+                fractions[axis] = f64::from(u8::from(corner >> place & 1 == 1));
             }
-            family.values(&shares)
+            family.values(&fractions)
         };
         let mut seen = BTreeSet::new();
         let bits = |values: &Vec<f64>| -> Vec<u64> {
@@ -211,16 +211,16 @@ pub(super) fn check(setup: &Setup<'_>, family: &UncertainFamily) -> Result<(), P
 /// Both ends of a box and points within it: multiples of the golden ratio fill the unit interval
 /// evenly.
 pub(super) fn within(parameters: &[UncertainParameter]) -> Vec<Vec<f64>> {
-    let mut share = 0.0_f64;
-    let at = |parameter: &UncertainParameter, share: f64| {
-        parameter.minimum + share * (parameter.maximum - parameter.minimum)
+    let mut fraction = 0.0_f64;
+    let at = |parameter: &UncertainParameter, fraction: f64| {
+        parameter.minimum + fraction * (parameter.maximum - parameter.minimum)
     };
     let mut next = |parameter: &UncertainParameter| {
-        share = (share + 0.618_033_988_749_895).fract();
-        at(parameter, share)
+        fraction = (fraction + 0.618_033_988_749_895).fract();
+        at(parameter, fraction)
     };
     let mut points: Vec<Vec<f64>> = (0..WITHIN).map(|_| parameters.iter().map(&mut next).collect()).collect();
-    points.extend([0.0, 1.0].map(|share| parameters.iter().map(|one| at(one, share)).collect()));
+    points.extend([0.0, 1.0].map(|fraction| parameters.iter().map(|one| at(one, fraction)).collect()));
     points
 }
 
@@ -231,7 +231,7 @@ pub(super) fn lines(
     axis: usize,
     most: usize,
 ) -> impl Iterator<Item = Vec<f64>> + use<> {
-    let nominal = family.shares(&family.plant().nominal());
+    let nominal = family.fractions(&family.plant().nominal());
     let count = nominal.len();
     let corners = if count <= most { 1_usize << count } else { 0 };
     let lower = (0..corners).filter(move |corner| corner >> axis & 1 == 0);

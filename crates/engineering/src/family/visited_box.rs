@@ -152,7 +152,7 @@ fn extreme<'a>(
     let climbed = starts.into_iter().map(|(_, values)| match family.extent() {
         Extent::Box => {
             let hill = Hill::new(family, expression, sign, along);
-            family.values(&hill.climb(family.shares(values)))
+            family.values(&hill.climb(family.fractions(values)))
         }
         Extent::Members => values.clone(),
     });
@@ -177,8 +177,8 @@ fn extreme<'a>(
 fn drawn(family: &UncertainFamily) -> Vec<Vec<f64>> {
     let mut state = random::stream(SEED, 0);
     let mut point = |_| {
-        let shares: Vec<f64> = family.coordinates().iter().map(|_| random::share(&mut state)).collect();
-        family.values(&shares)
+        let fractions: Vec<f64> = family.coordinates().iter().map(|_| random::uniform(&mut state)).collect();
+        family.values(&fractions)
     };
     (0..DRAWN).map(&mut point).collect()
 }

@@ -71,7 +71,7 @@ pub(super) fn compliance(recording: &FrictionRecording, static_friction: f64) ->
     let position_noise = noise(&recording.positions);
     let smooth = knotted(&recording.forces, noise(&recording.forces));
     let knot = |index: usize| smooth.forces.get(index).copied().unwrap_or(0.0);
-    let fractions = smooth.shares().into_iter();
+    let fractions = smooth.fractions().into_iter();
     let forces =
         fractions.map(|(before, fraction)| knot(before) * (1.0 - fraction) + knot(before + 1) * fraction);
     let [position, _] = beginning(recording);
@@ -109,7 +109,7 @@ pub(super) fn breakaway(recording: &FrictionRecording) -> Option<Breakaway> {
     let [start, _] = beginning(recording);
     let moved = recording.positions.iter().map(|position| position - start);
     let (row, moved) = moved.enumerate().find(|(_, moved)| moved.abs() > limit)?;
-    let fractions = smooth.shares().into_iter().take(row + 1);
+    let fractions = smooth.fractions().into_iter().take(row + 1);
     let knot = |index: usize| smooth.forces.get(index).copied().unwrap_or(0.0);
     let forces =
         fractions.map(|(before, fraction)| knot(before) * (1.0 - fraction) + knot(before + 1) * fraction);
@@ -178,7 +178,7 @@ fn through(knots: Vec<usize>, forces: &[f64]) -> KnottedForce {
     let found = KnottedForce { knots, forces: vec![0.0; count] };
     let mut normal = DMatrix::<f64>::zeros(count, count);
     let mut right = DVector::<f64>::zeros(count);
-    for ((knot, fraction), force) in found.shares().into_iter().zip(forces) {
+    for ((knot, fraction), force) in found.fractions().into_iter().zip(forces) {
         let weights = [(knot, 1.0 - fraction), (knot + 1, fraction)];
         for (i, first) in weights {
             right[i] += first * force;
@@ -194,7 +194,7 @@ fn through(knots: Vec<usize>, forces: &[f64]) -> KnottedForce {
 
 fn residuals(found: &KnottedForce, forces: &[f64]) -> Vec<f64> {
     let at = |knot: usize| found.forces.get(knot).copied().unwrap_or(0.0);
-    let fractions = found.shares().into_iter().zip(forces);
+    let fractions = found.fractions().into_iter().zip(forces);
     fractions
         .map(|((knot, fraction), force)| force - at(knot) * (1.0 - fraction) - at(knot + 1) * fraction)
         .collect()

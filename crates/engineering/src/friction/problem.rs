@@ -3,11 +3,11 @@
 mod shake;
 mod variables;
 
-pub(super) use shake::KeptShapes;
+pub(super) use shake::ShapeCache;
 pub(super) use variables::{DAMPING, EXTENDING, LevelVariables, RETRACTING, SHARED, ZERO};
 
 use phea_dynamics::least_squares::{Ending, Linearised, Minimum, Settings, minimise};
-use phea_dynamics::watch::{Stopped, Watch, tell};
+use phea_dynamics::watch::{Stopped, Watch, report_progress};
 use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, KnottedForce, LuGre, PressedMass, Stribeck};
 
 use super::FrictionRecording;
@@ -152,7 +152,7 @@ impl<'a> FrictionProblem<'a> {
 
     /// Residuals divided by their scales, with derivatives; `None` if there is no such friction, or
     /// the simulation does not reach its end.
-    fn linearised(&self, variables: &[f64], kept: &mut KeptShapes) -> Option<Linearised> {
+    fn linearised(&self, variables: &[f64], cache: &mut ShapeCache) -> Option<Linearised> {
         let (lugre, zero) = self.friction(variables);
         if !slides_at_all(&lugre) {
             return None;
@@ -173,7 +173,7 @@ impl<'a> FrictionProblem<'a> {
             let scales = [channels.next()?, channels.next()?].map(FrictionChannel::effective_scale);
             let count = shake.variable_count();
             let own = variables.get(first..first + count)?;
-            self.shake(shake, (&lugre, zero), (first, own), scales, (kept, &mut rows))?;
+            self.shake(shake, (&lugre, zero), (first, own), scales, (cache, &mut rows))?;
             first += count;
         }
         Some(rows.found)
@@ -247,7 +247,7 @@ impl<'a> FrictionProblem<'a> {
         let measured: Vec<f64> = knots.iter().map(|value| value * force).collect();
         let acting = measured.iter().map(|value| value - zero).collect();
         let acting = KnottedForce { knots: press.force.knots.clone(), forces: acting };
-        let fractions = acting.shares();
+        let fractions = acting.fractions();
         for ((knot, fraction), shown) in fractions.iter().zip(&recording.forces) {
             let at = |index: usize| measured.get(index).copied().unwrap_or(0.0);
             let modelled = at(*knot) * (1.0 - fraction) + at(knot + 1) * fraction;
@@ -289,15 +289,15 @@ impl<'a> FrictionProblem<'a> {
         &self,
         start: &[f64],
         tolerance: f64,
-        kept: &mut KeptShapes,
+        cache: &mut ShapeCache,
         watch: Watch<'_>,
     ) -> Result<Minimum, Stopped> {
         let settings = Settings { maximum_evaluations: EVALUATIONS, tolerance, ..Settings::default() };
         let mut done = 0;
         minimise(start, &self.bounds(), settings, &mut |variables| {
             done += 1;
-            tell(watch, "fitting", done, EVALUATIONS)?;
-            Ok(self.linearised(variables, kept))
+            report_progress(watch, "fitting", done, EVALUATIONS)?;
+            Ok(self.linearised(variables, cache))
         })
     }
 
@@ -307,14 +307,14 @@ impl<'a> FrictionProblem<'a> {
         &self,
         others: &[(Stribeck, f64)],
         tolerance: f64,
-        kept: &mut KeptShapes,
+        cache: &mut ShapeCache,
         watch: Watch<'_>,
     ) -> Result<Minimum, Stopped> {
         let guess = (self.around.lugre.curve, self.around.zero);
-        let mut minimum = self.minimum_from(&guess, tolerance, kept, watch)?;
+        let mut minimum = self.minimum_from(&guess, tolerance, cache, watch)?;
         let all_slides = self.presses.is_empty() && self.shakes.is_empty();
         for other in others.iter().filter(|_| all_slides) {
-            let found = self.searched(&self.start(other), tolerance, kept, watch)?;
+            let found = self.searched(&self.start(other), tolerance, cache, watch)?;
             if found.cost < minimum.cost {
                 minimum = found;
             }
@@ -328,11 +328,11 @@ impl<'a> FrictionProblem<'a> {
         &self,
         guess: &(Stribeck, f64),
         tolerance: f64,
-        kept: &mut KeptShapes,
+        cache: &mut ShapeCache,
         watch: Watch<'_>,
     ) -> Result<Minimum, Stopped> {
         let start = self.start(guess);
-        let mut minimum = self.searched(&start, tolerance, kept, watch)?;
+        let mut minimum = self.searched(&start, tolerance, cache, watch)?;
         for factor in RAISED {
             if minimum.ending != Ending::NoStart {
                 break;
@@ -344,7 +344,7 @@ impl<'a> FrictionProblem<'a> {
             for index in both.into_iter().flatten().filter(|index| !known.contains(index)) {
                 raised.iter_mut().skip(index).take(1).for_each(|value| *value += factor - 1.0);
             }
-            minimum = self.searched(&raised, tolerance, kept, watch)?;
+            minimum = self.searched(&raised, tolerance, cache, watch)?;
         }
         Ok(minimum)
     }

@@ -2,8 +2,8 @@
 
 use phea_dynamics::least_squares::Ending;
 use phea_dynamics::order::sort_numbers;
-use phea_dynamics::random::{share, stream};
-use phea_dynamics::watch::{Stopped, Watch, tell, unwatched};
+use phea_dynamics::random::{uniform, stream};
+use phea_dynamics::watch::{Stopped, Watch, report_progress, unwatched};
 
 use super::channels::Together;
 use super::fit::Fit;
@@ -53,7 +53,7 @@ pub(super) fn bootstrap(
     let mut estimates: [Vec<f64>; COUNT] = std::array::from_fn(|_| Vec::with_capacity(repetitions));
     let mut failed = 0;
     for repetition in 0..repetitions {
-        tell(watch, "bootstrap", repetition, repetitions)?;
+        report_progress(watch, "bootstrap", repetition, repetitions)?;
         let mut state = stream(u64::from(seed), repetition as u64);
         let recordings = repeated(fit, widening, block_rows, &mut state);
         let again = Together { recordings: &recordings, ..together.clone() };
@@ -91,7 +91,7 @@ fn repeated(fit: &Fit<'_>, widening: f64, block_rows: usize, state: &mut u64) ->
         .iter()
         .map(|recording| {
             let blocks = recording.inputs.len().div_ceil(block_rows);
-            (0..blocks).map(|_| if share(state) < 0.5 { -widening } else { widening }).collect()
+            (0..blocks).map(|_| if uniform(state) < 0.5 { -widening } else { widening }).collect()
         })
         .collect();
     let residuals = together.by_channel(&fit.minimum.linearised.residuals);

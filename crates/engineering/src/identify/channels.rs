@@ -2,7 +2,7 @@
 
 use phea_dynamics::least_squares::{Linearised, Minimum, Settings, minimise};
 use phea_dynamics::portable;
-use phea_dynamics::watch::{Stopped, Watch, tell};
+use phea_dynamics::watch::{Stopped, Watch, report_progress};
 use phea_hydraulics::servovalve::{Sensitive, TestOutput, TestedValve};
 
 use super::recording::{RecordedSignal, Recording};
@@ -244,7 +244,7 @@ impl<'a> Together<'a> {
         let mut done = 0;
         minimise(start, &self.variables.bounds(), settings, &mut |variables| {
             done += 1;
-            tell(watch, "fitting", done, settings.maximum_evaluations)?;
+            report_progress(watch, "fitting", done, settings.maximum_evaluations)?;
             Ok(Some(self.linearised(variables)))
         })
     }

@@ -40,7 +40,7 @@ pub(super) fn combinations(
     (recordings, tested): (&[Recording], &TestedValve),
 ) -> Vec<NotIdentifiableCombination> {
     let varied = |direction: &&Direction| {
-        let components = direction.shares.iter().enumerate();
+        let components = direction.fractions.iter().enumerate();
         components.filter(|(index, _)| has(tested.terms, *index)).any(|(_, one)| one.abs() > PART)
     };
     let unknown =
@@ -50,7 +50,7 @@ pub(super) fn combinations(
         StaticTest::ALL.map(|test| (test, sensitivities(test, coefficients, slopes, (recordings, tested))));
     unknown
         .map(|direction| {
-            let parts = COEFFICIENT_NAMES.iter().zip(&direction.shares);
+            let parts = COEFFICIENT_NAMES.iter().zip(&direction.fractions);
             let mut components: Vec<(&'static str, f64)> = parts
                 .filter(|(_, component)| component.abs() > PART)
                 .map(|((name, _), component)| (*name, *component))
@@ -58,7 +58,7 @@ pub(super) fn combinations(
             sort_by_number(&mut components, |(_, component)| -component.abs());
             let determines = |rows: &[[f64; STATIC_COEFFICIENTS]]| {
                 let along = |row: &[f64; STATIC_COEFFICIENTS]| -> f64 {
-                    row.iter().zip(&direction.shares).map(|(slope, component)| slope * component).sum()
+                    row.iter().zip(&direction.fractions).map(|(slope, component)| slope * component).sum()
                 };
                 rows.iter().map(|row| along(row) * along(row)).sum::<f64>()
                     > 1.0 / (IDENTIFIABLE * IDENTIFIABLE)

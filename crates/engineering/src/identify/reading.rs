@@ -48,7 +48,7 @@ const fn measurand(signal: TestSignal, symbols: &'static [&'static str]) -> Meas
         name: signal.name(),
         symbols,
         dimension: signal.dimension(),
-        may_be_share: matches!(signal, TestSignal::Command),
+        may_be_fraction: matches!(signal, TestSignal::Command),
     }
 }
 
@@ -130,7 +130,7 @@ fn recording(
     let before = findings.error_count();
     let wanted: Vec<&Column> = columns.iter().map(|(_, column)| column).collect();
     let mut numbers = table.numbers(&wanted, findings);
-    let fractions = columns.iter().zip(&mut numbers.columns).filter(|((_, column), _)| column.is_share);
+    let fractions = columns.iter().zip(&mut numbers.columns).filter(|((_, column), _)| column.is_fraction);
     fractions.for_each(|(_, values)| values.iter_mut().for_each(|value| *value *= known.nominal_voltage));
     if findings.error_count() > before {
         return None;

@@ -6,7 +6,7 @@ use super::{Identification, SignalFit};
 
 impl Identification {
     /// Outputs of a valve with these coefficients in a recorded test, row by row.
-    pub fn shown(&self, recording: usize, coefficients: &StaticCoefficients) -> Vec<TestOutput> {
+    pub fn outputs_of(&self, recording: usize, coefficients: &StaticCoefficients) -> Vec<TestOutput> {
         let of = |one: &super::Recording| self.tested.outputs(coefficients, one.circuit, &one.inputs);
         self.recordings.get(recording).map(of).unwrap_or_default()
     }
@@ -15,7 +15,7 @@ impl Identification {
     pub fn residuals(&self, signal: &SignalFit, coefficients: &StaticCoefficients) -> Vec<Option<f64>> {
         let recorded = self.recordings.get(signal.recording).and_then(|one| one.signal(signal.kind));
         let Some(recorded) = recorded else { return Vec::new() };
-        let shown = self.shown(signal.recording, coefficients);
+        let shown = self.outputs_of(signal.recording, coefficients);
         let one = |(output, value): (&TestOutput, &Option<f64>)| Some(signal.kind.shown(output) - (*value)?);
         shown.iter().zip(&recorded.values).map(one).collect()
     }

@@ -18,7 +18,7 @@ const SATURATION: usize = 14;
 const OTHER_SHAPES: std::ops::Range<usize> = 15..18;
 
 /// Coefficients that a static test shows but the linear plant does not depend on.
-pub(super) const OF_TEST_ALONE: [usize; 3] = [TARE_FLOW, NULL_BIAS, HYSTERESIS];
+pub(super) const ONLY_OF_TEST: [usize; 3] = [TARE_FLOW, NULL_BIAS, HYSTERESIS];
 
 /// Number of flow coefficients, the first of all.
 const EDGES: usize = 4;

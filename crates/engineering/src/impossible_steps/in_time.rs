@@ -48,7 +48,7 @@ pub(super) fn still_s(setup: &Setup<'_>, problem: &RobustProblem) -> f64 {
 pub(super) fn findings(setup: &Setup<'_>, problem: &RobustProblem) -> Vec<ImpossibleStep> {
     let still = StillTimes::of(setup, problem);
     let of = |requirement: &TimeRequirement| {
-        let settling = requirement.wish.settling_time_s.filter(|time_s| *time_s <= still.total())?;
+        let settling = requirement.step_limits.settling_time_s.filter(|time_s| *time_s <= still.total())?;
         let key = if requirement.limits.is_some() { "lower.settling_time" } else { "settling_time" };
         Some(ImpossibleStep::BeforeForceMoves { number: requirement.number, key, settling, still })
     };

@@ -70,7 +70,7 @@ impl SlowStep {
 }
 
 /// A required step.
-struct AskedStep {
+struct SizedStep {
     from_n: f64,
     size_n: f64,
     /// True if a scenario makes it, and the requirement applies to every step.
@@ -79,15 +79,15 @@ struct AskedStep {
 
 /// Step of a requirement, or those of the scenarios if it is part of the verdict and applies to
 /// every step.
-fn asked(setup: &Setup<'_>, required: &TimeRequirement) -> Option<Vec<AskedStep>> {
+fn sized_steps(setup: &Setup<'_>, required: &TimeRequirement) -> Option<Vec<SizedStep>> {
     let from_n = required.steps.initial_force_n.unwrap_or(setup.rig().ok()?.point.hydraulic_force);
     if let Some(amplitude_n) = required.steps.amplitude_n {
-        return Some(vec![AskedStep { from_n, size_n: amplitude_n.abs(), of_scenario: false }]);
+        return Some(vec![SizedStep { from_n, size_n: amplitude_n.abs(), of_scenario: false }]);
     }
     let is_of_every_step = required.follows && !required.steps.are_stated();
     let scenarios = stepped_references(setup.project).into_iter().filter(|_| is_of_every_step);
     let steps = scenarios.flat_map(|stepped| stepped.steps);
-    let of = |step: ReferenceStep| AskedStep {
+    let of = |step: ReferenceStep| SizedStep {
         from_n: step.from_n,
         size_n: (step.to_n - step.from_n).abs(),
         of_scenario: true,
@@ -104,7 +104,7 @@ fn too_slow(
     few: &Family,
 ) -> Option<SlowStep> {
     let Family::Uncertain(few) = few else { return None };
-    let settling_s = required.wish.settling_time_s?;
+    let settling_s = required.step_limits.settling_time_s?;
     if settling_s <= still_s(setup, problem) {
         return None;
     }
@@ -112,10 +112,10 @@ fn too_slow(
     let stated = setup.project.controller.as_ref().and_then(|controller| controller.saturation);
     let limit_v = stated.unwrap_or(rig.actuator.components().valve.nominal_voltage);
     let time_s = settling_s - setup.timing.delay_s;
-    let share = 1.0 - required.wish.band_percent / 100.0;
-    let each = asked(setup, required)?.into_iter().filter_map(|step| {
+    let fraction = 1.0 - required.step_limits.band_percent / 100.0;
+    let each = sized_steps(setup, required)?.into_iter().filter_map(|step| {
         let (reached_n, values) = least_reached(few, (time_s, step.from_n), limit_v)?;
-        Some((share * step.size_n / reached_n, step, reached_n, values))
+        Some((fraction * step.size_n / reached_n, step, reached_n, values))
     });
     let (ratio, step, reached_n, values) = each.max_by(|one, other| one.0.total_cmp(&other.0))?;
     let plant = problem.names.named(&PlantPoint::Parameters(values.clone()));

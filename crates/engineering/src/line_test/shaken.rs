@@ -5,7 +5,7 @@ use num_complex::Complex64;
 use phea_dynamics::least_squares::{Linearised, Minimum, Settings, minimise};
 use phea_dynamics::portable::{exp, ln};
 use phea_dynamics::spectrum::SpectralPoint;
-use phea_dynamics::watch::{Stopped, Watch, tell};
+use phea_dynamics::watch::{Stopped, Watch, report_progress};
 use phea_hydraulics::line::{
     BlockedLine, Conduit, DynamicLine, LineModel, Segments, StandardLinearSolid, TransmissionLine,
     friction_factor,
@@ -159,7 +159,7 @@ impl SoughtLine<'_> {
             inertances.iter().flat_map(|one| stiffenings.iter().map(|other| [*one, *other])).collect();
         let mut best: Option<Minimum> = None;
         for (index, start) in starts.iter().enumerate() {
-            tell(watch, "blocked line", index, starts.len())?;
+            report_progress(watch, "blocked line", index, starts.len())?;
             let found = self.from(*start)?;
             let rows = found.linearised.residuals.len();
             let freedom = rows.saturating_sub(found.variables.len()) as f64;

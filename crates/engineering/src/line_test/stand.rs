@@ -12,7 +12,7 @@ use phea_dynamics::random::{normal, stream};
 use phea_dynamics::simulation::{
     Harmonic, Input, InputSchedule, Profile, SimulationSettings, Status, schroeder_phases, simulate,
 };
-use phea_dynamics::watch::{Watch, tell};
+use phea_dynamics::watch::{Watch, report_progress};
 use phea_hydraulics::line::{BlockedLine, StiffeningMember};
 
 use super::KnownLine;
@@ -211,7 +211,7 @@ fn run(
         let row = (time / sample_time) as usize;
         if row >= reported + 64 {
             reported = row;
-            stopped = tell(watch, series.name(), row, rows as usize).is_err();
+            stopped = report_progress(watch, series.name(), row, rows as usize).is_err();
         }
         !stopped
     })

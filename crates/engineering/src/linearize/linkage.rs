@@ -5,7 +5,7 @@ use phea_hydraulics::plant::LinearLoad;
 use crate::rig::{Rig, rod_end};
 
 /// Number of positions at which the lever arm is evaluated to find its least and greatest value.
-const LOOKED_AT: usize = 201;
+const POSITIONS: usize = 201;
 
 /// Position of a linkage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,9 +68,9 @@ pub fn linkage_places(rig: &Rig) -> Vec<LinkagePlace> {
         let reflected_mass_kg = inertia.map(|inertia| inertia / (lever_arm_m * lever_arm_m));
         LinkagePlace { at, position_m, angle_rad, lever_arm_m, reflected_mass_kg }
     };
-    let share = |number: usize| number as f64 / (LOOKED_AT - 1) as f64;
+    let fraction = |number: usize| number as f64 / (POSITIONS - 1) as f64;
     let all: Vec<LinkagePlace> =
-        (0..LOOKED_AT).map(|number| place(LinkagePosition::LeastArm, stroke * share(number))).collect();
+        (0..POSITIONS).map(|number| place(LinkagePosition::LeastArm, stroke * fraction(number))).collect();
     let by_arm = |one: &&LinkagePlace, other: &&LinkagePlace| one.lever_arm_m.total_cmp(&other.lever_arm_m);
     let least = all.iter().min_by(by_arm).copied();
     let greatest = all.iter().max_by(by_arm);

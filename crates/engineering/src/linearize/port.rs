@@ -16,22 +16,22 @@ use phea_qft::closed_loop::Compensation;
 use crate::rig::Rig;
 
 /// Frequencies at which both impedances are reported, rad/s.
-pub const SHOWN_AT: [f64; 5] = [0.1, 1.0, 10.0, 100.0, 1000.0];
+pub const REPORTED_AT_RAD_PER_S: [f64; 5] = [0.1, 1.0, 10.0, 100.0, 1000.0];
 /// Largest difference of the impedance of the loop from the required one, percent, at which it
 /// still follows it.
 pub const WITHIN_PERCENT: f64 = 10.0;
 /// Range of frequencies of the search for the band, rad/s, and their number.
-const LOOKED_AT: [f64; 2] = [1e-2, 1e4];
+const EVALUATED_RAD_PER_S: [f64; 2] = [1e-2, 1e4];
 const COUNT: usize = 1201;
 
 /// Impedance that is required at a port, and impedance of the loop, with the load at the port moved
 /// from outside.
 #[derive(Clone, Debug, PartialEq)]
-pub struct AskedImpedance {
+pub struct RequiredImpedance {
     /// Required impedance: Z_v/s at the port.
     pub impedance: VirtualImpedance,
-    /// Both impedances at the frequencies [`SHOWN_AT`].
-    pub points: Vec<AskedAt>,
+    /// Both impedances at the frequencies [`REPORTED_AT_RAD_PER_S`].
+    pub points: Vec<ComparedImpedance>,
     /// Widest band in which they differ by at most [`WITHIN_PERCENT`], rad/s; `None` if there is
     /// none.
     pub follows_rad_per_s: Option<[f64; 2]>,
@@ -39,26 +39,26 @@ pub struct AskedImpedance {
 
 /// Both impedances at one frequency, N s/m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AskedAt {
+pub struct ComparedImpedance {
     /// Frequency, rad/s.
     pub frequency_rad_per_s: f64,
     /// Required impedance, M_v s + B_v + K_v/s, without the filter.
-    pub asked: Complex64,
+    pub required: Complex64,
     /// Impedance of the loop, -F_e/(s X_L); at its sampling instants if it samples.
-    pub shown: Complex64,
+    pub achieved: Complex64,
 }
 
-impl AskedImpedance {
+impl RequiredImpedance {
     /// Required impedance without the filter of the measured position: M_v s^2 + B_v s + K_v.
     pub(crate) fn unfiltered(&self) -> VirtualImpedance {
         VirtualImpedance { filter_time_s: 0.0, ..self.impedance }
     }
 }
 
-impl AskedAt {
+impl ComparedImpedance {
     /// Relative difference between the impedance of the loop and the required one.
     pub fn difference(&self) -> f64 {
-        portable::magnitude(self.shown / self.asked - 1.0)
+        portable::magnitude(self.achieved / self.required - 1.0)
     }
 }
 
@@ -71,11 +71,11 @@ impl AskedAt {
 ///
 /// # Errors
 /// [`LinearError`] for a loop that cannot be closed.
-pub(super) fn asked(
+pub(super) fn required_impedance(
     rig: &Rig,
     controller: &Controller,
     sensor: &TransferFunction,
-) -> Result<Option<AskedImpedance>, LinearError> {
+) -> Result<Option<RequiredImpedance>, LinearError> {
     let Some(impedance) = rig.virtual_impedance else { return Ok(None) };
     let compensation = Compensation::new(controller, sensor.clone())?;
     let held = Rig {
@@ -94,20 +94,20 @@ pub(super) fn asked(
         let s = Complex64::new(0.0, frequency);
         let force = response.load_motion / (1.0 + around) - impedance.response(s);
         let unfiltered = VirtualImpedance { filter_time_s: 0.0, ..impedance };
-        let asked = unfiltered.response(s) / s;
-        Some(AskedAt { frequency_rad_per_s: frequency, asked, shown: -force / s })
+        let required = unfiltered.response(s) / s;
+        Some(ComparedImpedance { frequency_rad_per_s: frequency, required, achieved: -force / s })
     };
     let highest = compensation.highest_frequency_rad_per_s();
-    let [from, to] = LOOKED_AT;
-    let all: Vec<AskedAt> =
+    let [from, to] = EVALUATED_RAD_PER_S;
+    let all: Vec<ComparedImpedance> =
         logarithmic_grid(from, to.min(highest), COUNT)?.into_iter().filter_map(at).collect();
-    let points = SHOWN_AT.into_iter().filter(|frequency| *frequency < highest).filter_map(at).collect();
-    Ok(Some(AskedImpedance { impedance, points, follows_rad_per_s: widest(&all) }))
+    let points = REPORTED_AT_RAD_PER_S.into_iter().filter(|frequency| *frequency < highest).filter_map(at).collect();
+    Ok(Some(RequiredImpedance { impedance, points, follows_rad_per_s: widest(&all) }))
 }
 
 /// Widest band, in the logarithm of frequency, in which the loop follows the required impedance.
-fn widest(all: &[AskedAt]) -> Option<[f64; 2]> {
-    let follows = |point: &AskedAt| point.difference() <= WITHIN_PERCENT / 100.0;
+fn widest(all: &[ComparedImpedance]) -> Option<[f64; 2]> {
+    let follows = |point: &ComparedImpedance| point.difference() <= WITHIN_PERCENT / 100.0;
     let bands = all.chunk_by(|one, other| follows(one) == follows(other));
     let bands = bands.filter(|band| band.iter().all(follows));
     bands

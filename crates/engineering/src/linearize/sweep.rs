@@ -138,9 +138,9 @@ pub fn sweep(
     request: &SweepRequest,
 ) -> Result<Sweep, SweepError> {
     let units = loaded.project.units;
-    let asked = range(&request.range, loaded.project.motions())?;
-    let by_ratio = asked.by_ratio();
-    let SweepRange { path, key, ends } = asked;
+    let requested = range(&request.range, loaded.project.motions())?;
+    let by_ratio = requested.by_ratio();
+    let SweepRange { path, key, ends } = requested;
     let count = points(request.points)?;
     let mut found = Vec::new();
     for value in values(ends, count, by_ratio) {
@@ -274,8 +274,8 @@ fn number(text: &str, part: &str, key: &Key) -> Result<f64, OptionError> {
     Err(refused(text, &SweepProblem::OutOfRange { shown, key: key.name }))
 }
 
-pub(crate) fn points(asked: Option<usize>) -> Result<usize, OptionError> {
-    match asked.unwrap_or(POINTS) {
+pub(crate) fn points(requested: Option<usize>) -> Result<usize, OptionError> {
+    match requested.unwrap_or(POINTS) {
         count @ 2..=MOST_POINTS => Ok(count),
         count => Err(OptionError {
             option: "points",
@@ -288,12 +288,12 @@ pub(crate) fn points(asked: Option<usize>) -> Result<usize, OptionError> {
 pub(crate) fn values([from, to]: [f64; 2], count: usize, by_ratio: bool) -> Vec<f64> {
     let last = count.saturating_sub(1).max(1) as f64;
     let at = |index: usize| {
-        let share = index as f64 / last;
+        let fraction = index as f64 / last;
         match (index, by_ratio) {
             (0, _) => from,
             _ if index + 1 == count => to,
-            (_, true) => from * portable::exp(share * portable::ln(to / from)),
-            (_, false) => from + share * (to - from),
+            (_, true) => from * portable::exp(fraction * portable::ln(to / from)),
+            (_, false) => from + fraction * (to - from),
         }
     };
     (0..count).map(at).collect()

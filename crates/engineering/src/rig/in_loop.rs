@@ -38,7 +38,7 @@ impl Rig {
     /// ```
     #[must_use]
     pub fn in_loop(&self) -> Rig {
-        let moving = self.in_motion.map(|moving| moving.beside(self.virtual_impedance));
+        let moving = self.in_motion.map(|moving| moving.with_virtual_impedance(self.virtual_impedance));
         let plant = self.with_inner_paths(self.plant);
         Rig { in_motion: self.as_response(moving, &plant), plant, ..self.clone() }
     }

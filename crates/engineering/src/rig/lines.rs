@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::line::{Conduit, Line, LineError, StiffeningMember};
-use phea_hydraulics::plant::{BehindLines, LinearPlant, PlantInMotion};
+use phea_hydraulics::plant::{LineChambers, LinearPlant, PlantInMotion};
 use phea_hydraulics::servovalve::ChamberCoefficients;
 use phea_hydraulics::stiffness::compliance_at;
 
@@ -30,14 +30,14 @@ impl RigAtPoint {
             [None, None] => compliances,
             _ => without_branches(components, pressures, compliances),
         };
-        let chambers_alone = own(compliance_at(&bare, point.position));
+        let chambers_only = own(compliance_at(&bare, point.position));
         let leakage = components.cylinder.external_leakage.unwrap_or(0.0);
         // in the limit of an ideal valve both coefficients would vanish
         let ChamberCoefficients { flow_pressure_a, flow_pressure_b, .. } = self.leaking;
         let leaking = [flow_pressure_a, flow_pressure_b].map(|whole| leakage / whole);
         Ok(moving.map(|lines| {
             let lumped = own(chambers.compliances);
-            let behind = BehindLines { lines, chambers: chambers_alone, lumped, leaking };
+            let behind = LineChambers { lines, chambers: chambers_only, lumped, leaking };
             PlantInMotion::new(plant, &behind)
         }))
     }

@@ -122,15 +122,15 @@ impl<S: Scalar> RigAtPoint<S> {
             } => {
                 let two = S::from(2.0);
                 let stated = two * useful_area.squared() / hydraulic_stiffness;
-                let [share_a, share_b] = chambers.compliances.map(|own| stated / own);
+                let [fraction_a, fraction_b] = chambers.compliances.map(|own| stated / own);
                 let [gas_a, gas_b] = gas;
                 let chambers = ChamberDynamics::TwoPressures {
                     areas: [useful_area; 2],
-                    compliances: [alone[0] * share_a, alone[1] * share_b],
+                    compliances: [alone[0] * fraction_a, alone[1] * fraction_b],
                     flow_gains: [flow_gain; 2],
                     flow_pressures: [two * flow_pressure_coefficient; 2],
                 };
-                (chambers, [gas_a.map(|gas| gas.softened(share_a)), gas_b.map(|gas| gas.softened(share_b))])
+                (chambers, [gas_a.map(|gas| gas.softened(fraction_a)), gas_b.map(|gas| gas.softened(fraction_b))])
             }
         }
     }

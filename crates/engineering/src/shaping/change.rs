@@ -7,7 +7,7 @@ use super::ShapingError;
 use super::piece::TextPiece;
 use super::present;
 use super::refused::{ChangeProblem, RefusedChange};
-use super::wish::{self, ElementWish};
+use super::element_request::{self, ElementRequest};
 use super::workpiece::Workpiece;
 use crate::project::{DeclaredElement, ElementKind, Findings, value_or_finding};
 use crate::robust::RobustProblem;
@@ -104,7 +104,7 @@ pub(super) fn edit(
             let index = number(&place, count)?;
             Edit::Replace(index, stage(&new, workpiece)?.element)
         }
-        Change::Pass => pass(&whole, &wish::read(&whole)?, workpiece, now, bare)?,
+        Change::Pass => pass(&whole, &element_request::read(&whole)?, workpiece, now, bare)?,
     })
 }
 
@@ -116,7 +116,7 @@ pub(super) fn refused(requested: &RequestedChange, error: EditError) -> Box<Refu
 /// Element of a request: in place of the one that it names, as a factor of the gain, or at the end.
 fn pass(
     whole: &TextPiece<'_>,
-    wish: &ElementWish<'_>,
+    wish: &ElementRequest<'_>,
     workpiece: &mut Workpiece<'_>,
     now: &Compensator,
     bare: &RobustProblem,

@@ -30,7 +30,7 @@ pub struct ToleranceCheck {
     /// Early end of the second run, if there is one: the comparison extends until then.
     pub stopped: Option<StoppedRun>,
     /// Time between two compared samples, s.
-    pub look_s: f64,
+    pub sample_interval_s: f64,
     /// Difference of the force; `None` if the two runs have no sample in common.
     pub force: Option<Difference>,
     /// Differences of the command and of all signals of the machine.
@@ -86,7 +86,7 @@ pub fn simulate_checked(
     table: Option<(&dyn Destination, TableFormat)>,
     watch: Watch<'_>,
 ) -> Result<Vec<ScenarioRun>, SimulateError> {
-    let half = |progress: Progress| Progress { share: 0.5 * progress.share, ..progress };
+    let half = |progress: Progress| Progress { fraction: 0.5 * progress.fraction, ..progress };
     let output = RunOutput { ledger: true, ..RunOutput::new(true, table) };
     let mut runs = simulate_into(source, setup, output, &mut |progress| watch(half(progress)))?;
     if runs.iter().any(ScenarioRun::was_cancelled) {
@@ -96,12 +96,12 @@ pub fn simulate_checked(
     let whole: f64 = setup.project.scenarios.iter().map(|scenario| scenario.duration).sum();
     let mut before = 0.0;
     for (run, prepared) in runs.iter_mut().zip(&prepared(source, setup)?) {
-        let mut told = |time_s: f64| {
-            let share = 0.5 + 0.5 * (before + time_s) / whole;
-            watch(Progress { stage: "tolerance check", share })
+        let mut watched = |time_s: f64| {
+            let fraction = 0.5 + 0.5 * (before + time_s) / whole;
+            watch(Progress { stage: "tolerance check", fraction })
         };
         let plan = PassPlan { tolerance: run.tolerance / FOLD, moved: false };
-        let other = prepared.pass(plan, (&output, ""), &mut told)?.run;
+        let other = prepared.pass(plan, (&output, ""), &mut watched)?.run;
         run.check = Some(check(run, &other, plan.tolerance));
         before += prepared.scenario.duration;
         if other.was_cancelled() {
@@ -117,7 +117,7 @@ fn check(run: &ScenarioRun, other: &ScenarioRun, tolerance: f64) -> ToleranceChe
     ToleranceCheck {
         tolerance,
         stopped: StoppedRun::of(other.status),
-        look_s: run.look_s * run.record.stride.max(other.record.stride) as f64,
+        sample_interval_s: run.sample_interval_s * run.record.stride.max(other.record.stride) as f64,
         force: signals.iter().find(|signal| signal.signal == Signal::Force).cloned(),
         signals,
         metrics,

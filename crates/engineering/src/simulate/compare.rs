@@ -51,12 +51,12 @@ pub fn compare_projects<'a>(
     let count = projects.len() as f64;
     let mut comparison = ScenarioComparison { projects: Vec::new() };
     for (index, loaded) in projects.iter().enumerate() {
-        let mut told = |progress: Progress| {
-            watch(Progress { share: (index as f64 + progress.share) / count, ..progress })
+        let mut watched = |progress: Progress| {
+            watch(Progress { fraction: (index as f64 + progress.fraction) / count, ..progress })
         };
         let named = |error: SimulateError| (index, error);
         let setup = Setup::new(&loaded.project).map_err(|error| named(error.into()))?;
-        let runs = simulate_project(source, &setup, &mut told).map_err(named)?;
+        let runs = simulate_project(source, &setup, &mut watched).map_err(named)?;
         let stopped = runs.iter().any(ScenarioRun::was_cancelled);
         comparison.projects.push((loaded, runs));
         if stopped {

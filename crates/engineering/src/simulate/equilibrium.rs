@@ -21,10 +21,10 @@ pub(super) fn rest(
     bench: &ControlledMachine,
     guess: &[f64],
     beginning: &InitialCondition,
-    standing: HeldInputs,
+    held_inputs: HeldInputs,
     name: &str,
 ) -> Result<RestedLoop, SimulateError> {
-    let (motion, reference_n) = (bench.rig.motion, standing.reference_n);
+    let (motion, reference_n) = (bench.rig.motion, held_inputs.reference_n);
     let named = |error| match error {
         EquilibriumError::NotFound { state, rate } => {
             let (name, what) = (name.to_string(), MovingState::of(state));
@@ -32,7 +32,7 @@ pub(super) fn rest(
         }
         error => SimulateError::Rest { name: name.to_string(), error },
     };
-    let rest = at_rest(&bench.control, guess, beginning, standing).map_err(&named)?;
+    let rest = at_rest(&bench.control, guess, beginning, held_inputs).map_err(&named)?;
     let (command_v, limit_v) = (rest.command_v, rest.limit_v);
     if command_v.abs() > limit_v {
         let name = name.to_string();
@@ -59,7 +59,7 @@ pub(super) fn rest(
         ground_m -=
             bench.machine.turn_of(bench.machine.signals::<f64>(&rest.start, &inputs).joint.position, ahead_m);
         from.inputs[0] = ground_m;
-        rest = at_rest(&bench.control, &rest.start, &from, standing).map_err(&named)?;
+        rest = at_rest(&bench.control, &rest.start, &from, held_inputs).map_err(&named)?;
     }
     Err(SimulateError::NoRestThere { name: name.to_string(), reference_n, position_m: wanted_m })
 }

@@ -137,7 +137,7 @@ impl<'a> Follower<'a> {
         let (Some(watch), Some(reference)) = (&mut self.divergence, self.reference) else { return };
         let end_s = stretch.end_s();
         let force = self.force.over(stretch.states).at(1.0);
-        let asked_for = reference.piece(0.5 * (stretch.start_s() + end_s)).at(end_s).value;
+        let requested = reference.piece(0.5 * (stretch.start_s() + end_s)).at(end_s).value;
         let command = match &self.commanded {
             CommandSource::Sampled(log) => log.borrow().last.map_or(0.0, |sample| sample.command_v),
             CommandSource::Continuously(sum, _) => {
@@ -145,7 +145,7 @@ impl<'a> Follower<'a> {
                 sum.over(stretch.states).at(1.0) + driven
             }
         };
-        watch.take(end_s, [force, asked_for, command]);
+        watch.take(end_s, [force, requested, command]);
     }
 
     /// Command over a part of a step.
@@ -189,7 +189,7 @@ impl<'a> Follower<'a> {
 
     /// True if a step from sample to sample may contain an extreme that counts, or leave a band:
     /// then the force is needed more accurately than by a cubic.
-    pub fn looks_closer(&self, stretch: &Stretch<'_>) -> bool {
+    pub fn needs_accurate_solution(&self, stretch: &Stretch<'_>) -> bool {
         let (start_s, end_s) = (stretch.start_s(), stretch.end_s());
         let open = |tally: &&Tally| tally.window.start_s < end_s && tally.window.end_s > start_s;
         let mut open = self.tallies.iter().skip(self.first).filter(open).peekable();
@@ -202,7 +202,7 @@ impl<'a> Follower<'a> {
         }
         let at_end = |reference: &Profile| reference.piece(0.5 * (start_s + end_s)).at(end_s).value;
         let reference = self.reference.map(at_end);
-        open.any(|tally| tally.looks_closer(&force, reference))
+        open.any(|tally| tally.needs_accurate_solution(&force, reference))
     }
 }
 
@@ -276,12 +276,12 @@ mod tests {
         limit: f64,
         output_step_s: f64,
     ) -> Metrics {
-        let course =
+        let schedule =
             InputSchedule { duration_s: 3.0, output_step_s, inputs: vec![Input::Value(driving.clone())] };
         let commanded = CommandSource::Continuously(SignalSum::single(1), limit);
         let follower = Follower::new(SignalSum::single(0), commanded, 1, Some(reference), (&[window], 1.0));
         let observer = Following(follower);
-        let task = Task { start: start.to_vec(), course: &course, sampler: None, observer };
+        let task = Task { start: start.to_vec(), schedule: &schedule, sampler: None, observer };
         let settings = SimulationSettings { tolerance: 1e-11, ..SimulationSettings::default() };
         let (_, seen) = drive_one(swing, task, &settings, &mut |_| true).unwrap();
         seen.0.metrics().remove(0)
@@ -349,8 +349,8 @@ mod tests {
         assert!(seen.steady_state_error_n.unwrap().abs() < 1e-6);
         // a force that enters the band in the last tenth of a window was not observed for long
         // enough
-        let settled = |share: f64| {
-            let window = Window { end_s: 1.0 + last / share, ..window };
+        let settled = |fraction: f64| {
+            let window = Window { end_s: 1.0 + last / fraction, ..window };
             let driving = [&reference, &reference];
             measured(&swing, [0.0; 2], driving, window, f64::INFINITY, 1e-3).settling_time_s
         };
@@ -407,7 +407,7 @@ mod tests {
         // the steps are those of the input schedule
         let driven = measured(&swing, [0.0; 2], [&reference, &nothing], window, f64::INFINITY, 1.0);
         assert!(driven.disturbance_peak_n.unwrap() > 1.0);
-        let course = InputSchedule {
+        let schedule = InputSchedule {
             duration_s: 3.0,
             output_step_s: 1.0,
             inputs: vec![Input::Value(Profile::sine(0.1, 1e-9, 7.0).unwrap())],
@@ -415,7 +415,7 @@ mod tests {
         let commanded = CommandSource::Continuously(SignalSum::single(1), f64::INFINITY);
         let follower = Follower::new(SignalSum::single(0), commanded, 1, Some(&reference), (&[window], 1.0));
         let observer = Following(follower);
-        let task = Task { start: vec![0.0; 2], course: &course, sampler: None, observer };
+        let task = Task { start: vec![0.0; 2], schedule: &schedule, sampler: None, observer };
         let (_, seen) = drive_one(&swing, task, &SimulationSettings::default(), &mut |_| true).unwrap();
         let peak = seen.0.metrics().remove(0).disturbance_peak_n.unwrap();
         assert!((peak - 300.0).abs() < 1e-6 * 300.0, "{peak}");

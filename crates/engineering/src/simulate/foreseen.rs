@@ -4,7 +4,7 @@
 use phea_dynamics::simulation::Profile;
 
 use super::bench::ControlledMachine;
-use super::course::driven_by;
+use super::prepared_scenario::driven_by;
 use super::force_limits::{ExceededForce, ForceLimits};
 use super::{SimulateError, measured};
 use crate::project::{

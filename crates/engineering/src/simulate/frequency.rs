@@ -119,10 +119,10 @@ pub fn frequency_response(
     let rested = rested(setup)?;
     let frequencies = frequencies(request, &rested);
     let count = 2.0 * frequencies.len() as f64;
-    let mut told = |done: usize| watch(Progress { stage: "frequency response", share: done as f64 / count });
+    let mut watched = |done: usize| watch(Progress { stage: "frequency response", fraction: done as f64 / count });
     let mut stopped = false;
     let open_loop = open_loop::measured(&rested, &frequencies, request, &mut |index| {
-        stopped |= !told(index);
+        stopped |= !watched(index);
         !stopped
     })?;
     let closed_loop = if stopped {
@@ -130,7 +130,7 @@ pub fn frequency_response(
     } else {
         let before = frequencies.len();
         closed_loop::measured(setup, &rested, &frequencies, request, &mut |index| {
-            stopped |= !told(before + index);
+            stopped |= !watched(before + index);
             !stopped
         })?
     };
@@ -155,12 +155,12 @@ fn rested(setup: &Setup<'_>) -> Result<RestedMachine, SimulateError> {
 
 /// Requested frequencies in rising order, or the default ones.
 fn frequencies(request: &FrequencyRequest, rested: &RestedMachine) -> Vec<f64> {
-    let mut asked = request.frequencies_rad_per_s.clone();
-    if asked.is_empty() {
+    let mut requested = request.frequencies_rad_per_s.clone();
+    if requested.is_empty() {
         let last = LAST_OVER_VALVE * rested.rig.actuator.components().valve.natural_frequency;
-        asked = spread([FIRST_RAD_PER_S, last], POINTS);
+        requested = spread([FIRST_RAD_PER_S, last], POINTS);
     }
-    sorted_distinct(asked)
+    sorted_distinct(requested)
 }
 
 /// Frequencies at equal ratios, including the ends.

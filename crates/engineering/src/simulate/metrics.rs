@@ -74,7 +74,7 @@ pub type Measured = Result<f64, Unmeasured>;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unmeasured {
     /// The run ended earlier.
-    RunEnded,
+    AfterEnd,
     /// The reference does not step.
     NoStep,
     /// The load does not begin to move.
@@ -92,7 +92,7 @@ pub enum Unmeasured {
     /// The reference states the force.
     ReferenceGiven,
     /// The reference does not move.
-    ReferenceStandsStill,
+    ReferenceConstant,
     /// The reference is zero, so that a band around it has no width.
     ZeroReference,
     /// One of two compared runs has no such number.

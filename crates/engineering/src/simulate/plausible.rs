@@ -135,10 +135,10 @@ fn doubt(
     let place = table.headings.get(column.index).map(|heading| heading.place).unwrap_or_default();
     let found = RawFinding::error(place, problem.to_string());
     let units = units.join(" or ");
-    let cure = match (units.is_empty(), is_small) {
+    let remedy = match (units.is_empty(), is_small) {
         (true, _) => ColumnCure::CheckColumn,
         (false, false) => ColumnCure::OtherUnit(units),
         (false, true) => ColumnCure::OtherUnitOfSmall(units),
     };
-    findings.push(found.help(cure.to_string()));
+    findings.push(found.help(remedy.to_string()));
 }

@@ -1,6 +1,6 @@
 //! Requirements in time, compared with the steps of the reference in a scenario.
 
-use super::wish::{ReachedStep, TrackingWish};
+use super::step_limits::{ReachedStep, StepLimits};
 use super::{Cause, Metrics, RunStatus, ScenarioRun, TimeRequirement, Window, time_requirements};
 use crate::project::Project;
 
@@ -10,7 +10,7 @@ pub struct ScenarioRequirement {
     /// Number of its specification in the file, from 1.
     pub number: usize,
     /// Requirement for every step of the reference.
-    pub wish: TrackingWish,
+    pub step_limits: StepLimits,
     /// Worst result of all steps, each property separately; infinite if the run did not complete.
     /// Or the reason why the scenario does not judge the requirement.
     pub reached: Result<ReachedStep, NotJudged>,
@@ -31,7 +31,7 @@ const SAME: f64 = 1e-6;
 impl ScenarioRequirement {
     /// True if every step satisfies the requirement; `None` if the scenario does not judge it.
     pub fn is_satisfied(&self) -> Option<bool> {
-        self.reached.ok().map(|reached| self.wish.is_satisfied(&reached))
+        self.reached.ok().map(|reached| self.step_limits.is_satisfied(&reached))
     }
 }
 
@@ -45,7 +45,7 @@ pub fn required_of_run(project: &Project, run: &ScenarioRun) -> Vec<ScenarioRequ
     let all = time_requirements(project).unwrap_or_default();
     let of = |one: &TimeRequirement| ScenarioRequirement {
         number: one.number,
-        wish: one.wish,
+        step_limits: one.step_limits,
         reached: concerned(one, &windows, run.settling_band_percent).map(|steps| reached(run, &steps)),
     };
     all.iter().filter(|one| one.follows).map(of).collect()
@@ -64,8 +64,8 @@ pub(crate) fn concerned(
     if concerned.is_empty() {
         return Err(NotJudged::NoStep);
     }
-    let same_band = band_percent.total_cmp(&one.wish.band_percent).is_eq();
-    if one.wish.settling_time_s.is_some() && !same_band {
+    let same_band = band_percent.total_cmp(&one.step_limits.band_percent).is_eq();
+    if one.step_limits.settling_time_s.is_some() && !same_band {
         return Err(NotJudged::OtherBand);
     }
     Ok(concerned)

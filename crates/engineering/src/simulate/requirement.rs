@@ -1,9 +1,9 @@
 //! Requirements in time of a project: of specifications of the kind `step`, and of limits of
 //! tracking that are stated in time.
 
-use super::TrackingWish;
+use super::StepLimits;
 use crate::project::{DeclaredSpecification, Project};
-use crate::specification::{SpecificationError, closed_loops, wishes};
+use crate::specification::{SpecificationError, closed_loops, requirements_in_time};
 
 /// A requirement in time of a specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,7 +13,7 @@ pub struct TimeRequirement {
     /// Index of the specification among the limits on closed loops; `None` if it limits none.
     pub limits: Option<usize>,
     /// Requirement for every step.
-    pub wish: TrackingWish,
+    pub step_limits: StepLimits,
     /// True if the limits follow from the requirement: then it is part of the verdict. Stated
     /// limits are only compared with it.
     pub follows: bool,
@@ -52,8 +52,8 @@ impl RequiredSteps {
 /// let source = Memory::default().with("servo.toml", text);
 /// let project = phea_project::read(&source, "servo.toml", &[], &[])?.project;
 /// let [required] = phea_engineering::simulate::time_requirements(&project)?[..] else { panic!() };
-/// assert_eq!((required.wish.overshoot_percent, required.wish.settling_time_s), (Some(2.0), Some(0.25)));
-/// assert_eq!(required.wish.band_percent, 2.0); // where no band is stated
+/// assert_eq!((required.step_limits.overshoot_percent, required.step_limits.settling_time_s), (Some(2.0), Some(0.25)));
+/// assert_eq!(required.step_limits.band_percent, 2.0); // where no band is stated
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn time_requirements(project: &Project) -> Result<Vec<TimeRequirement>, SpecificationError> {
@@ -63,17 +63,17 @@ pub fn time_requirements(project: &Project) -> Result<Vec<TimeRequirement>, Spec
         TimeRequirement {
             number: index + 1,
             limits: None,
-            wish: TrackingWish::of_step(step),
+            step_limits: StepLimits::of_step(step),
             follows: true,
             steps: RequiredSteps { amplitude_n: step.amplitude, initial_force_n: step.initial_force },
         }
     };
-    let wishes = wishes(project)?;
+    let requirements_in_time = requirements_in_time(project)?;
     let of_limits = |(limits, (number, ..)): (usize, (usize, _, _))| {
-        let wish = TrackingWish::of_specification(&wishes, number)?;
-        let mut own = wishes.iter().filter(|wish| wish.number == number);
-        let follows = own.all(|wish| wish.follows);
-        Some(TimeRequirement { number, limits: Some(limits), wish, follows, steps: RequiredSteps::default() })
+        let step_limits = StepLimits::of_specification(&requirements_in_time, number)?;
+        let mut own = requirements_in_time.iter().filter(|step_limits| step_limits.number == number);
+        let follows = own.all(|step_limits| step_limits.follows);
+        Some(TimeRequirement { number, limits: Some(limits), step_limits, follows, steps: RequiredSteps::default() })
     };
     let tracking = closed_loops(project).enumerate().filter_map(of_limits);
     Ok(steps.map(of_step).chain(tracking).collect())

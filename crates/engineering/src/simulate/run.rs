@@ -13,11 +13,11 @@ use phea_machine::{Control, ControllerSamples, Digital, DigitalMemory, Waking, W
 use super::adjusted::AdjustmentWork;
 use super::bench::ControlledMachine;
 use super::columns::SignalParts;
-use super::course::PreparedScenario;
+use super::prepared_scenario::PreparedScenario;
 use super::divergence::Divergence;
 use super::exceeded::Exceeded;
 use super::gas::GasRange;
-use super::look::Looking;
+use super::run_observer::RunObserver;
 use super::measured::{Measurement, Overlay};
 use super::metrics::Metrics;
 use super::record::Record;
@@ -29,9 +29,9 @@ use crate::project::Scenario;
 
 /// Longest interval between two samples, from which figures are drawn: 1 ms would cut off the peaks
 /// of a ringing load cell.
-const LONGEST_LOOK_S: f64 = 0.25e-3;
+const LONGEST_SAMPLE_INTERVAL_S: f64 = 0.25e-3;
 /// Largest number of samples, if the project requests fewer rows.
-const MOST_LOOKS: f64 = 400_000.0;
+const MOST_SAMPLES: f64 = 400_000.0;
 /// Steps between two reports of progress.
 const STEPS_UNWATCHED: u32 = 64;
 
@@ -50,13 +50,13 @@ pub struct ScenarioRun {
     pub repetition: Option<Repetition>,
     /// Divergence of a run that reached its end; `None` if it does not diverge.
     pub divergence: Option<Divergence>,
-    /// Samples at intervals of [`ScenarioRun::look_s`], or longer ones in a long run; empty if no
+    /// Samples at intervals of [`ScenarioRun::sample_interval_s`], or longer ones in a long run; empty if no
     /// record was requested.
     pub record: Record,
     /// Number of samples between two rows of the result.
-    pub looks_per_row: usize,
+    pub samples_per_row: usize,
     /// Time between two samples, s: shorter events do not appear in figures.
-    pub look_s: f64,
+    pub sample_interval_s: f64,
     /// Detail in which the steps were evaluated.
     pub attention: Attention,
     /// Every window with its metrics.
@@ -146,7 +146,7 @@ pub struct UnresolvedMode {
 impl ScenarioRun {
     /// True if the run is so long that it was sampled less often than its figures need.
     pub fn is_coarse(&self) -> bool {
-        self.attention == Attention::Everything && self.look_s > LONGEST_LOOK_S * (1.0 + 1e-9)
+        self.attention == Attention::Everything && self.sample_interval_s > LONGEST_SAMPLE_INTERVAL_S * (1.0 + 1e-9)
     }
 
     /// True if the progress callback cancelled the run or one of its repetitions.
@@ -227,12 +227,12 @@ impl RunPass<'_> {
 pub(super) fn run<'t>(
     bench: &ControlledMachine,
     scenario: &Scenario,
-    (course, measurements): (&PreparedScenario, &[Measurement]),
+    (prepared, measurements): (&PreparedScenario, &[Measurement]),
     (plan, table, output): (PassPlan, Option<RunTable<'t>>, &RunOutput<'_>),
     watch: &mut dyn FnMut(f64) -> bool,
 ) -> Result<RunPass<'t>, SimulateError> {
-    let looks_per_row = if output.attention == Attention::Steps { 1 } else { looks_per_row(scenario) };
-    let look_s = scenario.output_step / looks_per_row as f64;
+    let samples_per_row = if output.attention == Attention::Steps { 1 } else { samples_per_row(scenario) };
+    let sample_interval_s = scenario.output_step / samples_per_row as f64;
     let (samples, full) = (RefCell::new(ControllerSamples::default()), Cell::new(false));
     let memory = RefCell::new(DigitalMemory::default());
     let mut steps = 0;
@@ -240,27 +240,27 @@ pub(super) fn run<'t>(
         steps += 1;
         steps % STEPS_UNWATCHED != 0 || (!full.get() && watch(time_s))
     };
-    let inputs = inputs(&bench.control, course);
-    let drive = InputSchedule { duration_s: scenario.duration, output_step_s: look_s, inputs };
-    let during = (course, scenario.settling_band_percent, scenario.duration);
-    let looks = scenario.duration / look_s;
-    let looking = Looking::new(bench, &samples, (table, looks_per_row), measurements, &full, during);
+    let inputs = inputs(&bench.control, prepared);
+    let drive = InputSchedule { duration_s: scenario.duration, output_step_s: sample_interval_s, inputs };
+    let during = (prepared, scenario.settling_band_percent, scenario.duration);
+    let looks = scenario.duration / sample_interval_s;
+    let looking = RunObserver::new(bench, &samples, (table, samples_per_row), measurements, &full, during);
     let looking = looking.following(output.attention, looks);
     let looking = if output.samples { looking.keeping(looks + 2.0) } else { looking };
     let looking = if output.line_limits { looking } else { looking.without_line_limits() };
     let mut looking = if output.ledger { looking.accounting() } else { looking };
-    let sampler = sampler(&bench.control, &course.waking, &samples, &memory);
+    let sampler = sampler(&bench.control, &prepared.waking, &samples, &memory);
     let observer: Watcher<'_> = Box::new(&mut looking);
-    let task = Task { start: start(bench, course, plan), course: &drive, sampler, observer };
+    let task = Task { start: start(bench, prepared, plan), schedule: &drive, sampler, observer };
     let settings = SimulationSettings { tolerance: plan.tolerance, ..bench.settings };
     let named = |error| SimulateError::Simulation { name: scenario.name.clone(), error };
     let outcome = bench.control.drive(task, &settings, &mut watch).map_err(named)?;
     let seen = looking.finish()?;
-    let occurrences = found((bench, course), &outcome, &samples.borrow(), &seen.exceeded);
+    let occurrences = found((bench, prepared), &outcome, &samples.borrow(), &seen.exceeded);
     let outside_model_s = outside_model_s(&occurrences, bench.machine.has_end_stops());
     let memory = memory.into_inner();
     let memory = matches!(bench.control, Control::Sampled(_)).then_some(&memory);
-    let end = saved::of_end(bench, course, (outcome.status, &outcome.end, scenario.duration), memory);
+    let end = saved::of_end(bench, prepared, (outcome.status, &outcome.end, scenario.duration), memory);
     let record = Record { units: bench.units, parts: SignalParts::of(bench), ..seen.record };
     let amplification = amplification(&outcome, &samples.borrow());
     let run = ScenarioRun {
@@ -271,10 +271,10 @@ pub(super) fn run<'t>(
         repetition: None,
         divergence: seen.divergence,
         record,
-        looks_per_row,
-        look_s,
+        samples_per_row,
+        sample_interval_s,
         attention: output.attention,
-        windows: course.windows.iter().copied().zip(seen.metrics).collect(),
+        windows: prepared.windows.iter().copied().zip(seen.metrics).collect(),
         occurrences,
         outside_model_s,
         settling_band_percent: scenario.settling_band_percent,
@@ -294,8 +294,8 @@ pub(super) fn run<'t>(
 }
 
 /// Initial state of a pass: that of the scenario, or a copy perturbed by rounding errors.
-fn start(bench: &ControlledMachine, course: &PreparedScenario, plan: PassPlan) -> Vec<f64> {
-    let mut start = course.start.clone();
+fn start(bench: &ControlledMachine, prepared: &PreparedScenario, plan: PassPlan) -> Vec<f64> {
+    let mut start = prepared.start.clone();
     if plan.moved {
         repetition::moved(&mut start, &bench.control.scales());
     }
@@ -323,47 +323,47 @@ pub struct ScenarioProblem {
     /// The machine, including the controller if it is continuous.
     pub control: Control,
     /// Duration, rows and inputs.
-    pub course: InputSchedule,
+    pub schedule: InputSchedule,
     /// Values of all states and of all waves in transit.
     pub start: Vec<f64>,
 }
 
 impl ScenarioProblem {
-    pub(super) fn of(bench: &ControlledMachine, scenario: &Scenario, course: &PreparedScenario) -> Self {
-        let inputs = inputs(&bench.control, course);
+    pub(super) fn of(bench: &ControlledMachine, scenario: &Scenario, prepared: &PreparedScenario) -> Self {
+        let inputs = inputs(&bench.control, prepared);
         let (duration_s, output_step_s) = (scenario.duration, scenario.output_step);
-        let start = course.start.clone();
-        let course = InputSchedule { duration_s, output_step_s, inputs };
-        ScenarioProblem { control: bench.control.clone(), course, start }
+        let start = prepared.start.clone();
+        let schedule = InputSchedule { duration_s, output_step_s, inputs };
+        ScenarioProblem { control: bench.control.clone(), schedule, start }
     }
 }
 
 /// Inputs of the loop, then those of its machine.
-fn inputs(control: &Control, course: &PreparedScenario) -> Vec<Input> {
-    let reference = Input::Value(course.reference.clone());
+fn inputs(control: &Control, prepared: &PreparedScenario) -> Vec<Input> {
+    let reference = Input::Value(prepared.reference.clone());
     let leading = match control {
         Control::Continuous(_) => vec![reference],
         Control::Sampled(_) => vec![Input::Command, reference],
-        Control::Open(_) => vec![Input::Value(course.command.clone()), reference],
+        Control::Open(_) => vec![Input::Value(prepared.command.clone()), reference],
     };
-    leading.into_iter().chain(course.machine_inputs()).collect()
+    leading.into_iter().chain(prepared.machine_inputs()).collect()
 }
 
 /// All events of the run, including the limits of lines that were exceeded.
 fn found(
-    (bench, course): (&ControlledMachine, &PreparedScenario),
+    (bench, prepared): (&ControlledMachine, &PreparedScenario),
     outcome: &Outcome,
     samples: &ControllerSamples,
     exceeded: &[Exceeded],
 ) -> Vec<Occurrence> {
-    let reference = course.reference.value(0.0);
+    let reference = prepared.reference.value(0.0);
     let leading = match &bench.control {
         Control::Continuous(_) => vec![reference],
         Control::Sampled(_) => vec![0.0, reference],
-        Control::Open(_) => vec![course.command.value(0.0), reference],
+        Control::Open(_) => vec![prepared.command.value(0.0), reference],
     };
-    let first = inputs_at_start(course, leading, &bench.control);
-    let mut found = occurrences(&bench.control, &course.start, &first, &outcome.events);
+    let first = inputs_at_start(prepared, leading, &bench.control);
+    let mut found = occurrences(&bench.control, &prepared.start, &first, &outcome.events);
     if matches!(bench.control, Control::Sampled(_)) {
         let limits = samples.limits.iter();
         found.extend(limits.map(|&(time_s, begins)| Occurrence { time_s, kind: COMMAND_LIMIT, begins }));
@@ -396,10 +396,10 @@ fn beyond_expansion(bench: &ControlledMachine, peaks_pa: [f64; 2]) -> Vec<Beyond
     ['a', 'b'].into_iter().zip(peaks_pa).zip(bench.expansion_stated_at).filter_map(beyond).collect()
 }
 
-fn looks_per_row(scenario: &Scenario) -> usize {
-    let wanted = (scenario.output_step / LONGEST_LOOK_S).ceil().max(1.0);
+fn samples_per_row(scenario: &Scenario) -> usize {
+    let wanted = (scenario.output_step / LONGEST_SAMPLE_INTERVAL_S).ceil().max(1.0);
     let rows = scenario.duration / scenario.output_step;
-    wanted.min((MOST_LOOKS / rows).floor().max(1.0)) as usize
+    wanted.min((MOST_SAMPLES / rows).floor().max(1.0)) as usize
 }
 
 /// The name of an [`Occurrence`] while the command is at its limit, in addition to the indicators
@@ -435,13 +435,13 @@ pub fn amplification(outcome: &Outcome, samples: &ControllerSamples) -> Option<A
 
 /// Inputs at time zero: those of the loop, the ground, the external force, the setting, and the
 /// waves in transit.
-fn inputs_at_start(course: &PreparedScenario, mut first: Vec<f64>, control: &Control) -> Vec<f64> {
-    first.extend([course.ground.value(0.0), course.ground.rate(0.0)]);
-    first.extend(course.external_force.as_ref().map(|force| force.value(0.0)));
-    let setting = course.setting_change.iter();
+fn inputs_at_start(prepared: &PreparedScenario, mut first: Vec<f64>, control: &Control) -> Vec<f64> {
+    first.extend([prepared.ground.value(0.0), prepared.ground.rate(0.0)]);
+    first.extend(prepared.external_force.as_ref().map(|force| force.value(0.0)));
+    let setting = prepared.setting_change.iter();
     first.extend(setting.flat_map(|setting| [setting.value(0.0), setting.rate(0.0)]));
     let [states, _] = control.size();
-    first.extend(course.start.iter().skip(states));
+    first.extend(prepared.start.iter().skip(states));
     first
 }
 

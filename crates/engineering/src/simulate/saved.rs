@@ -21,7 +21,7 @@ use phea_dynamics::simulation::Status;
 use phea_machine::{Control, DigitalMemory};
 
 use super::bench::ControlledMachine;
-use super::course::PreparedScenario;
+use super::prepared_scenario::PreparedScenario;
 use super::shortest_number::number;
 use crate::project::{Findings, Place, Project, RawFinding, Refusal, TreeNode, TreeValue, read_tree};
 use crate::quantity::significant;
@@ -99,7 +99,7 @@ fn remembered(number: usize) -> String {
 /// Final state of a run, or the reason why it is not saved.
 pub(super) fn of_end(
     bench: &ControlledMachine,
-    course: &PreparedScenario,
+    prepared: &PreparedScenario,
     (status, end, end_s): (Status, &[f64], f64),
     memory: Option<&DigitalMemory>,
 ) -> Result<SavedState, NotSaved> {
@@ -128,8 +128,8 @@ pub(super) fn of_end(
     Ok(SavedState {
         time_s: end_s,
         states: state_names(bench).into_iter().zip(end.iter().copied()).collect(),
-        ground_m: course.ground.value(end_s),
-        setting_change: course.setting_change.as_ref().map(|change| change.value(end_s)),
+        ground_m: prepared.ground.value(end_s),
+        setting_change: prepared.setting_change.as_ref().map(|change| change.value(end_s)),
         memory: memory.cloned(),
     })
 }
@@ -178,7 +178,7 @@ pub(super) fn read(
     let bytes = findings.bytes_of(source, &path);
     let root = bytes.and_then(|bytes| read_tree(&path, &bytes, &mut findings));
     let found = root.filter(|_| !findings.has_errors()).map(|root| {
-        goes_on(&root, setting_change, &mut findings);
+        continues(&root, setting_change, &mut findings);
         taken(&root, bench, &mut findings)
     });
     match found {
@@ -219,7 +219,7 @@ enum SavedProblem {
 }
 
 /// Rejects a setting that would jump from its final value in the previous run.
-fn goes_on(root: &TreeNode, setting_change: f64, findings: &mut Findings) {
+fn continues(root: &TreeNode, setting_change: f64, findings: &mut Findings) {
     let (before, place) = moved_before(root).unwrap_or((0.0, root.place));
     if (before - setting_change).abs() > SAME_SETTING {
         let [before, begins] = [before, setting_change].map(|change| significant(change, 6));

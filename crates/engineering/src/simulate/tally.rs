@@ -7,7 +7,7 @@ use super::metrics::{Measured, Unmeasured, stays_settled};
 use super::{Cause, Metrics, Window};
 
 /// Fraction of a window, at its end, over which the steady-state error is averaged.
-const STEADY_SHARE: f64 = 0.1;
+const STEADY_FRACTION: f64 = 0.1;
 /// Fractions of the step between which the rise time is taken.
 const RISE: [f64; 2] = [0.1, 0.9];
 /// Change of an extreme that justifies no refinement, as a fraction of the largest deviation.
@@ -130,7 +130,7 @@ impl Tally {
     /// Records the reference, the deviation of the force from it, and its mean at the end.
     fn track(&mut self, reference: &Quartic, force: &Quartic, [start_s, end_s]: [f64; 2], span: [f64; 2]) {
         let [from_s, until_s] = span.map(|part| start_s + part * (end_s - start_s));
-        let late_s = self.window.end_s - STEADY_SHARE * (self.window.end_s - self.window.start_s);
+        let late_s = self.window.end_s - STEADY_FRACTION * (self.window.end_s - self.window.start_s);
         let Quartic([value, changes @ ..]) = reference;
         let changes = changes.iter().any(|change| *change != 0.0);
         let moves = changes || self.reference.is_some_and(|before| before != *value);
@@ -151,8 +151,8 @@ impl Tally {
 
     fn rise(&mut self, deviation: &Quartic, highest: f64, span: [f64; 2], time_at: impl Fn(f64) -> f64) {
         let Cause::ReferenceStep { from_n, to_n } = self.window.cause else { return };
-        for (share, reached_s) in RISE.iter().zip(&mut self.reached_s) {
-            let level = (share - 1.0) * (to_n - from_n).abs();
+        for (fraction, reached_s) in RISE.iter().zip(&mut self.reached_s) {
+            let level = (fraction - 1.0) * (to_n - from_n).abs();
             if reached_s.is_none() && highest >= level {
                 *reached_s = deviation.first_above(level, span).map(&time_at);
             }
@@ -201,7 +201,7 @@ impl Tally {
 
     /// True if a step whose force is known only by a cubic may contain an extreme that counts, or
     /// leave the band.
-    pub(super) fn looks_closer(&self, force: &Quartic, reference: Option<f64>) -> bool {
+    pub(super) fn needs_accurate_solution(&self, force: &Quartic, reference: Option<f64>) -> bool {
         let reference = reference.map(Quartic::constant);
         let [low, high] = self.deviation(force, reference.as_ref()).bounds();
         // the error of the cubic is less than its deviation from a straight line
@@ -219,7 +219,7 @@ impl Tally {
     pub(super) fn metrics(&self) -> Metrics {
         let Window { start_s, end_s, cause } = self.window;
         if self.followed_until_s <= start_s {
-            return Metrics::none(Unmeasured::RunEnded, self.band_percent);
+            return Metrics::none(Unmeasured::AfterEnd, self.band_percent);
         }
         let [lowest, highest] = self.extremes;
         let largest = highest.max(-lowest);
@@ -233,14 +233,14 @@ impl Tally {
             return Metrics { force_peak_n: Ok(largest), ..commanded(Unmeasured::OpenLoop) };
         }
         let whole = self.followed_until_s >= end_s * (1.0 - 2.0 * LAST_PLACES * f64::EPSILON);
-        let at_end = |measured: Measured| if whole { measured } else { Err(Unmeasured::RunEnded) };
-        let steady = self.late_error / (STEADY_SHARE * (end_s - start_s));
+        let at_end = |measured: Measured| if whole { measured } else { Err(Unmeasured::AfterEnd) };
+        let steady = self.late_error / (STEADY_FRACTION * (end_s - start_s));
         let common = Metrics {
             force_peak_n: Err(Unmeasured::ReferenceGiven),
             tracking_error_peak_n: if self.moves {
                 Ok(self.tracking_error)
             } else {
-                Err(Unmeasured::ReferenceStandsStill)
+                Err(Unmeasured::ReferenceConstant)
             },
             steady_state_error_n: at_end(if self.moves_late {
                 Err(Unmeasured::ReferenceMoves)
@@ -248,7 +248,7 @@ impl Tally {
                 Ok(steady)
             }),
             disturbance_peak_n: Err(Unmeasured::NoMotion),
-            ..commanded(if self.moves { Unmeasured::ReferenceMoves } else { Unmeasured::RunEnded })
+            ..commanded(if self.moves { Unmeasured::ReferenceMoves } else { Unmeasured::AfterEnd })
         };
         let settling_time_s = at_end(self.settling_time());
         match cause {
@@ -276,7 +276,7 @@ impl Tally {
         }
         match self.reached_s {
             [Some(from_s), Some(until_s)] => Ok(until_s - from_s),
-            _ => Err(if whole { Unmeasured::NotReached } else { Unmeasured::RunEnded }),
+            _ => Err(if whole { Unmeasured::NotReached } else { Unmeasured::AfterEnd }),
         }
     }
 

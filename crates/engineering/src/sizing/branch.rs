@@ -1,5 +1,5 @@
 use phea_hydraulics::line::StiffeningMember;
-use phea_hydraulics::stiffness::{StiffnessModel, StrokeStiffness, line_share_for_stiffness};
+use phea_hydraulics::stiffness::{StiffnessModel, StrokeStiffness, line_fraction_for_stiffness};
 
 use super::{HoseOption, Question, SizingProblem};
 
@@ -46,7 +46,7 @@ pub(super) fn branches(
             let available = problem.available_length(proportion);
             vec![
                 search(problem, option, model),
-                at_lengths(problem, option, model, proportion.map(|share| share * available)),
+                at_lengths(problem, option, model, proportion.map(|fraction| fraction * available)),
             ]
         }
     }
@@ -75,7 +75,7 @@ fn at_gain(
     let step = gain_step(problem, option, model, gain);
     steps.push(step);
     let proportion = option.proportion(model, problem.fluid_modulus);
-    let lengths_m = proportion.map(|share| if step.length_m == 0.0 { 0.0 } else { share * step.length_m });
+    let lengths_m = proportion.map(|fraction| if step.length_m == 0.0 { 0.0 } else { fraction * step.length_m });
     let stiffness = problem.stroke_stiffness(option, lengths_m, model);
     Branch { by_gain: true, model, steps, lengths_m, stiffness, gain_v_per_n: gain }
 }
@@ -127,7 +127,7 @@ fn commercial(problem: &SizingProblem, option: &HoseOption, exact: Branch) -> Br
     let Some(increment) = problem.length_increment.filter(|_| sound) else { return exact };
     let tolerance = 1e-9;
     let up = exact.lengths_m.map(|length| (length / increment - tolerance).ceil() * increment);
-    let down = proportion.map(|share| (share * available / increment + tolerance).floor() * increment);
+    let down = proportion.map(|fraction| (fraction * available / increment + tolerance).floor() * increment);
     if down.iter().any(|length| *length <= 0.0) {
         return exact;
     }
@@ -138,7 +138,7 @@ fn commercial(problem: &SizingProblem, option: &HoseOption, exact: Branch) -> Br
 fn gain_step(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel, gain: f64) -> GainStep {
     let stiffness_n_per_m = problem.stiffness_for_gain(gain);
     let [line_a, line_b] = option.lines(option.proportion(model, problem.fluid_modulus));
-    let length = line_share_for_stiffness(
+    let length = line_fraction_for_stiffness(
         model,
         problem.fluid_modulus,
         &problem.cylinder,

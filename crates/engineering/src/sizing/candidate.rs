@@ -92,8 +92,8 @@ fn surge_pressure(problem: &SizingProblem, option: &HoseOption, velocity: f64) -
     let surges = option.hoses.map(|hose| {
         let wall = hose.filled().wall_modulus(StiffeningMember::Maximum);
         let modulus = series_modulus(problem.fluid_modulus, wall);
-        let share = (option.bore() / hose.bore) * (option.bore() / hose.bore);
-        share * velocity * (problem.density * modulus).sqrt()
+        let fraction = (option.bore() / hose.bore) * (option.bore() / hose.bore);
+        fraction * velocity * (problem.density * modulus).sqrt()
     });
     surges[0].max(surges[1])
 }
@@ -175,7 +175,7 @@ fn stiffening(option: &HoseOption, findings: &mut Vec<SizingReason>) {
 
 /// Checks the time constant with the flow gains of both sides of null, at the least stiffness.
 fn null_sides(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<SizingReason>) {
-    findings.extend(problem.dead_band.map(|share| SizingReason::DeadBand { share }));
+    findings.extend(problem.dead_band.map(|fraction| SizingReason::DeadBand { fraction }));
     let Some(flow_gains) = problem.null_flow_gains else { return };
     let softest = problem.with_stiffness(candidate.branch.stiffness.minimum);
     let time_constants = flow_gains.map(|flow_gain| {

@@ -64,11 +64,11 @@ pub enum SizingError {
 /// [`SizingError`] if the project does not state the target of the sizing.
 pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<SizingProblem, SizingError> {
     let (project, rig) = (setup.project, setup.rig()?);
-    let wish = project.sizing.as_ref().ok_or(SizingError::Absent)?;
+    let requirement = project.sizing.as_ref().ok_or(SizingError::Absent)?;
     let actuator = project.actuator.as_ref().ok_or(SizingError::NoHose)?;
     let components = rig.actuator.components();
     refuse_what_no_hose_is_sized_for(components)?;
-    let (time_constant, time_constant_origin) = time_constant(wish.speed);
+    let (time_constant, time_constant_origin) = time_constant(requirement.speed);
     let hoses = hoses(actuator, catalogue);
     if hoses.is_empty() {
         return Err(SizingError::NoHose);
@@ -80,18 +80,18 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
     Ok(SizingProblem {
         cylinder: components.cylinder,
         linear: LinearParameters {
-            flow_gain: wish.flow_gain.unwrap_or(outright("flow_gain", rig.derived.flow_gain)),
+            flow_gain: requirement.flow_gain.unwrap_or(outright("flow_gain", rig.derived.flow_gain)),
             flow_pressure_coefficient: rig.internal_leakage
-                + wish
+                + requirement
                     .flow_pressure_coefficient
                     .unwrap_or(outright("flow_pressure_coefficient", rig.derived.flow_pressure_coefficient)),
             ..against_load(actuator, rig)
         },
-        sensor_alone: rig.softened(&rig.linear).sensor_stiffness,
+        sensor_without_load: rig.softened(&rig.linear).sensor_stiffness,
         load: sized_load(actuator, rig),
-        dead_band: dead_band(setup, wish.flow_gain)?,
+        dead_band: dead_band(setup, requirement.flow_gain)?,
         null_flow_gains: rig.null_flow_gains().filter(|_| {
-            wish.flow_gain
+            requirement.flow_gain
                 .or(project.linear.get("flow_gain"))
                 .or(project.operating_point.spool_side)
                 .is_none()
@@ -106,17 +106,17 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
         time_constant_origin,
         sooner: sooner(project, time_constant),
         flow: largest_flow(components, &actuator.supply),
-        oil_velocity: wish.oil_velocity.unwrap_or(OIL_VELOCITY),
-        minimum_gain: wish.minimum_gain.unwrap_or(MINIMUM_GAIN),
-        maximum_gain: wish.maximum_gain.unwrap_or(MAXIMUM_GAIN),
-        length_increment: wish.length_increment,
-        stock_length: wish.stock_length,
-        hose_length: wish.hose_length.unwrap_or(HOSE_LENGTH),
+        oil_velocity: requirement.oil_velocity.unwrap_or(OIL_VELOCITY),
+        minimum_gain: requirement.minimum_gain.unwrap_or(MINIMUM_GAIN),
+        maximum_gain: requirement.maximum_gain.unwrap_or(MAXIMUM_GAIN),
+        length_increment: requirement.length_increment,
+        stock_length: requirement.stock_length,
+        hose_length: requirement.hose_length.unwrap_or(HOSE_LENGTH),
         supply_pressure: actuator.supply.pressure,
         model: components.stiffness_model,
         unlike: unlike(actuator),
         hoses,
-        other_means: other_means(wish, actuator, rig),
+        other_means: other_means(requirement, actuator, rig),
         market_bores: DASH_SIZES.iter().map(|(name, bore)| (name.to_string(), *bore)).collect(),
     })
 }
@@ -160,13 +160,13 @@ fn against_load(declared: &project::DeclaredActuator, rig: &Rig) -> LinearParame
 
 /// Input for the other means, if they are requested.
 fn other_means(
-    wish: &project::DeclaredSizing,
+    requirement: &project::DeclaredSizing,
     declared: &project::DeclaredActuator,
     rig: &Rig,
 ) -> Option<OtherMeansProblem> {
     let cylinder = &declared.cylinder;
     Some(OtherMeansProblem {
-        wish: wish.other_means.clone()?,
+        requirement: requirement.other_means.clone()?,
         actuator: rig.actuator,
         linear: rig.leaking(),
         position: rig.point.position,
@@ -263,9 +263,9 @@ fn unlike(actuator: &project::DeclaredActuator) -> Option<UnlikeLines> {
 /// ```
 fn sooner(project: &Project, time_constant_s: f64) -> Option<SoonerRequirement> {
     let each = time_requirements(project).ok()?.into_iter().filter_map(|one| {
-        let band_percent = one.wish.band_percent;
+        let band_percent = one.step_limits.band_percent;
         let settles = time_constant_s * ln(100.0 / band_percent);
-        let required = one.wish.settling_time_s.filter(|time_s| settles > ROUNDED * time_s)?;
+        let required = one.step_limits.settling_time_s.filter(|time_s| settles > ROUNDED * time_s)?;
         Some(SoonerRequirement { specification: one.number, band_percent, settles, required })
     });
     let beyond = |one: &SoonerRequirement| one.settles / one.required;
@@ -277,6 +277,6 @@ fn sooner(project: &Project, time_constant_s: f64) -> Option<SoonerRequirement> 
 fn dead_band(setup: &Setup<'_>, stated: Option<f64>) -> Result<Option<f64>, SizingError> {
     let components = setup.rig()?.actuator.components();
     let is_stated = stated.or(setup.project.linear.get("flow_gain")).is_some();
-    let found = overlap::dead_band(&components.valve, &components.supply).map(|[_, _, share]| share);
+    let found = overlap::dead_band(&components.valve, &components.supply).map(|[_, _, fraction]| fraction);
     Ok(found.filter(|_| !is_stated))
 }

@@ -10,13 +10,13 @@ use phea_hydraulics::linear::LinearParameters;
 use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
 use phea_hydraulics::series::{CoilPair, CoilWire, LEAST_ACTIVE_COILS, coil_pair};
 
-use crate::project::OtherMeansWish;
+use crate::project::OtherMeansRequirement;
 
 /// Input for the sizing of the other means.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OtherMeansProblem {
     /// Request of the project.
-    pub wish: OtherMeansWish,
+    pub requirement: OtherMeansRequirement,
     /// Rig with the lines that it declares.
     pub actuator: Actuator,
     /// Linear parameters, with the stiffness of a series element in series with the force sensor.
@@ -125,7 +125,7 @@ pub struct SizedValve {
     /// K_H of the rig that the valve damps, N/m.
     pub stiffness: f64,
     /// Damping ratio of the mode of the load cell without the valve.
-    pub alone: f64,
+    pub damping_ratio_without_valve: f64,
     /// Conductance at which the mode has the required damping, m3/(s Pa); `None` if there is none.
     pub conductance: Option<f64>,
     /// Greatest damping ratio of all conductances, and the conductance at which it occurs.
@@ -146,7 +146,7 @@ const DECADES: f64 = 4.0;
 impl OtherMeansProblem {
     /// All other means, for a hose of this K_H, N/m, and bore, m.
     pub(super) fn solve(&self, hose_stiffness: f64, bore: f64) -> OtherMeans {
-        let stiffness = self.wish.stiffness.unwrap_or(hose_stiffness);
+        let stiffness = self.requirement.stiffness.unwrap_or(hose_stiffness);
         let chambers = self.least(&rigid_pipe(bore, 0.0), None, [self.actuator.mean_pressure(); 2]);
         OtherMeans {
             stiffness,
@@ -182,7 +182,7 @@ impl OtherMeansProblem {
     /// P_0 = share P_min,    max over F of K_H(V_0, p_A(F), p_B(F)) = K_H        P_min the lowest chamber pressure over F
     /// ```
     fn gas(&self, stiffness: f64, chambers: f64, bore: f64) -> Result<SizedGas, OtherMeansError> {
-        let [low, high] = self.wish.force_range.ok_or(OtherMeansError::NoForceRange)?;
+        let [low, high] = self.requirement.force_range.ok_or(OtherMeansError::NoForceRange)?;
         softer(stiffness, chambers)?;
         let held = |index: usize| {
             let force = low + (high - low) * index as f64 / (FORCES - 1) as f64;
@@ -194,7 +194,7 @@ impl OtherMeansProblem {
         let pressures = pressures.map_err(|_| OtherMeansError::ForceNotHeld)?;
         let lowest = pressures.iter().flatten().fold(f64::INFINITY, |least, one| least.min(*one));
         let absolute = lowest + ATMOSPHERIC_PRESSURE_ABSOLUTE;
-        let precharge = self.wish.precharge_share * absolute - ATMOSPHERIC_PRESSURE_ABSOLUTE;
+        let precharge = self.requirement.precharge_share * absolute - ATMOSPHERIC_PRESSURE_ABSOLUTE;
         if precharge <= 0.0 {
             return Err(OtherMeansError::NoPrecharge);
         }
@@ -203,7 +203,7 @@ impl OtherMeansProblem {
             let gas = Accumulator {
                 gas_volume: volume,
                 precharge_pressure: precharge,
-                polytropic_exponent: self.wish.polytropic_exponent,
+                polytropic_exponent: self.requirement.polytropic_exponent,
             };
             let of = |pressures: &[f64; 2]| self.least(&none, Some(gas), *pressures);
             pressures
@@ -231,7 +231,7 @@ impl OtherMeansProblem {
         let Components { cylinder, supply, .. } = self.actuator.components();
         let [retracting, extending] = cylinder.stall_forces(supply);
         let stall = extending.max(-retracting);
-        let coil = self.wish.coil.map(|coil| {
+        let coil = self.requirement.coil.map(|coil| {
             let wire = CoilWire {
                 index: coil.index,
                 allowed_shear_stress: coil.allowed_shear_stress,
@@ -250,7 +250,7 @@ impl OtherMeansProblem {
     }
 
     fn valves(&self, chambers: f64) -> Result<[SizedValve; 2], OtherMeansError> {
-        let wanted = self.wish.damping_ratio.ok_or(OtherMeansError::NoDampingRatio)?;
+        let wanted = self.requirement.damping_ratio.ok_or(OtherMeansError::NoDampingRatio)?;
         Ok([self.linear.hydraulic_stiffness, chambers].map(|stiffness| self.valve(stiffness, wanted)))
     }
 
@@ -275,11 +275,11 @@ impl OtherMeansProblem {
             }
             more
         });
-        let greatest = self.wish.force_range.map(|[low, high]| low.abs().max(high.abs()));
+        let greatest = self.requirement.force_range.map(|[low, high]| low.abs().max(high.abs()));
         let loss = conductance
             .zip(greatest)
             .map(|(conductance, force)| conductance * (force / area) * (force / area));
-        SizedValve { stiffness, alone: damped(0.0), conductance, most, loss }
+        SizedValve { stiffness, damping_ratio_without_valve: damped(0.0), conductance, most, loss }
     }
 }
 

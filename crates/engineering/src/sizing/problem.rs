@@ -23,7 +23,7 @@ pub struct SizingProblem {
     /// load in series; the hydraulic stiffness is to be found; its value is not used.
     pub linear: LinearParameters,
     /// Stiffness K_S without the load, N/m.
-    pub sensor_alone: f64,
+    pub sensor_without_load: f64,
     /// The load in series with it.
     pub load: SizedLoad,
     /// K_qU of a spool at null that retracts the piston and of one that extends it, m3/(s V);
@@ -261,7 +261,7 @@ impl SizingProblem {
             useful_area: self.linear.useful_area,
             stroke: 2.0 * self.cylinder.stroke.middle(),
             fluid_modulus: self.fluid_modulus,
-            sensor_alone: self.sensor_alone,
+            sensor_without_load: self.sensor_without_load,
             load: self.load,
             sensor_stiffness: self.linear.sensor_stiffness,
             flow_gain: self.linear.flow_gain,

@@ -105,7 +105,7 @@ pub enum SizingReason {
     /// The edges of the valve overlap, and the gain at null is used.
     DeadBand {
         /// Ratio of K_qU at null to that beyond the lap.
-        share: f64,
+        fraction: f64,
     },
     /// The flow gain differs between the sides of null.
     NullSides {

@@ -1,5 +1,5 @@
 use phea_hydraulics::line::{Hose, Stiffening, StiffeningMember};
-use phea_hydraulics::stiffness::line_share_for_stiffness;
+use phea_hydraulics::stiffness::line_fraction_for_stiffness;
 
 use super::{Candidate, HoseOption, SizingProblem};
 use crate::quantity::DisplayUnit;
@@ -41,7 +41,7 @@ pub fn sensitivity(problem: &SizingProblem, candidate: &Candidate) -> Vec<Influe
     let option = &candidate.option;
     let hose = option.hoses[0];
     let Stiffening { nominal, minimum, maximum } = hose.dynamic_stiffening;
-    let shares = [1.0 - ASSUMED_SPREAD, 1.0, 1.0 + ASSUMED_SPREAD];
+    let fractions = [1.0 - ASSUMED_SPREAD, 1.0, 1.0 + ASSUMED_SPREAD];
     let with = |vary: &dyn Fn(Hose) -> Hose| HoseOption { hoses: option.hoses.map(vary), ..option.clone() };
     let influence = |quantity: UncertainHoseNumber,
                      unit: DisplayUnit,
@@ -76,9 +76,9 @@ pub fn sensitivity(problem: &SizingProblem, candidate: &Candidate) -> Vec<Influe
         influence(
             UncertainHoseNumber::FluidBulkModulus,
             DisplayUnit::GIGAPASCAL,
-            shares.map(|share| problem.fluid_modulus * share),
+            fractions.map(|fraction| problem.fluid_modulus * fraction),
             &|index| {
-                let fluid_modulus = problem.fluid_modulus * shares[index];
+                let fluid_modulus = problem.fluid_modulus * fractions[index];
                 (SizingProblem { fluid_modulus, ..problem.clone() }, option.clone())
             },
         ),
@@ -87,15 +87,15 @@ pub fn sensitivity(problem: &SizingProblem, candidate: &Candidate) -> Vec<Influe
         influence(
             UncertainHoseNumber::VolumetricExpansion,
             DisplayUnit::CUBIC_CENTIMETRE_PER_METRE,
-            shares.map(|share| hose.volumetric_expansion * share),
-            &|index| (problem.clone(), with(&|hose| expanding(hose, shares[index]))),
+            fractions.map(|fraction| hose.volumetric_expansion * fraction),
+            &|index| (problem.clone(), with(&|hose| expanding(hose, fractions[index]))),
         ),
     ]
 }
 
-fn expanding(hose: Hose, share: f64) -> Hose {
+fn expanding(hose: Hose, fraction: f64) -> Hose {
     let [volumetric_expansion, operating_expansion, expansion_slope] =
-        [hose.volumetric_expansion, hose.operating_expansion, hose.expansion_slope].map(|each| each * share);
+        [hose.volumetric_expansion, hose.operating_expansion, hose.expansion_slope].map(|each| each * fraction);
     Hose { volumetric_expansion, operating_expansion, expansion_slope, ..hose }
 }
 
@@ -109,7 +109,7 @@ fn outcome(problem: &SizingProblem, option: &HoseOption, candidate: &Candidate) 
         false => [1.0, lengths[1] / lengths[0]],
     };
     let [line_a, line_b] = option.lines(proportion);
-    let length = line_share_for_stiffness(
+    let length = line_fraction_for_stiffness(
         model,
         problem.fluid_modulus,
         &problem.cylinder,

@@ -64,7 +64,7 @@ pub struct SizedSystem {
     /// Bulk modulus of the fluid beta_0, Pa.
     pub fluid_modulus: f64,
     /// Stiffness K_S without the load, N/m.
-    pub sensor_alone: f64,
+    pub sensor_without_load: f64,
     /// The load in series with it.
     pub load: SizedLoad,
     /// Stiffness K_S with the load in series, N/m.

@@ -2,7 +2,7 @@
 
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_qft::specification::{
-    ClosedLoop, ExtraRoot, Limit, LimitTable, LowerWish, MarginError, Translation, UpperWish, WishCheck,
+    ClosedLoop, ExtraRoot, Limit, LimitTable, LowerStepRequirement, MarginError, Translation, UpperStepRequirement, RequirementCheck,
     check_lower, check_upper, delay_margin_limit, robust_stability_limit_for_gain_increase,
     robust_stability_limit_for_gain_reduction, robust_stability_limit_for_modulus_margin,
     robust_stability_limit_for_phase_margin, sensitivity_limit_for_gain_increase,
@@ -11,7 +11,7 @@ use phea_qft::specification::{
 };
 
 use super::SpecificationProblem;
-use crate::project::{self, MarginWish, Rational, ResponseWish};
+use crate::project::{self, MarginRequirement, Rational, ResponseRequirement};
 use crate::setup::from_formulas;
 
 /// Forms that a key accepts in addition to those that all keys accept.
@@ -19,7 +19,7 @@ use crate::setup::from_formulas;
 pub(super) enum Takes {
     /// Margins, for robust stability or the sensitivity.
     MarginsOf(ClosedLoop),
-    Wish(TrackingSide),
+    RequirementInTime(TrackingSide),
 }
 
 /// Side of tracking that is limited.
@@ -45,14 +45,14 @@ pub(super) fn over_frequency(
             let points = table.frequencies.iter().copied().zip(table.values.iter().copied());
             Limit::Table(LimitTable::new(points.collect())?)
         }
-        (project::DeclaredLimit::Margins(wish), Takes::MarginsOf(closed_loop)) => {
-            of_margins(wish, closed_loop)?
+        (project::DeclaredLimit::Margins(requirement), Takes::MarginsOf(closed_loop)) => {
+            of_margins(requirement, closed_loop)?
         }
-        (project::DeclaredLimit::Response(wish), Takes::Wish(side)) => {
-            Limit::Rational(of_wish(wish, side)?.0)
+        (project::DeclaredLimit::Response(requirement), Takes::RequirementInTime(side)) => {
+            Limit::Rational(of_requirement(requirement, side)?.0)
         }
         (project::DeclaredLimit::Margins(_), _) => return Err(SpecificationProblem::TakesNoMargins),
-        (project::DeclaredLimit::Response(_), _) => return Err(SpecificationProblem::TakesNoWish),
+        (project::DeclaredLimit::Response(_), _) => return Err(SpecificationProblem::TakesNoRequirementInTime),
     })
 }
 
@@ -62,8 +62,8 @@ fn function(rational: &Rational) -> Result<TransferFunction, SpecificationProble
 }
 
 /// Strictest of the limits that guarantee the margins, or the one that guarantees the delay.
-fn of_margins(wish: &MarginWish, closed_loop: ClosedLoop) -> Result<Limit, SpecificationProblem> {
-    if let (Some(delay_s), ClosedLoop::RobustStability) = (wish.delay_margin, closed_loop) {
+fn of_margins(requirement: &MarginRequirement, closed_loop: ClosedLoop) -> Result<Limit, SpecificationProblem> {
+    if let (Some(delay_s), ClosedLoop::RobustStability) = (requirement.delay_margin, closed_loop) {
         return Ok(delay_margin_limit(delay_s)?);
     }
     type Translate = fn(f64) -> Result<f64, MarginError>;
@@ -82,11 +82,11 @@ fn of_margins(wish: &MarginWish, closed_loop: ClosedLoop) -> Result<Limit, Speci
         ],
         _ => return Err(SpecificationProblem::TakesNoMargins),
     };
-    let wishes = [wish.gain_margin, wish.gain_reduction, wish.phase_margin, wish.modulus_margin];
+    let margins = [requirement.gain_margin, requirement.gain_reduction, requirement.phase_margin, requirement.modulus_margin];
     let mut strictest = None::<f64>;
-    for (wished, translate) in wishes.into_iter().zip(translations) {
-        if let Some(wished) = wished {
-            let limit = translate(wished)?;
+    for (required, translate) in margins.into_iter().zip(translations) {
+        if let Some(required) = required {
+            let limit = translate(required)?;
             strictest = Some(strictest.map_or(limit, |known| known.min(limit)));
         }
     }
@@ -95,33 +95,33 @@ fn of_margins(wish: &MarginWish, closed_loop: ClosedLoop) -> Result<Limit, Speci
 
 /// Limit that follows from a requirement in time, or the one given with it, and its response in
 /// time.
-pub(super) fn of_wish(
-    wish: &ResponseWish,
+pub(super) fn of_requirement(
+    requirement: &ResponseRequirement,
     side: TrackingSide,
-) -> Result<(TransferFunction, WishCheck), SpecificationProblem> {
+) -> Result<(TransferFunction, RequirementCheck), SpecificationProblem> {
     let needed = |value: Option<f64>| value.ok_or(SpecificationProblem::Missing);
-    let settling_time_s = needed(wish.settling_time)?;
-    let settling_band_percent = needed(wish.settling_band_percent)?;
-    let translation = wish.rule.map_or(Translation::Exact, Translation::Rule);
-    let given = wish.function.as_ref().map(function).transpose()?;
+    let settling_time_s = needed(requirement.settling_time)?;
+    let settling_band_percent = needed(requirement.settling_band_percent)?;
+    let translation = requirement.rule.map_or(Translation::Exact, Translation::Rule);
+    let given = requirement.function.as_ref().map(function).transpose()?;
     match side {
         TrackingSide::Upper => {
-            let overshoot_percent = needed(wish.overshoot_percent)?;
-            let wished = UpperWish { overshoot_percent, settling_time_s, settling_band_percent };
+            let overshoot_percent = needed(requirement.overshoot_percent)?;
+            let required = UpperStepRequirement { overshoot_percent, settling_time_s, settling_band_percent };
             if let Some(function) = given {
-                let check = check_upper(&function, &wished)?;
+                let check = check_upper(&function, &required)?;
                 return Ok((function, check));
             }
-            let limit = tracking_upper(&wished, extra(wish.zero), translation)?;
+            let limit = tracking_upper(&required, extra(requirement.zero), translation)?;
             Ok((limit.function, limit.check))
         }
         TrackingSide::Lower => {
-            let wished = LowerWish { settling_time_s, settling_band_percent };
+            let required = LowerStepRequirement { settling_time_s, settling_band_percent };
             if let Some(function) = given {
-                let check = check_lower(&function, &wished)?;
+                let check = check_lower(&function, &required)?;
                 return Ok((function, check));
             }
-            let limit = tracking_lower(&wished, extra(wish.pole), translation)?;
+            let limit = tracking_lower(&required, extra(requirement.pole), translation)?;
             Ok((limit.function, limit.check))
         }
     }

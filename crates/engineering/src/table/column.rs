@@ -18,13 +18,13 @@ pub struct Measurand {
     /// Dimension of the unit.
     pub dimension: &'static Dimension,
     /// True if the quantity may be a fraction, in percent, of a value that is not in the table.
-    pub may_be_share: bool,
+    pub may_be_fraction: bool,
 }
 
 impl Measurand {
     /// A quantity recognised by its name.
     pub const fn of(name: &'static str, dimension: &'static Dimension) -> Measurand {
-        Measurand { name, symbols: &[], dimension, may_be_share: false }
+        Measurand { name, symbols: &[], dimension, may_be_fraction: false }
     }
 
     /// The quantity with additional names.
@@ -61,7 +61,7 @@ pub struct Column {
     /// Unit, as quantities spell it; empty for a pure number.
     pub unit: String,
     /// True if its numbers are fractions.
-    pub is_share: bool,
+    pub is_fraction: bool,
     /// True if the signal is its numbers with the opposite sign.
     pub is_reversed: bool,
     pub(super) scale: UnitScale,
@@ -116,7 +116,7 @@ impl<'a> Sought<'a> {
 
     /// Unit and scale of a written unit.
     fn unit_of(&self, written: &str) -> Option<(String, UnitScale)> {
-        if self.measurand.may_be_share && ["%", "percent"].contains(&written) {
+        if self.measurand.may_be_fraction && ["%", "percent"].contains(&written) {
             return Some(("%".to_string(), UnitScale::new("%", &RATIO).ok()?));
         }
         let dimension = self.measurand.dimension;
@@ -132,9 +132,9 @@ impl<'a> Sought<'a> {
             return vec![stated.to_string()];
         }
         let pure = UnitScale::new("", self.measurand.dimension).is_ok().then(|| name.to_string());
-        let share = self.measurand.may_be_share.then(|| format!("{name}_percent"));
+        let fraction = self.measurand.may_be_fraction.then(|| format!("{name}_percent"));
         let united = endings(self.measurand.dimension).map(|unit| format!("{name}_{unit}"));
-        united.chain(pure).chain(share).collect()
+        united.chain(pure).chain(fraction).collect()
     }
 }
 
@@ -188,7 +188,7 @@ impl MeasuredTable {
         if is_time && self.is_clock(index, findings) {
             let scale = UnitScale::new(TIME.si, &TIME).ok()?;
             let unit = TIME.si.to_string();
-            return Some(Column { index, unit, is_share: false, is_reversed: false, scale, is_time });
+            return Some(Column { index, unit, is_fraction: false, is_reversed: false, scale, is_time });
         }
         let Some((unit, scale)) = sought.unit_of(sought.unit.unwrap_or(said)) else {
             findings.push(self.without_unit(sought, heading, sought.unit.unwrap_or(said)));
@@ -202,8 +202,8 @@ impl MeasuredTable {
                 ColumnError::ReadInStatedUnit { heading: heading.text.clone(), stated: unit.clone(), other };
             findings.push(RawFinding::warning(heading.place, message.to_string()));
         }
-        let is_share = sought.measurand.may_be_share && unit == "%";
-        Some(Column { index, unit, is_share, is_reversed: sought.is_reversed, scale, is_time })
+        let is_fraction = sought.measurand.may_be_fraction && unit == "%";
+        Some(Column { index, unit, is_fraction, is_reversed: sought.is_reversed, scale, is_time })
     }
 
     fn without_unit(&self, sought: &Sought<'_>, heading: &Heading, written: &str) -> RawFinding {
@@ -225,7 +225,7 @@ impl MeasuredTable {
             .expected(TableHint::OneOf(quoted.join(", ")).to_string());
         let is_absolute = ["bara", "psia"].contains(&written.to_lowercase().as_str());
         let near = nearest(written, endings(sought.measurand.dimension));
-        let is_current = sought.measurand.may_be_share && unit_meant(written, &CURRENT).is_some();
+        let is_current = sought.measurand.may_be_fraction && unit_meant(written, &CURRENT).is_some();
         let hint = match near {
             _ if is_current => Some(TableHint::CurrentAsPercent(sought.measurand.name)),
             _ if is_absolute => Some(TableHint::AbsolutePressure),

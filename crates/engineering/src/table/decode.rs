@@ -31,7 +31,7 @@ pub(super) fn text(file: &str, mut bytes: Vec<u8>, findings: &mut Findings) -> O
     } else {
         (Some(narrow(bytes)), 0)
     };
-    let is_text = |content: &String| !content.bytes().take(MOST_LOOKED_AT).any(is_control);
+    let is_text = |content: &String| !content.bytes().take(MOST_EVALUATED).any(is_control);
     let Some(content) = found.filter(is_text) else {
         findings.unreadable(file, &ForeignFile::NotText.to_string());
         return None;
@@ -49,7 +49,7 @@ fn wide(bytes: &[u8], order: fn([u8; 2]) -> u16) -> Option<String> {
 }
 
 /// Length of the part of a text that is checked for signs that do not occur in text.
-const MOST_LOOKED_AT: usize = 4096;
+const MOST_EVALUATED: usize = 4096;
 
 fn is_control(byte: u8) -> bool {
     byte < 0x20 && !matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c | 0x1a)

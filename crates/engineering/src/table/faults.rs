@@ -24,7 +24,7 @@ impl Faults {
     }
 
     /// Findings: a single one if most rows have the fault.
-    pub(super) fn told(mut self, rows: usize) -> Vec<RawFinding> {
+    pub(super) fn finding(mut self, rows: usize) -> Vec<RawFinding> {
         if self.count > FEW && 2 * self.count > rows {
             self.first.truncate(1);
             return self.first.into_iter().map(|first| first.and_more(self.count)).collect();

@@ -229,7 +229,7 @@ impl ParquetRows {
                 let place = Place { text: self.text, start: 0, end: 0 };
                 findings.push(RawFinding::error(place, format!("column `{name}`: {why}")));
             }
-            reading.wrong.told(self.count).into_iter().for_each(|found| findings.push(found));
+            reading.wrong.finding(self.count).into_iter().for_each(|found| findings.push(found));
             numbers.columns.push(reading.values);
             numbers.gaps.push(reading.gaps);
         }

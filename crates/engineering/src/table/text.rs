@@ -226,10 +226,10 @@ impl TextRows {
             }
         }
         let TextReading { numbers, incomplete, wrong, signs, point, comma, .. } = reading;
-        let mut found = incomplete.told(self.starts.len());
-        found.extend(wrong.into_iter().flat_map(|wrong| wrong.told(self.starts.len())));
+        let mut found = incomplete.finding(self.starts.len());
+        found.extend(wrong.into_iter().flat_map(|wrong| wrong.finding(self.starts.len())));
         let signs = signs.into_iter().zip(columns);
-        found.extend(signs.filter_map(|(signs, column)| signs.told(self.text, column)));
+        found.extend(signs.filter_map(|(signs, column)| signs.finding(self.text, column)));
         found.extend(two_signs(content, point, comma));
         (numbers, found)
     }

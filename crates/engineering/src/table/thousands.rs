@@ -55,7 +55,7 @@ impl ThousandsSigns {
     }
 
     /// Error for numbers of a column that continue their whole neighbours beyond 999.
-    pub(super) fn told(self, text: usize, column: &Column) -> Option<RawFinding> {
+    pub(super) fn finding(self, text: usize, column: &Column) -> Option<RawFinding> {
         let [thousands, decimals] = self.closer;
         if self.is_excluded || !self.has_three_digits || thousands <= decimals {
             return None;

@@ -29,12 +29,12 @@ pub(crate) fn not_increasing(
         (false, true) => RowError::NotBeforeNext,
         (false, false) => RowError::BeforePrevious,
     };
-    let cure = match is_equal {
+    let remedy = match is_equal {
         true => TableHint::AllDigitsOfTimes,
         false => TableHint::SortByTime,
     };
     let found = table.error(if is_equal { row } else { wrong }, column, message.to_string(), findings);
-    found.expected(TableHint::IncreasingTimes.to_string()).help(cure.to_string())
+    found.expected(TableHint::IncreasingTimes.to_string()).help(remedy.to_string())
 }
 
 /// Number of rows to either side whose usual step counts.

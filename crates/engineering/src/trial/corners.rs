@@ -8,8 +8,8 @@ use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::verification::PlantPoint;
 
 use super::reason::TrialMachine;
-use super::rigs::{Tried, rig_with};
-use super::run::{TrialRun, TriedMachine};
+use super::rigs::{TrialRig, rig_with};
+use super::run::{TrialRun, PredictedMachine};
 use super::{STAGE, TrialError};
 use crate::audit::ProjectAudit;
 use crate::robust::RobustProblem;
@@ -40,8 +40,8 @@ pub(super) fn runs_of_corners(
     watch: Watch<'_>,
 ) -> Result<Vec<TrialRun>, TrialError> {
     let rigs = rigs(setup, problem, view)?;
-    let runs_of = |rig: &Tried, watch: Watch<'_>| -> Result<Option<Vec<TrialRun>>, TrialError> {
-        let machine = TriedMachine::of(rig, problem)?.at_corner();
+    let runs_of = |rig: &TrialRig, watch: Watch<'_>| -> Result<Option<Vec<TrialRun>>, TrialError> {
+        let machine = PredictedMachine::of(rig, problem)?.at_corner();
         let Some(driven) = machine.driven(source, watch)? else { return Ok(None) };
         let judged = machine.judged(&driven, problem, view).into_iter();
         Ok(Some(judged.filter(|run| !run.requirements.is_empty()).collect()))
@@ -65,7 +65,7 @@ pub(super) fn worst_of(runs: &[TrialRun]) -> Vec<TrialRun> {
     worst
 }
 
-fn rigs(setup: &Setup<'_>, problem: &RobustProblem, view: &ProjectAudit) -> Result<Vec<Tried>, TrialError> {
+fn rigs(setup: &Setup<'_>, problem: &RobustProblem, view: &ProjectAudit) -> Result<Vec<TrialRig>, TrialError> {
     let Family::Uncertain(family) = &problem.family else { return Ok(vec![]) };
     let (corners, inside) = (corners(family), inside(family));
     let machine = TrialMachine::WorstOfBox { corners: corners.len(), inside: inside.len() };
@@ -74,7 +74,7 @@ fn rigs(setup: &Setup<'_>, problem: &RobustProblem, view: &ProjectAudit) -> Resu
         let plant = PlantPoint::Parameters(values.clone());
         let (names, numbers): (Vec<&str>, Vec<f64>) =
             view.names.numbers(&plant)?.map(|(name, _, value)| (name, value)).unzip();
-        Some(Tried {
+        Some(TrialRig {
             machine: machine.clone(),
             named: Some(view.names.named(&plant)),
             quarter_wave_rad_per_s: None,
@@ -100,10 +100,10 @@ fn inside(family: &UncertainFamily) -> Vec<Vec<f64>> {
     }
     let dimension = family.coordinates().len();
     let steps = golden_steps(dimension);
-    let shares =
+    let fractions =
         |plant: usize| -> Vec<f64> { steps.iter().map(|step| (0.5 + plant as f64 * step).fract()).collect() };
     let count = ALL.saturating_sub(corners).max(LEAST_INSIDE);
-    (1..=count).map(|plant| family.values(&shares(plant))).collect()
+    (1..=count).map(|plant| family.values(&fractions(plant))).collect()
 }
 
 /// Powers 1/g, 1/g^2 ... for this number of coordinates.
@@ -123,8 +123,8 @@ fn corners(family: &UncertainFamily) -> Vec<Vec<f64>> {
         return vec![];
     }
     let count = 1_usize << dimension.min(ALL_OF);
-    let shares = |corner: usize| (0..dimension).map(|index| end(corner, index)).collect::<Vec<f64>>();
-    (0..count).map(|corner| family.values(&shares(corner))).collect()
+    let fractions = |corner: usize| (0..dimension).map(|index| end(corner, index)).collect::<Vec<f64>>();
+    (0..count).map(|corner| family.values(&fractions(corner))).collect()
 }
 
 /// End of a coordinate at a corner, as a fraction of the box.

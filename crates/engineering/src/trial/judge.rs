@@ -95,7 +95,7 @@ pub(super) fn judge(
         }
         let finding = match stopped.status {
             RunStatus::Diverged => TrialFinding::Diverges(stopped.time_s),
-            status => TrialFinding::Ended { time: stopped.time_s, status },
+            status => TrialFinding::StoppedEarly { time: stopped.time_s, status },
         };
         return (broken, finding);
     }
@@ -170,9 +170,9 @@ fn missed_in_time(machine: &TrialStep, driven: &Driven<'_>, problem: &RobustProb
     let linear = driven.linear;
     let of_verdict = |required: &&TimeRequirement| {
         let holds = !required.steps.are_stated() || driven.size == StepSize::Required;
-        required.follows && holds && required.wish.band_percent.total_cmp(&BAND_PERCENT).is_eq()
+        required.follows && holds && required.step_limits.band_percent.total_cmp(&BAND_PERCENT).is_eq()
     };
-    let most = problem.in_time.iter().find(of_verdict)?.wish.settling_time_s?;
+    let most = problem.in_time.iter().find(of_verdict)?.step_limits.settling_time_s?;
     let own = machine.settling_time_s.filter(|time_s| *time_s > most)?;
     let predicted = linear?.settling_time_s.filter(|time_s| *time_s <= most)?;
     Some(TrialFinding::Settles { machine: own, linear: predicted, required: Some(most) })

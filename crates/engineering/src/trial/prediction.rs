@@ -4,7 +4,7 @@ use phea_dynamics::time_response::{StepBaseline, StepMetrics, step_metrics};
 use phea_qft::stability::{StabilityStatus, member_stability};
 
 use super::TrialError;
-use super::rigs::Tried;
+use super::rigs::TrialRig;
 use super::run::{BAND_PERCENT, TrialStep};
 use crate::linear_step::{StepResponse, linear_step};
 use crate::robust::RobustProblem;
@@ -32,9 +32,9 @@ pub(super) enum Prediction {
 }
 
 /// The prediction for one machine: the step of its plant in the loop of the audit.
-pub(super) fn predicted(tried: &Tried, problem: &RobustProblem) -> Result<Prediction, TrialError> {
+pub(super) fn predicted(trial_rig: &TrialRig, problem: &RobustProblem) -> Result<Prediction, TrialError> {
     let compensation = &problem.compensation;
-    let Some(plant) = tried.plant.clone() else { return Ok(Prediction::Unknown) };
+    let Some(plant) = trial_rig.plant.clone() else { return Ok(Prediction::Unknown) };
     let Ok(member) = compensation.around(plant) else { return Ok(Prediction::Unknown) };
     match member_stability(&member, compensation).status {
         StabilityStatus::Stable => {}
@@ -70,8 +70,8 @@ pub(super) struct LinearStep {
 }
 
 impl LinearStep {
-    pub(super) fn of(tried: &Tried, problem: &RobustProblem) -> Result<LinearStep, TrialError> {
-        Ok(match predicted(tried, problem)? {
+    pub(super) fn of(trial_rig: &TrialRig, problem: &RobustProblem) -> Result<LinearStep, TrialError> {
+        Ok(match predicted(trial_rig, problem)? {
             Prediction::Step(metrics, response) => {
                 let overshoot_percent = Some(metrics.overshoot_percent);
                 let settling_time_s = metrics.settling.time_s();

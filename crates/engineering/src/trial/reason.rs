@@ -63,7 +63,7 @@ pub enum TrialFinding {
     /// The simulation diverges from this time on, s.
     Diverges(f64),
     /// The run ended early.
-    Ended {
+    StoppedEarly {
         /// Time of the end, s.
         time: f64,
         /// Status of the run.

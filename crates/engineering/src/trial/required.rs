@@ -4,7 +4,7 @@ use phea_dynamics::time_response::{StepBaseline, step_metrics};
 
 use super::run::{BAND_PERCENT, Leg};
 use super::steps::Steps;
-use crate::simulate::{ReachedStep, RequiredSteps, ScenarioRun, TimeRequirement, TrackingWish};
+use crate::simulate::{ReachedStep, RequiredSteps, ScenarioRun, TimeRequirement, StepLimits};
 
 /// A requirement in time, and the worst result of the steps of a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,7 +12,7 @@ pub struct HeldRequirement {
     /// Number of its specification in the file, from 1.
     pub number: usize,
     /// Requirement.
-    pub wish: TrackingWish,
+    pub step_limits: StepLimits,
     /// Worst result of all steps, each property separately; infinite if the run ended earlier.
     pub reached: ReachedStep,
     /// Worst result in nine tenths of the band.
@@ -33,16 +33,16 @@ pub(super) fn held(
 ) -> Vec<HeldRequirement> {
     let concerned = requirements.iter().filter(|one| one.follows && holds_for(one, required));
     let of = |one: &TimeRequirement| {
-        let of_wish =
-            |wish: &TrackingWish| worst(steps.driven().map(|leg| reached(wish, steps, run, leg)).collect());
-        let reached = of_wish(&one.wish);
-        let narrower = BAND_WITH_ROOM * one.wish.band_percent;
+        let of_limits =
+            |step_limits: &StepLimits| worst(steps.driven().map(|leg| reached(step_limits, steps, run, leg)).collect());
+        let reached = of_limits(&one.step_limits);
+        let narrower = BAND_WITH_ROOM * one.step_limits.band_percent;
         HeldRequirement {
             number: one.number,
-            wish: one.wish,
+            step_limits: one.step_limits,
             reached,
-            reached_with_room: of_wish(&TrackingWish { band_percent: narrower, ..one.wish }),
-            is_satisfied: one.wish.is_satisfied(&reached),
+            reached_with_room: of_limits(&StepLimits { band_percent: narrower, ..one.step_limits }),
+            is_satisfied: one.step_limits.is_satisfied(&reached),
         }
     };
     concerned.map(of).collect()
@@ -54,7 +54,7 @@ fn holds_for(requirement: &TimeRequirement, steps: RequiredSteps) -> bool {
 }
 
 /// Properties of one step, in the band of the requirement.
-fn reached(wish: &TrackingWish, steps: &Steps, run: &ScenarioRun, leg: Leg) -> ReachedStep {
+fn reached(step_limits: &StepLimits, steps: &Steps, run: &ScenarioRun, leg: Leg) -> ReachedStep {
     let never = ReachedStep {
         overshoot_percent: f64::INFINITY,
         settling_time_s: f64::INFINITY,
@@ -67,10 +67,10 @@ fn reached(wish: &TrackingWish, steps: &Steps, run: &ScenarioRun, leg: Leg) -> R
     let known = steps.step(run, leg);
     let response = steps.response(run, leg);
     let baseline = StepBaseline::to_value(1.0);
-    let Ok(rows) = step_metrics(&response.times_s, &response.values, baseline, wish.band_percent) else {
+    let Ok(rows) = step_metrics(&response.times_s, &response.values, baseline, step_limits.band_percent) else {
         return never;
     };
-    let settles = match wish.band_percent.total_cmp(&BAND_PERCENT).is_eq() {
+    let settles = match step_limits.band_percent.total_cmp(&BAND_PERCENT).is_eq() {
         true => known.settling_time_s,
         false => rows.settling.time_s().filter(|time_s| steps.settles_early(*time_s)),
     };

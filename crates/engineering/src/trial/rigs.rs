@@ -21,7 +21,7 @@ use crate::setup::Setup;
 
 /// A machine and its plant in the linear loop.
 #[derive(Clone, Debug)]
-pub(super) struct Tried {
+pub(super) struct TrialRig {
     pub(super) machine: TrialMachine,
     /// Plant of the audit from which it was made.
     pub(super) named: Option<NamedPlant>,
@@ -48,14 +48,14 @@ pub(super) fn rigs(
     rig: &Rig,
     problem: &RobustProblem,
     view: &ProjectAudit,
-) -> (Vec<Tried>, Vec<NotDriven>) {
+) -> (Vec<TrialRig>, Vec<NotDriven>) {
     let project = setup.project;
     let seen = rig.in_loop();
     let plant = match seen.in_motion {
         None => PlantMember::Rational(seen.plant.coefficients()),
         Some(moving) => PlantMember::Responding(Arc::new(moving)),
     };
-    let of = |machine: TrialMachine, project: Project, quarter_wave_rad_per_s| Tried {
+    let of = |machine: TrialMachine, project: Project, quarter_wave_rad_per_s| TrialRig {
         machine,
         named: None,
         quarter_wave_rad_per_s,
@@ -80,7 +80,7 @@ pub(super) fn rigs(
             continue;
         }
         match rig_with(setup, rig, &names, &values) {
-            Ok(project) => rigs.push(Tried {
+            Ok(project) => rigs.push(TrialRig {
                 machine: TrialMachine::WorstPlant(of),
                 named: Some(view.names.named(plant)),
                 quarter_wave_rad_per_s: None,
@@ -148,8 +148,8 @@ pub fn with_waves(project: &Project) -> Option<Project> {
 
 /// A machine whose sensors are without noise; `None` if they are already, and in a continuous loop,
 /// which has no noise.
-pub(super) fn without_noise(tried: &Tried) -> Option<Tried> {
-    let mut quiet = tried.clone();
+pub(super) fn without_noise(trial_rig: &TrialRig) -> Option<TrialRig> {
+    let mut quiet = trial_rig.clone();
     let controller = quiet.project.controller.as_mut()?;
     controller.sample_time?;
     let actuator = quiet.project.actuator.as_mut()?;
@@ -167,7 +167,7 @@ pub(super) fn without_noise(tried: &Tried) -> Option<Tried> {
 
 /// The declared rig with waves: without uncertainty, and without stated parameters that replace
 /// derived ones, which a machine does not have. `None` if it has no additional waves.
-pub(crate) fn waves_alone(setup: &Setup<'_>) -> Option<Project> {
+pub(crate) fn waves_only(setup: &Setup<'_>) -> Option<Project> {
     let rig = setup.rig().ok()?;
     let alone = with_controller_of(with_waves(setup.project)?, rig);
     let operating_point = setup.project.resolved_operating_point();

@@ -5,7 +5,7 @@ use super::judge::{Driven, judge, met, not_started};
 use super::prediction::{LONGEST_HOLD_S, LinearStep, SETTLING_TIMES};
 use super::reason::{DampingWall, DifferenceCause, TrialFinding, TrialMachine, TrialReason};
 use super::required::{HeldRequirement, held};
-use super::rigs::Tried;
+use super::rigs::TrialRig;
 use super::steps::{CommandLimits, HeldLegs, Steps};
 use super::{STAGE, TrialError};
 use crate::audit::ProjectAudit;
@@ -133,12 +133,12 @@ impl TrialRun {
     /// Largest ratio of a reached property of the steps to the required one; zero if nothing is
     /// required.
     pub(crate) fn excess(&self) -> f64 {
-        self.requirements.iter().map(|held| held.wish.excess(&held.reached)).fold(0.0, f64::max)
+        self.requirements.iter().map(|held| held.step_limits.excess(&held.reached)).fold(0.0, f64::max)
     }
 
     /// Largest such ratio in a narrower band.
     pub(crate) fn excess_with_room(&self) -> f64 {
-        let of = |held: &HeldRequirement| held.wish.excess(&held.reached_with_room);
+        let of = |held: &HeldRequirement| held.step_limits.excess(&held.reached_with_room);
         self.requirements.iter().map(of).fold(self.excess(), f64::max)
     }
 
@@ -179,8 +179,8 @@ pub(super) struct DrivenSteps {
 }
 
 /// A machine and the prediction of the linear loop for it.
-pub(super) struct TriedMachine<'a> {
-    tried: &'a Tried,
+pub(super) struct PredictedMachine<'a> {
+    trial_rig: &'a TrialRig,
     linear: LinearStep,
     required: RequiredOfSteps,
     effort: TrialEffort,
@@ -198,17 +198,17 @@ pub(super) enum TrialEffort {
     Corner,
 }
 
-impl<'a> TriedMachine<'a> {
+impl<'a> PredictedMachine<'a> {
     /// A machine with its prediction; the runs of a plant of the audit are not repeated.
-    pub(super) fn of(tried: &'a Tried, problem: &RobustProblem) -> Result<TriedMachine<'a>, TrialError> {
+    pub(super) fn of(trial_rig: &'a TrialRig, problem: &RobustProblem) -> Result<PredictedMachine<'a>, TrialError> {
         let required = RequiredOfSteps::of(&problem.in_time);
-        let effort = if tried.named.is_none() { TrialEffort::Repeated } else { TrialEffort::Once };
-        Ok(TriedMachine { tried, linear: LinearStep::of(tried, problem)?, required, effort })
+        let effort = if trial_rig.named.is_none() { TrialEffort::Repeated } else { TrialEffort::Once };
+        Ok(PredictedMachine { trial_rig, linear: LinearStep::of(trial_rig, problem)?, required, effort })
     }
 
     /// The machine with the effort for a corner of the box.
-    pub(super) fn at_corner(self) -> TriedMachine<'a> {
-        TriedMachine { effort: TrialEffort::Corner, ..self }
+    pub(super) fn at_corner(self) -> PredictedMachine<'a> {
+        PredictedMachine { effort: TrialEffort::Corner, ..self }
     }
 
     /// Duration of each step, and the last step.
@@ -227,7 +227,7 @@ impl<'a> TriedMachine<'a> {
 
     /// True if steps larger than the first ones are simulated.
     fn drives_larger(&self) -> bool {
-        let has_scenario_steps = !stepped_references(&self.tried.project).is_empty();
+        let has_scenario_steps = !stepped_references(&self.trial_rig.project).is_empty();
         self.effort != TrialEffort::Corner || self.required.of_every_step && !has_scenario_steps
     }
 
@@ -238,14 +238,14 @@ impl<'a> TriedMachine<'a> {
         source: &dyn Source,
         watch: Watch<'_>,
     ) -> Result<Option<Vec<DrivenSteps>>, TrialError> {
-        let setup = Setup::new(&self.tried.project)?;
+        let setup = Setup::new(&self.trial_rig.project)?;
         let rig = setup.rig()?;
         let on = (source, &setup);
-        let firsts = self.required.first_steps((&self.tried.project, rig), self.legs());
+        let firsts = self.required.first_steps((&self.trial_rig.project, rig), self.legs());
         let (count, mut all) = (firsts.len() as f64, Vec::new());
         for (index, FirstSteps { size, required, steps }) in firsts.into_iter().enumerate() {
-            let share = [index, index + 1].map(|done| 0.3 * done as f64 / count);
-            let Some(outcome) = self.driven_by(on, &steps, &mut part(watch, STAGE, share)) else {
+            let fraction = [index, index + 1].map(|done| 0.3 * done as f64 / count);
+            let Some(outcome) = self.driven_by(on, &steps, &mut part(watch, STAGE, fraction)) else {
                 return Ok(None);
             };
             all.push(DrivenSteps { size, required, steps, outcome });
@@ -323,8 +323,8 @@ impl<'a> TriedMachine<'a> {
         output: RunOutput<'_>,
         watch: Watch<'_>,
     ) -> Option<TrialOutcome> {
-        let project = steps.project(&self.tried.project, last);
-        match simulate_into(source, &setup.asked(&project), output, watch) {
+        let project = steps.project(&self.trial_rig.project, last);
+        match simulate_into(source, &setup.for_project(&project), output, watch) {
             Ok(runs) => runs.into_iter().next().filter(|driven| !driven.was_cancelled()).map(Ok),
             Err(error) => Some(Err(error)),
         }
@@ -345,9 +345,9 @@ impl<'a> TriedMachine<'a> {
         let size = *size;
         let LinearStep { step: linear, ref response, grows } = self.linear;
         let blank = TrialRun {
-            machine_driven: self.tried.machine.clone(),
+            machine_driven: self.trial_rig.machine.clone(),
             size,
-            plant: self.tried.named.clone(),
+            plant: self.trial_rig.named.clone(),
             status: RunStatus::NotStarted,
             reference_n: [steps.from_n, steps.to_n],
             linear,
@@ -356,12 +356,12 @@ impl<'a> TriedMachine<'a> {
             worst: Leg::There,
             remaining_amplitude_n: None,
             requirements: vec![],
-            units: self.tried.project.units,
+            units: self.trial_rig.project.units,
             linear_response: response.clone(),
             machine_response: StepResponse::default(),
             agreement: Agreement::Differs,
             reason: TrialFinding::NeitherSettles { overshoots: None }.into(),
-            quarter_wave_rad_per_s: self.tried.quarter_wave_rad_per_s,
+            quarter_wave_rad_per_s: self.trial_rig.quarter_wave_rad_per_s,
             met: vec![],
         };
         let run = match outcome {
@@ -397,7 +397,7 @@ impl<'a> TriedMachine<'a> {
         (problem, view): (&RobustProblem, &ProjectAudit),
         watch: Watch<'_>,
     ) -> Result<Option<TrialRun>, TrialError> {
-        let setup = Setup::new(&self.tried.project)?;
+        let setup = Setup::new(&self.trial_rig.project)?;
         let Some(outcome) = self.driven_by((source, &setup), &other.steps, watch) else { return Ok(None) };
         let DrivenSteps { size, required, steps, .. } = *other;
         Ok(Some(self.judgement(&DrivenSteps { size, required, steps, outcome }, (problem, view))))
@@ -410,11 +410,11 @@ impl<'a> TriedMachine<'a> {
         run: &TrialRun,
         lumped: Option<&TrialRun>,
     ) -> Option<DifferenceCause> {
-        let quarter_wave = self.tried.quarter_wave_rad_per_s?;
+        let quarter_wave = self.trial_rig.quarter_wave_rad_per_s?;
         if lumped.is_some_and(|lumped| lumped.agreement >= run.agreement) {
             return Some(DifferenceCause::OtherThanWaves);
         }
-        Some(DifferenceCause::Waves { quarter_wave, wall: damping_wall(&self.tried.project) })
+        Some(DifferenceCause::Waves { quarter_wave, wall: damping_wall(&self.trial_rig.project) })
     }
 }
 

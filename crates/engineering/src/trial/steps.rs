@@ -15,7 +15,7 @@ use crate::rig::Rig;
 use crate::simulate::{RequiredSteps, ScenarioRun, stays_settled};
 
 /// Ratio of the first step to the force that the supply can produce.
-const STEP_SHARE: f64 = 0.1;
+const STEP_FRACTION: f64 = 0.1;
 /// Fraction of that force within which the reference stays.
 pub const REACH: f64 = 0.8;
 /// Time before the first step, s.
@@ -23,11 +23,11 @@ const BEFORE_S: f64 = 0.05;
 /// Number of rows of a scenario for each step.
 const ROWS: f64 = 2000.0;
 /// Fraction of a step, at its end, over which the remaining oscillation is measured.
-const LATE_SHARE: f64 = 0.2;
+const LATE_FRACTION: f64 = 0.2;
 /// Range of a force that counts as constant, as a fraction of the step.
-const STANDS_STILL: f64 = 1e-3;
+const CONSTANT: f64 = 1e-3;
 /// Fraction of the estimated largest step that is simulated first: the machine is not linear.
-const ESTIMATE_SHARE: f64 = 0.95;
+const ESTIMATE_FRACTION: f64 = 0.95;
 
 /// Steps between two references.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,7 +53,7 @@ impl Steps {
     pub(super) fn first(rig: &Rig, required: RequiredSteps, legs: HeldLegs) -> Steps {
         let push = push(rig);
         let from_n = required.initial_force_n.unwrap_or(rig.point.hydraulic_force);
-        let step = STEP_SHARE * push;
+        let step = STEP_FRACTION * push;
         let towards = if from_n + step <= REACH * push { step } else { -step };
         Steps { from_n, to_n: from_n + required.amplitude_n.unwrap_or(towards), legs }
     }
@@ -77,7 +77,7 @@ impl Steps {
         let reach = (REACH * push(rig)).min(limits.force_n);
         let most = reach - towards * self.from_n;
         let estimated =
-            ESTIMATE_SHARE * room(&driven.record.signal(Signal::Control), limits.command_v) * self.size();
+            ESTIMATE_FRACTION * room(&driven.record.signal(Signal::Control), limits.command_v) * self.size();
         Steps { to_n: self.from_n + towards * most.min(estimated), ..*self }
     }
 
@@ -180,7 +180,7 @@ impl Steps {
         let unsettled = |leg: &Leg| self.step(driven, *leg).settling_time_s.is_none();
         let stands = |leg: Leg| {
             let range = self.remains(driven, leg);
-            range.is_some_and(|[low, high]| high - low < STANDS_STILL * self.size())
+            range.is_some_and(|[low, high]| high - low < CONSTANT * self.size())
         };
         self.driven().filter(unsettled).any(stands)
     }
@@ -189,7 +189,7 @@ impl Steps {
     pub(super) fn remains(&self, driven: &ScenarioRun, leg: Leg) -> Option<[f64; 2]> {
         let [from, to] = self.ends(leg);
         let StepResponse { times_s, values } = self.response(driven, leg);
-        let late_s = (1.0 - LATE_SHARE) * self.legs.hold_s;
+        let late_s = (1.0 - LATE_FRACTION) * self.legs.hold_s;
         let late = times_s.iter().zip(values).filter(|(time_s, _)| **time_s >= late_s);
         let widest = |[low, high]: [f64; 2], value: f64| [low.min(value), high.max(value)];
         let forces = late.map(|(_, value)| from + value * (to - from));

@@ -27,7 +27,7 @@ pub(super) fn accumulator(scene: &mut Scene, kind: AccumulatorSymbol, port: (f64
     match kind {
         AccumulatorSymbol::Fixed => {}
         AccumulatorSymbol::Adjusted => adjustable(scene, (x, middle), (15.0, 15.0)),
-        AccumulatorSymbol::BehindValve => valve(scene, (0.5 * (port.0 + x), branch)),
+        AccumulatorSymbol::ThroughValve => valve(scene, (0.5 * (port.0 + x), branch)),
     }
 }
 

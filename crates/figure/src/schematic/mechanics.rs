@@ -41,7 +41,7 @@ pub(super) fn cylinder(scene: &mut Scene, schematic: &Schematic) {
     let rod = Rectangle { left: rod_left, top: AXIS - ROD, right: end, bottom: AXIS + ROD };
     scene.rectangle(rod, Some(OUTLINE), Some(Fill::solid(Role::Surface)));
     pistons_within(scene, schematic.further_stages);
-    let (far, near) = if schematic.load_beside_b { ("A", "B") } else { ("B", "A") };
+    let (far, near) = if schematic.load_at_b { ("A", "B") } else { ("B", "A") };
     for (name, x) in [(far, 0.5 * (LEFT + PISTON)), (near, 0.5 * (RIGHT + PISTON))] {
         word(scene, name, (x - 14.0, AXIS + 15.0), Role::Text);
         word(scene, &format!("p_{name}"), (x + 14.0, AXIS + 15.0), Role::Muted);
@@ -74,7 +74,7 @@ fn pistons_within(scene: &mut Scene, further_stages: usize) {
 /// Arrow of the position x_p, which counts from the A end to the B end.
 fn position_arrow(scene: &mut Scene, schematic: &Schematic) {
     let y = AXIS - HALF - 11.0;
-    let (from, to) = if schematic.load_beside_b { (PISTON, PISTON + 40.0) } else { (PISTON, PISTON - 40.0) };
+    let (from, to) = if schematic.load_at_b { (PISTON, PISTON + 40.0) } else { (PISTON, PISTON - 40.0) };
     lines(scene, &[(from, y - 5.0), (from, y + 5.0)], MOTION);
     arrow(scene, (from, y), (to, y), MOTION);
     let away = if to > from { 13.0 } else { -13.0 };
@@ -102,7 +102,7 @@ pub(super) fn load(scene: &mut Scene, schematic: &Schematic) {
         None => lines(scene, &[(MASS + 20.0, AXIS), (CELL + 26.0, AXIS)], heavy),
     }
     let from = CELL + 26.0;
-    let words = if schematic.linkage.is_some() { BesideLever::Yes } else { BesideLever::No };
+    let words = if schematic.linkage.is_some() { LeverSide::Yes } else { LeverSide::No };
     let from = schematic.series.as_ref().map_or(from, |series| between(scene, series, from, words));
     match &schematic.linkage {
         Some(linkage) => {
@@ -134,13 +134,13 @@ struct EnvironmentPlace {
 
 /// Presence of a lever to the right of an element.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum BesideLever {
+enum LeverSide {
     Yes,
     No,
 }
 
 /// Element between load cell and environment; returns its end.
-fn between(scene: &mut Scene, series: &SeriesSymbol, from: f64, beside: BesideLever) -> f64 {
+fn between(scene: &mut Scene, series: &SeriesSymbol, from: f64, beside: LeverSide) -> f64 {
     let to = from + 34.0;
     let ends = |scene: &mut Scene, half: f64| {
         for x in [from, to] {
@@ -160,12 +160,12 @@ fn between(scene: &mut Scene, series: &SeriesSymbol, from: f64, beside: BesideLe
         SeriesKind::Transmission => pistons(scene, from, to),
     }
     match beside {
-        BesideLever::No => {
+        LeverSide::No => {
             let words = [series.words.clone()];
             rows(scene, &words, (0.5 * (from + to) + 6.0, AXIS + 20.0), Anchor::Middle, 84.0, 1);
         }
         // between the signal of the load cell and the lever
-        BesideLever::Yes => {
+        LeverSide::Yes => {
             let words = wrapped(&series.words, 52.0);
             rows(scene, &words, (to - 4.0, AXIS + 20.0), Anchor::End, 52.0, 2);
         }

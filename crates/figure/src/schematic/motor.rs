@@ -27,7 +27,7 @@ pub(super) fn motor(scene: &mut Scene, schematic: &Schematic) {
     // a bidirectional motor: oil enters at either side
     head(scene, (PISTON - HALF + 11.0, AXIS), (1.0, 0.0), Role::Axis);
     head(scene, (PISTON + HALF - 11.0, AXIS), (-1.0, 0.0), Role::Axis);
-    let (far, near) = if schematic.load_beside_b { ("A", "B") } else { ("B", "A") };
+    let (far, near) = if schematic.load_at_b { ("A", "B") } else { ("B", "A") };
     for (name, x, way) in [(far, PORT_FAR.0, -1.0), (near, PORT_NEAR.0, 1.0)] {
         word(scene, name, (x + 14.0 * way, PORTS + 4.0), Role::Text);
         word(scene, &format!("p_{name}"), (x + 36.0 * way, PORTS + 4.0), Role::Muted);

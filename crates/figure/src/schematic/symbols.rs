@@ -79,7 +79,7 @@ fn tank_symbol(scene: &mut Scene, x: f64, bottom: f64) {
 
 /// Both lines with their text.
 pub(super) fn working_lines(scene: &mut Scene, schematic: &Schematic) {
-    let (far, near) = if schematic.load_beside_b {
+    let (far, near) = if schematic.load_at_b {
         (&schematic.line_a, &schematic.line_b)
     } else {
         (&schematic.line_b, &schematic.line_a)
@@ -120,7 +120,7 @@ pub(super) fn working_lines(scene: &mut Scene, schematic: &Schematic) {
 /// Servovalve with 4 ports and 3 positions: continuous between them, spring on one side and torque
 /// motor on the other.
 pub(super) fn valve(scene: &mut Scene, schematic: &Schematic) {
-    let ports = if schematic.load_beside_b { ["A", "B"] } else { ["B", "A"] };
+    let ports = if schematic.load_at_b { ["A", "B"] } else { ["B", "A"] };
     valve_with(scene, ports, &schematic.valve_rows);
 }
 

@@ -48,7 +48,7 @@ pub struct DeclaredGasValve<S = f64> {
 }
 
 /// Default ratio of the oil volume between valve and gas to the gas volume.
-const DEAD_SHARE: f64 = 0.01;
+const DEAD_FRACTION: f64 = 0.01;
 
 impl<S: Default> Default for AdjustmentKind<S> {
     fn default() -> Self {
@@ -113,6 +113,6 @@ impl<S: TableNumber> DeclaredAdjustment<S> {
 impl<S: Scalar> DeclaredGasValve<S> {
     /// Volume of the oil between the valve and this gas, m³.
     pub fn dead_volume(&self, gas_volume: S) -> S {
-        self.dead_volume.unwrap_or_else(|| S::from(DEAD_SHARE) * gas_volume)
+        self.dead_volume.unwrap_or_else(|| S::from(DEAD_FRACTION) * gas_volume)
     }
 }

@@ -54,17 +54,17 @@ impl<S: Scalar> GasBranch<S> {
     /// Branch without a neck, behind a valve of a conductance in m3/(s Pa) with oil of a compliance
     /// in m3/Pa behind the valve.
     #[must_use]
-    pub fn behind_valve(&self, conductance: S, of_oil: S) -> GasBranch<S> {
+    pub fn through_valve(&self, conductance: S, of_oil: S) -> GasBranch<S> {
         GasBranch { compliance: self.compliance + of_oil, valve: Some(conductance), ..*self }
     }
 
     /// Branch with this fraction of all compliances.
     #[must_use]
-    pub fn softened(&self, share: S) -> GasBranch<S> {
+    pub fn softened(&self, fraction: S) -> GasBranch<S> {
         GasBranch {
-            compliance: self.compliance * share,
+            compliance: self.compliance * fraction,
             relaxation: self.relaxation.map(|GasRelaxation { compliance, time }| GasRelaxation {
-                compliance: compliance * share,
+                compliance: compliance * fraction,
                 time,
             }),
             ..*self

@@ -219,7 +219,7 @@ impl<S: Scalar> ChamberGas<S> {
         let later = self.relaxing().map(|gas| gas.relaxation(pressure));
         let branch = GasBranch::of(self.at_rest().compliance(pressure), later, self.neck());
         let branch = match self.valve() {
-            Some(valve) => branch.behind_valve(valve.conductance(), valve.compliance),
+            Some(valve) => branch.through_valve(valve.conductance(), valve.compliance),
             None => branch,
         };
         self.is_branch().then_some(branch)

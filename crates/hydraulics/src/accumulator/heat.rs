@@ -98,10 +98,10 @@ impl<S: Scalar> RelaxingGas<S> {
         let lifting = precharge * temperature;
         let ratio = absolute / lifting;
         let above = ratio - one;
-        let share = ((above + band) / (band + band)).maximum(zero).minimum(one);
-        let squeezed = one + S::select(above.less_than(band), band * share.squared(), above);
-        let isothermal = self.gas_volume * share / (lifting * squeezed.squared());
-        let steeper = one + above_one * share * (ratio / squeezed).squared();
+        let fraction = ((above + band) / (band + band)).maximum(zero).minimum(one);
+        let squeezed = one + S::select(above.less_than(band), band * fraction.squared(), above);
+        let isothermal = self.gas_volume * fraction / (lifting * squeezed.squared());
+        let steeper = one + above_one * fraction * (ratio / squeezed).squared();
         let capacity = precharge * self.gas_volume / above_one;
         let oil = self.gas_volume * (one - one / squeezed);
         let relaxing = warming / self.time_constant;

@@ -93,7 +93,7 @@ impl<S: Scalar> DeclaredPipe<S> {
 impl LineMotion {
     /// Model of the line in motion; lumped until it is chosen.
     pub fn component(&self) -> LineModel {
-        let share = |stated: &Option<f64>| stated.unwrap_or(END_SHARE);
+        let fraction = |stated: &Option<f64>| stated.unwrap_or(END_SHARE);
         match self {
             LineMotion::Automatic | LineMotion::Lumped => LineModel::Lumped,
             LineMotion::Creeping { relaxation_time } => {
@@ -101,10 +101,10 @@ impl LineMotion {
             }
             LineMotion::Segments(segments) => segments.component(),
             LineMotion::TransmissionLine { end_share } => {
-                LineModel::TransmissionLine { end_share: share(end_share) }
+                LineModel::TransmissionLine { end_share: fraction(end_share) }
             }
             LineMotion::TwoWave { end_share, wall } => {
-                LineModel::TwoWave { end_share: share(end_share), wall: wall.unwrap_or_default() }
+                LineModel::TwoWave { end_share: fraction(end_share), wall: wall.unwrap_or_default() }
             }
         }
     }

@@ -242,7 +242,7 @@ impl DeclaredLine {
 
 impl<S: TableNumber> DeclaredLine<S> {
     /// Visits a hose or pipe that ends at no chamber.
-    pub fn visit_alone<V: Visitor<S>>(&mut self, v: &mut V) {
+    pub fn visit_unconnected<V: Visitor<S>>(&mut self, v: &mut V) {
         self.component.visit(false, v);
         self.visit_stiffening(v);
     }

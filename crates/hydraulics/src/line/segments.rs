@@ -152,10 +152,10 @@ impl<S: Copy> Segments<S> {
 impl<S: Scalar> Segments<S> {
     /// Contribution of the line to the compliance of the chamber, m3/Pa.
     pub fn chamber_compliance(&self) -> S {
-        if self.count == 0 { self.compliance } else { self.share() / S::from(2.0) }
+        if self.count == 0 { self.compliance } else { self.fraction() / S::from(2.0) }
     }
 
-    fn share(&self) -> S {
+    fn fraction(&self) -> S {
         self.compliance / S::from(self.count.max(1) as f64)
     }
 
@@ -188,7 +188,7 @@ impl<S: Scalar> Segments<S> {
         let count = self.count;
         let number = |value: usize| <T as From<f64>>::from(value as f64);
         let segments = number(count.max(1));
-        let share = <T as From<S>>::from(self.compliance) / segments;
+        let fraction = <T as From<S>>::from(self.compliance) / segments;
         let pressure = |node: usize| if node == count { chamber_pressure } else { state[node] };
         let mut inflow = flow_from_valve;
         for node in 0..=count {
@@ -197,7 +197,7 @@ impl<S: Scalar> Segments<S> {
                 return inflow - taken;
             }
             let outflow = state[count + node];
-            let capacity = if node == 0 { share / number(2) } else { share };
+            let capacity = if node == 0 { fraction / number(2) } else { fraction };
             rates[node] = (inflow - outflow - taken) / capacity;
             let drop = self.friction_drop(node, outflow, state, rates);
             let inertance = <T as From<S>>::from(self.inertance) / segments;

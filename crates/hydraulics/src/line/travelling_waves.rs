@@ -147,9 +147,9 @@ impl<const M: usize, S: Scalar> TravellingWaves<M, S> {
         let zero = S::from(0.0);
         let middle = chamber_pressure + self.half_resistance * flow;
         let elastance = self.waves.iter().fold(zero, |sum, wave| sum + wave.impedance / wave.delay);
-        let share = |wave: &Wave<S>| middle * wave.impedance / wave.delay / elastance;
+        let fraction = |wave: &Wave<S>| middle * wave.impedance / wave.delay / elastance;
         let slow = |wave: &Wave<S>| wave.impedance * wave.slow([flow; TERMS]);
-        let towards = |sign: S| self.waves.iter().map(move |wave| share(wave) + sign * slow(wave));
+        let towards = |sign: S| self.waves.iter().map(move |wave| fraction(wave) + sign * slow(wave));
         let (forward, backward) = (towards(S::from(1.0)), towards(S::from(-1.0)));
         let waves: Vec<S> = forward.clone().chain(backward.clone()).collect();
         let mut state = vec![middle + self.half_resistance * flow];

@@ -54,7 +54,7 @@ pub struct HoseWave {
     pub impedance: f64,
     /// Effect of the friction factor's excess N - 1 on this wave: lambda_i grows by (N - 1) times
     /// this fraction, to first order.
-    pub friction_share: f64,
+    pub friction_fraction: f64,
 }
 
 impl TwoWaveHose {
@@ -152,7 +152,7 @@ impl TwoWaveHose {
                 (fluid - own) / (coupling_compliance * mass)
             };
             let inverse = 1.0 / modal_ratio;
-            let friction_share = if modal_ratio.abs() < 1.0 {
+            let friction_fraction = if modal_ratio.abs() < 1.0 {
                 fluid_mass * (1.0 - modal_ratio) * (1.0 - modal_ratio)
                     / (fluid_mass + mass * modal_ratio * modal_ratio)
             } else {
@@ -160,7 +160,7 @@ impl TwoWaveHose {
             };
             let speed = 1.0 / own.sqrt();
             let impedance = self.density * speed / self.area() * (fluid - other) / (own - other);
-            HoseWave { speed, modal_ratio, impedance, friction_share }
+            HoseWave { speed, modal_ratio, impedance, friction_fraction }
         };
         [wave(slower, faster), wave(faster, slower)]
     }
@@ -197,7 +197,7 @@ impl TwoWaveHose {
     /// [`super::TransmissionLine::of_conduit`].
     ///
     /// The friction of wave i is that of a line with one wave whose dissipation number is nu
-    /// T_i/R^2 times the square of [`HoseWave::friction_share`]: accurate to first order in the
+    /// T_i/R^2 times the square of [`HoseWave::friction_fraction`]: accurate to first order in the
     /// thickness of the boundary layer. The mixing of the waves by friction is omitted, so that the
     /// resonance of a wave in which the wall moves with the fluid, which friction hardly damps, is
     /// too sharp. The steady resistance is exact.
@@ -216,7 +216,7 @@ impl TwoWaveHose {
         let root = (1.0 - 2.0 * end_share).sqrt();
         let of_wave = |wave: HoseWave| {
             let delay = self.length / wave.speed * root;
-            let friction = conduit.viscous_rate() * wave.friction_share * wave.friction_share;
+            let friction = conduit.viscous_rate() * wave.friction_fraction * wave.friction_fraction;
             WaveData { impedance: wave.impedance / root, delay, dissipation: friction * delay }
         };
         // the steady resistance lags like the faster wave

@@ -7,7 +7,7 @@ use crate::operating_point::hydraulic_force;
 
 /// Value that an equilibrium holds while the pressures are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Kept {
+pub(super) enum HeldValue {
     /// Position of the spool.
     Spool,
     /// Force of the pressures on the piston, N.
@@ -36,18 +36,18 @@ impl Machine {
     /// ```
     ///
     /// R is the steady resistance of a line, and the areas are those at a position in m.
-    pub(super) fn balanced(&self, state: &MachineState, position: f64, kept: Kept) -> MachineState {
+    pub(super) fn balanced(&self, state: &MachineState, position: f64, held_value: HeldValue) -> MachineState {
         let areas = self.areas_at(position);
         let mut best: Unknowns =
             [state.pressure_a, state.pressure_b, state.supply_pressure, state.spool.spool].into();
-        let (mut surplus, mut slopes) = self.surplus(state, areas, best, kept);
+        let (mut surplus, mut slopes) = self.surplus(state, areas, best, held_value);
         for _ in 0..STEPS {
             let Some(step) = slopes.lu().solve(&surplus) else { break };
-            let mut share = 1.0;
+            let mut fraction = 1.0;
             let found = (0..STEPS).find_map(|_| {
-                let next = best - step * share;
-                share *= 0.5;
-                let (left, slopes) = self.surplus(state, areas, next, kept);
+                let next = best - step * fraction;
+                fraction *= 0.5;
+                let (left, slopes) = self.surplus(state, areas, next, held_value);
                 (left.norm() < surplus.norm()).then_some((next, left, slopes))
             });
             match found {
@@ -73,7 +73,7 @@ impl Machine {
         state: &MachineState,
         areas: [f64; 2],
         unknowns: Unknowns,
-        kept: Kept,
+        held_value: HeldValue,
     ) -> (Unknowns, Matrix4<f64>) {
         let variable = |index: usize| Dual::<4>::variable(unknowns[index], index);
         let mut dual = MachineState::<Dual<4>>::zero();
@@ -94,9 +94,9 @@ impl Machine {
                 spare / Dual::constant(FLOW_SCALE)
             }
         };
-        let held = match kept {
-            Kept::Spool => dual.spool.spool - Dual::constant(state.spool.spool),
-            Kept::Force(force) => {
+        let held = match held_value {
+            HeldValue::Spool => dual.spool.spool - Dual::constant(state.spool.spool),
+            HeldValue::Force(force) => {
                 let areas = areas.map(Dual::constant);
                 let found = hydraulic_force(areas, [dual.pressure_a, dual.pressure_b]);
                 (found - Dual::constant(force)) / Dual::constant(FORCE_SCALE)

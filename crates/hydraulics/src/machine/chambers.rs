@@ -55,7 +55,7 @@ impl Chambers {
 
     /// Chambers with the compliance in m3/Pa that lines with dynamics of their own add to each; in
     /// the model `uniform` they retain the modulus of their line.
-    pub fn behind_lines(
+    pub fn with_line_compliance(
         actuator: &Actuator,
         member: StiffeningMember,
         [added_a, added_b]: [f64; 2],

@@ -177,14 +177,14 @@ impl<S: Scalar> Machine<S> {
         let sensor: T = constant(self.sensor_stiffness);
         let one = T::from(1.0);
         let sensed = force_sensor::force(sensor, own_deflection);
-        let share = sensor / column.end_stiffness;
-        let (mut deflection, mut last) = (own_deflection * share, T::from(f64::NAN));
+        let fraction = sensor / column.end_stiffness;
+        let (mut deflection, mut last) = (own_deflection * fraction, T::from(f64::NAN));
         for (_, behind) in plugs(columns) {
             deflection = deflection + behind;
             last = behind;
         }
         let first = columns.first().copied().unwrap_or(T::from(f64::NAN));
-        let own_rate = (velocity - first) / (one + share);
+        let own_rate = (velocity - first) / (one + fraction);
         let behind_sensor = velocity - own_rate;
         Joint {
             position: load.position + deflection + own_deflection,

@@ -1,6 +1,6 @@
 use phea_dynamics::simulation::Plant;
 
-use super::balance::Kept;
+use super::balance::HeldValue;
 use super::series::HeldJoint;
 use super::{Machine, MachineError, MachineState};
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
@@ -112,7 +112,7 @@ impl Machine {
     /// # Errors
     /// Errors of [`Machine::start`]; no balance near the operating point.
     pub fn rest(&self, point: &OperatingPoint) -> Result<InitialCondition, MachineError> {
-        self.settled(point, Kept::Spool)
+        self.settled(point, HeldValue::Spool)
     }
 
     /// Machine as in [`Machine::rest`], but with the force of the pressures held, and the command
@@ -121,7 +121,7 @@ impl Machine {
     /// # Errors
     /// Errors of [`Machine::rest`].
     pub fn rest_under_load(&self, point: &OperatingPoint) -> Result<InitialCondition, MachineError> {
-        self.settled(point, Kept::Force(point.hydraulic_force))
+        self.settled(point, HeldValue::Force(point.hydraulic_force))
     }
 
     /// Indices of the states that stay at any value while all others are at rest: memories of
@@ -141,7 +141,7 @@ impl Machine {
         self.layout.memories()
     }
 
-    fn settled(&self, point: &OperatingPoint, kept: Kept) -> Result<InitialCondition, MachineError> {
+    fn settled(&self, point: &OperatingPoint, held_value: HeldValue) -> Result<InitialCondition, MachineError> {
         let start = StartValues {
             position: point.position,
             velocity: point.velocity,
@@ -158,7 +158,7 @@ impl Machine {
         state.supply_pressure = self.supply.pressure;
         state.velocity = start.velocity;
         state.bristle = self.settled_bristle(start.velocity);
-        let balanced = self.balanced(&state, start.position, kept);
+        let balanced = self.balanced(&state, start.position, held_value);
         let forces = self.forces(&balanced, start.position);
         let force = forces.hydraulic + forces.end_stops - forces.friction.force;
         let (held, ground) = self.held(&balanced, start.position, force)?;

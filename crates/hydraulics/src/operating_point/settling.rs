@@ -163,9 +163,9 @@ impl<S: Scalar> Balance<S> {
                 // the flow leaves a fraction of the load pressure: p_A falls with it and p_B rises
                 let [a, b] = still;
                 let whole = a - b;
-                let falls = |share: S| {
-                    let [a, b] = at(share * whole);
-                    (a - b - share * whole) * whole
+                let falls = |fraction: S| {
+                    let [a, b] = at(fraction * whole);
+                    (a - b - fraction * whole) * whole
                 };
                 let left = halved([S::from(0.0), S::from(1.0)], halvings, falls) * whole;
                 let ([a, b], half) = (at(left), S::from(0.5));
@@ -256,8 +256,8 @@ impl<S: Scalar> Balance<S> {
         }
         let tank = self.supply.tank_pressure;
         let drop = self.supply.pressure - tank;
-        let at = |share: S| self.between(edges, flow + self.leaving(tank + share * drop));
-        let falls = |share: S| (at(share) - tank) / drop - share;
+        let at = |fraction: S| self.between(edges, flow + self.leaving(tank + fraction * drop));
+        let falls = |fraction: S| (at(fraction) - tank) / drop - fraction;
         tank + halved([S::from(0.0), S::from(1.0)], HALVINGS_OF_ORIFICE, falls) * drop
     }
 

@@ -35,14 +35,14 @@ use crate::line::{DynamicLine, Segments, TransferMatrix};
 /// # use phea_hydraulics::stiffness::StiffnessModel;
 /// use num_complex::Complex64;
 /// use phea_hydraulics::line::{DynamicLine, END_SHARE, LineModel, StiffeningMember};
-/// use phea_hydraulics::plant::{BehindLines, LinearLoad, LinearPlant, PlantInMotion};
+/// use phea_hydraulics::plant::{LineChambers, LinearLoad, LinearPlant, PlantInMotion};
 /// let fluid = components(hose_line(), StiffnessModel::ByVolume).fluid;
 /// let model = LineModel::TransmissionLine { end_share: END_SHARE };
 /// let line = DynamicLine::new(&hose_line(), &fluid, 35e5, StiffeningMember::Nominal, &model)?;
 /// let plant = LinearPlant::of_load_pressure(&nominal_plant(), 0.0, LinearLoad::Prescribed);
 /// let chamber = 0.25 * 1.58e-3 / 1.45e9; // what the oil of half a stroke yields, in m3/Pa
 /// let lumped = [chamber + line.elastic_compliance(); 2];
-/// let behind = BehindLines { lines: [line; 2], chambers: [chamber; 2], lumped, leaking: [0.0; 2] };
+/// let behind = LineChambers { lines: [line; 2], chambers: [chamber; 2], lumped, leaking: [0.0; 2] };
 /// let moving = PlantInMotion::new(&plant, &behind);
 /// let lumped = plant.coefficients().command;
 /// let ratio = |frequency| {
@@ -66,7 +66,7 @@ pub struct PlantInMotion {
 
 /// Chambers of a plant, behind its lines. Units: m3/Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BehindLines {
+pub struct LineChambers {
     /// The lines.
     pub lines: [DynamicLine; 2],
     /// Compliance of each chamber without its line.
@@ -127,7 +127,7 @@ impl PlantInMotion {
 
     /// Plant with a virtual impedance added to its force.
     #[must_use]
-    pub fn beside(self, virtual_impedance: Option<VirtualImpedance>) -> PlantInMotion {
+    pub fn with_virtual_impedance(self, virtual_impedance: Option<VirtualImpedance>) -> PlantInMotion {
         PlantInMotion { plant: LinearPlant { virtual_impedance, ..self.plant }, ..self }
     }
 
@@ -161,12 +161,12 @@ impl PlantInMotion {
         let none = DynamicLine::Segments(Segments::lumped(0.0));
         PlantInMotion::new(
             plant,
-            &BehindLines { lines: [none; 2], chambers: compliances, lumped: compliances, leaking: [0.0; 2] },
+            &LineChambers { lines: [none; 2], chambers: compliances, lumped: compliances, leaking: [0.0; 2] },
         )
     }
 
     /// Plant with these chambers and lines in place of its lumped ones.
-    pub fn new(plant: &LinearPlant, behind: &BehindLines) -> PlantInMotion {
+    pub fn new(plant: &LinearPlant, behind: &LineChambers) -> PlantInMotion {
         let side = |side: usize| {
             let Chamber { area, compliance, flow_gain, flow_pressure } = plant.chambers.side(side);
             let stiffer = behind.lumped[side] / compliance;

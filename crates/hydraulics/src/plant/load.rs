@@ -65,7 +65,7 @@ pub(super) struct LoadTerms<S> {
     /// Geometric stiffness k_g.
     geometric: Option<S>,
     /// Factor r^2 of a linkage; `None` for one.
-    pub(super) share: Option<S>,
+    pub(super) fraction: Option<S>,
 }
 
 impl<S: Scalar> LinearLoad<S> {
@@ -74,17 +74,17 @@ impl<S: Scalar> LinearLoad<S> {
         match *self {
             LinearLoad::Prescribed => None,
             LinearLoad::Yielding { mass, damping, stiffness } => {
-                Some(LoadTerms { mass, ground: [damping, stiffness], geometric: None, share: None })
+                Some(LoadTerms { mass, ground: [damping, stiffness], geometric: None, fraction: None })
             }
             LinearLoad::Free { mass, damping } => {
-                Some(LoadTerms { mass, ground: [damping, S::from(0.0)], geometric: None, share: None })
+                Some(LoadTerms { mass, ground: [damping, S::from(0.0)], geometric: None, fraction: None })
             }
             LinearLoad::Linked { inertia, damping, stiffness, geometric_stiffness, lever_arm } => {
                 Some(LoadTerms {
                     mass: inertia,
                     ground: [damping, stiffness],
                     geometric: Some(geometric_stiffness),
-                    share: Some(lever_arm.squared()),
+                    fraction: Some(lever_arm.squared()),
                 })
             }
         }
@@ -145,14 +145,14 @@ impl<S: Scalar> LoadTerms<S> {
 
     /// Number of the rod's force times the factor of its effect on this load.
     pub(super) fn moved_by(&self, number: S) -> S {
-        self.share.map_or(number, |share| number * share)
+        self.fraction.map_or(number, |fraction| number * fraction)
     }
 
     /// Polynomial times this factor.
     pub(super) fn moved(&self, polynomial: Vec<S>) -> Vec<S> {
-        match self.share {
+        match self.fraction {
             None => polynomial,
-            Some(share) => scaled(share, &polynomial),
+            Some(fraction) => scaled(fraction, &polynomial),
         }
     }
 }
@@ -161,12 +161,12 @@ impl LoadTerms<f64> {
     /// Polynomial Z over the factor of the rod force's effect on the load.
     pub(super) fn reflected(&self) -> [f64; 3] {
         let own = self.own();
-        self.share.map_or(own, |share| own.map(|number| number / share))
+        self.fraction.map_or(own, |fraction| own.map(|number| number / fraction))
     }
 
     /// Value times this factor.
     pub(super) fn moved_at<A: Analytic>(&self, value: A) -> A {
-        self.share.map_or(value, |share| value.scaled(share))
+        self.fraction.map_or(value, |fraction| value.scaled(fraction))
     }
 
     /// Polynomial Z and the connection to ground, at s.

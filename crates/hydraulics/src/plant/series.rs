@@ -108,7 +108,7 @@ impl<S: Scalar> LinearSeries<S> {
     }
 
     /// True if it is a spring without mass or damper, which only makes the force sensor softer.
-    pub fn is_spring_alone(&self) -> bool {
+    pub fn is_pure_spring(&self) -> bool {
         let LinearElement::Spring(spring) = &self.element else { return false };
         spring.damping.is_none() && spring.mass.is_none()
     }
@@ -144,7 +144,7 @@ struct Between<'a, S, T> {
     sensor: S,
     load: Option<[T; 2]>,
     /// Factor r^2 of a linkage for the force on the load; `None` for one.
-    share: Option<S>,
+    fraction: Option<S>,
 }
 
 impl<S: Scalar> LinearSeries<S> {
@@ -178,8 +178,8 @@ impl<S: Scalar> LinearSeries<S> {
             SeriesOutput::Deflection => with(by_motion, fed_as(None)),
             SeriesOutput::OnLoad => with(by_motion, fed_as(None)).times(tied),
         };
-        let shared = |path: T| match between.share {
-            Some(share) => path.by(share),
+        let shared = |path: T| match between.fraction {
+            Some(fraction) => path.by(fraction),
             None => path,
         };
         let through = shared(driven.times(tied));
@@ -390,7 +390,7 @@ impl LinearSeries {
             fed: fed.as_ref(),
             sensor: plant.sensor_stiffness,
             load,
-            share: terms.and_then(|terms| terms.share),
+            fraction: terms.and_then(|terms| terms.fraction),
         };
         let Paths { command, ground, sensed, fed, driven, held } =
             self.paths(&self.values(s, plant.sensor_stiffness), &between);
@@ -423,8 +423,8 @@ impl<S: Scalar> LinearPlant<S> {
         let matrix = series.polynomials(self.sensor_stiffness);
         let paths = |[driven, spool]: [&Vec<S>; 2], load: Option<[Vec<S>; 2]>| {
             let (moved, fed, sensor) = (&moved, fed.as_ref(), self.sensor_stiffness);
-            let share = self.load.terms().and_then(|terms| terms.share);
-            series.paths(&matrix, &Between { chambers, moved, driven, spool, fed, sensor, load, share })
+            let fraction = self.load.terms().and_then(|terms| terms.fraction);
+            series.paths(&matrix, &Between { chambers, moved, driven, spool, fed, sensor, load, fraction })
         };
         let behind_filter = [filtered(&driven), filtered(&spool)];
         let behind_filter = [&behind_filter[0], &behind_filter[1]];

@@ -200,7 +200,7 @@ impl<S: TableNumber> DeclaredTransmission<S> {
         v.optional_count(SEGMENTS_KEY, &mut segments);
         self.segments = segments.unwrap_or(SEGMENTS);
         v.needed_table(plain("line", "The hose or pipe between its pistons."), &mut self.line, |line, v| {
-            line.visit_alone(v);
+            line.visit_unconnected(v);
         });
         let k = key("cylinder_length", &LENGTH, "Length of either of its cylinders, when retracted.");
         v.optional(k.positive(), &mut self.cylinder_length);

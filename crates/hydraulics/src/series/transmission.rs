@@ -90,11 +90,11 @@ impl<S: Scalar> Transmission<S> {
         let conduit = Conduit::filled(&self.line, fluid, self.filling_pressure, member);
         let count = S::from(self.segments as f64);
         let square = self.piston_area.squared();
-        let share = conduit.compliance() / count;
-        let end = self.end_volume / modulus + share / S::from(2.0);
+        let fraction = conduit.compliance() / count;
+        let end = self.end_volume / modulus + fraction / S::from(2.0);
         OilColumn {
             end_stiffness: square / end,
-            inner_stiffness: square / share,
+            inner_stiffness: square / fraction,
             mass: conduit.inertance() * square / count,
             damping: conduit.steady_resistance() * square / count,
             piston_area: self.piston_area,

@@ -161,7 +161,7 @@ fn conductance_slopes<S: Scalar>(valve: &Servovalve<S>, spool: S, direction: Spo
             let forward = [forward, forward_slope];
             let backward = [backward, backward_slope];
             let leakage = [left(leakage.supply_to_a), leakage_slope.supply_to_a];
-            let opened = |coefficient: S, by: [S; 2]| by.map(|share| coefficient * share);
+            let opened = |coefficient: S, by: [S; 2]| by.map(|fraction| coefficient * fraction);
             let [open_a, shut_a] = [opened(flow.supply_to_a, forward), opened(flow.a_to_tank, backward)];
             let [open_b, shut_b] = [opened(flow.supply_to_b, backward), opened(flow.b_to_tank, forward)];
             Edges {

@@ -107,7 +107,7 @@ pub fn stiffness_from_hose_length<S: Scalar>(
 /// ```
 ///
 /// for C_A(x) = k_0A + s_A x + c and C_B(x) = k_0B + s_B (L - x) + c.
-pub fn line_share_for_stiffness(
+pub fn line_fraction_for_stiffness(
     model: StiffnessModel,
     fluid_modulus: f64,
     cylinder: &Cylinder,
@@ -118,8 +118,8 @@ pub fn line_share_for_stiffness(
     if stiffness.is_nan() || stiffness <= 0.0 {
         return LineLength::OutOfReach;
     }
-    let minimum_at = |share: f64| {
-        let [line_a, line_b] = lines.map(|line| scaled(line, share));
+    let minimum_at = |fraction: f64| {
+        let [line_a, line_b] = lines.map(|line| scaled(line, fraction));
         chamber_compliance(model, [fluid_modulus; 2], cylinder, [&line_a, &line_b], member)
             .over_stroke()
             .minimum
@@ -149,10 +149,10 @@ pub fn line_share_for_stiffness(
     }
 }
 
-fn scaled(line: &Line, share: f64) -> Line {
+fn scaled(line: &Line, fraction: f64) -> Line {
     match *line {
-        Line::Hose { length, .. } | Line::Pipe { length, .. } => with_length(line, length * share),
-        Line::Volume { .. } => with_length(line, share),
+        Line::Hose { length, .. } | Line::Pipe { length, .. } => with_length(line, length * fraction),
+        Line::Volume { .. } => with_length(line, fraction),
     }
 }
 

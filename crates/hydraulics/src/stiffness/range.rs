@@ -115,12 +115,12 @@ pub struct ModelDifference {
     pub maximum_ratio: f64,
     /// Fraction of the fluid in the chambers and not in the lines (piston at the softest position),
     /// for which `uniform` has the wrong modulus.
-    pub chamber_volume_share: f64,
+    pub chamber_volume_fraction: f64,
     /// Fraction of the compliance, by volume, from the lines at this position, which sizing the
     /// lines can change.
-    pub line_compliance_share: f64,
+    pub line_compliance_fraction: f64,
     /// Fraction of the compliance, by volume, from the gas of accumulators at this position.
-    pub gas_compliance_share: f64,
+    pub gas_compliance_fraction: f64,
 }
 
 /// Both stiffness models of one cylinder and its lines, and their difference; the fluid's modulus
@@ -161,8 +161,8 @@ pub fn model_difference(
         by_volume,
         minimum_ratio: by_volume.minimum / uniform.minimum,
         maximum_ratio: by_volume.maximum / uniform.maximum,
-        chamber_volume_share: chamber_volume / (chamber_volume + line_volume),
-        line_compliance_share: line_compliance / total_compliance,
-        gas_compliance_share: gas_compliance / total_compliance,
+        chamber_volume_fraction: chamber_volume / (chamber_volume + line_volume),
+        line_compliance_fraction: line_compliance / total_compliance,
+        gas_compliance_fraction: gas_compliance / total_compliance,
     }
 }

@@ -59,15 +59,15 @@ struct Blend<S> {
 }
 
 impl<S: Scalar> Blend<S> {
-    fn at(share: S) -> Blend<S> {
+    fn at(fraction: S) -> Blend<S> {
         let (zero, one) = (S::from(0.0), S::from(1.0));
-        let within = share.maximum(zero).minimum(one);
+        let within = fraction.maximum(zero).minimum(one);
         let square = within.squared();
         let two = S::from(2.0);
         Blend {
             value: square * (S::from(3.0) - two * within),
             slope: S::from(6.0) * within * (one - within),
-            integral: square * within * (one - within / two) + (share - one).maximum(zero),
+            integral: square * within * (one - within / two) + (fraction - one).maximum(zero),
         }
     }
 }

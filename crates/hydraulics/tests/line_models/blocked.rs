@@ -79,14 +79,14 @@ fn a_pipe_with_air_has_the_compliance_of_its_mixture() {
     let expected = volume * ln(mixture(low) / mixture(high)) + wall * (high - low);
     // in time: a steady flow for ten seconds brings it from one pressure to the other
     let line = of(&fluid);
-    let course = InputSchedule {
+    let schedule = InputSchedule {
         duration_s: 10.0,
         output_step_s: 1.0,
         inputs: vec![Input::Value(Profile::constant(expected / 10.0))],
     };
     let (state, waves) = line.rest(low);
     let settings = SimulationSettings { tolerance: 1e-9, ..SimulationSettings::default() };
-    let found = simulate(&line, &[state, waves].concat(), &course, None, &settings, &mut |_| true).unwrap();
+    let found = simulate(&line, &[state, waves].concat(), &schedule, None, &settings, &mut |_| true).unwrap();
     assert_eq!(found.outcome.status, Status::Completed);
     let last = line.open_end(found.trajectory.states.last().unwrap());
     assert!((last / high - 1.0).abs() < 1e-6, "{last}");
@@ -101,14 +101,14 @@ fn time_and_frequency_agree() {
     let frequency = 30.0;
     let impedance = line.impedance(Complex64::new(0.0, frequency));
     let period = 2.0 * std::f64::consts::PI / frequency;
-    let course = InputSchedule {
+    let schedule = InputSchedule {
         duration_s: 20.0 * period,
         output_step_s: period / 64.0,
         inputs: vec![Input::Value(Profile::sine(0.0, 1e-6, frequency).unwrap())],
     };
     let (state, waves) = line.rest(35e5);
     let settings = SimulationSettings { tolerance: 1e-9, ..SimulationSettings::default() };
-    let found = simulate(&line, &[state, waves].concat(), &course, None, &settings, &mut |_| true).unwrap();
+    let found = simulate(&line, &[state, waves].concat(), &schedule, None, &settings, &mut |_| true).unwrap();
     let pressures: Vec<f64> = found.trajectory.states.iter().map(|state| line.open_end(state)).collect();
     // the last whole period: the fundamental of sin is (a sin + b cos) with 2/N sums
     let rows = pressures.len() - 65..pressures.len() - 1;

@@ -48,13 +48,13 @@ impl Fed {
     fn run(&self, flow: f64, inflow: Profile, outflow: Profile, duration_s: f64) -> Simulated {
         let (state, waves) = self.line.steady_state(0.0, flow);
         let start = [state, vec![0.0, 0.0], waves].concat();
-        let course = InputSchedule {
+        let schedule = InputSchedule {
             duration_s,
             output_step_s: duration_s / 200.0,
             inputs: vec![Input::Value(inflow), Input::Value(outflow)],
         };
         let settings = SimulationSettings { tolerance: 1e-7, ..SimulationSettings::default() };
-        let result = simulate(self, &start, &course, None, &settings, &mut |_| true).unwrap();
+        let result = simulate(self, &start, &schedule, None, &settings, &mut |_| true).unwrap();
         assert_eq!(result.outcome.status, Status::Completed);
         result
     }

@@ -86,7 +86,7 @@ fn the_modes_are_those_of_the_four_equations() {
     assert!((elastance * hose.fixed_end_conduit().compliance() - 1.0).abs() < 1e-12);
     assert!((inertance / (hose.density * hose.length / area) - 1.0).abs() < 1e-12);
     // friction acts between fluid and wall; both waves together have all of it
-    let together = slow.friction_share + fast.friction_share;
+    let together = slow.friction_fraction + fast.friction_fraction;
     let both = 1.0 + hose.density * area / hose.wall.mass_per_length;
     assert!((together / both - 1.0).abs() < 1e-12);
 }
@@ -150,7 +150,7 @@ fn without_coupling_one_wave_is_left() {
     let [wall, fluid] = hose.waves();
     assert!((wall.speed * (0.2_f64 * 2e-5).sqrt() - 1.0).abs() < 1e-12 && wall.modal_ratio.is_infinite());
     assert!((fluid.speed / conduit.speed() - 1.0).abs() < 1e-12 && fluid.modal_ratio == 0.0);
-    assert_eq!((wall.impedance, fluid.friction_share), (0.0, 1.0));
+    assert_eq!((wall.impedance, fluid.friction_fraction), (0.0, 1.0));
     let one = DynamicLine::TransmissionLine(TransmissionLine::of_conduit(&conduit, END_SHARE).unwrap());
     let two = in_time(&hose, END_SHARE);
     for frequency in [1.0, 50.0, 700.0, 3000.0] {

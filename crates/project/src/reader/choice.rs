@@ -97,10 +97,10 @@ impl<'a> Reader<'a> {
 
     /// Warns about keys read since this number of keys was known, if their way was not chosen.
     pub(super) fn without_choice(&mut self, chosen_by: &[&'static str], known: usize) {
-        let asked =
-            self.frames.last().and_then(|frame| frame.asked.get(known..)).unwrap_or_default().to_vec();
+        let requested =
+            self.frames.last().and_then(|frame| frame.requested.get(known..)).unwrap_or_default().to_vec();
         let Some(chooses) = chosen_by.first().filter(|_| !self.partial) else { return };
-        for name in asked {
+        for name in requested {
             if let Some(place) = self.written(name) {
                 let message = format!("`{name}` has no effect without `{chooses}`");
                 self.findings.push(RawFinding::warning(place, message));

@@ -39,7 +39,7 @@ impl Visitor for Reader<'_> {
             self.record_origin(key, origin);
             *field = self.number_or_none(key, hit.node);
         } else if let Some(default) = key.default {
-            if !self.looks_elsewhere() {
+            if !self.depends_on_other_file() {
                 self.record_origin(key, Origin::Default);
             }
             *field = default;
@@ -266,7 +266,7 @@ impl Visitor for Reader<'_> {
         visit: impl Fn(&mut T, &mut Self),
     ) {
         let chosen = chosen_by.iter().find(|name| self.is_there(name));
-        let known = self.frames.last().map_or(0, |frame| frame.asked.len());
+        let known = self.frames.last().map_or(0, |frame| frame.requested.len());
         let mut value = T::default();
         if chosen.is_none() || self.is_lost() {
             self.pass_over(Some(Vec::new()));
@@ -290,7 +290,7 @@ impl Visitor for Reader<'_> {
     }
 
     fn one_of(&mut self, keys: &'static [&'static str], needed: bool) {
-        if self.looks_elsewhere() {
+        if self.depends_on_other_file() {
             return;
         }
         self.at_most_one(keys);
@@ -456,7 +456,7 @@ impl Visitor for Reader<'_> {
         let Some(parent) = self.frames.last() else { return };
         let (inherited, path, place) = (parent.layers.clone(), parent.path.clone(), parent.place);
         let hits = keys.map(|key| self.find(key));
-        let mut asked = Vec::new();
+        let mut requested = Vec::new();
         for ((key, hit), field) in keys.into_iter().zip(hits).zip(fields) {
             let (own, side_path, side_place) = match hit {
                 Some(Hit { node, .. }) if matches!(node.value, Value::Table(_)) => {
@@ -480,10 +480,10 @@ impl Visitor for Reader<'_> {
             self.open(side_path, side_place, layers);
             *field = T::default();
             visit(field, self);
-            asked.extend(if inherits_only { self.leave() } else { self.close() });
+            requested.extend(if inherits_only { self.leave() } else { self.close() });
         }
         if let Some(frame) = self.frames.last_mut() {
-            frame.asked.extend(asked);
+            frame.requested.extend(requested);
         }
     }
 

@@ -5,7 +5,7 @@ use crate::{DeclaredActuator, DeclaredAdjustment, InputSignal, InputUnit, Scenar
 use phea_quantity::{self as quantity, TIME};
 
 /// Checks the input schedule of the setting in a scenario.
-pub(super) fn course(
+pub(super) fn input_schedule(
     scenario: &Scenario,
     actuator: &DeclaredActuator,
     path: &str,
@@ -43,10 +43,10 @@ pub(super) fn course(
 /// Warns about a setting that leaves the range from 0 to 1. Signals with only steps and ramps have
 /// their extremes at a beginning or an end; for others a simulation reports it.
 fn leaves_its_way(signals: &[InputSignal], rest: f64, place: &str, check: &mut Check<'_, '_>) {
-    let courses: Option<Vec<PartCourse>> = signals.iter().map(PartCourse::of).collect();
-    let Some(courses) = courses else { return };
-    let sum = |time: f64| rest + courses.iter().map(|course| course.value(time)).sum::<f64>();
-    let times = courses.iter().flat_map(|course| &course.corners).map(|[time, _]| *time);
+    let schedules: Option<Vec<PartSchedule>> = signals.iter().map(PartSchedule::of).collect();
+    let Some(schedules) = schedules else { return };
+    let sum = |time: f64| rest + schedules.iter().map(|input_schedule| input_schedule.value(time)).sum::<f64>();
+    let times = schedules.iter().flat_map(|input_schedule| &input_schedule.corners).map(|[time, _]| *time);
     let beyond = |time: &f64| !(-ROUNDING..=1.0 + ROUNDING).contains(&sum(*time));
     let Some(time) = times.filter(beyond).reduce(f64::min) else { return };
     let words = |value: f64| quantity::significant(value, 4);
@@ -57,7 +57,7 @@ fn leaves_its_way(signals: &[InputSignal], rest: f64, place: &str, check: &mut C
         words(rest)
     );
     let index =
-        courses.iter().position(|course| course.corners.iter().any(|[start, _]| *start == time)).unwrap_or(0);
+        schedules.iter().position(|input_schedule| input_schedule.corners.iter().any(|[start, _]| *start == time)).unwrap_or(0);
     let help = "no simulation runs this scenario: one of them must be smaller";
     check.warning_with_help(&format!("{place}[{index}]"), message, help);
 }
@@ -66,14 +66,14 @@ fn leaves_its_way(signals: &[InputSignal], rest: f64, place: &str, check: &mut C
 const ROUNDING: f64 = 1e-9;
 
 /// Signal of steps, or a ramp; zero before it begins.
-struct PartCourse {
+struct PartSchedule {
     is_ramp: bool,
     /// Corners: times in s and values.
     corners: Vec<[f64; 2]>,
 }
 
-impl PartCourse {
-    fn of(signal: &InputSignal) -> Option<PartCourse> {
+impl PartSchedule {
+    fn of(signal: &InputSignal) -> Option<PartSchedule> {
         let (is_ramp, corners) = match signal {
             InputSignal::Step { at, value, .. } => (false, vec![[*at, *value]]),
             InputSignal::Steps { times, values } => {
@@ -85,7 +85,7 @@ impl PartCourse {
             }
             _ => return None,
         };
-        Some(PartCourse { is_ramp, corners })
+        Some(PartSchedule { is_ramp, corners })
     }
 
     fn value(&self, time: f64) -> f64 {

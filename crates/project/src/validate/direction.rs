@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::wishes::of_one_sensor;
+use super::requirements::of_one_sensor;
 use super::{Check, linear_parameter};
 use crate::{LINEAR_PARAMETERS, Project, UncertaintyDirection};
 use phea_quantity::display;

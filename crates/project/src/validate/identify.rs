@@ -115,8 +115,8 @@ fn columns(recorded: &RecordedTest, path: &str, check: &mut Check<'_, '_>) {
         reversed(column, may_reverse, &path, check);
         accuracy(column, (signal != TestSignal::Time).then_some(signal.dimension()), &path, check);
         let Some(unit) = &column.unit else { continue };
-        let is_share = signal == TestSignal::Command && unit == "%";
-        let dimension = if is_share { &RATIO } else { signal.dimension() };
+        let is_fraction = signal == TestSignal::Command && unit == "%";
+        let dimension = if is_fraction { &RATIO } else { signal.dimension() };
         unit_of(unit, dimension, &path, check);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Check;
 use crate::{
-    DeclaredLimit, DeclaredSpecification, Formula, MarginWish, Project, RequiredStep, ResponseWish, Variable,
+    DeclaredLimit, DeclaredSpecification, Formula, MarginRequirement, Project, RequiredStep, ResponseRequirement, Variable,
 };
 use phea_dynamics::closed_loop::ClosedLoop;
 
@@ -110,14 +110,14 @@ fn one_limit(limit: &DeclaredLimit, kind: ClosedLoop, name: &str, path: &str, ch
             let because = "does not belong to a limit given by a table";
             refuse(&[FUNCTION_KEYS, MARGIN_KEYS, RESPONSE_KEYS].concat(), because, path, check);
         }
-        DeclaredLimit::Margins(wish) => {
+        DeclaredLimit::Margins(requirement) => {
             let because = "does not belong to a limit given by margins";
             refuse(&[&["values"], FUNCTION_KEYS, RESPONSE_KEYS].concat(), because, path, check);
-            margins(wish, kind, path, check);
+            margins(requirement, kind, path, check);
         }
-        DeclaredLimit::Response(wish) if kind == ClosedLoop::Tracking => response(wish, name, path, check),
+        DeclaredLimit::Response(requirement) if kind == ClosedLoop::Tracking => response(requirement, name, path, check),
         DeclaredLimit::Response(_) => {
-            check.error(path, "a wish in time makes `upper` and `lower` of \"tracking\"")
+            check.error(path, "a requirement in time makes `upper` and `lower` of \"tracking\"")
         }
     }
 }
@@ -130,7 +130,7 @@ fn nothing(path: &str, check: &mut Check<'_, '_>) {
         Some(_) => "`denominator` needs `numerator`",
         None => "nothing is limited here",
     };
-    let forms = "`numerator` and `denominator`, `frequencies` and `values`, margins, or a wish in time";
+    let forms = "`numerator` and `denominator`, `frequencies` and `values`, margins, or a requirement in time";
     check.error_with_help(path, message, format!("a limit takes a number, a text, {forms}"));
 }
 
@@ -156,43 +156,43 @@ fn continuous(formulas: &[&Formula], path: &str, check: &mut Check<'_, '_>) {
     }
 }
 
-fn margins(wish: &MarginWish, kind: ClosedLoop, path: &str, check: &mut Check<'_, '_>) {
+fn margins(requirement: &MarginRequirement, kind: ClosedLoop, path: &str, check: &mut Check<'_, '_>) {
     let stability = kind == ClosedLoop::RobustStability;
     if !stability && kind != ClosedLoop::Sensitivity {
         return check.error(path, "margins are limits of \"robust_stability\" and \"sensitivity\" alone");
     }
-    let Some(_) = wish.delay_margin else { return };
+    let Some(_) = requirement.delay_margin else { return };
     let at = format!("{path}.delay_margin");
     if !stability {
         check.error(&at, "`delay_margin` is a limit of \"robust_stability\" alone");
     }
-    if *wish != (MarginWish { delay_margin: wish.delay_margin, ..MarginWish::default() }) {
+    if *requirement != (MarginRequirement { delay_margin: requirement.delay_margin, ..MarginRequirement::default() }) {
         let message = "`delay_margin` falls with frequency and cannot be joined with other margins";
         check.error_with_help(&at, message, "write a [[specification]] of its own for it");
     }
 }
 
-fn response(wish: &ResponseWish, name: &str, path: &str, check: &mut Check<'_, '_>) {
+fn response(requirement: &ResponseRequirement, name: &str, path: &str, check: &mut Check<'_, '_>) {
     let upper = name == "upper";
     refuse(&["values"], "needs `frequencies`", path, check);
     let needed = [
-        ("overshoot_percent", wish.overshoot_percent.is_none() && upper),
-        ("settling_time", wish.settling_time.is_none()),
-        ("settling_band_percent", wish.settling_band_percent.is_none()),
+        ("overshoot_percent", requirement.overshoot_percent.is_none() && upper),
+        ("settling_time", requirement.settling_time.is_none()),
+        ("settling_band_percent", requirement.settling_band_percent.is_none()),
     ];
     for (name, absent) in needed {
         if absent {
-            check.missing(path, name, format!("a wish in time needs `{name}`"));
+            check.missing(path, name, format!("a requirement in time needs `{name}`"));
         }
     }
     let foreign: &[&str] = if upper { &["pole"] } else { &["zero", "overshoot_percent"] };
     let other = if upper { "lower" } else { "upper" };
     refuse(foreign, &format!("belongs to `{other}`"), path, check);
-    if let Some(function) = &wish.function {
+    if let Some(function) = &requirement.function {
         continuous(&[&function.numerator, &function.denominator], path, check);
         let because = "has no meaning together with `numerator`, which is checked as it is";
         refuse(&["zero", "pole"], because, path, check);
-        if wish.rule.is_some() {
+        if requirement.rule.is_some() {
             refuse(&["rule"], because, path, check);
         }
     }

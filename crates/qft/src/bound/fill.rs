@@ -21,7 +21,7 @@ pub(super) struct Edge {
     /// Curvature kappa.
     pub(super) curvature: f64,
     /// Coefficient (r/W)^2 of |q_k + L0|^2, the greater of the two ends.
-    pub(super) share: f64,
+    pub(super) fraction: f64,
     /// True if the variable is 1/g: for the control effort, with P/P0 conjugated in place of q.
     pub(super) reciprocal: bool,
 }
@@ -34,7 +34,7 @@ impl Edge {
             ends: [from, to],
             constants: [from.norm_sqr(), to.norm_sqr()],
             curvature: (to - from).norm_sqr(),
-            share: ends.map(WeightedPlant::share).into_iter().fold(0.0, f64::max),
+            fraction: ends.map(WeightedPlant::fraction).into_iter().fold(0.0, f64::max),
             reciprocal: false,
         }
     }
@@ -55,7 +55,7 @@ impl Edge {
             ends: [from, to],
             constants: ends.map(WeightedPlant::sensitivity_constant),
             curvature: (to - from).norm_sqr() - change,
-            share: 0.0,
+            fraction: 0.0,
             reciprocal: false,
         }
     }
@@ -72,7 +72,7 @@ impl Edge {
             ends: [from, to],
             constants: [constant(from), constant(to)],
             curvature: (to - from).norm_sqr(),
-            share: 0.0,
+            fraction: 0.0,
             reciprocal: true,
         }
     }
@@ -103,12 +103,12 @@ impl Edge {
         if union.covers(ray.within_window(gains([first, last]))) {
             return;
         }
-        let share = self.share * ray.other_weight * ray.other_weight;
-        let a = 1.0 - share - self.curvature * slope * slope;
-        let b = from - self.curvature * start * slope - share * ray.along(ray.other);
+        let fraction = self.fraction * ray.other_weight * ray.other_weight;
+        let a = 1.0 - fraction - self.curvature * slope * slope;
+        let b = from - self.curvature * start * slope - fraction * ray.along(ray.other);
         let c = self.constants[0]
             - self.curvature * start * start
-            - share * ray.other_modulus * ray.other_modulus;
+            - fraction * ray.other_modulus * ray.other_modulus;
         for [low, high] in negative_gains(a, b, c, b * b - a * c) {
             let (low, high) = (low.max(first), high.min(last));
             if low < high {
@@ -132,8 +132,8 @@ pub(super) fn inside(polygon: &[Complex64], direction: Complex64) -> GainInterva
     let mut crossings: Vec<(f64, i32)> = sides
         .filter_map(|(from, to)| {
             let turn = i32::from(across(to) > 0.0) - i32::from(across(from) > 0.0);
-            let share = across(from) / (across(from) - across(to));
-            let gain = along(from) + share * (along(to) - along(from));
+            let fraction = across(from) / (across(from) - across(to));
+            let gain = along(from) + fraction * (along(to) - along(from));
             (turn != 0 && gain > 0.0).then_some((gain, turn))
         })
         .collect();

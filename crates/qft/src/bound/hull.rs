@@ -23,7 +23,7 @@ pub(super) struct Hull {
     bearing: [f64; 2],
     /// Directions of these ends, q/|q|.
     ends: [Complex64; 2],
-    share: f64,
+    fraction: f64,
 }
 
 impl Hull {
@@ -36,7 +36,7 @@ impl Hull {
             modulus: [moduli().fold(f64::INFINITY, f64::min), moduli().fold(0.0, f64::max)],
             bearing: [first, last],
             ends: [right, left].map(|plant| plant.inverse / plant.modulus),
-            share: plants.iter().map(WeightedPlant::share).fold(0.0, f64::max),
+            fraction: plants.iter().map(WeightedPlant::fraction).fold(0.0, f64::max),
         })
     }
 
@@ -48,7 +48,7 @@ impl Hull {
                 modulus: [all.modulus[0].min(hull.modulus[0]), all.modulus[1].max(hull.modulus[1])],
                 bearing: [right.bearing[0], left.bearing[1]],
                 ends: [right.ends[0], left.ends[1]],
-                share: all.share.max(hull.share),
+                fraction: all.fraction.max(hull.fraction),
             }
         })
     }
@@ -56,7 +56,7 @@ impl Hull {
     /// True if signs show that the plants inside forbid nothing, or nothing beyond the borders;
     /// `false` is inconclusive. Not for `Spread`.
     pub(super) fn stays_within(&self, ray: &Ray, borders: &Borders) -> bool {
-        let rest = 1.0 - self.share - SLACK * (1.0 + self.share);
+        let rest = 1.0 - self.fraction - SLACK * (1.0 + self.fraction);
         let (a, c) = if ray.form == InequalityForm::Complementary { (rest, 1.0) } else { (1.0, rest) };
         let b = self.least_cosine(ray.direction);
         // The quadratic in u = g/|q|, times |q|^2: at the lower border for the nearest plant, at
@@ -84,7 +84,7 @@ impl Hull {
         let cosine = self.least_cosine(ray.direction);
         let [near, far] = self.modulus;
         let modulus = (-gain * cosine).clamp(near, far);
-        let share = self.share * ray.other_weight * ray.other_weight;
+        let fraction = self.fraction * ray.other_weight * ray.other_weight;
         let distance = |cosine: f64, modulus: f64| (gain + 2.0 * modulus * cosine) * gain + modulus * modulus;
         let limit = match ray.form {
             InequalityForm::Complementary => gain * gain,
@@ -93,7 +93,7 @@ impl Hull {
                 gain * gain + 2.0 * gain * ray.along(ray.other) + ray.other_modulus * ray.other_modulus
             }
         };
-        distance(cosine, modulus) - share * limit
+        distance(cosine, modulus) - fraction * limit
     }
 
     /// Gains that contain all those a plant inside could forbid: where the least quadratic that the
@@ -106,13 +106,13 @@ impl Hull {
     /// Spread          (1 - share) g^2 + 2 (min c - share c_k) g + (min |q|^2 - share |q_k|^2) < 0,  share with r_k^2
     /// ```
     pub(super) fn could_forbid(&self, ray: &Ray) -> [[f64; 2]; 2] {
-        let share = self.share * ray.other_weight * ray.other_weight;
-        if !share.is_finite() {
+        let fraction = self.fraction * ray.other_weight * ray.other_weight;
+        if !fraction.is_finite() {
             return [ray.window, [0.0, 0.0]];
         }
         let least = self.least_cosine(ray.direction);
         let [near, far] = self.modulus;
-        let rest = 1.0 - share - SLACK * (1.0 + share);
+        let rest = 1.0 - fraction - SLACK * (1.0 + fraction);
         let scaled = |a: f64, c: f64| {
             negative_gains(a, least, c, least * least - a * c).map(|[low, high]| [low * near, high * far])
         };
@@ -122,8 +122,8 @@ impl Hull {
             InequalityForm::Spread => {
                 let along = least * if least < 0.0 { far } else { near };
                 let other = ray.other_modulus;
-                let b = along - share * ray.along(ray.other) - SLACK * (far + share * other);
-                let c = near * near - share * other * other - SLACK * (far * far + share * other * other);
+                let b = along - fraction * ray.along(ray.other) - SLACK * (far + fraction * other);
+                let c = near * near - fraction * other * other - SLACK * (far * far + fraction * other * other);
                 negative_gains(rest, b, c, b * b - rest * c).map(|interval| ray.within_window(interval))
             }
         }

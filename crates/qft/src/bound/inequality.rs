@@ -35,7 +35,7 @@ pub(super) struct WeightedPlant {
 
 impl WeightedPlant {
     /// (r/W)^2
-    pub(super) fn share(&self) -> f64 {
+    pub(super) fn fraction(&self) -> f64 {
         let ratio = self.weight / self.limit;
         ratio * ratio
     }

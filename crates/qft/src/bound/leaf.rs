@@ -16,7 +16,7 @@ pub(super) struct Leaf {
     re: [f64; LEAF],
     im: [f64; LEAF],
     constant: [f64; LEAF],
-    share: [f64; LEAF],
+    fraction: [f64; LEAF],
 }
 
 /// An interval already known to be forbidden, and the value added if there is nothing beyond an
@@ -62,15 +62,15 @@ pub(super) fn lesser(a: f64, b: f64) -> f64 {
 impl Leaf {
     /// A leaf of these plants, padded by repeating the last one.
     pub(super) fn of(form: InequalityForm, plants: &[WeightedPlant]) -> Leaf {
-        let mut leaf = Leaf { re: [1.0; LEAF], im: [0.0; LEAF], constant: [1.0; LEAF], share: [0.0; LEAF] };
-        let columns = leaf.re.iter_mut().zip(&mut leaf.im).zip(leaf.constant.iter_mut().zip(&mut leaf.share));
+        let mut leaf = Leaf { re: [1.0; LEAF], im: [0.0; LEAF], constant: [1.0; LEAF], fraction: [0.0; LEAF] };
+        let columns = leaf.re.iter_mut().zip(&mut leaf.im).zip(leaf.constant.iter_mut().zip(&mut leaf.fraction));
         let last = plants.last().into_iter().cycle();
-        for (((re, im), (constant, share)), plant) in columns.zip(plants.iter().chain(last)) {
+        for (((re, im), (constant, fraction)), plant) in columns.zip(plants.iter().chain(last)) {
             (*re, *im) = (plant.inverse.re, plant.inverse.im);
-            (*constant, *share) = match form {
+            (*constant, *fraction) = match form {
                 InequalityForm::Sensitivity => (plant.sensitivity_constant(), 0.0),
                 InequalityForm::Complementary | InequalityForm::Spread => {
-                    (plant.modulus * plant.modulus, plant.share())
+                    (plant.modulus * plant.modulus, plant.fraction())
                 }
             };
         }
@@ -82,12 +82,12 @@ impl Leaf {
     pub(super) fn stays_within(&self, ray: &Ray, borders: &Borders) -> bool {
         let square = ray.other_weight * ray.other_weight;
         let (along, other) = (ray.along(ray.other), ray.other_modulus * ray.other_modulus);
-        let ways = self.re.iter().zip(&self.im).zip(self.constant.iter().zip(&self.share));
-        let least = ways.fold(f64::INFINITY, |least, ((re, im), (constant, share))| {
-            let share = share * square;
-            let a = 1.0 - share;
-            let b = re * ray.direction.re + im * ray.direction.im - share * along;
-            let c = constant - share * other;
+        let ways = self.re.iter().zip(&self.im).zip(self.constant.iter().zip(&self.fraction));
+        let least = ways.fold(f64::INFINITY, |least, ((re, im), (constant, fraction))| {
+            let fraction = fraction * square;
+            let a = 1.0 - fraction;
+            let b = re * ray.direction.re + im * ray.direction.im - fraction * along;
+            let c = constant - fraction * other;
             let within = lesser(borders.below(a, b, c), borders.above(a, b, c));
             // Either the discriminant is negative or the roots are between the borders.
             let slack = -lesser(-within, b * b - a * c);

@@ -98,7 +98,7 @@ impl Member {
         };
         let passes = (top / (2.0 * half)).floor().max(1.0) as usize;
         let within = tabulated(plant, [from.min(0.5 * half), half], COARSE).frequencies_rad_per_s;
-        let shares = within.into_iter().map(|frequency| {
+        let fractions = within.into_iter().map(|frequency| {
             let held = turned(frequency, *delay_s) * hold(frequency, sample_time_s);
             let (feedback, inner) =
                 (compensation.feedback().at_frequency(frequency), images.inner_at(frequency));
@@ -117,6 +117,6 @@ impl Member {
             let later = pair(passes) * passes as f64 / 3.0;
             ((1..=passes).map(pair).sum::<f64>() + later) / difference
         });
-        Some(BETWEEN_POINTS * shares.fold(0.0, f64::max))
+        Some(BETWEEN_POINTS * fractions.fold(0.0, f64::max))
     }
 }

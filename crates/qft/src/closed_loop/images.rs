@@ -11,9 +11,9 @@ use super::{MemberResponse, turned};
 use crate::family::MeasuredPlant;
 
 /// Largest contribution of the part beyond a measurement, as a fraction of its sampled response.
-const UNKNOWN_SHARE: f64 = 0.01;
+const UNKNOWN_FRACTION: f64 = 0.01;
 /// Fraction of the response, 0.001 dB, below which the remaining images of a model are neglected.
-const LEFT_SHARE: f64 = 1e-4;
+const LEFT_FRACTION: f64 = 1e-4;
 /// Largest number of images to each side.
 const IMAGES_MAXIMUM: usize = 4000;
 
@@ -102,7 +102,7 @@ impl SamplingImages<'_> {
             let beyond = away > plant.range_rad_per_s()[1].min(spacing * IMAGES_MAXIMUM as f64 / 4.0);
             let left = largest.map(|largest| largest * order as f64);
             let back = portable::magnitude(1.0 - sum[2]);
-            let small = left[0] <= LEFT_SHARE * portable::magnitude(sum[0]) && left[1] <= LEFT_SHARE * back;
+            let small = left[0] <= LEFT_FRACTION * portable::magnitude(sum[0]) && left[1] <= LEFT_FRACTION * back;
             if (beyond || order > 2) && small {
                 return Some(sum);
             }
@@ -165,7 +165,7 @@ impl SamplingImages<'_> {
             }
             let (last, _) = plant.response(reach)?;
             let unknown = 2.0 * portable::magnitude(last) * hold(v, sample_time_s).abs();
-            if unknown > UNKNOWN_SHARE * portable::magnitude(sum[0]) {
+            if unknown > UNKNOWN_FRACTION * portable::magnitude(sum[0]) {
                 return None;
             }
         }

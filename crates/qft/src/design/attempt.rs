@@ -24,7 +24,7 @@ use super::counterexample::{Counterexample, counterexamples, worst_margin_db};
 use super::problem::{DesignOptions, PrefilterChoice};
 use super::result::{DesignRound, Starts};
 use crate::closed_loop::Compensation;
-use crate::kept_plants::KeptPlants;
+use crate::plant_cache::PlantCache;
 use crate::loop_shaping::{
     Aim, BestSeen, DescentOptions, DesignProblem, Judgement, Samples, SearchOptions, SearchProblem,
     SearchStatus, Shaping, Structure, descend, search_seeing,
@@ -140,7 +140,7 @@ pub(super) struct Attempt {
     x: Vec<f64>,
     rounds: Vec<DesignRound>,
     /// The audits of the additional plants, for the audited controller.
-    beside: Vec<Audit>,
+    additional_audits: Vec<Audit>,
 }
 
 impl Attempt {
@@ -185,7 +185,7 @@ impl Attempt {
             given: simpler,
             x: vec![],
             rounds: vec![],
-            beside: vec![],
+            additional_audits: vec![],
         })
     }
 
@@ -196,16 +196,16 @@ impl Attempt {
     /// [`LoopDesignError::Stopped`] by the watch; the results until then remain.
     pub(super) fn run(
         &mut self,
-        kept: &KeptPlants,
+        cache: &PlantCache,
         watch: Watch<'_>,
     ) -> Result<AttemptEnding, LoopDesignError> {
-        match self.until_agreed(kept, watch) {
+        match self.until_agreed(cache, watch) {
             Ok(ending) | Err(Leave::Ended(ending)) => Ok(ending),
             Err(Leave::Failed(error)) => Err(error),
         }
     }
 
-    fn until_agreed(&mut self, kept: &KeptPlants, watch: Watch<'_>) -> Result<AttemptEnding, Leave> {
+    fn until_agreed(&mut self, cache: &PlantCache, watch: Watch<'_>) -> Result<AttemptEnding, Leave> {
         let given = std::mem::take(&mut self.given);
         self.search(given, (self.options.seed, self.effort), watch)?;
         if self
@@ -214,15 +214,15 @@ impl Attempt {
         {
             return Ok(AttemptEnding::NotEarned);
         }
-        self.audited_until_agreed(kept, watch)
+        self.audited_until_agreed(cache, watch)
     }
 
     /// Audits from the search result onwards.
-    fn audited_until_agreed(&mut self, kept: &KeptPlants, watch: Watch<'_>) -> Result<AttemptEnding, Leave> {
+    fn audited_until_agreed(&mut self, cache: &PlantCache, watch: Watch<'_>) -> Result<AttemptEnding, Leave> {
         loop {
             self.draw_in(watch)?;
-            if !self.learns_between_samples(kept, watch)?
-                && let Some(ending) = self.audited(kept, watch)?
+            if !self.learns_between_samples(cache, watch)?
+                && let Some(ending) = self.audited(cache, watch)?
             {
                 return Ok(ending);
             }
@@ -300,7 +300,7 @@ impl Attempt {
             return Err(Leave::Ended(AttemptEnding::NotStabilised));
         }
         if self.options.objective == Objective::BestWorstMargin && !self.relaxes {
-            self.shaping.count_shares_of_room();
+            self.shaping.count_fractions_of_room();
         }
         let worst_margin_db = result.judgement.worst_margin_db;
         if worst_margin_db < self.options.feasible_db() && !self.relaxes {
@@ -387,7 +387,7 @@ impl Attempt {
 
     /// Examines the plants of the samples between their frequencies, and the corners of the box;
     /// the interior of the box is left to the audit. Returns true if counterexamples were added.
-    fn learns_between_samples(&mut self, kept: &KeptPlants, watch: Watch<'_>) -> Result<bool, Leave> {
+    fn learns_between_samples(&mut self, cache: &PlantCache, watch: Watch<'_>) -> Result<bool, Leave> {
         let samples = self.shaping.samples();
         let problem = AuditProblem {
             family: &samples.family(),
@@ -396,7 +396,7 @@ impl Attempt {
             tracking: self.shaping.tracking(),
             tolerance_db: self.options.tolerance_db,
         };
-        let known = (kept, AuditEffort::KnownPlants);
+        let known = (cache, AuditEffort::KnownPlants);
         let (findings, _) = audit_among(&problem, &[], known, &mut part(watch, CHECKING, WHOLE))?;
         let judgement = self.judgement();
         let new = self.new_margins(&judgement);
@@ -425,8 +425,8 @@ impl Attempt {
             };
             news |= self.shaping.add(&example.plants, at)?;
             // a peak moves with the next controller, so that its neighbourhood is also evaluated
-            for share in NEIGHBOURS.into_iter().filter(|_| example.frequency_rad_per_s.is_some()) {
-                self.shaping.add(&example.plants, (at * share).clamp(lowest, highest))?;
+            for fraction in NEIGHBOURS.into_iter().filter(|_| example.frequency_rad_per_s.is_some()) {
+                self.shaping.add(&example.plants, (at * fraction).clamp(lowest, highest))?;
             }
         }
         Ok(news && self.rounds.len() < ROUNDS_MAXIMUM)

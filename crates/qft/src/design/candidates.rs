@@ -56,7 +56,7 @@ const SAME: f64 = 1e-6;
 /// # })?;
 /// # let problem = DesignProblem {
 /// #     family: Family::Uncertain(UncertainFamily::new(plant, vec![], vec![], Extent::Box)?),
-/// #     beside: vec![],
+/// #     additional_plants: vec![],
 /// #     sensor: TransferFunction::gain_only(1.0),
 /// #     timing: Timing::default(),
 /// #     specifications: vec![Specification {
@@ -85,7 +85,7 @@ pub(super) struct Ground {
     corner: [f64; 2],
     gain: [f64; 2],
     /// Range of the gain of a controller without an integrator.
-    gain_alone: [f64; 2],
+    pure_gain: [f64; 2],
     poles: PoleRange,
 }
 
@@ -110,8 +110,8 @@ impl Ground {
             let [least, greatest] = along.iter().filter_map(crossover).reduce(joined).unwrap_or([1.0, 1.0]);
             [least / GAIN_ROOM, greatest * GAIN_ROOM]
         };
-        let [gain, gain_alone] = [integrators, 0].map(gains);
-        Ground { integrators, sign: low.sign, corner, gain, gain_alone, poles: PoleRange::default() }
+        let [gain, pure_gain] = [integrators, 0].map(gains);
+        Ground { integrators, sign: low.sign, corner, gain, pure_gain, poles: PoleRange::default() }
     }
 
     /// Copy of this data with poles in this range.
@@ -144,8 +144,8 @@ impl Ground {
     }
 
     /// The structure of a pure gain.
-    pub(super) fn gain_alone(&self) -> Structure {
-        Structure { sign: self.sign, gain: self.gain_alone, parts: vec![] }
+    pub(super) fn pure_gain(&self) -> Structure {
+        Structure { sign: self.sign, gain: self.pure_gain, parts: vec![] }
     }
 
     /// The structure of these parts.

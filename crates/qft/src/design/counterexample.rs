@@ -57,9 +57,9 @@ pub(super) fn counterexamples(
 }
 
 /// Counterexamples of the audit of an additional plant, by its index.
-pub(super) fn of_beside(index: usize, examples: Vec<Counterexample>) -> Vec<Counterexample> {
+pub(super) fn of_additional(index: usize, examples: Vec<Counterexample>) -> Vec<Counterexample> {
     let named =
-        |example: Counterexample| Counterexample { plants: vec![PlantPoint::Beside(index)], ..example };
+        |example: Counterexample| Counterexample { plants: vec![PlantPoint::Additional(index)], ..example };
     examples.into_iter().map(named).collect()
 }
 

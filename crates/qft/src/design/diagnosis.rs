@@ -61,7 +61,7 @@ use crate::specification::{Limit, Specification};
 /// # let family = Family::Uncertain(UncertainFamily::new(plant, vec![], members, Extent::Members)?);
 /// let problem = DesignProblem {
 ///     family, // 1/(s - 4)
-///     beside: vec![],
+///     additional_plants: vec![],
 ///     sensor: TransferFunction::gain_only(1.0),
 ///     timing: Timing::default(),
 ///     specifications: vec![Specification {

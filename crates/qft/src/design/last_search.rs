@@ -22,7 +22,7 @@ pub fn last_search(
 ) -> Result<(Shaping, Aim), LinearError> {
     let relaxes = matches!(design.status, DesignStatus::Infeasible(_));
     samples.keep_in_reserve(options.search_reserve_db(relaxes));
-    samples.count_shares_of_room(options.objective == Objective::BestWorstMargin && !relaxes);
+    samples.count_fractions_of_room(options.objective == Objective::BestWorstMargin && !relaxes);
     let (structure, prefilter) = (design.structure.clone(), design.prefilter.clone());
     let shaping = Shaping::new(structure, prefilter, options.objective, samples)?;
     Ok((shaping, options.aim(relaxes)))
@@ -33,7 +33,7 @@ pub fn last_search(
 ///
 /// # Errors
 /// [`LoopDesignError`] for a structure that cannot be sampled.
-pub fn sample_beside_worst(shaping: &mut Shaping, x: &[f64]) -> Result<(), LoopDesignError> {
+pub fn sample_near_worst(shaping: &mut Shaping, x: &[f64]) -> Result<(), LoopDesignError> {
     let frequencies = shaping.samples().frequencies_rad_per_s();
     let (Some(&lowest), Some(&highest)) = (frequencies.first(), frequencies.last()) else { return Ok(()) };
     let mut margins = shaping.margins(x);

@@ -82,7 +82,7 @@ pub(super) fn named_structure(name: NamedStructure, ground: &Ground) -> Structur
     let zero_pair =
         StructureFactor::ZeroPair { natural_frequency: of_zeros, damping_ratio: PID_DAMPING_RATIOS };
     let behind = match name {
-        NamedStructure::Proportional => return ground.gain_alone(),
+        NamedStructure::Proportional => return ground.pure_gain(),
         NamedStructure::Integral => vec![],
         NamedStructure::ProportionalIntegral => vec![zero],
         NamedStructure::PiLowPass => vec![zero, pole],

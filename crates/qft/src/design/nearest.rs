@@ -1,7 +1,7 @@
 //! The attempts that came nearest to the requirements, for a relaxation of the limits.
 
 use super::attempt::Attempt;
-use super::queue::WaitingStructure;
+use super::queue::QueuedStructure;
 
 /// Largest number of attempts that are relaxed: a search estimates the deficit of a structure, and
 /// counterexamples correct the estimate.
@@ -12,7 +12,7 @@ const RELAXED_MAXIMUM: usize = 2;
 pub(super) struct NearAttempt {
     /// Worst margin over rate, dB.
     worst_margin_db: f64,
-    pub(super) structure: WaitingStructure,
+    pub(super) structure: QueuedStructure,
     pub(super) attempt: Box<Attempt>,
 }
 
@@ -24,7 +24,7 @@ pub(super) struct NearestAttempts {
 
 impl NearestAttempts {
     /// Adds an attempt that missed with this worst margin.
-    pub(super) fn push(&mut self, worst_margin_db: f64, structure: WaitingStructure, attempt: Attempt) {
+    pub(super) fn push(&mut self, worst_margin_db: f64, structure: QueuedStructure, attempt: Attempt) {
         let place = self.each.iter().take_while(|one| one.worst_margin_db >= worst_margin_db).count();
         self.each.insert(place, NearAttempt { worst_margin_db, structure, attempt: Box::new(attempt) });
         self.each.truncate(RELAXED_MAXIMUM);

@@ -8,8 +8,8 @@ use super::diagnosis::Finding;
 use super::problem::DesignOptions;
 use super::result::{Design, DesignRound, DesignStatus};
 use super::run::{design_knowing, design_of};
-use super::tried::TriedStructure;
-use crate::kept_plants::KeptPlants;
+use super::searched::SearchedStructure;
+use crate::plant_cache::PlantCache;
 use crate::loop_shaping::{DesignProblem, Samples};
 
 /// Outcome of a design.
@@ -22,14 +22,14 @@ pub struct DesignOutcome {
     /// True if the watch stopped the design, which is then the best so far.
     pub stopped: bool,
     /// The attempt in progress when the design was stopped.
-    pub(super) at_hand: Option<Box<Attempt>>,
+    pub(super) current: Option<Box<Attempt>>,
     pub(super) known: LearntPlants,
 }
 
 impl DesignOutcome {
     /// Every structure that was searched, in order, with its result.
-    pub fn tried(&self) -> &[TriedStructure] {
-        &self.known.tried
+    pub fn searched(&self) -> &[SearchedStructure] {
+        &self.known.searched
     }
 
     /// Samples that the searches evaluated; `None` before the first search.
@@ -43,8 +43,8 @@ impl DesignOutcome {
     /// # Errors
     /// Errors of [`design`](super::design).
     pub fn conclude(&mut self) -> Result<(), LoopDesignError> {
-        let at_hand = self.at_hand.take().filter(|attempt| !attempt.x().is_empty());
-        if let (None, Some(mut attempt)) = (&self.design, at_hand) {
+        let current = self.current.take().filter(|attempt| !attempt.x().is_empty());
+        if let (None, Some(mut attempt)) = (&self.design, current) {
             let audit = attempt.audited_as_it_is(&self.known.plants, &mut unwatched)?;
             let status = DesignStatus::NotConverged { rounds: attempt.rounds().len() };
             self.known.rounds.extend_from_slice(attempt.rounds());
@@ -85,16 +85,16 @@ impl DesignOutcome {
 /// # let requirement = Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(0.5));
 /// # let problem = DesignProblem {
 /// #     family, // 1/s, 4/s
-/// #     beside: vec![],
+/// #     additional_plants: vec![],
 /// #     sensor: TransferFunction::gain_only(1.0),
 /// #     timing: Timing::default(),
 /// #     specifications: vec![Specification { requirement, frequencies_rad_per_s: vec![1.0], band_rad_per_s: [0.0, 1.0] }],
 /// #     minimum_delay_margin_s: 0.0,
 /// # };
-/// # let gain_alone = Structure { sign: 1.0, gain: [0.01, 100.0], parts: vec![] };
+/// # let pure_gain = Structure { sign: 1.0, gain: [0.01, 100.0], parts: vec![] };
 /// # let options = DesignOptions {
 /// #     objective: Objective::LeastHighFrequencyGain,
-/// #     controller: ControllerChoice::Given(gain_alone),
+/// #     controller: ControllerChoice::Given(pure_gain),
 /// #     prefilter: PrefilterChoice::None,
 /// #     seed: 1, tolerance_db: TOLERANCE_DB, reserve_db: 0.0, poles: PoleRange::default(), coefficients: CoefficientFormat::Double,
 /// #     workers: Workers::CALLER,
@@ -138,15 +138,15 @@ pub(super) struct LearntPlants {
     /// The samples that searches evaluate; `None` before the first search.
     pub(super) samples: Option<Samples>,
     /// The plants that audits sampled.
-    pub(super) plants: KeptPlants,
+    pub(super) plants: PlantCache,
     pub(super) rounds: Vec<DesignRound>,
-    pub(super) tried: Vec<TriedStructure>,
+    pub(super) searched: Vec<SearchedStructure>,
 }
 
 impl LearntPlants {
     /// Empty data, with the workers that search for plants.
     pub(super) fn of(workers: Workers) -> LearntPlants {
-        LearntPlants { plants: KeptPlants::of(workers), ..LearntPlants::default() }
+        LearntPlants { plants: PlantCache::of(workers), ..LearntPlants::default() }
     }
 
     /// The plants only, for a design with other specifications.

@@ -29,7 +29,7 @@ pub enum ControllerChoice {
         from: Option<NamedStructure>,
         /// True if a pure gain is searched although the specifications require an integrator: they
         /// lead to a step within a band, which a pure gain may reach.
-        with_gain_alone: bool,
+        with_pure_gain: bool,
         /// Gain that each further pole of a longer structure must bring to replace a shorter one
         /// that meets the limits, dB, likewise for prefilters with more than one pole; infinite:
         /// the shortest is taken.

@@ -16,7 +16,7 @@ const FURTHER_POLES: usize = 2;
 
 /// A structure in the queue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum WaitingStructure {
+pub(super) enum QueuedStructure {
     /// The given structure.
     Given,
     /// A named structure.
@@ -25,21 +25,21 @@ pub(super) enum WaitingStructure {
     Free { order: usize, zeros: usize },
 }
 
-impl WaitingStructure {
+impl QueuedStructure {
     /// The structure itself.
     pub(super) fn structure(self, choice: &ControllerChoice, ground: &Ground) -> Structure {
         match (self, choice) {
-            (WaitingStructure::Given, ControllerChoice::Given(structure)) => structure.clone(),
-            (WaitingStructure::Given, _) => ground.structure(0, 0),
-            (WaitingStructure::Named(name), _) => named_structure(name, ground),
-            (WaitingStructure::Free { order, zeros }, _) => ground.structure(order, zeros),
+            (QueuedStructure::Given, ControllerChoice::Given(structure)) => structure.clone(),
+            (QueuedStructure::Given, _) => ground.structure(0, 0),
+            (QueuedStructure::Named(name), _) => named_structure(name, ground),
+            (QueuedStructure::Free { order, zeros }, _) => ground.structure(order, zeros),
         }
     }
 
     pub(super) fn name(self) -> Option<NamedStructure> {
         match self {
-            WaitingStructure::Named(name) => Some(name),
-            WaitingStructure::Given | WaitingStructure::Free { .. } => None,
+            QueuedStructure::Named(name) => Some(name),
+            QueuedStructure::Given | QueuedStructure::Free { .. } => None,
         }
     }
 
@@ -53,32 +53,32 @@ impl WaitingStructure {
         match self {
             _ if is_hard => SearchEffort::Great,
             _ if to_be_reached_db.is_some() => SearchEffort::Least,
-            WaitingStructure::Named(_) if structure.dimension() <= FEW_NUMBERS => SearchEffort::Small,
+            QueuedStructure::Named(_) if structure.dimension() <= FEW_NUMBERS => SearchEffort::Small,
             _ => SearchEffort::Usual,
         }
     }
 }
 
 /// The structures in the order in which they are searched.
-pub(super) fn structures_to_try(
+pub(super) fn structures_to_search(
     problem: &DesignProblem,
     options: &DesignOptions,
     ground: &Ground,
     is_hard: bool,
-) -> VecDeque<WaitingStructure> {
+) -> VecDeque<QueuedStructure> {
     let sampled = problem.timing.sample_time_s.is_some();
     let times = if is_hard { 2 } else { 1 };
-    let each: Vec<WaitingStructure> = match options.controller {
-        ControllerChoice::Given(_) => vec![WaitingStructure::Given],
-        ControllerChoice::Named { name, .. } => vec![WaitingStructure::Named(name)],
+    let each: Vec<QueuedStructure> = match options.controller {
+        ControllerChoice::Given(_) => vec![QueuedStructure::Given],
+        ControllerChoice::Named { name, .. } => vec![QueuedStructure::Named(name)],
         ControllerChoice::Grow { maximum_order } => growing(maximum_order, ground, sampled).collect(),
-        ControllerChoice::Any { maximum_order, from, with_gain_alone, .. } => {
+        ControllerChoice::Any { maximum_order, from, with_pure_gain, .. } => {
             let is_shorter = |name: &NamedStructure| from.is_some_and(|from| *name != from);
-            let named = named(maximum_order, ground, with_gain_alone);
-            let named = named.skip_while(is_shorter).map(WaitingStructure::Named);
-            let is_new = |one: &WaitingStructure| match *one {
-                WaitingStructure::Free { order, zeros } => !is_named(order, zeros, ground.integrators),
-                WaitingStructure::Given | WaitingStructure::Named(_) => true,
+            let named = named(maximum_order, ground, with_pure_gain);
+            let named = named.skip_while(is_shorter).map(QueuedStructure::Named);
+            let is_new = |one: &QueuedStructure| match *one {
+                QueuedStructure::Free { order, zeros } => !is_named(order, zeros, ground.integrators),
+                QueuedStructure::Given | QueuedStructure::Named(_) => true,
             };
             named.chain(growing(maximum_order, ground, sampled).filter(is_new)).collect()
         }
@@ -94,12 +94,12 @@ pub(super) fn structures_to_try(
 fn named(
     maximum_order: usize,
     ground: &Ground,
-    with_gain_alone: bool,
+    with_pure_gain: bool,
 ) -> impl Iterator<Item = NamedStructure> + use<> {
     let integrators = ground.integrators;
     NamedStructure::ALL.into_iter().filter(move |name| {
         let is_gain = *name == NamedStructure::Proportional;
-        let suits = usize::from(!is_gain) == integrators || is_gain && with_gain_alone;
+        let suits = usize::from(!is_gain) == integrators || is_gain && with_pure_gain;
         suits && name.order() <= maximum_order
     })
 }
@@ -110,27 +110,27 @@ pub(super) fn longer(
     name: NamedStructure,
     choice: &ControllerChoice,
     ground: &Ground,
-) -> VecDeque<WaitingStructure> {
-    let ControllerChoice::Any { maximum_order, earned_per_pole_db, with_gain_alone, .. } = *choice else {
+) -> VecDeque<QueuedStructure> {
+    let ControllerChoice::Any { maximum_order, earned_per_pole_db, with_pure_gain, .. } = *choice else {
         return VecDeque::new();
     };
     if !earned_per_pole_db.is_finite() {
         return VecDeque::new();
     }
     let most = (name.order().max(ground.integrators) + FURTHER_POLES).min(maximum_order);
-    let behind = named(most, ground, with_gain_alone).skip_while(|one| *one != name).skip(1);
-    behind.filter(|one| one.order() >= name.order()).map(WaitingStructure::Named).collect()
+    let behind = named(most, ground, with_pure_gain).skip_while(|one| *one != name).skip(1);
+    behind.filter(|one| one.order() >= name.order()).map(QueuedStructure::Named).collect()
 }
 
 /// Structures of growing order.
-fn growing(maximum_order: usize, ground: &Ground, sampled: bool) -> impl Iterator<Item = WaitingStructure> {
+fn growing(maximum_order: usize, ground: &Ground, sampled: bool) -> impl Iterator<Item = QueuedStructure> {
     let integrators = ground.integrators;
     let orders = integrators..=maximum_order;
     let usual = orders.clone().flat_map(move |order| degrees(order, integrators, sampled));
     let biproper = orders.filter(move |order| !sampled && is_worth_as_many_zeros(*order, integrators));
     usual
         .chain(biproper.map(|order| (order, order)))
-        .map(|(order, zeros)| WaitingStructure::Free { order, zeros })
+        .map(|(order, zeros)| QueuedStructure::Free { order, zeros })
 }
 
 /// Pairs (order, zeros) of an order: one pole more than zeros; equally many for a pure gain, for
@@ -152,9 +152,9 @@ fn is_worth_as_many_zeros(order: usize, integrators: usize) -> bool {
 
 /// The structure of this order with one zero fewer, for growing structures: a larger relative
 /// degree has less gain at high frequency than any smaller one.
-pub(super) fn fewer_zeros(candidate: WaitingStructure, structure: &Structure) -> VecDeque<WaitingStructure> {
+pub(super) fn fewer_zeros(candidate: QueuedStructure, structure: &Structure) -> VecDeque<QueuedStructure> {
     let order = structure.roots(-1.0);
     let fewer = structure.roots(1.0).checked_sub(1);
-    let fewer = fewer.filter(|_| matches!(candidate, WaitingStructure::Free { .. }));
-    fewer.map(|zeros| WaitingStructure::Free { order, zeros }).into_iter().collect()
+    let fewer = fewer.filter(|_| matches!(candidate, QueuedStructure::Free { .. }));
+    fewer.map(|zeros| QueuedStructure::Free { order, zeros }).into_iter().collect()
 }

@@ -7,7 +7,7 @@ use super::attempt::LoopDesignError;
 use super::problem::{ControllerChoice, DesignOptions};
 use super::result::{Design, DesignStatus};
 use super::run::DesignProgress;
-use crate::kept_plants::KeptPlants;
+use crate::plant_cache::PlantCache;
 use crate::loop_shaping::DesignProblem;
 
 /// Reshapes the structure of a design for another problem, by a descent from its controller: for
@@ -42,16 +42,16 @@ use crate::loop_shaping::DesignProblem;
 /// # let requirement = Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(0.5));
 /// # let problem = DesignProblem {
 /// #     family, // 1/s, 4/s
-/// #     beside: vec![],
+/// #     additional_plants: vec![],
 /// #     sensor: TransferFunction::gain_only(1.0),
 /// #     timing: Timing::default(),
 /// #     specifications: vec![Specification { requirement, frequencies_rad_per_s: vec![1.0], band_rad_per_s: [0.0, 1.0] }],
 /// #     minimum_delay_margin_s: 0.0,
 /// # };
-/// # let gain_alone = Structure { sign: 1.0, gain: [0.01, 100.0], parts: vec![] };
+/// # let pure_gain = Structure { sign: 1.0, gain: [0.01, 100.0], parts: vec![] };
 /// # let options = DesignOptions {
 /// #     objective: Objective::LeastHighFrequencyGain,
-/// #     controller: ControllerChoice::Given(gain_alone),
+/// #     controller: ControllerChoice::Given(pure_gain),
 /// #     prefilter: PrefilterChoice::None,
 /// #     seed: 1, tolerance_db: TOLERANCE_DB, reserve_db: 0.0, poles: PoleRange::default(), coefficients: CoefficientFormat::Double,
 /// #     workers: Workers::CALLER,
@@ -70,13 +70,13 @@ pub fn reshaped(
     design: &Design,
     watch: Watch<'_>,
 ) -> Result<Option<Controller>, LoopDesignError> {
-    let kept = KeptPlants::of(options.workers);
+    let cache = PlantCache::of(options.workers);
     let controller = ControllerChoice::Given(design.structure.clone());
     let options = DesignOptions { controller, ..options.clone() };
-    let mut progress = DesignProgress::new(problem, &options, &kept);
+    let mut progress = DesignProgress::new(problem, &options, &cache);
     progress.relaxing = matches!(design.status, DesignStatus::Infeasible(_));
     let feedback = design.law.feedback.transfer_function()?;
     let mut attempt = progress.attempt(design.structure.clone(), Some(feedback))?;
-    let is_found = attempt.reshape(&kept, watch)?;
+    let is_found = attempt.reshape(&cache, watch)?;
     Ok(is_found.then(|| attempt.shaping().controller(attempt.x())))
 }

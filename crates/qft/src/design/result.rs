@@ -55,11 +55,11 @@ pub struct DesignRound {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Starts {
     /// Points that the search evaluated before its descents.
-    pub tried: usize,
+    pub evaluated: usize,
     /// Number of these points that stabilise every evaluated plant.
     pub stabilised: usize,
     /// Number of completed descents.
-    pub ended: usize,
+    pub completed: usize,
     /// Worst margin over its rate at the ends of these descents, dB: best, median and worst; `None`
     /// if no descent was completed.
     pub margins_db: Option<[f64; 3]>,
@@ -74,13 +74,13 @@ const KEPT_DB: f64 = 0.01;
 impl Starts {
     pub(super) fn of(result: &SearchResult) -> Starts {
         let margins = result.ends.iter().map(|end| -end.judgement.worst_margin_db);
-        let kept = result.ends.iter().filter(|end| end.judgement.worst_margin_db >= -KEPT_DB);
+        let cache = result.ends.iter().filter(|end| end.judgement.worst_margin_db >= -KEPT_DB);
         Starts {
-            tried: result.points,
+            evaluated: result.points,
             stabilised: result.stable_points,
-            ended: result.ends.len(),
+            completed: result.ends.len(),
             margins_db: least_median_greatest(margins.collect()).map(|three| three.map(|one| -one)),
-            objectives_db: least_median_greatest(kept.map(|end| end.judgement.objective_db).collect()),
+            objectives_db: least_median_greatest(cache.map(|end| end.judgement.objective_db).collect()),
         }
     }
 }
@@ -117,7 +117,7 @@ pub struct Design {
     /// Audit against the original specifications.
     pub audit: Audit,
     /// Audit of each additional plant.
-    pub beside: Vec<Audit>,
+    pub additional_audits: Vec<Audit>,
     /// The active limits, which determine the cost of the specifications, by frequency.
     pub binding: Vec<SpecificationMargin>,
     /// Rounds of search and audit.

@@ -15,12 +15,12 @@ use super::named::stage as named_stage;
 use super::nearest::{NearAttempt, NearestAttempts};
 use super::outcome::{DesignOutcome, LearntPlants};
 use super::problem::{ControllerChoice, DesignOptions};
-use super::queue::{WaitingStructure, fewer_zeros, longer, structures_to_try};
+use super::queue::{QueuedStructure, fewer_zeros, longer, structures_to_search};
 use super::result::{Design, DesignRound, DesignStatus, Relaxation};
 use super::stabilising::has_poles_to_move;
-use super::tried::{StructureEnding, TriedStructure};
+use super::searched::{StructureEnding, SearchedStructure};
 use crate::family::{Extent, Family, corners, random};
-use crate::kept_plants::KeptPlants;
+use crate::plant_cache::PlantCache;
 use crate::loop_shaping::{DesignProblem, Samples, Structure, search_frequencies};
 use crate::verification::{Audit, PlantPoint};
 
@@ -69,16 +69,16 @@ const RELAXATION_GAINED_DB: f64 = 0.01;
 /// let requirement = Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(0.5));
 /// let problem = DesignProblem {
 ///     family, // 1/s, 4/s
-///     beside: vec![],
+///     additional_plants: vec![],
 ///     sensor: TransferFunction::gain_only(1.0),
 ///     timing: Timing::default(),
 ///     specifications: vec![Specification { requirement, frequencies_rad_per_s: vec![1.0], band_rad_per_s: [0.0, 1.0] }],
 ///     minimum_delay_margin_s: 0.0,
 /// };
-/// let gain_alone = Structure { sign: 1.0, gain: [0.01, 100.0], parts: vec![] };
+/// let pure_gain = Structure { sign: 1.0, gain: [0.01, 100.0], parts: vec![] };
 /// let options = DesignOptions {
 ///     objective: Objective::LeastHighFrequencyGain,
-///     controller: ControllerChoice::Given(gain_alone),
+///     controller: ControllerChoice::Given(pure_gain),
 ///     prefilter: PrefilterChoice::None,
 ///     seed: 1, tolerance_db: TOLERANCE_DB, reserve_db: 0.0, poles: PoleRange::default(), coefficients: CoefficientFormat::Double, workers: phea_dynamics::pieces::Workers::CALLER,
 /// };
@@ -110,7 +110,7 @@ pub fn design_again(
 ) -> Result<DesignOutcome, LoopDesignError> {
     let DesignOutcome { design, mut known, .. } = before;
     if let Some(samples) = &mut known.samples {
-        for plant in problem.beside.iter().skip(samples.problem().beside.len()) {
+        for plant in problem.additional_plants.iter().skip(samples.problem().additional_plants.len()) {
             samples.take_in(plant.clone())?;
         }
     }
@@ -125,18 +125,18 @@ pub(super) fn design_knowing(
     watch: Watch<'_>,
 ) -> Result<DesignOutcome, LoopDesignError> {
     let findings = diagnose(problem);
-    let LearntPlants { samples, plants, rounds, tried } = known;
+    let LearntPlants { samples, plants, rounds, searched } = known;
     let mut run = DesignProgress::new(problem, options, &plants);
     // if no controller of any order suffices, the search determines the deficit
     run.relaxing = findings.iter().any(|finding| finding.severity() == FindingSeverity::Impossible);
-    (run.samples, run.rounds, run.tried) = (samples, rounds, tried);
+    (run.samples, run.rounds, run.searched) = (samples, rounds, searched);
     if let Some(found) = found {
         run.begin_at(&found);
     }
-    let at_hand = run.try_structures(watch)?.map(Box::new);
-    let DesignProgress { design, samples, rounds, tried, .. } = run;
-    let known = LearntPlants { samples, plants, rounds, tried };
-    Ok(DesignOutcome { design, findings, stopped: at_hand.is_some(), at_hand, known })
+    let current = run.search_structures(watch)?.map(Box::new);
+    let DesignProgress { design, samples, rounds, searched, .. } = run;
+    let known = LearntPlants { samples, plants, rounds, searched };
+    Ok(DesignOutcome { design, findings, stopped: current.is_some(), current, known })
 }
 
 /// A design in progress.
@@ -145,9 +145,9 @@ pub(super) struct DesignProgress<'a> {
     options: &'a DesignOptions,
     ground: Ground,
     /// Structures still to be searched.
-    waiting: VecDeque<WaitingStructure>,
+    waiting: VecDeque<QueuedStructure>,
     /// Structure being searched.
-    now: WaitingStructure,
+    now: QueuedStructure,
     all: usize,
     /// True if plants have poles that the loop has to move: every structure is searched twice,
     /// because one search may miss a solution.
@@ -168,10 +168,10 @@ pub(super) struct DesignProgress<'a> {
     unstable: Option<Attempt>,
     samples: Option<Samples>,
     rounds: Vec<DesignRound>,
-    tried: Vec<TriedStructure>,
+    searched: Vec<SearchedStructure>,
     /// The name of the design, if any, and its figure of merit.
     met: Option<(NamedStructure, Option<f64>)>,
-    kept: &'a KeptPlants,
+    cache: &'a PlantCache,
     design: Option<Design>,
 }
 
@@ -179,18 +179,18 @@ impl<'a> DesignProgress<'a> {
     pub(super) fn new(
         problem: &'a DesignProblem,
         options: &'a DesignOptions,
-        kept: &'a KeptPlants,
+        cache: &'a PlantCache,
     ) -> DesignProgress<'a> {
         let ground = Ground::new(problem).with_poles(options.poles);
         let is_hard = has_poles_to_move(problem);
-        let waiting = structures_to_try(problem, options, &ground, is_hard);
+        let waiting = structures_to_search(problem, options, &ground, is_hard);
         DesignProgress {
             problem,
             options,
             ground,
             all: waiting.len(),
             waiting,
-            now: WaitingStructure::Given,
+            now: QueuedStructure::Given,
             is_hard,
             last: None,
             found: false,
@@ -202,9 +202,9 @@ impl<'a> DesignProgress<'a> {
             unstable: None,
             samples: None,
             rounds: vec![],
-            tried: vec![],
+            searched: vec![],
             met: None,
-            kept,
+            cache,
             design: None,
         }
     }
@@ -212,14 +212,14 @@ impl<'a> DesignProgress<'a> {
     /// Skips structures that failed in the design for fewer plants, and begins with its controller.
     fn begin_at(&mut self, found: &Design) {
         let order = found.structure.roots(-1.0);
-        let own = |one: &WaitingStructure| one.name().is_some() && one.name() == found.name;
+        let own = |one: &QueuedStructure| one.name().is_some() && one.name() == found.name;
         match (&self.options.controller, self.waiting.iter().position(own)) {
             (ControllerChoice::Given(_) | ControllerChoice::Named { .. }, _) => {}
             (ControllerChoice::Any { .. } | ControllerChoice::Grow { .. }, Some(place)) => {
                 self.waiting.drain(..place);
             }
             (ControllerChoice::Any { .. } | ControllerChoice::Grow { .. }, None) => {
-                let is_left = |one: &WaitingStructure| matches!(one, WaitingStructure::Free { order: own, .. } if *own >= order);
+                let is_left = |one: &QueuedStructure| matches!(one, QueuedStructure::Free { order: own, .. } if *own >= order);
                 self.waiting.retain(is_left);
             }
         }
@@ -228,15 +228,15 @@ impl<'a> DesignProgress<'a> {
     }
 
     /// Searches one structure after the other; returns the attempt at which the watch stopped it.
-    fn try_structures(&mut self, watch: Watch<'_>) -> Result<Option<Attempt>, LoopDesignError> {
+    fn search_structures(&mut self, watch: Watch<'_>) -> Result<Option<Attempt>, LoopDesignError> {
         while let Some((structure, feedback)) = self.next() {
             let mut attempt = self.attempt(structure, feedback)?;
-            let ending = attempt.run(self.kept, &mut self.part(&mut *watch));
+            let ending = attempt.run(self.cache, &mut self.part(&mut *watch));
             match ending {
                 Err(LoopDesignError::Stopped(_)) => return Ok(Some(self.nearest.nearer_than(attempt))),
                 ending => {
                     let (attempt, ending) =
-                        attempt.with_shorter_prefilter(ending?, self.kept, &mut self.part(&mut *watch))?;
+                        attempt.with_shorter_prefilter(ending?, self.cache, &mut self.part(&mut *watch))?;
                     self.note(&attempt, &ending);
                     if self.is_done_with(attempt, ending)? {
                         return Ok(None);
@@ -247,7 +247,7 @@ impl<'a> DesignProgress<'a> {
         let Some(mut attempt) = self.unstable.take().filter(|_| self.design.is_none()) else {
             return Ok(None);
         };
-        match attempt.audited_as_it_is(self.kept, &mut self.part(watch)) {
+        match attempt.audited_as_it_is(self.cache, &mut self.part(watch)) {
             Err(LoopDesignError::Stopped(_)) => Ok(Some(attempt)),
             audit => {
                 self.take(&attempt, DesignStatus::NotStabilised, audit?)?;
@@ -279,7 +279,7 @@ impl<'a> DesignProgress<'a> {
     /// not known in advance.
     fn part<'w>(&self, watch: Watch<'w>) -> impl FnMut(Progress) -> bool + use<'w> {
         let left = self.waiting.len() as f64 + 1.0;
-        let share = (1.0 - left / (self.all as f64 + 1.0)).max(0.0);
+        let fraction = (1.0 - left / (self.all as f64 + 1.0)).max(0.0);
         let relaxing = self.relaxing;
         let named = self.now.name().map(named_stage);
         move |Progress { stage, .. }| {
@@ -288,7 +288,7 @@ impl<'a> DesignProgress<'a> {
                 Some(named) if stage == SHAPING => named,
                 _ => stage,
             };
-            watch(Progress { stage, share })
+            watch(Progress { stage, fraction })
         }
     }
 
@@ -321,12 +321,12 @@ impl<'a> DesignProgress<'a> {
     /// Records the result of an attempt for the comparison of structures; a repeated search
     /// replaces its earlier result.
     fn note(&mut self, attempt: &Attempt, ending: &AttemptEnding) {
-        let own = TriedStructure::new(self.now.name(), attempt, ending);
-        match self.tried.iter_mut().find(|known| known.structure == own.structure) {
+        let own = SearchedStructure::new(self.now.name(), attempt, ending);
+        match self.searched.iter_mut().find(|known| known.structure == own.structure) {
             // a relaxation does not replace the record that the limits were missed
             Some(known) if known.ending == StructureEnding::Met && own.ending != StructureEnding::Met => {}
             Some(known) => *known = own,
-            None => self.tried.push(own),
+            None => self.searched.push(own),
         }
     }
 
@@ -344,8 +344,8 @@ impl<'a> DesignProgress<'a> {
         let plants = first_plants(self.problem, self.options.seed);
         let frequencies = search_frequencies(self.problem, &plants, POINTS_PER_DECADE)?;
         let mut samples = Samples::new(self.problem, &plants, &frequencies)?;
-        for beside in (0..self.problem.beside.len()).map(PlantPoint::Beside) {
-            samples.look_closely_at(&beside)?;
+        for plant in (0..self.problem.additional_plants.len()).map(PlantPoint::Additional) {
+            samples.sample_densely(&plant)?;
         }
         Ok(samples)
     }
@@ -434,7 +434,7 @@ impl<'a> DesignProgress<'a> {
         {
             return Ok(());
         }
-        let conflicts = all_conflicts(&audit, attempt.beside(), 0.8 * relaxation_db);
+        let conflicts = all_conflicts(&audit, attempt.additional_audits(), 0.8 * relaxation_db);
         self.take(attempt, DesignStatus::Infeasible(Relaxation { relaxation_db, conflicts }), audit)
     }
 
@@ -463,7 +463,7 @@ pub(super) fn design_of(
         objective_db: rounds.last().map_or(f64::NAN, |round| round.objective_db),
         binding: binding_limits(&audit, attempt.options()),
         audit,
-        beside: attempt.beside().to_vec(),
+        additional_audits: attempt.additional_audits().to_vec(),
         rounds: rounds.to_vec(),
     })
 }
@@ -471,7 +471,7 @@ pub(super) fn design_of(
 /// The initial plants of a search, the nominal one first.
 fn first_plants(problem: &DesignProblem, seed: u64) -> Vec<PlantPoint> {
     let mut plants = first_members(&problem.family, seed);
-    plants.extend((0..problem.beside.len()).map(PlantPoint::Beside));
+    plants.extend((0..problem.additional_plants.len()).map(PlantPoint::Additional));
     plants
 }
 

@@ -76,8 +76,8 @@ pub(super) fn stabilising(
         }
         // for a plant of n poles G has n - 1 + q poles in addition to its q integrators
         let kept_most = (order + 1).saturating_sub(2 * integrators).min(roots.poles.len());
-        for kept in kept_least..=kept_most {
-            let simple = roots.simplified(kept);
+        for cache in kept_least..=kept_most {
+            let simple = roots.simplified(cache);
             for (speed, observer) in
                 SPEEDS.iter().flat_map(|speed| OBSERVER.map(|observer| (*speed, observer)))
             {
@@ -130,10 +130,10 @@ impl PlantRoots {
 
     /// The plant reduced to this number of its poles, or one more if a pair would be split: the
     /// poles that have to move and the slowest. The static gain is preserved.
-    fn simplified(&self, kept: usize) -> PlantRoots {
+    fn simplified(&self, cache: usize) -> PlantRoots {
         let parts = |at: usize| self.poles.get(at).is_some_and(|pole| pole.im < 0.0);
-        let kept = if parts(kept) { kept + 1 } else { kept };
-        let (poles, dropped) = self.poles.split_at(kept.min(self.poles.len()));
+        let cache = if parts(cache) { cache + 1 } else { cache };
+        let (poles, dropped) = self.poles.split_at(cache.min(self.poles.len()));
         let fastest = dropped.iter().map(Complex64::norm_sqr).fold(f64::INFINITY, f64::min);
         let mut most = self.zeros.partition_point(|zero| zero.norm_sqr() < fastest);
         most = most.min(poles.len().saturating_sub(1));

@@ -21,12 +21,12 @@ pub struct Coordinate {
 
 impl Coordinate {
     /// The fraction at which the first parameter that moves has its value.
-    pub(super) fn share(&self, plant: &UncertainPlant, values: &[f64]) -> f64 {
+    pub(super) fn fraction(&self, plant: &UncertainPlant, values: &[f64]) -> f64 {
         let found = self.parameters.iter().zip(&self.spacing).find_map(|(&index, &spacing)| {
             let parameter = plant.parameters().get(index)?;
             let value = *values.get(index)?;
-            let share = share_of(parameter, spacing, value)?;
-            Some(if self.opposed.contains(&index) { 1.0 - share } else { share })
+            let fraction = fraction_of(parameter, spacing, value)?;
+            Some(if self.opposed.contains(&index) { 1.0 - fraction } else { fraction })
         });
         found.unwrap_or(0.0)
     }
@@ -50,15 +50,15 @@ pub(super) fn check(plant: &UncertainPlant, coordinates: &[Coordinate]) -> Resul
     Ok(())
 }
 
-pub(super) fn values(plant: &UncertainPlant, coordinates: &[Coordinate], shares: &[f64]) -> Vec<f64> {
+pub(super) fn values(plant: &UncertainPlant, coordinates: &[Coordinate], fractions: &[f64]) -> Vec<f64> {
     let mut values = plant.nominal();
     for (number, coordinate) in coordinates.iter().enumerate() {
-        let share = shares.get(number).copied().unwrap_or(0.0).clamp(0.0, 1.0);
+        let fraction = fractions.get(number).copied().unwrap_or(0.0).clamp(0.0, 1.0);
         for (position, &index) in coordinate.parameters.iter().enumerate() {
-            let share = if coordinate.opposed.contains(&index) { 1.0 - share } else { share };
+            let fraction = if coordinate.opposed.contains(&index) { 1.0 - fraction } else { fraction };
             let spacing = coordinate.spacing.get(position).copied().unwrap_or_default();
             if let (Some(slot), Some(parameter)) = (values.get_mut(index), plant.parameters().get(index)) {
-                *slot = value_at(parameter, spacing, share);
+                *slot = value_at(parameter, spacing, fraction);
             }
         }
     }
@@ -66,26 +66,26 @@ pub(super) fn values(plant: &UncertainPlant, coordinates: &[Coordinate], shares:
 }
 
 /// Value of a parameter at a fraction of its range; exact to the bit at both ends.
-fn value_at(parameter: &UncertainParameter, spacing: Spacing, share: f64) -> f64 {
+fn value_at(parameter: &UncertainParameter, spacing: Spacing, fraction: f64) -> f64 {
     let UncertainParameter { minimum, maximum, .. } = *parameter;
-    match (share, spacing) {
+    match (fraction, spacing) {
         (0.0, _) => minimum,
         (1.0, _) => maximum,
-        (_, Spacing::Linear) => minimum + share * (maximum - minimum),
+        (_, Spacing::Linear) => minimum + fraction * (maximum - minimum),
         (_, Spacing::Logarithmic) => {
-            (minimum * portable::exp(share * portable::ln(maximum / minimum))).clamp(minimum, maximum)
+            (minimum * portable::exp(fraction * portable::ln(maximum / minimum))).clamp(minimum, maximum)
         }
     }
 }
 
-fn share_of(parameter: &UncertainParameter, spacing: Spacing, value: f64) -> Option<f64> {
+fn fraction_of(parameter: &UncertainParameter, spacing: Spacing, value: f64) -> Option<f64> {
     let UncertainParameter { minimum, maximum, .. } = *parameter;
     if maximum <= minimum {
         return None;
     }
-    let share = match spacing {
+    let fraction = match spacing {
         Spacing::Linear => (value - minimum) / (maximum - minimum),
         Spacing::Logarithmic => portable::ln(value / minimum) / portable::ln(maximum / minimum),
     };
-    Some(share.clamp(0.0, 1.0))
+    Some(fraction.clamp(0.0, 1.0))
 }

@@ -113,16 +113,16 @@ impl MeasuredPlant {
         }
         let lower = upper.checked_sub(1)?;
         let first = self.frequencies_rad_per_s[lower];
-        let share = portable::ln(frequency_rad_per_s / first) / portable::ln(last / first);
+        let fraction = portable::ln(frequency_rad_per_s / first) / portable::ln(last / first);
         let between = |values: &[Complex64]| {
             let (from, to) = (values[lower], values[upper]);
             let ratio = to / from;
             let size = portable::magnitude(ratio);
             if !(size > 0.0 && size.is_finite()) {
-                return from + (to - from) * share;
+                return from + (to - from) * fraction;
             }
             let turn = Complex64::new(portable::ln(size), portable::argument(ratio));
-            from * portable::exp_complex(turn * share)
+            from * portable::exp_complex(turn * fraction)
         };
         Some((between(&self.command), self.disturbance.as_ref().map(|values| between(values))))
     }

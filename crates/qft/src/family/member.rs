@@ -1,6 +1,6 @@
 //! Members of a family over a box.
 
-use phea_dynamics::random::share;
+use phea_dynamics::random::uniform;
 use phea_dynamics::uncertain_plant::UncertainPlant;
 
 use super::{Coordinate, FamilyError, MEMBERS_MAXIMUM, coordinate};
@@ -63,8 +63,8 @@ pub fn random(
     }
     let mut state = seed;
     let mut member = || {
-        let shares: Vec<f64> = coordinates.iter().map(|_| share(&mut state)).collect();
-        coordinate::values(plant, coordinates, &shares)
+        let fractions: Vec<f64> = coordinates.iter().map(|_| uniform(&mut state)).collect();
+        coordinate::values(plant, coordinates, &fractions)
     };
     Ok((0..count).map(|_| member()).collect())
 }
@@ -79,19 +79,19 @@ fn combinations(
     if count > MEMBERS_MAXIMUM as f64 {
         return Err(FamilyError::TooManyMembers(count, MEMBERS_MAXIMUM));
     }
-    let mut shares: Vec<Vec<f64>> = vec![vec![]];
+    let mut fractions: Vec<Vec<f64>> = vec![vec![]];
     for &points in points {
         let last = points.saturating_sub(1).max(1) as f64;
         let extend = |start: Vec<f64>| {
             (0..points).map(move |point| {
-                let mut shares = start.clone();
-                shares.push(point as f64 / last);
-                shares
+                let mut fractions = start.clone();
+                fractions.push(point as f64 / last);
+                fractions
             })
         };
-        shares = shares.into_iter().flat_map(extend).collect();
+        fractions = fractions.into_iter().flat_map(extend).collect();
     }
-    Ok(shares.iter().map(|shares| coordinate::values(plant, coordinates, shares)).collect())
+    Ok(fractions.iter().map(|fractions| coordinate::values(plant, coordinates, fractions)).collect())
 }
 
 pub(super) fn check(plant: &UncertainPlant, members: &[Vec<f64>]) -> Result<(), FamilyError> {

@@ -10,7 +10,7 @@ use phea_dynamics::portable;
 use super::{InnerLoopLimits, InnerLoopProblem, InnerLoopReach, InnerPoint};
 
 /// A plant within an inner feedback of gain one.
-struct PlantBehind {
+struct FedBackPlant {
     index: usize,
     /// Points of the plant with H Q in place of Q.
     points: Vec<InnerPoint>,
@@ -23,25 +23,25 @@ struct PlantBehind {
 }
 
 /// Plants within an inner feedback of gain one.
-pub(super) struct PlantsBehind {
+pub(super) struct FedBackPlants {
     limits: InnerLoopLimits,
     sample_time_s: Option<f64>,
-    plants: Vec<PlantBehind>,
+    plants: Vec<FedBackPlant>,
 }
 
-impl PlantsBehind {
+impl FedBackPlants {
     /// Plants of a problem within a feedback.
     pub(super) fn new(
         problem: &InnerLoopProblem,
         unit: &InnerFeedback,
         plants: &[usize],
-    ) -> Result<PlantsBehind, LinearError> {
+    ) -> Result<FedBackPlants, LinearError> {
         let function = problem.deployed(unit)?;
         let at = |point: &InnerPoint| function.at_frequency(point.frequency_rad_per_s);
         let behind = |point: &InnerPoint| InnerPoint { signal: point.signal * at(point), ..*point };
         let shaped = |&index: &usize| {
             let plant = problem.plants.get(index)?;
-            Some(PlantBehind {
+            Some(FedBackPlant {
                 index,
                 points: plant.points.iter().map(behind).collect(),
                 sizes: plant.points.iter().map(|point| portable::magnitude(at(point))).collect(),
@@ -49,7 +49,7 @@ impl PlantsBehind {
                 reference_signal: plant.reference.signal,
             })
         };
-        Ok(PlantsBehind {
+        Ok(FedBackPlants {
             limits: problem.limits,
             sample_time_s: problem.timing.sample_time_s,
             plants: plants.iter().filter_map(shaped).collect(),
@@ -62,7 +62,7 @@ impl PlantsBehind {
         each.fold(f64::INFINITY, f64::min)
     }
 
-    fn inner_gain_of(&self, plant: &PlantBehind) -> f64 {
+    fn inner_gain_of(&self, plant: &FedBackPlant) -> f64 {
         let limits = self.limits;
         let gain = |point: &InnerPoint| {
             let delayed = (Complex64::ZERO, point.signal);
@@ -81,7 +81,7 @@ impl PlantsBehind {
     /// Performance of the plants with a gain of the inner loop; `None` without plants, and if a
     /// plant violates a limit of the inner loop.
     pub(super) fn reach(&self, gain: f64) -> Option<InnerLoopReach> {
-        let keeps = |plant: &PlantBehind| self.keeps(plant, gain);
+        let keeps = |plant: &FedBackPlant| self.keeps(plant, gain);
         if !self.plants.iter().all(keeps) {
             return None;
         }
@@ -95,31 +95,31 @@ impl PlantsBehind {
     /// The plants that set a limit on a feedback: those that violate a limit of the inner loop
     /// most, or that limit the outer one and its gain.
     pub(super) fn worst(&self, gain: f64) -> Vec<usize> {
-        let least = |measure: &dyn Fn(&PlantBehind) -> f64| {
-            let of = |one: &&PlantBehind, other: &&PlantBehind| measure(one).total_cmp(&measure(other));
+        let least = |measure: &dyn Fn(&FedBackPlant) -> f64| {
+            let of = |one: &&FedBackPlant, other: &&FedBackPlant| measure(one).total_cmp(&measure(other));
             self.plants.iter().min_by(of).map(|plant| plant.index)
         };
-        let outer = |plant: &PlantBehind| {
+        let outer = |plant: &FedBackPlant| {
             self.outer_reach(plant, gain).map_or(f64::INFINITY, |reach| reach.outer_gain)
         };
-        let noise = |plant: &PlantBehind| -self.command_noise(plant, gain).unwrap_or(0.0);
-        let inner = |plant: &PlantBehind| self.inner_gain_of(plant);
-        let reference = |plant: &PlantBehind| closed_reference(plant, gain);
-        let measures: [&dyn Fn(&PlantBehind) -> f64; 4] = [&inner, &outer, &reference, &noise];
+        let noise = |plant: &FedBackPlant| -self.command_noise(plant, gain).unwrap_or(0.0);
+        let inner = |plant: &FedBackPlant| self.inner_gain_of(plant);
+        let reference = |plant: &FedBackPlant| closed_reference(plant, gain);
+        let measures: [&dyn Fn(&FedBackPlant) -> f64; 4] = [&inner, &outer, &reference, &noise];
         let mut found: Vec<usize> = measures.into_iter().filter_map(least).collect();
         found.sort_unstable();
         found.dedup();
         found
     }
 
-    fn keeps(&self, plant: &PlantBehind, gain: f64) -> bool {
+    fn keeps(&self, plant: &FedBackPlant, gain: f64) -> bool {
         let most = self.limits.noise.map_or(f64::INFINITY, |[_, most]| most);
         gain <= self.inner_gain_of(plant) * (1.0 + ROUNDING)
             && self.command_noise(plant, gain).is_none_or(|noise| noise <= most)
     }
 
     /// The point of a plant that limits the outer loop, with its gain.
-    fn outer_reach(&self, plant: &PlantBehind, gain: f64) -> Option<InnerLoopReach> {
+    fn outer_reach(&self, plant: &FedBackPlant, gain: f64) -> Option<InnerLoopReach> {
         let reach = |point: &InnerPoint| InnerLoopReach {
             loop_gain: 0.0,
             outer_gain: outer_gain(point, gain, &self.limits),
@@ -132,7 +132,7 @@ impl PlantsBehind {
 
     /// Rms command that the noise of the signal causes in the inner loop, without the outer one;
     /// `None` if it is not limited.
-    fn command_noise(&self, plant: &PlantBehind, gain: f64) -> Option<f64> {
+    fn command_noise(&self, plant: &FedBackPlant, gain: f64) -> Option<f64> {
         let [rms, _] = self.limits.noise?;
         let end = std::f64::consts::PI / self.sample_time_s?;
         let square = |(point, size): (&InnerPoint, &f64)| {
@@ -144,7 +144,7 @@ impl PlantsBehind {
 }
 
 /// Magnitude |P'| at the reference.
-fn closed_reference(plant: &PlantBehind, gain: f64) -> f64 {
+fn closed_reference(plant: &FedBackPlant, gain: f64) -> f64 {
     let reference = &plant.reference;
     portable::magnitude(reference.plant / (1.0 + gain * reference.signal))
 }

@@ -6,7 +6,7 @@ use phea_dynamics::linear::LinearError;
 use phea_dynamics::minimum;
 use phea_dynamics::portable;
 
-use super::limits::PlantsBehind;
+use super::limits::FedBackPlants;
 use super::{FoundInnerFeedback, InnerLoopProblem, InnerLoopReach};
 
 /// Number of corners of the grid.
@@ -17,7 +17,7 @@ const GAIN_RATIO: f64 = 3000.0;
 /// Magnitude |k Q| at the reference up to which gains are searched if nothing limits them.
 const BEYOND_REFERENCE: f64 = 100.0;
 /// Fraction of a cell of the grid to which a maximum is located.
-const CELL_SHARE: f64 = 1e-3;
+const CELL_FRACTION: f64 = 1e-3;
 /// Ratio of the loop gain over all plants to that over the searched plants that counts as equal.
 const AS_GOOD: f64 = 0.998;
 
@@ -29,7 +29,7 @@ pub(super) fn best(problem: &InnerLoopProblem) -> Result<Option<FoundInnerFeedba
     // each round adds a plant
     for _ in &all {
         let Some((feedback, own)) = best_of(problem, &searched)? else { return Ok(best) };
-        let whole = PlantsBehind::new(problem, &InnerFeedback { gain: 1.0, ..feedback }, &all)?;
+        let whole = FedBackPlants::new(problem, &InnerFeedback { gain: 1.0, ..feedback }, &all)?;
         let reach = whole.reach(feedback.gain);
         if let Some(reach) = reach
             && best.is_none_or(|known| reach.loop_gain > known.reach.loop_gain)
@@ -86,7 +86,7 @@ fn best_of(
         },
         ends,
         (start.0, -start.1),
-        CELL_SHARE * cell,
+        CELL_FRACTION * cell,
     );
     match failed {
         Some(error) => Err(error),
@@ -105,7 +105,7 @@ fn best_gain(
         high_pass_rad_per_s: Some(corner),
         low_pass_rad_per_s: problem.low_pass_rad_per_s,
     };
-    let shaped = PlantsBehind::new(problem, &unit, plants)?;
+    let shaped = FedBackPlants::new(problem, &unit, plants)?;
     let Some(signal) = shaped.least_reference_signal().filter(|size| *size > 0.0) else { return Ok(None) };
     let most = portable::ln(shaped.largest_inner_gain().min(BEYOND_REFERENCE / signal));
     let value = |gain: f64| shaped.reach(portable::exp(gain)).map_or(0.0, |reach| reach.loop_gain);
@@ -119,7 +119,7 @@ fn best_gain(
         }
     }
     let ends = [start.0 - cell, (start.0 + cell).min(most)];
-    let (gain, _) = minimum::between(|gain| -value(gain), ends, (start.0, -start.1), CELL_SHARE * cell);
+    let (gain, _) = minimum::between(|gain| -value(gain), ends, (start.0, -start.1), CELL_FRACTION * cell);
     let feedback = InnerFeedback { gain: portable::exp(gain), ..unit };
     Ok(shaped.reach(feedback.gain).map(|reach| (feedback, reach)))
 }

@@ -7,7 +7,7 @@ mod place;
 use std::collections::BTreeMap;
 
 use phea_dynamics::order::sort_by_number;
-use phea_dynamics::watch::{Stopped, Watch, tell};
+use phea_dynamics::watch::{Stopped, Watch, report_progress};
 
 use super::search::{Aim, Judgement, MarginRow, SearchProblem, Slopes};
 use super::subproblem::{PredictedStep, Subproblem, SubproblemFailure, dot};
@@ -67,8 +67,8 @@ impl DescentOptions {
     }
 
     /// True if a worst margin satisfies the reserve, except for a fraction of the tolerance.
-    fn keeps(&self, worst_margin_db: f64, share: f64) -> bool {
-        worst_margin_db >= self.reserve_db - share * self.tolerance_db
+    fn keeps(&self, worst_margin_db: f64, fraction: f64) -> bool {
+        worst_margin_db >= self.reserve_db - fraction * self.tolerance_db
     }
 }
 
@@ -136,7 +136,7 @@ pub fn descend(
         if let Some(status) = descent.advance(problem) {
             return Ok(descent.result(status));
         }
-        tell(watch, "descent", descent.steps, options.steps_maximum)?;
+        report_progress(watch, "descent", descent.steps, options.steps_maximum)?;
     }
 }
 
@@ -268,21 +268,21 @@ impl Descent {
             Err(failure) => return self.without_answer(failure, here),
         };
         self.note_binding(&here, &answer);
-        if !self.goes_on(&here, &answer) {
+        if !self.continues(&here, &answer) {
             return here;
         }
         let (x, judgement) = self.tried(problem, &here, &answer.step, &bounds);
-        let share = self.gain(&here, &judgement) / answer.decrease_db;
+        let fraction = self.gain(&here, &judgement) / answer.decrease_db;
         if !is_usable(&judgement) {
             self.shrink(greatest(&answer.step) / 4.0);
             return here;
         }
         let there = DescentPoint { slopes: self.slopes_at(problem, &x), x, judgement, beyond: vec![] };
         self.learn(&here, &there, &answer);
-        if share >= GROWN {
-            self.taken(there, &answer, share)
+        if fraction >= GROWN {
+            self.taken(there, &answer, fraction)
         } else {
-            self.corrected(problem, here, there, &answer, share, &bounds)
+            self.corrected(problem, here, there, &answer, fraction, &bounds)
         }
     }
 
@@ -294,40 +294,40 @@ impl Descent {
         here: DescentPoint,
         there: DescentPoint,
         answer: &PredictedStep,
-        share: f64,
+        fraction: f64,
         bounds: &[[f64; 2]],
     ) -> DescentPoint {
         let (mut last, mut last_step) = (there.clone(), answer.step.clone());
-        let mut best = (share, there, answer.clone());
+        let mut best = (fraction, there, answer.clone());
         for _ in 0..CORRECTIONS_MAXIMUM {
             let Ok(next) = self.solved(&here, &here.corrected_rows(&last, &last_step), bounds) else { break };
             let (x, judgement) = self.tried(problem, &here, &next.step, bounds);
-            let share = self.gain(&here, &judgement) / answer.decrease_db;
-            if share <= best.0 || !is_usable(&judgement) {
+            let fraction = self.gain(&here, &judgement) / answer.decrease_db;
+            if fraction <= best.0 || !is_usable(&judgement) {
                 break;
             }
             last = DescentPoint { slopes: self.slopes_at(problem, &x), x, judgement, beyond: vec![] };
             last_step.clone_from(&next.step);
             self.learn(&here, &last, &next);
-            best = (share, last.clone(), next);
-            if share >= GROWN {
+            best = (fraction, last.clone(), next);
+            if fraction >= GROWN {
                 break;
             }
         }
-        let (share, there, taken) = best;
-        if share >= TAKEN {
-            return self.taken(there, &taken, share);
+        let (fraction, there, taken) = best;
+        if fraction >= TAKEN {
+            return self.taken(there, &taken, fraction);
         }
         self.shrink(greatest(&answer.step) / 3.0);
         here.with_rows_of(&there)
     }
 
     /// Moves to the new point, and adapts the trust region to the accuracy of the prediction.
-    fn taken(&mut self, there: DescentPoint, answer: &PredictedStep, share: f64) -> DescentPoint {
+    fn taken(&mut self, there: DescentPoint, answer: &PredictedStep, fraction: f64) -> DescentPoint {
         let size = greatest(&answer.step);
-        if share < KEPT {
+        if fraction < KEPT {
             self.radius = size / 2.0;
-        } else if share > GROWN && size > 0.9 * self.radius {
+        } else if fraction > GROWN && size > 0.9 * self.radius {
             self.radius = (2.0 * self.radius).min(RADIUS_LARGEST);
         }
         let is_feasible = self.options.keeps(there.judgement.worst_margin_db, ENTERED);
@@ -391,7 +391,7 @@ impl Descent {
 
     /// True if the step is worth evaluating. If the model predicts no further gain, `status` states
     /// the reason; if that is only the curvature, it is reset.
-    fn goes_on(&mut self, here: &DescentPoint, answer: &PredictedStep) -> bool {
+    fn continues(&mut self, here: &DescentPoint, answer: &PredictedStep) -> bool {
         self.failures = 0;
         let tolerance = self.options.tolerance_db;
         let left = self.curvature.as_ref().map_or(0.0, |curvature| {

@@ -63,7 +63,7 @@ pub(super) struct Keeping {
     /// True if a margin counts as a fraction of the room between two limits, if that is less than 1
     /// dB. Otherwise limits that meet, as those of tracking do at zero frequency, would leave no
     /// margin to increase.
-    pub(super) share_of_room: bool,
+    pub(super) fraction_of_room: bool,
 }
 
 /// Smallest room that is used, dB.
@@ -74,7 +74,7 @@ const ROOM_LEAST_DB: f64 = 1e-6;
 pub(super) fn demands(
     specifications: &[Specification],
     tracking: TrackingJudgement,
-    Keeping { reserve_db, share_of_room }: Keeping,
+    Keeping { reserve_db, fraction_of_room }: Keeping,
     [frequency, highest_frequency]: [f64; 2],
 ) -> Vec<Demand> {
     let mut demands = Vec::new();
@@ -103,7 +103,7 @@ pub(super) fn demands(
         };
         demands.extend(limits.into_iter().filter_map(|(limited, allowed)| {
             let unit = if limited == LimitedSide::Spread { 2.0 } else { 1.0 };
-            let rate = if share_of_room { unit * room_db.max(ROOM_LEAST_DB) } else { unit };
+            let rate = if fraction_of_room { unit * room_db.max(ROOM_LEAST_DB) } else { unit };
             let closed_loop = specification.requirement.closed_loop();
             Some(Demand { specification: index, closed_loop, limited, allowed: allowed?, rate })
         }));
@@ -133,7 +133,7 @@ impl Demand {
     /// Number that exceeds the requirements of any column.
     pub(super) const PER_COLUMN: usize = 64;
 
-    /// Increase of the margin per dB of relaxation of every limit; see [`Keeping::share_of_room`].
+    /// Increase of the margin per dB of relaxation of every limit; see [`Keeping::fraction_of_room`].
     pub(super) fn rate(&self) -> f64 {
         self.rate
     }

@@ -13,7 +13,7 @@ pub struct DesignProblem {
     /// The plants.
     pub family: Family,
     /// Additional plants that the loop must also control; only the nominal plant of each counts.
-    pub beside: Vec<UncertainPlant>,
+    pub additional_plants: Vec<UncertainPlant>,
     /// Sensor H; 1 if the output itself is fed back.
     pub sensor: TransferFunction,
     /// Sample time, delay and discretization of the controller to be designed.
@@ -25,12 +25,12 @@ pub struct DesignProblem {
 }
 
 /// Fraction of the required delay that may be missed.
-const DELAY_SHARE: f64 = 0.01;
+const DELAY_FRACTION: f64 = 0.01;
 
 impl DesignProblem {
     /// True if a loop with this delay margin, s, tolerates the required delay, to within one
     /// hundredth.
     pub fn tolerates_its_delay(&self, delay_margin_s: f64) -> bool {
-        delay_margin_s >= (1.0 - DELAY_SHARE) * self.minimum_delay_margin_s
+        delay_margin_s >= (1.0 - DELAY_FRACTION) * self.minimum_delay_margin_s
     }
 }

@@ -95,7 +95,7 @@ struct PlantInLoop {
 }
 
 /// The controller under test.
-struct AskedController {
+struct TestedController {
     compensation: Compensation,
     feedback: Option<BilinearQuotient>,
     path: OnceCell<Result<FeedbackPath, Irresolution>>,
@@ -168,7 +168,7 @@ impl SampleStability {
         let unstable = self.order.iter().position(|&index| {
             self.plants.get(index).is_some_and(|plant| !question.is_stable(plant, &mut 0))
         });
-        self.ask_first(unstable);
+        self.evaluate_first(unstable);
         Ok(unstable.is_none())
     }
 
@@ -194,7 +194,7 @@ impl SampleStability {
                 worst = Some(position);
             }
         }
-        self.ask_first(worst);
+        self.evaluate_first(worst);
         Ok(judgement)
     }
 
@@ -242,23 +242,23 @@ impl SampleStability {
         Ok(Some(greatest))
     }
 
-    fn question(&self, feedback: &TransferFunction) -> Result<AskedController, LinearError> {
+    fn question(&self, feedback: &TransferFunction) -> Result<TestedController, LinearError> {
         let compensation = self.compensation.with_feedback(feedback.clone())?;
-        Ok(AskedController {
+        Ok(TestedController {
             compensation,
             feedback: BilinearQuotient::of_function(feedback),
             path: OnceCell::new(),
         })
     }
 
-    fn ask_first(&mut self, position: Option<usize>) {
+    fn evaluate_first(&mut self, position: Option<usize>) {
         if let Some(first) = position.and_then(|position| self.order.get_mut(..=position)) {
             first.rotate_right(1);
         }
     }
 }
 
-impl AskedController {
+impl TestedController {
     fn is_stable(&self, plant: &PlantInLoop, undecided_tables: &mut usize) -> bool {
         match self.characteristic(plant).map(|characteristic| characteristic.hurwitz()) {
             Some(Hurwitz::Yes) => true,

@@ -179,10 +179,10 @@ impl Samples {
     /// # Errors
     /// Errors of [`Samples::new`].
     pub(crate) fn take_in(&mut self, plant: UncertainPlant) -> Result<(), SamplesError> {
-        let point = PlantPoint::Beside(self.problem.beside.len());
-        self.problem.beside.push(plant);
+        let point = PlantPoint::Additional(self.problem.additional_plants.len());
+        self.problem.additional_plants.push(plant);
         self.add_plant(&point)?;
-        self.look_closely_at(&point)
+        self.sample_densely(&point)
     }
 
     /// Adds this plant at the frequencies where its response bends, since a resonance may be
@@ -190,7 +190,7 @@ impl Samples {
     ///
     /// # Errors
     /// Errors of [`Samples::new`].
-    pub(crate) fn look_closely_at(&mut self, point: &PlantPoint) -> Result<(), SamplesError> {
+    pub(crate) fn sample_densely(&mut self, point: &PlantPoint) -> Result<(), SamplesError> {
         let highest = self.around.highest_frequency_rad_per_s();
         for frequency in bends(&self.problem, point)?.into_iter().filter(|frequency| *frequency <= highest) {
             self.add(std::slice::from_ref(point), frequency)?;
@@ -225,8 +225,8 @@ impl Samples {
     /// Measures a margin as a fraction of the distance between two limits, if that is less than 1
     /// dB. Otherwise limits that meet, as those of tracking do at zero frequency, would leave no
     /// margin to increase.
-    pub(crate) fn count_shares_of_room(&mut self, share_of_room: bool) {
-        self.keeping.share_of_room = share_of_room;
+    pub(crate) fn count_fractions_of_room(&mut self, fraction_of_room: bool) {
+        self.keeping.fraction_of_room = fraction_of_room;
         self.demand_anew();
     }
 
@@ -248,7 +248,7 @@ impl Samples {
             Family::Uncertain(family) if family.extent() == Extent::Box => {
                 let values = self.plants.iter().filter_map(|plant| match plant {
                     PlantPoint::Parameters(values) => Some(values.clone()),
-                    PlantPoint::Measured(_) | PlantPoint::Beside(_) => None,
+                    PlantPoint::Measured(_) | PlantPoint::Additional(_) => None,
                 });
                 let plant = family.plant().clone();
                 let coordinates = family.coordinates().to_vec();
@@ -396,8 +396,8 @@ fn plant_at<'a>(problem: &'a DesignProblem, point: &PlantPoint) -> Result<Family
         PlantMember::Responding(plant) => FamilyPlant::Responding(plant),
     };
     let plant = match (&problem.family, point) {
-        (_, PlantPoint::Beside(index)) => {
-            let beside = problem.beside.get(*index);
+        (_, PlantPoint::Additional(index)) => {
+            let beside = problem.additional_plants.get(*index);
             beside.and_then(|plant| plant.member(&plant.nominal())).map(of_box)
         }
         (Family::Uncertain(family), PlantPoint::Parameters(values)) => {

@@ -14,7 +14,7 @@ use super::{Judgement, SearchProblem, Slopes};
 use crate::closed_loop::Compensation;
 use crate::specification::Specification;
 use crate::verification::{PlantPoint, SpecificationMargin, TrackingJudgement};
-use least_margins::Looked;
+use least_margins::LeastMargins;
 
 /// The measure of instability of a loop for which it is too expensive to compute.
 const UNSTABLE: f64 = 1.0;
@@ -98,7 +98,7 @@ pub struct Shaping {
 struct JudgedLoop {
     x: Vec<f64>,
     forward: Vec<[Complex64; 2]>,
-    looked: Looked,
+    looked: LeastMargins,
 }
 
 impl Shaping {
@@ -197,10 +197,10 @@ impl Shaping {
     }
 
     /// Counts margins as fractions of the room between two limits; see
-    /// [`Samples::count_shares_of_room`].
-    pub(crate) fn count_shares_of_room(&mut self) {
+    /// [`Samples::count_fractions_of_room`].
+    pub(crate) fn count_fractions_of_room(&mut self) {
         self.judged = None;
-        self.samples.count_shares_of_room(true);
+        self.samples.count_fractions_of_room(true);
     }
 
     /// Tightens every limit by this much from now on; see [`Samples::keep_in_reserve`].
@@ -319,7 +319,7 @@ impl Shaping {
     fn judgement(
         &self,
         x: &[f64],
-        (forward, looked): (&[[Complex64; 2]], &Looked),
+        (forward, looked): (&[[Complex64; 2]], &LeastMargins),
         (stable, instability): (bool, f64),
     ) -> Judgement {
         let (objective_db, _) = self.objective(x, forward, &[]);

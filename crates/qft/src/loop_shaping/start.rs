@@ -9,7 +9,7 @@ use std::cmp::Ordering;
 
 use phea_dynamics::order::sort_by_number;
 use phea_dynamics::pieces::{WorkPiece, Workers};
-use phea_dynamics::watch::{Stopped, Watch, part, tell};
+use phea_dynamics::watch::{Stopped, Watch, part, report_progress};
 
 use super::best_seen::{BestSeen, SeenProblem};
 use super::descent::{Binding, Descent, DescentOptions, DescentStatus, DescentWork, is_usable};
@@ -144,8 +144,8 @@ impl JudgedPoint {
     fn along_first(problem: &mut dyn SearchProblem, x: &[f64], scanned: usize, aim: Aim) -> JudgedPoint {
         let range = problem.bounds().first().copied().unwrap_or_default();
         let values = (0..scanned).map(|step| {
-            let share = (step as f64 + 0.5) / scanned as f64;
-            range[0] + share * (range[1] - range[0])
+            let fraction = (step as f64 + 0.5) / scanned as f64;
+            range[0] + fraction * (range[1] - range[0])
         });
         let mut judged = |x: Vec<f64>| JudgedPoint { judgement: problem.judge(&x), x };
         let mut best = judged(x.to_vec());
@@ -276,7 +276,7 @@ impl<P: SearchProblem + Clone + Sync> StartSearch<'_, P> {
         let judge = |problem: &mut dyn SearchProblem, chunk: &[(Vec<f64>, usize)], watch: Watch<'_>| {
             let mut judged = Vec::with_capacity(chunk.len());
             for (done, (x, scanned)) in chunk.iter().enumerate() {
-                tell(watch, STAGE, done, chunk.len())?;
+                report_progress(watch, STAGE, done, chunk.len())?;
                 judged.push(JudgedPoint::along_first(problem, x, *scanned, aim));
             }
             Ok(judged)
@@ -323,7 +323,7 @@ impl<P: SearchProblem + Clone + Sync> StartSearch<'_, P> {
             return Ok(samples);
         }
         while evolution.generation() < self.options.generations && !self.is_enough(evolution.candidates()) {
-            tell(watch, STAGE, evolution.generation(), self.options.generations)?;
+            report_progress(watch, STAGE, evolution.generation(), self.options.generations)?;
             let problem = &mut SeenProblem { problem: &mut *self.problem, seen: &mut *self.seen };
             evolution.step(problem, &mut self.random);
             self.work.judgements += 1;
@@ -364,9 +364,9 @@ impl<P: SearchProblem + Clone + Sync> StartSearch<'_, P> {
 
     /// Sorts descents, the best first.
     fn sort(&self, descents: &mut [Descent]) {
-        let standing = |descent: &Descent| standing(&self.options.descent, descent.judgement());
+        let rank = |descent: &Descent| rank(&self.options.descent, descent.judgement());
         descents.sort_by(|a, b| {
-            let (a, b) = (standing(a), standing(b));
+            let (a, b) = (rank(a), rank(b));
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
         });
     }
@@ -404,7 +404,7 @@ impl<P: SearchProblem + Clone + Sync> StartSearch<'_, P> {
 
 /// Rank of a descent: false if a point satisfies the reserve, true if it misses it, and then its
 /// value, dB, smaller is better.
-fn standing(options: &DescentOptions, judgement: Option<Judgement>) -> (bool, f64) {
+fn rank(options: &DescentOptions, judgement: Option<Judgement>) -> (bool, f64) {
     let Some(judgement) = judgement else { return (true, f64::INFINITY) };
     let misses = judgement.worst_margin_db < options.reserve_db - options.tolerance_db;
     match options.aim {

@@ -82,7 +82,7 @@ struct Scaled {
     /// The coordinates that may move.
     free: Vec<usize>,
     /// The rows that can matter in this box.
-    kept: Vec<ScaledRow>,
+    cache: Vec<ScaledRow>,
     /// Bounds of e.
     bounds: Vec<[f64; 2]>,
     /// Least w; `None` if it is free.
@@ -107,7 +107,7 @@ impl Subproblem<'_> {
         let scaled = self.scaled()?;
         let mut rows = scaled.nearest();
         loop {
-            let is_all = rows.len() == scaled.kept.len();
+            let is_all = rows.len() == scaled.cache.len();
             match self.solve_among(&scaled, &rows) {
                 Ok(Among::Best(step)) => return Ok(step),
                 Ok(Among::Violates(further)) => {
@@ -115,7 +115,7 @@ impl Subproblem<'_> {
                     rows.sort_unstable_by_key(|(index, _)| *index);
                 }
                 Err(failure) if is_all => return Err(failure),
-                Err(_) => rows.clone_from(&scaled.kept),
+                Err(_) => rows.clone_from(&scaled.cache),
             }
         }
     }
@@ -198,9 +198,9 @@ impl Subproblem<'_> {
         let least = (self.aim == Aim::Objective).then_some(-violation / scale);
         let floor = floor.fold(least.unwrap_or(f64::NEG_INFINITY), f64::max);
         let matters = |row: &MarginRow| eased(row) + reach(row, 0) + row.rate * floor <= 0.0;
-        let kept = self.margins.iter().enumerate().filter(|(_, row)| matters(row));
-        let kept = kept.map(|(index, row)| (index, eased(row))).collect();
-        Ok(Scaled { scale, violation, free, kept, bounds, least })
+        let cache = self.margins.iter().enumerate().filter(|(_, row)| matters(row));
+        let cache = cache.map(|(index, row)| (index, eased(row))).collect();
+        Ok(Scaled { scale, violation, free, cache, bounds, least })
     }
 
     /// Upper triangle of the quadratic term, and the linear term, of e and w.
@@ -231,14 +231,14 @@ impl Subproblem<'_> {
         let mut step = vec![0.0; self.step_bounds.len()];
         let held = dual.iter().skip(rows.len());
         let held = held.clone().step_by(2).zip(held.skip(1).step_by(2));
-        for ((&coordinate, &share), (&above, &below)) in scaled.free.iter().zip(point).zip(held) {
+        for ((&coordinate, &fraction), (&above, &below)) in scaled.free.iter().zip(point).zip(held) {
             let ([low, high], [least, greatest]) = (self.step_bounds[coordinate], scaled.bounds[coordinate]);
-            step[coordinate] = if is_held(greatest - share, above) {
+            step[coordinate] = if is_held(greatest - fraction, above) {
                 high
-            } else if is_held(share - least, below) {
+            } else if is_held(fraction - least, below) {
                 low
             } else {
-                (scaled.scale * share).max(low).min(high)
+                (scaled.scale * fraction).max(low).min(high)
             };
         }
         let mut multipliers = vec![0.0; self.margins.len()];
@@ -306,7 +306,7 @@ impl Subproblem<'_> {
 impl Scaled {
     /// The rows of least margin, in their order.
     fn nearest(&self) -> Vec<ScaledRow> {
-        let mut rows = self.kept.clone();
+        let mut rows = self.cache.clone();
         let count = ROWS_FIRST + self.free.len();
         if count < rows.len() {
             rows.select_nth_unstable_by(count, |one, other| {
@@ -320,33 +320,33 @@ impl Scaled {
 
     /// The other rows that (e, w) violates.
     fn violated(&self, point: &[f64], rows: &[ScaledRow], margins: &[MarginRow]) -> Vec<ScaledRow> {
-        if rows.len() == self.kept.len() {
+        if rows.len() == self.cache.len() {
             return vec![];
         }
         let is_violated = |(index, eased): &&ScaledRow| {
             let Some((row, relaxed)) = margins.get(*index).zip(point.last()) else { return false };
             let moved =
-                self.free.iter().zip(point).map(|(&coordinate, share)| row.slopes[coordinate] * share);
+                self.free.iter().zip(point).map(|(&coordinate, fraction)| row.slopes[coordinate] * fraction);
             eased + moved.sum::<f64>() + row.rate * relaxed < -VIOLATED
         };
         let is_other =
             |(index, _): &&ScaledRow| rows.binary_search_by_key(index, |(index, _)| *index).is_err();
-        self.kept.iter().filter(is_other).filter(is_violated).copied().collect()
+        self.cache.iter().filter(is_other).filter(is_violated).copied().collect()
     }
 
     /// Constraints `matrix (e, w) <= limits`: the rows, the upper and lower bounds of e, the least
     /// w.
-    fn constraints(&self, kept: &[ScaledRow], margins: &[MarginRow]) -> (CscMatrix<f64>, Vec<f64>) {
-        let (rows, columns) = (kept.len(), self.free.len());
+    fn constraints(&self, cache: &[ScaledRow], margins: &[MarginRow]) -> (CscMatrix<f64>, Vec<f64>) {
+        let (rows, columns) = (cache.len(), self.free.len());
         let mut entries = Triplets::default();
-        for (row, (index, _)) in kept.iter().enumerate() {
+        for (row, (index, _)) in cache.iter().enumerate() {
             let margin = &margins[*index];
             for (column, &coordinate) in self.free.iter().enumerate() {
                 entries.push(row, column, -margin.slopes[coordinate]);
             }
             entries.push(row, columns, -margin.rate);
         }
-        let mut limits: Vec<f64> = kept.iter().map(|(_, eased)| *eased).collect();
+        let mut limits: Vec<f64> = cache.iter().map(|(_, eased)| *eased).collect();
         for (column, &coordinate) in self.free.iter().enumerate() {
             entries.push(rows + 2 * column, column, 1.0);
             entries.push(rows + 2 * column + 1, column, -1.0);

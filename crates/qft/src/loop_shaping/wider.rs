@@ -51,12 +51,12 @@ impl LocalOptimum {
     /// }
     ///
     /// let mut least = |c: f64| Least(c, [[0.1, 100.0]]);
-    /// let end = LocalOptimum::beside(&mut least(1.0), &[3.0], (Aim::Objective, 0.0), &mut unwatched)?.unwrap();
+    /// let end = LocalOptimum::near(&mut least(1.0), &[3.0], (Aim::Objective, 0.0), &mut unwatched)?.unwrap();
     /// let wider = end.continued(&mut least(0.75), &mut unwatched)?.unwrap();
     /// assert!((end.value_db - wider.value_db - (1.0_f64.exp() - 0.75_f64.exp())).abs() < 0.01);
     /// # Ok::<(), phea_dynamics::watch::Stopped>(())
     /// ```
-    pub fn beside(
+    pub fn near(
         problem: &mut dyn SearchProblem,
         x: &[f64],
         (aim, reserve_db): (Aim, f64),
@@ -86,8 +86,8 @@ impl LocalOptimum {
         let value_db = |judgement: Judgement| match self.options.aim {
             Aim::WorstMargin => Some(-judgement.worst_margin_db),
             Aim::Objective => {
-                let is_kept = judgement.worst_margin_db >= self.options.reserve_db - MISSED_DB;
-                is_kept.then_some(judgement.objective_db)
+                let is_satisfied = judgement.worst_margin_db >= self.options.reserve_db - MISSED_DB;
+                is_satisfied.then_some(judgement.objective_db)
             }
         };
         let judgement = found.judgement.filter(|judgement| judgement.stable);

@@ -136,7 +136,7 @@ pub fn pass_through(
         (Some(_), Some(_)) => pattern.through(&change),
         _ if !pattern.has_one_number() => return incomplete(NeededCoordinate::Both),
         (Some(_), None) => pattern.of_magnitude(&change),
-        (None, Some(_)) if pattern.keeps_phase() => return incomplete(NeededCoordinate::Magnitude),
+        (None, Some(_)) if pattern.satisfies_phase() => return incomplete(NeededCoordinate::Magnitude),
         (None, Some(_)) => pattern.of_phase(&change),
     };
     element.ok_or_else(|| PassError::Unreachable {
@@ -201,7 +201,7 @@ fn check_numbers(pattern: ElementPattern) -> Result<(), PassError> {
     let value = match pattern {
         ElementPattern::RollOff { damping_ratio: value }
         | ElementPattern::NotchHere { pole_damping_ratio: value }
-        | ElementPattern::NotchBeside { natural_frequency: value } => value,
+        | ElementPattern::FurtherNotch { natural_frequency: value } => value,
         _ => return Ok(()),
     };
     if value > 0.0 && value.is_finite() { Ok(()) } else { Err(PassError::Number { pattern, value }) }

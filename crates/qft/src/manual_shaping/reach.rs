@@ -35,7 +35,7 @@ pub enum ElementPattern {
         pole_damping_ratio: f64,
     },
     /// Notch at another frequency, with free depth and width: sets both.
-    NotchBeside {
+    FurtherNotch {
         /// Natural frequency w, rad/s.
         natural_frequency: f64,
     },
@@ -74,7 +74,7 @@ impl ElementPattern {
     }
 
     /// True if the element does not change the phase.
-    pub(super) fn keeps_phase(self) -> bool {
+    pub(super) fn satisfies_phase(self) -> bool {
         matches!(self, ElementPattern::Gain | ElementPattern::NotchHere { .. })
     }
 
@@ -88,8 +88,8 @@ impl ElementPattern {
             ElementPattern::RealZero | ElementPattern::Lead => ahead,
             ElementPattern::ComplexPoles | ElementPattern::RollOff { .. } => [-180.0, 0.0],
             ElementPattern::ComplexZeros => [0.0, 180.0],
-            ElementPattern::NotchBeside { natural_frequency } if frequency < natural_frequency => back,
-            ElementPattern::NotchBeside { .. } => ahead,
+            ElementPattern::FurtherNotch { natural_frequency } if frequency < natural_frequency => back,
+            ElementPattern::FurtherNotch { .. } => ahead,
         };
         let raise_db = match turn {
             Some(turn) if !within(turn.to_degrees(), turn_deg) => None,
@@ -105,7 +105,7 @@ impl ElementPattern {
         match (self, turn) {
             (ElementPattern::Gain | ElementPattern::ProportionalIntegral, _) => whole,
             (ElementPattern::NotchHere { .. }, _) => [0.0, 1.0],
-            (ElementPattern::Lag | ElementPattern::NotchBeside { .. }, _) => [0.0, cosine],
+            (ElementPattern::Lag | ElementPattern::FurtherNotch { .. }, _) => [0.0, cosine],
             (ElementPattern::Lead, _) => [1.0 / cosine, f64::INFINITY],
             (ElementPattern::RealPole, None) => [0.0, 1.0],
             (ElementPattern::RealZero, None) => [1.0, f64::INFINITY],
@@ -129,7 +129,7 @@ impl ElementPattern {
         if !reach.raise_db.is_some_and(|range| within(ratio_db, range)) {
             return None;
         }
-        if self.keeps_phase() {
+        if self.satisfies_phase() {
             return self.of_magnitude(change);
         }
         if self.has_one_number() {
@@ -189,7 +189,7 @@ impl ElementPattern {
                 let [x, y] = corners(change);
                 Element::LeadLag { zero_frequency: w / x, pole_frequency: w / y }
             }
-            ElementPattern::NotchBeside { natural_frequency } => {
+            ElementPattern::FurtherNotch { natural_frequency } => {
                 let [x, y] = corners(change);
                 let u = w / natural_frequency;
                 let half = (1.0 - u) * (1.0 + u) / (2.0 * u);

@@ -10,7 +10,7 @@ use crate::verification::{AxisEnd, tracking_ratio};
 
 /// Change of the edges' curvature from one decade to the next, as a fraction of their distance,
 /// below which the edges have settled.
-const SETTLED_SHARE: f64 = 0.01;
+const SETTLED_FRACTION: f64 = 0.01;
 /// Decades that are examined below the lowest frequency and above the highest.
 const DECADES: [usize; 2] = [9, 3];
 
@@ -86,7 +86,7 @@ fn settled(rest: &PrefilterBandPoint, before: &PrefilterBandPoint, point: &Prefi
     };
     let [least, greatest] = curvatures(point);
     let changes = curvatures(before).into_iter().zip([least, greatest]).map(|(old, new)| (new - old).abs());
-    changes.fold(0.0, f64::max) <= SETTLED_SHARE * (greatest - least).abs()
+    changes.fold(0.0, f64::max) <= SETTLED_FRACTION * (greatest - least).abs()
 }
 
 /// The limit of the band as w -> 0; `None` if it has none, or if T vanishes or grows there

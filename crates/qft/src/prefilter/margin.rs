@@ -34,7 +34,7 @@ pub struct PrefilterMargin {
 
 impl PrefilterMargin {
     /// The margin in its unit: 1 in the middle of a band that is narrower than 2 dB.
-    pub fn share(&self) -> f64 {
+    pub fn fraction(&self) -> f64 {
         self.margin_db / self.rate
     }
 }
@@ -72,7 +72,7 @@ impl PrefilterBand {
             (point.frequency_rad_per_s > 0.0 || margin.margin_db < -RESOLVED_DB).then_some(margin)
         };
         let mut margins: Vec<PrefilterMargin> = self.points.iter().filter_map(margin).collect();
-        sort_by_number(&mut margins, PrefilterMargin::share);
+        sort_by_number(&mut margins, PrefilterMargin::fraction);
         margins
     }
 }

@@ -12,7 +12,7 @@ use crate::verification::TOLERANCE_DB;
 /// Number of starting points for each free number.
 const SAMPLES_PER_NUMBER: usize = 60;
 /// Difference of relative margins below which they count as equal.
-const EQUAL_SHARE: f64 = 0.01;
+const EQUAL_FRACTION: f64 = 0.01;
 
 /// Candidate prefilters, and the margin at which one is good enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -128,19 +128,19 @@ pub fn fit_prefilter(
     let all = fits.len() as f64 + 1.0;
     let mut best: Option<(f64, FittedPrefilter)> = None;
     for (done, fit) in fits.iter_mut().enumerate() {
-        let shares = [done as f64 / all, (done as f64 + 1.0) / all];
+        let fractions = [done as f64 / all, (done as f64 + 1.0) / all];
         // more free numbers need more starts
         let samples = SAMPLES_PER_NUMBER * fit.structure().dimension();
         let options = SearchOptions { samples, ..SearchOptions::new(Aim::WorstMargin, options.seed) };
-        let found = search(fit, vec![], &options, &mut part(watch, "fitting the prefilter", shares))?;
+        let found = search(fit, vec![], &options, &mut part(watch, "fitting the prefilter", fractions))?;
         let Some(result) = found else { continue };
-        let share = result.judgement.worst_margin_db;
+        let fraction = result.judgement.worst_margin_db;
         let Some(fitted) = synthesis.fitted(fit.structure(), result.x) else { continue };
-        if share >= 0.0 {
+        if fraction >= 0.0 {
             return Ok(PrefilterOutcome::Found(fitted));
         }
-        if best.as_ref().is_none_or(|(best, _)| share > *best) {
-            best = Some((share, fitted));
+        if best.as_ref().is_none_or(|(best, _)| fraction > *best) {
+            best = Some((fraction, fitted));
         }
     }
     // no prefilter satisfies the band to the last digit: the best may be within the tolerance
@@ -167,8 +167,8 @@ impl Synthesis<'_> {
         let mut compensator = structure.compensator(&x);
         compensator.stages.retain(|stage| stage.element != Element::Gain(1.0));
         let margins = self.margins(&compensator).ok()?;
-        let least = margins.first()?.share();
-        let equals = margins.into_iter().take_while(|margin| margin.share() <= least + EQUAL_SHARE);
+        let least = margins.first()?.fraction();
+        let equals = margins.into_iter().take_while(|margin| margin.fraction() <= least + EQUAL_FRACTION);
         let worst = equals.max_by(|left, right| left.rate.total_cmp(&right.rate))?;
         Some(FittedPrefilter { structure: structure.clone(), x, compensator, worst })
     }

@@ -296,7 +296,7 @@ fn check_bounds_of(certificate: &Certificate, of_box: usize) -> Result<(), Rejec
 
 /// The loop of one plant, which belongs to the family.
 fn at(certificate: &Certificate, member: &CertificateMember) -> Result<Loop<Interval>, Rejection> {
-    let within = member.variables.iter().all(|share| (0.0..=1.0).contains(share));
+    let within = member.variables.iter().all(|fraction| (0.0..=1.0).contains(fraction));
     if !within || member.variables.len() != certificate.plant.variables {
         return Err(Rejection::Number(CertificateNumber::PlantVariable));
     }

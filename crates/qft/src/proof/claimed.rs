@@ -72,11 +72,11 @@ fn is_dead_time<S: Decimal>(value: &BoxPolynomial<S>) -> bool {
 fn at_member<S: Decimal>(segments: &[ParameterSegment], variables: &[f64]) -> Vec<BoxPolynomial<S>> {
     let value = |one: &ParameterSegment| {
         let (low, high) = (S::decimal(one.low), S::decimal(one.high));
-        let share = one.variable.and_then(|variable| variables.get(variable)).map(|share| S::decimal(*share));
-        match share {
+        let fraction = one.variable.and_then(|variable| variables.get(variable)).map(|fraction| S::decimal(*fraction));
+        match fraction {
             None => low,
-            Some(share) if one.by_factors => low * (share * (high / low).ln()).exp(),
-            Some(share) => low + (high - low) * share,
+            Some(fraction) if one.by_factors => low * (fraction * (high / low).ln()).exp(),
+            Some(fraction) => low + (high - low) * fraction,
         }
     };
     segments.iter().map(|one| BoxPolynomial::constant(value(one))).collect()
@@ -324,7 +324,7 @@ impl<S: Decimal> Loop<S> {
     }
 
     /// The greatest remainder of a coefficient of the plant, relative to its size.
-    pub(super) fn remainder_share(&self) -> f64 {
+    pub(super) fn remainder_fraction(&self) -> f64 {
         let own = [&self.numerator, &self.denominator].into_iter().chain(self.disturbance.iter().flatten());
         let coefficients = own.flat_map(|part| &part.of_s.0).filter(|one| one.rest().most() != 0.0);
         coefficients.map(|one| one.rest().most() / one.size().most()).fold(0.0, f64::max)

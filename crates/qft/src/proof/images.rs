@@ -190,9 +190,9 @@ impl<S: Decimal> PlantImages<S> {
             let size = d[0] * d[0] + d[1] * d[1];
             let conjugate = [d[0] / size, -(d[1] / size)];
             let [cosine, sine] = S::cosine_and_sine(turn * dead_time_s);
-            let share = frequency / (frequency + turn);
+            let fraction = frequency / (frequency + turn);
             let [re, im] = product(product(n, conjugate), [cosine, -sine]);
-            [re * share, im * share]
+            [re * fraction, im * fraction]
         });
         Some(each.fold([rest; 2], sum))
     }

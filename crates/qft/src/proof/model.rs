@@ -52,7 +52,7 @@ pub(super) fn modelled<S: Decimal>(
 ) -> Option<Vec<BoxPolynomial<S>>> {
     let values = Model { degree }.values(expression, parameters);
     let results = expression.results().iter().map(|&index| values.get(index)?.as_ref());
-    results.map(|value| Some(value?.with_shares())).collect()
+    results.map(|value| Some(value?.with_fractions())).collect()
 }
 
 /// Switching point of a choice that depends on a single variable: this variable and its value t in
@@ -68,8 +68,8 @@ pub(super) fn turn(
     let of = |index: usize| values.get(index)?.as_ref();
     expression.nodes().iter().find_map(|node| {
         let Node::Select(y, z, ..) = *node else { return None };
-        let (variable, share) = difference(of(y)?, of(z)?).root()?;
-        (NO_EDGE..=1.0 - NO_EDGE).contains(&share).then_some((variable, share))
+        let (variable, fraction) = difference(of(y)?, of(z)?).root()?;
+        (NO_EDGE..=1.0 - NO_EDGE).contains(&fraction).then_some((variable, fraction))
     })
 }
 
@@ -286,9 +286,9 @@ impl Function {
         match self {
             Function::Inverse => S::from(1.0) / (power(nearest) * nearest),
             Function::Root => {
-                let share = (1..=order)
+                let fraction = (1..=order)
                     .fold(S::from(1.0), |known, k| known * S::from(1.5 - k as f64) / S::from(k as f64));
-                share.abs() * nearest.sqrt() / power(nearest)
+                fraction.abs() * nearest.sqrt() / power(nearest)
             }
             Function::Exponential => (1..=order).fold(most.exp(), |known, k| known / S::from(k as f64)),
             Function::Logarithm => S::from(1.0) / (power(nearest) * S::from(order as f64)),

@@ -27,30 +27,30 @@ const BOXES_MAXIMUM: usize = 64;
 /// remainder is small.
 pub(super) fn with_model(certificate: &mut Certificate) -> Result<(), NotProven> {
     let of_all = |certificate: &Certificate| -> Option<Vec<f64>> {
-        (0..certificate.plant.boxes.len()).map(|of_box| share(certificate, of_box)).collect()
+        (0..certificate.plant.boxes.len()).map(|of_box| fraction(certificate, of_box)).collect()
     };
     if certificate.plant.is_straight() && of_all(certificate).is_some() {
         return Ok(());
     }
     let variables = certificate.plant.variables;
     let last = LAST_DEGREES.get(variables).copied().unwrap_or(MANY_VARIABLES_DEGREE);
-    let mut shares = vec![];
+    let mut fractions = vec![];
     for degree in DEGREES.into_iter().filter(|degree| *degree < last).chain([last]) {
         certificate.plant.model_degree = degree;
         let boxes = 0..certificate.plant.boxes.len();
-        shares = boxes.map(|of_box| share(certificate, of_box).unwrap_or(f64::INFINITY)).collect();
-        if shares.iter().all(|share| *share <= SMALL) {
+        fractions = boxes.map(|of_box| fraction(certificate, of_box).unwrap_or(f64::INFINITY)).collect();
+        if fractions.iter().all(|fraction| *fraction <= SMALL) {
             return Ok(());
         }
     }
-    divide(certificate, shares);
+    divide(certificate, fractions);
     if of_all(certificate).is_some() { Ok(()) } else { Err(NotProven::NotPolynomial) }
 }
 
 /// Divides the box with the greatest remainder, relative to its coefficients, repeatedly as long as
 /// it is worthwhile.
-fn divide(certificate: &mut Certificate, shares: Vec<f64>) {
-    let mut left: Vec<(f64, bool)> = shares.into_iter().map(|share| (share, share > SMALL)).collect();
+fn divide(certificate: &mut Certificate, fractions: Vec<f64>) {
+    let mut left: Vec<(f64, bool)> = fractions.into_iter().map(|fraction| (fraction, fraction > SMALL)).collect();
     while left.len() < BOXES_MAXIMUM {
         let worst = left.iter().enumerate().filter(|(_, (_, is_open))| *is_open);
         let Some((of_box, &(own, _))) = worst.max_by(|(_, (one, _)), (_, (other, _))| one.total_cmp(other))
@@ -68,7 +68,7 @@ fn divide(certificate: &mut Certificate, shares: Vec<f64>) {
             continue;
         };
         certificate.plant.boxes.splice(of_box..=of_box, parts);
-        left.splice(of_box..=of_box, of_parts.map(|share| (share, share > SMALL)));
+        left.splice(of_box..=of_box, of_parts.map(|fraction| (fraction, fraction > SMALL)));
         if let Some(sampling) = &mut certificate.sampling {
             let bounds = sampling.bounds[of_box].clone();
             sampling.bounds.insert(of_box, bounds);
@@ -78,8 +78,8 @@ fn divide(certificate: &mut Certificate, shares: Vec<f64>) {
 
 /// The greatest remainder of a coefficient of the plant over a box, relative to its size; `None` if
 /// the box has no such polynomials.
-fn share(certificate: &Certificate, of_box: usize) -> Option<f64> {
-    Some(Loop::<f64>::over_box(certificate, of_box)?.remainder_share())
+fn fraction(certificate: &Certificate, of_box: usize) -> Option<f64> {
+    Some(Loop::<f64>::over_box(certificate, of_box)?.remainder_fraction())
 }
 
 /// Both halves of a box.
@@ -88,15 +88,15 @@ type Halves = [Vec<ParameterSegment>; 2];
 /// Both parts of a box at the switching point of a choice between them, with their remainders.
 fn cut(certificate: &Certificate, of_box: usize) -> Option<(Halves, [f64; 2])> {
     let parameters = parameters_over(certificate, of_box)?;
-    let (variable, share) =
+    let (variable, fraction) =
         turn(&certificate.plant.coefficients, &parameters, certificate.plant.model_degree)?;
-    let parts = parts(certificate.plant.boxes.get(of_box)?, variable, share)?;
+    let parts = parts(certificate.plant.boxes.get(of_box)?, variable, fraction)?;
     let mut alone = certificate.clone();
-    let shares = parts.each_ref().map(|part| {
+    let fractions = parts.each_ref().map(|part| {
         alone.plant.boxes = vec![part.clone()];
-        self::share(&alone, 0).unwrap_or(f64::INFINITY)
+        self::fraction(&alone, 0).unwrap_or(f64::INFINITY)
     });
-    Some((parts, shares))
+    Some((parts, fractions))
 }
 
 /// Both halves of a box across the variable that makes the remainders smallest, with these
@@ -105,26 +105,26 @@ fn cut(certificate: &Certificate, of_box: usize) -> Option<(Halves, [f64; 2])> {
 fn halved(certificate: &Certificate, of_box: usize) -> Option<(Halves, [f64; 2])> {
     let own = certificate.plant.boxes.get(of_box)?;
     let mut alone = certificate.clone();
-    let mut share_of = |part: &Vec<ParameterSegment>| {
+    let mut fraction_of = |part: &Vec<ParameterSegment>| {
         alone.plant.boxes = vec![part.clone()];
-        share(&alone, 0).unwrap_or(f64::INFINITY)
+        fraction(&alone, 0).unwrap_or(f64::INFINITY)
     };
     let candidates = (0..certificate.plant.variables).filter_map(|variable| {
         let halves = halves(own, variable)?;
-        let shares = halves.each_ref().map(&mut share_of);
-        Some((variable, halves, shares))
+        let fractions = halves.each_ref().map(&mut fraction_of);
+        Some((variable, halves, fractions))
     });
     let mut candidates: Vec<(usize, Halves, [f64; 2])> = candidates.collect();
-    if candidates.iter().all(|(_, _, shares)| greatest(shares).is_infinite()) {
-        candidates.sort_by_cached_key(|(variable, halves, _)| halvings(halves, *variable, &mut share_of));
+    if candidates.iter().all(|(_, _, fractions)| greatest(fractions).is_infinite()) {
+        candidates.sort_by_cached_key(|(variable, halves, _)| halvings(halves, *variable, &mut fraction_of));
     } else {
-        sort_by_number(&mut candidates, |(.., shares)| greatest(shares));
+        sort_by_number(&mut candidates, |(.., fractions)| greatest(fractions));
     }
-    candidates.into_iter().next().map(|(_, halves, shares)| (halves, shares))
+    candidates.into_iter().next().map(|(_, halves, fractions)| (halves, fractions))
 }
 
-fn greatest(shares: &[f64; 2]) -> f64 {
-    shares[0].max(shares[1])
+fn greatest(fractions: &[f64; 2]) -> f64 {
+    fractions[0].max(fractions[1])
 }
 
 /// Number of further halvings of the lower of these halves across a variable until its upper part
@@ -132,11 +132,11 @@ fn greatest(shares: &[f64; 2]) -> f64 {
 fn halvings(
     [lower, _]: &Halves,
     variable: usize,
-    share_of: &mut impl FnMut(&Vec<ParameterSegment>) -> f64,
+    fraction_of: &mut impl FnMut(&Vec<ParameterSegment>) -> f64,
 ) -> usize {
     let mut part = lower.clone();
     for count in 0..HALVINGS_MAXIMUM {
-        if share_of(&part).is_finite() {
+        if fraction_of(&part).is_finite() {
             return count;
         }
         let Some([_, upper]) = halves(&part, variable) else { break };
@@ -151,13 +151,13 @@ fn halves(whole: &[ParameterSegment], variable: usize) -> Option<Halves> {
 }
 
 /// Both parts of a box that meet at this value of a variable in t; `None` if that changes nothing.
-fn parts(whole: &[ParameterSegment], variable: usize, share: f64) -> Option<Halves> {
+fn parts(whole: &[ParameterSegment], variable: usize, fraction: f64) -> Option<Halves> {
     let moved = |one: &ParameterSegment| one.variable == Some(variable);
     let half = |lower: bool| {
         let each = whole.iter().map(|one| match (moved(one), lower) {
             (false, _) => *one,
-            (true, true) => ParameterSegment { high: one.value(share), ..*one },
-            (true, false) => ParameterSegment { low: one.value(share), ..*one },
+            (true, true) => ParameterSegment { high: one.value(fraction), ..*one },
+            (true, false) => ParameterSegment { low: one.value(fraction), ..*one },
         });
         each.collect()
     };

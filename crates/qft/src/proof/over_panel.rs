@@ -176,8 +176,8 @@ fn moment<S: Decimal>(k: usize, turn: S) -> Complex<S> {
     let mut power = [S::from(1.0), S::from(0.0)];
     let mut out = [S::uncertain(HOLD_REST); 2];
     for n in 0..HOLD_TERMS {
-        let share = S::from(1.0) / S::from((k + n + 1) as f64);
-        out = sum(out, [power[0] * share, power[1] * share]);
+        let fraction = S::from(1.0) / S::from((k + n + 1) as f64);
+        out = sum(out, [power[0] * fraction, power[1] * fraction]);
         let factor = turn / S::from((n + 1) as f64);
         power = [power[1] * factor, -(power[0] * factor)];
     }

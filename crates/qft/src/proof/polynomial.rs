@@ -246,10 +246,10 @@ impl<S: Decimal> BoxPolynomial<S> {
     /// Polynomial of terms in any order; those with equal exponents are added.
     fn collected(mut terms: Vec<(VariablePowers, S)>, rest: S) -> BoxPolynomial<S> {
         terms.sort_by_key(|(exponents, _)| *exponents);
-        terms.dedup_by(|next, kept| {
-            let same = next.0 == kept.0;
+        terms.dedup_by(|next, cache| {
+            let same = next.0 == cache.0;
             if same {
-                kept.1 = kept.1 + next.1;
+                cache.1 = cache.1 + next.1;
             }
             same
         });
@@ -258,12 +258,12 @@ impl<S: Decimal> BoxPolynomial<S> {
 
     /// Terms up to a total degree; a bound on the others is added to the remainder.
     pub(super) fn truncated(mut self, degree: usize) -> BoxPolynomial<S> {
-        let is_kept = |exponents: &VariablePowers| {
+        let is_satisfied = |exponents: &VariablePowers| {
             exponents.iter().map(|one| usize::from(*one)).sum::<usize>() <= degree
         };
-        let beyond = self.terms.iter().filter(|(exponents, _)| !is_kept(exponents));
+        let beyond = self.terms.iter().filter(|(exponents, _)| !is_satisfied(exponents));
         self.rest = beyond.fold(self.rest, |sum, (_, value)| sum + value.abs());
-        self.terms.retain(|(exponents, _)| is_kept(exponents));
+        self.terms.retain(|(exponents, _)| is_satisfied(exponents));
         self
     }
 
@@ -279,7 +279,7 @@ impl<S: Decimal> BoxPolynomial<S> {
     }
 
     /// Substitution x = 2 t - 1 in place of every variable.
-    pub(super) fn with_shares(&self) -> BoxPolynomial<S> {
+    pub(super) fn with_fractions(&self) -> BoxPolynomial<S> {
         let mut out = BoxPolynomial { terms: vec![], rest: self.rest };
         for (exponents, value) in &self.terms {
             let start = BoxPolynomial::constant(*value);

@@ -18,7 +18,7 @@ use super::sampling::poles_of_law;
 use super::statement::{limit, member_of, stated, values_of};
 use super::supremum::{EnclosedSupremum, PlantAtFrequency, SoughtSupremum, corners, enclose};
 use super::walk::{ProofBudget, ProofEffort, ProofRegion, WalkOutcome};
-use super::{NotProven, Proof, SpecificationProof, Standing};
+use super::{NotProven, Proof, SpecificationProof, ClaimStatus};
 use crate::family::Family;
 use crate::specification::{Limit, Specification};
 use crate::verification::{
@@ -73,7 +73,7 @@ const WHOLE: [f64; 2] = [0.0, f64::INFINITY];
 /// # use phea_qft::audit::audit;
 /// # use phea_qft::closed_loop::Compensation;
 /// # use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, vertices};
-/// use phea_qft::proof::{ProofOptions, Standing, check, prove};
+/// use phea_qft::proof::{ProofOptions, ClaimStatus, check, prove};
 /// use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 /// use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement};
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -103,7 +103,7 @@ const WHOLE: [f64; 2] = [0.0, f64::INFINITY];
 /// let found = audit(&problem, &mut unwatched)?;
 /// let options = ProofOptions::default();
 /// let proof = prove(&problem, &found, options, &mut unwatched)?;
-/// assert_eq!([&proof.stability, &proof.specifications[0].standing], [&Standing::Proven; 2]);
+/// assert_eq!([&proof.stability, &proof.specifications[0].claim_status], [&ClaimStatus::Proven; 2]);
 /// // the greatest ratio, 1/1.2, lies within the enclosure
 /// let (least_db, most_db) = (proof.specifications[0].least_db, proof.specifications[0].most_db);
 /// let (least_db, most_db) = (least_db.ok_or("reached")?, most_db.ok_or("bounded")?);
@@ -130,9 +130,9 @@ pub fn prove(
         return Ok(nothing(problem, NotProven::Images));
     };
     budget.renew();
-    let share = 1.0 / (problem.specifications.len() as f64 + 1.0);
+    let fraction = 1.0 / (problem.specifications.len() as f64 + 1.0);
     let mut prover = Prover { problem, certificate: certificate.clone(), options, effort };
-    let stability = prover.stability(audit, &mut part(&mut *watch, "proving", [0.0, share]))?;
+    let stability = prover.stability(audit, &mut part(&mut *watch, "proving", [0.0, fraction]))?;
     let mut certified = prover.certificate;
     // each specification is proven for one loop, without the claims of others
     let mut found: Vec<Option<(SpecificationProof, Vec<Claim>)>> = vec![None; problem.specifications.len()];
@@ -149,7 +149,7 @@ pub fn prove(
         });
         piece
     });
-    options.workers.work(pieces.collect(), "proving", &mut part(watch, "proving", [share, 1.0]))?;
+    options.workers.work(pieces.collect(), "proving", &mut part(watch, "proving", [fraction, 1.0]))?;
     let (specifications, claims): (Vec<SpecificationProof>, Vec<Vec<Claim>>) =
         found.into_iter().flatten().unzip();
     certified.claims.extend(claims.into_iter().flatten());
@@ -158,17 +158,17 @@ pub fn prove(
 
 /// Result for a loop that cannot be stated as a certificate.
 fn nothing(problem: &AuditProblem<'_>, reason: NotProven) -> Proof {
-    let one = SpecificationProof::without(Standing::NotProven(reason.clone()));
+    let one = SpecificationProof::without(ClaimStatus::NotProven(reason.clone()));
     Proof {
         certificate: None,
-        stability: Standing::NotProven(reason),
+        stability: ClaimStatus::NotProven(reason),
         specifications: vec![one; problem.specifications.len()],
     }
 }
 
 impl SpecificationProof {
-    fn without(standing: Standing) -> SpecificationProof {
-        SpecificationProof { standing, least_db: None, most_db: None, worst: None }
+    fn without(claim_status: ClaimStatus) -> SpecificationProof {
+        SpecificationProof { claim_status, least_db: None, most_db: None, worst: None }
     }
 }
 
@@ -189,7 +189,7 @@ impl Prover<'_> {
         confirmed
     }
 
-    fn stability(&mut self, audit: &Audit, watch: Watch<'_>) -> Result<Standing, Stopped> {
+    fn stability(&mut self, audit: &Audit, watch: Watch<'_>) -> Result<ClaimStatus, Stopped> {
         let mut boxes = vec![];
         let worst = self.member(&audit.stability.plant);
         for of_box in 0..self.certificate.plant.boxes.len() {
@@ -201,12 +201,12 @@ impl Prover<'_> {
             let members: Vec<CertificateMember> = named.chain(corners(&self.certificate, of_box)).collect();
             match self.stable_box(&members, watch)? {
                 Ok(stable) => boxes.push(stable),
-                Err(standing) => return Ok(standing),
+                Err(claim_status) => return Ok(claim_status),
             }
         }
         Ok(match self.keeps(Claim::Stable(boxes)) {
-            true => Standing::Proven,
-            false => Standing::NotProven(NotProven::Rounding),
+            true => ClaimStatus::Proven,
+            false => ClaimStatus::NotProven(NotProven::Rounding),
         })
     }
 
@@ -215,7 +215,7 @@ impl Prover<'_> {
         &mut self,
         members: &[CertificateMember],
         watch: Watch<'_>,
-    ) -> Result<Result<StableBox, Standing>, Stopped> {
+    ) -> Result<Result<StableBox, ClaimStatus>, Stopped> {
         let mut stable = None;
         for (index, member) in members.iter().enumerate() {
             // in a sampled loop every other plant is determined by the box
@@ -226,13 +226,13 @@ impl Prover<'_> {
                 PoleLocation::Beyond(count)
                     if self.keeps(Claim::Unstable { member: member.clone(), count: count.clone() }) =>
                 {
-                    return Ok(Err(Standing::Refuted));
+                    return Ok(Err(ClaimStatus::Refuted));
                 }
                 PoleLocation::Within(count) if stable.is_none() => stable = Some((member, count)),
                 _ => {}
             }
         }
-        let not_proven = |reason| Ok(Err(Standing::NotProven(reason)));
+        let not_proven = |reason| Ok(Err(ClaimStatus::NotProven(reason)));
         let Some((member, count)) = stable else { return not_proven(NotProven::NoStableMember) };
         let around = Loop::<f64>::over_box(&self.certificate, member.of_box);
         let (Some(around), Some(at)) = (around, Loop::<f64>::at(&self.certificate, member)) else {
@@ -333,20 +333,20 @@ impl Prover<'_> {
         &mut self,
         index: usize,
         finding: &SpecificationFinding,
-        stability: &Standing,
+        stability: &ClaimStatus,
         watch: Watch<'_>,
     ) -> Result<SpecificationProof, Stopped> {
         let specification = &self.problem.specifications[index];
         let requirement = &specification.requirement;
         let highest = self.problem.compensation.highest_frequency_rad_per_s();
         if specification.band_rad_per_s[0] >= highest {
-            return Ok(SpecificationProof::without(Standing::NotProven(NotProven::BeyondSampling)));
+            return Ok(SpecificationProof::without(ClaimStatus::NotProven(NotProven::BeyondSampling)));
         }
         if requirement.is_tracking() && self.problem.tracking == TrackingJudgement::Spread {
-            return Ok(SpecificationProof::without(Standing::NotProven(NotProven::Spread)));
+            return Ok(SpecificationProof::without(ClaimStatus::NotProven(NotProven::Spread)));
         }
         let hints: Vec<PlantAtFrequency> = self.hints(finding);
-        let mut whole = SpecificationProof::without(Standing::Proven);
+        let mut whole = SpecificationProof::without(ClaimStatus::Proven);
         for limited in limited_loops(specification) {
             whole = whole.and(self.side((index, &limited), &hints, stability, watch)?);
         }
@@ -358,7 +358,7 @@ impl Prover<'_> {
         &mut self,
         (specification, limited): (usize, &LimitedLoop),
         hints: &[PlantAtFrequency],
-        stability: &Standing,
+        stability: &ClaimStatus,
         watch: Watch<'_>,
     ) -> Result<SpecificationProof, Stopped> {
         let decisive = from_db(self.problem.tolerance_db);
@@ -366,18 +366,18 @@ impl Prover<'_> {
             width: from_db(self.options.width_db),
             decisive,
             effort: self.effort,
-            only_points: *stability != Standing::Proven,
+            only_points: *stability != ClaimStatus::Proven,
         };
         if let LimitOf::Table(points) = &limited.limit {
             let [from, to] = limited.band_rad_per_s;
             let highest = self.problem.compensation.highest_frequency_rad_per_s().min(to);
             let meets = |pair: &[(f64, f64)]| pair[0].0.max(from) < pair[1].0.min(highest);
             if !points.windows(2).any(meets) {
-                return Ok(SpecificationProof::without(Standing::NotProven(NotProven::TableLimit)));
+                return Ok(SpecificationProof::without(ClaimStatus::NotProven(NotProven::TableLimit)));
             }
         }
         let Some(mut found) = enclose(&self.certificate, limited, hints, wanted, watch)? else {
-            return Ok(SpecificationProof::without(Standing::NotProven(NotProven::NotPolynomial)));
+            return Ok(SpecificationProof::without(ClaimStatus::NotProven(NotProven::NotPolynomial)));
         };
         let reached = Claim::Reached {
             limited: limited.clone(),
@@ -396,12 +396,12 @@ impl Prover<'_> {
         }
         let most_db = most_db.flatten();
         let EnclosedSupremum { least, at, open, .. } = found;
-        let standing = match most_db {
-            _ if is_reached && least > decisive => Standing::Refuted,
-            Some(most_db) if most_db <= self.problem.tolerance_db => Standing::Proven,
-            _ if wanted.only_points => Standing::NotProven(NotProven::Unstable),
-            _ if rounding => Standing::NotProven(NotProven::Rounding),
-            _ => Standing::NotProven(open.map_or(NotProven::Unbounded, NotProven::Budget)),
+        let claim_status = match most_db {
+            _ if is_reached && least > decisive => ClaimStatus::Refuted,
+            Some(most_db) if most_db <= self.problem.tolerance_db => ClaimStatus::Proven,
+            _ if wanted.only_points => ClaimStatus::NotProven(NotProven::Unstable),
+            _ if rounding => ClaimStatus::NotProven(NotProven::Rounding),
+            _ => ClaimStatus::NotProven(open.map_or(NotProven::Unbounded, NotProven::Budget)),
         };
         let values = values_of(&self.certificate.plant, &at.member);
         let worst = is_reached.then(|| SpecificationMargin {
@@ -411,7 +411,7 @@ impl Prover<'_> {
             plant: PlantPoint::Parameters(values),
             other: None,
         });
-        Ok(SpecificationProof { standing, least_db: is_reached.then(|| db(least)), most_db, worst })
+        Ok(SpecificationProof { claim_status, least_db: is_reached.then(|| db(least)), most_db, worst })
     }
 
     /// Retains a claim that a ratio is not exceeded; returns that ratio, dB, or `None` if the
@@ -468,7 +468,7 @@ enum PoleLocation {
 impl SpecificationProof {
     /// Combination of both sides: the worse verdict, and the greater of both suprema.
     fn and(self, other: SpecificationProof) -> SpecificationProof {
-        if self.least_db.is_none() && self.standing == Standing::Proven {
+        if self.least_db.is_none() && self.claim_status == ClaimStatus::Proven {
             return other;
         }
         let other_is_worse = other.least_db > self.least_db;
@@ -477,11 +477,11 @@ impl SpecificationProof {
             false => (self.worst, self.least_db),
         };
         let most_db = self.most_db.zip(other.most_db).map(|(one, other)| one.max(other));
-        let standing = match other.standing.verdict() > self.standing.verdict() {
-            true => other.standing,
-            false => self.standing,
+        let claim_status = match other.claim_status.verdict() > self.claim_status.verdict() {
+            true => other.claim_status,
+            false => self.claim_status,
         };
-        SpecificationProof { standing, least_db, most_db, worst }
+        SpecificationProof { claim_status, least_db, most_db, worst }
     }
 }
 

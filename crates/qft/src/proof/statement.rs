@@ -170,17 +170,17 @@ fn parts(
     let factor = |[low, high]: [f64; 2]| portable::ln(high / low).abs() / portable::ln(FACTOR_MAXIMUM);
     let greatest = moved.iter().filter(|one| one.2).map(|one| factor(one.1)).fold(1.0, f64::max);
     let count = greatest.ceil();
-    let value = |[low, high]: [f64; 2], by_factors: bool, share: f64| match share {
+    let value = |[low, high]: [f64; 2], by_factors: bool, fraction: f64| match fraction {
         0.0 => low,
         1.0 => high,
-        share if by_factors => low * portable::exp(share * portable::ln(high / low)),
-        share => low + (high - low) * share,
+        fraction if by_factors => low * portable::exp(fraction * portable::ln(high / low)),
+        fraction => low + (high - low) * fraction,
     };
     let part = |index: f64| {
         let mut own = whole.to_vec();
         for &(parameter, ends, by_factors) in moved {
             let [low, high] =
-                [index / count, (index + 1.0) / count].map(|share| value(ends, by_factors, share));
+                [index / count, (index + 1.0) / count].map(|fraction| value(ends, by_factors, fraction));
             own[parameter] = ParameterSegment { low, high, variable: Some(variable), by_factors };
         }
         own
@@ -195,18 +195,18 @@ const BESIDE: f64 = 1e-9;
 /// The variables of a plant that belongs to a box; `None` if it does not, as may happen for a
 /// declared plant with correlated parameters.
 fn variables_within(segments: &[ParameterSegment], variables: usize, values: &[f64]) -> Option<Vec<f64>> {
-    let mut shares: Vec<Option<f64>> = vec![None; variables];
+    let mut fractions: Vec<Option<f64>> = vec![None; variables];
     let fits = segments.iter().zip(values).all(|(one, value)| {
-        match one.variable.and_then(|own| shares.get_mut(own)) {
+        match one.variable.and_then(|own| fractions.get_mut(own)) {
             None => one.low == *value,
             Some(slot) => {
-                let own = one.share(*value);
+                let own = one.fraction(*value);
                 let known = *slot.get_or_insert(own);
                 (own - known).abs() <= BESIDE && (-BESIDE..=1.0 + BESIDE).contains(&own)
             }
         }
     });
-    fits.then(|| shares.into_iter().map(|share| share.unwrap_or(0.0).clamp(0.0, 1.0)).collect())
+    fits.then(|| fractions.into_iter().map(|fraction| fraction.unwrap_or(0.0).clamp(0.0, 1.0)).collect())
 }
 
 fn is_within(segments: &[ParameterSegment], variables: usize, values: &[f64]) -> bool {
@@ -215,7 +215,7 @@ fn is_within(segments: &[ParameterSegment], variables: usize, values: &[f64]) ->
 
 impl ParameterSegment {
     /// The variable at which a parameter has this value.
-    fn share(&self, value: f64) -> f64 {
+    fn fraction(&self, value: f64) -> f64 {
         match self.by_factors {
             true => portable::ln(value / self.low) / portable::ln(self.high / self.low),
             false => (value - self.low) / (self.high - self.low),
@@ -223,12 +223,12 @@ impl ParameterSegment {
     }
 
     /// The value of a parameter at this value of its variable.
-    pub fn value(&self, share: f64) -> f64 {
-        match share {
+    pub fn value(&self, fraction: f64) -> f64 {
+        match fraction {
             0.0 => self.low,
             1.0 => self.high,
-            share if self.by_factors => self.low * portable::exp(share * portable::ln(self.high / self.low)),
-            share => self.low + (self.high - self.low) * share,
+            fraction if self.by_factors => self.low * portable::exp(fraction * portable::ln(self.high / self.low)),
+            fraction => self.low + (self.high - self.low) * fraction,
         }
     }
 }
@@ -252,7 +252,7 @@ pub(super) fn member_of(plant: &CertifiedPlant, values: &[f64]) -> Option<Certif
     let mut variables = vec![0.0; plant.variables];
     for (one, value) in plant.boxes.first()?.iter().zip(values) {
         if let Some(slot) = one.variable.and_then(|variable| variables.get_mut(variable)) {
-            *slot = one.share(*value).clamp(0.0, 1.0);
+            *slot = one.fraction(*value).clamp(0.0, 1.0);
         }
     }
     Some(CertificateMember { of_box: 0, variables })
@@ -261,8 +261,8 @@ pub(super) fn member_of(plant: &CertifiedPlant, values: &[f64]) -> Option<Certif
 /// The values of the parameters of a plant.
 pub(super) fn values_of(plant: &CertifiedPlant, member: &CertificateMember) -> Vec<f64> {
     let value = |one: &ParameterSegment| {
-        let share = one.variable.and_then(|variable| member.variables.get(variable)).copied();
-        share.map_or(one.low, |share| one.value(share))
+        let fraction = one.variable.and_then(|variable| member.variables.get(variable)).copied();
+        fraction.map_or(one.low, |fraction| one.value(fraction))
     };
     plant.boxes.get(member.of_box).into_iter().flatten().map(value).collect()
 }

@@ -17,7 +17,7 @@ pub(crate) enum WalkOutcome {
     /// Panels that prove the claim.
     Shown(Vec<FrequencyPanel>),
     /// The claim is refuted at this point: |V| is greater than |U| by this ratio.
-    Wrong { at: Shares, ratio: f64 },
+    Wrong { at: Fractions, ratio: f64 },
     /// Too many leaves; this box is not proven.
     Open(ProofRegion),
     /// Too many control points.
@@ -26,7 +26,7 @@ pub(crate) enum WalkOutcome {
 
 /// A frequency, and a plant by its variables.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Shares {
+pub(crate) struct Fractions {
     pub(crate) frequency_rad_per_s: f64,
     pub(crate) variables: Vec<f64>,
 }
@@ -80,14 +80,14 @@ impl ProofBudget {
         self.left.set(self.left.get().saturating_sub(points as u64));
     }
 
-    fn tell(&self, watch: Watch<'_>) -> Result<(), Stopped> {
+    fn report_progress(&self, watch: Watch<'_>) -> Result<(), Stopped> {
         let spent = 1.0 - self.left.get() as f64 / self.whole.max(1) as f64;
-        if watch(Progress { stage: PROVING, share: spent }) { Ok(()) } else { Err(Stopped) }
+        if watch(Progress { stage: PROVING, fraction: spent }) { Ok(()) } else { Err(Stopped) }
     }
 }
 
 /// A box to be processed: its control points, and its range on each axis of its panel.
-struct WaitingBox {
+struct QueuedBox {
     patch: Patch<f64>,
     sides: Vec<[f64; 2]>,
     depth: usize,
@@ -107,13 +107,13 @@ pub(crate) fn walk(
 ) -> Result<WalkOutcome, Stopped> {
     let Some(whole) = Patch::over(claimed, variables, range) else { return Ok(WalkOutcome::TooLarge) };
     let sides = vec![[0.0, 1.0]; whole.axes()];
-    let mut waiting = vec![WaitingBox { patch: whole, sides, depth: 0 }];
+    let mut waiting = vec![QueuedBox { patch: whole, sides, depth: 0 }];
     let (mut tree, mut leaves, mut looked) = (vec![], 0, 0);
-    while let Some(WaitingBox { patch, sides, depth }) = waiting.pop() {
+    while let Some(QueuedBox { patch, sides, depth }) = waiting.pop() {
         effort.budget.spend(patch.size());
         looked += 1;
         if looked % LOOK == 0 {
-            effort.budget.tell(watch)?;
+            effort.budget.report_progress(watch)?;
         }
         match look(&patch, effort.room) {
             LeafOutcome::Shown(direction) => {
@@ -132,8 +132,8 @@ pub(crate) fn walk(
                 tree.push(axis as u8);
                 let [lower, upper] = patch.halves(axis);
                 let [low_sides, high_sides] = halved(&sides, axis);
-                waiting.push(WaitingBox { patch: upper, sides: high_sides, depth: depth + 1 });
-                waiting.push(WaitingBox { patch: lower, sides: low_sides, depth: depth + 1 });
+                waiting.push(QueuedBox { patch: upper, sides: high_sides, depth: depth + 1 });
+                waiting.push(QueuedBox { patch: lower, sides: low_sides, depth: depth + 1 });
             }
             LeafOutcome::Halve(_) => return Ok(WalkOutcome::Open(region(range, &sides))),
         }
@@ -163,27 +163,27 @@ fn halved(sides: &[[f64; 2]], axis: usize) -> [Vec<[f64; 2]>; 2] {
 }
 
 /// The frequency at this fraction of a panel.
-fn frequency(range: PanelRange, share: f64) -> f64 {
+fn frequency(range: PanelRange, fraction: f64) -> f64 {
     match range.to.is_finite() {
-        true => range.from + share * (range.to - range.from),
-        false => range.from / share,
+        true => range.from + fraction * (range.to - range.from),
+        false => range.from / fraction,
     }
 }
 
-fn at(range: PanelRange, sides: &[[f64; 2]], corner: u64) -> Shares {
-    let shares = sides
+fn at(range: PanelRange, sides: &[[f64; 2]], corner: u64) -> Fractions {
+    let fractions = sides
         .iter()
         .enumerate()
         .map(|(axis, [low, high])| if corner >> axis & 1 == 1 { *high } else { *low });
-    let shares: Vec<f64> = shares.collect();
+    let fractions: Vec<f64> = fractions.collect();
     let (own, variables) =
-        shares.split_first().map_or((0.0, vec![]), |(own, others)| (*own, others.to_vec()));
-    Shares { frequency_rad_per_s: frequency(range, own), variables }
+        fractions.split_first().map_or((0.0, vec![]), |(own, others)| (*own, others.to_vec()));
+    Fractions { frequency_rad_per_s: frequency(range, own), variables }
 }
 
 fn region(range: PanelRange, sides: &[[f64; 2]]) -> ProofRegion {
     let (own, others) =
         sides.split_first().map_or(([0.0, 1.0], vec![]), |(own, others)| (*own, others.to_vec()));
-    let [one, other] = own.map(|share| frequency(range, share));
+    let [one, other] = own.map(|fraction| frequency(range, fraction));
     ProofRegion { of_box: 0, band_rad_per_s: [one.min(other), one.max(other)], variables: others }
 }

@@ -63,8 +63,8 @@ impl LimitTable {
         let exact = self.points.iter().find(|point| point.0 == frequency).map(|point| point.1);
         let between = self.points.windows(2).find_map(|pair| match *pair {
             [(low, low_value), (high, high_value)] if low < frequency && frequency < high => {
-                let share = portable::ln(frequency / low) / portable::ln(high / low);
-                Some(low_value * portable::exp(share * portable::ln(high_value / low_value)))
+                let fraction = portable::ln(frequency / low) / portable::ln(high / low);
+                Some(low_value * portable::exp(fraction * portable::ln(high_value / low_value)))
             }
             _ => None,
         });

@@ -20,13 +20,13 @@ use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::range::RequiredRange;
 use phea_dynamics::time_response::TimeResponseError;
 
-pub use check::{Reached, WishCheck, WishOutcome, Wished, check_lower, check_upper};
+pub use check::{Reached, RequirementCheck, RequirementOutcome, RequiredResponse, check_lower, check_upper};
 pub use spread::{LimitOrder, TrackingSpread, tracking_spread};
 pub use translation::{tracking_lower, tracking_upper};
 
 /// The fastest acceptable response to a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct UpperWish {
+pub struct UpperStepRequirement {
     /// Largest overshoot, percent of the step, from 0 to below 100.
     pub overshoot_percent: f64,
     /// Time after which the response stays within the band, s.
@@ -37,7 +37,7 @@ pub struct UpperWish {
 
 /// The slowest acceptable response to a step: it settles in time, without overshoot.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LowerWish {
+pub struct LowerStepRequirement {
     /// Time after which the response stays within the band, s.
     pub settling_time_s: f64,
     /// The settling band: plus or minus this percentage of the step.
@@ -83,7 +83,7 @@ pub struct TrackingLimit {
     /// Extra root z or p, rad/s.
     pub extra_root_rad_per_s: Option<f64>,
     /// Comparison of its response with the requirement.
-    pub check: WishCheck,
+    pub check: RequirementCheck,
 }
 
 /// Reason why a requirement has no limits, or a limit no response to check.
@@ -100,12 +100,12 @@ pub enum TimeDomainError {
         expected: RequiredRange,
     },
     /// The rule of thumb applies to a band other than that of the requirement.
-    #[error("the rule of thumb is for a band of {rule_percent} %, the wish for {wish_percent} %")]
+    #[error("the rule of thumb is for a band of {rule_percent} %, the requirement for {required_percent} %")]
     RuleBand {
         /// Band of the rule, percent.
         rule_percent: f64,
         /// Band of the requirement, percent.
-        wish_percent: f64,
+        required_percent: f64,
     },
     /// Extra root so slow that no natural frequency settles in time.
     #[error(

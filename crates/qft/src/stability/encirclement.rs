@@ -113,17 +113,17 @@ impl Characteristic {
     }
 
     fn golden_section(&self, low: f64, high: f64) -> (f64, f64) {
-        const SHARE: f64 = 0.381_966_011_250_105_1;
+        const FRACTION: f64 = 0.381_966_011_250_105_1;
         let (mut low, mut high) = (low, high);
         let at = |angle: f64| (self.distance(angle), angle);
-        let (mut left, mut right) = (at(low + SHARE * (high - low)), at(high - SHARE * (high - low)));
+        let (mut left, mut right) = (at(low + FRACTION * (high - low)), at(high - FRACTION * (high - low)));
         for _ in 0..40 {
             if left.0 < right.0 {
                 (high, right) = (right.1, left);
-                left = at(low + SHARE * (high - low));
+                left = at(low + FRACTION * (high - low));
             } else {
                 (low, left) = (left.1, right);
-                right = at(high - SHARE * (high - low));
+                right = at(high - FRACTION * (high - low));
             }
         }
         if left.0 < right.0 { left } else { right }
@@ -262,10 +262,10 @@ fn end_of_axis(prompt: &Polynomial, delayed: &Polynomial) -> Result<f64, Irresol
         return Err(Irresolution::GainAtInfinity);
     }
     // (|c_1| s^(N-1) + ... + |n_0| s^m + ...)/(|c_0| s^N)
-    let share = |frequency: f64| {
+    let fraction = |frequency: f64| {
         let rest = |polynomial: &Polynomial, skipped: usize| {
-            let kept = polynomial.coefficients().iter().skip(skipped);
-            let sum = kept.rev().fold(0.0, |sum, c| sum / frequency + c.abs());
+            let cache = polynomial.coefficients().iter().skip(skipped);
+            let sum = cache.rev().fold(0.0, |sum, c| sum / frequency + c.abs());
             (0..prompt.degree() - polynomial.degree() + skipped).fold(sum, |sum, _| sum / frequency)
         };
         (rest(prompt, 1) + rest(delayed, 0)) / leading
@@ -273,18 +273,18 @@ fn end_of_axis(prompt: &Polynomial, delayed: &Polynomial) -> Result<f64, Irresol
     let allowed = (0.9_f64).max(0.5 * (1.0 + gain));
     let mut end = 1.0;
     for _ in 0..1000 {
-        if share(end) <= allowed {
+        if fraction(end) <= allowed {
             break;
         }
         end *= 2.0;
     }
     for _ in 0..1000 {
-        if share(0.5 * end) > allowed {
+        if fraction(0.5 * end) > allowed {
             break;
         }
         end *= 0.5;
     }
-    if share(end) <= allowed { Ok(end) } else { Err(Irresolution::GainAtInfinity) }
+    if fraction(end) <= allowed { Ok(end) } else { Err(Irresolution::GainAtInfinity) }
 }
 
 #[cfg(test)]
@@ -322,9 +322,9 @@ mod tests {
             let closed = Polynomial::from_roots(2.0, &roots).unwrap();
             let outside = roots.iter().filter(|root| root.re > 0.0).count();
             // any part of the polynomial may be the numerator
-            let part = |kept: &dyn Fn(usize) -> bool| {
+            let part = |cache: &dyn Fn(usize) -> bool| {
                 let terms = closed.coefficients().iter().enumerate();
-                Polynomial::new(terms.map(|(i, &c)| if kept(i) { c } else { 0.0 }).collect())
+                Polynomial::new(terms.map(|(i, &c)| if cache(i) { c } else { 0.0 }).collect())
             };
             let continuous = Characteristic {
                 denominator: part(&|index| index <= trial % 5),

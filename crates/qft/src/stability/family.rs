@@ -5,7 +5,7 @@ mod judged;
 mod jumps;
 
 use phea_dynamics::order::sort_by_number;
-use phea_dynamics::watch::{Stopped, Watch, part, tell};
+use phea_dynamics::watch::{Stopped, Watch, part, report_progress};
 
 use super::badness::{Badness, badness_of};
 use super::folding::{self, Folded};
@@ -15,7 +15,7 @@ use super::{DelayMargin, Irresolution, MemberStability, StabilityFinding, Stabil
 use crate::closed_loop::Compensation;
 use crate::coordinate_climb::LONGEST_STEP;
 use crate::family::{Extent, Family, UncertainFamily, corners};
-use crate::kept_plants::KeptPlants;
+use crate::plant_cache::PlantCache;
 use crate::verdict::{Evidence, PlantPoint, Verdict};
 use judged::{JudgedFamily, StabilitySearch};
 
@@ -95,9 +95,9 @@ pub fn family_stability(
     compensation: &Compensation,
     watch: Watch<'_>,
 ) -> Result<FamilyStability, Stopped> {
-    let kept = KeptPlants::default();
-    let mut audit = StabilityAudit::new(family, compensation, &kept);
-    audit.look(watch)?;
+    let cache = PlantCache::default();
+    let mut audit = StabilityAudit::new(family, compensation, &cache);
+    audit.evaluate(watch)?;
     Ok(audit.result())
 }
 
@@ -117,7 +117,7 @@ pub(crate) struct StabilityAudit<'a> {
     /// True if the delay margin of a sampled loop is already exact, not an estimate.
     resampled: bool,
     /// The evaluated plants, within a sampled loop.
-    kept: &'a KeptPlants,
+    cache: &'a PlantCache,
     record: StabilityRecord,
 }
 
@@ -129,7 +129,7 @@ impl<'a> StabilityAudit<'a> {
     pub(crate) fn new(
         family: &'a Family,
         compensation: &'a Compensation,
-        kept: &'a KeptPlants,
+        cache: &'a PlantCache,
     ) -> StabilityAudit<'a> {
         let plants: Vec<PlantPoint> = match family {
             Family::Uncertain(family) => {
@@ -146,19 +146,19 @@ impl<'a> StabilityAudit<'a> {
             badness: Vec::new(),
             estimated: Vec::new(),
             resampled: false,
-            kept,
+            cache,
             record: StabilityRecord::default(),
         }
     }
 
     /// Examines members and corners, the plants between them whose modes fold, and then searches
     /// between all of these.
-    pub(crate) fn look(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
-        self.look_at_plants(&mut part(watch, STAGE, [0.0, 0.3]))?;
+    pub(crate) fn evaluate(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
+        self.evaluate_plants(&mut part(watch, STAGE, [0.0, 0.3]))?;
         self.folded = self.fold();
         self.plants.extend(self.folded.plants.iter().cloned().map(PlantPoint::Parameters));
-        self.look_at_plants(&mut part(watch, STAGE, [0.3, 0.8]))?;
-        self.look_between(&mut part(watch, STAGE, [0.8, 0.95]))?;
+        self.evaluate_plants(&mut part(watch, STAGE, [0.3, 0.8]))?;
+        self.sample_between(&mut part(watch, STAGE, [0.8, 0.95]))?;
         if self.around.compensation.sample_time_s().is_some() {
             self.resample(&mut part(watch, STAGE, [0.95, 1.0]))?;
         }
@@ -166,18 +166,18 @@ impl<'a> StabilityAudit<'a> {
     }
 
     /// Examines members and corners not yet examined.
-    pub(crate) fn look_at_plants(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
+    pub(crate) fn evaluate_plants(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
         let new = self.plants.get(self.badness.len()..).unwrap_or_default();
         let chunks: Vec<&[PlantPoint]> = new.chunks(new.len().div_ceil(PIECES).max(1)).collect();
         let around = &self.around;
-        let judge = |kept: &KeptPlants, chunk: &[PlantPoint], watch: Watch<'_>| {
+        let judge = |cache: &PlantCache, chunk: &[PlantPoint], watch: Watch<'_>| {
             let judged = chunk.iter().enumerate().map(|(index, plant)| {
-                tell(watch, STAGE, index, chunk.len())?;
-                Ok(around.judged(kept, plant))
+                report_progress(watch, STAGE, index, chunk.len())?;
+                Ok(around.judged(cache, plant))
             });
             judged.collect::<Result<Vec<MemberStability>, Stopped>>()
         };
-        let found = self.kept.each(chunks, (STAGE, watch), judge)?.concat();
+        let found = self.cache.each(chunks, (STAGE, watch), judge)?.concat();
         for (plant, found) in new.iter().zip(&found) {
             self.record.take(plant.clone(), found);
         }
@@ -187,7 +187,7 @@ impl<'a> StabilityAudit<'a> {
 
     /// Searches from the worst plants of a box, and determines whether a pole passes through
     /// infinity inside it.
-    fn look_between(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
+    fn sample_between(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
         let Family::Uncertain(family) = self.around.family else { return Ok(()) };
         // an unstable plant decides the verdict, and without polynomials a search is expensive
         let decided = self.record.unstable.is_some() && !family.plant().is_rational();
@@ -202,7 +202,7 @@ impl<'a> StabilityAudit<'a> {
         ];
         let mut tasks = Vec::new();
         for (ranked_by, searched) in searches {
-            let from = |first_step: f64| move |shares| StabilitySearch { searched, first_step, shares };
+            let from = |first_step: f64| move |fractions| StabilitySearch { searched, first_step, fractions };
             tasks.extend(self.starts(family, ranked_by).into_iter().map(from(LONGEST_STEP)));
             tasks.extend(self.sides(family, ranked_by).into_iter().map(from(jumps::STEP)));
         }
@@ -212,18 +212,18 @@ impl<'a> StabilityAudit<'a> {
     }
 
     fn judged(&self, plant: &PlantPoint) -> MemberStability {
-        self.around.judged(self.kept, plant)
+        self.around.judged(self.cache, plant)
     }
 
     /// Searches from these plants, and records the end of each search.
     fn search(&mut self, tasks: Vec<StabilitySearch<'_>>, watch: Watch<'_>) -> Result<(), Stopped> {
         let around = &self.around;
-        let search = |kept: &KeptPlants, task: StabilitySearch<'_>, watch: Watch<'_>| {
-            tell(watch, STAGE, 0, 1)?;
-            Ok(task.searched(around, kept))
+        let search = |cache: &PlantCache, task: StabilitySearch<'_>, watch: Watch<'_>| {
+            report_progress(watch, STAGE, 0, 1)?;
+            Ok(task.searched(around, cache))
         };
         for (values, is_of_delay, found) in
-            self.kept.each(tasks, (STAGE, watch), search)?.into_iter().flatten()
+            self.cache.each(tasks, (STAGE, watch), search)?.into_iter().flatten()
         {
             if is_of_delay {
                 self.estimated.push(values.clone());
@@ -249,9 +249,9 @@ impl<'a> StabilityAudit<'a> {
         let mut chosen: Vec<Vec<f64>> = Vec::new();
         for (_, plant) in order {
             let PlantPoint::Parameters(values) = plant else { continue };
-            let shares = family.shares(values);
-            if chosen.iter().all(|earlier| self.apart(earlier, &shares)) {
-                chosen.push(shares);
+            let fractions = family.fractions(values);
+            if chosen.iter().all(|earlier| self.apart(earlier, &fractions)) {
+                chosen.push(fractions);
             }
             if chosen.len() == STARTS {
                 break;
@@ -300,7 +300,7 @@ impl<'a> StabilityAudit<'a> {
     fn most_folding(&self) -> f64 {
         let step = self.plants.len().div_ceil(FOLDING_PLANTS).max(1);
         let JudgedFamily { compensation, .. } = self.around;
-        let folding = |plant| self.around.member(self.kept, plant).ok()?.folding(compensation);
+        let folding = |plant| self.around.member(self.cache, plant).ok()?.folding(compensation);
         let each = self.plants.iter().step_by(step).map(|plant| folding(plant).unwrap_or(f64::INFINITY));
         each.fold(0.0, f64::max)
     }
@@ -313,9 +313,9 @@ impl<'a> StabilityAudit<'a> {
 
     /// Examines plants that were the worst in another audit, and searches from those that are worse
     /// than the plants found here.
-    pub(crate) fn look_at(&mut self, plants: &[PlantPoint], watch: Watch<'_>) -> Result<(), Stopped> {
+    pub(crate) fn evaluate_at(&mut self, plants: &[PlantPoint], watch: Watch<'_>) -> Result<(), Stopped> {
         for (done, plant) in plants.iter().rev().enumerate() {
-            tell(watch, STAGE, done, plants.len())?;
+            report_progress(watch, STAGE, done, plants.len())?;
             let found = self.judged(plant);
             let worse = self.record.is_worse(&found);
             self.take(plant.clone(), found);
@@ -323,12 +323,12 @@ impl<'a> StabilityAudit<'a> {
                 (worse, self.around.family, plant)
                 && family.extent() == Extent::Box
             {
-                let shares = family.shares(values);
+                let fractions = family.fractions(values);
                 let of =
-                    |searched| StabilitySearch { searched, first_step: LONGEST_STEP, shares: shares.clone() };
-                let share = [done, done + 1].map(|done| done as f64 / plants.len() as f64);
+                    |searched| StabilitySearch { searched, first_step: LONGEST_STEP, fractions: fractions.clone() };
+                let fraction = [done, done + 1].map(|done| done as f64 / plants.len() as f64);
                 let tasks = vec![of(&[Badness::Closeness]), of(&[Badness::RealPart])];
-                self.search(tasks, &mut part(&mut *watch, STAGE, share))?;
+                self.search(tasks, &mut part(&mut *watch, STAGE, fraction))?;
             }
         }
         Ok(())
@@ -344,8 +344,8 @@ impl<'a> StabilityAudit<'a> {
                 let plant = found.plant.clone();
                 self.record.doubt(Irresolution::InfinityOpen(found), plant);
             }
-            Infinity::Changed(shares) => {
-                let values: Vec<Vec<f64>> = shares.iter().map(|shares| family.values(shares)).collect();
+            Infinity::Changed(fractions) => {
+                let values: Vec<Vec<f64>> = fractions.iter().map(|fractions| family.values(fractions)).collect();
                 let changed = values.first().cloned().map(PlantPoint::Parameters);
                 for plant in values.into_iter().map(PlantPoint::Parameters) {
                     let found = self.judged(&plant);

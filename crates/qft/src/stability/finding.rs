@@ -32,7 +32,7 @@ pub struct StabilityFinding {
 #[derive(Clone, Debug, PartialEq)]
 pub struct SearchedInfinity {
     /// The least value found, as a fraction of its value for the nominal plant.
-    pub least_share: f64,
+    pub least_fraction: f64,
     /// The plant that has it.
     pub plant: PlantPoint,
     /// The parameters that move it, as their indices, the most important first.

@@ -73,21 +73,21 @@ pub(super) fn plants(family: &UncertainFamily, sample_time_s: f64, bases: &[Vec<
     }
     let count = |index: &usize| steps(index) + 1;
     let grid = moving.iter().map(count).fold(1_usize, usize::saturating_mul);
-    let mut shares = Vec::new();
+    let mut fractions = Vec::new();
     if grid <= PLANTS_MAXIMUM {
         for base in bases.iter().take((PLANTS_MAXIMUM / grid).max(1)) {
             let start = vec![base.clone()];
-            shares.extend(moving.iter().fold(start, |plants, &index| along(&plants, index, count(&index))));
+            fractions.extend(moving.iter().fold(start, |plants, &index| along(&plants, index, count(&index))));
         }
     } else {
         let each = PLANTS_MAXIMUM / (moving.len() * bases.len().max(1));
         for base in bases {
             for &index in &moving {
-                shares.extend(along(std::slice::from_ref(base), index, count(&index).min(each)));
+                fractions.extend(along(std::slice::from_ref(base), index, count(&index).min(each)));
             }
         }
     }
-    let mut plants: Vec<Vec<f64>> = shares.iter().map(|shares| family.values(shares)).collect();
+    let mut plants: Vec<Vec<f64>> = fractions.iter().map(|fractions| family.values(fractions)).collect();
     plants.sort_by(|one, other| one.partial_cmp(other).unwrap_or(std::cmp::Ordering::Equal));
     plants.dedup();
     let apart = movements.iter().map(|one| if one.steps > 1 { (PASS / one.turn).min(APART) } else { APART });
@@ -100,11 +100,11 @@ fn along(plants: &[Vec<f64>], coordinate: usize, count: usize) -> Vec<Vec<f64>> 
     let mut all = Vec::with_capacity(plants.len() * count);
     for plant in plants {
         for step in 0..count {
-            let mut shares = plant.clone();
-            if let Some(share) = shares.get_mut(coordinate) {
-                *share = step as f64 / last;
+            let mut fractions = plant.clone();
+            if let Some(fraction) = fractions.get_mut(coordinate) {
+                *fraction = step as f64 / last;
             }
-            all.push(shares);
+            all.push(fractions);
         }
     }
     all
@@ -113,11 +113,11 @@ fn along(plants: &[Vec<f64>], coordinate: usize, count: usize) -> Vec<Vec<f64>> 
 /// Movement along one coordinate, for the mode that needs the most steps.
 fn movement(family: &UncertainFamily, sample_time_s: f64, base: &[f64], coordinate: usize) -> Movement {
     let modes = |point: usize| {
-        let mut shares = base.to_vec();
-        if let Some(share) = shares.get_mut(coordinate) {
-            *share = point as f64 / POINTS as f64;
+        let mut fractions = base.to_vec();
+        if let Some(fraction) = fractions.get_mut(coordinate) {
+            *fraction = point as f64 / POINTS as f64;
         }
-        modes(family, sample_time_s, &shares)
+        modes(family, sample_time_s, &fractions)
     };
     let (mut total, mut turn) = (0.0, 0.0);
     let mut largest: f64 = 0.0;
@@ -147,8 +147,8 @@ fn movement(family: &UncertainFamily, sample_time_s: f64, base: &[f64], coordina
 }
 
 /// The upper poles of the pairs, multiplied by T.
-fn modes(family: &UncertainFamily, sample_time_s: f64, shares: &[f64]) -> Vec<Complex64> {
-    let Some(plant) = family.plant().coefficients(&family.values(shares)) else { return Vec::new() };
+fn modes(family: &UncertainFamily, sample_time_s: f64, fractions: &[f64]) -> Vec<Complex64> {
+    let Some(plant) = family.plant().coefficients(&family.values(fractions)) else { return Vec::new() };
     let roots = Polynomial::new(plant.command.denominator).roots().unwrap_or_default();
     let upper = roots.into_iter().filter(|root| root.im > 0.0).map(|root| root * sample_time_s);
     upper.filter(|mode| mode.is_finite()).collect()

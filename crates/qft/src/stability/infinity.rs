@@ -35,7 +35,7 @@ const PARTS_WITHOUT_ANY: usize = 64;
 /// Number of starts of the search if the enclosures do not decide.
 const STARTS: usize = 4;
 /// Fraction of its nominal value that counts as clearly not zero after a search.
-const CLEAR_SHARE: f64 = 1e-3;
+const CLEAR_FRACTION: f64 = 1e-3;
 /// Relative change of a coefficient above which a parameter counts as moving it.
 const CHANGE: f64 = 1e-3;
 /// Number of additional plants that are evaluated between one sign and the other.
@@ -75,8 +75,8 @@ pub(super) fn search(family: &UncertainFamily, compensation: &Compensation) -> I
     let around = LoopAtInfinity::new(compensation);
     let dimension = family.coordinates().len();
     let signs = |low: &[f64], high: &[f64]| around.leading(family, low, high);
-    let nominal = family.shares(family.plant().nominal().as_slice());
-    let searched = || Searched { family, around: &around, nominal: &nominal }.look();
+    let nominal = family.fractions(family.plant().nominal().as_slice());
+    let searched = || Searched { family, around: &around, nominal: &nominal }.evaluate();
     let first: Vec<Option<bool>> = signs(&nominal, &nominal).into_iter().map(sign).collect();
     let mut open = VecDeque::from([BoxPart { low: vec![0.0; dimension], high: vec![1.0; dimension] }]);
     let (mut enclosed, mut decided) = (0, 0);
@@ -88,12 +88,12 @@ pub(super) fn search(family: &UncertainFamily, compensation: &Compensation) -> I
         }
         let middle = part.middle();
         let here = signs(&part.low, &part.high);
-        let kept = |(enclosure, first): (&Interval, &Option<bool>)| match first {
+        let cache = |(enclosure, first): (&Interval, &Option<bool>)| match first {
             Some(true) => enclosure.low() >= 0.0,
             Some(false) => enclosure.high() <= 0.0,
             None => !enclosure.has_both_signs(),
         };
-        if here.iter().zip(&first).all(kept) {
+        if here.iter().zip(&first).all(cache) {
             decided += 1;
             continue;
         }
@@ -104,8 +104,8 @@ pub(super) fn search(family: &UncertainFamily, compensation: &Compensation) -> I
             .zip(&first)
             .any(|(here, first)| first.zip(here).is_some_and(|(first, here)| first != here));
         if other {
-            let is_first = |shares: &[f64]| {
-                let here = signs(shares, shares).into_iter().map(sign);
+            let is_first = |fractions: &[f64]| {
+                let here = signs(fractions, fractions).into_iter().map(sign);
                 here.zip(&first).all(|(here, first)| here == *first)
             };
             return Infinity::Changed(between(&nominal, &middle, &is_first));
@@ -129,20 +129,20 @@ type Signs<'a> = &'a dyn Fn(&[f64], &[f64]) -> Vec<Interval>;
 
 /// Plants from the one with the opposite sign towards the change, on the line to the first member.
 fn between(from: &[f64], to: &[f64], is_first: &dyn Fn(&[f64]) -> bool) -> Vec<Vec<f64>> {
-    let at = |share: f64| -> Vec<f64> {
-        from.iter().zip(to).map(|(from, to)| from + share * (to - from)).collect()
+    let at = |fraction: f64| -> Vec<f64> {
+        from.iter().zip(to).map(|(from, to)| from + fraction * (to - from)).collect()
     };
     let (mut same, mut other) = (0.0, 1.0);
     let mut plants = vec![at(other)];
     for _ in 0..BETWEEN {
         let middle = 0.5 * (same + other);
-        let shares = at(middle);
-        if is_first(&shares) {
+        let fractions = at(middle);
+        if is_first(&fractions) {
             same = middle;
         } else {
             other = middle;
         }
-        plants.push(shares);
+        plants.push(fractions);
     }
     plants
 }
@@ -155,42 +155,42 @@ struct Searched<'a> {
 }
 
 impl Searched<'_> {
-    fn look(&self) -> Infinity {
+    fn evaluate(&self) -> Infinity {
         let known = self.numbers(self.nominal);
-        let share = |shares: &[f64]| {
-            let here = self.numbers(shares);
+        let fraction = |fractions: &[f64]| {
+            let here = self.numbers(fractions);
             let each = here.iter().zip(&known).map(|(here, known)| here / known);
             if here.len() == known.len() { each.fold(f64::INFINITY, f64::min) } else { f64::NAN }
         };
         let plants = self.family.members().iter().cloned().chain(corners(self.family));
         let mut starts: Vec<(f64, Vec<f64>)> = plants
             .map(|values| {
-                let shares = self.family.shares(&values);
-                (share(&shares), shares)
+                let fractions = self.family.fractions(&values);
+                (fraction(&fractions), fractions)
             })
             .collect();
-        starts.retain(|(share, _)| share.is_finite());
-        sort_by_number(&mut starts, |(share, _)| *share);
+        starts.retain(|(fraction, _)| fraction.is_finite());
+        sort_by_number(&mut starts, |(fraction, _)| *fraction);
         let climbed = starts.iter().take(STARTS).map(|(_, start)| {
-            let (shares, least) = climb(start, &mut |shares| -share(shares));
-            (-least, shares)
+            let (fractions, least) = climb(start, &mut |fractions| -fraction(fractions));
+            (-least, fractions)
         });
         let mut found: Vec<(f64, Vec<f64>)> = climbed.collect();
         sort_by_number(&mut found, |(least, _)| *least);
-        let (least_share, shares) =
+        let (least_fraction, fractions) =
             found.into_iter().next().unwrap_or_else(|| (f64::NAN, self.nominal.to_vec()));
-        if least_share < 0.0 {
-            return Infinity::Changed(between(self.nominal, &shares, &|shares| share(shares) > 0.0));
+        if least_fraction < 0.0 {
+            return Infinity::Changed(between(self.nominal, &fractions, &|fractions| fraction(fractions) > 0.0));
         }
-        let parameters = self.moving(&share);
-        let plant = PlantPoint::Parameters(self.family.values(&shares));
-        let searched = SearchedInfinity { least_share, plant, parameters };
-        if least_share > CLEAR_SHARE { Infinity::Searched(searched) } else { Infinity::Open(searched) }
+        let parameters = self.moving(&fraction);
+        let plant = PlantPoint::Parameters(self.family.values(&fractions));
+        let searched = SearchedInfinity { least_fraction, plant, parameters };
+        if least_fraction > CLEAR_FRACTION { Infinity::Searched(searched) } else { Infinity::Open(searched) }
     }
 
     /// All coefficients of one plant that must keep their sign.
-    fn numbers(&self, shares: &[f64]) -> Vec<f64> {
-        let plant = self.family.plant().coefficients(&self.family.values(shares));
+    fn numbers(&self, fractions: &[f64]) -> Vec<f64> {
+        let plant = self.family.plant().coefficients(&self.family.values(fractions));
         plant.map_or(vec![], |plant| {
             let delayed = plant.dead_time_s > 0.0;
             self.around.keeping(plant, delayed)
@@ -198,12 +198,12 @@ impl Searched<'_> {
     }
 
     /// The parameters that move it from its nominal value, the most important first.
-    fn moving(&self, share: &dyn Fn(&[f64]) -> f64) -> Vec<usize> {
+    fn moving(&self, fraction: &dyn Fn(&[f64]) -> f64) -> Vec<usize> {
         let change = |coordinate: usize| {
             let at = |end: f64| {
-                let mut shares = self.nominal.to_vec();
-                shares[coordinate] = end;
-                (share(&shares) - 1.0).abs()
+                let mut fractions = self.nominal.to_vec();
+                fractions[coordinate] = end;
+                (fraction(&fractions) - 1.0).abs()
             };
             at(0.0).max(at(1.0))
         };
@@ -295,12 +295,12 @@ impl LoopAtInfinity {
     fn keeping<S: Scalar + PartialEq>(&self, plant: PlantCoefficients<S>, plant_delays: bool) -> Vec<S> {
         let zero = S::from(0.0);
         // a coefficient that is zero for every plant is ignored
-        let kept = |coefficients: Vec<S>| -> (S, i64) {
+        let cache = |coefficients: Vec<S>| -> (S, i64) {
             let rest: Vec<S> = coefficients.into_iter().skip_while(|one| *one == zero).collect();
             (rest.first().copied().unwrap_or(zero), rest.len() as i64)
         };
         let RationalCoefficients { numerator, denominator } = plant.command;
-        let ((n, n_length), (c_0, d_length)) = (kept(numerator), kept(denominator));
+        let ((n, n_length), (c_0, d_length)) = (cache(numerator), cache(denominator));
         let n_0 = n * S::from(self.numerator);
         let excess = self.excess + d_length - n_length;
         let delayed = plant_delays || self.delay_s > 0.0;

@@ -43,7 +43,7 @@ impl StabilityRecord {
         ];
         let values = points.into_iter().flatten().filter_map(|point| match point {
             PlantPoint::Parameters(values) => Some(values.clone()),
-            PlantPoint::Measured(_) | PlantPoint::Beside(_) => None,
+            PlantPoint::Measured(_) | PlantPoint::Additional(_) => None,
         });
         values.collect()
     }

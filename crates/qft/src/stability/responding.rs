@@ -87,7 +87,7 @@ fn on_points<'a>(
 }
 
 /// Open loop L on an even grid: cheap enough for a search to evaluate at every plant.
-pub(super) fn first_look<'a>(member: &'a Member, compensation: &'a Compensation) -> Option<OpenLoop<'a>> {
+pub(super) fn first_sample<'a>(member: &'a Member, compensation: &'a Compensation) -> Option<OpenLoop<'a>> {
     let Member::Responding { plant, .. } = member else { return None };
     let [from, to] = range(member, plant.as_ref(), compensation);
     let decades = log10(to / from);

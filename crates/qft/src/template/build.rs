@@ -208,16 +208,16 @@ fn member_witnesses(plants: &mut Plants, points: &[TemplatePoint]) -> Vec<usize>
     let family = plants.family;
     let mut witnesses = vec![];
     for point in points {
-        let shares = family.shares(&point.values);
+        let fractions = family.fractions(&point.values);
         let same = family
-            .values(&shares)
+            .values(&fractions)
             .iter()
             .zip(&point.values)
             .all(|(&back, &value)| (back - value).abs() <= 1e-9 * value.abs());
         if same {
             let plant = point.response / point.sensor;
             let response = MemberResponse { plant, load_motion: point.load_motion, sensor: point.sensor };
-            witnesses.push(plants.keep(shares, response));
+            witnesses.push(plants.keep(fractions, response));
         }
     }
     witnesses
@@ -233,7 +233,7 @@ fn outline_points(
     let mut seen: BTreeSet<(u64, u64)> = members.iter().map(|member| bits(member.response)).collect();
     let found = outlines.iter().flatten().filter_map(|corner| plants.list.get(corner.plant?));
     let fresh = found.filter(|plant| seen.insert(bits(loop_response(plant.response))));
-    fresh.map(|plant| point(None, plants.family.values(&plant.shares), plant.response)).collect()
+    fresh.map(|plant| point(None, plants.family.values(&plant.fractions), plant.response)).collect()
 }
 
 fn resolution(
@@ -242,7 +242,7 @@ fn resolution(
     outlines: &[Vec<Corner>],
     exhausted: bool,
 ) -> Resolution {
-    let values = |plant: usize| plants.family.values(&plants.list[plant].shares);
+    let values = |plant: usize| plants.family.values(&plants.list[plant].fractions);
     if let Some(gap) = &plants.gap {
         let near = values(gap.plant);
         return Resolution::NotResolved { phase_deg: gap.phase_deg, magnitude_db: gap.magnitude_db, near };

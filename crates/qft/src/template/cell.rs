@@ -37,8 +37,8 @@ impl BoxEdges {
         let mut corners = vec![plants.at(vec![0.0; dimension])?];
         let mut lines: Vec<Vec<Option<BoxLine>>> = vec![vec![None; dimension]];
         for corner in 1..1_usize << dimension {
-            let shares = (0..dimension).map(|axis| (corner >> axis & 1) as f64).collect();
-            corners.push(plants.at(shares)?);
+            let fractions = (0..dimension).map(|axis| (corner >> axis & 1) as f64).collect();
+            corners.push(plants.at(fractions)?);
             lines.push(vec![None; dimension]);
             for axis in (0..dimension).filter(|axis| corner >> axis & 1 == 1) {
                 let from = corner ^ (1 << axis);

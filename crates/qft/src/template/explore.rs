@@ -82,8 +82,8 @@ pub(super) fn explore(plants: &mut Plants, found: &mut Exploration) -> Result<()
     let has_area = region.has_area();
     let region = found.region.insert(region);
     outcome?;
-    for shares in probes(dimension, plants.options.probes) {
-        let probe = plants.at(shares)?;
+    for fractions in probes(dimension, plants.options.probes) {
+        let probe = plants.at(fractions)?;
         if plants.is_finite(probe) {
             found.witnesses.push(probe);
         }

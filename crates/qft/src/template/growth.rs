@@ -28,7 +28,7 @@ const STRIDE_MAXIMUM: f64 = 20.0;
 const PUSHES: usize = 6;
 
 /// Difference of a fraction over which a slope is computed.
-const SLOPE_SHARE: f64 = 1e-4;
+const SLOPE_FRACTION: f64 = 1e-4;
 
 /// Smallest reach of a push, as a fraction.
 const REACH_MINIMUM: f64 = 0.003;
@@ -143,13 +143,13 @@ fn further(
 ) -> Result<Option<usize>, Stop> {
     let mut reach = 1.0;
     while reach > REACH_MINIMUM {
-        let shares = plants.list[from].shares.clone();
-        let moves = outward_moves(slopes, &shares, normal, reach);
+        let fractions = plants.list[from].fractions.clone();
+        let moves = outward_moves(slopes, &fractions, normal, reach);
         let gain: f64 = moves.iter().zip(slopes).map(|(step, slope)| step * dot(*slope, normal)).sum();
         if gain < GAIN_MINIMUM {
             return Ok(None);
         }
-        let next = plants.at(shares.iter().zip(&moves).map(|(share, step)| share + step).collect())?;
+        let next = plants.at(fractions.iter().zip(&moves).map(|(fraction, step)| fraction + step).collect())?;
         let step = plants.step(from, next);
         let (out, along) = (dot(step, normal), dot(step, [-normal[1], normal[0]]).abs());
         let onward = out > GAIN_MINIMUM / 2.0 && out < STRIDE_MAXIMUM;
@@ -163,12 +163,12 @@ fn further(
 
 /// Change of phase and magnitude with each fraction, in tolerances.
 fn slopes(plants: &mut Plants, from: usize) -> Result<Vec<[f64; 2]>, Stop> {
-    let shares = plants.list[from].shares.clone();
+    let fractions = plants.list[from].fractions.clone();
     let mut slopes = vec![];
-    for (axis, &share) in shares.iter().enumerate() {
-        let part = if share > 0.5 { -SLOPE_SHARE } else { SLOPE_SHARE };
-        let mut moved = shares.clone();
-        moved[axis] = share + part;
+    for (axis, &fraction) in fractions.iter().enumerate() {
+        let part = if fraction > 0.5 { -SLOPE_FRACTION } else { SLOPE_FRACTION };
+        let mut moved = fractions.clone();
+        moved[axis] = fraction + part;
         let beside = plants.at(moved)?;
         slopes.push(plants.step(from, beside).map(|change| change / part));
     }
@@ -180,9 +180,9 @@ fn slopes(plants: &mut Plants, from: usize) -> Result<Vec<[f64; 2]>, Stop> {
 ///
 /// For a given price on moving sideways every coordinate goes to one of its ends; the price at
 /// which the sum changes sign is that of one coordinate, which goes part of the way.
-fn outward_moves(slopes: &[[f64; 2]], shares: &[f64], normal: [f64; 2], reach: f64) -> Vec<f64> {
+fn outward_moves(slopes: &[[f64; 2]], fractions: &[f64], normal: [f64; 2], reach: f64) -> Vec<f64> {
     let tangent = [-normal[1], normal[0]];
-    let ends = shares.iter().map(|&share| [(-share).max(-reach), (1.0 - share).min(reach)]);
+    let ends = fractions.iter().map(|&fraction| [(-fraction).max(-reach), (1.0 - fraction).min(reach)]);
     // each coordinate: gain and drift per fraction, with the ends in the order of a rising price
     let rates: Vec<[f64; 2]> =
         slopes.iter().map(|&slope| [dot(slope, normal), dot(slope, tangent)]).collect();

@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
-use phea_dynamics::watch::{Stopped, Watch, tell};
+use phea_dynamics::watch::{Stopped, Watch, report_progress};
 
 use super::{TemplateError, TemplateOptions};
 use crate::closed_loop::{Compensation, MemberResponse};
@@ -48,7 +48,7 @@ fn turned_deg(angle_deg: f64) -> f64 {
 /// One point of the box.
 #[derive(Clone, Debug)]
 pub(super) struct TemplatePlant {
-    pub(super) shares: Vec<f64>,
+    pub(super) fractions: Vec<f64>,
     pub(super) response: MemberResponse,
     pub(super) place: PlantPosition,
     /// True if the phase is continued from another plant.
@@ -138,7 +138,7 @@ impl<'a> Plants<'a> {
 
     /// Reports the fraction of the allowed plants that were evaluated to the watch.
     pub(super) fn ask(&mut self) -> Result<(), Stopped> {
-        tell(self.watch, STAGE, self.evaluations, self.evaluations_maximum)
+        report_progress(self.watch, STAGE, self.evaluations, self.evaluations_maximum)
     }
 
     /// Responses P, Pd and H at these parameter values.
@@ -151,25 +151,25 @@ impl<'a> Plants<'a> {
     }
 
     /// Adds a plant whose response is known.
-    pub(super) fn keep(&mut self, shares: Vec<f64>, response: MemberResponse) -> usize {
+    pub(super) fn keep(&mut self, fractions: Vec<f64>, response: MemberResponse) -> usize {
         let place = PlantPosition::of(response.plant * response.sensor);
-        self.list.push(TemplatePlant { shares, response, place, anchored: self.list.is_empty() });
+        self.list.push(TemplatePlant { fractions, response, place, anchored: self.list.is_empty() });
         self.list.len() - 1
     }
 
     /// Adds the plant at a point of the box.
-    pub(super) fn at(&mut self, shares: Vec<f64>) -> Result<usize, Stop> {
+    pub(super) fn at(&mut self, fractions: Vec<f64>) -> Result<usize, Stop> {
         if self.evaluations >= self.evaluations_maximum {
             return Err(Stop::Exhausted);
         }
-        let response = self.response(&self.family.values(&shares)).map_err(Stop::Failed)?;
-        Ok(self.keep(shares, response))
+        let response = self.response(&self.family.values(&fractions)).map_err(Stop::Failed)?;
+        Ok(self.keep(fractions, response))
     }
 
     pub(super) fn between(&mut self, from: usize, to: usize, position: f64) -> Result<usize, Stop> {
-        let (start, end) = (&self.list[from].shares, &self.list[to].shares);
-        let shares = start.iter().zip(end).map(|(&start, &end)| start + position * (end - start)).collect();
-        self.at(shares)
+        let (start, end) = (&self.list[from].fractions, &self.list[to].fractions);
+        let fractions = start.iter().zip(end).map(|(&start, &end)| start + position * (end - start)).collect();
+        self.at(fractions)
     }
 
     pub(super) fn place(&self, plant: usize) -> PlantPosition {
@@ -222,10 +222,10 @@ impl<'a> Plants<'a> {
     /// Records that a pole or a zero is near; of several plants the one with the largest magnitude.
     pub(super) fn remember_pole(&mut self, plant: usize) {
         let magnitude_db = self.place(plant).magnitude_db;
-        let kept = self.gap.as_ref().is_some_and(|gap| {
+        let cache = self.gap.as_ref().is_some_and(|gap| {
             gap.apart == f64::INFINITY && self.place(gap.plant).magnitude_db >= magnitude_db
         });
-        if !kept {
+        if !cache {
             let (phase_deg, apart) = (180.0, f64::INFINITY);
             self.gap = Some(Gap { phase_deg, magnitude_db: f64::INFINITY, plant, apart });
         }

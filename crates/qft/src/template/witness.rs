@@ -23,12 +23,12 @@ pub(super) fn probes(dimension: usize, count: usize) -> Vec<Vec<f64>> {
     for _ in 0..60 {
         ratio = phea_dynamics::portable::pow(1.0 + ratio, 1.0 / (dimension as f64 + 1.0));
     }
-    let share = |number: usize, axis: usize| {
+    let fraction = |number: usize, axis: usize| {
         let step = phea_dynamics::portable::pow(ratio, -(axis as f64 + 1.0));
         let multiple = 0.5 + step * number as f64;
         multiple - multiple.floor()
     };
-    (1..=count).map(|number| (0..dimension).map(|axis| share(number, axis)).collect()).collect()
+    (1..=count).map(|number| (0..dimension).map(|axis| fraction(number, axis)).collect()).collect()
 }
 
 /// Witnesses more than a tolerance outside the contours, the farthest first.

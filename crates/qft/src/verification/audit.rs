@@ -12,7 +12,7 @@ use super::scan::{Scan, ScannedPlant};
 use super::{Evidence, PlantPoint, SpecificationFinding, Verdict};
 use crate::closed_loop::Compensation;
 use crate::family::{Family, UncertainFamily, corners};
-use crate::kept_plants::KeptPlants;
+use crate::plant_cache::PlantCache;
 use crate::specification::Specification;
 
 /// Violation up to which a margin counts as met, unless another tolerance is requested, dB.
@@ -43,7 +43,7 @@ pub struct AuditWork {
     /// Number of plants of a sampled loop whose factors were computed.
     pub sampled: u64,
     /// Number of plants of a sampled loop evaluated by searches.
-    pub tried: u64,
+    pub evaluated: u64,
     /// Number of searches that were skipped because a plant was known to violate the specification.
     pub(crate) skipped: u64,
 }
@@ -151,7 +151,7 @@ pub fn audit_specifications(
     problem: &AuditProblem<'_>,
     watch: Watch<'_>,
 ) -> Result<(Vec<SpecificationFinding>, AuditWork), Stopped> {
-    audit_among(problem, &[], (&KeptPlants::default(), AuditEffort::Complete), watch)
+    audit_among(problem, &[], (&PlantCache::default(), AuditEffort::Complete), watch)
 }
 
 /// Audits the specifications, with additional plants that another audit of this box found worth
@@ -159,23 +159,23 @@ pub fn audit_specifications(
 pub(crate) fn audit_among(
     problem: &AuditProblem<'_>,
     others: &[Vec<f64>],
-    (kept, effort): (&KeptPlants, AuditEffort),
+    (cache, effort): (&PlantCache, AuditEffort),
     watch: Watch<'_>,
 ) -> Result<(Vec<SpecificationFinding>, AuditWork), Stopped> {
-    let before = kept.sampled();
-    let mut audit = SpecificationAudit::new(problem, others, kept);
+    let before = cache.sampled();
+    let mut audit = SpecificationAudit::new(problem, others, cache);
     audit.prepare(&mut part(watch, STAGE, [0.0, 0.2]))?;
-    audit.look(&mut part(watch, STAGE, [0.2, 0.6]))?;
+    audit.evaluate(&mut part(watch, STAGE, [0.2, 0.6]))?;
     audit.polish(&mut part(watch, STAGE, [0.6, 0.7]))?;
-    audit.look_at_worst(&mut part(watch, STAGE, [0.7, 0.75]))?;
+    audit.evaluate_worst(&mut part(watch, STAGE, [0.7, 0.75]))?;
     audit.search(effort, &mut part(watch, STAGE, [0.75, 0.95]))?;
     let findings = audit.findings(&mut part(watch, STAGE, [0.95, 1.0]))?;
     let (plants, searches) = (audit.plants.len() as u64, audit.searches as u64);
     let skipped = audit.skipped as u64;
-    let [tried, completed] = audit.tried.map(|count| count as u64);
-    let sampled = (kept.sampled() - before) as u64 + completed;
+    let [evaluated, completed] = audit.evaluated.map(|count| count as u64);
+    let sampled = (cache.sampled() - before) as u64 + completed;
     let responses = audit.evaluator.responses();
-    Ok((findings, AuditWork { plants, searches, responses, sampled, tried, skipped }))
+    Ok((findings, AuditWork { plants, searches, responses, sampled, evaluated, skipped }))
 }
 
 /// Name of the stage in progress reports.
@@ -198,14 +198,14 @@ struct SpecificationAudit<'a> {
     searches: usize,
     skipped: usize,
     /// Number of plants evaluated by searches, and number of those whose factors were all needed.
-    tried: [usize; 2],
+    evaluated: [usize; 2],
 }
 
 impl<'a> SpecificationAudit<'a> {
     fn new(
         problem: &'a AuditProblem<'a>,
         others: &[Vec<f64>],
-        kept: &'a KeptPlants,
+        cache: &'a PlantCache,
     ) -> SpecificationAudit<'a> {
         let AuditProblem { family, compensation, specifications, tracking, .. } = *problem;
         let mut all: Vec<Criterion> = Vec::new();
@@ -217,7 +217,7 @@ impl<'a> SpecificationAudit<'a> {
             all.extend(own);
         }
         let with_prefilter = tracking == TrackingJudgement::Magnitude;
-        let evaluator = Evaluator::new(compensation, all, with_prefilter, kept);
+        let evaluator = Evaluator::new(compensation, all, with_prefilter, cache);
         let mut values = Vec::new();
         if let Family::Uncertain(family) = family {
             values = [family.members(), &corners(family)].concat();
@@ -238,7 +238,7 @@ impl<'a> SpecificationAudit<'a> {
             plants: Vec::new(),
             searches: 0,
             skipped: 0,
-            tried: [0; 2],
+            evaluated: [0; 2],
         }
     }
 

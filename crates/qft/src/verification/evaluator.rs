@@ -13,7 +13,7 @@ use super::asymptote::{self, AxisEnd};
 use super::criterion::Criterion;
 use super::response::{LoopAround, LoopAt, decibels};
 use crate::closed_loop::{Compensation, Member, TrialPlant};
-use crate::kept_plants::KeptPlants;
+use crate::plant_cache::PlantCache;
 
 /// Relative accuracy of polished frequencies.
 pub(super) const FREQUENCY_TOLERANCE: f64 = 1e-7;
@@ -33,7 +33,7 @@ pub(super) struct Evaluator<'a> {
     /// spread there.
     steepness: [Cell<Option<i32>>; 2],
     /// Plants from earlier evaluations.
-    pub(super) kept: &'a KeptPlants,
+    pub(super) cache: &'a PlantCache,
 }
 
 /// A loop without its plant, and its specifications, shared between threads.
@@ -46,8 +46,8 @@ pub(super) struct EvaluatorSeed<'a> {
 
 impl EvaluatorSeed<'_> {
     /// An evaluator with these plants.
-    pub(super) fn evaluator<'k>(&'k self, kept: &'k KeptPlants) -> Evaluator<'k> {
-        let own = Evaluator::new(self.compensation, self.criteria.clone(), self.with_prefilter, kept);
+    pub(super) fn evaluator<'k>(&'k self, cache: &'k PlantCache) -> Evaluator<'k> {
+        let own = Evaluator::new(self.compensation, self.criteria.clone(), self.with_prefilter, cache);
         Evaluator { steepness: self.steepness.map(Cell::new), ..own }
     }
 }
@@ -57,7 +57,7 @@ impl<'a> Evaluator<'a> {
         compensation: &'a Compensation,
         criteria: Vec<Criterion>,
         with_prefilter: bool,
-        kept: &'a KeptPlants,
+        cache: &'a PlantCache,
     ) -> Evaluator<'a> {
         let (feedback, sensor) = (compensation.feedback(), compensation.sensor());
         let compensator_dead_time_s = feedback.dead_time_s() + sensor.dead_time_s();
@@ -73,7 +73,7 @@ impl<'a> Evaluator<'a> {
             compensator_dead_time_s,
             responses: Cell::new(0),
             steepness: [Cell::new(None), Cell::new(None)],
-            kept,
+            cache,
         }
     }
 
@@ -99,12 +99,12 @@ impl<'a> Evaluator<'a> {
 
     /// A plant within the loop; `None` if it cannot be sampled.
     pub(super) fn member(&self, plant: &UncertainPlant, values: &[f64]) -> Option<Member> {
-        self.kept.member(self.compensation, plant, values).ok()
+        self.cache.member(self.compensation, plant, values).ok()
     }
 
     /// A trial plant of a search; `None` if it cannot be sampled.
     pub(super) fn trial(&self, plant: &UncertainPlant, values: &[f64]) -> Option<TrialPlant> {
-        self.kept.trial(self.compensation, plant, values)
+        self.cache.trial(self.compensation, plant, values)
     }
 
     pub(super) fn loop_at(&self, frequency: f64) -> LoopAt {

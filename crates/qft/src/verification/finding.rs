@@ -21,7 +21,7 @@ const AS_BAD_DB: f64 = 0.05;
 /// Relative difference of the frequencies of one minimum, and fraction of the box within which its
 /// plants count as near each other.
 const SAME_FREQUENCY: f64 = 0.05;
-const SAME_SHARE: f64 = 0.5;
+const SAME_FRACTION: f64 = 0.5;
 /// Largest number of places as bad as the worst.
 const PLACES_MAXIMUM: usize = 4;
 
@@ -247,12 +247,12 @@ impl Joining<'_> {
             return false;
         }
         let Family::Uncertain(family) = self.family else { return one.plants().eq(other.plants()) };
-        let shares = |margin: &SpecificationMargin| match &margin.plant {
-            PlantPoint::Parameters(values) => family.shares(values),
+        let fractions = |margin: &SpecificationMargin| match &margin.plant {
+            PlantPoint::Parameters(values) => family.fractions(values),
             _ => vec![],
         };
-        let (one, other) = (shares(one), shares(other));
-        let far = one.iter().zip(&other).filter(|(one, other)| (*one - *other).abs() >= SAME_SHARE).count();
+        let (one, other) = (fractions(one), fractions(other));
+        let far = one.iter().zip(&other).filter(|(one, other)| (*one - *other).abs() >= SAME_FRACTION).count();
         2 * far < one.len().max(1)
     }
 
@@ -313,16 +313,16 @@ impl Joining<'_> {
     }
 
     /// The boundary between a violated frequency and one that is not violated.
-    fn edge(&self, scan: &mut Scan, violated: f64, kept: Option<f64>) -> f64 {
+    fn edge(&self, scan: &mut Scan, violated: f64, cache: Option<f64>) -> f64 {
         let finite = |frequency: f64| frequency > 0.0 && frequency < f64::INFINITY;
-        let Some(mut kept) = kept.filter(|kept| finite(*kept) && finite(violated)) else { return violated };
+        let Some(mut cache) = cache.filter(|cache| finite(*cache) && finite(violated)) else { return violated };
         let mut violated = violated;
-        while (violated - kept).abs() > EDGE_TOLERANCE * violated {
-            let middle = (violated * kept).sqrt();
+        while (violated - cache).abs() > EDGE_TOLERANCE * violated {
+            let middle = (violated * cache).sqrt();
             let worst = scan.family_at(self.evaluator, self.plants, middle);
             match self.part.combined(middle, &worst) {
                 Some(point) if point.certain_db < -self.tolerance() => violated = middle,
-                _ => kept = middle,
+                _ => cache = middle,
             }
         }
         violated

@@ -131,7 +131,7 @@ impl Scan {
     }
 
     /// Examines one plant at all common frequencies and at its individual ones.
-    pub(super) fn look_at(&mut self, evaluator: &Evaluator<'_>, plant: &ScannedPlant, index: usize) {
+    pub(super) fn evaluate_at(&mut self, evaluator: &Evaluator<'_>, plant: &ScannedPlant, index: usize) {
         let common = std::mem::take(&mut self.grid);
         let mut samples = Vec::with_capacity(common.len() + plant.features.frequencies.len());
         for (place, (frequency, at)) in common.iter().enumerate() {
@@ -154,7 +154,7 @@ impl Scan {
         }
         sort_by_number(&mut samples, |sample| sample.frequency);
         // a duplicate frequency would hide one side of a peak
-        samples.dedup_by(|next, kept| next.frequency == kept.frequency);
+        samples.dedup_by(|next, cache| next.frequency == cache.frequency);
         if !plant.features.complete {
             samples = self.with_resonances(evaluator, plant, index, samples);
         }

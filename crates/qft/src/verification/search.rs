@@ -17,9 +17,9 @@ const SWEEPS_MAXIMUM: usize = 20;
 /// Gain of a sweep below which the search ends, dB.
 const GAIN_MINIMUM: f64 = 1e-6;
 /// Accuracy of a fraction.
-const SHARE_TOLERANCE: f64 = 1e-5;
+const FRACTION_TOLERANCE: f64 = 1e-5;
 /// Accuracy of a sweep while its range is still wide, as a fraction of the range.
-const SHARE_STEP: f64 = 1e-3;
+const FRACTION_STEP: f64 = 1e-3;
 /// First relative step of a frequency that follows its minimum.
 const FREQUENCY_STEP: f64 = 0.01;
 
@@ -29,7 +29,7 @@ pub(super) struct SearchTask {
     /// The criteria whose margins are summed, each with a separate plant.
     pub(super) criteria: Vec<usize>,
     /// Fractions of each plant.
-    pub(super) shares: Vec<Vec<f64>>,
+    pub(super) fractions: Vec<Vec<f64>>,
     /// Frequency, rad/s; zero and infinity denote limits.
     pub(super) frequency: f64,
     /// The range in which the frequency may move; `None` if it is fixed.
@@ -57,7 +57,7 @@ pub(super) struct SearchEnd {
 /// A point of the search.
 #[derive(Clone, Debug)]
 struct SearchPoint {
-    shares: Vec<Vec<f64>>,
+    fractions: Vec<Vec<f64>>,
     members: Vec<Option<TrialPlant>>,
     margin_db: f64,
     frequency: f64,
@@ -78,7 +78,7 @@ pub(super) fn search(
         Some(SearchEnd {
             margin_db: descent.confirmed(&place)?,
             frequency: place.frequency,
-            values: place.shares.iter().map(|shares| family.values(shares)).collect(),
+            values: place.fractions.iter().map(|fractions| family.values(fractions)).collect(),
         })
     });
     SearchOutcome { found, undefined: descent.undefined.get() }
@@ -102,14 +102,14 @@ struct MarginDescent<'a> {
 }
 
 impl MarginDescent<'_> {
-    fn member(&self, shares: &[f64]) -> Option<TrialPlant> {
-        self.evaluator.trial(self.family.plant(), &self.family.values(shares))
+    fn member(&self, fractions: &[f64]) -> Option<TrialPlant> {
+        self.evaluator.trial(self.family.plant(), &self.family.values(fractions))
     }
 
     fn start(&self) -> Option<SearchPoint> {
         let members: Vec<Option<TrialPlant>> =
-            self.task.shares.iter().map(|shares| self.member(shares)).collect();
-        self.settled(self.task.shares.clone(), members, self.task.frequency)
+            self.task.fractions.iter().map(|fractions| self.member(fractions)).collect();
+        self.settled(self.task.fractions.clone(), members, self.task.frequency)
     }
 
     /// The margin at the end of a search for the whole plants: a result found only with their modes
@@ -131,7 +131,7 @@ impl MarginDescent<'_> {
         let mut radius = 0.25;
         for sweep in 0..SWEEPS_MAXIMUM {
             let before = place.clone();
-            for block in 0..place.shares.len() {
+            for block in 0..place.fractions.len() {
                 for coordinate in 0..self.family.coordinates().len() {
                     if self.moves(block, coordinate) {
                         place = self.along(
@@ -163,12 +163,12 @@ impl MarginDescent<'_> {
     /// A point whose frequency, or follower, is at its minimum.
     fn settled(
         &self,
-        shares: Vec<Vec<f64>>,
+        fractions: Vec<Vec<f64>>,
         members: Vec<Option<TrialPlant>>,
         frequency: f64,
     ) -> Option<SearchPoint> {
         let (frequency, margin_db) = self.margin(&members, frequency)?;
-        let place = SearchPoint { shares, members, margin_db, frequency };
+        let place = SearchPoint { fractions, members, margin_db, frequency };
         Some(match self.follower {
             Some(follower) => self.followed(place, follower),
             None => place,
@@ -202,12 +202,12 @@ impl MarginDescent<'_> {
     }
 
     /// The point with another fraction of one coordinate, and its margin.
-    fn moved(&self, place: &SearchPoint, block: usize, coordinate: usize, share: f64) -> Option<SearchPoint> {
-        let mut shares = place.shares.clone();
-        *shares.get_mut(block)?.get_mut(coordinate)? = share;
+    fn moved(&self, place: &SearchPoint, block: usize, coordinate: usize, fraction: f64) -> Option<SearchPoint> {
+        let mut fractions = place.fractions.clone();
+        *fractions.get_mut(block)?.get_mut(coordinate)? = fraction;
         let mut members = place.members.clone();
-        *members.get_mut(block)? = self.member(shares.get(block)?);
-        self.settled(shares, members, place.frequency)
+        *members.get_mut(block)? = self.member(fractions.get(block)?);
+        self.settled(fractions, members, place.frequency)
     }
 
     /// The best point along one coordinate: the neighbourhood of this fraction, those of both ends
@@ -222,8 +222,8 @@ impl MarginDescent<'_> {
     ) -> SearchPoint {
         let elsewhere: &[f64] = if first { &[0.0, 0.5, 1.0] } else { &[0.0, 1.0] };
         let mut best = self.near(place.clone(), block, coordinate, radius);
-        for &share in elsewhere {
-            let Some(other) = self.moved(&place, block, coordinate, share) else { continue };
+        for &fraction in elsewhere {
+            let Some(other) = self.moved(&place, block, coordinate, fraction) else { continue };
             let other = if first { self.near(other, block, coordinate, radius) } else { other };
             best = better(best, Some(other));
         }
@@ -232,9 +232,9 @@ impl MarginDescent<'_> {
 
     /// The local minimum along one coordinate, no further than `radius` away.
     fn near(&self, place: SearchPoint, block: usize, coordinate: usize, radius: f64) -> SearchPoint {
-        let share = place.share(block, coordinate);
-        let ends = [(share - radius).max(0.0), (share + radius).min(1.0)];
-        let tolerance = (SHARE_STEP * radius).max(SHARE_TOLERANCE);
+        let fraction = place.fraction(block, coordinate);
+        let ends = [(fraction - radius).max(0.0), (fraction + radius).min(1.0)];
+        let tolerance = (FRACTION_STEP * radius).max(FRACTION_TOLERANCE);
         self.between(place, SearchCoordinate { block, coordinate }, ends, tolerance)
     }
 
@@ -246,15 +246,15 @@ impl MarginDescent<'_> {
         ends: [f64; 2],
         tolerance: f64,
     ) -> SearchPoint {
-        let start = (place.share(along.block, along.coordinate), place.margin_db);
+        let start = (place.fraction(along.block, along.coordinate), place.margin_db);
         let mut best = place;
-        minimum::between(|share| self.tried(&mut best, along, share), ends, start, tolerance);
+        minimum::between(|fraction| self.evaluated(&mut best, along, fraction), ends, start, tolerance);
         best
     }
 
     /// The margin with another fraction; the best point so far is retained.
-    fn tried(&self, best: &mut SearchPoint, along: SearchCoordinate, share: f64) -> f64 {
-        match self.moved(best, along.block, along.coordinate, share) {
+    fn evaluated(&self, best: &mut SearchPoint, along: SearchCoordinate, fraction: f64) -> f64 {
+        match self.moved(best, along.block, along.coordinate, fraction) {
             Some(found) => {
                 let margin_db = found.margin_db;
                 *best = better(best.clone(), Some(found));
@@ -271,17 +271,17 @@ impl MarginDescent<'_> {
         let mut factor = 1.0;
         for _ in 0..10 {
             let further = |(from, to): (&f64, &f64)| (to + factor * (to - from)).clamp(0.0, 1.0);
-            let shares: Vec<Vec<f64>> = from
-                .shares
+            let fractions: Vec<Vec<f64>> = from
+                .fractions
                 .iter()
-                .zip(&to.shares)
+                .zip(&to.fractions)
                 .map(|(from, to)| from.iter().zip(to).map(further).collect())
                 .collect();
-            if shares == best.shares {
+            if fractions == best.fractions {
                 break;
             }
-            let members: Vec<Option<TrialPlant>> = shares.iter().map(|shares| self.member(shares)).collect();
-            match self.settled(shares, members, best.frequency) {
+            let members: Vec<Option<TrialPlant>> = fractions.iter().map(|fractions| self.member(fractions)).collect();
+            match self.settled(fractions, members, best.frequency) {
                 Some(found) if found.margin_db < best.margin_db => best = found,
                 _ => break,
             }
@@ -292,8 +292,8 @@ impl MarginDescent<'_> {
 }
 
 impl SearchPoint {
-    fn share(&self, block: usize, coordinate: usize) -> f64 {
-        self.shares.get(block).and_then(|shares| shares.get(coordinate)).copied().unwrap_or(0.0)
+    fn fraction(&self, block: usize, coordinate: usize) -> f64 {
+        self.fractions.get(block).and_then(|fractions| fractions.get(coordinate)).copied().unwrap_or(0.0)
     }
 }
 

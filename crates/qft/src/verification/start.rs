@@ -30,13 +30,13 @@ pub(super) fn interior_range(
 
 /// Frequencies next to violated ones, where the box may contain another plant that violates the
 /// limit.
-fn beside_violations(envelope: &[EnvelopePoint]) -> Vec<f64> {
-    let kept = envelope.windows(2).filter_map(|pair| match pair {
+fn near_violations(envelope: &[EnvelopePoint]) -> Vec<f64> {
+    let cache = envelope.windows(2).filter_map(|pair| match pair {
         [left, right] if left.margin_db < 0.0 && right.margin_db >= 0.0 => Some(right.frequency),
         [left, right] if left.margin_db >= 0.0 && right.margin_db < 0.0 => Some(left.frequency),
         _ => None,
     });
-    kept.take(2 * STARTS).collect()
+    cache.take(2 * STARTS).collect()
 }
 
 /// Searches for one specification: at each design frequency and each end of the band, including
@@ -51,10 +51,10 @@ pub(super) fn tasks(
     range: Option<[f64; 2]>,
 ) -> Vec<SearchTask> {
     let envelope = envelope(part, scan);
-    let shares = |index: &usize| shares(family, plants.get(*index).map(|plant| &plant.point));
+    let fractions = |index: &usize| fractions(family, plants.get(*index).map(|plant| &plant.point));
     let from = |point: &EnvelopePoint, range: Option<[f64; 2]>| SearchTask {
         criteria: point.criteria.clone(),
-        shares: point.plants.iter().map(shares).collect(),
+        fractions: point.plants.iter().map(fractions).collect(),
         frequency: point.frequency,
         range,
         resonances: false,
@@ -62,12 +62,12 @@ pub(super) fn tasks(
     let middle = |point: &EnvelopePoint| vec![vec![0.5; family.coordinates().len()]; point.plants.len()];
     let ends = [envelope.first(), envelope.last()].into_iter().flatten().map(|point| point.frequency);
     let given: Vec<f64> = ends.chain(design_frequencies.iter().copied()).collect();
-    let beside = beside_violations(&envelope);
+    let beside = near_violations(&envelope);
     let mut tasks = Vec::new();
     for point in &envelope {
         if given.contains(&point.frequency) {
             let task = SearchTask { resonances: true, ..from(point, None) };
-            tasks.extend([task.clone(), SearchTask { shares: middle(point), ..task }]);
+            tasks.extend([task.clone(), SearchTask { fractions: middle(point), ..task }]);
         } else if beside.contains(&point.frequency) {
             tasks.push(from(point, None));
         }
@@ -76,13 +76,13 @@ pub(super) fn tasks(
     let minima: Vec<f64> = local_minima(&envelope).iter().take(STARTS).map(|bracket| bracket[1]).collect();
     for point in envelope.iter().filter(|point| minima.contains(&point.frequency)) {
         tasks.push(from(point, Some(range)));
-        tasks.push(SearchTask { shares: middle(point), ..from(point, Some(range)) });
+        tasks.push(SearchTask { fractions: middle(point), ..from(point, Some(range)) });
     }
     let of_part =
         |case: &&FoundMargin| case.criteria.iter().all(|criterion| part.criteria().contains(criterion));
     tasks.extend(diverse(cases.iter().filter(of_part)).into_iter().map(|case| SearchTask {
         criteria: case.criteria.clone(),
-        shares: case.margin.plants().map(|point| self::shares(family, Some(point))).collect(),
+        fractions: case.margin.plants().map(|point| self::fractions(family, Some(point))).collect(),
         frequency: case.margin.frequency_rad_per_s,
         range: Some(range),
         resonances: false,
@@ -92,10 +92,10 @@ pub(super) fn tasks(
 }
 
 /// Fractions of a plant in the box; the middle for one outside.
-fn shares(family: &UncertainFamily, point: Option<&PlantPoint>) -> Vec<f64> {
+fn fractions(family: &UncertainFamily, point: Option<&PlantPoint>) -> Vec<f64> {
     match point {
-        Some(PlantPoint::Parameters(values)) => family.shares(values),
-        Some(PlantPoint::Measured(_) | PlantPoint::Beside(_)) | None => vec![0.5; family.coordinates().len()],
+        Some(PlantPoint::Parameters(values)) => family.fractions(values),
+        Some(PlantPoint::Measured(_) | PlantPoint::Additional(_)) | None => vec![0.5; family.coordinates().len()],
     }
 }
 

@@ -53,11 +53,11 @@ fn an_additional_plant_counts_as_a_member() {
     // the additional plant matters: the design without it violates a limit for it
     assert_eq!(audited(&both, &without, TrackingJudgement::Spread).verdict, Verdict::Violated);
 
-    let beside = DesignProblem { beside: vec![lagging(LATE)], ..family_only };
-    let found = designed(&beside, options());
-    assert_met(&beside, &found, TrackingJudgement::Spread);
-    assert_eq!(found.beside.len(), 1);
-    assert_eq!(found.beside[0].verdict, Verdict::Met);
+    let with_late_plant = DesignProblem { additional_plants: vec![lagging(LATE)], ..family_only };
+    let found = designed(&with_late_plant, options());
+    assert_met(&with_late_plant, &found, TrackingJudgement::Spread);
+    assert_eq!(found.additional_audits.len(), 1);
+    assert_eq!(found.additional_audits[0].verdict, Verdict::Met);
     assert_eq!(audited(&both, &found, TrackingJudgement::Spread).verdict, Verdict::Met);
     assert_same(&found, &truth);
 }
@@ -68,7 +68,7 @@ fn a_design_continues_with_an_added_plant() {
     let mut problem = regulation(&[]);
     let family_only = design(&problem, &options(), &mut unwatched).unwrap();
     let rounds = family_only.design.as_ref().unwrap().rounds.clone();
-    problem.beside.push(lagging(LATE));
+    problem.additional_plants.push(lagging(LATE));
     let outcome = design_again(&problem, &options(), family_only, &mut unwatched).unwrap();
     let found = &outcome.design.unwrap();
     assert_eq!(found.status, DesignStatus::Met);
@@ -87,8 +87,8 @@ fn infeasibility_with_it_is_reported_with_the_least_relaxation() {
         other => panic!("{other:?}"),
     };
     let truth = relaxation(&designed(&regulation(&[too_late]), options()));
-    let beside = DesignProblem { beside: vec![lagging(too_late)], ..regulation(&[]) };
-    let found = designed(&beside, options());
+    let with_late_plant = DesignProblem { additional_plants: vec![lagging(too_late)], ..regulation(&[]) };
+    let found = designed(&with_late_plant, options());
     assert!(truth > 0.1 && (relaxation(&found) - truth).abs() < 0.03, "{} {truth}", relaxation(&found));
-    assert_eq!(found.beside[0].verdict, Verdict::Violated);
+    assert_eq!(found.additional_audits[0].verdict, Verdict::Violated);
 }

@@ -29,7 +29,7 @@ fn a_run_that_is_stopped_has_the_best_so_far() {
     let mut steps = 0;
     let whole = design(&problem, &options, &mut |progress| {
         steps += 1;
-        (0.0..=1.0).contains(&progress.share) && !progress.stage.is_empty()
+        (0.0..=1.0).contains(&progress.fraction) && !progress.stage.is_empty()
     });
     let whole = whole.unwrap();
     assert!(!whole.stopped, "a share or a stage that is none");

@@ -7,7 +7,7 @@ use phea_dynamics::portable::magnitude;
 use phea_dynamics::watch::unwatched;
 use phea_qft::design::{
     ControllerChoice, DesignOptions, DesignOutcome, DesignProblem, DesignStatus, PoleRange, StructureEnding,
-    TriedStructure, design,
+    SearchedStructure, design,
 };
 use phea_qft::family::{Family, Spacing};
 use phea_qft::loop_shaping::{Samples, SearchProblem, Shaping, Structure, StructureFactor};
@@ -54,7 +54,7 @@ fn resonance(corner: f64) -> DesignProblem {
 fn any(earned_per_pole_db: f64) -> DesignOptions {
     let none = Structure { sign: 1.0, gain: [1.0, 1.0], parts: vec![] };
     let controller =
-        ControllerChoice::Any { maximum_order: 4, from: None, with_gain_alone: false, earned_per_pole_db };
+        ControllerChoice::Any { maximum_order: 4, from: None, with_pure_gain: false, earned_per_pole_db };
     DesignOptions { controller, ..least_gain(none, 1) }
 }
 
@@ -63,7 +63,7 @@ fn outcome(problem: &DesignProblem, options: &DesignOptions) -> DesignOutcome {
 }
 
 fn ending(outcome: &DesignOutcome, name: NamedStructure) -> Option<StructureEnding> {
-    outcome.tried().iter().find(|one| one.name == Some(name)).map(|one| one.ending)
+    outcome.searched().iter().find(|one| one.name == Some(name)).map(|one| one.ending)
 }
 
 /// Pure integral control gives T = k K/(s (s + 1) + k K) for the lag, whose peak is 1.2 at k K =
@@ -75,32 +75,32 @@ fn any_takes_the_shortest_that_is_met() {
         let problem = lag(corner);
         let found = outcome(&problem, &shortest);
         let design = found.design.clone().unwrap();
-        assert_eq!(design.name, Some(name), "{corner}: {:?}", found.tried());
+        assert_eq!(design.name, Some(name), "{corner}: {:?}", found.searched());
         assert_met(&problem, &design, TrackingJudgement::Spread);
-        let missed = found.tried().iter().filter(|one| one.ending != StructureEnding::Met);
+        let missed = found.searched().iter().filter(|one| one.ending != StructureEnding::Met);
         assert_eq!(missed.count(), usize::from(name == NamedStructure::ProportionalIntegral));
     }
 }
 
 /// The names that were searched, in order.
 fn names(outcome: &DesignOutcome) -> Vec<NamedStructure> {
-    outcome.tried().iter().filter_map(|one| one.name).collect()
+    outcome.searched().iter().filter_map(|one| one.name).collect()
 }
 
 /// Limits on the error that vanish with w require an integrator, so that a pure gain fails at low
 /// frequency; it is searched first if this is requested.
 #[test]
 fn a_pure_gain_is_tested_before_structures_with_an_integrator() {
-    let choice = |with_gain_alone| {
+    let choice = |with_pure_gain| {
         let ControllerChoice::Any { maximum_order, from, earned_per_pole_db, .. } = any(6.0).controller
         else {
             unreachable!()
         };
-        let controller = ControllerChoice::Any { maximum_order, from, earned_per_pole_db, with_gain_alone };
+        let controller = ControllerChoice::Any { maximum_order, from, earned_per_pole_db, with_pure_gain };
         DesignOptions { controller, ..any(6.0) }
     };
     let with = outcome(&lag(0.5), &choice(true));
-    let gain = &with.tried()[0];
+    let gain = &with.searched()[0];
     assert_eq!((gain.name, gain.ending), (Some(NamedStructure::Proportional), StructureEnding::Missed));
     assert!(gain.binding.contains(&1), "{gain:?}");
     assert_eq!(with.design.clone().unwrap().name, Some(NamedStructure::Integral));
@@ -122,7 +122,7 @@ fn a_longer_structure_must_earn_its_poles() {
     let options = |earned_db| DesignOptions { objective: Objective::BestWorstMargin, ..any(earned_db) };
     let free_of_charge = outcome(&problem, &options(0.0));
     let reached = |name| {
-        let structure_tested = free_of_charge.tried().iter().find(|one| one.name == Some(name));
+        let structure_tested = free_of_charge.searched().iter().find(|one| one.name == Some(name));
         -structure_tested.unwrap().reached_db.unwrap()
     };
     let [of_i, of_pi_low_pass] = [NamedStructure::Integral, NamedStructure::PiLowPass].map(reached);
@@ -130,9 +130,9 @@ fn a_longer_structure_must_earn_its_poles() {
     let gained_db = of_pi_low_pass - of_i;
     assert!(gained_db > 2.0, "{gained_db} dB");
     let less = outcome(&problem, &options(0.9 * gained_db));
-    assert_eq!(less.design.clone().unwrap().name, Some(NamedStructure::PiLowPass), "{:?}", less.tried());
+    assert_eq!(less.design.clone().unwrap().name, Some(NamedStructure::PiLowPass), "{:?}", less.searched());
     let more = outcome(&problem, &options(1.1 * gained_db));
-    assert_eq!(more.design.clone().unwrap().name, Some(NamedStructure::Integral), "{:?}", more.tried());
+    assert_eq!(more.design.clone().unwrap().name, Some(NamedStructure::Integral), "{:?}", more.searched());
     assert_eq!(ending(&more, NamedStructure::PiLowPass), Some(StructureEnding::NotEarned));
 }
 
@@ -212,11 +212,11 @@ fn no_pole_exceeds_the_permitted_frequency() {
     let poles = PoleRange { least_damping_ratio: 0.3, fastest_rad_per_s };
     let controller = ControllerChoice::Grow { maximum_order: 4 };
     let found = outcome(&hard, &DesignOptions { poles, controller, ..any(6.0) });
-    let has_pair = |one: &TriedStructure| {
+    let has_pair = |one: &SearchedStructure| {
         one.structure.parts.iter().any(|part| matches!(part, StructureFactor::PolePair { .. }))
     };
-    assert!(found.tried().iter().any(has_pair), "{:?}", found.tried());
-    for structure_tested in found.tried() {
+    assert!(found.searched().iter().any(has_pair), "{:?}", found.searched());
+    for structure_tested in found.searched() {
         let highest: Vec<f64> = structure_tested.structure.bounds().iter().map(|range| range[1]).collect();
         let law = structure_tested.structure.compensator(&highest).transfer_function().unwrap();
         let sizes = law.poles().iter().map(|pole| magnitude(*pole));

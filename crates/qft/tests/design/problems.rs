@@ -99,7 +99,7 @@ pub(crate) fn example_d() -> DesignProblem {
 pub(crate) fn problem(family: Family, specifications: Vec<Specification>) -> DesignProblem {
     DesignProblem {
         family,
-        beside: vec![],
+        additional_plants: vec![],
         sensor: TransferFunction::gain_only(1.0),
         timing: Timing::default(),
         specifications,

@@ -23,10 +23,10 @@ fn structures_that_fail_weaker_limits_are_not_tested_for_stricter_ones() {
     let after = design_stricter(&stricter, &options, &before, &mut unwatched).unwrap();
     let anew = design_after(&stricter, &options, &before, &mut unwatched).unwrap();
     let shortest = |outcome: &DesignOutcome| {
-        outcome.tried().iter().map(|structure| structure.structure.order().unwrap()).min().unwrap()
+        outcome.searched().iter().map(|structure| structure.structure.order().unwrap()).min().unwrap()
     };
     assert!(shortest(&anew) < order, "{} {order}", shortest(&anew));
     assert_eq!(shortest(&after), order);
-    assert!(after.tried().len() < anew.tried().len());
+    assert!(after.searched().len() < anew.searched().len());
     assert_met(&stricter, after.design.as_ref().unwrap(), TrackingJudgement::Spread);
 }

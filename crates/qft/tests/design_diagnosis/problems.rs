@@ -78,7 +78,7 @@ pub(crate) fn everywhere(requirement: Requirement) -> Specification {
 pub(crate) fn problem(family: Family, specifications: Vec<Specification>) -> DesignProblem {
     DesignProblem {
         family,
-        beside: vec![],
+        additional_plants: vec![],
         sensor: TransferFunction::gain_only(1.0),
         timing: Timing::default(),
         specifications,

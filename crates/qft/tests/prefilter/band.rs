@@ -52,7 +52,7 @@ fn the_published_prefilter_leaves_its_band_by_a_hair() {
     let margins = band.margins(&published);
     let worst = margins.iter().map(|margin| margin.margin_db).fold(f64::INFINITY, f64::min);
     assert!((worst + 4.11e-5).abs() < 1e-6, "{worst}");
-    assert!(margins.windows(2).all(|pair| pair[0].share() <= pair[1].share()));
+    assert!(margins.windows(2).all(|pair| pair[0].fraction() <= pair[1].fraction()));
 }
 
 /// Closed loop T = k/(s + k), so that ln|T| = -w^2/(2 k^2) near zero; the limits are lags of second

@@ -20,8 +20,8 @@ const DECIBELS_PER_NEPER: f64 = 20.0 / std::f64::consts::LN_10;
 fn run(band: PrefilterBand, timing: &Timing, options: PrefilterOptions) -> PrefilterOutcome {
     let mut before = 0.0;
     let outcome = fit_prefilter(&band, timing, &options, &mut |progress| {
-        assert!(progress.share >= before && progress.share <= 1.0);
-        before = progress.share;
+        assert!(progress.fraction >= before && progress.fraction <= 1.0);
+        before = progress.fraction;
         true
     });
     outcome.unwrap()
@@ -109,8 +109,8 @@ fn a_servo_gets_a_prefilter_that_its_audit_meets() {
         assert!(fitted.compensator.stages.iter().all(|stage| stage.element != Element::Gain(1.0)));
         assert!((function.dc_gain() - 1.0).abs() < 1e-15);
         let dense = band(&spaced(0.001, 10.0, 700)).margins(&function);
-        assert!(dense[0].share() > 0.6 && dense[0].share() <= fitted.worst.share(), "{:?}", dense[0]);
-        fitted.worst.share()
+        assert!(dense[0].fraction() > 0.6 && dense[0].fraction() <= fitted.worst.fraction(), "{:?}", dense[0]);
+        fitted.worst.fraction()
     });
     assert!(fractions.iter().all(|fraction| (fraction - fractions[0]).abs() < 0.0101), "{fractions:?}");
     let prefilter = found(run(searched, &Timing::default(), PrefilterOptions::new(3, 1))).compensator;
@@ -184,10 +184,10 @@ fn a_sampled_prefilter_has_the_margins_that_were_searched() {
         let frequencies = spaced(0.1, 60.0, 40);
         let band = PrefilterBand::of_family(&compensation, &members, &frequencies, &specification).unwrap();
         let fitted = found(run(band.clone(), &timing, PrefilterOptions::new(3, 1)));
-        assert!(fitted.worst.share() > 0.0);
+        assert!(fitted.worst.fraction() > 0.0);
         let worst = band.margins(sampled(fitted.compensator.clone()).prefilter())[0];
         assert!(
-            (0.0..0.0101).contains(&(fitted.worst.share() - worst.share())),
+            (0.0..0.0101).contains(&(fitted.worst.fraction() - worst.fraction())),
             "{worst:?} {:?}",
             fitted.worst
         );

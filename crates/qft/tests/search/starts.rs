@@ -9,8 +9,8 @@ use super::formula::Formula;
 fn searched(problem: &mut Formula, options: SearchOptions) -> SearchResult {
     let mut last = 0.0;
     let found = search(problem, vec![], &options, &mut |progress| {
-        assert!((last..=1.0).contains(&progress.share), "{last} {progress:?}");
-        last = progress.share;
+        assert!((last..=1.0).contains(&progress.fraction), "{last} {progress:?}");
+        last = progress.fraction;
         true
     });
     found.unwrap().unwrap()

@@ -38,7 +38,7 @@ fn problem(delay_s: f64) -> DesignProblem {
     let family = UncertainFamily::new(plant.unwrap(), vec![], vec![], Extent::Box).unwrap();
     DesignProblem {
         family: Family::Uncertain(family),
-        beside: vec![],
+        additional_plants: vec![],
         sensor: TransferFunction::gain_only(1.0),
         timing: Timing::default(),
         specifications: vec![],

@@ -64,7 +64,7 @@ fn shaping(
 ) -> (Shaping, Vec<f64>) {
     let problem = DesignProblem {
         family,
-        beside: vec![],
+        additional_plants: vec![],
         sensor: TransferFunction::gain_only(1.0),
         timing: Timing::default(),
         specifications,

@@ -128,7 +128,7 @@ pub(crate) fn problem(timing: Timing) -> DesignProblem {
     let family = UncertainFamily::new(plant, coordinates, members, Extent::Box).unwrap();
     DesignProblem {
         family: Family::Uncertain(family),
-        beside: vec![],
+        additional_plants: vec![],
         sensor: TransferFunction::from_factors(80.0, vec![], vec![Complex64::new(-80.0, 0.0)]).unwrap(),
         timing,
         specifications: specifications(),

@@ -23,7 +23,7 @@ fn gain() -> Structure {
 fn with_family(family: Family, limit: f64) -> DesignProblem {
     DesignProblem {
         family,
-        beside: vec![],
+        additional_plants: vec![],
         sensor: TransferFunction::gain_only(1.0),
         timing: Timing::default(),
         specifications: vec![specification(

@@ -61,8 +61,8 @@ pub(crate) fn audited(
     let problem = AuditProblem { family, compensation, specifications, tracking, tolerance_db: TOLERANCE_DB };
     let mut before = 0.0;
     let found = audit_specifications(&problem, &mut |progress| {
-        assert!(progress.share >= before && progress.share <= 1.0);
-        before = progress.share;
+        assert!(progress.fraction >= before && progress.fraction <= 1.0);
+        before = progress.fraction;
         true
     });
     found.unwrap()

@@ -55,7 +55,7 @@ pub(crate) fn thesis_specifications() -> Vec<Specification> {
 fn values(case: &SpecificationMargin) -> &[f64] {
     match &case.plant {
         PlantPoint::Parameters(values) => values,
-        PlantPoint::Measured(_) | PlantPoint::Beside(_) => panic!("a plant with parameters"),
+        PlantPoint::Measured(_) | PlantPoint::Additional(_) => panic!("a plant with parameters"),
     }
 }
 

@@ -5,7 +5,7 @@ mod front;
 
 use phea_qft::verification::Verdict;
 
-use super::document::told_first;
+use super::document::first_warnings;
 use super::findings::{findings, of_case};
 use super::words::judge_error_words;
 use super::{Alternatives, JudgedAlternative, JudgedCase, MovedRange};
@@ -94,7 +94,7 @@ pub(crate) fn body(found: &Alternatives) -> AlternativesAnswer {
     AlternativesAnswer {
         alternatives: found.judged.iter().map(alternative).collect(),
         not_reached: found.not_reached.clone(),
-        warnings: told_first(found),
+        warnings: first_warnings(found),
         findings: findings(found),
         load_cases: found.cases.iter().map(load_case).collect(),
         front: found.front.as_ref().map(front),

@@ -19,7 +19,7 @@ use phea_qft::verification::Verdict;
 /// The table and the findings, after the most important warnings.
 pub(crate) fn output(found: &Alternatives) -> Document {
     let mut out = Document::default();
-    out.warnings(told_first(found));
+    out.warnings(first_warnings(found));
     out.append(document(found));
     out
 }
@@ -44,7 +44,7 @@ pub(crate) fn document(found: &Alternatives) -> Document {
 const PART: usize = 6;
 
 /// The rigs that their families do not contain, and the remedy.
-pub(crate) fn told_first(found: &Alternatives) -> Vec<String> {
+pub(crate) fn first_warnings(found: &Alternatives) -> Vec<String> {
     let all = summary::groups(found).into_iter().flat_map(|(_, judged)| judged);
     let mut warnings: Vec<String> = Vec::new();
     for sentence in
@@ -60,14 +60,14 @@ pub(crate) fn told_first(found: &Alternatives) -> Vec<String> {
 /// A sentence on ranges that do not contain the rig of an alternative, whether or not they were
 /// moved.
 pub(crate) fn outside_words(name: &str, outside: &[OutsideParameter], moved: bool) -> String {
-    let cure = match moved {
+    let remedy = match moved {
         false => "state them in `set`, or let them follow by `recentre = true`",
         true => {
             "`recentre` moved them by what the rigs differ, and the declared rig lies outside of its own: state them in `set`"
         }
     };
     format!(
-        "{name}: the ranges of [uncertainty] do not contain its rig ({}): {cure}",
+        "{name}: the ranges of [uncertainty] do not contain its rig ({}): {remedy}",
         outside_parameters(outside)
     )
 }

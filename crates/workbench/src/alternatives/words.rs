@@ -38,7 +38,7 @@ pub(super) fn column_name(key: ColumnKey, motion: MotionKind) -> &'static str {
         ColumnKey::SizedGain => "gain by [sizing]",
         ColumnKey::ImpedanceOpen => "open loop",
         ColumnKey::ImpedanceClosed => "closed loop",
-        ColumnKey::ImpedanceAsked => "asked",
+        ColumnKey::ImpedanceRequired => "required",
         ColumnKey::Overshoot => "overshoot",
         ColumnKey::SettlingTime => "settling",
         ColumnKey::DisturbancePeak => "disturbance",

@@ -26,7 +26,7 @@ pub(crate) struct ChosenLinesAnswer {
     lumped_from: f64,
     /// Reason why no model with waves is computed, where one would be needed.
     #[answer(optional)]
-    hindrance: Option<String>,
+    obstacle: Option<String>,
 }
 
 enum ChosenLineModel {
@@ -64,13 +64,13 @@ pub(crate) fn body_of_lines(lines: &ChosenLines, motion: MotionKind) -> ChosenLi
         reached_by: by,
         specification,
         lumped_from: LUMPED_FROM,
-        hindrance: lines.hindrance.as_ref().map(|one| hindrance_words(one, motion).to_string()),
+        obstacle: lines.obstacle.as_ref().map(|one| hindrance_words(one, motion).to_string()),
     }
 }
 
 /// Reason why no model with waves is computed.
-pub(crate) fn hindrance_words(hindrance: &WavesHindrance, motion: MotionKind) -> &str {
-    match hindrance {
+pub(crate) fn hindrance_words(obstacle: &WavesHindrance, motion: MotionKind) -> &str {
+    match obstacle {
         WavesHindrance::FreeLoad => {
             motion.either("the load is a mass without stiffness", "the load is an inertia without stiffness")
         }

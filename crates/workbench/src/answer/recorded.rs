@@ -4,7 +4,7 @@ use phea_engineering::identify::COVERAGE;
 
 use super::Answer;
 use super::words::words;
-use crate::project::{FromRecordings, KeptReason};
+use crate::project::{FromRecordings, UnchangedReason};
 
 /// Values identified from the recordings of a project, which replace those of its file.
 #[derive(Answer)]
@@ -16,7 +16,7 @@ pub(crate) struct RecordedAnswer {
     /// Identified values.
     values: Vec<IdentifiedValueAnswer>,
     /// Values that remain as declared.
-    kept: Vec<KeptValueAnswer>,
+    unchanged: Vec<UnchangedValueAnswer>,
     /// Pressure drop from supply to tank at which the tare flow was recorded.
     tare_pressure_pa: f64,
     /// Pressure drop from supply to tank at which the tare flow is declared.
@@ -52,16 +52,16 @@ struct IdentifiedValueAnswer {
 
 /// Value that remains as declared.
 #[derive(Answer)]
-struct KeptValueAnswer {
+struct UnchangedValueAnswer {
     /// Key of the project file.
     path: String,
     /// Reason for which it is not replaced.
-    reason: KeptReason,
+    reason: UnchangedReason,
 }
 
 words! {
     /// Reason for which a declared value is not replaced by an identified one.
-    KeptReason by kept_because [NotIdentifiable, MayVanish]
+    UnchangedReason by unchanged_because [NotIdentifiable, MayVanish]
 }
 
 /// Remaining uncertainty of what was identified, as directions of the family.
@@ -83,7 +83,7 @@ struct RecordedFamilyAnswer {
 pub(crate) fn body_in_use(recorded: &FromRecordings) -> RecordedAnswer {
     let files = recorded.files.iter();
     let values = recorded.numbers.iter();
-    let kept = recorded.kept.iter();
+    let unchanged = recorded.unchanged.iter();
     let [tare_pressure_pa, declared_tare_pressure_pa] = recorded.tare_pressures;
     RecordedAnswer {
         project_file_sha256: recorded.project_sha256.clone(),
@@ -99,7 +99,7 @@ pub(crate) fn body_in_use(recorded: &FromRecordings) -> RecordedAnswer {
                 declared: one.declared,
             })
             .collect(),
-        kept: kept.map(|one| KeptValueAnswer { path: one.path.clone(), reason: one.reason }).collect(),
+        unchanged: unchanged.map(|one| UnchangedValueAnswer { path: one.path.clone(), reason: one.reason }).collect(),
         tare_pressure_pa,
         declared_tare_pressure_pa,
         family: recorded.family.as_ref().map(|family| RecordedFamilyAnswer {
@@ -113,9 +113,9 @@ pub(crate) fn body_in_use(recorded: &FromRecordings) -> RecordedAnswer {
 }
 
 /// Reason for which a number stays as declared.
-pub(crate) fn kept_because(reason: KeptReason) -> &'static str {
+pub(crate) fn unchanged_because(reason: UnchangedReason) -> &'static str {
     match reason {
-        KeptReason::NotIdentifiable => "the recordings do not determine it",
-        KeptReason::MayVanish => "the recordings cannot distinguish it from zero",
+        UnchangedReason::NotIdentifiable => "the recordings do not determine it",
+        UnchangedReason::MayVanish => "the recordings cannot distinguish it from zero",
     }
 }

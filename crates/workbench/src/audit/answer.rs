@@ -76,7 +76,7 @@ pub(crate) struct AuditAnswer {
     below_design: Option<Vec<ExceededLimitAnswer>>,
     /// Limits of a design that the loop satisfies.
     #[answer(optional)]
-    kept_of_design: Option<Vec<DesignLimitKind>>,
+    satisfied_limits_of_design: Option<Vec<DesignLimitKind>>,
 }
 
 /// Place of the delay margin.
@@ -142,7 +142,7 @@ pub(crate) fn body(view: &ProjectAudit) -> AuditAnswer {
     let (audit, names) = (&view.audit, &view.names);
     let margin = audit.delay_margin.as_ref();
     let no_margin = "no margin: not every plant is known to be stable";
-    let (exceeded, kept) = view.below_design.clone().map(|limits| (limits.exceeded, limits.kept)).unzip();
+    let (exceeded, satisfied) = view.below_design.clone().map(|limits| (limits.exceeded, limits.satisfied)).unzip();
     AuditAnswer {
         verdict: view.verdict(),
         evidence: view.evidence(),
@@ -176,7 +176,7 @@ pub(crate) fn body(view: &ProjectAudit) -> AuditAnswer {
         specifications: in_file_order(view),
         warnings: caveat::sentences(&view.caveats, &view.units),
         below_design: exceeded.map(|all| all.iter().map(below_design::answer).collect()),
-        kept_of_design: kept,
+        satisfied_limits_of_design: satisfied,
     }
 }
 

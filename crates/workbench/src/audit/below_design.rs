@@ -13,9 +13,9 @@ use crate::quantity::{DisplayUnit, significant};
 /// satisfies all; empty if none was judged.
 pub(super) fn document(view: &ProjectAudit) -> Document {
     let mut out = Document::default();
-    let Some(JudgedLimits { exceeded, kept }) = &view.below_design else { return out };
+    let Some(JudgedLimits { exceeded, satisfied }) = &view.below_design else { return out };
     if exceeded.is_empty() {
-        let words: Vec<&str> = kept.iter().map(|kind| limit_words(*kind)).collect();
+        let words: Vec<&str> = satisfied.iter().map(|kind| limit_words(*kind)).collect();
         out.sentences((!words.is_empty()).then(|| {
             format!(
                 "the loop keeps every limit of `[design]` that a given loop is held against, stated or by default: {}",

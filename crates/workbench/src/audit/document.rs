@@ -1,11 +1,11 @@
 //! An audit for people.
 
 use phea_dynamics::portable;
-use phea_qft::proof::{Proof, Standing};
+use phea_qft::proof::{Proof, ClaimStatus};
 use phea_qft::verification::{SpecificationFinding, SpecificationMargin, Verdict};
 
 use super::family_and_loop::{family_sentence, loop_sentence, position_sentence};
-use super::proven::{standing_word, why_not_proven};
+use super::proven::{status_word, why_not_proven};
 use super::remark::remark_sentences;
 use super::stability::{infinity_sentence, stability_sentence};
 use super::words::{closed_loop_symbol, evidence_sentence, finding_sentence, place_words, worst_at_design};
@@ -153,16 +153,16 @@ pub(crate) fn proven(view: &ProjectAudit, title: &str) -> Document {
     let mut out = Document::default();
     let Some(proof) = &view.proof else { return out };
     let mut rows = Table::new(["claim", "standing", "closed loop over limit, at least", "at most"]);
-    let word = |standing: &Standing| Cell::from(standing_word(standing)).marked(standing.verdict());
+    let word = |claim_status: &ClaimStatus| Cell::from(status_word(claim_status)).marked(claim_status.verdict());
     rows.row(["every plant is stable".into(), word(&proof.stability), Cell::Missing, Cell::Missing]);
     for (index, own) in proof.specifications.iter().enumerate() {
         let [least, most]: [Cell; 2] = [own.least_db, own.most_db].map(|end| end.map(Cell::margin).into());
-        let is_allowed = own.standing == Standing::Proven && own.most_db.is_some_and(|most_db| most_db > 0.0);
+        let is_allowed = own.claim_status == ClaimStatus::Proven && own.most_db.is_some_and(|most_db| most_db > 0.0);
         let most: Cell = match is_allowed {
             true => most.then(Cell::from(allowed_words(view.audit.tolerance_db))),
             false => most,
         };
-        rows.row([numbered(view.named(index)).into(), word(&own.standing), least, most]);
+        rows.row([numbered(view.named(index)).into(), word(&own.claim_status), least, most]);
     }
     out.section(title, rows);
     out.sentences(not_proven(view, proof));
@@ -184,9 +184,9 @@ fn not_proven(view: &ProjectAudit, proof: &Proof) -> Vec<String> {
         .specifications
         .iter()
         .enumerate()
-        .map(|(index, own)| (numbered(view.named(index)), &own.standing));
+        .map(|(index, own)| (numbered(view.named(index)), &own.claim_status));
     let all = std::iter::once(("stability".to_string(), &proof.stability)).chain(named);
-    let reasons = all.filter_map(|(name, standing)| Some((why_not_proven(view, proof, standing)?, name)));
+    let reasons = all.filter_map(|(name, claim_status)| Some((why_not_proven(view, proof, claim_status)?, name)));
     grouped(reasons).into_iter().map(|(reason, names)| format!("{}: {reason}", names.join(", "))).collect()
 }
 

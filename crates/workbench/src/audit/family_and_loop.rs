@@ -24,7 +24,7 @@ pub(super) fn family_sentence(view: &ProjectAudit) -> String {
         PlantNames::Parameters(names) if names.is_empty() => format!("Family: one plant{moving}."),
         PlantNames::Parameters(names) if view.whole_box => {
             // the members of a family with lines in motion are without the corners
-            let without_corners = if view.has_lines_in_motion() { " beside the corners" } else { "" };
+            let without_corners = if view.has_lines_in_motion() { " in addition to the corners" } else { "" };
             format!(
                 "Family: {}{without_corners} of a box over {}, and everything between them{moving}.",
                 counted(view.members, "plant"),

@@ -16,7 +16,7 @@ pub(crate) fn sentence(view: &ProjectAudit, finding: &TimeFinding) -> String {
         Some(index) => format!("{} in time", numbered(view.named(index))),
         None => format!("{} step", finding.requirement.number),
     };
-    let required = required_words(&finding.requirement.wish);
+    let required = required_words(&finding.requirement.step_limits);
     let (plants, worst) = match &finding.outcome {
         TimeOutcome::NotExamined(why) => {
             return format!("{name} is not examined: {}; required is {required}", unexamined_words(why));
@@ -72,7 +72,7 @@ fn rise_words(worst: &WorstStep) -> String {
 /// Requirements that are missed: `settled in 1.08 s at worst where 0.8 s is required`.
 pub(crate) fn missed(finding: &TimeFinding) -> Vec<String> {
     let TimeOutcome::Searched { overshoot, settling, rise, .. } = &finding.outcome else { return vec![] };
-    let required = &finding.requirement.wish;
+    let required = &finding.requirement.step_limits;
     let open = |worst: &&WorstStep| !worst.is_satisfied;
     let of_overshoot = overshoot.as_ref().filter(open).zip(required.overshoot_percent);
     let of_settling = settling.as_ref().filter(open).zip(required.settling_time_s);

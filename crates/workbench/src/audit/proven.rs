@@ -1,23 +1,23 @@
 //! Proven claims, and the reasons why others are not, in words.
 
-use phea_qft::proof::{NotProven, Proof, ProofRegion, Standing};
+use phea_qft::proof::{NotProven, Proof, ProofRegion, ClaimStatus};
 
 use super::ProjectAudit;
 use super::words::rounded;
 
 /// The outcome of a claim, in a word.
-pub(super) fn standing_word(standing: &Standing) -> &'static str {
-    match standing {
-        Standing::Proven => "proven",
-        Standing::Refuted => "refuted",
-        Standing::NotProven(_) => "not proven",
+pub(super) fn status_word(claim_status: &ClaimStatus) -> &'static str {
+    match claim_status {
+        ClaimStatus::Proven => "proven",
+        ClaimStatus::Refuted => "refuted",
+        ClaimStatus::NotProven(_) => "not proven",
     }
 }
 
 /// Reason why a claim is neither proven nor refuted, in a sentence without its full stop; `None` if
 /// it is proven or refuted.
-pub(super) fn why_not_proven(view: &ProjectAudit, proof: &Proof, standing: &Standing) -> Option<String> {
-    let Standing::NotProven(reason) = standing else { return None };
+pub(super) fn why_not_proven(view: &ProjectAudit, proof: &Proof, claim_status: &ClaimStatus) -> Option<String> {
+    let ClaimStatus::NotProven(reason) = claim_status else { return None };
     Some(match reason {
         NotProven::Measured => {
             "the plants were measured, and between two of them nothing can be claimed".into()

@@ -43,7 +43,7 @@ pub(super) fn infinity_sentence(stability: &StabilityFinding, names: &PlantNames
     Some(format!(
         "That no pole passes through infinity inside the box was searched for, since the enclosures of the leading \
          coefficient are too wide there: it falls to {} of its nominal value at least ({}) and depends on {}.",
-        significant(found.least_share, 3),
+        significant(found.least_fraction, 3),
         plant_text(names, &found.plant),
         moving_words(found, names)
     ))
@@ -162,7 +162,7 @@ fn irresolution_words(irresolution: &Irresolution) -> String {
         }
         Irresolution::InfinityOpen(found) => format!(
                 "it could not be shown that no pole passes through infinity inside the box: the leading coefficient of the characteristic equation falls to {} of its nominal value",
-                rounded(found.least_share)
+                rounded(found.least_fraction)
             ),
         Irresolution::UndampedController => {
             "controller or sensor has poles on the boundary of stability, which measured points cannot go around".to_string()

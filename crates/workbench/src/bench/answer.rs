@@ -83,9 +83,9 @@ struct ReversalsAnswer {
     /// Change of the command after a reversal before the spool moves.
     threshold_v: BenchEstimateAnswer,
     /// Hysteresis over the command of full opening.
-    hysteresis_share_of_nominal: f64,
+    hysteresis_fraction_of_nominal: f64,
     /// Threshold over the command of full opening.
-    threshold_share_of_nominal: f64,
+    threshold_fraction_of_nominal: f64,
 }
 
 /// Estimate of a number.
@@ -102,8 +102,8 @@ fn reversals(found: &ReversalReading) -> ReversalsAnswer {
     ReversalsAnswer {
         hysteresis_v: reading(found.hysteresis),
         threshold_v: reading(found.threshold),
-        hysteresis_share_of_nominal: found.hysteresis.value / found.nominal_voltage,
-        threshold_share_of_nominal: found.threshold.value / found.nominal_voltage,
+        hysteresis_fraction_of_nominal: found.hysteresis.value / found.nominal_voltage,
+        threshold_fraction_of_nominal: found.threshold.value / found.nominal_voltage,
     }
 }
 

@@ -16,8 +16,8 @@ pub(super) fn recorded(run: &LineRun) -> BenchTable {
             ("flow_l_per_min", "flow into the line", litres.symbol, litres.of(1.0), "m3/s")
         }
     };
-    let shown = run.inputs.iter().map(|input| factor * input).collect();
-    let input = BenchColumn { name, quantity, unit, shown, si, values: run.inputs.clone() };
+    let printed = run.inputs.iter().map(|input| factor * input).collect();
+    let input = BenchColumn { name, quantity, unit, printed, si, values: run.inputs.clone() };
     let names = ["pressure_bar", "pressure at the open end", "Pa"];
     let pressure = BenchColumn::of(names, DisplayUnit::BAR, run.pressures.clone());
     BenchTable {

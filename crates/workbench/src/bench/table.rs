@@ -61,7 +61,7 @@ pub(super) struct BenchColumn {
     pub(super) quantity: &'static str,
     /// Unit in the file, and the values in it.
     pub(super) unit: &'static str,
-    pub(super) shown: Vec<f64>,
+    pub(super) printed: Vec<f64>,
     /// SI unit, and the values in it.
     pub(super) si: &'static str,
     pub(super) values: Vec<f64>,
@@ -74,8 +74,8 @@ impl BenchColumn {
         unit: DisplayUnit,
         values: Vec<f64>,
     ) -> BenchColumn {
-        let shown = values.iter().map(|value| unit.of(*value)).collect();
-        BenchColumn { name, quantity, unit: unit.symbol, shown, si, values }
+        let printed = values.iter().map(|value| unit.of(*value)).collect();
+        BenchColumn { name, quantity, unit: unit.symbol, printed, si, values }
     }
 
     /// Smallest and largest value, SI.
@@ -104,8 +104,8 @@ impl BenchTable {
             std::iter::once("time_s").chain(self.columns.iter().map(|column| column.name)).collect();
         let mut table = NumberTable::new(Vec::new(), TableFormat::Csv, &names)?;
         for (row, time_s) in self.times.iter().enumerate() {
-            let shown = self.columns.iter().filter_map(|column| column.shown.get(row).copied());
-            table.row(&std::iter::once(*time_s).chain(shown).collect::<Vec<f64>>())?;
+            let printed = self.columns.iter().filter_map(|column| column.printed.get(row).copied());
+            table.row(&std::iter::once(*time_s).chain(printed).collect::<Vec<f64>>())?;
         }
         table.finish()
     }
@@ -113,7 +113,7 @@ impl BenchTable {
     /// A section that shows the range of each column.
     pub(super) fn write_ranges(&self, digits: usize, out: &mut Document) {
         let rows = self.columns.iter().map(|column| {
-            let [least, most] = ends(column.shown.iter().copied()).map(|value| Cell::number(value, digits));
+            let [least, most] = ends(column.printed.iter().copied()).map(|value| Cell::number(value, digits));
             [Cell::from(column.quantity), least, most, Cell::from(column.unit)]
         });
         out.section(self.title, Table::new(["recorded", "least", "most", "unit"]).with(rows));

@@ -30,7 +30,7 @@ pub(crate) struct CampaignAnswer {
     /// Runs whose drawn numbers give no machine, or whose machine cannot start.
     refused: Vec<RefusedRunAnswer>,
     /// Runs that ended early, or diverged.
-    ended: Vec<EndedRunAnswer>,
+    early_ends: Vec<EarlyEndAnswer>,
     /// Conditions that the machines met, in the order of their first run.
     occurrences: Vec<CampaignOccurrenceAnswer>,
     /// Percentages of the runs below each of the quantiles.
@@ -74,7 +74,7 @@ pub(crate) struct CampaignRunAnswer {
 #[derive(Answer)]
 struct CampaignRunsAnswer {
     /// Number of runs of the whole campaign.
-    asked: u64,
+    requested: u64,
     /// First run of this part.
     from: u64,
     /// Run after the last of this part.
@@ -135,7 +135,7 @@ struct RefusedRunAnswer {
 
 /// Run that ended early, or diverged.
 #[derive(Answer)]
-struct EndedRunAnswer {
+struct EarlyEndAnswer {
     /// Index of the run, from 0.
     run: u64,
     /// Status of the run.
@@ -201,19 +201,19 @@ pub(crate) fn body(
 ) -> CampaignAnswer {
     let runs = wanted.shard.runs_of(wanted.runs);
     let refused = summary.refused.iter();
-    let ended = summary.ended.iter();
+    let early_ends = summary.early_ends.iter();
     let occurrences = summary.occurrences.iter();
     CampaignAnswer {
         scenario: plan.scenario().to_string(),
         seed: plan.seed(),
         complete: rows as u64 == runs.end - runs.start,
-        runs: CampaignRunsAnswer { asked: wanted.runs, from: runs.start, until: runs.end, rows },
+        runs: CampaignRunsAnswer { requested: wanted.runs, from: runs.start, until: runs.end, rows },
         parameters: plan.ranges().iter().map(range).collect(),
         statuses: statuses(summary),
         refused: refused
             .map(|(run, reason)| RefusedRunAnswer { run: *run, reason: reason.clone() })
             .collect(),
-        ended: ended.map(|&(run, status, time_s)| EndedRunAnswer { run, status, time_s }).collect(),
+        early_ends: early_ends.map(|&(run, status, time_s)| EarlyEndAnswer { run, status, time_s }).collect(),
         occurrences: occurrences
             .map(|&(kind, runs, first_run)| CampaignOccurrenceAnswer {
                 kind: CampaignOccurrenceKind(kind),

@@ -83,10 +83,10 @@ pub(crate) fn document(
     let statuses = RunStatus::OF_ROWS.into_iter().zip(summary.statuses).filter(|(_, count)| *count > 0);
     out.sentences(statuses.map(|(status, count)| format!("{count} {}", status_words(status))));
     out.sentences(summary.refused.iter().take(LISTED).map(|(run, reason)| format!("run {run}: {reason}")));
-    let ended = summary.ended.iter().take(LISTED).map(|(run, status, time_s)| {
+    let early_ends = summary.early_ends.iter().take(LISTED).map(|(run, status, time_s)| {
         format!("run {run}: {} at {} s", status_words(*status), significant(*time_s, 4))
     });
-    out.sentences(ended);
+    out.sentences(early_ends);
     out.sentences(summary.occurrences.iter().map(|(kind, count, first)| {
         format!("{} in {}, the first is run {first}", kind.replace('_', " "), counted(*count))
     }));
@@ -110,7 +110,7 @@ pub(crate) fn document(
 
 /// `291 of 300 runs (97.0 %; 94.4 to 98.4 % with 95 % confidence) satisfy: at most 2 % overshoot`
 pub(crate) fn requirement(one: &CampaignRequirement) -> String {
-    let required = required_words(&one.wish);
+    let required = required_words(&one.step_limits);
     let judged = match one.judged {
         Ok(judged) => judged,
         Err(why) => return format!("not judged: {required}; {}", not_judged_words(why)),
@@ -120,7 +120,7 @@ pub(crate) fn requirement(one: &CampaignRequirement) -> String {
     let part = percent(judged.satisfied as f64 / judged.runs.max(1) as f64);
     let worst = match judged.worst {
         Some((run, reached)) if judged.satisfied < judged.runs => {
-            format!("; the worst is run {run}: {}", reached_words(&one.wish, &reached))
+            format!("; the worst is run {run}: {}", reached_words(&one.step_limits, &reached))
         }
         _ => String::new(),
     };

@@ -71,7 +71,7 @@ pub(super) fn impedance(yields: bool, motion: MotionKind) -> String {
 /// A zero or pole that the sampling moves, and the discretisation that retains it.
 pub(super) fn moved_root(table: &str, moved: &MovedRoot, discretization: Discretization) -> String {
     let frequency = |root: Complex64| display(portable::magnitude(root), &ANGULAR_FREQUENCY, 4);
-    let (name, cure) = match discretization {
+    let (name, remedy) = match discretization {
         Discretization::Tustin => {
             let exact = format!(
                 "discretization_frequency = \"{}\" keeps it there, and discretization = \"matched\" keeps all",
@@ -90,7 +90,7 @@ pub(super) fn moved_root(table: &str, moved: &MovedRoot, discretization: Discret
         Discretization::Matched => ("matched", "a shorter sample_time keeps it there".to_string()),
     };
     format!(
-        "{table}: discretization = \"{name}\" moves the {} at {} with a damping ratio of {} to {}, by {} %: {cure}",
+        "{table}: discretization = \"{name}\" moves the {} at {} with a damping ratio of {} to {}, by {} %: {remedy}",
         if moved.is_zero { "zero" } else { "pole" },
         frequency(moved.root),
         significant(-moved.root.re / portable::magnitude(moved.root), 2),

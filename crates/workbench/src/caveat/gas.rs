@@ -90,7 +90,7 @@ pub(super) fn adjustment(settings: CountedSettings, moves_gas: bool) -> String {
 }
 
 pub(super) fn valve(transition_pressure: f64, has_range: bool) -> String {
-    let cure = match has_range {
+    let remedy = match has_range {
         true => "the ranges of setting and transition_pressure say up to which oscillation",
         false => {
             "state a range of line.accumulator.adjustment.setting or transition_pressure in [uncertainty], or judge by a simulation"
@@ -98,7 +98,7 @@ pub(super) fn valve(transition_pressure: f64, has_range: bool) -> String {
     };
     format!(
         "the valve of line.accumulator.adjustment has no drop at rest, and is counted with the slope of its transition_pressure of {}: an \
-         oscillation beyond that finds it narrower: {cure}",
+         oscillation beyond that finds it narrower: {remedy}",
         display(transition_pressure, &PRESSURE, 3)
     )
 }

@@ -21,13 +21,13 @@ pub(super) fn sentence(part: &UnexplainedPart, consequence: MisfitConsequence) -
     let judged = match consequence {
         MisfitConsequence::Beyond => format!("beyond {bound} % no verdict on this {of} is met"),
         MisfitConsequence::Within => format!("up to {bound} % a verdict on this {of} stands"),
-        MisfitConsequence::OfRunsAlone => {
+        MisfitConsequence::OnlyOfRuns => {
             "the linear plant has its viscous friction from elsewhere, so that a verdict on the linear loop stands"
                 .to_string()
         }
     };
     let consequence = match (part.kind, consequence) {
-        (UnexplainedKind::Friction, MisfitConsequence::OfRunsAlone) => format!("{judged}; {IN_RUNS}"),
+        (UnexplainedKind::Friction, MisfitConsequence::OnlyOfRuns) => format!("{judged}; {IN_RUNS}"),
         (UnexplainedKind::Friction, _) => {
             format!("the linear plant has `viscous` alone of it, and {judged}; {IN_RUNS}")
         }

@@ -8,7 +8,7 @@ pub(super) const DYNAMIC_PRESSURE_FEEDBACK: &str = "cross_port.kind = \"dynamic_
 pub(super) fn leakage_humps(command: f64, greatest: f64, least: f64) -> String {
     let [most, least] = [greatest, least].map(|flow| display(flow, &FLOW, 3));
     format!(
-        "the valve leaks most beside null, {most} at {}, and {least} at null, where measured valves leak most: valve.leakage_shape, which \
+        "the valve leaks most near null, {most} at {}, and {least} at null, where measured valves leak most: valve.leakage_shape, which \
          sets over what command the leakage falls, is too small for these flow coefficients",
         display(command, &VOLTAGE, 3)
     )
@@ -47,7 +47,7 @@ pub(super) fn cross_port_orifice(
         Some(drop) => format!("a drop of {} at rest", display(drop, &PRESSURE, 3)),
     };
     let path = "cross_port.transition_pressure";
-    let cure = match has_range {
+    let remedy = match has_range {
         true => format!("the range of {path} says up to which oscillation"),
         false => format!(
             "state a range of {path} in [uncertainty], up to 0.81 times the amplitude of the drop, or judge by a simulation"
@@ -55,6 +55,6 @@ pub(super) fn cross_port_orifice(
     };
     format!(
         "cross_port is counted for small motions: its orifice has {at}, and there the slope of its transition_pressure of {transition}, \
-         {conductance} m3/(s.Pa); an oscillation beyond that is damped less: {cure}"
+         {conductance} m3/(s.Pa); an oscillation beyond that is damped less: {remedy}"
     )
 }

@@ -4,8 +4,8 @@ use super::simulate::frequencies;
 use super::unprinted::Unprinted;
 use super::{CommandError, Watch};
 use crate::alternatives::{
-    self, AlternativesError, AlternativesOptions, AskedAlternative, FrontRequest, IMPEDANCE_AT, asked,
-    asked_cases, judge, outside_words,
+    self, AlternativesError, AlternativesOptions, PreparedAlternative, FrontRequest, IMPEDANCE_AT, prepared,
+    prepared_cases, judge, outside_words,
 };
 use crate::answer::Body;
 use crate::linearize::SweepRequest;
@@ -64,8 +64,8 @@ pub(super) fn read_alternatives(
     if loaded.project.alternatives.is_empty() {
         return Ok(vec![]);
     }
-    let mut warnings = rigs(&asked(source, loaded, catalogues)?.0, "")?;
-    for case in asked_cases(source, loaded, catalogues)? {
+    let mut warnings = rigs(&prepared(source, loaded, catalogues)?.0, "")?;
+    for case in prepared_cases(source, loaded, catalogues)? {
         let further = rigs(&case.all, &format!(", {}", case.name))?;
         warnings
             .extend(further.into_iter().filter(|sentence| !warnings.contains(sentence)).collect::<Vec<_>>());
@@ -75,8 +75,8 @@ pub(super) fn read_alternatives(
 
 /// Assembles the rig of each alternative; returns the sentences on those that their families do not
 /// contain.
-fn rigs(all: &[AskedAlternative], case: &str) -> Result<Vec<String>, CommandError> {
-    let own = |one: &&AskedAlternative| !case.is_empty() || one.name != AS_DECLARED;
+fn rigs(all: &[PreparedAlternative], case: &str) -> Result<Vec<String>, CommandError> {
+    let own = |one: &&PreparedAlternative| !case.is_empty() || one.name != AS_DECLARED;
     for one in all.iter().filter(own).filter(|one| one.loaded.project.actuator.is_some()) {
         if let Err(error) = &one.rig {
             let name = format!("{}{case}", one.name);

@@ -16,7 +16,7 @@ use crate::rig::RigError;
 use crate::setup::Setup;
 use crate::simulate::{foreseen, foreseen_late, unreadable};
 use crate::source::Source;
-use crate::specification::{self, wishes};
+use crate::specification::{self, requirements_in_time};
 
 /// Answer of `check`.
 #[derive(Answer)]
@@ -48,13 +48,13 @@ pub(super) fn check(
     let of_alternatives = read_alternatives(source, loaded, catalogues)?;
     let impossible = Impossible::all(source, loaded, &setup)?;
     let of_scenarios = scenarios(source, loaded, &setup)?;
-    let wishes = wishes(&loaded.project)?;
+    let requirements_in_time = requirements_in_time(&loaded.project)?;
     let visited = visited_box(&setup)?;
     let of_loops = impossible.iter().map(Impossible::sentence);
-    let told = told_first(&setup, &impossible).into_iter().chain(of_loops);
-    let told: Vec<String> = told.chain(of_alternatives).chain(of_scenarios).collect();
+    let further_warnings = first_warnings(&setup, &impossible).into_iter().chain(of_loops);
+    let further_warnings: Vec<String> = further_warnings.chain(of_alternatives).chain(of_scenarios).collect();
     let mut document = Document::default();
-    document.warnings(told.clone());
+    document.warnings(further_warnings.clone());
     if !derived.is_empty() {
         document.append(derived::document(&derived, &WrittenUnits::of(loaded)));
         document.gap();
@@ -63,7 +63,7 @@ pub(super) fn check(
         document.append(derived::visited(&loaded.project, ranges));
         document.gap();
     }
-    document.append(specification::document(&wishes));
+    document.append(specification::document(&requirements_in_time));
     let valid = match impossible.is_empty() {
         true => "The project is valid.",
         false => "The project is valid, and requires what no loop can satisfy: see the warnings.",
@@ -74,7 +74,7 @@ pub(super) fn check(
     });
     let files = derived::files(&derived);
     let body = CheckAnswer {
-        derived: derived::body(loaded, &derived, visited.as_deref(), &wishes, told),
+        derived: derived::body(loaded, &derived, visited.as_deref(), &requirements_in_time, further_warnings),
         impossible: impossible.iter().map(Impossible::answer).collect(),
     };
     Ok(Unprinted { document, body: body.into_object(), files, affirmative: true })
@@ -101,7 +101,7 @@ fn scenarios(source: &dyn Source, loaded: &Loaded, setup: &Setup<'_>) -> Result<
 
 /// Effects that no verdict on the linear loop includes, and parameters of the rig outside its own
 /// family.
-fn told_first(setup: &Setup<'_>, impossible: &[Impossible]) -> Vec<String> {
+fn first_warnings(setup: &Setup<'_>, impossible: &[Impossible]) -> Vec<String> {
     let outside = setup.outside().map(|(_, parameters)| caveat::outside(&parameters));
     // a required step beyond the rig is among the impossible requirements, with its line
     let is_new = |caveat: &Caveat| !impossible.iter().any(|one| one.is_step_of(caveat));

@@ -20,7 +20,7 @@ pub(super) struct ImpossibleAnswer {
     /// Sentence with the plant and the frequency that forbid it.
     sentence: String,
     /// Change that would satisfy it.
-    cure: String,
+    remedy: String,
 }
 
 /// A requirement that no loop can satisfy.
@@ -70,7 +70,7 @@ impl Impossible {
             key: self.at.path.clone(),
             line: self.line,
             sentence: self.at.message.clone(),
-            cure: self.at.help.clone(),
+            remedy: self.at.help.clone(),
         }
     }
 }

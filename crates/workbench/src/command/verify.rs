@@ -19,7 +19,7 @@ use crate::rig::RigError;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::source::Source;
-use crate::trial::{self, Agreement, DrivenCorners, TrialAnswer, tried};
+use crate::trial::{self, Agreement, DrivenCorners, TrialAnswer, simulated_trial};
 
 /// Answer of `verify`.
 #[derive(Answer)]
@@ -83,7 +83,7 @@ pub(super) fn verify_answer(
     }
     let watch = &mut within(watch, [proven, 1.0]);
     let corners = DrivenCorners::WhereElseSatisfies;
-    let Some(trial) = tried(source, &setup, (&problem, &view), corners, watch)? else {
+    let Some(trial) = simulated_trial(source, &setup, (&problem, &view), corners, watch)? else {
         return Err(RigError::NoActuator.into());
     };
     document.append(audit::output(&view, Some(&trial)));

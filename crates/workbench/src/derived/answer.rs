@@ -5,7 +5,7 @@ use crate::answer::{Answer, Csv, Entries, OutputFile, quoted, words};
 use crate::family::{Extreme, VisitedRange};
 use crate::project::Loaded;
 use crate::replaced::{ReplacedRange, replaced_ranges};
-use crate::specification::{CheckedWish, WishAnswer, wish_answer};
+use crate::specification::{CheckedRequirement, CheckedRequirementAnswer, requirement_answer};
 
 /// Quantities that follow from a project, and the warnings about it.
 #[derive(Answer)]
@@ -21,7 +21,7 @@ pub(crate) struct DerivedAnswer {
     /// Ranges that the project states as replaced by its family.
     replaced: Vec<ReplacedRangeAnswer>,
     /// Requirements in time of tracking limits.
-    wishes: Vec<WishAnswer>,
+    requirements_in_time: Vec<CheckedRequirementAnswer>,
     /// Warnings about the project.
     warnings: Vec<String>,
 }
@@ -113,18 +113,18 @@ struct ReplacedRangeAnswer {
     visited: [f64; 2],
     /// Fraction of the replaced range that is visited, of its logarithm where it is spaced by equal
     /// factors.
-    share: f64,
+    fraction: f64,
     /// True if the family goes below the replaced range, and above it.
     beyond: [bool; 2],
 }
 
-/// What `check` says to programs; `told` are warnings in addition to those of the reader.
+/// What `check` says to programs; `further_warnings` are warnings in addition to those of the reader.
 pub(crate) fn body(
     loaded: &Loaded,
     derived: &[Derived],
     visited: Option<&[VisitedRange]>,
-    wishes: &[CheckedWish],
-    told: Vec<String>,
+    requirements_in_time: &[CheckedRequirement],
+    further_warnings: Vec<String>,
 ) -> DerivedAnswer {
     let warnings = loaded.warnings.iter().map(|warning| warning.message.clone());
     let all_replaced = replaced_ranges(&loaded.project, visited.unwrap_or_default());
@@ -133,8 +133,8 @@ pub(crate) fn body(
         visited_box: visited.map(|ranges| ranges.iter().map(range).collect()),
         visited_box_evidence: visited.map(|_| VisitedEvidence::Search),
         replaced: all_replaced.iter().map(replaced).collect(),
-        wishes: wishes.iter().map(wish_answer).collect(),
-        warnings: told.into_iter().chain(warnings).collect(),
+        requirements_in_time: requirements_in_time.iter().map(requirement_answer).collect(),
+        warnings: further_warnings.into_iter().chain(warnings).collect(),
     }
 }
 
@@ -144,7 +144,7 @@ fn replaced(range: &ReplacedRange) -> ReplacedRangeAnswer {
         unit: range.unit,
         replaced: range.stated,
         visited: range.visited,
-        share: range.share,
+        fraction: range.fraction,
         beyond: range.beyond(),
     }
 }

@@ -35,15 +35,15 @@ pub(crate) fn document(derived: &[Derived], units: &WrittenUnits) -> Document {
 }
 
 fn cells(quantity: &Derived, units: &WrittenUnits) -> [Cell; 4] {
-    let shown = |value: f64| units.shown(&quantity.name, value, quantity.unit);
-    let (_, unit) = shown(quantity.value.unwrap_or_default());
+    let displayed = |value: f64| units.displayed(&quantity.name, value, quantity.unit);
+    let (_, unit) = displayed(quantity.value.unwrap_or_default());
     [
         Cell::Name {
             name: quantity.name.clone(),
             words: quantity.words.clone(),
             symbol: quantity.symbol.to_string(),
         },
-        quantity.value.map_or(Cell::Missing, |value| Cell::number(shown(value).0, 5)),
+        quantity.value.map_or(Cell::Missing, |value| Cell::number(displayed(value).0, 5)),
         Cell::unit(unit),
         Cell::Equation(quantity.equation.to_string()),
     ]
@@ -86,7 +86,7 @@ pub(crate) fn replaced_table(ranges: &[ReplacedRange]) -> Table {
     let row = |range: &ReplacedRange| {
         let ends = [range.stated[0], range.stated[1], range.visited[0], range.visited[1]];
         let [least, most, low, high] = ends.map(|end| Cell::number(end, 3));
-        let percent = Cell::from(format!("{} %", significant(100.0 * range.share, 2)));
+        let percent = Cell::from(format!("{} %", significant(100.0 * range.fraction, 2)));
         [range.symbol.into(), least, most, low, high, Cell::unit(range.unit), percent]
     };
     let headings = ["quantity", "replaced from", "to", "visited from", "to", "unit", "share visited"];
@@ -128,13 +128,13 @@ fn stated(derived: &[Derived]) -> Vec<&Derived> {
 /// A stated value next to the derived one, in a sentence.
 fn sentence(quantity: &Derived, units: &WrittenUnits) -> String {
     let Some(stated) = &quantity.stated else { return String::new() };
-    let shown = |value: f64| significant(units.shown(&quantity.name, value, quantity.unit).0, 4);
-    let with_unit = match units.shown(&quantity.name, stated.value, quantity.unit).1.as_str() {
-        "1" => shown(stated.value),
-        unit => format!("{} {unit}", shown(stated.value)),
+    let displayed = |value: f64| significant(units.displayed(&quantity.name, value, quantity.unit).0, 4);
+    let with_unit = match units.displayed(&quantity.name, stated.value, quantity.unit).1.as_str() {
+        "1" => displayed(stated.value),
+        unit => format!("{} {unit}", displayed(stated.value)),
     };
     let bounds = stated.bounds.map_or(String::new(), |[minimum, maximum]| {
-        format!(", from {} to {}", shown(minimum), shown(maximum))
+        format!(", from {} to {}", displayed(minimum), displayed(maximum))
     });
     let own = if quantity.outside_own_bounds() { "; the stated value lies outside these bounds" } else { "" };
     let verdict = match (quantity.contradicts_derived(), stated.bounds) {
@@ -149,6 +149,6 @@ fn sentence(quantity: &Derived, units: &WrittenUnits) -> String {
         quantity.symbol,
         with_unit,
         stated.place,
-        quantity.value.map_or("-".to_string(), shown)
+        quantity.value.map_or("-".to_string(), displayed)
     )
 }

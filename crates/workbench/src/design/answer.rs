@@ -182,7 +182,7 @@ pub(crate) fn body(view: &ProjectDesign) -> Result<DesignAnswer, LinearError> {
         conflicts: conflicts(view),
         explanations: explanations(view),
         rounding: view.rounding.as_ref().map(|rounding| rounding::answer(rounding, &side.view.names)),
-        machine: OrReason::new(view.trial.as_ref().map(trial::body), why_not_tried(view)),
+        machine: OrReason::new(view.trial.as_ref().map(trial::body), why_not_simulated(view)),
         repair: OrReason::new(
             view.repair.as_ref().map(|repair| repair::answer(view, repair)),
             why_not_repaired(view),
@@ -197,7 +197,7 @@ fn objective(view: &ProjectDesign) -> ObjectiveAnswer {
 }
 
 /// The reason for the absence of a trial.
-fn why_not_tried(view: &ProjectDesign) -> &'static str {
+fn why_not_simulated(view: &ProjectDesign) -> &'static str {
     match view.unfinished.contains(&DesignPart::Trial) {
         true => "the design was stopped before it was tried in the nonlinear simulation",
         false => "the project describes a plant and no machine",
@@ -215,7 +215,7 @@ fn why_not_published(view: &ProjectDesign) -> Option<&'static str> {
 /// The reason for the absence of a repair.
 fn why_not_repaired(view: &ProjectDesign) -> &'static str {
     match view.agreement() == Agreement::Contradicts {
-        true => "it was not asked for",
+        true => "it was not requested",
         false => "no machine contradicts the design",
     }
 }

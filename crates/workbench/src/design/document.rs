@@ -360,10 +360,10 @@ fn seed_sentence(view: &ProjectDesign) -> String {
 
 /// Dependence of the result on its starting points: the ends of the descents of the last search.
 fn starts_sentence(starts: &Starts) -> String {
-    let mut sentence = format!("{} of {} starts stabilise every plant", starts.stabilised, starts.tried);
+    let mut sentence = format!("{} of {} starts stabilise every plant", starts.stabilised, starts.evaluated);
     let three = |[best, median, worst]: [String; 3]| format!("best {best}, median {median}, worst {worst}");
     if let Some(margins_db) = starts.margins_db {
-        let (descents, margins) = (starts.ended, three(margins_db.map(margin_words)));
+        let (descents, margins) = (starts.completed, three(margins_db.map(margin_words)));
         sentence.push_str(&format!("; worst margin where {descents} descents ended: {margins}"));
     }
     if let Some(objectives_db) = starts.objectives_db {

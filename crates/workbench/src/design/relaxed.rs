@@ -66,7 +66,7 @@ fn relaxed(view: &ProjectDesign, limit: RelaxedLimit) -> String {
         RelaxedLimit::Steps(index) => {
             let finding = view.designed.view.in_time.get(index);
             return finding.map_or(by, |found| {
-                format!("to {}", required_words(&found.requirement.wish.wider(1.0 + RELAXED_BY)))
+                format!("to {}", required_words(&found.requirement.step_limits.wider(1.0 + RELAXED_BY)))
             });
         }
         RelaxedLimit::Design(kind) => {

@@ -17,7 +17,7 @@ pub(super) fn repair_words(status: RepairStatus) -> &'static str {
         RepairStatus::NotConverged => "not converged",
         RepairStatus::NotStabilised => "not stabilised",
         RepairStatus::Stopped => "stopped",
-        RepairStatus::NothingToTakeIn => "nothing to take in",
+        RepairStatus::NothingToAdd => "nothing to add",
     }
 }
 
@@ -111,7 +111,7 @@ fn outcome(repair: &Repair, found: &ProjectDesign) -> String {
         RepairStatus::NotStabilised => {
             format!("that plant was added: none of the controllers tried is stable {both}")
         }
-        RepairStatus::NotConverged | RepairStatus::Stopped | RepairStatus::NothingToTakeIn => format!(
+        RepairStatus::NotConverged | RepairStatus::Stopped | RepairStatus::NothingToAdd => format!(
             "that plant was added: the search for a controller that satisfies every specification {both} has not converged; another `design.seed` may find one"
         ),
     }

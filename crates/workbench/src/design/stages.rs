@@ -121,7 +121,7 @@ pub(crate) fn drawn(problem: &RobustProblem) -> Vec<f64> {
         (Some(first), Some(last)) => problem.drawn_frequencies(first * BEYOND[0], last * BEYOND[1]),
         // only steps are required
         _ => problem.in_time.first().map_or_else(Vec::new, |required| {
-            let bandwidth = 1.0 / required.wish.horizon_s;
+            let bandwidth = 1.0 / required.step_limits.horizon_s;
             problem.drawn_frequencies(bandwidth * BEYOND[0], bandwidth * BEYOND_BANDWIDTH)
         }),
     }

@@ -26,7 +26,7 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
         "The shortest structure that is met is taken. The least margin, and the limit that binds (leaves no room), are those of the plants and frequencies that the search evaluated; crossover and delay margin are those of the nominal loop; overshoot and settling time are the worst of the linear steps, of the structure that is taken over the whole family, of others over 40 of its members; the noise gain is its largest |G/(1+L)|, from the noise of the sensor to the command.",
     );
     let compares_noise = view.options.objective == Objective::LeastHighFrequencyGain;
-    let band = view.designed.view.in_time.first().map(|finding| finding.requirement.wish.band_percent);
+    let band = view.designed.view.in_time.first().map(|finding| finding.requirement.step_limits.band_percent);
     let settles = band.map_or("settles in".to_string(), |band| format!("settles in ({band} %)"));
     let rises = requires_rise(view);
     let mut headings = vec![
@@ -71,7 +71,7 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
     }));
     let is_given_up = |one: &ReachedStructure| ending_words(view, one) == GIVEN_UP;
     out.sentences(view.structures.iter().any(is_given_up).then(|| {
-        "given up: it was not worth its poles beside the structure that the search over frequency found first, and was not led by its steps; it may be worth them beside the one that is taken, and `design.structure` designs it".to_string()
+        "given up: it was not worth its poles compared with the structure that the search over frequency found first, and was not led by its steps; it may be worth them beside the one that is taken, and `design.structure` designs it".to_string()
     }));
     out.sentences(way_sentence(view));
     out
@@ -188,7 +188,7 @@ fn row(view: &ProjectDesign, one: &ReachedStructure) -> Vec<Cell> {
 /// True if a rise time is required.
 fn requires_rise(view: &ProjectDesign) -> bool {
     let required = view.designed.view.in_time.first();
-    required.is_some_and(|finding| finding.requirement.wish.rise_time_s.is_some())
+    required.is_some_and(|finding| finding.requirement.step_limits.rise_time_s.is_some())
 }
 
 /// A time in s; infinite if the response does not settle or rise that far.
@@ -218,7 +218,7 @@ fn steps(view: &ProjectDesign, one: &ReachedStructure) -> [Option<String>; 2] {
 
 /// Percent and s, as far as they are required.
 pub(super) fn reached_steps(view: &ProjectDesign, one: &ReachedStructure) -> Option<[Option<f64>; 2]> {
-    let (reached, required) = (one.steps?, view.designed.view.in_time.first()?.requirement.wish);
+    let (reached, required) = (one.steps?, view.designed.view.in_time.first()?.requirement.step_limits);
     Some([
         required.overshoot_percent.map(|_| reached.overshoot_percent),
         required.settling_time_s.map(|_| reached.settling_time_s),
@@ -228,7 +228,7 @@ pub(super) fn reached_steps(view: &ProjectDesign, one: &ReachedStructure) -> Opt
 /// True if linear steps of a structure miss a requirement in time.
 fn has_late_steps(view: &ProjectDesign, one: &ReachedStructure) -> bool {
     let Some((reached, finding)) = one.steps.zip(view.designed.view.in_time.first()) else { return false };
-    finding.requirement.follows && finding.requirement.wish.excess(&reached) > 1.0
+    finding.requirement.follows && finding.requirement.step_limits.excess(&reached) > 1.0
 }
 
 /// The same of a structure that keeps every limit.

@@ -2,7 +2,7 @@
 
 use phea_dynamics::controller::NamedStructure;
 use phea_engineering::design::{
-    DesignVerdict, ProjectDesign, ReachedStructure, RigMiss, SearchedLimit, TriedControllers,
+    DesignVerdict, ProjectDesign, ReachedStructure, RigMiss, SearchedLimit, SearchedControllers,
     UnusableController,
 };
 use phea_qft::loop_shaping::{Structure, StructureFactor};
@@ -53,7 +53,7 @@ pub(crate) fn verdict_sentence(verdict: &DesignVerdict, motion: MotionKind) -> S
             "infeasible: none of the controllers tried{} makes its steps as they are required; the nearest one keeps all that is required over frequency",
             tested_words(*controllers)
         ),
-        DesignVerdict::Infeasible { tried: controllers, relaxation_db } => format!(
+        DesignVerdict::Infeasible { searched: controllers, relaxation_db } => format!(
             "infeasible: none of the controllers tried{} satisfies every specification; with every limit {} dB wider one does",
             tested_words(*controllers),
             significant(*relaxation_db, 3)
@@ -126,11 +126,11 @@ fn command_sentence(
     )
 }
 
-fn tested_words(controllers: TriedControllers) -> String {
+fn tested_words(controllers: SearchedControllers) -> String {
     match controllers {
-        TriedControllers::GivenStructure => ", all of the given structure,".to_string(),
-        TriedControllers::Named(name) => format!(", all of the structure {},", structure_name(name)),
-        TriedControllers::UpToOrder(maximum_order) => format!(", of order {maximum_order} at most,"),
+        SearchedControllers::GivenStructure => ", all of the given structure,".to_string(),
+        SearchedControllers::Named(name) => format!(", all of the structure {},", structure_name(name)),
+        SearchedControllers::UpToOrder(maximum_order) => format!(", of order {maximum_order} at most,"),
     }
 }
 

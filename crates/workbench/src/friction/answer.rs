@@ -33,7 +33,7 @@ pub(crate) struct IdentifiedFrictionAnswer {
     /// Misfits in sentences.
     warnings: Vec<FileWarningAnswer>,
     /// Fraction of the residuals that are independent, the least of all signals.
-    independent_share: f64,
+    independent_fraction: f64,
     /// True if no further step of the search explains more.
     converged: bool,
 }
@@ -155,7 +155,7 @@ struct FrictionMisfitAnswer {
     /// Signal with the misfit.
     signal: FrictionSignal,
     /// Root mean square of the misfit over the range of the signal.
-    share: f64,
+    fraction: f64,
     /// Correlation of neighbouring residuals: of both halves of each constant velocity, or of rows.
     neighbour_correlation: f64,
     /// Constant velocity at which the misfit is greatest; null of pressed or shaken rows.
@@ -199,7 +199,7 @@ fn answer(found: &FrictionIdentification) -> IdentifiedFrictionAnswer {
         position_residual_rms_m,
         misfits: found.misfits.iter().map(|one| misfit(found, one)).collect(),
         warnings: found.misfits.iter().map(warning).collect(),
-        independent_share: found.independent,
+        independent_fraction: found.independent,
         converged: found.has_converged(),
     }
 }
@@ -263,7 +263,7 @@ fn misfit(found: &FrictionIdentification, one: &FrictionMisfit) -> FrictionMisfi
     FrictionMisfitAnswer {
         file: file(found, one.recording).to_string(),
         signal: one.signal,
-        share: one.fraction,
+        fraction: one.fraction,
         neighbour_correlation: one.correlation,
         velocity_m_per_s: one.place.map(|[velocity, _]| velocity),
         mean_residual_n: one.place.map(|[_, residual]| residual),

@@ -15,7 +15,7 @@ use self::estimates::{
 use self::evidence::{CoefficientValuesAnswer, LeakageFitAnswer, ValveTermAnswer};
 use self::residuals::{CorrelationAnswer, NotIdentifiableAnswer, ValveMisfitAnswer, ValveSignalAnswer};
 use super::files::ValveTestAnswer;
-use super::numbers::{HandReadingsAnswer, hand_readings};
+use super::numbers::{GraphReadingsAnswer, graph_readings};
 use super::region::{FoundRegion, JointRegionAnswer, joint_region_answer};
 use super::{Identification, Read, TestOil};
 use crate::answer::{Answer, Body, FileWarningAnswer, SCHEMA, VERSION};
@@ -91,7 +91,7 @@ pub(crate) struct IdentifiedValveAnswer {
     /// Family of valves that the recordings allow; null without the project of a rig.
     joint_region: Option<JointRegionAnswer>,
     /// Values that are read from the curves by the equations of the thesis, section 5.2.
-    simple_calculations: HandReadingsAnswer,
+    simple_calculations: GraphReadingsAnswer,
     /// Number of starting points of the search, the first guess included.
     starts: usize,
     /// Number of starting points that lead to the best minimum.
@@ -167,7 +167,7 @@ fn answer(
         correlations: residuals::correlation_answers(found),
         not_identifiable: found.not_identifiable.iter().map(residuals::not_identifiable).collect(),
         joint_region: region.map(joint_region_answer),
-        simple_calculations: hand_readings(found),
+        simple_calculations: graph_readings(found),
         starts: found.starts[0],
         starts_that_agree: found.starts[1],
         converged: found.has_converged(),

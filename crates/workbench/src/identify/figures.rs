@@ -238,7 +238,7 @@ fn flow_gain(found: &Identification) -> Vec<Figure> {
         return Vec::new();
     }
     let whole = metered.iter().enumerate().map(|(series, (index, one))| {
-        let outputs = found.shown(*index, &found.coefficients);
+        let outputs = found.outputs_of(*index, &found.coefficients);
         let both = WAYS
             .into_iter()
             .flat_map(|(_, rising)| over_command(found, one, rising, |row| signed_flow(one, &outputs, row)))
@@ -263,12 +263,12 @@ fn flow_gain_at_null(found: &Identification, metered: &[(usize, &Recording)]) ->
     let finest = metered.last();
     for (series, (_, rising)) in WAYS.into_iter().enumerate() {
         let read = metered.iter().flat_map(|(index, one)| {
-            let outputs = found.shown(*index, &found.coefficients);
+            let outputs = found.outputs_of(*index, &found.coefficients);
             over_command(found, one, rising, |row| signed_flow(one, &outputs, row)).into_iter().flatten()
         });
         shown.push(Curve::dots(read, series));
         if let Some((index, one)) = finest {
-            let outputs = found.shown(*index, &found.coefficients);
+            let outputs = found.outputs_of(*index, &found.coefficients);
             let flow = |row: usize| outputs.get(row).map(|output| litre.of(output.port_flow));
             shown.extend(lines(over_command(found, one, rising, flow), series));
         }
@@ -307,7 +307,7 @@ type ShownSignal = (SignalKind, DisplayUnit, fn(&TestOutput) -> f64);
 /// A leakage test compared with the model, in one direction, with residuals.
 fn against_model(found: &Identification, index: usize, (way, rising): (&str, bool)) -> Figure {
     let (bar, litre) = (DisplayUnit::BAR, DisplayUnit::LITRE_PER_MINUTE);
-    let outputs = found.shown(index, &found.coefficients);
+    let outputs = found.outputs_of(index, &found.coefficients);
     let recording = found.recordings.get(index);
     let shown: [ShownSignal; 3] = [
         (SignalKind::LeakFlow, litre, |output| output.leak_flow),

@@ -17,8 +17,8 @@ use super::{
 use crate::estimate::Estimate;
 use crate::identify_error::IdentifyError;
 use crate::project::{
-    self, FromRecordings, HashedFile, IdentifiedFamily, IdentifiedNumber, IdentifiedUse, KeptNumber,
-    KeptReason, LEAKAGE_MODELS, Loaded, Origin, Project, RecordedTest, UncertaintyDirection, sha256, word_of,
+    self, FromRecordings, HashedFile, IdentifiedFamily, IdentifiedNumber, IdentifiedUse, UnchangedNumber,
+    UnchangedReason, LEAKAGE_MODELS, Loaded, Origin, Project, RecordedTest, UncertaintyDirection, sha256, word_of,
 };
 use crate::source::{Memory, Source};
 
@@ -93,7 +93,7 @@ pub fn in_use(
         IdentifiedUse::ValveAndUncertainty => Some(region(&found, &loaded.project)?),
         IdentifiedUse::Valve | IdentifiedUse::Nothing => None,
     };
-    let (numbers, kept) = numbers(&found, &loaded.project);
+    let (numbers, unchanged) = numbers(&found, &loaded.project);
     let mut settings = settings(&found, &numbers, region.as_ref());
     settings.extend(without(&found, &loaded.project));
     let stated = loaded.project.design.as_ref().and_then(|design| design.reserve);
@@ -109,7 +109,7 @@ pub fn in_use(
     let declared = loaded.project.actuator.as_ref();
     let tare_pressures = [drop, declared.map_or(drop, |one| one.valve.tare_drop(&one.supply))];
     let files = hashes;
-    let recorded = FromRecordings { project_sha256, files, numbers, kept, tare_pressures, family, settings };
+    let recorded = FromRecordings { project_sha256, files, numbers, unchanged, tare_pressures, family, settings };
     Ok(Some(Loaded { sha256, ..read_again(source, loaded, recorded)? }))
 }
 
@@ -154,15 +154,15 @@ fn region(found: &Identification, project: &Project) -> Result<JointRegion, Valv
 }
 
 /// Numbers that replace declared ones, and numbers that remain as declared.
-fn numbers(found: &Identification, project: &Project) -> (Vec<IdentifiedNumber>, Vec<KeptNumber>) {
-    let (mut numbers, mut kept) = (Vec::new(), Vec::new());
+fn numbers(found: &Identification, project: &Project) -> (Vec<IdentifiedNumber>, Vec<UnchangedNumber>) {
+    let (mut numbers, mut unchanged) = (Vec::new(), Vec::new());
     let of = |index: usize| Some((*COEFFICIENT_NAMES.get(index)?, *found.estimates.get(index)?));
     for ((name, unit), estimate) in found.in_model().filter_map(of) {
         let path = found.path(name);
         match estimate {
-            None => kept.push(KeptNumber { path, reason: KeptReason::NotIdentifiable }),
+            None => unchanged.push(UnchangedNumber { path, reason: UnchangedReason::NotIdentifiable }),
             Some(Estimate { interval: [low, _], .. }) if name == "hysteresis" && low == 0.0 => {
-                kept.push(KeptNumber { path, reason: KeptReason::MayVanish });
+                unchanged.push(UnchangedNumber { path, reason: UnchangedReason::MayVanish });
             }
             Some(Estimate { value, interval }) => {
                 let declared = project.number(&path);
@@ -170,7 +170,7 @@ fn numbers(found: &Identification, project: &Project) -> (Vec<IdentifiedNumber>,
             }
         }
     }
-    (numbers, kept)
+    (numbers, unchanged)
 }
 
 /// Identified numbers as `path=value`.

@@ -1,7 +1,7 @@
 //! Identified numbers that replace those declared in a project, for people.
 
 use super::COVERAGE;
-use crate::answer::{kept_because, significant};
+use crate::answer::{unchanged_because, significant};
 use crate::document::{Cell, Document, Table};
 use crate::project::{FromRecordings, IdentifiedFamily, Loaded};
 use crate::quantity::{PRESSURE, display};
@@ -37,11 +37,11 @@ pub(crate) fn write_in_use(recorded: &FromRecordings, out: &mut Document) {
     });
     out.table(Table::new(headings).with(rows));
     out.sentences(tare_pressure(recorded));
-    let kept = recorded
-        .kept
+    let unchanged = recorded
+        .unchanged
         .iter()
-        .map(|one| format!("{} stays as declared: {}.", one.path, kept_because(one.reason)));
-    out.sentences(kept.chain(recorded.family.as_ref().map(family)));
+        .map(|one| format!("{} stays as declared: {}.", one.path, unchanged_because(one.reason)));
+    out.sentences(unchanged.chain(recorded.family.as_ref().map(family)));
 }
 
 /// The pressures at which the tare flow holds, in a sentence.
@@ -59,7 +59,7 @@ fn family(family: &IdentifiedFamily) -> String {
     let coverage = significant(100.0 * COVERAGE, 2);
     let left_out = significant(100.0 * family.effect_left_out, 2);
     let all = family.effects.len() + family.left_out;
-    let kept = match family.effects.as_slice() {
+    let unchanged = match family.effects.as_slice() {
         [] => "none of them matters, so that the valve is as identified".to_string(),
         [only] => format!(
             "one of them is in the family and moves K_qU and K_c by up to {} %",
@@ -76,6 +76,6 @@ fn family(family: &IdentifiedFamily) -> String {
         _ => format!("; those left out move K_qU and K_c by at most {left_out} % together"),
     };
     format!(
-        "What the recordings leave uncertain ({coverage} %) has {all} independent directions of {half_width} standard deviations to either side: {kept}{others}."
+        "What the recordings leave uncertain ({coverage} %) has {all} independent directions of {half_width} standard deviations to either side: {unchanged}{others}."
     )
 }

@@ -23,7 +23,7 @@ pub(super) fn misfit_in_words(found: &Identification, misfit: &Misfit) -> String
 /// The greatest misfit in the form of the project's `valve.misfit`.
 pub(super) fn declared_misfit(found: &Identification) -> Option<DeclaredMisfit> {
     let misfit = found.misfits().into_iter().next()?;
-    Some(DeclaredMisfit { share: misfit.fraction, at: Some(misfit_at(found, &misfit)) })
+    Some(DeclaredMisfit { fraction: misfit.fraction, at: Some(misfit_at(found, &misfit)) })
 }
 
 /// Signal and recording of a misfit, and the range of the command.

@@ -12,13 +12,13 @@ use crate::quantity::{PRESSURE, VOLTAGE, display};
 /// Values read from the recorded curves by the equations of the thesis, section 5.2; null without
 /// the test for it.
 #[derive(Answer)]
-pub(super) struct HandReadingsAnswer {
+pub(super) struct GraphReadingsAnswer {
     /// Flow coefficient K_vp for positive commands, which extend, m3/(s.Pa^0.5).
     flow_coefficient_extending: Option<f64>,
     /// Flow coefficient K_vp for negative commands, which retract, m3/(s.Pa^0.5).
     flow_coefficient_retracting: Option<f64>,
     /// Flow of the valve over the rated flow, at the rated pressure drop.
-    share_of_nominal_flow: Option<f64>,
+    fraction_of_nominal_flow: Option<f64>,
     /// Leakage coefficient K_vinp, m3/(s.Pa^0.5).
     leakage_coefficient: Option<f64>,
     /// Leakage at null, above the tare flow.
@@ -30,7 +30,7 @@ pub(super) struct HandReadingsAnswer {
     /// Pressure drop from supply to tank at which leakage and tare flow are read.
     leakage_pressure_pa: Option<f64>,
     /// Tare flow over the whole leakage at null.
-    tare_share: Option<f64>,
+    tare_fraction: Option<f64>,
     /// Mean of the nulls with a rising and a falling command.
     null_bias_v: Option<f64>,
     /// Command at null while the command rises.
@@ -55,21 +55,21 @@ pub(super) struct HandReadingsAnswer {
     /// gain at null is not the one that is read.
     flow_pressure_coefficient: Option<f64>,
     /// Confidence intervals of 95 % of the values that have one.
-    confidence_95: HandIntervalsAnswer,
+    confidence_95: GraphIntervalsAnswer,
 }
 
 /// Confidence intervals of 95 % of values read from curves, each from low to high, in the order of
 /// the alphabet.
 #[derive(Answer)]
-struct HandIntervalsAnswer {
+struct GraphIntervalsAnswer {
     #[answer(flatten)]
-    intervals: Keyed<HandReadingKeys, [f64; 2]>,
+    intervals: Keyed<GraphReadingKeys, [f64; 2]>,
 }
 
 /// Values that may have an interval.
-struct HandReadingKeys;
+struct GraphReadingKeys;
 
-impl KeyList for HandReadingKeys {
+impl KeyList for GraphReadingKeys {
     fn keys() -> Vec<(ObjectKey, String)> {
         let keys = [
             "flow_coefficient_extending",
@@ -84,9 +84,9 @@ impl KeyList for HandReadingKeys {
             "null_leakage_m3_per_s",
             "null_rising_v",
             "pressure_sensitivity_pa_per_v",
-            "share_of_nominal_flow",
+            "fraction_of_nominal_flow",
             "tare_flow_m3_per_s",
-            "tare_share",
+            "tare_fraction",
         ];
         keys.map(|key| (key.into(), format!("Confidence interval of `{key}`."))).to_vec()
     }
@@ -101,7 +101,7 @@ words! {
     }
 }
 
-pub(super) fn hand_readings(identified: &Identification) -> HandReadingsAnswer {
+pub(super) fn graph_readings(identified: &Identification) -> GraphReadingsAnswer {
     let found = &identified.simple;
     let mut intervals = BTreeMap::new();
     let mut read = |name: &'static str, reading: Option<Estimate>| {
@@ -111,16 +111,16 @@ pub(super) fn hand_readings(identified: &Identification) -> HandReadingsAnswer {
     let [extending, retracting] = found.flow_coefficients;
     let [gain_extending, gain_retracting] = found.flow_gains;
     let [rising, falling] = found.nulls;
-    HandReadingsAnswer {
+    GraphReadingsAnswer {
         flow_coefficient_extending: read("flow_coefficient_extending", extending),
         flow_coefficient_retracting: read("flow_coefficient_retracting", retracting),
-        share_of_nominal_flow: read("share_of_nominal_flow", found.fraction_of_nominal),
+        fraction_of_nominal_flow: read("fraction_of_nominal_flow", found.fraction_of_nominal),
         leakage_coefficient: read("leakage_coefficient", found.leakage_coefficient()),
         null_leakage_m3_per_s: read("null_leakage_m3_per_s", found.null_leakage),
         leakage_shape: found.leakage_shape,
         tare_flow_m3_per_s: read("tare_flow_m3_per_s", found.tare_flow),
         leakage_pressure_pa: found.leakage_pressure,
-        tare_share: read("tare_share", found.tare_fraction()),
+        tare_fraction: read("tare_fraction", found.tare_fraction()),
         null_bias_v: read("null_bias_v", found.null_bias()),
         null_rising_v: read("null_rising_v", rising.map(|null| null.command)),
         null_falling_v: read("null_falling_v", falling.map(|null| null.command)),
@@ -132,7 +132,7 @@ pub(super) fn hand_readings(identified: &Identification) -> HandReadingsAnswer {
         flow_gain_pressure_pa: found.flow_gain_commands.map(|_| found.flow_gain_pressure),
         pressure_sensitivity_pa_per_v: read("pressure_sensitivity_pa_per_v", found.pressure_sensitivity),
         flow_pressure_coefficient: read("flow_pressure_coefficient", coefficient_at_null(identified)),
-        confidence_95: HandIntervalsAnswer {
+        confidence_95: GraphIntervalsAnswer {
             intervals: Keyed::new(intervals.into_iter().map(|(name, ends)| (name.into(), ends))),
         },
     }

@@ -80,7 +80,7 @@ struct LineMisfitAnswer {
     /// Signal with the misfit: `volume` of a pressure rise, `response` of a frequency response.
     signal: &'static str,
     /// Root mean square of the misfit over the range of the volume, or over the response.
-    share: f64,
+    fraction: f64,
     /// Correlation of neighbouring residuals; null of a frequency response.
     neighbour_correlation: Option<f64>,
 }
@@ -216,7 +216,7 @@ fn misfit(one: LineMisfit) -> LineMisfitAnswer {
     LineMisfitAnswer {
         file: one.file,
         signal: one.signal,
-        share: one.fraction,
+        fraction: one.fraction,
         neighbour_correlation: one.correlation,
     }
 }

@@ -78,7 +78,7 @@ fn misfit(found: &LineIdentification) -> Option<String> {
     let misfits = found.misfits();
     let greatest = misfits.iter().max_by(|one, other| one.fraction.total_cmp(&other.fraction))?;
     let at = Some(format!("{} of {}", greatest.signal, greatest.file));
-    let entries = DeclaredMisfit { share: greatest.fraction, at }.entries().join("\n");
+    let entries = DeclaredMisfit { fraction: greatest.fraction, at }.entries().join("\n");
     Some(format!("\n[{}.misfit]\n{entries}\n", path(&found.known)))
 }
 

@@ -6,7 +6,7 @@ mod stiffness;
 
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
-use phea_hydraulics::linear::ModeShare;
+use phea_hydraulics::linear::ModeContribution;
 
 use super::sweep_answer::{SweptKeyAnswer, SweptPointAnswer, head, rows};
 use super::{AgreementBand, Linearization, LinkagePlace, LinkagePosition, Sweep, models};
@@ -170,7 +170,7 @@ struct DominantModeAnswer {
     pole: Complex64,
     /// Greatest amplitude of the mode in the step response, of the final value; null if it does not
     /// exist.
-    step_share: Option<f64>,
+    step_fraction: Option<f64>,
     /// Ratio of the decay rate to that of the slowest mode; null if it does not exist.
     decay_ratio: Option<f64>,
     /// Reason for a number that does not exist, only in that case.
@@ -214,7 +214,7 @@ pub(crate) fn body(setup: &Setup<'_>, linearization: &Linearization) -> Lineariz
         dominance: linearization.modes.iter().map(mode).collect(),
         impedance: impedances(linearization),
         passivity: passivities(linearization),
-        virtual_impedance: linearization.asked.as_ref().map(virtual_impedance),
+        virtual_impedance: linearization.required_impedance.as_ref().map(virtual_impedance),
         compliance_hidden_above_rad_per_s: linearization.compliance_hidden_above_rad_per_s,
         load_step_final_force: final_forces(linearization),
         load_step_moves: if moves_ground { MovedByStep::Ground } else { MovedByStep::Load },
@@ -266,11 +266,11 @@ fn agreement(agreement: &AgreementBand) -> AgreementBandsAnswer {
     }
 }
 
-fn mode(mode: &ModeShare) -> DominantModeAnswer {
+fn mode(mode: &ModeContribution) -> DominantModeAnswer {
     let known = |value: f64| Some(value).filter(|value| !value.is_nan());
     DominantModeAnswer {
         pole: mode.pole,
-        step_share: known(mode.step_share),
+        step_fraction: known(mode.step_fraction),
         decay_ratio: known(mode.decay_ratio),
         reason: mode.absence.map(|absence| absence.to_string()),
     }

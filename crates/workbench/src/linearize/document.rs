@@ -4,10 +4,10 @@ use num_complex::Complex64;
 use phea_dynamics::frequency::PassivityReport;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;
-use phea_hydraulics::linear::{ModeShare, ResponseDifference};
+use phea_hydraulics::linear::{ModeContribution, ResponseDifference};
 
 use super::{
-    AgreementBand, AskedAt, AskedImpedance, FIRST_ORDER, LUMPED, Linearization, LinkagePlace,
+    AgreementBand, ComparedImpedance, RequiredImpedance, FIRST_ORDER, LUMPED, Linearization, LinkagePlace,
     LinkagePosition, ReductionDifference, WITHIN_DB, WITHIN_DEG, WITHIN_PERCENT, hiding_mass_words,
     no_closed_impedance_words, stiffness_sentence,
 };
@@ -46,7 +46,7 @@ pub(crate) fn output(setup: &Setup<'_>, linearization: &Linearization) -> Docume
         ),
     ]);
     out.sentences(impedance_at_joint(linearization));
-    if let Some(required) = &linearization.asked {
+    if let Some(required) = &linearization.required_impedance {
         out.section("Impedance requested and achieved", required_impedance_table(required, motion));
         out.sentences([required_impedance_sentence(required)]);
     }
@@ -115,14 +115,14 @@ pub(crate) fn impedance_at_joint(linearization: &Linearization) -> Option<String
 }
 
 /// A virtual impedance and the impedance at the port, at a few frequencies.
-pub(crate) fn required_impedance_table(required: &AskedImpedance, motion: MotionKind) -> Table {
-    let row = |point: &AskedAt| {
+pub(crate) fn required_impedance_table(required: &RequiredImpedance, motion: MotionKind) -> Table {
+    let row = |point: &ComparedImpedance| {
         let size = |value: Complex64| Cell::number(portable::magnitude(value), 3);
-        let turned = portable::argument(point.shown / point.asked).to_degrees();
+        let turned = portable::argument(point.achieved / point.required).to_degrees();
         [
             Cell::number(point.frequency_rad_per_s, 3),
-            size(point.asked),
-            size(point.shown),
+            size(point.required),
+            size(point.achieved),
             Cell::number(turned, 2),
         ]
     };
@@ -133,7 +133,7 @@ pub(crate) fn required_impedance_table(required: &AskedImpedance, motion: Motion
 }
 
 /// Sentence on the band in which the port has the required impedance.
-pub(crate) fn required_impedance_sentence(required: &AskedImpedance) -> String {
+pub(crate) fn required_impedance_sentence(required: &RequiredImpedance) -> String {
     let within = significant(WITHIN_PERCENT, 3);
     match required.follows_rad_per_s {
         Some([from, to]) => format!(
@@ -146,11 +146,11 @@ pub(crate) fn required_impedance_sentence(required: &AskedImpedance) -> String {
 }
 
 /// A mode with its participation and decay ratio, or the reason why a number does not exist.
-fn mode_cells(mode: &ModeShare) -> [Cell; 3] {
+fn mode_cells(mode: &ModeContribution) -> [Cell; 3] {
     let absence = mode.absence.map(|absence| absence.to_string()).unwrap_or_default();
     let or =
         |value: f64, otherwise: &str| if value.is_nan() { otherwise.into() } else { Cell::number(value, 3) };
-    [root_list(&[mode.pole]).into(), or(mode.step_share, &absence), or(mode.decay_ratio, "none")]
+    [root_list(&[mode.pole]).into(), or(mode.step_fraction, &absence), or(mode.decay_ratio, "none")]
 }
 
 /// The bands of an agreement in words.

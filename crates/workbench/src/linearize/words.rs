@@ -35,7 +35,7 @@ pub(crate) fn stiffness_sentence(linearization: &Linearization) -> String {
     let [_, place] = stiffness_words(*motion, &difference.by_volume);
     let percent = |fraction: f64| significant(100.0 * fraction, 2);
     let ratios = [difference.minimum_ratio, difference.maximum_ratio];
-    let gas = match difference.gas_compliance_share {
+    let gas = match difference.gas_compliance_fraction {
         0.0 => String::new(),
         fraction => format!(" The gas of accumulators provides {} % of the compliance.", percent(fraction)),
     };
@@ -44,7 +44,7 @@ pub(crate) fn stiffness_sentence(linearization: &Linearization) -> String {
             "{symbol} is {} {place}, by either stiffness model (uniform, by_volume): the lines are hardly softer \
              than the oil, and {} % of the oil is in the chambers.{gas}",
             range(&difference.by_volume),
-            percent(difference.chamber_volume_share)
+            percent(difference.chamber_volume_fraction)
         );
     }
     format!(
@@ -54,8 +54,8 @@ pub(crate) fn stiffness_sentence(linearization: &Linearization) -> String {
         range(&difference.uniform),
         range(&difference.by_volume),
         significant(difference.minimum_ratio, 3),
-        percent(difference.chamber_volume_share),
-        percent(difference.line_compliance_share),
+        percent(difference.chamber_volume_fraction),
+        percent(difference.line_compliance_fraction),
     )
 }
 

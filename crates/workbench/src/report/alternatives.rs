@@ -2,7 +2,7 @@
 //! over each other.
 
 use super::chapter::Chapter;
-use crate::alternatives::{Alternatives, document, figures, told_first};
+use crate::alternatives::{Alternatives, document, figures, first_warnings};
 use crate::document::Document;
 use crate::project::Project;
 
@@ -23,7 +23,7 @@ pub(super) fn chapter(project: &Project, found: Option<&Alternatives>) -> Option
         (Some(found), _) => {
             let mut out = Document::default();
             out.explanation("Each alternative is the project with settings of its own, under a controller designed for the same specifications, driven through the same scenarios.".to_string());
-            out.sentences(told_first(found));
+            out.sentences(first_warnings(found));
             out.append(document(found));
             out.figures(figures(found));
             out

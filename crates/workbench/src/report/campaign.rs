@@ -121,7 +121,7 @@ fn steps(loaded: &Loaded, plan: &Plan, rows: &[Row]) -> Vec<CampaignStep> {
     let band_percent = scenario.map_or(f64::NAN, |one| one.settling_band_percent);
     let completed = rows.iter().filter_map(|row| Some((row.run, row.ran()?)));
     completed
-        .filter(|(_, ran)| ran.ended_s.is_none())
+        .filter(|(_, ran)| ran.end_time_s.is_none())
         .flat_map(|(run, ran)| ran.metrics.iter().zip(plan.windows()).map(move |own| (run, own)))
         .filter(|(_, (_, window))| matches!(window.cause, Cause::ReferenceStep { .. }))
         .map(|(run, (numbers, window))| CampaignStep {
@@ -168,11 +168,11 @@ fn document([runs, requested]: [u64; 2], plan: &Plan, summary: &Summary, figures
     let mut out = Document::default();
     out.explanation(format!("{runs} runs of the scenario `{scenario}`, seed {seed}, with the numbers below drawn anew for each, independently of each other: {completed} were completed."));
     out.explanations(left_out(plan));
-    out.explanations((runs < requested).then(|| format!("{requested} runs were asked for: these are as many as a report makes within its budget of {BUDGET_STEPS} steps of the integration. `phea campaign PROJECT.toml --seed {seed} --runs {requested}` makes all of them.")));
+    out.explanations((runs < requested).then(|| format!("{requested} runs were requested: these are as many as a report makes within its budget of {BUDGET_STEPS} steps of the integration. `phea campaign PROJECT.toml --seed {seed} --runs {requested}` makes all of them.")));
     let refused = summary.refused.first().map(|(run, reason)| {
         format!("{} draws do not give a machine, the first is run {run}: {reason}.", summary.refused.len())
     });
-    let ended = summary.ended.iter().take(WORST).map(|(run, status, time_s)| {
+    let ended = summary.early_ends.iter().take(WORST).map(|(run, status, time_s)| {
         format!("Run {run} ended at {} s: {}.", significant(*time_s, 4), status_words(*status))
     });
     let occurred = summary.occurrences.iter().map(|(kind, count, first)| {

@@ -5,7 +5,7 @@ use crate::error::CommandError;
 use crate::project::Project;
 use crate::setup::Setup;
 use crate::simulate::{
-    Cause, Metric, NamedRun, RunStatus, ScenarioRun, SimulateError, TimeRequirement, TrackingWish, Window,
+    Cause, Metric, NamedRun, RunStatus, ScenarioRun, SimulateError, TimeRequirement, StepLimits, Window,
     cause_words, cells_of, concerns, simulate_project, status_words, time_requirements,
 };
 use crate::source::Source;
@@ -65,8 +65,8 @@ pub(super) fn driven(
 impl MachineChapter {
     /// Requirement in time for the steps of a scenario; `None` if the scenario has no step to which
     /// it applies.
-    pub(super) fn requirement_of(&self, index: usize) -> Option<&TrackingWish> {
-        self.required_of(index).map(|required| &required.wish)
+    pub(super) fn requirement_of(&self, index: usize) -> Option<&StepLimits> {
+        self.required_of(index).map(|required| &required.step_limits)
     }
 
     /// The requirement together with the steps to which it applies.

@@ -77,7 +77,7 @@ pub(super) fn chapter(
 /// The virtual impedance; empty if the project states none.
 fn required(linearization: &Linearization) -> Document {
     let mut out = Document::default();
-    let Some(required) = &linearization.asked else { return out };
+    let Some(required) = &linearization.required_impedance else { return out };
     let motion = linearization.motion;
     out.heading("The virtual impedance");
     let equations = motion.either(

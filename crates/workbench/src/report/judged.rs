@@ -4,13 +4,13 @@
 use phea_dynamics::watch::Watch;
 
 use super::design::{self, Designed};
-use crate::audit::{ProjectAudit, audit_problem, try_to_prove};
+use crate::audit::{ProjectAudit, audit_problem, prove_claims};
 use crate::design::{ProjectDesign, below_design};
 use crate::error::CommandError;
 use crate::robust::{DesignFrequency, RobustProblem, robust_problem};
 use crate::setup::Setup;
 use crate::source::Source;
-use crate::trial::{DrivenCorners, Trial, tried};
+use crate::trial::{DrivenCorners, Trial, simulated_trial};
 
 /// The results of the robust method for a project with specifications.
 pub(super) struct Judged {
@@ -44,7 +44,7 @@ pub(super) fn judged(
     let given = match problem.has_controller {
         true => {
             let mut view = audit_problem(&problem, watch)?;
-            try_to_prove(&problem, &mut view, watch)?;
+            prove_claims(&problem, &mut view, watch)?;
             view.below_design = Some(below_design(setup, &problem, &view, watch)?);
             Some(view)
         }
@@ -52,7 +52,7 @@ pub(super) fn judged(
     };
     let bounds = problem.at_design_frequencies(watch)?;
     let given_trial = match &given {
-        Some(view) => tried(source, setup, (&problem, view), DrivenCorners::WhereElseSatisfies, watch)?,
+        Some(view) => simulated_trial(source, setup, (&problem, view), DrivenCorners::WhereElseSatisfies, watch)?,
         None => None,
     };
     let designed = match design::is_requested(project) {

@@ -69,7 +69,7 @@ pub struct DecidedAnswer {
     pub machine: Option<Agreement>,
     /// True if every step on the machine satisfies the requirements in time, if there are any.
     #[answer(optional)]
-    pub wishes_kept: Option<bool>,
+    pub requirements_satisfied: Option<bool>,
 }
 
 /// The page as the first chapter, and its content for programs.
@@ -121,7 +121,7 @@ fn decided(contents: &Contents<'_>, side: &Side<'_>) -> DecidedAnswer {
         specifications: Some(verdicts).filter(|all| !all.is_empty()),
         proven: side.is_proven(),
         machine: side.trial.map(|trial| trial.agreement()),
-        wishes_kept: required.and_then(|required| side.satisfies(required)),
+        requirements_satisfied: required.and_then(|required| side.satisfies(required)),
     }
 }
 

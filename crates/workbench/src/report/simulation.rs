@@ -9,7 +9,7 @@ use crate::figure::Figure;
 use crate::project::{Project, Scenario};
 use crate::quantity::{MotionWords, Units};
 use crate::simulate::{
-    Metric, Metrics, NamedRun, TimeRequirement, TrackingWish, Window, adjustment_sentence, cause_words,
+    Metric, Metrics, NamedRun, TimeRequirement, StepLimits, Window, adjustment_sentence, cause_words,
     cells_of, close_ups, coarse_sentence, gas_sentence, headline, label_within, measured, measured_together,
     metrics_row, occurrence_sentences, pictures, published, published_row, required_overshoot,
     required_settling, requirement_of, together, turns, windows,
@@ -61,7 +61,7 @@ pub(super) fn inside(project: &Project, driven: &MachineChapter) -> Option<Chapt
 }
 
 /// Figures of all controllers together; for a single controller, figures of all signals.
-fn drawn(runs: &[NamedRun<'_>], number: usize, requirement: Option<&TrackingWish>) -> Vec<Figure> {
+fn drawn(runs: &[NamedRun<'_>], number: usize, requirement: Option<&StepLimits>) -> Vec<Figure> {
     match runs {
         [only] => pictures(only.run, number),
         several => {
@@ -145,7 +145,7 @@ fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, required: Option<&TimeReq
             out.table(rows);
         }
     }
-    let requirement = required.and_then(|required| Some((required, requirement_words(&required.wish)?)));
+    let requirement = required.and_then(|required| Some((required, requirement_words(&required.step_limits)?)));
     let requirement = requirement.map_or(String::new(), |(required, words)| {
         let steps = if required.steps.are_stated() { "the required step" } else { "every step" };
         format!(
@@ -161,7 +161,7 @@ fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, required: Option<&TimeReq
 }
 
 /// The requirement in time, in words.
-fn requirement_words(requirement: &TrackingWish) -> Option<String> {
+fn requirement_words(requirement: &StepLimits) -> Option<String> {
     let words: Vec<String> =
         [required_overshoot(requirement), required_settling(requirement)].into_iter().flatten().collect();
     (!words.is_empty()).then(|| words.join(", "))

@@ -17,14 +17,14 @@ use crate::project::Project;
 use crate::quantity::{DisplayUnit, RATIO, display};
 use crate::robust::RobustProblem;
 use crate::simulate::{RequiredSteps, TimeRequirement, required_words};
-use crate::specification::{SpecificationError, name_words, stated, wish_sentence, wishes};
+use crate::specification::{SpecificationError, name_words, stated, requirement_sentence, requirements_in_time};
 use crate::verdict_words::{frequency_number, frequency_words};
 
 pub(super) fn chapter(project: &Project, problem: &RobustProblem) -> Result<Chapter, CommandError> {
     let specifications = &problem.specifications;
     let row = |(index, one)| row(problem.number_of(index), name_words(problem.named(index)), one);
     let heads = ["", "specification", "demand", "where it must hold", "design frequencies (rad/s)"];
-    let wishes = wishes(project)?;
+    let requirements_in_time = requirements_in_time(project)?;
     let margins = margins(problem)?;
     let mut out = Document::default();
     out.explanation("The requirements on the closed loop of every plant. L is the open loop; F, G and P are prefilter, controller and plant.");
@@ -35,9 +35,9 @@ pub(super) fn chapter(project: &Project, problem: &RobustProblem) -> Result<Chap
     for (index, specification) in specifications.iter().enumerate() {
         spread(&mut out, &stated(problem.named(index)), specification);
     }
-    if !wishes.is_empty() {
+    if !requirements_in_time.is_empty() {
         out.heading("Tracking limits in time");
-        out.marked(wishes.iter().map(|wish| (Some(wish.is_met().into()), wish_sentence(wish))));
+        out.marked(requirements_in_time.iter().map(|requirement| (Some(requirement.is_met().into()), requirement_sentence(requirement))));
     }
     if !margins.is_empty() {
         out.heading("Margins that the limits guarantee");
@@ -75,7 +75,7 @@ fn step_row(required: &TimeRequirement, unit: DisplayUnit) -> [Cell; 5] {
     [
         Cell::count(required.number),
         "step: the response to a step of the reference".into(),
-        required_words(&required.wish).into(),
+        required_words(&required.step_limits).into(),
         format!("every plant{on_rig}").into(),
         Cell::Missing,
     ]
@@ -163,7 +163,7 @@ fn spread(out: &mut Document, name: &str, specification: &Specification) {
     let decibels = |value: f64| if value.abs() < 5e-4 { "0".to_string() } else { significant(value, 3) };
     match tracking_spread(lower, upper, specification.band_rad_per_s) {
         Ok(spread) => match spread.order {
-            LimitOrder::Kept { least_db, frequency_rad_per_s } => out.explanation(format!(
+            LimitOrder::Satisfied { least_db, frequency_rad_per_s } => out.explanation(format!(
                 "The limits of {name} are apart by at least {} dB, {}, and by {} dB at the end of the band.",
                 decibels(least_db),
                 frequency_words(frequency_rad_per_s),

@@ -16,7 +16,7 @@ pub(super) fn element_words(pattern: ElementPattern) -> &'static str {
         ElementPattern::RollOff { .. } => "a roll-off",
         ElementPattern::ProportionalIntegral => "a PI element",
         ElementPattern::NotchHere { .. } => "a notch at this frequency",
-        ElementPattern::NotchBeside { .. } => "a notch next to this frequency",
+        ElementPattern::FurtherNotch { .. } => "a notch next to this frequency",
     }
 }
 
@@ -39,7 +39,7 @@ pub fn pass_words(error: &PassError) -> String {
         }
         PassError::Number { pattern, value } => {
             let what = match pattern {
-                ElementPattern::NotchBeside { .. } => "frequency",
+                ElementPattern::FurtherNotch { .. } => "frequency",
                 _ => "damping ratio",
             };
             format!("{} cannot have a {what} of {value}", element_words(*pattern))

@@ -7,7 +7,7 @@ use super::repetition::{divergence_words, sentences as doubts, work_words};
 use super::required::requirement_sentences;
 use super::{
     AdjustmentWork, BeyondExpansion, Cause, GasRange, Metric, Metrics, Occurrence, Overlay, PerMetric,
-    RunStatus, ScenarioComparison, ScenarioRun, StoppedRun, TimeRequirement, TrackingWish, Window, concerns,
+    RunStatus, ScenarioComparison, ScenarioRun, StoppedRun, TimeRequirement, StepLimits, Window, concerns,
     status_words,
 };
 use crate::answer::significant;
@@ -115,8 +115,8 @@ pub(crate) fn windows(
 pub(crate) fn requirement_of<'r>(
     required: Option<&'r TimeRequirement>,
     window: &Window,
-) -> Option<&'r TrackingWish> {
-    required.filter(|required| concerns(required, window)).map(|required| &required.wish)
+) -> Option<&'r StepLimits> {
+    required.filter(|required| concerns(required, window)).map(|required| &required.step_limits)
 }
 
 /// The metrics of one event, with marks on those that have a requirement.
@@ -124,7 +124,7 @@ pub(crate) fn metrics_row(
     name: String,
     shown: &[Metric],
     (metrics, units): (&Metrics, Units),
-    requirement: Option<&TrackingWish>,
+    requirement: Option<&StepLimits>,
 ) -> Vec<Cell> {
     let mut cells = cells_of(metrics, units);
     for (metric, held) in [
@@ -221,7 +221,7 @@ pub(crate) fn cause_words(window: &Window, units: Units) -> String {
 /// The resolution of the figures of a long scenario.
 pub(crate) fn coarse_sentence(run: &ScenarioRun) -> Option<String> {
     run.is_coarse().then(|| {
-        let interval_ms = DisplayUnit::MILLISECOND.number(run.look_s, 3);
+        let interval_ms = DisplayUnit::MILLISECOND.number(run.sample_interval_s, 3);
         format!("a scenario this long is drawn from samples every {interval_ms} ms only; its metrics are those of the solution in between too")
     })
 }

@@ -41,7 +41,7 @@ pub(crate) fn exceeded_words(exceeded: &Exceeded, units: Units) -> String {
             "from {first} s on the {force_sensor} is overloaded: its capacity is {limit}, the {force} comes to {peak} at {at} s"
         ),
         RigLimit::StallForce => format!(
-            "from {first} s on the reference exceeds the {force} that the supply can produce: the {piston} stalls at {limit}, and {peak} is asked for at {at} s"
+            "from {first} s on the reference exceeds the {force} that the supply can produce: the {piston} stalls at {limit}, and {peak} is required at {at} s"
         ),
         RigLimit::NominalVoltage => format!(
             "from {first} s on the command is beyond the valve's {limit}, and comes to {peak} at {at} s: the rig clips it, so state \

@@ -9,14 +9,14 @@ pub(crate) fn beyond_reach(step: &BeyondReach, units: &Units) -> (String, String
         StepEnd::Begin => "begins at",
         StepEnd::End => "goes to",
     };
-    let (reason, cure) = exceeded_force(&step.exceeded, units);
+    let (reason, remedy) = exceeded_force(&step.exceeded, units);
     let sentence = format!(
         "[[specification]] {}, `{}`: the step {verb} {}, {reason}",
         step.number,
         step.end.key(),
         force(step.force, units)
     );
-    (sentence, cure)
+    (sentence, remedy)
 }
 
 /// A force of the rig's motion.

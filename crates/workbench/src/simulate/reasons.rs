@@ -23,7 +23,7 @@ pub(crate) fn status_words(status: RunStatus) -> &'static str {
 /// Reason why a number of a run is absent.
 pub(crate) fn unmeasured_words(reason: Unmeasured, motion: MotionKind) -> &'static str {
     match reason {
-        Unmeasured::RunEnded => "the run ended before",
+        Unmeasured::AfterEnd => "the run ended before",
         Unmeasured::NoStep => "the reference does not step",
         Unmeasured::NoMotion => "the load does not begin to move",
         Unmeasured::NotReached => motion.either(
@@ -41,7 +41,7 @@ pub(crate) fn unmeasured_words(reason: Unmeasured, motion: MotionKind) -> &'stat
             "the reference says which force there should be",
             "the reference says which torque there should be",
         ),
-        Unmeasured::ReferenceStandsStill => "the reference stands still",
+        Unmeasured::ReferenceConstant => "the reference stands still",
         Unmeasured::ZeroReference => "the reference is zero: a band around it has no width",
         Unmeasured::OneRunHasNone => "one of the two runs has none",
         Unmeasured::NoRow => "no row of the file lies within what was simulated",

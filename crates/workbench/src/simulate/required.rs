@@ -50,10 +50,10 @@ pub(crate) fn requirement_sentences(project: &Project, run: &ScenarioRun) -> Vec
 
 /// A requirement in a run, in words that continue the name of the run.
 pub(crate) fn requirement_sentence(one: &ScenarioRequirement) -> String {
-    let required = format!("what specification {} requires, {}", one.number, required_words(&one.wish));
+    let required = format!("what specification {} requires, {}", one.number, required_words(&one.step_limits));
     match (one.reached, one.is_satisfied()) {
         (Ok(reached), Some(is_satisfied)) => {
-            format!("{} {required}: {}", satisfied_word(is_satisfied), reached_words(&one.wish, &reached))
+            format!("{} {required}: {}", satisfied_word(is_satisfied), reached_words(&one.step_limits, &reached))
         }
         (Err(why), _) => format!("does not judge {required}: {}", not_judged_words(why)),
         (Ok(_), None) => required,
@@ -93,10 +93,10 @@ impl From<ReachedStep> for WorstStepAnswer {
 
 /// The same for programs.
 pub(super) fn requirement(one: &ScenarioRequirement) -> ScenarioRequirementAnswer {
-    let satisfied = one.reached.map(|reached| one.wish.is_satisfied(&reached).into());
+    let satisfied = one.reached.map(|reached| one.step_limits.is_satisfied(&reached).into());
     ScenarioRequirementAnswer {
         specification: one.number,
-        required: (&one.wish).into(),
+        required: (&one.step_limits).into(),
         verdict: OrReason(satisfied.map_err(|why| not_judged_words(why).to_string())),
         reached: one.reached.ok().map(WorstStepAnswer::from),
     }

@@ -1,32 +1,32 @@
 //! Required steps and the values that a step reaches, in words.
 
-use super::{NO_OVERSHOOT_PERCENT, ReachedStep, TrackingWish};
+use super::{NO_OVERSHOOT_PERCENT, ReachedStep, StepLimits};
 use crate::quantity::significant;
 
 /// The required overshoot.
-pub(crate) fn required_overshoot(required: &TrackingWish) -> Option<String> {
+pub(crate) fn required_overshoot(required: &StepLimits) -> Option<String> {
     let most = required.overshoot_percent?;
     Some(if most == 0.0 { "no overshoot".to_string() } else { format!("at most {most} % overshoot") })
 }
 
 /// The required settling time.
-pub(crate) fn required_settling(required: &TrackingWish) -> Option<String> {
+pub(crate) fn required_settling(required: &StepLimits) -> Option<String> {
     required.settling_time_s.map(|time_s| format!("settled within {} % in {time_s} s", required.band_percent))
 }
 
 /// The required rise time.
-pub(crate) fn required_rise(required: &TrackingWish) -> Option<String> {
+pub(crate) fn required_rise(required: &StepLimits) -> Option<String> {
     required.rise_time_s.map(|time_s| format!("risen from 10 to 90 % in {time_s} s"))
 }
 
 /// The requirements on a step.
-pub(crate) fn required_words(required: &TrackingWish) -> String {
+pub(crate) fn required_words(required: &StepLimits) -> String {
     let all = [required_overshoot(required), required_settling(required), required_rise(required)];
     all.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
 /// Values that a step reaches, for the required quantities.
-pub(crate) fn reached_words(required: &TrackingWish, reached: &ReachedStep) -> String {
+pub(crate) fn reached_words(required: &StepLimits, reached: &ReachedStep) -> String {
     if reached.overshoot_percent == f64::INFINITY {
         return "stopped before the end of the run".to_string();
     }

@@ -7,7 +7,7 @@ use super::figures::{
 };
 use super::span::{are_alike, span_of, span_of_events};
 use super::{
-    Cause, Record, ScenarioRun, TrackingWish, Window, cause_words, required_overshoot, required_settling,
+    Cause, Record, ScenarioRun, StepLimits, Window, cause_words, required_overshoot, required_settling,
 };
 use crate::document::capital;
 use crate::figure::{CurveChart, CurvePanel, CurveRange, CurveStyle, DisplayUnit, Figure, Words};
@@ -28,7 +28,7 @@ pub(crate) struct NamedRun<'a> {
 pub(crate) fn together(
     runs: &[NamedRun<'_>],
     number: usize,
-    requirement: Option<&TrackingWish>,
+    requirement: Option<&StepLimits>,
 ) -> Vec<Figure> {
     let Some(first) = runs.first() else { return vec![] };
     let MotionWords { force, piston, .. } = units(runs).motion.words();
@@ -65,7 +65,7 @@ pub(crate) fn together(
 pub(crate) fn at_a_glance(
     name: &str,
     runs: &[NamedRun<'_>],
-    requirement: Option<&TrackingWish>,
+    requirement: Option<&StepLimits>,
 ) -> Option<Figure> {
     let first = runs.first()?;
     let end = end_of(runs);
@@ -155,7 +155,7 @@ fn whose(runs: &[NamedRun<'_>]) -> String {
     format!("under {} controller", names.join(" and "))
 }
 
-fn required_words(requirement: Option<&TrackingWish>) -> String {
+fn required_words(requirement: Option<&StepLimits>) -> String {
     let words =
         requirement.map(|requirement| [required_overshoot(requirement), required_settling(requirement)]);
     let words: Vec<String> = words.into_iter().flatten().flatten().collect();
@@ -167,7 +167,7 @@ fn drawn(
     runs: &[NamedRun<'_>],
     span_s: [f64; 2],
     ([tall, low], positions): ([f64; 2], bool),
-    requirement: Option<&TrackingWish>,
+    requirement: Option<&StepLimits>,
 ) -> Figure {
     // a step is compared with its requirement; motions of the load, and the whole run, show the
     // piston
@@ -227,7 +227,7 @@ fn forces(
     runs: &[NamedRun<'_>],
     height: f64,
     span_s: [f64; 2],
-    requirement: Option<&TrackingWish>,
+    requirement: Option<&StepLimits>,
 ) -> CurvePanel {
     let mut curves = each(runs, |record| record.signal(Signal::Force));
     curves.extend(force_measured(runs));
@@ -253,7 +253,7 @@ fn forces_enlarged(
     runs: &[NamedRun<'_>],
     [tall, low]: [f64; 2],
     span_s: [f64; 2],
-    requirement: Option<&TrackingWish>,
+    requirement: Option<&StepLimits>,
 ) -> Vec<CurvePanel> {
     let whole = forces(runs, tall, span_s, requirement);
     let near = near_reference(runs, span_s, requirement).filter(|_| has(&whole, CurveStyle::Limit));
@@ -277,7 +277,7 @@ const OVERSHOOTS: f64 = 1.2;
 fn near_reference(
     runs: &[NamedRun<'_>],
     span_s: [f64; 2],
-    requirement: Option<&TrackingWish>,
+    requirement: Option<&StepLimits>,
 ) -> Option<[f64; 2]> {
     let requirement = requirement?;
     let required = BANDS * 0.01 * requirement.band_percent.max(requirement.overshoot_percent.unwrap_or(0.0));

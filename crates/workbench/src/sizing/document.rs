@@ -109,7 +109,7 @@ fn other_means(out: &mut Document, found: &OtherMeans) {
 /// Damping by a valve, and its cost.
 fn valve_words(valve: &SizedValve) -> String {
     let [most, at] = valve.most.map(|value| significant(value, 3));
-    let own_damping = significant(valve.alone, 3);
+    let own_damping = significant(valve.damping_ratio_without_valve, 3);
     let Some(conductance) = valve.conductance else {
         return format!(
             "- (no conductance damps the load cell so much: from {own_damping} without it to {most} at most, with {at} m3/(s.Pa))"

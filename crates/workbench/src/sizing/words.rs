@@ -101,7 +101,7 @@ pub(super) fn reason_words(reason: &SizingReason) -> String {
         SizingReason::ExpansionExtrapolated { stated, supply } => expansion_words([stated, supply].map(bar)),
         SizingReason::ShorterThanBend { radius, quarter_turn } => bend_words(radius, quarter_turn),
         SizingReason::StaticWall => STATIC_WALL.to_string(),
-        SizingReason::DeadBand { share } => dead_band_words(share),
+        SizingReason::DeadBand { fraction } => dead_band_words(fraction),
         SizingReason::NullSides { flow_gains, time_constants } => {
             null_sides_words(flow_gains.map(three), time_constants.map(three))
         }
@@ -257,7 +257,7 @@ fn system_words(system: &SizedSystem) -> String {
 /// K_S, and its value in series with the load.
 fn sensor_words(system: &SizedSystem) -> String {
     let unit = DisplayUnit::MEGANEWTON_PER_METRE;
-    let sensor = format!("K_S = {}", unit.text(system.sensor_alone, 4));
+    let sensor = format!("K_S = {}", unit.text(system.sensor_without_load, 4));
     match system.load {
         SizedLoad::Prescribed => sensor,
         SizedLoad::Yielding { stiffness } => format!(

@@ -1,9 +1,9 @@
 //! Requirements in time for programs, and the section of `check` on them.
 
 use phea_dynamics::time_response::Settling;
-use phea_engineering::simulate::TrackingWish;
+use phea_engineering::simulate::StepLimits;
 
-use super::{CheckedWish, wish_sentence};
+use super::{CheckedRequirement, requirement_sentence};
 use crate::answer::{Answer, significant, words};
 use crate::document::Document;
 use crate::project::{SPECIFICATION_KINDS, SpecificationKind};
@@ -29,26 +29,26 @@ pub(crate) struct RequiredStepAnswer {
     settling_band_percent: f64,
 }
 
-impl From<&TrackingWish> for RequiredStepAnswer {
-    fn from(wish: &TrackingWish) -> Self {
+impl From<&StepLimits> for RequiredStepAnswer {
+    fn from(requirement: &StepLimits) -> Self {
         RequiredStepAnswer {
-            overshoot_percent: wish.overshoot_percent,
-            settling_time_s: wish.settling_time_s,
-            rise_time_s: wish.rise_time_s,
-            settling_band_percent: wish.band_percent,
+            overshoot_percent: requirement.overshoot_percent,
+            settling_time_s: requirement.settling_time_s,
+            rise_time_s: requirement.rise_time_s,
+            settling_band_percent: requirement.band_percent,
         }
     }
 }
 
 /// Requirement in time of a tracking limit, with the response that the limit itself has.
 #[derive(Answer)]
-pub(crate) struct WishAnswer {
+pub(crate) struct CheckedRequirementAnswer {
     /// Number of the specification, from 1 in the order of the file.
     specification: usize,
     /// Key of the limit.
     limit: &'static str,
     /// Required step response.
-    wished: WishedStepAnswer,
+    required: RequiredResponseAnswer,
     /// Step response of the limit.
     reached: ReachedStepAnswer,
     /// True if the limit satisfies the requirement.
@@ -57,7 +57,7 @@ pub(crate) struct WishAnswer {
 
 /// Step response.
 #[derive(Answer)]
-struct WishedStepAnswer {
+struct RequiredResponseAnswer {
     /// Overshoot, of the step.
     overshoot_percent: f64,
     /// Settling time; null if the response does not settle.
@@ -70,19 +70,19 @@ struct WishedStepAnswer {
 #[derive(Answer)]
 struct ReachedStepAnswer {
     #[answer(flatten)]
-    step: WishedStepAnswer,
+    step: RequiredResponseAnswer,
     /// Reason for which there is no settling time.
     #[answer(optional)]
     reason: Option<String>,
 }
 
 /// A wish in time in the JSON of `check`.
-pub(crate) fn wish_answer(wish: &CheckedWish) -> WishAnswer {
-    let (wished, reached) = (wish.check.wished, wish.check.reached);
-    let step = |overshoot_percent: f64, settling_time_s: Option<f64>| WishedStepAnswer {
+pub(crate) fn requirement_answer(requirement: &CheckedRequirement) -> CheckedRequirementAnswer {
+    let (required, reached) = (requirement.check.required, requirement.check.reached);
+    let step = |overshoot_percent: f64, settling_time_s: Option<f64>| RequiredResponseAnswer {
         overshoot_percent,
         settling_time_s,
-        settling_band_percent: wished.settling_band_percent,
+        settling_band_percent: required.settling_band_percent,
     };
     let reason = match reached.settling {
         Settling::Settled { .. } => None,
@@ -90,26 +90,26 @@ pub(crate) fn wish_answer(wish: &CheckedWish) -> WishAnswer {
             Some(format!("does not settle: it stays {} % off", significant(deviation_percent, 3)))
         }
     };
-    WishAnswer {
-        specification: wish.number,
-        limit: wish.key,
-        wished: step(wished.overshoot_percent, Some(wished.settling_time_s)),
+    CheckedRequirementAnswer {
+        specification: requirement.number,
+        limit: requirement.key,
+        required: step(required.overshoot_percent, Some(required.settling_time_s)),
         reached: ReachedStepAnswer {
             step: step(reached.overshoot_percent, reached.settling.time_s()),
             reason,
         },
-        met: wish.is_met(),
+        met: requirement.is_met(),
     }
 }
 
 /// The section of `check` on wishes in time, with an empty line below; empty if there is no wish.
-pub(crate) fn document(wishes: &[CheckedWish]) -> Document {
+pub(crate) fn document(requirements_in_time: &[CheckedRequirement]) -> Document {
     let mut out = Document::default();
-    if wishes.is_empty() {
+    if requirements_in_time.is_empty() {
         return out;
     }
     out.heading("Tracking limits in time");
-    out.sentences(wishes.iter().map(wish_sentence));
+    out.sentences(requirements_in_time.iter().map(requirement_sentence));
     out.gap();
     out
 }

@@ -1,27 +1,27 @@
 //! A requirement in time and the values that its limit reaches, in a sentence.
 
 use phea_dynamics::time_response::Settling;
-use phea_qft::specification::{WishCheck, WishOutcome, Wished};
+use phea_qft::specification::{RequirementCheck, RequirementOutcome, RequiredResponse};
 
-use super::CheckedWish;
+use super::CheckedRequirement;
 use crate::quantity::{RATIO, display};
 
 /// The requirement, the verdict on its limit, and the values that the limit itself reaches.
-pub fn wish_sentence(requirement: &CheckedWish) -> String {
+pub fn requirement_sentence(requirement: &CheckedRequirement) -> String {
     let met = if requirement.is_met() { "met" } else { "not met" };
     let words = words(&requirement.check);
     format!("Specification {}, {} limit, {met}; {words}.", requirement.number, requirement.key)
 }
 
-/// Words such as `wished: at most 1 % overshoot, settled within 1 % in 0.1 s; the limit itself
+/// Words such as `required: at most 1 % overshoot, settled within 1 % in 0.1 s; the limit itself
 /// reaches 2.19 % overshoot and settles in 0.126 s`.
-fn words(check: &WishCheck) -> String {
-    let Wished { overshoot_percent, settling_time_s, settling_band_percent } = check.wished;
+fn words(check: &RequirementCheck) -> String {
+    let RequiredResponse { overshoot_percent, settling_time_s, settling_band_percent } = check.required;
     let required = match overshoot_percent {
         0.0 => "no overshoot".to_string(),
         _ => format!("at most {overshoot_percent} % overshoot"),
     };
-    let reached = if check.outcome() == WishOutcome::Met {
+    let reached = if check.outcome() == RequirementOutcome::Met {
         "satisfies it".to_string()
     } else {
         let overshoot = match check.reached.overshoot_percent {
@@ -39,7 +39,7 @@ fn words(check: &WishCheck) -> String {
         format!("{overshoot} and {settling}")
     };
     format!(
-        "wished: {required}, settled within {settling_band_percent} % in {settling_time_s} s; the limit itself {reached}"
+        "required: {required}, settled within {settling_band_percent} % in {settling_time_s} s; the limit itself {reached}"
     )
 }
 

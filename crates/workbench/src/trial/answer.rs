@@ -152,7 +152,7 @@ fn held(held: &HeldRequirement) -> HeldRequirementAnswer {
     HeldRequirementAnswer {
         specification: held.number,
         verdict: held.is_satisfied.into(),
-        required: (&held.wish).into(),
+        required: (&held.step_limits).into(),
         overshoot_percent: held.reached.overshoot_percent,
         settling_time_s: held.reached.settling_time_s,
         rise_time_s: held.reached.rise_time_s,

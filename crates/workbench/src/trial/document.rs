@@ -151,7 +151,7 @@ fn meanings(trial: &Trial) -> Vec<String> {
     let driven = others.into_iter().filter(|(one, _)| trial.runs.iter().any(|run| run.agreement == *one));
     sentences.extend(driven.map(|(_, words)| words.to_string()));
     if trial.runs.iter().any(|run| run.size == StepSize::Largest) {
-        let but = match trial.keeps_largest_from_corners() {
+        let but = match trial.corners_lack_largest_step() {
             true => "; corners of the box and plants inside it are driven through the other steps alone",
             false => "",
         };
@@ -174,9 +174,9 @@ fn required(trial: &Trial) -> Document {
         let verdict = if held.is_satisfied { Verdict::Met } else { Verdict::Violated };
         rows.row([
             run_name(run).into(),
-            required_words(&held.wish).into(),
+            required_words(&held.step_limits).into(),
             Cell::from(satisfied_word(held.is_satisfied)).marked(verdict),
-            reached_words(&held.wish, &held.reached).into(),
+            reached_words(&held.step_limits, &held.reached).into(),
         ]);
     }
     let verdict = if satisfies { Verdict::Met } else { Verdict::Violated };
@@ -250,7 +250,7 @@ fn figure(trial: &Trial, [name, title]: [&str; 2]) -> Option<Figure> {
     let first = runs.first()?;
     let driven_s = first.machine_response.times_s.last().copied()?;
     let settles_s = first.linear.and_then(|step| step.settling_time_s);
-    let required_s = first.requirements.iter().filter_map(|held| held.wish.settling_time_s);
+    let required_s = first.requirements.iter().filter_map(|held| held.step_limits.settling_time_s);
     let seen_s = REQUIRED_TIMES * required_s.fold(0.0, f64::max);
     let end_s = settles_s.map_or(driven_s, |time_s| driven_s.min(seen_s.max(SETTLING_TIMES * time_s)));
     let series = |name: &str, response: &StepResponse| {

@@ -131,7 +131,7 @@ pub(crate) fn finding_words(finding: &TrialFinding, units: Units) -> String {
         TrialFinding::Diverges(time) => {
             format!("the nonlinear simulation diverges from {} on", milliseconds(*time))
         }
-        TrialFinding::Ended { time, status } => {
+        TrialFinding::StoppedEarly { time, status } => {
             format!("the run ended after {} as {}", milliseconds(*time), status.key())
         }
         TrialFinding::Unsettled { leg, end } => {

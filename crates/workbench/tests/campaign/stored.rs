@@ -53,8 +53,8 @@ struct Pages {
 }
 
 impl RowStore for Pages {
-    fn kept(&mut self) -> Result<String, String> {
-        self.table.kept()
+    fn stored(&mut self) -> Result<String, String> {
+        self.table.stored()
     }
 
     fn cut(&mut self, bytes: usize) -> Result<(), String> {
@@ -97,7 +97,7 @@ fn rows_stored_ahead_are_not_simulated_again() {
     let mut pages = Pages { table: Page { text: lines[..5].concat() }, ahead };
     let mut fractions = Vec::new();
     let mut watch = |progress: command::Progress| {
-        fractions.push(progress.share);
+        fractions.push(progress.fraction);
         true
     };
     command::campaign_watched(&source(), &loaded, &[], &requested, (Some(&mut pages), None), &mut watch)
@@ -142,7 +142,7 @@ fn a_table_of_another_campaign_is_left_unchanged() {
     };
     assert_eq!(refused(resumed(&loaded, &other, &mut page)), CampaignError::OtherCampaign { line: 2 });
     let fewer = request(3, Shard::default());
-    assert_eq!(refused(resumed(&loaded, &fewer, &mut page)), CampaignError::MoreKept { kept: 4, asked: 3 });
+    assert_eq!(refused(resumed(&loaded, &fewer, &mut page)), CampaignError::MoreStored { stored: 4, requested: 3 });
     let changed = load(&[&SHORT as &[&str], &["controller.saturation=9 V"]].concat());
     assert_eq!(refused(resumed(&changed, &requested, &mut page)), CampaignError::OtherCampaign { line: 2 });
     assert_eq!(page.text, before);

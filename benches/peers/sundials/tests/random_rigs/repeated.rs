@@ -54,7 +54,7 @@ pub(crate) fn made<'a>(
     }
     let mut states = Vec::new();
     let observer: Watcher<'_> = Box::new(Rows { wanted: (0..count).collect(), states: &mut states });
-    let task = Task { start, course: schedule, sampler: sampler(), observer };
+    let task = Task { start, schedule, sampler: sampler(), observer };
     let begun = Instant::now();
     let outcome = system.drive(task, &settings, &mut |_| true);
     let seconds = begun.elapsed().as_secs_f64();

@@ -83,12 +83,12 @@ impl Chance {
     /// Random numbers for the rig of this number, in the family of this seed.
     pub(crate) fn of(number: u64, seed: u64) -> Chance {
         let mut chance = Chance(number.wrapping_mul(0x5851_f42d_4c95_7f2d) ^ seed);
-        random::share(&mut chance.0);
+        random::uniform(&mut chance.0);
         chance
     }
 
     pub(crate) fn between(&mut self, least: f64, most: f64) -> f64 {
-        least + (most - least) * random::share(&mut self.0)
+        least + (most - least) * random::uniform(&mut self.0)
     }
 
     pub(crate) fn decades(&mut self, least: f64, most: f64) -> f64 {
@@ -96,7 +96,7 @@ impl Chance {
     }
 
     pub(crate) fn happens(&mut self, fraction: f64) -> bool {
-        random::share(&mut self.0) < fraction
+        random::uniform(&mut self.0) < fraction
     }
 
     pub(crate) fn edges(&mut self, typical: f64) -> Edges {

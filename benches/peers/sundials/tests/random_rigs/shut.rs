@@ -74,7 +74,7 @@ pub(crate) fn costs(rig: &Rig) -> Costs {
     };
     let mut states = Vec::new();
     let observer: Watcher<'_> = Box::new(Rows { wanted: (0..count).collect(), states: &mut states });
-    let task = Task { start: start.clone(), course: &schedule, sampler: None, observer };
+    let task = Task { start: start.clone(), schedule: &schedule, sampler: None, observer };
     let outcome = closed.drive(task, &settings, &mut |_| true).expect("a course that fits");
     let ours = force_of(rig, &states);
 

@@ -3,7 +3,7 @@
 
 use super::{Drive, set_lane};
 use crate::simulation::kernel::Kernel;
-use crate::simulation::method::LOOKED_AT;
+use crate::simulation::method::RESIDUAL_AT;
 use crate::simulation::slot::Slot;
 use crate::simulation::{Lane, Observer};
 
@@ -16,7 +16,7 @@ impl<S: Lane, O: Observer> Drive<'_, S, O> {
     /// cannot follow is largest, and late in the step, where a kink near its beginning or its end
     /// shows. One of the three checks detects it: together they are at least half of the error that
     /// a kink causes anywhere in the step.
-    pub(super) fn look_between(&mut self, system: &dyn Kernel<S>, error: S) -> S {
+    pub(super) fn sample_between(&mut self, system: &dyn Kernel<S>, error: S) -> S {
         let mut late = [false; MOST_LANES];
         for (lane, late) in late.iter_mut().enumerate().take(S::COUNT) {
             let passes = self.passes(lane, error);
@@ -25,8 +25,8 @@ impl<S: Lane, O: Observer> Drive<'_, S, O> {
             passage.kink = kink;
             *late = passes && (kink.is_some() || self.method.doubts(lane, passage));
         }
-        let with_late = self.look_at(system, error, |lane, _| late[lane].then_some(LOOKED_AT));
-        self.look_at(system, with_late, |_, kink| kink)
+        let with_late = self.evaluate_at(system, error, |lane, _| late[lane].then_some(RESIDUAL_AT));
+        self.evaluate_at(system, with_late, |_, kink| kink)
     }
 
     /// True if the error at the end lets the step of a lane pass, for the method that has more
@@ -38,13 +38,13 @@ impl<S: Lane, O: Observer> Drive<'_, S, O> {
 
     /// Error combined with that at a fraction of the step, in lanes that have one; `part` receives
     /// the lane and its kink.
-    fn look_at(
+    fn evaluate_at(
         &mut self,
         system: &dyn Kernel<S>,
         error: S,
         part: impl Fn(usize, Option<f64>) -> Option<f64>,
     ) -> S {
-        let (mut looked, mut parts, mut any) = (S::from(0.0), S::from(LOOKED_AT), false);
+        let (mut sampled, mut parts, mut any) = (S::from(0.0), S::from(RESIDUAL_AT), false);
         for lane in 0..S::COUNT {
             let Some(Slot { passage, inputs, .. }) = &mut self.slots[lane] else { continue };
             let Some(part) = part(lane, passage.kink) else { continue };
@@ -52,7 +52,7 @@ impl<S: Lane, O: Observer> Drive<'_, S, O> {
             passage.work.evaluations += 1;
             set_lane(&mut self.between.inputs, lane, inputs);
             parts.set_lane(lane, part);
-            looked.set_lane(lane, 1.0);
+            sampled.set_lane(lane, 1.0);
             any = true;
         }
         if !any {
@@ -60,7 +60,7 @@ impl<S: Lane, O: Observer> Drive<'_, S, O> {
         }
         let (inputs, tolerance) = (&self.between.inputs, self.settings.tolerance);
         let between = self.method.error_between(system, &self.state, self.step, (parts, inputs), tolerance);
-        S::select(S::from(0.0).less_than(looked), (error.squared() + between.squared()).sqrt(), error)
+        S::select(S::from(0.0).less_than(sampled), (error.squared() + between.squared()).sqrt(), error)
     }
 
     /// Fraction of the step of a lane just after its first kink; `None` if the marks have equal
@@ -73,7 +73,7 @@ impl<S: Lane, O: Observer> Drive<'_, S, O> {
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
-            self.look(lane, middle);
+            self.sample(lane, middle);
             system.mark(&self.between.state, &self.between.inputs, &mut self.between.marked);
             let passed = self.marks.iter().zip(&self.between.marked).any(is_other);
             (low, high) = if passed { (low, middle) } else { (middle, high) };

@@ -108,7 +108,7 @@ impl<S: Lane, O: Observer> Drive<'_, S, O> {
         }
         let mut all = true;
         for lane in 0..S::COUNT {
-            if self.looks_closer(lane) {
+            if self.needs_accurate_solution(lane) {
                 self.slots[lane].iter_mut().for_each(|slot| slot.propagated = false);
                 self.begin_step(lane);
             }
@@ -129,14 +129,14 @@ impl<S: Lane, O: Observer> Drive<'_, S, O> {
     }
 
     /// True if the observer of a lane requires the step with precomputed matrices more accurately.
-    fn looks_closer(&mut self, lane: usize) -> bool {
+    fn needs_accurate_solution(&mut self, lane: usize) -> bool {
         let asks = |slot: &Slot<'_, O>| slot.propagated && slot.passage.attention == Attention::Steps;
         if !self.slots[lane].as_ref().is_some_and(asks) {
             return false;
         }
         self.want(lane);
         let Some(slot) = &self.slots[lane] else { return false };
-        slot.looks_closer(&self.between.wanted, &mut self.between.quartics)
+        slot.needs_accurate_solution(&self.between.wanted, &mut self.between.quartics)
     }
 
     /// Finds the matrices of lanes that a step of the method brought from sample to sample.

@@ -3,7 +3,7 @@
 use super::Drive;
 use crate::range::RequiredRange;
 use crate::scalar::{Dependence, Dual};
-use crate::simulation::course::{SimulationError, SimulationSettings, Status};
+use crate::simulation::interface::{SimulationError, SimulationSettings, Status};
 use crate::simulation::derivatives::DIRECTIONS;
 use crate::simulation::slot::Slot;
 use crate::simulation::task::Queue;
@@ -48,7 +48,7 @@ use crate::simulation::{Lane, SimulationNumber, System};
 ///     fn observe(&mut self, _time_s: f64, _states: &[f64], _inputs: &[f64]) {}
 /// }
 /// struct Decays<'a> {
-///     course: &'a InputSchedule,
+///     schedule: &'a InputSchedule,
 ///     rates: Vec<f64>,
 ///     left: Vec<f64>,
 /// }
@@ -56,17 +56,17 @@ use crate::simulation::{Lane, SimulationNumber, System};
 ///     type Observer = Blind;
 ///     fn next(&mut self, decay: &mut Decay, _lane: usize) -> Option<Task<'a, Blind>> {
 ///         decay.0 = self.rates.pop()?;
-///         Some(Task { start: vec![1.0], course: self.course, sampler: None, observer: Blind })
+///         Some(Task { start: vec![1.0], schedule: self.schedule, sampler: None, observer: Blind })
 ///     }
 ///     fn done(&mut self, _lane: usize, outcome: Outcome, _: Blind) {
 ///         self.left.push(outcome.end[0]);
 ///     }
-///     fn goes_on(&mut self, _lane: usize, _time_s: f64) -> bool {
+///     fn continues(&mut self, _lane: usize, _time_s: f64) -> bool {
 ///         true
 ///     }
 /// }
-/// let course = InputSchedule { duration_s: 1.0, output_step_s: 1.0, inputs: vec![] };
-/// let mut decays = Decays { course: &course, rates: vec![2.0, 1.0], left: vec![] };
+/// let schedule = InputSchedule { duration_s: 1.0, output_step_s: 1.0, inputs: vec![] };
+/// let mut decays = Decays { schedule: &schedule, rates: vec![2.0, 1.0], left: vec![] };
 /// drive::<f64, _, _>(&mut Decay(0.0), &mut decays, &SimulationSettings::default())?;
 /// let [slow, fast] = decays.left[..] else { panic!("two decays") };
 /// assert!((slow - f64::exp(-1.0)).abs() < 1e-5 && (fast - f64::exp(-2.0)).abs() < 1e-5);
@@ -112,7 +112,7 @@ where
             let passage = &slot.as_ref()?.passage;
             passage.status.is_none().then_some((lane, passage.time_s))
         });
-        if !running.all(|(lane, time_s)| queue.goes_on(lane, time_s)) {
+        if !running.all(|(lane, time_s)| queue.continues(lane, time_s)) {
             empty = true;
             for Slot { passage, .. } in drive.slots.iter_mut().flatten() {
                 passage.status.get_or_insert(Status::Cancelled { time_s: passage.time_s });

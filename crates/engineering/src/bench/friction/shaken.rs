@@ -71,7 +71,7 @@ fn unit_force(frequencies: Vec<f64>, rows: usize) -> MultisineForce {
 /// Multiples of the frequency of the period between the ends, evenly spaced.
 fn excited(settings: &ShakenFriction, ringing: f64) -> Result<Vec<f64>, BenchError> {
     let spacing = 2.0 * PI / settings.period;
-    let [low, high] = settings.frequencies.unwrap_or(AROUND.map(|share| share * ringing));
+    let [low, high] = settings.frequencies.unwrap_or(AROUND.map(|fraction| fraction * ringing));
     let most = LARGEST_ANGLE / settings.sample_time;
     if high > most {
         return Err(BenchError::ShakenTooFast { highest: high, sample_time: LARGEST_ANGLE / high });
@@ -82,8 +82,8 @@ fn excited(settings: &ShakenFriction, ringing: f64) -> Result<Vec<f64>, BenchErr
     }
     let count = (last - first + 1.0).min(f64::from(settings.lines)) as u32;
     let line = |index: u32| {
-        let share = if count > 1 { f64::from(index) / f64::from(count - 1) } else { 0.5 };
-        (first + share * (last - first)).round() * spacing
+        let fraction = if count > 1 { f64::from(index) / f64::from(count - 1) } else { 0.5 };
+        (first + fraction * (last - first)).round() * spacing
     };
     Ok((0..count).map(line).collect())
 }

@@ -37,8 +37,8 @@ impl StepCommands {
 
     /// Parameters of the worst plant of a design, if its command is near the limit and it is not
     /// among the rows.
-    pub(super) fn unseen<'a>(&self, told: &'a ProjectDesign) -> Option<&'a [f64]> {
-        let command = told.command_of_steps.as_ref()?;
+    pub(super) fn unseen<'a>(&self, project_design: &'a ProjectDesign) -> Option<&'a [f64]> {
+        let command = project_design.command_of_steps.as_ref()?;
         let PlantPoint::Parameters(values) = &command.plant else { return None };
         let is_known = self.plants.iter().any(|plant| plant.values == *values);
         let joins = !is_known && self.plants.len() < PLANTS && command.largest_v >= NEAR * command.limit_v;

@@ -8,7 +8,7 @@ use phea_qft::design::{Design, DesignProblem, DesignStatus, name_of};
 use phea_qft::loop_shaping::{Aim, DescentOptions, Samples, SearchProblem, Shaping, descend};
 use phea_qft::verification::SpecificationMargin;
 
-use super::shaping::{RESERVE_DB, StepShaping, StepWishes};
+use super::shaping::{RESERVE_DB, StepShaping, AimedStepLimits};
 use super::starts::SearchReach;
 use super::{AimedSteps, LedSearch, NEARLY_DB, StepRoom, with_rig};
 use crate::audit::audit_request;
@@ -18,7 +18,7 @@ use crate::design::{DesignError, ProjectDesign};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::side_by_side::all_cores;
-use crate::simulate::TrackingWish;
+use crate::simulate::StepLimits;
 
 /// Name of the stage.
 pub(super) const STAGE: &str = "shaping by steps";
@@ -42,13 +42,13 @@ const FAR: f64 = 1.3;
 /// Fraction of its limit above which the command of the scenarios' steps is part of each audit.
 const COMMAND_NEAR: f64 = 0.5;
 /// Largest number of continuations of a search with plants that were not part of it.
-const LOOKS: usize = 5;
+const MOST_CONTINUATIONS: usize = 5;
 /// Number of steps of one search.
 const DESCENT_STEPS: usize = 12;
 
 /// An audited design and its deficits.
 pub(super) struct AuditedStep {
-    pub(super) told: Box<ProjectDesign>,
+    pub(super) project_design: Box<ProjectDesign>,
     start: Design,
     pub(super) search: LedSearch,
     free_numbers: Vec<f64>,
@@ -73,13 +73,13 @@ enum AuditDepth {
 
 impl AuditedStep {
     pub(super) fn is_reached(&self) -> bool {
-        self.told.is_met() && self.excess <= 1.0
+        self.project_design.is_met() && self.excess <= 1.0
     }
 
     /// True if the design is nearer than another one by more than this fraction.
-    pub(super) fn gains_on(&self, other: &AuditedStep, share: f64) -> bool {
+    pub(super) fn gains_on(&self, other: &AuditedStep, fraction: f64) -> bool {
         self.verdict < other.verdict
-            || self.verdict == other.verdict && self.excess < (1.0 - share) * other.excess
+            || self.verdict == other.verdict && self.excess < (1.0 - fraction) * other.excess
     }
 }
 
@@ -88,10 +88,10 @@ pub(super) struct LedDesign<'a> {
     pub(super) setup: &'a Setup<'a>,
     pub(super) aimed: AimedSteps<'a>,
     /// Plants whose steps are checked after each search.
-    pub(super) looked_at: Vec<Vec<f64>>,
+    pub(super) evaluated: Vec<Vec<f64>>,
     pub(super) problem: DesignProblem,
     pub(super) samples: Samples,
-    pub(super) required: TrackingWish,
+    pub(super) required: StepLimits,
     /// Part of the aim that is reserved for the rig.
     pub(super) room: StepRoom,
 }
@@ -108,36 +108,36 @@ pub(super) struct BegunDesign<'a> {
 impl<'a> LedDesign<'a> {
     /// The problem with little room for the contribution of the rig to the steps.
     pub(super) fn with_less_room(&self) -> LedDesign<'a> {
-        let (looked_at, problem, samples) =
-            (self.looked_at.clone(), self.problem.clone(), self.samples.clone());
-        LedDesign { looked_at, problem, samples, room: StepRoom::Little, ..*self }
+        let (evaluated, problem, samples) =
+            (self.evaluated.clone(), self.problem.clone(), self.samples.clone());
+        LedDesign { evaluated, problem, samples, room: StepRoom::Little, ..*self }
     }
 
     /// First search from a start; `None` if its loop is not stable.
     pub(super) fn begun(
         &self,
         start: Design,
-        told: &ProjectDesign,
+        project_design: &ProjectDesign,
         reach: SearchReach,
         watch: Watch<'_>,
     ) -> Result<Option<BegunDesign<'a>>, DesignError> {
         let structures = (start.structure.clone(), start.prefilter.clone());
-        let shaping = Shaping::new(structures.0, structures.1, told.options.objective, self.samples.clone())?;
-        let wishes = StepWishes {
-            linear: self.room.of(self.aimed.aim.wish(self.required)),
+        let shaping = Shaping::new(structures.0, structures.1, project_design.options.objective, self.samples.clone())?;
+        let aimed_limits = AimedStepLimits {
+            linear: self.room.of(self.aimed.aim.step_limits(self.required)),
             with_rig: with_rig(self.required),
         };
-        let added = (wishes, self.aimed.added.to_vec());
+        let added = (aimed_limits, self.aimed.added.to_vec());
         let search = StepShaping::new(shaping, added, self.problem.sensor.clone(), self.aimed.plants);
-        let mut search = search.with_commands(ScenarioSteps::of(self.setup, told));
-        if reach == SearchReach::Beside {
-            search.stay_beside(&start.free_numbers);
+        let mut search = search.with_commands(ScenarioSteps::of(self.setup, project_design));
+        if reach == SearchReach::Near {
+            search.stay_near(&start.free_numbers);
         }
         if !search.judge(&start.free_numbers).stable {
             return Ok(None);
         }
-        search.take_worst(&told.design)?;
-        search.take_steps(told)?;
+        search.take_worst(&project_design.design)?;
+        search.take_steps(project_design)?;
         let free_numbers = self.descended(&mut search, &start.free_numbers, watch)?;
         let least_db = search.judge(&free_numbers).worst_margin_db;
         Ok(Some(BegunDesign { start, search, free_numbers, least_db }))
@@ -147,12 +147,12 @@ impl<'a> LedDesign<'a> {
     /// if it has none of them.
     pub(super) fn shorter(
         &self,
-        told: &ProjectDesign,
+        project_design: &ProjectDesign,
         watch: Watch<'_>,
     ) -> Result<Option<BegunDesign<'a>>, DesignError> {
-        let start = &told.design;
+        let start = &project_design.design;
         let free_numbers = start.free_numbers.as_slice();
-        let fastest = BEYOND_FASTEST * told.options.poles.fastest_rad_per_s;
+        let fastest = BEYOND_FASTEST * project_design.options.poles.fastest_rad_per_s;
         let (own, of_prefilter) = free_numbers.split_at(start.structure.dimension().min(free_numbers.len()));
         let loop_shorter = start.structure.without_roots_beyond(fastest, own);
         let prefilter_shorter = start.prefilter.as_ref().and_then(|prefilter| {
@@ -171,7 +171,7 @@ impl<'a> LedDesign<'a> {
         let name = if structure == start.structure { start.name } else { name_of(&structure) };
         let free_numbers = [own, of_prefilter].concat();
         let start = Design { structure, prefilter, free_numbers, name, ..start.clone() };
-        self.begun(start, told, SearchReach::Anywhere, watch)
+        self.begun(start, project_design, SearchReach::Anywhere, watch)
     }
 
     /// Nearest audited design, after searches with the findings of each audit, abandoned if it is
@@ -180,7 +180,7 @@ impl<'a> LedDesign<'a> {
         &self,
         begun: BegunDesign<'a>,
         to_beat: Option<&AuditedStep>,
-        told: &ProjectDesign,
+        project_design: &ProjectDesign,
         watch: Watch<'_>,
     ) -> Result<Option<AuditedStep>, DesignError> {
         let BegunDesign { start, mut search, mut free_numbers, least_db } = begun;
@@ -188,12 +188,12 @@ impl<'a> LedDesign<'a> {
         let mut best: Option<AuditedStep> = None;
         let mut in_vain = 0;
         for round in 0..rounds {
-            let share = [round, round + 1].map(|done| done as f64 / rounds as f64);
-            let mut watch = within(&mut *watch, share);
+            let fraction = [round, round + 1].map(|done| done as f64 / rounds as f64);
+            let mut watch = within(&mut *watch, fraction);
             if round > 0 {
                 free_numbers = self.descended(&mut search, &free_numbers, &mut watch)?;
             }
-            let at = (&start, told, free_numbers.as_slice());
+            let at = (&start, project_design, free_numbers.as_slice());
             let (mut moved, mut is_new) =
                 self.judged(&mut search, at, AuditDepth::KnownPlants, &mut watch)?;
             if moved.is_reached() {
@@ -217,11 +217,11 @@ impl<'a> LedDesign<'a> {
     fn judged(
         &self,
         search: &mut StepShaping<'_>,
-        (start, told, free_numbers): (&Design, &ProjectDesign, &[f64]),
+        (start, project_design, free_numbers): (&Design, &ProjectDesign, &[f64]),
         depth: AuditDepth,
         watch: Watch<'_>,
     ) -> Result<(AuditedStep, bool), DesignError> {
-        let at = (start, told, free_numbers);
+        let at = (start, project_design, free_numbers);
         let moved = self.audited(&search.shaping, at, depth, watch)?;
         let is_new = search.take_worst(&moved.design)? | search.take_steps(&moved)?;
         let with_rig = search.excess_with_rig(free_numbers, &self.required);
@@ -229,7 +229,7 @@ impl<'a> LedDesign<'a> {
             verdict: rank(&moved).0,
             excess: self.aimed.aim.excess(&moved).max(with_rig),
             least: search.least_of_limits(free_numbers),
-            told: Box::new(moved),
+            project_design: Box::new(moved),
             start: start.clone(),
             search: LedSearch { shaping: search.shaping.clone(), room: self.room },
             free_numbers: free_numbers.to_vec(),
@@ -242,27 +242,27 @@ impl<'a> LedDesign<'a> {
     pub(super) fn completed(
         &self,
         found: AuditedStep,
-        told: &ProjectDesign,
+        project_design: &ProjectDesign,
         watch: Watch<'_>,
     ) -> Result<AuditedStep, DesignError> {
         if found.audit == AuditDepth::Whole {
             return Ok(found);
         }
-        let at = (&found.start, told, found.free_numbers.as_slice());
-        let told = self.audited(&found.search.shaping, at, AuditDepth::Whole, watch)?;
-        Ok(AuditedStep { told: Box::new(told), audit: AuditDepth::Whole, ..found })
+        let at = (&found.start, project_design, found.free_numbers.as_slice());
+        let project_design = self.audited(&found.search.shaping, at, AuditDepth::Whole, watch)?;
+        Ok(AuditedStep { project_design: Box::new(project_design), audit: AuditDepth::Whole, ..found })
     }
 
     /// The design with its audit.
     fn audited(
         &self,
         shaping: &Shaping,
-        (start, told, free_numbers): (&Design, &ProjectDesign, &[f64]),
+        (start, project_design, free_numbers): (&Design, &ProjectDesign, &[f64]),
         depth: AuditDepth,
         watch: Watch<'_>,
     ) -> Result<ProjectDesign, DesignError> {
         let compensation = Compensation::new(&shaping.controller(free_numbers), self.problem.sensor.clone())?;
-        let has_prefilter = told.designed.problem.has_prefilter;
+        let has_prefilter = project_design.designed.problem.has_prefilter;
         let problem =
             RobustProblem { compensation, has_controller: true, has_prefilter, ..self.aimed.given.clone() };
         let request = audit_request(&problem, &problem.family);
@@ -272,15 +272,15 @@ impl<'a> LedDesign<'a> {
         };
         let status = DesignStatus::NotConverged { rounds: start.rounds.len() };
         let design = Design { status, ..start.clone() };
-        let moved = design.moved(shaping, free_numbers.to_vec(), audit, &told.options);
+        let moved = design.moved(shaping, free_numbers.to_vec(), audit, &project_design.options);
         let found = (self.aimed.given, &self.problem);
-        let mut found = ProjectDesign::new(self.setup, found.0, found.1, moved, told.options.clone(), watch)?;
+        let mut found = ProjectDesign::new(self.setup, found.0, found.1, moved, project_design.options.clone(), watch)?;
         let depth = match depth {
             AuditDepth::KnownPlants => CommandDepth::KnownPlants,
             AuditDepth::Whole => CommandDepth::Whole,
         };
         // a command far from its limit is evaluated only once the design has been found
-        if told.command_of_steps.as_ref().is_some_and(|command| command.ratio() > COMMAND_NEAR) {
+        if project_design.command_of_steps.as_ref().is_some_and(|command| command.ratio() > COMMAND_NEAR) {
             found.command_of_steps = command_of_steps((self.setup, &found), self.aimed.plants, depth, watch)?;
         }
         Ok(found)
@@ -295,12 +295,12 @@ impl<'a> LedDesign<'a> {
         watch: Watch<'_>,
     ) -> Result<Vec<f64>, DesignError> {
         let mut free_numbers = free_numbers.to_vec();
-        for look in 0..LOOKS {
-            let share = [look, look + 1].map(|done| done as f64 / LOOKS as f64);
-            free_numbers = descended(search, &free_numbers, &mut within(&mut *watch, share))?;
+        for look in 0..MOST_CONTINUATIONS {
+            let fraction = [look, look + 1].map(|done| done as f64 / MOST_CONTINUATIONS as f64);
+            free_numbers = descended(search, &free_numbers, &mut within(&mut *watch, fraction))?;
             // numbers that miss the aim with these plants miss it with more
             let misses = search.judge(&free_numbers).worst_margin_db < 0.0;
-            if misses || !search.take_unseen(&free_numbers, (self.aimed.given, &self.looked_at))? {
+            if misses || !search.take_unseen(&free_numbers, (self.aimed.given, &self.evaluated))? {
                 break;
             }
         }
@@ -312,10 +312,10 @@ impl<'a> LedDesign<'a> {
         &self,
         best: Option<AuditedStep>,
         begun: BegunDesign<'a>,
-        told: &ProjectDesign,
+        project_design: &ProjectDesign,
         watch: Watch<'_>,
     ) -> Result<Option<AuditedStep>, DesignError> {
-        let found = self.agreed(begun, best.as_ref(), told, watch)?;
+        let found = self.agreed(begun, best.as_ref(), project_design, watch)?;
         Ok(match (best, found) {
             (Some(best), Some(found)) if !found.gains_on(&best, 0.0) => Some(best),
             (best, found) => found.or(best),
@@ -325,11 +325,11 @@ impl<'a> LedDesign<'a> {
     /// True if a design reaches the aim, or is so near that a trial on the nonlinear rig gives more
     /// information than another start.
     pub(super) fn suffices(&self, found: Option<&AuditedStep>) -> bool {
-        let keeps_limits = |found: &AuditedStep| {
+        let satisfies_limits = |found: &AuditedStep| {
             found.verdict == 0 || found.least.as_ref().is_some_and(|least| least.margin_db >= -NEARLY_DB)
         };
         let is_near =
-            |found: &AuditedStep| !self.aimed.added.is_empty() && keeps_limits(found) && found.excess <= NEAR;
+            |found: &AuditedStep| !self.aimed.added.is_empty() && satisfies_limits(found) && found.excess <= NEAR;
         found.is_some_and(|found| found.is_reached() || is_near(found))
     }
 }

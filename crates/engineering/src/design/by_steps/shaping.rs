@@ -20,7 +20,7 @@ use crate::design::{DesignError, ProjectDesign};
 use crate::linear_step::StepResponse;
 use crate::robust::RobustProblem;
 use crate::side_by_side::of_each;
-use crate::simulate::{ReachedStep, TrackingWish};
+use crate::simulate::{ReachedStep, StepLimits};
 
 /// Margin to be left to every limit on a frequency response, dB.
 pub(super) const RESERVE_DB: f64 = 0.02;
@@ -51,7 +51,7 @@ pub(in crate::design) struct StepShaping<'a> {
     pub(in crate::design) shaping: Shaping,
     /// Requirements of every step: that of the linear loop, and that including the contribution of
     /// the rig.
-    wishes: StepWishes,
+    aimed_limits: AimedStepLimits,
     added: Vec<AddedByRig>,
     sensor: TransferFunction,
     plants: Vec<LedPlant>,
@@ -65,17 +65,17 @@ pub(in crate::design) struct StepShaping<'a> {
 
 /// Requirements of steps.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct StepWishes {
+pub(super) struct AimedStepLimits {
     /// Requirements of the steps of the linear loop.
-    pub(super) linear: TrackingWish,
+    pub(super) linear: StepLimits,
     /// Requirements of the steps including the contribution of the nonlinear rig.
-    pub(super) with_rig: TrackingWish,
+    pub(super) with_rig: StepLimits,
 }
 
 /// A step that is judged, and its requirements.
 struct JudgedStep {
     response: StepResponse,
-    wish: TrackingWish,
+    step_limits: StepLimits,
 }
 
 /// Margin of a step at one of its places, with the index of the step, dB.
@@ -93,13 +93,13 @@ impl StepShaping<'_> {
     /// Shaping without plants whose steps are judged.
     pub(super) fn new(
         shaping: Shaping,
-        (wishes, added): (StepWishes, Vec<AddedByRig>),
+        (aimed_limits, added): (AimedStepLimits, Vec<AddedByRig>),
         sensor: TransferFunction,
         all: &SteppedPlants,
     ) -> StepShaping<'_> {
         let bounds = shaping.bounds().to_vec();
         let commands = StepCommands::default();
-        StepShaping { shaping, wishes, added, sensor, plants: vec![], commands, all, bounds }
+        StepShaping { shaping, aimed_limits, added, sensor, plants: vec![], commands, all, bounds }
     }
 
     /// The shaping with limits on the command of the scenarios' steps.
@@ -113,15 +113,15 @@ impl StepShaping<'_> {
     }
 
     /// The shaping with other requirements of its steps.
-    pub(super) fn with_wishes(mut self, changed: impl Fn(TrackingWish) -> TrackingWish) -> Self {
-        let StepWishes { linear, with_rig } = self.wishes;
-        self.wishes = StepWishes { linear: changed(linear), with_rig: changed(with_rig) };
+    pub(super) fn with_step_limits(mut self, changed: impl Fn(StepLimits) -> StepLimits) -> Self {
+        let AimedStepLimits { linear, with_rig } = self.aimed_limits;
+        self.aimed_limits = AimedStepLimits { linear: changed(linear), with_rig: changed(with_rig) };
         self.bounds = self.shaping.bounds().to_vec();
         self
     }
 
     /// Limits the free numbers to the neighbourhood of these.
-    pub(super) fn stay_beside(&mut self, free_numbers: &[f64]) {
+    pub(super) fn stay_near(&mut self, free_numbers: &[f64]) {
         for ([low, high], own) in self.bounds.iter_mut().zip(free_numbers) {
             (*low, *high) = (low.max(own - BESIDE), high.min(own + BESIDE));
         }
@@ -136,14 +136,14 @@ impl StepShaping<'_> {
     fn least_margin(&self, x: &[f64]) -> f64 {
         let Some(around) = self.around(x) else { return f64::NEG_INFINITY };
         let of_commands = self.commands.least_db(&around);
-        let wishes = self.wishes;
-        let each = of_each(&self.plants, |plant| wishes.least_of(plant, &around));
+        let aimed_limits = self.aimed_limits;
+        let each = of_each(&self.plants, |plant| aimed_limits.least_of(plant, &around));
         each.into_iter().fold(of_commands, f64::min)
     }
 
     /// Largest ratio of a property of the steps, including the contribution of the rig, to the
     /// required one: at most 1 if all are within it; zero if nothing is known of the rig.
-    pub(super) fn excess_with_rig(&self, x: &[f64], required: &TrackingWish) -> f64 {
+    pub(super) fn excess_with_rig(&self, x: &[f64], required: &StepLimits) -> f64 {
         let Some(around) = self.around(x) else { return f64::INFINITY };
         let of = |step: &JudgedStep| {
             let StepResponse { times_s, values } = &step.response;
@@ -154,7 +154,7 @@ impl StepShaping<'_> {
                 rise_time_s: metrics.rise_time_10_90_s.unwrap_or(f64::INFINITY),
             }))
         };
-        let worst = |plant: &LedPlant| match self.wishes.steps(plant, &around) {
+        let worst = |plant: &LedPlant| match self.aimed_limits.steps(plant, &around) {
             Some(steps) => {
                 steps.iter().skip(1).map(|step| of(step).unwrap_or(f64::INFINITY)).fold(0.0, f64::max)
             }
@@ -186,20 +186,20 @@ impl StepShaping<'_> {
     }
 
     /// Adds the plants with the worst steps of a design; true if one is new.
-    pub(super) fn take_steps(&mut self, told: &ProjectDesign) -> Result<bool, DesignError> {
+    pub(super) fn take_steps(&mut self, project_design: &ProjectDesign) -> Result<bool, DesignError> {
         let mut is_new = false;
-        for finding in &told.designed.view.in_time {
+        for finding in &project_design.designed.view.in_time {
             let TimeOutcome::Searched { overshoot, settling, rise, .. } = &finding.outcome else { continue };
             for worst in [overshoot, settling, rise].into_iter().flatten() {
                 if let PlantPoint::Parameters(values) = &worst.plant {
-                    is_new |= self.take(values, &told.designed.problem)?;
+                    is_new |= self.take(values, &project_design.designed.problem)?;
                 }
             }
         }
         if let (Some(values), Family::Uncertain(family)) =
-            (self.commands.unseen(told), &told.designed.problem.family)
+            (self.commands.unseen(project_design), &project_design.designed.problem.family)
         {
-            let around = &told.designed.problem.compensation;
+            let around = &project_design.designed.problem.compensation;
             self.commands.take(self.all.plant(values, (family, around))?);
             is_new = true;
         }
@@ -217,7 +217,7 @@ impl StepShaping<'_> {
         let mut missed: Vec<(f64, LedPlant)> = Vec::new();
         for values in plants {
             let Some(plant) = self.unseen(values, problem)? else { continue };
-            let least_db = self.wishes.least_of(&plant, &around);
+            let least_db = self.aimed_limits.least_of(&plant, &around);
             if least_db < RESERVE_DB - 1e-3 {
                 missed.push((least_db, plant));
             }
@@ -250,7 +250,7 @@ impl StepShaping<'_> {
     }
 }
 
-impl StepWishes {
+impl AimedStepLimits {
     /// Steps of a plant, that of the linear loop first; `None` if one cannot be computed.
     fn steps(&self, plant: &LedPlant, around: &Compensation) -> Option<Vec<JudgedStep>> {
         let duration = (SETTLING_TIMES * self.linear.horizon_s, POINTS);
@@ -263,11 +263,11 @@ impl StepWishes {
                 let added = carried.of(&added.at_times(&linear.times_s));
                 let values = linear.values.iter().zip(added).map(|(value, added)| value + added);
                 let response = StepResponse { times_s: linear.times_s.clone(), values: values.collect() };
-                JudgedStep { response, wish: self.with_rig }
+                JudgedStep { response, step_limits: self.with_rig }
             };
             steps.extend(added.steps.iter().map(with_rig));
         }
-        steps.insert(0, JudgedStep { response: linear, wish: self.linear });
+        steps.insert(0, JudgedStep { response: linear, step_limits: self.linear });
         Some(steps)
     }
 
@@ -327,8 +327,8 @@ impl SearchProblem for StepShaping<'_> {
     fn slopes(&mut self, x: &[f64]) -> Slopes {
         let mut slopes = self.shaping.slopes(x);
         let Some(around) = self.around(x) else { return slopes };
-        let wishes = self.wishes;
-        let of = |plant: &LedPlant| wishes.steps(plant, &around).map(|steps| places(&steps));
+        let aimed_limits = self.aimed_limits;
+        let of = |plant: &LedPlant| aimed_limits.steps(plant, &around).map(|steps| places(&steps));
         let each = of_each(&self.plants, |plant| of(plant).unwrap_or_default());
         let worst = each.iter().flatten().map(|one| one.2).fold(f64::INFINITY, f64::min);
         let near = worst.max(0.0) + NEAR_DB;
@@ -347,7 +347,7 @@ impl SearchProblem for StepShaping<'_> {
                 (index, plant, places.into_iter().filter(|one| one.2 <= near).collect())
             })
             .collect();
-        let rows = of_each(&placed, |(index, plant, near)| wishes.rows(*index, plant, near, &beside));
+        let rows = of_each(&placed, |(index, plant, near)| aimed_limits.rows(*index, plant, near, &beside));
         slopes.margins.extend(rows.into_iter().flatten());
         let last = usize::MAX - ROWS * PLANTS;
         slopes.margins.extend(self.commands.rows(&around, &beside, last));
@@ -369,19 +369,19 @@ enum StepPlace {
 impl JudgedStep {
     /// Margin to the requirement at this place, dB of 1 plus the deviation.
     fn margin(&self, place: StepPlace) -> f64 {
-        let JudgedStep { response, wish } = self;
-        let band = wish.band_percent / 100.0;
+        let JudgedStep { response, step_limits } = self;
+        let band = step_limits.band_percent / 100.0;
         let value = |sample: usize| response.values.get(sample).copied().unwrap_or(f64::INFINITY);
         match place {
             StepPlace::Over(sample) => {
-                let most = wish.overshoot_percent.unwrap_or(f64::INFINITY);
+                let most = step_limits.overshoot_percent.unwrap_or(f64::INFINITY);
                 DB * (1.0 + most / 100.0 - value(sample))
             }
             StepPlace::Late(sample) => DB * (band - (value(sample) - 1.0).abs()),
             StepPlace::Rise => {
                 let reached = |level: f64| response.first_at(level);
                 let rise_s = reached(0.1).zip(reached(0.9)).map_or(f64::INFINITY, |(low, high)| high - low);
-                DB * band * (1.0 - rise_s / wish.rise_time_s.unwrap_or(f64::INFINITY))
+                DB * band * (1.0 - rise_s / step_limits.rise_time_s.unwrap_or(f64::INFINITY))
             }
         }
     }
@@ -389,20 +389,20 @@ impl JudgedStep {
     /// Places at which the step is nearest to its requirements, one for each swing, with the
     /// margins there.
     fn places(&self) -> Vec<(StepPlace, f64)> {
-        let JudgedStep { response: StepResponse { times_s, values }, wish } = self;
+        let JudgedStep { response: StepResponse { times_s, values }, step_limits } = self;
         let last = values.len().saturating_sub(1);
-        let from = wish.settling_time_s.map(|time_s| times_s.partition_point(|known| *known < time_s));
+        let from = step_limits.settling_time_s.map(|time_s| times_s.partition_point(|known| *known < time_s));
         let deviation = |sample: usize| values.get(sample).map_or(0.0, |value| (value - 1.0).abs());
         let is_peak = |sample: usize| {
             let beside = [sample.saturating_sub(1), (sample + 1).min(last)];
             beside.into_iter().all(|other| deviation(sample) >= deviation(other))
         };
         let over = (0..=last).filter(|sample| {
-            wish.overshoot_percent.is_some() && is_peak(*sample) && values.get(*sample) > Some(&1.0)
+            step_limits.overshoot_percent.is_some() && is_peak(*sample) && values.get(*sample) > Some(&1.0)
         });
         let late = from.map_or(last + 1..=last, |from| from..=last);
         let late = late.filter(|sample| Some(*sample) == from || is_peak(*sample));
-        let rise = wish.rise_time_s.map(|_| StepPlace::Rise);
+        let rise = step_limits.rise_time_s.map(|_| StepPlace::Rise);
         let each = over.map(StepPlace::Over).chain(late.map(StepPlace::Late)).chain(rise);
         let mut places: Vec<(StepPlace, f64)> = each.map(|place| (place, self.margin(place))).collect();
         places.sort_by(|(_, one), (_, other)| one.total_cmp(other));

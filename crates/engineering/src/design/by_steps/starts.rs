@@ -1,7 +1,7 @@
 //! Designs from which searches by steps begin.
 
 use phea_dynamics::portable;
-use phea_qft::design::{Design, NamedStructure, StructureEnding, TriedStructure};
+use phea_qft::design::{Design, NamedStructure, StructureEnding, SearchedStructure};
 use phea_qft::loop_shaping::Structure;
 
 use super::SearchStarts;
@@ -20,7 +20,7 @@ const NEAR: f64 = 1.6;
 /// Ratio of the gain of a faster loop to that of a design, and fraction of the required settling
 /// time in which its prefilter settles.
 const MORE_GAIN: f64 = 2.0;
-const PREFILTER_SHARE: f64 = 0.6;
+const PREFILTER_FRACTION: f64 = 0.6;
 /// Greatest gain of the prefilter of a pure gain, if the design does not limit it.
 const UNLIMITED_GAIN: f64 = 10.0;
 
@@ -29,7 +29,7 @@ const UNLIMITED_GAIN: f64 = 10.0;
 pub(super) enum SearchReach {
     /// Each zero, pole and gain within a ratio, so that the contribution of the rig to the steps is
     /// known well.
-    Beside,
+    Near,
     /// The whole range of the structure.
     Anywhere,
 }
@@ -40,28 +40,28 @@ impl LedDesign<'_> {
     /// structures after those.
     pub(super) fn starts(
         &self,
-        told: &ProjectDesign,
-        tried: &[TriedStructure],
+        project_design: &ProjectDesign,
+        searched: &[SearchedStructure],
     ) -> Vec<(Design, SearchReach)> {
-        let design = &told.design;
+        let design = &project_design.design;
         let least =
-            |one: &TriedStructure| one.least.as_ref().map_or(f64::NEG_INFINITY, |least| least.margin_db);
-        let is_other = |one: &TriedStructure| {
+            |one: &SearchedStructure| one.least.as_ref().map_or(f64::NEG_INFINITY, |least| least.margin_db);
+        let is_other = |one: &SearchedStructure| {
             let is_own = one.structure == design.structure && one.free_numbers == design.free_numbers;
             one.least.is_some() && !is_own
         };
-        let others: Vec<&TriedStructure> = tried.iter().filter(|one| is_other(one)).collect();
+        let others: Vec<&SearchedStructure> = searched.iter().filter(|one| is_other(one)).collect();
         let others = in_order(others, |one| (least(one), one.structure.dimension()));
         let nearest = STARTS - 1;
         let (skipped, most) = match self.aimed.from {
             SearchStarts::Nearest => (0, nearest),
             SearchStarts::Others => (nearest, STARTS),
         };
-        let others = others.into_iter().skip(skipped).take(most).map(|tried| begun_from(tried, told));
+        let others = others.into_iter().skip(skipped).take(most).map(|searched| begun_from(searched, project_design));
         let others = others.map(|start| (start, SearchReach::Anywhere));
         let starts: Vec<(Design, SearchReach)> = match self.aimed.from {
             SearchStarts::Others => others.collect(),
-            SearchStarts::Nearest => self.own_starts(told).chain(others).collect(),
+            SearchStarts::Nearest => self.own_starts(project_design).chain(others).collect(),
         };
         let keeps = |one: &Design| {
             self.aimed.added.is_empty() || one.structure.integrators() >= design.structure.integrators()
@@ -72,14 +72,14 @@ impl LedDesign<'_> {
     /// The design. Before it, its neighbourhood, if its runs on the nonlinear rig miss by little;
     /// after it, if they miss, a faster loop with a slower prefilter: the loop suppresses the
     /// contribution of the rig to a step, and the prefilter shapes the rest.
-    fn own_starts(&self, told: &ProjectDesign) -> impl Iterator<Item = (Design, SearchReach)> + use<> {
-        let design = with_free_gain(told.design.clone(), told);
+    fn own_starts(&self, project_design: &ProjectDesign) -> impl Iterator<Item = (Design, SearchReach)> + use<> {
+        let design = with_free_gain(project_design.design.clone(), project_design);
         let has_missed = !self.aimed.added.is_empty();
-        let beside = (has_missed && told.worst_run() <= NEAR).then(|| (design.clone(), SearchReach::Beside));
+        let beside = (has_missed && project_design.worst_run() <= NEAR).then(|| (design.clone(), SearchReach::Near));
         let settling_s = self.required.settling_time_s.filter(|_| has_missed);
         let faster = settling_s.zip(design.prefilter.as_ref()).and_then(|(time_s, prefilter)| {
             let band = 0.01 * self.required.band_percent;
-            let rad_per_s = -portable::ln(band) / (PREFILTER_SHARE * time_s);
+            let rad_per_s = -portable::ln(band) / (PREFILTER_FRACTION * time_s);
             let structures = [&design.structure, prefilter];
             let free_numbers = faster_behind_prefilter(structures, &design.free_numbers, rad_per_s)?;
             Some((Design { free_numbers, ..design.clone() }, SearchReach::Anywhere))
@@ -89,29 +89,29 @@ impl LedDesign<'_> {
 
     /// Structures shorter than that of a design that satisfy the limits over frequency, or miss
     /// only those on the path to its step, the simplest first.
-    pub(super) fn simpler(&self, told: &ProjectDesign, run: &DesignRun) -> Result<Vec<Design>, DesignError> {
-        let own = told.design.structure.order()?;
+    pub(super) fn simpler(&self, project_design: &ProjectDesign, run: &DesignRun) -> Result<Vec<Design>, DesignError> {
+        let own = project_design.design.structure.order()?;
         let given = run.aimed.specifications.len() - run.aimed.design_limits.len();
         let leads = |specification: &usize| {
             let limit = specification.checked_sub(given);
             limit.and_then(|limit| run.aimed.design_limits.get(limit)).is_some_and(|kind| kind.is_led_to())
         };
-        let mut shorter: Vec<(usize, &TriedStructure)> = Vec::new();
-        for tried in run.outcome.tried() {
-            let order = tried.structure.order()?;
-            let is_near = match tried.ending {
+        let mut shorter: Vec<(usize, &SearchedStructure)> = Vec::new();
+        for searched in run.outcome.searched() {
+            let order = searched.structure.order()?;
+            let is_near = match searched.ending {
                 StructureEnding::Met => true,
-                StructureEnding::Missed => tried.binding.iter().any(leads),
+                StructureEnding::Missed => searched.binding.iter().any(leads),
                 StructureEnding::NotEarned
                 | StructureEnding::NotConverged
                 | StructureEnding::NotStabilised => false,
             };
-            if order < own && is_near && !tried.free_numbers.is_empty() {
-                shorter.push((order, tried));
+            if order < own && is_near && !searched.free_numbers.is_empty() {
+                shorter.push((order, searched));
             }
         }
-        shorter.sort_by_key(|(order, tried)| (*order, tried.structure.dimension()));
-        Ok(shorter.into_iter().map(|(_, tried)| begun_from(tried, told)).collect())
+        shorter.sort_by_key(|(order, searched)| (*order, searched.structure.dimension()));
+        Ok(shorter.into_iter().map(|(_, searched)| begun_from(searched, project_design)).collect())
     }
 }
 
@@ -130,10 +130,10 @@ fn in_order<One>(mut others: Vec<One>, of: impl Fn(&One) -> (f64, usize)) -> Vec
 /// A structure as it was found, with the prefilter of a design if it has none; for a pure gain,
 /// with the gain of the design at its crossover, since the limits on the path to a step drive it as
 /// high as stability permits.
-fn begun_from(tried: &TriedStructure, told: &ProjectDesign) -> Design {
-    let design = &told.design;
-    let mut free_numbers = tried.free_numbers.clone();
-    let prefilter = match &tried.prefilter {
+fn begun_from(searched: &SearchedStructure, project_design: &ProjectDesign) -> Design {
+    let design = &project_design.design;
+    let mut free_numbers = searched.free_numbers.clone();
+    let prefilter = match &searched.prefilter {
         Some(prefilter) => Some(prefilter.clone()),
         None => {
             let own = design.free_numbers.get(design.structure.dimension()..);
@@ -141,20 +141,20 @@ fn begun_from(tried: &TriedStructure, told: &ProjectDesign) -> Design {
             design.prefilter.clone()
         }
     };
-    if tried.name == Some(NamedStructure::Proportional)
-        && let (Some(own), Some(gain)) = (free_numbers.first_mut(), gain_at_crossover(told))
+    if searched.name == Some(NamedStructure::Proportional)
+        && let (Some(own), Some(gain)) = (free_numbers.first_mut(), gain_at_crossover(project_design))
     {
-        let [least, greatest] = tried.structure.gain;
+        let [least, greatest] = searched.structure.gain;
         *own = portable::ln(gain.clamp(least, greatest));
     }
-    let structure = tried.structure.clone();
-    with_free_gain(Design { structure, prefilter, free_numbers, name: tried.name, ..design.clone() }, told)
+    let structure = searched.structure.clone();
+    with_free_gain(Design { structure, prefilter, free_numbers, name: searched.name, ..design.clone() }, project_design)
 }
 
 /// Magnitude |G| of a design at the first crossover of its nominal loop.
-fn gain_at_crossover(told: &ProjectDesign) -> Option<f64> {
-    let crossover = told.designed.figures.nominal.as_ref()?.crossovers.first_rad_per_s?;
-    let law = told.design.law.feedback.transfer_function().ok()?;
+fn gain_at_crossover(project_design: &ProjectDesign) -> Option<f64> {
+    let crossover = project_design.designed.figures.nominal.as_ref()?.crossovers.first_rad_per_s?;
+    let law = project_design.design.law.feedback.transfer_function().ok()?;
     Some(portable::magnitude(law.at_frequency(crossover)))
 }
 
@@ -180,13 +180,13 @@ fn faster_behind_prefilter(
 
 /// A pure gain with a prefilter whose gain is free, since it leaves |T(0)| < 1 and the search over
 /// frequency holds that gain near 1; any other structure unchanged.
-fn with_free_gain(mut start: Design, told: &ProjectDesign) -> Design {
+fn with_free_gain(mut start: Design, project_design: &ProjectDesign) -> Design {
     let place = start.structure.dimension().min(start.free_numbers.len());
     if let Some(prefilter) = &mut start.prefilter
         && start.name == Some(NamedStructure::Proportional)
     {
         let [least, greatest] = prefilter.gain;
-        let most = limit_value(&told.limits, DesignLimitKind::PrefilterGain).unwrap_or(UNLIMITED_GAIN);
+        let most = limit_value(&project_design.limits, DesignLimitKind::PrefilterGain).unwrap_or(UNLIMITED_GAIN);
         prefilter.gain = [least.min(1.0), greatest.max(most)];
         // a number that is not free has no place
         if least == greatest {

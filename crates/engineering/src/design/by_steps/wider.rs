@@ -3,7 +3,7 @@
 use phea_qft::loop_shaping::{Aim, Structure};
 use phea_qft::specification::Specification;
 
-use super::shaping::{RESERVE_DB, StepShaping, StepWishes};
+use super::shaping::{RESERVE_DB, StepShaping, AimedStepLimits};
 use super::{AimedSteps, DesignError, led, with_rig};
 use crate::design::command_of_steps::ScenarioSteps;
 use crate::design::{DesignRun, ProjectDesign};
@@ -16,17 +16,17 @@ pub(in crate::design) type LastStepSearch<'a> = (StepShaping<'a>, (Aim, f64));
 pub(in crate::design) fn last_step_search<'a>(
     setup: &'a Setup<'_>,
     aimed: AimedSteps<'a>,
-    (run, told): (&DesignRun, &ProjectDesign),
+    (run, project_design): (&DesignRun, &ProjectDesign),
 ) -> Result<Option<LastStepSearch<'a>>, DesignError> {
-    let (Some(search), Some(led)) = (&run.led, led(setup, aimed, (run, told))?) else { return Ok(None) };
-    let linear = search.room.of(aimed.aim.wish(led.required));
-    let wishes = StepWishes { linear, with_rig: with_rig(led.required) };
-    let added = (wishes, aimed.added.to_vec());
+    let (Some(search), Some(led)) = (&run.led, led(setup, aimed, (run, project_design))?) else { return Ok(None) };
+    let linear = search.room.of(aimed.aim.step_limits(led.required));
+    let aimed_limits = AimedStepLimits { linear, with_rig: with_rig(led.required) };
+    let added = (aimed_limits, aimed.added.to_vec());
     let search = StepShaping::new(search.shaping.clone(), added, led.problem.sensor.clone(), aimed.plants);
-    let mut search = search.with_commands(ScenarioSteps::of(setup, told));
-    search.take_worst(&told.design)?;
-    search.take_steps(told)?;
-    let aim = if told.is_met() { Aim::Objective } else { Aim::WorstMargin };
+    let mut search = search.with_commands(ScenarioSteps::of(setup, project_design));
+    search.take_worst(&project_design.design)?;
+    search.take_steps(project_design)?;
+    let aim = if project_design.is_met() { Aim::Objective } else { Aim::WorstMargin };
     Ok(Some((search, (aim, RESERVE_DB))))
 }
 
@@ -42,6 +42,6 @@ impl<'a> StepShaping<'a> {
         let mut wider = self.clone();
         wider.shaping = self.shaping.with_limits(structure, limits);
         wider.allow_commands(command);
-        wider.with_wishes(|wish| wish.wider(steps))
+        wider.with_step_limits(|step_limits| step_limits.wider(steps))
     }
 }

@@ -64,8 +64,8 @@ fn resting_command(rig: &Rig, reference_n: f64) -> f64 {
 
 impl ScenarioSteps {
     /// Steps of a project; `None` if nothing limits their command.
-    pub(in crate::design) fn of(setup: &Setup<'_>, told: &ProjectDesign) -> Option<ScenarioSteps> {
-        let share = limit_value(&told.limits, DesignLimitKind::CommandOfSteps)?;
+    pub(in crate::design) fn of(setup: &Setup<'_>, project_design: &ProjectDesign) -> Option<ScenarioSteps> {
+        let fraction = limit_value(&project_design.limits, DesignLimitKind::CommandOfSteps)?;
         let rig = setup.rig().ok()?;
         let commanded = |reference: SteppedReference| {
             let begins_n = reference.steps.first()?.from_n;
@@ -79,10 +79,10 @@ impl ScenarioSteps {
             one.reference.steps.first().map_or(0.0, |first| one.reference.end_s - first.at_s)
         };
         let longest_s = scenarios.iter().map(lasts_s).fold(0.0, f64::max);
-        let required = told.designed.problem.in_time.iter().map(|one| SETTLING_TIMES * one.wish.horizon_s);
+        let required = project_design.designed.problem.in_time.iter().map(|one| SETTLING_TIMES * one.step_limits.horizon_s);
         Some(ScenarioSteps {
             scenarios,
-            limit_v: share * rig.actuator.components().valve.nominal_voltage,
+            limit_v: fraction * rig.actuator.components().valve.nominal_voltage,
             duration_s: required.reduce(f64::max).unwrap_or(f64::INFINITY).min(longest_s),
         })
     }

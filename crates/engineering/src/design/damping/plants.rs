@@ -176,8 +176,8 @@ fn points(at: &dyn Fn(f64) -> Option<InnerPoint>, end: f64, resonances: Vec<Comp
     for root in &resonances {
         let (size, width) = (portable::magnitude(*root), root.re.abs());
         let offsets = (-ROOT_POINTS..=ROOT_POINTS).map(|step| {
-            let share = f64::from(step) / f64::from(ROOT_POINTS);
-            size + ROOT_WIDTHS * width * share * share * share
+            let fraction = f64::from(step) / f64::from(ROOT_POINTS);
+            size + ROOT_WIDTHS * width * fraction * fraction * fraction
         });
         frequencies.extend(offsets.filter(|frequency| (DECADES * end..=end).contains(frequency)));
     }

@@ -159,9 +159,9 @@ impl Roots {
             _ => return None,
         };
         let filter_time_s = 1.0 / self.poles.last()?;
-        let share = linear - filter_time_s;
-        let derivative = square - share * filter_time_s;
-        if !(share > 0.0 && derivative > 0.0) {
+        let fraction = linear - filter_time_s;
+        let derivative = square - fraction * filter_time_s;
+        if !(fraction > 0.0 && derivative > 0.0) {
             return None;
         }
         self.poles.pop();
@@ -170,9 +170,9 @@ impl Roots {
             false => drop(self.zero_pairs.remove(0)),
         }
         Some(ManualPart::ProportionalIntegralDerivative {
-            gain: self.gain * share,
-            integral_time_s: share,
-            derivative_time_s: derivative / share,
+            gain: self.gain * fraction,
+            integral_time_s: fraction,
+            derivative_time_s: derivative / fraction,
             filter_time_s,
         })
     }

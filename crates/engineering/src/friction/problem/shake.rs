@@ -34,13 +34,13 @@ pub(in crate::friction) struct Shake {
 /// Shapes that the coefficients of the forces multiply, for each recording: a search requests them
 /// repeatedly.
 #[derive(Debug, Default)]
-pub(in crate::friction) struct KeptShapes {
+pub(in crate::friction) struct ShapeCache {
     at_rows: BTreeMap<usize, MultisineShapes>,
     /// Shapes with the number of steps between two rows that was requested last.
     at_steps: BTreeMap<usize, (usize, MultisineShapes)>,
 }
 
-impl KeptShapes {
+impl ShapeCache {
     /// Shapes at the rows.
     pub(in crate::friction) fn at_rows(&mut self, shake: &ShakenRows, time_step: f64) -> &MultisineShapes {
         let of = || shake.force.shapes(shake.force.rows, time_step);
@@ -50,11 +50,11 @@ impl KeptShapes {
     /// Shapes at the integration steps of this mass.
     fn at_steps(&mut self, shake: &ShakenRows, shaken: PressedMass) -> &MultisineShapes {
         let of = || (shaken.substeps, shaken.shapes(&shake.force));
-        let kept = self.at_steps.entry(shake.recording).or_insert_with(of);
-        if kept.0 != shaken.substeps {
-            *kept = of();
+        let cache = self.at_steps.entry(shake.recording).or_insert_with(of);
+        if cache.0 != shaken.substeps {
+            *cache = of();
         }
-        &kept.1
+        &cache.1
     }
 }
 
@@ -108,14 +108,14 @@ impl FrictionProblem<'_> {
         (lugre, zero): (&LuGre, f64),
         (first, own): (usize, &[f64]),
         [force_scale, position_scale]: [f64; 2],
-        (kept, rows): (&mut KeptShapes, &mut ResidualRows),
+        (cache, rows): (&mut ShapeCache, &mut ResidualRows),
     ) -> Option<()> {
         let force = self.around.force;
         let recording = self.recordings.get(shake.recording)?;
         let found = self.shake_of(own)?;
         let count = shake.force.sizes.len();
         let sizes_from = first + BEGINNINGS;
-        let shapes = kept.at_rows(shake, recording.time_step);
+        let shapes = cache.at_rows(shake, recording.time_step);
         for (shapes, shown) in shapes.rows().zip(&recording.forces) {
             let modelled: f64 = shapes.iter().zip(&found.sizes).map(|(one, size)| one * size).sum();
             let row = rows.next((modelled - shown) / force_scale);
@@ -123,7 +123,7 @@ impl FrictionProblem<'_> {
                 *to = shape * force / force_scale;
             }
         }
-        let moved = found.moved((self.mass, recording.time_step), lugre, zero, (shake, kept));
+        let moved = found.moved((self.mass, recording.time_step), lugre, zero, (shake, cache));
         let start = recording.positions.first()? + found.begins;
         let slopes = moved.gradients.chunks_exact(FRICTION_COEFFICIENTS + 2 + count);
         for ((moved, gradient), shown) in moved.displacements.iter().zip(slopes).zip(&recording.positions) {
@@ -157,7 +157,7 @@ impl Shake {
         (mass, time_step): (f64, f64),
         lugre: &LuGre,
         zero: f64,
-        (shake, kept): (&ShakenRows, &mut KeptShapes),
+        (shake, cache): (&ShakenRows, &mut ShapeCache),
     ) -> SensitiveDisplacement {
         let mut acting = self.sizes.clone();
         acting.iter_mut().take(1).for_each(|mean| *mean -= zero);
@@ -165,6 +165,6 @@ impl Shake {
         let fastest = shake.force.frequencies.iter().copied().fold(ringing, f64::max);
         let substeps = (fastest * time_step / STEP_ANGLE).ceil().clamp(1.0, MOST_STEPS) as usize;
         let shaken = PressedMass { mass, time_step, substeps };
-        shaken.shaken(lugre, self.start, (&acting, kept.at_steps(shake, shaken)))
+        shaken.shaken(lugre, self.start, (&acting, cache.at_steps(shake, shaken)))
     }
 }

@@ -79,7 +79,7 @@ pub(super) enum RecordedTestError {
     GapsNotRead(String),
     /// Single rows far from their neighbours.
     #[error("`{0}` stands out of the rows before and after, and these rows are left out")]
-    StandsOut(String),
+    Outlier(String),
     /// Rows repeat others.
     #[error("rows that repeat the row before are left out")]
     Repeated,

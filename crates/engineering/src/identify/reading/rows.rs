@@ -59,13 +59,13 @@ pub(super) fn used(
         findings.push(table.warning(gaps, column, &message.to_string(), findings));
     }
     leave_out_repeated(table, columns, numbers, &mut is_used, findings);
-    leave_out_standing_out(table, columns, (numbers, plausible_v), &mut is_used, findings);
+    leave_out_outliers(table, columns, (numbers, plausible_v), &mut is_used, findings);
     is_used
 }
 
 /// Omits rows whose command deviates from those around it: a memory that follows it would have
 /// moved there and back.
-fn leave_out_standing_out(
+fn leave_out_outliers(
     table: &MeasuredTable,
     columns: &[(TestSignal, Column)],
     (numbers, plausible_v): (&ColumnNumbers, f64),
@@ -79,30 +79,30 @@ fn leave_out_standing_out(
     let used: Vec<usize> = (0..commands.len()).filter(|row| is_used.get(*row) == Some(&true)).collect();
     let values: Vec<f64> = used.iter().filter_map(|row| commands.get(*row).copied()).collect();
     let is_plausible = |place: &usize| values.get(*place).is_some_and(|value| value.abs() <= plausible_v);
-    let out = standing_out(&values).into_iter().filter(is_plausible);
+    let out = outliers(&values).into_iter().filter(is_plausible);
     let out: Vec<usize> = out.filter_map(|one| used.get(one).copied()).collect();
     if out.is_empty() {
         return;
     }
     out.iter().for_each(|row| is_used.get_mut(*row).into_iter().for_each(|used| *used = false));
-    let message = RecordedTestError::StandsOut(table.heading(column).to_string());
+    let message = RecordedTestError::Outlier(table.heading(column).to_string());
     findings.push(table.warning(&out, column, &message.to_string(), findings));
 }
 
 /// Indices of rows at which a slow command is further from the median of five than it moves in
 /// three rows, and than ten standard deviations of its noise; empty if there are too many to be
 /// outliers.
-fn standing_out(command: &[f64]) -> Vec<usize> {
+fn outliers(command: &[f64]) -> Vec<usize> {
     let steps = command.iter().zip(command.iter().skip(1)).map(|(before, now)| (now - before).abs());
     let greatest = command.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     let noise = ROUGH * roughness(command);
     let most = (STEPS * median(steps.collect())).max(noise).max(LEAST_OUTLIER * greatest);
     let around = |place: usize| command.get(place.saturating_sub(2)..(place + 3).min(command.len()));
-    let stands_out = |place: &usize| {
+    let is_outlier = |place: &usize| {
         let middle = median(around(*place).unwrap_or_default().to_vec());
         command.get(*place).is_some_and(|value| (value - middle).abs() > most)
     };
-    let found: Vec<usize> = (0..command.len()).filter(stands_out).collect();
+    let found: Vec<usize> = (0..command.len()).filter(is_outlier).collect();
     if found.len() as f64 > MOST_OUTLIERS * command.len() as f64 { Vec::new() } else { found }
 }
 

@@ -49,7 +49,7 @@ fn rate(points: &[(f64, f64)]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use phea_dynamics::portable;
-    use phea_dynamics::random::{share, stream};
+    use phea_dynamics::random::{uniform, stream};
 
     use super::turns;
 
@@ -64,7 +64,7 @@ mod tests {
     fn a_triangle_turns_at_its_corners() {
         let mut state = stream(3, 0);
         let even = |row: usize| 0.37 * row as f64;
-        let uneven: Vec<f64> = (0..1300).map(|row| even(row) + 0.2 * share(&mut state)).collect();
+        let uneven: Vec<f64> = (0..1300).map(|row| even(row) + 0.2 * uniform(&mut state)).collect();
         let with_gap = (0..1300).filter(|row| !(155..170).contains(row)).map(even).collect();
         for times in [(0..1300).map(even).collect(), uneven, with_gap] {
             let times: Vec<f64> = times;

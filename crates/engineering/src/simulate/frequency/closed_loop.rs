@@ -40,14 +40,14 @@ pub enum NoClosedLoop {
     Open,
 }
 
-/// Measures the response at these frequencies; ends before the first for which `goes_on` is false.
+/// Measures the response at these frequencies; ends before the first for which `continues` is false.
 /// The reason if there is no loop.
 pub(super) fn measured(
     setup: &Setup<'_>,
     rested: &RestedMachine,
     frequencies: &[f64],
     request: &FrequencyRequest,
-    goes_on: &mut dyn FnMut(usize) -> bool,
+    continues: &mut dyn FnMut(usize) -> bool,
 ) -> Result<Result<MachineResponse, NoClosedLoop>, SimulateError> {
     let Some(given) = &setup.controller else {
         return Ok(Err(NoClosedLoop::NoController));
@@ -63,9 +63,9 @@ pub(super) fn measured(
     let shared = LoopParts { rested, model: &model, reference_n, measured_n, amplitude };
     match &bench.control {
         Control::Continuous(closed) => {
-            shared.continuous((&bench.control, closed), frequencies, goes_on).map(Ok)
+            shared.continuous((&bench.control, closed), frequencies, continues).map(Ok)
         }
-        Control::Sampled(sampled) => shared.sampled(sampled, frequencies, goes_on).map(Ok),
+        Control::Sampled(sampled) => shared.sampled(sampled, frequencies, continues).map(Ok),
         Control::Open(_) => Ok(Err(NoClosedLoop::Open)),
     }
 }
@@ -134,7 +134,7 @@ impl LoopParts<'_> {
         &self,
         (control, closed): (&Control, &CommandedPlant<Sensed<Machine>>),
         frequencies: &[f64],
-        goes_on: &mut dyn FnMut(usize) -> bool,
+        continues: &mut dyn FnMut(usize) -> bool,
     ) -> Result<MachineResponse, SimulateError> {
         let rest = &self.rested.rest;
         let mut state = rest.state.clone();
@@ -148,7 +148,7 @@ impl LoopParts<'_> {
         let start = [state.as_slice(), &waves].concat();
         let mut points = Vec::new();
         for (index, frequency) in frequencies.iter().enumerate() {
-            if !goes_on(index) {
+            if !continues(index) {
                 break;
             }
             let orbit = orbit(*frequency);
@@ -161,7 +161,7 @@ impl LoopParts<'_> {
                 settings: self.settings(),
             };
             let sine = [*frequency, self.amplitude];
-            let found = respond(resting, None, sine, &mut || goes_on(index))?;
+            let found = respond(resting, None, sine, &mut || continues(index))?;
             points.push(point(sine, &found, self.model.at(*frequency)?, linearised));
         }
         let machine = curve(frequencies).into_iter().map(|frequency| Some(force(&orbit(frequency)?)));
@@ -175,7 +175,7 @@ impl LoopParts<'_> {
         &self,
         sampled: &Sampled,
         frequencies: &[f64],
-        goes_on: &mut dyn FnMut(usize) -> bool,
+        continues: &mut dyn FnMut(usize) -> bool,
     ) -> Result<MachineResponse, SimulateError> {
         let quiet = Sampled {
             noise: 0.0,
@@ -201,7 +201,7 @@ impl LoopParts<'_> {
         sampled.dedup();
         let mut points = Vec::new();
         for (index, frequency) in sampled.iter().enumerate() {
-            if !goes_on(index) {
+            if !continues(index) {
                 break;
             }
             let resting = RestingRig {
@@ -220,7 +220,7 @@ impl LoopParts<'_> {
             let waking = Waking::Holding { read, command_v: rest.command };
             let digital = Box::new(Digital::new(&quiet, &waking, &log));
             let sine = [*frequency, self.amplitude];
-            let found = respond(resting, Some(digital), sine, &mut || goes_on(index))?;
+            let found = respond(resting, Some(digital), sine, &mut || continues(index))?;
             points.push(point(sine, &found, self.model.at(*frequency)?, None));
         }
         self.response(points, &sampled, Vec::new())

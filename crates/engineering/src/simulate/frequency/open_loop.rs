@@ -9,19 +9,19 @@ use phea_machine::Control;
 use super::point::{RestingRig, finer, point, respond};
 use super::{FrequencyRequest, MachineResponse, RestedMachine, SimulateError, USUAL_AMPLITUDE, curve};
 
-/// Measures the response at these frequencies; ends before the first for which `goes_on` is false.
+/// Measures the response at these frequencies; ends before the first for which `continues` is false.
 pub(super) fn measured(
     rested: &RestedMachine,
     frequencies: &[f64],
     request: &FrequencyRequest,
-    goes_on: &mut dyn FnMut(usize) -> bool,
+    continues: &mut dyn FnMut(usize) -> bool,
 ) -> Result<MachineResponse, SimulateError> {
     let through = TransferFunction::gain_only(1.0);
     let held = CommandedPlant::on_hold(Sensed::new(rested.machine, &through)?, &through)?;
     let control = Control::Open(Box::new(held));
     let mut points = Vec::new();
     for (index, frequency) in frequencies.iter().enumerate() {
-        if !goes_on(index) {
+        if !continues(index) {
             break;
         }
         let orbit = orbit(&control, rested, *frequency);
@@ -45,7 +45,7 @@ pub(super) fn measured(
             ],
             settings: finer(rested.settings, amplitude / typical),
         };
-        let found = respond(resting, None, [*frequency, amplitude], &mut || goes_on(index))?;
+        let found = respond(resting, None, [*frequency, amplitude], &mut || continues(index))?;
         points.push(point([*frequency, amplitude], &found, plant, linearised));
     }
     let curve_rad_per_s = curve(frequencies);

@@ -50,7 +50,7 @@ pub struct ResponsePoint {
     /// Events during the run, which are outside the neighbourhood of the equilibrium.
     pub reached: Vec<&'static str>,
     /// Reason for the end of the simulation if it did not settle.
-    pub ended: Option<RunStatus>,
+    pub early_end: Option<RunStatus>,
 }
 
 impl ResponsePoint {
@@ -132,6 +132,6 @@ pub(super) fn point(
         periods: found.periods,
         steps: found.work.steps,
         reached: found.indicators.iter().map(name).collect(),
-        ended: found.ended.and_then(|status| Some(StoppedRun::of(status)?.status)),
+        early_end: found.early_end.and_then(|status| Some(StoppedRun::of(status)?.status)),
     }
 }

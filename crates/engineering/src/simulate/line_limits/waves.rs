@@ -214,8 +214,8 @@ impl WavesOfStep<'_> {
             for (place, quarter) in QUARTERS.into_iter().enumerate() {
                 let time_s = from_s + quarter * (until_s - from_s);
                 let [sum, difference] = self.travelling(part, [time_s, 0.5 * (from_s + until_s)]);
-                let share = (time_s - start_s) / (end_s - start_s);
-                let [at_valve, at_chamber] = self.flows.each_ref().map(|flow| flow.at(share));
+                let fraction = (time_s - start_s) / (end_s - start_s);
+                let [at_valve, at_chamber] = self.flows.each_ref().map(|flow| flow.at(fraction));
                 let lost = self.line.half_resistance * ((1.0 - part) * at_valve + part * at_chamber);
                 (values[0][place], values[1][place]) = (sum + lost, difference);
             }

@@ -47,28 +47,28 @@ impl KnottedForce {
     }
 
     /// Knot before each row, and the weight of the knot after it.
-    pub fn shares(&self) -> Vec<(usize, f64)> {
-        let mut shares = Vec::with_capacity(self.rows());
+    pub fn fractions(&self) -> Vec<(usize, f64)> {
+        let mut fractions = Vec::with_capacity(self.rows());
         for (index, ends) in self.knots.windows(2).enumerate() {
             let [from, to] = [0, 1].map(|end| ends.get(end).copied().unwrap_or(0));
             let length = to.saturating_sub(from).max(1) as f64;
-            shares.extend((from..to).map(|row| (index, (row - from) as f64 / length)));
+            fractions.extend((from..to).map(|row| (index, (row - from) as f64 / length)));
         }
         if self.knots.len() > 1 {
-            shares.push((self.knots.len() - 2, 1.0));
+            fractions.push((self.knots.len() - 2, 1.0));
         }
-        shares
+        fractions
     }
 
     /// Force at each row, and its derivatives with respect to the forces at the knots.
     fn along(&self) -> (Vec<f64>, Vec<f64>) {
         let (mut forces, mut slopes) = (Vec::new(), Vec::new());
-        for (knot, share) in self.shares() {
+        for (knot, fraction) in self.fractions() {
             let at = |index: usize| self.forces.get(index).copied().unwrap_or(0.0);
-            forces.push(at(knot) * (1.0 - share) + at(knot + 1) * share);
+            forces.push(at(knot) * (1.0 - fraction) + at(knot + 1) * fraction);
             let from = slopes.len();
             slopes.resize(from + self.forces.len(), 0.0);
-            for (slope, weight) in slopes.iter_mut().skip(from + knot).zip([1.0 - share, share]) {
+            for (slope, weight) in slopes.iter_mut().skip(from + knot).zip([1.0 - fraction, fraction]) {
                 *slope = weight;
             }
         }

@@ -25,7 +25,7 @@ impl Segments {
         }
         let sections = self.count as f64;
         let along = self.impedance(s).scaled(1.0 / sections);
-        let across = s.scaled(self.share()) + creeping.scaled(1.0 / sections);
+        let across = s.scaled(self.fraction()) + creeping.scaled(1.0 / sections);
         let product = along * across;
         let one = A::from(1.0);
         let x = one + product.scaled(0.5);
@@ -45,7 +45,7 @@ impl Segments {
             admittance: across * (one + product.scaled(0.25)) * other,
             flow: own,
         };
-        whole.across(s.scaled(-0.5 * self.share()))
+        whole.across(s.scaled(-0.5 * self.fraction()))
     }
 
     /// Inertance and friction of the whole length, Pa s/m3.

@@ -53,7 +53,7 @@ pub(super) struct Mixture<T> {
     volume_fraction: T,
     polytropic_exponent: T,
     /// Factor s.
-    share: T,
+    fraction: T,
     /// Wall compliance k, 1/Pa.
     wall: T,
 }
@@ -87,7 +87,7 @@ impl<T: Scalar> Volume<T> {
             bulk_modulus: chambers.bulk_modulus,
             volume_fraction: chambers.volume_fraction,
             polytropic_exponent: chambers.polytropic_exponent,
-            share: side.fluid_slope / area,
+            fraction: side.fluid_slope / area,
             wall,
         });
         Volume {
@@ -169,7 +169,7 @@ impl<T: Scalar> Mixture<T> {
         let liquid = (T::from(1.0) - self.volume_fraction) * (-pressure / self.bulk_modulus).exp();
         let squeeze = (atmosphere / (pressure + atmosphere)).ln() / self.polytropic_exponent;
         let volume = liquid + self.volume_fraction * squeeze.exp();
-        (self.share * volume.ln() - self.wall * pressure).exp()
+        (self.fraction * volume.ln() - self.wall * pressure).exp()
     }
 }
 
@@ -201,7 +201,7 @@ mod tests {
             bulk_modulus: MODULUS,
             volume_fraction,
             polytropic_exponent,
-            share: 1.0,
+            fraction: 1.0,
             wall,
         })
     }

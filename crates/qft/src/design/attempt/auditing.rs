@@ -6,11 +6,11 @@ use phea_dynamics::watch::{Watch, part};
 use super::{AUDITING, Attempt, AttemptEnding, LoopDesignError, WHOLE};
 use crate::audit::audit_with;
 use crate::design::counterexample::{
-    Counterexample, NewMargins, audited_margin_db, counterexamples, of_beside, too_little_delay,
+    Counterexample, NewMargins, audited_margin_db, counterexamples, of_additional, too_little_delay,
     unstable_plant, worst_over_rate_db,
 };
 use crate::family::{Family, UncertainFamily};
-use crate::kept_plants::KeptPlants;
+use crate::plant_cache::PlantCache;
 use crate::loop_shaping::{Aim, Judgement};
 use crate::verification::{Audit, AuditEffort, AuditProblem, Verdict};
 
@@ -22,14 +22,14 @@ const CLEARLY_DB: f64 = 0.05;
 
 impl Attempt {
     /// The audits of the additional plants, once the attempt has ended with an audit.
-    pub(in crate::design) fn beside(&self) -> &[Audit] {
-        &self.beside
+    pub(in crate::design) fn additional_audits(&self) -> &[Audit] {
+        &self.additional_audits
     }
 
     fn audit_of(
         &self,
         family: &Family,
-        (kept, effort): (&KeptPlants, AuditEffort),
+        (cache, effort): (&PlantCache, AuditEffort),
         watch: Watch<'_>,
     ) -> Result<(Audit, bool), LoopDesignError> {
         let problem = AuditProblem {
@@ -39,29 +39,29 @@ impl Attempt {
             tracking: self.shaping.tracking(),
             tolerance_db: self.options.tolerance_db,
         };
-        Ok(audit_with(&problem, (kept, effort), &mut part(watch, AUDITING, WHOLE))?)
+        Ok(audit_with(&problem, (cache, effort), &mut part(watch, AUDITING, WHOLE))?)
     }
 
     /// The audit of the family, and true if it is complete.
     fn audit_of_family(
         &self,
-        kept: &KeptPlants,
+        cache: &PlantCache,
         effort: AuditEffort,
         watch: Watch<'_>,
     ) -> Result<(Audit, bool), LoopDesignError> {
-        self.audit_of(&self.shaping.samples().problem().family, (kept, effort), watch)
+        self.audit_of(&self.shaping.samples().problem().family, (cache, effort), watch)
     }
 
     /// The audit of the family that the attempt ends with; `None` if an audit that stops at
     /// counterexamples found some, which were added to the samples.
     fn audit_or_learn(
         &mut self,
-        kept: &KeptPlants,
+        cache: &PlantCache,
         watch: Watch<'_>,
     ) -> Result<Option<Audit>, LoopDesignError> {
         let judgement = self.judgement();
         let until = AuditEffort::UntilBelow(self.clearly_new_db(&judgement));
-        let (audit, is_complete) = self.audit_of_family(kept, until, watch)?;
+        let (audit, is_complete) = self.audit_of_family(cache, until, watch)?;
         if is_complete {
             return Ok(Some(audit));
         }
@@ -70,15 +70,15 @@ impl Attempt {
         if self.takes_in(&examples)? {
             return Ok(None);
         }
-        Ok(Some(self.audit_of_family(kept, AuditEffort::Complete, watch)?.0))
+        Ok(Some(self.audit_of_family(cache, AuditEffort::Complete, watch)?.0))
     }
 
     /// The audits of the additional plants, one by one.
     fn audit_of_next(&self, watch: Watch<'_>) -> Result<Option<Audit>, LoopDesignError> {
-        let beside = &self.shaping.samples().problem().beside;
-        let Some(plant) = beside.get(self.beside.len()) else { return Ok(None) };
+        let plants = &self.shaping.samples().problem().additional_plants;
+        let Some(plant) = plants.get(self.additional_audits.len()) else { return Ok(None) };
         let alone = Family::Uncertain(UncertainFamily::of_nominal(plant.clone()));
-        let (audit, _) = self.audit_of(&alone, (&KeptPlants::default(), AuditEffort::Complete), watch)?;
+        let (audit, _) = self.audit_of(&alone, (&PlantCache::default(), AuditEffort::Complete), watch)?;
         Ok(Some(audit))
     }
 
@@ -86,25 +86,25 @@ impl Attempt {
     /// added to the samples.
     pub(super) fn audited(
         &mut self,
-        kept: &KeptPlants,
+        cache: &PlantCache,
         watch: Watch<'_>,
     ) -> Result<Option<AttemptEnding>, LoopDesignError> {
-        self.beside.clear();
+        self.additional_audits.clear();
         while let Some(audit) = self.audit_of_next(watch)? {
             let judgement = self.judgement();
-            let examples = of_beside(self.beside.len(), self.examples(&audit, &judgement));
+            let examples = of_additional(self.additional_audits.len(), self.examples(&audit, &judgement));
             if !examples.is_empty() {
                 self.note(audited_margin_db(&audit), &judgement);
                 if self.takes_in(&examples)? {
                     return Ok(None);
                 }
             }
-            self.beside.push(audit);
+            self.additional_audits.push(audit);
         }
-        let Some(audit) = self.audit_or_learn(kept, watch)?.map(Box::new) else { return Ok(None) };
+        let Some(audit) = self.audit_or_learn(cache, watch)?.map(Box::new) else { return Ok(None) };
         let judgement = self.judgement();
         self.note(audited_margin_db(&audit), &judgement);
-        let all = || self.beside.iter().chain([&*audit]);
+        let all = || self.additional_audits.iter().chain([&*audit]);
         let problem = self.shaping.samples().problem();
         let is_met =
             |one: &Audit| one.verdict == Verdict::Met && too_little_delay(one, problem, 0.0).is_empty();
@@ -139,14 +139,14 @@ impl Attempt {
     /// The audit of an unfinished attempt, or of one that ended without a stable loop.
     pub(in crate::design) fn audited_as_it_is(
         &mut self,
-        kept: &KeptPlants,
+        cache: &PlantCache,
         watch: Watch<'_>,
     ) -> Result<Audit, LoopDesignError> {
-        self.beside.clear();
+        self.additional_audits.clear();
         while let Some(audit) = self.audit_of_next(watch)? {
-            self.beside.push(audit);
+            self.additional_audits.push(audit);
         }
-        Ok(self.audit_of_family(kept, AuditEffort::Complete, watch)?.0)
+        Ok(self.audit_of_family(cache, AuditEffort::Complete, watch)?.0)
     }
 
     /// Counterexamples of an audit for the search.

@@ -3,7 +3,7 @@
 use phea_dynamics::watch::Watch;
 
 use super::{Attempt, AttemptEnding, Leave, LoopDesignError, best_of};
-use crate::kept_plants::KeptPlants;
+use crate::plant_cache::PlantCache;
 use crate::loop_shaping::SearchProblem;
 
 impl Attempt {
@@ -12,17 +12,17 @@ impl Attempt {
     /// these plants.
     pub(in crate::design) fn reshape(
         &mut self,
-        kept: &KeptPlants,
+        cache: &PlantCache,
         watch: Watch<'_>,
     ) -> Result<bool, LoopDesignError> {
-        match self.until_samples_agree(kept, watch) {
+        match self.until_samples_agree(cache, watch) {
             Ok(()) | Err(Leave::Ended(AttemptEnding::Missed { .. })) => Ok(true),
             Err(Leave::Ended(_)) => Ok(false),
             Err(Leave::Failed(error)) => Err(error),
         }
     }
 
-    fn until_samples_agree(&mut self, kept: &KeptPlants, watch: Watch<'_>) -> Result<(), Leave> {
+    fn until_samples_agree(&mut self, cache: &PlantCache, watch: Watch<'_>) -> Result<(), Leave> {
         let given = best_of(&mut self.shaping, std::mem::take(&mut self.given));
         match given.first().cloned() {
             Some(first) if self.shaping.judge(&first).stable => {
@@ -34,7 +34,7 @@ impl Attempt {
         }
         loop {
             self.draw_in(watch)?;
-            if !self.learns_between_samples(kept, watch)? {
+            if !self.learns_between_samples(cache, watch)? {
                 return Ok(());
             }
             self.shape_again(watch)?;

@@ -5,7 +5,7 @@ use phea_dynamics::portable;
 use phea_dynamics::watch::Watch;
 
 use super::{Attempt, AttemptEnding, Leave, LoopDesignError, PrefilterChoice};
-use crate::kept_plants::KeptPlants;
+use crate::plant_cache::PlantCache;
 
 /// Least order of a prefilter: with one pole a step of the reference reaches the controller without
 /// a jump.
@@ -23,7 +23,7 @@ impl Attempt {
     pub(in crate::design) fn with_shorter_prefilter(
         self,
         ending: AttemptEnding,
-        kept: &KeptPlants,
+        cache: &PlantCache,
         watch: Watch<'_>,
     ) -> Result<(Attempt, AttemptEnding), LoopDesignError> {
         let earned_db = self.options.controller.earned_per_pole_db();
@@ -35,7 +35,7 @@ impl Attempt {
         }
         let mut shorter = self.clone();
         shorter.options.prefilter = PrefilterChoice::Grow { maximum_order: LEAST_ORDER };
-        let found = match shorter.refitted(kept, watch) {
+        let found = match shorter.refitted(cache, watch) {
             Ok(found) | Err(Leave::Ended(found)) => found,
             Err(Leave::Failed(LoopDesignError::Stopped(_))) => return Ok((self, ending)),
             Err(Leave::Failed(error)) => return Err(error),
@@ -61,12 +61,12 @@ impl Attempt {
 
     /// A prefilter fitted to the present controller, followed by descents with both until search
     /// and audit agree.
-    fn refitted(&mut self, kept: &KeptPlants, watch: Watch<'_>) -> Result<AttemptEnding, Leave> {
+    fn refitted(&mut self, cache: &PlantCache, watch: Watch<'_>) -> Result<AttemptEnding, Leave> {
         self.x.truncate(self.structure.dimension());
         self.shape_with(None)?;
         if self.fits_prefilter(watch)? {
             self.descend(false, watch)?;
         }
-        self.audited_until_agreed(kept, watch)
+        self.audited_until_agreed(cache, watch)
     }
 }

@@ -10,7 +10,7 @@ use crate::specification::{ClosedLoop, Requirement, Specification};
 
 /// An upper limit, and the specification that sets it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Share {
+pub(super) struct RoomFraction {
     pub(super) limit: f64,
     pub(super) specification: Option<usize>,
 }
@@ -18,16 +18,16 @@ pub(super) struct Share {
 /// Upper limits of |S| and |T| of one plant at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ceiling {
-    pub(super) sensitivity: Share,
-    pub(super) complementary: Share,
+    pub(super) sensitivity: RoomFraction,
+    pub(super) complementary: RoomFraction,
 }
 
-impl Share {
-    const FREE: Share = Share { limit: f64::INFINITY, specification: None };
+impl RoomFraction {
+    const FREE: RoomFraction = RoomFraction { limit: f64::INFINITY, specification: None };
 
     fn lowered(&mut self, limit: f64, specification: Option<usize>) {
         if limit < self.limit {
-            *self = Share { limit, specification };
+            *self = RoomFraction { limit, specification };
         }
     }
 }
@@ -93,7 +93,7 @@ impl<'a> Ceilings<'a> {
     /// |S| <= 1 + |T|,  |T| <= 1 + |S|                                     since S + T = 1
     /// ```
     fn at(&self, node: &FrequencyDemand, candidate: usize, factor: f64) -> Ceiling {
-        let mut ceiling = Ceiling { sensitivity: Share::FREE, complementary: Share::FREE };
+        let mut ceiling = Ceiling { sensitivity: RoomFraction::FREE, complementary: RoomFraction::FREE };
         let own = node.responses.get(candidate).and_then(Option::as_ref);
         let size = portable::magnitude;
         for &(index, limit) in &node.demands {

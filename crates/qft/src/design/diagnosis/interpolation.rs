@@ -15,7 +15,7 @@ use phea_dynamics::portable;
 use super::candidate::PlantWithinLoop;
 use super::ceiling::{Ceiling, Ceilings};
 use super::finding::{Constraint, ConstraintPlace, Finding};
-use super::plane::{Plane, share};
+use super::plane::{Plane, fraction};
 
 /// Least deficit that is not left to the search, 0.1 dB, since the discretisation error of the
 /// cells can be as large.
@@ -87,21 +87,21 @@ fn curve(ceilings: impl Iterator<Item = Ceiling>) -> LimitCurve {
 
 fn left(
     curve: &LimitCurve,
-    shares: &[f64],
+    fractions: &[f64],
     candidate: &PlantWithinLoop,
     plane: Plane,
     at: Complex64,
 ) -> Left {
     let (mut sensitivity, mut complementary, mut free) = (0.0, 0.0, 0.0);
-    for ([s, t], &share) in curve.iter().zip(shares) {
-        if share <= 0.0 {
+    for ([s, t], &fraction) in curve.iter().zip(fractions) {
+        if fraction <= 0.0 {
             continue;
         }
         if *s < f64::INFINITY && *t < f64::INFINITY {
-            sensitivity += share * s;
-            complementary += share * t;
+            sensitivity += fraction * s;
+            complementary += fraction * t;
         } else {
-            free += share;
+            free += fraction;
         }
     }
     Left {
@@ -115,18 +115,18 @@ fn left(
 /// unavoidable peak.
 pub(super) fn findings(ceilings: &Ceilings, candidates: &[PlantWithinLoop]) -> Vec<Finding> {
     let plane = ceilings.boundary.plane;
-    let shares =
-        |at: Complex64| -> Vec<f64> { ceilings.boundary.cells.iter().map(|cell| share(at, *cell)).collect() };
+    let fractions =
+        |at: Complex64| -> Vec<f64> { ceilings.boundary.cells.iter().map(|cell| fraction(at, *cell)).collect() };
     let points: Vec<(Spot, Vec<f64>)> = real_points(ceilings)
         .into_iter()
-        .map(|at| (Spot { kind: LimitKind::Point, at }, shares(at)))
+        .map(|at| (Spot { kind: LimitKind::Point, at }, fractions(at)))
         .collect();
     let mut deficits: Vec<Deficit> = Vec::new();
     let mut peaks: Vec<Deficit> = Vec::new();
     for (index, candidate) in candidates.iter().enumerate() {
         let curve = curve(ceilings.of(index, 1.0));
-        let mut look = |spot: Spot, shares: &[f64]| {
-            let left = left(&curve, shares, candidate, plane, spot.at);
+        let mut look = |spot: Spot, fractions: &[f64]| {
+            let left = left(&curve, fractions, candidate, plane, spot.at);
             let lack = -portable::ln(left.sum());
             if left.free <= NOTHING {
                 deficits.push(Deficit { spot, candidate: index, left, lack });
@@ -134,10 +134,10 @@ pub(super) fn findings(ceilings: &Ceilings, candidates: &[PlantWithinLoop]) -> V
                 peaks.push(Deficit { spot, candidate: index, left, lack: lack / left.free });
             }
         };
-        points.iter().for_each(|(spot, shares)| look(*spot, shares));
+        points.iter().for_each(|(spot, fractions)| look(*spot, fractions));
         for (kind, roots) in [(LimitKind::Pole, &candidate.poles), (LimitKind::Zero, &candidate.zeros)] {
             for &at in roots.iter().filter(|root| root.im >= 0.0) {
-                look(Spot { kind, at }, &shares(at));
+                look(Spot { kind, at }, &fractions(at));
             }
         }
     }
@@ -154,7 +154,7 @@ fn worst<'a>(deficits: impl Iterator<Item = &'a Deficit>) -> Option<&'a Deficit>
 
 fn impossible(ceilings: &Ceilings, candidates: &[PlantWithinLoop], deficits: &[Deficit]) -> Vec<Finding> {
     let busy = [0.0, ceilings.boundary.highest];
-    let tolerance = |deficit: &Deficit| ROUNDING + TOLERANCE * share(deficit.spot.at, busy);
+    let tolerance = |deficit: &Deficit| ROUNDING + TOLERANCE * fraction(deficit.spot.at, busy);
     let of_kind = |kind: LimitKind| {
         let lacking = deficits.iter().filter(|deficit| deficit.lack > tolerance(deficit));
         worst(lacking.filter(|deficit| deficit.spot.kind == kind))
@@ -189,11 +189,11 @@ fn forced(ceilings: &Ceilings, candidates: &[PlantWithinLoop], peaks: &[Deficit]
 /// The least relaxation under which |S| + |T| reaches 1 at the spot, by bisection.
 fn relaxation_db(ceilings: &Ceilings, candidate: &PlantWithinLoop, deficit: &Deficit) -> f64 {
     let Deficit { spot, candidate: index, .. } = *deficit;
-    let shares: Vec<f64> = ceilings.boundary.cells.iter().map(|cell| share(spot.at, *cell)).collect();
+    let fractions: Vec<f64> = ceilings.boundary.cells.iter().map(|cell| fraction(spot.at, *cell)).collect();
     let enough = |relaxation_db: f64| {
         let factor = portable::pow(10.0, relaxation_db / 20.0);
         let curve = curve(ceilings.of(index, factor));
-        left(&curve, &shares, candidate, ceilings.boundary.plane, spot.at).sum() >= 1.0
+        left(&curve, &fractions, candidate, ceilings.boundary.plane, spot.at).sum() >= 1.0
     };
     least_relaxation_db(RELAXATION_MAXIMUM_DB, enough)
 }
@@ -225,19 +225,19 @@ fn constraint(ceilings: &Ceilings, candidates: &[PlantWithinLoop], deficit: &Def
         LimitKind::Zero => ConstraintPlace::RightHalfPlaneZero(boundary.plane.root(spot.at)),
         LimitKind::Point => ConstraintPlace::Point(boundary.plane.root(spot.at).re),
     };
-    let mut shares: Vec<(usize, f64)> = Vec::new();
+    let mut fractions: Vec<(usize, f64)> = Vec::new();
     let mut crossover = None;
     let firsts = ceilings.of(index, 1.0).step_by(2);
     for (cell, ceiling) in boundary.cells.iter().zip(firsts) {
-        let share = share(spot.at, *cell);
+        let fraction = fraction(spot.at, *cell);
         let [sensitivity, complementary] = [spot.kind != LimitKind::Pole, spot.kind != LimitKind::Zero];
         let named = [(sensitivity, ceiling.sensitivity), (complementary, ceiling.complementary)];
         for specification in
             named.into_iter().filter_map(|(counts, one)| one.specification.filter(|_| counts))
         {
-            match shares.iter_mut().find(|(known, _)| *known == specification) {
-                Some((_, sum)) => *sum += share,
-                None => shares.push((specification, share)),
+            match fractions.iter_mut().find(|(known, _)| *known == specification) {
+                Some((_, sum)) => *sum += fraction,
+                None => fractions.push((specification, fraction)),
             }
         }
         let crossed = match spot.kind {
@@ -249,9 +249,9 @@ fn constraint(ceilings: &Ceilings, candidates: &[PlantWithinLoop], deficit: &Def
             crossover = Some(boundary.plane.frequency(cell[1]));
         }
     }
-    let mut specifications: Vec<usize> = shares
+    let mut specifications: Vec<usize> = fractions
         .into_iter()
-        .filter(|(_, share)| *share >= NAMED)
+        .filter(|(_, fraction)| *fraction >= NAMED)
         .map(|(specification, _)| specification)
         .collect();
     specifications.sort_unstable();

@@ -70,7 +70,7 @@ impl Plane {
 /// ```text
 /// (1/pi) integral of Re s0/|s0 - j w|^2 dw = (1/pi) [atan((w - Im s0)/Re s0)]        1 for the whole axis
 /// ```
-pub(super) fn share(point: Complex64, [from, to]: [f64; 2]) -> f64 {
+pub(super) fn fraction(point: Complex64, [from, to]: [f64; 2]) -> f64 {
     let angle = |place: f64| portable::atan((place - point.im) / point.re);
     let mirrored = |place: f64| portable::atan((place + point.im) / point.re);
     (angle(to) - angle(from) + mirrored(to) - mirrored(from)) / PI
@@ -171,7 +171,7 @@ mod tests {
                 .cells
                 .iter()
                 .zip(boundary.frequencies.chunks_exact(2))
-                .map(|(cell, nodes)| share(point, *cell) * (value(nodes[0]) + value(nodes[1])) / 2.0)
+                .map(|(cell, nodes)| fraction(point, *cell) * (value(nodes[0]) + value(nodes[1])) / 2.0)
                 .sum();
             let truth = portable::ln(portable::magnitude(function(point)));
             assert!((mean - truth).abs() < 1e-3, "{mean} {truth}");

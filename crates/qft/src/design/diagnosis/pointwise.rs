@@ -53,8 +53,8 @@ pub(super) fn sum_below_one(ceilings: &Ceilings, candidates: &[PlantWithinLoop])
         ceilings.at_node(place, candidate, factor).is_some_and(|ceiling| sum(ceiling) >= 1.0)
     };
     let ceiling = ceilings.at_node(place, candidate, 1.0)?;
-    let limit = |share: super::ceiling::Share| {
-        Some(SharedLimit { specification: share.specification?, limit: share.limit })
+    let limit = |fraction: super::ceiling::RoomFraction| {
+        Some(SharedLimit { specification: fraction.specification?, limit: fraction.limit })
     };
     Some(Finding::SumBelowOne {
         frequency_rad_per_s: *ceilings.boundary.frequencies.get(place)?,

@@ -57,10 +57,10 @@ pub fn rounded(
             TimeDomain::Discrete { .. } => function,
         };
         let exact = Section::in_series(&sampled)?;
-        let kept =
+        let cache =
             exact.iter().map(|section| rounded_section(section, format)).collect::<Result<Vec<_>, _>>()?;
-        let function = Compensator::new(vec![Element::General(in_series(&kept, sample_time_s)?)]);
-        Ok::<_, QuantizationError>((function, kept))
+        let function = Compensator::new(vec![Element::General(in_series(&cache, sample_time_s)?)]);
+        Ok::<_, QuantizationError>((function, cache))
     };
     let (feedback_function, feedback) = sections(&controller.feedback)?;
     let (prefilter_function, prefilter) = match controller.timing.continuous_prefilter {
@@ -86,10 +86,10 @@ fn rounded_section(section: &Section, format: CoefficientFormat) -> Result<Secti
     }
     // one of the two differences is exact in every format that represents both ones
     let [first, second] = plain;
-    let kept = [[first, -1.0 - first], [-1.0 - second, second]]
+    let cache = [[first, -1.0 - first], [-1.0 - second, second]]
         .into_iter()
         .find(|candidate| candidate.iter().all(|&value| format.rounded(value) == Ok(value)));
-    Ok(Section { numerator, denominator: kept.unwrap_or(plain) })
+    Ok(Section { numerator, denominator: cache.unwrap_or(plain) })
 }
 
 fn in_series(sections: &[Section], sample_time_s: f64) -> Result<TransferFunction, QuantizationError> {

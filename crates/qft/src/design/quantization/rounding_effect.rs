@@ -184,12 +184,12 @@ fn at_once(feedback: &TransferFunction) -> f64 {
 
 /// Updates the larger peak and the larger rms.
 fn take(worst: &mut Option<RoundingEffect>, found: RoundingEffect) {
-    let kept = worst.get_or_insert(found);
-    if found.peak > kept.peak {
-        (kept.peak, kept.peak_plant) = (found.peak, found.peak_plant);
+    let cache = worst.get_or_insert(found);
+    if found.peak > cache.peak {
+        (cache.peak, cache.peak_plant) = (found.peak, found.peak_plant);
     }
-    if found.rms > kept.rms {
-        (kept.rms, kept.rms_plant) = (found.rms, found.rms_plant);
+    if found.rms > cache.rms {
+        (cache.rms, cache.rms_plant) = (found.rms, found.rms_plant);
     }
 }
 

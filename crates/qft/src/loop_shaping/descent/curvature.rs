@@ -46,9 +46,9 @@ impl Curvature {
         let expected = self.times(step);
         let before = dot(step, &expected);
         let seen = dot(step, change);
-        let share = if seen >= DAMPING * before { 1.0 } else { (1.0 - DAMPING) * before / (before - seen) };
+        let fraction = if seen >= DAMPING * before { 1.0 } else { (1.0 - DAMPING) * before / (before - seen) };
         let mixed: Vec<f64> =
-            change.iter().zip(&expected).map(|(y, b)| share * y + (1.0 - share) * b).collect();
+            change.iter().zip(&expected).map(|(y, b)| fraction * y + (1.0 - fraction) * b).collect();
         let along = dot(step, &mixed);
         let entry = |row: usize, column: usize, old: f64| {
             old - expected[row] * expected[column] / before + mixed[row] * mixed[column] / along

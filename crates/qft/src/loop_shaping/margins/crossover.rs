@@ -125,9 +125,9 @@ struct Crossover {
     /// Difference of ln w between the upper and the lower column.
     width: f64,
     /// Position between the columns, from 0 to 1.
-    share: f64,
+    fraction: f64,
     /// Derivative of this position with respect to ln|L| at either column.
-    share_slopes: [f64; 2],
+    fraction_slopes: [f64; 2],
 }
 
 /// A quantity in dB that depends on G at some columns.
@@ -280,7 +280,7 @@ pub(crate) fn bandwidth(columns: &[FrequencyColumn], feedback: &[Complex64]) -> 
     });
     let Some((crossover, points)) = highest else { return Some(outside(first)) };
     let scale = DECIBELS_PER_NEPER * crossover.width;
-    let slopes = crossover.share_slopes.map(|slope| Complex64::new(scale * slope, 0.0));
+    let slopes = crossover.fraction_slopes.map(|slope| Complex64::new(scale * slope, 0.0));
     Some(ColumnDependence {
         value_db: DECIBELS_PER_NEPER * crossover.logarithm,
         terms: points.iter().map(|point| point.column).zip(slopes).collect(),
@@ -327,29 +327,29 @@ fn crossover(lower: &LoopValue, upper: &LoopValue) -> Option<Crossover> {
     }
     let (a, b) = (lower.size(), upper.size());
     let width = upper.logarithm_of_frequency() - lower.logarithm_of_frequency();
-    let share = a / (a - b);
+    let fraction = a / (a - b);
     Some(Crossover {
-        logarithm: lower.logarithm_of_frequency() + share * width,
+        logarithm: lower.logarithm_of_frequency() + fraction * width,
         width,
-        share,
-        share_slopes: [-b, a].map(|size| size / ((a - b) * (a - b))),
+        fraction,
+        fraction_slopes: [-b, a].map(|size| size / ((a - b) * (a - b))),
     })
 }
 
 /// The margin to a delay at a crossover.
 fn delay_at(crossover: Crossover, [lower, upper]: [&LoopValue; 2], delay_s: f64) -> ColumnDependence {
     let turn = portable::argument(upper.open / lower.open);
-    let angle = positive(lower.angle() + crossover.share * turn);
+    let angle = positive(lower.angle() + crossover.fraction * turn);
     let margin = portable::ln(angle) - crossover.logarithm - portable::ln(delay_s);
-    let by_share = turn / angle - crossover.width;
-    let shares = [1.0 - crossover.share, crossover.share];
-    let term = |point: &LoopValue, share_slope: f64, share: f64| {
-        (point.column, DECIBELS_PER_NEPER * Complex64::new(by_share * share_slope, -share / angle))
+    let by_fraction = turn / angle - crossover.width;
+    let fractions = [1.0 - crossover.fraction, crossover.fraction];
+    let term = |point: &LoopValue, fraction_slope: f64, fraction: f64| {
+        (point.column, DECIBELS_PER_NEPER * Complex64::new(by_fraction * fraction_slope, -fraction / angle))
     };
-    let [below, above] = crossover.share_slopes;
+    let [below, above] = crossover.fraction_slopes;
     ColumnDependence {
         value_db: DECIBELS_PER_NEPER * margin,
-        terms: vec![term(lower, below, shares[0]), term(upper, above, shares[1])],
+        terms: vec![term(lower, below, fractions[0]), term(upper, above, fractions[1])],
     }
 }
 

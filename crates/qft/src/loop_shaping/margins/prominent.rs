@@ -142,7 +142,7 @@ pub(crate) fn prominent(worst: MarginCandidate, mut others: Vec<MarginCandidate>
 
 #[cfg(test)]
 mod tests {
-    use phea_dynamics::random::{share, stream};
+    use phea_dynamics::random::{uniform, stream};
 
     use super::*;
 
@@ -160,8 +160,8 @@ mod tests {
         let mut several = 0;
         for case in 0..4000 {
             let count = case % 40;
-            let [spread, apart] = [6.0, 4.0].map(|most| most * share(&mut state));
-            let mut square = || portable::exp(spread * (share(&mut state) - 0.5));
+            let [spread, apart] = [6.0, 4.0].map(|most| most * uniform(&mut state));
+            let mut square = || portable::exp(spread * (uniform(&mut state) - 0.5));
             let mut squares: Vec<f64> = (0..count).map(|_| square()).collect();
             if case % 3 == 0 && count > 3 {
                 (squares[1], squares[3]) = (squares[0], squares[2] * (1.0 + f64::EPSILON));
@@ -170,7 +170,7 @@ mod tests {
                 squares[5] = f64::NAN;
             }
             let mut coefficient =
-                || Complex64::new(apart * (share(&mut state) - 0.5), apart * (share(&mut state) - 0.5));
+                || Complex64::new(apart * (uniform(&mut state) - 0.5), apart * (uniform(&mut state) - 0.5));
             let coefficients: Vec<Complex64> = (0..count).map(|_| coefficient()).collect();
             let places: Vec<usize> = (0..count).collect();
             for is_from_above in [true, false] {

@@ -124,8 +124,8 @@ impl RoundedPolynomial {
 
 /// Replaces the upper row by the row that follows the lower one.
 fn eliminate(upper: &mut Vec<(f64, f64)>, lower: &[(f64, f64)], ratio: f64, ratio_error: f64) {
-    let kept = upper.len() - 1;
-    for index in 0..kept {
+    let cache = upper.len() - 1;
+    for index in 0..cache {
         let (above, above_error) = upper[index + 1];
         let (beside, beside_error) = lower.get(index + 1).copied().unwrap_or((0.0, 0.0));
         let value = above - ratio * beside;
@@ -133,7 +133,7 @@ fn eliminate(upper: &mut Vec<(f64, f64)>, lower: &[(f64, f64)], ratio: f64, rati
         let inherited = ratio.abs() * beside_error + ratio_error * (beside.abs() + beside_error);
         upper[index] = (value, above_error + inherited + rounding);
     }
-    upper.truncate(kept);
+    upper.truncate(cache);
 }
 
 /// The sum of c_i (s + a)^(n-i) (1 + b s)^i by Horner's rule.

@@ -189,9 +189,9 @@ fn thin(frequencies: &mut Vec<f64>) {
     loop {
         let mut last = 0.0;
         frequencies.retain(|&frequency| {
-            let kept = frequency > last * (1.0 + apart);
-            last = if kept { frequency } else { last };
-            kept
+            let cache = frequency > last * (1.0 + apart);
+            last = if cache { frequency } else { last };
+            cache
         });
         if frequencies.len() <= PEAKS_MAXIMUM {
             return;

@@ -22,7 +22,7 @@ const ROUNDING_DB: f64 = 1e-6;
 
 /// The worst of the samples at one G.
 #[derive(Clone, Debug)]
-pub(super) struct Looked {
+pub(super) struct LeastMargins {
     /// Excess for each column and requirement.
     excesses: Vec<ColumnExcess>,
     delays: DelayMargins,
@@ -48,7 +48,7 @@ impl ColumnExcess {
 }
 
 impl Shaping {
-    pub(super) fn look(&mut self, forward: &[[Complex64; 2]]) -> Looked {
+    pub(super) fn look(&mut self, forward: &[[Complex64; 2]]) -> LeastMargins {
         let mut excesses = Vec::new();
         let mut worst_db = f64::INFINITY;
         // for a rate of 1 most logarithms can be skipped
@@ -81,13 +81,13 @@ impl Shaping {
         let plants = self.samples.plants().len();
         let delays = delay_margins(columns, &feedback, (plants, above), delay_s);
         let worst_db = delays.crossovers.iter().map(|margin| margin.value_db).fold(worst_db, f64::min);
-        Looked { excesses, delays, worst_db }
+        LeastMargins { excesses, delays, worst_db }
     }
 
     /// The rows of the relevant columns and requirements, the least margin first.
     pub(super) fn rows(
         &mut self,
-        looked: &Looked,
+        looked: &LeastMargins,
         forward: &[[Complex64; 2]],
         [own, behind]: &[Vec<Vec<Complex64>>; 2],
     ) -> Vec<MarginRow> {
@@ -123,7 +123,7 @@ impl Shaping {
 
     /// The least margins over their rates, with their plants, by column and requirement: at least
     /// as many as there are rows.
-    fn least(&mut self, looked: &Looked, forward: &[[Complex64; 2]]) -> Vec<(f64, RowOf<'static>)> {
+    fn least(&mut self, looked: &LeastMargins, forward: &[[Complex64; 2]]) -> Vec<(f64, RowOf<'static>)> {
         let mut found = Vec::new();
         // the least margins found so far, in order
         let mut least: Vec<f64> = Vec::with_capacity(ROWS_MAXIMUM + 1);
@@ -167,7 +167,7 @@ impl RowOf<'_> {
 }
 
 /// The least margins over their rates in dB, with column and requirement, in order.
-fn near(looked: &Looked) -> Vec<(f64, usize, usize)> {
+fn near(looked: &LeastMargins) -> Vec<(f64, usize, usize)> {
     let farthest_db = looked.worst_db + WINDOW_DB;
     // the square of an excess with a rate of 1 that is certainly too far from the worst
     let beyond = portable::pow(10.0, -0.1 * farthest_db) * (1.0 - ROUNDING);

@@ -1,9 +1,9 @@
 //! The descents of a search, independent of each other, except that one ends where it joins the end
 //! of an earlier one.
 
-use phea_dynamics::watch::{Stopped, Watch, tell, within};
+use phea_dynamics::watch::{Stopped, Watch, report_progress, within};
 
-use super::{STAGE, STEPS_ROUGH, SearchOptions, StartSearch, is_distinct, standing};
+use super::{STAGE, STEPS_ROUGH, SearchOptions, StartSearch, is_distinct, rank};
 use crate::loop_shaping::descent::{Descent, DescentOptions, DescentWork};
 use crate::loop_shaping::search::{Judgement, SearchProblem};
 
@@ -29,7 +29,7 @@ impl<P: SearchProblem + Clone + Sync> StartSearch<'_, P> {
     ) -> Result<(), Stopped> {
         let few = |problem: &mut dyn SearchProblem, descent: &mut Descent, watch: Watch<'_>| {
             for step in 0..STEPS_ROUGH {
-                tell(watch, STAGE, step, STEPS_ROUGH)?;
+                report_progress(watch, STAGE, step, STEPS_ROUGH)?;
                 if descent.advance(problem).is_some() {
                     break;
                 }
@@ -53,13 +53,13 @@ impl<P: SearchProblem + Clone + Sync> StartSearch<'_, P> {
         let merged = MergedEnds { bounds: &bounds, options };
         let (all, at_once) = (descents.len(), workers.at_once.max(1));
         for first in (0..all).step_by(at_once) {
-            let share = [first, (first + at_once).min(all)].map(|done| done as f64 / all as f64);
+            let fraction = [first, (first + at_once).min(all)].map(|done| done as f64 / all as f64);
             let (ended, others) = descents.split_at_mut(first);
             let ended = &*ended;
             let to_the_end = |problem: &mut dyn SearchProblem, descent: &mut Descent, watch: Watch<'_>| {
                 let mut trail: Vec<PassedPoint> = Vec::new();
                 while descent.advance(problem).is_none() {
-                    tell(watch, STAGE, trail.len(), options.steps_maximum)?;
+                    report_progress(watch, STAGE, trail.len(), options.steps_maximum)?;
                     let passed = PassedPoint::of(descent);
                     let joins = ended.iter().any(|end| merged.leads_to(&passed, end));
                     trail.push(passed);
@@ -70,7 +70,7 @@ impl<P: SearchProblem + Clone + Sync> StartSearch<'_, P> {
                 Ok(trail)
             };
             let now: Vec<&mut Descent> = others.iter_mut().take(at_once).collect();
-            let trails = self.each(now, &mut within(&mut *watch, share), to_the_end)?;
+            let trails = self.each(now, &mut within(&mut *watch, fraction), to_the_end)?;
             for (index, trail) in trails.iter().enumerate() {
                 let (ended, others) = descents.split_at_mut(first + index);
                 let Some(descent) = others.first_mut() else { break };
@@ -92,7 +92,7 @@ impl MergedEnds<'_> {
     /// True if a descent has come near an end that is no worse than its present point.
     fn leads_to(&self, passed: &PassedPoint, end: &Descent) -> bool {
         let [own, others] =
-            [passed.judgement, end.judgement()].map(|judgement| standing(self.options, judgement));
+            [passed.judgement, end.judgement()].map(|judgement| rank(self.options, judgement));
         !is_distinct(&passed.x, end.x(), self.bounds)
             && others.0.cmp(&own.0).then(others.1.total_cmp(&own.1)).is_le()
     }

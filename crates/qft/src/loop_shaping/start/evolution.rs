@@ -1,6 +1,6 @@
 //! Differential evolution: a population that improves where no slopes are available.
 
-use phea_dynamics::random::share;
+use phea_dynamics::random::uniform;
 
 use super::JudgedPoint;
 use crate::loop_shaping::search::{Aim, SearchProblem};
@@ -66,7 +66,7 @@ impl Evolution {
     }
 
     fn trial(&self, bounds: &[[f64; 2]], random: &mut u64) -> Vec<f64> {
-        let mut below = |count: usize| (share(random) * count as f64) as usize;
+        let mut below = |count: usize| (uniform(random) * count as f64) as usize;
         let mut chosen = vec![self.member];
         while chosen.len() < MEMBERS_NEEDED {
             let next = below(self.population.len());
@@ -78,7 +78,7 @@ impl Evolution {
         let of = |parent: usize, coordinate: usize| self.population[chosen[parent]].x[coordinate];
         let coordinate = |(at, [low, high]): (usize, &[f64; 2])| {
             let old = of(0, at);
-            if share(random) >= CROSSOVER && at != forced {
+            if uniform(random) >= CROSSOVER && at != forced {
                 return old;
             }
             let new = of(1, at) + WEIGHT * (of(2, at) - of(3, at));

@@ -1,7 +1,7 @@
 //! Points spread evenly over a box.
 
 use phea_dynamics::portable;
-use phea_dynamics::random::share;
+use phea_dynamics::random::uniform;
 
 /// Number of fixed-point iterations, of which two or three gain a digit.
 const ITERATIONS: usize = 64;
@@ -26,16 +26,16 @@ impl AdditiveRecurrence {
         let ratio = (0..ITERATIONS).fold(2.0, |ratio, _| portable::pow(1.0 + ratio, root));
         let step = |power: usize| portable::pow(ratio, -(power as f64));
         AdditiveRecurrence {
-            shifts: (0..dimension).map(|_| share(random)).collect(),
+            shifts: (0..dimension).map(|_| uniform(random)).collect(),
             steps: (1..=dimension).map(step).collect(),
         }
     }
 
     /// One of the points, between the bounds.
     pub(super) fn point(&self, index: usize, bounds: &[[f64; 2]]) -> Vec<f64> {
-        let shares =
+        let fractions =
             self.shifts.iter().zip(&self.steps).map(|(shift, step)| (shift + index as f64 * step).fract());
-        shares.zip(bounds).map(|(share, [low, high])| low + share * (high - low)).collect()
+        fractions.zip(bounds).map(|(fraction, [low, high])| low + fraction * (high - low)).collect()
     }
 }
 

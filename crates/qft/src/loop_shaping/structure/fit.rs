@@ -191,8 +191,8 @@ fn taken_notch(part: &StructureFactor, [zeros, poles]: &mut [Vec<Complex64>; 2])
     }
     let (numbers, taken) = best?;
     for (roots, taken) in [zeros, poles].into_iter().zip(taken) {
-        let kept = roots.iter().enumerate().filter(|(index, _)| !taken.contains(index));
-        *roots = kept.map(|(_, root)| *root).collect();
+        let cache = roots.iter().enumerate().filter(|(index, _)| !taken.contains(index));
+        *roots = cache.map(|(_, root)| *root).collect();
     }
     Some(numbers)
 }

@@ -28,7 +28,7 @@ impl Structure {
     /// ```
     pub fn without_roots_beyond(&self, corner_rad_per_s: f64, x: &[f64]) -> Option<(Structure, Vec<f64>)> {
         let mut numbers = self.numbers(x).into_iter();
-        let mut kept = vec![numbers.next()?];
+        let mut cache = vec![numbers.next()?];
         let mut parts = Vec::new();
         let mut is_shorter = false;
         for part in &self.parts {
@@ -38,17 +38,17 @@ impl Structure {
             match slow {
                 SlowRoots::All => {
                     parts.push(part.clone());
-                    kept.extend(own);
+                    cache.extend(own);
                 }
                 SlowRoots::One(single, frequency) => {
                     parts.push(single);
-                    kept.push(frequency);
+                    cache.push(frequency);
                 }
                 SlowRoots::None => {}
             }
         }
         let shorter = Structure { parts, ..self.clone() };
-        let x = shorter.of_free(kept.into_iter().map(portable::ln));
+        let x = shorter.of_free(cache.into_iter().map(portable::ln));
         is_shorter.then_some((shorter, x))
     }
 }

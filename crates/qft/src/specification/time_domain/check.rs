@@ -2,7 +2,7 @@ use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::time_response::Settling;
 
 use super::step::reached;
-use super::{LowerWish, TimeDomainError, UpperWish};
+use super::{LowerStepRequirement, TimeDomainError, UpperStepRequirement};
 
 /// Relative difference below which values count as equal: a peak that touches the band stays in it,
 /// and a requirement met to this accuracy is met.
@@ -10,7 +10,7 @@ pub(super) const TOLERANCE: f64 = 1e-9;
 
 /// Values required.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wished {
+pub struct RequiredResponse {
     /// Largest overshoot, percent of the step.
     pub overshoot_percent: f64,
     /// Settling time, s.
@@ -30,16 +30,16 @@ pub struct Reached {
 
 /// A limit of tracking compared with its requirement in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WishCheck {
+pub struct RequirementCheck {
     /// Required values.
-    pub wished: Wished,
+    pub required: RequiredResponse,
     /// Properties of the response of the limit itself.
     pub reached: Reached,
 }
 
 /// Comparison of the response of a limit with its requirement.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum WishOutcome {
+pub enum RequirementOutcome {
     /// The requirement is met, to a billionth.
     Met,
     /// The requirement is not met.
@@ -64,20 +64,20 @@ pub enum WishOutcome {
 /// ```
 /// use num_complex::Complex64;
 /// use phea_dynamics::linear::TransferFunction;
-/// use phea_qft::specification::{UpperWish, check_upper};
+/// use phea_qft::specification::{UpperStepRequirement, check_upper};
 /// let poles = vec![Complex64::new(-36.8, 27.6), Complex64::new(-36.8, -27.6)];
 /// let printed = TransferFunction::from_factors(2116.0 / 75.0, vec![Complex64::new(-75.0, 0.0)], poles)?;
-/// let wish = UpperWish { overshoot_percent: 1.0, settling_time_s: 0.1, settling_band_percent: 1.0 };
-/// let reached = check_upper(&printed, &wish)?.reached;
+/// let requirement = UpperStepRequirement { overshoot_percent: 1.0, settling_time_s: 0.1, settling_band_percent: 1.0 };
+/// let reached = check_upper(&printed, &requirement)?.reached;
 /// assert!((reached.overshoot_percent - 2.19).abs() < 0.005);
 /// assert!(reached.settling.time_s().is_some_and(|time_s| (time_s - 0.126).abs() < 5e-4));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn check_upper(function: &TransferFunction, wish: &UpperWish) -> Result<WishCheck, TimeDomainError> {
-    wish.check()?;
-    let UpperWish { overshoot_percent, settling_time_s, settling_band_percent } = *wish;
-    let wished = Wished { overshoot_percent, settling_time_s, settling_band_percent };
-    Ok(WishCheck { wished, reached: reached(function, settling_band_percent)? })
+pub fn check_upper(function: &TransferFunction, requirement: &UpperStepRequirement) -> Result<RequirementCheck, TimeDomainError> {
+    requirement.check()?;
+    let UpperStepRequirement { overshoot_percent, settling_time_s, settling_band_percent } = *requirement;
+    let required = RequiredResponse { overshoot_percent, settling_time_s, settling_band_percent };
+    Ok(RequirementCheck { required, reached: reached(function, settling_band_percent)? })
 }
 
 /// Compares any lower limit with a requirement in time, which allows no overshoot.
@@ -90,36 +90,36 @@ pub fn check_upper(function: &TransferFunction, wish: &UpperWish) -> Result<Wish
 /// ```
 /// use num_complex::Complex64;
 /// use phea_dynamics::linear::TransferFunction;
-/// use phea_qft::specification::{LowerWish, WishOutcome, check_lower};
+/// use phea_qft::specification::{LowerStepRequirement, RequirementOutcome, check_lower};
 /// let lag = TransferFunction::from_factors(10.0, vec![], vec![Complex64::new(-10.0, 0.0)])?;
-/// let check = check_lower(&lag, &LowerWish { settling_time_s: 0.4, settling_band_percent: 1.0 })?;
+/// let check = check_lower(&lag, &LowerStepRequirement { settling_time_s: 0.4, settling_band_percent: 1.0 })?;
 /// let late = 100.0_f64.ln() / 10.0 - 0.4;
 /// match check.outcome() {
-///     WishOutcome::Missed { settling_excess_s, .. } => assert!((settling_excess_s - late).abs() < 1e-9),
-///     WishOutcome::Met => unreachable!(),
+///     RequirementOutcome::Missed { settling_excess_s, .. } => assert!((settling_excess_s - late).abs() < 1e-9),
+///     RequirementOutcome::Met => unreachable!(),
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn check_lower(function: &TransferFunction, wish: &LowerWish) -> Result<WishCheck, TimeDomainError> {
-    wish.check()?;
-    let LowerWish { settling_time_s, settling_band_percent } = *wish;
-    let wished = Wished { overshoot_percent: 0.0, settling_time_s, settling_band_percent };
-    Ok(WishCheck { wished, reached: reached(function, settling_band_percent)? })
+pub fn check_lower(function: &TransferFunction, requirement: &LowerStepRequirement) -> Result<RequirementCheck, TimeDomainError> {
+    requirement.check()?;
+    let LowerStepRequirement { settling_time_s, settling_band_percent } = *requirement;
+    let required = RequiredResponse { overshoot_percent: 0.0, settling_time_s, settling_band_percent };
+    Ok(RequirementCheck { required, reached: reached(function, settling_band_percent)? })
 }
 
-impl WishCheck {
+impl RequirementCheck {
     /// Comparison with the requirement, with the excess if it is not met.
-    pub fn outcome(&self) -> WishOutcome {
-        let beyond = |reached: f64, wished: f64| {
-            if reached <= wished * (1.0 + TOLERANCE) + TOLERANCE * 1e-3 { 0.0 } else { reached - wished }
+    pub fn outcome(&self) -> RequirementOutcome {
+        let beyond = |reached: f64, required: f64| {
+            if reached <= required * (1.0 + TOLERANCE) + TOLERANCE * 1e-3 { 0.0 } else { reached - required }
         };
-        let overshoot_excess_percent = beyond(self.reached.overshoot_percent, self.wished.overshoot_percent);
+        let overshoot_excess_percent = beyond(self.reached.overshoot_percent, self.required.overshoot_percent);
         let settling_time_s = self.reached.settling.time_s().unwrap_or(f64::INFINITY);
-        let settling_excess_s = beyond(settling_time_s, self.wished.settling_time_s);
+        let settling_excess_s = beyond(settling_time_s, self.required.settling_time_s);
         if overshoot_excess_percent == 0.0 && settling_excess_s == 0.0 {
-            WishOutcome::Met
+            RequirementOutcome::Met
         } else {
-            WishOutcome::Missed { overshoot_excess_percent, settling_excess_s }
+            RequirementOutcome::Missed { overshoot_excess_percent, settling_excess_s }
         }
     }
 }

@@ -27,7 +27,7 @@ pub struct TrackingSpread {
 pub enum LimitOrder {
     /// The upper limit is above the lower one everywhere in the band, up to a billionth of a
     /// decibel.
-    Kept {
+    Satisfied {
         /// Least ratio upper/lower, dB.
         least_db: f64,
         /// Frequency of the least ratio, rad/s.
@@ -69,7 +69,7 @@ pub enum LimitOrder {
 ///     TransferFunction::from_factors(pole, vec![], vec![Complex64::new(-pole, 0.0)]).map(Limit::Rational)
 /// };
 /// let spread = tracking_spread(&lag(1.0)?, &lag(10.0)?, [0.0, f64::INFINITY])?;
-/// assert_eq!(spread.order, LimitOrder::Kept { least_db: 0.0, frequency_rad_per_s: 0.0 });
+/// assert_eq!(spread.order, LimitOrder::Satisfied { least_db: 0.0, frequency_rad_per_s: 0.0 });
 /// assert_eq!((spread.grows_from_rad_per_s, spread.at_end_db), (Some(0.0), 20.0));
 /// let swapped = tracking_spread(&lag(10.0)?, &lag(1.0)?, [0.0, f64::INFINITY])?;
 /// assert!(matches!(swapped.order, LimitOrder::Crossed { from_rad_per_s: 0.0, excess_db: 20.0, .. }));
@@ -131,7 +131,7 @@ const ROUNDING_DB: f64 = 1e-9;
 fn order(ratio: &SquaredRatio<'_>, spread: &[(f64, f64)]) -> LimitOrder {
     let least = spread.iter().copied().fold((0.0, f64::INFINITY), |a, b| if b.1 < a.1 { b } else { a });
     let Some(first) = spread.iter().position(|knot| knot.1 < -ROUNDING_DB) else {
-        return LimitOrder::Kept { least_db: least.1, frequency_rad_per_s: least.0 };
+        return LimitOrder::Satisfied { least_db: least.1, frequency_rad_per_s: least.0 };
     };
     let before = spread.get(first.saturating_sub(1)).copied().unwrap_or(least);
     let crossed = spread.get(first).map_or(before.0, |knot| knot.0);

@@ -7,7 +7,7 @@ use phea_dynamics::range::RequiredRange;
 use phea_dynamics::time_response::{SecondOrder, step_response};
 
 use super::check::{TOLERANCE, check_lower, check_upper};
-use super::{ExtraRoot, LowerWish, TimeDomainError, TimeDomainNumber, TrackingLimit, Translation, UpperWish};
+use super::{ExtraRoot, LowerStepRequirement, TimeDomainError, TimeDomainNumber, TrackingLimit, Translation, UpperStepRequirement};
 
 /// The upper tracking limit for a requirement in time.
 ///
@@ -33,38 +33,38 @@ use super::{ExtraRoot, LowerWish, TimeDomainError, TimeDomainNumber, TrackingLim
 ///
 /// # Example
 /// ```
-/// use phea_qft::specification::{ExtraRoot, Translation, UpperWish, WishOutcome, tracking_upper};
-/// let wish = UpperWish { overshoot_percent: 1.0, settling_time_s: 0.1, settling_band_percent: 1.0 };
-/// let limit = tracking_upper(&wish, ExtraRoot::At { rad_per_s: 75.0 }, Translation::Exact)?;
-/// assert_eq!(limit.check.outcome(), WishOutcome::Met);
+/// use phea_qft::specification::{ExtraRoot, Translation, UpperStepRequirement, RequirementOutcome, tracking_upper};
+/// let requirement = UpperStepRequirement { overshoot_percent: 1.0, settling_time_s: 0.1, settling_band_percent: 1.0 };
+/// let limit = tracking_upper(&requirement, ExtraRoot::At { rad_per_s: 75.0 }, Translation::Exact)?;
+/// assert_eq!(limit.check.outcome(), RequirementOutcome::Met);
 /// assert!((limit.check.reached.overshoot_percent - 1.0).abs() < 1e-9);
 /// assert!((limit.natural_frequency_rad_per_s - 36.13).abs() < 0.005);
 /// # Ok::<(), phea_qft::specification::TimeDomainError>(())
 /// ```
 pub fn tracking_upper(
-    wish: &UpperWish,
+    requirement: &UpperStepRequirement,
     extra_zero: ExtraRoot,
     translation: Translation,
 ) -> Result<TrackingLimit, TimeDomainError> {
-    wish.check()?;
+    requirement.check()?;
     extra_zero.check()?;
     let model = match translation {
         Translation::Rule(rule) => {
-            same_band(rule.band_percent(), wish.settling_band_percent)?;
-            SecondOrder::from_overshoot_and_settling_rule(wish.overshoot_percent, wish.settling_time_s, rule)?
+            same_band(rule.band_percent(), requirement.settling_band_percent)?;
+            SecondOrder::from_overshoot_and_settling_rule(requirement.overshoot_percent, requirement.settling_time_s, rule)?
         }
         Translation::Exact => {
             let model = |natural: f64| {
-                let ratio = damping_ratio(wish.overshoot_percent / 100.0, extra_zero.share(natural));
+                let ratio = damping_ratio(requirement.overshoot_percent / 100.0, extra_zero.fraction(natural));
                 SecondOrder::new(natural, ratio)
             };
-            let settled = |natural: f64| upper_settles(wish, extra_zero, &model(natural)?);
-            model(least_natural_frequency(wish.settling_time_s, extra_zero, settled)?)?
+            let settled = |natural: f64| upper_settles(requirement, extra_zero, &model(natural)?);
+            model(least_natural_frequency(requirement.settling_time_s, extra_zero, settled)?)?
         }
     };
     let zero = extra_zero.place(model.natural_frequency_rad_per_s());
     let function = with_zero(&model, zero)?;
-    let check = check_upper(&function, wish)?;
+    let check = check_upper(&function, requirement)?;
     Ok(limit(function, &model, zero, check))
 }
 
@@ -85,36 +85,36 @@ pub fn tracking_upper(
 ///
 /// # Example
 /// ```
-/// use phea_qft::specification::{ExtraRoot, LowerWish, Translation, WishOutcome, tracking_lower};
-/// let wish = LowerWish { settling_time_s: 0.3, settling_band_percent: 1.0 };
-/// let limit = tracking_lower(&wish, ExtraRoot::At { rad_per_s: 50.0 }, Translation::Exact)?;
-/// assert_eq!(limit.check.outcome(), WishOutcome::Met);
+/// use phea_qft::specification::{ExtraRoot, LowerStepRequirement, Translation, RequirementOutcome, tracking_lower};
+/// let requirement = LowerStepRequirement { settling_time_s: 0.3, settling_band_percent: 1.0 };
+/// let limit = tracking_lower(&requirement, ExtraRoot::At { rad_per_s: 50.0 }, Translation::Exact)?;
+/// assert_eq!(limit.check.outcome(), RequirementOutcome::Met);
 /// assert!((limit.natural_frequency_rad_per_s - 24.19).abs() < 0.005);
 /// # Ok::<(), phea_qft::specification::TimeDomainError>(())
 /// ```
 pub fn tracking_lower(
-    wish: &LowerWish,
+    requirement: &LowerStepRequirement,
     extra_pole: ExtraRoot,
     translation: Translation,
 ) -> Result<TrackingLimit, TimeDomainError> {
-    wish.check()?;
+    requirement.check()?;
     extra_pole.check()?;
     let model = match translation {
         Translation::Rule(rule) => {
-            same_band(rule.band_percent(), wish.settling_band_percent)?;
-            SecondOrder::from_overshoot_and_settling_rule(0.0, wish.settling_time_s, rule)?
+            same_band(rule.band_percent(), requirement.settling_band_percent)?;
+            SecondOrder::from_overshoot_and_settling_rule(0.0, requirement.settling_time_s, rule)?
         }
         Translation::Exact => {
             let settled = |natural: f64| {
                 let function = with_pole(&SecondOrder::new(natural, 1.0)?, extra_pole.place(natural))?;
-                Ok(deviation(&function, wish.settling_time_s)? <= wish.settling_band_percent / 100.0)
+                Ok(deviation(&function, requirement.settling_time_s)? <= requirement.settling_band_percent / 100.0)
             };
-            SecondOrder::new(least_natural_frequency(wish.settling_time_s, extra_pole, settled)?, 1.0)?
+            SecondOrder::new(least_natural_frequency(requirement.settling_time_s, extra_pole, settled)?, 1.0)?
         }
     };
     let pole = extra_pole.place(model.natural_frequency_rad_per_s());
     let function = with_pole(&model, pole)?;
-    let check = check_lower(&function, wish)?;
+    let check = check_lower(&function, requirement)?;
     Ok(limit(function, &model, pole, check))
 }
 
@@ -122,7 +122,7 @@ fn limit(
     function: TransferFunction,
     model: &SecondOrder,
     extra_root_rad_per_s: Option<f64>,
-    check: super::WishCheck,
+    check: super::RequirementCheck,
 ) -> TrackingLimit {
     TrackingLimit {
         function,
@@ -133,11 +133,11 @@ fn limit(
     }
 }
 
-fn same_band(rule_percent: f64, wish_percent: f64) -> Result<(), TimeDomainError> {
-    if rule_percent == wish_percent {
+fn same_band(rule_percent: f64, required_percent: f64) -> Result<(), TimeDomainError> {
+    if rule_percent == required_percent {
         Ok(())
     } else {
-        Err(TimeDomainError::RuleBand { rule_percent, wish_percent })
+        Err(TimeDomainError::RuleBand { rule_percent, required_percent })
     }
 }
 
@@ -163,20 +163,20 @@ fn deviation(function: &TransferFunction, time_s: f64) -> Result<f64, TimeDomain
 
 /// True if the response of the model with its zero stays in the band from the settling time on.
 fn upper_settles(
-    wish: &UpperWish,
+    requirement: &UpperStepRequirement,
     extra_zero: ExtraRoot,
     model: &SecondOrder,
 ) -> Result<bool, TimeDomainError> {
     let natural = model.natural_frequency_rad_per_s();
-    let band = wish.settling_band_percent / 100.0;
+    let band = requirement.settling_band_percent / 100.0;
     let function = with_zero(model, extra_zero.place(natural))?;
-    if deviation(&function, wish.settling_time_s)? > band {
+    if deviation(&function, requirement.settling_time_s)? > band {
         return Ok(false);
     }
     // the response is in the band now: it stays there if the next extreme does
-    let (ratio, share) = (model.damping_ratio(), extra_zero.share(natural));
-    let time = natural * wish.settling_time_s;
-    let next = first_extreme(ratio, share).and_then(|first| {
+    let (ratio, fraction) = (model.damping_ratio(), extra_zero.fraction(natural));
+    let time = natural * requirement.settling_time_s;
+    let next = first_extreme(ratio, fraction).and_then(|first| {
         let half_period = PI / ((1.0 - ratio) * (1.0 + ratio)).sqrt();
         let passed = ((time - first) / half_period).ceil();
         match ratio < 1.0 && passed > 0.0 {
@@ -186,7 +186,7 @@ fn upper_settles(
     });
     // half the tolerance of the check, so that the check accepts a result whose extreme is just
     // inside the band
-    Ok(next.is_none_or(|next| extreme(ratio, share, next) <= band * (1.0 + 0.5 * TOLERANCE)))
+    Ok(next.is_none_or(|next| extreme(ratio, fraction, next) <= band * (1.0 + 0.5 * TOLERANCE)))
 }
 
 /// The first time, in units of 1/w_n, at which the response with zero z = w_n/share is stationary;
@@ -194,34 +194,34 @@ fn upper_settles(
 ///
 /// The slope is proportional to exp(-xi t) ((1 - xi share) S + share C), with C = cos, S =
 /// sin/sqrt(1 - xi^2) of sqrt(1 - xi^2) t, or their hyperbolic counterparts.
-fn first_extreme(ratio: f64, share: f64) -> Option<f64> {
-    let (rise, square) = (ratio * share - 1.0, (1.0 - ratio) * (1.0 + ratio));
+fn first_extreme(ratio: f64, fraction: f64) -> Option<f64> {
+    let (rise, square) = (ratio * fraction - 1.0, (1.0 - ratio) * (1.0 + ratio));
     if square > 0.0 {
         let damped = square.sqrt();
-        return Some(atan2(damped * share, rise) / damped);
+        return Some(atan2(damped * fraction, rise) / damped);
     }
     let spread = (-square).sqrt();
-    if rise <= spread * share {
+    if rise <= spread * fraction {
         return None;
     }
     if spread == 0.0 {
-        return Some(share / rise);
+        return Some(fraction / rise);
     }
-    let tangent = spread * share / rise;
+    let tangent = spread * fraction / rise;
     Some((log1p(tangent) - log1p(-tangent)) / (2.0 * spread))
 }
 
 /// Deviation of the response from its final value at a stationary time (in units of 1/w_n).
-fn extreme(ratio: f64, share: f64, time: f64) -> f64 {
-    exp(-ratio * time) * (1.0 - 2.0 * ratio * share + share * share).max(0.0).sqrt()
+fn extreme(ratio: f64, fraction: f64, time: f64) -> f64 {
+    exp(-ratio * time) * (1.0 - 2.0 * ratio * fraction + fraction * fraction).max(0.0).sqrt()
 }
 
 /// The damping ratio with which the response with zero z = w_n/share overshoots by this ratio.
-fn damping_ratio(overshoot: f64, share: f64) -> f64 {
+fn damping_ratio(overshoot: f64, fraction: f64) -> f64 {
     // above this ratio there is no overshoot: critically damped, or the slow pole coincides with
     // the zero
-    let most = if share <= 1.0 { 1.0 } else { (share + 1.0 / share) / 2.0 };
-    let overshoots = |ratio: f64| first_extreme(ratio, share).map_or(0.0, |time| extreme(ratio, share, time));
+    let most = if fraction <= 1.0 { 1.0 } else { (fraction + 1.0 / fraction) / 2.0 };
+    let overshoots = |ratio: f64| first_extreme(ratio, fraction).map_or(0.0, |time| extreme(ratio, fraction, time));
     if overshoot == 0.0 {
         return most;
     }
@@ -287,7 +287,7 @@ impl ExtraRoot {
     }
 
     /// Ratio w_n/z; zero without a zero.
-    fn share(self, natural: f64) -> f64 {
+    fn fraction(self, natural: f64) -> f64 {
         match self {
             ExtraRoot::None => 0.0,
             ExtraRoot::At { rad_per_s } => natural / rad_per_s,
@@ -296,18 +296,18 @@ impl ExtraRoot {
     }
 }
 
-impl UpperWish {
+impl UpperStepRequirement {
     pub(super) fn check(&self) -> Result<(), TimeDomainError> {
         if !(0.0..100.0).contains(&self.overshoot_percent) {
             let (what, expected) = (TimeDomainNumber::Overshoot, RequiredRange::BelowHundred);
             return Err(TimeDomainError::OutOfRange { what, value: self.overshoot_percent, expected });
         }
         let (settling_time_s, settling_band_percent) = (self.settling_time_s, self.settling_band_percent);
-        LowerWish { settling_time_s, settling_band_percent }.check()
+        LowerStepRequirement { settling_time_s, settling_band_percent }.check()
     }
 }
 
-impl LowerWish {
+impl LowerStepRequirement {
     pub(super) fn check(&self) -> Result<(), TimeDomainError> {
         positive(TimeDomainNumber::SettlingTime, self.settling_time_s)?;
         let value = self.settling_band_percent;

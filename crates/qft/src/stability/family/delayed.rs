@@ -2,14 +2,14 @@
 //! resampling it; the plants for which this is done are selected by estimates.
 
 use phea_dynamics::order::sort_by_number;
-use phea_dynamics::watch::{Stopped, Watch, part, tell};
+use phea_dynamics::watch::{Stopped, Watch, part, report_progress};
 
 use super::judged::JudgedFamily;
 use super::{STAGE, STARTS, StabilityAudit};
 use crate::closed_loop::Compensation;
 use crate::coordinate_climb::climb;
 use crate::family::{Extent, Family, UncertainFamily};
-use crate::kept_plants::KeptPlants;
+use crate::plant_cache::PlantCache;
 use crate::stability::characteristic::FeedbackPath;
 use crate::stability::{CriticalDelay, DelayMargin, StabilityStatus, of_member, resampled};
 use crate::verdict::PlantPoint;
@@ -39,8 +39,8 @@ impl StabilityAudit<'_> {
         }
         let mut least = self.least(estimated);
         for round in 0..ROUNDS {
-            let share = [round, round + 1].map(|done| done as f64 / ROUNDS as f64);
-            let watch = &mut part(&mut *watch, STAGE, share);
+            let fraction = [round, round + 1].map(|done| done as f64 / ROUNDS as f64);
+            let watch = &mut part(&mut *watch, STAGE, fraction);
             let Some(known) = &least else { break };
             let less = |found: &DelayMargin| found.delay_s < (1.0 - GAIN) * known.delay_s;
             let Some(found) = self.least(self.worst_near(known, watch)?).filter(less) else { break };
@@ -74,16 +74,16 @@ impl StabilityAudit<'_> {
         let JudgedFamily { family, compensation, path, .. } = &self.around;
         let (Family::Uncertain(family), Ok(path)) = (family, path) else { return Ok(vec![]) };
         let delayed = compensation.with_delay(compensation.delay_s() + NEARLY * margin.delay_s);
-        let worst = |shares: &[f64]| sensitivity(family, &delayed, path, &family.values(shares));
+        let worst = |fractions: &[f64]| sensitivity(family, &delayed, path, &family.values(fractions));
         let starts = self.starts_near(family, margin, &worst);
         if family.extent() != Extent::Box {
-            return Ok(starts.iter().map(|shares| family.values(shares)).collect());
+            return Ok(starts.iter().map(|fractions| family.values(fractions)).collect());
         }
-        let end = |_: &KeptPlants, shares: Vec<f64>, watch: Watch<'_>| {
-            tell(watch, STAGE, 0, 1)?;
-            Ok(family.values(&climb(&shares, &mut |shares| worst(shares)).0))
+        let end = |_: &PlantCache, fractions: Vec<f64>, watch: Watch<'_>| {
+            report_progress(watch, STAGE, 0, 1)?;
+            Ok(family.values(&climb(&fractions, &mut |fractions| worst(fractions)).0))
         };
-        self.kept.each(starts, (STAGE, watch), end)
+        self.cache.each(starts, (STAGE, watch), end)
     }
 
     /// The plant of a margin, and those that tolerate least by another measure, distinct from each
@@ -95,21 +95,21 @@ impl StabilityAudit<'_> {
         worst: &dyn Fn(&[f64]) -> f64,
     ) -> Vec<Vec<f64>> {
         let values = |plant: &PlantPoint| match plant {
-            PlantPoint::Parameters(values) => Some(family.shares(values)),
-            PlantPoint::Measured(_) | PlantPoint::Beside(_) => None,
+            PlantPoint::Parameters(values) => Some(family.fractions(values)),
+            PlantPoint::Measured(_) | PlantPoint::Additional(_) => None,
         };
         let sensitivities = self.badness.iter().map(|[_, _, sensitivity]| *sensitivity);
         let mut order: Vec<(f64, &PlantPoint)> = sensitivities.zip(&self.plants).collect();
         order.retain(|(value, _)| value.is_finite());
         sort_by_number(&mut order, |one| -one.0);
         let nearest = order.iter().take(RANKED).filter_map(|(_, plant)| values(plant));
-        let mut ranked: Vec<(f64, Vec<f64>)> = nearest.map(|shares| (worst(&shares), shares)).collect();
+        let mut ranked: Vec<(f64, Vec<f64>)> = nearest.map(|fractions| (worst(&fractions), fractions)).collect();
         ranked.retain(|(value, _)| !value.is_nan());
         sort_by_number(&mut ranked, |one| -one.0);
         let mut chosen: Vec<Vec<f64>> = values(&margin.plant).into_iter().collect();
-        for (_, shares) in ranked {
-            if chosen.len() < STARTS && chosen.iter().all(|earlier| self.apart(earlier, &shares)) {
-                chosen.push(shares);
+        for (_, fractions) in ranked {
+            if chosen.len() < STARTS && chosen.iter().all(|earlier| self.apart(earlier, &fractions)) {
+                chosen.push(fractions);
             }
         }
         chosen

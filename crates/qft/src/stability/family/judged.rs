@@ -6,7 +6,7 @@ use phea_dynamics::linear::LinearError;
 use crate::closed_loop::{Compensation, Member};
 use crate::coordinate_climb::climb_by;
 use crate::family::Family;
-use crate::kept_plants::KeptPlants;
+use crate::plant_cache::PlantCache;
 use crate::stability::badness::Badness;
 use crate::stability::characteristic::FeedbackPath;
 use crate::stability::responding::PoleCounting;
@@ -27,7 +27,7 @@ pub(super) struct StabilitySearch<'s> {
     pub(super) searched: &'s [Badness],
     pub(super) first_step: f64,
     /// Fractions of the box at which it begins.
-    pub(super) shares: Vec<f64>,
+    pub(super) fractions: Vec<f64>,
 }
 
 impl<'a> JudgedFamily<'a> {
@@ -40,8 +40,8 @@ impl<'a> JudgedFamily<'a> {
         JudgedFamily { family, compensation, path, first: first.cloned() }
     }
 
-    pub(super) fn judged(&self, kept: &KeptPlants, plant: &PlantPoint) -> MemberStability {
-        match (&self.path, self.member(kept, plant)) {
+    pub(super) fn judged(&self, cache: &PlantCache, plant: &PlantPoint) -> MemberStability {
+        match (&self.path, self.member(cache, plant)) {
             (Ok(_), Ok(member @ Member::Responding { .. })) if self.first.as_ref() != Some(plant) => {
                 responding::stability(&member, self.compensation, PoleCounting::OnPoints)
             }
@@ -51,10 +51,10 @@ impl<'a> JudgedFamily<'a> {
         }
     }
 
-    pub(super) fn member(&self, kept: &KeptPlants, plant: &PlantPoint) -> Result<Member, LinearError> {
+    pub(super) fn member(&self, cache: &PlantCache, plant: &PlantPoint) -> Result<Member, LinearError> {
         match (self.family, plant) {
             (Family::Uncertain(family), PlantPoint::Parameters(values)) => {
-                kept.member(self.compensation, family.plant(), values)
+                cache.member(self.compensation, family.plant(), values)
             }
             (Family::Measured(family), PlantPoint::Measured(index)) => {
                 let plant = family.plants().get(*index).ok_or(LinearError::ZeroPolynomial)?;
@@ -64,16 +64,16 @@ impl<'a> JudgedFamily<'a> {
         }
     }
 
-    fn badness_at(&self, kept: &KeptPlants, badness: Badness, values: Vec<f64>) -> f64 {
+    fn badness_at(&self, cache: &PlantCache, badness: Badness, values: Vec<f64>) -> f64 {
         let Ok(path) = &self.path else { return f64::NAN };
         let Family::Uncertain(family) = self.family else { return f64::NAN };
-        let Ok(member) = kept.member(self.compensation, family.plant(), &values) else {
+        let Ok(member) = cache.member(self.compensation, family.plant(), &values) else {
             return f64::NAN;
         };
         match characteristic(&member, path) {
             Some(Ok(characteristic)) => badness.of(&characteristic).unwrap_or(f64::NAN),
             Some(Err(_)) => f64::NAN,
-            None => responding::first_look(&member, self.compensation)
+            None => responding::first_sample(&member, self.compensation)
                 .and_then(|open_loop| badness.of_response(&open_loop))
                 .unwrap_or(f64::NAN),
         }
@@ -86,17 +86,17 @@ impl StabilitySearch<'_> {
     pub(super) fn searched(
         self,
         around: &JudgedFamily<'_>,
-        kept: &KeptPlants,
+        cache: &PlantCache,
     ) -> Option<(Vec<f64>, bool, MemberStability)> {
         let Family::Uncertain(family) = around.family else { return None };
-        let mut shares = self.shares;
+        let mut fractions = self.fractions;
         for &badness in self.searched {
-            let mut objective = |shares: &[f64]| around.badness_at(kept, badness, family.values(shares));
-            (shares, _) = climb_by(self.first_step, &shares, &mut objective);
+            let mut objective = |fractions: &[f64]| around.badness_at(cache, badness, family.values(fractions));
+            (fractions, _) = climb_by(self.first_step, &fractions, &mut objective);
         }
-        let values = family.values(&shares);
+        let values = family.values(&fractions);
         let is_of_delay = self.searched.last() == Some(&Badness::DelaySensitivity);
-        let found = around.judged(kept, &PlantPoint::Parameters(values.clone()));
+        let found = around.judged(cache, &PlantPoint::Parameters(values.clone()));
         Some((values, is_of_delay, found))
     }
 }

@@ -18,14 +18,14 @@ impl StabilityAudit<'_> {
     /// The worst plant with a worse one adjacent to it across a jump, and the worst of all plants
     /// next to a jump, as fractions of the box; empty if there is no jump.
     pub(super) fn sides(&self, family: &UncertainFamily, badness: Badness) -> Vec<Vec<f64>> {
-        let shares = |plant: &PlantPoint| match plant {
-            PlantPoint::Parameters(values) => Some(family.shares(values)),
-            PlantPoint::Measured(_) | PlantPoint::Beside(_) => None,
+        let fractions = |plant: &PlantPoint| match plant {
+            PlantPoint::Parameters(values) => Some(family.fractions(values)),
+            PlantPoint::Measured(_) | PlantPoint::Additional(_) => None,
         };
         // the members come first
         let plants = self.badness.iter().zip(&self.plants).take(family.members().len());
         let mut known: Vec<(f64, Vec<f64>)> =
-            plants.filter_map(|(found, plant)| Some((badness.among(found), shares(plant)?))).collect();
+            plants.filter_map(|(found, plant)| Some((badness.among(found), fractions(plant)?))).collect();
         known.retain(|(value, _)| value.is_finite());
         let (mut worse, mut worst): (Option<usize>, Option<usize>) = (None, None);
         let value = |place: Option<usize>| place.map_or(f64::NEG_INFINITY, |place| known[place].0);

@@ -128,6 +128,6 @@ impl LowEnd<'_> {
 
 /// The angle that a disc around a point subtends at the origin, rad.
 pub(super) fn opening(centre: Complex64, radius: f64) -> f64 {
-    let share = radius / portable::magnitude(centre);
-    if share < 1.0 { portable::asin(share) } else { std::f64::consts::PI }
+    let fraction = radius / portable::magnitude(centre);
+    if fraction < 1.0 { portable::asin(fraction) } else { std::f64::consts::PI }
 }

@@ -3,7 +3,7 @@
 use phea_dynamics::minimum;
 use phea_dynamics::order::sort_by_number;
 use phea_dynamics::portable;
-use phea_dynamics::watch::{Stopped, Watch, part, tell};
+use phea_dynamics::watch::{Stopped, Watch, part, report_progress};
 
 use super::super::evaluator::FREQUENCY_TOLERANCE;
 use super::super::finding::{self, FoundMargin, SpecificationCriteria};
@@ -15,7 +15,7 @@ use super::super::start::{STARTS, interior_range, tasks};
 use super::super::{PlantPoint, SpecificationFinding, SpecificationMargin};
 use super::{AuditEffort, STAGE, SpecificationAudit, plant_at};
 use crate::family::{Extent, Family, UncertainFamily};
-use crate::kept_plants::KeptPlants;
+use crate::plant_cache::PlantCache;
 
 /// Number of cases of each specification whose frequencies are examined for the whole family.
 const FREQUENCIES: usize = 8;
@@ -30,7 +30,7 @@ impl SpecificationAudit<'_> {
     pub(super) fn prepare(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
         let all = self.count();
         for index in 0..all {
-            tell(watch, STAGE, index, all)?;
+            report_progress(watch, STAGE, index, all)?;
             self.plants.extend(self.plant(index));
         }
         let specifications = self.problem.specifications.iter();
@@ -43,10 +43,10 @@ impl SpecificationAudit<'_> {
     }
 
     /// Examines every plant over the whole band.
-    pub(super) fn look(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
+    pub(super) fn evaluate(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
         for (index, plant) in self.plants.iter().enumerate() {
-            tell(watch, STAGE, index, self.plants.len())?;
-            self.scan.look_at(&self.evaluator, plant, index);
+            report_progress(watch, STAGE, index, self.plants.len())?;
+            self.scan.evaluate_at(&self.evaluator, plant, index);
         }
         Ok(())
     }
@@ -58,7 +58,7 @@ impl SpecificationAudit<'_> {
             for criterion in part.criteria() {
                 let mut worst = f64::INFINITY;
                 for peak in self.scan.peaks(criterion) {
-                    tell(watch, STAGE, number, self.parts.len())?;
+                    report_progress(watch, STAGE, number, self.parts.len())?;
                     let Some(plant) = self.plants.get(peak.plant) else { continue };
                     if decibels(peak.excess / WORTH_POLISHING) > worst {
                         continue;
@@ -90,16 +90,16 @@ impl SpecificationAudit<'_> {
 
     /// Examines the whole family where each specification is worst; for a spread, refines the
     /// margin of the family there.
-    pub(super) fn look_at_worst(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
+    pub(super) fn evaluate_worst(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
         for (number, part) in self.parts.clone().into_iter().enumerate() {
-            tell(watch, STAGE, number, self.parts.len())?;
-            self.look_at_cases(number);
+            report_progress(watch, STAGE, number, self.parts.len())?;
+            self.evaluate_cases(number);
             if part.spread {
                 let polished = self.polished_spread(number, part);
                 if let Some(cases) = self.cases.get_mut(number) {
                     *cases = polished;
                 }
-                self.look_at_cases(number);
+                self.evaluate_cases(number);
             }
         }
         Ok(())
@@ -107,7 +107,7 @@ impl SpecificationAudit<'_> {
 
     /// Sorts the cases of a specification, the worst first, and examines the whole family at the
     /// worst.
-    fn look_at_cases(&mut self, number: usize) {
+    fn evaluate_cases(&mut self, number: usize) {
         let Some(cases) = self.cases.get_mut(number) else { return };
         sort_by_number(cases, |case| case.margin.margin_db);
         let mut frequencies: Vec<f64> = Vec::new();
@@ -151,12 +151,12 @@ impl SpecificationAudit<'_> {
         let mut left = self.starts(family).into_iter().peekable();
         let all = left.len();
         while left.peek().is_some() {
-            let share = (all - left.len()) as f64 / all as f64;
+            let fraction = (all - left.len()) as f64 / all as f64;
             let (skipped, now) = self.next_searches(effort, &mut left);
             self.skipped += skipped;
             let until = (all - left.len()) as f64 / all as f64;
-            let found = self.searched(family, &now, &mut part(&mut *watch, STAGE, [share, until]))?;
-            for ((number, task), (outcome, responses, tried)) in now.iter().zip(found) {
+            let found = self.searched(family, &now, &mut part(&mut *watch, STAGE, [fraction, until]))?;
+            for ((number, task), (outcome, responses, evaluated)) in now.iter().zip(found) {
                 // results of another search may make this one unnecessary
                 if self.is_skipped(effort, *number) {
                     self.skipped += 1;
@@ -164,7 +164,7 @@ impl SpecificationAudit<'_> {
                 }
                 self.searches += 1;
                 self.evaluator.count(responses);
-                self.tried = [0, 1].map(|index: usize| self.tried[index] + tried[index]);
+                self.evaluated = [0, 1].map(|index: usize| self.evaluated[index] + evaluated[index]);
                 self.take(family, (*number, task), outcome);
             }
         }
@@ -179,7 +179,7 @@ impl SpecificationAudit<'_> {
         left: &mut impl Iterator<Item = (usize, SearchTask)>,
     ) -> (usize, Vec<(usize, SearchTask)>) {
         let most = match effort {
-            AuditEffort::UntilBelow(_) => match self.evaluator.kept.workers().at_once {
+            AuditEffort::UntilBelow(_) => match self.evaluator.cache.workers().at_once {
                 0 | 1 => 1,
                 at_once => FOR_EACH_WORKER * at_once,
             },
@@ -207,14 +207,14 @@ impl SpecificationAudit<'_> {
         watch: Watch<'_>,
     ) -> Result<Vec<(SearchOutcome, u64, [usize; 2])>, Stopped> {
         let seed = self.evaluator.seed();
-        let search = |kept: &KeptPlants, task: &SearchTask, watch: Watch<'_>| {
-            tell(watch, STAGE, 0, 1)?;
-            let evaluator = seed.evaluator(kept);
+        let search = |cache: &PlantCache, task: &SearchTask, watch: Watch<'_>| {
+            report_progress(watch, STAGE, 0, 1)?;
+            let evaluator = seed.evaluator(cache);
             let outcome = search(&evaluator, family, task);
-            Ok((outcome, evaluator.responses(), kept.tried()))
+            Ok((outcome, evaluator.responses(), cache.evaluated()))
         };
         let tasks: Vec<&SearchTask> = tasks.iter().map(|(_, task)| task).collect();
-        self.evaluator.kept.each(tasks, (STAGE, watch), search)
+        self.evaluator.cache.each(tasks, (STAGE, watch), search)
     }
 
     /// True if a violation of the specification is known that needs no search for a worse one.
@@ -284,7 +284,7 @@ impl SpecificationAudit<'_> {
                 |plant: &ScannedPlant| matches!(&plant.point, PlantPoint::Parameters(own) if *own == values);
             if !self.plants.iter().any(known) {
                 let plant = plant_at(&self.evaluator, family, &values);
-                self.scan.look_at(&self.evaluator, &plant, self.plants.len());
+                self.scan.evaluate_at(&self.evaluator, &plant, self.plants.len());
                 self.plants.push(plant);
             }
         }
@@ -296,8 +296,8 @@ impl SpecificationAudit<'_> {
         let specifications = self.problem.specifications.iter();
         for (number, (part, specification)) in self.parts.clone().into_iter().zip(specifications).enumerate()
         {
-            tell(watch, STAGE, number, self.parts.len())?;
-            self.look_at_cases(number);
+            report_progress(watch, STAGE, number, self.parts.len())?;
+            self.evaluate_cases(number);
             let joining = finding::Joining {
                 part,
                 family: self.problem.family,

@@ -24,7 +24,7 @@ const TOLERANCE: f64 = 1e-7;
 /// A plant on a line.
 #[derive(Clone, Copy)]
 struct LinePlant {
-    share: f64,
+    fraction: f64,
     margin_db: f64,
     vanishing: Complex64,
 }
@@ -38,9 +38,9 @@ impl MarginDescent<'_> {
             return best;
         }
         let mut froms = vec![start, best.clone()];
-        froms.dedup_by(|one, other| one.shares == other.shares);
+        froms.dedup_by(|one, other| one.fractions == other.fractions);
         for from in froms {
-            for block in 0..from.shares.len() {
+            for block in 0..from.fractions.len() {
                 for coordinate in 0..self.family.coordinates().len() {
                     let along = SearchCoordinate { block, coordinate };
                     let Some(resonant) = self.resonant(&from, &best, along) else { continue };
@@ -61,7 +61,7 @@ impl MarginDescent<'_> {
         along: SearchCoordinate,
     ) -> Option<SearchPoint> {
         let mut place = best.clone();
-        *place.shares.get_mut(along.block)? = from.shares.get(along.block)?.clone();
+        *place.fractions.get_mut(along.block)? = from.fractions.get(along.block)?.clone();
         let [low, middle, high] = self.inner_minimum(&place, along)?;
         let place = self.moved(&place, along.block, along.coordinate, middle)?;
         Some(self.between(place, along, [low, high], TOLERANCE))
@@ -74,7 +74,7 @@ impl MarginDescent<'_> {
             [before, here, after]
                 if here.margin_db <= before.margin_db && here.margin_db < after.margin_db =>
             {
-                Some((here.margin_db, [before.share, here.share, after.share]))
+                Some((here.margin_db, [before.fraction, here.fraction, after.fraction]))
             }
             _ => None,
         });
@@ -85,14 +85,14 @@ impl MarginDescent<'_> {
     fn line(&self, place: &SearchPoint, along: SearchCoordinate) -> Vec<LinePlant> {
         let mut found: Vec<LinePlant> = Vec::new();
         let inner = (1..INTERVALS).map(|index| index as f64 / INTERVALS as f64);
-        for share in [0.0, BESIDE_END].into_iter().chain(inner).chain([1.0 - BESIDE_END, 1.0]) {
-            let mut ahead: Vec<LinePlant> = self.sample(place, along, share).into_iter().collect();
+        for fraction in [0.0, BESIDE_END].into_iter().chain(inner).chain([1.0 - BESIDE_END, 1.0]) {
+            let mut ahead: Vec<LinePlant> = self.sample(place, along, fraction).into_iter().collect();
             let mut halvings = 0;
             while let Some(next) = ahead.pop() {
                 let behind = found.last().filter(|behind| turns(behind.vanishing, next.vanishing));
                 let middle = behind.filter(|_| halvings < HALVINGS);
-                let middle = middle.map(|behind| (behind.share + next.share) / 2.0);
-                match middle.and_then(|share| self.sample(place, along, share)) {
+                let middle = middle.map(|behind| (behind.fraction + next.fraction) / 2.0);
+                match middle.and_then(|fraction| self.sample(place, along, fraction)) {
                     Some(middle) => ahead.extend([next, middle]),
                     None => found.push(next),
                 }
@@ -102,22 +102,22 @@ impl MarginDescent<'_> {
         found
     }
 
-    fn sample(&self, place: &SearchPoint, along: SearchCoordinate, share: f64) -> Option<LinePlant> {
-        let mut shares = place.shares.get(along.block)?.clone();
-        *shares.get_mut(along.coordinate)? = share;
+    fn sample(&self, place: &SearchPoint, along: SearchCoordinate, fraction: f64) -> Option<LinePlant> {
+        let mut fractions = place.fractions.get(along.block)?.clone();
+        *fractions.get_mut(along.coordinate)? = fraction;
         let criterion = *self.task.criteria.get(along.block)?;
         let (vanishing, margin_db) =
-            self.evaluator.resonance(criterion, &self.member(&shares)?, place.frequency)?;
-        Some(LinePlant { share, margin_db, vanishing })
+            self.evaluator.resonance(criterion, &self.member(&fractions)?, place.frequency)?;
+        Some(LinePlant { fraction, margin_db, vanishing })
     }
 
     /// The point with the follower at its minimum.
     pub(super) fn followed(&self, place: SearchPoint, follower: SearchCoordinate) -> SearchPoint {
         let alone = MarginDescent { follower: None, ..*self };
-        let start = (place.share(follower.block, follower.coordinate), place.margin_db);
+        let start = (place.fraction(follower.block, follower.coordinate), place.margin_db);
         let mut best = place;
         minimum::downhill(
-            |share| alone.tried(&mut best, follower, share),
+            |fraction| alone.evaluated(&mut best, follower, fraction),
             [0.0, 1.0],
             start,
             STEP,

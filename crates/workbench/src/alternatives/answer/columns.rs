@@ -134,9 +134,9 @@ pub(super) struct ImpedanceColumnsAnswer {
     #[answer(key = ColumnKey::ImpedanceClosed.quantity())]
     impedance_closed: OrReason<f64>,
     /// Magnitude of the required virtual impedance, if there is one.
-    #[answer(key = ColumnKey::ImpedanceAsked.quantity())]
+    #[answer(key = ColumnKey::ImpedanceRequired.quantity())]
     #[answer(optional)]
-    impedance_asked: Option<OrReason<f64>>,
+    impedance_required: Option<OrReason<f64>>,
 }
 
 /// Passivity of the driving-point impedance at the load.
@@ -257,7 +257,7 @@ fn impedance(all: &[(ColumnPart, AlternativeColumn)], part: &ColumnPart) -> Opti
         frequency_rad_per_s,
         impedance_open: columns.number(ColumnKey::ImpedanceOpen),
         impedance_closed: columns.number(ColumnKey::ImpedanceClosed),
-        impedance_asked: columns.find(ColumnKey::ImpedanceAsked),
+        impedance_required: columns.find(ColumnKey::ImpedanceRequired),
     })
 }
 

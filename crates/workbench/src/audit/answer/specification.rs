@@ -241,7 +241,7 @@ fn in_time(names: &PlantNames, finding: &TimeFinding) -> TimeFindingAnswer {
     TimeFindingAnswer {
         verdict: OrReason::new(finding.verdict(), reason),
         part_of_verdict: finding.requirement.follows,
-        required: (&finding.requirement.wish).into(),
+        required: (&finding.requirement.step_limits).into(),
         worst,
     }
 }
@@ -268,7 +268,7 @@ fn specification_proof(view: &ProjectAudit, index: usize) -> Option<Specificatio
     let own = proof.specifications.get(index)?;
     let ends = [own.least_db, own.most_db];
     Some(SpecificationProofAnswer {
-        outcome: proven(view, proof, &own.standing),
+        outcome: proven(view, proof, &own.claim_status),
         enclosure_db: ends,
         enclosure_db_reason: ends.contains(&None).then_some("it was not found; see proven_reason"),
     })

@@ -1,6 +1,6 @@
 //! Stability of the family, and its proof, in the answer of an audit.
 
-use phea_qft::proof::{Certificate, Proof, Standing};
+use phea_qft::proof::{Certificate, Proof, ClaimStatus};
 use phea_qft::verification::{Evidence, SearchedInfinity, StabilityFinding, Verdict};
 
 use crate::answer::{Answer, OrReason};
@@ -39,7 +39,7 @@ pub(super) struct StabilityAnswer {
 #[derive(Answer)]
 struct LeadingCoefficientAnswer {
     /// Ratio of the least value to the value of the nominal plant.
-    least_share_of_nominal: f64,
+    least_fraction_of_nominal: f64,
     /// Plant with the least value.
     plant: NamedPlant,
     /// Parameters that change it, the most important first.
@@ -88,7 +88,7 @@ fn leading_coefficient(found: &SearchedInfinity, names: &PlantNames) -> LeadingC
     let all = names.headings();
     let moved = found.parameters.iter().filter_map(|&index| all.get(index).copied());
     LeadingCoefficientAnswer {
-        least_share_of_nominal: found.least_share,
+        least_fraction_of_nominal: found.least_fraction,
         plant: names.named(&found.plant),
         parameters: moved.map(str::to_string).collect(),
     }
@@ -103,11 +103,11 @@ pub(super) fn proof(view: &ProjectAudit, proof: &Proof) -> AuditProofAnswer {
 }
 
 /// The outcome of a claim.
-pub(super) fn proven(view: &ProjectAudit, proof: &Proof, standing: &Standing) -> ProvenAnswer {
-    let proven = match standing {
-        Standing::Proven => Some(true),
-        Standing::Refuted => Some(false),
-        Standing::NotProven(_) => None,
+pub(super) fn proven(view: &ProjectAudit, proof: &Proof, claim_status: &ClaimStatus) -> ProvenAnswer {
+    let proven = match claim_status {
+        ClaimStatus::Proven => Some(true),
+        ClaimStatus::Refuted => Some(false),
+        ClaimStatus::NotProven(_) => None,
     };
-    ProvenAnswer { proven: OrReason::new(proven, why_not_proven(view, proof, standing).unwrap_or_default()) }
+    ProvenAnswer { proven: OrReason::new(proven, why_not_proven(view, proof, claim_status).unwrap_or_default()) }
 }

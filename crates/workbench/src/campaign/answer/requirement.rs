@@ -40,8 +40,8 @@ pub(super) fn requirement(one: &CampaignRequirement) -> CampaignRequirementAnswe
     let worst = one.judged.ok().and_then(|judged| judged.worst);
     CampaignRequirementAnswer {
         specification: one.number,
-        requirement: required_words(&one.wish),
-        required: (&one.wish).into(),
+        requirement: required_words(&one.step_limits),
+        required: (&one.step_limits).into(),
         satisfied: judged(one, |judged| judged.satisfied),
         runs: judged(one, |judged| judged.runs),
         confidence_95: judged(one, |judged| judged.confidence_95()),

@@ -22,7 +22,7 @@ pub(super) struct DesignLimitAnswer {
     /// Origin of the value.
     origin: LimitOrigin,
     /// True if the design satisfies the limit.
-    kept: bool,
+    satisfied: bool,
     /// Least margin of the family; negative if the limit is exceeded, left out if it is unknown.
     #[answer(optional)]
     worst_margin_db: Option<f64>,
@@ -107,7 +107,7 @@ fn row(view: &ProjectDesign, limit: &DesignLimit) -> DesignLimitAnswer {
         key: limit.kind,
         value: in_limit_unit(limit.kind, limit.value),
         origin: limit.origin,
-        kept: is_satisfied(view, limit),
+        satisfied: is_satisfied(view, limit),
         worst_margin_db: margin_db(view, limit),
         binds: view.binds(limit),
         command: command.map(|found| command_of_steps(view, found)),
@@ -121,7 +121,7 @@ fn is_satisfied(view: &ProjectDesign, limit: &DesignLimit) -> bool {
         DesignLimitKind::MinimumDelayMargin => view.tolerates_its_delay,
         DesignLimitKind::PrefilterGain => view.exceeded_prefilter_gain().is_none(),
         DesignLimitKind::CommandOfSteps => {
-            view.command_of_steps.as_ref().is_some_and(CommandOfSteps::is_kept)
+            view.command_of_steps.as_ref().is_some_and(CommandOfSteps::is_satisfied)
         }
         DesignLimitKind::PoleDampingRatio | DesignLimitKind::FastestPole | DesignLimitKind::RequiredStep => {
             true

@@ -18,7 +18,7 @@ pub(super) struct RepairAnswer {
     /// Outcome of the repair.
     status: RepairStatus,
     /// Name of the run of the machine whose plant was added.
-    taken_in: OrReason<String>,
+    added_plant: OrReason<String>,
     /// Frequency at which the slower line of this machine is a quarter of a wave long.
     quarter_wave_rad_per_s: OrReason<f64>,
     /// Amount by which every limit must be relaxed for a controller to satisfy it.
@@ -59,7 +59,7 @@ words! {
         NotConverged => "not_converged",
         NotStabilised => "not_stabilised",
         Stopped => "stopped",
-        NothingToTakeIn => "nothing_to_take_in",
+        NothingToAdd => "nothing_to_add",
     }
 }
 
@@ -69,13 +69,13 @@ pub(super) fn answer(view: &ProjectDesign, repair: &Repair) -> RepairAnswer {
         RepairStatus::Infeasible { relaxation_db } => Some(relaxation_db),
         _ => None,
     };
-    let taken_in = repair.taken_in.as_ref().map(|(machine, size)| trial::name_of(machine, *size));
+    let added_plant = repair.added_plant.as_ref().map(|(machine, size)| trial::name_of(machine, *size));
     let nearest = repair.nearest();
     let before = repair.other.as_deref().filter(|_| repair.status == RepairStatus::Met);
     RepairAnswer {
         status: repair.status,
-        taken_in: OrReason::new(
-            taken_in,
+        added_plant: OrReason::new(
+            added_plant,
             "no linear plant is known that does what the nonlinear simulation does",
         ),
         quarter_wave_rad_per_s: OrReason::new(repair.quarter_wave_rad_per_s, "no waves were looked at"),

@@ -30,11 +30,11 @@ pub(super) struct DesignRoundAnswer {
 #[derive(Answer)]
 pub(super) struct SearchStartsAnswer {
     /// Number of points that the search evaluated before its descents.
-    tried: usize,
+    evaluated: usize,
     /// Number of these points that make every evaluated plant stable.
     stabilised: usize,
     /// Number of completed descents.
-    ended: usize,
+    completed: usize,
     /// Worst margin at the ends of the descents; null if no descent was completed.
     worst_margin_db: Option<[f64; 3]>,
     /// Objective at the ends that satisfy every limit; null if none does.
@@ -61,9 +61,9 @@ fn round(round: &DesignRound) -> DesignRoundAnswer {
 /// The starts of a search.
 pub(super) fn starts(starts: &Starts) -> SearchStartsAnswer {
     SearchStartsAnswer {
-        tried: starts.tried,
+        evaluated: starts.evaluated,
         stabilised: starts.stabilised,
-        ended: starts.ended,
+        completed: starts.completed,
         worst_margin_db: starts.margins_db,
         objective_db: starts.objectives_db,
     }

@@ -38,7 +38,7 @@ pub(super) struct ValveMisfitAnswer {
     /// Signal with the misfit.
     signal: SignalKind,
     /// Root mean square of the misfit over the range of the signal.
-    share: f64,
+    fraction: f64,
     /// Correlation of neighbouring residuals.
     neighbour_correlation: f64,
     /// Place of the greatest misfit, if a row shows it.
@@ -54,7 +54,7 @@ struct MisfitPlaceAnswer {
     /// Range of the command, from low to high.
     command_v: [f64; 2],
     /// Mean of the modelled less the recorded signal, over the range of the signal.
-    mean_share: f64,
+    mean_fraction: f64,
 }
 
 /// Correlation of two estimates.
@@ -73,7 +73,7 @@ pub(super) struct NotIdentifiableAnswer {
     coefficients: Vec<&'static str>,
     /// Components of the direction of length one in the logarithms of the coefficients, in the
     /// same order.
-    shares: Vec<f64>,
+    components: Vec<f64>,
     /// Standard deviation along the direction, in the logarithm; inf if no recorded signal depends
     /// on it.
     standard_deviation: f64,
@@ -114,12 +114,12 @@ pub(super) fn misfits(found: &Identification) -> Vec<ValveMisfitAnswer> {
     let place = |place: MisfitPlace| MisfitPlaceAnswer {
         command_rises: place.is_rising,
         command_v: place.command,
-        mean_share: place.fraction,
+        mean_fraction: place.fraction,
     };
     let one = |misfit: Misfit| ValveMisfitAnswer {
         file: file(found, misfit.recording),
         signal: misfit.kind,
-        share: misfit.fraction,
+        fraction: misfit.fraction,
         neighbour_correlation: misfit.correlation,
         greatest: misfit.place.map(place),
     };
@@ -153,10 +153,10 @@ pub(super) fn correlation_answers(found: &Identification) -> Vec<CorrelationAnsw
 }
 
 pub(super) fn not_identifiable(found: &NotIdentifiableCombination) -> NotIdentifiableAnswer {
-    let (coefficients, shares) = found.components.iter().copied().unzip();
+    let (coefficients, components) = found.components.iter().copied().unzip();
     NotIdentifiableAnswer {
         coefficients,
-        shares,
+        components,
         standard_deviation: found.deviation,
         identifiable_by: found.identifiable_by.clone(),
     }

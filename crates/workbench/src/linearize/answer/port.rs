@@ -6,7 +6,7 @@ use phea_dynamics::portable::magnitude;
 use phea_hydraulics::impedance::{Asymptote, AsymptoteKind};
 
 use super::super::{
-    AskedAt, AskedImpedance, Linearization, PortView, WITHIN_PERCENT, no_closed_impedance_words,
+    ComparedImpedance, RequiredImpedance, Linearization, PortView, WITHIN_PERCENT, no_closed_impedance_words,
 };
 use super::{FactorsAnswer, factors};
 use crate::answer::{Answer, OrReason, words};
@@ -108,15 +108,15 @@ struct VirtualImpedancePointAnswer {
     /// Frequency of the comparison.
     frequency_rad_per_s: f64,
     /// Magnitude of the required impedance M_v s + B_v + K_v/s.
-    #[answer(key = QuantityName::moving("asked", &DAMPING))]
-    asked_magnitude: f64,
+    #[answer(key = QuantityName::moving("required", &DAMPING))]
+    required_magnitude: f64,
     /// Magnitude of the impedance of the loop.
-    #[answer(key = QuantityName::moving("shown", &DAMPING))]
-    shown_magnitude: f64,
+    #[answer(key = QuantityName::moving("achieved", &DAMPING))]
+    achieved_magnitude: f64,
     /// Required impedance, in the unit of the magnitude.
-    asked: Complex64,
+    required: Complex64,
     /// Impedance -F_e/(s X_L) of the loop, in the unit of the magnitude.
-    shown: Complex64,
+    achieved: Complex64,
 }
 
 /// Force or torque that remains after a step of the position by 0.001.
@@ -174,25 +174,25 @@ pub(crate) fn passivity(report: &PassivityReport) -> PassivityAnswer {
     }
 }
 
-pub(super) fn virtual_impedance(asked: &AskedImpedance) -> VirtualImpedanceAnswer {
+pub(super) fn virtual_impedance(required: &RequiredImpedance) -> VirtualImpedanceAnswer {
     VirtualImpedanceAnswer {
-        stiffness: asked.impedance.stiffness,
-        damping: asked.impedance.damping,
-        mass: asked.impedance.mass,
-        filter_time_s: asked.impedance.filter_time_s,
+        stiffness: required.impedance.stiffness,
+        damping: required.impedance.damping,
+        mass: required.impedance.mass,
+        filter_time_s: required.impedance.filter_time_s,
         within_percent: WITHIN_PERCENT,
-        follows_rad_per_s: OrReason::new(asked.follows_rad_per_s, "nowhere within that"),
-        points: asked.points.iter().map(virtual_impedance_point).collect(),
+        follows_rad_per_s: OrReason::new(required.follows_rad_per_s, "nowhere within that"),
+        points: required.points.iter().map(virtual_impedance_point).collect(),
     }
 }
 
-fn virtual_impedance_point(point: &AskedAt) -> VirtualImpedancePointAnswer {
+fn virtual_impedance_point(point: &ComparedImpedance) -> VirtualImpedancePointAnswer {
     VirtualImpedancePointAnswer {
         frequency_rad_per_s: point.frequency_rad_per_s,
-        asked_magnitude: magnitude(point.asked),
-        shown_magnitude: magnitude(point.shown),
-        asked: point.asked,
-        shown: point.shown,
+        required_magnitude: magnitude(point.required),
+        achieved_magnitude: magnitude(point.achieved),
+        required: point.required,
+        achieved: point.achieved,
     }
 }
 

@@ -1,6 +1,6 @@
 //! A controller with all its results.
 
-use phea_qft::proof::{Proof, Standing};
+use phea_qft::proof::{Proof, ClaimStatus};
 use phea_qft::verification::Verdict;
 
 use super::steps::{StepProperty, steps};
@@ -71,8 +71,8 @@ impl Side<'_> {
         let proof = self.proof()?;
         // steps in time are searched for, and are not part of a proof
         let searched = self.view?.in_time.iter().any(|finding| finding.requirement.follows);
-        let each = proof.specifications.iter().map(|own| &own.standing);
-        Some(std::iter::once(&proof.stability).chain(each).all(|one| !searched && *one == Standing::Proven))
+        let each = proof.specifications.iter().map(|own| &own.claim_status);
+        Some(std::iter::once(&proof.stability).chain(each).all(|one| !searched && *one == ClaimStatus::Proven))
     }
 
     /// True if every specification is met.

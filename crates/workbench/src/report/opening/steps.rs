@@ -11,7 +11,7 @@ use crate::answer::significant;
 use crate::audit::{TimeOutcome, WorstStep};
 use crate::plant_names::{plant_text, plant_words};
 use crate::simulate::{
-    Metrics, ReachedStep, TimeRequirement, TrackingWish, Unmeasured, cause_words, concerns,
+    Metrics, ReachedStep, TimeRequirement, StepLimits, Unmeasured, cause_words, concerns,
 };
 use crate::trial::{Trial, TrialRun, have_one_name, run_name};
 
@@ -69,7 +69,7 @@ const ACCURACY_PERCENT: f64 = 0.01;
 /// Every step of a controller that a requirement is about; `None` if the property is not required
 /// or no step has it.
 pub(super) fn steps(side: &Side<'_>, required: &TimeRequirement, property: StepProperty) -> Option<AllSteps> {
-    let requirement = &required.wish;
+    let requirement = &required.step_limits;
     let most = match property {
         StepProperty::Overshoot => requirement.overshoot_percent?,
         StepProperty::Settling => requirement.settling_time_s?,
@@ -136,7 +136,7 @@ fn held<'r>(run: &'r TrialRun, required: &TimeRequirement) -> Option<&'r Reached
     Some(&held.reached).filter(|reached| reached.overshoot_percent.is_finite())
 }
 
-fn of_window(metrics: &Metrics, requirement: &TrackingWish, property: StepProperty) -> Option<f64> {
+fn of_window(metrics: &Metrics, requirement: &StepLimits, property: StepProperty) -> Option<f64> {
     let overshoot = metrics.overshoot_percent.ok()?;
     match property {
         StepProperty::Overshoot => Some(overshoot),
@@ -150,7 +150,7 @@ fn of_window(metrics: &Metrics, requirement: &TrackingWish, property: StepProper
     }
 }
 
-fn of_machine(run: &TrialRun, requirement: &TrackingWish, property: StepProperty) -> Option<f64> {
+fn of_machine(run: &TrialRun, requirement: &StepLimits, property: StepProperty) -> Option<f64> {
     let response = &run.machine_response;
     let metrics =
         step_metrics(&response.times_s, &response.values, StepBaseline::unit(), requirement.band_percent)

@@ -1,6 +1,6 @@
 //! The table of verdicts and numbers: a row for each requirement, a column for each controller.
 
-use phea_qft::proof::Standing;
+use phea_qft::proof::ClaimStatus;
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
 use super::Contents;
@@ -23,7 +23,7 @@ type Rows = Vec<Vec<Cell>>;
 /// The table; empty without a controller.
 pub(super) fn table(contents: &Contents<'_>, sides: &[Side<'_>]) -> Table {
     let names = sides.iter().map(|side| format!("{} controller", side.name));
-    let mut table = Table::grouped_by("judged", std::iter::once("what was asked".to_string()).chain(names));
+    let mut table = Table::grouped_by("judged", std::iter::once("what was required".to_string()).chain(names));
     let groups = [
         ("The whole family of plants", of_family(contents, sides)),
         ("The nonlinear simulation", of_machine(contents, sides)),
@@ -67,7 +67,7 @@ fn of_family(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
             Verdict::Violated => "unstable",
             Verdict::NotProven => "not proven",
         };
-        let is_proven = side.proof().is_some_and(|proof| proof.stability == Standing::Proven);
+        let is_proven = side.proof().is_some_and(|proof| proof.stability == ClaimStatus::Proven);
         Some(Cell::from(word).marked(verdict).then(proven(is_proven)))
     }));
     for (index, specification) in judged.problem.specifications.iter().enumerate() {
@@ -75,7 +75,7 @@ fn of_family(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
             .then(Cell::Equation(demand(&specification.requirement)));
         rows.extend(row(name, sides, |side| {
             let is_proven = side.proof().and_then(|proof| proof.specifications.get(index));
-            let is_proven = is_proven.is_some_and(|own| own.standing == Standing::Proven);
+            let is_proven = is_proven.is_some_and(|own| own.claim_status == ClaimStatus::Proven);
             Some(finding(side.view?.audit.specifications.get(index)?, is_proven))
         }));
     }
@@ -123,7 +123,7 @@ fn of_machine(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
     let Some(all_required) = contents.driven.and_then(|driven| driven.required.as_ref()) else {
         return rows;
     };
-    let requirement = &all_required.wish;
+    let requirement = &all_required.step_limits;
     let required = [
         (StepProperty::Overshoot, required_overshoot(requirement)),
         (StepProperty::Settling, required_settling(requirement)),

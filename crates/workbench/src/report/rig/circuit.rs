@@ -34,7 +34,7 @@ pub(super) fn circuit(project: &Project, actuator: &DeclaredActuator, rig: &Rig)
         line_a: line_symbol(&actuator.line.a),
         line_b: line_symbol(&actuator.line.b),
         rods: if symmetric { Rods::Both } else { Rods::TowardsLoad },
-        load_beside_b: symmetric || rod_b > 0.0 || actuator.motor.is_some(),
+        load_at_b: symmetric || rod_b > 0.0 || actuator.motor.is_some(),
         cross_port: actuator.cross_port.as_ref().map(cross_port_symbol),
         motion: actuator.motion(),
         further_stages: actuator.cylinder.stages.len(),
@@ -110,7 +110,7 @@ fn line_symbol(declared: &DeclaredLine) -> LineSymbol {
     symbol.accumulator = Some(match gas.adjustment.map(|adjustment| adjustment.kind) {
         None => AccumulatorSymbol::Fixed,
         Some(AdjustmentKind::Gas(_)) => AccumulatorSymbol::Adjusted,
-        Some(AdjustmentKind::Valve(_)) => AccumulatorSymbol::BehindValve,
+        Some(AdjustmentKind::Valve(_)) => AccumulatorSymbol::ThroughValve,
     });
     symbol.rows.push(gas_at_rest(gas));
     symbol.rows.extend(gas.adjustment.iter().flat_map(|adjustment| adjustment_rows(gas, adjustment)));

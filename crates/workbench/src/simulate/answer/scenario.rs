@@ -22,7 +22,7 @@ pub(super) struct ScenarioAnswer {
     /// Status of the run.
     status: RunStatus,
     /// Simulated time at which the run ended early.
-    ended_s: Reasoned<f64>,
+    end_time_s: Reasoned<f64>,
     /// Divergence of a run that reached its end.
     divergence: Reasoned<DivergenceAnswer>,
     /// Growing mode whose oscillation needs more steps than are permitted.
@@ -32,7 +32,7 @@ pub(super) struct ScenarioAnswer {
     /// Tolerance of the integration in the reported pass.
     tolerance: f64,
     /// Time between two samples of the signals.
-    look_s: f64,
+    sample_interval_s: f64,
     /// True if a stated command drives the valve and no controller.
     open_loop: bool,
     /// Name of the file with the final state, which is written with `--out`.
@@ -106,7 +106,7 @@ pub(super) fn scenario(
     requirements: &[ScenarioRequirement],
 ) -> ScenarioAnswer {
     let motion = run.record.units.motion;
-    let ended_s = StoppedRun::of(run.status).map(|stopped| stopped.time_s);
+    let end_time_s = StoppedRun::of(run.status).map(|stopped| stopped.time_s);
     let mode = run.stopped().and_then(|stopped| stopped.mode).map(unresolved);
     let check = run.check.as_ref().map(|check| check::answer(check, motion));
     let ledger = run.ledger.as_ref().map(|one| ledgers(one, motion));
@@ -114,12 +114,12 @@ pub(super) fn scenario(
     ScenarioAnswer {
         name: run.name.clone(),
         status: run.run_status(),
-        ended_s: Reasoned::new(ended_s, "it ran to its end"),
+        end_time_s: Reasoned::new(end_time_s, "it ran to its end"),
         divergence: Reasoned::new(run.divergence.map(divergence), "it does not diverge"),
         unresolved_mode: Reasoned::new(mode, "every mode that grew was resolved"),
         work: run.work.into(),
         tolerance: run.tolerance,
-        look_s: run.look_s,
+        sample_interval_s: run.sample_interval_s,
         open_loop: run.open_loop,
         state_file: Reasoned::of(state_file.map_err(|why| not_saved_words(*why))),
         events: run.windows.iter().map(|one| event(one, motion)).collect(),

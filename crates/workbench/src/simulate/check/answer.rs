@@ -13,7 +13,7 @@ pub(crate) struct ToleranceCheckAnswer {
     /// Status of the second run; the comparison extends to its end.
     status: RunStatus,
     /// Time between two compared samples.
-    look_s: f64,
+    sample_interval_s: f64,
     /// Largest magnitude of the difference of the force.
     #[answer(key = QuantityName::OfMotion(["force_difference", "torque_difference"], &FORCE))]
     force_difference: Reasoned<f64>,
@@ -67,7 +67,7 @@ pub(crate) fn answer(check: &ToleranceCheck, motion: MotionKind) -> ToleranceChe
     ToleranceCheckAnswer {
         tolerance: check.tolerance,
         status: check.stopped.map_or(RunStatus::Completed, |stopped| stopped.status),
-        look_s: check.look_s,
+        sample_interval_s: check.sample_interval_s,
         force_difference: Reasoned::new(force.map(|force| force.difference), APART),
         part_of_peak: Reasoned::new(force.map(Difference::part_of_peak), APART),
         signals: check.signals.iter().map(signal).collect(),
@@ -96,15 +96,15 @@ fn event(found: &MetricDifferences, motion: MotionKind) -> EventDifferenceAnswer
 /// The findings of a check, a sentence each.
 pub(crate) fn sentences(check: &ToleranceCheck, units: Units) -> Vec<String> {
     let tolerance = significant(check.tolerance, 3);
-    let mut told = Vec::new();
+    let mut warnings = Vec::new();
     if let Some(stopped) = check.stopped {
-        told.push(format!(
+        warnings.push(format!(
             "the check at the tolerance {tolerance} ended at {} s: later nothing is compared",
             significant(stopped.time_s, 6)
         ));
     }
-    let Some(force) = &check.force else { return told };
-    told.push(format!(
+    let Some(force) = &check.force else { return warnings };
+    warnings.push(format!(
         "checked at the tolerance {tolerance}: the {} differs by {} at {} s, {} of its peak{}",
         units.motion.words().force,
         units.force.text(force.difference, 2),
@@ -113,13 +113,13 @@ pub(crate) fn sentences(check: &ToleranceCheck, units: Units) -> Vec<String> {
         of_disturbance(check, units)
     ));
     if check.is_doubtful() {
-        told.push(
+        warnings.push(
             "that is more than a thousandth: take its numbers for no more exact than this, or state a smaller `simulation.tolerance`; \
              where that does not bring them closer, they depend on details that no solver resolves"
                 .to_string(),
         );
     }
-    told
+    warnings
 }
 
 /// The difference of the disturbance peak, where the load moves.

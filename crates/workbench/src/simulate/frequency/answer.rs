@@ -87,7 +87,7 @@ struct MachineResponsePointAnswer {
     /// Conditions that the machine meets, which are outside the neighbourhood of the equilibrium.
     reached: Vec<OccurrenceKind>,
     /// Status of a simulation that ended before the response settled.
-    ended: Reasoned<RunStatus>,
+    early_end: Reasoned<RunStatus>,
 }
 
 /// Amplitude of a sine, of the command in the open loop and of the reference in the closed one.
@@ -158,7 +158,7 @@ fn point(point: &ResponsePoint, amplitude: ShakenAmplitude) -> MachineResponsePo
         periods: point.periods,
         steps: point.steps,
         reached: point.reached.iter().map(|kind| OccurrenceKind(kind)).collect(),
-        ended: Reasoned::new(point.ended, "it did not end early"),
+        early_end: Reasoned::new(point.early_end, "it did not end early"),
     }
 }
 

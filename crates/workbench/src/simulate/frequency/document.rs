@@ -84,7 +84,7 @@ pub(super) fn own(point: &ResponsePoint) -> [f64; 2] {
 /// A remark on a point.
 fn remark(point: &ResponsePoint, motion: MotionKind) -> Option<String> {
     let at = significant(point.frequency_rad_per_s, 4);
-    if let Some(status) = point.ended {
+    if let Some(status) = point.early_end {
         let (force, word) = (motion.words().force, status.key());
         return Some(format!("{at} rad/s: the simulation ended before the {force} settled ({word})"));
     }

@@ -102,7 +102,7 @@ struct SizedValveAnswer {
     /// Hydraulic stiffness of the rig that it damps.
     stiffness_n_per_m: f64,
     /// Damping ratio without the valve.
-    damping_ratio_alone: f64,
+    damping_ratio_without_valve: f64,
     /// Conductance with the required damping ratio; null if none has it.
     conductance_m3_per_s_pa: Option<f64>,
     /// Greatest damping ratio of all conductances.
@@ -166,7 +166,7 @@ fn spring(found: &Result<SizedSpring, OtherMeansError>) -> SizedSpringAnswer {
 fn valve(valve: SizedValve) -> SizedValveAnswer {
     SizedValveAnswer {
         stiffness_n_per_m: valve.stiffness,
-        damping_ratio_alone: valve.alone,
+        damping_ratio_without_valve: valve.damping_ratio_without_valve,
         conductance_m3_per_s_pa: valve.conductance,
         damping_ratio_at_most: valve.most[0],
         at_conductance_m3_per_s_pa: valve.most[1],

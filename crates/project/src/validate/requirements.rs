@@ -127,7 +127,7 @@ fn one_scenario(scenario: &Scenario, actuator: &DeclaredActuator, path: &str, ch
         let help = "give [load] a model that moves: \"spring_mass_damper\" or \"wall\"";
         check.error_with_help(&format!("{path}.external_force"), message, help);
     }
-    adjustment::course(scenario, actuator, path, check);
+    adjustment::input_schedule(scenario, actuator, path, check);
     measured(&scenario.measured, path, check);
     let begins = scenario.load_motion.as_ref().map_or(0.0, |motion| motion.start);
     if scenario.duration > 0.0 && begins > scenario.duration {

@@ -14,7 +14,7 @@ use crate::robust::RobustProblem;
 
 /// An explanation if the specifications are limits on tracking that the plants satisfy without a
 /// loop, and nothing limits a disturbance; `None` if something requires feedback.
-pub(super) fn nothing_asks(given: &RobustProblem) -> Option<Explanation> {
+pub(super) fn feedback_not_required(given: &RobustProblem) -> Option<Explanation> {
     let own = given.specifications.len() - given.design_limits.len();
     let own = given.specifications.get(..own)?;
     let rejects = |one: &Specification| {
@@ -48,7 +48,7 @@ pub(super) fn nothing_asks(given: &RobustProblem) -> Option<Explanation> {
         })
     };
     tracking.iter().all(|&index| keeps(&own[index])).then(|| Explanation {
-        fact: ExplainedFact::NothingAsksForFeedback,
+        fact: ExplainedFact::FeedbackNotRequired,
         limits: vec![],
         is_impossible: false,
         frequency_rad_per_s: None,

@@ -74,14 +74,14 @@ impl PreparedScenario {
     }
 }
 
-pub(super) fn course(
+pub(super) fn prepared(
     source: &dyn Source,
     project: &Project,
     bench: &ControlledMachine,
     scenario: &Scenario,
 ) -> Result<PreparedScenario, SimulateError> {
     let driven = driven(source, project, bench, scenario)?;
-    course_of(&driven, bench, scenario)
+    prepared_scenario_of(&driven, bench, scenario)
 }
 
 /// Reference and motion of a scenario.
@@ -126,7 +126,7 @@ pub(super) fn driven_by(
 }
 
 /// The scenario for the machine of a bench.
-pub(crate) fn course_of(
+pub(crate) fn prepared_scenario_of(
     driven: &ScenarioDrive,
     bench: &ControlledMachine,
     scenario: &Scenario,
@@ -134,7 +134,7 @@ pub(crate) fn course_of(
     if let Some(saved) = &driven.saved {
         let waking = saved.memory.clone().map_or(Waking::AtRest, Waking::Resumed);
         let states = saved.states.iter().map(|(_, value)| *value).collect();
-        return Ok(driven.course(bench, saved.ground_m, states, waking));
+        return Ok(driven.prepared(bench, saved.ground_m, states, waking));
     }
     if let Some(stated) = &scenario.start {
         let named = |error| SimulateError::Start {
@@ -143,7 +143,7 @@ pub(crate) fn course_of(
         };
         let beginning = bench.machine.start(&stated_start(stated)).map_err(named)?;
         let start = loop_start(bench, &beginning, None);
-        return Ok(driven.course(bench, beginning.inputs[0], start, Waking::AtRest));
+        return Ok(driven.prepared(bench, beginning.inputs[0], start, Waking::AtRest));
     }
     let at = driven.at_start();
     let near = near_rest(bench, scenario, at.reference_n)?;
@@ -157,7 +157,7 @@ pub(crate) fn course_of(
         ..ControllerInput::default()
     };
     let waking = Waking::Holding { read, command_v };
-    Ok(driven.course(bench, ground_m, start, waking))
+    Ok(driven.prepared(bench, ground_m, start, waking))
 }
 
 impl ScenarioDrive {
@@ -173,7 +173,7 @@ impl ScenarioDrive {
 
     /// Input schedule from a state, with the position of the load's ground, m. The load is at the
     /// rest position of a virtual impedance, unless another run is continued.
-    fn course(
+    fn prepared(
         &self,
         bench: &ControlledMachine,
         ground: f64,
@@ -197,7 +197,7 @@ impl ScenarioDrive {
 }
 
 /// Number of instants at which a setting is checked in addition to its breaks.
-const LOOKS: u32 = 20_000;
+const INSTANTS: u32 = 20_000;
 /// Distance beyond its ends to which rounding may move a setting.
 const BEYOND: f64 = 1e-9;
 
@@ -208,7 +208,7 @@ fn within_its_way(project: &Project, scenario: &Scenario, change: &Profile) -> R
         return Ok(());
     }
     let end_s = scenario.duration;
-    let evenly = (0..=LOOKS).map(|look| end_s * f64::from(look) / f64::from(LOOKS));
+    let evenly = (0..=INSTANTS).map(|look| end_s * f64::from(look) / f64::from(INSTANTS));
     let breaks = change.breaks().into_iter().filter(|time| *time <= end_s);
     let beyond = |setting: f64| (setting - 1.0).max(-setting);
     let mut farthest: Option<(f64, f64)> = None;

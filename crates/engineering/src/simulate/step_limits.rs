@@ -2,7 +2,7 @@
 
 use super::{Cause, Metrics, Unmeasured, Window};
 use crate::project::{RequiredStep, SETTLING_BAND_PERCENT};
-use crate::specification::CheckedWish;
+use crate::specification::CheckedRequirement;
 
 /// Relative tolerance of the required value: printed numbers have three digits.
 const ROUNDED: f64 = 1e-6;
@@ -15,7 +15,7 @@ const HORIZON_S: f64 = 0.1;
 /// Requirements in time of the first tracking specification that has any: the overshoot of its
 /// upper limit, the settling time of its lower one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TrackingWish {
+pub struct StepLimits {
     /// Largest permitted overshoot, percent of the step.
     pub overshoot_percent: Option<f64>,
     /// Required settling time, s.
@@ -45,9 +45,9 @@ fn rounded(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }
 
-impl TrackingWish {
+impl StepLimits {
     /// Requirement without any limit.
-    pub(crate) const NOTHING: TrackingWish = TrackingWish {
+    pub(crate) const NOTHING: StepLimits = StepLimits {
         overshoot_percent: None,
         settling_time_s: None,
         rise_time_s: None,
@@ -56,24 +56,24 @@ impl TrackingWish {
     };
 
     /// Requirement in time of these limits; `None` if there is none.
-    pub fn of(wishes: &[CheckedWish]) -> Option<TrackingWish> {
-        TrackingWish::of_specification(wishes, wishes.first()?.number)
+    pub fn of(requirements: &[CheckedRequirement]) -> Option<StepLimits> {
+        StepLimits::of_specification(requirements, requirements.first()?.number)
     }
 
     /// Requirement in time of the limits of one specification, by its number from 1; `None` if
     /// there is none.
     pub fn of_specification<'a>(
-        wishes: impl IntoIterator<Item = &'a CheckedWish> + Clone,
+        requirements: impl IntoIterator<Item = &'a CheckedRequirement> + Clone,
         number: usize,
-    ) -> Option<TrackingWish> {
+    ) -> Option<StepLimits> {
         let side = |key: &str| {
-            let of_side = |wish: &&CheckedWish| wish.number == number && wish.key == key;
-            wishes.clone().into_iter().find(of_side).map(|wish| wish.check.wished)
+            let of_side = |requirement: &&CheckedRequirement| requirement.number == number && requirement.key == key;
+            requirements.clone().into_iter().find(of_side).map(|requirement| requirement.check.required)
         };
         let (upper, lower) = (side("upper"), side("lower"));
-        Some(TrackingWish {
-            overshoot_percent: upper.map(|wished| wished.overshoot_percent),
-            settling_time_s: lower.map(|wished| wished.settling_time_s),
+        Some(StepLimits {
+            overshoot_percent: upper.map(|required| required.overshoot_percent),
+            settling_time_s: lower.map(|required| required.settling_time_s),
             rise_time_s: None,
             band_percent: lower.or(upper)?.settling_band_percent,
             horizon_s: lower.or(upper)?.settling_time_s,
@@ -81,9 +81,9 @@ impl TrackingWish {
     }
 
     /// Requirement of a specification of the kind `step`.
-    pub(crate) fn of_step(step: &RequiredStep) -> TrackingWish {
+    pub(crate) fn of_step(step: &RequiredStep) -> StepLimits {
         let of_rise = step.rise_time.map(|time_s| RISES * time_s);
-        TrackingWish {
+        StepLimits {
             overshoot_percent: step.overshoot_percent,
             settling_time_s: step.settling_time,
             rise_time_s: step.rise_time,
@@ -93,9 +93,9 @@ impl TrackingWish {
     }
 
     /// The requirement with this multiple of each permitted property, to twelve digits.
-    pub fn wider(self, factor: f64) -> TrackingWish {
+    pub fn wider(self, factor: f64) -> StepLimits {
         let times = |value: f64| rounded(factor * value);
-        TrackingWish {
+        StepLimits {
             overshoot_percent: self.overshoot_percent.map(times),
             settling_time_s: self.settling_time_s.map(times),
             rise_time_s: self.rise_time_s.map(times),

@@ -6,7 +6,7 @@ use phea_hydraulics::friction::KnottedForce;
 use super::FrictionIdentification;
 use super::motion::ConstantVelocity;
 use super::pressing::PressedRows;
-use super::problem::{FrictionProblem, KeptShapes, SHARED};
+use super::problem::{FrictionProblem, ShapeCache, SHARED};
 use super::shaking::ShakenRows;
 
 /// Friction force at a constant velocity. Units: m/s, N.
@@ -87,7 +87,7 @@ impl FrictionIdentification {
         Some(PressedCurve {
             forces: recording.forces.iter().take(press.rows).map(|force| force - zero).collect(),
             positions: recording.positions.iter().take(press.rows).map(|at| at - start).collect(),
-            modelled_forces: acting.shares().into_iter().map(along).collect(),
+            modelled_forces: acting.fractions().into_iter().map(along).collect(),
             modelled_positions: moved,
         })
     }
@@ -97,7 +97,7 @@ impl FrictionIdentification {
 pub(super) fn shaken(
     problem: &FrictionProblem<'_>,
     minimum: &Minimum,
-    kept: &mut KeptShapes,
+    cache: &mut ShapeCache,
 ) -> Vec<PressedCurve> {
     let (lugre, zero) = problem.friction(&minimum.variables);
     let mut first = problem.first_of_shakes();
@@ -107,8 +107,8 @@ pub(super) fn shaken(
         let recording = problem.recordings.get(shake.recording)?;
         let found = problem.shake_of(own)?;
         let start = recording.positions.first()? + found.begins;
-        let modelled = kept.at_rows(shake, recording.time_step).times(&found.sizes);
-        let moved = found.moved((problem.mass, recording.time_step), &lugre, zero, (shake, kept));
+        let modelled = cache.at_rows(shake, recording.time_step).times(&found.sizes);
+        let moved = found.moved((problem.mass, recording.time_step), &lugre, zero, (shake, cache));
         Some(PressedCurve {
             forces: recording.forces.iter().map(|force| force - zero).collect(),
             positions: recording.positions.iter().map(|at| at - start).collect(),

@@ -26,7 +26,7 @@ pub enum StructureEnding {
 
 /// A structure that was searched.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TriedStructure {
+pub struct SearchedStructure {
     /// Name of the structure; `None` for one of growing order or a given one.
     pub name: Option<NamedStructure>,
     /// Structure with its free numbers.
@@ -48,7 +48,7 @@ pub struct TriedStructure {
     pub reached_db: Option<f64>,
 }
 
-impl TriedStructure {
+impl SearchedStructure {
     pub(super) fn new(name: Option<NamedStructure>, attempt: &Attempt, ending: &AttemptEnding) -> Self {
         let ending = match ending {
             AttemptEnding::Met(_) => StructureEnding::Met,
@@ -62,7 +62,7 @@ impl TriedStructure {
         let least = margins.iter().min_by(|one, other| one.margin_db.total_cmp(&other.margin_db)).cloned();
         let most_db = least.as_ref().map_or(f64::NEG_INFINITY, |least| least.margin_db + BINDING_DB);
         let binding = margins.iter().filter(|one| one.margin_db <= most_db).map(|one| one.specification);
-        TriedStructure {
+        SearchedStructure {
             binding: Vec::from_iter(BTreeSet::from_iter(binding)),
             least,
             name,

@@ -9,7 +9,7 @@ use phea_machine::{Control, ControllerSample, ControllerSamples};
 use super::adjusted::{AdjustmentWatch, AdjustmentWork};
 use super::bench::ControlledMachine;
 use super::columns::SignalParts;
-use super::course::PreparedScenario;
+use super::prepared_scenario::PreparedScenario;
 use super::divergence::Divergence;
 use super::exceeded::{Exceeded, LimitWatch};
 use super::files::RunTable;
@@ -49,7 +49,7 @@ pub(super) struct Sighted<'t> {
 /// Signals of the controller at one time.
 struct LoopOutput {
     /// Reference and filtered reference, N; `None` in an open loop.
-    asked_for: Option<[f64; 2]>,
+    requested: Option<[f64; 2]>,
     /// Output of the controller, V.
     control_v: f64,
     others: ControlSignals,
@@ -59,7 +59,7 @@ struct LoopOutput {
 const FORCES: f64 = 500.0;
 
 /// Observer of a machine and its controller.
-pub(super) struct Looking<'a, 't> {
+pub(super) struct RunObserver<'a, 't> {
     bench: &'a ControlledMachine,
     /// The last output of a sampled controller.
     samples: &'a RefCell<ControllerSamples>,
@@ -67,7 +67,7 @@ pub(super) struct Looking<'a, 't> {
     wanted: Vec<usize>,
     /// Number of samples so far.
     count: u64,
-    looks_per_row: u64,
+    samples_per_row: u64,
     table: Option<RunTable<'t>>,
     /// Recorded samples; `None` if none are recorded.
     record: Option<Record>,
@@ -87,36 +87,36 @@ pub(super) struct Looking<'a, 't> {
     /// Number of samples between two recorded forces; in `force_n` those forces, N.
     apart: u64,
     force_n: Vec<f64>,
-    course: &'a PreparedScenario,
+    prepared: &'a PreparedScenario,
     /// The error of the table, if it accepts no more rows.
     full: &'a Cell<bool>,
     fault: Option<WriteError>,
 }
 
-impl<'a, 't> Looking<'a, 't> {
+impl<'a, 't> RunObserver<'a, 't> {
     pub(super) fn new(
         bench: &'a ControlledMachine,
         samples: &'a RefCell<ControllerSamples>,
-        (table, looks_per_row): (Option<RunTable<'t>>, usize),
+        (table, samples_per_row): (Option<RunTable<'t>>, usize),
         measurements: &'a [Measurement],
         full: &'a Cell<bool>,
-        (course, band, duration_s): (&'a PreparedScenario, f64, f64),
-    ) -> Looking<'a, 't> {
+        (prepared, band, duration_s): (&'a PreparedScenario, f64, f64),
+    ) -> RunObserver<'a, 't> {
         let [states, _] = bench.control.size();
         let wanted: Vec<usize> = (0..states).collect();
-        let windows = (course.windows.as_slice(), band, duration_s);
-        let follower = Follower::of(bench, &wanted, samples, &course.reference, windows);
+        let windows = (prepared.windows.as_slice(), band, duration_s);
+        let follower = Follower::of(bench, &wanted, samples, &prepared.reference, windows);
         let pressures = sums::pressures(bench, &wanted);
         let gas = GasWatch::of(bench, &wanted);
         let limits = LimitWatch::of(bench);
         let lines = LineWatch::of(bench, &wanted);
         let parts = SignalParts::of(bench);
-        Looking {
+        RunObserver {
             bench,
             samples,
             wanted,
             count: 0,
-            looks_per_row: looks_per_row as u64,
+            samples_per_row: samples_per_row as u64,
             table,
             record: None,
             limits,
@@ -131,7 +131,7 @@ impl<'a, 't> Looking<'a, 't> {
             attention: Attention::Everything,
             apart: 1,
             force_n: Vec::new(),
-            course,
+            prepared,
             full,
             fault: None,
         }
@@ -139,24 +139,24 @@ impl<'a, 't> Looking<'a, 't> {
 
     /// Sets the detail in which steps are evaluated, and records some hundreds of values of the
     /// force out of about `looks` samples.
-    pub(super) fn following(self, attention: Attention, looks: f64) -> Looking<'a, 't> {
-        Looking { attention, apart: (looks / FORCES).ceil().max(1.0) as u64, ..self }
+    pub(super) fn following(self, attention: Attention, looks: f64) -> RunObserver<'a, 't> {
+        RunObserver { attention, apart: (looks / FORCES).ceil().max(1.0) as u64, ..self }
     }
 
     /// Records the samples, of which there are about `looks`.
-    pub(super) fn keeping(mut self, looks: f64) -> Looking<'a, 't> {
+    pub(super) fn keeping(mut self, looks: f64) -> RunObserver<'a, 't> {
         self.record.get_or_insert_default().reserve(looks as usize);
         self
     }
 
     /// Omits the limits of lines.
-    pub(super) fn without_line_limits(mut self) -> Looking<'a, 't> {
+    pub(super) fn without_line_limits(mut self) -> RunObserver<'a, 't> {
         self.lines = LineWatch::default();
         self
     }
 
     /// Records the balances of oil and energy.
-    pub(super) fn accounting(mut self) -> Looking<'a, 't> {
+    pub(super) fn accounting(mut self) -> RunObserver<'a, 't> {
         self.ledger = Some(LedgerWatch::of(self.bench));
         self
     }
@@ -172,7 +172,7 @@ impl<'a, 't> Looking<'a, 't> {
         let measured = self.overlays.into_iter().map(Overlaying::finish).collect();
         let metrics = self.follower.metrics();
         Ok(Sighted {
-            divergence: self.follower.divergence(&self.course.other_inputs()),
+            divergence: self.follower.divergence(&self.prepared.other_inputs()),
             table: self.table,
             force_n: self.force_n,
             record: self.record.unwrap_or_default(),
@@ -196,8 +196,8 @@ impl<'a, 't> Looking<'a, 't> {
 
     /// Signals and output of the controller, and the inputs of the machine without those of the
     /// controller.
-    fn loop_look<'i>(&self, states: &[f64], inputs: &'i [f64]) -> (LoopOutput, &'i [f64]) {
-        let (asked_for, control_v, mut signals, others) = match &self.bench.control {
+    fn loop_sample<'i>(&self, states: &[f64], inputs: &'i [f64]) -> (LoopOutput, &'i [f64]) {
+        let (requested, control_v, mut signals, others) = match &self.bench.control {
             Control::Continuous(closed) => {
                 let signals = closed.signals::<f64, f64>(states, inputs);
                 let (arriving, integral) =
@@ -236,16 +236,16 @@ impl<'a, 't> Looking<'a, 't> {
             }
         };
         signals.virtual_force_n = self.bench.control.sensed().given_way::<f64, f64>(states, others);
-        (LoopOutput { asked_for, control_v, others: signals }, others)
+        (LoopOutput { requested, control_v, others: signals }, others)
     }
 
     fn sample(&self, time_s: f64, of_loop: LoopOutput, states: &[f64], others: &[f64]) -> Sample {
-        let LoopOutput { asked_for, control_v, others: control } = of_loop;
+        let LoopOutput { requested, control_v, others: control } = of_loop;
         let machine = &self.bench.machine;
         Sample {
             time_s,
-            reference_n: asked_for.map(|[reference, _]| reference),
-            filtered_reference_n: asked_for.map(|[_, filtered]| filtered),
+            reference_n: requested.map(|[reference, _]| reference),
+            filtered_reference_n: requested.map(|[_, filtered]| filtered),
             control_v,
             external_force_n: others.get(2).copied().filter(|_| machine.has_external_force()),
             machine: machine.signals(states, others),
@@ -254,7 +254,7 @@ impl<'a, 't> Looking<'a, 't> {
     }
 }
 
-impl Observer for Looking<'_, '_> {
+impl Observer for RunObserver<'_, '_> {
     fn wanted(&self) -> &[usize] {
         &self.wanted
     }
@@ -263,8 +263,8 @@ impl Observer for Looking<'_, '_> {
         if self.fault.is_some() {
             return;
         }
-        let (of_loop, others) = self.loop_look(states, inputs);
-        self.limits.take_loop(time_s, of_loop.asked_for.map(|[reference, _]| reference), of_loop.control_v);
+        let (of_loop, others) = self.loop_sample(states, inputs);
+        self.limits.take_loop(time_s, of_loop.requested.map(|[reference, _]| reference), of_loop.control_v);
         if self.count.is_multiple_of(self.apart) {
             self.force_n.push(self.follower.force_n(states));
         }
@@ -274,7 +274,7 @@ impl Observer for Looking<'_, '_> {
         }
         let sample = self.sample(time_s, of_loop, states, others);
         self.limits.take_signals(time_s, &sample.machine);
-        if let Some(table) = self.table.as_mut().filter(|_| self.count.is_multiple_of(self.looks_per_row))
+        if let Some(table) = self.table.as_mut().filter(|_| self.count.is_multiple_of(self.samples_per_row))
             && let Err(fault) = table.row(&sample)
         {
             self.fault = Some(fault);
@@ -293,8 +293,8 @@ impl Observer for Looking<'_, '_> {
         self.attention
     }
 
-    fn looks_closer(&self, stretch: &Stretch<'_>) -> bool {
-        self.follower.looks_closer(stretch)
+    fn needs_accurate_solution(&self, stretch: &Stretch<'_>) -> bool {
+        self.follower.needs_accurate_solution(stretch)
     }
 
     fn follow(&mut self, stretch: &Stretch<'_>) {

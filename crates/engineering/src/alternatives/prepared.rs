@@ -18,7 +18,7 @@ use crate::source::Source;
 
 /// An alternative, ready to be judged.
 #[derive(Clone, Debug)]
-pub struct AskedAlternative {
+pub struct PreparedAlternative {
     /// Name of the alternative.
     pub name: String,
     /// The project with the settings of the alternative, and with the part that was found for it.
@@ -31,25 +31,25 @@ pub struct AskedAlternative {
     pub moved: Vec<MovedRange>,
 }
 
-impl AskedAlternative {
-    pub(super) fn new(name: &str, loaded: Loaded, no_hose: Option<NoHose>) -> AskedAlternative {
+impl PreparedAlternative {
+    pub(super) fn new(name: &str, loaded: Loaded, no_hose: Option<NoHose>) -> PreparedAlternative {
         let rig = Setup::rig_of(&loaded.project);
-        AskedAlternative { name: name.to_string(), loaded, rig, no_hose, moved: vec![] }
+        PreparedAlternative { name: name.to_string(), loaded, rig, no_hose, moved: vec![] }
     }
 
     /// The alternative with a model for each line without a stated one, by its own loop and
     /// lengths.
-    fn with_lines(self, source: &dyn Source) -> AskedAlternative {
+    fn with_lines(self, source: &dyn Source) -> PreparedAlternative {
         match with_chosen_lines(source, &self.loaded, LoopInQuestion::Designed) {
-            Some(loaded) => AskedAlternative { rig: Setup::rig_of(&loaded.project), loaded, ..self },
+            Some(loaded) => PreparedAlternative { rig: Setup::rig_of(&loaded.project), loaded, ..self },
             None => self,
         }
     }
 
     /// Parameters of the rig outside their ranges in `[uncertainty]`; `None` if they are those of
     /// the project as declared, the first of all.
-    pub fn outside(&self, all: &[AskedAlternative]) -> Option<Vec<OutsideParameter>> {
-        let of = |one: &AskedAlternative| {
+    pub fn outside(&self, all: &[PreparedAlternative]) -> Option<Vec<OutsideParameter>> {
+        let of = |one: &PreparedAlternative| {
             let rig = one.rig.as_ref().ok()?;
             outside(&one.loaded.project, rig).map(|(_, parameters)| parameters)
         };
@@ -63,12 +63,12 @@ impl AskedAlternative {
     pub(super) fn recentred(
         self,
         again: &ReadingAgain<'_>,
-        base: &AskedAlternative,
-    ) -> Result<AskedAlternative, AlternativesError> {
+        base: &PreparedAlternative,
+    ) -> Result<PreparedAlternative, AlternativesError> {
         let moved = recentred::moved(base, &self)
             .map_err(|reason| AlternativesError::Alternative { name: self.name.clone(), reason })?;
         let loaded = again.with(&self.loaded, &recentred::settings(&moved))?;
-        Ok(AskedAlternative { moved, ..AskedAlternative::new(&self.name, loaded, self.no_hose) })
+        Ok(PreparedAlternative { moved, ..PreparedAlternative::new(&self.name, loaded, self.no_hose) })
     }
 }
 
@@ -94,14 +94,14 @@ impl ReadingAgain<'_> {
 /// [`AlternativesError::Refused`] for an alternative that is not a valid project, or whose gas is
 /// shut off, [`AlternativesError::Alternative`] for one that cannot be sized or whose ranges cannot
 /// be moved.
-pub fn asked(
+pub fn prepared(
     source: &dyn Source,
     loaded: &Loaded,
     catalogues: &[String],
-) -> Result<(Vec<AskedAlternative>, PartsCounted), AlternativesError> {
+) -> Result<(Vec<PreparedAlternative>, PartsCounted), AlternativesError> {
     let catalogue = catalogue::load(source, catalogues).map_err(AlternativesError::Refused)?;
     let again = ReadingAgain { source, catalogues };
-    let itself = AskedAlternative::new(AS_DECLARED, loaded.clone(), None);
+    let itself = PreparedAlternative::new(AS_DECLARED, loaded.clone(), None);
     let mut found = vec![];
     for (index, alternative) in loaded.project.alternatives.iter().enumerate() {
         let other =
@@ -126,7 +126,7 @@ pub fn asked(
 /// # Errors
 /// [`AlternativesError::Alternative`] for an alternative whose prices are in another currency than
 /// those before it.
-fn counted(all: &[AskedAlternative]) -> Result<PartsCounted, AlternativesError> {
+fn counted(all: &[PreparedAlternative]) -> Result<PartsCounted, AlternativesError> {
     let projects = |count: usize| all.iter().take(count).map(|one| &one.loaded.project);
     for (index, one) in all.iter().enumerate() {
         if let Err([first, other]) = PartsCounted::of(projects(index + 1)) {
@@ -142,11 +142,11 @@ fn counted(all: &[AskedAlternative]) -> Result<PartsCounted, AlternativesError> 
 fn sized(
     again: &ReadingAgain<'_>,
     alternative: &Alternative,
-    (declared, other): (&AskedAlternative, Loaded),
+    (declared, other): (&PreparedAlternative, Loaded),
     catalogue: &Catalogue,
-) -> Result<AskedAlternative, AlternativesError> {
+) -> Result<PreparedAlternative, AlternativesError> {
     let name = alternative.name.clone();
-    let one = |loaded, no_hose| AskedAlternative::new(&name, loaded, no_hose);
+    let one = |loaded, no_hose| PreparedAlternative::new(&name, loaded, no_hose);
     if !alternative.size {
         return Ok(one(other, None));
     }

@@ -24,10 +24,10 @@ type SampledPlants = BTreeMap<Vec<u64>, Result<Member, LinearError>>;
 /// parameter values: sampling costs more than a thousand responses. A clone shares its plants,
 /// including later additions.
 #[derive(Clone, Debug)]
-pub(crate) struct KeptPlants {
+pub(crate) struct PlantCache {
     sampled: Rc<RefCell<PlantStore>>,
     /// Plants that a search evaluated, likewise.
-    tried: Rc<RefCell<BTreeMap<Vec<u64>, Option<TrialPlant>>>>,
+    evaluated: Rc<RefCell<BTreeMap<Vec<u64>, Option<TrialPlant>>>>,
     /// The last plant that was built: the next one has nearly equal poles.
     last: RefCell<Option<TrialPlant>>,
     memo: RefCell<EvaluationMemo>,
@@ -47,7 +47,7 @@ impl PlantStore {
     }
 
     /// All plants, readable by several threads.
-    fn share(&mut self) -> Arc<SampledPlants> {
+    fn fraction(&mut self) -> Arc<SampledPlants> {
         if !self.new.is_empty() {
             Arc::make_mut(&mut self.shared).append(&mut self.new);
         }
@@ -55,18 +55,18 @@ impl PlantStore {
     }
 }
 
-impl Default for KeptPlants {
+impl Default for PlantCache {
     fn default() -> Self {
-        KeptPlants::of(Workers::CALLER)
+        PlantCache::of(Workers::CALLER)
     }
 }
 
-impl KeptPlants {
+impl PlantCache {
     /// An empty store, with the workers that evaluate more plants.
-    pub(crate) fn of(workers: Workers) -> KeptPlants {
-        KeptPlants {
+    pub(crate) fn of(workers: Workers) -> PlantCache {
+        PlantCache {
             sampled: Rc::default(),
-            tried: Rc::default(),
+            evaluated: Rc::default(),
             last: RefCell::default(),
             memo: RefCell::default(),
             workers,
@@ -84,15 +84,15 @@ impl KeptPlants {
         &self,
         tasks: Vec<T>,
         (stage, watch): (&'static str, Watch<'_>),
-        task: impl Fn(&KeptPlants, T, Watch<'_>) -> Result<R, Stopped> + Sync,
+        task: impl Fn(&PlantCache, T, Watch<'_>) -> Result<R, Stopped> + Sync,
     ) -> Result<Vec<R>, Stopped> {
-        let shared = self.sampled.borrow_mut().share();
+        let shared = self.sampled.borrow_mut().fraction();
         let mut places: Vec<(SampledPlants, Option<R>)> = Vec::new();
         places.resize_with(tasks.len(), || (SampledPlants::new(), None));
         let pieces = places.iter_mut().zip(tasks).map(|((new, place), one)| {
             let (task, shared) = (&task, Arc::clone(&shared));
             let piece: WorkPiece<'_> = Box::new(move |watch: Watch<'_>| {
-                let own = KeptPlants::of(Workers::CALLER);
+                let own = PlantCache::of(Workers::CALLER);
                 own.sampled.borrow_mut().shared = shared;
                 *place = Some(task(&own, one, watch)?);
                 new.append(&mut own.sampled.borrow_mut().new);
@@ -116,13 +116,13 @@ impl KeptPlants {
     }
 
     /// Number of plants evaluated by searches, and number of those whose factors were all needed.
-    pub(crate) fn tried(&self) -> [usize; 2] {
+    pub(crate) fn evaluated(&self) -> [usize; 2] {
         let is_whole = |one: &&TrialPlant| match one {
             TrialPlant::Whole(_) => true,
             TrialPlant::Held(held) => held.is_whole(),
         };
-        let tried = self.tried.borrow();
-        [tried.len(), tried.values().flatten().filter(is_whole).count()]
+        let evaluated = self.evaluated.borrow();
+        [evaluated.len(), evaluated.values().flatten().filter(is_whole).count()]
     }
 
     /// The plant with these parameter values within the loop.
@@ -168,11 +168,11 @@ impl KeptPlants {
             return build();
         }
         let key: Vec<u64> = values.iter().map(|value| value.to_bits()).collect();
-        let mut tried = self.tried.borrow_mut();
-        if tried.len() >= PLANTS_MAXIMUM && !tried.contains_key(&key) {
+        let mut evaluated = self.evaluated.borrow_mut();
+        if evaluated.len() >= PLANTS_MAXIMUM && !evaluated.contains_key(&key) {
             return build();
         }
-        tried.entry(key).or_insert_with(build).clone()
+        evaluated.entry(key).or_insert_with(build).clone()
     }
 }
 
@@ -184,9 +184,9 @@ mod tests {
         PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
     };
 
-    use super::{Compensation, KeptPlants, Member};
+    use super::{Compensation, PlantCache, Member};
 
-    fn found(plants: &KeptPlants, timing: Timing, gain: f64) -> Member {
+    fn found(plants: &PlantCache, timing: Timing, gain: f64) -> Member {
         let parameter = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 0.5, maximum: 2.0 };
         let lag = UncertainPlant::record(vec![parameter], |p| PlantCoefficients {
             command: RationalCoefficients {
@@ -207,17 +207,17 @@ mod tests {
     fn a_plant_is_sampled_once() {
         let sampled = Timing { sample_time_s: Some(0.1), ..Timing::default() };
         let late = Timing { delay_s: 0.5, ..sampled };
-        let plants = KeptPlants::default();
+        let plants = PlantCache::default();
         let first = format!("{:?}", found(&plants, sampled, 1.0));
         assert_eq!(first, format!("{:?}", found(&plants, late, 1.0)));
-        assert_ne!(first, format!("{:?}", found(&KeptPlants::default(), late, 1.0)));
+        assert_ne!(first, format!("{:?}", found(&PlantCache::default(), late, 1.0)));
         assert_ne!(first, format!("{:?}", found(&plants, sampled, 1.5)));
         assert_eq!(plants.sampled.borrow().len(), 2);
     }
 
     #[test]
     fn plants_of_a_continuous_loop_are_not_kept() {
-        let plants = KeptPlants::default();
+        let plants = PlantCache::default();
         found(&plants, Timing::default(), 1.0);
         assert_eq!(plants.sampled.borrow().len(), 0);
     }

@@ -74,7 +74,7 @@ pub trait Observer {
 
     /// True if the solution within a step from sample to sample must be more accurate than a cubic;
     /// called before [`Observer::follow`].
-    fn looks_closer(&self, _stretch: &Stretch<'_>) -> bool {
+    fn needs_accurate_solution(&self, _stretch: &Stretch<'_>) -> bool {
         false
     }
 }
@@ -104,8 +104,8 @@ impl<P: DerefMut<Target: Observer>> Observer for P {
         (**self).follow(stretch);
     }
 
-    fn looks_closer(&self, stretch: &Stretch<'_>) -> bool {
-        (**self).looks_closer(stretch)
+    fn needs_accurate_solution(&self, stretch: &Stretch<'_>) -> bool {
+        (**self).needs_accurate_solution(stretch)
     }
 }
 
@@ -116,7 +116,7 @@ pub enum Attention {
     #[default]
     Rows,
     /// Every step as a whole. Between samples a step may use precomputed matrices;
-    /// [`Observer::looks_closer`] is called for each such step.
+    /// [`Observer::needs_accurate_solution`] is called for each such step.
     Steps,
     /// Every step as a whole and every row, independent of the spacing of rows: no step uses
     /// precomputed matrices.

@@ -11,7 +11,7 @@ use super::refused::{ChangeProblem, RefusedChange};
 use crate::quantity::{self, ANGULAR_FREQUENCY};
 
 /// An element that is to be solved for.
-pub(super) struct ElementWish<'a> {
+pub(super) struct ElementRequest<'a> {
     /// Number of the element that it replaces.
     pub(super) replaced: Option<TextPiece<'a>>,
     pub(super) pattern: ElementPattern,
@@ -42,7 +42,7 @@ pub fn solved_kinds() -> [&'static str; 10] {
 }
 
 /// Parses a request.
-pub(super) fn read<'a>(whole: &TextPiece<'a>) -> Result<ElementWish<'a>, Box<RefusedChange>> {
+pub(super) fn read<'a>(whole: &TextPiece<'a>) -> Result<ElementRequest<'a>, Box<RefusedChange>> {
     let [head, place] = whole.split("through").ok_or_else(|| whole.refused(ChangeProblem::NoPoint))?;
     let [point, at] = place.split_last(" at ").ok_or_else(|| place.refused(ChangeProblem::NoFrequency))?;
     let numbered =
@@ -54,7 +54,7 @@ pub(super) fn read<'a>(whole: &TextPiece<'a>) -> Result<ElementWish<'a>, Box<Ref
     let pattern = pattern(&head)?;
     let [magnitude_db, phase_deg] = coordinates(&point)?;
     let frequency_rad_per_s = frequency(&at)?;
-    Ok(ElementWish { replaced, pattern, point: WantedPoint { frequency_rad_per_s, magnitude_db, phase_deg } })
+    Ok(ElementRequest { replaced, pattern, point: WantedPoint { frequency_rad_per_s, magnitude_db, phase_deg } })
 }
 
 /// Kind of the element, with its given number.
@@ -93,7 +93,7 @@ fn numbered(
             Ok(ElementPattern::NotchHere { pole_damping_ratio: plain(value)? })
         }
         (ElementPattern::NotchHere { .. }, "frequency") => {
-            Ok(ElementPattern::NotchBeside { natural_frequency: frequency(value)? })
+            Ok(ElementPattern::FurtherNotch { natural_frequency: frequency(value)? })
         }
         _ => Err(key.refused(ChangeProblem::NotGiven { key: key.words.to_string(), pattern })),
     }
